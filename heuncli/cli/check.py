@@ -1,0 +1,146 @@
+"""`heun check`: specs and folders of specs against what they expect."""
+
+from __future__ import annotations
+
+from collections.abc import Iterator, Sequence
+from dataclasses import dataclass
+from pathlib import Path
+from typing import Any
+
+import numpy as np
+
+from heuncli.cli.entry import UsageError, tell, worst
+from heuncli.cli.expect import Case, compare, wanted
+from heuncli.cli.output import emit
+from heuncli.cli.requests import Check
+from heuncli.cli.solving import choice, warn
+from heuncli.errors import HeunError, Problem
+from heuncli.report.export import dump
+from heuncli.report.numbers import OPEN
+from heuncli.report.table import Column, Table, plain
+from heuncli.report.words import count
+from heuncli.results import Array
+from heuncli.spec.load import load
+from heuncli.study import Options, solve
+
+FORMATS = ("table", "json")
+ENDINGS = frozenset({".yaml", ".yml"})
+SKIPPED = "broken"  # folders of specs that are wrong on purpose
+FAILED = 1
+
+
+@dataclass(frozen=True, eq=False)
+class Checked:
+    """One file: its cases, or the error that kept it from being solved."""
+
+    path: str
+    cases: tuple[Case, ...]
+    error: HeunError | None = None
+
+    @property
+    def exit_code(self) -> int:
+        """What this file alone would leave with."""
+        if self.error is not None:
+            return self.error.exit_code
+        return 0 if all(case.passed for case in self.cases) else FAILED
+
+
+def main(request: Check) -> int:
+    """Run the command; returns the exit code."""
+    form = choice("--format", request.format or "table", FORMATS)
+    skipped: list[str] = []
+    paths = [path for argument in request.paths for path in _files(argument, skipped)]
+    if not paths:
+        raise UsageError(Problem("nothing-to-check", f"no *.yaml in {', '.join(request.paths)}"))
+    checked = [_check(path, request.quiet) for path in paths]
+    emit(_json(checked) if form == "json" else _table(checked, skipped), request.output)
+    return worst([one.exit_code for one in checked])
+
+
+def _files(argument: str, skipped: list[str]) -> Iterator[str]:
+    """The file itself, or every spec in the folder and below it, sorted; not in hidden folders and `broken` ones."""
+    if argument == "-" or not Path(argument).is_dir():
+        yield argument
+        return
+    for entry in sorted(Path(argument).iterdir()):
+        if entry.is_dir():
+            if entry.name == SKIPPED:
+                skipped.append(str(entry))
+            elif not entry.name.startswith("."):
+                yield from _files(str(entry), skipped)
+        elif entry.suffix in ENDINGS:
+            yield str(entry)
+
+
+def _check(path: str, quiet: bool) -> Checked:
+    try:
+        spec = load(path)
+        study = solve(spec, Options(wanted=wanted(spec.expect) if spec.expect else None))
+        warn(spec, study.results, quiet)
+        return Checked(path, tuple(compare(study, item) for item in spec.expect))
+    except HeunError as error:
+        tell(error.problems, label="" if _placed(error) else f"{path}: ")
+        return Checked(path, (), error)
+
+
+def _placed(error: HeunError) -> bool:
+    return all(problem.place for problem in error.problems)
+
+
+def _table(checked: Sequence[Checked], skipped: Sequence[str]) -> str:
+    cases = [case for one in checked for case in one.cases]
+    rows = tuple(
+        (
+            f"{one.path}:{case.place.line}",
+            case.of,
+            case.when,
+            _text(case.expected),
+            _text(case.found),
+            case.failure or "",
+        )
+        for one in checked
+        for case in one.cases
+        if not case.passed
+    )
+    heads = ("file", "of", "at", "expected", "found", "why it fails")
+    failures = Table("FAILED", tuple(Column(head, "left") for head in heads), rows)
+    errors = sum(one.error is not None for one in checked)
+    silent = sum(not one.cases and one.error is None for one in checked)
+    parts = [count(len(checked), "spec"), f"{sum(case.passed for case in cases)} passed", f"{len(rows)} failed"]
+    parts += [f"{count(errors, 'spec')} not solved"] if errors else []
+    parts += [f"{count(silent, 'spec')} ran with nothing expected"] if silent else []
+    parts += [f"{folder} passed by" for folder in skipped]
+    return (plain(failures) + "\n" if rows else "") + ", ".join(parts) + "\n"
+
+
+def _json(checked: Sequence[Checked]) -> str:
+    cases: list[dict[str, Any]] = []
+    for one in checked:
+        if one.error is not None:
+            cases.append({"file": one.path, "passed": False, "exit": one.exit_code, "message": str(one.error)})
+        elif not one.cases:
+            cases.append({"file": one.path, "passed": True, "message": "ran; nothing expected"})
+        for case in one.cases:
+            cases.append(
+                {
+                    "file": one.path,
+                    "line": case.place.line,
+                    "of": case.of,
+                    "when": case.when,
+                    "expected": case.expected,
+                    "found": case.found,
+                    "tolerance": case.tolerance,
+                    "passed": case.passed,
+                    "message": case.failure or "",
+                }
+            )
+    passed = sum(bool(case["passed"]) for case in cases)
+    return dump({"passed": passed, "failed": len(cases) - passed, "cases": cases})
+
+
+def _text(values: Array | None) -> str:
+    if values is None:
+        return ""
+    texts = [OPEN if np.isnan(value) else f"{value:.9g}" for value in np.ravel(values)[:6]]
+    more = ", ..." if values.size > len(texts) else ""
+    return texts[0] if values.ndim == 0 else f"[{', '.join(texts)}{more}]"

@@ -1,0 +1,122 @@
+"""From the words of the command line to an exit code (contract section 4).
+
+Results go to standard output, everything else to standard error; a command that fails has written nothing. Impure.
+"""
+
+from __future__ import annotations
+
+import importlib
+import os
+import sys
+from collections.abc import Sequence
+from pathlib import Path
+
+from heuncli.cli import plain
+from heuncli.cli.output import ReaderGone, emit, say
+from heuncli.cli.requests import COMMANDS, LATER_COMMANDS, LATER_OPTIONS, Request
+from heuncli.errors import HeunError, LimitError, Problem
+from heuncli.version import VERSION
+
+INTERRUPTED = 130
+BUG = 70
+OF_SEVERAL = (BUG, 5, 2, 3, 4, 1)  # contract section 4: which exit code stands for several files
+
+
+class UsageError(HeunError):
+    """The command line asks for what there is not."""
+
+    exit_code = 2
+
+
+def enter(argv: Sequence[str]) -> int:
+    """Run one command line; returns its exit code."""
+    try:
+        return _command(list(argv))
+    except ReaderGone as gone:
+        return gone.exit_code
+    except HeunError as error:
+        _debug()
+        tell(error.problems)
+        return error.exit_code
+    except KeyboardInterrupt:
+        say("heun: interrupted")
+        return INTERRUPTED
+    except MemoryError:
+        tell([Problem("out-of-memory", "the memory does not suffice", hint="fewer samples, or --only")])
+        return LimitError.exit_code
+    except Exception as bug:
+        _debug()
+        say(_bug_report(bug, argv))
+        return BUG
+
+
+def tell(problems: Sequence[Problem], label: str = "") -> None:
+    """Every problem on standard error, as place, finding, code and hint."""
+    for problem in problems:
+        say(f"{'' if problem.place else 'heun: '}{label}{problem}")
+
+
+def worst(codes: Sequence[int]) -> int:
+    """The exit code that stands for those of several files."""
+    return next((code for code in OF_SEVERAL if code in codes), 0)
+
+
+def version() -> str:
+    """The version, and which kernel runs."""
+    from heuncli.kernel.choose import KERNEL
+
+    return f"heun {VERSION} ({KERNEL} kernel, Python {sys.version.split()[0]})"
+
+
+def _command(argv: list[str]) -> int:
+    if argv[:1] == ["--version"]:
+        emit(version() + "\n")
+        return 0
+    if argv and argv[0] in LATER_COMMANDS:
+        known = ", ".join(COMMANDS)
+        raise UsageError(Problem("not-yet", f"{argv[0]}: not in this version yet", hint=f"there are: {known}"))
+    request = plain.read(argv)
+    if request is None:
+        answer = _through_typer(argv)
+        if isinstance(answer, int):
+            return answer
+        request = answer
+    for name in LATER_OPTIONS:
+        if getattr(request, name, None):
+            raise UsageError(Problem("not-yet", f"--{name.replace('_', '-')}: not in this version yet"))
+    module = importlib.import_module(f"heuncli.cli.{type(request).__name__.lower()}")
+    return int(module.main(request))
+
+
+def _through_typer(argv: list[str]) -> Request | int:
+    import contextlib
+    import io
+
+    from heuncli.cli import app
+
+    answers = io.StringIO()
+    with contextlib.redirect_stdout(answers):
+        answer = app.read(argv)
+    if text := answers.getvalue():
+        emit(text)
+    return answer
+
+
+def _debug() -> None:
+    """The traceback of the exception at hand, for those who ask for it."""
+    if os.environ.get("HEUN_DEBUG") == "1":
+        import traceback
+
+        traceback.print_exc()
+
+
+def _bug_report(bug: Exception, argv: Sequence[str]) -> str:
+    place = bug.__traceback__
+    while place is not None and place.tb_next is not None:
+        place = place.tb_next
+    where = f" at {Path(place.tb_frame.f_code.co_filename).name}:{place.tb_lineno}" if place else ""
+    return (
+        f"heun: this is a bug in heun: {type(bug).__name__}: {bug}{where}\n"
+        f"  please report it with the spec, this line, and: heun {' '.join(argv)} (version {VERSION})\n"
+        "  HEUN_DEBUG=1 shows the traceback"
+    )

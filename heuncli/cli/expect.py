@@ -1,0 +1,113 @@
+"""What a spec expects of its own results, compared (contract section 1, expect)."""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+from dataclasses import dataclass
+from typing import Any
+
+import numpy as np
+
+from heuncli.cli.measure import peak
+from heuncli.cli.solving import SAME_INSTANT, report_of
+from heuncli.errors import HeunError, Place, Problem
+from heuncli.report.paths import find
+from heuncli.results import Array, Results
+from heuncli.spec.models import Expect
+from heuncli.study import Study
+
+# Where the spec gives neither rel nor abs.
+DEFAULT_REL, DEFAULT_ABS = 1e-6, 1e-9
+
+
+@dataclass(frozen=True, eq=False)
+class Case:
+    """One comparison: what was expected where, what was found (nan is open), and if they differ why that fails."""
+
+    place: Place
+    of: str
+    when: str
+    expected: Array
+    found: Array | None
+    tolerance: float
+    failure: str | None
+
+    @property
+    def passed(self) -> bool:
+        """Whether it holds."""
+        return self.failure is None
+
+
+def wanted(expectations: Sequence[Expect]) -> frozenset[str] | None:
+    """The reports that the expectations need; None where that cannot be told."""
+    reports = [report_of(item.of) for item in expectations]
+    known = [report for report in reports if report is not None]
+    return frozenset().union(*known) if len(known) == len(reports) else None
+
+
+def compare(study: Study, item: Expect) -> Case:
+    """One expectation against the study."""
+    expected = np.asarray(np.nan if item.is_ is None else _with_nan(item.is_), dtype=np.float64)
+    when = f"{item.peak} over the run" if item.peak else f"t = {item.at:.6g} s" if item.at is not None else ""
+    tolerance = _tolerance(expected, item.rel, item.abs)
+    try:
+        found = _found(study, item)
+    except HeunError as error:
+        return Case(item.place, item.of, when, expected, None, tolerance, error.problems[0].message)
+    return Case(item.place, item.of, when, expected, found, tolerance, _failure(expected, found, tolerance))
+
+
+def _found(study: Study, item: Expect) -> Array:
+    results: Results = study.results
+    if item.peak:
+        return np.asarray(peak(study, item.of, item.peak)[0])
+    found = find(results, item.of)
+    if not found.timed:
+        return found.values
+    if item.at is not None:
+        return np.asarray(found.values[_instant(results.time, item.at)])
+    return found.values[0] if len(results.time) == 1 else found.values
+
+
+def _instant(times: Array, at: float) -> int:
+    place = int(np.argmin(np.abs(times - at)))
+    if abs(times[place] - at) > SAME_INSTANT * max(float(np.ptp(times)), abs(at)):
+        message = f"t = {at:.6g} s is not an instant of the output; the nearest is {times[place]:.6g} s"
+        raise HeunError(Problem("no-such-instant", message))
+    return place
+
+
+def _failure(expected: Array, found: Array, tolerance: float) -> str | None:
+    if found.shape != expected.shape:
+        if expected.ndim == 0 and np.isnan(expected):
+            expected = np.full(found.shape, np.nan)
+        else:
+            return f"{_size(expected)} expected, {_size(found)} found (give at, peak, or a component)"
+    open_expected, open_found = np.isnan(expected), np.isnan(found)
+    if (open_expected & ~open_found).any():
+        return "expected open, found a number"
+    if (open_found & ~open_expected).any():
+        return "open"
+    if not open_expected.all():
+        off = float(np.max(np.abs(found - expected)[~open_expected]))
+        if not off <= tolerance:
+            return f"off by {off:.3g}, allowed {tolerance:.3g}"
+    return None
+
+
+def _tolerance(expected: Array, rel: float | None, absolute: float | None) -> float:
+    """rel is of the largest number expected."""
+    scale = float(np.max(np.abs(np.nan_to_num(expected)))) if expected.size else 0.0
+    if rel is None and absolute is None:
+        rel, absolute = DEFAULT_REL, DEFAULT_ABS
+    return max((rel or 0.0) * scale, absolute or 0.0)
+
+
+def _with_nan(value: Any) -> Any:
+    if isinstance(value, (list, tuple)):
+        return [_with_nan(member) for member in value]
+    return np.nan if value is None else value
+
+
+def _size(values: Array) -> str:
+    return "one number" if values.ndim == 0 else f"a list of {len(values)}"

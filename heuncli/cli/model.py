@@ -1,0 +1,26 @@
+"""`heun model`: which model is made of a scene, and why."""
+
+from __future__ import annotations
+
+from collections.abc import Mapping
+from typing import Any
+
+from heuncli.cli.output import emit
+from heuncli.cli.requests import Model
+from heuncli.cli.solving import choice, overrides, warn
+from heuncli.report.export import dump
+from heuncli.report.note import note
+from heuncli.spec.load import load
+from heuncli.study import describe
+
+FORMATS = ("text", "json")
+
+
+def main(request: Model) -> int:
+    """Run the command; returns the exit code."""
+    form = choice("--format", request.format or "text", FORMATS)
+    spec = load(request.spec, overrides=overrides(request.set))
+    model: Mapping[str, Any] = describe(spec).model
+    emit(dump(dict(model)) if form == "json" else note(spec.title, model), request.output)
+    warn(spec, None, request.quiet)
+    return 0

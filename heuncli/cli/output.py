@@ -1,0 +1,95 @@
+"""Where results go: standard output, or a file that is written whole or not at all. Impure: writes.
+
+Whatever keeps output from arriving is an OutputError (exit 5), but for a reader that went away: ReaderGone (exit 141).
+"""
+
+from __future__ import annotations
+
+import contextlib
+import os
+import stat
+import sys
+from pathlib import Path
+
+from heuncli.errors import HeunError, OutputError, Problem
+
+NEW_FILE_MODE = 0o666
+
+
+class ReaderGone(HeunError):
+    """Nobody reads standard output any more; nothing needs saying."""
+
+    exit_code = 141
+
+
+def emit(text: str, target: str | None = None) -> None:
+    """Write the text to a file, or to standard output for None and `-`."""
+    if target is None or target == "-":
+        _to_standard_output(text)
+    else:
+        _to_file(text, Path(target))
+
+
+def say(text: str) -> None:
+    """A line to standard error, if anybody can read it."""
+    with contextlib.suppress(OSError, ValueError):
+        if sys.stderr is not None:
+            print(text, file=sys.stderr, flush=True)
+
+
+def _to_standard_output(text: str) -> None:
+    if sys.stdout is None:
+        raise OutputError(Problem("output-closed", "standard output is closed"))
+    try:
+        encoding = sys.stdout.encoding or "utf-8"
+        sys.stdout.buffer.write(text.encode(encoding, "replace"))
+        sys.stdout.buffer.flush()
+    except BrokenPipeError:
+        _silence()
+        raise ReaderGone from None
+    except OSError as reason:
+        _silence()
+        raise OutputError(Problem("output-failed", f"standard output: {reason.strerror or reason}")) from reason
+
+
+def _silence() -> None:
+    """Send what Python would still flush at exit to nowhere, so that it does not complain once more."""
+    with contextlib.suppress(OSError, ValueError):
+        nowhere = os.open(os.devnull, os.O_WRONLY)
+        os.dup2(nowhere, sys.stdout.fileno())
+        os.close(nowhere)
+
+
+def _to_file(text: str, path: Path) -> None:
+    try:
+        target = path.resolve()
+        if target.exists() and not target.is_file():
+            target.write_text(text, encoding="utf-8")  # a pipe or a device has no "whole"
+        else:
+            _replace(text, target)
+    except OSError as reason:
+        raise OutputError(Problem("output-failed", f"{path}: {reason.strerror or reason}")) from reason
+
+
+def _replace(text: str, target: Path) -> None:
+    """Write beside the target, then rename over it: at every moment the old text or the new one stands there."""
+    import tempfile  # 4 ms that only files need
+
+    mode = stat.S_IMODE(target.stat().st_mode) if target.exists() else NEW_FILE_MODE & ~_umask()
+    handle, name = tempfile.mkstemp(prefix=f".{target.name}.", dir=target.parent)
+    try:
+        with os.fdopen(handle, "w", encoding="utf-8", newline="\n") as file:
+            file.write(text)
+            file.flush()
+            os.fsync(file.fileno())
+        Path(name).chmod(mode)
+        Path(name).replace(target)
+    except BaseException:
+        Path(name).unlink(missing_ok=True)
+        raise
+
+
+def _umask() -> int:
+    mask = os.umask(0)
+    os.umask(mask)
+    return mask

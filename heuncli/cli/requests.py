@@ -1,0 +1,118 @@
+"""The commands and their options, as data: what is asked for, before anything heavy is imported.
+
+Each command is a named tuple; a field is an option (or the arguments), its annotation holds the words and the help. Two
+readers fill them in: cli/plain.py at once for plain command lines, cli/app.py through typer for help and usage errors.
+Named tuples here and in report/, not dataclasses: those take 0.6 ms each to define, and every command pays.
+"""
+
+from typing import Annotated, NamedTuple
+
+FORMATS = ("table", "json", "csv", "markdown")
+
+
+class Option(NamedTuple):
+    """The words of an option (none: an argument), what it does, and what stands for its value in the help."""
+
+    words: tuple[str, ...]
+    help: str
+    metavar: str | None = None
+
+
+SET = Option(("--set",), "Set a parameter, or a dotted key of the spec. May be repeated.", "NAME=VALUE")
+OUTPUT = Option(("--output", "-o"), "Write there, whole or not at all.", "FILE")
+QUIET = Option(("--quiet", "-q"), "No warnings on standard error.")
+SPEC = Option((), "The scene's YAML file; - reads standard input.", "SPEC")
+
+
+class Run(NamedTuple):
+    """Solve a scene and report its loads and motion."""
+
+    spec: Annotated[str, SPEC]
+    format: Annotated[
+        str | None,
+        Option(
+            ("--format",),
+            "How to write the results. Default: by the name's end of -o FILE, else table.",
+            "|".join(FORMATS),
+        ),
+    ] = None
+    output: Annotated[str | None, OUTPUT] = None
+    only: Annotated[
+        str | None,
+        Option(("--only",), "Only these: motion, points, foundation, joints, sections, forces, energy.", "REPORT,..."),
+    ] = None
+    set: Annotated[tuple[str, ...], SET] = ()
+    at: Annotated[str | None, Option(("--at",), "Show these instants instead of the extremes.", "T,...")] = None
+    all: Annotated[bool, Option(("--all",), "Show every instant, and every cut of a run of cuts.")] = False
+    measure: Annotated[
+        str | None,
+        Option(
+            ("--measure",),
+            "Print one number: 'max abs sections.middle.M1', 'final energy.kinetic', 'at 0.5 PATH'.",
+            "WHAT",
+        ),
+    ] = None
+    method: Annotated[str | None, Option(("--method",), "The method of integration.", "NAME")] = None
+    tolerance: Annotated[
+        float | None, Option(("--tolerance",), "Error of the motion, relative to the scene.", "NUMBER")
+    ] = None
+    no_reduce: Annotated[bool, Option(("--no-reduce",), "Solve the scene in full, without reducing the model.")] = False
+    least_norm: Annotated[bool, Option(("--least-norm",), "Split what redundant supports leave open.")] = False
+    by_cause: Annotated[bool, Option(("--by-cause",), "Split every load by its causes (not yet).")] = False
+    strict: Annotated[bool, Option(("--strict",), "Leave with 1 if there are warnings or open reactions.")] = False
+    time_limit: Annotated[float | None, Option(("--time-limit",), "Give up after that long.", "SECONDS")] = None
+    quiet: Annotated[bool, QUIET] = False
+    verbose: Annotated[bool, Option(("--verbose", "-v"), "Tell on standard error where the time went.")] = False
+
+
+class Validate(NamedTuple):
+    """Read specs and tell every error of every file."""
+
+    specs: Annotated[tuple[str, ...], Option((), "YAML files; - reads standard input.", "SPEC...")]
+    quiet: Annotated[bool, Option(("--quiet", "-q"), "Nothing but errors.")] = False
+
+
+class Model(NamedTuple):
+    """Tell which model is made of a scene, and why."""
+
+    spec: Annotated[str, SPEC]
+    format: Annotated[str | None, Option(("--format",), "How to write it. Default: text.", "text|json")] = None
+    output: Annotated[str | None, OUTPUT] = None
+    set: Annotated[tuple[str, ...], SET] = ()
+    quiet: Annotated[bool, QUIET] = False
+
+
+class Check(NamedTuple):
+    """Run specs, and folders of specs, against what they `expect`."""
+
+    paths: Annotated[
+        tuple[str, ...],
+        Option((), "YAML files, and folders: every *.yaml below, but for folders named broken.", "PATH..."),
+    ]
+    format: Annotated[str | None, Option(("--format",), "How to write it. Default: table.", "table|json")] = None
+    output: Annotated[str | None, OUTPUT] = None
+    golden: Annotated[str | None, Option(("--golden",), "Compare with whole results kept there (not yet).", "DIR")] = (
+        None
+    )
+    update: Annotated[bool, Option(("--update",), "Write the kept results anew (not yet).")] = False
+    junit: Annotated[str | None, Option(("--junit",), "Write a JUnit report (not yet).", "FILE")] = None
+    quiet: Annotated[bool, QUIET] = False
+
+
+Request = Run | Validate | Model | Check
+COMMANDS: dict[str, type[Request]] = {"run": Run, "validate": Validate, "model": Model, "check": Check}
+LATER_COMMANDS = ("balance", "chart", "probe", "lagrange", "methods", "schema", "explain", "new", "sweep", "plot")
+LATER_OPTIONS = ("by_cause", "golden", "update", "junit")
+
+
+class Row(NamedTuple):
+    """One option of a command: the field's name, its type, and what is said of it."""
+
+    name: str
+    type: object
+    option: Option
+
+
+def rows(command: type[Request]) -> list[Row]:
+    """The options and arguments of a command, in their order."""
+    return [Row(name, note.__origin__, note.__metadata__[0]) for name, note in command.__annotations__.items()]

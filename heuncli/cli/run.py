@@ -1,0 +1,140 @@
+"""`heun run`: read, solve, report."""
+
+from __future__ import annotations
+
+import time
+from collections.abc import Callable, Sequence
+from dataclasses import replace
+from pathlib import Path
+from typing import Any
+
+import numpy as np
+
+from heuncli.cli.entry import UsageError
+from heuncli.cli.output import emit, say
+from heuncli.cli.requests import FORMATS, Run
+from heuncli.cli.solving import choice, extremes, instants, overrides, positive, timings, warn
+from heuncli.errors import Problem
+from heuncli.report.heading import write_heading, write_heading_markdown
+from heuncli.report.layout import Found
+from heuncli.report.page import EXPORT_DEFAULT, REPORTS, TABLE_DEFAULT, page_of, restrict
+from heuncli.report.scene import Scene, scene_of
+from heuncli.report.table import Table, markdown, plain
+from heuncli.results import Results
+from heuncli.spec.load import load
+from heuncli.spec.rules.not_yet import METHODS
+from heuncli.study import Options, Study, solve
+
+ENDINGS = {".json": "json", ".csv": "csv", ".md": "markdown"}
+NOT_SEARCHED = "extremes among the samples only: too many quantities to search between them"
+ROUNDS = 2  # of the search for extremes: a table shows six digits
+TABLES = ("table", "markdown")
+
+
+def main(request: Run) -> int:
+    """Run the command; returns the exit code."""
+    form = _format(request)
+    asked = None
+    if request.measure is not None:
+        from heuncli.cli import measure  # with paths and JSON 2 ms that tables do not need
+
+        asked = measure.parse(request.measure)
+    only = _only(request.only)
+    _keep_spec(request)
+    options = Options(
+        tolerance=positive("--tolerance", request.tolerance),
+        method=choice("--method", request.method, METHODS) if request.method is not None else None,
+        least_norm=request.least_norm,
+        reduce=not request.no_reduce,
+        time_limit=positive("--time-limit", request.time_limit),
+    )
+    begun = time.perf_counter()
+    spec = load(request.spec, overrides=overrides(request.set))
+    options = replace(options, load_seconds=time.perf_counter() - begun)
+    wanted = asked.wanted if asked else _wanted(only, spec.report, form)
+    study = solve(spec, replace(options, wanted=wanted))
+    if asked:
+        text = measure.write(asked, study, scene_of(spec), form)
+    else:
+        text = _report(request, form, study, scene_of(spec), wanted or frozenset(REPORTS))
+    emit(text, request.output)
+    warnings = warn(spec, study.results, request.quiet)
+    if request.verbose:
+        say(f"heun: {timings(study.results.work)}")
+    return _strict(study.results, warnings) if request.strict else 0
+
+
+def _format(request: Run) -> str:
+    if request.format is not None:
+        return choice("--format", request.format, FORMATS)
+    return ENDINGS.get(Path(request.output).suffix.lower(), "table") if request.output else "table"
+
+
+def _only(words: str | None) -> frozenset[str] | None:
+    if words is None:
+        return None
+    names = [word.strip() for word in words.split(",")]
+    if "shares" in names:
+        raise UsageError(Problem("not-yet", "--only shares: not in this version yet"))
+    return frozenset(choice("--only", name, REPORTS) for name in names)
+
+
+def _keep_spec(request: Run) -> None:
+    """The output must not take the place of the spec."""
+    if request.output and request.spec != "-" and Path(request.output).resolve() == Path(request.spec).resolve():
+        raise UsageError(Problem("bad-option", f"-o {request.output}: that is the spec itself"))
+
+
+def _wanted(only: frozenset[str] | None, report: Sequence[str] | None, form: str) -> frozenset[str]:
+    if only is not None:
+        return only
+    if report is not None:
+        return frozenset(report)
+    return TABLE_DEFAULT if form in TABLES else EXPORT_DEFAULT
+
+
+def _report(request: Run, form: str, study: Study, scene: Scene, wanted: frozenset[str]) -> str:
+    at = instants(request.at, study.results.time) if request.at is not None else None
+    shown = study.results if at is None else study.resample(at)
+    if form not in TABLES:
+        from heuncli.report.export import to_csv, to_json  # tables do without
+
+        return to_json(restrict(shown, wanted)) if form == "json" else to_csv(restrict(shown, wanted), scene)
+    page = page_of(restrict(study.results, wanted), scene)
+    if request.all or at is not None or len(study.results.time) == 1:
+        tables = page.instants(restrict(shown, wanted), every_cut=request.all)
+    else:
+        found = extremes(study, lambda results: page.columns(restrict(results, wanted)), page.groups(), ROUNDS)
+        tables = page.extremes(Found(*found[:-1]))
+        if not found.searched:
+            tables.append(Table("", notes=(NOT_SEARCHED,)))
+    if not tables:
+        tables = [Table("", notes=(f"nothing to show of {', '.join(sorted(wanted))}: the scene has none",))]
+    if form == "markdown":
+        return write_heading_markdown(study.results) + "\n".join(map(markdown, tables))
+    return write_heading(study.results) + "".join("\n" + text for text in _writer(request)(tables))
+
+
+def _writer(request: Run) -> Callable[[list[Table]], list[str]]:
+    """How tables become text: fitted to a terminal where one is written to, else as wide as they are."""
+    if request.output is None:
+        from heuncli.cli import terminal  # rich is worth its 44 ms only where somebody looks
+
+        if terminal.present():
+            return terminal.write
+    return lambda tables: [plain(table) for table in tables]
+
+
+def _strict(results: Results, warnings: list[str]) -> int:
+    """1 if there are warnings or open reactions, and why."""
+    loads = (results.joints, results.sections, results.foundation.get("supports", {}))
+    unsure = [name for block in loads for name, part in block.items() if part.get("open") or _has_open(part)]
+    if warnings:
+        say(f"heun: --strict: {len(warnings)} warning{'s' * (len(warnings) > 1)}")
+    if unsure:
+        say(f"heun: --strict: open reactions in {', '.join(dict.fromkeys(unsure))}")
+    return int(bool(warnings or unsure))
+
+
+def _has_open(part: dict[str, Any]) -> bool:
+    return any(isinstance(part.get(key), np.ndarray) and np.isnan(part[key]).any() for key in ("force", "moment", "N"))

@@ -1,0 +1,106 @@
+"""What the commands share around a solved scene: options read from words, warnings told, extremes searched for."""
+
+from __future__ import annotations
+
+import math
+from collections.abc import Callable, Mapping, Sequence
+from typing import Any
+
+import numpy as np
+
+from heuncli import peaks
+from heuncli.cli.entry import UsageError
+from heuncli.cli.output import say
+from heuncli.errors import Problem
+from heuncli.report.page import PARTS
+from heuncli.results import Array, Results
+from heuncli.spec.models import Spec
+from heuncli.study import Study
+
+MOST_SEARCHED = 1_000_000  # numbers to look at for extremes between the samples
+SAME_INSTANT = 1e-9  # of the run's length: instants this near to each other are one
+
+
+def choice(option: str, value: str, known: Sequence[str]) -> str:
+    """The value if it is one of the known ones, else a UsageError that lists them."""
+    if value not in known:
+        raise UsageError(Problem("bad-option", f"{option} {value}: known: {', '.join(known)}"))
+    return value
+
+
+def overrides(words: Sequence[str]) -> dict[str, str]:
+    """`name=value` words as a mapping."""
+    pairs: dict[str, str] = {}
+    for word in words:
+        name, equals, value = word.partition("=")
+        if not equals or not name.strip():
+            raise UsageError(Problem("bad-option", f"--set {word}: expected NAME=VALUE", hint="such as --set L=1.2"))
+        pairs[name.strip()] = value.strip()
+    return pairs
+
+
+def positive(option: str, value: float | None) -> float | None:
+    """The value if it is a positive number or not given."""
+    if value is not None and not (math.isfinite(value) and value > 0.0):
+        raise UsageError(Problem("bad-option", f"{option} {value}: expected a positive number"))
+    return value
+
+
+def instants(words: str, times: Array) -> Array:
+    """The instants of `--at`, sorted; all must lie within the run, (n_t,) ascending."""
+    try:
+        asked = sorted({float(word) for word in words.split(",")})
+    except ValueError:
+        raise UsageError(Problem("bad-option", f"--at {words}: expected numbers", hint="such as --at 0.5,1")) from None
+    slack = SAME_INSTANT * float(np.ptp(times))
+    for t in asked:
+        if not times[0] - slack <= t <= times[-1] + slack:
+            span = f"the run goes from {times[0]:.6g} to {times[-1]:.6g} s"
+            message = span if len(times) > 1 else f"there is one instant, t = {times[0]:.6g} s"
+            raise UsageError(Problem("bad-option", f"--at {t:.6g}: {message}"))
+    within: Array = np.clip(np.array(asked), times[0], times[-1])
+    return within
+
+
+def extremes(
+    study: Study, columns: Callable[[Results], Array], groups: Sequence[Sequence[int]], rounds: int = peaks.ROUNDS
+) -> peaks.Extremes:
+    """The extremes over the run, before its horizon, of the columns made of its results.
+
+    Where there are so many that a search would outweigh the run, those of the asked instants.
+    """
+    results = study.results
+    times = results.time
+    if sum(map(len, groups)) * len(study.search_times) <= MOST_SEARCHED:
+        times = study.search_times
+    else:
+        rounds = 0
+    horizon = results.accuracy.get("horizon")
+    if horizon is not None:
+        times = times[times < horizon] if times[0] < horizon else times[:1]
+    if rounds == 0 and len(times) == len(results.time):
+        return peaks.search(lambda _: columns(results), times, groups, rounds)
+    return peaks.search(lambda t: columns(study.resample(t)), times, groups, rounds)
+
+
+def report_of(path: str) -> frozenset[str] | None:
+    """Which report a path needs; None where that cannot be told from its first word."""
+    report = PARTS.get(path.split(".")[0])
+    return frozenset({report}) if report else None
+
+
+def warn(spec: Spec, results: Results | None, quiet: bool) -> list[str]:
+    """Tell the warnings of reading and of solving, once each; returns them."""
+    read = [str(problem) for problem in spec.warnings]
+    known = {problem.message for problem in spec.warnings}
+    solved = [text for text in results.warnings if text not in known] if results else []
+    if not quiet:
+        for text in read + [f"heun: {text}" for text in solved]:
+            say(f"warning: {text}")
+    return read + solved
+
+
+def timings(work: Mapping[str, Any]) -> str:
+    """Where the time went, in milliseconds."""
+    parts = [f"{name} {1e3 * seconds:.1f} ms" for name, seconds in work.get("seconds", {}).items()]
+    return ", ".join(parts)

@@ -1,0 +1,77 @@
+"""What can go wrong, as values: a Problem says place, finding, next step and code; an error carries all at once.
+
+Named tuples: to import dataclasses would take 10 ms, and `heun --version` needs no others.
+"""
+
+from __future__ import annotations
+
+from typing import NamedTuple
+
+
+class Place(NamedTuple):
+    """Where in a file: 1-based line and column, and the dotted path of the value."""
+
+    file: str
+    line: int
+    column: int
+    path: str = ""
+
+    def __str__(self) -> str:
+        return f"{self.file}:{self.line}:{self.column}"
+
+
+class Problem(NamedTuple):
+    """One finding: a sentence, its code, and where and what next if that is known."""
+
+    code: str
+    message: str
+    place: Place | None = None
+    hint: str | None = None
+
+    def __str__(self) -> str:
+        path = f"{self.place.path}: " if self.place and self.place.path else ""
+        where = f"{self.place}: {path}" if self.place else ""
+        hint = f"\n  hint: {self.hint}" if self.hint else ""
+        return f"{where}{self.message} [{self.code}]{hint}"
+
+
+class Finding(ValueError):
+    """A problem found by code that does not know the place; whoever knows it makes it a Problem."""
+
+    def __init__(self, code: str, message: str, hint: str | None = None) -> None:
+        super().__init__(message)
+        self.code, self.message, self.hint = code, message, hint
+
+
+class HeunError(Exception):
+    """A failure the user can act on; `exit_code` is the command's exit status (contract section 4)."""
+
+    exit_code = 70
+
+    def __init__(self, *problems: Problem) -> None:
+        super().__init__("\n".join(str(p) for p in problems))
+        self.problems = problems
+
+
+class SpecError(HeunError):
+    """The spec is missing, unreadable, not YAML or not a scene."""
+
+    exit_code = 2
+
+
+class SolveError(HeunError):
+    """The scene cannot be solved: it does not close, is singular, or no acceleration exists."""
+
+    exit_code = 3
+
+
+class LimitError(HeunError):
+    """A limit was reached: time, steps, memory, output size."""
+
+    exit_code = 4
+
+
+class OutputError(HeunError):
+    """The output could not be written."""
+
+    exit_code = 5

@@ -1,0 +1,76 @@
+"""Places, velocities and accelerations of all bodies at the asked instants, from the kernel's answers."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+
+import numpy as np
+
+from heuncli.mechanism.layout import Layout
+from heuncli.mechanism.model import GROUND
+from heuncli.motion import Recovered
+from heuncli.results import Array
+
+
+@dataclass(frozen=True, eq=False)
+class BodyStates:
+    """World axes; bodies in the order of the spec. x, v, a: of the origin; centre: of the centre of mass.
+
+    R (n_t, n, 3, 3); all others (n_t, n, 3), SI.
+    """
+
+    R: Array
+    x: Array
+    v: Array
+    a: Array
+    omega: Array
+    alpha: Array
+    centre: Array
+    v_centre: Array
+    a_centre: Array
+
+    def place(self, body: int, point: Array) -> Array:
+        """World place of a body's point (body axes), (n_t, 3); a ground point as it is."""
+        if body == GROUND:
+            return np.broadcast_to(point, (len(self.x), 3))
+        return self.x[:, body] + self.R[:, body] @ point
+
+    def velocity(self, body: int, place: Array) -> Array:
+        """Velocity of the body's point that is at a world place, (n_t, 3)."""
+        if body == GROUND:
+            return np.zeros_like(place)
+        return self.v[:, body] + np.cross(self.omega[:, body], place - self.x[:, body])
+
+    def acceleration(self, body: int, place: Array) -> Array:
+        """Acceleration of the body's point that is at a world place, (n_t, 3)."""
+        if body == GROUND:
+            return np.zeros_like(place)
+        arm = place - self.x[:, body]
+        w = self.omega[:, body]
+        return self.a[:, body] + np.cross(self.alpha[:, body], arm) + np.cross(w, np.cross(w, arm))
+
+    def direction(self, body: int, vector: Array) -> Array:
+        """World components of a direction fixed in a body, (n_t, 3)."""
+        if body == GROUND:
+            return np.broadcast_to(vector, (len(self.x), 3))
+        return self.R[:, body] @ vector
+
+
+def body_states(layout: Layout, found: Recovered) -> BodyStates:
+    """Read the kernel's rows: joint point and accelerations less g become origin, centre and true accelerations."""
+    bodies = layout.mechanism.bodies
+    order = [layout.place[i] for i in range(len(bodies))]
+    rows = found.bodies[:, order]
+    n_t, n = rows.shape[:2]
+    R = rows[:, :, 0:9].reshape(n_t, n, 3, 3)
+    r, w, v, alpha = rows[:, :, 9:12], rows[:, :, 12:15], rows[:, :, 15:18], rows[:, :, 18:21]
+    a = rows[:, :, 21:24] + layout.mechanism.gravity
+
+    def of(points: Array) -> tuple[Array, Array, Array]:
+        arm = np.einsum("tnij,nj->tni", R, points)
+        turn = np.cross(w, arm)
+        return r + arm, v + turn, a + np.cross(alpha, arm) + np.cross(w, turn)
+
+    x0, v0, a0 = of(-layout.reference[order])
+    xc, vc, ac = of(np.array([b.center for b in bodies]) - layout.reference[order])
+    return BodyStates(R, x0, v0, a0, w, alpha, xc, vc, ac)

@@ -1,0 +1,81 @@
+"""Coordinates of the joints, and the motion of named points."""
+
+from __future__ import annotations
+
+import numpy as np
+
+from heuncli.kinetostatics.bodies import BodyStates
+from heuncli.mechanism.joints import JOINTS
+from heuncli.mechanism.layout import Layout
+from heuncli.mechanism.model import Joint, Mechanism
+from heuncli.motion import Recovered
+from heuncli.results import Array, Block
+
+
+def coordinates(layout: Layout, found: Recovered, states: BodyStates) -> Block:
+    """angle, rate, acceleration of pins; travel, speed, acceleration of slides; both of cylinders."""
+    block: Block = {}
+    for k, joint in enumerate(layout.mechanism.joints):
+        kind = JOINTS[joint.kind]
+        if kind.turns == ("axis",):
+            block[joint.name] = _turning(layout, found, states, k, joint)
+        if kind.shifts == ("axis",) and not kind.ball and kind.turns != ("z",):
+            travel = _sliding(states, joint)
+            if joint.name in block:
+                block[joint.name]["angular_acceleration"] = block[joint.name].pop("acceleration")
+            block[joint.name] = block.get(joint.name, {}) | travel
+    return block
+
+
+def _turning(layout: Layout, found: Recovered, states: BodyStates, k: int, joint: Joint) -> Block:
+    n = states.direction(joint.a, joint.axis)
+    zero = np.zeros_like(n)
+    wa, ua = (states.omega[:, joint.a], states.alpha[:, joint.a]) if joint.a >= 0 else (zero, zero)
+    wb, ub = (states.omega[:, joint.b], states.alpha[:, joint.b]) if joint.b >= 0 else (zero, zero)
+    rate = np.sum(n * (wb - wa), axis=1)
+    # n turns with a: (w_a x n).(w_b - w_a) = 0, their difference is along n
+    acceleration = np.sum(n * (ub - ua), axis=1)
+    counted = next((i for i, f in enumerate(layout.freedoms) if f.joint == k), None)
+    if counted is not None:
+        return {"angle": found.freedoms[:, counted, 0], "rate": rate, "acceleration": acceleration}
+    # a cut joint: the angle of the pose, on the turn that was counted
+    Ra = states.R[:, joint.a] if joint.a >= 0 else np.broadcast_to(np.eye(3), (len(n), 3, 3))
+    Rb = states.R[:, joint.b] if joint.b >= 0 else np.broadcast_to(np.eye(3), (len(n), 3, 3))
+    Q = np.einsum("tji,tjk,lk->til", Ra, Rb, layout.starts[k].R_ref)
+    a = joint.axis
+    skew = np.stack([Q[:, 2, 1] - Q[:, 1, 2], Q[:, 0, 2] - Q[:, 2, 0], Q[:, 1, 0] - Q[:, 0, 1]], axis=1)
+    sine = 0.5 * (skew @ a)
+    angle = np.arctan2(sine, 0.5 * (np.trace(Q, axis1=1, axis2=2) - 1.0))
+    near = found.states[:, layout.counters[k]]
+    return {
+        "angle": angle + 2.0 * np.pi * np.round((near - angle) / (2.0 * np.pi)),
+        "rate": rate,
+        "acceleration": acceleration,
+    }
+
+
+def _sliding(states: BodyStates, joint: Joint) -> Block:
+    n = states.direction(joint.a, joint.axis)
+    Q = states.place(joint.b, joint.q)
+    v = states.velocity(joint.b, Q) - states.velocity(joint.a, Q)
+    w = states.omega[:, joint.a] if joint.a >= 0 else np.zeros_like(n)
+    a = states.acceleration(joint.b, Q) - states.acceleration(joint.a, Q) - 2.0 * np.cross(w, v)
+    D = Q - states.place(joint.a, joint.p)
+
+    def along(x: Array) -> Array:
+        found: Array = np.sum(n * x, axis=1)
+        return found
+
+    return {"travel": along(D), "speed": along(v), "acceleration": along(a)}
+
+
+def points(mechanism: Mechanism, states: BodyStates) -> Block:
+    """Position, velocity and acceleration of every named point of a body."""
+    block: Block = {}
+    for i, body in enumerate(mechanism.bodies):
+        for name, p in body.points.items():
+            place = states.place(i, p)
+            block[f"{body.name}.{name}"] = {
+                "position": place, "velocity": states.velocity(i, place), "acceleration": states.acceleration(i, place),
+            }  # fmt: skip
+    return block

@@ -1,0 +1,41 @@
+"""Energy and its balance, and Heun's system vector B (44)."""
+
+from __future__ import annotations
+
+import numpy as np
+
+from heuncli.kinetostatics.bodies import BodyStates
+from heuncli.kinetostatics.foundation import load_slots
+from heuncli.mechanism.layout import Layout
+from heuncli.mechanism.model import Mechanism, PairLoad
+from heuncli.motion import Recovered
+from heuncli.results import Array, Block
+
+
+def energy(layout: Layout, found: Recovered, states: BodyStates) -> Block:
+    """Kinetic energy, potential energy (gravity from the world's origin, springs), work of all else, (n_t,) [J]."""
+    mechanism = layout.mechanism
+    m = np.array([b.mass for b in mechanism.bodies])
+    inertia = np.array([b.inertia for b in mechanism.bodies])
+    w = np.einsum("tnji,tnj->tni", states.R, states.omega)
+    kinetic = 0.5 * np.einsum("n,tni,tni->t", m, states.v_centre, states.v_centre)
+    kinetic = kinetic + 0.5 * np.einsum("tni,nij,tnj->t", w, inertia, w)
+    potential = -np.einsum("n,tni,i->t", m, states.centre, mechanism.gravity)
+    for load, slots in zip(mechanism.loads, load_slots(mechanism), strict=True):
+        if isinstance(load, PairLoad) and load.value is None:
+            potential = potential + 0.5 * load.stiffness * np.square(found.loads[:, slots[0], 13] - load.length)
+    work = found.states[:, layout.I[8]] if layout.work else np.zeros_like(kinetic)
+    return {"kinetic": kinetic, "potential": potential, "work": work}
+
+
+def system_vector(mechanism: Mechanism, states: BodyStates) -> Block:
+    """B = m x_s. x x_s.. + (sigma.I sigma) sigma + T_s (sigma x sigma.), T_s = tr(I)/2 - I; (44), theory.md 2h."""
+    m = np.array([b.mass for b in mechanism.bodies])
+    inertia = np.array([b.inertia for b in mechanism.bodies])
+    w = np.einsum("tnji,tnj->tni", states.R, states.omega)
+    u = np.einsum("tnji,tnj->tni", states.R, states.alpha)
+    T = 0.5 * np.trace(inertia, axis1=1, axis2=2)[:, None, None] * np.eye(3) - inertia
+    twice_e = np.einsum("tni,nij,tnj->tn", w, inertia, w)
+    own: Array = twice_e[:, :, None] * w + np.einsum("nij,tnj->tni", T, np.cross(w, u))
+    B = m[:, None] * np.cross(states.v_centre, states.a_centre) + np.einsum("tnij,tnj->tni", states.R, own)
+    return {"total": B.sum(axis=1), "bodies": {b.name: B[:, i] for i, b in enumerate(mechanism.bodies)}}

@@ -1,0 +1,140 @@
+"""Joint reactions: what each joint's constraint alone makes `from` exert on `to`, about the `to` point.
+
+A joint of the tree gives them by the balance of all that hangs on it; a cut joint by its multipliers, sum of
+lambda (f, m).
+Components along free directions are zero by the meaning of the joint; what the sweep left there as rounding goes into
+the balance residual of the bodies, where it can be seen.
+"""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+
+import numpy as np
+
+from heuncli.kinetostatics.bodies import BodyStates
+from heuncli.mechanism.joints import JOINTS
+from heuncli.mechanism.layout import Layout
+from heuncli.mechanism.model import GROUND, Joint
+from heuncli.mechanism.starts import joint_frame
+from heuncli.motion import Recovered
+from heuncli.results import Array
+
+
+@dataclass(frozen=True, eq=False)
+class JointLoads:
+    """Of one joint: ON `to`, world axes, moment about the `to` point `point`; (n_t, 3) [N], [N m].
+
+    drive (n_t,): the driving torque or force ON `to` about or along `axis` (n_t, 3), not contained in force and moment
+    but for a rod, whose force is the drive's. None where there is no drive or no axis.
+    """
+
+    joint: Joint
+    point: Array
+    force: Array
+    moment: Array
+    axis: Array | None
+    drive: Array | None
+    tension: Array | None  # of a rod, (n_t,)
+
+    @property
+    def drive_force(self) -> Array:
+        """The drive's force ON `to` beside `force`, (n_t, 3)."""
+        along = self.drive is not None and self.joint.drive is not None and self.joint.drive.quantity == "travel"
+        return self.drive[:, None] * self.axis if along else np.zeros_like(self.force)  # type: ignore[index,operator]
+
+    @property
+    def drive_moment(self) -> Array:
+        """The drive's couple ON `to` beside `moment`, (n_t, 3)."""
+        about = self.drive is not None and self.joint.drive is not None and self.joint.drive.quantity == "angle"
+        return self.drive[:, None] * self.axis if about else np.zeros_like(self.moment)  # type: ignore[index,operator]
+
+    @property
+    def whole(self) -> tuple[Array, Array]:
+        """Force and moment ON `to` about its point, the drive's included."""
+        if self.joint.kind == "rod":
+            return self.force, self.moment
+        return self.force + self.drive_force, self.moment + self.drive_moment
+
+
+def joint_loads(layout: Layout, found: Recovered, states: BodyStates) -> list[JointLoads]:
+    """Reactions of all joints, in the order of the spec."""
+    hang_of = {h.joint: (i, h) for i, h in enumerate(layout.spanning.hangs) if h.joint >= 0}
+    loads = []
+    for k, joint in enumerate(layout.mechanism.joints):
+        kind = JOINTS[joint.kind]
+        point = states.place(joint.b, joint.q)
+        axis = states.direction(joint.a, joint.axis) if kind.has_axis else None
+        drive = tension = None
+        if k in hang_of:
+            i, h = hang_of[k]
+            force, moment = found.bodies[:, i, 27:30], found.bodies[:, i, 24:27]
+            if h.reverse:
+                arm = states.place(joint.a, joint.p) - point
+                force, moment = -force, -moment - np.cross(arm, force)
+            for n, freedom in enumerate(layout.freedoms):
+                if freedom.joint == k and freedom.q < 0:
+                    drive = found.freedoms[:, n, 3]
+        else:
+            force, moment = _from_multipliers(layout, found, states, k, joint, point)
+            if joint.kind == "rod":
+                push = found.rows[:, layout.rows.index(k), 0]
+                drive, tension = (push if joint.drive is not None else None), -push
+        force, moment = carried(joint, states, force, moment)
+        if layout.mechanism.planar:
+            force, moment = in_plane(force, moment)
+        loads.append(JointLoads(joint, point, force, moment, axis, drive, tension))
+    return loads
+
+
+def _from_multipliers(
+    layout: Layout, found: Recovered, states: BodyStates, k: int, joint: Joint, point: Array
+) -> tuple[Array, Array]:
+    rows = [r for r, owner in enumerate(layout.rows) if owner == k]
+    lam = found.rows[:, rows, 0]
+    kind = JOINTS[joint.kind]
+    if joint.kind == "rod":
+        D = point - states.place(joint.a, joint.p)
+        return lam[:, :1] * D / np.sqrt(np.sum(D * D, axis=1))[:, None], np.zeros_like(point)
+    force, moment = np.zeros_like(point), np.zeros_like(point)
+    for column, d in enumerate(kind.guides):
+        force = force + lam[:, column, None] * states.direction(joint.a, joint_frame(joint, d))
+    R_ref = layout.starts[k].R_ref
+    for column, (d, e) in enumerate(kind.dots, start=len(kind.guides)):
+        f = joint.to_axis if joint.kind == "universal" else R_ref.T @ joint_frame(joint, e)
+        m = np.cross(states.direction(joint.b, f), states.direction(joint.a, joint_frame(joint, d)))
+        moment = moment + lam[:, column, None] * m
+    return force, moment
+
+
+def in_plane(force: Array, moment: Array) -> tuple[Array, Array]:
+    """The parts that exist in a scene declared planar: force in x, y, moment in z; (..., 3)."""
+    return force * np.array([1.0, 1.0, 0.0]), moment * np.array([0.0, 0.0, 1.0])
+
+
+def carried(joint: Joint, states: BodyStates, force: Array, moment: Array) -> tuple[Array, Array]:
+    """Force and moment less their parts along what the joint leaves free (drives act there, and are told apart)."""
+    kind = JOINTS[joint.kind]
+    if kind.ball:
+        moment = np.zeros_like(moment)
+    elif len(kind.turns) == 2:
+        n = np.cross(states.direction(joint.a, joint.axis), states.direction(joint.b, joint.to_axis))
+        n = n / np.sqrt(np.sum(n * n, axis=1))[:, None]
+        moment = np.sum(moment * n, axis=1)[:, None] * n
+    elif kind.turns:
+        n = states.direction(joint.a, joint_frame(joint, "z" if kind.turns == ("z",) else "axis"))
+        moment = moment - np.sum(moment * n, axis=1)[:, None] * n
+    if joint.kind != "rod":
+        for d in kind.shifts:
+            n = states.direction(joint.a, joint_frame(joint, d))
+            force = force - np.sum(force * n, axis=1)[:, None] * n
+    return force, moment
+
+
+def support_loads(load: JointLoads) -> tuple[Array, Array] | None:
+    """Force and moment ON the ground, about the `to` point, where the joint is a support; None between bodies."""
+    if load.joint.a == GROUND:
+        return -load.force, -load.moment
+    if load.joint.b == GROUND:
+        return load.force, load.moment
+    return None

@@ -1,0 +1,307 @@
+"""Section loads of a moving body.
+
+    s' = sum' k - sum' m x..             force of the piece on the remainder [N]
+    M'(P) = sum' (x - P) x k + couples - sum' (x - P) x m x..     about P [N m]
+    N = s'.n (tension > 0), Q1 = s'.e1, Q2 = s'.e2, T = M'.n, M1 = M'.e1, M2 = M'.e2
+sum' runs over the piece, n points into it; k is its weight, the loads and the joints on it. With the acceleration
+matrix Acc = [hat(sigma.) + hat(sigma)^2, x_o.. - g] the inertia load of a piece of pseudo-inertia P is Acc P: its last
+column the force, the skew part of the rest the moment about the body's origin. Heun (1901), (57)-(61), corrected.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+from dataclasses import dataclass
+
+import numpy as np
+
+from heuncli.kinetostatics.bodies import BodyStates
+from heuncli.kinetostatics.foundation import load_slots
+from heuncli.kinetostatics.stress import MODULI, stresses
+from heuncli.kinetostatics.unique import OPEN, SelfStress
+from heuncli.kinetostatics.verdicts import names_of
+from heuncli.mechanism.cuts import Cuts, wanders
+from heuncli.mechanism.model import Joint, Mechanism, PairLoad, PointLoad
+from heuncli.motion import Recovered
+from heuncli.results import Array, Block, Mask
+
+NONE = 1e-12  # of |s'| + |M'| / reach: a smaller normal or shear force has no line
+
+
+@dataclass(frozen=True, eq=False)
+class Attachment:
+    """A load that enters a body at a place: force and couple ON the body, body axes, (n_t, 3); at (3,) or (n_t, 3)."""
+
+    at: Array
+    force: Array
+    moment: Array
+
+
+def joint_attachments(
+    body: int, states: BodyStates, wrenches: Sequence[tuple[Joint, Array, Array, Array]]
+) -> list[Attachment]:
+    """What joints put on a body, from (joint, `to` point, force and moment ON `to` about it), world axes."""
+    R = states.R[:, body]
+    on: list[Attachment] = []
+    for joint, point, force, moment in wrenches:
+        if joint.b == body:
+            on.append(Attachment(joint.q, _inward(R, force), _inward(R, moment)))
+        if joint.a == body:
+            F, M, place = -_inward(R, force), -_inward(R, moment), _inward(R, point - states.x[:, body])
+            at = place if wanders(joint) else joint.p
+            on.append(Attachment(at, F, M + np.cross(place - at, F)))
+    return on
+
+
+def load_attachments(mechanism: Mechanism, body: int, found: Recovered, states: BodyStates) -> list[Attachment]:
+    """What applied loads put on a body at places; couples at theirs."""
+    R = states.R[:, body]
+    on: list[Attachment] = []
+    for applied, slots in zip(mechanism.loads, load_slots(mechanism), strict=True):
+        F = _inward(R, found.loads[:, slots, 0:3].sum(axis=1))
+        M = _inward(R, found.loads[:, slots, 3:6].sum(axis=1))
+        if isinstance(applied, PointLoad):
+            if applied.body == body:
+                at = applied.point if applied.point is not None else mechanism.bodies[body].center
+                on.append(Attachment(at, F, M))
+        elif isinstance(applied, PairLoad):
+            on += [
+                Attachment(p, sign * F, sign * M)
+                for owner, p, sign in ((applied.b, applied.q, 1.0), (applied.a, applied.p, -1.0))
+                if owner == body
+            ]
+        else:
+            joint = mechanism.joints[applied.joint]
+            if joint.b == body:
+                on.append(Attachment(joint.q, F, M))
+            if joint.a == body:
+                place = _inward(R, found.loads[:, slots[0], 6:9] - states.x[:, body])
+                at = place if wanders(joint) else joint.p
+                on.append(Attachment(at, -F, -M - np.cross(place - at, F)))
+    return on
+
+
+def _inward(R: Array, v: Array) -> Array:
+    found: Array = (R.transpose(0, 2, 1) @ v[:, :, None])[:, :, 0]
+    return found
+
+
+HUGE = 1 << 19  # doubles from which NumPy asks for huge pages: first touch of fresh pages costs more than the products
+
+
+def room(count: int, n_t: int, k: int) -> Array:
+    """Fresh space for `count` arrays of (n_t, k) side by side, flat."""
+    size = count * n_t * k
+    return np.empty(max(size, HUGE) if size > HUGE // 8 else size)[:size]
+
+
+def on_piece(cuts: Cuts, at: Array) -> Array:
+    """Whether a place lies on the piece of each cut: (k,), or (n_t, k) for a wandering place."""
+    beyond = at[..., None, :] @ cuts.n - cuts.points @ cuts.n
+    found: Array = np.where(np.abs(beyond) <= cuts.near, (cuts.side > 0.0), beyond > 0.0).astype(float)
+    return found
+
+
+def acceleration_matrix(body: int, states: BodyStates, gravity: Array) -> Array:
+    """Acc = [hat(sigma.) + hat(sigma)^2, x_o.. - g] in body axes, rows first: (3, n_t, 4)."""
+    R = states.R[:, body]
+    w, u = _inward(R, states.omega[:, body]), _inward(R, states.alpha[:, body])
+    A = np.empty((3, len(R), 4))
+    square = np.sum(w * w, axis=1)
+    for i in range(3):
+        for j in range(3):
+            A[i, :, j] = w[:, i] * w[:, j]
+        A[i, :, i] -= square
+        A[i, :, (i + 1) % 3] -= u[:, (i + 2) % 3]
+        A[i, :, (i + 2) % 3] += u[:, (i + 1) % 3]
+    A[:, :, 3] = _inward(R, states.a[:, body] - gravity).T
+    return A
+
+
+def piece_loads(cuts: Cuts, A: Array, on: Sequence[Attachment]) -> tuple[Array, Array]:
+    """s' and M' about the cuts' own points, body axes, (n_t, 3, k) each; A (3, n_t, 4): see acceleration_matrix.
+
+    Inertia and what is attached for good are one product of instants and cuts a component: (n_t, 4 + m) (4 + m, k), the
+    levers from the cut's point in the second factor. A wandering attachment changes pieces and is added by itself.
+    """
+    P, p = cuts.pieces.transpose(1, 2, 0), cuts.points.T
+    fixed = [a for a in on if a.at.ndim == 1]
+    at = np.array([a.at for a in fixed]).reshape(-1, 3, 1)
+    mask = np.array([on_piece(cuts, a.at) for a in fixed]).reshape(-1, len(cuts.points))
+    B = [np.concatenate([A[i], *(a.force[:, i : i + 1] for a in fixed)], axis=1) for i in range(3)]
+    C = np.concatenate([-P[:, 3], mask])
+    force, moment = room(6, A.shape[1], len(cuts.points)).reshape(2, A.shape[1], 3, -1)
+    for i in range(3):
+        j, k = (i + 1) % 3, (i + 2) % 3
+        force[:, i] = B[i] @ C
+        left = np.concatenate([B[j], B[k], *(a.moment[:, i : i + 1] for a in fixed)], axis=1)
+        right = (
+            np.concatenate([P[:, k], -mask * at[:, k]]) + p[k] * C,
+            np.concatenate([-P[:, j], mask * at[:, j]]) - p[j] * C,
+            mask,
+        )
+        moment[:, i] = left @ np.concatenate(right)
+    for a in on:
+        if a.at.ndim == 2:
+            there = on_piece(cuts, a.at)
+            for i in range(3):
+                j, k = (i + 1) % 3, (i + 2) % 3
+                lever_j, lever_k = a.at[:, j, None] - p[j], a.at[:, k, None] - p[k]
+                force[:, i] += a.force[:, i, None] * there
+                moment[:, i] += (
+                    a.moment[:, i, None] + lever_j * a.force[:, k, None] - lever_k * a.force[:, j, None]
+                ) * there
+    return force, moment
+
+
+def shifted(force: Array, moment: Array, by: Array) -> Array:
+    """Moments about points that lie `by` from the old one, (n_t, 3, k): M - by x s."""
+    return moment - np.cross(by, force, axis=1)
+
+
+@dataclass(frozen=True, eq=False)
+class Planes:
+    """Where the cuts are and where their moments are taken: body axes, (n_t, 3, k)."""
+
+    cuts: Cuts
+    R: Array
+    origin: Array
+    at: Array
+    about: Array
+    centre: Array
+
+    def outward(self, v: Array, out: Array | None = None, place: bool = False) -> Array:
+        """World components (n_t, k, 3) of a vector, or the world place, in body axes (n_t, 3, k)."""
+        found: Array = np.matmul(self.R, v, out=None if out is None else out.reshape(v.shape))
+        if place:
+            found += self.origin[:, :, None]
+        return found.transpose(0, 2, 1)
+
+    def components(self, force: Array, moment: Array) -> Block:
+        """All components of loads given about the cuts' points; T0, M10, M20 about the centroid, for stresses."""
+        about = moment if self.about is self.at else shifted(force, moment, self.about - self.at)
+        c = self.cuts
+        n_t, _, k = force.shape
+        space = room(15, n_t, k).reshape(15, n_t, k)
+        found: Block = {"force": self.outward(force, space[9:12]), "moment": self.outward(about, space[12:15])}
+        rows = [
+            ("N", c.n, force),
+            ("Q1", c.e1, force),
+            ("Q2", c.e2, force),
+            ("T", c.n, about),
+            ("M1", c.e1, about),
+            ("M2", c.e2, about),
+        ]
+        if c.properties is not None:
+            centre = moment if self.centre is self.at else shifted(force, moment, self.centre - self.at)
+            rows += [("T0", c.n, centre), ("M10", c.e1, centre), ("M20", c.e2, centre)]
+        for place, (name, axis, v) in zip(space, rows, strict=False):
+            found[name] = along(axis, v, place)
+        return found
+
+
+def along(axis: Array, v: Array, out: Array | None = None) -> Array:
+    """axis . v of vectors (n_t, 3, k), (n_t, k); what does not contribute is not multiplied."""
+    (first, x), *rest = [(i, x) for i, x in enumerate(axis.tolist()) if x != 0.0]
+    found: Array = np.multiply(v[:, first], x, out=out)
+    for i, x in rest:
+        found += x * v[:, i]
+    return found
+
+
+def planes(cuts: Cuts, states: BodyStates) -> Planes:
+    """Places of the cuts at the asked instants."""
+    R, x = states.R[:, cuts.body], states.x[:, cuts.body]
+    shape = (len(R), 3, len(cuts.points))
+    at = np.broadcast_to(cuts.points.T, shape)
+    centre = at if cuts.centroids is None else np.broadcast_to(cuts.centroids.T, shape)
+    about = centre if cuts.about == "centroid" else at
+    if not isinstance(cuts.about, str):
+        owner, point = cuts.about
+        about = np.broadcast_to(_inward(R, states.place(owner, point) - x)[:, :, None], shape)
+    return Planes(cuts, R, x, at, about, centre)
+
+
+MOMENTS = frozenset({"moment", "T", "M1", "M2", "T0", "M10", "M20"})
+
+
+def section(
+    cuts: Cuts,
+    states: BodyStates,
+    gravity: Array,
+    on: Sequence[Attachment],
+    stress: SelfStress | None,
+    shares: Sequence[Sequence[Attachment]],
+    planar: bool = False,
+) -> Block:
+    """The block of one section: a single cut without its axis of cuts, a run with `s` and `side`.
+
+    shares: what each self-stress attaches to the body; a component one of them reaches is open, nan.
+    """
+    n_t = len(states.x)
+    where = planes(cuts, states)
+    force, moment = piece_loads(cuts, acceleration_matrix(cuts.body, states, gravity), on)
+    if planar:
+        force[:, 2], moment[:, :2] = 0.0, 0.0
+    found = where.components(force, moment)
+    is_open: dict[str, Mask] = {}
+    if stress is not None:
+        for j, own in enumerate(shares):
+            limit = np.where(stress.largest[:, j] > 0.0, OPEN * stress.largest[:, j], np.inf)
+            for name, share in where.components(*piece_loads(cuts, np.zeros((3, n_t, 4)), own)).items():
+                scale = limit * (stress.length if name in MOMENTS else 1.0)
+                reached = np.abs(share) > scale.reshape(-1, *([1] * (share.ndim - 1)))
+                is_open[name] = is_open.get(name, False) | reached
+        found = {
+            name: np.where(is_open[name], np.nan, value) if name in is_open else value for name, value in found.items()
+        }
+    about_centroid = {name[:-1]: found.pop(name) for name in ("T0", "M10", "M20") if name in found}
+    block: Block = {
+        "point": where.outward(where.about, place=True), "normal": where.R @ cuts.n, "first_axis": where.R @ cuts.e1,
+        "open": names_of({n: v.reshape(-1, 3) if v.ndim == 3 else v.ravel() for n, v in is_open.items() if n in found}),
+    } | found  # fmt: skip
+    if cuts.properties is not None:
+        moduli = MODULI[cuts.properties.kind](cuts.properties.values)
+        block["stress"] = stresses(
+            moduli, {**{name: found[name] for name in ("N", "Q1", "Q2")}, **about_centroid}, cuts.strength
+        )
+    if cuts.line:
+        block["line"] = reduction_line(where, force, moment)
+    if cuts.s is None:
+        for key in ("point", *found):
+            block[key] = block[key][:, 0]
+        for part in {"line", "stress"} & block.keys():
+            block[part] = {key: value[:, 0] for key, value in block[part].items()}
+        return block
+    words = {1.0: "before", -1.0: "beyond", 0.0: None}
+    return {"s": cuts.s, "side": [words[x] for x in cuts.side.tolist()]} | block
+
+
+def reduction_line(where: Planes, force: Array, moment: Array) -> Block:
+    """Points of the plane where force and moment in it are parallel: Q.p = -n.(Q x M_t)/N, direction n x Q.
+
+    moment is about the cut's own point. point: the one nearest to that; pressure_centre: where the moment in the plane
+    is zero. nan where N = 0 (no such points, or all) or Q = 0 (all points); `kind` says which: 0 a line, 1 none, 2 all.
+    theory.md 2e.
+    """
+    cuts, local, outward = where.cuts, where.at, where.outward
+    n = cuts.n[:, None]
+    N, T = along(cuts.n, force), along(cuts.n, moment)
+    Q, M_t = force - n * N[:, None], moment - n * T[:, None]
+    reach = float(np.abs(cuts.points - cuts.points.mean(axis=0)).max())
+    reach = reach or float(np.sqrt(np.abs(cuts.pieces[:, :3, :3]).max() / cuts.pieces[:, 3, 3].max()))
+    size = np.sqrt(np.sum(force**2, axis=1)) + np.sqrt(np.sum(moment**2, axis=1)) / reach
+    q = np.sqrt(np.sum(Q**2, axis=1))
+    no_N, no_Q = np.abs(N) <= NONE * size, q <= NONE * size
+    twist = along(cuts.n, np.cross(Q, M_t, axis=1))
+    free_N = np.where(no_N, np.nan, N)
+    free_Q = np.where(no_Q | no_N, np.nan, q)
+    point = local - (twist / (free_N * free_Q**2))[:, None] * Q
+    direction = np.cross(np.broadcast_to(n, Q.shape), Q, axis=1) / free_Q[:, None]
+    pressure = local + np.cross(np.broadcast_to(n, M_t.shape), M_t, axis=1) / free_N[:, None]
+    parallel = np.abs(twist) <= NONE * size * size * reach
+    kind = np.where(no_N, np.where(parallel, 2.0, 1.0), np.where(no_Q, 2.0, 0.0))
+    return {
+        "point": outward(point, place=True), "direction": outward(direction),
+        "pressure_centre": outward(pressure, place=True), "kind": kind,
+    }  # fmt: skip

@@ -1,0 +1,136 @@
+"""Spec -> Mechanism: the user's words become plain SI arrays; nothing is solved here."""
+
+from __future__ import annotations
+
+from typing import TYPE_CHECKING, Any
+
+import numpy as np
+
+from heuncli.mechanism.inertia import properties
+from heuncli.mechanism.joints import PLANAR
+from heuncli.mechanism.model import (
+    GROUND,
+    Body,
+    Directed,
+    Drive,
+    Joint,
+    JointLoad,
+    Load,
+    Mechanism,
+    PairLoad,
+    PointLoad,
+)
+from heuncli.results import Array
+
+if TYPE_CHECKING:
+    from heuncli.mechanism.shapes import Form
+
+INFINITE = np.full(3, np.inf)
+
+
+def forms_of(spec: Any) -> dict[str, Form]:
+    """The forms of the bodies that are built from shapes."""
+    shapes = {name: b.shapes for name, b in spec.bodies.items() if b.shapes is not None}
+    if not shapes:
+        return {}
+    from heuncli.mechanism.shapes import form  # 8 ms that only they are worth
+
+    return {name: form(of) for name, of in shapes.items()}
+
+
+def build(spec: Any, forms: dict[str, Form]) -> Mechanism:
+    """The mechanism of a validated spec (spec.models.Spec)."""
+    index = {name: i for i, name in enumerate(spec.bodies)} | {"ground": GROUND}
+    joints = {name: k for k, name in enumerate(spec.joints)}
+    drives = {d.joint: (name, d) for name, d in spec.drives.items()}
+    planar = spec.space == "planar"
+    return Mechanism(
+        title=spec.title,
+        planar=planar,
+        gravity=np.array(spec.gravity),
+        ground_points=vectors(spec.ground.points),
+        bodies=tuple(body(name, b, forms.get(name)) for name, b in spec.bodies.items()),
+        joints=tuple(joint(name, j, index, drives.get(name), planar) for name, j in spec.joints.items()),
+        loads=tuple(load(name, f, index, joints) for name, f in spec.forces.items()),
+    )
+
+
+def vectors(points: dict[str, Any]) -> dict[str, Array]:
+    """Named points as arrays."""
+    return {name: np.array(p) for name, p in points.items()}
+
+
+def optional(value: Any) -> Array | None:
+    """An array, or None for what was left out."""
+    return None if value is None else np.array(value, dtype=float)
+
+
+def directed(value: Any) -> Directed | None:
+    """A vector with its frame, or None."""
+    return None if value is None else Directed(np.array(value.vector), value.frame == "body")
+
+
+def unit(vector: Any) -> Array:
+    """The direction of a vector that the spec layer found not to be zero."""
+    v = np.array(vector, dtype=float)
+    v = v / np.abs(v).max()
+    along: Array = v / np.sqrt(v @ v)
+    return along
+
+
+def body(name: str, b: Any, shape: Form | None) -> Body:
+    """One body, its mass properties given or those of its shapes."""
+    if shape is not None:
+        mass, center, inertia = properties(shape.whole())
+    else:
+        mass, center, inertia = b.mass, np.array(b.center), np.array(b.inertia)
+    return Body(
+        name=name, mass=mass, center=center, inertia=inertia, points=vectors(b.points),
+        position=optional(b.position), rotation=optional(b.rotation), velocity=directed(b.velocity),
+        angular_velocity=directed(b.angular_velocity),
+        near_position=optional(b.near.position) if b.near is not None else None,
+        near_rotation=optional(b.near.rotation) if b.near is not None else None,
+    )  # fmt: skip
+
+
+def joint(name: str, j: Any, index: dict[str, int], driven: Any, planar: bool) -> Joint:
+    """One joint with its drive; in the plane a ball is a pin about z."""
+    given = j.axis if j.axis is not None else j.normal
+    axis = unit(given) if given is not None else np.array([0.0, 0.0, 1.0])
+    initial = j.initial
+    drive = None
+    if driven is not None:
+        drive = Drive(driven[0], driven[1].quantity, driven[1].value, driven[1].zero == "assembled")
+    stiffness = None
+    if j.stiffness is not None:
+        parts = (j.stiffness.force, j.stiffness.moment)
+        stiffness = tuple(INFINITE if part is None else np.array(part) for part in parts)
+    return Joint(
+        name=name, kind=PLANAR[j.type][0] if planar else j.type,
+        a=index[j.from_.body], p=np.array(j.from_.point), b=index[j.to.body], q=np.array(j.to.point),
+        axis=axis, to_axis=unit(j.to_axis) if j.to_axis is not None else axis, to_axis_given=j.to_axis is not None,
+        angle=initial.angle if initial else None, rate=initial.rate if initial else None,
+        travel=initial.travel if initial else None, speed=initial.speed if initial else None,
+        length=j.length, tension_only=j.tension_only, stiffness=stiffness, drive=drive,  # type: ignore[arg-type]
+    )  # fmt: skip
+
+
+def load(name: str, f: Any, index: dict[str, int], joints: dict[str, int]) -> Load:
+    """One applied load."""
+    match f.type:
+        case "force":
+            return PointLoad(name, "force", index[f.on.body], np.array(f.on.point), f.vector, f.frame == "body")
+        case "couple":
+            point = np.array(f.on.point) if f.on is not None else None
+            return PointLoad(name, "couple", index[f.body], point, f.vector, f.frame == "body")
+        case "actuator" | "spring":
+            a, b = f.from_, f.to
+            spring = (None, f.stiffness, f.length, f.damping) if f.type == "spring" else (f.value, 0.0, 0.0, 0.0)
+            return PairLoad(name, index[a.body], np.array(a.point), index[b.body], np.array(b.point), *spring)
+        case "torque":
+            return JointLoad(name, "torque", joints[f.joint], f.value, 0.0, 0.0, 0.0, 0.0, 1.0)
+        case "damper":
+            return JointLoad(name, "damper", joints[f.joint], None, f.coefficient, f.sliding or 0.0, 0.0, 0.0, 1.0)
+        case _:
+            torque, force = f.torque or 0.0, f.force or 0.0
+            return JointLoad(name, "friction", joints[f.joint], None, 0.0, 0.0, torque, force, f.speed)

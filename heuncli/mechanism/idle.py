@@ -1,0 +1,67 @@
+"""Spins that no law determines: thin rods and point masses held and loaded on their own axis only.
+
+Such a spin is harmless: accelerations and reactions do not depend on it (theory.md section 3). For the motion the body
+is given some inertia about that axis and no spin; a moment about it would have no answer and is looked for afterwards.
+"""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+
+import numpy as np
+
+from heuncli.mechanism.joints import JOINTS
+from heuncli.mechanism.model import Mechanism, PairLoad, PointLoad
+from heuncli.results import Array
+
+NO_INERTIA = 1e-12  # of the body's largest moment of inertia, or of m L^2
+ON_AXIS = 1e-9  # of the size: how far off a point may lie
+
+
+@dataclass(frozen=True, eq=False)
+class IdleSpin:
+    """A body's axes (body components, (k, 3), k = 1 or 3) of undetermined spin, and the inertia lent to it."""
+
+    body: int
+    axes: Array
+    lent: Array
+
+
+def idle_spins(mechanism: Mechanism, size: float) -> list[IdleSpin]:
+    """The bodies with an undetermined spin."""
+    points: dict[int, list[Array]] = {i: [] for i in range(len(mechanism.bodies))}
+    held = set()
+    for joint in mechanism.joints:
+        for end, point in ((joint.a, joint.p), (joint.b, joint.q)):
+            if end >= 0:
+                points[end].append(point)
+                if not JOINTS[joint.kind].ball or (joint.kind in ("line", "plane") and end == joint.a):
+                    held.add(end)
+    for load in mechanism.loads:
+        if isinstance(load, PointLoad) and load.kind == "force" and load.point is not None:
+            points[load.body].append(load.point)
+        elif isinstance(load, PairLoad):
+            for end, point in ((load.a, load.p), (load.b, load.q)):
+                if end >= 0:
+                    points[end].append(point)
+    found = []
+    for i, body in enumerate(mechanism.bodies):
+        if i in held:
+            continue
+        scale = max(float(np.trace(body.inertia)), 1e-9 * body.mass * size * size)
+        moments, axes = np.linalg.eigh(body.inertia)
+        null = axes[:, moments <= NO_INERTIA * scale].T
+        if not len(null):
+            continue
+        arms = [p - body.center for p in points[i]]
+        far = max(arms, key=lambda d: float(d @ d), default=np.zeros(3))
+        reach = float(np.sqrt(far @ far))
+        if reach > ON_AXIS * size:
+            n = far / reach
+            off = max(float(np.sqrt(np.sum(np.square(d - (d @ n) * n)))) for d in arms)
+            if off > ON_AXIS * size or np.sum(np.square(null @ n)) < 1.0 - 1e-9:
+                continue
+            null = n[None, :]
+        lent = max(float(moments[-1]), body.mass * max(reach, 1e-3 * size) ** 2)
+        found.append(IdleSpin(i, null, lent * null.T @ null))
+    return found

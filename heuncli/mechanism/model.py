@@ -1,0 +1,157 @@
+"""The mechanism as plain SI arrays: bodies, joints, drives and loads, before any tree is chosen.
+
+Vectors are (3,) float64. Body index -1 is the ground. Values in time stay expressions (spec.expression.Expression).
+"""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+from typing import Literal
+
+from heuncli.results import Array
+from heuncli.spec.expression import Expression
+
+GROUND = -1
+
+
+@dataclass(frozen=True, eq=False)
+class Directed:
+    """A vector given in world axes or in the body's own."""
+
+    vector: Array
+    in_body: bool
+
+
+@dataclass(frozen=True, eq=False)
+class Body:
+    """A rigid body: mass [kg], centre of mass [m] and inertia about it [kg m2] in body axes; what of its start is held.
+
+    position and velocity are those of the body's origin; None means left out. `near_*` only guides the assembly.
+    """
+
+    name: str
+    mass: float
+    center: Array
+    inertia: Array
+    points: dict[str, Array]
+    position: Array | None
+    rotation: Array | None
+    velocity: Directed | None
+    angular_velocity: Directed | None
+    near_position: Array | None
+    near_rotation: Array | None
+
+
+@dataclass(frozen=True, eq=False)
+class Drive:
+    """A coordinate prescribed in time: angle [rad], travel [m] or length [m]."""
+
+    name: str
+    quantity: Literal["angle", "travel", "length"]
+    value: Expression
+    zero_assembled: bool
+
+
+@dataclass(frozen=True, eq=False)
+class Joint:
+    """A joint between the points p of body a ("from") and q of body b ("to"), both in their body's axes.
+
+    axis: unit vector in a's axes (for `plane`: the normal); to_axis: unit vector in b's axes, the same components
+    unless `to_axis_given`. Held initial values are None where left out. length: of a rod, None = as assembled.
+    """
+
+    name: str
+    kind: str
+    a: int
+    p: Array
+    b: int
+    q: Array
+    axis: Array
+    to_axis: Array
+    to_axis_given: bool
+    angle: float | None
+    rate: float | None
+    travel: float | None
+    speed: float | None
+    length: float | None
+    tension_only: bool
+    stiffness: tuple[Array, Array] | None  # force (3,) [N/m] and moment (3,) [N m/rad], inf where not given
+    drive: Drive | None
+
+
+@dataclass(frozen=True, eq=False)
+class PointLoad:
+    """A force [N] at a body's point, or a couple [N m] on it (point None or where the couple enters)."""
+
+    name: str
+    kind: Literal["force", "couple"]
+    body: int
+    point: Array | None
+    vector: tuple[Expression, Expression, Expression]
+    in_body: bool
+
+
+@dataclass(frozen=True, eq=False)
+class PairLoad:
+    """A spring or actuator along the line between two points; value None for a spring. Positive pushes apart [N]."""
+
+    name: str
+    a: int
+    p: Array
+    b: int
+    q: Array
+    value: Expression | None
+    stiffness: float
+    length: float
+    damping: float
+
+
+@dataclass(frozen=True, eq=False)
+class JointLoad:
+    """A torque (thrust), damper or friction in a joint; acts on `to`, opposite on `from`."""
+
+    name: str
+    kind: Literal["torque", "damper", "friction"]
+    joint: int
+    value: Expression | None  # torque: N m about the axis, or N along the slide
+    coefficient: float  # damper: N m s (turning), or N s/m (slide, line, plane)
+    sliding: float  # damper of a cylinder: N s/m
+    torque: float  # friction about the axis [N m]
+    force: float  # friction along the axis [N]
+    speed: float  # friction: where tanh(rate/speed) bends
+
+
+Load = PointLoad | PairLoad | JointLoad
+
+
+@dataclass(frozen=True, eq=False)
+class Mechanism:
+    """A scene, ready to be assembled."""
+
+    title: str
+    planar: bool
+    gravity: Array
+    ground_points: dict[str, Array]
+    bodies: tuple[Body, ...]
+    joints: tuple[Joint, ...]
+    loads: tuple[Load, ...]
+
+    def body_index(self, name: str) -> int:
+        """Index of a body; -1 for the ground. Raises StopIteration for a name the spec layer let through."""
+        return GROUND if name == "ground" else next(i for i, b in enumerate(self.bodies) if b.name == name)
+
+
+@dataclass(frozen=True, eq=False)
+class Assembly:
+    """Poses and rates at the start that fit all joints, world axes.
+
+    position (n, 3) and velocity (n, 3) of the bodies' origins, rotation (n, 3, 3), angular_velocity (n, 3);
+    chosen: sentences on what was chosen for the user; gap: largest closure gap [m].
+    """
+
+    position: Array
+    rotation: Array
+    velocity: Array
+    angular_velocity: Array
+    chosen: tuple[str, ...]
+    gap: float

@@ -1,0 +1,116 @@
+"""Rotations as 3x3 matrices and unit quaternions (w, x, y, z); R takes components in turned axes to the fixed ones."""
+
+from __future__ import annotations
+
+import math
+
+import numpy as np
+
+from heuncli.results import Array
+
+
+def hat(a: Array) -> Array:
+    """Matrix of the cross product, (3, 3): hat(a) @ b = a x b."""
+    return np.array([[0.0, -a[2], a[1]], [a[2], 0.0, -a[0]], [-a[1], a[0], 0.0]])
+
+
+def about(axis: Array, angle: float) -> Array:
+    """Rotation by `angle` [rad] about the unit vector `axis`, (3, 3)."""
+    s, c = math.sin(angle), math.cos(angle)
+    return c * np.eye(3) + s * hat(axis) + (1.0 - c) * np.outer(axis, axis)
+
+
+def from_vector(turn: Array) -> Array:
+    """Rotation by the vector axis * angle [rad], (3, 3)."""
+    angle = math.sqrt(float(turn @ turn))
+    return about(turn / angle, angle) if angle > 0.0 else np.eye(3)
+
+
+def to_vector(R: Array) -> Array:
+    """Axis * angle of a rotation, (3,) [rad], angle in [0, pi]."""
+    w, x, y, z = to_quaternion(R)
+    if w < 0.0:
+        w, x, y, z = -w, -x, -y, -z
+    s = math.sqrt(x * x + y * y + z * z)
+    if s == 0.0:
+        return np.zeros(3)
+    return np.array([x, y, z]) * (2.0 * math.atan2(s, w) / s)
+
+
+def to_quaternion(R: Array) -> Array:
+    """Unit quaternion of a rotation, (4,), from its largest component (Shepperd's choice: no cancellation)."""
+    t = R[0, 0] + R[1, 1] + R[2, 2]
+    squares = (1.0 + t, 1.0 + 2.0 * R[0, 0] - t, 1.0 + 2.0 * R[1, 1] - t, 1.0 + 2.0 * R[2, 2] - t)
+    k = max(range(4), key=lambda i: squares[i])
+    s = math.sqrt(squares[k])
+    f = 0.5 / s
+    a, b, c = R[2, 1] - R[1, 2], R[0, 2] - R[2, 0], R[1, 0] - R[0, 1]
+    d, e, g = R[1, 0] + R[0, 1], R[2, 0] + R[0, 2], R[2, 1] + R[1, 2]
+    q = (
+        (0.5 * s, a * f, b * f, c * f),
+        (a * f, 0.5 * s, d * f, e * f),
+        (b * f, d * f, 0.5 * s, g * f),
+        (c * f, e * f, g * f, 0.5 * s),
+    )[k]
+    q_ = np.array(q)
+    return q_ / math.sqrt(float(q_ @ q_))
+
+
+def from_quaternion(q: Array) -> Array:
+    """Rotation of a quaternion (w, x, y, z), normalised here, (3, 3)."""
+    w, x, y, z = (q / math.sqrt(float(q @ q))).tolist()
+    return np.array(
+        [
+            [1 - 2 * (y * y + z * z), 2 * (x * y - w * z), 2 * (x * z + w * y)],
+            [2 * (x * y + w * z), 1 - 2 * (x * x + z * z), 2 * (y * z - w * x)],
+            [2 * (x * z - w * y), 2 * (y * z + w * x), 1 - 2 * (x * x + y * y)],
+        ]
+    )
+
+
+def turn_onto(a: Array, b: Array) -> Array:
+    """Smallest rotation that takes the unit vector a onto the unit vector b, (3, 3).
+
+    Opposite vectors (to 1e-9): half a turn about the coordinate axis most nearly perpendicular to them.
+    """
+    v = cross(a, b)
+    c = float(a @ b)
+    if c >= 0.0:  # 1 + hat(v) + hat(v)^2 / (1 + c)
+        x, y, z = v.tolist()
+        f = 1.0 / (1.0 + c)
+        return np.array(
+            [
+                [c + f * x * x, f * x * y - z, f * x * z + y],
+                [f * x * y + z, c + f * y * y, f * y * z - x],
+                [f * x * z - y, f * y * z + x, c + f * z * z],
+            ]
+        )
+    # Beyond a right angle 1 + c would cancel: half a turn takes a to -a, and -a is near b.
+    if float(v @ v) < 1e-18:
+        v = np.zeros(3)
+        v[int(np.argmin(np.abs(a)))] = 1.0
+    e = v - (v @ a) * a
+    e = e / math.sqrt(float(e @ e))
+    return turn_onto(-a, b) @ (2.0 * np.outer(e, e) - np.eye(3))
+
+
+def perpendicular(n: Array) -> tuple[Array, Array]:
+    """Two unit vectors that make (e, f, n) right-handed with the unit vector n; a fixed choice."""
+    c = n.tolist()
+    k = min(range(3), key=lambda i: abs(c[i]))
+    size = math.sqrt(c[(k + 1) % 3] ** 2 + c[(k + 2) % 3] ** 2)  # of the axis k without its part along n, times |n|
+    e = -c[k] * n / size
+    e[k] += 1.0 / size
+    return e, cross(n, e)
+
+
+def cross(a: Array, b: Array) -> Array:
+    """a x b of two single vectors, (3,); np.cross costs twenty times as much."""
+    a1, a2, a3 = a.tolist()
+    b1, b2, b3 = b.tolist()
+    return np.array([a2 * b3 - a3 * b2, a3 * b1 - a1 * b3, a1 * b2 - a2 * b1])
+
+
+def orthonormal(R: Array) -> Array:
+    """The rotation nearest to one that is off by rounding, (3, 3)."""
+    return 1.5 * R - 0.5 * (R @ (R.T @ R))

@@ -1,0 +1,32 @@
+"""The size of a scene, which errors are told relative to, and the points by which a body's motion is judged."""
+
+from __future__ import annotations
+
+import math
+
+import numpy as np
+
+from heuncli.mechanism.model import GROUND, Assembly, Body, Mechanism
+from heuncli.results import Array
+
+
+def size_of_scene(mechanism: Mechanism, start: Assembly) -> float:
+    """Twice the largest distance of bodies' marks and the ground's joint points from their mean [m]; one place: 1."""
+    places = [start.position[i] + start.rotation[i] @ p for i, body in enumerate(mechanism.bodies) for p in marks(body)]
+    places += [j.p for j in mechanism.joints if j.a == GROUND] + [j.q for j in mechanism.joints if j.b == GROUND]
+    x = np.array(places)
+    reach = 2.0 * float(np.sqrt(np.max(np.sum(np.square(x - x.mean(axis=0)), axis=1))))
+    return reach if reach > 1e-12 * float(np.max(np.abs(x), initial=0.0)) else 1.0
+
+
+def marks(body: Body) -> list[Array]:
+    """Points by which a body's motion is judged: its named ones and its centre of mass, body axes.
+
+    Where none of them is as far from the centre as the radius of gyration, points so far along the axes stand for its
+    extent.
+    """
+    found = [body.center, *body.points.values()]
+    gyration = math.sqrt(max(float(np.trace(body.inertia)), 0.0) / (2.0 * body.mass))
+    if max(float(np.sum(np.square(p - body.center))) for p in found) < gyration**2:
+        found += [body.center + gyration * e for e in np.eye(3)]
+    return found

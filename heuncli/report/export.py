@@ -1,0 +1,124 @@
+"""Results as JSON (contract section 3) and as CSV in long form; all digits, nothing rounded.
+
+Numbers go through `repr` or the C encoder of json in whole arrays: well below 1 µs each.
+"""
+
+from __future__ import annotations
+
+import json
+from collections.abc import Iterable, Iterator
+from dataclasses import fields
+from typing import Any
+
+import numpy as np
+
+from heuncli.errors import LimitError, Problem
+from heuncli.report.quantities import Series, walk, walk_impulse
+from heuncli.report.scene import Scene
+from heuncli.results import Results
+
+FORMAT = 1
+MOST_NUMBERS = 200_000_000  # about 4 GB of text
+ALWAYS = frozenset({"title", "spec", "version", "model", "status", "time"})
+CSV_HEADER = "time,kind,name,quantity,component,unit,value\n"
+
+
+def to_json(results: Results) -> str:
+    """The results as one JSON object: a line for each array, `null` for what is open."""
+    _limit(results)
+    chunks: list[str] = []
+    _write({"heun": FORMAT, **present(results)}, "", chunks)
+    return "".join(chunks) + "\n"
+
+
+def to_csv(results: Results, scene: Scene) -> str:
+    """The results in long form, a line a number; an empty value is open, an empty time holds for all instants."""
+    _limit(results)
+    lines = [CSV_HEADER]
+    instants = [repr(t) for t in results.time.tolist()]
+    for series in walk(results, scene):
+        lines += _lines(series, series.kind, series.name, [""] if series.static else instants)
+    for number, block in enumerate(results.impulses):
+        for series in walk_impulse(block, scene):
+            name = ".".join(part for part in (str(number), series.kind, series.name) if part)
+            lines += _lines(series, "impulses", name, [repr(float(block["time"]))])
+    for number, block in enumerate(results.certain_sums):
+        unit = "N" if all(".force." in term for term in block["terms"]) else "N·m"
+        series = Series("certain_sums", str(number), "value", unit, ("",), np.asarray(block["value"])[:, None])
+        lines += _lines(series, series.kind, series.name, instants)
+    return "".join(lines)
+
+
+def present(results: Results) -> dict[str, Any]:
+    """The blocks that apply, in the contract's order, by their names in the JSON."""
+    blocks = {f.name: getattr(results, f.name) for f in fields(results)}
+    return {name: block for name, block in blocks.items() if name in ALWAYS or len(block)}
+
+
+def dump(value: Any) -> str:
+    """Any small nest of plain data as JSON, laid out like the results."""
+    chunks: list[str] = []
+    _write(value, "", chunks)
+    return "".join(chunks) + "\n"
+
+
+def _write(value: Any, indent: str, chunks: list[str]) -> None:
+    """Nested mappings a key a line, lists of mappings too; everything else on one line."""
+    if isinstance(value, dict) and value:
+        _write_members(((f"{_text(key)}: ", member) for key, member in value.items()), "{}", indent, chunks)
+    elif isinstance(value, (list, tuple)) and any(isinstance(member, dict) for member in value):
+        _write_members((("", member) for member in value), "[]", indent, chunks)
+    else:
+        chunks.append(_text(value))
+
+
+def _write_members(members: Iterable[tuple[str, Any]], brackets: str, indent: str, chunks: list[str]) -> None:
+    inner = indent + " "
+    chunks.append(brackets[0])
+    for number, (label, member) in enumerate(members):
+        chunks.append(f"{',' if number else ''}\n{inner}{label}")
+        _write(member, inner, chunks)
+    chunks.append(f"\n{indent}{brackets[1]}")
+
+
+def _text(value: Any) -> str:
+    if isinstance(value, np.ndarray):
+        value = _plain(value)
+    elif isinstance(value, np.generic):
+        value = value.item()
+    if isinstance(value, float) and not np.isfinite(value):
+        value = None
+    return json.dumps(value, ensure_ascii=False, allow_nan=False, default=_plain)
+
+
+def _plain(values: Any) -> Any:
+    """Nested lists of the array's numbers, None where they are not finite, and no minus before a zero."""
+    finite = np.isfinite(values)
+    return (
+        (values + 0.0).tolist()
+        if finite.all()
+        else np.where(finite, (values + 0.0).astype(object), np.array(None)).tolist()
+    )
+
+
+def _lines(series: Series, kind: str, name: str, instants: list[str]) -> Iterator[str]:
+    for component, column in zip(series.components, series.values.T, strict=True):
+        middle = f",{kind},{name},{series.quantity},{component},{series.unit},"
+        known = np.isfinite(column).tolist()
+        numbers = [repr(number) if sure else "" for number, sure in zip((column + 0.0).tolist(), known, strict=True)]
+        yield from [f"{t}{middle}{number}\n" for t, number in zip(instants, numbers, strict=True)]
+
+
+def _limit(results: Results) -> None:
+    count = sum(_count(block) for block in present(results).values())
+    if count > MOST_NUMBERS:
+        message = f"the results hold {count:,} numbers; at most {MOST_NUMBERS:,} are written"
+        raise LimitError(Problem("output-size", message, hint="fewer samples, or --only with what is needed"))
+
+
+def _count(block: Any) -> int:
+    if isinstance(block, np.ndarray):
+        return block.size
+    if isinstance(block, dict):
+        return sum(_count(member) for member in block.values())
+    return sum(_count(member) for member in block) if isinstance(block, (list, tuple)) else 1

@@ -1,0 +1,101 @@
+"""What was solved, and how far to trust it: the lines above every table."""
+
+from __future__ import annotations
+
+import math
+
+import numpy as np
+
+from heuncli.report.numbers import rough
+from heuncli.report.words import count
+from heuncli.results import Results
+
+PLANAR = "; what points out of the xy plane does not exist and reads 0"
+
+
+def heading(results: Results) -> list[tuple[str, str]]:
+    """Label and text of each line."""
+    lines = [
+        ("heun", f"{results.version}  {results.title}"),
+        ("model", _model(results)),
+        ("run", _run(results)),
+        ("accuracy", _errors(results)),
+        ("", _residuals(results)),
+    ]
+    if results.model.get("split"):
+        lines.append(("split", f"{results.model['split']}; other splits do as well"))
+    if (horizon := results.accuracy.get("horizon")) is not None:
+        lines.append(
+            ("horizon", f"from t = {horizon:.4g} s on nothing is claimed: the error may pass 1e-3 (? in tables)")
+        )
+    if results.status.get("code", "completed") != "completed":
+        lines.append(("status", f"{results.status['code']}: {results.status.get('message', '')}"))
+    said = results.status.get("message", "")
+    lines += [("warning", warning) for warning in results.warnings if not said or said not in warning]
+    return [line for line in lines if line[1]]
+
+
+def write_heading(results: Results) -> str:
+    """The heading as aligned text."""
+    lines = heading(results)
+    width = max(len(label) for label, _ in lines)
+    return "".join(f"{label.ljust(width)}  {text}\n" for label, text in lines)
+
+
+def write_heading_markdown(results: Results) -> str:
+    """The heading as markdown."""
+    lines = heading(results)
+    body = "".join(f"- {label + ': ' if label else ''}{text}\n" for label, text in lines[1:])
+    return f"## {results.title}\n\n- heun: {results.version}\n{body}\n"
+
+
+def _model(results: Results) -> str:
+    model = results.model
+    parts = [str(model.get("space", "spatial"))]
+    things = (("bodies", "body"), ("freedoms", "freedom"), ("loops", "loop"), ("redundant", "redundant row"))
+    parts += [
+        count(int(model[key]), what)
+        for key, what in things
+        if isinstance(model.get(key), int) and (model[key] or key in ("bodies", "freedoms"))
+    ]
+    if model.get("driven"):
+        parts[2] += f" beside {int(model['driven'])} driven"
+    return ", ".join(parts) + (PLANAR if model.get("space") == "planar" else "")
+
+
+def _run(results: Results) -> str:
+    times = results.time
+    work = results.work
+    kernel = f"{work.get('kernel', 'pure')} kernel" if work else ""
+    if len(times) == 1:
+        parts = [f"one instant, t = {times[0]:.6g} s"]
+    else:
+        parts = [f"{times[0]:.6g} to {times[-1]:.6g} s, {len(times)} samples"]
+    if work.get("steps"):
+        method = f"{results.model['method']}, " if results.model.get("method") else ""
+        parts.append(f"{method}{count(int(work['steps']), 'step')}, {count(int(work['evaluations']), 'evaluation')}")
+    elif len(times) == 1:
+        parts.append("nothing integrated")
+    return "; ".join(part for part in (*parts, kernel) if part)
+
+
+def _errors(results: Results) -> str:
+    if not results.work.get("steps"):
+        return "exact but for rounding"
+    estimate = results.accuracy.get("estimate") or {}
+    parts = _told("motion within {} of the scene's size", estimate.get("motion"))
+    parts += _told("loads within {} of the largest", estimate.get("reactions"))
+    return ", ".join(parts) if parts else "not estimated"
+
+
+def _residuals(results: Results) -> str:
+    accuracy = results.accuracy
+    parts = _told("energy kept to {}", accuracy.get("energy_drift")) if results.work.get("steps") else []
+    parts += _told("joints closed to {} m", accuracy.get("constraint_gap") or None)
+    parts += _told("forces balance to {}", accuracy.get("balance_residual"))
+    return ", ".join(parts)
+
+
+def _told(text: str, value: float | None) -> list[str]:
+    known = value is not None and math.isfinite(value)
+    return [text.format(rough(float(np.float64(value))))] if known and value is not None else []

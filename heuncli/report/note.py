@@ -1,0 +1,66 @@
+"""The model of a scene as an engineer would note it down."""
+
+from __future__ import annotations
+
+import textwrap
+from collections.abc import Mapping, Sequence
+from typing import Any
+
+from heuncli.report.words import count
+
+WIDTH = 110
+MOST_NAMES = 12
+# Key of the model -> title of its list of sentences.
+LISTS = (
+    ("reasons", "Why this model"),
+    ("chosen", "Start values chosen for you"),
+    ("notes", "Worth knowing"),
+)
+
+
+def note(title: str, model: Mapping[str, Any]) -> str:
+    """The model block as text."""
+    lines = [title or "untitled", ""]
+    facts = [(key, text) for key, text in _facts(model) if text]
+    width = max(len(key) for key, _ in facts)
+    lines += [f"  {key.ljust(width)}  {text}" for key, text in facts]
+    for key, heading in LISTS:
+        sentences: Sequence[str] = model.get(key) or ()
+        if sentences:
+            lines += ["", heading]
+            for sentence in sentences:
+                lines += textwrap.wrap(str(sentence), WIDTH, initial_indent="  - ", subsequent_indent="    ")
+    return "\n".join(lines) + "\n"
+
+
+def _facts(model: Mapping[str, Any]) -> list[tuple[str, str]]:
+    freedoms = model.get("freedoms")
+    grubler = model.get("grubler")
+    beside = f" (Grübler's count: {grubler})" if grubler is not None else ""
+    return [
+        ("space", str(model.get("space", ""))),
+        ("bodies", _things(model.get("bodies"))),
+        ("joints", _things(model.get("joints"))),
+        ("freedoms", f"{freedoms}{beside}" if freedoms is not None else ""),
+        ("loops", count(int(model["loops"]), "closed loop") if isinstance(model.get("loops"), int) else ""),
+        ("redundant", _redundant(model.get("redundant"))),
+        ("method", str(model.get("method") or "")),
+    ]
+
+
+def _things(what: Any) -> str:
+    """A count, or names with their count: `2: upper, lower`; a mapping's values say of what kind each is."""
+    if isinstance(what, Mapping):
+        names = [f"{name} ({kind})" if isinstance(kind, str) else str(name) for name, kind in what.items()]
+    elif isinstance(what, (list, tuple)):
+        names = [str(name) for name in what]
+    else:
+        return "" if what is None else str(what)
+    rest = f", ... ({len(names) - MOST_NAMES} more)" if len(names) > MOST_NAMES else ""
+    return f"{len(names)}: {', '.join(names[:MOST_NAMES])}{rest}" if names else "none"
+
+
+def _redundant(what: Any) -> str:
+    if isinstance(what, int):
+        return count(what, "redundant row") if what else "none"
+    return _things(what) if what else ""

@@ -1,0 +1,161 @@
+"""The whole report of a run as tables: which blocks stand on the page, and what has to be searched for them.
+
+`page_of(results, scene)` first; then either `columns` and `groups` for a search and `extremes` with what it found, or
+`instants`.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Sequence, Set
+from dataclasses import replace
+from typing import Any, NamedTuple
+
+import numpy as np
+
+from heuncli.report import layout, runs
+from heuncli.report.blocks import BLOCKS, Block, build
+from heuncli.report.layout import Found
+from heuncli.report.numbers import Certainty, certainty
+from heuncli.report.quantities import Series, walk, walk_impulse
+from heuncli.report.scene import Scene
+from heuncli.report.sums import sums_table
+from heuncli.report.table import Table
+from heuncli.results import Array, Results
+
+REPORTS = ("motion", "points", "foundation", "joints", "sections", "forces", "energy")
+TABLE_DEFAULT = frozenset(REPORTS) - {"motion", "points"}
+EXPORT_DEFAULT = frozenset(REPORTS) - {"points"}
+# Which parts of the results belong to which report; the rest (model, accuracy, ...) always stays.
+PARTS = {
+    "bodies": "motion",
+    "coordinates": "motion",
+    "system_vector": "motion",
+    "points": "points",
+    "foundation": "foundation",
+    "joints": "joints",
+    "sections": "sections",
+    "forces": "forces",
+    "energy": "energy",
+}
+
+
+def restrict(results: Results, wanted: Set[str]) -> Results:
+    """The results without the blocks that were not asked for."""
+    unasked: dict[str, Any] = {part: {} for part, report in PARTS.items() if report not in wanted}
+    return replace(results, **unasked)
+
+
+class Page(NamedTuple):
+    """The tables of a run: blocks and runs of cuts up to the horizon, before they are laid out."""
+
+    results: Results
+    scene: Scene
+    certain: Certainty
+
+    def columns(self, results: Results) -> Array:
+        """What is searched, (n_t, n): all rows of all blocks (magnitudes squared), then the cuts of runs."""
+        columns = [
+            (row.values**2 if row.even else row.values)[:, None]
+            for block in self._lasting(results)
+            for group in block.groups
+            for row in group.rows
+        ]
+        columns += [runs.columns(run) for run in runs.runs_of(results, self.scene)]
+        return np.concatenate(columns, axis=1) if columns else np.zeros((len(results.time), 0))
+
+    def groups(self) -> list[list[int]]:
+        """Which columns are compared with each other: a row alone, a resultant over all cuts of its run."""
+        n = sum(len(group.rows) for block in self._lasting(self.results) for group in block.groups)
+        groups = [[column] for column in range(n)]
+        for run in runs.runs_of(self.results, self.scene):
+            for _ in runs.RESULTANTS:
+                groups.append(list(range(n, n + len(run.s))))
+                n += len(run.s)
+        return groups
+
+    def extremes(self, found: Found) -> list[Table]:
+        """The tables with extremes, from what the search found for each of `groups`."""
+        tables: list[Table] = []
+        start = 0
+        times = self.results.time
+        for block in self._lasting(self.results):
+            rows = [row for group in block.groups for row in group.rows]
+            own = slice(start, start + len(rows))
+            even = np.array([row.even for row in rows], dtype=bool)
+            part = found.part(own)
+            low, high = (np.where(even, np.sqrt(np.abs(bound)), bound) for bound in (part.low, part.high))
+            tables += layout.extremes_table(block, times, part._replace(low=low, high=high), self.certain)
+            start += len(rows)
+        column = start
+        for run in runs.runs_of(self.results, self.scene):
+            own = slice(start, start + len(runs.RESULTANTS))
+            first = column + len(run.s) * np.arange(len(runs.RESULTANTS))
+            part = found.part(own)
+            cuts = part._replace(low_column=part.low_column - first, high_column=part.high_column - first)
+            tables += runs.extremes_tables(run, times, cuts, self.certain)
+            start, column = own.stop, column + len(run.s) * len(runs.RESULTANTS)
+        return [*tables, *self._ending()]
+
+    def instants(self, results: Results, *, every_cut: bool = False) -> list[Table]:
+        """The tables at the instants of `results`, which is the same run at any instants."""
+        horizon = self.results.accuracy.get("horizon")
+        tables: list[Table] = []
+        for block in _blocks(results, self.scene):
+            tables += layout.instants_tables(block, results.time, horizon, self.certain)
+        for run in runs.runs_of(results, self.scene):
+            tables += runs.instants_tables(run, results.time, horizon, self.certain, every=every_cut)
+        return [*tables, *self._ending()]
+
+    def _lasting(self, results: Results) -> list[Block]:
+        return _blocks(results, self.scene, lasting=True)
+
+    def _ending(self) -> list[Table]:
+        sums = sums_table(self.results, self.certain)
+        return [*self._impulses(), *([sums] if sums else [])]
+
+    def _impulses(self) -> list[Table]:
+        tables: list[Table] = []
+        for impulse in self.results.impulses:
+            series = list(walk_impulse(impulse, self.scene))
+            for plan in BLOCKS:
+                block = build(plan, self.results, self.scene, series)
+                if block is not None:
+                    heading = f"IMPULSE at t = {float(impulse['time']):.6g} s  {block.heading}"
+                    named = block._replace(heading=heading, notes=())
+                    tables += layout.instants_tables(named, np.array([float(impulse["time"])]), None, self.certain)
+        return tables
+
+
+def page_of(results: Results, scene: Scene) -> Page:
+    """The page of a run, ending before its horizon."""
+    horizon = results.accuracy.get("horizon")
+    certain = certainty(results, scene)
+    if horizon is not None:
+        results = until(results, float(horizon))
+    return Page(results, scene, certain)
+
+
+def until(results: Results, horizon: float) -> Results:
+    """The results at the instants before the horizon; at least the first."""
+    count = max(1, int(np.searchsorted(results.time, horizon)))
+    return _cut(results, count) if count < len(results.time) else results
+
+
+def _cut(results: Results, count: int) -> Results:
+    n = len(results.time)
+
+    def first(block: Any) -> Any:
+        if isinstance(block, dict):
+            return {key: value if key in ("about", "s") else first(value) for key, value in block.items()}
+        return block[:count] if isinstance(block, np.ndarray) and len(block) == n else block
+
+    timed = {part: first(getattr(results, part)) for part in PARTS}
+    sums = [{**block, "value": np.asarray(block["value"])[:count]} for block in results.certain_sums]
+    return replace(results, time=results.time[:count], certain_sums=sums, **timed)
+
+
+def _blocks(results: Results, scene: Scene, *, lasting: bool = False) -> list[Block]:
+    series: Sequence[Series] = list(walk(results, scene))
+    blocks = [build(plan, results, scene, series) for plan in BLOCKS if plan.lasting or not lasting]
+    made = [block for block in blocks if block is not None]
+    return [layout.abridged(block) for block in made] if lasting else made

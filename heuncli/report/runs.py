@@ -1,0 +1,154 @@
+"""Runs of cuts: the extremes over place and time, the envelope along the body, the diagram at an instant."""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+from typing import NamedTuple
+
+import numpy as np
+
+from heuncli.report.layout import Found, Indices
+from heuncli.report.numbers import BEYOND, OPEN, OPEN_NOTE, Certainty, Style, largest, style, write, write_times
+from heuncli.report.scene import Scene
+from heuncli.report.table import Column, Table
+from heuncli.results import Array, Results
+
+RESULTANTS = (("N", "N"), ("Q1", "N"), ("Q2", "N"), ("T", "N·m"), ("M1", "N·m"), ("M2", "N·m"))
+MOST_CUTS = 25  # a diagram is read, not listed: evenly spaced cuts, with all jumps and extremes
+
+
+class Run(NamedTuple):
+    """One run of cuts: places along the body, sides, and the resultants (6, n_t, n_cuts) in the order of RESULTANTS."""
+
+    name: str
+    heading: str
+    s: Array
+    side: tuple[str | None, ...]
+    values: Array
+
+
+def runs_of(results: Results, scene: Scene) -> list[Run]:
+    """The runs of cuts among the sections."""
+    runs = []
+    for name, section in results.sections.items():
+        if "s" not in section:
+            continue
+        info = scene.sections.get(name)
+        of = f"{name} {info.body}" if info else name
+        axis = f"e1 = {info.first_axis}, e2 = n × e1" if info else "e2 = n × e1"
+        about = info.about if info else "the cut's point"
+        whose = "the piece beyond the cut ON the part before it; N > 0 tension"
+        heading = f"SECTION {of}  {whose}; {axis}; moments about {about}"
+        values = np.stack([section[quantity] for quantity, _ in RESULTANTS])
+        side = tuple(section.get("side") or [None] * len(section["s"]))
+        runs.append(Run(name, heading, np.asarray(section["s"], dtype=np.float64), side, values))
+    return runs
+
+
+def columns(run: Run) -> Array:
+    """The resultants as columns for the search, (n_t, 6·n_cuts), one resultant after the other."""
+    n_t, n_cuts = run.values.shape[1:]
+    return run.values.transpose(1, 0, 2).reshape(n_t, len(RESULTANTS) * n_cuts)
+
+
+def extremes_tables(run: Run, times: Array, found: Found, certain: Certainty) -> list[Table]:
+    """Extremes over place and time, (6,) each with the cut as column; and at each cut the value farthest from zero."""
+    styles = _styles(run, certain)
+    span = float(np.ptp(times))
+    rows = []
+    for i, (label, unit) in enumerate(RESULTANTS):
+        low, high = write([float(found.low[i]), float(found.high[i])], styles[unit])
+        if low == high:
+            rows.append((label, unit, low, "", "", high, "", ""))
+            continue
+        cuts = int(found.low_column[i]), int(found.high_column[i])
+        clock = write_times([float(found.low_at[i]), float(found.high_at[i])], span)
+        low_at, high_at = (
+            "" if _steady(run.values[i, :, cut], styles[unit]) else t for cut, t in zip(cuts, clock, strict=True)
+        )
+        places = _places(run.s)
+        rows.append((label, unit, low, places[cuts[0]], low_at, high, places[cuts[1]], high_at))
+    heads = ("min", "at s [m]", "t [s]", "max", "at s [m]", "t [s]")
+    lead = (Column("", "left"), Column("", "left"))
+    table = Table(run.heading, (*lead, *(Column(head) for head in heads)), tuple(rows))
+    envelope = np.take_along_axis(run.values, _farthest(run.values)[:, None, :], axis=1)[:, 0, :]
+    kept = thinned(run)
+    notes = [f"envelope: at each cut the value farthest from zero in {run.values.shape[1]} samples" + _rest(run, kept)]
+    return [table, _diagram(run, envelope, kept, styles, notes)]
+
+
+def instants_tables(
+    run: Run, times: Array, horizon: float | None, certain: Certainty, *, every: bool = False
+) -> list[Table]:
+    """The diagram at each instant."""
+    styles = _styles(run, certain)
+    kept = np.arange(len(run.s)) if every else thinned(run)
+    if len(times) == 1:
+        diagram = _diagram(run, run.values[:, 0, :], kept, styles, [_rest(run, kept).lstrip("; ")])
+        return [Table(run.heading, diagram.columns, diagram.rows, diagram.notes)]
+    clock = write_times(times.tolist(), float(np.ptp(times)))
+    rows: list[tuple[str, ...] | str] = []
+    table = Table("")
+    for i, t in enumerate(times):
+        table = _diagram(run, run.values[:, i, :], kept, styles, [_rest(run, kept).lstrip("; ")])
+        beyond = horizon is not None and t >= horizon
+        rows.append(f"t = {clock[i]} s")
+        lines = [row for row in table.rows if not isinstance(row, str)]
+        lead = len(table.columns) - len(RESULTANTS)
+        rows += [(*row[:lead], *(BEYOND for _ in RESULTANTS)) if beyond else row for row in lines]
+    return [Table(run.heading, table.columns, tuple(rows), table.notes)]
+
+
+def thinned(run: Run) -> Indices:
+    """Which cuts a diagram shows, at most about MOST_CUTS: evenly spaced ones, both ends, jumps and extremes."""
+    n = len(run.s)
+    if n <= MOST_CUTS:
+        return np.arange(n)
+    chosen = set(np.linspace(0, n - 1, MOST_CUTS // 2 + 1).round().astype(int).tolist())
+    chosen |= {i for i, side in enumerate(run.side) if side is not None}
+    flat = np.nan_to_num(run.values).max(axis=1), np.nan_to_num(run.values).min(axis=1)
+    chosen |= {int(np.argmax(row)) for row in flat[0]} | {int(np.argmin(row)) for row in flat[1]}
+    return np.array(sorted(chosen))
+
+
+def _diagram(run: Run, values: Array, kept: Indices, styles: dict[str, Style], notes: Sequence[str]) -> Table:
+    """A line a cut; `values` is (6, n_cuts)."""
+    places = _places(run.s)
+    texts = [write(values[i, kept].tolist(), styles[unit]) for i, (_, unit) in enumerate(RESULTANTS)]
+    sides = any(side is not None for side in run.side)
+    rows = tuple(
+        (places[cut], *([run.side[cut] or ""] if sides else []), *(column[j] for column in texts))
+        for j, cut in enumerate(kept)
+    )
+    heads = [Column("s [m]"), *([Column("side", "left")] if sides else [])]
+    told = [note for note in notes if note] + ([OPEN_NOTE] if any(OPEN in column for column in texts) else [])
+    return Table("", (*heads, *(Column(f"{label} [{unit}]") for label, unit in RESULTANTS)), rows, tuple(told))
+
+
+def _styles(run: Run, certain: Certainty) -> dict[str, Style]:
+    styles = {}
+    for unit in ("N", "N·m"):
+        scale = max(largest(run.values[i]) for i, (_, own) in enumerate(RESULTANTS) if own == unit)
+        styles[unit] = style(scale, certain.error(unit))
+    return styles
+
+
+def _farthest(values: Array) -> Indices:
+    """Index of the instant at which each is farthest from zero, (6, n_cuts); the first where all are open."""
+    farthest: Indices = np.argmax(np.nan_to_num(np.abs(values), nan=-1.0), axis=1)
+    return farthest
+
+
+def _steady(values: Array, how: Style) -> bool:
+    """Whether the values of one cut read the same at all instants: then none of them is the one of an extreme."""
+    return how.write(float(np.min(values))) == how.write(float(np.max(values)))
+
+
+def _places(s: Array) -> list[str]:
+    return write(s.tolist(), style(largest(s), 0.0))
+
+
+def _rest(run: Run, kept: Indices) -> str:
+    if len(kept) == len(run.s):
+        return ""
+    return f"; {len(kept)} of {len(run.s)} cuts shown, jumps and extremes among them; every cut: --all, or --format csv"

@@ -1,0 +1,131 @@
+"""What a report must know of the scene beyond the numbers: what kind each joint and force is, and what a section cuts.
+
+From it follow the units that the results alone do not tell: a pin's drive is a torque, a slide's a force.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Mapping
+from dataclasses import dataclass, field
+from itertools import chain
+from typing import NamedTuple
+
+import numpy as np
+
+from heuncli.spec.models import Body, End, Force, Friction, Section, Spec, Vec
+
+TURNING_JOINTS = frozenset({"ball", "pin", "universal", "cylinder"})
+TURN = {"value": "N·m", "rate": "rad/s"}
+PUSH = {"value": "N", "rate": "m/s"}
+FORCE_UNITS = {"couple": TURN, "force": PUSH, "actuator": PUSH, "spring": PUSH}
+AXES = ("x", "y", "z")
+ABOUT = {"at": "the cut's point", "centroid": "the cut's centroid", "line": "the cut's point, and Heun's line"}
+EQUAL_COMPONENTS = 1e-9  # contract section 1, sections: components this near count as equal
+
+
+class JointInfo(NamedTuple):
+    """A joint's type and its two ends as `body.point`."""
+
+    type: str
+    from_: str
+    to: str
+
+
+class ForceInfo(NamedTuple):
+    """A force's type, the joint it acts in if it does, and whether it resists turning where the type does not tell."""
+
+    type: str
+    joint: str | None = None
+    turning: bool | None = None
+
+
+class SectionInfo(NamedTuple):
+    """The body cut, the first axis and the point of the moments, in words."""
+
+    body: str
+    first_axis: str = "body x"
+    about: str = "the cut's point"
+
+
+@dataclass(frozen=True)
+class Scene:
+    """The kinds of everything named in the results; `about` is the ground point where M_s is taken, if one is there.
+
+    size: how far a body's points and shapes reach from its origin at most [m].
+    """
+
+    joints: Mapping[str, JointInfo] = field(default_factory=dict)
+    forces: Mapping[str, ForceInfo] = field(default_factory=dict)
+    sections: Mapping[str, SectionInfo] = field(default_factory=dict)
+    about: str | None = None
+    size: float = 0.0
+
+    def unit(self, kind: str, name: str, quantity: str) -> str | None:
+        """The unit of a quantity that depends on the kind of the thing; None where the quantity itself tells."""
+        if kind == "coordinates" and quantity == "acceleration":
+            return "rad/s²" if self._type(name) in ("pin", "universal") else "m/s²"
+        if kind == "joints" and quantity == "drive":
+            return "N·m" if self._type(name) == "pin" else "N"
+        if kind == "forces" and quantity in TURN:
+            return self._force_units(self.forces.get(name))[quantity]
+        return None
+
+    def _type(self, joint: str | None) -> str:
+        info = self.joints.get(joint or "")
+        return info.type if info else "pin"
+
+    def _force_units(self, force: ForceInfo | None) -> Mapping[str, str]:
+        if force is None:
+            return PUSH
+        if force.turning is not None:
+            return TURN if force.turning else PUSH
+        if force.type in FORCE_UNITS:
+            return FORCE_UNITS[force.type]
+        return TURN if self._type(force.joint) in TURNING_JOINTS else PUSH
+
+
+def scene_of(spec: Spec) -> Scene:
+    """The Scene of a loaded spec."""
+    joints = {name: JointInfo(joint.type, _end(joint.from_), _end(joint.to)) for name, joint in spec.joints.items()}
+    forces = {name: _force(force) for name, force in spec.forces.items()}
+    sections = {name: _section(section) for name, section in spec.sections.items()}
+    about = spec.foundation.about or (0.0, 0.0, 0.0)
+    named = next((name for name, point in spec.ground.points.items() if tuple(point) == tuple(about)), None)
+    return Scene(joints, forces, sections, named, max(map(_reach, spec.bodies.values()), default=0.0))
+
+
+def _reach(body: Body) -> float:
+    """The largest coordinate of the body's points and shapes [m]."""
+    places = [*body.points.values(), body.center]
+    for shape in body.shapes or ():
+        places += [shape.from_, shape.to, shape.at, shape.center, shape.size]
+    radii = [shape.radius or 0.0 for shape in body.shapes or ()]
+    return max((abs(x) for x in chain(radii, *filter(None, places))), default=0.0)
+
+
+def _force(force: Force) -> ForceInfo:
+    turning = force.torque is not None if isinstance(force, Friction) else None
+    return ForceInfo(force.type, getattr(force, "joint", None), turning)
+
+
+def _section(section: Section) -> SectionInfo:
+    about = section.reduce_to
+    return SectionInfo(section.body, _first_axis(section), ABOUT[about] if isinstance(about, str) else _end(about))
+
+
+def _first_axis(section: Section) -> str:
+    """e1 in words: as given, else the body axis most nearly in the plane, x before y before z."""
+    if section.first_axis is not None:
+        return f"body {_vector(section.first_axis)}"
+    normal = np.abs(np.asarray(section.normal) / np.linalg.norm(section.normal))
+    least = float(np.min(normal))
+    return f"body {next(name for name, n in zip(AXES, normal, strict=True) if n <= least + EQUAL_COMPONENTS)}"
+
+
+def _end(end: End) -> str:
+    """An end as `body.point`, or with its coordinates in body axes where the point has no name."""
+    return f"{end.body}.{end.name}" if end.name else f"{end.body} at {_vector(end.point)}"
+
+
+def _vector(vector: Vec) -> str:
+    return f"({', '.join(f'{component:.6g}' for component in vector)})"

@@ -1,0 +1,74 @@
+"""Certain sums in plain words: `joints.top Fz + joints.bottom Fz = 49.05 N; the split is open`."""
+
+from __future__ import annotations
+
+from typing import Any
+
+import numpy as np
+
+from heuncli.report.blocks import short
+from heuncli.report.numbers import Certainty, largest, style, write
+from heuncli.report.quantities import XYZ
+from heuncli.report.table import Table
+from heuncli.results import Results
+
+MOST_TERMS = 6  # contract section 2: tables show short sums of forces, JSON all
+FORCES = frozenset({"force", "axial", "radial", "tension", "N", "Q1", "Q2"})
+
+
+def sums_table(results: Results, certain: Certainty) -> Table | None:
+    """The sums that are certain although their terms are open; None where there are none."""
+    if not results.certain_sums:
+        return None
+    lines = [line for block in results.certain_sums if (line := _line(block, certain)) is not None]
+    left = len(results.certain_sums) - len(lines)
+    rest = f"{left} more in --format json (moments, or more than {MOST_TERMS} terms)" if left else ""
+    notes = [*lines, *([rest] if rest else [])]
+    return Table("CERTAIN SUMS  of components that redundancy leaves open", notes=tuple(notes))
+
+
+def _line(block: dict[str, Any], certain: Certainty) -> str | None:
+    terms = {path: np.atleast_1d(np.asarray(factor, dtype=np.float64)) for path, factor in block["terms"].items()}
+    if len(terms) > MOST_TERMS or not all(_is_force(path) for path in terms):
+        return None
+    values = np.asarray(block["value"], dtype=np.float64)
+    scale = largest(values)
+    texts = write([values[0], values[-1], np.nanmin(values), np.nanmax(values)], style(scale, certain.error("N")))
+    if texts == ["0"] * 4 and _opposite(terms):
+        return " = ".join(map(label, terms)) + "; the size is open"
+    left = _sum(terms)
+    if len(set(texts)) == 1:
+        value = "0" if texts[0] == "0" else f"{texts[0]} N"
+        return f"{left} = {value}; the split is open"
+    first, last, low, high = texts
+    return f"{left} = {first} N first, {last} N last, {low} to {high} N in the samples; the split is open"
+
+
+def label(path: str) -> str:
+    """A path as the tables call it: `joints.top.force.z` is `joints.top Fz`."""
+    name, _, component = path.rpartition(".")
+    if component in XYZ:
+        name, _, quantity = name.rpartition(".")
+        component = f"{quantity}.{component}"
+    return f"{name} {short(component)}"
+
+
+def _is_force(path: str) -> bool:
+    return bool(FORCES.intersection(path.split(".")[-2:]))
+
+
+def _opposite(terms: dict[str, Any]) -> bool:
+    """Whether the sum says that two components are equal."""
+    factors = list(terms.values())
+    return len(factors) == 2 and bool(np.all(factors[0] + factors[1] == 0.0))
+
+
+def _sum(terms: dict[str, Any]) -> str:
+    text = ""
+    for path, factors in terms.items():
+        steady = bool(np.all(factors == factors[0]))
+        size = abs(float(factors[0]))
+        number = "" if steady and size == 1.0 else f"{size:.4g}·" if steady else f"{size:.4g}(t)·"
+        sign = "−" if factors[0] < 0.0 else "+"
+        text += f" {sign} {number}{label(path)}" if text else f"{'−' if sign == '−' else ''}{number}{label(path)}"
+    return text

@@ -1,0 +1,98 @@
+"""A table as text cells, and two ways to write it: plain aligned text, and markdown."""
+
+from __future__ import annotations
+
+from collections.abc import Iterable, Sequence
+from typing import Literal, NamedTuple
+
+GAP = "  "
+INDENT = "  "
+Align = Literal["left", "point"]  # `point`: decimal points stand under each other
+
+
+class Column(NamedTuple):
+    """A column's head and how its cells stand."""
+
+    head: str
+    align: Align = "point"
+
+
+class Table(NamedTuple):
+    """A heading, columns, rows of cells, and notes below. A row that is one string is a line across, over its rows."""
+
+    heading: str
+    columns: tuple[Column, ...] = ()
+    rows: tuple[tuple[str, ...] | str, ...] = ()
+    notes: tuple[str, ...] = ()
+
+
+def plain(table: Table) -> str:
+    """The table as aligned text, as wide as it needs; ends with a newline."""
+    indent = INDENT if any(isinstance(row, str) for row in table.rows) else ""
+    lines = [table.heading] if table.heading else []
+    if table.columns:
+        cells = aligned(table)
+        widths = [max(map(len, column)) for column in zip(*cells, strict=True)]
+        texts = iter(_line(row, widths, table.columns, indent) for row in cells)
+        lines.append(next(texts))
+        lines += [row if isinstance(row, str) else next(texts) for row in table.rows]
+    return "\n".join([*lines, *(indent + note for note in table.notes), ""])
+
+
+def markdown(table: Table) -> str:
+    """The table as markdown; the lines across become rows with a bold first cell."""
+    lines = [f"### {_escape(table.heading)}", ""] if table.heading else []
+    if table.columns:
+        lines.append(_markdown_row(column.head for column in table.columns))
+        lines.append(_markdown_row("---" if column.align == "left" else "---:" for column in table.columns))
+        blank = [""] * (len(table.columns) - 1)
+        for row in table.rows:
+            lines.append(_markdown_row([f"**{row}**", *blank] if isinstance(row, str) else row))
+        lines.append("")
+    for note in table.notes:
+        lines += [_escape(note), ""]
+    return "\n".join(lines)
+
+
+def aligned(table: Table) -> list[tuple[str, ...]]:
+    """Head and rows of cells (without the lines across), the cells of a `point` column padded to a common point."""
+    rows = [row for row in table.rows if not isinstance(row, str)]
+    columns = []
+    for place, column in enumerate(table.columns):
+        cells = [row[place] for row in rows]
+        columns.append([column.head, *(_pad(cells) if column.align == "point" else cells)])
+    return list(zip(*columns, strict=True))
+
+
+def _pad(cells: Sequence[str]) -> list[str]:
+    """Cells with blanks behind, so that right-justified their points stand under each other."""
+    tails = [len(cell) - _point(cell) for cell in cells]
+    longest = max(tails, default=0)
+    return [
+        cell + " " * (longest - tail) if _is_number(cell) else cell for cell, tail in zip(cells, tails, strict=True)
+    ]
+
+
+def _point(cell: str) -> int:
+    """Where the decimal point stands, or would stand."""
+    return (cell.partition("e")[0] + ".").index(".") if _is_number(cell) else len(cell)
+
+
+def _is_number(cell: str) -> bool:
+    return cell.lstrip("-")[:1].isdecimal()
+
+
+def _line(cells: Sequence[str], widths: Sequence[int], columns: Sequence[Column], indent: str) -> str:
+    padded = [
+        cell.ljust(width) if column.align == "left" else cell.rjust(width)
+        for cell, width, column in zip(cells, widths, columns, strict=True)
+    ]
+    return (indent + GAP.join(padded)).rstrip()
+
+
+def _markdown_row(cells: Iterable[str]) -> str:
+    return "| " + " | ".join(_escape(cell) for cell in cells) + " |"
+
+
+def _escape(text: str) -> str:
+    return text.replace("|", "\\|")

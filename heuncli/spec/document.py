@@ -1,0 +1,99 @@
+"""Plain data -> Document: every entry read by its model, every objection told at its path."""
+
+from __future__ import annotations
+
+from collections.abc import Callable, Mapping
+from typing import Any
+
+from pydantic import ValidationError
+
+from heuncli.spec import format as f
+from heuncli.spec.fields import Context, Model
+from heuncli.spec.quantity import kind_of
+from heuncli.spec.rules.registry import Found, Path_
+from heuncli.spec.verdicts import unknown_key, unknown_type, verdicts
+
+Tell = Callable[[str, Found], None]
+
+
+class Reader:
+    """Reads the blocks of one spec; tells what is wrong and goes on with the next entry."""
+
+    def __init__(self, data: dict[str, Any], context: Context, tell: Tell) -> None:
+        self.data, self.context, self.tell = data, context, tell
+
+    def document(self) -> f.Document:
+        """All that can be read."""
+        blocks = {block: self.entries(block, models) for block, models in f.ENTRIES.items()}
+        single = {key: self.single(key, model) for key, model in f.SINGLE.items()}
+        return f.Document(head=self.head(), expect=self.expectations(), **blocks, **single)  # type: ignore[arg-type]
+
+    def model(self, path: Path_, data: Any, model: type[Model]) -> Any:
+        """One model, or None after telling why not."""
+        try:
+            return model.model_validate(data, context=self.context)
+        except ValidationError as error:
+            for code, found in verdicts(error, data, model):
+                self.tell(code, found._replace(path=(*path, *found.path)))
+            return None
+
+    def typed(self, path: Path_, data: Any, models: Mapping[str, type[Model]], block: str) -> Any:
+        """One model of those that the key `type` chooses from."""
+        tag = data.get("type") if type(data) is dict else None
+        model = models.get(tag) if type(tag) is str else None
+        if model is not None:
+            return self.model(path, data, model)
+        code, found = unknown_type(data, block, list(models))
+        self.tell(code, found._replace(path=(*path, *found.path)))
+        return None
+
+    def head(self) -> f.Head:
+        """The keys that are no blocks."""
+        blocks = {*f.ENTRIES, *f.SINGLE, *f.READ_BEFORE, "expect"}
+        own = {key: value for key, value in self.data.items() if key not in blocks}
+        known = [*f.Head.model_fields, *f.SINGLE, *f.READ_BEFORE, *f.ENTRIES, "expect"]
+        for key in [key for key in own if key not in f.Head.model_fields]:
+            del own[key]
+            self.tell(*unknown_key((key,), known))
+        return self.model((), own, f.Head) or f.Head.model_construct(heun=1)
+
+    def single(self, key: str, model: type[Model]) -> Any:
+        """A block that is one entry; its defaults where it is left out or in error."""
+        data = self.data.get(key, {})
+        return (self.model((key,), data, model) if data != {} else None) or model.model_construct()
+
+    def entries(self, block: str, models: type[Model] | Mapping[str, type[Model]]) -> dict[str, Any]:
+        """A block of named entries."""
+        entries = self.data.get(block, {})
+        if type(entries) is not dict:
+            self.tell(
+                "wrong-kind", Found((block,), f"expected a mapping, found {kind_of(entries)}", "its keys are names")
+            )
+            return {}
+        found: dict[str, Any] = {}
+        for name, data in entries.items():
+            path = (block, name)
+            entry = (
+                self.typed(path, data, models, block) if isinstance(models, Mapping) else self.model(path, data, models)
+            )
+            if entry is not None and getattr(entry, "shapes", None) is not None:
+                entry = self.with_shapes(path, entry)
+            if entry is not None:
+                found[name] = entry
+        return found
+
+    def with_shapes(self, path: Path_, body: f.Body) -> f.Body | None:
+        """A body with its shapes read; None where one is in error."""
+        shapes = [
+            self.typed((*path, "shapes", i), shape, f.SHAPES, "shapes") for i, shape in enumerate(body.shapes or [])
+        ]
+        return None if None in shapes else body.model_copy(update={"shapes": shapes})
+
+    def expectations(self) -> dict[int, f.Expect]:
+        """The list of expectations, by their places in it."""
+        items = self.data.get("expect", [])
+        if type(items) is not list:
+            self.tell("wrong-kind", Found(("expect",), f"expected a list, found {kind_of(items)}"))
+            return {}
+        read = {i: self.model(("expect", i), item, f.Expect) for i, item in enumerate(items)}
+        return {i: item for i, item in read.items() if item is not None}

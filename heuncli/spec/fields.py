@@ -1,0 +1,192 @@
+"""The kinds of values that keys of a spec take: numbers with a dimension, values in time, vectors, ends.
+
+Each reads by way of the validation's context, in which the parameters, joints and tables of the scene are known.
+"""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+from typing import Annotated, Any
+
+from pydantic import BaseModel, BeforeValidator, ConfigDict, Discriminator, Tag
+from pydantic_core import core_schema
+
+from heuncli.errors import Finding
+from heuncli.spec import units as u
+from heuncli.spec.expression import Expression
+from heuncli.spec.quantity import Scope, in_time, kind_of, number
+
+
+@dataclass(frozen=True)
+class Context:
+    """What values may refer to: on loading, and in time."""
+
+    load: Scope
+    time: Scope
+
+
+class Model(BaseModel):
+    """A mapping with known keys."""
+
+    model_config = ConfigDict(extra="forbid", frozen=True, defer_build=True, arbitrary_types_allowed=True)
+
+
+class Value:
+    """A value that is read by `read`; in the JSON Schema a number or a text."""
+
+    def __init__(self, dimension: u.Dimension | None = None) -> None:
+        self.dimension = dimension
+
+    def read(self, value: Any, info: Any) -> Any:
+        raise NotImplementedError
+
+    def __get_pydantic_core_schema__(self, source: Any, handler: Any) -> core_schema.CoreSchema:
+        return core_schema.with_info_plain_validator_function(self.read)
+
+    def __get_pydantic_json_schema__(self, schema: Any, handler: Any) -> dict[str, Any]:
+        description = {"description": u.describe(self.dimension)} if self.dimension is not None else {}
+        return {"anyOf": [{"type": "number"}, {"type": "string"}], **description}
+
+
+class Si(Value):
+    """A number of a dimension, in SI."""
+
+    def read(self, value: Any, info: Any) -> float:
+        if type(value) is float and value - value == 0.0:
+            return value
+        return number(value, self.dimension, info.context.load)
+
+
+class InTime(Value):
+    """A value in time of a dimension."""
+
+    def read(self, value: Any, info: Any) -> Expression:
+        return in_time(value, self.dimension, info.context.time)
+
+
+class OfEither(Value):
+    """A number whose dimension depends on another key: an expression that knows its dimension."""
+
+    def read(self, value: Any, info: Any) -> Expression:
+        return in_time(value, None, info.context.load)
+
+
+class InParts(Value):
+    """A list whose parts are read by themselves, each by the model of its type; here only that it is a list."""
+
+    def read(self, value: Any, info: Any) -> list[Any]:
+        if type(value) is not list:
+            raise Finding("wrong-kind", f"expected a list, found {kind_of(value)}")
+        return value
+
+
+class Whole(Value):
+    """A whole number."""
+
+    def read(self, value: Any, info: Any) -> int:
+        found = number(value, u.NUMBER, info.context.load)
+        if found != int(found):
+            raise Finding("wrong-kind", f"expected a whole number, found {found:g}")
+        return int(found)
+
+
+class Version(Value):
+    """The version of the format."""
+
+    def read(self, value: Any, info: Any) -> int:
+        if type(value) is bool or value != 1:
+            message = f"this is heun's format version 1, found {kind_of(value) if type(value) is not int else value}"
+            raise Finding("version", message, "write 'heun: 1', or use a newer heun")
+        return 1
+
+
+class NumbersOrOpen(Value):
+    """A number, lists of them, or null for what is open."""
+
+    def read(self, value: Any, info: Any) -> Any:
+        if value is None:
+            return None
+        if type(value) is list:
+            if not value:
+                raise Finding("wrong-kind", "expected a number, a list of numbers, or null for what must be open")
+            return tuple(self.read(member, info) for member in value)
+        return number(value, None, info.context.load)
+
+
+Anything = Annotated[float, Si()]
+Number = Annotated[float, Si(u.NUMBER)]
+Mass = Annotated[float, Si(u.MASS)]
+Length = Annotated[float, Si(u.LENGTH)]
+Time = Annotated[float, Si(u.TIME)]
+Angle = Annotated[float, Si(u.ANGLE)]
+Rate = Annotated[float, Si(u.RATE)]
+Velocity = Annotated[float, Si(u.VELOCITY)]
+Acceleration = Annotated[float, Si(u.ACCELERATION)]
+Inertia = Annotated[float, Si(u.INERTIA)]
+Density = Annotated[float, Si(u.DENSITY)]
+LineDensity = Annotated[float, Si(u.LINE_DENSITY)]
+Area = Annotated[float, Si(u.AREA)]
+AreaMoment = Annotated[float, Si(u.AREA_MOMENT)]
+Pressure = Annotated[float, Si(u.PRESSURE)]
+Force = Annotated[float, Si(u.FORCE)]
+Moment = Annotated[float, Si(u.MOMENT)]
+Impulse = Annotated[float, Si(u.IMPULSE)]
+AngularImpulse = Annotated[float, Si(u.ANGULAR_IMPULSE)]
+Stiffness = Annotated[float, Si(u.STIFFNESS)]
+TurningStiffness = Annotated[float, Si(u.TURNING_STIFFNESS)]
+Damping = Annotated[float, Si(u.DAMPING)]
+Count = Annotated[int, Whole(u.NUMBER)]
+Either = Annotated[Expression, OfEither()]
+AngleInTime = Annotated[Expression, InTime(u.ANGLE)]
+LengthInTime = Annotated[Expression, InTime(u.LENGTH)]
+ForceInTime = Annotated[Expression, InTime(u.FORCE)]
+MomentInTime = Annotated[Expression, InTime(u.MOMENT)]
+EitherInTime = Annotated[Expression, InTime()]
+FormatVersion = Annotated[int, Version()]
+Expected = Annotated[Any, NumbersOrOpen()]
+
+Position = tuple[Length, Length, Length]
+Direction = tuple[Number, Number, Number]
+Matrix = tuple[Direction, Direction, Direction]
+Tensor = tuple[tuple[Inertia, Inertia, Inertia], tuple[Inertia, Inertia, Inertia], tuple[Inertia, Inertia, Inertia]]
+
+
+def kind_of_form(value: Any) -> str:
+    """Which of its forms a value has, for keys that take several."""
+    if type(value) is list:
+        return "rows" if value and type(value[0]) is list else "list"
+    return "single" if value is None or isinstance(value, str | int | float) else "mapping"
+
+
+FORM = Discriminator(kind_of_form)
+PointOrName = Annotated[Annotated[Position, Tag("list")] | Annotated[str, Tag("single")], FORM]
+
+
+class End(Model):
+    """{body, at}, or body.point."""
+
+    body: str
+    at: PointOrName | None = None
+
+
+def split_end(value: Any) -> Any:
+    """'crank.pin' as {body: crank, at: pin}."""
+    if type(value) is not str:
+        return value
+    body, dot, point = value.partition(".")
+    if not dot or not body or not point or "." in point:
+        raise Finding(
+            "end", f"'{value}' is not an end", "an end is body.point, ground.point or {body: name, at: [x, y, z]}"
+        )
+    return End.model_construct(body=body, at=point)
+
+
+def split_body_or_end(value: Any) -> Any:
+    """'crank' as {body: crank}, 'crank.pin' as {body: crank, at: pin}."""
+    if type(value) is str and "." not in value:
+        return End.model_construct(body=value, at=None)
+    return split_end(value)
+
+
+AnEnd = Annotated[End, BeforeValidator(split_end)]
+BodyOrEnd = Annotated[End, BeforeValidator(split_body_or_end)]

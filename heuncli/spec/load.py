@@ -1,0 +1,141 @@
+"""A file -> Spec, or every error in it at once. Impure: reads the spec's file and those of its tables."""
+
+from __future__ import annotations
+
+from collections.abc import Mapping
+from pathlib import Path
+from typing import Any
+
+from heuncli.errors import Place, Problem, SpecError
+from heuncli.spec import format as f
+from heuncli.spec.document import Reader
+from heuncli.spec.expression import Table
+from heuncli.spec.fields import Context
+from heuncli.spec.models import Spec
+from heuncli.spec.names import NAMED, Names, mapping
+from heuncli.spec.overrides import override
+from heuncli.spec.parameters import evaluate_parameters
+from heuncli.spec.quantity import Scope, kind_of
+from heuncli.spec.resolve import Meaning, resolve
+from heuncli.spec.rules.every import RULES, Found, Scene, found_by
+from heuncli.spec.source import Path_, Source, dotted, read
+from heuncli.spec.verdicts import is_told
+
+PLACED = ("analysis", "drives", "expect", "forces")  # of these, later stages know every value's place
+
+
+def load(path: str | Path, text: str | None = None, overrides: Mapping[str, str] | None = None) -> Spec:
+    """The scene in a file ("-" is standard input), or in a text that stands for it.
+
+    overrides are parameters or dotted keys with their new values, as text. Files of tables are looked for beside the
+    spec, for standard input in the working directory. Raises SpecError with all problems, in the order of the lines.
+    """
+    path = str(path)
+    return Loading(path, read(path, text), overrides or {}).spec()
+
+
+class Loading:
+    """One spec on its way; gathers problems as it goes."""
+
+    def __init__(self, path: str, source: Source, overrides: Mapping[str, str]) -> None:
+        self.path, self.source = path, source
+        self.problems = list(source.problems)
+        self.warnings: list[Problem] = []
+        self.unread: set[str] = set()
+        if type(source.data) is not dict:
+            message = f"a spec is a mapping, this is {kind_of(source.data)}"
+            raise SpecError(
+                *self.problems, Problem("not-a-scene", message, source.place(()), "it starts with 'heun: 1'")
+            )
+        without_empty = {k: {} if v is None and k in (*NAMED, "ground") else v for k, v in source.data.items()}
+        self.data, self.set, problems = override(without_empty, overrides)
+        self.problems += problems
+
+    def place(self, path: Path_, key: bool = False) -> Place:
+        """Where a path stands: in the file, or on the command line."""
+        for depth in range(len(path), 0, -1):
+            given = self.set.get(path[:depth])
+            if given is not None:
+                return Place(given.file, given.line, given.column, dotted(path))
+        made = [place for given, place in self.set.items() if given[: len(path)] == path]
+        if made and path not in self.source.values:  # a key that came into being with what was set below it
+            return Place(made[0].file, made[0].line, made[0].column, dotted(path))
+        return self.source.place(path, key)
+
+    def tell(self, code: str, found: Found) -> None:
+        """Add an error in what is read, unless it only follows from another."""
+        self.unread.update(map(str, found.path[:1]))
+        if is_told(code):
+            self.problems.append(Problem(code, found.message, self.place(found.path, found.key), found.hint))
+
+    def spec(self) -> Spec:
+        """The scene. Raises SpecError."""
+        parameters = self.parameters()
+        names = Names.of(self.data)
+        scope = Scope(parameters)
+        tables = self.tables(scope)
+        context = Context(scope, Scope(parameters, names.joints, tables, in_time=True))
+        document = Reader(self.data, context, self.tell).document()
+        self.judge(Scene(document, names, frozenset(self.unread)))
+        if self.problems:
+            raise SpecError(*in_order(self.problems))
+        values = {name: value for name, value in parameters.items() if value is not None}
+        built = {name: table for name, table in tables.items() if table is not None}
+        warnings = tuple(in_order(self.warnings))
+        meaning = Meaning(self.source.file, self.source.sha256, values, built, warnings, self.places())
+        return resolve(document, meaning)
+
+    def parameters(self) -> dict[str, float | None]:
+        """Values of the parameters; None for those in error."""
+        values, findings = evaluate_parameters(self.block("parameters"))
+        for name, finding in findings:
+            self.tell(finding.code, Found(("parameters", name), finding.message, finding.hint))
+        return values
+
+    def tables(self, scope: Scope) -> dict[str, Table | None]:
+        """The tables; None for those in error."""
+        entries = self.block("tables")
+        if not entries:
+            return {}
+        from heuncli.spec.tables import build_table  # with csv 2 ms that few scenes need
+
+        folder = Path() if self.path == "-" else Path(self.path).parent
+        reader = Reader(self.data, Context(scope, scope), self.tell)
+        tables: dict[str, Table | None] = {}
+        for name, data in entries.items():
+            path = ("tables", name)
+            entry = reader.model(path, data, f.Table)
+            tables[name], wrong = build_table(name, entry, scope, folder) if entry is not None else (None, [])
+            for item in wrong:
+                finding = item.finding
+                if item.place is not None:
+                    self.problems.append(Problem(finding.code, finding.message, item.place, finding.hint))
+                else:
+                    self.tell(finding.code, Found((*path, *item.keys), finding.message, finding.hint))
+        return tables
+
+    def block(self, name: str) -> dict[str, Any]:
+        """A block of named values; empty where it is none."""
+        value = self.data.get(name, {})
+        if type(value) is not dict:
+            self.tell("wrong-kind", Found((name,), f"expected a mapping, found {kind_of(value)}", "its keys are names"))
+        return mapping(value)
+
+    def judge(self, scene: Scene) -> None:
+        """Apply the rules."""
+        for rule, found in found_by(RULES, scene):
+            problem = Problem(rule.code, found.message, self.place(found.path, found.key), found.hint)
+            (self.warnings if rule.is_warning else self.problems).append(problem)
+
+    def places(self) -> dict[str, Place]:
+        """Places for stages that come later: of every entry, and of every value that may go wrong in time."""
+        values = self.source.values
+        wanted = [path for path in values if 0 < len(path) <= 2 or (path and path[0] in PLACED)]
+        return {dotted(path): self.place(path, key=len(path) <= 2) for path in (*wanted, *self.set)}
+
+
+def in_order(problems: list[Problem]) -> list[Problem]:
+    """By file, line and column; each once."""
+    places = [p.place or Place("", 0, 0) for p in problems]
+    order = sorted(range(len(problems)), key=lambda i: (places[i].file, places[i].line, places[i].column))
+    return list(dict.fromkeys(problems[i] for i in order))

@@ -1,0 +1,308 @@
+"""A scene as it was meant: frozen, all numbers SI, all references known to lead somewhere.
+
+What spec.load returns and the rest of the program reads. Vectors are tuples of three floats, matrices three rows of
+them; "in time" values are expressions. None is what was left out. A joint's, force's or section's axes and points are
+in the body axes the contract names. Keeps clear of pydantic and YAML, so that the numeric part may know these types;
+named tuples, because they are made faster at the start than dataclasses.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Mapping
+from dataclasses import dataclass
+from types import MappingProxyType
+from typing import Literal, NamedTuple
+
+from heuncli.errors import Place, Problem
+from heuncli.spec.expression import Expression, Table
+
+Vec = tuple[float, float, float]
+Matrix = tuple[Vec, Vec, Vec]
+Vector = tuple[Expression, Expression, Expression]
+Frame = Literal["world", "body"]
+NOWHERE: Mapping[str, Place] = MappingProxyType({})
+
+
+class End(NamedTuple):
+    """A point of a body ("ground" or a body's name), in its axes; name is None for one given by its place."""
+
+    body: str
+    point: Vec
+    name: str | None = None
+
+
+class Ground(NamedTuple):
+    """The foundation and its points, in world axes."""
+
+    points: Mapping[str, Vec]
+
+
+class Shape(NamedTuple):
+    """A part of a body: one of mass, density, line_density is given; of the measures those its type has."""
+
+    type: Literal["rod", "cylinder", "cone", "box", "sphere", "point"]
+    mass: float | None = None
+    density: float | None = None
+    line_density: float | None = None
+    from_: Vec | None = None
+    to: Vec | None = None
+    at: Vec | None = None
+    center: Vec | None = None
+    size: Vec | None = None
+    rotation: Matrix | None = None
+    radius: float | None = None
+    inner_radius: float | None = None
+    to_radius: float | None = None
+
+
+class Directed(NamedTuple):
+    """A vector in world axes or in the body's own."""
+
+    vector: Vec
+    frame: Frame
+
+
+class Near(NamedTuple):
+    """Where the assembly starts to look; not held."""
+
+    position: Vec | None
+    rotation: Matrix | None
+
+
+class Piece(NamedTuple):
+    """Mass properties of what a cut separates: mass [kg], centre of mass [m], inertia about it, body axes."""
+
+    mass: float
+    center: Vec
+    inertia: Matrix
+
+
+class Body(NamedTuple):
+    """A rigid body: mass, center, inertia (about the centre of mass, deviation merged), or shapes instead of the three.
+
+    rotation takes components in body axes to world axes.
+    """
+
+    mass: float | None
+    center: Vec | None
+    inertia: Matrix | None
+    shapes: tuple[Shape, ...] | None
+    points: Mapping[str, Vec]
+    position: Vec | None = None
+    rotation: Matrix | None = None
+    near: Near | None = None
+    velocity: Directed | None = None
+    angular_velocity: Directed | None = None
+    piece: Piece | None = None
+
+
+class Initial(NamedTuple):
+    """Held start values of a joint's coordinates."""
+
+    angle: float | None = None
+    rate: float | None = None
+    travel: float | None = None
+    speed: float | None = None
+
+
+class Stiffness(NamedTuple):
+    """What shares out a redundant joint's reactions: N/m and N m/rad along the world's axes at the start."""
+
+    force: Vec | None
+    moment: Vec | None
+
+
+class Joint(NamedTuple):
+    """A joint; directions as given, not zero, not normalised, in the axes of `from` (to_axis: of `to`)."""
+
+    type: Literal["ball", "pin", "slide", "cylinder", "universal", "weld", "line", "plane", "rod"]
+    from_: End
+    to: End
+    axis: Vec | None = None
+    to_axis: Vec | None = None
+    normal: Vec | None = None
+    initial: Initial | None = None
+    length: float | None = None
+    tension_only: bool = False
+    stiffness: Stiffness | None = None
+
+
+class Drive(NamedTuple):
+    """A coordinate of a joint prescribed in time."""
+
+    joint: str
+    quantity: Literal["angle", "travel", "length"]
+    value: Expression
+    zero: Literal["assembled"] | None = None
+
+
+class PointForce(NamedTuple):
+    """A force at a point of a body [N]."""
+
+    on: End
+    vector: Vector
+    frame: Frame = "world"
+    type: Literal["force"] = "force"
+
+
+class Couple(NamedTuple):
+    """A couple on a body [N m]; on is the point where it enters, if one was named."""
+
+    body: str
+    on: End | None
+    vector: Vector
+    frame: Frame = "world"
+    type: Literal["couple"] = "couple"
+
+
+class Torque(NamedTuple):
+    """A torque about a pin's axis [N m] or a thrust along a slide [N], on `to`, opposite on `from`."""
+
+    joint: str
+    value: Expression
+    type: Literal["torque"] = "torque"
+
+
+class Actuator(NamedTuple):
+    """A force along the line between two points [N], positive pushes apart."""
+
+    from_: End
+    to: End
+    value: Expression
+    type: Literal["actuator"] = "actuator"
+
+
+class Spring(NamedTuple):
+    """A spring and damper between two points: N/m, free length [m], N s/m."""
+
+    from_: End
+    to: End
+    stiffness: float
+    length: float
+    damping: float = 0.0
+    type: Literal["spring"] = "spring"
+
+
+class Damper(NamedTuple):
+    """Resistance of a joint: coefficient N m s (turning) or N s/m (slide, line, plane); sliding N s/m (cylinder)."""
+
+    joint: str
+    coefficient: float
+    sliding: float | None = None
+    type: Literal["damper"] = "damper"
+
+
+class Friction(NamedTuple):
+    """Coulomb friction in a joint, torque [N m] or force [N] times tanh(rate/speed)."""
+
+    joint: str
+    torque: float | None
+    force: float | None
+    speed: float
+    type: Literal["friction"] = "friction"
+
+
+Force = PointForce | Couple | Torque | Actuator | Spring | Damper | Friction
+
+
+class Impulse(NamedTuple):
+    """A blow: an impulse [N s] at a point (on), or an impulsive couple [N m s] on a body (on None)."""
+
+    body: str
+    on: End | None
+    vector: Vec
+    time: float
+    frame: Frame = "world"
+
+
+class Properties(NamedTuple):
+    """Of a section's shape, for stresses: SI values by name.
+
+    circle: radius; tube: radius, inner_radius; rectangle: width (along e1), height (along e2); general: area, I1, I2,
+    J, c1, c2 (half extents along e1, e2).
+    """
+
+    kind: Literal["circle", "tube", "rectangle", "general"]
+    values: Mapping[str, float]
+
+
+@dataclass(frozen=True)  # a tuple has a `count` of its own
+class Section:
+    """A cut (`at`), or a run of `count` cuts from `from_` to `to`, all in body axes; normal is given or from -> to."""
+
+    body: str
+    normal: Vec
+    at: Vec | None = None
+    at_name: str | None = None
+    from_: Vec | None = None
+    to: Vec | None = None
+    count: int = 1
+    first_axis: Vec | None = None
+    reduce_to: Literal["at", "centroid", "line"] | End = "at"
+    side: Literal["before", "beyond"] | None = None
+    properties: Properties | None = None
+    strength: float | None = None
+    piece: Piece | None = None
+
+
+class Analysis(NamedTuple):
+    """What is solved: times are the instants asked for [s]; duration is the last of them in a motion.
+
+    step is for methods of fixed step.
+    """
+
+    type: Literal["motion", "impulse", "state"]
+    times: tuple[float, ...]
+    duration: float | None
+    tolerance: float
+    method: str
+    step: float | None
+
+
+class Foundation(NamedTuple):
+    """About which point M_s is taken, world axes; None is the origin."""
+
+    about: Vec | None
+
+
+class Expect(NamedTuple):
+    """One expectation: the value found at `of` is `is_` (None: must be open) within rel and abs."""
+
+    of: str
+    at: float | None
+    peak: Literal["max", "min", "abs"] | None
+    is_: float | tuple[object, ...] | None
+    rel: float | None
+    abs: float | None
+    place: Place
+
+
+class Spec(NamedTuple):
+    """A validated scene. `place("joints.elbow")` tells where in the file a thing stands, for errors found later."""
+
+    title: str
+    path: str
+    sha256: str
+    space: Literal["auto", "spatial", "planar"]
+    parameters: Mapping[str, float]
+    gravity: Vec
+    ground: Ground
+    bodies: Mapping[str, Body]
+    joints: Mapping[str, Joint]
+    drives: Mapping[str, Drive]
+    forces: Mapping[str, Force]
+    impulses: Mapping[str, Impulse]
+    sections: Mapping[str, Section]
+    tables: Mapping[str, Table]
+    analysis: Analysis
+    report: tuple[str, ...] | None
+    foundation: Foundation
+    expect: tuple[Expect, ...]
+    warnings: tuple[Problem, ...]
+    places: Mapping[str, Place] = NOWHERE
+
+    def place(self, path: str) -> Place:
+        """Where a dotted path stands, or the nearest thing around it that does."""
+        while path and path not in self.places:
+            path = path.rpartition(".")[0]
+        return self.places.get(path) or Place(self.path, 1, 1)

@@ -1,0 +1,31 @@
+"""Hints for words that mean nothing: the nearest known one, or all of them where they are few."""
+
+from __future__ import annotations
+
+from collections.abc import Iterable
+
+MOST_LISTED = 20
+
+
+def nearest(word: str, known: Iterable[str]) -> str | None:
+    """The known word most like this one, if any is like it."""
+    import difflib  # only on the way to an error
+
+    known = list(known)
+    for name in known:
+        if name.lower() == word.lower():
+            return name
+    found = difflib.get_close_matches(word, known, 1, 0.6)
+    return found[0] if found else None
+
+
+def did_you_mean(word: str, known: Iterable[str], kind: str) -> str | None:
+    """'did you mean x?', or the list of what is known, or that there is none."""
+    known = list(known)
+    found = nearest(word, known)
+    if found is not None:
+        return f"did you mean {found}?"
+    if not known:
+        return f"there are no {kind}"
+    listed = ", ".join(known[:MOST_LISTED])
+    return f"known {kind}: {listed}" + (", ..." if len(known) > MOST_LISTED else "")

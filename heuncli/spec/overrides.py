@@ -1,0 +1,92 @@
+"""`--set`: values from the command line put into the plain data before anything reads it."""
+
+from __future__ import annotations
+
+import copy
+from collections.abc import Mapping
+from typing import Any
+
+from heuncli.errors import Place, Problem, SpecError
+from heuncli.spec.names import NAMED, mapping
+from heuncli.spec.nearest import did_you_mean
+from heuncli.spec.source import Path_, parse
+
+OWN = ("title", "gravity", "space", "report")  # keys without a dot, beside the parameters
+
+
+def override(
+    data: dict[str, Any], given: Mapping[str, str]
+) -> tuple[dict[str, Any], dict[Path_, Place], list[Problem]]:
+    """The data with values replaced, the places of these, and what is wrong with them."""
+    if not given:
+        return data, {}, []
+    data = copy.deepcopy(data)
+    places: dict[Path_, Place] = {}
+    problems: list[Problem] = []
+    for key, text in given.items():
+        word = f"--set {key}={text}"
+        try:
+            value = parse(word, text if text.strip() else "''", "").data
+        except SpecError as error:
+            problems += [Problem(p.code, p.message, Place(word, 1, len(key) + 2, key), p.hint) for p in error.problems]
+            continue
+        path = path_of(key, data)
+        reason = put(data, path, value)
+        if reason is not None:
+            problems.append(Problem("no-such-key", reason[0], Place(word, 1, 1), reason[1]))
+        places[path] = Place(word, 1, len(key) + 2, ".".join(map(str, path)))
+    return data, places, problems
+
+
+def path_of(key: str, data: dict[str, Any]) -> Path_:
+    """A parameter's name, or a dotted key; numbers are places in lists."""
+    if "." not in key and (key in mapping(data.get("parameters")) or key not in OWN):
+        return ("parameters", key)
+    path: list[str | int] = []
+    node: Any = data
+    for word in key.split("."):
+        part: str | int = int(word) if type(node) is list and word.isdigit() else word
+        node = below(node, part)
+        path.append(part)
+    return tuple(path)
+
+
+def below(node: Any, part: str | int) -> Any:
+    """What stands under a key or at a place in a list; None where nothing does."""
+    if type(node) is dict:
+        return node.get(part)
+    return node[part] if type(node) is list and isinstance(part, int) and part < len(node) else None
+
+
+def in_list(node: list[Any], part: str | int) -> bool:
+    return isinstance(part, int) and part < len(node)
+
+
+def put(data: dict[str, Any], path: Path_, value: Any) -> tuple[str, str | None] | None:
+    """Store a value; or why there is no place for it, with a hint.
+
+    What users name (a parameter, a body, a point) must be there; other keys may be new: the format judges them.
+    """
+    node: Any = data
+    for depth, part in enumerate(path):
+        above = path[depth - 1] if depth else None
+        if type(node) is list:
+            if not in_list(node, part):
+                return (
+                    f"'{'.'.join(map(str, path[:depth]))}' has no place {part}",
+                    f"places count from 0 to {len(node) - 1}",
+                )
+        elif type(node) is not dict:
+            return f"'{'.'.join(map(str, path[:depth]))}' is a value without keys", None
+        elif part not in node:
+            if (depth == 1 and above in NAMED) or above == "points":
+                kind = {"bodies": "body", "points": "point"}.get(str(above), str(above).removesuffix("s"))
+                return f"there is no {kind} '{part}' to set", did_you_mean(str(part), node, str(above))
+            if depth < len(path) - 1:
+                node[part] = {}
+        elif node[part] is None and depth < len(path) - 1:
+            node[part] = {}
+        if depth < len(path) - 1:
+            node = node[part]
+    node[path[-1]] = value
+    return None

@@ -1,0 +1,99 @@
+"""One reader of numbers: 12, "12 mm", "2*L + 0.1", and in time "5*sin(2*pi*t)". Raises Finding."""
+
+from __future__ import annotations
+
+import math
+import re
+from dataclasses import replace
+from typing import Any
+
+from heuncli.errors import Finding
+from heuncli.spec.expression import Expression
+from heuncli.spec.grammar import RESERVED, WORDS, Follows, Scope, compile_expression
+from heuncli.spec.units import Dimension, describe, parse_unit, si_unit
+
+# A number and then something that begins like a unit; "2 if t < 1 else 3" is an expression all the same.
+WITH_UNIT = re.compile(r"\s*([+-]?\s*(?:\d+\.?\d*|\.\d+)(?:[eE][+-]?\d+)?+)\s*((?:[^\W\d_]|°|1/)[^,]*)\s*\Z")
+NOT_A_NUMBER = re.compile(r"[+-]?\.?(?:inf|nan)(?:inity)?\Z", re.IGNORECASE)
+
+
+def number(value: Any, dimension: Dimension | None, scope: Scope) -> float:
+    """The SI value of what stands in a spec; dimension None takes any."""
+    if type(value) is float or type(value) is int:
+        return finite(value)
+    expression = in_time(value, dimension, scope)
+    assert expression.constant is not None  # a scope out of time knows no variables
+    return expression.constant
+
+
+def in_time(value: Any, dimension: Dimension | None, scope: Scope) -> Expression:
+    """The expression that stands in a spec, in SI; its dimension is known where it has a unit."""
+    if type(value) is float or type(value) is int:
+        return Expression.of(finite(value))
+    if type(value) is not str:
+        raise Finding("wrong-kind", f"expected a number, found {kind_of(value)}", hint_for(value))
+    if NOT_A_NUMBER.match(value.strip()):
+        raise Finding("not-finite", f"'{value.strip()}' is not a finite number")
+    found = WITH_UNIT.match(value)
+    if found is None or re.split(r"\W", found[2], maxsplit=1)[0] in WORDS:
+        return compile_expression(value, scope)
+    size, measured = measure(found[1], found[2].strip(), scope)
+    if dimension is not None and measured != dimension:
+        hint = (
+            product_hint(found[1], found[2].strip(), scope)
+            or f"a number without a unit is taken in {si_unit(dimension)}"
+        )
+        raise Finding("dimension", f"'{value.strip()}' is {describe(measured)}, expected {describe(dimension)}", hint)
+    return replace(Expression.of(size), source=value, dimension=measured)
+
+
+def measure(figure: str, unit: str, scope: Scope) -> tuple[float, Dimension]:
+    """SI value and dimension of a figure with a unit."""
+    try:
+        size, dimension = parse_unit(unit)
+    except Finding as finding:
+        hint = product_hint(figure, unit, scope) or finding.hint
+        raise Finding(finding.code, finding.message, hint) from None
+    return finite(float(figure.replace(" ", "")) * size), dimension
+
+
+def product_hint(figure: str, unit: str, scope: Scope) -> str | None:
+    """For '2 L' with a parameter L, or '2 t': a product was meant."""
+    name = re.split(r"\W", unit, maxsplit=1)[0]
+    if re.search(r"[+-]\s*\d*\s*[^\W\d]", unit):
+        return "units do not stand inside expressions: give the quantity a name under parameters, or write it in SI"
+    if name in scope.parameters or name in RESERVED:
+        return f"for a product write {figure.strip()}*{unit}"
+    return None
+
+
+def finite(value: float) -> float:
+    """A number as a float, unless it is inf, nan or too large."""
+    try:
+        result = float(value)
+    except OverflowError:
+        result = math.inf
+    if not math.isfinite(result):
+        raise Finding("not-finite", f"{value if isinstance(value, float) else 'the number'} is not a finite number")
+    return result
+
+
+def kind_of(value: Any) -> str:
+    """What stands there, in words."""
+    if value is None:
+        return "nothing"
+    if type(value) is bool:
+        return "true" if value else "false"
+    if type(value) is str:
+        return f"the text '{value}'" if len(value) <= 40 else "a text"
+    return "a list" if type(value) is list else "a mapping" if type(value) is dict else "a number"
+
+
+def hint_for(value: Any) -> str | None:
+    """What to do about it."""
+    if type(value) is dict and len(value) == 1 and next(iter(value.values())) is None:
+        return "an expression with { } is written without them"
+    return None
+
+
+__all__ = ["Follows", "Scope", "in_time", "kind_of", "number"]

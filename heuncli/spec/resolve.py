@@ -1,0 +1,241 @@
+"""From the document as written to the scene as meant: references followed, forms made one, defaults filled in.
+
+For documents in which no rule found an error.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Mapping
+from dataclasses import dataclass
+from typing import Any
+
+from heuncli.errors import Place, Problem
+from heuncli.spec import format as f
+from heuncli.spec import models as m
+from heuncli.spec.expression import Expression, Table
+from heuncli.spec.fields import End
+from heuncli.spec.meanings import body_axes, drive_of, end_of, instants_of, point_in, tensor, type_of
+from heuncli.spec.names import GROUND
+from heuncli.spec.turns import IDENTITY
+
+DEFAULT_TOLERANCE = 1e-9
+
+
+@dataclass(frozen=True)
+class Meaning:
+    """What resolve needs beside the document."""
+
+    path: str
+    sha256: str
+    parameters: Mapping[str, float]
+    tables: Mapping[str, Table]
+    warnings: tuple[Problem, ...]
+    places: Mapping[str, Place]
+
+
+def resolve(document: f.Document, meaning: Meaning) -> m.Spec:
+    """The scene that a document without errors means."""
+    r = Resolver(document, meaning.places)
+    analysis = document.analysis
+    instants = instants_of(document)
+    kind = type_of(document)
+    return m.Spec(
+        title=document.head.title,
+        path=meaning.path,
+        sha256=meaning.sha256,
+        space=document.head.space,
+        parameters=meaning.parameters,
+        gravity=document.head.gravity,
+        ground=m.Ground(document.ground.points),
+        bodies={name: r.body(body) for name, body in document.bodies.items()},
+        joints={name: r.joint(joint) for name, joint in document.joints.items()},
+        drives={name: r.drive(name, drive) for name, drive in document.drives.items()},
+        forces={name: r.force(name, force) for name, force in document.forces.items()},
+        impulses={name: r.impulse(blow) for name, blow in document.impulses.items()},
+        sections={name: r.section(section) for name, section in document.sections.items()},
+        tables=meaning.tables,
+        analysis=m.Analysis(
+            kind, instants, instants[-1] if kind == "motion" else None,
+            analysis.tolerance if analysis.tolerance is not None else DEFAULT_TOLERANCE, analysis.method, analysis.step,
+        ),
+        report=tuple(document.head.report) if document.head.report is not None else None,
+        foundation=m.Foundation(r.about(document.foundation.about)),
+        expect=tuple(r.expect(i, item) for i, item in document.expect.items()),
+        warnings=meaning.warnings,
+        places=meaning.places,
+    )  # fmt: skip
+
+
+class Resolver:
+    """Follows the references of one document."""
+
+    def __init__(self, document: f.Document, places: Mapping[str, Place]) -> None:
+        self.document, self.places = document, places
+
+    def point(self, body: str, name: str) -> m.Vec:
+        points = self.document.ground.points if body == GROUND else self.document.bodies[body].points
+        return points[name]
+
+    def end(self, end: End) -> m.End:
+        if isinstance(end.at, str):
+            return m.End(end.body, self.point(end.body, end.at), end.at)
+        assert end.at is not None
+        return m.End(end.body, end.at)
+
+    def placed(self, value: Expression, path: str) -> Expression:
+        return value.at(self.places[path]) if path in self.places else value
+
+    def vector(self, values: tuple[Expression, Expression, Expression], path: str) -> m.Vector:
+        x, y, z = (self.placed(value, f"{path}.vector.{i}") for i, value in enumerate(values))
+        return x, y, z
+
+    def shape(self, shape: f.Shape) -> m.Shape:
+        keys = (
+            "mass",
+            "density",
+            "line_density",
+            "from_",
+            "to",
+            "at",
+            "center",
+            "size",
+            "radius",
+            "inner_radius",
+            "to_radius",
+        )
+        rotation = None
+        if isinstance(shape, f.Box):
+            rotation = body_axes(shape.orientation) if shape.orientation is not None else IDENTITY
+        return m.Shape(type=shape.type, rotation=rotation, **{key: getattr(shape, key, None) for key in keys})
+
+    def piece(self, piece: f.Piece | None) -> m.Piece | None:
+        return m.Piece(piece.mass, piece.center, tensor(piece)) if piece is not None else None
+
+    def body(self, body: f.Body) -> m.Body:
+        near = body.near
+        return m.Body(
+            mass=body.mass,
+            center=body.center,
+            inertia=tensor(body) if body.inertia is not None else None,
+            shapes=tuple(self.shape(shape) for shape in body.shapes) if body.shapes is not None else None,
+            points=body.points,
+            position=body.position,
+            rotation=body_axes(body.orientation) if body.orientation is not None else None,
+            near=m.Near(near.position, body_axes(near.orientation) if near.orientation else None)
+            if near is not None
+            else None,
+            velocity=directed(body.velocity),
+            angular_velocity=directed(body.angular_velocity),
+            piece=self.piece(body.piece),
+        )
+
+    def joint(self, joint: f.Joint) -> m.Joint:
+        initial = getattr(joint, "initial", None)
+        return m.Joint(
+            type=joint.type,
+            from_=self.end(joint.from_),
+            to=self.end(joint.to),
+            axis=getattr(joint, "axis", None),
+            to_axis=getattr(joint, "to_axis", None),
+            normal=getattr(joint, "normal", None),
+            initial=m.Initial(**initial.model_dump()) if initial is not None else None,
+            length=getattr(joint, "length", None),
+            tension_only=getattr(joint, "tension_only", False),
+            stiffness=stiffness(joint.stiffness),
+        )
+
+    def drive(self, name: str, drive: f.Drive) -> m.Drive:
+        found = drive_of(drive)
+        assert found is not None
+        return m.Drive(drive.joint, found[0], self.placed(found[1], f"drives.{name}.{found[0]}"), drive.zero)
+
+    def force(self, name: str, load: f.Load) -> m.Force:
+        path = f"forces.{name}"
+        match load:
+            case f.PointForce():
+                return m.PointForce(self.end(load.on), self.vector(load.vector, path), load.frame)
+            case f.Couple():
+                on = self.end(load.on) if load.on.at is not None else None
+                return m.Couple(load.on.body, on, self.vector(load.vector, path), load.frame)
+            case f.Torque():
+                return m.Torque(load.joint, self.placed(load.value, f"{path}.value"))
+            case f.Actuator():
+                return m.Actuator(self.end(load.from_), self.end(load.to), self.placed(load.value, f"{path}.value"))
+            case f.Spring():
+                return m.Spring(self.end(load.from_), self.end(load.to), load.stiffness, load.length, load.damping)
+            case f.Damper():
+                return m.Damper(load.joint, constant(load.coefficient), load.sliding)
+            case _:
+                return m.Friction(load.joint, load.torque, load.force, constant(load.speed))
+
+    def impulse(self, blow: f.Blow) -> m.Impulse:
+        if blow.on is not None and blow.vector is not None:
+            return m.Impulse(blow.on.body, self.end(blow.on), blow.vector, blow.time, blow.frame)
+        assert blow.body is not None
+        assert blow.couple is not None
+        return m.Impulse(blow.body, None, blow.couple, blow.time, blow.frame)
+
+    def section(self, section: f.Section) -> m.Section:
+        body = self.document.bodies[section.body]
+        at, start, end = (point_in(body, place) for place in (section.at, section.from_, section.to))
+        normal = section.normal
+        if normal is None:
+            assert start is not None
+            assert end is not None
+            normal = (end[0] - start[0], end[1] - start[1], end[2] - start[2])
+        point = end_of(section.reduce_to)
+        reduce_to: Any = self.end(point) if point is not None else section.reduce_to
+        return m.Section(
+            body=section.body, normal=normal, at=at, at_name=section.at if isinstance(section.at, str) else None,
+            from_=start, to=end, count=section.count or 1, first_axis=section.first_axis, reduce_to=reduce_to,
+            side=section.side, properties=properties(section.properties), strength=section.strength,
+            piece=self.piece(section.piece or (body.piece if at is not None else None)),
+        )  # fmt: skip
+
+    def about(self, about: object) -> m.Vec | None:
+        if isinstance(about, str):
+            return self.document.ground.points[about.rpartition(".")[2]]
+        return about  # type: ignore[return-value]
+
+    def expect(self, i: int, item: f.Expect) -> m.Expect:
+        place = self.places.get(f"expect.{i}", Place("", 1, 1))
+        return m.Expect(item.of, item.at, item.peak, item.is_, item.rel, item.abs, place)
+
+
+def directed(value: object) -> m.Directed | None:
+    """A vector in world axes unless it says otherwise."""
+    if value is None:
+        return None
+    if isinstance(value, f.VelocityInFrame | f.RateInFrame):
+        return m.Directed(value.vector, value.frame)
+    return m.Directed(value, "world")  # type: ignore[arg-type]
+
+
+def stiffness(value: float | f.StiffnessParts | None) -> m.Stiffness | None:
+    """One number is that of the force, in all directions."""
+    if value is None:
+        return None
+    if isinstance(value, float):
+        return m.Stiffness((value, value, value), None)
+
+    def three(part: float | m.Vec | None) -> m.Vec | None:
+        return (part, part, part) if isinstance(part, float) else part
+
+    return m.Stiffness(three(value.force), three(value.moment))
+
+
+def properties(value: f.Properties | None) -> m.Properties | None:
+    """A named shape with its sizes, or the numbers themselves."""
+    if value is None:
+        return None
+    given = value.model_dump(exclude_none=True)
+    for kind in ("circle", "tube", "rectangle"):
+        if kind in given:
+            return m.Properties(kind, given[kind])
+    return m.Properties("general", given)
+
+
+def constant(value: Expression) -> float:
+    """The number of an expression that depends on nothing."""
+    assert value.constant is not None
+    return value.constant

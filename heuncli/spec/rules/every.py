@@ -1,0 +1,10 @@
+"""All rules, in the order in which their findings are of use."""
+
+from __future__ import annotations
+
+from heuncli.spec.rules import analysis, bodies, joints, loads, naming, not_yet, references, sections
+from heuncli.spec.rules.registry import RULES, Found, Rule, Scene, found_by
+
+MODULES = (naming, references, bodies, joints, loads, sections, analysis, not_yet)
+
+__all__ = ["MODULES", "RULES", "Found", "Rule", "Scene", "found_by"]

@@ -1,0 +1,203 @@
+"""Joints and drives: between two bodies, along directions that are directions, driven without contradiction."""
+
+from __future__ import annotations
+
+import math
+from collections.abc import Iterator
+
+from heuncli.spec import format as f
+from heuncli.spec.expression import Expression, breakpoints
+from heuncli.spec.fields import End
+from heuncli.spec.meanings import body_axes, drive_of, span_of
+from heuncli.spec.rules.registry import Found, Path_, Scene, rule
+from heuncli.spec.turns import IDENTITY, unit
+
+SAME = 1e-9  # relative: a held value and a drive's
+FLAT = 1e-9  # of a direction's length: what may stand out of the plane of a planar scene
+DRIVEN = {"angle": ("pin",), "travel": ("slide", "cylinder"), "length": ("rod",)}
+
+
+def directions(scene: Scene) -> Iterator[tuple[Path_, tuple[float, float, float]]]:
+    """Every direction in the document."""
+    document = scene.document
+    for name, joint in document.joints.items():
+        for key in ("axis", "to_axis", "normal"):
+            if getattr(joint, key, None) is not None:
+                yield ("joints", name, key), getattr(joint, key)
+    for name, section in document.sections.items():
+        for key in ("normal", "first_axis"):
+            if getattr(section, key) is not None:
+                yield ("sections", name, key), getattr(section, key)
+
+
+@rule("zero-direction")
+def zero_direction(scene: Scene) -> Iterator[Found]:
+    """A direction is not [0, 0, 0]."""
+    for path, direction in directions(scene):
+        if direction == (0.0, 0.0, 0.0):
+            yield Found(path, f"{path[-1]} is [0, 0, 0], which is no direction", "[0, 0, 1] is the z axis")
+
+
+@rule("same-body")
+def same_body(scene: Scene) -> Iterator[Found]:
+    """A joint, spring or actuator stands between two bodies."""
+    pairs = [("joints", name, joint.from_, joint.to) for name, joint in scene.document.joints.items()]
+    pairs += [
+        ("forces", name, load.from_, load.to)
+        for name, load in scene.document.forces.items()
+        if isinstance(load, f.Actuator | f.Spring)
+    ]
+    for block, name, start, end in pairs:
+        if start.body == end.body:
+            yield Found(
+                (block, name, "to"), f"from and to are both on {start.body}", "what stands inside one body does nothing"
+            )
+
+
+def end_key(end: End) -> tuple[str, object]:
+    return end.body, end.at
+
+
+@rule("duplicate-joint", is_warning=True)
+def duplicate_joint(scene: Scene) -> Iterator[Found]:
+    """The same joint twice holds nothing more, and leaves its reactions open."""
+    seen: dict[object, str] = {}
+    for name, joint in scene.document.joints.items():
+        ends = frozenset((end_key(joint.from_), end_key(joint.to)))
+        key = joint.type, ends, getattr(joint, "axis", None), getattr(joint, "normal", None)
+        if key in seen:
+            yield Found(("joints", name), f"the same joint as {seen[key]}: their reactions are open", key=True)
+        seen.setdefault(key, name)
+
+
+@rule("not-planar")
+def not_planar(scene: Scene) -> Iterator[Found]:
+    """In a scene declared planar everything turns about z and moves in the xy plane."""
+    document = scene.document
+    if document.head.space != "planar":
+        return
+    if document.head.gravity[2] != 0.0:
+        yield Found(
+            ("gravity", 2), "gravity points out of the xy plane of a planar scene", "use x and y, or space: spatial"
+        )
+    for name, joint in document.joints.items():
+        path: Path_ = ("joints", name)
+        if isinstance(joint, f.Universal | f.CylinderJoint):
+            yield Found(
+                (*path, "type"), f"a joint of type {joint.type} has no place in a planar scene", "space: spatial"
+            )
+            continue
+        along_z = isinstance(joint, f.Pin)
+        for key in ("axis", "to_axis", "normal"):
+            direction = getattr(joint, key, None)
+            if direction is None or direction == (0.0, 0.0, 0.0):
+                continue
+            x, y, z = unit(direction)
+            if (math.hypot(x, y) if along_z else abs(z)) > FLAT:
+                wants = "is the z axis" if along_z else "lies in the xy plane"
+                yield Found(
+                    (*path, key), f"in a planar scene {key} of a {joint.type} {wants}", "or declare space: spatial"
+                )
+    for name, body in document.bodies.items():
+        if body.orientation is not None and abs(upright(body.orientation) - 1.0) > FLAT:
+            yield Found(
+                ("bodies", name, "orientation"), "in a planar scene a body is turned about z only", "space: spatial"
+            )
+
+
+def upright(orientation: f.Orientation) -> float:
+    """The cosine between the body's z axis and the world's; 1 where the orientation is in error."""
+    try:
+        return body_axes(orientation)[2][2]
+    except ValueError:
+        return IDENTITY[2][2]
+
+
+@rule("drive-form")
+def drive_form(scene: Scene) -> Iterator[Found]:
+    """A drive prescribes one coordinate, which its joint has, in time alone, and no other drive does."""
+    driven: dict[str, str] = {}
+    for name, drive in scene.document.drives.items():
+        path = ("drives", name)
+        quantities = [key for key in DRIVEN if getattr(drive, key) is not None]
+        kind = scene.names.joints.get(drive.joint)
+        fitting = [key for key, kinds in DRIVEN.items() if kind in kinds]
+        if len(quantities) != 1:
+            what = " and ".join(quantities) if quantities else "nothing"
+            hint = f"a {kind} has {fitting[0]}" if fitting else "one of angle, travel, length"
+            yield Found(path, f"the drive prescribes {what}", hint, key=True)
+            continue
+        quantity = quantities[0]
+        if kind in {k for kinds in DRIVEN.values() for k in kinds} | {"ball", "universal", "weld", "line", "plane"}:
+            if quantity not in fitting:
+                hint = f"a {kind} has {fitting[0]}" if fitting else "drives act on pin, slide, cylinder and rod"
+                yield Found((*path, quantity), f"a {kind} has no {quantity} to be driven", hint, key=True)
+            elif quantity == "length" and drive.zero is not None:
+                yield Found(
+                    (*path, "zero"), "a length is not counted from the assembled one", "zero is for angle and travel"
+                )
+        value = getattr(drive, quantity)
+        if value.uses:
+            joint, coordinate = value.uses[0]
+            yield Found((*path, quantity), f"a drive follows time alone, not {joint}.{coordinate}", "use t")
+        if drive.joint in driven:
+            yield Found((*path, "joint"), f"the joint {drive.joint} is driven by {driven[drive.joint]} already")
+        driven.setdefault(drive.joint, name)
+
+
+def drives(scene: Scene) -> Iterator[tuple[str, str, str, Expression]]:
+    """Drives of one coordinate in time: name, joint, quantity, value."""
+    for name, drive in scene.document.drives.items():
+        found = drive_of(drive)
+        if found is not None and not found[1].uses:
+            yield name, drive.joint, *found
+
+
+@rule("drive-contradicts")
+def drive_contradicts(scene: Scene) -> Iterator[Found]:
+    """A held start value is the drive's own at t = 0."""
+    for name, joint_name, quantity, value in drives(scene):
+        joint = scene.document.joints.get(joint_name)
+        initial = getattr(joint, "initial", None)
+        if initial is None:
+            continue
+        at_start = value.derivatives(0.0)
+        relative = scene.document.drives[name].zero == "assembled" or getattr(joint, "to_axis", None) is not None
+        for key, expected in (
+            (quantity, at_start[0]),
+            ({"angle": "rate", "travel": "speed"}.get(quantity, ""), at_start[1]),
+        ):
+            held = getattr(initial, key, None)
+            if held is None or (relative and key == quantity):
+                continue
+            if abs(held - expected) > SAME * max(abs(held), abs(expected), 1.0):
+                message = f"{key} is held at {held:g}, but the drive {name} prescribes {expected:g} at t = 0"
+                yield Found(("joints", joint_name, "initial", key), message, "leave it out: the drive sets it")
+
+
+@rule("drive-jumps")
+def drive_jumps(scene: Scene) -> Iterator[Found]:
+    """A driven coordinate does not jump, and is a number all along the run."""
+    duration = span_of(scene.document.analysis)
+    for name, _, quantity, value in drives(scene):
+        path = ("drives", name, quantity)
+        if math.isnan(value.value(0.0)):
+            yield Found(path, "the drive has no value at t = 0", "look at the domains of its functions and tables")
+            continue
+        for t in breakpoints(value, 0.0, duration) if duration > 0.0 else []:
+            before, after = value.value(math.nextafter(t, -math.inf)), value.value(t)
+            if abs(after - before) > SAME * max(abs(before), abs(after), 1.0):
+                message = f"the drive jumps from {before:g} to {after:g} at t = {t:g} s"
+                yield Found(path, message, "a body cannot jump: let the value run over a short time")
+                break
+
+
+def rate_jumps(scene: Scene) -> Iterator[Path_]:
+    """Drives whose rate jumps within the run, or at its start against rest."""
+    duration = span_of(scene.document.analysis)
+    for name, _, quantity, value in drives(scene):
+        for t in breakpoints(value, 0.0, duration) if duration > 0.0 else []:
+            before, after = value.derivatives(math.nextafter(t, -math.inf))[1], value.derivatives(t)[1]
+            if abs(after - before) > SAME * max(abs(before), abs(after), 1.0):
+                yield ("drives", name, quantity)
+                break

@@ -1,0 +1,113 @@
+"""Forces and impulses: on joints and bodies that can take them, of the right dimension, in one form."""
+
+from __future__ import annotations
+
+from collections.abc import Iterator
+
+from heuncli.spec import format as f
+from heuncli.spec import units as u
+from heuncli.spec.meanings import span_of
+from heuncli.spec.rules.registry import Found, Scene, rule
+
+TURNING = ("ball", "pin", "universal", "cylinder")
+SLIDING = ("slide", "line", "plane")
+
+
+def loads(scene: Scene) -> Iterator[tuple[str, f.Torque | f.Damper | f.Friction, str]]:
+    """Loads in joints that exist, with the type of the joint."""
+    for name, load in scene.document.forces.items():
+        if isinstance(load, f.Torque | f.Damper | f.Friction) and load.joint in scene.names.joints:
+            yield name, load, scene.names.joints[load.joint]
+
+
+@rule("load-joint")
+def load_joint(scene: Scene) -> Iterator[Found]:
+    """A joint moves in the way that the load drives or resists."""
+    for name, load, kind in loads(scene):
+        path = ("forces", name)
+        if isinstance(load, f.Torque):
+            if kind not in ("pin", "slide"):
+                hint = "between two points use actuator, on a body couple"
+                yield Found((*path, "joint"), f"a torque acts about a pin or along a slide, not in a {kind}", hint)
+        elif isinstance(load, f.Damper):
+            if kind not in TURNING + SLIDING:
+                hint = "between two points use a spring with damping"
+                yield Found((*path, "joint"), f"a damper resists nothing in a {kind}", hint)
+            if load.sliding is not None and kind != "cylinder":
+                yield Found(
+                    (*path, "sliding"), f"sliding is for a cylinder, not for a {kind}", "use coefficient", key=True
+                )
+        else:
+            given = [key for key in ("torque", "force") if getattr(load, key) is not None]
+            fitting = {"pin": ["torque"], "slide": ["force"], "cylinder": ["torque", "force"]}.get(kind)
+            if fitting is None:
+                yield Found((*path, "joint"), f"friction acts in a pin, slide or cylinder, not in a {kind}")
+            elif len(given) != 1:
+                what = "both torque and force" if given else "neither torque nor force"
+                yield Found(path, f"friction of {what}", f"a {kind} takes {' or '.join(fitting)}", key=True)
+            elif given[0] not in fitting:
+                yield Found(
+                    (*path, given[0]), f"friction of a {kind} is a {fitting[0]}", f"write {fitting[0]}", key=True
+                )
+
+
+@rule("dimension")
+def load_dimension(scene: Scene) -> Iterator[Found]:
+    """Where the joint decides between turning and sliding, the unit fits."""
+    for name, load, kind in loads(scene):
+        sliding = kind in SLIDING
+        if isinstance(load, f.Torque):
+            checks = [("value", load.value, u.FORCE if sliding else u.MOMENT)]
+        elif isinstance(load, f.Damper):
+            checks = [("coefficient", load.coefficient, u.DAMPING if sliding else u.TURNING_DAMPING)]
+        else:
+            checks = [("speed", load.speed, u.VELOCITY if load.force is not None else u.RATE)]
+        for key, value, dimension in checks:
+            if value.dimension is not None and value.dimension != dimension:
+                message = f"'{value.source.strip()}' is {u.describe(value.dimension)}, expected {u.describe(dimension)}"
+                hint = f"a number without a unit is taken in {u.si_unit(dimension)}"
+                yield Found(("forces", name, key), message, hint)
+
+
+@rule("couple-point")
+def couple_point(scene: Scene) -> Iterator[Found]:
+    """A couple on a body with sections says where it enters, which tells the side."""
+    cut = {section.body for section in scene.document.sections.values()}
+    for name, load in scene.document.forces.items():
+        if isinstance(load, f.Couple) and load.on.at is None and load.on.body in cut:
+            message = f"the couple acts on {load.on.body}, which has sections, but not at a point"
+            yield Found(("forces", name, "on"), message, f"write {load.on.body}.point: it tells the side of the cut")
+
+
+@rule("impulse-form")
+def impulse_form(scene: Scene) -> Iterator[Found]:
+    """A blow is on a point with a vector, or on a body with a couple."""
+    for name, blow in scene.document.impulses.items():
+        point, turn = (blow.on, blow.vector), (blow.body, blow.couple)
+        complete = [pair for pair in (point, turn) if None not in pair]
+        stray = [part for pair in (point, turn) for part in pair if part is not None]
+        if len(complete) != 1 or len(stray) != 2:
+            yield Found(
+                ("impulses", name),
+                "a blow is {on, vector} or {body, couple}",
+                "two blows at once: two entries",
+                key=True,
+            )
+
+
+@rule("impulse-time")
+def impulse_time(scene: Scene) -> Iterator[Found]:
+    """A blow falls within the run."""
+    analysis = scene.document.analysis
+    duration = span_of(analysis)
+    for name, blow in scene.document.impulses.items():
+        path = ("impulses", name, "time")
+        if blow.time < 0.0:
+            yield Found(path, f"a blow before the start, at {blow.time:g} s")
+        elif blow.time > duration and "analysis" not in scene.unread:
+            hint = (
+                "give analysis a longer duration"
+                if duration > 0.0
+                else "without a duration only the jump at time 0 is found"
+            )
+            yield Found(path, f"a blow at {blow.time:g} s, after the end of the run at {duration:g} s", hint)

@@ -1,0 +1,39 @@
+"""Names: what they may look like, and those that are taken."""
+
+from __future__ import annotations
+
+from collections.abc import Iterator
+
+from heuncli.spec.names import NAMED, RESERVED_FOR, is_name
+from heuncli.spec.rules.registry import Found, Scene, rule
+
+
+@rule("bad-name")
+def bad_name(scene: Scene) -> Iterator[Found]:
+    """A name is a letter, then letters, digits and _."""
+    hint = "a name is a letter, then letters, digits and _"
+    for block in NAMED:
+        for name in scene.names.entries[block]:
+            if not is_name(name):
+                yield Found((block, name), f"'{name}' is not a name", hint, key=True)
+    for body, points in scene.names.points.items():
+        for name in points:
+            if not is_name(name):
+                path = ("ground",) if body == "ground" else ("bodies", body)
+                yield Found((*path, "points", name), f"'{name}' is not a name", hint, key=True)
+
+
+@rule("reserved-name")
+def reserved_name(scene: Scene) -> Iterator[Found]:
+    """Some names mean something already."""
+    for block, taken in RESERVED_FOR.items():
+        for name in scene.names.entries[block]:
+            if name in taken:
+                what = (
+                    "the ground"
+                    if name == "ground"
+                    else "a word of expressions"
+                    if block != "forces"
+                    else "a cause of its own"
+                )
+                yield Found((block, name), f"'{name}' is taken: it is {what}", f"call it {name}_1, say", key=True)

@@ -1,0 +1,304 @@
+"""YAML text -> plain data and the place of everything in it; strict, and before any meaning.
+
+Scalars are those of YAML 1.2 (`on` and `012` are what they look like, `1e-3` is a number). Refused: tags, anchors,
+aliases, merge keys, keys given twice, several documents, nesting beyond 64, characters that shift lines unseen.
+PyYAML's parser gives the events; data and places are built here without recursion.
+"""
+
+from __future__ import annotations
+
+import hashlib
+import re
+import sys
+from collections.abc import Iterator
+from dataclasses import dataclass, field
+from pathlib import Path
+from typing import Any
+
+import yaml
+from yaml import events
+
+from heuncli.errors import Place, Problem, SpecError
+
+LARGEST = 64_000_000  # characters; a scene of 100,000 bodies has about 40 million
+DEEPEST = 64
+
+Loader: Any = getattr(yaml, "CSafeLoader", yaml.SafeLoader)
+Path_ = tuple[str | int, ...]
+Mark = tuple[int, int]  # line, column, from 0
+
+INTEGER = re.compile(r"[-+]?[0-9]+\Z")
+FLOAT = re.compile(r"[-+]?(?:\.[0-9]+|[0-9]+(?:\.[0-9]*)?)(?:[eE][-+]?[0-9]+)?\Z")
+BASED = re.compile(r"0(?:x[0-9a-fA-F]+|o[0-7]+)\Z")
+WORDS: dict[str, Any] = {
+    **dict.fromkeys(("", "~", "null", "Null", "NULL"), None),
+    **dict.fromkeys(("true", "True", "TRUE"), True),
+    **dict.fromkeys(("false", "False", "FALSE"), False),
+    **{sign + word: float(sign + "inf") for sign in ("", "+", "-") for word in (".inf", ".Inf", ".INF")},
+    **dict.fromkeys((".nan", ".NaN", ".NAN"), float("nan")),
+}
+UNSEEN = "[\x00-\x08\x0b\x0c\x0e-\x1f\x7f]"
+UNSEEN_BEYOND_ASCII = "[\x80-\x9f\u2028\u2029\ufeff\ufffe\uffff\ud800-\udfff]"
+UNSEEN_NAMES = {
+    "\x00": "NUL", "\x85": "NEXT LINE", "\u2028": "LINE SEPARATOR", "\u2029": "PARAGRAPH SEPARATOR",
+    "\ufeff": "BYTE ORDER MARK",
+}  # fmt: skip
+
+
+@dataclass(frozen=True)
+class Source:
+    """What a file holds: plain data, and for every path the place of its value and of its key."""
+
+    file: str
+    sha256: str
+    data: Any
+    values: dict[Path_, Mark] = field(repr=False)
+    keys: dict[Path_, Mark] = field(repr=False)
+    problems: tuple[Problem, ...] = ()
+
+    def place(self, path: Path_, key: bool = False) -> Place:
+        """Where a value, or its key, stands; the nearest thing around it where it stands nowhere."""
+        known: Path_ = path
+        while known and known not in self.values:
+            known = known[:-1]
+        use_key = key and known == path and known in self.keys
+        line, column = (self.keys if use_key else self.values).get(known, (0, 0))
+        return Place(self.file, line + 1, column + 1, dotted(path))
+
+
+def dotted(path: Path_) -> str:
+    """A path as users write it: bodies.crank.center.2"""
+    return ".".join(map(str, path))
+
+
+def read(path: str, text: str | None) -> Source:
+    """The content of a file ("-" is standard input), or of a text that stands for it. Raises SpecError."""
+    file = "<stdin>" if path == "-" else path
+    if text is None:
+        try:
+            raw = sys.stdin.buffer.read() if path == "-" else Path(path).read_bytes()
+        except (OSError, ValueError) as error:
+            raise SpecError(unreadable(path, error)) from None
+        try:
+            text = raw.decode("utf-8-sig")
+        except UnicodeDecodeError as error:
+            line = raw.count(b"\n", 0, error.start)
+            column = error.start - raw.rfind(b"\n", 0, error.start)
+            hint = "save the file as UTF-8" + (
+                " (it looks like UTF-16)" if raw[:2] in (b"\xff\xfe", b"\xfe\xff") else ""
+            )
+            message = f"byte 0x{raw[error.start]:02x} is not UTF-8"
+            raise SpecError(Problem("not-utf8", message, Place(file, line + 1, column), hint)) from None
+    else:
+        try:
+            raw = text.encode()
+        except UnicodeEncodeError as error:
+            line, column = position(text, error.start)
+            raise SpecError(Problem("not-utf8", "a character is not Unicode", Place(file, line, column))) from None
+        text = text.removeprefix("\ufeff")
+    return parse(file, text, hashlib.sha256(raw).hexdigest())
+
+
+def unreadable(path: str, error: Exception) -> Problem:
+    """Why a file cannot be read, in words."""
+    place = Place(path, 1, 1)
+    if isinstance(error, FileNotFoundError):
+        return Problem("unreadable", "there is no such file", place, "paths are relative to where heun was started")
+    if isinstance(error, IsADirectoryError):
+        return Problem("unreadable", "this is a folder, not a spec", place, "for folders of specs: heun check")
+    if isinstance(error, PermissionError):
+        return Problem("unreadable", "the file may not be read", place, "look at its permissions")
+    return Problem("unreadable", f"the file cannot be read: {getattr(error, 'strerror', None) or error}", place)
+
+
+def position(text: str, index: int) -> tuple[int, int]:
+    """Line and column, from 1, of a character."""
+    return text.count("\n", 0, index) + 1, index - text.rfind("\n", 0, index)
+
+
+def parse(file: str, text: str, sha256: str) -> Source:
+    """The data in a text. Raises SpecError for what cannot be read on; what can be is in the source's problems."""
+    if len(text) > LARGEST:
+        raise SpecError(Problem("too-large", f"{len(text)} characters; at most {LARGEST} are read", Place(file, 1, 1)))
+    if unseen := re.search(UNSEEN if text.isascii() else f"{UNSEEN}|{UNSEEN_BEYOND_ASCII}", text):
+        name = f"U+{ord(unseen[0]):04X}" + (f" ({UNSEEN_NAMES[unseen[0]]})" if unseen[0] in UNSEEN_NAMES else "")
+        message = f"the character {name} may not stand in a spec"
+        raise SpecError(Problem("bad-character", message, Place(file, *position(text, unseen.start())), "delete it"))
+    builder = Builder(file)
+    try:
+        for event in event_stream(text):
+            builder.take(event)
+    except yaml.MarkedYAMLError as error:
+        mark = error.problem_mark or error.context_mark
+        line, column = (mark.line + 1, mark.column + 1) if mark else (1, 1)
+        what = error.problem or str(error)
+        opened = error.context_mark if "flow" in (error.context or "") else None
+        hint = f"look at the bracket opened in line {opened.line + 1}" if opened else yaml_hint(text, line, what)
+        problem = Problem("not-yaml", f"not YAML: {what}", Place(file, line, column), hint)
+        raise SpecError(*builder.problems, problem) from None
+    if builder.documents == 0 or builder.root is None:
+        hint = "a spec starts with 'heun: 1'; see heun new"
+        raise SpecError(*builder.problems, Problem("empty", "the file is empty", Place(file, 1, 1), hint))
+    return Source(file, sha256, builder.root, builder.values, builder.keys, tuple(builder.problems))
+
+
+def event_stream(text: str) -> Iterator[Any]:
+    """The parser's events, one by one."""
+    loader = Loader(text)
+    try:
+        while True:
+            event = loader.get_event()
+            if isinstance(event, events.StreamEndEvent):
+                return
+            yield event
+    finally:
+        loader.dispose()
+
+
+def yaml_hint(text: str, line: int, what: str) -> str | None:
+    """What probably went wrong, for the usual accidents."""
+    lines = text.split("\n")
+    shown = lines[line - 1] if 0 < line <= len(lines) else ""
+    if "\t" in shown[: len(shown) - len(shown.lstrip())] or "'\\t'" in what or "tab" in what:
+        return "indent with spaces, not tabs"
+    if "mapping values are not allowed" in what:
+        return "write a text that contains ': ' in quotes, or look at the indentation"
+    if "could not find expected ':'" in what:
+        return "a key needs a colon and a space after it"
+    if "alphabetic or numeric" in what or "alias" in what or "anchor" in what:
+        return "a text that starts with * or & is written in quotes"
+    return None
+
+
+@dataclass
+class Frame:
+    """An open mapping or list."""
+
+    container: dict[str, Any] | list[Any]
+    path: Path_
+    key: str | None = None
+    skipped: bool = False  # the value of a key that was refused
+
+
+class Builder:
+    """Builds data and places from events; a thing that can be passed over becomes a problem."""
+
+    def __init__(self, file: str) -> None:
+        self.file = file
+        self.root: Any = None
+        self.values: dict[Path_, Mark] = {}
+        self.keys: dict[Path_, Mark] = {}
+        self.problems: list[Problem] = []
+        self.documents = 0
+        self.stack: list[Frame] = []
+
+    def problem(self, code: str, message: str, event: Any, path: Path_ = (), hint: str | None = None) -> Problem:
+        mark = event.start_mark
+        return Problem(code, message, Place(self.file, mark.line + 1, mark.column + 1, dotted(path)), hint)
+
+    def take(self, event: Any) -> None:
+        """One event."""
+        kind = type(event)
+        if kind is events.ScalarEvent:
+            self.scalar(event)
+        elif kind is events.MappingStartEvent:
+            self.open({}, event)
+        elif kind is events.SequenceStartEvent:
+            self.open([], event)
+        elif kind is events.MappingEndEvent or kind is events.SequenceEndEvent:
+            self.stack.pop()
+        elif kind is events.AliasEvent:
+            hint = "name the value once under parameters and use the name"
+            self.problems.append(self.problem("alias", f"aliases (*{event.anchor}) are not read", event, hint=hint))
+            top = self.stack[-1] if self.stack else None
+            if top is not None and top.key is None and type(top.container) is dict:  # it stands for a key
+                top.key, top.skipped = "", True
+            else:
+                self.put(None, event)
+        elif kind is events.DocumentStartEvent:
+            self.documents += 1
+            if self.documents > 1:
+                raise SpecError(*self.problems, self.problem("several-documents", "a file holds one spec only", event))
+
+    def check(self, event: Any) -> None:
+        """No anchors, no tags."""
+        if event.anchor is not None:
+            hint = "name the value once under parameters and use the name"
+            self.problems.append(self.problem("alias", f"anchors (&{event.anchor}) are not read", event, hint=hint))
+        if event.tag is not None and event.tag != "!":
+            tag = event.tag.replace("tag:yaml.org,2002:", "!!")
+            hint = "values are plain numbers and texts; a value used often belongs into parameters"
+            self.problems.append(self.problem("tag", f"tags ({tag}) are not read", event, hint=hint))
+
+    def scalar(self, event: Any) -> None:
+        if event.anchor is not None or event.tag is not None:
+            self.check(event)
+        top = self.stack[-1] if self.stack else None
+        if top is not None and top.key is None and type(top.container) is dict:
+            self.key(event, top)
+        else:
+            self.put(plain(event.value) if event.implicit[0] else event.value, event)
+
+    def key(self, event: Any, top: Frame) -> None:
+        """A key of a mapping: a plain word, once."""
+        key = event.value
+        path = (*top.path, key)
+        if key == "<<" and event.implicit[0]:
+            hint = "write the keys out, with their common values under parameters"
+            self.problems.append(self.problem("alias", "merge keys (<<) are not read", event, path, hint))
+            top.skipped = True
+        elif key in top.container:
+            line, _ = self.keys[path]
+            message = f"'{key}' is given twice, first in line {line + 1}"
+            self.problems.append(self.problem("duplicate-key", message, event, path))
+            top.skipped = True
+        else:
+            self.keys[path] = (event.start_mark.line, event.start_mark.column)
+        top.key = key
+
+    def open(self, container: dict[str, Any] | list[Any], event: Any) -> None:
+        """The start of a mapping or list."""
+        if event.anchor is not None or event.tag is not None:
+            self.check(event)
+        top = self.stack[-1] if self.stack else None
+        if top is not None and top.key is None and type(top.container) is dict:
+            problem = self.problem("not-yaml", "not YAML as specs use it: a key is a plain word", event, top.path,
+                                   "an expression or a text that starts with { or [ is written in quotes")  # fmt: skip
+            raise SpecError(*self.problems, problem)
+        path = self.put(container, event)
+        self.stack.append(Frame(container, path))
+        if len(self.stack) > DEEPEST:
+            raise SpecError(*self.problems, self.problem("too-deep", f"nested more than {DEEPEST} levels deep", event))
+
+    def put(self, value: Any, event: Any) -> Path_:
+        """Store a value where it belongs; gives its path."""
+        path: Path_ = ()
+        if not self.stack:
+            self.root = value
+        else:
+            top = self.stack[-1]
+            if type(top.container) is list:
+                path = (*top.path, len(top.container))
+                top.container.append(value)
+            else:
+                key, top.key = top.key or "", None
+                path = (*top.path, key)
+                if top.skipped:
+                    top.skipped = False
+                    return ("", *path)  # the places of what is passed over must not stand for the first one
+                top.container[key] = value  # type: ignore[call-overload]
+        self.values[path] = (event.start_mark.line, event.start_mark.column)
+        return path
+
+
+def plain(word: str) -> Any:
+    """The value of an unquoted scalar, by YAML 1.2."""
+    if word in WORDS:
+        return WORDS[word]
+    if INTEGER.match(word):
+        return int(word) if len(word) < 20 else float(word)
+    if FLOAT.match(word):
+        return float(word)
+    if BASED.match(word):
+        return int(word, 0)
+    return word

@@ -1,0 +1,193 @@
+"""From a validated spec to its results: the one place that sees both the spec and the kernel.
+
+Impure: looks at the clock; a Study keeps a runner, so that further instants of the same run are cheap.
+"""
+
+from __future__ import annotations
+
+import math
+import time
+from dataclasses import dataclass
+from functools import cached_property
+from typing import TYPE_CHECKING, Any
+
+import numpy as np
+
+from heuncli.account import model_of
+from heuncli.accuracy import Checked, checked_run
+from heuncli.compose import compose
+from heuncli.kernel.choose import KERNEL
+from heuncli.motion import Recovered, Runner, stops
+from heuncli.peaks import distinct
+from heuncli.results import Array, Block, Results
+from heuncli.scene import prepare
+from heuncli.version import VERSION
+
+if TYPE_CHECKING:
+    from heuncli.undecided import Decided
+
+BLOCKS = frozenset({"motion", "points", "foundation", "joints", "sections", "forces", "energy"})
+SEARCH_PER_STEP = 4  # instants looked at in each step of the integrator when extremes are searched
+MOST_SEARCHED = 20_000
+RESTART_COST = 1e-4  # [s] of one short integration from a known state
+
+
+@dataclass(frozen=True)
+class Options:
+    """What a command asks beside the spec. wanted: report blocks, None for all."""
+
+    tolerance: float | None = None
+    method: str | None = None
+    wanted: frozenset[str] | None = None
+    time_limit: float | None = None
+    least_norm: bool = False
+    reduce: bool = True
+    load_seconds: float = 0.0  # what reading the spec took, for the block `work`
+
+
+class Study:
+    """A solved scene: `results` at the asked instants, `resample` for any others of the same run."""
+
+    def __init__(self, spec: Any, options: Options) -> None:
+        begun = time.perf_counter()
+        self.spec, self.options = spec, options
+        self.scene = prepare(spec)
+        self.runner = Runner(self.scene.layout)
+        self.moving = spec.analysis.type == "motion"
+        self.model = model_of(self.scene, self.runner, "DOP853" if self.moving else "none")
+        self.seconds = dict.fromkeys(("load", "build", "integrate", "check"), 0.0)
+        self.seconds |= {"load": options.load_seconds, "build": time.perf_counter() - begun}
+        self.times = np.array(spec.analysis.times, dtype=float)
+        self.halts: list[float] = []
+        self.checked: Checked | None = None
+        states, at = self.scene.layout.y0[None, :], self.times[:1]
+        if self.moving:
+            self.checked = self._run()
+            states, at = self.checked.run.states, self.checked.run.times
+            self.times = at
+        begun = time.perf_counter()
+        self.found = self.runner.recovered(at, states)
+        self.results = self._results(self.found)
+        self.results.work["seconds"]["recover"] = time.perf_counter() - begun
+
+    def _run(self) -> Checked:
+        deadline = time.monotonic() + self.options.time_limit if self.options.time_limit else None
+        self.halts = stops(self.scene.mechanism, 0.0, float(self.times[-1]))
+        tolerance = self.options.tolerance if self.options.tolerance is not None else self.spec.analysis.tolerance
+        self.tolerance = tolerance
+        checked = checked_run(self.runner, self.times, tolerance, self.halts, deadline)
+        self.seconds |= {"integrate": checked.run.seconds, "check": checked.check_seconds}
+        if checked.lost_seconds:
+            self.seconds["lost"] = checked.lost_seconds
+        return checked
+
+    @cached_property
+    def search_times(self) -> Array:
+        """Instants close enough to bracket every extreme: the asked ones and some within each step, (n,) ascending."""
+        if self.checked is None:
+            return self.times[:1]
+        marks = np.concatenate([[0.0], self.checked.run.ends])
+        per_step = max(1, min(SEARCH_PER_STEP, MOST_SEARCHED // max(len(marks), 1)))
+        inner = (marks[:-1, None] + np.diff(marks)[:, None] * (np.arange(per_step) / per_step)).ravel()
+        # a jump has a value on either side of it
+        grid = np.concatenate([inner, self.halts, [math.nextafter(t, -math.inf) for t in self.halts]])
+        grid = grid[(grid > self.times[0]) & (grid < self.times[-1])]
+        return distinct(np.concatenate([self.times, grid]))
+
+    def resample(self, times: Array) -> Results:
+        """The same run at other instants within it (ascending)."""
+        if self.checked is None:
+            return self.results
+        times = np.asarray(times, dtype=float)
+        return self._results(self.runner.recovered(times, self._states_at(times)))
+
+    def _states_at(self, times: Array) -> Array:
+        assert self.checked is not None
+        run = self.checked.run
+        # a restart runs half the way between two known instants, on average
+        if run.seconds < len(times) * max(RESTART_COST, 0.5 * run.seconds / max(len(self.times), 1)):
+            return self.runner.trajectory(times, run.tolerance, halts=self.halts, ropes=False).states
+        known, states = self.found.times, self.found.states
+        out = np.empty((len(times), self.scene.layout.n_state))
+        for k, t in enumerate(times.tolist()):
+            i = int(np.searchsorted(known, t, side="right")) - 1
+            base, t0 = (states[i], float(known[i])) if i >= 0 else (self.scene.layout.y0, 0.0)
+            out[k] = base
+            if t != t0:
+                piece = self.runner.trajectory([t], run.tolerance, y0=base, t0=t0, halts=self.halts, ropes=False)
+                out[k] = piece.states[0]
+        return out
+
+    def _results(self, found: Recovered) -> Results:
+        wanted = BLOCKS if self.options.wanted is None else self.options.wanted
+        about = self.spec.foundation.about
+        about = np.array(about if about is not None else (0.0, 0.0, 0.0))
+        composed = compose(self.scene, self.runner, found, about, wanted, self.options.least_norm)
+        checked = self.checked
+        estimate = {"motion": 0.0, "reactions": 0.0}
+        if checked is not None:
+            estimate = {"motion": float(checked.motion.max(initial=0.0)), "reactions": checked.reactions}
+        gap = checked.run.gap if checked is not None else self.scene.start.gap
+        accuracy = composed.accuracy | {
+            "constraint_gap": max(composed.accuracy["constraint_gap"], gap),
+            "horizon": checked.horizon if checked is not None else None, "estimate": estimate,
+        }  # fmt: skip
+        return Results(
+            title=self.spec.title, spec={"path": self.spec.path, "sha256": self.spec.sha256}, version=VERSION,
+            model=self.model | ({"split": "; ".join(composed.split)} if composed.split else {}),
+            status=self._status(), time=found.times, **composed.blocks,
+            certain_sums=composed.sums, accuracy=accuracy, work=self._work(),
+            warnings=(*self._warnings(), *self._singular(composed.decided, found.times)),
+        )  # fmt: skip
+
+    def _status(self) -> Block:
+        if self.checked is None:
+            return {"code": "completed", "message": "one instant, nothing integrated"}
+        run = self.checked.run
+        if run.stopped is not None:
+            why = f"at t = {run.times[-1]:.6g} s the rod {run.stopped} would have to push (tension_only)"
+            return {"code": "stopped", "message": why}
+        return {"code": "completed", "message": f"{run.steps} steps to t = {run.times[-1]:.6g} s"}
+
+    def _singular(self, decided: Decided | None, times: Array) -> list[str]:
+        return decided.singular(times, self.model["redundant"]) if decided is not None else []
+
+    def _warnings(self) -> tuple[str, ...]:
+        found = [w for c in self.scene.cuts for w in c.warnings]
+        if self.checked is not None and (worst := float(self.checked.motion.max(initial=0.0))) > self.tolerance:
+            missed = f"the tolerance {self.tolerance:.3g} was not reached"
+            found.append(f"{missed}: the motion is estimated to {worst:.2g} of the scene's size")
+        if self.checked is not None and self.checked.run.stopped is not None:
+            found.append(f"stopped before the end: {self._status()['message']}")
+        return tuple(found)
+
+    def _work(self) -> Block:
+        run = self.checked.run if self.checked else None
+        return {
+            "kernel": KERNEL, "steps": run.steps if run else 0, "evaluations": run.evaluations if run else 0,
+            "seconds": dict(self.seconds),
+        }  # fmt: skip
+
+
+@dataclass(frozen=True)
+class Described:
+    """What `heun model` tells."""
+
+    model: Block
+
+
+def describe(spec: Any) -> Described:
+    """The scene assembled, nothing integrated."""
+    from heuncli.advice import advice  # runs give none
+
+    scene = prepare(spec)
+    model = model_of(scene, Runner(scene.layout), "DOP853" if spec.analysis.type == "motion" else "none")
+    model["notes"] += advice(scene, model)
+    return Described(model)
+
+
+def solve(spec: Any, options: Options | None = None) -> Study:
+    """Solve a spec. Raises SpecError, SolveError, LimitError."""
+    return Study(spec, options if options is not None else Options())
+
+

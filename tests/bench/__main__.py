@@ -1,0 +1,178 @@
+"""Speed, printed: `python -m tests.bench [PART ...]`. Nothing here asserts a time; compare ratios within one run.
+
+Parts: motion, chain, process, export, sections, loops. Each line: what, how far it was from the truth, how long.
+"""
+
+from __future__ import annotations
+
+import json
+import os
+import statistics
+import subprocess
+import sys
+import time
+from collections.abc import Callable
+from functools import partial
+from pathlib import Path
+from typing import Any
+
+os.environ.setdefault("OPENBLAS_NUM_THREADS", "1")  # as the command sets it, before NumPy is loaded
+
+import numpy as np
+
+from heuncli.kernel.choose import KERNEL
+from heuncli.motion import Runner
+from heuncli.report.export import to_csv, to_json
+from heuncli.report.scene import scene_of
+from heuncli.scene import Scene, prepare
+from heuncli.spec.load import load
+from heuncli.study import solve
+
+SCENES = Path(__file__).parent / "scenes"
+REFERENCE = json.loads((SCENES / "reference.json").read_text())
+
+
+def median_ms(f: Callable[[], Any], repeats: int = 15) -> float:
+    """Median processor time of a call [ms]: what else the machine does counts less so."""
+    found = []
+    for _ in range(repeats):
+        begun = time.process_time()
+        f()
+        found.append(time.process_time() - begun)
+    return 1e3 * statistics.median(found)
+
+
+def error(name: str, scene: Scene, runner: Runner, times: Any, states: Any) -> float:
+    """Largest distance of a centre of mass from the reference at the end [m]."""
+    found = runner.recovered(times[-1:], states[-1:]).bodies[0]
+    worst = 0.0
+    for i, body in enumerate(scene.mechanism.bodies):
+        k = scene.layout.place[i]
+        place = found[k, 9:12] + found[k, :9].reshape(3, 3) @ (body.center - scene.layout.reference[k])
+        worst = max(worst, float(np.linalg.norm(place - REFERENCE[name]["center"][body.name])))
+    return worst
+
+
+def motion() -> None:
+    """The benchmark scenes: integration of one run alone, to 1e-9 and 1e-12 m; and with the check run."""
+    for name in ("double", "top", "chain10", "crank"):
+        spec = load(str(SCENES / f"{name}.yaml"))
+        scene = prepare(spec)
+        runner = Runner(scene.layout)
+        times = np.array(spec.analysis.times)
+        for goal in (1e-9, 1e-12) if KERNEL == "compiled" else (1e-9,):
+            one_motion(name, scene, runner, times, goal)
+        study = solve(spec)
+        seconds, size = study.results.work["seconds"], study.scene.layout.size
+        off = error(name, study.scene, study.runner, times, study.found.states)
+        print(
+            f"{name:8s} as asked, to {spec.analysis.tolerance:.0e} of {size:.3g} m: "
+            f"{1e3 * seconds['integrate']:.3f} ms, "
+            f"check {1e3 * seconds['check']:.3f} ms; "
+            f"estimate {study.results.accuracy['estimate']['motion']:.1e}, true {off / size:.1e}"
+        )
+
+
+def one_motion(name: str, scene: Scene, runner: Runner, times: Any, goal: float) -> None:
+    """The loosest tolerance that reaches the goal [m], and what it costs."""
+    repeats = 15 if KERNEL == "compiled" else 1
+    for tolerance in (10.0 ** (-0.5 * k) for k in range(8, 29)):
+        run = runner.trajectory(times, tolerance)
+        off = error(name, scene, runner, times, run.states)
+        if off <= goal:
+            break
+    alone = median_ms(partial(runner.trajectory, times, tolerance), repeats)
+    check = median_ms(partial(runner.trajectory, times, tolerance / 30.0), repeats)
+    print(
+        f"{name:8s} to {goal:.0e} m: error {off:.1e} m, {alone:7.3f} ms alone, {1 + check / alone:.2f} times that with "
+        f"the check run; {run.steps} steps, {run.evaluations} evaluations, {1e3 * alone / run.evaluations:.2f} us each"
+    )
+
+
+def chain(n: int) -> str:
+    """A chain of n bars on ball joints, released level, as a spec."""
+    head = "heun: 1\ntitle: chain\ngravity: [0, 0, -9.81]\nground: {points: {O: [0, 0, 0]}}\nbodies:\n"
+    bar = (
+        "  b{}: {{mass: 1.0, center: [0, 0, -0.5], inertia: [0.0842, 0.0850, 0.0017], "
+        "points: {{top: [0, 0, 0], end: [0, 0, -1]}}, orientation: {{axis: [0, 1, 0], angle: -90 deg}}}}\n"
+    )
+    joint = "  j{}: {{type: ball, from: {}, to: b{}.top}}\n"
+    bodies = "".join(bar.format(i) for i in range(n))
+    joints = "".join(joint.format(i, f"b{i - 1}.end" if i else "ground.O", i) for i in range(n))
+    return f"{head}{bodies}joints:\n{joints}analysis: {{duration: 0.05, samples: 3, tolerance: 1e-6}}\n"
+
+
+def chains() -> None:
+    """Cost per body and evaluation from a chain of 10 to one of 1,000; 10,000 bodies read, assembled and run."""
+    cost = {}
+    for n in (10, 100, 1000):
+        spec = load("chain.yaml", chain(n))
+        runner = Runner(prepare(spec).layout)
+        run = runner.trajectory([0.05], 1e-6)
+        cost[n] = median_ms(partial(runner.trajectory, [0.05], 1e-6), 15) / run.evaluations / n
+        print(f"chain of {n:5d}: {1e6 * cost[n]:.0f} ns a body and evaluation, {cost[n] / cost[10]:.2f} times 10's")
+    begun = time.perf_counter()
+    spec = load("chain.yaml", chain(10_000))
+    read = time.perf_counter()
+    scene = prepare(spec)
+    built = time.perf_counter()
+    run = Runner(scene.layout).trajectory([0.05], 1e-6)
+    print(
+        f"chain of 10000: read {read - begun:.2f} s, assembled and laid out {built - read:.2f} s, "
+        f"0.05 s of motion in {run.seconds:.2f} s, {run.steps} steps"
+    )
+
+
+def process() -> None:
+    """Whole processes against `import numpy`, in turn."""
+    double = str(SCENES / "double.yaml")
+    commands = {
+        "import numpy": [sys.executable, "-c", "import numpy"],
+        "heun --help": [sys.executable, "-m", "heuncli", "--help"],
+        "heun run double.yaml": [sys.executable, "-m", "heuncli", "run", double],
+        "heun run double.yaml --format json": [sys.executable, "-m", "heuncli", "run", double, "--format", "json"],
+    }
+    found: dict[str, list[float]] = {name: [] for name in commands}
+    for _ in range(7):
+        for name, command in commands.items():
+            begun = time.perf_counter()
+            subprocess.run(command, stdout=subprocess.DEVNULL, check=True)
+            found[name].append(time.perf_counter() - begun)
+    bare = statistics.median(found["import numpy"])
+    for name, seconds in found.items():
+        middle = statistics.median(seconds)
+        print(f"{name}: {1e3 * middle:.0f} ms, {middle / bare:.2f} times `import numpy`")
+
+
+def export() -> None:
+    """JSON and CSV, microseconds a number."""
+    spec = load(str(SCENES / "chain10.yaml"), overrides={"analysis.samples": "2001"})
+    results, scene = solve(spec).results, scene_of(spec)
+    for name, write in (("JSON", to_json), ("CSV", lambda found: to_csv(found, scene))):
+        text = write(results)
+        numbers = text.count(",") + 1 if name == "JSON" else text.count("\n")
+        ms = median_ms(partial(write, results), 3)
+        print(f"{name}: {numbers} numbers, {ms:.0f} ms, {1e3 * ms / numbers:.2f} us a number")
+
+
+def sections() -> None:
+    """2,001 instants of `double` (bars as cylinders) with 50 cuts, beyond the motion."""
+    text = (SCENES / "double.yaml").read_text().replace("samples: 201", "samples: 2001")
+    for length, inertia in ((1.0, "[0.0842, 0.0850, 0.0017]"), (0.8, "[0.0437, 0.0440, 0.0013]")):
+        given = f"mass: {length}\n    center: [0, 0, -{length / 2:.1f}]\n    inertia: {inertia}"  # a kilogram a metre
+        shape = f"{{type: cylinder, from: [0, 0, 0], to: [0, 0, -{length}], radius: 0.05, mass: {length}}}"
+        assert given in text
+        text = text.replace(given, f"shapes: [{shape}]")
+    runs = (f"  {body}: {{body: {body}, from: top, to: end, count: 25}}" for body in ("upper", "lower"))
+    bare, cut = load("double.yaml", text), load("double.yaml", "\n".join([text.rstrip(), "sections:", *runs, ""]))
+    pairs = [(median_ms(lambda: solve(bare), 1), median_ms(lambda: solve(cut), 1)) for _ in range(15)]
+    more = statistics.median(b - a for a, b in pairs)
+    print(f"2,001 instants: {statistics.median(a for a, _ in pairs):.1f} ms; with 50 cuts {more:.1f} ms more")
+
+
+PARTS = {"motion": motion, "chain": chains, "process": process, "export": export, "sections": sections}
+
+if __name__ == "__main__":
+    print(f"kernel: {KERNEL}")
+    for part in sys.argv[1:] or PARTS:
+        PARTS[part]()

@@ -1,0 +1,224 @@
+"""The commands as a user types them: what they print, and where."""
+
+from __future__ import annotations
+
+import csv
+import json
+from pathlib import Path
+
+import pytest
+
+from heuncli.errors import SpecError
+from tests.cli.conftest import HANGING, SPECS, Heun
+
+
+def row(text: str, name: str) -> list[str]:
+    """The cells of the table row that begins with a name."""
+    return next(line.split() for line in text.splitlines() if line.split()[:1] == [name])
+
+
+def test_run_prints_tables_and_nothing_else(heun: Heun) -> None:
+    done = heun("run", "hanging.yaml")
+    assert (done.returncode, done.stderr) == (0, "")
+    assert "A bar hangs at rest" in done.stdout
+    assert row(done.stdout, "pivot")[-4:] == ["0", "0", "9.81", "9.81"]
+    assert row(done.stdout, "total")[1:5] == ["0", "0", "-9.81", "9.81"]
+
+
+def test_run_of_a_motion_tells_extremes_and_accuracy(heun: Heun) -> None:
+    text = heun("run", "swinging.yaml").stdout
+    for part in ("motion within", "first", "last", "at [s]", "JOINTS", "ENERGY"):
+        assert part in text
+    assert "t [s]" in heun("run", "swinging.yaml", "--at", "0.25,0.5").stdout
+    every = heun("run", "swinging.yaml", "--all", "--only", "energy").stdout
+    assert len(every.partition("ENERGY")[2].splitlines()) == 2 + 11 + 1  # heads, instants, and what is left out
+
+
+def test_standard_input_and_every_format(heun: Heun) -> None:
+    parsed = json.loads(heun("run", "-", "--format", "json", text=HANGING).stdout)
+    assert parsed["joints"]["pivot"]["force"] == [[0.0, 0.0, pytest.approx(9.81)]]
+    lines = heun("run", "hanging.yaml", "--format", "csv").stdout.splitlines()
+    assert list(next(csv.DictReader(lines))) == ["time", "kind", "name", "quantity", "component", "unit", "value"]
+    assert "| pivot |" in heun("run", "hanging.yaml", "--format", "markdown").stdout
+
+
+def test_output_files_are_named_for_what_they_hold(heun: Heun, folder: Path) -> None:
+    done = heun("run", "hanging.yaml", "-o", "out.json")
+    assert (done.returncode, done.stdout) == (0, "")
+    assert json.loads((folder / "out.json").read_text())["title"] == "A bar hangs at rest"
+    heun("run", "hanging.yaml", "-o", "out.csv", "--format", "markdown")
+    assert (folder / "out.csv").read_text().startswith("## A bar hangs at rest")
+
+
+def test_only_what_is_asked_for_is_in_the_output(heun: Heun) -> None:
+    parsed = json.loads(heun("run", "hanging.yaml", "--only", "joints", "--format", "json").stdout)
+    assert "joints" in parsed
+    assert not {"foundation", "bodies", "energy"} & parsed.keys()
+    asked = SPECS["swinging"] + "report: [motion, energy]\n"
+    text = heun("run", "-", text=asked).stdout
+    assert "MOTION" in text
+    assert "JOINTS" not in text
+    assert "MOTION" not in heun("run", "swinging.yaml").stdout
+
+
+def test_a_report_of_what_the_scene_has_not_says_so(heun: Heun) -> None:
+    done = heun("run", "swinging.yaml", "--only", "sections")
+    assert done.returncode == 0
+    assert "nothing to show of sections: the scene has none" in done.stdout
+
+
+def test_instants_of_an_export(heun: Heun) -> None:
+    parsed = json.loads(heun("run", "swinging.yaml", "--format", "json", "--at", "0.25,0.75").stdout)
+    assert parsed["time"] == [0.25, 0.75]
+
+
+def test_measure_and_set(heun: Heun) -> None:
+    done = heun("run", "hanging.yaml", "--measure", "joints.pivot.force.z", "--set", "m=2")
+    assert float(done.stdout) == pytest.approx(19.62)
+    peak = heun("run", "swinging.yaml", "--measure", "max joints.pivot.force").stdout
+    sample = heun("run", "swinging.yaml", "--measure", "at 0.33 joints.pivot.force").stdout
+    assert float(peak) >= float(sample)
+
+
+def test_extremes_on_the_page_are_those_measured(heun: Heun) -> None:
+    shown = row(heun("run", "swinging.yaml", "--only", "joints").stdout, "|F|")
+    measured = [heun("run", "swinging.yaml", "--measure", f"{how} joints.pivot.force").stdout for how in ("min", "max")]
+    assert [float(shown[4]), float(shown[6])] == pytest.approx([float(text) for text in measured], rel=1e-5)
+
+
+@pytest.mark.parametrize(
+    ("words", "told"),
+    [
+        ([], "Usage"),
+        (["run"], "Missing argument"),
+        (["run", "nosuch.yaml"], "nosuch.yaml"),
+        (["run", "wrong.yaml"], "wrong.yaml:9:"),
+        (["run", "hanging.yaml", "--format", "xml"], "known: table, json, csv, markdown"),
+        (["run", "hanging.yaml", "--only", "joins"], "known: motion"),
+        (["run", "hanging.yaml", "--only", "shares"], "not in this version yet"),
+        (["run", "hanging.yaml", "--set", "m"], "NAME=VALUE"),
+        (["run", "hanging.yaml", "--at", "1"], "there is one instant"),
+        (["run", "swinging.yaml", "--at", "1.5"], "the run goes from 0 to 1 s"),
+        (["run", "swinging.yaml", "--at", "soon"], "expected numbers"),
+        (["run", "hanging.yaml", "--tolerance", "-1"], "positive"),
+        (["run", "hanging.yaml", "--measure", "joints.pivt.force.z"], "no 'pivt'"),
+        (["run", "hanging.yaml", "--by-cause"], "not in this version yet"),
+        (["run", "hanging.yaml", "-o", "hanging.yaml"], "the spec itself"),
+        (["validate", "hanging.yaml", "wrong.yaml"], "wrong.yaml:9:"),
+        (["model", "hanging.yaml", "--format", "csv"], "known: text, json"),
+        (["check", "nosuch.yaml"], "nosuch.yaml"),
+        (["check", "hanging.yaml", "--junit", "x"], "not in this version yet"),
+        (["chart", "hanging.yaml"], "not in this version yet"),
+    ],
+)
+def test_bad_usage_and_bad_specs_leave_with_2(heun: Heun, words: list[str], told: str) -> None:
+    done = heun(*words)
+    assert done.returncode == 2
+    assert told in done.stderr + done.stdout
+    assert "Traceback" not in done.stderr
+    assert done.stdout == "" or words[:1] in ([], ["check"])
+
+
+def test_a_traceback_only_for_those_who_ask(heun: Heun, monkeypatch: pytest.MonkeyPatch) -> None:
+    monkeypatch.setenv("HEUN_DEBUG", "1")
+    done = heun("run", "nosuch.yaml")
+    assert done.returncode == 2
+    assert SpecError.__name__ in done.stderr
+    assert "Traceback" in done.stderr
+
+
+def test_validate_tells_all_errors_of_all_files_at_once(heun: Heun) -> None:
+    done = heun("validate", "wrong.yaml", "hanging.yaml", "unbound.yaml")
+    assert (done.returncode, done.stdout) == (2, "")
+    lines = done.stderr.splitlines()
+    assert any(line.startswith("wrong.yaml:7:") and "mas" in line and line.endswith("]") for line in lines)
+    assert any(line.startswith("wrong.yaml:9:") and "bal" in line for line in lines)
+    assert any(line.startswith("unbound.yaml:9:") and "tip" in line for line in lines)
+
+
+def test_validate_says_so_briefly_when_all_is_well(heun: Heun) -> None:
+    done = heun("validate", "hanging.yaml", "swinging.yaml")
+    assert done == (0, "hanging.yaml: fine (1 body, 1 joint)\nswinging.yaml: fine (1 body, 1 joint)\n", "")
+    assert heun("validate", "hanging.yaml", "--quiet") == (0, "", "")
+
+
+def test_model_is_a_note_or_json(heun: Heun) -> None:
+    done = heun("model", "hanging.yaml")
+    assert done.returncode == 0
+    assert done.stdout.startswith("A bar hangs at rest\n")
+    assert row(done.stdout, "freedoms")[1] == "3"
+    assert json.loads(heun("model", "hanging.yaml", "--format", "json").stdout)["freedoms"] == 3
+
+
+def test_check_of_what_holds_and_what_does_not(heun: Heun) -> None:
+    assert heun("check", "expecting.yaml").stdout == "1 spec, 1 passed, 0 failed\n"
+    done = heun("check", "failing.yaml", "expecting.yaml", "hanging.yaml")
+    assert done.returncode == 1
+    assert row(done.stdout, "failing.yaml:11")[1] == "joints.pivot.force.z"
+    assert "off by 0.11" in done.stdout
+    assert "3 specs, 1 passed, 1 failed, 1 spec ran with nothing expected" in done.stdout
+    parsed = json.loads(heun("check", "failing.yaml", "--format", "json").stdout)
+    assert (parsed["passed"], parsed["failed"]) == (0, 1)
+    assert parsed["cases"][0]["found"] == pytest.approx(9.81)
+
+
+def test_check_tells_what_could_not_be_solved_and_goes_on(heun: Heun) -> None:
+    done = heun("check", "wrong.yaml", "failing.yaml", "expecting.yaml")
+    assert done.returncode == 2
+    assert "wrong.yaml:9:" in done.stderr
+    assert "3 specs, 1 passed, 1 failed, 1 spec not solved" in done.stdout
+    assert heun("check", "held.yaml", "failing.yaml").returncode == 3
+
+
+def test_check_of_folders_passes_by_what_is_broken_on_purpose(heun: Heun, folder: Path) -> None:
+    (folder / "specs" / "broken").mkdir(parents=True)
+    (folder / "specs" / ".hidden").mkdir()
+    for name, place in {"expecting": "", "wrong": "broken", "failing": ".hidden"}.items():
+        (folder / f"{name}.yaml").rename(folder / "specs" / place / f"{name}.yaml")
+    done = heun("check", "specs")
+    assert done == (0, f"1 spec, 1 passed, 0 failed, {Path('specs/broken')} passed by\n", "")
+    assert heun("check", "specs/broken").returncode == 2
+    assert heun("check", "specs/.hidden").returncode == 1
+
+
+def test_strict_fails_on_warnings_but_prints(heun: Heun) -> None:
+    done = heun("run", "unsound.yaml", "--strict")
+    assert done.returncode == 1
+    assert "warning" in done.stderr
+    assert "JOINTS" in done.stdout
+    assert heun("run", "hanging.yaml", "--strict").returncode == 0
+    assert heun("run", "unsound.yaml").returncode == 0
+    assert heun("run", "unsound.yaml", "--quiet").stderr == ""
+
+
+def test_a_time_limit_is_4(heun: Heun) -> None:
+    done = heun("run", "long.yaml", "--time-limit", "0.2")
+    assert (done.returncode, done.stdout) == (4, "")
+
+
+def test_a_scene_that_cannot_be_solved_is_3(heun: Heun) -> None:
+    done = heun("run", "held.yaml")
+    assert (done.returncode, done.stdout) == (3, "")
+    assert "pivot" in done.stderr
+
+
+@pytest.mark.parametrize(
+    ("trouble", "code", "told"),
+    [
+        (ZeroDivisionError("float"), 70, "this is a bug in heun: ZeroDivisionError: float at "),
+        (MemoryError(), 4, "the memory does not suffice"),
+        (KeyboardInterrupt(), 130, "heun: interrupted"),
+    ],
+)
+def test_no_trouble_reaches_a_user_as_a_traceback(
+    heun: Heun, monkeypatch: pytest.MonkeyPatch, trouble: BaseException, code: int, told: str
+) -> None:
+    def fail(*_: object, **__: object) -> None:
+        raise trouble
+
+    monkeypatch.setattr("heuncli.cli.run.load", fail)
+    monkeypatch.delenv("HEUN_DEBUG", raising=False)
+    done = heun("run", "hanging.yaml")
+    assert (done.returncode, done.stdout) == (code, "")
+    assert told in done.stderr
+    assert "Traceback" not in done.stderr

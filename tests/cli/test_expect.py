@@ -1,0 +1,83 @@
+"""`expect` of a spec against its results."""
+
+from __future__ import annotations
+
+from types import SimpleNamespace
+from typing import Any
+
+import numpy as np
+import pytest
+
+from heuncli.cli.expect import compare, wanted
+from heuncli.errors import Place
+from tests.report.fakes import FakeStudy, pendulum
+
+STUDY = FakeStudy(np.linspace(0.0, 2.0, 21))
+PLACE = Place("fake.yaml", 7, 3)
+FX = "joints.pivot.force.x"
+FX_AT_1 = 3.0 * np.sin(2.0)
+
+
+def expectation(of: str, is_: Any, **more: Any) -> Any:
+    return SimpleNamespace(
+        **{"of": of, "is_": is_, "at": None, "peak": None, "rel": None, "abs": None, "place": PLACE, **more}
+    )
+
+
+@pytest.mark.parametrize(
+    "item",
+    [
+        expectation(FX, FX_AT_1, at=1.0),
+        expectation(FX, FX_AT_1 * (1.0 + 0.9e-3), at=1.0, rel=1e-3),
+        expectation(FX, FX_AT_1 + 0.9e-3, at=1.0, abs=1e-3),
+        expectation(FX, 3.0, peak="max", rel=1e-12),
+        expectation(FX, 3.0 * np.sin(4.0), peak="min", rel=1e-12),
+        expectation("foundation.force.z", 10.81, peak="abs", rel=1e-12),
+        expectation("joints.pivot.force", (FX_AT_1, 0.0, 9.81 + np.cos(2.0)), at=1.0),
+        expectation("model.freedoms", 4.0),
+        expectation("sections.along.s", (0.0, 0.2, 0.4, 0.6, 0.8)),
+        expectation("joints.pivot.force.10.x", FX_AT_1),
+    ],
+)
+def test_what_holds(item: Any) -> None:
+    assert compare(STUDY, item).failure is None
+
+
+@pytest.mark.parametrize(
+    ("item", "why"),
+    [
+        (expectation(FX, FX_AT_1 * (1.0 + 1.1e-3), at=1.0, rel=1e-3), "off by 0.003, allowed 0.00273"),
+        (expectation(FX, FX_AT_1 + 1.1e-3, at=1.0, abs=1e-3), "off by 0.0011, allowed 0.001"),
+        (expectation(FX, FX_AT_1 * (1.0 + 2e-6), at=1.0), "off by"),
+        (expectation(FX, None, at=1.0), "expected open, found a number"),
+        (expectation(FX, 1.0, at=1.03), "t = 1.03 s is not an instant of the output; the nearest is 1 s"),
+        (expectation(FX, 1.0), "one number expected, a list of 21 found"),
+        (expectation("joints.pivot.force", 1.0, at=1.0), "one number expected, a list of 3 found"),
+        (expectation("joints.pivt.force", 1.0, at=1.0), "joints has no 'pivt'"),
+        (expectation("model.freedoms", 5.0), "off by 1"),
+    ],
+)
+def test_what_does_not_hold_says_why(item: Any, why: str) -> None:
+    case = compare(STUDY, item)
+    assert not case.passed
+    assert why in (case.failure or "")
+
+
+def test_open_is_expected_as_null() -> None:
+    force = pendulum(STUDY.times).joints["pivot"]["force"].copy()
+    force[:, 2] = np.nan
+    study = FakeStudy(STUDY.times[:1], {"joints": {"pivot": {"force": force[:1]}}})
+    assert compare(study, expectation("joints.pivot.force.z", None)).passed
+    assert compare(study, expectation("joints.pivot.force", (0.0, 0.0, None))).passed
+    assert compare(study, expectation("joints.pivot.force.z", 1.0)).failure == "open"
+    assert not compare(study, expectation("joints.pivot.force", None)).passed
+
+
+def test_one_instant_needs_no_at() -> None:
+    study = FakeStudy(np.array([1.0]))
+    assert compare(study, expectation(FX, FX_AT_1)).passed
+
+
+def test_only_what_is_expected_has_to_be_computed() -> None:
+    assert wanted([expectation(FX, 1.0), expectation("energy.kinetic", 1.0)]) == {"joints", "energy"}
+    assert wanted([expectation(FX, 1.0), expectation("certain_sums.0.value", 1.0)]) is None

@@ -1,0 +1,93 @@
+"""One number of a run, in the words of `--measure`."""
+
+from __future__ import annotations
+
+import json
+
+import numpy as np
+import pytest
+
+from heuncli.cli import measure
+from heuncli.errors import HeunError
+from tests.report.fakes import SCENE, FakeStudy
+
+STUDY = FakeStudy(np.linspace(0.0, 2.0, 21))
+
+
+def number(words: str) -> float:
+    return float(measure.write(measure.parse(words), STUDY, SCENE, "table"))
+
+
+@pytest.mark.parametrize(
+    ("words", "value"),
+    [
+        ("max joints.pivot.force.x", 3.0),
+        ("min joints.pivot.force.x", 3.0 * np.sin(4.0)),
+        ("max abs joints.pivot.force.x", 3.0),
+        ("abs foundation.force.z", 10.81),
+        ("max abs foundation.force.z", 10.81),
+        ("max joints.pivot.force", 10.81),
+        ("min joints.elbow.moment", 0.0),
+        ("first energy.potential", 0.5),
+        ("final energy.kinetic", 0.5 * np.sin(2.0) ** 2),
+        ("at 0.123 energy.kinetic", 0.5 * np.sin(0.123) ** 2),
+        ("at 0.5 joints.pivot.force", np.hypot(3.0 * np.sin(1.0), 9.81 + np.cos(1.0))),
+        ("max sections.along.M2", 2.4),
+        ("max abs sections.along.M2.4", 2.4),
+        ("model.freedoms", 4.0),
+        ("accuracy.estimate.motion", 4e-11),
+        ("foundation.about.z", 0.0),
+    ],
+)
+def test_the_forms(words: str, value: float) -> None:
+    assert number(words) == pytest.approx(value, rel=1e-12, abs=1e-12)
+
+
+def test_all_digits_are_printed() -> None:
+    text = measure.write(measure.parse("final energy.kinetic"), STUDY, SCENE, "table")
+    assert float(text) == STUDY.results.energy["kinetic"][-1]
+    assert text.endswith("\n")
+
+
+def test_json_tells_the_instant_too() -> None:
+    text = measure.write(measure.parse("max joints.pivot.force.x"), STUDY, SCENE, "json")
+    block = json.loads(text)
+    assert block["measure"] == "max joints.pivot.force.x"
+    assert block["value"] == pytest.approx(3.0)
+    assert block["at"] == pytest.approx(np.pi / 4.0, abs=1e-6)
+
+
+def test_what_is_open_reads_open() -> None:
+    study = FakeStudy(STUDY.times, {"energy": {"kinetic": np.full(1, np.nan)}})
+    assert measure.write(measure.parse("final energy.kinetic"), study, SCENE, "table") == "open\n"
+
+
+@pytest.mark.parametrize(
+    "words", ["", "max", "most energy.kinetic", "at energy.kinetic", "at nan energy.kinetic", "a b c d"]
+)
+def test_other_words_are_refused_with_the_forms(words: str) -> None:
+    with pytest.raises(HeunError, match="expected \\[max"):
+        measure.parse(words)
+
+
+@pytest.mark.parametrize(
+    ("words", "why"),
+    [
+        ("energy.kinetic", "runs over 21 instants: say max, min"),
+        ("max model.freedoms", "has no instants"),
+        ("foundation.about", "is 3 numbers"),
+        ("at 3 energy.kinetic", "the run goes from 0 to 2 s"),
+        ("final sections.along.M1", "is 5 numbers"),
+        ("max energy.kinetc", "energy has no 'kinetc'; known: kinetic, potential, work"),
+    ],
+)
+def test_what_is_not_one_number_is_refused(words: str, why: str) -> None:
+    with pytest.raises(HeunError, match=why) as caught:
+        number(words)
+    assert caught.value.exit_code == 2
+
+
+def test_only_what_is_measured_has_to_be_computed() -> None:
+    assert measure.parse("max abs sections.middle.M1").wanted == {"sections"}
+    assert measure.parse("final bodies.upper.center.z").wanted == {"motion"}
+    assert measure.parse("accuracy.energy_drift").wanted is None

@@ -1,0 +1,59 @@
+"""What only a process of its own shows: full disks, closed outputs, readers that leave, interrupts."""
+
+from __future__ import annotations
+
+import os
+import signal
+import subprocess
+import sys
+import time
+from pathlib import Path
+
+import pytest
+
+ROOT = Path(__file__).parents[2]
+ENVIRONMENT = {**os.environ, "PYTHONPATH": str(ROOT)}
+
+
+def shell(line: str, folder: Path) -> subprocess.CompletedProcess[str]:
+    """A line of shell in which `heun` is the command."""
+    line = line.replace("heun", f"{sys.executable} -m heuncli", 1)
+    return subprocess.run(
+        ["bash", "-c", line], capture_output=True, text=True, cwd=folder, timeout=60, env=ENVIRONMENT, check=False
+    )
+
+
+def test_the_module_runs_as_the_command_does(folder: Path) -> None:
+    done = shell("heun run hanging.yaml --measure joints.pivot.force.z", folder)
+    assert (done.returncode, done.stderr) == (0, "")
+    assert float(done.stdout) == pytest.approx(9.81)
+
+
+@pytest.mark.skipif(not Path("/dev/full").exists(), reason="no full device to write to")
+@pytest.mark.parametrize("words", ["run hanging.yaml", "--help", "--version"])
+def test_a_full_disk_is_5(folder: Path, words: str) -> None:
+    done = shell(f"heun {words} > /dev/full", folder)
+    assert done.returncode == 5
+    assert done.stderr == "heun: standard output: No space left on device [output-failed]\n"
+
+
+def test_a_closed_output_is_5(folder: Path) -> None:
+    done = shell("heun run hanging.yaml >&-", folder)
+    assert done.returncode == 5
+    assert "closed" in done.stderr
+
+
+def test_a_reader_that_goes_away_is_141_and_silent(folder: Path) -> None:
+    done = shell("heun run swinging.yaml --all | { exec <&-; sleep 3; }; exit ${PIPESTATUS[0]}", folder)
+    assert (done.returncode, done.stderr) == (141, "")
+
+
+def test_an_interrupt_is_130(folder: Path) -> None:
+    command = [sys.executable, "-m", "heuncli", "run", "long.yaml"]
+    heard = signal.signal(signal.SIGINT, signal.default_int_handler)  # one that is ignored is ignored by children too
+    with subprocess.Popen(command, cwd=folder, stdout=-1, stderr=-1, text=True, env=ENVIRONMENT) as process:
+        signal.signal(signal.SIGINT, heard)
+        time.sleep(2.0)
+        process.send_signal(signal.SIGINT)
+        out, err = process.communicate(timeout=60)
+    assert (process.returncode, out, err) == (130, "", "heun: interrupted\n")

@@ -1,0 +1,103 @@
+"""Two readers of the command line, one meaning; and no more imported than needed."""
+
+from __future__ import annotations
+
+import random
+import subprocess
+import sys
+
+import pytest
+
+from heuncli.cli import app, plain
+from heuncli.cli.requests import COMMANDS, rows
+
+WORDS = {
+    str | None: ["x", "0.5,1", "-1", "a b", "k=v=w", ""],
+    float | None: ["1e-9", "3", "0.5"],
+    tuple[str, ...]: ["L=1", "a.b=2 mm"],
+}
+
+
+def random_line(seed: int) -> list[str]:
+    draw = random.Random(seed)
+    name = draw.choice(list(COMMANDS))
+    line = []
+    for row in rows(COMMANDS[name]):
+        if not row.option.words:
+            many = row.type == tuple[str, ...]
+            line += [[draw.choice(["a.yaml", "-", "dir/b.yaml"])] for _ in range(draw.randint(1, 3) if many else 1)]
+        elif draw.random() < 0.4:
+            word = draw.choice(row.option.words)
+            if row.type is bool:
+                line.append([word])
+            else:
+                value = draw.choice(WORDS[row.type])
+                line.append([f"{word}={value}"] if word.startswith("--") and draw.random() < 0.5 else [word, value])
+    draw.shuffle(line)
+    return [name, *(word for part in line for word in part)]
+
+
+@pytest.mark.parametrize("seed", range(60))
+def test_both_readers_understand_a_plain_line_alike(seed: int) -> None:
+    line = random_line(seed)
+    request = plain.read(line)
+    assert request is not None
+    assert app.read(line) == request
+
+
+@pytest.mark.parametrize(
+    "line",
+    [
+        [],
+        ["--help"],
+        ["run"],
+        ["run", "a.yaml", "b.yaml"],
+        ["run", "a.yaml", "--nonsense"],
+        ["run", "a.yaml", "--tolerance", "small"],
+        ["run", "a.yaml", "--tolerance"],
+        ["run", "a.yaml", "--all=yes"],
+        ["run", "--help"],
+        ["nonsense"],
+    ],
+)
+def test_what_is_not_plain_is_left_to_typer_which_answers_with_2_or_help(
+    line: list[str], capsys: pytest.CaptureFixture[str]
+) -> None:
+    assert plain.read(line) is None
+    code = app.read(line)
+    assert code == (0 if "--help" in line else 2)
+    answer = capsys.readouterr()
+    assert (
+        ("Usage: heun" in answer.out)
+        if code == 0
+        else ("Error: " in answer.err or "Usage: heun" in answer.err + answer.out)
+    )
+
+
+def imported(code: str) -> set[str]:
+    shown = subprocess.run(
+        [sys.executable, "-c", f"import sys; sys.argv[:] = ['heun', *{code.split()!r}]\n" + IMPORTS],
+        capture_output=True,
+        text=True,
+        check=True,
+    )
+    return set(shown.stdout.splitlines()[-1].split())
+
+
+IMPORTS = """
+from heuncli.__main__ import main
+try:
+    main()
+except SystemExit:
+    pass
+print(' '.join(sys.modules))
+"""
+
+
+def test_help_imports_no_numpy() -> None:
+    for line in ("--help", "run --help", "nonsense", "balance x"):
+        assert not {"numpy", "yaml", "rich", "scipy"} & imported(line), line
+
+
+def test_the_version_imports_nothing_heavy() -> None:
+    assert not {"numpy", "yaml", "typer", "pydantic"} & imported("--version")

@@ -1,0 +1,134 @@
+"""accuracy.estimate.motion against the true error, tolerances 1e-4 to 1e-13: never below it, near twice it.
+
+The true error is that against a run at a local tolerance of 1e-15, itself held against closed forms and end states in
+quadruple precision; how far it is sure is seen from a second such run.
+"""
+
+from __future__ import annotations
+
+import json
+from functools import cache
+from pathlib import Path
+from typing import NamedTuple
+
+import numpy as np
+import pytest
+
+from heuncli.results import Array
+from heuncli.spec.load import load
+from heuncli.study import Options, Study, solve
+from tests.identities.cases import tree_scene
+from tests.oracle.values import to_yaml
+from tests.references.bars import chain, double, rods, top
+from tests.references.test_theory_2j_motion import free_top, heavy_top
+from tests.references.test_theory_golden_a import SCENE as GOLDEN_A
+from tests.scenes import near
+
+RIM = "points: {x: [1, 0, 0], y: [0, 1, 0], z: [0, 0, 1], "  # so that attitudes are seen in places
+SCENES = {
+    "double": double("{duration: 2, samples: 201}"),
+    "top": top("{duration: 2, samples: 201}"),
+    "chain10": chain(10, "{duration: 1, samples: 101}"),
+    "free top": free_top("[1, 2, 3, 4, 5, 6, 7, 8, 9, 10]", True).replace("points: {", RIM),
+    "heavy top": heavy_top(8, "60 deg", "[0.5, 1, 2, 3, 4]").replace("points: {", RIM),
+    "pendulum": rods([2.967], [0.0], "{duration: 5, samples: 51}", point_masses=True),
+    "two rods": rods([2.5, 2.5], [0.0, 0.0], "{duration: 3, samples: 61}"),
+    "golden A": GOLDEN_A + "analysis: {duration: 2, samples: 41}",
+    **{f"tree {seed}": to_yaml({**tree_scene(seed)[0], "analysis": {"duration": 1.0, "samples": 21}})
+       for seed in (0, 1, 4, 5, 6, 7, 9, 10, 12, 14)},
+}  # fmt: skip
+TOLERANCES = [10.0**-k for k in range(4, 14)]
+LIGHT = ("pendulum",)  # for the plain kernel
+NAMES = [name if name in LIGHT else pytest.param(name, marks=pytest.mark.heavy) for name in SCENES]
+END_STATES = json.loads((Path(__file__).parents[1] / "references" / "end_states.json").read_text(encoding="utf-8"))
+
+
+class Exact(NamedTuple):
+    """Places of all centres and named points at all asked instants, (n_t, n, 3), and how far they are sure [m]."""
+
+    places: Array
+    sure: float
+
+
+def places(study: Study, local: float) -> Array:
+    """The same by one run at a local tolerance."""
+    run = study.runner.trajectory(study.times, local)
+    found = study._results(study.runner.recovered(run.times, run.states))
+    return read_places(found.bodies, found.points)
+
+
+def read_places(bodies: dict[str, dict[str, Array]], points: dict[str, dict[str, Array]]) -> Array:
+    return np.stack([*(b["center"] for b in bodies.values()), *(p["position"] for p in points.values())], axis=1)
+
+
+@cache
+def exact(name: str) -> Exact:
+    study = solve(load("scene.yaml", SCENES[name]))
+    first, second = places(study, 1e-15), places(study, 2e-15)
+    return Exact(first, distance(first, second) + 1e-15 * study.scene.layout.size)
+
+
+def distance(a: Array, b: Array) -> float:
+    return float(np.sqrt(np.max(np.sum((a - b) ** 2, axis=2))))
+
+
+@cache
+def measured(name: str, tolerance: float) -> tuple[float, float, float]:
+    """Estimate, true error, and how far that is sure, all relative to the scene's size."""
+    study = solve(load("scene.yaml", SCENES[name]), Options(tolerance=tolerance))
+    found, size, wanted = study.results, study.scene.layout.size, exact(name)
+    error = distance(read_places(found.bodies, found.points), wanted.places)
+    return found.accuracy["estimate"]["motion"], error / size, wanted.sure / size
+
+
+@pytest.mark.heavy
+@pytest.mark.parametrize("name", ["double", "top", "chain10"])
+def test_the_exact_run_is(name: str) -> None:
+    """Against the end states in quadruple precision, to 2e-13 of the scene."""
+    centers = END_STATES[name]["center"]
+    last = exact(name).places[-1]
+    near(last[: len(centers)], list(centers.values()), 1.0 + float(np.abs(last).max()), 1e-13)
+
+
+@pytest.mark.parametrize("name", NAMES)
+def test_never_below_the_true_error(name: str) -> None:
+    for tolerance in TOLERANCES:
+        estimate, error, sure = measured(name, tolerance)
+        assert estimate >= error - sure, f"at {tolerance:g}: {estimate:.3g} < {error:.3g}"
+
+
+@pytest.mark.parametrize("name", NAMES)
+def test_the_tolerance_is_kept(name: str) -> None:
+    """It bounds the estimate, and so the error; where rounding stands against it, a warning says what was reached."""
+    for tolerance in TOLERANCES:
+        estimate, error, sure = measured(name, tolerance)
+        if estimate <= tolerance:
+            assert error <= tolerance + sure
+        else:
+            assert tolerance < 3e-12
+            (warning,) = solve(load("scene.yaml", SCENES[name]), Options(tolerance=tolerance)).results.warnings
+            assert f"the tolerance {tolerance:.3g} was not reached" in warning
+
+
+@pytest.mark.heavy
+def test_in_the_median_at_most_four_times_it() -> None:
+    """Where rounding does not hide the error; measured 2.0."""
+    ratios = [e / error for name in SCENES for tol in TOLERANCES
+              for e, error, sure in [measured(name, tol)] if error > 10 * sure]  # fmt: skip
+    assert len(ratios) > 100
+    assert np.median(ratios) <= 4.0
+    assert np.quantile(ratios, 0.9) <= 5.0
+
+
+@pytest.mark.heavy
+def test_reactions_are_judged_too() -> None:
+    """estimate.reactions against the joint forces of the exact run, relative to the largest."""
+    for name in ("double", "chain10", "two rods", "golden A"):
+        for tolerance in (1e-5, 1e-8, 1e-11):
+            study = solve(load("scene.yaml", SCENES[name]), Options(tolerance=tolerance))
+            run = study.runner.trajectory(study.times, 1e-15)
+            wanted = study._results(study.runner.recovered(run.times, run.states)).joints
+            forces = {j: b["force"] for j, b in study.results.joints.items()}
+            size = max(float(np.abs(F).max()) for F in forces.values())
+            error = max(float(np.abs(F - wanted[j]["force"]).max()) for j, F in forces.items()) / size
+            assert study.results.accuracy["estimate"]["reactions"] >= error - 1e-12

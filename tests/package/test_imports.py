@@ -1,0 +1,54 @@
+"""What importing the numeric part drags in, seen in a fresh process: a linter does not see all of it."""
+
+from __future__ import annotations
+
+import os
+import subprocess
+import sys
+from pathlib import Path
+
+import pytest
+
+import heuncli
+
+ROOT = Path(heuncli.__file__).parent
+UNWANTED = ("yaml", "pydantic", "rich", "typer", "scipy")
+NUMERIC = ("errors", "results", "kernel", "mechanism", "motion", "kinetostatics", "accuracy", "peaks")
+
+
+def modules(name: str) -> list[str]:
+    """The module of this name, or all modules of the package."""
+    if (ROOT / f"{name}.py").exists():
+        return [f"heuncli.{name}"]
+    return [f"heuncli.{name}.{path.stem}" for path in sorted((ROOT / name).glob("*.py")) if path.stem != "__init__"]
+
+
+def imported(names: list[str]) -> set[str]:
+    """Top-level packages in a fresh process after importing these modules."""
+    code = f"import {', '.join(names)}, sys; print(*sorted({{m.partition('.')[0] for m in sys.modules}}))"
+    path = os.pathsep.join([str(ROOT.parent), os.environ.get("PYTHONPATH", "")])
+    run = subprocess.run(
+        [sys.executable, "-c", code], capture_output=True, text=True, check=True, env={**os.environ, "PYTHONPATH": path}
+    )
+    return set(run.stdout.split())
+
+
+@pytest.mark.parametrize("name", NUMERIC)
+def test_the_numeric_part_stands_alone(name: str) -> None:
+    found = modules(name)
+    assert found
+    assert not imported(found) & set(UNWANTED)
+
+
+def test_the_kernel_needs_no_numpy() -> None:
+    assert "numpy" not in imported(["heuncli.kernel.choose"])
+
+
+def test_a_leak_would_be_seen() -> None:
+    assert "yaml" in imported(["yaml"])
+
+
+def test_package_inits_are_empty() -> None:
+    inits = list(ROOT.rglob("__init__.py"))
+    assert len(inits) > 5
+    assert [path for path in inits if path.read_text()] == []

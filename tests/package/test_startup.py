@@ -1,0 +1,108 @@
+"""What the commands load, seen in fresh processes: start-up is most of a small run's time, and creeps back unseen."""
+
+from __future__ import annotations
+
+import importlib.util
+import os
+import subprocess
+import sys
+from pathlib import Path
+
+import pytest
+
+import heuncli
+
+ROOT = Path(heuncli.__file__).parents[1]
+CHAIN = """\
+heun: 1
+gravity: [0, 0, -9.81]
+ground: {points: {O: [0, 0, 0]}}
+bodies:
+  upper: {mass: 1, center: [0, 0, -0.5], inertia: [0.08, 0.09, 0.01], orientation: {axis: [1, 0, 0], angle: 60 deg}}
+  lower: {mass: 1, center: [0, 0, -0.5], inertia: [0.08, 0.09, 0.01], orientation: {axis: [1, 0, 0], angle: 20 deg}}
+joints:
+  pivot: {type: ball, from: ground.O, to: {body: upper, at: [0, 0, 0]}}
+  elbow: {type: pin, axis: [1, 0, 0], from: {body: upper, at: [0, 0, -1]}, to: {body: lower, at: [0, 0, 0]}}
+analysis: {duration: 0.1, samples: 3}
+"""
+BAR = """\
+heun: 1
+bodies:
+  bar: {shapes: [{type: cylinder, from: [0, 0, 0], to: [1, 0, 0], radius: 0.01, mass: 1}], angular_velocity: [0, 0, 1]}
+sections:
+  middle: {body: bar, at: [0.5, 0, 0], normal: [1, 0, 0]}
+analysis: {duration: 0.1, samples: 3}
+"""
+DOOR = """\
+heun: 1
+gravity: [0, 0, -9.81]
+ground: {points: {A: [0, 0, 0], B: [0, 0, 2]}}
+bodies:
+  door: {mass: 10, center: [0.5, 0, 1], inertia: [3, 4, 1], points: {a: [0, 0, 0], b: [0, 0, 2]}}
+joints:
+  bottom: {type: pin, axis: [0, 0, 1], from: ground.A, to: door.a}
+  top: {type: pin, axis: [0, 0, 1], from: ground.B, to: door.b}
+analysis: {duration: 0.1, samples: 3}
+"""
+# Of the package: only scenes with shapes or sections, with closed chains, with tables; only other commands and options.
+SHAPED = {"heuncli.mechanism.shapes", "heuncli.mechanism.cuts", "heuncli.kinetostatics.sections"}
+REDUNDANT = {"heuncli.undecided", "heuncli.kinetostatics.unique", "heuncli.kinetostatics.neighbours"}
+RARE = {"heuncli.spec.tables", "heuncli.advice", "heuncli.cli.measure", "heuncli.report.export", "heuncli.cli.app"}
+STRANGE = {"scipy", "rich", "typer", "numpy.ma"}
+
+
+def loaded(*words: str, text: str = "") -> set[str]:
+    """Modules that a command has loaded when it ends, fresh; its standard input is `text`."""
+    code = (
+        "import sys\n"
+        "from heuncli.cli.entry import enter\n"
+        "code = enter(sys.argv[1:])\n"
+        "print(*sorted(sys.modules), file=sys.stderr)\n"
+        "sys.exit(code)"
+    )
+    path = os.pathsep.join([str(ROOT), os.environ.get("PYTHONPATH", "")])
+    run = subprocess.run(
+        [sys.executable, "-c", code, *words],
+        input=text, capture_output=True, text=True, check=True, env={**os.environ, "PYTHONPATH": path},
+    )  # fmt: skip
+    return set(run.stderr.splitlines()[-1].split())
+
+
+def test_a_plain_run_loads_what_it_needs() -> None:
+    found = loaded("run", "-", text=CHAIN)
+    assert {"numpy", "pydantic", "yaml", "heuncli.compose"} <= found
+    assert not found & (STRANGE | SHAPED | REDUNDANT | RARE)
+
+
+@pytest.mark.parametrize(
+    ("words", "text", "more"),
+    [
+        (("run", "-"), BAR, SHAPED),
+        (("run", "-"), DOOR, REDUNDANT),
+        (("model", "-"), DOOR, {"heuncli.advice"}),
+        (("run", "-", "--measure", "final energy.kinetic"), CHAIN, {"heuncli.cli.measure"}),
+        (("run", "-", "--format", "json"), CHAIN, {"heuncli.report.export"}),
+        (("run", "--help"), "", {"heuncli.cli.app", "typer"}),
+    ],
+)
+def test_what_is_left_out_is_loaded_where_it_is_wanted(words: tuple[str, ...], text: str, more: set[str]) -> None:
+    assert more <= loaded(*words, text=text)
+
+
+def test_what_is_said_to_be_left_out_exists() -> None:
+    assert all(importlib.util.find_spec(name) for name in STRANGE | SHAPED | REDUNDANT | RARE)
+
+
+def test_validate_does_without_numpy() -> None:
+    found = loaded("validate", "-", text=CHAIN)
+    assert "heuncli.spec.load" in found
+    assert not found & (STRANGE | {"numpy"})
+
+
+@pytest.mark.parametrize("words", [("--help",), ("run", "--help"), ("--version",)])
+def test_help_and_version_do_without_the_heavy_ones(words: tuple[str, ...]) -> None:
+    assert not loaded(*words) & {"numpy", "scipy", "yaml", "rich", "heuncli.spec.load"}
+
+
+def test_the_version_asks_for_nothing_but_the_kernel() -> None:
+    assert not loaded("--version") & {"typer", "pydantic", "dataclasses", "inspect"}

@@ -1,0 +1,69 @@
+"""What is called open, against brute force: the null space of the whole Jacobian at every instant of random motions."""
+
+from __future__ import annotations
+
+from collections import Counter
+
+import numpy as np
+import pytest
+
+from tests.loops import checks
+from tests.redundant.doubles import SEEDS, SOME, redundant, redundant_scene
+from tests.scenes import moving, near, solved
+
+
+KEYS = ("center", "rotation", "center_velocity", "angular_velocity", "center_acceleration", "angular_acceleration")
+
+
+@pytest.mark.parametrize("seed", SEEDS)
+def test_verdicts(seed: int) -> None:
+    """Open exactly where the oracle says, certain numbers equal to its, in joints, supports, parts and totals."""
+    c = redundant(seed)
+    assert checks.same_reactions(c) > 0
+    checks.same_parts(c)
+    checks.same_foundation(c)
+    checks.same_accelerations(c)
+    checks.free_directions_carry_nothing(c)
+
+
+def test_scenes_are_what_they_should_be() -> None:
+    """Every kind is doubled and doubles; drives are in; one to many loads are held twice."""
+    kinds: Counter[str] = Counter()
+    for seed in SEEDS:
+        c = redundant(seed)
+        kinds.update(j.kind + (" double" if "double" in j.name else "") for j in c.read.joints)
+        kinds.update("driven" for j in c.read.joints if j.drive is not None)
+        assert c.study.results.model["redundant"] == c.oracle[0].rows - c.oracle[0].rank
+        assert c.study.results.model["freedoms"] == c.oracle[0].freedoms
+        assert c.study.results.model["grubler"] == c.oracle[0].grubler
+    for kind in ("ball", "pin", "slide", "cylinder", "universal", "weld", "line", "plane", "rod"):
+        assert kinds[kind] >= 5, kind
+    assert sum(kinds[k] for k in kinds if k.endswith("double")) >= 150
+    assert kinds["driven"] >= 40
+
+
+@pytest.mark.parametrize("seed", SEEDS[::3])
+def test_doubles_do_not_change_the_motion(seed: int) -> None:
+    """To 1e-12: poses, rates and accelerations of the scene without what holds twice."""
+    plain, doubled = redundant_scene(seed)
+    times = (0.0, 0.1)
+    first, second = (solved(moving(s, times, 1e-13)).bodies for s in (plain, doubled))
+    for name, body in first.items():
+        other = second[name]
+        for key in KEYS:
+            near(other[key], body[key], max(1.0, float(np.abs(body[key]).max())), 1e-12)
+
+
+@pytest.mark.parametrize("seed", SOME)
+def test_certain_sums(seed: int) -> None:
+    """Every listed sum is certain by the oracle, at every instant, with its value; of open components only."""
+    c = redundant(seed)
+    found = c.study.results
+    is_open = {f"joints.{n}.{part}" for n, block in found.joints.items() for part in block["open"]}
+    for s in found.certain_sums:
+        assert set(s["terms"]) <= is_open
+        assert len({n.split(".")[2] for n in s["terms"]}) == 1 or len(found.certain_sums) == 1
+        for k, o in enumerate(c.oracle):
+            value, certain = o.sum(s["terms"])
+            assert certain, s["terms"]
+            near(s["value"][k], value, c.force[k] * c.length * sum(abs(x) for x in s["terms"].values()))

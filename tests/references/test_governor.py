@@ -1,0 +1,78 @@
+"""A05, the stiff flyball governor (OpenSim): springs of 8e5 N/m and 4e4 N s/m hold a slider on a turning shaft; 1 s.
+
+The reduced motion of references.md, by Radau at 1e-11, is printed to 8 digits.
+"""
+
+from __future__ import annotations
+
+from functools import cache
+
+import pytest
+
+from heuncli.results import Results
+from tests.scenes import near, solved
+
+DIGITS = 2e-8  # half of the last digit printed, and the error of the reference (1e-11 local, fast transient)
+
+SCENE = """
+heun: 1
+parameters: {alpha: 30*deg, s: 0.5}
+gravity: [0, 0, -9.81]
+ground: {points: {foot: [0, 0, 0]}}
+bodies:
+  shaft:
+    shapes: [{type: box, center: [0, 0, 0.5], size: [0.01, 0.01, 1], density: 3000}]
+    points: {foot: [0, 0, 0], right: [0.05, 0, 1], left: [-0.05, 0, 1]}
+  slider:
+    shapes: [{type: box, center: [0, 0, 0], size: [0.1, 0.1, 0.1], density: 3000}]
+    points: {middle: [0, 0, 0], right: [0.05, 0, 0], left: [-0.05, 0, 0]}
+  arm_right:
+    shapes:
+      - {type: box, center: [0.5, 0, 0], size: [1, 0.01, 0.01], density: 3000}
+      - {type: point, at: [1, 0, 0], mass: 5}
+    points: {root: [0, 0, 0], middle: [0.5, 0, 0], tip: [1, 0, 0]}
+  arm_left:
+    shapes:
+      - {type: box, center: [-0.5, 0, 0], size: [1, 0.01, 0.01], density: 3000}
+      - {type: point, at: [-1, 0, 0], mass: 5}
+    points: {root: [0, 0, 0], middle: [-0.5, 0, 0], tip: [-1, 0, 0]}
+joints:
+  spin: {type: pin, from: ground.foot, to: shaft.foot, axis: [0, 0, 1], initial: {angle: 0, rate: 2*pi}}
+  sleeve: {type: slide, from: shaft.foot, to: slider.middle, axis: [0, 0, 1], initial: {travel: s, speed: 0}}
+  right: {type: pin, from: shaft.right, to: arm_right.root, axis: [0, 1, 0], initial: {angle: alpha, rate: 0}}
+  left: {type: pin, from: shaft.left, to: arm_left.root, axis: [0, -1, 0], initial: {angle: alpha, rate: 0}}
+forces:
+  strut_right: {type: spring, from: slider.right, to: arm_right.middle, stiffness: 8e5, length: 0.5, damping: 4e4}
+  strut_left: {type: spring, from: slider.left, to: arm_left.middle, stiffness: 8e5, length: 0.5, damping: 4e4}
+analysis: {times: [0, 0.1, 0.2, 0.5, 1], tolerance: 1e-9}
+"""
+TRAVEL = {0.1: 0.52383648, 0.2: 0.58507981, 0.5: 0.74324942, 1.0: 0.50142092}
+ARM = {0.5: 0.25949138, 1.0: 0.5218333}
+SPIN = {0.5: 5.10341542, 1.0: 6.27112574}
+TIMES = (0.0, 0.1, 0.2, 0.5, 1.0)
+
+
+@cache
+def governor() -> Results:
+    return solved(SCENE)
+
+
+@pytest.mark.heavy
+def test_first_second() -> None:
+    found = governor().coordinates
+    for t, value in TRAVEL.items():
+        assert found["sleeve"]["travel"][TIMES.index(t)] == pytest.approx(value, abs=DIGITS)
+    for t, value in ARM.items():
+        assert found["right"]["angle"][TIMES.index(t)] == pytest.approx(value, abs=DIGITS)
+        assert found["left"]["angle"][TIMES.index(t)] == pytest.approx(value, abs=DIGITS)
+    for t, value in SPIN.items():
+        assert found["spin"]["rate"][TIMES.index(t)] == pytest.approx(value, abs=6 * DIGITS)
+
+
+@pytest.mark.heavy
+def test_what_stays() -> None:
+    """The spin is free: no moment about its axis. Energy less the dampers' work, within the tolerance."""
+    found = governor()
+    near(found.foundation["moment"][:, 2], 0.0, 100.0, 1e-12)
+    assert found.accuracy["energy_drift"] <= 1e-8
+    assert found.accuracy["estimate"]["motion"] <= 1e-8

@@ -1,0 +1,133 @@
+"""Hand-made results and a study made of functions of time, for tests of what comes after the solving."""
+
+from __future__ import annotations
+
+from collections.abc import Mapping
+from dataclasses import dataclass, field
+from types import SimpleNamespace
+from typing import Any
+
+import numpy as np
+
+from heuncli.report.scene import ForceInfo, JointInfo, Scene, SectionInfo
+from heuncli.results import Array, Block, Results
+
+ACCURATE: Block = {
+    "energy_drift": 2e-12,
+    "constraint_gap": 1e-16,
+    "balance_residual": 3e-15,
+    "horizon": None,
+    "estimate": {"motion": 4e-11, "reactions": 5e-10},
+}
+WORK: Block = {
+    "kernel": "compiled",
+    "steps": 57,
+    "evaluations": 812,
+    "seconds": {"load": 0.03, "build": 0.004, "integrate": 0.0004, "check": 0.0006, "recover": 0.001},
+}
+SCENE = Scene(
+    joints={"pivot": JointInfo("ball", "ground.O", "upper.top"), "elbow": JointInfo("pin", "upper.end", "lower.top")},
+    forces={"push": ForceInfo("force"), "motor": ForceInfo("torque", "elbow")},
+    sections={"middle": SectionInfo("lower"), "along": SectionInfo("lower")},
+    about="O",
+)
+
+
+def vectors(t: Array, x: Any, y: Any, z: Any) -> Array:
+    """Components, each a number or an array over the instants, as (n_t, 3)."""
+    return np.stack(np.broadcast_arrays(x, y, z, t)[:3], axis=1).astype(np.float64)
+
+
+def pendulum(t: Array, **changes: Any) -> Results:
+    """Results of every kind over the instants t, as smooth functions of time with known extremes."""
+    force = vectors(t, 3.0 * np.sin(2.0 * t), 0.0, 9.81 + np.cos(2.0 * t))
+    s = np.linspace(0.0, 0.8, 5)
+    along = {name: np.cos(2.0 * t)[:, None] * (k + 1.0) * (1.0 - s) for k, name in enumerate(("N", "Q1", "Q2"))}
+    along |= {name: np.sin(2.0 * t)[:, None] * (k + 1.0) * s for k, name in enumerate(("T", "M1", "M2"))}
+    zero = np.zeros((len(t), 3))
+    joints = {
+        "pivot": {"point": zero, "force": force, "moment": zero, "open": []},
+        "elbow": {
+            "point": vectors(t, np.sin(t), 0.0, -np.cos(t)),
+            "force": 0.5 * force,
+            "moment": vectors(t, 0.15 * np.sin(2.0 * t), 0.2 * np.sin(2.0 * t), 0.0),
+            "open": [],
+            "axial": 0.0 * t,
+            "radial": 0.5 * np.linalg.norm(force, axis=1),
+            "tilting": 0.0 * t,
+        },
+    }
+    wrench = {"force": -force, "moment": zero}
+    spec = {"path": "fake.yaml", "sha256": "0" * 64}
+    blocks: dict[str, Any] = {
+        "bodies": {
+            "upper": {"center": vectors(t, np.sin(t), 0.0, -np.cos(t)), "rotation": np.tile(np.eye(3), (len(t), 1, 1))}
+        },
+        "points": {"lower.end": {"position": vectors(t, np.sin(t), 0.0, -np.cos(t))}},
+        "coordinates": {"elbow": {"angle": np.sin(t), "rate": np.cos(t), "acceleration": -np.sin(t)}},
+        "foundation": {
+            "about": np.zeros(3),
+            **wrench,
+            "axis": {"point": zero, "direction": vectors(t, 0.0, 0.0, 1.0), "pitch": 0.0 * t},
+            "mass_effect": {"force": 0.1 * force, "moment_orbital": zero, "moment_spin": zero},
+            "supports": {"pivot": dict(wrench)},
+            "elements": {},
+        },
+        "joints": joints,
+        "sections": {
+            "middle": {"N": 5.0 + np.cos(2.0 * t), "M1": np.sin(2.0 * t), "open": []},
+            "along": {
+                "s": s,
+                "side": [None, None, "before", "beyond", None],
+                "normal": vectors(t, 0.0, 0.0, -1.0),
+                "force": np.stack([vectors(t, k, 0.0, 0.0) for k in range(5)], axis=1),
+                **along,
+            },
+        },
+        "forces": {
+            "push": {"value": 2.0 * np.sin(t), "power": np.sin(t) ** 2},
+            "motor": {"value": np.cos(t), "rate": np.sin(t), "power": np.cos(t) * np.sin(t)},
+        },
+        "energy": {"kinetic": 0.5 * np.sin(t) ** 2, "potential": 0.5 * np.cos(t) ** 2, "work": 0.0 * t},
+        "system_vector": {"total": zero, "bodies": {"upper": zero}},
+        "accuracy": ACCURATE,
+    }
+    model = {
+        "space": "spatial",
+        "freedoms": 4,
+        "bodies": 2,
+        "loops": 0,
+        "redundant": 0,
+        "method": "dop853",
+        "reasons": [],
+    }
+    status = {"code": "completed", "message": ""}
+    return Results("A fake", spec, "0.0", model, status, t, **{**blocks, "work": WORK, **changes})
+
+
+@dataclass(frozen=True, eq=False)
+class FakeStudy:
+    """A study whose run is `pendulum`."""
+
+    times: Array
+    changes: Mapping[str, Any] = field(default_factory=dict)
+
+    @property
+    def results(self) -> Results:
+        """At the asked instants."""
+        return self.resample(self.times)
+
+    @property
+    def search_times(self) -> Array:
+        """A grid with seven instants between two asked ones."""
+        return np.interp(np.arange(0.0, len(self.times) - 0.999, 0.125), np.arange(len(self.times)), self.times)
+
+    def resample(self, times: Array) -> Results:
+        """At any instants."""
+        return pendulum(np.asarray(times), **self.changes)
+
+
+def spec_like(**changes: Any) -> Any:
+    """What the commands take from a loaded spec."""
+    blank: dict[str, Any] = {"joints": {}, "forces": {}, "sections": {}, "expect": (), "warnings": (), "report": None}
+    return SimpleNamespace(**{**blank, **changes})

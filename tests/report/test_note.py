@@ -1,0 +1,38 @@
+"""The model as a note."""
+
+from __future__ import annotations
+
+from heuncli.report.note import WIDTH, note
+
+MODEL = {
+    "space": "spatial",
+    "bodies": {"upper": "1 kg", "lower": "0.8 kg"},
+    "joints": 2,
+    "freedoms": 6,
+    "grubler": 6,
+    "loops": 0,
+    "redundant": 0,
+    "method": "DOP853",
+    "reasons": ["a tree of two bodies"],
+    "chosen": ["lower starts as drawn " * 12],
+    "notes": [],
+}
+
+
+def test_a_note_tells_the_counts_and_the_sentences() -> None:
+    text = note("Two bars", MODEL)
+    assert text.startswith("Two bars\n\n")
+    for part in (
+        "2: upper (1 kg), lower (0.8 kg)",
+        "6 (Grübler's count: 6)",
+        "no closed loops",
+        "Why this model\n  - a tree of two bodies\n",
+        "Start values chosen for you\n  - lower starts as drawn",
+    ):
+        assert part in text
+    assert "Worth knowing" not in text
+    assert max(map(len, text.splitlines())) <= WIDTH
+
+
+def test_names_are_not_listed_without_end() -> None:
+    assert "... (88 more)" in note("", {"bodies": [f"b{i}" for i in range(100)]})

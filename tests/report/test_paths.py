@@ -1,0 +1,88 @@
+"""Paths into the results are those of the JSON."""
+
+from __future__ import annotations
+
+import json
+
+import numpy as np
+import pytest
+
+from heuncli.errors import SpecError
+from heuncli.report.export import to_json
+from heuncli.report.paths import find
+from heuncli.report.quantities import walk
+from tests.report.fakes import SCENE, pendulum
+from tests.report.test_export import BLOW
+
+T = np.linspace(0.0, 2.0, 7)
+SUMS = [{"terms": {"joints.a.force.x": 1}, "value": 2.0 * T}]
+RESULTS = pendulum(T, impulses=[BLOW], certain_sums=SUMS)
+
+
+def test_every_walked_quantity_has_its_path() -> None:
+    for series in walk(RESULTS, SCENE):
+        for component, column in zip(series.components, series.values.T, strict=True):
+            path = f"{series.path}.{component}" if component else series.path
+            if series.quantity != "side":
+                assert np.array_equal(np.atleast_1d(find(RESULTS, path).values), column), path
+
+
+@pytest.mark.parametrize(
+    ("path", "timed"),
+    [
+        ("joints.elbow.force", True),
+        ("joints.elbow.force.z", True),
+        ("joints.elbow.force.2", True),
+        ("joints.elbow.force.3.z", False),
+        ("points.lower.end.position.x", True),
+        ("foundation.about.x", False),
+        ("foundation.supports.pivot.force.y", True),
+        ("sections.along.M1.3", True),
+        ("sections.along.s.4", False),
+        ("impulses.0.foundation.force.z", False),
+        ("impulses.0.energy_jump", False),
+        ("certain_sums.0.value", True),
+        ("system_vector.bodies.upper.x", True),
+        ("accuracy.estimate.motion", False),
+        ("model.freedoms", False),
+        ("time.1", False),
+    ],
+)
+def test_a_path_leads_where_it_leads_in_the_json(path: str, timed: bool) -> None:
+    node = json.loads(to_json(RESULTS))
+    tokens = path.replace("lower.end", "lower~end").split(".")
+    while tokens:
+        token = tokens.pop(0).replace("~", ".")
+        if isinstance(node, list) and timed and not tokens and token in ("x", "y", "z", "2", "3"):
+            node = [row[{"x": 0, "y": 1, "z": 2}.get(token) if token in "xyz" else int(token)] for row in node]
+        elif isinstance(node, list):
+            node = node[{"x": 0, "y": 1, "z": 2}[token] if token in "xyz" else int(token)]
+        else:
+            node = node[token]
+    found = find(RESULTS, path)
+    assert found.timed == timed
+    assert np.array_equal(found.values, np.array(node, dtype=np.float64))
+
+
+@pytest.mark.parametrize(
+    ("path", "message"),
+    [
+        ("joints.elbw.force", "joints has no 'elbw'; known: elbow, pivot"),
+        ("joint.elbow", "the results has no 'joint'"),
+        ("joints.elbow", "joints.elbow is not a number"),
+        ("joints.elbow.force.w", "has no 'w'; known: x, y, z"),
+        ("joints.elbow.force.3", "has no '3'"),
+        ("joints.elbow.axial.3.y", "has no 'y'"),
+        ("impulses.1.energy_jump", "impulses has no '1'"),
+        ("status.code", "status.code is not a number"),
+        ("model.freedoms.x", "has no 'x'"),
+        ("", "the results is not a number"),
+    ],
+)
+def test_a_wrong_path_tells_what_is_known_there(path: str, message: str) -> None:
+    with pytest.raises(SpecError) as caught:
+        find(RESULTS, path)
+    assert message in str(caught.value)
+    assert caught.value.problems[0].code == "unknown-path"
+    if "elbw" in path:
+        assert caught.value.problems[0].hint == "did you mean elbow?"

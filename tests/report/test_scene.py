@@ -1,0 +1,74 @@
+"""Units and notes that the kinds of joints and forces decide."""
+
+from __future__ import annotations
+
+import pytest
+
+from heuncli.report.scene import ForceInfo, JointInfo, Scene, _section
+from heuncli.spec.models import End, Section
+
+KINDS = ("ball", "pin", "slide", "cylinder", "universal", "weld", "line", "plane", "rod")
+SCENE = Scene(
+    {kind: JointInfo(kind, "ground.O", "b.p") for kind in KINDS},
+    {
+        "couple": ForceInfo("couple"),
+        "spring": ForceInfo("spring"),
+        "motor": ForceInfo("torque", "pin"),
+        "thrust": ForceInfo("torque", "slide"),
+        "grease": ForceInfo("damper", "ball"),
+        "rail": ForceInfo("damper", "plane"),
+        "brake": ForceInfo("friction", "cylinder", turning=False),
+    },
+)
+
+
+@pytest.mark.parametrize(
+    ("kind", "name", "quantity", "unit"),
+    [
+        ("coordinates", "pin", "acceleration", "rad/s²"),
+        ("coordinates", "slide", "acceleration", "m/s²"),
+        ("coordinates", "cylinder", "acceleration", "m/s²"),
+        ("coordinates", "pin", "angle", None),
+        ("joints", "pin", "drive", "N·m"),
+        ("joints", "slide", "drive", "N"),
+        ("joints", "cylinder", "drive", "N"),
+        ("joints", "rod", "drive", "N"),
+        ("joints", "pin", "force", None),
+        ("forces", "couple", "value", "N·m"),
+        ("forces", "spring", "value", "N"),
+        ("forces", "spring", "rate", "m/s"),
+        ("forces", "motor", "value", "N·m"),
+        ("forces", "motor", "rate", "rad/s"),
+        ("forces", "thrust", "value", "N"),
+        ("forces", "grease", "value", "N·m"),
+        ("forces", "rail", "rate", "m/s"),
+        ("forces", "brake", "value", "N"),
+        ("forces", "motor", "power", None),
+    ],
+)
+def test_units(kind: str, name: str, quantity: str, unit: str | None) -> None:
+    assert SCENE.unit(kind, name, quantity) == unit
+
+
+@pytest.mark.parametrize(
+    ("normal", "first_axis", "words"),
+    [
+        ((0.0, 0.0, -1.0), None, "body x"),
+        ((1.0, 0.0, 0.0), None, "body y"),
+        ((1.0, 1.0, 0.0), None, "body z"),
+        ((1.0, 1e-12, 2e-12), None, "body y"),
+        ((0.0, 0.0, 3.0), (0.0, 1.0, 0.5), "body (0, 1, 0.5)"),
+    ],
+)
+def test_the_first_axis_in_words(
+    normal: tuple[float, float, float], first_axis: tuple[float, float, float] | None, words: str
+) -> None:
+    assert _section(Section("b", normal, first_axis=first_axis)).first_axis == words
+
+
+def test_the_point_of_the_moments_in_words() -> None:
+    normal = (1.0, 0.0, 0.0)
+    assert _section(Section("b", normal)).about == "the cut's point"
+    assert _section(Section("b", normal, reduce_to="centroid")).about == "the cut's centroid"
+    assert _section(Section("b", normal, reduce_to=End("ground", (0.0, 0.0, 0.0), "O"))).about == "ground.O"
+    assert _section(Section("b", normal, reduce_to=End("a", (1.0, 0.0, 0.0)))).about == "a at (1, 0, 0)"

@@ -1,0 +1,51 @@
+"""Certain sums in plain words."""
+
+from __future__ import annotations
+
+from typing import Any
+
+import numpy as np
+
+from heuncli.report.numbers import Certainty
+from heuncli.report.sums import sums_table
+from tests.report.fakes import pendulum
+
+T = np.linspace(0.0, 2.0, 5)
+
+
+def told(*sums: dict[str, Any]) -> tuple[str, ...]:
+    table = sums_table(pendulum(T, certain_sums=list(sums)), Certainty({"N": 1e-9}))
+    assert table is not None
+    return table.notes
+
+
+def test_a_steady_sum() -> None:
+    terms = {"joints.top.force.z": 1, "joints.bottom.force.z": 1}
+    assert told({"terms": terms, "value": 49.05 + 0.0 * T}) == (
+        "joints.top Fz + joints.bottom Fz = 49.05 N; the split is open",
+    )
+
+
+def test_two_that_are_equal() -> None:
+    terms = {"joints.P0.force.x": 1, "joints.P5.force.x": -1}
+    assert told({"terms": terms, "value": 0.0 * T}) == ("joints.P0 Fx = joints.P5 Fx; the size is open",)
+
+
+def test_one_that_varies_with_factors() -> None:
+    terms = {"joints.a.force.x": -1, "sections.cut.N": 2, "joints.c.force.y": -0.5}
+    assert told({"terms": terms, "value": 10.0 + T}) == (
+        "−joints.a Fx + 2·sections.cut N − 0.5·joints.c Fy"
+        " = 10.0 N first, 12.0 N last, 10.0 to 12.0 N in the samples; the split is open",
+    )
+
+
+def test_moments_and_long_sums_are_left_to_json() -> None:
+    long = {f"joints.j{i}.force.x": 1 for i in range(7)}
+    moment = {"joints.a.moment.x": 1, "joints.b.moment.x": 1}
+    assert told({"terms": long, "value": T}, {"terms": moment, "value": T}) == (
+        "2 more in --format json (moments, or more than 6 terms)",
+    )
+
+
+def test_none() -> None:
+    assert sums_table(pendulum(T), Certainty({})) is None

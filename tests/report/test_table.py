@@ -1,0 +1,52 @@
+"""Aligned text and markdown."""
+
+from __future__ import annotations
+
+import pytest
+
+from heuncli.report.table import Column, Table, markdown, plain
+
+TABLE = Table(
+    "HEADING  what it is",
+    (Column("", "left"), Column("F [N]"), Column("note", "left")),
+    ("pivot  ball", ("Fx", "-12.5", "a"), ("Fy", "3", ""), ("|F|", "1.25e-07", ""), ("open", "open", "b")),
+    ("a note",),
+)
+
+
+def test_points_stand_under_each_other() -> None:
+    lines = plain(TABLE).splitlines()
+    assert lines == [
+        "HEADING  what it is",
+        "             F [N]  note",
+        "pivot  ball",
+        "  Fx    -12.5       a",
+        "  Fy      3",
+        "  |F|     1.25e-07",
+        "  open        open  b",
+        "  a note",
+    ]
+
+
+def test_no_line_ends_in_blanks() -> None:
+    assert all(line == line.rstrip() for line in plain(TABLE).splitlines())
+
+
+def test_markdown_has_as_many_cells_in_every_row() -> None:
+    rows = [line for line in markdown(TABLE).splitlines() if line.startswith("|")]
+    assert {row.replace("\\|", "").count("|") for row in rows} == {4}
+    assert "| **pivot  ball** |  |  |" in rows
+    assert rows[1] == "| --- | ---: | --- |"
+
+
+@pytest.mark.parametrize("write", [plain, markdown])
+def test_a_table_may_be_notes_alone(write: object) -> None:
+    assert write(Table("SUMS", notes=("a + b = 1 N",))).split() == ["###"] * (write is markdown) + [
+        "SUMS",
+        "a",
+        "+",
+        "b",
+        "=",
+        "1",
+        "N",
+    ]  # type: ignore[operator]

@@ -1,0 +1,85 @@
+"""Jumps and kinks in time, found to the last bit."""
+
+from __future__ import annotations
+
+import math
+
+import pytest
+
+from heuncli.errors import LimitError
+from heuncli.spec.curves import fit
+from heuncli.spec.expression import Expression, Table, breakpoints
+from heuncli.spec.grammar import Scope, compile_expression
+
+TRIANGLE = fit("triangle", [0.0, 0.25, 0.5], [0.0, 1.0, 0.0], "linear", None, 0.5)
+RAMP = fit("ramp", [1.0, 2.0, 4.0], [0.0, 1.0, 5.0], "linear", "hold", None)
+TABLES: dict[str, Table | None] = {"triangle": TRIANGLE, "ramp": RAMP}
+
+
+def read(text: str) -> Expression:
+    return compile_expression(text, Scope(joints={"shaft": "pin"}, tables=TABLES, in_time=True))
+
+
+def after(t: float) -> float:
+    return math.nextafter(t, math.inf)
+
+
+@pytest.mark.parametrize(("text", "expected"), [
+    ("t*t", []),
+    ("step(t - 1)", [1.0]),
+    ("abs(t - 1)", [1.0]),
+    ("max(t, 1)", [1.0]),
+    ("min(1, t)", [1.0]),
+    ("min(t, 1)", [after(1.0)]),
+    ("sign(t - 1)", [1.0, after(1.0)]),
+    ("3 if t < 1 else 4", [1.0]),
+    ("3 if t <= 1 else 4", [after(1.0)]),
+    ("3 if 0.5 <= t < 1.5 else 4", [0.5, 1.5]),
+    ("step(t - 1)*step(1.25 - t)", [1.0, after(1.25)]),
+    ("3 if t > 1 and t >= 1.5 else 4", [after(1.0), 1.5]),
+    ("step(t - 3)", []),
+    ("step(t)", []),
+    ("step(t - 2)", []),
+    ("step(shaft.angle - 1)", []),
+    ("step(t - 1)*shaft.angle", [1.0]),
+    ("step(shaft.angle - step(t - 1))", [1.0]),
+    ("abs(abs(t - 1) - 0.5)", [after(0.5), 1.0, 1.5]),
+    ("atan2(t - 1, -1)", [1.0]),
+    ("atan2(t - 1, 1)", []),
+    ("table(triangle, t)", [0.25, 0.5, 0.75, 1.0, 1.25, 1.5, 1.75]),
+    ("table(ramp, t)", [1.0]),
+    ("table(ramp, 2*t)", [0.5, 1.0]),
+    ("table(ramp, 5*t)", [0.2, 0.4, after(0.8)]),
+])  # fmt: skip
+def test_where_branches_change(text: str, expected: list[float]) -> None:
+    assert breakpoints(read(text), 0.0, 2.0) == expected
+
+
+def test_each_is_the_first_instant_of_its_branch() -> None:
+    expression = read("step(sin(7*t) - 0.3) + abs(cos(3*t)) + min(sin(t), 0.5)")
+    found = breakpoints(expression, 0.0, 10.0)
+    assert len(found) > 30
+    for t in found:
+        left, right = (expression.derivatives(s) for s in (math.nextafter(t, -math.inf), t))
+        assert abs(right[0] - left[0]) > 0.5 or abs(right[1] - left[1]) > 0.1
+
+
+def test_many_and_narrow_ones_are_found() -> None:
+    assert len(breakpoints(read("step(sin(1000*t))"), 0.0, 1.0)) == 318
+    narrow = breakpoints(read("step(sin(2*pi*t) - 1 + 1e-10)"), 0.0, 3.0)
+    assert len(narrow) == 6
+    width = math.acos(1.0 - 1e-10) / math.pi
+    assert [b - a for a, b in zip(narrow[::2], narrow[1::2], strict=True)] == pytest.approx([width] * 3, rel=1e-4)
+    assert breakpoints(read("step(t - 50)*step(50.00001 - t)"), 0.0, 100.0) == [50.0, after(50.00001)]
+    assert breakpoints(read("abs((t - 1)**2)"), 0.0, 2.0) == []  # touches zero from above
+
+
+def test_a_piece_that_is_no_number_is_a_branch_too() -> None:
+    found = breakpoints(read("step(sqrt(t - 1) - 0.5)"), 0.0, 2.0)
+    assert found == [1.0, 1.25]
+
+
+def test_without_end_is_refused() -> None:
+    with pytest.raises(LimitError) as caught:
+        breakpoints(read("step(sin(1e7*t))"), 0.0, 1.0)
+    assert caught.value.problems[0].code == "too-many-jumps"

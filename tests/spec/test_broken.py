@@ -1,0 +1,81 @@
+"""specs/broken: one file an error code, each found at the place that its first line names."""
+
+from __future__ import annotations
+
+import ast
+import re
+from pathlib import Path
+
+import pytest
+
+from heuncli.errors import HeunError
+from heuncli.spec.load import load
+from heuncli.study import solve
+
+ROOT = Path(__file__).parents[2]
+FILES = sorted((ROOT / "specs" / "broken").glob("*.yaml"))
+HEAD = re.compile(r"# (code|warning): ([\w-]+)(?: at (\d+):(\d+))?\n# see: (.+)\n(?:# set: (\w+)=(.*)\n)?")
+WITHOUT_A_FILE = {
+    "unreadable": "there is no file",
+    "too-large": "64 MB",
+    "too-many-jumps": "found when the run is prepared",
+}
+
+
+def head(path: Path) -> re.Match[str]:
+    """What the first lines of a file promise."""
+    found = HEAD.match(path.read_bytes().decode("latin-1"))
+    assert found is not None, f"{path.name} does not begin with '# code: x at line:column' and '# see: ...'"
+    return found
+
+
+@pytest.mark.parametrize("path", FILES, ids=lambda path: path.stem)
+def test_each_is_found_where_it_stands(path: Path) -> None:
+    kind, code, line, column, _, name, value = head(path).groups()
+    assert path.stem == code
+    overrides = {name: value} if name else {}
+    if kind == "warning":
+        problems = load(path, overrides=overrides).warnings
+    else:
+        with pytest.raises(HeunError) as caught:
+            solve(load(path, overrides=overrides))
+        problems = caught.value.problems
+    assert code in {p.code for p in problems}
+    assert {p.code for p in problems} <= {code, "not-yet"}
+    if line is not None:
+        places = [(p.place.line, p.place.column) for p in problems if p.code == code and p.place is not None]
+        assert (int(line), int(column)) in places
+
+
+def codes_in(path: Path) -> set[str]:
+    """The error codes that a module of the spec gives."""
+    found: set[str] = set()
+    for node in ast.walk(ast.parse(path.read_text())):
+        if isinstance(node, ast.Call) and node.args:
+            name = getattr(node.func, "id", getattr(node.func, "attr", ""))
+            if name in ("Finding", "Problem", "problem", "rule", "tell"):
+                found |= texts(node.args[0])
+        elif isinstance(node, ast.Tuple) and len(node.elts) == 2 and is_found(node.elts[1]):  # a code and a Found
+            found |= texts(node.elts[0])
+        elif isinstance(node, ast.Assign) and getattr(node.targets[0], "id", "") == "TYPES":
+            found |= {code for row in ast.walk(node.value) if isinstance(row, ast.Tuple) for code in texts(row.elts[0])}
+    return found
+
+
+def texts(node: ast.expr) -> set[str]:
+    return {node.value} if isinstance(node, ast.Constant) and isinstance(node.value, str) else set()
+
+
+def is_found(node: ast.expr) -> bool:
+    return isinstance(node, ast.Call) and getattr(node.func, "id", "") in ("Found", "wrong_form")
+
+
+def test_every_code_has_its_file() -> None:
+    codes = {code for path in (ROOT / "heuncli" / "spec").rglob("*.py") for code in codes_in(path)}
+    assert {"unknown-joint-type", "missing-key", "not-yet", "alias", "first-axis"} <= codes
+    assert codes - {path.stem for path in FILES} == set(WITHOUT_A_FILE)
+
+
+def test_every_file_says_what_to_see() -> None:
+    assert len(FILES) > 70
+    assert all(len(head(path)[5]) > 5 for path in FILES)

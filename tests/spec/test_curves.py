@@ -1,0 +1,184 @@
+"""Tables: the curves against SciPy's, the files against what spreadsheets write."""
+
+from __future__ import annotations
+
+import math
+from pathlib import Path
+
+import numpy as np
+import pytest
+from scipy.interpolate import CubicSpline, PchipInterpolator
+
+from heuncli.errors import SpecError
+from heuncli.spec.curves import fit
+from heuncli.spec.expression import Expression, Table
+from heuncli.spec.grammar import Scope, compile_expression
+from heuncli.spec.load import load
+from heuncli.spec.tables import CsvError, columns_of
+
+BODY = "heun: 1\nbodies: {b: {mass: 1, center: [0, 0, 0], inertia: [1, 1, 1], points: {p: [0, 0, 0]}}}\n"
+
+
+def of(table: Table, text: str = "table(f, t)") -> Expression:
+    return compile_expression(text, Scope(tables={"f": table}, in_time=True))
+
+
+def points(n: int, seed: int = 1) -> tuple[list[float], list[float]]:
+    rng = np.random.default_rng(seed)
+    return np.cumsum(rng.uniform(0.1, 1.0, n)).tolist(), rng.normal(size=n).tolist()
+
+
+@pytest.mark.parametrize("n", [2, 3, 4, 5, 17])
+@pytest.mark.parametrize("kind", ["linear", "cubic", "pchip"])
+def test_curves_are_scipys(n: int, kind: str) -> None:
+    x, y = points(n, seed=n)
+    curve = of(fit("f", x, y, kind, None, None))
+    oracle = {"linear": None, "cubic": CubicSpline(x, y), "pchip": PchipInterpolator(x, y)}[kind]
+    for t in np.linspace(x[0], x[-1], 101).tolist():
+        value, first, second = curve.derivatives(t)
+        if oracle is None:
+            assert value == pytest.approx(float(np.interp(t, x, y)), abs=1e-12)
+            continue
+        assert value == curve.value(t)
+        assert [value, first, second] == pytest.approx([float(oracle(t, k)) for k in range(3)], rel=1e-9, abs=1e-9)
+
+
+@pytest.mark.parametrize("n", [3, 4, 5, 17])
+def test_periodic_curves_close_smoothly(n: int) -> None:
+    x, y = points(n, seed=n)
+    y[-1] = y[0]
+    period = x[-1] - x[0]
+    spline = of(fit("f", x, y, "cubic", None, period))
+    oracle = CubicSpline(x, y, bc_type="periodic")
+    for t in np.linspace(x[0] - 3 * period, x[-1] + 3 * period, 203).tolist():
+        assert spline.value(t) == pytest.approx(float(oracle(t)), abs=1e-9)
+    for kind in ("cubic", "pchip"):
+        curve = of(fit("f", x, y, kind, None, period))
+        before, after = curve.derivatives(math.nextafter(x[-1], 0.0)), curve.derivatives(x[-1])
+        assert before[:2] == pytest.approx(after[:2], abs=1e-9)
+
+
+def test_a_monotone_curve_does_not_overshoot() -> None:
+    curve = of(fit("f", [0.0, 1.0, 2.0, 3.0], [0.0, 0.0, 1.0, 1.0], "pchip", None, None))
+    values = [curve.value(t) for t in np.linspace(0.0, 3.0, 301)]
+    assert min(values) == 0.0
+    assert max(values) == 1.0
+
+
+def test_outside() -> None:
+    x, y = [1.0, 2.0, 3.0], [5.0, 7.0, 4.0]
+    refused, held = of(fit("f", x, y, "linear", None, None)), of(fit("f", x, y, "linear", "hold", None))
+    for t in (0.999999, 3.000001, -1e9, 1e9):
+        assert math.isnan(refused.value(t))
+        assert all(map(math.isnan, refused.derivatives(t)))
+    assert [refused.value(t) for t in x] == y
+    assert [held.value(t) for t in (-9.0, 1.0, 3.0, 99.0)] == [5.0, 5.0, 4.0, 4.0]
+    assert held.derivatives(0.5) == (5.0, 0.0, 0.0)
+    assert held.derivatives(1.5) == (6.0, 2.0, 0.0)
+
+
+def test_the_chain_rule_goes_through_tables() -> None:
+    curve = of(fit("f", *points(9), "cubic", None, None), "table(f, 2 + sin(t))")
+    value, first, second = curve.derivatives(0.4)
+    inner = of(fit("f", *points(9), "cubic", None, None)).derivatives(2.0 + math.sin(0.4))
+    c, s = math.cos(0.4), math.sin(0.4)
+    assert [value, first, second] == pytest.approx([inner[0], inner[1] * c, inner[2] * c * c - inner[1] * s], rel=1e-12)
+
+
+def test_constants_from_tables() -> None:
+    table = fit("f", [0.0, 1.0], [2.0, 4.0], "linear", None, None)
+    other = fit("g", [0.0, 1.0], [0.0, 10.0], "linear", None, None)
+    scope = Scope(tables={"f": table, "g": other}, in_time=True)
+    found = compile_expression("table(f, 0.5) + table(g, 0.1)*table(f, 0)", scope)
+    assert found.constant == 5.0
+    assert of(table, "table(f, 5) if t < 0 else 1").value(1.0) == 1.0
+
+
+@pytest.mark.parametrize("text", [
+    "a,b\n1,2\n3,4\n", "a;b\r\n1;2\r\n3;4\r\n", "a\tb\n1\t2\n3\t4", "a b\n 1 2\n3   4\n", '"a","b"\n"1","2"\n3,4\n',
+    "# made by hand\n\na , b\n1, 2\n\n# half way\n3, 4\n", "a;b\n1,0;2,0\n3;4\n",
+    "a,c,b\n1,x,2\n3,y,4\n",
+])  # fmt: skip
+def test_files_as_programs_write_them(text: str) -> None:
+    assert columns_of(text, "a", "b") == [[1.0, 3.0], [2.0, 4.0]]
+
+
+def test_columns_by_number() -> None:
+    assert columns_of("1,2,3\n4,5,6\n", 3, "1") == [[3.0, 6.0], [1.0, 4.0]]
+    assert columns_of("a,b\n1,2\n", 2, 1) == [[2.0], [1.0]]
+
+
+@pytest.mark.parametrize(("text", "line", "words"), [
+    ("", 1, "no rows"), ("# nothing\n", 1, "no rows"), ("a,b\n1,2\n3\n", 3, "column 2 is missing"),
+    ("a,b\n1,2\n\n3,x\n", 4, "'x'"), ("a,b\n1,2\n3,nan\n", 3, "'nan'"), ("a,b\n1,2\n3,1e999\n", 3, "'1e999'"),
+    ("a,c\n1,2\n", 1, "no column 'b'"), ("1,2\n", 1, "no column 'a'"), ('a,b\n1,"2\n', 2, "cannot be read"),
+    ("a,b\n1_0,2\n", 2, "'1_0'"),
+])  # fmt: skip
+def test_files_with_accidents(text: str, line: int, words: str) -> None:
+    with pytest.raises(CsvError) as caught:
+        columns_of(text, "a", "b")
+    assert caught.value.line == line
+    assert words in caught.value.finding.message
+    with pytest.raises(CsvError):
+        columns_of("1,2\n", 0, 3)
+
+
+def test_a_table_from_a_file(tmp_path: Path) -> None:
+    (tmp_path / "gas.csv").write_text("angle;pressure\n0;1,0\n360;25,5\n720;1,0\n")
+    spec = tmp_path / "engine.yaml"
+    spec.write_text(BODY + "tables: {gas: {file: gas.csv, x: angle, y: pressure, x_unit: deg, y_unit: bar, "
+                    "period: 720 deg, interpolation: cubic}}\n"
+                    'forces: {gas: {type: force, on: b.p, vector: ["table(gas, t)*1e-4", 0, 0]}}\n')  # fmt: skip
+    scene = load(spec)
+    table = scene.tables["gas"]
+    assert table.x == pytest.approx([0.0, 2 * math.pi, 4 * math.pi])
+    assert table.y == pytest.approx([1e5, 25.5e5, 1e5])
+    value = scene.forces["gas"].vector[0]  # type: ignore[union-attr]
+    assert value.value(2 * math.pi) == pytest.approx(255.0)
+    assert value.value(6 * math.pi) == pytest.approx(255.0)
+    assert load("-", text="heun: 1\nbodies: {b: {mass: 1, center: [0,0,0], inertia: [0,0,0]}}\n").tables == {}
+
+
+@pytest.mark.parametrize(("entry", "code", "path", "words"), [
+    ("{x: [0, 1], y: [1]}", "table-shape", "tables.f", "2 values of x and 1"),
+    ("{x: [0], y: [1]}", "table-shape", "tables.f", "two points"),
+    ("{x: [0, 0], y: [1, 2]}", "table-shape", "tables.f.x.1", "jump"),
+    ("{x: [0, 1], y: [1, a]}", "unknown-name", "tables.f.y.1", "'a'"),
+    ("{x: [0, 1], y: [1, true]}", "wrong-kind", "tables.f.y.1", "true"),
+    ("{x: 1, y: 2}", "table-form", "tables.f", "lists"),
+    ("{file: a.csv, x: [1, 2], y: 2}", "table-form", "tables.f", "columns"),
+    ("{x: [0, 1], y: [1, 1], period: 1, outside: hold}", "table-form", "tables.f.outside", "outside"),
+    ("{x: [0, 360], y: [1, 1], x_unit: deg, period: 360}", "table-period", "tables.f.period", "360 deg"),
+    ("{x: [0, 1], y: [1, 2], period: 1}", "table-period", "tables.f.period", "agree"),
+    ("{x: [0, 1], y: [1, 2], x_unit: degs}", "unknown-unit", "tables.f.x_unit", "deg"),
+    ("{x: [0, 1], y: [1, 2], interpolation: spline}", "unknown-word", "tables.f.interpolation", "cubic"),
+    ("{x: [0, 1e-320], y: [1, 2]}", "table-shape", "tables.f", "slope"),
+    ("{x: [0, 1], y: [1, 2], z: 3}", "unknown-key", "tables.f.z", "z"),
+    ("{file: none.csv}", "table-file", "tables.f.file", "none.csv"),
+    ("{file: .}", "table-file", "tables.f.file", "cannot be read"),
+    ("5", "wrong-kind", "tables.f", "mapping"),
+])  # fmt: skip
+def test_tables_with_accidents(entry: str, code: str, path: str, words: str) -> None:
+    with pytest.raises(SpecError) as caught:
+        load("x.yaml", text=BODY + f"tables: {{f: {entry}}}\n")
+    (problem,) = caught.value.problems
+    assert problem.place is not None
+    assert (problem.code, problem.place.path) == (code, path)
+    assert words in f"{problem.message} {problem.hint}"
+
+
+def test_an_accident_in_a_file_is_told_in_that_file(tmp_path: Path) -> None:
+    (tmp_path / "gas.csv").write_text("a,b\n0,1\n1,x\n")
+    spec = tmp_path / "engine.yaml"
+    spec.write_text(BODY + "tables: {f: {file: gas.csv, x: a, y: b}}\n")
+    with pytest.raises(SpecError) as caught:
+        load(spec)
+    (problem,) = caught.value.problems
+    assert str(problem.place) == f"{tmp_path / 'gas.csv'}:3:1"
+
+
+def test_units_inside_lists() -> None:
+    scene = load("x.yaml", text=BODY + "parameters: {w: 5}\n"
+                 "tables: {f: {x: [0, 90, 180 deg, 2*pi], x_unit: deg, y: [0, 1 bar, w, '2*w']}}\n")  # fmt: skip
+    assert scene.tables["f"].x == pytest.approx([0.0, math.pi / 2, math.pi, 2 * math.pi])
+    assert scene.tables["f"].y == (0.0, 1e5, 5.0, 10.0)

@@ -1,0 +1,226 @@
+"""The evaluator: values against Python's arithmetic, derivatives against complex steps, one form against the other."""
+
+from __future__ import annotations
+
+import cmath
+import importlib.util
+import math
+from array import array
+from pathlib import Path
+from types import ModuleType
+from typing import Any
+
+import pytest
+from hypothesis import given, settings
+from hypothesis import strategies as st
+
+from heuncli.kernel.choose import program
+from heuncli.spec.expression import Expression, Pack
+from heuncli.spec.grammar import Scope, compile_expression
+
+IN_TIME = Scope(parameters={"L": 1.5}, joints={"shaft": "pin", "guide": "slide"}, in_time=True)
+
+
+def read(text: str) -> Expression:
+    return compile_expression(text, IN_TIME)
+
+
+def step(x: float) -> float:
+    return 1.0 if x >= 0.0 else 0.0
+
+
+def sign(x: float) -> float:
+    return float((x > 0.0) - (x < 0.0))
+
+
+ANALYTIC = ("sin", "cos", "tan", "asin", "acos", "atan", "sinh", "cosh", "tanh", "exp", "log", "sqrt")
+PYTHON: dict[str, Any] = {
+    **{name: getattr(math, name) for name in (*ANALYTIC, "atan2", "hypot", "pi")},
+    "abs": abs, "min": min, "max": max, "step": step, "sign": sign, "L": 1.5,
+}  # fmt: skip
+
+EXAMPLES = 250
+
+NUMBERS = st.sampled_from(["0.0", "1.0", "2.0", "0.5", "3.25", "1e-3", "7.0", "pi", "L", "t", "t", "t"])
+
+
+def calls(inner: st.SearchStrategy[str]) -> st.SearchStrategy[str]:
+    one = st.sampled_from([*ANALYTIC, "abs", "sign", "step"])
+    two = st.sampled_from(["atan2", "min", "max", "hypot"])
+    return st.one_of(
+        st.builds("({} {} {})".format, inner, st.sampled_from(["+", "-", "*", "/"]), inner),
+        st.builds("({} ** {})".format, inner, st.sampled_from(["2", "3", "-1", "-2"])),
+        st.builds("(abs({}) ** {})".format, inner, st.sampled_from(["0.5", "2.5", "-1.5"])),
+        st.builds("(-{})".format, inner),
+        st.builds("{}({})".format, one, inner),
+        st.builds("{}({}, {})".format, two, inner, inner),
+        st.builds("({} if {} < {} else {})".format, inner, inner, inner, inner),
+        st.builds("({} if {} >= {} > {} else {})".format, inner, NUMBERS, inner, NUMBERS, inner),
+        st.builds("(1 if {} > 1 and not {} < 2 or {} == 0 else 2)".format, inner, inner, inner),
+    )
+
+
+EXPRESSIONS = st.recursive(NUMBERS, calls, max_leaves=12)
+
+
+def by_python(text: str, t: float) -> float | None:
+    """What Python makes of the same text; None where it raises or overflows."""
+    try:
+        value = eval(text, {"__builtins__": {}}, {**PYTHON, "t": t})  # of texts made above, in test code only
+    except (ValueError, ZeroDivisionError, OverflowError):
+        return None
+    return float(value) if math.isfinite(value) else None
+
+
+@given(EXPRESSIONS, st.floats(-3.0, 3.0))
+@settings(max_examples=EXAMPLES, deadline=None, derandomize=True)
+def test_values_are_pythons(text: str, t: float) -> None:
+    expected = by_python(text, t)
+    try:
+        expression = read(text)
+    except ValueError as error:
+        assert getattr(error, "code", "") == "not-computable"
+        assert expected is None
+        return
+    found = expression.value(t)
+    if expected is None:
+        return  # Python stops at the first branch it cannot compute; the next test holds the evaluator to NaN
+    assert found == pytest.approx(expected, rel=1e-12, abs=1e-12)
+
+
+@pytest.mark.parametrize("text", [
+    "sqrt(-1 - t)", "log(0*t)", "log(-t)", "1/(t - t)", "asin(1 + t)", "acos(-1 - t)", "(0*t)**-1", "(-t)**0.5",
+    "exp(1000*t)", "sin(exp(1000*t))", "tan(exp(1000*t))", "cos(exp(999*t))", "sinh(1000*t)", "cosh(1000*t)",
+    "1 if sqrt(-t) > 0 else 2", "min(1, sqrt(-t))", "max(sqrt(-t), 1)", "step(sqrt(-t))", "sign(sqrt(-t))",
+    "0*sqrt(-t)", "10**(400*t)", "(-10)**(401*t)", "hypot(exp(709.7*t), exp(709.7*t))",
+])  # fmt: skip
+def test_what_is_no_number_is_nan(text: str) -> None:
+    expression = read(text)
+    assert math.isnan(expression.value(1.0))
+    assert all(map(math.isnan, expression.derivatives(1.0)))
+
+
+@pytest.mark.parametrize(("text", "expected"), [
+    ("sqrt(-1) if t < 0 else 5", 5.0), ("5 if t > 0 else 1/0", 5.0), ("t > 0 or 1/0 > 0", 1.0),
+    ("t < 0 and 1/0 > 0", 0.0), ("-2**2", -4.0), ("2**-1", 0.5), ("2**3**2", 512.0), ("-2**-2", -0.25),
+    ("(-2)**3", -8.0), ("(-8)**(1/3*3)", -8.0), ("0**0", 1.0), ("1 - 2 - 3", -4.0), ("8/4/2", 1.0), ("--3", 3.0),
+    ("+-+3", -3.0), ("3 < 4 < 5", 1.0), ("3 < 4 > 5", 0.0), ("1 < 2 < 3 < t", 0.0), ("not 0", 1.0), ("not not 7", 1.0),
+    ("atan(exp(1000*t))", math.pi / 2), ("exp(-exp(800*t))", 0.0), ("tanh(800*t)", 1.0), ("step(0)", 1.0),
+    ("step(-0.0)", 1.0), ("step(-1e-300)", 0.0), ("sign(0)", 0.0), ("90*deg", math.pi / 2), ("60*rpm", 2 * math.pi),
+    ("min(3, 1, 2)", 1.0), ("max(3, 1, 2, 7)", 7.0), ("hypot(2, 3, 6)", 7.0), (".5e1", 5.0), ("2.", 2.0),
+])  # fmt: skip
+def test_worked_values(text: str, expected: float) -> None:
+    assert read(text).value(1.0) == pytest.approx(expected, rel=1e-15, abs=1e-15)
+
+
+COMPLEX: dict[str, Any] = {
+    **{name: getattr(cmath, name) for name in ANALYTIC},
+    "pi": math.pi, "hypot": lambda x, y: cmath.sqrt(x * x + y * y), "min": lambda x, y: x if x.real <= y.real else y,
+    "max": lambda x, y: x if x.real >= y.real else y, "abs": lambda x: x if x.real >= 0 else -x, "L": 1.5,
+    "step": lambda x: 1.0 if x.real >= 0 else 0.0, "sign": lambda x: sign(x.real),
+    # analytic where x > 0, which the texts below see to
+    "atan2": lambda y, x: cmath.atan(y / x),
+}  # fmt: skip
+SMOOTH = [
+    "t**3 - 2*t", "sin(2*pi*t)", "cos(t)*exp(-t)", "tan(t)", "asin(t/2)", "acos(t/2)", "atan(3*t)", "atan2(t, 2 + t*t)",
+    "sinh(t)/cosh(2*t)", "tanh(t)", "log(1 + t)", "sqrt(1 + t*t)", "hypot(1 + t, 2*t)", "(1 + t)**2.5", "(2 + t)**-3",
+    "(1 + t)**t", "2**t", "(1 + t)**(2*t*t)", "1/(1 + t)", "abs(sin(t) - 2)*t", "min(t*t, 5)", "max(t*t, sin(t))",
+    "step(t)*t**4", "sign(t + 1)*exp(t)", "-(t**2)", "t*t if t < 9 else 1/t", "L*t/(3 - t)", "(t < 1)*5 + t*t*t",
+    "(t - 1)**7", "t**5", "(0.5 - t)**3", "exp(sin(t)**2)/(1 + t)**2",
+]  # fmt: skip
+
+
+@pytest.mark.parametrize("text", SMOOTH)
+@pytest.mark.parametrize("t", [0.3, 0.71])
+def test_derivatives_are_those_of_complex_steps(text: str, t: float) -> None:
+    def slope(s: float) -> float:
+        value: complex = eval(compile_complex(text), {"__builtins__": {}}, {**COMPLEX, "t": s + 1e-20j})
+        return complex(value).imag / 1e-20
+
+    value, first, second = read(text).derivatives(t)
+    assert value == pytest.approx(read(text).value(t), rel=1e-15)
+    assert first == pytest.approx(slope(t), rel=1e-12, abs=1e-12)
+    h = 1e-3  # Richardson on central differences: the error is of order h**4
+    near, far = (slope(t + h) - slope(t - h)) / (2 * h), (slope(t + 2 * h) - slope(t - 2 * h)) / (4 * h)
+    assert second == pytest.approx((4 * near - far) / 3, rel=1e-7, abs=1e-7)
+
+
+def compile_complex(text: str) -> str:
+    """Comparisons look at the real part."""
+    return text.replace("t < 9", "t.real < 9").replace("(t < 1)", "(t.real < 1)")
+
+
+def test_derivatives_at_the_edge_of_a_domain_stand_still_with_their_argument() -> None:
+    assert read("sqrt(step(t) - 1)").derivatives(1.0) == (0.0, 0.0, 0.0)
+    assert read("asin(step(t))").derivatives(1.0) == (math.pi / 2, 0.0, 0.0)
+    assert read("(step(t) - 1)**0.5").derivatives(1.0) == (0.0, 0.0, 0.0)
+    assert math.isnan(read("sqrt(t - 1)").derivatives(1.0)[1])
+
+
+def test_coordinates_take_their_places() -> None:
+    expression = read("shaft.angle + 10*guide.speed - 100*shaft.rate + t")
+    assert expression.uses == (("shaft", "angle"), ("guide", "speed"), ("shaft", "rate"))
+    assert expression.constant is None
+    assert expression.time_dependent
+    assert expression.value(0.5, [1.0, 2.0, 3.0]) == 1.0 + 20.0 - 300.0 + 0.5
+    assert math.isnan(expression.derivatives(0.5)[0])
+
+
+def test_a_pack_holds_programs_side_by_side() -> None:
+    pack = Pack()
+    texts = ["guide.travel*2", "t + shaft.angle", "7", "guide.travel - shaft.angle"]
+    spans = [pack.add(read(text)) for text in texts]
+    assert pack.variables == ["t", ("guide", "travel"), ("shaft", "angle")]
+    x = [0.25, 3.0, 10.0]
+    assert [pack.value(*span, x) for span in spans] == [6.0, 10.25, 7.0, -7.0]
+    assert pack.depth >= 2
+    with pytest.raises(ValueError, match="3 variables"):
+        pack.value(*spans[0], [1.0])
+
+
+def test_constants_need_no_program_run() -> None:
+    expression = Expression.of(2.5)
+    assert (expression.constant, expression.value(), expression.derivatives(3.0)) == (2.5, 2.5, (2.5, 0.0, 0.0))
+    assert not expression.time_dependent
+    assert list(read("t*t").sample([1.0, 2.0, 3.0])) == [1.0, 4.0, 9.0]
+
+
+@pytest.fixture(scope="module")
+def plain() -> ModuleType:
+    """The evaluator as a plain Python file, whatever runs otherwise."""
+    path = Path(__file__).parents[2] / "heuncli" / "kernel" / "program.py"
+    spec = importlib.util.spec_from_file_location("plain_program", path)
+    assert spec is not None
+    assert spec.loader is not None
+    module = importlib.util.module_from_spec(spec)
+    spec.loader.exec_module(module)
+    return module
+
+
+@pytest.mark.skipif(not program.COMPILED, reason="there is only the plain form")
+@given(text=EXPRESSIONS, t=st.floats(-5.0, 5.0))
+@settings(max_examples=EXAMPLES, deadline=None, derandomize=True)
+def test_compiled_and_plain_give_the_same_bits(plain: ModuleType, text: str, t: float) -> None:
+    try:
+        expression = read(text)
+    except ValueError:
+        return
+    pack = expression.pack
+    stack, out, other = array("d", bytes(24 * pack.depth)), array("d", bytes(24)), array("d", bytes(24))
+    start = (pack.code, pack.constants, 0, expression.count)
+    values = [form.evaluate(*start, array("d", [t]), stack) for form in (program, plain)]
+    program.derivatives(*start, t, stack, out)
+    plain.derivatives(*start, t, stack, other)
+    assert bits(values[:1]) == bits(values[1:])
+    assert bits(out) == bits(other)
+    if all(map(math.isfinite, out)):
+        assert out[0] == values[0]
+
+
+def bits(numbers: Any) -> list[str]:
+    """Numbers to the last bit; one NaN is like another."""
+    return [float(x).hex() if x == x else "nan" for x in numbers]
+
+
+def test_the_table_of_operations_is_complete() -> None:
+    assert sorted(program.OPERATIONS.values()) == list(range(len(program.OPERATIONS)))

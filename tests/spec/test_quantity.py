@@ -1,0 +1,119 @@
+"""Numbers with units against their definitions; what is a unit, what an expression."""
+
+from __future__ import annotations
+
+import math
+
+import pytest
+from hypothesis import given, settings
+from hypothesis import strategies as st
+
+from heuncli.errors import Finding
+from heuncli.spec import units as u
+from heuncli.spec.grammar import Scope
+from heuncli.spec.quantity import in_time, number
+
+SCOPE = Scope(parameters={"L": 2.0, "m": 3.0})
+
+
+@pytest.mark.parametrize(("text", "value", "dimension"), [
+    # the factors of NIST SP 811 (2008), appendix B
+    ("1 in", 2.54e-2, u.LENGTH), ("1 ft", 3.048e-1, u.LENGTH), ("1 lb", 4.535924e-1, u.MASS),
+    ("1 lbf", 4.448222, u.FORCE), ("1 psi", 6.894757e3, u.PRESSURE), ("1 bar", 1.0e5, u.PRESSURE),
+    ("1 rpm", 1.047198e-1, u.RATE), ("1 rev", 6.283185, u.ANGLE), ("1 deg", 1.745329e-2, u.ANGLE),
+    ("1 lbf ft", 1.355818, u.MOMENT), ("1 lb/ft^3", 1.601846e1, u.DENSITY), ("1 lbf/in", 1.751268e2, u.STIFFNESS),
+    ("1 lb ft^2", 4.214011e-2, u.INERTIA), ("1 km/h", 2.777778e-1, u.VELOCITY), ("1 h", 3.6e3, u.TIME),
+    # decimal ones
+    ("12 mm", 0.012, u.LENGTH), ("12mm", 0.012, u.LENGTH), ("-12.5e-1 cm", -0.0125, u.LENGTH), ("3 um", 3e-6, u.LENGTH),
+    ("3 µm", 3e-6, u.LENGTH), ("7.85 g/cm^3", 7850.0, u.DENSITY), ("7850 kg/m³", 7850.0, u.DENSITY),
+    ("7850 kg*m^-3", 7850.0, u.DENSITY), ("9.81 m/s^2", 9.81, u.ACCELERATION), ("9.81 m/s/s", 9.81, u.ACCELERATION),
+    ("5 N·m", 5.0, u.MOMENT), ("5 N m", 5.0, u.MOMENT), ("5 Nm", 5.0, u.MOMENT), ("5 kNm", 5000.0, u.MOMENT),
+    ("5 N*m/deg", 5.0 * 180.0 / math.pi, u.MOMENT), ("5 N/(m/s)", 5.0, u.DAMPING), ("5 N s/m", 5.0, u.DAMPING),
+    ("5 N*m*s/rad", 5.0, u.TURNING_DAMPING), ("3 kg m^2", 3.0, u.INERTIA), ("90°", math.pi / 2, u.ANGLE),
+    ("3 1/s", 3.0, u.RATE), ("2 N/mm^2", 2e6, u.PRESSURE), ("2 MPa", 2e6, u.PRESSURE), ("4 mm^4", 4e-12, u.AREA_MOMENT),
+    ("2 kN/mm", 2e6, u.STIFFNESS), ("1 l", 1e-3, u.VOLUME), ("2 kW", 2000.0, u.POWER), ("2 J", 2.0, u.MOMENT),
+])  # fmt: skip
+def test_units(text: str, value: float, dimension: u.Dimension) -> None:
+    found = in_time(text, None, SCOPE)
+    assert found.constant == pytest.approx(value, rel=1e-6 if text[0] == "1" else 1e-15)
+    assert found.dimension == dimension
+    assert number(text, dimension, SCOPE) == found.constant
+
+
+@pytest.mark.parametrize(("text", "value"), [
+    (3, 3.0), (2.5, 2.5), ("3", 3.0), ("2*L", 4.0), ("-L/2", -1.0), ("2*m", 6.0), ("1e3", 1000.0), ("1.5E-2", 0.015),
+    ("2 if L > 1 else 3", 2.0), ("2 if 0 else 3", 3.0), ("90*deg", math.pi / 2), (" 4 ", 4.0), ("1 and 0", 0.0),
+])  # fmt: skip
+def test_plain_numbers_and_expressions(text: object, value: float) -> None:
+    assert number(text, u.LENGTH, SCOPE) == pytest.approx(value, rel=1e-15)
+
+
+@pytest.mark.parametrize(("value", "code", "words"), [
+    ("2 kg", "dimension", "a mass, expected a length"),
+    ("2 m^2", "dimension", "an area"),
+    ("2 kg*m", "dimension", "kg*m"),
+    ("2 L", "dimension", "2*L"),
+    ("2 m/s", "dimension", "a velocity"),
+    ("2 meters", "unknown-unit", "meter"),
+    ("2 Mm", "unknown-unit", "mm"),
+    ("2 Hz", "unknown-unit", "3000 rpm"),
+    ("2 t", "unknown-unit", "2*t"),
+    ("2 t/m", "unknown-unit", "2*t/m"),
+    ("2 pi", "unknown-unit", "2*pi"),
+    ("2 xyz", "unknown-unit", "units are"),
+    ("2 m + 3 mm", "unknown-unit", "inside expressions"),
+    ("2 m^x", "unknown-unit", "power"),
+    ("2 m^", "unknown-unit", "power"),
+    ("2 m^1000", "unknown-unit", "power"),
+    ("2 m2", "unknown-unit", "m^2"),
+    ("2 m/", "unknown-unit", "early"),
+    ("2 m/(s", "unknown-unit", "closed"),
+    ("2 m)", "unknown-unit", "')'"),
+    ("2 m$", "unknown-unit", "$"),
+    ("2 m/" + "(" * 50 + "s" + ")" * 50, "unknown-unit", "unit"),
+    (True, "wrong-kind", "true"),
+    (None, "wrong-kind", "nothing"),
+    ([1], "wrong-kind", "a list"),
+    ({"a": 1}, "wrong-kind", "a mapping"),
+    ({"L": None}, "wrong-kind", "without"),
+    (float("inf"), "not-finite", "inf"),
+    (float("nan"), "not-finite", "nan"),
+    (10**400, "not-finite", "number"),
+    ("inf", "not-finite", "inf"),
+    ("-.inf", "not-finite", "inf"),
+    ("1e400 m", "not-finite", "inf"),
+    ("1e300 km^9", "not-finite", "inf"),
+    ("1,5 m", "expression-syntax", "','"),
+    ("m L", "expression-syntax", "m*L"),
+])  # fmt: skip
+def test_refusals(value: object, code: str, words: str) -> None:
+    with pytest.raises(Finding) as caught:
+        number(value, u.LENGTH, SCOPE)
+    assert caught.value.code == code
+    assert words in f"{caught.value.message} {caught.value.hint}"
+
+
+def test_in_time_a_multiple_of_time_is_meant() -> None:
+    with pytest.raises(Finding) as caught:
+        in_time("100 t", u.ANGLE, Scope(in_time=True))
+    assert "100*t" in (caught.value.hint or "")
+
+
+def test_the_list_of_units_is_readable() -> None:
+    listed = u.unit_table()
+    assert len(listed) == len(u.UNITS)
+    assert all(measures.startswith(("a ", "an ")) and size > 0.0 for _, size, measures in listed)
+    for symbol, _, _ in listed:
+        assert u.parse_unit(symbol) == u.UNITS[symbol]
+    for spelling, symbol in u.SPELLINGS.items():
+        assert symbol in u.UNITS, spelling
+
+
+@given(st.text(max_size=30))
+@settings(max_examples=200, deadline=None, derandomize=True)
+def test_any_text_is_a_number_or_a_finding(text: str) -> None:
+    for words in (text, f"2 {text}"):
+        try:
+            assert math.isfinite(number(words, None, SCOPE))
+        except Finding as finding:
+            assert finding.message

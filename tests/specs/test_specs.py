@@ -1,0 +1,143 @@
+"""Every worked example says what to look at, runs, meets what it expects, and says the same in every format.
+
+What the examples expect comes from closed forms and independent solutions, so these are tests of the physics, too.
+"""
+
+from __future__ import annotations
+
+import csv
+import io
+import json
+from functools import cache
+from pathlib import Path
+from typing import Any
+
+import numpy as np
+import pytest
+
+from heuncli.cli.entry import enter
+from heuncli.cli.expect import compare
+from heuncli.report.export import present, to_csv, to_json
+from heuncli.report.scene import scene_of
+from heuncli.spec.load import load
+from heuncli.study import Options, Study, solve
+
+FOLDER = Path(__file__).parents[2] / "specs"
+HEAVY = ("cardan", "crane", "engine", "friction", "jib")  # too long for the plain kernel
+NAMES = [
+    pytest.param(path.stem, marks=[pytest.mark.heavy] if path.stem in HEAVY else [])
+    for path in sorted(FOLDER.glob("*.yaml"))
+]
+EVERYTHING = frozenset({"motion", "points", "foundation", "joints", "sections", "forces", "energy"})
+each = pytest.mark.parametrize("name", NAMES)
+
+
+def path_of(name: str) -> str:
+    return str(FOLDER / f"{name}.yaml")
+
+
+@cache
+def study_of(name: str) -> Study:
+    return solve(load(path_of(name)), Options(wanted=EVERYTHING))
+
+
+@each
+def test_it_says_what_to_look_at(name: str) -> None:
+    comment = [line for line in Path(path_of(name)).read_text().splitlines() if line.startswith("#")]
+    heads = [line[2:].split()[0] for line in comment[1:] if line.startswith("# ") and line[2:3] != " "]
+    assert {"Question", "Look", "Checked"} <= set(heads)
+    assert load(path_of(name)).warnings == ()
+
+
+@each
+def test_it_is_as_it_expects(name: str) -> None:
+    study = study_of(name)
+    cases = [compare(study, item) for item in study.spec.expect]
+    assert cases
+    assert [f"{case.of} {case.when}: {case.failure}" for case in cases if not case.passed] == []
+
+
+@each
+def test_it_is_as_accurate_as_asked(name: str) -> None:
+    study = study_of(name)
+    accuracy = study.results.accuracy
+    assert accuracy["estimate"]["motion"] <= study.spec.analysis.tolerance
+    assert accuracy["balance_residual"] < 1e-10
+    assert accuracy["energy_drift"] < 1e-6
+    assert accuracy["horizon"] is None
+
+
+@each
+def test_its_tables_print(name: str, capsys: pytest.CaptureFixture[str]) -> None:
+    assert enter(["run", path_of(name)]) == 0
+    printed = capsys.readouterr()
+    assert printed.err == ""
+    assert study_of(name).spec.title in printed.out
+    assert "accuracy" in printed.out
+    words = printed.out.split()
+    assert not {"nan", "inf", "-inf", "-0", "None"} & set(words)
+    assert enter(["model", path_of(name)]) == 0
+    assert "freedoms" in capsys.readouterr().out
+
+
+@each
+def test_its_json_says_the_same(name: str) -> None:
+    results = study_of(name).results
+    parsed = json.loads(to_json(results))
+    assert list(parsed) == ["heun", *present(results)]
+    same(parsed, present(results), name)
+
+
+def same(read: Any, written: Any, where: str) -> None:
+    """What was read back is what was written, to the last bit; null for nan."""
+    if isinstance(written, dict):
+        assert list(read)[-len(written) :] == list(written), where
+        for key, part in written.items():
+            same(read[key], part, f"{where}.{key}")
+    elif isinstance(written, (np.ndarray, float)):
+        numbers = np.array(read, dtype=float)
+        assert np.array_equal(numbers, np.asarray(written), equal_nan=True), where
+    elif isinstance(written, (list, tuple)):
+        assert len(read) == len(written), where
+        for number, (one, other) in enumerate(zip(read, written, strict=True)):
+            same(one, other, f"{where}.{number}")
+    else:
+        assert read == written, where
+
+
+@each
+def test_its_csv_says_the_same(name: str) -> None:
+    study = study_of(name)
+    rows = list(csv.DictReader(io.StringIO(to_csv(study.results, scene_of(study.spec)))))
+    assert {row["unit"] for row in rows if row["kind"] == "joints" and row["quantity"] == "force"} <= {"N"}
+    for joint, part in study.results.joints.items():
+        found = [
+            row["value"] for row in rows if (row["kind"], row["name"], row["quantity"]) == ("joints", joint, "force")
+        ]
+        read = np.array([float(text) if text else np.nan for text in found]).reshape(3, -1).T
+        assert np.array_equal(read, part["force"], equal_nan=True)
+
+
+def test_an_expectation_that_fails_is_told(tmp_path: Path, capsys: pytest.CaptureFixture[str]) -> None:
+    text = Path(path_of("chimney")).read_text().replace("is: m*g*L*sin(tilt)/27", "is: m*g*L*sin(tilt)/26")
+    wrong = tmp_path / "wrong.yaml"
+    wrong.write_text(text)
+    assert enter(["check", str(wrong)]) == 1
+    printed = capsys.readouterr().out
+    assert "sections.shaft.M2" in printed
+    assert "1 spec, 7 passed, 1 failed" in printed
+
+
+def test_expectations_follow_the_parameters(capsys: pytest.CaptureFixture[str]) -> None:
+    spec = load(path_of("chimney"), overrides={"tilt": "60 deg", "L": "20"})
+    study = solve(spec)
+    assert all(compare(study, item).passed for item in spec.expect)
+    assert spec.expect[0].is_ == pytest.approx(1000 * 9.81 * 20 * np.sin(np.pi / 3) / 27, rel=1e-15)
+
+
+@pytest.mark.parametrize(
+    "change", ["--method=rk4", "--set=analysis.method=rk4", "--set=analysis.step=0.01", "--set=report=[shares]"]
+)
+def test_what_cannot_be_had_is_not_taken_silently(change: str, capsys: pytest.CaptureFixture[str]) -> None:
+    assert enter(["run", path_of("double"), *change.split("=", 1)]) == 2
+    assert capsys.readouterr().out == ""
