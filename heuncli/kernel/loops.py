@@ -383,7 +383,7 @@ def factor_closures(I: cython.p_int, P: cython.p_double, W: cython.p_double) -> 
             if j < i:
                 W[A + m * i + j] = x * W[A + m * j + j]
             else:
-                scale = W[I[37] + I[4] + r]
+                scale = W[I[37] + 2 * I[4] + r]
                 if x * scale * scale < least:
                     least = x * scale * scale
                 if x <= 0.0:
@@ -647,7 +647,7 @@ def loudest(I: cython.p_int, P: cython.p_double, W: cython.p_double, r: cython.P
 @cython.nogil
 @cython.exceptval(check=False)
 @cython.locals(i=cython.Py_ssize_t, j=cython.Py_ssize_t, k=cython.Py_ssize_t, m=cython.Py_ssize_t, n=cython.Py_ssize_t, best=cython.Py_ssize_t, A=cython.Py_ssize_t, D=cython.Py_ssize_t, r=cython.Py_ssize_t, x=cython.double, s=cython.double)
-def select(I: cython.p_int, P: cython.p_double, W: cython.p_double, C: cython.p_int, N: cython.p_double, X: cython.p_double, S: cython.p_double, t: cython.double, y: cython.p_double, o: cython.Py_ssize_t) -> cython.int:
+def select(I: cython.p_int, P: cython.p_double, W: cython.p_double, C: cython.p_int, N: cython.p_double, X: cython.p_double, S: cython.p_double, t: cython.double, y: cython.p_double, o: cython.Py_ssize_t, fresh: cython.int) -> cython.int:
     """Choose an independent set of rows at y by pivoted Cholesky of the scaled A over all rows; how many."""
     n = I[4]
     A = I[27]
@@ -668,12 +668,20 @@ def select(I: cython.p_int, P: cython.p_double, W: cython.p_double, C: cython.p_
         W[D + i] = product(I, W, i)
         weighted(I, W, i, 1)
         # what hardly answers at all (across the only axis its pins have, say) is rounding, and no row
-        if s > 1e-24 * loudest(I, P, W, i):
+        x = loudest(I, P, W, i)
+        if s > 1e-24 * x:
             W[D + n + i] = 1.0 / sqrt(s)
             W[D + i] /= s
         else:
             W[D + n + i] = 0.0
             W[D + i] = 0.0
+        # how near to singular is told against what the row can answer, not against what it does in this pose
+        x *= 1e-3
+        if s > x:
+            x = s
+        x = 1.0 / sqrt(x) if x > 0.0 else 0.0
+        if fresh or x < W[D + 2 * n + i]:
+            W[D + 2 * n + i] = x
         I[I[13] + 16 * i + 13] = -1
     # row k of the factor belongs to the k-th pivot; L (k, row)
     m = 0

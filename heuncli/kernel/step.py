@@ -210,7 +210,7 @@ def run(I: cython.p_int, P: cython.p_double, W: cython.p_double, C: cython.p_int
     count = 0
     if Z[14] != 0.0:
         if I[4]:
-            select(I, P, W, C, N, X, S, Z[0], y, 0)
+            select(I, P, W, C, N, X, S, Z[0], y, 0, 1)
             gap = settle(I, P, W, C, N, X, S, Z[0], y, 0)
         evaluate(I, P, W, C, N, X, S, Z[0], y, 0, K, 0)
         Z[5] += 1
@@ -302,7 +302,9 @@ def run(I: cython.p_int, P: cython.p_double, W: cython.p_double, C: cython.p_int
             Z[6] += 1
             continue
         f = 6.0
-        if e > 0.0:
+        if e > 1.0:
+            f = 1.0
+        elif e > 0.0:
             f = 0.9 * pow(e, -0.125)
             if f > 6.0:
                 f = 6.0
@@ -344,7 +346,7 @@ def run(I: cython.p_int, P: cython.p_double, W: cython.p_double, C: cython.p_int
             gap = settle(I, P, W, C, N, X, S, t, y, 0)
             if not gap <= 1e-11 * P[3] or P[5] < 1e-3 * P[4]:
                 # a row that was left out opens, or the chosen ones come near to depending on each other: choose anew
-                select(I, P, W, C, N, X, S, t, y, 0)
+                select(I, P, W, C, N, X, S, t, y, 0, 0)
                 gap = settle(I, P, W, C, N, X, S, t, y, 0)
                 if not gap <= 1e-8 * P[3]:
                     Z[7] = gap
@@ -405,7 +407,7 @@ def recover(I: cython.p_int, P: cython.p_double, W: cython.p_double, C: cython.p
         gap = 0.0
         if I[4]:
             if I[29] == 0 or I[38]:
-                select(I, P, W, C, N, X, S, ts[j], Y, j * n)
+                select(I, P, W, C, N, X, S, ts[j], Y, j * n, 1)
             gap = settle(I, P, W, C, N, X, S, ts[j], Y, j * n)
         bad = evaluate(I, P, W, C, N, X, S, ts[j], Y, j * n, z, 0)
         if bad > worst:

@@ -384,7 +384,7 @@ class _Builder:
         floats += [x for k in self.counters for x in (*self.mechanism.joints[k].axis.tolist(), 0.0)]
 
         lengths = {20: 80 * n, 21: 16 * n_f, 22: self.n_sweep, 23: 16 * n_l, 25: 40, 24: 16 * n_r, 26: e_start,
-                   27: n_r * n_r, 34: 6 * n if n_r else 0, 36: self.n_sweep, 37: 2 * n_r}  # fmt: skip
+                   27: n_r * n_r, 34: 6 * n if n_r else 0, 36: self.n_sweep, 37: 3 * n_r}  # fmt: skip
         for slot, at in zip(lengths, np.cumsum([0, *lengths.values()]).tolist(), strict=False):
             H[slot] = at
         H[39] = int(any(j.drive is not None for j in self.mechanism.joints))
