@@ -202,12 +202,15 @@ def interpolate(n: cython.Py_ssize_t, y: cython.p_double, F: cython.p_double, x:
 @cython.cfunc
 @cython.nogil
 @cython.exceptval(check=False)
-@cython.locals(n=cython.Py_ssize_t, s=cython.Py_ssize_t, i=cython.Py_ssize_t, b=cython.Py_ssize_t, m=cython.Py_ssize_t, count=cython.Py_ssize_t, h=cython.double, t=cython.double, e=cython.double, f=cython.double, q=cython.double, gap=cython.double, noise=cython.double, last=cython.int, have=cython.int, bad=cython.int, near=cython.int)
+@cython.locals(n=cython.Py_ssize_t, s=cython.Py_ssize_t, i=cython.Py_ssize_t, b=cython.Py_ssize_t, m=cython.Py_ssize_t, count=cython.Py_ssize_t, h=cython.double, t=cython.double, e=cython.double, f=cython.double, q=cython.double, gap=cython.double, noise=cython.double, last=cython.int, have=cython.int, bad=cython.int, near=cython.int, dodges=cython.int, best=cython.double, best_h=cython.double)
 def run(I: cython.p_int, P: cython.p_double, W: cython.p_double, C: cython.p_int, N: cython.p_double, X: cython.p_double, S: cython.p_double, MI: cython.p_int, T: cython.p_double, D: cython.p_int, Z: cython.p_double, G: cython.p_double, y: cython.p_double, K: cython.p_double, z: cython.p_double, F: cython.p_double, ts: cython.p_double, n_out: cython.Py_ssize_t, out: cython.p_double, ends: cython.p_double, most: cython.Py_ssize_t) -> cython.int:
     """Up to `most` accepted steps towards the piece's end Z[10]; a code (see above)."""
     n = D[0]
     m = MI[0]
     count = 0
+    dodges = 0
+    best = 0.0
+    best_h = 0.0
     if Z[14] != 0.0:
         if I[4]:
             select(I, P, W, C, N, X, S, Z[0], y, 0, 1)
@@ -281,6 +284,29 @@ def run(I: cython.p_int, P: cython.p_double, W: cython.p_double, C: cython.p_int
         combine(MI, T, 17, K, n, F, n)
         Z[5] += m
         e = step_error(D, Z, G, y, z, F, h)
+        noise = 0.0
+        if near:
+            # what rounding makes of the closures at the worst of the stages, by the tolerance
+            noise = 1e300
+            if P[6] > 0.0:
+                noise = 1e-16 * h * Z[13] / (P[6] * Z[8])
+            if dodges < 10 and last == 0 and (noise > 0.1 or e != e or bad < 0 or (e > 1.0 and dodges > 0)):
+                # other lengths may keep the stages off the singular pose; at last the best of those tried
+                q = noise
+                if e > q:
+                    q = e
+                if e != e or bad < 0:
+                    q = 1e300
+                if dodges == 0 or q < best:
+                    best = q
+                    best_h = h
+                dodges += 1
+                Z[1] = 0.87 * h
+                if dodges == 10:
+                    Z[1] = best_h
+                Z[6] += 1
+                continue
+            noise *= 100.0
         if e != e or bad < 0:
             # outside what the scene can do: a much smaller step, or the end of it
             Z[6] += 1
@@ -289,10 +315,6 @@ def run(I: cython.p_int, P: cython.p_double, W: cython.p_double, C: cython.p_int
             if Z[1] < 1e-14 * (Z[10] - Z[0]) or Z[1] <= 1e-15 * fabs(Z[0]):
                 return 3
             continue
-        noise = 0.0
-        if near and P[6] > 0.0:
-            # what rounding makes of the closures there; a shorter step would only make it worse
-            noise = 1e-14 * h * Z[13] / (P[6] * Z[8])
         if e > 1.0 + noise:
             f = 0.9 * pow(e, -0.125)
             if f < 0.2:
@@ -301,6 +323,7 @@ def run(I: cython.p_int, P: cython.p_double, W: cython.p_double, C: cython.p_int
             Z[3] = 1.0
             Z[6] += 1
             continue
+        dodges = 0
         f = 6.0
         if e > 1.0:
             f = 1.0
