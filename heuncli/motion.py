@@ -8,6 +8,7 @@ from __future__ import annotations
 import math
 import time
 from array import array
+from bisect import bisect_right
 from collections.abc import Sequence
 from dataclasses import dataclass
 from itertools import pairwise
@@ -23,7 +24,8 @@ from heuncli.results import Array
 from heuncli.spec.expression import Expression, breakpoints
 from heuncli.tableaus import DOP853, Tableau
 
-CHUNK = 20_000  # body-steps between two looks at the clock
+CHUNK = 2_000  # body-steps between two looks at the clock
+KEPT = 20_000_000  # numbers of states kept for going back to, at the ends of all steps or every second, fourth ...
 MOST_STEPS = 20_000_000
 
 ROPE = 5  # the kernel's code where a rope would push
@@ -61,6 +63,8 @@ class Trajectory:
     gap: float
     tolerance: float  # local, of this run
     seconds: float
+    halts: tuple[float, ...] = ()  # instants where it began anew
+    kept: tuple[tuple[int, Array], ...] = ()  # number of a step, the state before it; the first one and others
     stopped: str | None = None  # the joint of the rope that would push just after the last instant
 
 
@@ -95,6 +99,42 @@ def door(data: Any) -> Any:
     return list(data) if len(data) else [0.0]
 
 
+def left(t: float) -> float:
+    """The last instant before t: at a jump, that of the value before it."""
+    return math.nextafter(t, -math.inf)
+
+
+class Desk:
+    """The kernel's work arrays for one integration over the asked instants ts, at most `most` steps at a time."""
+
+    def __init__(self, layout: Layout, tableau: Tableau, ts: Array, most: int) -> None:
+        n = layout.n_state
+        self.n, self.n_t = n, len(ts)
+        self.MI, self.T = (door(x) for x in method_arrays(tableau))
+        self.D, self.Z = door(layout.groups[:]), door(np.zeros(16))
+        self.G = door(np.concatenate([layout.weights, np.zeros(2 * layout.groups[1])]))
+        self.y, self.z, self.K = door(np.zeros(n)), door(np.zeros(3 * n)), door(np.zeros(len(tableau.nodes) * n))
+        self.F = door(np.zeros((3 + len(tableau.dense)) * n + 2 * n))
+        self.asked, self.out = door(ts), door(np.zeros(len(ts) * n))
+        self.ends, self.passed = door(np.zeros(most)), door(np.zeros(most * n))
+
+    def advance(self, scene: tuple[Any, ...], most: int) -> int:
+        """Up to `most` steps; the kernel's code."""
+        code: int = step.advance(
+            *scene, self.MI, self.T, self.D, self.Z, self.G, self.y, self.K, self.z, self.F,
+            self.asked, self.n_t, self.out, self.ends, self.passed, most,
+        )  # fmt: skip
+        return code
+
+    def reached(self, count: int) -> Array:
+        """The states at the ends of the steps just done, (count, n)."""
+        return np.array(self.passed[: count * self.n], dtype=float).reshape(count, self.n)
+
+    def states(self) -> Array:
+        """The states at the asked instants, (n_t, n)."""
+        return np.array(self.out, dtype=float)[: self.n_t * self.n].reshape(self.n_t, self.n)
+
+
 class Runner:
     """A laid-out scene with the kernel's work arrays; every call starts from what it is given."""
 
@@ -111,47 +151,43 @@ class Runner:
         times: Sequence[float] | Array,
         tolerance: float,
         *,
-        y0: Array | None = None,
-        t0: float = 0.0,
         halts: Sequence[float] = (),
         deadline: float | None = None,
         most_steps: int = MOST_STEPS,
-        ropes: bool = True,
         tableau: Tableau = DOP853,
     ) -> Trajectory:
-        """Integrate from y0 at t0 over the asked instants (ascending, >= t0); `tolerance` is the local one.
+        """Integrate from the start at t = 0 over the asked instants (ascending); `tolerance` is the local one.
 
-        Where a rope would have to push the run ends: the instants up to there, and that one; not with ropes False.
+        Where a rope would have to push the run ends: the instants up to there, and that one.
 
         Raises SolveError where the motion cannot be continued, LimitError past the deadline (time.monotonic()).
         """
         begun = time.perf_counter()
         layout, n = self.layout, self.layout.n_state
         ts = np.ascontiguousarray(times, dtype=float)
-        MI, T = (door(x) for x in method_arrays(tableau))
-        y = door(np.array(layout.y0 if y0 is None else y0, dtype=float))
-        stages = len(tableau.nodes)
         most = max(1, CHUNK // max(len(layout.mechanism.bodies), 1))
-        K, z = door(np.zeros(stages * n)), door(np.zeros(3 * n))
-        F = door(np.zeros((3 + len(tableau.dense)) * n + 2 * n))
-        out, ends = door(np.zeros(max(len(ts), 1) * n)), door(np.zeros(most))
-        Z = door(np.zeros(16))
-        G = door(np.concatenate([layout.weights, np.zeros(2 * layout.groups[1])]))
-        D, asked = door(layout.groups[:]), door(ts)
-        Z[0], Z[8] = t0, tolerance
-        self.scene[0][40] = int(ropes and any(j.tension_only for j in layout.mechanism.joints))
-        passed: list[float] = []
-        last = float(ts[-1]) if len(ts) else t0
-        marks = [t0, *(h for h in halts if t0 < h < last), last]
+        desk = Desk(layout, tableau, ts, most)
+        Z, y = desk.Z, desk.y
+        y[:n] = layout.y0 if step.COMPILED else layout.y0.tolist()
+        Z[8] = tolerance
+        self.scene[0][40] = int(any(j.tension_only for j in layout.mechanism.joints))
+        ends: list[float] = []
+        kept = [(0, layout.y0)]
+        every, room = 1, max(2, KEPT // n)
+        last = float(ts[-1]) if len(ts) else 0.0
+        marks = [0.0, *(h for h in halts if 0.0 < h < last), last]
         for begin, end in pairwise(marks):
-            Z[9] = math.nextafter(end, -math.inf) if end > begin else end  # up to a jump, the value before it
+            Z[9] = left(end) if end > begin else end
             Z[10], Z[14], code = end, 1.0, 1
-            if begin == end:
-                Z[10] = begin
             while code == 1:
-                before = Z[4]
-                code = step.advance(*self.scene, MI, T, D, Z, G, y, K, z, F, asked, len(ts), out, ends, most)
-                passed += list(ends[: int(Z[4] - before)])
+                before = int(Z[4])
+                code = desk.advance(self.scene, most)
+                done = int(Z[4]) - before
+                ends += list(desk.ends[:done])
+                kept += [(k, state) for k, state in enumerate(desk.reached(done), before + 1) if k % every == 0]
+                while len(kept) > room:
+                    every *= 2
+                    kept = [(k, state) for k, state in kept if k % every == 0]
                 if code == 1 and deadline is not None and time.monotonic() > deadline:
                     message = f"the time limit was reached at t = {Z[0]:.6g} s of {last:.6g} s"
                     raise LimitError(Problem("time-limit", message))
@@ -163,17 +199,59 @@ class Runner:
             if code > 1:
                 name, message, hint = TROUBLE[code]
                 raise SolveError(Problem(name, f"at t = {Z[0]:.9g} s: {message}", hint=hint))
-        states = np.array(out, dtype=float)[: len(ts) * n].reshape(len(ts), n)
+        states = desk.states()
         stopped = None
         if code == ROPE:
             stopped = layout.mechanism.joints[layout.rows[int(Z[2]) - 1]].name
-            ts, states = np.append(ts[: D[2]], Z[0]), np.vstack([states[: D[2]], np.array(y, dtype=float)])
+            ts = np.append(ts[: desk.D[2]], Z[0])
+            states = np.vstack([states[: len(ts) - 1], np.array(y[:n], dtype=float)])
             if len(ts) > 1 and ts[-1] == ts[-2]:
                 ts, states = ts[:-1], states[:-1]
         return Trajectory(
-            times=ts, states=states, ends=np.array(passed), steps=int(Z[4]), evaluations=int(Z[5]), gap=float(Z[7]),
-            tolerance=tolerance, seconds=time.perf_counter() - begun, stopped=stopped,
+            times=ts, states=states, ends=np.array(ends), steps=int(Z[4]), evaluations=int(Z[5]), gap=float(Z[7]),
+            tolerance=tolerance, seconds=time.perf_counter() - begun, halts=tuple(marks[1:]), kept=tuple(kept),
+            stopped=stopped,
         )  # fmt: skip
+
+    def within(self, run: Trajectory, times: Array) -> Array:
+        """States (n_t, n) of a run at other instants (ascending, none after its end): its own steps are done again.
+
+        Never more work than the run, and no step of its own making: what the run came through, this does.
+        """
+        n = self.layout.n_state
+        times = np.ascontiguousarray(times, dtype=float)
+        out = np.empty((len(times), n))
+        asked = np.minimum(np.searchsorted(run.ends, times), len(run.ends) - 1)  # which step an instant lies in
+        if not len(run.ends):
+            out[:] = run.kept[0][1]
+            return out
+        starts = np.array([k for k, _ in run.kept])
+        base = np.searchsorted(starts, asked, side="right") - 1
+        # steps in a row are done in one go
+        breaks = np.flatnonzero((np.diff(asked) > 1) & (np.diff(base) > 0)) + 1
+        for group in np.split(np.arange(len(times)), breaks):
+            if len(group):
+                first, state = run.kept[base[group[0]]]
+                out[group] = self._again(run, first, int(asked[group[-1]]), state, times[group])
+        return out
+
+    def _again(self, run: Trajectory, first: int, last: int, state: Array, times: Array) -> Array:
+        n = self.layout.n_state
+        desk = Desk(self.layout, DOP853, times, last - first + 1)
+        Z, y = desk.Z, desk.y
+        y[:n] = state if step.COMPILED else state.tolist()
+        desk.D[4] = 1
+        Z[0], Z[8] = run.ends[first - 1] if first else 0.0, math.inf
+        self.scene[0][40] = 0
+        while first <= last:
+            end = run.halts[bisect_right(run.halts, Z[0])]
+            to = min(last, int(np.searchsorted(run.ends, end)))  # a piece ends with a step
+            steps = run.ends[first : to + 1]
+            desk.ends[: len(steps)] = steps if step.COMPILED else steps.tolist()
+            Z[9], Z[10], Z[14] = left(end), end, 1.0
+            desk.advance(self.scene, len(steps))
+            first = to + 1
+        return desk.states()
 
     def recovered(self, times: Array, states: Array, *, choose: bool = False) -> Recovered:
         """Everything the sweep knows at the given states (brought onto the closures first).
@@ -186,7 +264,7 @@ class Runner:
         Y = np.array(states, dtype=float).reshape(len(times), n)
         flat, out = door(Y.ravel()), door(np.zeros(len(times) * width))
         self.scene[0][38] = int(choose)
-        at = door(np.asarray(times, dtype=float))
+        at = door(np.ascontiguousarray(times, dtype=float))
         step.states(*self.scene, n, len(times), at, flat, door(np.zeros(n)), out, width)
         if choose:
             self.scene[0][38] = self.scene[0][29] = 0  # the next call chooses at its own pose

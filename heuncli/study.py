@@ -29,7 +29,6 @@ if TYPE_CHECKING:
 BLOCKS = frozenset({"motion", "points", "foundation", "joints", "sections", "forces", "energy"})
 SEARCH_PER_STEP = 4  # instants looked at in each step of the integrator when extremes are searched
 MOST_SEARCHED = 20_000
-RESTART_COST = 1e-4  # [s] of one short integration from a known state
 
 
 @dataclass(frozen=True)
@@ -99,24 +98,7 @@ class Study:
         if self.checked is None:
             return self.results
         times = np.asarray(times, dtype=float)
-        return self._results(self.runner.recovered(times, self._states_at(times)))
-
-    def _states_at(self, times: Array) -> Array:
-        assert self.checked is not None
-        run = self.checked.run
-        # a restart runs half the way between two known instants, on average
-        if run.seconds < len(times) * max(RESTART_COST, 0.5 * run.seconds / max(len(self.times), 1)):
-            return self.runner.trajectory(times, run.tolerance, halts=self.halts, ropes=False).states
-        known, states = self.found.times, self.found.states
-        out = np.empty((len(times), self.scene.layout.n_state))
-        for k, t in enumerate(times.tolist()):
-            i = int(np.searchsorted(known, t, side="right")) - 1
-            base, t0 = (states[i], float(known[i])) if i >= 0 else (self.scene.layout.y0, 0.0)
-            out[k] = base
-            if t != t0:
-                piece = self.runner.trajectory([t], run.tolerance, y0=base, t0=t0, halts=self.halts, ropes=False)
-                out[k] = piece.states[0]
-        return out
+        return self._results(self.runner.recovered(times, self.runner.within(self.checked.run, times)))
 
     def _results(self, found: Recovered) -> Results:
         wanted = BLOCKS if self.options.wanted is None else self.options.wanted
@@ -189,5 +171,3 @@ def describe(spec: Any) -> Described:
 def solve(spec: Any, options: Options | None = None) -> Study:
     """Solve a spec. Raises SpecError, SolveError, LimitError."""
     return Study(spec, options if options is not None else Options())
-
-

@@ -5,7 +5,7 @@ against tol (angles) and tol * size (shifts), rates against tol * the largest ra
 
 MI (method)  0 stages 1 stages of the dense output 2 its rows;  8.. start of row (in MI and T) of: stages 0-11, solution 12,
              extra stages 13-15, error 3rd order 16, error 5th order 17, dense 18-21; then columns.  T  0-15 nodes, then coefficients
-D (int)      0 n state 1 controlled bodies 2 next sample 3 the group of the work (-1); 8.. per body: start, end of its coordinates, end of its rates
+D (int)      0 n state 1 controlled bodies 2 next sample 3 the group of the work (-1) 4 follow the steps given; 8.. per body: start, end of its coordinates, end of its rates
 Z (run)      0 t 1 h 2 the row of a rope that would push (+1) 3 rejected before 4 steps 5 evaluations 6 rejected steps 7 largest gap 8 tol 9 t left limit of the
              piece's end 10 piece's end 11 status 12 last row asked 13 global rate 14 fresh start 15 sum m size^2
 """
@@ -202,9 +202,13 @@ def interpolate(n: cython.Py_ssize_t, y: cython.p_double, F: cython.p_double, x:
 @cython.cfunc
 @cython.nogil
 @cython.exceptval(check=False)
-@cython.locals(n=cython.Py_ssize_t, s=cython.Py_ssize_t, i=cython.Py_ssize_t, b=cython.Py_ssize_t, m=cython.Py_ssize_t, count=cython.Py_ssize_t, h=cython.double, t=cython.double, e=cython.double, f=cython.double, q=cython.double, gap=cython.double, noise=cython.double, last=cython.int, have=cython.int, bad=cython.int, near=cython.int, dodges=cython.int, best=cython.double, best_h=cython.double)
-def run(I: cython.p_int, P: cython.p_double, W: cython.p_double, C: cython.p_int, N: cython.p_double, X: cython.p_double, S: cython.p_double, MI: cython.p_int, T: cython.p_double, D: cython.p_int, Z: cython.p_double, G: cython.p_double, y: cython.p_double, K: cython.p_double, z: cython.p_double, F: cython.p_double, ts: cython.p_double, n_out: cython.Py_ssize_t, out: cython.p_double, ends: cython.p_double, most: cython.Py_ssize_t) -> cython.int:
-    """Up to `most` accepted steps towards the piece's end Z[10]; a code (see above)."""
+@cython.locals(n=cython.Py_ssize_t, s=cython.Py_ssize_t, i=cython.Py_ssize_t, b=cython.Py_ssize_t, m=cython.Py_ssize_t, count=cython.Py_ssize_t, h=cython.double, t=cython.double, e=cython.double, f=cython.double, q=cython.double, gap=cython.double, noise=cython.double, last=cython.int, have=cython.int, bad=cython.int, near=cython.int, dodges=cython.int, best=cython.double, best_h=cython.double, stop=cython.double)
+def run(I: cython.p_int, P: cython.p_double, W: cython.p_double, C: cython.p_int, N: cython.p_double, X: cython.p_double, S: cython.p_double, MI: cython.p_int, T: cython.p_double, D: cython.p_int, Z: cython.p_double, G: cython.p_double, y: cython.p_double, K: cython.p_double, z: cython.p_double, F: cython.p_double, ts: cython.p_double, n_out: cython.Py_ssize_t, out: cython.p_double, ends: cython.p_double, passed: cython.p_double, most: cython.Py_ssize_t) -> cython.int:
+    """Up to `most` accepted steps towards the piece's end Z[10]; a code (see above).
+
+    ends, passed: their ends and the states there. Following (D[4]), `ends` gives the steps, none is judged and the
+    first ones' stages are settled, for how near they are to a singular pose is not known again.
+    """
     n = D[0]
     m = MI[0]
     count = 0
@@ -212,6 +216,7 @@ def run(I: cython.p_int, P: cython.p_double, W: cython.p_double, C: cython.p_int
     best = 0.0
     best_h = 0.0
     if Z[14] != 0.0:
+        P[6] = 1.0 - D[4]
         if I[4]:
             select(I, P, W, C, N, X, S, Z[0], y, 0, 1)
             gap = settle(I, P, W, C, N, X, S, Z[0], y, 0)
@@ -236,8 +241,13 @@ def run(I: cython.p_int, P: cython.p_double, W: cython.p_double, C: cython.p_int
         if count >= most:
             return 1
         h = Z[1]
+        stop = Z[10]
         last = 0
-        if Z[0] + 1.01 * h >= Z[10]:
+        if D[4]:
+            stop = ends[count]
+            h = stop - Z[0]
+            last = 1
+        elif Z[0] + 1.01 * h >= Z[10]:
             h = Z[10] - Z[0]
             last = 1
         elif Z[0] + 2.0 * h > Z[10]:
@@ -272,7 +282,7 @@ def run(I: cython.p_int, P: cython.p_double, W: cython.p_double, C: cython.p_int
         if t > Z[9]:
             t = Z[9]
         bad = evaluate(I, P, W, C, N, X, S, t, z, 0, K, m * n)
-        if I[40]:
+        if I[40] and D[4] == 0:
             # halve the way to where a rope would push; the run ends just before it
             Z[2] = slack(I, W)
             if Z[2] > 0.0:
@@ -280,12 +290,14 @@ def run(I: cython.p_int, P: cython.p_double, W: cython.p_double, C: cython.p_int
                 if Z[1] <= 1e-12 * (Z[10] + fabs(Z[0])):
                     return 5
                 continue
-        combine(MI, T, 16, K, n, F, 0)
-        combine(MI, T, 17, K, n, F, n)
         Z[5] += m
-        e = step_error(D, Z, G, y, z, F, h)
+        e = 0.0
         noise = 0.0
-        if near:
+        if D[4] == 0:
+            combine(MI, T, 16, K, n, F, 0)
+            combine(MI, T, 17, K, n, F, n)
+            e = step_error(D, Z, G, y, z, F, h)
+        if near and D[4] == 0:
             # what rounding makes of the closures at the worst of the stages, by the tolerance
             noise = 1e300
             if P[6] > 0.0:
@@ -307,7 +319,7 @@ def run(I: cython.p_int, P: cython.p_double, W: cython.p_double, C: cython.p_int
                 Z[6] += 1
                 continue
             noise *= 100.0
-        if e != e or bad < 0:
+        if e != e or (bad < 0 and D[4] == 0):
             # outside what the scene can do: a much smaller step, or the end of it
             Z[6] += 1
             Z[3] = 1.0
@@ -334,7 +346,7 @@ def run(I: cython.p_int, P: cython.p_double, W: cython.p_double, C: cython.p_int
         if Z[3] != 0.0 and f > 1.0:
             f = 1.0
         have = 0
-        while D[2] < n_out and (ts[D[2]] < Z[0] + h or (last and ts[D[2]] <= Z[10])):
+        while D[2] < n_out and (ts[D[2]] < Z[0] + h or (last and ts[D[2]] <= stop)):
             q = (ts[D[2]] - Z[0]) / h
             if q >= 1.0:
                 for i in range(n):
@@ -349,19 +361,20 @@ def run(I: cython.p_int, P: cython.p_double, W: cython.p_double, C: cython.p_int
             y[i] = z[i]
             z[2 * n + i] = z[n + i]
         for b in range(D[1]):
+            if D[4]:
+                break
             G[n + b] = G[n + D[1] + b]
             if G[n + b] > Z[13] and b != D[3]:
                 Z[13] = G[n + b]
         Z[0] += h
         if last:
-            Z[0] = Z[10]
+            Z[0] = stop
         if last == 0 or Z[1] < h * f:
             # a step cut short by the end of the piece says nothing against a longer one after it
             Z[1] = h * f
         Z[3] = 0.0
         Z[4] += 1
         ends[count] = Z[0]
-        count += 1
         if I[4]:
             t = Z[0]
             if t > Z[9]:
@@ -381,11 +394,15 @@ def run(I: cython.p_int, P: cython.p_double, W: cython.p_double, C: cython.p_int
         else:
             for i in range(n):
                 K[i] = K[m * n + i]
+        if D[4] == 0:
+            for i in range(n):
+                passed[count * n + i] = y[i]
+        count += 1
     return 0
 
 
 @cython.ccall
-def advance(I_: cython.int[::1], P_: cython.double[::1], W_: cython.double[::1], C_: cython.int[::1], N_: cython.double[::1], X_: cython.double[::1], S_: cython.double[::1], MI_: cython.int[::1], T_: cython.double[::1], D_: cython.int[::1], Z_: cython.double[::1], G_: cython.double[::1], y_: cython.double[::1], K_: cython.double[::1], z_: cython.double[::1], F_: cython.double[::1], ts_: cython.double[::1], n_out: cython.Py_ssize_t, out_: cython.double[::1], ends_: cython.double[::1], most: cython.Py_ssize_t) -> cython.int:
+def advance(I_: cython.int[::1], P_: cython.double[::1], W_: cython.double[::1], C_: cython.int[::1], N_: cython.double[::1], X_: cython.double[::1], S_: cython.double[::1], MI_: cython.int[::1], T_: cython.double[::1], D_: cython.int[::1], Z_: cython.double[::1], G_: cython.double[::1], y_: cython.double[::1], K_: cython.double[::1], z_: cython.double[::1], F_: cython.double[::1], ts_: cython.double[::1], n_out: cython.Py_ssize_t, out_: cython.double[::1], ends_: cython.double[::1], passed_: cython.double[::1], most: cython.Py_ssize_t) -> cython.int:
     """Door to `run`: arrays of the scene, the method, the run's state and its output; all of at least one element."""
     code: cython.int
     if cython.compiled:
@@ -408,10 +425,11 @@ def advance(I_: cython.int[::1], P_: cython.double[::1], W_: cython.double[::1],
         ts: cython.p_double = cython.address(ts_[0])
         out: cython.p_double = cython.address(out_[0])
         ends: cython.p_double = cython.address(ends_[0])
+        passed: cython.p_double = cython.address(passed_[0])
         with cython.nogil:
-            code = run(I, P, W, C, N, X, S, MI, T, D, Z, G, y, K, z, F, ts, n_out, out, ends, most)
+            code = run(I, P, W, C, N, X, S, MI, T, D, Z, G, y, K, z, F, ts, n_out, out, ends, passed, most)
     else:
-        code = run(I_, P_, W_, C_, N_, X_, S_, MI_, T_, D_, Z_, G_, y_, K_, z_, F_, ts_, n_out, out_, ends_, most)
+        code = run(I_, P_, W_, C_, N_, X_, S_, MI_, T_, D_, Z_, G_, y_, K_, z_, F_, ts_, n_out, out_, ends_, passed_, most)
     return code
 
 
