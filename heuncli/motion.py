@@ -10,7 +10,7 @@ import time
 from array import array
 from bisect import bisect_right
 from collections.abc import Sequence
-from dataclasses import dataclass
+from dataclasses import dataclass, field
 from itertools import pairwise
 from typing import Any
 
@@ -65,6 +65,7 @@ class Trajectory:
     seconds: float
     halts: tuple[float, ...] = ()  # instants where it began anew
     kept: tuple[tuple[int, Array], ...] = ()  # number of a step, the state before it; the first one and others
+    pivots: Array = field(default_factory=lambda: np.zeros(0))  # least of the closures in each step
     stopped: str | None = None  # the joint of the rope that would push just after the last instant
 
 
@@ -116,7 +117,7 @@ class Desk:
         self.y, self.z, self.K = door(np.zeros(n)), door(np.zeros(3 * n)), door(np.zeros(len(tableau.nodes) * n))
         self.F = door(np.zeros((3 + len(tableau.dense)) * n + 2 * n))
         self.asked, self.out = door(ts), door(np.zeros(len(ts) * n))
-        self.ends, self.passed = door(np.zeros(most)), door(np.zeros(most * n))
+        self.ends, self.passed = door(np.zeros(most)), door(np.zeros(most * (n + 1)))
 
     def advance(self, scene: tuple[Any, ...], most: int) -> int:
         """Up to `most` steps; the kernel's code."""
@@ -127,8 +128,8 @@ class Desk:
         return code
 
     def reached(self, count: int) -> Array:
-        """The states at the ends of the steps just done, (count, n)."""
-        return np.array(self.passed[: count * self.n], dtype=float).reshape(count, self.n)
+        """The states at the ends of the steps just done, and how near to singular the steps came, (count, n + 1)."""
+        return np.array(self.passed[: count * (self.n + 1)], dtype=float).reshape(count, self.n + 1)
 
     def states(self) -> Array:
         """The states at the asked instants, (n_t, n)."""
@@ -172,6 +173,7 @@ class Runner:
         Z[8] = tolerance
         self.scene[0][40] = int(any(j.tension_only for j in layout.mechanism.joints))
         ends: list[float] = []
+        pivots: list[Array] = []
         kept = [(0, layout.y0)]
         every, room = 1, max(2, KEPT // n)
         last = float(ts[-1]) if len(ts) else 0.0
@@ -184,7 +186,9 @@ class Runner:
                 code = desk.advance(self.scene, most)
                 done = int(Z[4]) - before
                 ends += list(desk.ends[:done])
-                kept += [(k, state) for k, state in enumerate(desk.reached(done), before + 1) if k % every == 0]
+                reached = desk.reached(done)
+                pivots.append(reached[:, n])
+                kept += [(k, row[:n]) for k, row in enumerate(reached, before + 1) if k % every == 0]
                 while len(kept) > room:
                     every *= 2
                     kept = [(k, state) for k, state in kept if k % every == 0]
@@ -210,6 +214,7 @@ class Runner:
         return Trajectory(
             times=ts, states=states, ends=np.array(ends), steps=int(Z[4]), evaluations=int(Z[5]), gap=float(Z[7]),
             tolerance=tolerance, seconds=time.perf_counter() - begun, halts=tuple(marks[1:]), kept=tuple(kept),
+            pivots=np.concatenate(pivots) if pivots else np.zeros(0),
             stopped=stopped,
         )  # fmt: skip
 
@@ -260,14 +265,14 @@ class Runner:
         """
         layout, n = self.layout, self.layout.n_state
         n_b, n_f, n_l, n_r = len(layout.place), len(layout.freedoms), layout.I[3], len(layout.rows)
-        width = 30 * n_b + 4 * n_f + 16 * n_l + 2 * n_r + 2
+        width = 30 * n_b + 4 * n_f + 16 * n_l + 2 * n_r + 3
         Y = np.array(states, dtype=float).reshape(len(times), n)
         flat, out = door(Y.ravel()), door(np.zeros(len(times) * width))
         self.scene[0][38] = int(choose)
         at = door(np.ascontiguousarray(times, dtype=float))
         step.states(*self.scene, n, len(times), at, flat, door(np.zeros(n)), out, width)
         if choose:
-            self.scene[0][38] = self.scene[0][29] = 0  # the next call chooses at its own pose
+            self.scene[0][38] = 0
         data = np.array(out, dtype=float).reshape(len(times), width)
         cuts = np.cumsum([30 * n_b, 4 * n_f, 16 * n_l, 2 * n_r])
         bodies, freedoms, loads, rows, rest = np.split(data, cuts, axis=1)
@@ -280,6 +285,7 @@ class Runner:
             rows=rows.reshape(len(times), n_r, 2),
             gap=rest[:, 0],
             idle=rest[:, 1],
+            pivot=rest[:, 2],
         )
 
 
@@ -295,3 +301,4 @@ class Recovered:
     rows: Array
     gap: Array
     idle: Array
+    pivot: Array  # least pivot of the closures chosen at the first instant, 1: far from singular

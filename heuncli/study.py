@@ -18,6 +18,7 @@ from heuncli.accuracy import Checked, checked_run
 from heuncli.compose import compose
 from heuncli.kernel.choose import KERNEL
 from heuncli.motion import Recovered, Runner, stops
+from heuncli.passages import passages
 from heuncli.peaks import distinct
 from heuncli.results import Array, Block, Results
 from heuncli.scene import prepare
@@ -93,6 +94,11 @@ class Study:
         grid = grid[(grid > self.times[0]) & (grid < self.times[-1])]
         return distinct(np.concatenate([self.times, grid]))
 
+    @cached_property
+    def passages(self) -> list[float]:
+        """Instants of singular poses that the run came through [s]."""
+        return passages(self.runner, self.checked.run) if self.checked is not None else []
+
     def resample(self, times: Array) -> Results:
         """The same run at other instants within it (ascending)."""
         if self.checked is None:
@@ -139,6 +145,10 @@ class Study:
         if self.checked is not None and (worst := float(self.checked.motion.max(initial=0.0))) > self.tolerance:
             missed = f"the tolerance {self.tolerance:.3g} was not reached"
             found.append(f"{missed}: the motion is estimated to {worst:.2g} of the scene's size")
+        if self.passages:
+            told = ", ".join(f"{t:.6g}" for t in self.passages[:5]) + (" ..." if len(self.passages) > 5 else "")
+            branch = "another motion branches off there, this one goes on smoothly"
+            found.append(f"passes through a singular pose at t = {told} s: {branch}")
         if self.checked is not None and self.checked.run.stopped is not None:
             found.append(f"stopped before the end: {self._status()['message']}")
         return tuple(found)

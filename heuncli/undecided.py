@@ -65,7 +65,7 @@ def singular_poses(stress: SelfStress, times: Array, redundant: int) -> list[str
     more = np.flatnonzero(stress.count > redundant)
     if len(more):
         told = ", ".join(f"{t:.6g}" for t in times[more[:5]]) + (" ..." if len(more) > 5 else "")
-        found.append(f"singular pose at t = {told} s: what is open only there is open there only; a branch may change")
+        found.append(f"singular pose at t = {told} s: what is open only there is open there only")
     near = np.flatnonzero((stress.least < NEARLY) & (stress.count <= redundant))
     if len(near):
         k = near[int(np.argmin(stress.least[near]))]

@@ -76,7 +76,7 @@ def _check(path: str, quiet: bool) -> Checked:
     try:
         spec = load(path)
         study = solve(spec, Options(wanted=wanted(spec.expect) if spec.expect else None))
-        warn(spec, study.results, quiet)
+        warn(spec, study.results, quiet, f"heun: {path}")
         return Checked(path, tuple(compare(study, item) for item in spec.expect))
     except HeunError as error:
         tell(error.problems, label="" if _placed(error) else f"{path}: ")

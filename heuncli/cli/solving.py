@@ -89,13 +89,13 @@ def report_of(path: str) -> frozenset[str] | None:
     return frozenset({report}) if report else None
 
 
-def warn(spec: Spec, results: Results | None, quiet: bool) -> list[str]:
-    """Tell the warnings of reading and of solving, once each; returns them."""
+def warn(spec: Spec, results: Results | None, quiet: bool, place: str = "heun") -> list[str]:
+    """Tell the warnings of reading and of solving (of which `place`), once each; returns them."""
     read = [str(problem) for problem in spec.warnings]
     known = {problem.message for problem in spec.warnings}
     solved = [text for text in results.warnings if text not in known] if results else []
     if not quiet:
-        for text in read + [f"heun: {text}" for text in solved]:
+        for text in read + [f"{place}: {text}" for text in solved]:
             say(f"warning: {text}")
     return read + solved
 

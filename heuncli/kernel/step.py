@@ -97,7 +97,7 @@ def step_error(D: cython.p_int, Z: cython.p_double, G: cython.p_double, y: cytho
             if not e <= worst:
                 worst = e
         elif e5 != e5:
-            worst = e5
+            return e5
     return worst
 
 
@@ -206,7 +206,7 @@ def interpolate(n: cython.Py_ssize_t, y: cython.p_double, F: cython.p_double, x:
 def run(I: cython.p_int, P: cython.p_double, W: cython.p_double, C: cython.p_int, N: cython.p_double, X: cython.p_double, S: cython.p_double, MI: cython.p_int, T: cython.p_double, D: cython.p_int, Z: cython.p_double, G: cython.p_double, y: cython.p_double, K: cython.p_double, z: cython.p_double, F: cython.p_double, ts: cython.p_double, n_out: cython.Py_ssize_t, out: cython.p_double, ends: cython.p_double, passed: cython.p_double, most: cython.Py_ssize_t) -> cython.int:
     """Up to `most` accepted steps towards the piece's end Z[10]; a code (see above).
 
-    ends, passed: their ends and the states there. Following (D[4]), `ends` gives the steps, none is judged and the
+    ends, passed: their ends; the states there, each with the least pivot of the closures within the step. Following (D[4]), `ends` gives the steps, none is judged and the
     first ones' stages are settled, for how near they are to a singular pose is not known again.
     """
     n = D[0]
@@ -318,7 +318,8 @@ def run(I: cython.p_int, P: cython.p_double, W: cython.p_double, C: cython.p_int
                     Z[1] = best_h
                 Z[6] += 1
                 continue
-            noise *= 100.0
+            # a step that found no better way may be off by that much
+            noise = 100.0 * noise if P[6] > 0.0 else 0.0
         if e != e or (bad < 0 and D[4] == 0):
             # outside what the scene can do: a much smaller step, or the end of it
             Z[6] += 1
@@ -375,6 +376,7 @@ def run(I: cython.p_int, P: cython.p_double, W: cython.p_double, C: cython.p_int
         Z[3] = 0.0
         Z[4] += 1
         ends[count] = Z[0]
+        e = P[6]
         if I[4]:
             t = Z[0]
             if t > Z[9]:
@@ -396,7 +398,8 @@ def run(I: cython.p_int, P: cython.p_double, W: cython.p_double, C: cython.p_int
                 K[i] = K[m * n + i]
         if D[4] == 0:
             for i in range(n):
-                passed[count * n + i] = y[i]
+                passed[count * (n + 1) + i] = y[i]
+            passed[count * (n + 1) + n] = e
         count += 1
     return 0
 
@@ -436,20 +439,26 @@ def advance(I_: cython.int[::1], P_: cython.double[::1], W_: cython.double[::1],
 @cython.cfunc
 @cython.nogil
 @cython.exceptval(check=False)
-@cython.locals(n=cython.Py_ssize_t, j=cython.Py_ssize_t, i=cython.Py_ssize_t, k=cython.Py_ssize_t, B=cython.Py_ssize_t, o=cython.Py_ssize_t, bad=cython.int, worst=cython.int, gap=cython.double)
+@cython.locals(n=cython.Py_ssize_t, j=cython.Py_ssize_t, i=cython.Py_ssize_t, k=cython.Py_ssize_t, B=cython.Py_ssize_t, o=cython.Py_ssize_t, bad=cython.int, worst=cython.int, gap=cython.double, least=cython.double)
 def recover(I: cython.p_int, P: cython.p_double, W: cython.p_double, C: cython.p_int, N: cython.p_double, X: cython.p_double, S: cython.p_double, n: cython.Py_ssize_t, n_t: cython.Py_ssize_t, ts: cython.p_double, Y: cython.p_double, z: cython.p_double, out: cython.p_double, width: cython.Py_ssize_t) -> cython.int:
     """Everything the sweep knows at each instant, row by row in `out`; Y is settled on the closures in place.
 
     A row: bodies (30): R 9 r 3 omega 3 v 3 alpha 3 a 3 n_joint 3 f_joint 3; freedoms (4): q u udot driving load; loads (16) as in
-    tree.py; rows (2): lambda, gap; then the gap over all rows, and how many freedoms had nothing behind them.
+    tree.py; rows (2): lambda, gap; then the gap over all rows, how many freedoms had nothing behind them, the least pivot of the closures.
     """
     worst = 0
+    least = 1.0
     for j in range(n_t):
         gap = 0.0
         if I[4]:
-            if I[29] == 0 or I[38]:
+            if j == 0 or I[38]:
                 select(I, P, W, C, N, X, S, ts[j], Y, j * n, 1)
             gap = settle(I, P, W, C, N, X, S, ts[j], Y, j * n)
+            least = P[5]
+            if not gap <= 1e-11 * P[3] or P[5] < 1e-3 * P[4]:
+                # as in `run`
+                select(I, P, W, C, N, X, S, ts[j], Y, j * n, 0)
+                gap = settle(I, P, W, C, N, X, S, ts[j], Y, j * n)
         bad = evaluate(I, P, W, C, N, X, S, ts[j], Y, j * n, z, 0)
         if bad > worst:
             worst = bad
@@ -482,6 +491,7 @@ def recover(I: cython.p_int, P: cython.p_double, W: cython.p_double, C: cython.p
             o += 2
         out[o] = gap
         out[o + 1] = bad
+        out[o + 2] = least
     return worst
 
 

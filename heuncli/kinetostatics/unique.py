@@ -202,9 +202,10 @@ def _null_space(
     J = np.stack(columns, axis=2) if columns else np.zeros((n_t, m, 0))
     is_couple = np.abs(wrenches[:, rows, :3]).max(axis=2, initial=0.0) == 0.0
     J = J * np.where(is_couple, L, 1.0)[:, :, None]
-    size = np.sqrt(np.sum(J * J, axis=2))
-    unit = np.where(size > RANK * max(float(size.max(initial=0.0)), 1e-300), size, 1.0)
-    J = J / unit[:, :, None]
+    # by the largest a row has at any of the instants: one that vanishes in some pose must not hide it
+    size = np.sqrt(np.sum(J * J, axis=2)).max(axis=0, initial=0.0)
+    unit = np.where(size > RANK * max(float(size.max(initial=0.0)), 1e-300), size, 1.0)[:, None]
+    J = J / unit
     # rows that never touch a free direction (across a flat mechanism, say) are self-stresses by themselves
     idle = np.abs(J).max(axis=(0, 2), initial=0.0) <= RANK
     Z_rest, open_rest, kept = _null_of(J[:, ~idle], gap / L)
@@ -212,7 +213,7 @@ def _null_space(
     Z = np.zeros((n_t, m, k + int(idle.sum())))
     Z[:, ~idle, :k] = Z_rest
     Z[:, np.flatnonzero(idle), k + np.arange(int(idle.sum()))] = 1.0
-    return Z / unit[:, :, None] * np.where(is_couple, L, 1.0)[:, :, None], open_rest + int(idle.sum()), kept
+    return Z / unit * np.where(is_couple, L, 1.0)[:, :, None], open_rest + int(idle.sum()), kept
 
 
 def _null_of(J: Array, gap: Array) -> tuple[Array, Array, Array]:

@@ -11,7 +11,6 @@ from tests.loops import checks
 from tests.redundant.doubles import SEEDS, SOME, redundant, redundant_scene
 from tests.scenes import moving, near, solved
 
-
 KEYS = ("center", "rotation", "center_velocity", "angular_velocity", "center_acceleration", "angular_acceleration")
 
 
