@@ -11,7 +11,6 @@ from array import array
 from bisect import bisect_right
 from collections.abc import Sequence
 from dataclasses import dataclass, field
-from itertools import pairwise
 from typing import Any
 
 import numpy as np
@@ -21,7 +20,7 @@ from heuncli.kernel.choose import step
 from heuncli.mechanism.layout import Layout
 from heuncli.mechanism.model import Mechanism, PointLoad
 from heuncli.results import Array
-from heuncli.spec.expression import Expression, breakpoints
+from heuncli.spec.expression import Expression, across, breakpoints
 from heuncli.tableaus import DOP853, Tableau
 
 CHUNK = 2_000  # body-steps between two looks at the clock
@@ -63,7 +62,7 @@ class Trajectory:
     gap: float
     tolerance: float  # local, of this run
     seconds: float
-    halts: tuple[float, ...] = ()  # instants where it began anew
+    pieces: tuple[tuple[float, float], ...] = ()  # first and last instant of each stretch without jumps
     kept: tuple[tuple[int, Array], ...] = ()  # number of a step, the state before it; the first one and others
     pivots: Array = field(default_factory=lambda: np.zeros(0))  # least of the closures in each step
     stopped: str | None = None  # the joint of the rope that would push just after the last instant
@@ -103,6 +102,11 @@ def door(data: Any) -> Any:
 def left(t: float) -> float:
     """The last instant before t: at a jump, that of the value before it."""
     return math.nextafter(t, -math.inf)
+
+
+def right(t: float) -> float:
+    """The first instant after t."""
+    return math.nextafter(t, math.inf)
 
 
 class Desk:
@@ -177,10 +181,12 @@ class Runner:
         kept = [(0, layout.y0)]
         every, room = 1, max(2, KEPT // n)
         last = float(ts[-1]) if len(ts) else 0.0
-        marks = [0.0, *(h for h in halts if 0.0 < h < last), last]
-        for begin, end in pairwise(marks):
-            Z[9] = left(end) if end > begin else end
-            Z[10], Z[14], code = end, 1.0, 1
+        stops = across([h for h in halts if 0.0 < h < last])
+        pieces = list(zip([0.0, *(t for _, t in stops)], [*(t for t, _ in stops), left(last)], strict=True))
+        pieces = [piece for piece in pieces if piece[1] > piece[0]] or pieces[-1:]  # not what is at t = 0 alone
+        for begin, before_end in pieces:
+            # up to a jump with the value before it, from there with the one after
+            Z[0], Z[9], Z[10], Z[14], code = begin, before_end, right(before_end), 1.0, 1
             while code == 1:
                 before = int(Z[4])
                 code = desk.advance(self.scene, most)
@@ -213,7 +219,7 @@ class Runner:
                 ts, states = ts[:-1], states[:-1]
         return Trajectory(
             times=ts, states=states, ends=np.array(ends), steps=int(Z[4]), evaluations=int(Z[5]), gap=float(Z[7]),
-            tolerance=tolerance, seconds=time.perf_counter() - begun, halts=tuple(marks[1:]), kept=tuple(kept),
+            tolerance=tolerance, seconds=time.perf_counter() - begun, pieces=tuple(pieces), kept=tuple(kept),
             pivots=np.concatenate(pivots) if pivots else np.zeros(0),
             stopped=stopped,
         )  # fmt: skip
@@ -249,11 +255,12 @@ class Runner:
         Z[0], Z[8] = run.ends[first - 1] if first else 0.0, math.inf
         self.scene[0][40] = 0
         while first <= last:
-            end = run.halts[bisect_right(run.halts, Z[0])]
+            begin, before_end = run.pieces[bisect_right(run.pieces, Z[0], key=lambda piece: piece[1])]
+            end = right(before_end)
             to = min(last, int(np.searchsorted(run.ends, end)))  # a piece ends with a step
             steps = run.ends[first : to + 1]
             desk.ends[: len(steps)] = steps if step.COMPILED else steps.tolist()
-            Z[9], Z[10], Z[14] = left(end), end, 1.0
+            Z[0], Z[9], Z[10], Z[14] = max(Z[0], begin), before_end, end, 1.0
             desk.advance(self.scene, len(steps))
             first = to + 1
         return desk.states()

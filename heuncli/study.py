@@ -7,7 +7,7 @@ from __future__ import annotations
 
 import math
 import time
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 from functools import cached_property
 from typing import TYPE_CHECKING, Any
 
@@ -22,6 +22,7 @@ from heuncli.passages import passages
 from heuncli.peaks import distinct
 from heuncli.results import Array, Block, Results
 from heuncli.scene import prepare
+from heuncli.spec.expression import across
 from heuncli.version import VERSION
 
 if TYPE_CHECKING:
@@ -66,7 +67,7 @@ class Study:
             states, at = self.checked.run.states, self.checked.run.times
             self.times = at
         begun = time.perf_counter()
-        self.found = self.runner.recovered(at, states)
+        self.found = self._recovered(at, states)
         self.results = self._results(self.found)
         self.results.work["seconds"]["recover"] = time.perf_counter() - begun
 
@@ -104,7 +105,14 @@ class Study:
         if self.checked is None:
             return self.results
         times = np.asarray(times, dtype=float)
-        return self._results(self.runner.recovered(times, self.runner.within(self.checked.run, times)))
+        return self._results(self._recovered(times, self.runner.within(self.checked.run, times)))
+
+    def _recovered(self, times: Array, states: Array) -> Recovered:
+        """What the sweep knows; at a jump and at what holds at one instant alone, what comes after it."""
+        later = times.copy()
+        for before, after in across(self.halts):
+            later[(times > before) & (times < after)] = after
+        return replace(self.runner.recovered(later, states), times=times)
 
     def _results(self, found: Recovered) -> Results:
         wanted = BLOCKS if self.options.wanted is None else self.options.wanted

@@ -193,6 +193,21 @@ def breakpoints(expression: Expression, t0: float, t1: float) -> list[float]:
     return sorted({t for switch in expression.switches for t in _changes(expression, switch, t0, t1)})
 
 
+def across(instants: Sequence[float]) -> list[tuple[float, float]]:
+    """For ascending changes of branch the last instant before and the first after; neighbouring doubles are one change.
+
+    sign(t - 1) is zero at t = 1 alone: what is before and after it counts, not the instant between.
+    """
+    found: list[tuple[float, float]] = []
+    for t in instants:
+        before = math.nextafter(t, -math.inf)
+        if found and found[-1][1] >= before:
+            found[-1] = (found[-1][0], t)
+        else:
+            found.append((before, t))
+    return found
+
+
 def _changes(expression: Expression, switch: Switch, t0: float, t1: float) -> list[float]:
     """Where one switch changes: seen on a grid that is refined until it is fine against what it shows."""
     decide = _at_instants(expression, switch.decision)

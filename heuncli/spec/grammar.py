@@ -127,7 +127,9 @@ class _Parser:
 
     def expect(self, token: str, where: str) -> None:
         if not self.take(token):
-            raise self.syntax(f"expected '{token}' {where}" + (f", found '{self.token}'" if self.token else ""))
+            found = f", found '{self.token}'" if self.token else ""
+            hint = None if found else "inside { } and [ ] an expression with a comma needs quotes"
+            raise self.syntax(f"expected '{token}' {where}{found}", hint)
 
     def syntax(self, message: str, hint: str | None = None) -> Finding:
         place = self.tokens[self.at][2] - len(self.token) + 1 if self.at < len(self.tokens) else len(self.text) + 1

@@ -6,7 +6,7 @@ import math
 from collections.abc import Iterator
 
 from heuncli.spec import format as f
-from heuncli.spec.expression import Expression, breakpoints
+from heuncli.spec.expression import Expression, across, breakpoints
 from heuncli.spec.fields import End
 from heuncli.spec.meanings import body_axes, drive_of, span_of
 from heuncli.spec.rules.registry import Found, Path_, Scene, rule
@@ -175,6 +175,11 @@ def drive_contradicts(scene: Scene) -> Iterator[Found]:
                 yield Found(("joints", joint_name, "initial", key), message, "leave it out: the drive sets it")
 
 
+def changes(value: Expression, duration: float) -> list[tuple[float, float]]:
+    """The last instant before and the first after each change of branch within the run."""
+    return across(breakpoints(value, 0.0, duration)) if duration > 0.0 else []
+
+
 @rule("drive-jumps")
 def drive_jumps(scene: Scene) -> Iterator[Found]:
     """A driven coordinate does not jump, and is a number all along the run."""
@@ -184,8 +189,8 @@ def drive_jumps(scene: Scene) -> Iterator[Found]:
         if math.isnan(value.value(0.0)):
             yield Found(path, "the drive has no value at t = 0", "look at the domains of its functions and tables")
             continue
-        for t in breakpoints(value, 0.0, duration) if duration > 0.0 else []:
-            before, after = value.value(math.nextafter(t, -math.inf)), value.value(t)
+        for last, t in changes(value, duration):
+            before, after = value.value(last), value.value(t)
             if abs(after - before) > SAME * max(abs(before), abs(after), 1.0):
                 message = f"the drive jumps from {before:g} to {after:g} at t = {t:g} s"
                 yield Found(path, message, "a body cannot jump: let the value run over a short time")
@@ -196,8 +201,8 @@ def rate_jumps(scene: Scene) -> Iterator[Path_]:
     """Drives whose rate jumps within the run, or at its start against rest."""
     duration = span_of(scene.document.analysis)
     for name, _, quantity, value in drives(scene):
-        for t in breakpoints(value, 0.0, duration) if duration > 0.0 else []:
-            before, after = value.derivatives(math.nextafter(t, -math.inf))[1], value.derivatives(t)[1]
+        for last, t in changes(value, duration):
+            before, after = value.derivatives(last)[1], value.derivatives(t)[1]
             if abs(after - before) > SAME * max(abs(before), abs(after), 1.0):
                 yield ("drives", name, quantity)
                 break
