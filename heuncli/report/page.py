@@ -16,7 +16,7 @@ from heuncli.report import layout, runs
 from heuncli.report.blocks import BLOCKS, Block, build
 from heuncli.report.layout import Found
 from heuncli.report.numbers import Certainty, certainty
-from heuncli.report.quantities import Series, walk, walk_impulse
+from heuncli.report.quantities import Series, is_static, walk, walk_impulse
 from heuncli.report.scene import Scene
 from heuncli.report.sums import sums_table
 from heuncli.report.table import Table
@@ -144,12 +144,12 @@ def until(results: Results, horizon: float) -> Results:
 def _cut(results: Results, count: int) -> Results:
     n = len(results.time)
 
-    def first(block: Any) -> Any:
+    def first(part: str, keys: tuple[str, ...], block: Any) -> Any:
         if isinstance(block, dict):
-            return {key: value if key in ("about", "s") else first(value) for key, value in block.items()}
+            return {k: v if is_static(part, keys, k) else first(part, (*keys, k), v) for k, v in block.items()}
         return block[:count] if isinstance(block, np.ndarray) and len(block) == n else block
 
-    timed = {part: first(getattr(results, part)) for part in PARTS}
+    timed = {part: first(part, (), getattr(results, part)) for part in PARTS}
     sums = [{**block, "value": np.asarray(block["value"])[:count]} for block in results.certain_sums]
     return replace(results, time=results.time[:count], certain_sums=sums, **timed)
 

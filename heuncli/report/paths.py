@@ -13,7 +13,7 @@ from typing import Any, NamedTuple
 import numpy as np
 
 from heuncli.errors import Problem, SpecError
-from heuncli.report.quantities import STATIC, TIMED, XYZ
+from heuncli.report.quantities import TIMED, XYZ, is_static
 from heuncli.results import Array, Results
 from heuncli.spec.nearest import nearest
 
@@ -62,7 +62,7 @@ def find(results: Results, path: str) -> Found:
 def _is_timed(walked: list[str]) -> bool:
     if walked[0] == "certain_sums":
         return walked[-1] == "value"
-    return walked[0] in TIMED and walked[-1] not in STATIC
+    return walked[0] in TIMED and not is_static(walked[0], walked[1:-1], walked[-1])
 
 
 def _longest_key(node: dict[str, Any], tokens: list[str]) -> tuple[str | None, int]:

@@ -7,7 +7,7 @@ results later needs at most a row in UNITS.
 
 from __future__ import annotations
 
-from collections.abc import Iterator
+from collections.abc import Iterator, Sequence
 from typing import NamedTuple
 
 import numpy as np
@@ -16,7 +16,8 @@ from heuncli.report.scene import Scene
 from heuncli.results import Array, Block, Results
 
 TIMED = ("bodies", "points", "coordinates", "foundation", "joints", "sections", "forces", "energy", "system_vector")
-STATIC = frozenset({"about", "s", "side", "open"})  # inside the blocks above, yet the same at all instants
+# Inside the blocks above, yet the same at all instants: (block, depth, key); bodies and sections may bear such names.
+STATIC = frozenset({("foundation", 0, "about"), ("sections", 1, "s"), ("sections", 1, "side")})
 OF_ALL_CUTS = frozenset({"normal", "first_axis"})  # in a run of cuts not one a cut
 XYZ = ("x", "y", "z")
 
@@ -95,6 +96,11 @@ class Series(NamedTuple):
         return ".".join(part for part in (self.kind, self.name, self.quantity) if part)
 
 
+def is_static(kind: str, keys: Sequence[str], key: str) -> bool:
+    """Whether what stands at this place of a block that runs over the instants is the same at all of them."""
+    return (kind, len(keys), key) in STATIC
+
+
 def walk(results: Results, scene: Scene) -> Iterator[Series]:
     """Every quantity of the results that runs over the instants, in the order of the JSON."""
     for kind in TIMED:
@@ -103,9 +109,10 @@ def walk(results: Results, scene: Scene) -> Iterator[Series]:
 
 def walk_impulse(block: Block, scene: Scene) -> Iterator[Series]:
     """Every quantity of one block of `impulses`, as if at one instant; forces become impulses in unit."""
-    timed = _at_one_instant({key: value for key, value in block.items() if key not in ("time", "names")})
-    for kind, part in timed.items():
-        whole = part if isinstance(part, dict) else {kind: part}
+    for kind, part in block.items():
+        if kind in ("time", "names"):
+            continue
+        whole = _at_one_instant(kind, (), part if isinstance(part, dict) else {kind: part})
         for series in _block(kind if isinstance(part, dict) else "", (), whole, scene):
             yield series._replace(unit=IMPULSE_UNITS.get(series.unit, series.unit))
 
@@ -120,17 +127,18 @@ def component_labels(shape: tuple[int, ...]) -> tuple[str, ...]:
 
 
 def _block(kind: str, keys: tuple[str, ...], block: Block, scene: Scene, cuts: int = 0) -> Iterator[Series]:
-    cuts = len(block["s"]) if kind == "sections" and "s" in block else cuts
+    if kind == "sections" and keys and "s" in block:
+        cuts = len(block["s"])
     for key, value in block.items():
-        if key == "s":
-            yield _static(kind, keys, key, np.asarray(value, dtype=np.float64))
-        elif key == "side":
-            if any(side is not None for side in value):
-                yield _static(kind, keys, key, np.array([SIDES[side] for side in value]))
-        elif isinstance(value, dict):
+        if isinstance(value, dict):
             yield from _block(kind, (*keys, key), value, scene, cuts)
-        elif isinstance(value, np.ndarray) and key not in STATIC:
-            yield _series(kind, (*keys, key), value, scene, cuts)
+        elif not is_static(kind, keys, key):
+            if isinstance(value, np.ndarray):
+                yield _series(kind, (*keys, key), value, scene, cuts)
+        elif key == "s":
+            yield _static(kind, keys, key, np.asarray(value, dtype=np.float64))
+        elif key == "side" and any(side is not None for side in value):
+            yield _static(kind, keys, key, np.array([SIDES[side] for side in value]))
 
 
 def _series(kind: str, keys: tuple[str, ...], values: Array, scene: Scene, cuts: int) -> Series:
@@ -151,13 +159,13 @@ def _static(kind: str, keys: tuple[str, ...], quantity: str, values: Array) -> S
     return Series(kind, ".".join(keys), quantity, UNITS[quantity], labels, values[None, :], static=True)
 
 
-def _at_one_instant(block: Block) -> Block:
+def _at_one_instant(kind: str, keys: tuple[str, ...], block: Block) -> Block:
     """The block with a time axis of one instant before every array and number."""
     return {
-        key: value
-        if key in STATIC
-        else _at_one_instant(value)
+        key: _at_one_instant(kind, (*keys, key), value)
         if isinstance(value, dict)
+        else value
+        if is_static(kind, keys, key) or key == "open"
         else np.asarray(value, dtype=np.float64)[None]
         for key, value in block.items()
     }
