@@ -48,7 +48,8 @@ class Loading:
                 *self.problems, Problem("not-a-scene", message, source.place(()), "it starts with 'heun: 1'")
             )
         without_empty = {k: {} if v is None and k in (*NAMED, "ground") else v for k, v in source.data.items()}
-        self.data, self.set, problems = override(without_empty, overrides)
+        given, self.set, problems = override(without_empty, overrides)
+        self.data = in_the_plane(given) if given.get("space") == "planar" else given
         self.problems += problems
 
     def place(self, path: Path_, key: bool = False) -> Place:
@@ -132,6 +133,22 @@ class Loading:
         values = self.source.values
         wanted = [path for path in values if 0 < len(path) <= 2 or (path and path[0] in PLACED)]
         return {dotted(path): self.place(path, key=len(path) <= 2) for path in (*wanted, *self.set)}
+
+
+def in_the_plane(data: dict[str, Any]) -> dict[str, Any]:
+    """A planar scene's balls read as pins about z, its pins with that axis if they give none."""
+    about_z = {"type": "pin", "axis": [0, 0, 1]}
+    joints = {
+        name: {**about_z, **joint, "type": "pin"} if _turns_in_the_plane(joint) else joint
+        for name, joint in mapping(data.get("joints")).items()
+    }
+    return {**data, "joints": joints} if joints else data
+
+
+def _turns_in_the_plane(joint: Any) -> bool:
+    if type(joint) is not dict:
+        return False
+    return joint.get("type") == "pin" or (joint.get("type") == "ball" and not {"axis", "to_axis"} & joint.keys())
 
 
 def in_order(problems: list[Problem]) -> list[Problem]:

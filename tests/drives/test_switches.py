@@ -45,7 +45,7 @@ def test_pieces_whose_rates_do_not_fit(angle: str) -> None:
 
 
 def test_a_load_that_is_zero_at_one_instant() -> None:
-    """sign(t - 0.5), told as what comes after its zero, beside a drive, and free: the angle of a torque of -1, then +1, on 0.1 + 2/4 kg m^2."""
+    """sign(t - 0.5), told as what comes after its zero: beside a drive, and free on 0.1 + 2/4 kg m^2."""
     couple = 'forces: {f: {type: couple, on: b, vector: [0, 0, "sign(t-0.5)"]}}'
     driven = solved(SCENE.format(more=f"drives: {{d: {{joint: A, angle: t}}}}\n{couple}"))
     near(driven.joints["A"]["drive"], [1.0, 1.0, -1.0, -1.0, -1.0], 1.0, 1e-12)

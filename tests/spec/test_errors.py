@@ -361,6 +361,15 @@ def found_in(text: str) -> list[str]:
     ("joints: {j: {type: plane, from: ground.O, to: c.p, normal: [0, 0, 1]}}", "joints.j.normal not-planar"),
     ("joints: {j: {type: cylinder, from: ground.O, to: c.p, axis: [0, 0, 1]}}", "joints.j.type not-planar"),
     ("joints: {j: {type: ball, from: ground.O, to: c.p}}", ""),
+    ("joints: {j: {type: ball, from: ground.O, to: c.p, initial: {angle: 1}}}", ""),
+    ("joints: {j: {type: pin, from: ground.O, to: c.p}}", ""),
+    (f"bodies: {{c: {{{LUMP}, velocity: [1, 2, 3]}}}}", "bodies.c.velocity.2 not-planar"),
+    (f"bodies: {{c: {{{LUMP}, angular_velocity: [0, 1, 3]}}}}", "bodies.c.angular_velocity.1 not-planar"),
+    (f"bodies: {{c: {{{LUMP}, angular_velocity: {{vector: [1, 0, 3], frame: body}}}}}}",
+     "bodies.c.angular_velocity.vector.0 not-planar"),
+    ('forces: {f: {type: force, on: c.p, vector: [1, t, "0*t"]}}', "forces.f.vector.2 not-planar"),
+    ("forces: {f: {type: force, on: c.p, vector: [1, t, 0]}}", ""),
+    ("forces: {f: {type: couple, on: c, vector: [0, 1, 1]}}", "forces.f.vector.1 not-planar"),
 ])  # fmt: skip
 def test_rules_of_the_plane(text: str, code: str) -> None:
     bodies = "" if text.startswith("bodies") else f"bodies: {{c: {{{LUMP}, points: {{p: [0, 0, 0]}}}}}}\n"

@@ -8,12 +8,10 @@ from collections.abc import Iterator
 from heuncli.spec import format as f
 from heuncli.spec.expression import Expression, across, breakpoints
 from heuncli.spec.fields import End
-from heuncli.spec.meanings import body_axes, drive_of, span_of
+from heuncli.spec.meanings import drive_of, span_of
 from heuncli.spec.rules.registry import Found, Path_, Scene, rule
-from heuncli.spec.turns import IDENTITY, unit
 
 SAME = 1e-9  # relative: a held value and a drive's
-FLAT = 1e-9  # of a direction's length: what may stand out of the plane of a planar scene
 DRIVEN = {"angle": ("pin",), "travel": ("slide", "cylinder"), "length": ("rod",)}
 
 
@@ -68,49 +66,6 @@ def duplicate_joint(scene: Scene) -> Iterator[Found]:
         if key in seen:
             yield Found(("joints", name), f"the same joint as {seen[key]}: their reactions are open", key=True)
         seen.setdefault(key, name)
-
-
-@rule("not-planar")
-def not_planar(scene: Scene) -> Iterator[Found]:
-    """In a scene declared planar everything turns about z and moves in the xy plane."""
-    document = scene.document
-    if document.head.space != "planar":
-        return
-    if document.head.gravity[2] != 0.0:
-        yield Found(
-            ("gravity", 2), "gravity points out of the xy plane of a planar scene", "use x and y, or space: spatial"
-        )
-    for name, joint in document.joints.items():
-        path: Path_ = ("joints", name)
-        if isinstance(joint, f.Universal | f.CylinderJoint):
-            yield Found(
-                (*path, "type"), f"a joint of type {joint.type} has no place in a planar scene", "space: spatial"
-            )
-            continue
-        along_z = isinstance(joint, f.Pin)
-        for key in ("axis", "to_axis", "normal"):
-            direction = getattr(joint, key, None)
-            if direction is None or direction == (0.0, 0.0, 0.0):
-                continue
-            x, y, z = unit(direction)
-            if (math.hypot(x, y) if along_z else abs(z)) > FLAT:
-                wants = "is the z axis" if along_z else "lies in the xy plane"
-                yield Found(
-                    (*path, key), f"in a planar scene {key} of a {joint.type} {wants}", "or declare space: spatial"
-                )
-    for name, body in document.bodies.items():
-        if body.orientation is not None and abs(upright(body.orientation) - 1.0) > FLAT:
-            yield Found(
-                ("bodies", name, "orientation"), "in a planar scene a body is turned about z only", "space: spatial"
-            )
-
-
-def upright(orientation: f.Orientation) -> float:
-    """The cosine between the body's z axis and the world's; 1 where the orientation is in error."""
-    try:
-        return body_axes(orientation)[2][2]
-    except ValueError:
-        return IDENTITY[2][2]
 
 
 @rule("drive-form")

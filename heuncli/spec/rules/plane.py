@@ -1,0 +1,74 @@
+"""Scenes declared planar: all that is given lies in the world's xy plane, or turns about z."""
+
+from __future__ import annotations
+
+import math
+from collections.abc import Iterator
+
+from heuncli.spec import format as f
+from heuncli.spec.meanings import body_axes
+from heuncli.spec.rules.registry import Found, Path_, Scene, rule
+from heuncli.spec.turns import IDENTITY, unit
+
+FLAT = 1e-9  # of a direction's length: what may stand out of the plane
+OR_ELSE = "or declare space: spatial"
+# Vectors of bodies and of loads with the components that they cannot have in the plane.
+MOTIONS = {"velocity": ("z",), "angular_velocity": ("x", "y")}
+LOADS = {"force": ("z",), "couple": ("x", "y")}
+
+
+@rule("not-planar")
+def not_planar(scene: Scene) -> Iterator[Found]:
+    """In a scene declared planar everything turns about z and moves in the xy plane."""
+    if scene.document.head.space != "planar":
+        return
+    if scene.document.head.gravity[2] != 0.0:
+        yield Found(
+            ("gravity", 2), "gravity points out of the xy plane of a planar scene", "use x and y, or space: spatial"
+        )
+    yield from _joints(scene)
+    for name, body in scene.document.bodies.items():
+        if body.orientation is not None and abs(upright(body.orientation) - 1.0) > FLAT:
+            yield Found(("bodies", name, "orientation"), "in a planar scene a body is turned about z only", OR_ELSE)
+        for key, across in MOTIONS.items():
+            given = getattr(body, key)
+            path: Path_ = ("bodies", name, key)
+            if given is not None:
+                framed = not isinstance(given, tuple)
+                yield from _across((*path, "vector") if framed else path, given.vector if framed else given, across)
+    for name, load in scene.document.forces.items():
+        if isinstance(load, f.PointForce | f.Couple):
+            vector = tuple(x.constant for x in load.vector)
+            yield from _across(("forces", name, "vector"), vector, LOADS[load.type])
+
+
+def _across(path: Path_, vector: tuple[float | None, ...], across: tuple[str, ...]) -> Iterator[Found]:
+    """Components that cannot be; None is one that changes with time."""
+    for i, (letter, value) in enumerate(zip("xyz", vector, strict=True)):
+        if letter in across and value != 0.0:
+            yield Found((*path, i), f"in a planar scene {path[2]} has no {letter} component", OR_ELSE)
+
+
+def _joints(scene: Scene) -> Iterator[Found]:
+    for name, joint in scene.document.joints.items():
+        path: Path_ = ("joints", name)
+        if isinstance(joint, f.Universal | f.CylinderJoint):
+            yield Found((*path, "type"), f"a joint of type {joint.type} has no place in a planar scene", OR_ELSE)
+            continue
+        along_z = isinstance(joint, f.Pin)
+        for key in ("axis", "to_axis", "normal"):
+            direction = getattr(joint, key, None)
+            if direction is None or direction == (0.0, 0.0, 0.0):
+                continue
+            x, y, z = unit(direction)
+            if (math.hypot(x, y) if along_z else abs(z)) > FLAT:
+                wants = "is the z axis" if along_z else "lies in the xy plane"
+                yield Found((*path, key), f"in a planar scene {key} of a {joint.type} {wants}", OR_ELSE)
+
+
+def upright(orientation: f.Orientation) -> float:
+    """The cosine between the body's z axis and the world's; 1 where the orientation is in error."""
+    try:
+        return body_axes(orientation)[2][2]
+    except ValueError:
+        return IDENTITY[2][2]
