@@ -9,6 +9,7 @@ from pydantic import ValidationError
 
 from heuncli.spec import format as f
 from heuncli.spec.fields import Context, Model
+from heuncli.spec.nearest import nearest
 from heuncli.spec.quantity import kind_of
 from heuncli.spec.rules.registry import Found, Path_
 from heuncli.spec.verdicts import unknown_key, unknown_type, verdicts
@@ -21,6 +22,7 @@ class Reader:
 
     def __init__(self, data: dict[str, Any], context: Context, tell: Tell) -> None:
         self.data, self.context, self.tell = data, context, tell
+        self.partial: dict[Path_, frozenset[str]] = {}  # entries read without some keys in error, with those left
 
     def document(self) -> f.Document:
         """All that can be read."""
@@ -29,13 +31,36 @@ class Reader:
         return f.Document(head=self.head(), expect=self.expectations(), **blocks, **single)  # type: ignore[arg-type]
 
     def model(self, path: Path_, data: Any, model: type[Model]) -> Any:
-        """One model, or None after telling why not."""
+        """One model; after telling what is wrong with it what is left without that, or None."""
         try:
             return model.model_validate(data, context=self.context)
         except ValidationError as error:
             for code, found in verdicts(error, data, model):
                 self.tell(code, found._replace(path=(*path, *found.path)))
+            return self.rest(path, data, model, {str(e["loc"][0]) for e in error.errors() if e["loc"]})
+
+    def rest(self, path: Path_, data: Any, model: type[Model], wrong: set[str]) -> Any:
+        """The model without the keys in error, so that its other values are judged, too; None where it needs them."""
+        if not wrong or type(data) is not dict:
             return None
+        right = {key: value for key, value in data.items() if key not in wrong}
+        keys = {str(field.alias or name) for name, field in model.model_fields.items()}
+        # a misspelt key is not a missing one
+        meant = {word: data[key] for key in wrong - keys if (word := nearest(key, keys)) is not None}
+        try:
+            found = model.model_validate({**meant, **right}, context=self.context)
+        except ValidationError:
+            return None
+        self.partial[path] = frozenset(right)
+        return found
+
+    def follows(self, path: Path_) -> bool:
+        """Whether an objection at this path may only follow from what an entry was read without."""
+        return any(
+            path[: len(entry)] == entry and (len(path) == len(entry) or path[len(entry)] not in kept)
+            for entry, kept in self.partial.items()
+            if entry
+        )
 
     def typed(self, path: Path_, data: Any, models: Mapping[str, type[Model]], block: str) -> Any:
         """One model of those that the key `type` chooses from."""

@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Mapping
+from collections.abc import Callable, Mapping
 from pathlib import Path
 from typing import Any
 
@@ -76,15 +76,16 @@ class Loading:
         scope = Scope(parameters)
         tables = self.tables(scope)
         context = Context(scope, Scope(parameters, names.joints, tables, in_time=True))
-        document = Reader(self.data, context, self.tell).document()
-        self.judge(Scene(document, names, frozenset(self.unread)))
+        reader = Reader(self.data, context, self.tell)
+        scene = Scene(reader.document(), names, frozenset(self.unread))
+        self.judge(scene, reader.follows)
         if self.problems:
             raise SpecError(*in_order(self.problems))
         values = {name: value for name, value in parameters.items() if value is not None}
         built = {name: table for name, table in tables.items() if table is not None}
         warnings = tuple(in_order(self.warnings))
         meaning = Meaning(self.source.file, self.source.sha256, values, built, warnings, self.places())
-        return resolve(document, meaning)
+        return resolve(scene.document, meaning)
 
     def parameters(self) -> dict[str, float | None]:
         """Values of the parameters; None for those in error."""
@@ -122,9 +123,11 @@ class Loading:
             self.tell("wrong-kind", Found((name,), f"expected a mapping, found {kind_of(value)}", "its keys are names"))
         return mapping(value)
 
-    def judge(self, scene: Scene) -> None:
-        """Apply the rules."""
+    def judge(self, scene: Scene, follows: Callable[[Path_], bool]) -> None:
+        """Apply the rules; what may only follow from another error is not told."""
         for rule, found in found_by(RULES, scene):
+            if follows(found.path):
+                continue
             problem = Problem(rule.code, found.message, self.place(found.path, found.key), found.hint)
             (self.warnings if rule.is_warning else self.problems).append(problem)
 

@@ -351,6 +351,36 @@ def found_in(text: str) -> list[str]:
     return []
 
 
+def test_an_unread_key_hides_no_other() -> None:
+    """A mapping with a wrong key or value is judged without it; what only follows from that is not told."""
+    text = """\
+heun: 1
+title: 5
+space: planar
+ground: {points: {O: [0, 0, 0]}}
+bodies:
+  b: {mass: -1, center: [0, 0, 0], inertia: 0.1, color: red, points: {o: [0, 0, 0]}}
+  c: {mass: heavy, center: [0, 0, 0], inertia: -0.1}
+joints: {A: {type: ball, from: ground.O, to: b.q, stifness: 3}}
+analysis: {duration: -1, samples: 0, toleranc: 3}
+expect: [{of: joint.A, is: 1, at: 0, abss: 1}]
+"""
+    assert problems(text) == [
+        "2:8 title wrong-kind",
+        "6:13 bodies.b.mass not-positive",
+        "6:50 bodies.b.color unknown-key",
+        "7:13 bodies.c.mass unknown-name",
+        "7:48 bodies.c.inertia inertia-not-physical",
+        "8:46 joints.A.to unknown-point",
+        "8:51 joints.A.stifness unknown-key",
+        "9:22 analysis.duration not-positive",
+        "9:35 analysis.samples times",
+        "9:38 analysis.toleranc unknown-key",
+        "10:15 expect.0.of expect-path",
+        "10:38 expect.0.abss unknown-key",
+    ]
+
+
 @pytest.mark.parametrize(("text", "code"), [
     ("gravity: [0, -9.81, 1]", "gravity.2 not-planar"),
     (f"bodies: {{c: {{{LUMP}, orientation: {{axis: [1, 0, 0], angle: 1}}}}}}", "bodies.c.orientation not-planar"),
