@@ -75,6 +75,25 @@ def test_door_split_by_least_norm_and_by_stiffness() -> None:
     assert found.certain_sums == []
 
 
+# ---- a support told twice
+@pytest.mark.parametrize(("again", "twice", "is_open"), [
+    ({"type": "plane", "normal": [1, 2, 2]}, 1, "xyz"), ({"type": "plane", "normal": [3, 0, 4]}, 1, "xz"),
+    ({"type": "line", "axis": [0, 4, 3]}, 2, "xyz"), ({"type": "ball"}, 3, "xyz")])
+def test_a_point_held_twice(again: dict[str, Any], twice: int, is_open: str) -> None:
+    """Every row of the closure is told by the tree: none of them moves anything."""
+    turned = {"orientation": {"axis": [1, 2, 3], "angle": 0.7}, "angular_velocity": [0.3, -1.0, 2.0]}
+    scene = held({"top": [0.1, 0.2, 0.4]}, {"type": "ball"}, turned)
+    once = solved(scene).joints["top"]["force"]
+    scene["joints"]["again"] = {**scene["joints"]["top"], **again}
+    found, split = solved(scene), solved(scene, least_norm=True)
+    assert (found.model["freedoms"], found.model["redundant"]) == (3, twice)
+    assert open_forces(found, "top") == open_forces(found, "again") == set(is_open)
+    assert len(sums(found)) == 2 * len(is_open) - twice
+    for c in is_open:
+        assert told_by_sums(found, {"joints.top.force." + c: 1.0, "joints.again.force." + c: 1.0})
+    near(split.joints["top"]["force"] + split.joints["again"]["force"], once, 49.05, ROUNDING)
+
+
 # ---- a body on three balls, and on three planes in a row
 def test_three_balls() -> None:
     """Not in line: only what is normal to their plane is certain, by the levers."""

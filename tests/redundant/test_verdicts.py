@@ -7,7 +7,10 @@ from collections import Counter
 import numpy as np
 import pytest
 
+from tests.identities.cases import TIMES
 from tests.loops import checks
+from tests.oracle.rows import assemble
+from tests.oracle.solve import OPEN, RANK, scene_length
 from tests.redundant.doubles import SEEDS, SOME, redundant, redundant_scene
 from tests.scenes import moving, near, solved
 
@@ -39,6 +42,20 @@ def test_scenes_are_what_they_should_be() -> None:
         assert kinds[kind] >= 5, kind
     assert sum(kinds[k] for k in kinds if k.endswith("double")) >= 150
     assert kinds["driven"] >= 40
+
+
+def test_scenes_are_far_from_the_thresholds() -> None:
+    """Singular values and shares are rounding or plainly there, so that a verdict is no matter of a threshold."""
+    for seed in SEEDS:
+        c = redundant(seed)
+        for o, state, t in zip(c.oracle, c.states, TIMES, strict=True):
+            length = scene_length(c.read, state)
+            J = assemble(c.read, state, t).J / np.tile([1.0, 1, 1, length, length, length], len(c.read.names))
+            sigma = np.linalg.svd(J / np.linalg.norm(J, axis=1)[:, None], compute_uv=False)
+            parts = [np.abs(r.weight[:, None] * r.share) / o.largest() for r in o.reactions.values()]
+            largest = np.concatenate(parts).max(axis=1, initial=0.0)
+            for values, limit in ((sigma / sigma[0], RANK), (largest, OPEN)):
+                assert not np.any((values > 1e-4 * limit) & (values < 1e4 * limit)), seed
 
 
 @pytest.mark.parametrize("seed", SEEDS[::3])
