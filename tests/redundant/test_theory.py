@@ -7,29 +7,12 @@ from typing import Any
 import numpy as np
 import pytest
 
-from heuncli.results import Results
 from tests.oracle.published import beam, four_bar, held
 from tests.oracle.transforms import units_changed
+from tests.redundant.told import open_forces, sums, told_by_sums
 from tests.scenes import near, solved
 
 ROUNDING = 1e-12
-
-
-def open_forces(found: Results, name: str) -> set[str]:
-    return {n[-1] for n in found.joints[name]["open"] if n.startswith("force.")}
-
-
-def sums(found: Results) -> list[tuple[dict[str, float], float]]:
-    """Terms and value at the first instant."""
-    return [(s["terms"], float(np.atleast_1d(s["value"])[0])) for s in found.certain_sums]
-
-
-def told_by_sums(found: Results, terms: dict[str, float]) -> bool:
-    """Whether the listed sums together tell this one."""
-    names = sorted({n for t, _ in sums(found) for n in t} | set(terms))
-    rows = np.array([[t.get(n, 0.0) for n in names] for t, _ in sums(found)])
-    wanted = np.array([terms.get(n, 0.0) for n in names])
-    return bool(np.linalg.norm(wanted - rows.T @ np.linalg.lstsq(rows.T, wanted, rcond=None)[0]) < 1e-9)
 
 
 # ---- a door on two ball hinges
