@@ -37,7 +37,7 @@ def same_sums(one: Results, other: Results, joints: dict[str, str] | None = None
 @pytest.mark.parametrize("mirror", [False, True], ids=["turned", "mirrored"])
 @pytest.mark.parametrize("seed", THESE)
 def test_world_turned(seed: int, mirror: bool) -> None:
-    """Its axes are directions across the old ones: open by the oracle's self-stresses in those; what has an axis stays."""
+    """World components are open by the oracle's self-stresses in the new directions; those along joints' axes stay."""
     scene, before = redundant_scene(seed)[1], first(seed)
     Q = random_rotation(np.random.default_rng(seed)) @ np.diag([1, 1, -1.0 if mirror else 1.0])
     found = solved(transforms.turned(scene, Q))
@@ -48,7 +48,8 @@ def test_world_turned(seed: int, mirror: bool) -> None:
             wanted = [not plain.along(name, **{part: Q.T[:, i]})[1] for i in range(3)]
             assert np.isnan(block[part][0]).tolist() == wanted, name
         for part in SCALARS:
-            assert np.isnan(block.get(part, [0.0])[0]) == np.isnan(before.joints[name].get(part, [0.0])[0]), (name, part)
+            same = np.isnan(before.joints[name].get(part, [0.0])[0])
+            assert np.isnan(block.get(part, [0.0])[0]) == same, (name, part)
 
 
 @pytest.mark.parametrize("seed", THESE)
