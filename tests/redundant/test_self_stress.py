@@ -1,4 +1,4 @@
-"""Loads that balance among themselves, made by hand: they are all that is open, and nothing called certain feels them."""
+"""Loads that balance among themselves, made by hand: they are all that is open; nothing called certain feels them."""
 
 from __future__ import annotations
 

@@ -10,7 +10,7 @@ import pytest
 from tests.oracle.published import beam, four_bar, held
 from tests.oracle.transforms import units_changed
 from tests.redundant.told import open_forces, sums, told_by_sums
-from tests.scenes import near, solved
+from tests.scenes import moving, near, solved
 
 ROUNDING = 1e-12
 
@@ -135,6 +135,50 @@ def test_four_hinges() -> None:
         assert not np.isnan(found.joints[name]["force"][0, :2]).any()
         assert found.joints[name]["moment"][0, 2] == 0.0
         assert not np.isnan(found.joints[name]["radial"]).any() and np.isnan(found.joints[name]["axial"]).all()
+
+
+# ---- a blade on two balls, carried round by an arm
+LINE = np.array([0.0, 0.3, 0.4])
+
+
+def blade(second: dict[str, Any]) -> dict[str, Any]:
+    points = {"p": [1, 0, 0], "q": (LINE + np.eye(3)[0]).tolist()}
+    bodies = {
+        "arm": {"mass": 1.0, "center": [0.5, 0, 0], "inertia": [0.1, 0.1, 0.1], "points": {"O": [0, 0, 0], **points},
+                "angular_velocity": [0, 1, 1]},
+        "blade": {"mass": 2.0, "center": [1.2, 0.1, 0.3], "inertia": [0.1, 0.2, 0.15], "points": points}}  # fmt: skip
+    joints = {"O": {"type": "pin", "axis": [0, 1, 1], "from": {"body": "ground", "at": [0, 0, 0]}, "to": "arm.O"},
+              "p": {"type": "ball", "from": "arm.p", "to": "blade.p"},
+              "q": {**second, "from": "arm.q", "to": "blade.q"}}  # fmt: skip
+    return {"gravity": [0, 0, -9.81], "bodies": bodies, "joints": joints}
+
+
+def test_a_line_that_turns() -> None:
+    """Along it all is open, across it certain: in directions that turn, with the values of a determinate one."""
+    times = np.linspace(0.0, 1.0, 9)
+    seconds = ({"type": "ball"}, {"type": "line", "axis": LINE.tolist()})
+    found, once = (solved(moving(blade(second), times, 1e-10)) for second in seconds)
+    assert (found.model["redundant"], once.model["redundant"]) == (1, 0)
+    steady, turning = found.certain_sums[:3], found.certain_sums[3:]
+    assert [s["terms"] for s in steady] == [{f"joints.{n}.force.{c}": 1.0 for n in "pq"} for c in "xyz"]
+    assert [list(s["terms"]) for s in turning] == [["joints.p.force.x", f"joints.p.force.{c}"] for c in "yz"]
+    d = found.bodies["arm"]["rotation"] @ LINE / 0.5
+    for s, i in zip(turning, (1, 2), strict=True):
+        c = np.stack(list(s["terms"].values()), axis=1)
+        near(np.sum(c * d[:, [0, i]], axis=1), 0.0, 1.0, 1e-9)
+        near(np.linalg.norm(c, axis=1), 1.0, 1.0, 1e-12)
+        assert np.all(np.sum(c[1:] * c[:-1], axis=1) > 0.0)
+        near(s["value"], np.sum(c * once.joints["p"]["force"][:, [0, i]], axis=1), 20.0, 1e-8)
+        assert np.ptp(c[:, 1]) > 0.1
+
+
+def test_a_line_that_could_turn() -> None:
+    """At one instant: factors of that instant, in a list of one, for they would not hold in the next pose."""
+    found = solved(blade({"type": "ball"}))
+    assert [s["terms"] for s in found.certain_sums[:2]] == [{f"joints.{n}.force.{c}": 1.0 for n in "pq"} for c in "yz"]
+    (across,) = found.certain_sums[2:]
+    assert list(across["terms"]) == ["joints.p.force.y", "joints.p.force.z"]  # its line has no part along x there
+    near(np.stack(list(across["terms"].values())), [[0.8], [-0.6]], 1.0, 1e-12)
 
 
 # ---- a table on four legs

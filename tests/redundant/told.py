@@ -5,6 +5,7 @@ from __future__ import annotations
 import numpy as np
 
 from heuncli.results import Results
+from tests.scenes import terms_at
 
 
 def open_forces(found: Results, name: str) -> set[str]:
@@ -13,7 +14,7 @@ def open_forces(found: Results, name: str) -> set[str]:
 
 def sums(found: Results) -> list[tuple[dict[str, float], float]]:
     """Terms and value at the first instant."""
-    return [(s["terms"], float(np.atleast_1d(s["value"])[0])) for s in found.certain_sums]
+    return [(terms_at(s["terms"], 0), float(np.atleast_1d(s["value"])[0])) for s in found.certain_sums]
 
 
 def told_by_sums(found: Results, terms: dict[str, float]) -> bool:
