@@ -49,7 +49,7 @@ def redundancy(scene: Scene, runner: Runner) -> Redundancy:
     here = runner.recovered(np.zeros(1), layout.y0[None, :])
     stress = self_stress(layout, body_states(layout, here), here.gap)
     assert stress is not None
-    near = neighbours(runner, 0.0, here.states[0], NEIGHBOUR)
+    near = neighbours(runner, 0.0, here.states[0], (NEIGHBOUR,))
     if near is None:
         return Redundancy(int(stress.count[0]), int(stress.count[0]), int(stress.dependent[0]), stress)
     beside = self_stress(layout, body_states(layout, near), near.gap)

@@ -6,7 +6,6 @@ from collections.abc import Sequence
 from dataclasses import dataclass
 
 import numpy as np
-from numpy.typing import NDArray
 
 from heuncli.kinetostatics.bodies import BodyStates, body_states
 from heuncli.kinetostatics.neighbours import neighbours
@@ -19,7 +18,9 @@ from heuncli.motion import Recovered, Runner
 from heuncli.results import Array, Block
 from heuncli.scene import Scene
 
-NEAR = 0.05  # [rad] or of the size: how far neighbouring poses lie in which a certain sum must hold too
+# [rad] or of the size: how far neighbouring poses lie in which a certain sum must hold too; several, for what has one
+# freedom gives two poses each, and among more components than poses some sums hold by accident
+NEAR = (0.05, 0.1, 0.2, 0.4)
 NEARLY = 1e-6  # relative singular value of the closures below which reactions are not to be trusted
 SUMS_FROM = 9  # instants whose self-stresses certain sums are read from
 
@@ -103,22 +104,20 @@ def sums_of(
     beside = self_stress(scene.layout, body_states(scene.layout, near), near.gap) if near is not None else None
     if any(j.joint.stiffness is not None for j in joints):
         beside = None  # what a stiffness leaves undecided is known at the asked instants only
-    rows: dict[str, Array] = {}
-    values: dict[str, Array] = {}
+    poses, told, values = dict[str, Array](), dict[str, Array](), dict[str, Array]()
     for k, load in enumerate(joints):
         is_open = np.concatenate(wrench_open(stress, stress.shares[k]), axis=1).any(axis=0)
         for i in np.flatnonzero(is_open).tolist():
             name = f"joints.{load.joint.name}.{'force' if i < 3 else 'moment'}.{'xyz'[i % 3]}"
-            parts = [relative(stress, k, i, pick)]
-            if beside is not None:
-                parts.append(relative(beside, k, i, np.arange(len(beside.count))))
-            rows[name] = np.concatenate(parts)
+            told[name] = relative(stress, k, i)
+            parts = [told[name][pick], *([relative(beside, k, i)] if beside is not None else [])]
+            most = max(part.shape[1] for part in parts)
+            poses[name] = np.concatenate([np.pad(part, ((0, 0), (0, most - part.shape[1]))) for part in parts])
             values[name] = (load.force if i < 3 else load.moment)[:, i % 3]
-    return certain_sums(rows, values)
+    return certain_sums(poses, told, values, stress.length)
 
 
-def relative(stress: SelfStress, joint: int, component: int, instants: NDArray[np.intp]) -> Array:
-    """Shares of every self-stress in one component, each relative to its largest, as one row."""
-    largest = np.where(stress.largest > 0.0, stress.largest, 1.0)
-    found: Array = (stress.shares[joint][:, component] / largest)[instants].ravel()
+def relative(stress: SelfStress, joint: int, component: int) -> Array:
+    """Shares of every self-stress in one component, each relative to its largest, (n_t, k)."""
+    found: Array = stress.shares[joint][:, component] / np.where(stress.largest > 0.0, stress.largest, 1.0)
     return found

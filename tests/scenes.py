@@ -43,6 +43,11 @@ def near(found: Any, wanted: Any, size: float, tolerance: float = 1e-9) -> float
     return difference / size
 
 
+def terms_at(terms: Mapping[str, Any], k: int) -> dict[str, float]:
+    """A certain sum's factors at an instant: those that turn are told for each."""
+    return {name: float(factor[k] if np.ndim(factor) else factor) for name, factor in terms.items()}
+
+
 def largest(values: Mapping[str, Array]) -> float:
     """Largest number among arrays."""
     return max((float(np.abs(v).max(initial=0.0)) for v in values.values()), default=0.0)

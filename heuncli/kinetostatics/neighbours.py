@@ -2,6 +2,8 @@
 
 from __future__ import annotations
 
+from collections.abc import Sequence
+
 import numpy as np
 
 from heuncli.mechanism.layout import Layout
@@ -12,8 +14,8 @@ DIRECTIONS = 3
 SEED = 1901  # fixed: the same scene gives the same verdicts
 
 
-def neighbours(runner: Runner, t: float, state: Array, by: float) -> Recovered | None:
-    """Poses displaced by `by` (rad, or of the size) along fixed pseudo-random admissible rates, both ways.
+def neighbours(runner: Runner, t: float, state: Array, by: Sequence[float]) -> Recovered | None:
+    """Poses displaced by each of `by` (rad, or of the size) along fixed pseudo-random admissible rates, both ways.
 
     None if nothing moves.
     """
@@ -27,7 +29,7 @@ def neighbours(runner: Runner, t: float, state: Array, by: float) -> Recovered |
     moving = largest > 1e-6
     if not moving.any():
         return None
-    steps = [(k, sign * by / largest[k]) for k in np.flatnonzero(moving) for sign in (1.0, -1.0)]
+    steps = [(k, sign * step / largest[k]) for k in np.flatnonzero(moving) for step in by for sign in (1.0, -1.0)]
     moved = [displaced(layout, admissible[k], step) for k, step in steps]
     found = runner.recovered(np.full(len(steps), t), np.array(moved), choose=True)
     closed = found.gap <= 1e-10 * layout.size

@@ -2,6 +2,7 @@
 
 A sum is certain if the shares of every self-stress in it cancel. Forces and moments apart (together only where nothing
 else is certain): first pairs, components whose shares are proportional; then each further one by those named before it.
+What constant factors leave is told by factors that turn (turning.py).
 """
 
 from __future__ import annotations
@@ -10,32 +11,45 @@ from collections.abc import Mapping, Sequence
 
 import numpy as np
 
+from heuncli.kinetostatics.turning import Shares, turning_sums
 from heuncli.results import Array, Block
 
 SAME = 1e-7  # of a row's length: what is left of it when it is told by others
 
 
-def certain_sums(rows: Mapping[str, Array], values: Mapping[str, Array]) -> list[Block]:
-    """Sums over open components. rows: name -> its shares, (K,); values: name -> (n_t,), of any one solution."""
-    force = {name: r for name, r in rows.items() if ".force." in name}
-    moment = {name: r for name, r in rows.items() if ".moment." in name}
-    found = relations(force) + relations(moment)
-    if not found:
-        found = relations(dict(rows))
+def certain_sums(poses: Shares, told: Shares, values: Mapping[str, Array], length: float) -> list[Block]:
+    """Sums over open components; factors that turn are arrays (n_t,).
+
+    poses: shares where the sums must hold; told: the same at the asked instants; values: (n_t,), of any one solution.
+    length: what divides moments where they stand beside forces [m].
+    """
+    force = [name for name in poses if ".force." in name]
+    moment = [name for name in poses if ".moment." in name]
+    steady, turning = list[dict[str, float]](), list[dict[str, Array]]()
+    for names in (force, moment):
+        constant, left = relations({name: poses[name].ravel() for name in names})
+        steady += constant
+        turning += turning_sums({name: poses[name] for name in left}, told)
+    if not steady and not turning:
+        steady, left = relations({name: poses[name].ravel() for name in (*force, *moment)})
+        unit = {name: 1.0 if ".force." in name else length for name in left}
+        scaled = [{name: part[name] / unit[name] for name in left} for part in (poses, told)]
+        turning = [{name: c / unit[name] for name, c in terms.items()} for terms in turning_sums(*scaled)]
+    found: list[Mapping[str, float | Array]] = [*steady, *turning]
     return [
         {"terms": terms, "value": sum((c * values[name] for name, c in terms.items()), np.zeros(1))} for terms in found
     ]
 
 
-def relations(rows: Mapping[str, Array]) -> list[dict[str, float]]:
-    """Combinations of rows that vanish, as {name: factor}: pairs, then echelon form, the earliest names left free."""
-    names = list(rows)
+def relations(rows: Mapping[str, Array]) -> tuple[list[dict[str, float]], list[str]]:
+    """Combinations of rows (K,) that vanish, as {name: factor}, and the names of those that are left free.
+
+    Pairs, then echelon form, the earliest names left free.
+    """
+    scale = {name: float(np.sqrt(row @ row)) for name, row in rows.items()}
+    names = [name for name in rows if scale[name] > 0.0]  # open only where no sum is read from
     if not names:
-        return []
-    scale = {name: float(np.sqrt(rows[name] @ rows[name])) for name in names}
-    names = [name for name in names if scale[name] > 0.0]  # open only where no sum is read from
-    if not names:
-        return []
+        return [], []
     stacked = np.stack([rows[name] / scale[name] for name in names])
     same = stacked @ stacked.T
     found: list[dict[str, float]] = []
@@ -53,11 +67,14 @@ def relations(rows: Mapping[str, Array]) -> list[dict[str, float]]:
             heads.append(i)
         else:
             found.append(tidy({names[head]: -float(same[i, head]) * scale[name] / scale[names[head]], name: 1.0}))
-    return found + echelon([names[h] for h in heads], stacked[heads], scale)
+    more, free = echelon([names[h] for h in heads], stacked[heads], scale)
+    return found + more, free
 
 
-def echelon(names: Sequence[str], rows: Array, scale: Mapping[str, float]) -> list[dict[str, float]]:
-    """Each row (of unit length) that the ones named before it can tell, told by an independent set of those."""
+def echelon(
+    names: Sequence[str], rows: Array, scale: Mapping[str, float]
+) -> tuple[list[dict[str, float]], list[str]]:
+    """Each row (of unit length) that those before it can tell, told by an independent set of them; and that set."""
     found: list[dict[str, float]] = []
     free: list[int] = []
     basis = np.zeros((0, rows.shape[1]))  # orthonormal, of the free rows
@@ -73,7 +90,7 @@ def echelon(names: Sequence[str], rows: Array, scale: Mapping[str, float]) -> li
         told = {names[f]: -float(x) * scale[name] / scale[names[f]] for f, x in zip(free, c, strict=True)}
         small = 1e-9 * max(abs(x) * scale[n] for n, x in told.items())
         found.append(tidy({n: x for n, x in told.items() if abs(x) * scale[n] > small} | {name: 1.0}))
-    return found
+    return found, [names[f] for f in free]
 
 
 def tidy(terms: dict[str, float]) -> dict[str, float]:

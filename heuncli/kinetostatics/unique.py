@@ -2,7 +2,9 @@
 
 A self-stress is a set of closure multipliers z with J' z = 0 on the tree's freedoms: internal loads that balance among
 themselves and move nothing. A component that some self-stress has a share in is not a number the laws of rigid bodies
-give. Rows by unit length, moments and turns by the island's length L; verdicts by the instant's own null space.
+give. Moments and turns by the island's length L, which makes rows of the order of 1; those with longer levers are
+shortened to that. Shorter ones stay: a row that moves no freedom, in this pose or in all, holds what the tree holds
+already, and its rounding must not be made a direction. Verdicts by the instant's own null space.
 design: closure Jacobian on tree coordinates, SVD, one statics sweep a null vector.
 """
 
@@ -20,7 +22,7 @@ from heuncli.mechanism.model import GROUND
 from heuncli.mechanism.starts import joint_frame
 from heuncli.results import Array, Mask
 
-RANK = 1e-9  # of the largest singular value: below it a combination of rows is dependent
+RANK = 1e-9  # of the largest singular value, or of 1 (a unit load at the length L): below it, rows are dependent
 GAP = 100.0  # a pose is known to gap/L only: so many times that is the least that can count
 TINY = 1e-13  # a self-stress without a share in any joint
 OPEN = 1e-8  # of a self-stress's largest share: above it a component is open
@@ -202,9 +204,7 @@ def _null_space(
     J = np.stack(columns, axis=2) if columns else np.zeros((n_t, m, 0))
     is_couple = np.abs(wrenches[:, rows, :3]).max(axis=2, initial=0.0) == 0.0
     J = J * np.where(is_couple, L, 1.0)[:, :, None]
-    # by the largest a row has at any of the instants: one that vanishes in some pose must not hide it
-    size = np.sqrt(np.sum(J * J, axis=2)).max(axis=0, initial=0.0)
-    unit = np.where(size > RANK * max(float(size.max(initial=0.0)), 1e-300), size, 1.0)[:, None]
+    unit = np.maximum(np.sqrt(np.sum(J * J, axis=2)), 1.0)[:, :, None]
     J = J / unit
     # rows that never touch a free direction (across a flat mechanism, say) are self-stresses by themselves
     idle = np.abs(J).max(axis=(0, 2), initial=0.0) <= RANK
@@ -217,19 +217,19 @@ def _null_space(
 
 
 def _null_of(J: Array, gap: Array) -> tuple[Array, Array, Array]:
-    """Null vectors of J' (n_t, m, k_max) for J (n_t, m, n), unit rows; how many; least kept singular value."""
+    """Null vectors of J' (n_t, m, k_max) for J (n_t, m, n), rows up to 1; how many; least kept singular value."""
     n_t, m = J.shape[:2]
     if m == 0:
         return np.zeros((n_t, 0, 0)), np.zeros(n_t, dtype=int), np.ones(n_t)
     U, S, _ = np.linalg.svd(J, full_matrices=True)
     if S.shape[1] < m:
         S = np.concatenate([S, np.zeros((n_t, m - S.shape[1]))], axis=1)
-    top = S.max(axis=1, initial=0.0)
+    top = np.maximum(S.max(axis=1, initial=0.0), 1.0)
     limit = np.maximum(RANK, GAP * gap) * top
     rank = np.sum(S > limit[:, None], axis=1)
     k_max = int((m - rank).max(initial=0))
     last = np.take_along_axis(S, np.maximum(rank - 1, 0)[:, None], axis=1)[:, 0]
-    kept = np.where(rank > 0, last / np.where(top > 0, top, 1.0), 1.0)
+    kept = np.where(rank > 0, last / top, 1.0)
     Z = U[:, :, m - k_max :].copy() if k_max else np.zeros((n_t, m, 0))
     for t in np.flatnonzero(m - rank < k_max):
         Z[t, :, : k_max - (m - rank[t])] = 0.0

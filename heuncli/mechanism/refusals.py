@@ -74,9 +74,8 @@ def singular_pose(mechanism: Mechanism, joint: int, joints: Sequence[int]) -> So
         f"the loop at joint {mechanism.joints[joint].name} stands in a singular pose (links in line, say), "
         "in which no acceleration belongs to its start velocities"
     )
-    return SolveError(Problem(
-        "singular-pose", message, hint="give the rate of one more joint of the loop" + _drives(mechanism, joints)
-    ))  # fmt: skip
+    hint = "give the rate of one more joint of the loop; together they must be those of a motion through this pose"
+    return SolveError(Problem("singular-pose", message, hint=hint + _drives(mechanism, joints)))
 
 
 def _name(mechanism: Mechanism, body: int) -> str:

@@ -43,7 +43,7 @@ def to_csv(results: Results, scene: Scene) -> str:
             name = ".".join(part for part in (str(number), series.kind, series.name) if part)
             lines += _lines(series, "impulses", name, [repr(float(block["time"]))])
     for number, block in enumerate(results.certain_sums):
-        unit = "N" if all(".force." in term for term in block["terms"]) else "N·m"
+        unit = "N" if any(".force." in term for term in block["terms"]) else "N·m"
         series = Series("certain_sums", str(number), "value", unit, ("",), np.asarray(block["value"])[:, None])
         lines += _lines(series, series.kind, series.name, instants)
     return "".join(lines)

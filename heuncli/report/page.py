@@ -150,7 +150,7 @@ def _cut(results: Results, count: int) -> Results:
         return block[:count] if isinstance(block, np.ndarray) and len(block) == n else block
 
     timed = {part: first(part, (), getattr(results, part)) for part in PARTS}
-    sums = [{**block, "value": np.asarray(block["value"])[:count]} for block in results.certain_sums]
+    sums = [first("certain_sums", (), block) for block in results.certain_sums]
     return replace(results, time=results.time[:count], certain_sums=sums, **timed)
 
 

@@ -13,6 +13,7 @@ from heuncli.report.table import Table
 from heuncli.results import Results
 
 MOST_TERMS = 6  # contract section 2: tables show short sums of forces, JSON all
+TURNS = "(t): a factor that turns with the pose, as at the first instant; --format json has them all"
 FORCES = frozenset({"force", "axial", "radial", "tension", "N", "Q1", "Q2"})
 
 
@@ -23,7 +24,7 @@ def sums_table(results: Results, certain: Certainty) -> Table | None:
     lines = [line for block in results.certain_sums if (line := _line(block, certain)) is not None]
     left = len(results.certain_sums) - len(lines)
     rest = f"{left} more in --format json (moments, or more than {MOST_TERMS} terms)" if left else ""
-    notes = [*lines, *([rest] if rest else [])]
+    notes = [*lines, *([TURNS] if any("(t)·" in line for line in lines) else []), *([rest] if rest else [])]
     return Table("CERTAIN SUMS  of components that redundancy leaves open", notes=tuple(notes))
 
 

@@ -20,7 +20,6 @@ from tests.oracle.turns import Array, across, random_unit, unit
 
 LOCKED = (2067,)  # its drives cannot be followed for long
 SEEDS = [s for s in range(2000, 2108) if s not in LOCKED]
-SOME = SEEDS[:14]
 
 
 class Held(NamedTuple):

@@ -7,29 +7,12 @@ from typing import Any
 import numpy as np
 import pytest
 
-from heuncli.results import Results
 from tests.oracle.published import beam, four_bar, held
 from tests.oracle.transforms import units_changed
-from tests.scenes import near, solved
+from tests.redundant.told import open_forces, sums, told_by_sums
+from tests.scenes import moving, near, solved
 
 ROUNDING = 1e-12
-
-
-def open_forces(found: Results, name: str) -> set[str]:
-    return {n[-1] for n in found.joints[name]["open"] if n.startswith("force.")}
-
-
-def sums(found: Results) -> list[tuple[dict[str, float], float]]:
-    """Terms and value at the first instant."""
-    return [(s["terms"], float(np.atleast_1d(s["value"])[0])) for s in found.certain_sums]
-
-
-def told_by_sums(found: Results, terms: dict[str, float]) -> bool:
-    """Whether the listed sums together tell this one."""
-    names = sorted({n for t, _ in sums(found) for n in t} | set(terms))
-    rows = np.array([[t.get(n, 0.0) for n in names] for t, _ in sums(found)])
-    wanted = np.array([terms.get(n, 0.0) for n in names])
-    return bool(np.linalg.norm(wanted - rows.T @ np.linalg.lstsq(rows.T, wanted, rcond=None)[0]) < 1e-9)
 
 
 # ---- a door on two ball hinges
@@ -73,6 +56,25 @@ def test_door_split_by_least_norm_and_by_stiffness() -> None:
     assert found.joints["bottom"]["force"][0, 2] == pytest.approx(49.05 * 0.25, rel=1e-13)
     assert "stiffness" in found.model["split"]
     assert found.certain_sums == []
+
+
+# ---- a support told twice
+@pytest.mark.parametrize(("again", "twice", "is_open"), [
+    ({"type": "plane", "normal": [1, 2, 2]}, 1, "xyz"), ({"type": "plane", "normal": [3, 0, 4]}, 1, "xz"),
+    ({"type": "line", "axis": [0, 4, 3]}, 2, "xyz"), ({"type": "ball"}, 3, "xyz")])
+def test_a_point_held_twice(again: dict[str, Any], twice: int, is_open: str) -> None:
+    """Every row of the closure is told by the tree: none of them moves anything."""
+    turned = {"orientation": {"axis": [1, 2, 3], "angle": 0.7}, "angular_velocity": [0.3, -1.0, 2.0]}
+    scene = held({"top": [0.1, 0.2, 0.4]}, {"type": "ball"}, turned)
+    once = solved(scene).joints["top"]["force"]
+    scene["joints"]["again"] = {**scene["joints"]["top"], **again}
+    found, split = solved(scene), solved(scene, least_norm=True)
+    assert (found.model["freedoms"], found.model["redundant"]) == (3, twice)
+    assert open_forces(found, "top") == open_forces(found, "again") == set(is_open)
+    assert len(sums(found)) == 2 * len(is_open) - twice
+    for c in is_open:
+        assert told_by_sums(found, {"joints.top.force." + c: 1.0, "joints.again.force." + c: 1.0})
+    near(split.joints["top"]["force"] + split.joints["again"]["force"], once, 49.05, ROUNDING)
 
 
 # ---- a body on three balls, and on three planes in a row
@@ -133,6 +135,50 @@ def test_four_hinges() -> None:
         assert not np.isnan(found.joints[name]["force"][0, :2]).any()
         assert found.joints[name]["moment"][0, 2] == 0.0
         assert not np.isnan(found.joints[name]["radial"]).any() and np.isnan(found.joints[name]["axial"]).all()
+
+
+# ---- a blade on two balls, carried round by an arm
+LINE = np.array([0.0, 0.3, 0.4])
+
+
+def blade(second: dict[str, Any]) -> dict[str, Any]:
+    points = {"p": [1, 0, 0], "q": (LINE + np.eye(3)[0]).tolist()}
+    bodies = {
+        "arm": {"mass": 1.0, "center": [0.5, 0, 0], "inertia": [0.1, 0.1, 0.1], "points": {"O": [0, 0, 0], **points},
+                "angular_velocity": [0, 1, 1]},
+        "blade": {"mass": 2.0, "center": [1.2, 0.1, 0.3], "inertia": [0.1, 0.2, 0.15], "points": points}}  # fmt: skip
+    joints = {"O": {"type": "pin", "axis": [0, 1, 1], "from": {"body": "ground", "at": [0, 0, 0]}, "to": "arm.O"},
+              "p": {"type": "ball", "from": "arm.p", "to": "blade.p"},
+              "q": {**second, "from": "arm.q", "to": "blade.q"}}  # fmt: skip
+    return {"gravity": [0, 0, -9.81], "bodies": bodies, "joints": joints}
+
+
+def test_a_line_that_turns() -> None:
+    """Along it all is open, across it certain: in directions that turn, with the values of a determinate one."""
+    times = np.linspace(0.0, 1.0, 9)
+    seconds = ({"type": "ball"}, {"type": "line", "axis": LINE.tolist()})
+    found, once = (solved(moving(blade(second), times, 1e-10)) for second in seconds)
+    assert (found.model["redundant"], once.model["redundant"]) == (1, 0)
+    steady, turning = found.certain_sums[:3], found.certain_sums[3:]
+    assert [s["terms"] for s in steady] == [{f"joints.{n}.force.{c}": 1.0 for n in "pq"} for c in "xyz"]
+    assert [list(s["terms"]) for s in turning] == [["joints.p.force.x", f"joints.p.force.{c}"] for c in "yz"]
+    d = found.bodies["arm"]["rotation"] @ LINE / 0.5
+    for s, i in zip(turning, (1, 2), strict=True):
+        c = np.stack(list(s["terms"].values()), axis=1)
+        near(np.sum(c * d[:, [0, i]], axis=1), 0.0, 1.0, 1e-9)
+        near(np.linalg.norm(c, axis=1), 1.0, 1.0, 1e-12)
+        assert np.all(np.sum(c[1:] * c[:-1], axis=1) > 0.0)
+        near(s["value"], np.sum(c * once.joints["p"]["force"][:, [0, i]], axis=1), 20.0, 1e-8)
+        assert np.ptp(c[:, 1]) > 0.1
+
+
+def test_a_line_that_could_turn() -> None:
+    """At one instant: factors of that instant, in a list of one, for they would not hold in the next pose."""
+    found = solved(blade({"type": "ball"}))
+    assert [s["terms"] for s in found.certain_sums[:2]] == [{f"joints.{n}.force.{c}": 1.0 for n in "pq"} for c in "yz"]
+    (across,) = found.certain_sums[2:]
+    assert list(across["terms"]) == ["joints.p.force.y", "joints.p.force.z"]  # its line has no part along x there
+    near(np.stack(list(across["terms"].values())), [[0.8], [-0.6]], 1.0, 1e-12)
 
 
 # ---- a table on four legs

@@ -11,12 +11,11 @@ from functools import cache
 import numpy as np
 import pytest
 
-from heuncli.results import Results
 from heuncli.study import Study
 from tests.oracle.published import bricard
 from tests.oracle.read import model
 from tests.oracle.solve import Solution, solve
-from tests.scenes import instants, moving, near, study
+from tests.scenes import instants, moving, near, study, terms_at
 
 TABLE = {  # t: place of the hinge, crank's rate and acceleration, force and moment of the ground about P0
     0.0: ((1, -1, 0), 0, 1.9580838, (-1.958084, 47.091916, -7.832335), (-17.338832, 5.228084, 26.16)),
@@ -85,13 +84,10 @@ def test_open_components(name: str) -> None:
         assert (~np.isnan(got)).tolist() == unique[:6].tolist()
 
 
-def sums(found: Results) -> dict[frozenset[tuple[str, float]], np.ndarray]:
-    return {frozenset(s["terms"].items()): s["value"] for s in found.certain_sums}
-
-
 def test_neighbouring_hinges_carry_the_same_forces() -> None:
     """Fifteen equalities of components: what lies between two hinges is weight and inertia, which are certain."""
-    pairs = [s for s in run().results.certain_sums if all(".force." in n for n in s["terms"])]
+    forces = [s for s in run().results.certain_sums if all(".force." in n for n in s["terms"])]
+    pairs = [s for s in forces if not any(np.ndim(factor) for factor in s["terms"].values())]
     assert len(pairs) == 15
     for s in pairs:
         (first, one), (second, other) = s["terms"].items()
@@ -99,12 +95,28 @@ def test_neighbouring_hinges_carry_the_same_forces() -> None:
         assert (one == other) == ("P5" in second)  # the last hinge is told the other way round, from the ground
 
 
+def test_across_the_self_stress_a_hinge_carries_what_is_certain() -> None:
+    """Two directions of the first hinge's force, that turn with the mechanism: across (1, 1, 1) at the start."""
+    turning = [s for s in run().results.certain_sums if any(np.ndim(factor) for factor in s["terms"].values())]
+    across = [s for s in turning if all(".force." in n for n in s["terms"])]
+    assert [list(s["terms"]) for s in across] == [[f"joints.P0.force.{c}" for c in two] for two in ("xy", "xz")]
+    for s in across:
+        c = np.stack(list(s["terms"].values()), axis=1)
+        near(np.linalg.norm(c, axis=1), 1.0, 1.0, 1e-12)
+        near(c[0], np.sqrt(0.5) * np.array([1, -1]), 1.0, 1e-12)
+        assert np.abs(c - c[0]).max() > 0.1
+        assert np.all(np.sum(c[1:] * c[:-1], axis=1) > 0.0)
+    xy, xz = (s["value"][0] * np.sqrt(2.0) for s in across)
+    near([xy, xz - xy], [-33.023084, 31.711168], 1.0, 1e-6)
+
+
 def test_certain_sums_are_certain() -> None:
     """Every listed sum, at every instant, by the oracle's self-stress; its single terms are not."""
     found = run().results
     for k, solution in enumerate(oracle()):
         for s in found.certain_sums:
-            value, certain = solution.sum(s["terms"])
+            terms = terms_at(s["terms"], k)
+            value, certain = solution.sum(terms)
             assert certain
             near(s["value"][k], value, 100.0, 1e-10)
             if k > 0:  # at the start some couples are without a share, by accident of the pose

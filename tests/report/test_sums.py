@@ -39,6 +39,14 @@ def test_one_that_varies_with_factors() -> None:
     )
 
 
+def test_one_whose_factors_turn() -> None:
+    terms = {"joints.a.force.x": np.cos(T + 0.5), "joints.a.force.y": -np.sin(T + 0.5)}
+    assert told({"terms": terms, "value": 10.0 + 0.0 * T}) == (
+        "0.8776(t)·joints.a Fx − 0.4794(t)·joints.a Fy = 10.0 N; the split is open",
+        "(t): a factor that turns with the pose, as at the first instant; --format json has them all",
+    )
+
+
 def test_moments_and_long_sums_are_left_to_json() -> None:
     long = {f"joints.j{i}.force.x": 1 for i in range(7)}
     moment = {"joints.a.moment.x": 1, "joints.b.moment.x": 1}
