@@ -7,7 +7,7 @@ of unit length (so of one joint's force it is the component in a direction), and
 
 from __future__ import annotations
 
-from collections.abc import Mapping, Sequence
+from collections.abc import Mapping
 
 import numpy as np
 
@@ -21,62 +21,73 @@ Shares = Mapping[str, Array]  # components' shares of every self-stress, (poses,
 
 def turning_sums(poses: Shares, told: Shares) -> list[dict[str, Array]]:
     """Of each component that those before it tell in all poses: factors at the told instants, (n_t,) each."""
-    free: list[str] = []
     found: list[dict[str, Array]] = []
-    for name in poses:
-        names = dependent(poses, free, name)
-        if not names:
-            free.append(name)
-        elif (c := factors(np.stack([told[n] for n in names], axis=1))) is not None:
+    for names in dependent(poses):
+        if (c := factors(np.stack([told[n] for n in names], axis=1))) is not None:
             found.append(dict(zip(names, c.T, strict=True)))
     return found
 
 
-def dependent(poses: Shares, free: Sequence[str], name: str) -> list[str]:
-    """Those of the free components, and `name`, that are dependent in every pose; empty if they are not.
+def dependent(poses: Shares) -> list[list[str]]:
+    """Each component that those before it tell in every pose, last, after the independent ones that it takes.
 
-    Being independent in one pose is enough: in others it is by accident that they are not.
+    Being independent in one pose is enough to be so: in others it is by accident that they are not.
     """
-    names = [*free, name]
-    rows = np.stack([poses[n] for n in names], axis=1)
-    size = np.sqrt(np.sum(rows * rows, axis=2)).max(axis=0)
-    U, sigma = _left(rows / size[None, :, None])
-    lacks = np.sum(sigma <= SAME * np.maximum(sigma[:, :1], 1e-300), axis=1)
-    if (lacks == 0).any():
+    names = list(poses)
+    if not names:
         return []
-    c = np.abs(U[lacks == 1, :, -1] / size)
-    used = (c > ABSENT * c.max(axis=1, keepdims=True)).any(axis=0) if len(c) else np.ones(len(names), dtype=bool)
-    return [n for n, is_used in zip(names, used, strict=True) if is_used]
+    rows = np.stack([poses[n] for n in names], axis=1)
+    rows = rows / np.sqrt(np.sum(rows * rows, axis=2)).max(axis=0)[None, :, None]
+    Q = np.zeros((len(rows), rows.shape[2], 0))  # orthonormal in each pose, zero where a free row is told there
+    usual = np.ones(len(rows), dtype=bool)  # poses in which all the free ones are independent
+    free: list[int] = []
+    told: list[int] = []
+    for i in range(len(names)):
+        rest = rows[:, i, :, None]
+        for _ in range(2):
+            rest = rest - Q @ (Q.transpose(0, 2, 1) @ rest)
+        size = np.sqrt(np.sum(rest * rest, axis=(1, 2)))
+        new = size > SAME * np.maximum(np.sqrt(np.sum(rows[:, i] ** 2, axis=1)), SAME)
+        is_free = bool((usual & new).any())
+        (free if is_free else told).append(i)
+        if is_free:
+            usual &= new
+            Q = np.concatenate([Q, rest * (new / np.where(new, size, 1.0))[:, None, None]], axis=2)
+    if not told:
+        return []
+    back = Q[usual].transpose(0, 2, 1)
+    c = np.linalg.solve(back @ rows[usual][:, free].transpose(0, 2, 1), back @ rows[usual][:, told].transpose(0, 2, 1))
+    used = (np.abs(c) > ABSENT * np.maximum(np.abs(c).max(axis=1, keepdims=True), 1.0)).any(axis=0)
+    return [[*(names[f] for f in np.array(free)[used[:, k]]), names[i]] for k, i in enumerate(told)]
 
 
 def factors(rows: Array) -> Array | None:
-    """Unit vectors c (n_t, n) with c . rows = 0 for rows (n_t, n, k), each nearest to the one before.
+    """Unit vectors c (n_t, n) with c . rows = 0 for rows (n_t, n, k), the last of which the others tell.
 
-    None where there are none at some instant.
+    No factor jumps, the first large one is positive at the start; where the others are dependent, too, c is near to
+    that of the nearest instant where they are not. None where there are none at some instant.
     """
     size = np.sqrt(np.sum(rows * rows, axis=2)).max(axis=0)
-    U, sigma = _left(rows / size[None, :, None])
-    lacks = np.sum(sigma <= SAME * np.maximum(sigma[:, :1], 1e-300), axis=1)
-    if (lacks == 0).any():
+    R = np.asarray(np.linalg.qr((rows / size[None, :, None]).transpose(0, 2, 1), mode="r"))
+    n = rows.shape[1]
+    if R.shape[1] < n:
+        R = np.pad(R, ((0, 0), (0, n - R.shape[1]), (0, 0)))
+    diagonal = np.abs(np.diagonal(R, axis1=1, axis2=2))
+    most = np.abs(R).max(axis=(1, 2))
+    usual = (diagonal[:, :-1] > SAME * most[:, None]).all(axis=1)
+    if not usual.any() or (diagonal[usual, -1] > SAME * most[usual]).any():
         return None
-    c = U[:, :, -1].copy()
-    first = int(np.argmax(lacks == lacks.min()))
-    c[first] *= np.sign(c[first][np.argmax(np.abs(c[first]) > 0.1)])
-    for order in (range(first + 1, len(c)), range(first - 1, -1, -1)):
-        before = c[first]
-        for t in order:
-            N = U[t, :, rows.shape[1] - lacks[t] :]
-            near = N @ (N.T @ before)
-            if (part := float(np.sqrt(near @ near))) > SAME:
-                c[t] = near / part
-            before = c[t]
+    c = np.ones((len(rows), n))
+    c[usual, :-1] = -np.linalg.solve(R[usual, :-1, :-1], R[usual, :-1, -1:])[:, :, 0]
+    for t in np.flatnonzero(~usual):
+        U, sigma, _ = np.linalg.svd(R[t].T)
+        N = U[:, sigma <= SAME * max(float(sigma[0]), 1e-300)]
+        if not N.shape[1]:
+            return None
+        known = np.flatnonzero(usual)
+        before = c[known[np.argmin(np.abs(known - t))]]
+        c[t] = N @ (N.T @ before)
     c = c / size
     unit: Array = c / np.sqrt(np.sum(c * c, axis=1))[:, None]
+    unit *= np.sign(unit[0, np.argmax(np.abs(unit[0]) > 0.1)])
     return unit
-
-
-def _left(rows: Array) -> tuple[Array, Array]:
-    """Left singular vectors (n_t, n, n) and n singular values of each of (n_t, n, k), descending."""
-    U, sigma, _ = np.linalg.svd(rows, full_matrices=rows.shape[2] < rows.shape[1])
-    lack = rows.shape[1] - sigma.shape[1]
-    return U, np.pad(sigma, ((0, 0), (0, max(lack, 0))))
