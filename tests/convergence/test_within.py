@@ -27,10 +27,11 @@ def scene(name: str) -> str:
 
 
 SCENES = {"jumps": JUMPS, **{name: scene(name) for name in ("double", "four_bar", "flat_four_bar", "engine")}}
+NAMES = [pytest.param(name, marks=pytest.mark.heavy) if name == "engine" else name for name in SCENES]
 
 
 @pytest.mark.parametrize("kept", [20_000_000, 200])
-@pytest.mark.parametrize("name", SCENES)
+@pytest.mark.parametrize("name", NAMES)
 def test_the_asked_instants_again(name: str, kept: int, monkeypatch: pytest.MonkeyPatch) -> None:
     """The same states to rounding: at all asked instants, at a few far apart, at one."""
     monkeypatch.setattr(motion, "KEPT", kept)

@@ -13,6 +13,7 @@ GRAVITY = "gravity: [0, -9.81, 0]\n"
 FRICTION = "  rub: {type: friction, joint: guide, force: 50, speed: 0.5}\n"
 
 
+@pytest.mark.heavy
 @pytest.mark.parametrize("told", ["four pins", "determinate"])
 @pytest.mark.parametrize("interpolation", ["cubic", "pchip"])
 def test_one_turn(told: str, interpolation: str) -> None:

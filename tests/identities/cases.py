@@ -8,7 +8,6 @@ from functools import cache
 from typing import Any
 
 import numpy as np
-import pytest
 
 from heuncli.study import Study
 from tests.oracle.masses import mass_of
@@ -17,13 +16,14 @@ from tests.oracle.scenes import ALL_KINDS, random_scene
 from tests.oracle.solve import Solution, solve
 from tests.oracle.transforms import entry, without_mass
 from tests.scenes import moving, study
+from tests.seeds import spared
 
 QUICK = frozenset({0, 1, 4, 6, 8, 9, 11, 12, 14, 16})  # scenes that the plain kernel runs in half a second
 
 
 def seeds(count: int) -> list[Any]:
     """The first seeds, those too long for the plain kernel marked."""
-    return [k if k in QUICK else pytest.param(k, marks=pytest.mark.heavy) for k in range(count)]
+    return spared(range(count), QUICK)
 
 
 SEEDS = seeds(60)

@@ -5,9 +5,10 @@ from __future__ import annotations
 import pytest
 
 from tests.loops import checks
-from tests.loops.cases import DRIVEN, SEEDS, loop
+from tests.loops.cases import DRIVEN, QUICK, SEEDS, loop
+from tests.seeds import spared
 
-ALL = [*SEEDS, *DRIVEN]
+ALL = spared([*SEEDS, *DRIVEN], QUICK)
 
 
 @pytest.mark.parametrize("seed", ALL)

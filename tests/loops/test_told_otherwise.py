@@ -15,14 +15,15 @@ import pytest
 
 from heuncli.results import Results
 from tests.identities.told import Told, same_results
-from tests.loops.cases import DRIVEN, SOME, loop_scene
+from tests.loops.cases import DRIVEN, QUICK, SOME, loop_scene
 from tests.oracle import transforms
 from tests.oracle.turns import Array, random_rotation
 from tests.scenes import moving, near, solved, study
+from tests.seeds import spared
 
 TIMES = np.array([0.0, 0.15])
 SAME = 1e-9
-THESE = [*SOME, *DRIVEN[:6]]
+THESE = spared([*SOME, *DRIVEN[:6]], QUICK)
 
 
 def run(scene: Mapping[str, Any], times: Array = TIMES) -> Results:

@@ -11,11 +11,11 @@ from tests.identities.cases import TIMES
 from tests.loops import checks
 from tests.oracle.rows import assemble
 from tests.oracle.solve import OPEN, RANK, scene_length
-from tests.redundant.doubles import SEEDS, redundant, redundant_scene
+from tests.redundant.doubles import QUICK, SEEDS, redundant, redundant_scene
 from tests.scenes import moving, near, solved, terms_at
+from tests.seeds import spared
 
-SLOW = (2079,)
-SPARED = [s if s % 3 == 0 and s not in SLOW else pytest.param(s, marks=pytest.mark.heavy) for s in SEEDS]
+SPARED = spared(SEEDS, QUICK)
 KEYS = ("center", "rotation", "center_velocity", "angular_velocity", "center_acceleration", "angular_acceleration")
 
 

@@ -30,6 +30,9 @@ MULTIPLIERS = (199.1753333731910, -29.75531228015052, 23.06654119098399, 31.4527
                11.61740700019673)  # fmt: skip
 
 
+pytestmark = pytest.mark.heavy  # one long run for all
+
+
 @cache
 def squeezer() -> Results:
     return solved(moving(andrews(START, dict.fromkeys(START, 0.0)), [0.0, 0.03, 0.05], 1e-11))

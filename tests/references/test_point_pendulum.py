@@ -48,6 +48,7 @@ def swing(told: str, last: float, tolerance: float) -> Results:
     return solved(f"{HEAD}{TOLD[told]}analysis: {{times: {times}, tolerance: {tolerance}}}\n")
 
 
+@pytest.mark.heavy
 @pytest.mark.parametrize("told", TOLD)
 def test_ten_seconds(told: str) -> None:
     found = swing(told, 10.0, 1e-12)

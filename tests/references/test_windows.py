@@ -27,6 +27,9 @@ FORTY = {
 }  # fmt: skip
 
 
+pytestmark = pytest.mark.heavy  # one long run for all
+
+
 @cache
 def two() -> Results:
     return solved(moving(windows(2, 0.0, 1.0), TIMES, 1e-11))
@@ -99,7 +102,6 @@ def test_total_force_on_the_ground() -> None:
         near(found.foundation["force"][k, :2], np.array([0.0, -5 * 9.81]) - a, 100.0, 1e-8)
 
 
-@pytest.mark.heavy
 def test_forty_windows() -> None:
     """81 bodies, 40 loops, 120 loads held twice: to a tolerance of 1e-6 of the scene's 40 m."""
     found = solved(moving(windows(40, 0.0, 1.0), (0.0, 0.5, 1.0), 1e-6))
