@@ -26,6 +26,7 @@ from heuncli.tableaus import DOP853, Tableau
 CHUNK = 2_000  # body-steps between two looks at the clock
 KEPT = 20_000_000  # numbers of states kept for going back to, at the ends of all steps or every second, fourth ...
 MOST_STEPS = 20_000_000
+LEAST_RATE = 1e-5  # of a radian or of the scene's size in the time asked for: slower ones are judged as if that fast
 
 ROPE = 5  # the kernel's code where a rope would push
 TROUBLE = {
@@ -175,6 +176,8 @@ class Runner:
         Z, y = desk.Z, desk.y
         y[:n] = layout.y0 if step.COMPILED else layout.y0.tolist()
         Z[8] = tolerance
+        # where nothing moves or pulls yet (a load like t**4), there is still a rate that matters in the time asked for
+        Z[13] = LEAST_RATE / float(ts[-1]) if len(ts) and ts[-1] > 0.0 else 0.0
         self.scene[0][40] = int(any(j.tension_only for j in layout.mechanism.joints))
         ends: list[float] = []
         pivots: list[Array] = []

@@ -35,15 +35,20 @@ def prepare(spec: Any) -> Scene:
 
     Raises SpecError for a section that cannot be cut, SolveError where the scene does not close.
     """
-    forms = forms_of(spec)
-    mechanism = build(spec, forms)
-    cuts: tuple[Cuts, ...] = ()
-    if spec.sections:
-        from heuncli.mechanism.cuts import lay_cuts  # with the shapes 9 ms that other scenes do not need
-
-        cuts = lay_cuts(mechanism, spec, forms)
+    mechanism, cuts = drawn(spec)
     start = assemble(mechanism, spec.analysis.times[0] if spec.analysis.type == "state" else 0.0)
     return arranged(mechanism, start, cuts)
+
+
+def drawn(spec: Any) -> tuple[Mechanism, tuple[Cuts, ...]]:
+    """The bodies as they are drawn, and their sections. Raises SpecError with every section that cannot be cut."""
+    forms = forms_of(spec)
+    mechanism = build(spec, forms)
+    if not spec.sections:
+        return mechanism, ()
+    from heuncli.mechanism.cuts import lay_cuts  # with the shapes 9 ms that other scenes do not need
+
+    return mechanism, lay_cuts(mechanism, spec, forms)
 
 
 def arranged(mechanism: Mechanism, start: Assembly, cuts: tuple[Cuts, ...] = ()) -> Scene:

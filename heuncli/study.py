@@ -5,7 +5,6 @@ Impure: looks at the clock; a Study keeps a runner, so that further instants of 
 
 from __future__ import annotations
 
-import math
 import time
 from dataclasses import dataclass, replace
 from functools import cached_property
@@ -91,7 +90,7 @@ class Study:
         per_step = max(1, min(SEARCH_PER_STEP, MOST_SEARCHED // max(len(marks), 1)))
         inner = (marks[:-1, None] + np.diff(marks)[:, None] * (np.arange(per_step) / per_step)).ravel()
         # a jump has a value on either side of it
-        grid = np.concatenate([inner, self.halts, [math.nextafter(t, -math.inf) for t in self.halts]])
+        grid = np.concatenate([inner, [t for pair in across(self.halts) if pair[0] > 0.0 for t in pair]])
         grid = grid[(grid > self.times[0]) & (grid < self.times[-1])]
         return distinct(np.concatenate([self.times, grid]))
 
@@ -119,7 +118,7 @@ class Study:
         about = self.spec.foundation.about
         about = np.array(about if about is not None else (0.0, 0.0, 0.0))
         composed = compose(self.scene, self.runner, found, about, wanted, self.options.least_norm)
-        checked = self.checked
+        checked, joints = self.checked, composed.blocks.get("joints", {})
         estimate = {"motion": 0.0, "reactions": 0.0}
         if checked is not None:
             estimate = {"motion": float(checked.motion.max(initial=0.0)), "reactions": checked.reactions}
@@ -133,7 +132,7 @@ class Study:
             model=self.model | ({"split": "; ".join(composed.split)} if composed.split else {}),
             status=self._status(), time=found.times, **composed.blocks,
             certain_sums=composed.sums, accuracy=accuracy, work=self._work(),
-            warnings=(*self._warnings(), *self._singular(composed.decided, found.times)),
+            warnings=(*self._warnings(joints), *self._singular(composed.decided, found.times)),
         )  # fmt: skip
 
     def _status(self) -> Block:
@@ -148,7 +147,7 @@ class Study:
     def _singular(self, decided: Decided | None, times: Array) -> list[str]:
         return decided.singular(times, self.model["redundant"]) if decided is not None else []
 
-    def _warnings(self) -> tuple[str, ...]:
+    def _warnings(self, joints: Block) -> tuple[str, ...]:
         found = [w for c in self.scene.cuts for w in c.warnings]
         if self.checked is not None and (worst := float(self.checked.motion.max(initial=0.0))) > self.tolerance:
             missed = f"the tolerance {self.tolerance:.3g} was not reached"
@@ -157,6 +156,10 @@ class Study:
             told = ", ".join(f"{t:.6g}" for t in self.passages[:5]) + (" ..." if len(self.passages) > 5 else "")
             branch = "another motion branches off there, this one goes on smoothly"
             found.append(f"passes through a singular pose at t = {told} s: {branch}")
+        if self.checked is None:
+            ropes = [j.name for j in self.scene.mechanism.joints if j.tension_only and j.name in joints]
+            pushing = [name for name in ropes if joints[name]["tension"][0] < 0.0]
+            found += [f"the rod {name} would have to push (tension_only)" for name in pushing]
         if self.checked is not None and self.checked.run.stopped is not None:
             found.append(f"stopped before the end: {self._status()['message']}")
         return tuple(found)

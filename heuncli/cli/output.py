@@ -42,7 +42,9 @@ def _to_standard_output(text: str) -> None:
         raise OutputError(Problem("output-closed", "standard output is closed"))
     try:
         encoding = sys.stdout.encoding or "utf-8"
-        sys.stdout.buffer.write(text.encode(encoding, "replace"))
+        left = memoryview(text.encode(encoding, "replace"))
+        while left:  # unbuffered (PYTHONUNBUFFERED) a write may take a part only
+            left = left[sys.stdout.buffer.write(left) or 0 :]
         sys.stdout.buffer.flush()
     except BrokenPipeError:
         _silence()

@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 from heuncli.cli.entry import tell, worst
-from heuncli.cli.output import emit
+from heuncli.cli.output import emit, say
 from heuncli.cli.requests import Validate
 from heuncli.errors import SpecError
 from heuncli.report.words import count
@@ -17,21 +17,32 @@ def main(request: Validate) -> int:
     for path in request.specs:
         try:
             spec = load(path)
+            warnings = [*map(str, spec.warnings), *_of_cuts(spec)]
         except SpecError as error:
             tell(error.problems)
             codes.append(error.exit_code)
             continue
         if not request.quiet:
-            tell(spec.warnings, label="warning: ")
-        lines.append(f"{path}: fine ({_summary(spec)})\n")
+            for warning in warnings:
+                say(f"warning: {warning}")
+        lines.append(f"{path}: fine ({_summary(spec, len(warnings))})\n")
     code = worst(codes)
     if code == 0 and not request.quiet:
         emit("".join(lines))
     return code
 
 
-def _summary(spec: Spec) -> str:
+def _of_cuts(spec: Spec) -> list[str]:
+    """Warnings of the sections. Raises SpecError with every one that cannot be cut."""
+    if not spec.sections:
+        return []
+    from heuncli.scene import drawn  # with NumPy, which other specs are judged without
+
+    return [f"{spec.path}: {warning}" for cut in drawn(spec)[1] for warning in cut.warnings]
+
+
+def _summary(spec: Spec, warnings: int) -> str:
     parts = [count(len(spec.bodies), "body"), count(len(spec.joints), "joint")]
     parts += [count(len(spec.sections), "section")] if spec.sections else []
-    parts += [count(len(spec.warnings), "warning")] if spec.warnings else []
+    parts += [count(warnings, "warning")] if warnings else []
     return ", ".join(parts)

@@ -78,7 +78,8 @@ def foundation(
         supports[load_.joint.name] = {"force": on_ground[0], "moment": on_ground[1]}
         if load_.joint.drive is not None and load_.joint.kind != "rod":
             sign = -1.0 if load_.joint.a == GROUND else 1.0
-            elements[load_.joint.drive.name] = {
+            name = load_.joint.drive.name
+            elements[f"drives.{name}" if name in elements else name] = {  # a force may bear its name, too
                 "force": sign * load_.drive_force, "moment": sign * load_.drive_moment, "point": load_.point.copy(),
             }  # fmt: skip
     orbital = np.cross(arm, ma).sum(axis=1)

@@ -266,7 +266,9 @@ def section(
             moduli, {**{name: found[name] for name in ("N", "Q1", "Q2")}, **about_centroid}, cuts.strength
         )
     if cuts.line:
-        block["line"] = reduction_line(where, force, moment)
+        sure = np.isfinite(np.sum([found[name] for name in ("N", "Q1", "Q2", "T", "M1", "M2")], axis=0))
+        line = reduction_line(where, force, moment)
+        block["line"] = {k: np.where(sure[..., None] if v.ndim == 3 else sure, v, np.nan) for k, v in line.items()}
     if cuts.s is None:
         for key in ("point", *found):
             block[key] = block[key][:, 0]

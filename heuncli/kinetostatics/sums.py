@@ -18,7 +18,7 @@ SAME = 1e-7  # of a row's length: what is left of it when it is told by others
 
 
 def certain_sums(poses: Shares, told: Shares, values: Mapping[str, Array], length: float) -> list[Block]:
-    """Sums over open components; factors that turn are arrays (n_t,).
+    """Sums over open components; factors that turn are arrays (n_t,), at one instant alone numbers.
 
     poses: shares where the sums must hold; told: the same at the asked instants; values: (n_t,), of any one solution.
     length: what divides moments where they stand beside forces [m].
@@ -36,6 +36,8 @@ def certain_sums(poses: Shares, told: Shares, values: Mapping[str, Array], lengt
         scaled = [{name: part[name] / unit[name] for name in left} for part in (poses, told)]
         turning = [{name: c / unit[name] for name, c in terms.items()} for terms in turning_sums(*scaled)]
     found: list[Mapping[str, float | Array]] = [*steady, *turning]
+    if all(len(value) == 1 for value in values.values()):
+        found = [{name: float(np.asarray(c).item()) for name, c in terms.items()} for terms in found]
     return [
         {"terms": terms, "value": sum((c * values[name] for name, c in terms.items()), np.zeros(1))} for terms in found
     ]

@@ -53,20 +53,20 @@ class Cuts:
     warnings: tuple[str, ...]
 
 
-def attached(mechanism: Mechanism, body: int) -> list[Array]:
-    """Points of a body, in its axes, at which joints that stay there and loads act."""
-    found: list[Array] = []
+def attached(mechanism: Mechanism, body: int) -> list[tuple[str, Array]]:
+    """Joints that stay where they are and loads with the points of the body, in its axes, at which they act."""
+    found: list[tuple[str, Array]] = []
     for joint in mechanism.joints:
         if joint.b == body:
-            found.append(joint.q)
+            found.append((f"joint {joint.name}", joint.q))
         if joint.a == body and joint.kind not in MOVES:
-            found.append(joint.p)
+            found.append((f"joint {joint.name}", joint.p))
     for load in mechanism.loads:
         if isinstance(load, PointLoad):
             if load.body == body and load.point is not None:
-                found.append(load.point)
+                found.append((f"force {load.name}", load.point))
         elif isinstance(load, PairLoad):
-            found += [p for owner, p in ((load.a, load.p), (load.b, load.q)) if owner == body]
+            found += [(f"force {load.name}", p) for owner, p in ((load.a, load.p), (load.b, load.q)) if owner == body]
     return found
 
 
@@ -103,7 +103,8 @@ def _lay(mechanism: Mechanism, spec: Any, name: str, section: Any, index: dict[s
     n = np.array(section.normal, dtype=float)
     n = n / np.sqrt(n @ n)
     e1 = first_axis(n, section.first_axis)
-    things = np.array(attached(mechanism, body)).reshape(-1, 3) @ n
+    there = attached(mechanism, body)
+    things = np.array([point for _, point in there]).reshape(-1, 3) @ n
     if section.at is not None:
         points, s = np.array([section.at], dtype=float), None
     else:
@@ -117,18 +118,21 @@ def _lay(mechanism: Mechanism, spec: Any, name: str, section: Any, index: dict[s
         near = max(form.near, 1e-12 * float(np.abs(things).max(initial=0.0)))
     else:
         near = 1e-12 * float(max(np.abs(things).max(initial=0.0), np.abs(d).max(), 1e-9))
-    meets = (np.abs(things[None, :] - d[:, None]) <= near).any(axis=1)
+    touches = np.abs(things[None, :] - d[:, None]) <= near
+    meets = touches.any(axis=1)
     if form is not None:
         meets = meets | form.masses_in_plane(n, d) | form.rods_in_plane(n, d)
     where = spec.place(f"sections.{name}")
     if s is None:
         wish = {"before": BEFORE, "beyond": BEYOND, None: 0.0}[section.side]
         if meets[0] and section.side is None:
+            names = [name for (name, _), met in zip(there, touches[0].tolist(), strict=True) if met]
+            what = " and ".join(names) if names else "a point mass or rod of the body"
             raise SpecError(Problem(
-                "needs-side", "a joint, force or point mass lies in the plane of the cut", where,
+                "needs-side", f"{what} {'lie' if len(names) > 1 else 'lies'} in the plane of the cut", where,
                 hint="add side: before (the cut just before it, so that it belongs to the piece) or side: beyond",
             ))  # fmt: skip
-        side = np.array([wish if meets[0] else 0.0])
+        side = np.array([wish])  # also for what only comes into the plane later
     else:
         rows = []
         for k, meet in enumerate(meets.tolist()):

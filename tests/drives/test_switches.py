@@ -6,7 +6,7 @@ import numpy as np
 import pytest
 
 from heuncli.errors import SpecError
-from tests.scenes import near, solved
+from tests.scenes import near, solved, study
 
 SCENE = """
 heun: 1
@@ -52,3 +52,12 @@ def test_a_load_that_is_zero_at_one_instant() -> None:
     free = solved(SCENE.format(more=couple))
     first, late = np.minimum(T, 0.5), np.maximum(T - 0.5, 0.0)
     near(free.coordinates["A"]["angle"], (-(first**2) / 2 - 0.5 * late + late**2 / 2) / 0.6, 1.0, 1e-9)
+
+
+@pytest.mark.parametrize("angle", ["t**4*sign(t)", "t*sign(t)", "sign(sin(10*t))*sin(10*t)**4"])
+def test_what_holds_at_the_start_alone(angle: str) -> None:
+    """sign(t) is zero at t = 0 and there only: no jump of the run."""
+    found = study(SCENE.format(more=f'drives: {{d: {{joint: A, angle: "{angle}"}}}}'))
+    wanted = {"t**4*sign(t)": T**4, "t*sign(t)": T}.get(angle, np.sign(np.sin(10 * T)) * np.sin(10 * T) ** 4)
+    near(found.results.coordinates["A"]["angle"], wanted, 1.0, 1e-14)
+    assert np.diff(found.search_times).min() > 1e-300

@@ -173,12 +173,12 @@ def test_a_line_that_turns() -> None:
 
 
 def test_a_line_that_could_turn() -> None:
-    """At one instant: factors of that instant, in a list of one, for they would not hold in the next pose."""
+    """At one instant: factors of that instant, as numbers, though they would not hold in the next pose."""
     found = solved(blade({"type": "ball"}))
     assert [s["terms"] for s in found.certain_sums[:2]] == [{f"joints.{n}.force.{c}": 1.0 for n in "pq"} for c in "yz"]
     (across,) = found.certain_sums[2:]
     assert list(across["terms"]) == ["joints.p.force.y", "joints.p.force.z"]  # its line has no part along x there
-    near(np.stack(list(across["terms"].values())), [[0.8], [-0.6]], 1.0, 1e-12)
+    near(list(across["terms"].values()), [0.8, -0.6], 1.0, 1e-12)
 
 
 # ---- a table on four legs

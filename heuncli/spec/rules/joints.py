@@ -131,8 +131,8 @@ def drive_contradicts(scene: Scene) -> Iterator[Found]:
 
 
 def changes(value: Expression, duration: float) -> list[tuple[float, float]]:
-    """The last instant before and the first after each change of branch within the run."""
-    return across(breakpoints(value, 0.0, duration)) if duration > 0.0 else []
+    """The last instant before and the first after each change of branch within the run, not what is at 0 alone."""
+    return [(a, b) for a, b in across(breakpoints(value, 0.0, duration)) if a > 0.0] if duration > 0.0 else []
 
 
 @rule("drive-jumps")
