@@ -8,6 +8,7 @@ from pathlib import Path
 
 import pytest
 
+from heuncli.cli.entry import enter
 from heuncli.errors import SpecError
 from tests.cli.conftest import HANGING, SPECS, Heun
 
@@ -222,3 +223,35 @@ def test_no_trouble_reaches_a_user_as_a_traceback(
     assert (done.returncode, done.stdout) == (code, "")
     assert told in done.stderr
     assert "Traceback" not in done.stderr
+
+
+def test_validate_cuts_the_sections(tmp_path: Path, capsys: pytest.CaptureFixture[str]) -> None:
+    """Every section that cannot be cut, with its place, in one go with other files' errors."""
+    box = "{shapes: [{type: box, center: [1, 0, 0], size: [2, 0.1, 0.1], mass: 1}], points: {a: [0, 0, 0]}}"
+    lines = [
+        "heun: 1", f"bodies: {{a: {box}}}", "joints: {w: {type: weld, from: {body: ground, at: [0, 0, 0]}, to: a.a}}",
+        "sections:", "  c: {body: a, at: a, normal: [1, 0, 0]}", "  d: {body: a, at: [5, 0, 0], normal: [1, 0, 0]}",
+    ]  # fmt: skip
+    path = tmp_path / "cut.yaml"
+    path.write_text("\n".join([*lines, "analysis: {type: state}", ""]))
+    assert enter(["validate", str(path)]) == 2
+    out, err = capsys.readouterr()
+    assert out == ""
+    assert f"{path}:5:3: sections.c: joint w lies in the plane of the cut [needs-side]" in err
+    assert f"{path}:6:3: sections.d: the plane does not meet the body a [misses-body]" in err
+
+
+def test_a_rope_that_would_push_is_told_in_a_state(tmp_path: Path, capsys: pytest.CaptureFixture[str]) -> None:
+    path = tmp_path / "rope.yaml"
+    path.write_text("""
+heun: 1
+gravity: [0, 0, -9.81]
+bodies: {b: {mass: 1, center: [0, 0, 1], inertia: [0.1, 0.1, 0.1], points: {o: [0, 0, 1]}}}
+joints: {A: {type: rod, from: {body: ground, at: [0, 0, 0]}, to: b.o, tension_only: true}}
+analysis: {type: state}
+""")
+    assert enter(["run", str(path)]) == 0
+    assert "warning: heun: the rod A would have to push" in capsys.readouterr().err
+    path.write_text(path.read_text().replace("[0, 0, -9.81]", "[0, 0, 9.81]"))
+    assert enter(["run", str(path)]) == 0
+    assert capsys.readouterr().err == ""

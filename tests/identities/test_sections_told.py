@@ -60,6 +60,59 @@ def test_a_joint_in_the_plane_needs_a_side() -> None:
     near(left.sections["cut"]["force"][0] - right.sections["cut"]["force"][0], whole, 300.0, 1e-13)
 
 
+BRIDGE = """
+heun: 1
+gravity: [0, 0, -10]
+ground: {points: {O: [0, 0, 0]}}
+bodies:
+  beam:
+    shapes: [{type: box, center: [1, 0, 0], size: [2, 0.1, 0.1], mass: 1}]
+    points: {a: [0, 0, 0], m: [1, 0, 0]}
+  car: {mass: 3, center: [0, 0, 0.1], inertia: [0.1, 0.1, 0.1], points: {p: [0, 0, 0]}, position: [1, 0, 0]}
+joints:
+  w: {type: weld, from: ground.O, to: beam.a}
+  g: {type: JOINT, from: beam.FROM, to: car.p}
+sections:
+  c: {body: beam, at: [1, 0, 0], normal: [1, 0, 0], side: SIDE}
+"""
+
+
+@pytest.mark.parametrize(("joint", "end"), [("slide, axis: [1, 0, 0]", "a"), ("plane, normal: [0, 0, 1]", "a"),
+                                             ("cylinder, axis: [1, 0, 0]", "a"), ("line, axis: [1, 0, 0]", "a"),
+                                             ("ball", "m")])  # fmt: skip
+@pytest.mark.parametrize(("side", "shear"), [("before", -35.0), ("beyond", -5.0)])
+def test_a_side_holds_for_what_comes_there(joint: str, end: str, side: str, shear: float) -> None:
+    """A car at mid span, 30 N, on joints whose contact stays on the beam or moves along it; half the beam's 10 N."""
+    found = solved(BRIDGE.replace("JOINT", joint).replace("FROM", end).replace("SIDE", side))
+    near(found.sections["c"]["Q2"][0], shear, 40.0, 1e-13)
+
+
+def test_what_lies_in_the_plane_is_named() -> None:
+    scene = BRIDGE.replace("JOINT", "ball").replace("FROM", "m").replace(", side: SIDE", "")
+    push = "forces: {push: {type: force, on: beam.m, vector: [0, 0, -1]}}\n"
+    with pytest.raises(SpecError, match="joint g and force push lie in the plane of the cut"):
+        solved(scene + push)
+
+
+def test_the_line_of_an_open_load_is_open() -> None:
+    """A beam between two balls: what it carries along itself is open, so nothing is known of the line."""
+    text = """
+heun: 1
+gravity: [0, 0, -10]
+bodies:
+  beam:
+    shapes: [{type: box, center: [1, 0, 0], size: [2, 0.1, 0.1], mass: 1}]
+    points: {a: [0, 0, 0], b: [2, 0, 0]}
+joints:
+  A: {type: ball, from: {body: ground, at: [0, 0, 0]}, to: beam.a}
+  B: {type: ball, from: {body: ground, at: [2, 0, 0]}, to: beam.b}
+sections: {c: {body: beam, at: [0.5, 0, 0], normal: [1, 0, 0], reduce_to: line}}
+"""
+    cut_ = solved(text).sections["c"]
+    assert np.isnan(cut_["N"]).all() and np.isfinite(cut_["Q2"]).all()
+    assert all(np.isnan(value).all() for value in cut_["line"].values())
+
+
 @pytest.mark.parametrize("side", ["before", "beyond"])
 def test_a_point_mass_in_the_plane_needs_a_side(side: str) -> None:
     """It belongs to the piece for a cut before it; the oracle's quadrature tells what the piece weighs."""
