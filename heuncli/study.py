@@ -19,6 +19,7 @@ from heuncli.kernel.choose import KERNEL
 from heuncli.motion import Recovered, Runner, stops
 from heuncli.passages import passages
 from heuncli.peaks import distinct
+from heuncli.refuse import refuse
 from heuncli.results import Array, Block, Results
 from heuncli.scene import prepare
 from heuncli.spec.expression import across
@@ -62,6 +63,7 @@ class Study:
         self.checked: Checked | None = None
         states, at = self.scene.layout.y0[None, :], self.times[:1]
         if self.moving:
+            refuse(self.scene, self.runner.recovered(np.zeros(1), states))  # before a long run, not after it
             self.checked = self._run()
             states, at = self.checked.run.states, self.checked.run.times
             self.times = at

@@ -496,17 +496,22 @@ def factor(I: cython.p_int, P: cython.p_double, W: cython.p_double) -> cython.in
             e = W[B + 30]
             f = W[B + 31]
             g = W[B + 32]
-            if a > 0.0:
+            h = 1e-14 * (a + e + g)
+            if a > h:
                 a = 1.0 / a
+            else:
+                a = 0.0
             x = c * a
             y = d * a
             e -= c * x
-            if e > 0.0:
+            if e > h:
                 e = 1.0 / e
+            else:
+                e = 0.0
             f -= d * x
             z = f * e
             g -= d * y + f * z
-            if a > 0.0 and e > 0.0 and g > 0.0:
+            if a > 0.0 and e > 0.0 and g > h:
                 g = 1.0 / g
             else:
                 a = 0.0
@@ -545,6 +550,7 @@ def factor(I: cython.p_int, P: cython.p_double, W: cython.p_double) -> cython.in
             if I[j] == 2:
                 symmetric(W, B + 42, W, F, W, F + 6)
                 D = W[F] * W[F + 6] + W[F + 1] * W[F + 7] + W[F + 2] * W[F + 8]
+                h = 1e-14 * (W[B + 42] + W[B + 45] + W[B + 47])
                 if I[b + 1]:
                     W[F + 3] = 0.0
                     W[F + 4] = 0.0
@@ -554,13 +560,14 @@ def factor(I: cython.p_int, P: cython.p_double, W: cython.p_double) -> cython.in
             else:
                 symmetric(W, B + 27, W, F, W, F + 3)
                 D = W[F] * W[F + 3] + W[F + 1] * W[F + 4] + W[F + 2] * W[F + 5]
+                h = 1e-14 * (W[B + 27] + W[B + 30] + W[B + 32])
                 x = W[F]
                 y = W[F + 1]
                 z = W[F + 2]
                 W[F + 6] = W[B + 33] * x + W[B + 36] * y + W[B + 39] * z
                 W[F + 7] = W[B + 34] * x + W[B + 37] * y + W[B + 40] * z
                 W[F + 8] = W[B + 35] * x + W[B + 38] * y + W[B + 41] * z
-            if D > 0.0:
+            if D > h:
                 D = 1.0 / D
             else:
                 D = 0.0

@@ -1,8 +1,10 @@
 """The tree that carries the motion: which joints are kept, which are cut, and in which order bodies come.
 
 Breadth-first from the ground, so that paths stay short. A joint whose coordinate is driven or named in an expression is
-never cut; among the others of one layer those that make most conditions are kept. `line` and `plane` carry a body only
-from their `from` side, a rod never does; a body that nothing carries hangs on six freedoms of its own.
+never cut; those that leave a thin body free to turn about the axis without inertia are cut first, for there would be
+nothing behind that freedom; among the others of one layer those that make most conditions are kept. `line` and `plane`
+carry a body only from their `from` side, a rod never does; a body that nothing carries hangs on six freedoms of its
+own.
 """
 
 from __future__ import annotations
@@ -11,9 +13,15 @@ from collections import defaultdict, deque
 from collections.abc import Collection
 from dataclasses import dataclass
 
+import numpy as np
+
 from heuncli.errors import Problem, SolveError
 from heuncli.mechanism.joints import JOINTS
-from heuncli.mechanism.model import GROUND, Mechanism
+from heuncli.mechanism.model import GROUND, Joint, Mechanism
+from heuncli.results import Array
+
+NO_INERTIA = 1e-12  # of the body's largest moment of inertia
+ALONG = 1.0 - 1e-9  # cosine: an axis that is that of the missing inertia
 
 
 @dataclass(frozen=True)
@@ -66,10 +74,12 @@ def _depths(mechanism: Mechanism, edges: dict[int, list[int]]) -> list[int]:
 def _forest(mechanism: Mechanism, depth: list[int], kept: Collection[int]) -> dict[int, list[int]]:
     """Kruskal's forest: kept joints first, then layer by layer, those with most conditions first, then as written."""
     joints = mechanism.joints
+    null = null_axes(mechanism)
 
-    def urgency(k: int) -> tuple[bool, int, int, int]:
+    def urgency(k: int) -> tuple[bool, bool, int, int, int]:
         joint = joints[k]
-        return k not in kept, min(depth[joint.a], depth[joint.b]), -JOINTS[joint.kind].rows, k
+        spins = any(_leaves(joint, end == joint.b, null[end]) for end in {joint.a, joint.b} & null.keys())
+        return k not in kept, spins, min(depth[joint.a], depth[joint.b]), -JOINTS[joint.kind].rows, k
 
     group = list(range(len(mechanism.bodies) + 1))
 
@@ -94,6 +104,24 @@ def _forest(mechanism: Mechanism, depth: list[int], kept: Collection[int]) -> di
         forest[joint.a].append(k)
         forest[joint.b].append(k)
     return forest
+
+
+def null_axes(mechanism: Mechanism) -> dict[int, Array]:
+    """Of each body that has axes without inertia through its centre: those, (k, 3), k = 1 or 3, body axes."""
+    if not mechanism.bodies:
+        return {}
+    moments, axes = np.linalg.eigh(np.array([body.inertia for body in mechanism.bodies]))
+    none = moments <= NO_INERTIA * np.maximum(moments[:, 2:], 0.0)
+    return {int(i): axes[i][:, none[i]].T for i in np.flatnonzero(none.any(axis=1))}
+
+
+def _leaves(joint: Joint, to: bool, null: Array) -> bool:
+    """Whether a joint leaves one of its bodies free to turn about an axis without inertia."""
+    kind = JOINTS[joint.kind]
+    if kind.ball or len(null) > 1:
+        return kind.ball
+    own = joint.to_axis if to else joint.axis
+    return bool(kind.turns) and abs(float(null[0] @ own)) > ALONG
 
 
 def _over_driven(mechanism: Mechanism, k: int) -> Problem:

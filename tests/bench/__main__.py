@@ -1,6 +1,6 @@
 """Speed, printed: `python -m tests.bench [PART ...]`. Nothing here asserts a time; compare ratios within one run.
 
-Parts: motion, chain, process, export, sections, loops. Each line: what, how far it was from the truth, how long.
+Parts: motion, chart, chain, process, export, sections. Each line: what, how far it was from the truth, how long.
 """
 
 from __future__ import annotations
@@ -27,6 +27,7 @@ from heuncli.report.scene import scene_of
 from heuncli.scene import Scene, prepare
 from heuncli.spec.load import load
 from heuncli.study import solve
+from tests.bench.chart import chart
 
 SCENES = Path(__file__).parent / "scenes"
 REFERENCE = json.loads((SCENES / "reference.json").read_text())
@@ -87,6 +88,23 @@ def one_motion(name: str, scene: Scene, runner: Runner, times: Any, goal: float)
         f"{name:8s} to {goal:.0e} m: error {off:.1e} m, {alone:7.3f} ms alone, {1 + check / alone:.2f} times that with "
         f"the check run; {run.steps} steps, {run.evaluations} evaluations, {1e3 * alone / run.evaluations:.2f} us each"
     )
+
+
+def charted() -> None:
+    """Error against time of the benchmark scenes, half a decade of tolerance from point to point."""
+    runs: dict[str, list[tuple[float, float]]] = {}
+    for name in ("double", "top", "chain10", "crank"):
+        spec = load(str(SCENES / f"{name}.yaml"))
+        scene = prepare(spec)
+        runner = Runner(scene.layout)
+        times = np.array(spec.analysis.times)
+        points = runs[name[0] if name != "crank" else "k"] = []
+        for tolerance in (10.0 ** (-0.5 * k) for k in range(8, 27)):
+            run = runner.trajectory(times, tolerance)
+            off = max(error(name, scene, runner, times, run.states), 1e-14)
+            points.append((median_ms(partial(runner.trajectory, times, tolerance), 7), off))
+    print("d double, t top, c chain10, k crank: error at the end against time of integration")
+    print(chart(runs))
 
 
 def chain(n: int) -> str:
@@ -170,7 +188,9 @@ def sections() -> None:
     print(f"2,001 instants: {statistics.median(a for a, _ in pairs):.1f} ms; with 50 cuts {more:.1f} ms more")
 
 
-PARTS = {"motion": motion, "chain": chains, "process": process, "export": export, "sections": sections}
+PARTS = {
+    "motion": motion, "chart": charted, "chain": chains, "process": process, "export": export, "sections": sections,
+}  # fmt: skip
 
 if __name__ == "__main__":
     print(f"kernel: {KERNEL}")
