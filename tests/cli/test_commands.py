@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import csv
+import itertools
 import json
 from pathlib import Path
 
@@ -195,6 +196,23 @@ def test_strict_fails_on_warnings_but_prints(heun: Heun) -> None:
 def test_a_time_limit_is_4(heun: Heun) -> None:
     done = heun("run", "long.yaml", "--time-limit", "0.2")
     assert (done.returncode, done.stdout) == (4, "")
+
+
+@pytest.mark.parametrize("spec", ["hanging", "swinging", "long"])
+def test_a_limit_that_nothing_can_keep(heun: Heun, spec: str) -> None:
+    """Also a run that would be over before anybody looks at the clock again."""
+    done = heun("run", f"{spec}.yaml", "--time-limit", "0.000001")
+    assert (done.returncode, done.stdout) == (4, "")
+    assert "[time-limit]" in done.stderr
+    assert "hint" in done.stderr
+
+
+def test_a_limit_is_kept_to_the_end_of_a_run(heun: Heun, monkeypatch: pytest.MonkeyPatch) -> None:
+    """The whole of this run is one look at the clock to the next."""
+    monkeypatch.setattr("heuncli.motion.time.monotonic", map(float, itertools.count()).__next__)
+    done = heun("run", "swinging.yaml", "--time-limit", "1.5")
+    assert done.returncode == 4
+    assert "reached at t = 1 s of 1 s" in done.stderr
 
 
 def test_a_scene_that_cannot_be_solved_is_3(heun: Heun) -> None:
