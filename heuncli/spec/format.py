@@ -334,7 +334,7 @@ class Spring(Model):
 class Damper(Model):
     type: Literal["damper"]
     joint: str
-    coefficient: Either
+    coefficient: Either | None = None
     sliding: Damping | None = None
 
 

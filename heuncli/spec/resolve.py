@@ -164,7 +164,8 @@ class Resolver:
             case f.Spring():
                 return m.Spring(self.end(load.from_), self.end(load.to), load.stiffness, load.length, load.damping)
             case f.Damper():
-                return m.Damper(load.joint, constant(load.coefficient), load.sliding)
+                coefficient = constant(load.coefficient) if load.coefficient is not None else 0.0
+                return m.Damper(load.joint, coefficient, load.sliding)
             case _:
                 return m.Friction(load.joint, load.torque, load.force, constant(load.speed))
 
