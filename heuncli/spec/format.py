@@ -439,7 +439,7 @@ class Expect(Model):
     peak: Literal["max", "min", "abs"] | None = None
     is_: Expected = Field(alias="is")
     rel: Number | None = None
-    abs: Anything | None = None
+    abs: Either | None = None
 
 
 class Head(Model):

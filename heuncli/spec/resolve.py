@@ -200,7 +200,7 @@ class Resolver:
 
     def expect(self, i: int, item: f.Expect) -> m.Expect:
         place = self.places.get(f"expect.{i}", Place("", 1, 1))
-        return m.Expect(item.of, item.at, item.peak, item.is_, item.rel, item.abs, place)
+        return m.Expect(item.of, item.at, item.peak, numbers(item.is_), item.rel, numbers(item.abs), place)
 
 
 def directed(value: object) -> m.Directed | None:
@@ -234,6 +234,13 @@ def properties(value: f.Properties | None) -> m.Properties | None:
         if kind in given:
             return m.Properties(kind, given[kind])
     return m.Properties("general", given)
+
+
+def numbers(value: Any) -> Any:
+    """Expected numbers without their dimensions, in the same lists."""
+    if isinstance(value, tuple):
+        return tuple(map(numbers, value))
+    return constant(value) if value is not None else None
 
 
 def constant(value: Expression) -> float:
