@@ -18,9 +18,9 @@ import numpy as np
 from heuncli.errors import LimitError, Problem, SolveError
 from heuncli.kernel.choose import step
 from heuncli.mechanism.layout import Layout
-from heuncli.mechanism.model import Mechanism, PointLoad
+from heuncli.mechanism.model import Mechanism
 from heuncli.results import Array
-from heuncli.spec.expression import Expression, across, breakpoints
+from heuncli.spec.expression import across, breakpoints
 from heuncli.tableaus import DOP853, Tableau
 
 CHUNK = 2_000  # body-steps between two looks at the clock
@@ -71,10 +71,7 @@ class Trajectory:
 
 def stops(mechanism: Mechanism, t0: float, t1: float) -> list[float]:
     """Instants in (t0, t1) at which some load or drive jumps or bends."""
-    expressions: set[Expression] = set()
-    for load in mechanism.loads:
-        expressions.update(load.vector if isinstance(load, PointLoad) else [] if load.value is None else [load.value])
-    expressions.update(j.drive.value for j in mechanism.joints if j.drive is not None)
+    expressions = set(mechanism.expressions())
     return sorted({t for e in expressions if e.time_dependent for t in breakpoints(e, t0, t1)})
 
 
@@ -108,6 +105,13 @@ def left(t: float) -> float:
 def right(t: float) -> float:
     """The first instant after t."""
     return math.nextafter(t, math.inf)
+
+
+def in_time(deadline: float | None, where: str) -> None:
+    """Raise LimitError past the deadline (time.monotonic()); `where` says how far the work has come."""
+    if deadline is not None and time.monotonic() > deadline:
+        hint = "a longer --time-limit, a coarser --tolerance, or a shorter duration"
+        raise LimitError(Problem("time-limit", f"the time limit was reached {where}", hint=hint))
 
 
 class Desk:
@@ -184,6 +188,7 @@ class Runner:
         kept = [(0, layout.y0)]
         every, room = 1, max(2, KEPT // n)
         last = float(ts[-1]) if len(ts) else 0.0
+        in_time(deadline, f"before the run of {last:.6g} s began")
         stops = across([h for h in halts if 0.0 < h < last])
         pieces = list(zip([0.0, *(t for _, t in stops)], [*(t for t, _ in stops), left(last)], strict=True))
         pieces = [piece for piece in pieces if piece[1] > piece[0]] or pieces[-1:]  # not what is at t = 0 alone
@@ -201,17 +206,15 @@ class Runner:
                 while len(kept) > room:
                     every *= 2
                     kept = [(k, state) for k, state in kept if k % every == 0]
-                if code == 1 and deadline is not None and time.monotonic() > deadline:
-                    message = f"the time limit was reached at t = {Z[0]:.6g} s of {last:.6g} s"
-                    raise LimitError(Problem("time-limit", message))
+                if code in (0, 1):
+                    in_time(deadline, f"at t = {Z[0]:.6g} s of {last:.6g} s")
                 if code == 1 and Z[4] > most_steps:
                     message = f"{most_steps} steps were done at t = {Z[0]:.6g} s of {last:.6g} s"
                     raise LimitError(Problem("step-limit", message))
             if code == ROPE:
                 break
             if code > 1:
-                name, message, hint = TROUBLE[code]
-                raise SolveError(Problem(name, f"at t = {Z[0]:.9g} s: {message}", hint=hint))
+                raise self._failed(code, float(Z[0]), np.array(y[:n], dtype=float), last)
         states = desk.states()
         stopped = None
         if code == ROPE:
@@ -226,6 +229,18 @@ class Runner:
             pivots=np.concatenate(pivots) if pivots else np.zeros(0),
             stopped=stopped,
         )  # fmt: skip
+
+    def _failed(self, code: int, t: float, state: Array, last: float) -> SolveError:
+        """Why a run to `last` ends at t: an expression without a value there, else what the kernel's code says."""
+        name, message, hint = TROUBLE[code]
+        if name != "closure-lost":
+            from heuncli.mechanism.domains import moving, without_value  # only on the way to an error
+
+            found = self.recovered(np.array([t]), state[None, :])
+            problems = without_value(self.layout.mechanism, t, last, moving(self.layout, found.freedoms[0]))
+            if problems:
+                return SolveError(*problems)
+        return SolveError(Problem(name, f"at t = {t:.9g} s: {message}", hint=hint))
 
     def within(self, run: Trajectory, times: Array) -> Array:
         """States (n_t, n) of a run at other instants (ascending, none after its end): its own steps are done again.

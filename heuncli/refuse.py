@@ -17,9 +17,7 @@ def refuse(scene: Scene, found: Recovered) -> None:
     """Raise SolveError for answers that are not finite, freedoms with nothing behind them, moments without inertia."""
     finite = np.isfinite(found.bodies).all(axis=(1, 2))
     if not finite.all():
-        t = found.times[int(np.flatnonzero(~finite)[0])]
-        raise SolveError(Problem("not-a-number", f"at t = {t:.9g} s no finite acceleration exists",
-                                 hint="look at the expressions and tables, and at points that coincide"))  # fmt: skip
+        raise SolveError(*not_finite(scene, found, int(np.flatnonzero(~finite)[0])))
     if (found.idle > 0).any():
         raise SolveError(nothing_behind(scene, float(found.times[int(np.flatnonzero(found.idle > 0)[0])])))
     layout = scene.layout
@@ -37,6 +35,16 @@ def refuse(scene: Scene, found: Recovered) -> None:
             )
             hint = "give the body its moment of inertia about that axis, or let the load act on the axis"
             raise SolveError(Problem("no-inertia", message, hint=hint))
+
+
+def not_finite(scene: Scene, found: Recovered, instant: int) -> list[Problem]:
+    """The expressions without a value there, else that no acceleration exists."""
+    from heuncli.mechanism.domains import moving, without_value  # only on the way to an error
+
+    t, length = float(found.times[instant]), float(found.times[-1])
+    problems = without_value(scene.mechanism, t, length, moving(scene.layout, found.freedoms[instant]))
+    message = f"at t = {t:.9g} s no finite acceleration exists"
+    return problems or [Problem("not-a-number", message, hint="look at points that coincide, and at very large values")]
 
 
 def nothing_behind(scene: Scene, t: float) -> Problem:

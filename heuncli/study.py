@@ -16,7 +16,7 @@ from heuncli.account import model_of
 from heuncli.accuracy import Checked, checked_run
 from heuncli.compose import compose
 from heuncli.kernel.choose import KERNEL
-from heuncli.motion import Recovered, Runner, stops
+from heuncli.motion import Recovered, Runner, in_time, stops
 from heuncli.passages import passages
 from heuncli.peaks import distinct
 from heuncli.refuse import refuse
@@ -51,6 +51,7 @@ class Study:
 
     def __init__(self, spec: Any, options: Options) -> None:
         begun = time.perf_counter()
+        deadline = time.monotonic() + options.time_limit if options.time_limit else None
         self.spec, self.options = spec, options
         self.scene = prepare(spec)
         self.runner = Runner(self.scene.layout)
@@ -64,16 +65,16 @@ class Study:
         states, at = self.scene.layout.y0[None, :], self.times[:1]
         if self.moving:
             refuse(self.scene, self.runner.recovered(np.zeros(1), states))  # before a long run, not after it
-            self.checked = self._run()
+            self.checked = self._run(deadline)
             states, at = self.checked.run.states, self.checked.run.times
             self.times = at
+        in_time(deadline, "before the loads were found")
         begun = time.perf_counter()
         self.found = self._recovered(at, states)
         self.results = self._results(self.found)
         self.results.work["seconds"]["recover"] = time.perf_counter() - begun
 
-    def _run(self) -> Checked:
-        deadline = time.monotonic() + self.options.time_limit if self.options.time_limit else None
+    def _run(self, deadline: float | None) -> Checked:
         self.halts = stops(self.scene.mechanism, 0.0, float(self.times[-1]))
         tolerance = self.options.tolerance if self.options.tolerance is not None else self.spec.analysis.tolerance
         self.tolerance = tolerance

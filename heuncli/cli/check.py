@@ -53,7 +53,8 @@ def main(request: Check) -> int:
     if not paths:
         raise UsageError(Problem("nothing-to-check", f"no *.yaml in {', '.join(request.paths)}"))
     checked = [_check(path, request.quiet) for path in paths]
-    emit(_json(checked) if form == "json" else _table(checked, skipped), request.output)
+    if any(one.error is None for one in checked):  # with errors alone there is no result
+        emit(_json(checked) if form == "json" else _table(checked, skipped), request.output)
     return worst([one.exit_code for one in checked])
 
 

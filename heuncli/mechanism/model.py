@@ -5,6 +5,7 @@ Vectors are (3,) float64. Body index -1 is the ground. Values in time stay expre
 
 from __future__ import annotations
 
+from collections.abc import Iterator
 from dataclasses import dataclass
 from typing import Literal
 
@@ -139,6 +140,17 @@ class Mechanism:
     def body_index(self, name: str) -> int:
         """Index of a body; -1 for the ground. Raises StopIteration for a name the spec layer let through."""
         return GROUND if name == "ground" else next(i for i, b in enumerate(self.bodies) if b.name == name)
+
+    def expressions(self) -> Iterator[Expression]:
+        """The values in time of the loads, then those of the drives."""
+        for load in self.loads:
+            if isinstance(load, PointLoad):
+                yield from load.vector
+            elif load.value is not None:
+                yield load.value
+        for joint in self.joints:
+            if joint.drive is not None:
+                yield joint.drive.value
 
 
 @dataclass(frozen=True, eq=False)

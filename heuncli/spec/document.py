@@ -8,8 +8,8 @@ from typing import Any
 from pydantic import ValidationError
 
 from heuncli.spec import format as f
-from heuncli.spec.fields import Context, Model
-from heuncli.spec.nearest import nearest
+from heuncli.spec.fields import Context, Model, keys_of
+from heuncli.spec.nearest import misspelt
 from heuncli.spec.quantity import kind_of
 from heuncli.spec.rules.registry import Found, Path_
 from heuncli.spec.verdicts import unknown_key, unknown_type, verdicts
@@ -44,11 +44,8 @@ class Reader:
         if not wrong or type(data) is not dict:
             return None
         right = {key: value for key, value in data.items() if key not in wrong}
-        keys = {str(field.alias or name) for name, field in model.model_fields.items()}
-        # a misspelt key is not a missing one
-        meant = {word: data[key] for key in wrong - keys if (word := nearest(key, keys)) is not None}
         try:
-            found = model.model_validate({**meant, **right}, context=self.context)
+            found = model.model_validate({**misspelt(data, keys_of(model)), **right}, context=self.context)
         except ValidationError:
             return None
         self.partial[path] = frozenset(right)

@@ -11,10 +11,11 @@ from dataclasses import dataclass
 
 from heuncli.errors import Finding
 from heuncli.kernel.choose import program
-from heuncli.spec.expression import Code, Expression, Switch, Table
+from heuncli.spec.expression import Code, Expression, Switch, Table, outside
 
 OP = program.OPERATIONS
 MOST_NODES = 500
+BEYOND = "no division by 0, no root or logarithm of what is negative, nothing beyond 1e308"
 COMPARISONS = {"<": "lt", "<=": "le", ">": "gt", ">=": "ge", "==": "eq", "!=": "ne"}
 
 
@@ -37,11 +38,16 @@ class Emitter:
         self.variables: dict[tuple[str, str], int] = {}
         self.tables: list[Table] = []
         self.switches: list[Switch] = []
+        self.left: Finding | None = None  # a table was asked for a number outside its range ...
+        self.branches = False  # ... which matters not where it stands in a branch that is not chosen
 
     def finished(self, text: str, part: Part) -> Expression:
         """The expression that is this part. Raises Finding where it is a number that is none."""
-        if part.constant is not None and not math.isfinite(part.constant):
-            raise Finding("not-computable", f"'{text.strip()}' is not a finite number")
+        is_none = part.constant is not None and not math.isfinite(part.constant)
+        if self.left is not None and (is_none or not self.branches):
+            raise self.left
+        if is_none:
+            raise Finding("not-computable", f"'{text.strip()}' is not a finite number", BEYOND)
         return Expression(
             source=text, constant=part.constant, uses=tuple(self.variables), time_dependent=0 in part.uses,
             code=part.code, constants=tuple(self.constants), tables=tuple(self.tables), depth=part.depth,
@@ -63,7 +69,11 @@ class Emitter:
             self.tables.append(table)
         code = (*argument.code, OP["table"], self.tables.index(table), table.pieces, table.kind)
         if argument.constant is not None:
-            return self.number(self.run(code, argument.depth, table))
+            value = self.run(code, argument.depth, table)
+            if math.isnan(value) and math.isfinite(argument.constant):
+                message, hint = outside(table)
+                self.left = Finding("not-computable", f"{message}, not {argument.constant:.9g}", hint)
+            return self.number(value)
         if argument.uses <= {0}:
             self.switches.append(Switch((*argument.code, OP["knot"], *code[-3:]), None))
         return self.counted(Part(code, argument.depth, argument.uses))
@@ -119,6 +129,7 @@ class Emitter:
 
     def choose(self, condition: Part, then: Part, otherwise: Part) -> Part:
         """then where the condition is not 0, else otherwise; only the chosen one is run."""
+        self.branches = True
         if condition.constant is not None:
             if math.isnan(condition.constant):
                 return condition

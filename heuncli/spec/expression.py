@@ -42,6 +42,12 @@ class Table:
     interpolation: str = "linear"
 
 
+def outside(table: Table) -> tuple[str, str]:
+    """What to say where a table's range is left, and a hint."""
+    message = f"the table {table.name} covers x from {table.x[0]:.9g} to {table.x[-1]:.9g} (SI)"
+    return message, "extend the table, or give it a period, or outside: hold"
+
+
 @dataclass(frozen=True)
 class Switch:
     """A place in an expression where a branch may change with time alone.

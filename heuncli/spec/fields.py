@@ -31,6 +31,11 @@ class Model(BaseModel):
     model_config = ConfigDict(extra="forbid", frozen=True, defer_build=True, arbitrary_types_allowed=True)
 
 
+def keys_of(model: type[Model]) -> tuple[str, ...]:
+    """The keys of a mapping, as users write them."""
+    return tuple(str(field.alias or name) for name, field in model.model_fields.items())
+
+
 class Value:
     """A value that is read by `read`; in the JSON Schema a number or a text."""
 
@@ -101,7 +106,7 @@ class Version(Value):
 
 
 class NumbersOrOpen(Value):
-    """A number, lists of them, or null for what is open."""
+    """A number, lists of them, or null for what is open; the numbers as expressions that know their dimension."""
 
     def read(self, value: Any, info: Any) -> Any:
         if value is None:
@@ -110,7 +115,7 @@ class NumbersOrOpen(Value):
             if not value:
                 raise Finding("wrong-kind", "expected a number, a list of numbers, or null for what must be open")
             return tuple(self.read(member, info) for member in value)
-        return number(value, None, info.context.load)
+        return in_time(value, None, info.context.load)
 
 
 Anything = Annotated[float, Si()]

@@ -334,7 +334,7 @@ class Spring(Model):
 class Damper(Model):
     type: Literal["damper"]
     joint: str
-    coefficient: Either
+    coefficient: Either | None = None
     sliding: Damping | None = None
 
 
@@ -439,7 +439,7 @@ class Expect(Model):
     peak: Literal["max", "min", "abs"] | None = None
     is_: Expected = Field(alias="is")
     rel: Number | None = None
-    abs: Anything | None = None
+    abs: Either | None = None
 
 
 class Head(Model):

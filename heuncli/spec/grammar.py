@@ -17,6 +17,7 @@ from heuncli.errors import Finding
 from heuncli.spec.emitter import COMPARISONS, MOST_NODES, Emitter, Part
 from heuncli.spec.expression import Expression, Table
 from heuncli.spec.nearest import did_you_mean, nearest
+from heuncli.spec.units import in_si
 
 LONGEST, DEEPEST = 2000, 48
 LARGEST_POWER = 64  # whole powers up to this one are multiplied out
@@ -153,10 +154,24 @@ class _Parser:
             and self.at
             and self.tokens[self.at - 1][0] in ("name", "number")
         ):
-            hint = f"for a product write {self.tokens[self.at - 1][1]}*{self.token}"
+            before = self.tokens[self.at - 1][1]
+            known = self.token in self.scope.parameters or self.token in RESERVED
+            hint = (None if known else in_si(before, self.token)) or f"for a product write {before}*{self.token}"
+        if hint is None and self.token == ",":
+            hint = self.decimal(self.at)
         if hint is None and self.token == "." and self.at and self.tokens[self.at - 1][1] == ")":
             hint = "only a joint has coordinates: shaft.angle, guide.travel"
         return self.syntax(f"'{self.token}' is not expected here", hint)
+
+    def decimal(self, comma: int) -> str | None:
+        """A hint for 1,5: the comma stands right between two numbers."""
+        around = self.tokens[max(comma - 1, 0) : comma + 2]
+        if [kind for kind, _, _ in around] != ["number", "mark", "number"]:
+            return None
+        (_, whole, _), (_, _, end), (_, part, last) = around
+        if last - len(part) != end or not part.isdigit():
+            return None
+        return f"a decimal is written with a point: {whole}.{part}"
 
     # the grammar
 
@@ -268,15 +283,17 @@ class _Parser:
         if name == "table":
             return self.table()
         parts: list[Part] = []
+        decimal = None
         while not self.take(")"):
             if parts:
+                decimal = decimal or self.decimal(self.at)
                 self.expect(",", f"or ')' in {name}(...)")
             parts.append(self.expression())
         least, most = ARITY[name]
         if not least <= len(parts) <= most:
             count = f"{least}" if least == most else f"{least} or more"
             message = f"{name}() takes {count} argument{'s' if count != '1' else ''}, not {len(parts)}"
-            hint = "log is the natural logarithm; to the base b: log(x)/log(b)" if name == "log" else None
+            hint = "log is the natural logarithm; to the base b: log(x)/log(b)" if name == "log" else decimal
             raise Finding("function-arguments", message, hint)
         part = self.emit.apply(name, *parts[:2])
         for other in parts[2:]:
@@ -345,6 +362,9 @@ class _Parser:
             hint = f"write {name}.{words[0]} or {name}.{words[1]}" if words else None
             return Finding("unknown-name", f"'{name}' is a joint, not a number", hint)
         message, near = f"'{name}' is not a {kind}", nearest(name, known)
+        is_near = near is not None and near.lower() == name.lower()
+        if not is_near and kind == "parameter" and (hint := in_si("", name)) is not None:
+            return Finding("unknown-name", message, hint)
         listed = list(self.scope.parameters) if kind == "parameter" else sorted(known)
         hint = f"did you mean {near}?" if near else did_you_mean(name, listed, f"{kind}s")
         return Finding("unknown-name", message, hint)

@@ -24,21 +24,25 @@ from heuncli.spec.verdicts import is_told
 PLACED = ("analysis", "drives", "expect", "forces")  # of these, later stages know every value's place
 
 
-def load(path: str | Path, text: str | None = None, overrides: Mapping[str, str] | None = None) -> Spec:
+def load(
+    path: str | Path, text: str | None = None, overrides: Mapping[str, str] | None = None, checking: bool = True
+) -> Spec:
     """The scene in a file ("-" is standard input), or in a text that stands for it.
 
     overrides are parameters or dotted keys with their new values, as text. Files of tables are looked for beside the
-    spec, for standard input in the working directory. Raises SpecError with all problems, in the order of the lines.
+    spec, for standard input in the working directory. Without `checking` expectations need not fit the instants asked
+    for, which may have been overridden. Raises SpecError with all problems, in the order of the lines.
     """
     path = str(path)
-    return Loading(path, read(path, text), overrides or {}).spec()
+    return Loading(path, read(path, text), overrides or {}, checking).spec()
 
 
 class Loading:
     """One spec on its way; gathers problems as it goes."""
 
-    def __init__(self, path: str, source: Source, overrides: Mapping[str, str]) -> None:
+    def __init__(self, path: str, source: Source, overrides: Mapping[str, str], checking: bool) -> None:
         self.path, self.source = path, source
+        self.rules = [rule for rule in RULES if checking or not rule.for_check]
         self.problems = list(source.problems)
         self.warnings: list[Problem] = []
         self.unread: set[str] = set()
@@ -125,8 +129,8 @@ class Loading:
 
     def judge(self, scene: Scene, follows: Callable[[Path_], bool]) -> None:
         """Apply the rules; what may only follow from another error is not told."""
-        for rule, found in found_by(RULES, scene):
-            if follows(found.path):
+        for rule, found in found_by(self.rules, scene):
+            if rule.follows and follows(found.path):
                 continue
             problem = Problem(rule.code, found.message, self.place(found.path, found.key), found.hint)
             (self.warnings if rule.is_warning else self.problems).append(problem)

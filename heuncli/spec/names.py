@@ -4,7 +4,10 @@ from __future__ import annotations
 
 from typing import Any, NamedTuple
 
+from heuncli.spec.fields import Model, keys_of
+from heuncli.spec.format import Body, Ground
 from heuncli.spec.grammar import RESERVED
+from heuncli.spec.nearest import misspelt
 
 GROUND = "ground"
 NAMED = ("parameters", "bodies", "joints", "drives", "forces", "impulses", "sections", "tables")
@@ -29,10 +32,18 @@ class Names(NamedTuple):
         """Of plain data of any shape."""
         entries = {block: mapping(data.get(block)) for block in NAMED}
         bodies = entries["bodies"]
-        points = {name: mapping(mapping(body).get("points")) for name, body in bodies.items()}
-        points[GROUND] = mapping(mapping(data.get(GROUND)).get("points"))
+        points = {name: points_of(body, Body) for name, body in bodies.items()}
+        points[GROUND] = points_of(data.get(GROUND), Ground)
         joints = {name: str(mapping(joint).get("type")) for name, joint in mapping(data.get("joints")).items()}
         return cls(entries, points, joints)
+
+
+def points_of(owner: Any, model: type[Model]) -> dict[str, Any]:
+    """The points of a body or of the ground, also under a misspelt key."""
+    given = mapping(owner)
+    if "points" not in given and any(key not in keys_of(model) for key in given):
+        given = misspelt(given, keys_of(model))
+    return mapping(given.get("points"))
 
 
 def mapping(value: Any) -> dict[str, Any]:

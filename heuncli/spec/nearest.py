@@ -2,7 +2,8 @@
 
 from __future__ import annotations
 
-from collections.abc import Iterable
+from collections.abc import Collection, Iterable, Mapping
+from typing import Any
 
 MOST_LISTED = 20
 
@@ -17,6 +18,12 @@ def nearest(word: str, known: Iterable[str]) -> str | None:
             return name
     found = difflib.get_close_matches(word, known, 1, 0.6)
     return found[0] if found else None
+
+
+def misspelt(data: Mapping[str, Any], known: Collection[str]) -> dict[str, Any]:
+    """What stands under unknown keys, by the known ones that they are like: a misspelt key is not a missing one."""
+    found = {word: value for key, value in data.items() if key not in known and (word := nearest(key, known))}
+    return {word: value for word, value in found.items() if word not in data}
 
 
 def did_you_mean(word: str, known: Iterable[str], kind: str) -> str | None:

@@ -10,7 +10,7 @@ from typing import Any
 from heuncli.errors import Finding
 from heuncli.spec.expression import Expression
 from heuncli.spec.grammar import RESERVED, WORDS, Follows, Scope, compile_expression
-from heuncli.spec.units import Dimension, describe, parse_unit, si_unit
+from heuncli.spec.units import Dimension, describe, in_si, parse_unit, si_unit
 
 # A number and then something that begins like a unit; "2 if t < 1 else 3" is an expression all the same.
 WITH_UNIT = re.compile(r"\s*([+-]?\s*(?:\d+\.?\d*|\.\d+)(?:[eE][+-]?\d+)?+)\s*((?:[^\W\d_]|°|1/)[^,]*)\s*\Z")
@@ -52,7 +52,7 @@ def measure(figure: str, unit: str, scope: Scope) -> tuple[float, Dimension]:
     try:
         size, dimension = parse_unit(unit)
     except Finding as finding:
-        hint = product_hint(figure, unit, scope) or finding.hint
+        hint = product_hint(figure, unit, scope) or inside_hint(figure, unit) or finding.hint
         raise Finding(finding.code, finding.message, hint) from None
     return finite(float(figure.replace(" ", "")) * size), dimension
 
@@ -65,6 +65,12 @@ def product_hint(figure: str, unit: str, scope: Scope) -> str | None:
     if name in scope.parameters or name in RESERVED:
         return f"for a product write {figure.strip()}*{unit}"
     return None
+
+
+def inside_hint(figure: str, unit: str) -> str | None:
+    """For '40 mm * 2': what goes on after the unit makes it an expression, in which there are no units."""
+    found = re.match(r"([^\W\d]+)(\s*[-+*/].*)", unit)
+    return in_si(figure.replace(" ", ""), found[1], found[2]) if found is not None else None
 
 
 def finite(value: float) -> float:

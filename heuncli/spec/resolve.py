@@ -164,7 +164,8 @@ class Resolver:
             case f.Spring():
                 return m.Spring(self.end(load.from_), self.end(load.to), load.stiffness, load.length, load.damping)
             case f.Damper():
-                return m.Damper(load.joint, constant(load.coefficient), load.sliding)
+                coefficient = constant(load.coefficient) if load.coefficient is not None else 0.0
+                return m.Damper(load.joint, coefficient, load.sliding)
             case _:
                 return m.Friction(load.joint, load.torque, load.force, constant(load.speed))
 
@@ -199,7 +200,7 @@ class Resolver:
 
     def expect(self, i: int, item: f.Expect) -> m.Expect:
         place = self.places.get(f"expect.{i}", Place("", 1, 1))
-        return m.Expect(item.of, item.at, item.peak, item.is_, item.rel, item.abs, place)
+        return m.Expect(item.of, item.at, item.peak, numbers(item.is_), item.rel, numbers(item.abs), place)
 
 
 def directed(value: object) -> m.Directed | None:
@@ -233,6 +234,13 @@ def properties(value: f.Properties | None) -> m.Properties | None:
         if kind in given:
             return m.Properties(kind, given[kind])
     return m.Properties("general", given)
+
+
+def numbers(value: Any) -> Any:
+    """Expected numbers without their dimensions, in the same lists."""
+    if isinstance(value, tuple):
+        return tuple(map(numbers, value))
+    return constant(value) if value is not None else None
 
 
 def constant(value: Expression) -> float:

@@ -23,6 +23,8 @@ from heuncli.errors import Place, Problem, SpecError
 LARGEST = 64_000_000  # characters; a scene of 100,000 bodies has about 40 million
 DEEPEST = 64
 
+SMALLEST = "{heun: 1, bodies: {ball: {mass: 1, center: [0, 0, 0], inertia: [0, 0, 0]}}}"
+
 Loader: Any = getattr(yaml, "CSafeLoader", yaml.SafeLoader)
 Path_ = tuple[str | int, ...]
 Mark = tuple[int, int]  # line, column, from 0
@@ -137,7 +139,7 @@ def parse(file: str, text: str, sha256: str) -> Source:
         problem = Problem("not-yaml", f"not YAML: {what}", Place(file, line, column), hint)
         raise SpecError(*builder.problems, problem) from None
     if builder.documents == 0 or builder.root is None:
-        hint = "a spec starts with 'heun: 1'; see heun new"
+        hint = f"write the scene into it; the smallest is: {SMALLEST}"
         raise SpecError(*builder.problems, Problem("empty", "the file is empty", Place(file, 1, 1), hint))
     return Source(file, sha256, builder.root, builder.values, builder.keys, tuple(builder.problems))
 

@@ -12,7 +12,7 @@ from heuncli.errors import Finding, Place
 from heuncli.spec.curves import fit
 from heuncli.spec.expression import Table
 from heuncli.spec.format import Table as Entry
-from heuncli.spec.nearest import did_you_mean
+from heuncli.spec.nearest import nearest
 from heuncli.spec.quantity import Scope, number
 from heuncli.spec.units import parse_unit
 
@@ -27,6 +27,14 @@ class Wrong:
     keys: tuple[str | int, ...]
     finding: Finding
     place: Place | None = None
+
+
+class NoColumn(Exception):
+    """A column that the file has not: which of those wanted, and what is wrong with it."""
+
+    def __init__(self, number: int, finding: Finding) -> None:
+        super().__init__(finding.message)
+        self.number, self.finding = number, finding
 
 
 class CsvError(Exception):
@@ -139,13 +147,19 @@ def from_file(entry: Entry, file: str, folder: Path, wrong: list[Wrong]) -> list
         return None
     try:
         return columns_of(text, entry.x if entry.x is not None else 1, entry.y if entry.y is not None else 2)
+    except NoColumn as error:
+        key = ("x", "y")[error.number]
+        finding = error.finding
+        message = f"{finding.message} in '{path}'"
+        wrong.append(Wrong((key,), Finding(finding.code, message, finding.hint)))
+        return None
     except CsvError as error:
         wrong.append(Wrong(("file",), error.finding, Place(str(path), error.line, error.column)))
         return None
 
 
 def columns_of(text: str, *wanted: object) -> list[list[float]]:
-    """Columns of CSV text, by their names in the first row or their numbers from 1. Raises CsvError.
+    """Columns of CSV text, by their names in the first row or their numbers from 1. Raises CsvError, NoColumn.
 
     Commas, semicolons (then with decimal commas, too), tabs or spaces separate; empty lines and lines that begin with #
     do not count.
@@ -162,7 +176,7 @@ def columns_of(text: str, *wanted: object) -> list[list[float]]:
     header = [cell.strip() for cell in rows[0][1]]
     is_header = not all(as_number(cell, mark) is not None for cell in header)
     body = rows[1:] if is_header else rows
-    places = [column(key, header if is_header else [], len(rows[0][1]), rows[0][0]) for key in wanted]
+    places = [column(i, key, header if is_header else [], len(header)) for i, key in enumerate(wanted)]
     found: list[list[float]] = [[] for _ in wanted]
     for n, row in body:
         for place, values in zip(places, found, strict=True):
@@ -201,18 +215,17 @@ def as_number(cell: str, mark: str | None) -> float | None:
     return value if math.isfinite(value) and "_" not in cell else None
 
 
-def column(key: object, header: list[str], count: int, line: int) -> int:
-    """Place of a column, from 0."""
+def column(number: int, key: object, header: list[str], count: int) -> int:
+    """Place of a column, from 0; number: of those wanted."""
     if isinstance(key, str) and not key.isdigit():
         if key in header:
             return header.index(key)
-        hint = (
-            did_you_mean(key, header, "columns") if header else "the first row holds numbers: name columns by 1, 2, ..."
-        )
-        raise CsvError(line, 1, Finding("table-file", f"there is no column '{key}'", hint))
+        hint = f"the first row is: {', '.join(header)}" if header else "the first row holds numbers"
+        near = nearest(key, header)
+        hint = f"did you mean {near}? {hint}" if near else f"{hint}; columns may be named by 1, 2, ..., too"
+        raise NoColumn(number, Finding("table-file", f"there is no column '{key}'", hint))
     place = int(str(key)) if str(key).isdigit() else 0
     if not 1 <= place <= count:
-        raise CsvError(
-            line, 1, Finding("table-file", f"there is no column {key}", f"columns are counted from 1 to {count}")
-        )
+        finding = Finding("table-file", f"there is no column {key}", f"columns are counted from 1 to {count}")
+        raise NoColumn(number, finding)
     return place - 1

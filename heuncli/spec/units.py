@@ -151,6 +151,19 @@ def si_unit(dimension: Dimension) -> str:
     return "*".join(base if power == 1 else f"{base}^{power}" for base, power in powers)
 
 
+def in_si(figure: str, symbol: str, rest: str = "") -> str | None:
+    """What to write for '40 mm' inside an expression: a hint; None where the word is no unit. figure may be a name."""
+    symbol = SPELLINGS.get(symbol, symbol)
+    if symbol not in UNITS:
+        return None
+    size, named = UNITS[symbol][0], "the quantity"
+    try:
+        written, named = f"{float(figure) * size:.15g}", f"{figure} {symbol}"
+    except ValueError:
+        written = f"{figure}*{size!r}" if figure else repr(size)
+    return f"units do not stand inside expressions: write {written}{rest} in SI, or name {named} under parameters"
+
+
 def parse_unit(text: str) -> tuple[float, Dimension]:
     """Size in SI and dimension of a unit such as 'kg/m^3', 'N m', 'N/(m/s)'. Raises Finding."""
     reader = _Reader(text)
@@ -231,6 +244,8 @@ class _Reader:
             return UNITS[symbol]
         if token is None:
             raise Finding("unknown-unit", f"'{self.text}' is not a unit: it ends too early")
+        if not token[0].isalpha():
+            raise Finding("unknown-unit", f"'{self.text}' is not a unit: '{token}' is not expected")
         raise Finding("unknown-unit", f"'{token}' is not a unit", HINTS.get(token) or nearest_unit(token))
 
 

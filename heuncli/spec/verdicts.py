@@ -101,6 +101,9 @@ def unknown_key(path: Path_, known: list[str]) -> tuple[str, Found]:
     key = str(path[-1])
     if ("keys", key) in LATER:
         return "not-yet", Found(path, f"not yet: {key}", key=True)
+    if key.isdigit() and key not in known:
+        comma = "a decimal is written with a point, as 1.5; a comma ends the value"
+        return "unknown-key", Found(path, f"'{key}' is not known here", comma, key=True)
     word = KEY_WORDS.get(key.lower())
     hint = f"it is called {word} here" if word in known else did_you_mean(key, known, "keys here")
     return "unknown-key", Found(path, f"'{key}' is not known here", hint, key=True)

@@ -33,10 +33,11 @@ def powers(found: Results) -> None:
     ("type: cylinder, axis: [0, 0, 1]", "coefficient: 0.6", "angular_velocity: [0, 0, 3]", 0.3),
     ("type: slide, axis: [0, 0, 1]", "coefficient: 0.6", "velocity: [0, 0, 3]", 2.0),
     ("type: cylinder, axis: [0, 0, 1]", "coefficient: 9, sliding: 0.6", "velocity: [0, 0, 3]", 2.0),
+    ("type: cylinder, axis: [0, 0, 1]", "sliding: 0.6", "velocity: [0, 0, 3]", 2.0),
     ("type: line, axis: [0, 0, 1]", "coefficient: 0.6", "velocity: [0, 0, 3]", 2.0),
     ("type: plane, normal: [1, 0, 0]", "coefficient: 0.6", "velocity: [0, 1.8, 2.4]", 2.0),
     ("type: ball", "coefficient: 0.6", "angular_velocity: [1, 2, 2]", 0.3),
-], ids=["pin", "cylinder turning", "slide", "cylinder sliding", "line", "plane", "ball"])  # fmt: skip
+], ids=["pin", "cylinder turning", "slide", "cylinder both", "cylinder sliding", "line", "plane", "ball"])  # fmt: skip
 def test_dampers(joint: str, keys: str, rate: str, I: float) -> None:
     """The rate of 3 dies as exp(−c t / I)."""
     found = run(joint, rate, f"type: damper, {keys}")

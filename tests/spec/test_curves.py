@@ -14,7 +14,7 @@ from heuncli.spec.curves import fit
 from heuncli.spec.expression import Expression, Table
 from heuncli.spec.grammar import Scope, compile_expression
 from heuncli.spec.load import load
-from heuncli.spec.tables import CsvError, columns_of
+from heuncli.spec.tables import CsvError, NoColumn, columns_of
 
 BODY = "heun: 1\nbodies: {b: {mass: 1, center: [0, 0, 0], inertia: [1, 1, 1], points: {p: [0, 0, 0]}}}\n"
 
@@ -111,7 +111,7 @@ def test_columns_by_number() -> None:
 @pytest.mark.parametrize(("text", "line", "words"), [
     ("", 1, "no rows"), ("# nothing\n", 1, "no rows"), ("a,b\n1,2\n3\n", 3, "column 2 is missing"),
     ("a,b\n1,2\n\n3,x\n", 4, "'x'"), ("a,b\n1,2\n3,nan\n", 3, "'nan'"), ("a,b\n1,2\n3,1e999\n", 3, "'1e999'"),
-    ("a,c\n1,2\n", 1, "no column 'b'"), ("1,2\n", 1, "no column 'a'"), ('a,b\n1,"2\n', 2, "cannot be read"),
+    ('a,b\n1,"2\n', 2, "cannot be read"),
     ("a,b\n1_0,2\n", 2, "'1_0'"),
 ])  # fmt: skip
 def test_files_with_accidents(text: str, line: int, words: str) -> None:
@@ -119,8 +119,37 @@ def test_files_with_accidents(text: str, line: int, words: str) -> None:
         columns_of(text, "a", "b")
     assert caught.value.line == line
     assert words in caught.value.finding.message
-    with pytest.raises(CsvError):
-        columns_of("1,2\n", 0, 3)
+
+
+@pytest.mark.parametrize(("text", "wanted", "number", "words", "hint"), [
+    ("a,c\n1,2\n", ("a", "b"), 1, "no column 'b'", "the first row is: a, c"),
+    ("angle,pressure\n1,2\n", ("angel", "pressure"), 0, "no column 'angel'", "did you mean angle? the first row is"),
+    ("1,2\n", ("a", 2), 0, "no column 'a'", "the first row holds numbers"),
+    ("1,2\n", (1, 3), 1, "no column 3", "from 1 to 2"),
+    ("1,2\n", (0, 1), 0, "no column 0", "from 1 to 2"),
+])  # fmt: skip
+def test_columns_that_are_not_there(
+    text: str, wanted: tuple[object, ...], number: int, words: str, hint: str
+) -> None:
+    with pytest.raises(NoColumn) as caught:
+        columns_of(text, *wanted)
+    assert caught.value.number == number
+    assert words in caught.value.finding.message
+    assert hint in (caught.value.finding.hint or "")
+
+
+def test_a_column_that_is_not_there_is_told_where_it_is_asked_for(tmp_path: Path) -> None:
+    (tmp_path / "gas.csv").write_text("angle,pressure\n0,1\n1,2\n")
+    for key, columns in (("x", "x: angel, y: pressure"), ("y", "x: angle, y: presure")):
+        spec = tmp_path / "a.yaml"
+        spec.write_text(BODY + f"tables: {{f: {{file: gas.csv, {columns}}}}}\n")
+        with pytest.raises(SpecError) as caught:
+            load(spec)
+        (problem,) = caught.value.problems
+        assert problem.place is not None
+        assert (problem.place.file, problem.place.path) == (str(spec), f"tables.f.{key}")
+        assert "gas.csv" in problem.message
+        assert "the first row is: angle, pressure" in (problem.hint or "")
 
 
 def test_a_table_from_a_file(tmp_path: Path) -> None:

@@ -98,6 +98,12 @@ def test_a_comma_inside_a_list_is_explained() -> None:
     assert "quotes" in (caught.value.problems[1].hint or "")
 
 
+def test_a_decimal_comma_in_braces_is_explained() -> None:
+    with pytest.raises(SpecError) as caught:
+        load("x.yaml", text=f"heun: 1\nbodies: {{a: {{{LUMP.replace('1,', '1,5,', 1)}}}}}\n")
+    assert [(p.code, "point" in (p.hint or "")) for p in caught.value.problems] == [("unknown-key", True)]
+
+
 def test_what_follows_from_an_error_is_not_told() -> None:
     assert problems(f"""\
 heun: 1
@@ -235,6 +241,10 @@ joints:
     ("forces.f: {type: damper, joint: guide, coefficient: 1 N*m*s}", "forces.f.coefficient dimension"),
     ("forces.f: {type: damper, joint: guide, coefficient: t}", "forces.f.coefficient not-in-time"),
     ("forces.f: {type: damper, joint: shaft, coefficient: 1, sliding: 1}", "forces.f.sliding load-joint"),
+    ("forces.f: {type: damper, joint: collar, sliding: 1}", ""),
+    ("forces.f: {type: damper, joint: collar}", "forces.f load-joint"),
+    ("forces.f: {type: damper, joint: shaft}", "forces.f load-joint"),
+    ("forces.f: {type: damper, joint: shaft, sliding: 1}", "forces.f.sliding load-joint"),
     ("forces.f: {type: damper, joint: collar, coefficient: 1, sliding: -1}", "forces.f.sliding negative"),
     ("forces.f: {type: friction, joint: shaft, force: 1, speed: 1}", "forces.f.force load-joint"),
     ("forces.f: {type: friction, joint: shaft, speed: 1}", "forces.f load-joint"),
@@ -254,6 +264,7 @@ joints:
     ("impulses.i: {body: c, couple: [1, 0, 0]}", "impulses.i.body unknown-body"),
     ("impulses.i: {on: a.p, vector: [1, 0, 0], time: 1}", "impulses.i.time impulse-time"),
     ("impulses.i: {on: a.p, vector: [1, 0, 0], time: -1}", "impulses.i.time impulse-time"),
+    ("impulses.i: {on: a.x, vector: [1, 0]}", "impulses.i.on unknown-point, impulses.i.vector wrong-length"),
     ("impulses.i: {on: a.p, vector: [1, 0, 0], restitution: 0.5}", "impulses.i.restitution not-yet"),
     # sections
     ("sections.s: {body: bar}", "sections.s section-form"),
@@ -319,7 +330,31 @@ joints:
     ("expect: {of: a, is: 1}", "expect wrong-kind"),
     ("expect: [{of: time}]", "expect.0 missing-key"),
     ("expect: [{of: time, is: 1, at: 0, peak: max}]", "expect.0.peak expect-form"),
-    ("expect: [{of: time, is: 1, at: 5}]", "expect.0.at expect-form"),
+    ("expect: [{of: time, is: 1, at: 5}]", "expect.0.at expect-instants"),
+    ("expect: [{of: time, is: 1, at: [0, 1]}]", "expect.0.at wrong-kind"),
+    ("expect: [{of: joints.shaft.force.w, is: 1}]", "expect.0.of expect-path"),
+    ("expect: [{of: joints.shaft.force.3, is: 1}]", "expect.0.of expect-path"),
+    ("expect: [{of: joints.shaft.force.x.x.x, is: 1}]", "expect.0.of expect-path"),
+    ("expect: [{of: joints.shaft.axial.x, is: 1}]", "expect.0.of expect-path"),
+    ("expect: [{of: joints.shaft, is: 1}]", "expect.0.of expect-path"),
+    ("expect: [{of: foundation.axis.pich, is: 1}]", "expect.0.of expect-path"),
+    ("expect: [{of: joints.shaft.force.0.x, is: 1}, {of: bodies.a.rotation.2.2, is: 1}]", ""),
+    ("expect: [{of: joints.shaft.force.z, is: 15 kg}]", "expect.0.is expect-form"),
+    ("expect: [{of: joints.shaft.force.z, is: 15 N, abs: 1 mN}]", ""),
+    ("expect: [{of: joints.shaft.force.z, is: 15 N, abs: 1 mm}]", "expect.0.abs expect-form"),
+    ("expect: [{of: joints.shaft.force, is: [15 N, 0, 1 m]}]", "expect.0.is.2 expect-form"),
+    ("expect: [{of: joints.shaft.drive, is: 15 N}, {of: joints.shaft.drive, is: 15 N*m}]", ""),
+    ("expect: [{of: joints.shaft.drive, is: 15 m}]", "expect.0.is expect-form"),
+    ("expect: [{of: certain_sums.0.value, is: 15 kg}]", ""),
+    ("expect: [{of: joints.shaft.force, is: [1, 2]}]", "expect.0.is expect-instants"),
+    ("expect: [{of: joints.shaft.force, is: 1}]", "expect.0.is expect-instants"),
+    ("expect: [{of: joints.shaft.force.z, is: [1]}]", "expect.0.is expect-instants"),
+    ("expect: [{of: joints.shaft.force, is: [1, 2, 3]}, {of: joints.shaft.force, is: null}]", ""),
+    ("expect: [{of: joints.shaft.force, is: 1, peak: max}]", ""),
+    ("expect: [{of: joints.shaft.force, is: [1, 2, 3], peak: max}]", "expect.0.is expect-instants"),
+    ("expect: [{of: bodies.a.rotation, is: [[1, 0, 0], [0, 1]]}]", "expect.0.is expect-form"),
+    ("expect: [{of: bodies.a.rotation, is: [[1, 0, 0], [0, 1, 0], [0, 0, 1]]}]", ""),
+    ("expect: [{of: foundation.about, is: 1, peak: max}]", "expect.0.peak expect-form"),
     ("expect: [{of: time, is: 1, rel: -1}]", "expect.0.rel negative"),
     ("expect: [{of: bodies.c.position, is: 1}]", "expect.0.of expect-path"),
     ("expect: [{of: joints.shaft.forse, is: 1}]", "expect.0.of expect-path"),
@@ -349,6 +384,75 @@ def found_in(text: str) -> list[str]:
     except SpecError as error:
         return [f"{p.place.line} {p.place.path} {p.code}" for p in error.problems if p.place]
     return []
+
+
+def test_instants_that_are_expected() -> None:
+    """A motion has a list over its instants where neither one of them nor a peak is named."""
+    one = "of: joints.pivot.force.z"
+    for item, expected in (
+        (f"{one}, is: 1", ["expect-instants"]),
+        (f"{one}, is: [1, 2]", ["expect-instants"]),
+        (f"{one}, is: [1, 2, 3]", []),
+        (f"{one}, at: 0.5, is: 1", []),
+        (f"{one}, at: 0.5, is: [1, 2, 3]", ["expect-instants"]),
+        (f"{one}, peak: max, is: 1", []),
+        ("of: joints.pivot.force.0.z, is: 1", []),
+        ("of: joints.pivot.force, at: 0.5, is: [1, 2, 3]", []),
+        ("of: sections.along.N, at: 0.5, is: [1, 2, 3, 4]", []),
+        ("of: sections.along.N.0, at: 0.5, is: 1", []),
+        ("of: sections.along.N, at: 0.5, is: 1", ["expect-instants"]),
+        ("of: sections.along.s, is: [0, 1, 2]", []),
+        ("of: sections.along.force.0, at: 0.5, is: [0, 1, 2]", []),
+        ("of: sections.along.force.0.w, at: 0.5, is: 1", ["expect-path"]),
+        ("of: sections.along.normal, at: 0.5, is: [1, 0, 0]", []),
+        ("of: foundation.elements.motor.moment.z, at: 0.5, is: 1", []),
+        (f"{one}, at: 0.3, is: 1", ["expect-instants"]),
+    ):
+        text = f"""\
+heun: 1
+ground: {{points: {{O: [0, 0, 0]}}}}
+bodies: {{bar: {{{BAR}, points: {{p: [0, 0, 0], q: [2, 0, 0]}}}}}}
+joints: {{pivot: {{type: pin, from: ground.O, to: bar.p, axis: [0, 0, 1]}}}}
+drives: {{motor: {{joint: pivot, angle: t}}}}
+sections: {{along: {{body: bar, from: p, to: q, count: 3}}}}
+analysis: {{duration: 1, samples: 3}}
+expect: [{{{item}}}]
+"""
+        try:
+            found = [] if load("x.yaml", text=text) else None
+        except SpecError as error:
+            found = [p.code for p in error.problems]
+            assert all(p.hint for p in error.problems)
+        assert found == expected, item
+
+
+def test_expectations_need_not_fit_where_they_are_not_used() -> None:
+    text = "\n".join([*TOP.splitlines(), "analysis: {duration: 1, samples: 3}", "expect: [EXPECT]"])
+    at = text.replace("EXPECT", "{of: energy.kinetic, at: 0.5, is: 0}")
+    shorter = {"analysis.duration": "0.6"}
+    assert load("x.yaml", text=at, overrides=shorter, checking=False).analysis.duration == 0.6
+    with pytest.raises(SpecError):
+        load("x.yaml", text=at, overrides=shorter)
+    with pytest.raises(SpecError):  # what is no expectation at all is an error for everybody
+        load("x.yaml", text=text.replace("EXPECT", "{of: energy.kinetik, at: 0.5, is: 0}"), checking=False)
+
+
+def test_points_under_a_misspelt_key_are_points() -> None:
+    text = TOP.replace("points: {p: [0, 0, 0], q: [1", "point: {p: [0, 0, 0], q: [1")
+    text = text.replace("ground: {points", "ground: {pionts")
+    section = "sections: {s: {body: bar, at: p, normal: [1, 0, 0]}, r: {body: a, at: x, normal: [1, 0, 0]}}"
+    assert [line.partition(" ")[2] for line in problems(f"{text}{section}\n")] == [
+        "ground.pionts unknown-key", "bodies.a.point unknown-key", "sections.r.body section-matter",
+        "sections.r.at unknown-point",
+    ]  # fmt: skip
+
+
+def test_what_is_wrong_with_an_impulse_hides_not_that_it_is_not_yet_solved(monkeypatch: pytest.MonkeyPatch) -> None:
+    monkeypatch.undo()
+    for blow in ("{on: a.p, vector: [1, 0]}", "{on: a.p, vector: 5, time: x}", "5"):
+        told = {line.partition(" ")[2] for line in found_in(f"impulses.i: {blow}")}
+        assert "impulses.i not-yet" in told
+        assert len(told) > 1
 
 
 def test_an_unread_key_hides_no_other() -> None:

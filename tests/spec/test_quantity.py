@@ -83,7 +83,15 @@ def test_plain_numbers_and_expressions(text: object, value: float) -> None:
     ("-.inf", "not-finite", "inf"),
     ("1e400 m", "not-finite", "inf"),
     ("1e300 km^9", "not-finite", "inf"),
-    ("1,5 m", "expression-syntax", "','"),
+    ("1,5 m", "expression-syntax", "point: 1.5"),
+    ("2*1,25", "expression-syntax", "point: 1.25"),
+    ("sin(1,5)", "function-arguments", "point: 1.5"),
+    ("40 mm * 2", "unknown-unit", "write 0.04 * 2 in SI, or name 40 mm under"),
+    ("2*40mm", "expression-syntax", "write 0.04 in SI, or name 40 mm under"),
+    ("L mm", "expression-syntax", "write L*0.001 in SI"),
+    ("40*mm", "unknown-name", "write 0.001 in SI"),
+    ("3 deg*2", "unknown-unit", "write 3*deg*2"),
+    ("2*3deg", "expression-syntax", "write 3*deg"),
     ("m L", "expression-syntax", "m*L"),
 ])  # fmt: skip
 def test_refusals(value: object, code: str, words: str) -> None:

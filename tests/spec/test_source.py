@@ -13,7 +13,8 @@ from hypothesis import given, settings
 from hypothesis import strategies as st
 
 from heuncli.errors import SpecError
-from heuncli.spec.source import Source, parse, plain, read
+from heuncli.spec.load import load
+from heuncli.spec.source import SMALLEST, Source, parse, plain, read
 
 
 def codes(text: str) -> list[tuple[str, int, int]]:
@@ -172,3 +173,10 @@ def test_any_text_is_a_source_or_an_error(text: str) -> None:
         assert problem.place is not None
         assert 1 <= problem.place.line <= len(lines) + 1
         assert problem.place.column >= 1
+
+
+def test_the_hint_for_an_empty_file_is_a_scene() -> None:
+    with pytest.raises(SpecError) as caught:
+        load("x.yaml", text="# nothing yet\n")
+    assert SMALLEST in (caught.value.problems[0].hint or "")
+    assert list(load("x.yaml", text=SMALLEST).bodies) == ["ball"]

@@ -18,6 +18,8 @@ import pytest
 from heuncli.cli.entry import enter
 from heuncli.cli.expect import compare
 from heuncli.report.export import present, to_csv, to_json
+from heuncli.report.paths import find
+from heuncli.report.quantities import walk
 from heuncli.report.scene import scene_of
 from heuncli.spec.load import load
 from heuncli.study import Options, Study, solve
@@ -118,6 +120,25 @@ def test_its_csv_says_the_same(name: str) -> None:
         ]
         read = np.array([float(text) if text else np.nan for text in found]).reshape(3, -1).T
         assert np.array_equal(read, part["force"], equal_nan=True)
+
+
+@each
+def test_every_result_may_be_expected(name: str) -> None:
+    """When a spec is read every path into the results is known, with the shape and the dimension that are found."""
+    results = study_of(name).results
+    items: list[dict[str, Any]] = []
+    for series in walk(results, scene_of(study_of(name).spec)):
+        if series.quantity == "side":  # words
+            continue
+        found = find(results, series.path)
+        shape = found.values.shape[1:] if found.timed else found.values.shape
+        at = {"at": float(results.time[0])} if found.timed else {}
+        items.append({"of": series.path, "is": np.zeros(shape).tolist(), **at})
+        unit = "" if series.unit == "1" else f" {series.unit}"
+        component = "".join(f".{part}" for part in series.components[-1:] if part)
+        items.append({"of": series.path + component, "is": f"0{unit}", **at})
+    text = Path(path_of(name)).read_text().partition("\nexpect:")[0]
+    assert len(load(path_of(name), text=f"{text}\nexpect: {json.dumps(items)}\n").expect) == len(items) > 0
 
 
 def test_an_expectation_that_fails_is_told(tmp_path: Path, capsys: pytest.CaptureFixture[str]) -> None:

@@ -105,6 +105,7 @@ def negative(scene: Scene) -> Iterator[Found]:
     for i, item in scene.document.expect.items():
         for key in ("rel", "abs"):
             value = getattr(item, key)
+            value = getattr(value, "constant", value)
             if value is not None and value < 0.0:
                 yield Found(("expect", i, key), f"{key} must not be negative, but is {value:g}")
 

@@ -2,9 +2,9 @@
 
 from __future__ import annotations
 
-from heuncli.spec.rules import analysis, bodies, joints, loads, naming, not_yet, plane, references, sections
+from heuncli.spec.rules import analysis, bodies, expect, joints, loads, naming, not_yet, plane, references, sections
 from heuncli.spec.rules.registry import RULES, Found, Rule, Scene, found_by
 
-MODULES = (naming, references, bodies, joints, plane, loads, sections, analysis, not_yet)
+MODULES = (naming, references, bodies, joints, plane, loads, sections, analysis, expect, not_yet)
 
 __all__ = ["MODULES", "RULES", "Found", "Rule", "Scene", "found_by"]

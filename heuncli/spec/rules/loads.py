@@ -33,6 +33,9 @@ def load_joint(scene: Scene) -> Iterator[Found]:
             if kind not in TURNING + SLIDING:
                 hint = "between two points use a spring with damping"
                 yield Found((*path, "joint"), f"a damper resists nothing in a {kind}", hint)
+            if load.coefficient is None and load.sliding is None:
+                known = "coefficient (of turning), sliding, or both" if kind == "cylinder" else "coefficient"
+                yield Found(path, "a damper that resists nothing", f"give {known}", key=True)
             if load.sliding is not None and kind != "cylinder":
                 yield Found(
                     (*path, "sliding"), f"sliding is for a cylinder, not for a {kind}", "use coefficient", key=True
@@ -59,7 +62,8 @@ def load_dimension(scene: Scene) -> Iterator[Found]:
         if isinstance(load, f.Torque):
             checks = [("value", load.value, u.FORCE if sliding else u.MOMENT)]
         elif isinstance(load, f.Damper):
-            checks = [("coefficient", load.coefficient, u.DAMPING if sliding else u.TURNING_DAMPING)]
+            given = [load.coefficient] if load.coefficient is not None else []
+            checks = [("coefficient", value, u.DAMPING if sliding else u.TURNING_DAMPING) for value in given]
         else:
             checks = [("speed", load.speed, u.VELOCITY if load.force is not None else u.RATE)]
         for key, value, dimension in checks:

@@ -18,7 +18,7 @@ def any_of(block: str) -> Where:
     """All entries of a block."""
 
     def where(scene: Scene) -> Iterator[Path_]:
-        for name in getattr(scene.document, block):
+        for name in scene.names.entries[block]:
             yield block, name
 
     return where
@@ -52,7 +52,7 @@ NOT_YET: tuple[tuple[str, Where], ...] = (
 )
 
 
-@rule("not-yet")
+@rule("not-yet", follows=False)
 def not_yet(scene: Scene) -> Iterator[Found]:
     """Refuse what stands in the table."""
     for feature, where in NOT_YET:

@@ -38,8 +38,9 @@ def ends(scene: Scene) -> Iterator[tuple[Path_, End]]:
 
 
 def ends_unread(scene: Scene) -> Iterator[tuple[Path_, End]]:
-    """Ends written as body.point in joints and forces in which something else is in error."""
-    for block, read in (("joints", scene.document.joints), ("forces", scene.document.forces)):
+    """Ends written as body.point in joints, forces and impulses in which something else is in error."""
+    document = scene.document
+    for block, read in (("joints", document.joints), ("forces", document.forces), ("impulses", document.impulses)):
         for name, data in scene.names.entries[block].items():
             for key in ("from", "to", "on") if name not in read else ():
                 value = mapping(data).get(key)

@@ -36,21 +36,28 @@ Check = Callable[[Scene], Iterable[Found]]
 
 
 class Rule(NamedTuple):
-    """A check and the code of what it finds; a warning does not stop the run."""
+    """A check and the code of what it finds; a warning does not stop the run.
+
+    follows: what it finds may only follow from what could not be read; for_check: it matters to `heun check` alone.
+    """
 
     code: str
     check: Check
     is_warning: bool
+    follows: bool
+    for_check: bool
 
 
 RULES: list[Rule] = []
 
 
-def rule(code: str, is_warning: bool = False) -> Callable[[Check], Check]:
+def rule(
+    code: str, is_warning: bool = False, follows: bool = True, for_check: bool = False
+) -> Callable[[Check], Check]:
     """Register a check."""
 
     def register(check: Check) -> Check:
-        RULES.append(Rule(code, check, is_warning))
+        RULES.append(Rule(code, check, is_warning, follows, for_check))
         return check
 
     return register

@@ -1,0 +1,126 @@
+"""Expectations: of results that there are, in their dimension and shape, at instants of the output."""
+
+from __future__ import annotations
+
+from collections.abc import Iterator
+from typing import TYPE_CHECKING, Any
+
+from heuncli.spec import format as f
+from heuncli.spec import units as u
+from heuncli.spec.expression import Expression
+from heuncli.spec.meanings import instants_of, type_of
+from heuncli.spec.nearest import did_you_mean
+from heuncli.spec.rules.registry import Found, Path_, Scene, rule
+
+if TYPE_CHECKING:
+    from heuncli.spec.rules.outcome import Astray, Quantity, Shape
+
+SAME_INSTANT = 1e-9
+RAGGED = -1  # the length of a list whose members have different ones
+
+
+def outcomes(scene: Scene) -> Iterator[tuple[Path_, f.Expect, Quantity | None, Astray | None]]:
+    """Every expectation with what its path leads to, or where it goes astray; neither where only the run can tell."""
+    if scene.document.expect:
+        from heuncli.spec.rules.outcome import Quantity, outcome  # a run of a scene without expectations starts faster
+
+        for i, item in scene.document.expect.items():
+            found = outcome(item.of, scene)
+            yield ("expect", i), item, *((found, None) if isinstance(found, Quantity) else (None, found))
+
+
+@rule("expect-path")
+def expect_path(scene: Scene) -> Iterator[Found]:
+    """`of` leads to a result."""
+    for path, item, _, astray in outcomes(scene):
+        if astray is not None and astray.word:
+            hint = did_you_mean(astray.word, astray.known, "words here") if astray.known else "the path ends before it"
+            yield Found((*path, "of"), f"'{item.of}': '{astray.word}' is not a result", hint)
+        elif astray is not None:
+            hint = f"it goes on with one of {', '.join(astray.known)}"
+            yield Found((*path, "of"), f"'{item.of}' is not a number", hint)
+
+
+@rule("expect-form")
+def expect_form(scene: Scene) -> Iterator[Found]:
+    """An expectation is at an instant or at a peak, a number or a list, in the dimension of the result."""
+    for path, item, quantity, _ in outcomes(scene):
+        if item.at is not None and item.peak is not None:
+            yield Found((*path, "peak"), "both at and peak", "at is one instant, peak is over all of them", key=True)
+        if RAGGED in shape_of(item.is_):
+            yield Found((*path, "is"), "lists of different lengths", "[1, 2, 3], or [[1, 0], [0, 1]]")
+        if quantity is not None:
+            if item.peak is not None and not quantity.timed:
+                hint = "leave peak out"
+                yield Found((*path, "peak"), f"{item.of} does not run over the instants", hint, key=True)
+            yield from dimensions((*path, "is"), item.is_, quantity.dimensions)
+            yield from dimensions((*path, "abs"), item.abs, quantity.dimensions)
+
+
+def dimensions(path: Path_, value: Any, known: tuple[u.Dimension, ...]) -> Iterator[Found]:
+    """Numbers written with a unit of another dimension."""
+    if isinstance(value, tuple):
+        for i, member in enumerate(value):
+            yield from dimensions((*path, i), member, known)
+    elif isinstance(value, Expression) and value.dimension is not None and known and value.dimension not in known:
+        expected = " or ".join(u.describe(dimension) for dimension in known)
+        message = f"'{value.source.strip()}' is {u.describe(value.dimension)}, expected {expected}"
+        units = " or ".join(u.si_unit(dimension) for dimension in known)
+        yield Found(path, message, f"a number without a unit is taken in {units}")
+
+
+@rule("expect-instants", for_check=True)
+def expect_instants(scene: Scene) -> Iterator[Found]:
+    """An expectation fits the instants of the output: `at` is one of them, `is` has as many numbers as are found."""
+    document = scene.document
+    instants = instants_of(document) if type_of(document) == "motion" else (0.0,)
+    if not instants or document.analysis.type == "impulse" or "analysis" in scene.unread:
+        return
+    for path, item, quantity, _ in outcomes(scene):
+        if item.at is not None:
+            nearest = min(instants, key=lambda t: abs(t - item.at))  # type: ignore[operator]
+            if abs(nearest - item.at) > SAME_INSTANT * max(instants[-1], abs(item.at)):
+                message = f"{item.at:g} s is not an instant of the output; the nearest is {nearest:g} s"
+                yield Found((*path, "at"), message, "add it to analysis.times, or choose other samples")
+                continue
+        if quantity is not None and item.is_ is not None:
+            yield from sizes((*path, "is"), item, quantity, instants_found(scene, len(instants)))
+
+
+def instants_found(scene: Scene, asked: int) -> int | None:
+    """How many instants the output will have; None where a rope may end the run before."""
+    may_stop = any(isinstance(joint, f.RodJoint) and joint.tension_only for joint in scene.document.joints.values())
+    return None if may_stop and asked > 1 else asked
+
+
+def sizes(path: Path_, item: f.Expect, quantity: Quantity, instants: int | None) -> Iterator[Found]:
+    """As many numbers as the result has there, in the same lists."""
+    over_instants = quantity.timed and item.at is None and item.peak is None and instants != 1
+    found: Shape = () if item.peak is not None else (instants, *quantity.shape) if over_instants else quantity.shape
+    given = shape_of(item.is_)
+    if RAGGED in given or fits(given, found):
+        return
+    if over_instants and fits(given, quantity.shape):
+        yield Found(path, f"{told(given)} for {item.of} at all instants", "give at: an instant, or peak: max")
+    else:
+        hint = f"name one of its numbers, as {item.of}.{'x' if found[-1:] == (3,) else 0}" if found else None
+        yield Found(path, f"{told(given)} for {item.of}, which is {told(found)}", hint or "give one number")
+
+
+def fits(given: Shape, found: Shape) -> bool:
+    return len(given) == len(found) and all(b is None or a == b for a, b in zip(given, found, strict=True))
+
+
+def shape_of(value: Any) -> Shape:
+    """Lengths of the lists in which numbers are given, the outer first."""
+    if not isinstance(value, tuple):
+        return ()
+    inner = {shape_of(member) for member in value}
+    return (len(value), *inner.pop()) if len(inner) == 1 else (RAGGED,)
+
+
+def told(shape: Shape) -> str:
+    """A shape in words."""
+    if not shape:
+        return "one number"
+    return "a list of " + " lists of ".join("some" if size is None else str(size) for size in shape)
