@@ -10,14 +10,15 @@ from heuncli.results import Array
 SUSPECT = 0.01  # least pivot of the closures within a step below which a singular pose is looked for
 PROBES = 17  # instants looked at in a round
 ROUNDS = 5  # each narrows the place by PROBES / 2
+MOST = 100  # places looked at: a mechanism that goes through such a pose for ever need not be followed for ever
 MET = 1e-6  # relative singular value of the closures: what comes as near as the last round can tell went through
 
 
 def passages(runner: Runner, run: Trajectory) -> list[float]:
-    """Instants [s] at which the rank of the closures fell."""
+    """Instants [s] at which the rank of the closures fell, the first hundred."""
     suspects = np.flatnonzero(run.pivots < SUSPECT)
     found: list[float] = []
-    for steps in np.split(suspects, np.flatnonzero(np.diff(suspects) > 1) + 1):
+    for steps in np.split(suspects, np.flatnonzero(np.diff(suspects) > 1) + 1)[:MOST]:
         if len(steps):
             begin = float(run.ends[steps[0] - 1]) if steps[0] else 0.0
             end = float(run.ends[steps[-1]])

@@ -646,6 +646,51 @@ def loudest(I: cython.p_int, P: cython.p_double, W: cython.p_double, r: cython.P
 @cython.cfunc
 @cython.nogil
 @cython.exceptval(check=False)
+@cython.locals(B=cython.Py_ssize_t, u=cython.double, v=cython.double, w=cython.double)
+def turned_by(W: cython.p_double, B: cython.Py_ssize_t, u: cython.double, v: cython.double, w: cython.double) -> cython.double:
+    """v A^-1 v of a body on a ball: what its turning answers to the couple v."""
+    v -= W[B + 27] * u
+    w -= W[B + 28] * u + W[B + 29] * v
+    return u * u * W[B + 30] + v * v * W[B + 31] + w * w * W[B + 32]
+
+
+@cython.cfunc
+@cython.nogil
+@cython.exceptval(check=False)
+@cython.locals(i=cython.Py_ssize_t, n=cython.Py_ssize_t, k=cython.Py_ssize_t, p=cython.Py_ssize_t, b=cython.Py_ssize_t, w=cython.Py_ssize_t, B=cython.Py_ssize_t, F=cython.Py_ssize_t, force=cython.double, couple=cython.double, s=cython.double, x=cython.double, y=cython.double, z=cython.double, a=cython.double, c=cython.double, d=cython.double)
+def reach(I: cython.p_int, P: cython.p_double, W: cython.p_double, r: cython.Py_ssize_t) -> cython.double:
+    """What the freedoms of row r's paths would answer from where they are if its force and couple stood across their arms."""
+    i = I[13] + 16 * r
+    w = I[24] + 16 * r
+    force = W[w] * W[w] + W[w + 1] * W[w + 1] + W[w + 2] * W[w + 2]
+    couple = W[w + 3] * W[w + 3] + W[w + 4] * W[w + 4] + W[w + 5] * W[w + 5]
+    s = 0.0
+    for n in range(I[i + 7]):
+        p = I[I[i + 6] + n]
+        b = I[10] + 8 * p
+        B = I[20] + 80 * p
+        x = W[w + 6] - W[B + 9]
+        y = W[w + 7] - W[B + 10]
+        z = W[w + 8] - W[B + 11]
+        if I[b + 1]:
+            s += force * (turned_by(W, B, 0.0, z, -y) + turned_by(W, B, -z, 0.0, x) + turned_by(W, B, y, -x, 0.0))
+            s += turned_by(W, B, W[w + 3], W[w + 4], W[w + 5])
+        for k in range(I[b + 2], I[b + 2] + I[b + 3]):
+            if I[I[11] + 8 * k + 3] == 0:
+                F = I[21] + 16 * k
+                if I[I[11] + 8 * k] == 2:
+                    s += force * W[F + 9]
+                else:
+                    a = W[F + 1] * z - W[F + 2] * y
+                    c = W[F + 2] * x - W[F] * z
+                    d = W[F] * y - W[F + 1] * x
+                    s += (force * (a * a + c * c + d * d) + couple) * W[F + 9]
+    return s
+
+
+@cython.cfunc
+@cython.nogil
+@cython.exceptval(check=False)
 @cython.locals(i=cython.Py_ssize_t, j=cython.Py_ssize_t, k=cython.Py_ssize_t, m=cython.Py_ssize_t, n=cython.Py_ssize_t, best=cython.Py_ssize_t, A=cython.Py_ssize_t, D=cython.Py_ssize_t, r=cython.Py_ssize_t, x=cython.double, s=cython.double)
 def select(I: cython.p_int, P: cython.p_double, W: cython.p_double, C: cython.p_int, N: cython.p_double, X: cython.p_double, S: cython.p_double, t: cython.double, y: cython.p_double, o: cython.Py_ssize_t, fresh: cython.int) -> cython.int:
     """Choose an independent set of rows at y by pivoted Cholesky of the scaled A over all rows; how many."""
@@ -668,15 +713,14 @@ def select(I: cython.p_int, P: cython.p_double, W: cython.p_double, C: cython.p_
         W[D + i] = product(I, W, i)
         weighted(I, W, i, 1)
         # what hardly answers at all (across the only axis its pins have, say) is rounding, and no row
-        x = loudest(I, P, W, i)
-        if s > 1e-24 * x:
+        if s > 1e-24 * loudest(I, P, W, i):
             W[D + n + i] = 1.0 / sqrt(s)
             W[D + i] /= s
         else:
             W[D + n + i] = 0.0
             W[D + i] = 0.0
         # how near to singular is told against what the row can answer, not against what it does in this pose
-        x *= 1e-3
+        x = 0.01 * reach(I, P, W, i)
         if s > x:
             x = s
         x = 1.0 / sqrt(x) if x > 0.0 else 0.0

@@ -119,7 +119,7 @@ def acceleration_matrix(body: int, states: BodyStates, gravity: Array) -> Array:
 
 
 def piece_loads(cuts: Cuts, A: Array, on: Sequence[Attachment]) -> tuple[Array, Array]:
-    """s' and M' about the cuts' own points, body axes, (n_t, 3, k) each; A (3, n_t, 4): see acceleration_matrix.
+    """s' and M' about the cuts' own points, body axes, (3, n_t, k) each; A (3, n_t, 4): see acceleration_matrix.
 
     Inertia and what is attached for good are one product of instants and cuts a component: (n_t, 4 + m) (4 + m, k), the
     levers from the cut's point in the second factor. A wandering attachment changes pieces and is added by itself.
@@ -130,38 +130,43 @@ def piece_loads(cuts: Cuts, A: Array, on: Sequence[Attachment]) -> tuple[Array, 
     mask = np.array([on_piece(cuts, a.at) for a in fixed]).reshape(-1, len(cuts.points))
     B = [np.concatenate([A[i], *(a.force[:, i : i + 1] for a in fixed)], axis=1) for i in range(3)]
     C = np.concatenate([-P[:, 3], mask])
-    force, moment = room(6, A.shape[1], len(cuts.points)).reshape(2, A.shape[1], 3, -1)
+    force, moment = room(6, A.shape[1], len(cuts.points)).reshape(2, 3, A.shape[1], -1)
     for i in range(3):
         j, k = (i + 1) % 3, (i + 2) % 3
-        force[:, i] = B[i] @ C
+        np.matmul(B[i], C, out=force[i])
         left = np.concatenate([B[j], B[k], *(a.moment[:, i : i + 1] for a in fixed)], axis=1)
         right = (
             np.concatenate([P[:, k], -mask * at[:, k]]) + p[k] * C,
             np.concatenate([-P[:, j], mask * at[:, j]]) - p[j] * C,
             mask,
         )
-        moment[:, i] = left @ np.concatenate(right)
+        np.matmul(left, np.concatenate(right), out=moment[i])
     for a in on:
         if a.at.ndim == 2:
             there = on_piece(cuts, a.at)
             for i in range(3):
                 j, k = (i + 1) % 3, (i + 2) % 3
                 lever_j, lever_k = a.at[:, j, None] - p[j], a.at[:, k, None] - p[k]
-                force[:, i] += a.force[:, i, None] * there
-                moment[:, i] += (
+                force[i] += a.force[:, i, None] * there
+                moment[i] += (
                     a.moment[:, i, None] + lever_j * a.force[:, k, None] - lever_k * a.force[:, j, None]
                 ) * there
     return force, moment
 
 
+def crossed(a: Array, b: Array) -> Array:
+    """a x b of vectors (3, ...)."""
+    return np.stack([a[1] * b[2] - a[2] * b[1], a[2] * b[0] - a[0] * b[2], a[0] * b[1] - a[1] * b[0]])
+
+
 def shifted(force: Array, moment: Array, by: Array) -> Array:
-    """Moments about points that lie `by` from the old one, (n_t, 3, k): M - by x s."""
-    return moment - np.cross(by, force, axis=1)
+    """Moments about points that lie `by` from the old one, (3, n_t, k): M - by x s."""
+    return moment - crossed(by, force)
 
 
 @dataclass(frozen=True, eq=False)
 class Planes:
-    """Where the cuts are and where their moments are taken: body axes, (n_t, 3, k)."""
+    """Where the cuts are and where their moments are taken: body axes, (3, n_t, k)."""
 
     cuts: Cuts
     R: Array
@@ -171,17 +176,21 @@ class Planes:
     centre: Array
 
     def outward(self, v: Array, out: Array | None = None, place: bool = False) -> Array:
-        """World components (n_t, k, 3) of a vector, or the world place, in body axes (n_t, 3, k)."""
-        found: Array = np.matmul(self.R, v, out=None if out is None else out.reshape(v.shape))
+        """World components (n_t, k, 3) of a vector, or the world place, in body axes (3, n_t, k)."""
+        found = np.empty(v.shape) if out is None else out
+        if v.strides[1] == 0:  # the same at all instants: one product
+            np.matmul(self.R.transpose(1, 0, 2), v[:, 0], out=found)
+        else:
+            np.matmul(self.R, v.transpose(1, 0, 2), out=found.transpose(1, 0, 2))
         if place:
-            found += self.origin[:, :, None]
-        return found.transpose(0, 2, 1)
+            found += self.origin.T[:, :, None]
+        return found.transpose(1, 2, 0)
 
     def components(self, force: Array, moment: Array) -> Block:
         """All components of loads given about the cuts' points; T0, M10, M20 about the centroid, for stresses."""
         about = moment if self.about is self.at else shifted(force, moment, self.about - self.at)
         c = self.cuts
-        n_t, _, k = force.shape
+        _, n_t, k = force.shape
         space = room(15, n_t, k).reshape(15, n_t, k)
         found: Block = {"force": self.outward(force, space[9:12]), "moment": self.outward(about, space[12:15])}
         rows = [
@@ -201,24 +210,24 @@ class Planes:
 
 
 def along(axis: Array, v: Array, out: Array | None = None) -> Array:
-    """axis . v of vectors (n_t, 3, k), (n_t, k); what does not contribute is not multiplied."""
+    """axis . v of vectors (3, n_t, k), (n_t, k); what does not contribute is not multiplied."""
     (first, x), *rest = [(i, x) for i, x in enumerate(axis.tolist()) if x != 0.0]
-    found: Array = np.multiply(v[:, first], x, out=out)
+    found: Array = np.multiply(v[first], x, out=out)
     for i, x in rest:
-        found += x * v[:, i]
+        found += x * v[i]
     return found
 
 
 def planes(cuts: Cuts, states: BodyStates) -> Planes:
     """Places of the cuts at the asked instants."""
     R, x = states.R[:, cuts.body], states.x[:, cuts.body]
-    shape = (len(R), 3, len(cuts.points))
-    at = np.broadcast_to(cuts.points.T, shape)
-    centre = at if cuts.centroids is None else np.broadcast_to(cuts.centroids.T, shape)
+    shape = (3, len(R), len(cuts.points))
+    at = np.broadcast_to(cuts.points.T[:, None], shape)
+    centre = at if cuts.centroids is None else np.broadcast_to(cuts.centroids.T[:, None], shape)
     about = centre if cuts.about == "centroid" else at
     if not isinstance(cuts.about, str):
         owner, point = cuts.about
-        about = np.broadcast_to(_inward(R, states.place(owner, point) - x)[:, :, None], shape)
+        about = np.broadcast_to(_inward(R, states.place(owner, point) - x).T[:, :, None], shape)
     return Planes(cuts, R, x, at, about, centre)
 
 
@@ -242,7 +251,7 @@ def section(
     where = planes(cuts, states)
     force, moment = piece_loads(cuts, acceleration_matrix(cuts.body, states, gravity), on)
     if planar:
-        force[:, 2], moment[:, :2] = 0.0, 0.0
+        force[2], moment[:2] = 0.0, 0.0
     found = where.components(force, moment)
     is_open: dict[str, Mask] = {}
     if stress is not None:
@@ -287,20 +296,21 @@ def reduction_line(where: Planes, force: Array, moment: Array) -> Block:
     theory.md 2e.
     """
     cuts, local, outward = where.cuts, where.at, where.outward
-    n = cuts.n[:, None]
+    n = cuts.n[:, None, None]
     N, T = along(cuts.n, force), along(cuts.n, moment)
-    Q, M_t = force - n * N[:, None], moment - n * T[:, None]
+    Q, M_t = force - n * N, moment - n * T
     reach = float(np.abs(cuts.points - cuts.points.mean(axis=0)).max())
     reach = reach or float(np.sqrt(np.abs(cuts.pieces[:, :3, :3]).max() / cuts.pieces[:, 3, 3].max()))
-    size = np.sqrt(np.sum(force**2, axis=1)) + np.sqrt(np.sum(moment**2, axis=1)) / reach
-    q = np.sqrt(np.sum(Q**2, axis=1))
+    size = np.sqrt(np.sum(force**2, axis=0)) + np.sqrt(np.sum(moment**2, axis=0)) / reach
+    q = np.sqrt(np.sum(Q**2, axis=0))
     no_N, no_Q = np.abs(N) <= NONE * size, q <= NONE * size
-    twist = along(cuts.n, np.cross(Q, M_t, axis=1))
+    twist = along(cuts.n, crossed(Q, M_t))
     free_N = np.where(no_N, np.nan, N)
     free_Q = np.where(no_Q | no_N, np.nan, q)
-    point = local - (twist / (free_N * free_Q**2))[:, None] * Q
-    direction = np.cross(np.broadcast_to(n, Q.shape), Q, axis=1) / free_Q[:, None]
-    pressure = local + np.cross(np.broadcast_to(n, M_t.shape), M_t, axis=1) / free_N[:, None]
+    n = np.broadcast_to(n, Q.shape)
+    point = local - twist / (free_N * free_Q**2) * Q
+    direction = crossed(n, Q) / free_Q
+    pressure = local + crossed(n, M_t) / free_N
     parallel = np.abs(twist) <= NONE * size * size * reach
     kind = np.where(no_N, np.where(parallel, 2.0, 1.0), np.where(no_Q, 2.0, 0.0))
     return {
