@@ -14,16 +14,17 @@ import numpy as np
 from heuncli.results import Array
 
 SAME = 1e-7  # of the largest singular value of some rows: below it one of them is told by the others
+MOST_TERMS = 24  # nobody reads longer sums, and they take long to find
 ABSENT = 1e-9  # of unit length: a factor that is nowhere larger is none
 
 Shares = Mapping[str, Array]  # components' shares of every self-stress, (poses, k)
 
 
 def turning_sums(poses: Shares, told: Shares) -> list[dict[str, Array]]:
-    """Of each component that those before it tell in all poses: factors at the told instants, (n_t,) each."""
+    """Of each component that a few before it tell in all poses: factors at the told instants, (n_t,) each."""
     found: list[dict[str, Array]] = []
     for names in dependent(poses):
-        if (c := factors(np.stack([told[n] for n in names], axis=1))) is not None:
+        if len(names) <= MOST_TERMS and (c := factors(np.stack([told[n] for n in names], axis=1))) is not None:
             found.append(dict(zip(names, c.T, strict=True)))
     return found
 
