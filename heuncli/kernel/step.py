@@ -202,12 +202,91 @@ def interpolate(n: cython.Py_ssize_t, y: cython.p_double, F: cython.p_double, x:
 @cython.cfunc
 @cython.nogil
 @cython.exceptval(check=False)
-@cython.locals(n=cython.Py_ssize_t, s=cython.Py_ssize_t, i=cython.Py_ssize_t, b=cython.Py_ssize_t, m=cython.Py_ssize_t, count=cython.Py_ssize_t, h=cython.double, t=cython.double, e=cython.double, f=cython.double, q=cython.double, gap=cython.double, noise=cython.double, last=cython.int, have=cython.int, bad=cython.int, near=cython.int, dodges=cython.int, best=cython.double, best_h=cython.double, stop=cython.double)
+@cython.locals(n=cython.Py_ssize_t, m=cython.Py_ssize_t, s=cython.Py_ssize_t, i=cython.Py_ssize_t, t=cython.double, q=cython.double, e=cython.double)
+def attempt(I: cython.p_int, P: cython.p_double, W: cython.p_double, C: cython.p_int, N: cython.p_double, X: cython.p_double, S: cython.p_double, MI: cython.p_int, T: cython.p_double, D: cython.p_int, Z: cython.p_double, y: cython.p_double, z: cython.p_double, K: cython.p_double, h: cython.double, near: cython.int) -> cython.int:
+    """The stages of a step of length h and its solution in z, its small parts beside it; what `evaluate` says there.
+
+    near: what is off the closures by a little is accelerated by a lot near a singular pose: the stages are settled too.
+    """
+    n = D[0]
+    m = MI[0]
+    for s in range(1, m):
+        combine(MI, T, s, K, n, z, 0)
+        for i in range(n):
+            z[i] = y[i] + h * z[i]
+        t = Z[0] + T[s] * h
+        if t > Z[9]:
+            t = Z[9]
+        if near:
+            settle(I, P, W, C, N, X, S, t, z, 0)
+        evaluate(I, P, W, C, N, X, S, t, z, 0, K, s * n)
+    combine(MI, T, m, K, n, z, 0)
+    for i in range(n):
+        q = h * z[i] + z[2 * n + i]
+        e = y[i] + q
+        z[n + i] = q - (e - y[i])
+        z[i] = e
+    Z[5] += m
+    t = Z[0] + h
+    if t > Z[9]:
+        t = Z[9]
+    return evaluate(I, P, W, C, N, X, S, t, z, 0, K, m * n)
+
+
+@cython.cfunc
+@cython.nogil
+@cython.exceptval(check=False)
+@cython.locals(n=cython.Py_ssize_t, i=cython.Py_ssize_t, q=cython.double, have=cython.int)
+def sample(I: cython.p_int, P: cython.p_double, W: cython.p_double, C: cython.p_int, N: cython.p_double, X: cython.p_double, S: cython.p_double, MI: cython.p_int, T: cython.p_double, D: cython.p_int, Z: cython.p_double, y: cython.p_double, z: cython.p_double, K: cython.p_double, F: cython.p_double, h: cython.double, stop: cython.double, ts: cython.p_double, n_out: cython.Py_ssize_t, out: cython.p_double) -> cython.void:
+    """The asked instants within the step y -> z, those at its end only where the piece ends (`stop`, else before it)."""
+    n = D[0]
+    have = 0
+    while D[2] < n_out and (ts[D[2]] < Z[0] + h or ts[D[2]] <= stop):
+        q = (ts[D[2]] - Z[0]) / h
+        if q >= 1.0:
+            for i in range(n):
+                out[D[2] * n + i] = z[i]
+        else:
+            if have == 0:
+                have = 1
+                dense(I, P, W, C, N, X, S, MI, T, D, Z, y, z, K, F, h)
+            interpolate(n, y, F, q, out, D[2] * n)
+        D[2] += 1
+
+
+@cython.cfunc
+@cython.nogil
+@cython.exceptval(check=False)
+@cython.locals(t=cython.double, gap=cython.double)
+def land(I: cython.p_int, P: cython.p_double, W: cython.p_double, C: cython.p_int, N: cython.p_double, X: cython.p_double, S: cython.p_double, Z: cython.p_double, y: cython.p_double, K: cython.p_double) -> cython.int:
+    """Bring the end of a step back onto the closures, with its derivative; 4 where they cannot be held."""
+    t = Z[0]
+    if t > Z[9]:
+        t = Z[9]
+    gap = settle(I, P, W, C, N, X, S, t, y, 0)
+    if not gap <= 1e-11 * P[3] or P[5] < 1e-3 * P[4]:
+        # a row that was left out opens, or the chosen ones come near to depending on each other: choose anew
+        select(I, P, W, C, N, X, S, t, y, 0, 0)
+        gap = settle(I, P, W, C, N, X, S, t, y, 0)
+    if gap > Z[7] or gap != gap:
+        Z[7] = gap
+    if not gap <= 1e-8 * P[3]:
+        return 4
+    evaluate(I, P, W, C, N, X, S, t, y, 0, K, 0)
+    Z[5] += 2
+    return 0
+
+
+@cython.cfunc
+@cython.nogil
+@cython.exceptval(check=False)
+@cython.locals(n=cython.Py_ssize_t, i=cython.Py_ssize_t, b=cython.Py_ssize_t, m=cython.Py_ssize_t, count=cython.Py_ssize_t, h=cython.double, e=cython.double, f=cython.double, q=cython.double, noise=cython.double, last=cython.int, bad=cython.int, near=cython.int, dodges=cython.int, best=cython.double, best_h=cython.double, stop=cython.double, code=cython.int)
 def run(I: cython.p_int, P: cython.p_double, W: cython.p_double, C: cython.p_int, N: cython.p_double, X: cython.p_double, S: cython.p_double, MI: cython.p_int, T: cython.p_double, D: cython.p_int, Z: cython.p_double, G: cython.p_double, y: cython.p_double, K: cython.p_double, z: cython.p_double, F: cython.p_double, ts: cython.p_double, n_out: cython.Py_ssize_t, out: cython.p_double, ends: cython.p_double, passed: cython.p_double, most: cython.Py_ssize_t) -> cython.int:
     """Up to `most` accepted steps towards the piece's end Z[10]; a code (see above).
 
-    ends, passed: their ends; the states there, each with the least pivot of the closures within the step. Following (D[4]), `ends` gives the steps, none is judged and the
-    first ones' stages are settled, for how near they are to a singular pose is not known again.
+    ends, passed: their ends; the states there, each with the least pivot of the closures within the step. Following
+    (D[4]), `ends` gives the steps, none is judged and the first one's stages are settled, for how near it is to a
+    singular pose is not known again.
     """
     n = D[0]
     m = MI[0]
@@ -219,7 +298,7 @@ def run(I: cython.p_int, P: cython.p_double, W: cython.p_double, C: cython.p_int
         P[6] = 1.0 - D[4]
         if I[4]:
             select(I, P, W, C, N, X, S, Z[0], y, 0, 1)
-            gap = settle(I, P, W, C, N, X, S, Z[0], y, 0)
+            settle(I, P, W, C, N, X, S, Z[0], y, 0)
         evaluate(I, P, W, C, N, X, S, Z[0], y, 0, K, 0)
         Z[5] += 1
         if I[40]:
@@ -258,30 +337,9 @@ def run(I: cython.p_int, P: cython.p_double, W: cython.p_double, C: cython.p_int
         if h <= 1e-14 * fabs(Z[10]) or h < 1e-300:
             if last == 0:
                 return 2
-        # near a singular pose what is off the closures by a little is accelerated by a lot: the stages are settled too
         near = I[4] > 0 and P[6] < P[7]
         P[6] = 1.0
-        for s in range(1, m):
-            combine(MI, T, s, K, n, z, 0)
-            for i in range(n):
-                z[i] = y[i] + h * z[i]
-            t = Z[0] + T[s] * h
-            if t > Z[9]:
-                t = Z[9]
-            if near:
-                settle(I, P, W, C, N, X, S, t, z, 0)
-            evaluate(I, P, W, C, N, X, S, t, z, 0, K, s * n)
-        # the solution, its small parts carried along (compensated sum)
-        combine(MI, T, m, K, n, z, 0)
-        for i in range(n):
-            q = h * z[i] + z[2 * n + i]
-            e = y[i] + q
-            z[n + i] = q - (e - y[i])
-            z[i] = e
-        t = Z[0] + h
-        if t > Z[9]:
-            t = Z[9]
-        bad = evaluate(I, P, W, C, N, X, S, t, z, 0, K, m * n)
+        bad = attempt(I, P, W, C, N, X, S, MI, T, D, Z, y, z, K, h, near)
         if I[40] and D[4] == 0:
             # halve the way to where a rope would push; the run ends just before it
             Z[2] = slack(I, W)
@@ -290,7 +348,6 @@ def run(I: cython.p_int, P: cython.p_double, W: cython.p_double, C: cython.p_int
                 if Z[1] <= 1e-12 * (Z[10] + fabs(Z[0])):
                     return 5
                 continue
-        Z[5] += m
         e = 0.0
         noise = 0.0
         if D[4] == 0:
@@ -346,18 +403,7 @@ def run(I: cython.p_int, P: cython.p_double, W: cython.p_double, C: cython.p_int
                 f = 6.0
         if Z[3] != 0.0 and f > 1.0:
             f = 1.0
-        have = 0
-        while D[2] < n_out and (ts[D[2]] < Z[0] + h or (last and ts[D[2]] <= stop)):
-            q = (ts[D[2]] - Z[0]) / h
-            if q >= 1.0:
-                for i in range(n):
-                    out[D[2] * n + i] = z[i]
-            else:
-                if have == 0:
-                    have = 1
-                    dense(I, P, W, C, N, X, S, MI, T, D, Z, y, z, K, F, h)
-                interpolate(n, y, F, q, out, D[2] * n)
-            D[2] += 1
+        sample(I, P, W, C, N, X, S, MI, T, D, Z, y, z, K, F, h, stop if last else Z[0], ts, n_out, out)
         for i in range(n):
             y[i] = z[i]
             z[2 * n + i] = z[n + i]
@@ -378,21 +424,9 @@ def run(I: cython.p_int, P: cython.p_double, W: cython.p_double, C: cython.p_int
         ends[count] = Z[0]
         e = P[6]
         if I[4]:
-            t = Z[0]
-            if t > Z[9]:
-                t = Z[9]
-            gap = settle(I, P, W, C, N, X, S, t, y, 0)
-            if not gap <= 1e-11 * P[3] or P[5] < 1e-3 * P[4]:
-                # a row that was left out opens, or the chosen ones come near to depending on each other: choose anew
-                select(I, P, W, C, N, X, S, t, y, 0, 0)
-                gap = settle(I, P, W, C, N, X, S, t, y, 0)
-                if not gap <= 1e-8 * P[3]:
-                    Z[7] = gap
-                    return 4
-            if gap > Z[7]:
-                Z[7] = gap
-            evaluate(I, P, W, C, N, X, S, t, y, 0, K, 0)
-            Z[5] += 2
+            code = land(I, P, W, C, N, X, S, Z, y, K)
+            if code:
+                return code
         else:
             for i in range(n):
                 K[i] = K[m * n + i]

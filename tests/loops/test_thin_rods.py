@@ -9,37 +9,10 @@ import pytest
 from scipy.integrate import solve_ivp
 
 from heuncli.errors import SolveError
+from tests.loops.parallelogram import parallelogram
 from tests.scenes import near, solved, study
 
 KINDS = list(product(("pin", "ball"), repeat=4))
-
-
-def four_bar(kinds: tuple[str, ...]) -> str:
-    """A parallelogram of thin rods, turning, on pins and balls in any mixture."""
-    joint = dict(zip("ABCD", kinds, strict=True))
-    axis = {name: ", axis: [0, 0, 1]" if kind == "pin" else "" for name, kind in joint.items()}
-    return f"""
-heun: 1
-gravity: [0, -9.81, 0]
-ground: {{points: {{A: [0, 0, 0], B: [1, 0, 0]}}}}
-bodies:
-  left:
-    shapes: [{{type: rod, from: [0, 0, 0], to: [0, 1, 0], mass: 1}}]
-    points: {{foot: [0, 0, 0], top: [0, 1, 0]}}
-    angular_velocity: [0, 0, -1]
-  right:
-    shapes: [{{type: rod, from: [1, 0, 0], to: [1, 1, 0], mass: 1}}]
-    points: {{foot: [1, 0, 0], top: [1, 1, 0]}}
-  coupler:
-    shapes: [{{type: rod, from: [0, 1, 0], to: [1, 1, 0], mass: 1}}]
-    points: {{left: [0, 1, 0], right: [1, 1, 0]}}
-joints:
-  A: {{type: {joint["A"]}, from: ground.A, to: left.foot{axis["A"]}}}
-  B: {{type: {joint["B"]}, from: ground.B, to: right.foot{axis["B"]}}}
-  C: {{type: {joint["C"]}, from: left.top, to: coupler.left{axis["C"]}}}
-  D: {{type: {joint["D"]}, from: coupler.right, to: right.top{axis["D"]}}}
-analysis: {{duration: 0.5, samples: 3}}
-"""
 
 
 @pytest.mark.parametrize("kinds", KINDS, ids=["-".join(kinds) for kinds in KINDS])
@@ -47,7 +20,7 @@ def test_all_move_alike(kinds: tuple[str, ...]) -> None:
     """In the plane a ball is a pin; the bars turn by (2/3 + 1) theta'' = 2 g sin(theta)."""
     swing = solve_ivp(lambda t, y: [y[1], 1.2 * 9.81 * np.sin(y[0])], (0, 0.5), [0.0, 1.0], rtol=1e-12, atol=1e-12,
                       t_eval=[0.0, 0.25, 0.5], method="DOP853").y  # fmt: skip
-    found = study(four_bar(kinds))
+    found = study(parallelogram(1.0, 0.5, 3, kinds))
     top = found.results.points["left.top"]["position"]
     near(top, np.stack([np.sin(swing[0]), np.cos(swing[0]), 0 * swing[0]], axis=1), 1.0, 1e-8)
     near(found.results.points["right.top"]["position"] - top, np.tile([1.0, 0.0, 0.0], (3, 1)), 1.0, 1e-8)

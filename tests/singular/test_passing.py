@@ -18,39 +18,15 @@ from heuncli.passages import passages
 from heuncli.results import Array
 from heuncli.scene import Scene, prepare
 from heuncli.spec.load import load
+from tests.loops.parallelogram import parallelogram
 from tests.scenes import study
 
 TURN = 2.0  # s
 
 
-def parallelogram(rate: float, coupler: float = 1.0) -> str:
-    return f"""
-heun: 1
-gravity: [0, -9.81, 0]
-ground: {{points: {{A: [0, 0, 0], B: [1, 0, 0]}}}}
-bodies:
-  left:
-    shapes: [{{type: rod, from: [0, 0, 0], to: [0, 1, 0], mass: 1}}]
-    points: {{foot: [0, 0, 0], top: [0, 1, 0]}}
-    angular_velocity: [0, 0, -{rate!r}]
-  right:
-    shapes: [{{type: rod, from: [1, 0, 0], to: [1, 1, 0], mass: 1}}]
-    points: {{foot: [1, 0, 0], top: [1, 1, 0]}}
-  coupler:
-    shapes: [{{type: rod, from: [0, 1, 0], to: [{coupler!r}, 1, 0], mass: 1}}]
-    points: {{left: [0, 1, 0], right: [{coupler!r}, 1, 0]}}
-joints:
-  A: {{type: pin, from: ground.A, to: left.foot, axis: [0, 0, 1]}}
-  B: {{type: pin, from: ground.B, to: right.foot, axis: [0, 0, 1]}}
-  C: {{type: pin, from: left.top, to: coupler.left, axis: [0, 0, 1]}}
-  D: {{type: pin, from: coupler.right, to: right.top, axis: [0, 0, 1]}}
-analysis: {{duration: {TURN}, samples: 5}}
-"""
-
-
 @cache
 def scene(rate: float, coupler: float = 1.0) -> Scene:
-    return prepare(load("scene.yaml", parallelogram(rate, coupler)))
+    return prepare(load("scene.yaml", parallelogram(rate, TURN, 5, coupler=coupler)))
 
 
 @cache
@@ -96,15 +72,14 @@ def test_passages_are_told() -> None:
     for rate in RATES[:4]:
         found, runner = run(rate, 1e-9)
         np.testing.assert_allclose(passages(runner, found), pendulum(rate)[1], atol=3e-6)
-    warnings = study(parallelogram(1.0)).results.warnings
+    warnings = study(parallelogram(1.0, TURN, 5)).results.warnings
     assert any(w.startswith("passes through a singular pose at t = 0.70845, 1.21526 s") for w in warnings)
 
 
 @pytest.mark.parametrize("coupler", [0.97, 1.01])
 def test_coming_near_is_no_passage(coupler: float) -> None:
     """A coupler a little too short or too long keeps the chain from lying flat."""
-    text = parallelogram(1.0, coupler).replace("angular_velocity: [0, 0, -1.0]", "angular_velocity: [0, 0, -0.2]")
-    s = study(text)
+    s = study(parallelogram(0.2, TURN, 5, coupler=coupler))
     assert s.checked is not None
     assert min(s.checked.run.pivots) < 0.05
     assert s.passages == []
