@@ -1,4 +1,4 @@
-"""A parallelogram of thin rods in the xy plane, upright and turning: on pins or balls, with a coupler that may not fit."""
+"""A parallelogram of thin rods in the xy plane, upright and turning: on pins or balls, with any coupler."""
 
 from __future__ import annotations
 
