@@ -5,7 +5,8 @@ Row r puts the force f at the point Q and the couple m on body b for lambda = 1,
 its e_r comes from one upward pass along the two paths to the ground. theory.md 2b; rods with unit direction.
 
 Offsets in I: 24 rows (W) 26 e_r 27 A and its factor 28 selected rows (ints in I) 29 number selected 30 first couplings
-              32 counters 33 their number 34 scratch wrenches (W) 35 their axes (P) 36 spread e_r (W) 37 pivots, scales (W)
+              32 counters 33 their number 34 scratch wrenches (W) 35 their axes (P) 36 spread e_r (W)
+              37 (W) pivots, scales of the choice, scales of the nearness to a singular pose; a number a row each
               38 choose the rows anew at every instant of `recover` 39 something is driven 40 ropes are watched
 row        I (16): 0 kind (0 guide, 1 dot, 2 rod) 1 a 2 b 3 joint 4 program start 5 count 6 path start 7 path length
                    8 e_r start 9 freedoms list start 10 freedoms count 11 couplings start 12 count 13 place among selected

@@ -12,6 +12,7 @@ from heuncli.spec.meanings import drive_of, span_of
 from heuncli.spec.rules.registry import Found, Path_, Scene, rule
 
 SAME = 1e-9  # relative: a held value and a drive's
+LOOKED_AT = 1000  # parts of the run at whose ends a driven length is looked at
 DRIVEN = {"angle": ("pin",), "travel": ("slide", "cylinder"), "length": ("rod",)}
 
 
@@ -150,6 +151,21 @@ def drive_jumps(scene: Scene) -> Iterator[Found]:
                 message = f"the drive jumps from {before:g} to {after:g} at t = {t:g} s"
                 yield Found(path, message, "a body cannot jump: let the value run over a short time")
                 break
+
+
+@rule("drive-length")
+def drive_length(scene: Scene) -> Iterator[Found]:
+    """A driven rod keeps a length: at no length it has no direction, so nothing tells where it would go on."""
+    duration = span_of(scene.document.analysis)
+    for name, _, quantity, value in drives(scene):
+        if quantity != "length" or scene.document.drives[name].zero == "assembled":
+            continue
+        grid = {duration * k / LOOKED_AT for k in range(LOOKED_AT + 1)}
+        grid.update(t for pair in changes(value, duration) for t in pair)
+        gone = next((t for t in sorted(grid) if value.value(t) <= 0.0), None)
+        if gone is not None:
+            message = f"the rod {scene.document.drives[name].joint} has no length left at t = {gone:.4g} s"
+            yield Found(("drives", name, "length"), message, "let the run end before, or the length stay above 0")
 
 
 def rate_jumps(scene: Scene) -> Iterator[Path_]:
