@@ -191,18 +191,21 @@ def _null_space(
     sides = _sides(layout)
     members = sorted({i for r in rows for side in sides[r] for i in side})
     columns: list[Array] = []
+    own = wrenches[:, rows]
     for i in members:
         h = layout.spanning.hangs[i]
+        sign = np.array([1.0 if i in sides[r][0] else -1.0 if i in sides[r][1] else 0.0 for r in rows])
+        on = np.flatnonzero(sign)
         r_i = states.place(h.body, layout.reference[i])
         for what, e in _free_directions(layout, states, i):
             parts = [e, np.zeros_like(e)] if what == "shift" else [np.cross(r_i, e), e]
             twist = np.concatenate(parts, axis=1)
             # v = e x (x - r) of a turn about a line through r: at the origin r x e
-            column = np.einsum("tmc,tc->tm", wrenches[:, rows], twist) / (1.0 if what == "shift" else L)
-            sign = np.array([1.0 if i in sides[r][0] else -1.0 if i in sides[r][1] else 0.0 for r in rows])
-            columns.append(column * sign)
+            column = np.zeros((n_t, m))
+            column[:, on] = (own[:, on] @ twist[:, :, None])[:, :, 0] * (sign[on] / (1.0 if what == "shift" else L))
+            columns.append(column)
     J = np.stack(columns, axis=2) if columns else np.zeros((n_t, m, 0))
-    is_couple = np.abs(wrenches[:, rows, :3]).max(axis=2, initial=0.0) == 0.0
+    is_couple = np.abs(own[:, :, :3]).max(axis=2, initial=0.0) == 0.0
     J = J * np.where(is_couple, L, 1.0)[:, :, None]
     unit = np.maximum(np.sqrt(np.sum(J * J, axis=2)), 1.0)[:, :, None]
     J = J / unit
