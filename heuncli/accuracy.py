@@ -6,6 +6,7 @@ the `accuracy` block.
 
 from __future__ import annotations
 
+import contextlib
 import time
 from collections.abc import Sequence
 from dataclasses import dataclass, replace
@@ -25,6 +26,7 @@ from heuncli.results import Array
 RATIO = 30.0  # local tolerance of A over that of B
 FIRST = 1.0  # local tolerance of the first run over the tolerance asked
 RERUNS = 2
+COARSEST = 1e-6  # a collapsed run is not tried again beyond this local tolerance
 FUTILE = 20  # times the steps of the coarser run: a finer one that takes more fights with rounding
 LEAST = 3e-14  # no local tolerance of A below, none of B below a thirtieth: the steps would only chase rounding
 NO_LOAD = 1e-11  # of the largest m (a - g): smaller joint loads are none
@@ -67,7 +69,18 @@ def checked_run(
                 raise
             return None
 
-    a = run(max(tolerance * FIRST, LEAST))
+    def first(local: float) -> Trajectory:
+        """The run asked for; where closures make it collapse, one that rounding in a singular pose lets through."""
+        try:
+            return run(local)
+        except SolveError:
+            coarser = [local * RATIO**k for k in (1, 2, 3)] if runner.layout.rows else []
+            for other in (x for x in coarser if x <= COARSEST):
+                with contextlib.suppress(SolveError):
+                    return run(other)
+            raise
+
+    a = first(max(tolerance * FIRST, LEAST))
     lost, best = 0.0, None
     for attempt in range(RERUNS + 1):
         b = finer(a.tolerance / RATIO, a)

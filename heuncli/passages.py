@@ -7,7 +7,7 @@ import numpy as np
 from heuncli.motion import Runner, Trajectory
 from heuncli.results import Array
 
-SUSPECT = 0.01  # least pivot of the closures within a step below which a singular pose is looked for
+SUSPECT = 0.05  # least pivot of the closures within a step below which a singular pose is looked for
 PROBES = 17  # instants looked at in a round
 ROUNDS = 5  # each narrows the place by PROBES / 2
 MOST = 100  # places looked at: a mechanism that goes through such a pose for ever need not be followed for ever

@@ -280,7 +280,7 @@ def land(I: cython.p_int, P: cython.p_double, W: cython.p_double, C: cython.p_in
 @cython.cfunc
 @cython.nogil
 @cython.exceptval(check=False)
-@cython.locals(n=cython.Py_ssize_t, i=cython.Py_ssize_t, b=cython.Py_ssize_t, m=cython.Py_ssize_t, count=cython.Py_ssize_t, h=cython.double, e=cython.double, f=cython.double, q=cython.double, noise=cython.double, last=cython.int, bad=cython.int, near=cython.int, dodges=cython.int, best=cython.double, best_h=cython.double, stop=cython.double, code=cython.int)
+@cython.locals(n=cython.Py_ssize_t, i=cython.Py_ssize_t, b=cython.Py_ssize_t, m=cython.Py_ssize_t, count=cython.Py_ssize_t, h=cython.double, e=cython.double, f=cython.double, q=cython.double, noise=cython.double, last=cython.int, bad=cython.int, near=cython.int, dodges=cython.int, best=cython.double, best_h=cython.double, stop=cython.double, here=cython.double, code=cython.int)
 def run(I: cython.p_int, P: cython.p_double, W: cython.p_double, C: cython.p_int, N: cython.p_double, X: cython.p_double, S: cython.p_double, MI: cython.p_int, T: cython.p_double, D: cython.p_int, Z: cython.p_double, G: cython.p_double, y: cython.p_double, K: cython.p_double, z: cython.p_double, F: cython.p_double, ts: cython.p_double, n_out: cython.Py_ssize_t, out: cython.p_double, ends: cython.p_double, passed: cython.p_double, most: cython.Py_ssize_t) -> cython.int:
     """Up to `most` accepted steps towards the piece's end Z[10]; a code (see above).
 
@@ -316,6 +316,7 @@ def run(I: cython.p_int, P: cython.p_double, W: cython.p_double, C: cython.p_int
         for i in range(n):
             out[D[2] * n + i] = y[i]
         D[2] += 1
+    here = P[5]
     while Z[0] < Z[10]:
         if count >= most:
             return 1
@@ -337,7 +338,7 @@ def run(I: cython.p_int, P: cython.p_double, W: cython.p_double, C: cython.p_int
         if h <= 1e-14 * fabs(Z[10]) or h < 1e-300:
             if last == 0:
                 return 2
-        near = I[4] > 0 and P[6] < P[7]
+        near = I[4] > 0 and (P[6] < P[7] or here < P[7])
         P[6] = 1.0
         bad = attempt(I, P, W, C, N, X, S, MI, T, D, Z, y, z, K, h, near)
         if I[40] and D[4] == 0:
@@ -375,8 +376,11 @@ def run(I: cython.p_int, P: cython.p_double, W: cython.p_double, C: cython.p_int
                     Z[1] = best_h
                 Z[6] += 1
                 continue
-            # a step that found no better way may be off by that much
-            noise = 100.0 * noise if P[6] > 0.0 else 0.0
+            # a step that found no better way may be off by that much, also by what its start makes of the rounding
+            q = P[6]
+            if here < q:
+                q = here
+            noise = 3e-13 * h * Z[13] / (q * Z[8]) if q > 0.0 and dodges == 10 else 0.0
         if e != e or (bad < 0 and D[4] == 0):
             # outside what the scene can do: a much smaller step, or the end of it
             Z[6] += 1
@@ -427,6 +431,7 @@ def run(I: cython.p_int, P: cython.p_double, W: cython.p_double, C: cython.p_int
             code = land(I, P, W, C, N, X, S, Z, y, K)
             if code:
                 return code
+            here = P[5]
         else:
             for i in range(n):
                 K[i] = K[m * n + i]
