@@ -20,13 +20,16 @@ def refuse(scene: Scene, found: Recovered) -> None:
         raise SolveError(*not_finite(scene, found, int(np.flatnonzero(~finite)[0])))
     if (found.idle > 0).any():
         raise SolveError(nothing_behind(scene, float(found.times[int(np.flatnonzero(found.idle > 0)[0])])))
-    layout = scene.layout
+    layout, gravity = scene.layout, scene.mechanism.gravity
     for spin in scene.idle:
         rows = found.bodies[:, layout.place[spin.body]]
         R = rows[:, 0:9].reshape(-1, 3, 3)
         alpha = np.einsum("tki,tk->ti", R, rows[:, 18:21])
         moment = np.abs(alpha @ (spin.axes @ spin.lent).T).max(initial=0.0)
-        scale = np.abs(rows[:, 27:30]).max(initial=0.0) * layout.size + np.abs(found.loads[:, :, 3:6]).max(initial=0.0)
+        # a body that nothing pulls at is still moved by others and by its weight
+        moved = scene.mechanism.bodies[spin.body].mass * (np.abs(rows[:, 21:24]).max() + np.abs(gravity).max())
+        force = np.abs(rows[:, 27:30]).max(initial=0.0) + moved
+        scale = force * layout.size + np.abs(found.loads[:, :, 3:6]).max(initial=0.0)
         if moment > NO_MOMENT * scale:
             axis = ", ".join(f"{x:.4g}" for x in spin.axes[0])
             name = scene.mechanism.bodies[spin.body].name

@@ -136,3 +136,24 @@ def test_a_moment_across_the_axis_is_not() -> None:
     """The same couple across the axis turns the rod: m g L/2 less 0.3 N m about y, over m L²/3."""
     found = solved(ROD + "forces: {twist: {type: couple, on: rod.tip, vector: [0, 0.3, 0], frame: body}}")
     near(found.bodies["rod"]["angular_acceleration"][0], [0.0, (2 * 9.81 * 0.5 + 0.3) / (2 / 3), 0.0], 10.0, 1e-14)
+
+
+@pytest.mark.parametrize("cables", [1, 2])
+def test_rounding_is_no_moment(cables: int) -> None:
+    """Thin bars hung on cables in no particular direction, slack in part: what rounding puts on the axis is nothing."""
+    rng = np.random.default_rng(7)
+    for _ in range(20):
+        a, b, gravity = rng.uniform(-2, 2, (3, 3))
+        points = f"points: {{p: {a.tolist()}, q: {b.tolist()}}}"
+        held = "  j0: {type: rod, from: {body: ground, at: [0, 0, 0]}, to: bar.p}\n"
+        if cables == 2:
+            held += f"  j1: {{type: rod, from: {{body: ground, at: {([*b, 0, 0, 3]).tolist()}}}, to: bar.q}}\n"
+        found = solved(f"""
+heun: 1
+gravity: {gravity.tolist()}
+bodies: {{bar: {{shapes: [{{type: rod, from: {a.tolist()}, to: {b.tolist()}, mass: 1}}], {points}}}}}
+joints:
+{held}analysis: {{duration: 0.1, samples: 3}}
+""")
+        axis = np.einsum("tij,j->ti", found.bodies["bar"]["rotation"], (b - a) / np.linalg.norm(b - a))
+        near(np.sum(axis * found.bodies["bar"]["angular_velocity"], axis=1), 0.0, 1.0, 1e-9)
