@@ -31,6 +31,7 @@ FUTILE = 20  # times the steps of the coarser run: a finer one that takes more f
 LEAST = 3e-14  # no local tolerance of A below, none of B below a thirtieth: the steps would only chase rounding
 NO_LOAD = 1e-11  # of the largest m (a - g): smaller joint loads are none
 CLAIM = 1e-3  # beyond this relative error nothing is claimed
+AT_REST = 1e-20  # of the weight's work over the scene's size: less kinetic energy is none
 ROUNDING = 4e-16  # rounding of one evaluation of a place, relative to the size; the estimate is never below
 CHUNK = 2_000_000  # numbers compared at a time
 
@@ -186,8 +187,11 @@ def balance_residual(
     return float((residual / scale).max(initial=0.0))
 
 
-def energy_drift(kinetic: Array, potential: Array, work: Array) -> float:
-    """Change of kinetic + potential - work from the start, relative to the largest kinetic energy."""
+def energy_drift(kinetic: Array, potential: Array, work: Array, at_rest: float) -> float:
+    """Change of kinetic + potential - work from the start, relative to the largest kinetic energy.
+
+    at_rest: an energy [J] up to which nothing moves, and nothing is told.
+    """
     total = kinetic + potential - work
     largest = float(kinetic.max(initial=0.0))
-    return float(np.abs(total - total[0]).max(initial=0.0)) / largest if largest > 0.0 else 0.0
+    return float(np.abs(total - total[0]).max(initial=0.0)) / largest if largest > at_rest else 0.0

@@ -26,10 +26,12 @@ def refuse(scene: Scene, found: Recovered) -> None:
         R = rows[:, 0:9].reshape(-1, 3, 3)
         alpha = np.einsum("tki,tk->ti", R, rows[:, 18:21])
         moment = np.abs(alpha @ (spin.axes @ spin.lent).T).max(initial=0.0)
-        # a body that nothing pulls at is still moved by others and by its weight
-        moved = scene.mechanism.bodies[spin.body].mass * (np.abs(rows[:, 21:24]).max() + np.abs(gravity).max())
-        force = np.abs(rows[:, 27:30]).max(initial=0.0) + moved
-        scale = force * layout.size + np.abs(found.loads[:, :, 3:6]).max(initial=0.0)
+        # what is given or turns, not the acceleration, which such a moment makes as large as it likes
+        force = np.abs(rows[:, 27:30]).max(initial=0.0) + np.abs(found.loads[:, :, 0:3]).max(initial=0.0)
+        body = scene.mechanism.bodies[spin.body]
+        scale = (force + body.mass * float(np.abs(gravity).max())) * layout.size
+        scale += np.abs(found.loads[:, :, 3:6]).max(initial=0.0)
+        scale += float(np.trace(body.inertia)) * float(np.sum(rows[:, 12:15] ** 2, axis=1).max())
         if moment > NO_MOMENT * scale:
             axis = ", ".join(f"{x:.4g}" for x in spin.axes[0])
             name = scene.mechanism.bodies[spin.body].name

@@ -31,6 +31,7 @@ if TYPE_CHECKING:
 BLOCKS = frozenset({"motion", "points", "foundation", "joints", "sections", "forces", "energy"})
 SEARCH_PER_STEP = 4  # instants looked at in each step of the integrator when extremes are searched
 MOST_SEARCHED = 20_000
+UNBALANCED = 1e-6  # of a body's largest load: rounding stays far below, near a singular pose, too
 
 
 @dataclass(frozen=True)
@@ -135,7 +136,10 @@ class Study:
             model=self.model | ({"split": "; ".join(composed.split)} if composed.split else {}),
             status=self._status(), time=found.times, **composed.blocks,
             certain_sums=composed.sums, accuracy=accuracy, work=self._work(),
-            warnings=(*self._warnings(joints), *self._singular(composed.decided, found.times)),
+            warnings=(
+                *unbalanced(accuracy["balance_residual"]), *self._warnings(joints),
+                *self._singular(composed.decided, found.times),
+            ),
         )  # fmt: skip
 
     def _status(self) -> Block:
@@ -157,7 +161,9 @@ class Study:
             found.append(f"{missed}: the motion is estimated to {worst:.2g} of the scene's size")
         if self.passages:
             told = ", ".join(f"{t:.6g}" for t in self.passages[:5]) + (" ..." if len(self.passages) > 5 else "")
-            branch = "another motion branches off there, this one goes on smoothly"
+            sure = self.checked is not None and self.checked.horizon is None
+            goes = "this one goes on smoothly" if sure else "rounding decides which is followed"
+            branch = f"another motion branches off there, {goes}"
             found.append(f"passes through a singular pose at t = {told} s: {branch}")
         if self.checked is None:
             ropes = [j.name for j in self.scene.mechanism.joints if j.tension_only and j.name in joints]
@@ -173,6 +179,12 @@ class Study:
             "kernel": KERNEL, "steps": run.steps if run else 0, "evaluations": run.evaluations if run else 0,
             "seconds": dict(self.seconds),
         }  # fmt: skip
+
+
+def unbalanced(residual: float) -> list[str]:
+    """A sentence where the numbers do not fulfil d'Alembert's principle."""
+    wrong = f"the forces balance to {residual:.1g} of the largest only: the loads are not to be trusted"
+    return [wrong] if residual > UNBALANCED else []
 
 
 @dataclass(frozen=True)

@@ -157,3 +157,19 @@ joints:
 """)
         axis = np.einsum("tij,j->ti", found.bodies["bar"]["rotation"], (b - a) / np.linalg.norm(b - a))
         near(np.sum(axis * found.bodies["bar"]["angular_velocity"], axis=1), 0.0, 1.0, 1e-9)
+
+
+@pytest.mark.parametrize("more", ["", "analysis: {duration: 0.1, samples: 3}\n"])
+def test_a_point_mass_held_aside_is_refused(more: str) -> None:
+    """A massless lever with its load and its guide on one end and its mass on the other: the lever would fly round."""
+    with pytest.raises(SolveError, match=r"bodies\.b has no inertia about its axis"):
+        solved("""
+heun: 1
+gravity: [0, 0, -9.81]
+ground: {points: {O: [0, 0, 0]}}
+bodies:
+  b: {shapes: [{type: point, at: [0.3, 0.3, 0.3], mass: 1}], points: {p: [0, 0, 0]}}
+joints:
+  J: {type: plane, normal: [-0.58, 0.37, -0.07], from: ground.O, to: b.p}
+forces: {f: {type: force, on: b.p, vector: [-4.2, 6.04, -18.97]}}
+""" + more)
