@@ -26,12 +26,13 @@ from heuncli.results import Array
 RATIO = 30.0  # local tolerance of A over that of B
 FIRST = 1.0  # local tolerance of the first run over the tolerance asked
 RERUNS = 2
+COLLAPSED = ("step-collapsed", "closure-lost")  # how a run ends where rounding keeps it from a singular pose
 COARSEST = 1e-6  # a collapsed run is not tried again beyond this local tolerance
 FUTILE = 20  # times the steps of the coarser run: a finer one that takes more fights with rounding
 LEAST = 3e-14  # no local tolerance of A below, none of B below a thirtieth: the steps would only chase rounding
 NO_LOAD = 1e-11  # of the largest m (a - g): smaller joint loads are none
 CLAIM = 1e-3  # beyond this relative error nothing is claimed
-AT_REST = 1e-20  # of the weight's work over the scene's size: less kinetic energy is none
+AT_REST = 1e-20  # of the weight's work over the scene's size: less kinetic energy is none, and no scale
 ROUNDING = 4e-16  # rounding of one evaluation of a place, relative to the size; the estimate is never below
 CHUNK = 2_000_000  # numbers compared at a time
 
@@ -74,8 +75,9 @@ def checked_run(
         """The run asked for; where closures make it collapse, one that rounding in a singular pose lets through."""
         try:
             return run(local)
-        except SolveError:
-            coarser = [local * RATIO**k for k in (1, 2, 3)] if runner.layout.rows else []
+        except SolveError as error:
+            collapsed = runner.layout.rows and error.problems[0].code in COLLAPSED
+            coarser = [local * RATIO**k for k in (1, 2, 3)] if collapsed else []
             for other in (x for x in coarser if x <= COARSEST):
                 with contextlib.suppress(SolveError):
                     return run(other)
@@ -187,11 +189,11 @@ def balance_residual(
     return float((residual / scale).max(initial=0.0))
 
 
-def energy_drift(kinetic: Array, potential: Array, work: Array, at_rest: float) -> float:
-    """Change of kinetic + potential - work from the start, relative to the largest kinetic energy.
+def energy_drift(kinetic: Array, potential: Array, work: Array, lift: float) -> float:
+    """Change of kinetic + potential - work from the start, relative to the largest kinetic energy; 0 at rest.
 
-    at_rest: an energy [J] up to which nothing moves, and nothing is told.
+    lift: the work of the weight over the scene's size [J], by which rest is judged.
     """
     total = kinetic + potential - work
     largest = float(kinetic.max(initial=0.0))
-    return float(np.abs(total - total[0]).max(initial=0.0)) / largest if largest > at_rest else 0.0
+    return float(np.abs(total - total[0]).max(initial=0.0)) / largest if largest > AT_REST * lift else 0.0

@@ -11,7 +11,7 @@ from typing import TYPE_CHECKING, Any
 
 import numpy as np
 
-from heuncli.accuracy import AT_REST, balance_residual, energy_drift
+from heuncli.accuracy import balance_residual, energy_drift
 from heuncli.kinetostatics.bodies import BodyStates, body_states
 from heuncli.kinetostatics.coordinates import coordinates, points
 from heuncli.kinetostatics.energy import energy, system_vector
@@ -70,7 +70,7 @@ def compose(
     sums = decided.sums(scene, runner, found) if decided is not None and "joints" in wanted else []
     lift = sum(body.mass for body in mechanism.bodies) * float(np.abs(mechanism.gravity).max()) * layout.size
     accuracy = {
-        "energy_drift": energy_drift(power["kinetic"], power["potential"], power["work"], AT_REST * lift),
+        "energy_drift": energy_drift(power["kinetic"], power["potential"], power["work"], lift),
         "constraint_gap": float(found.gap.max(initial=0.0)),
         "balance_residual": balance_residual(mechanism, found, states, joints, layout.size),
     }

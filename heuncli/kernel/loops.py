@@ -354,7 +354,7 @@ def product(I: cython.p_int, W: cython.p_double, r: cython.Py_ssize_t) -> cython
 def factor_closures(I: cython.p_int, P: cython.p_double, W: cython.p_double) -> cython.double:
     """Columns and Cholesky factor of A over the selected rows (within each row's envelope); the least pivot.
 
-    Pivots are relative to what the sides of the row would answer alone, when the rows were chosen.
+    Pivots are relative to what the row could answer (`reach`) when the rows were chosen: a row that vanishes counts.
     """
     m = I[29]
     A = I[27]
