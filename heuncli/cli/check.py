@@ -21,7 +21,7 @@ from heuncli.report.table import Column, Table, plain
 from heuncli.report.words import count
 from heuncli.results import Array
 from heuncli.spec.load import load
-from heuncli.study import Options, solve
+from heuncli.study.solve import Options, solve
 
 FORMATS = ("table", "json")
 ENDINGS = frozenset({".yaml", ".yml"})

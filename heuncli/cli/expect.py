@@ -14,7 +14,7 @@ from heuncli.errors import HeunError, Place, Problem
 from heuncli.report.paths import find
 from heuncli.results import Array, Results
 from heuncli.spec.models import Expect
-from heuncli.study import Study
+from heuncli.study.solve import Study
 
 # Where the spec gives neither rel nor abs.
 DEFAULT_REL, DEFAULT_ABS = 1e-6, 1e-9

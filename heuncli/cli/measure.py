@@ -14,7 +14,7 @@ from heuncli.report.numbers import OPEN
 from heuncli.report.paths import find
 from heuncli.report.scene import Scene
 from heuncli.results import Array, Results
-from heuncli.study import Study
+from heuncli.study.solve import Study
 
 FORMS = "expected [max | min | max abs | first | final | at T] PATH"
 HINT = "such as --measure 'max abs sections.middle.M1'"

@@ -11,7 +11,7 @@ from heuncli.cli.solving import choice, overrides, warn
 from heuncli.report.export import dump
 from heuncli.report.note import note
 from heuncli.spec.load import load
-from heuncli.study import describe
+from heuncli.study.solve import describe
 
 FORMATS = ("text", "json")
 

@@ -23,7 +23,7 @@ from heuncli.report.table import Table, markdown, plain
 from heuncli.results import Results
 from heuncli.spec.load import load
 from heuncli.spec.rules.not_yet import METHODS
-from heuncli.study import Options, Study, solve
+from heuncli.study.solve import Options, Study, solve
 
 ENDINGS = {".json": "json", ".csv": "csv", ".md": "markdown"}
 NOT_SEARCHED = "extremes among the samples only: too many quantities to search between them"

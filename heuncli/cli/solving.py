@@ -8,14 +8,14 @@ from typing import Any
 
 import numpy as np
 
-from heuncli import peaks
 from heuncli.cli.entry import UsageError
 from heuncli.cli.output import say
 from heuncli.errors import Problem
 from heuncli.report.page import PARTS
 from heuncli.results import Array, Results
 from heuncli.spec.models import Spec
-from heuncli.study import Study
+from heuncli.study import extremes as peaks
+from heuncli.study.solve import Study
 
 MOST_SEARCHED = 1_000_000  # numbers to look at for extremes between the samples
 SAME_INSTANT = 1e-9  # of the run's length: instants this near to each other are one

@@ -36,7 +36,7 @@ def _of_cuts(spec: Spec) -> list[str]:
     """Warnings of the sections. Raises SpecError with every one that cannot be cut."""
     if not spec.sections:
         return []
-    from heuncli.scene import drawn  # with NumPy, which other specs are judged without
+    from heuncli.tree.prepare import drawn  # with NumPy, which other specs are judged without
 
     return [f"{spec.path}: {warning}" for cut in drawn(spec)[1] for warning in cut.warnings]
 

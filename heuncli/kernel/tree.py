@@ -6,7 +6,7 @@ A free direction s (a unit turn or a unit shift) is eliminated by U = I s, D = s
 at once, A = L D L', G = A^-1 C, after which neither A nor C is left and only K is handed on (Heun's absolute angular
 velocities: the state of a ball is the attitude and the angular velocity of the body itself, not of the joint).
 Gravity enters as the ground's acceleration -g, so `a` is throughout the acceleration less g.
-Bodies come parents first. Flat arrays (built by mechanism/topology.py), no names, no exceptions:
+Bodies come parents first. Flat arrays (built by tree/pack.py), no names, no exceptions:
 
 I header   0 bodies 1 scalar freedoms 2 sweep freedoms 3 loads 4 rows 5 n_q 6 n_u 7 work (0/1) 8 work's place in the state
            10.. offsets: 10 bodies 11 freedoms 12 loads 13 rows 14 variables 15 number of variables

@@ -6,10 +6,10 @@ from dataclasses import dataclass
 
 import numpy as np
 
-from heuncli.mechanism.layout import Layout
+from heuncli.integration.runner import Recovered
 from heuncli.mechanism.model import GROUND
-from heuncli.motion import Recovered
 from heuncli.results import Array
+from heuncli.tree.layout import Layout
 
 
 @dataclass(frozen=True, eq=False)

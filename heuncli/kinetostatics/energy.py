@@ -4,12 +4,12 @@ from __future__ import annotations
 
 import numpy as np
 
+from heuncli.integration.runner import Recovered
 from heuncli.kinetostatics.bodies import BodyStates
 from heuncli.kinetostatics.foundation import load_slots
-from heuncli.mechanism.layout import Layout
 from heuncli.mechanism.model import Mechanism, PairLoad
-from heuncli.motion import Recovered
 from heuncli.results import Array, Block
+from heuncli.tree.layout import Layout
 
 
 def energy(layout: Layout, found: Recovered, states: BodyStates) -> Block:

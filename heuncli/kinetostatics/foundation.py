@@ -8,10 +8,10 @@ from __future__ import annotations
 
 import numpy as np
 
+from heuncli.integration.runner import Recovered
 from heuncli.kinetostatics.bodies import BodyStates
 from heuncli.kinetostatics.reactions import JointLoads, in_plane, support_loads
 from heuncli.mechanism.model import GROUND, JointLoad, Mechanism, PairLoad, PointLoad
-from heuncli.motion import Recovered
 from heuncli.results import Array, Block
 
 NO_FORCE = 1e-12  # of the largest load: below it s is zero and has no axis

@@ -12,13 +12,13 @@ from dataclasses import dataclass
 
 import numpy as np
 
+from heuncli.integration.runner import Recovered
 from heuncli.kinetostatics.bodies import BodyStates
 from heuncli.mechanism.joints import JOINTS
-from heuncli.mechanism.layout import Layout
 from heuncli.mechanism.model import GROUND, Joint
-from heuncli.mechanism.starts import joint_frame
-from heuncli.motion import Recovered
 from heuncli.results import Array
+from heuncli.tree.layout import Layout
+from heuncli.tree.starts import joint_frame
 
 
 @dataclass(frozen=True, eq=False)

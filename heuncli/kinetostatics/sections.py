@@ -15,14 +15,14 @@ from dataclasses import dataclass
 
 import numpy as np
 
+from heuncli.integration.runner import Recovered
 from heuncli.kinetostatics.bodies import BodyStates
+from heuncli.kinetostatics.cuts import Cuts, wanders
 from heuncli.kinetostatics.foundation import load_slots
 from heuncli.kinetostatics.stress import MODULI, stresses
-from heuncli.kinetostatics.unique import OPEN, SelfStress
-from heuncli.kinetostatics.verdicts import names_of
-from heuncli.mechanism.cuts import Cuts, wanders
 from heuncli.mechanism.model import Joint, Mechanism, PairLoad, PointLoad
-from heuncli.motion import Recovered
+from heuncli.redundancy.open_components import names_of
+from heuncli.redundancy.self_stress import OPEN, SelfStress
 from heuncli.results import Array, Block, Mask
 
 NONE = 1e-12  # of |s'| + |M'| / reach: a smaller normal or shear force has no line

@@ -6,7 +6,6 @@ from typing import TYPE_CHECKING, Any
 
 import numpy as np
 
-from heuncli.mechanism.inertia import properties
 from heuncli.mechanism.joints import PLANAR
 from heuncli.mechanism.model import (
     GROUND,
@@ -21,9 +20,10 @@ from heuncli.mechanism.model import (
     PointLoad,
 )
 from heuncli.results import Array
+from heuncli.shapes.inertia import properties
 
 if TYPE_CHECKING:
-    from heuncli.mechanism.shapes import Form
+    from heuncli.shapes.forms import Form
 
 INFINITE = np.full(3, np.inf)
 
@@ -33,7 +33,7 @@ def forms_of(spec: Any) -> dict[str, Form]:
     shapes = {name: b.shapes for name, b in spec.bodies.items() if b.shapes is not None}
     if not shapes:
         return {}
-    from heuncli.mechanism.shapes import form  # 8 ms that only they are worth
+    from heuncli.shapes.forms import form  # 8 ms that only they are worth
 
     return {name: form(of) for name, of in shapes.items()}
 

@@ -9,8 +9,8 @@ from collections.abc import Iterator
 from dataclasses import dataclass
 from typing import Literal
 
+from heuncli.expressions.programs import Expression
 from heuncli.results import Array
-from heuncli.spec.expression import Expression
 
 GROUND = -1
 

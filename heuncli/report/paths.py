@@ -13,9 +13,9 @@ from typing import Any, NamedTuple
 import numpy as np
 
 from heuncli.errors import Problem, SpecError
+from heuncli.nearest import nearest
 from heuncli.report.quantities import TIMED, XYZ, is_static
 from heuncli.results import Array, Results
-from heuncli.spec.nearest import nearest
 
 MOST_NAMES = 12  # of the known names an error lists
 

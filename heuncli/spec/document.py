@@ -7,9 +7,9 @@ from typing import Any
 
 from pydantic import ValidationError
 
+from heuncli.nearest import misspelt
 from heuncli.spec import format as f
 from heuncli.spec.fields import Context, Model, keys_of
-from heuncli.spec.nearest import misspelt
 from heuncli.spec.quantity import kind_of
 from heuncli.spec.rules.registry import Found, Path_
 from heuncli.spec.verdicts import unknown_key, unknown_type, verdicts

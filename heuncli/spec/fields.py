@@ -12,8 +12,8 @@ from pydantic import BaseModel, BeforeValidator, ConfigDict, Discriminator, Tag
 from pydantic_core import core_schema
 
 from heuncli.errors import Finding
-from heuncli.spec import units as u
-from heuncli.spec.expression import Expression
+from heuncli.expressions import units as u
+from heuncli.expressions.programs import Expression
 from heuncli.spec.quantity import Scope, in_time, kind_of, number
 
 

@@ -7,9 +7,9 @@ from pathlib import Path
 from typing import Any
 
 from heuncli.errors import Place, Problem, SpecError
+from heuncli.expressions.programs import Table
 from heuncli.spec import format as f
 from heuncli.spec.document import Reader
-from heuncli.spec.expression import Table
 from heuncli.spec.fields import Context
 from heuncli.spec.models import Spec
 from heuncli.spec.names import NAMED, Names, mapping

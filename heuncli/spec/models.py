@@ -14,7 +14,7 @@ from types import MappingProxyType
 from typing import Literal, NamedTuple
 
 from heuncli.errors import Place, Problem
-from heuncli.spec.expression import Expression, Table
+from heuncli.expressions.programs import Expression, Table
 
 Vec = tuple[float, float, float]
 Matrix = tuple[Vec, Vec, Vec]

@@ -4,10 +4,10 @@ from __future__ import annotations
 
 from typing import Any, NamedTuple
 
+from heuncli.expressions.grammar import RESERVED
+from heuncli.nearest import misspelt
 from heuncli.spec.fields import Model, keys_of
 from heuncli.spec.format import Body, Ground
-from heuncli.spec.grammar import RESERVED
-from heuncli.spec.nearest import misspelt
 
 GROUND = "ground"
 NAMED = ("parameters", "bodies", "joints", "drives", "forces", "impulses", "sections", "tables")

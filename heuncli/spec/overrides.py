@@ -7,8 +7,8 @@ from collections.abc import Mapping
 from typing import Any
 
 from heuncli.errors import Place, Problem, SpecError
+from heuncli.nearest import did_you_mean
 from heuncli.spec.names import NAMED, mapping
-from heuncli.spec.nearest import did_you_mean
 from heuncli.spec.source import Path_, parse
 
 OWN = ("title", "gravity", "space", "report")  # keys without a dot, beside the parameters

@@ -10,12 +10,12 @@ from dataclasses import dataclass
 from typing import Any
 
 from heuncli.errors import Place, Problem
+from heuncli.expressions.programs import Expression, Table
 from heuncli.spec import format as f
 from heuncli.spec import models as m
-from heuncli.spec.expression import Expression, Table
 from heuncli.spec.fields import End
-from heuncli.spec.meanings import body_axes, drive_of, end_of, instants_of, point_in, tensor, type_of
 from heuncli.spec.names import GROUND
+from heuncli.spec.semantics import body_axes, drive_of, end_of, instants_of, point_in, tensor, type_of
 from heuncli.spec.turns import IDENTITY
 
 DEFAULT_TOLERANCE = 1e-9

@@ -9,12 +9,12 @@ from dataclasses import dataclass
 from pathlib import Path
 
 from heuncli.errors import Finding, Place
-from heuncli.spec.curves import fit
-from heuncli.spec.expression import Table
+from heuncli.expressions.curves import fit
+from heuncli.expressions.programs import Table
+from heuncli.expressions.units import parse_unit
+from heuncli.nearest import nearest
 from heuncli.spec.format import Table as Entry
-from heuncli.spec.nearest import nearest
 from heuncli.spec.quantity import Scope, number
-from heuncli.spec.units import parse_unit
 
 SAME = 1e-6  # a period and its span, and the values at its two ends, are printed with some digits
 MOST_ROWS = 2_000_000

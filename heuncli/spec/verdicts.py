@@ -9,8 +9,8 @@ from typing import Annotated, Any, Union, get_args, get_origin
 from pydantic import ValidationError
 
 from heuncli.errors import Finding
+from heuncli.nearest import did_you_mean, nearest
 from heuncli.spec.fields import Model
-from heuncli.spec.nearest import did_you_mean, nearest
 from heuncli.spec.quantity import Follows, kind_of
 from heuncli.spec.rules.registry import Found, Path_
 from heuncli.spec.words import KEY_WORDS, LATER, TYPES

@@ -6,10 +6,10 @@ from typing import Any
 
 import numpy as np
 
+from heuncli.expressions.grammar import Scope, compile_expression
+from heuncli.expressions.programs import Expression
 from heuncli.mechanism.model import GROUND, Assembly, Body, Directed, Drive, Joint, Mechanism
-from heuncli.mechanism.rotations import about, from_vector, to_vector
-from heuncli.spec.expression import Expression
-from heuncli.spec.grammar import Scope, compile_expression
+from heuncli.shapes.rotations import about, from_vector, to_vector
 
 X, Y, Z = np.eye(3)
 

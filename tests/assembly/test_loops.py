@@ -9,9 +9,9 @@ from typing import Any
 import numpy as np
 import pytest
 
-from heuncli.mechanism.assemble import assemble
+from heuncli.assembly.assemble import assemble
 from heuncli.mechanism.model import GROUND, Assembly, Mechanism
-from heuncli.mechanism.rotations import from_vector, to_vector
+from heuncli.shapes.rotations import from_vector, to_vector
 from tests.assembly.scenes import (
     X,
     Y,

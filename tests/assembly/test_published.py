@@ -7,7 +7,7 @@ from typing import Any
 import numpy as np
 import pytest
 
-from heuncli.mechanism.assemble import assemble
+from heuncli.assembly.assemble import assemble
 from heuncli.mechanism.model import Mechanism
 from tests.assembly.scenes import X, Y, Z, body, joint, largest_gap, largest_rate_gap, point, scene, turned
 

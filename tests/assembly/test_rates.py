@@ -8,8 +8,8 @@ from typing import Any
 import numpy as np
 import pytest
 
+from heuncli.assembly.assemble import assemble
 from heuncli.errors import SolveError
-from heuncli.mechanism.assemble import assemble
 from heuncli.mechanism.model import Assembly, Mechanism
 from tests.assembly.scenes import (
     X,

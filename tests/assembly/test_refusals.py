@@ -7,8 +7,8 @@ from typing import Any
 import numpy as np
 import pytest
 
+from heuncli.assembly.assemble import assemble
 from heuncli.errors import SolveError
-from heuncli.mechanism.assemble import assemble
 from heuncli.mechanism.model import Mechanism
 from tests.assembly.scenes import X, Y, Z, body, in_time, joint, scene, turned
 from tests.assembly.test_loops import four_bar, slider_crank

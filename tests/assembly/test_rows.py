@@ -7,9 +7,9 @@ from typing import Any
 import numpy as np
 import pytest
 
-from heuncli.mechanism.demands import Demand, demands
-from heuncli.mechanism.rotations import from_vector
-from heuncli.mechanism.rows import Rows, acceleration_rows, missing, pose_rows, rate_rows
+from heuncli.assembly.conditions import Demand, demands
+from heuncli.assembly.rows import Rows, acceleration_rows, missing, pose_rows, rate_rows
+from heuncli.shapes.rotations import from_vector
 from tests.assembly.scenes import body, in_time, joint, scene
 
 KINDS = ("ball", "pin", "universal", "weld", "slide", "cylinder", "line", "plane", "rod")

@@ -20,13 +20,13 @@ os.environ.setdefault("OPENBLAS_NUM_THREADS", "1")  # as the command sets it, be
 
 import numpy as np
 
+from heuncli.integration.runner import Runner
 from heuncli.kernel.choose import KERNEL
-from heuncli.motion import Runner
 from heuncli.report.export import to_csv, to_json
 from heuncli.report.scene import scene_of
-from heuncli.scene import Scene, prepare
 from heuncli.spec.load import load
-from heuncli.study import solve
+from heuncli.study.solve import solve
+from heuncli.tree.prepare import Scene, prepare
 from tests.bench.chart import chart
 
 SCENES = Path(__file__).parent / "scenes"

@@ -16,7 +16,7 @@ import pytest
 
 from heuncli.results import Array
 from heuncli.spec.load import load
-from heuncli.study import Options, Study, solve
+from heuncli.study.solve import Options, Study, solve
 from tests.identities.cases import tree_scene
 from tests.oracle.values import to_yaml
 from tests.references.bars import chain, double, rods, top

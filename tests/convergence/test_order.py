@@ -7,9 +7,9 @@ from collections.abc import Callable
 import numpy as np
 import pytest
 
-from heuncli import tableaus
+from heuncli.integration import tableaus
+from heuncli.integration.tableaus import Row, Tableau
 from heuncli.results import Array
-from heuncli.tableaus import Row, Tableau
 from tests.references.bars import chain, double, rods
 from tests.references.test_theory_2j_motion import heavy_top
 from tests.scenes import study

@@ -7,7 +7,7 @@ from pathlib import Path
 import numpy as np
 import pytest
 
-from heuncli import motion
+from heuncli.integration import runner as motion
 from tests.scenes import near, study
 
 SPECS = Path(__file__).parents[2] / "specs"

@@ -13,7 +13,20 @@ import heuncli
 
 ROOT = Path(heuncli.__file__).parent
 UNWANTED = ("yaml", "pydantic", "rich", "typer", "scipy")
-NUMERIC = ("errors", "results", "kernel", "mechanism", "motion", "kinetostatics", "accuracy", "peaks")
+NUMERIC = (
+    "errors",
+    "results",
+    "kernel",
+    "expressions",
+    "shapes",
+    "mechanism",
+    "assembly",
+    "tree",
+    "integration",
+    "kinetostatics",
+    "redundancy",
+    "study",
+)
 
 
 def modules(name: str) -> list[str]:

@@ -14,7 +14,7 @@ import pytest
 from heuncli.results import Results
 from heuncli.spec.load import load
 from heuncli.spec.source import parse
-from heuncli.study import Options, describe, solve
+from heuncli.study.solve import Options, describe, solve
 from tests.oracle.published import four_bar, windows
 from tests.oracle.read import state_at
 from tests.oracle.transforms import turned

@@ -9,7 +9,6 @@ from typing import Any
 import numpy as np
 import pytest
 
-from heuncli import peaks
 from heuncli.report.heading import write_heading
 from heuncli.report.layout import Found
 from heuncli.report.page import page_of, restrict
@@ -17,6 +16,7 @@ from heuncli.report.scene import JointInfo, Scene, scene_of
 from heuncli.report.table import plain
 from heuncli.results import Results
 from heuncli.spec.load import load
+from heuncli.study import extremes as peaks
 from tests.report.fakes import SCENE, FakeStudy, pendulum
 
 ONE = np.array([0.5])

@@ -9,12 +9,12 @@ from typing import Any
 import numpy as np
 import pytest
 
-from heuncli import peaks
 from heuncli.report.heading import write_heading
 from heuncli.report.layout import MANY, Found
 from heuncli.report.page import Page, page_of, restrict
 from heuncli.report.table import plain
 from heuncli.results import Array, Results
+from heuncli.study import extremes as peaks
 from tests.report.fakes import ACCURATE, SCENE, FakeStudy, pendulum, vectors
 
 T = np.linspace(0.0, 2.0, 21)

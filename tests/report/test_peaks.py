@@ -5,8 +5,8 @@ from __future__ import annotations
 import numpy as np
 import pytest
 
-from heuncli.peaks import MOST_COLUMNS, search
 from heuncli.results import Array
+from heuncli.study.extremes import MOST_COLUMNS, search
 
 GRID = np.linspace(0.0, 2.0, 61)
 

@@ -4,8 +4,8 @@ from __future__ import annotations
 
 import numpy as np
 
-from heuncli.mechanism.shapes import Form, form
 from heuncli.results import Array
+from heuncli.shapes.forms import Form, form
 from heuncli.spec.models import Shape, Vec
 
 

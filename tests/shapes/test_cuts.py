@@ -5,10 +5,10 @@ from __future__ import annotations
 import numpy as np
 import pytest
 
-from heuncli.mechanism import quadrature
-from heuncli.mechanism.inertia import moved as carried
-from heuncli.mechanism.shapes import form
 from heuncli.results import Array
+from heuncli.shapes import quadrature
+from heuncli.shapes.forms import form
+from heuncli.shapes.inertia import moved as carried
 from heuncli.spec.models import Shape
 from tests.oracle.masses import Plane, cloud
 from tests.shapes import polyhedra

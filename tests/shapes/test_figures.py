@@ -5,8 +5,8 @@ from __future__ import annotations
 import numpy as np
 import pytest
 
-from heuncli.mechanism.shapes import Form, form
 from heuncli.results import Array
+from heuncli.shapes.forms import Form, form
 from heuncli.spec.models import Shape
 from tests.shapes.scenes import SOLIDS, axis_of, beyond, difference, planes, unit
 

@@ -5,8 +5,8 @@ from __future__ import annotations
 import numpy as np
 import pytest
 
-from heuncli.mechanism.inertia import Verdict, judged, moved, principal, properties, pseudo_inertia
 from heuncli.results import Array
+from heuncli.shapes.inertia import Verdict, judged, moved, principal, properties, pseudo_inertia
 from tests.shapes.scenes import rotation
 
 

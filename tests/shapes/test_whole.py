@@ -5,9 +5,9 @@ from __future__ import annotations
 import numpy as np
 import pytest
 
-from heuncli.mechanism.inertia import properties
-from heuncli.mechanism.shapes import form
 from heuncli.results import Array
+from heuncli.shapes.forms import form
+from heuncli.shapes.inertia import properties
 from heuncli.spec.models import Shape
 from tests.shapes.scenes import SOLIDS, beyond, difference, moved, rotation
 

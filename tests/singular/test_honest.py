@@ -8,7 +8,7 @@ import numpy as np
 import pytest
 
 from heuncli.errors import SolveError
-from heuncli.study import unbalanced
+from heuncli.study.solve import unbalanced
 from tests.scenes import near, solved
 
 

@@ -13,11 +13,11 @@ import numpy as np
 import pytest
 from scipy.integrate import solve_ivp
 
-from heuncli.motion import Runner, Trajectory
-from heuncli.passages import passages
+from heuncli.integration.runner import Runner, Trajectory
+from heuncli.integration.singular import passages
 from heuncli.results import Array
-from heuncli.scene import Scene, prepare
 from heuncli.spec.load import load
+from heuncli.tree.prepare import Scene, prepare
 from tests.loops.parallelogram import parallelogram
 from tests.scenes import study
 

@@ -7,9 +7,9 @@ import math
 import pytest
 
 from heuncli.errors import LimitError
-from heuncli.spec.curves import fit
-from heuncli.spec.expression import Expression, Table, breakpoints
-from heuncli.spec.grammar import Scope, compile_expression
+from heuncli.expressions.curves import fit
+from heuncli.expressions.grammar import Scope, compile_expression
+from heuncli.expressions.programs import Expression, Table, breakpoints
 
 TRIANGLE = fit("triangle", [0.0, 0.25, 0.5], [0.0, 1.0, 0.0], "linear", None, 0.5)
 RAMP = fit("ramp", [1.0, 2.0, 4.0], [0.0, 1.0, 5.0], "linear", "hold", None)

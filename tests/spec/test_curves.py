@@ -10,9 +10,9 @@ import pytest
 from scipy.interpolate import CubicSpline, PchipInterpolator
 
 from heuncli.errors import SpecError
-from heuncli.spec.curves import fit
-from heuncli.spec.expression import Expression, Table
-from heuncli.spec.grammar import Scope, compile_expression
+from heuncli.expressions.curves import fit
+from heuncli.expressions.grammar import Scope, compile_expression
+from heuncli.expressions.programs import Expression, Table
 from heuncli.spec.load import load
 from heuncli.spec.tables import CsvError, NoColumn, columns_of
 

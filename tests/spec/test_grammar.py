@@ -7,8 +7,8 @@ from hypothesis import example, given, settings
 from hypothesis import strategies as st
 
 from heuncli.errors import Finding
-from heuncli.spec.expression import Expression
-from heuncli.spec.grammar import Scope, compile_expression
+from heuncli.expressions.grammar import Scope, compile_expression
+from heuncli.expressions.programs import Expression
 
 SCOPE = Scope(
     parameters={"L": 1.5, "broken": None},

@@ -418,7 +418,7 @@ def test_standard_input_looks_for_tables_where_it_is(tmp_path: Path, monkeypatch
 
 def test_the_numeric_part_can_know_the_types_without_yaml_and_pydantic() -> None:
     code = (
-        "import sys, heuncli.spec.models, heuncli.spec.expression; "
+        "import sys, heuncli.spec.models, heuncli.expressions.programs; "
         "print([m for m in ('yaml', 'pydantic', 'numpy', 'scipy', 'rich', 'typer') if m in sys.modules])"
     )
     assert subprocess.run([sys.executable, "-c", code], check=True, capture_output=True, text=True).stdout == "[]\n"

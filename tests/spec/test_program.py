@@ -14,9 +14,9 @@ import pytest
 from hypothesis import given, settings
 from hypothesis import strategies as st
 
+from heuncli.expressions.grammar import Scope, compile_expression
+from heuncli.expressions.programs import Expression, Pack
 from heuncli.kernel.choose import program
-from heuncli.spec.expression import Expression, Pack
-from heuncli.spec.grammar import Scope, compile_expression
 
 IN_TIME = Scope(parameters={"L": 1.5}, joints={"shaft": "pin", "guide": "slide"}, in_time=True)
 

@@ -9,8 +9,8 @@ from hypothesis import given, settings
 from hypothesis import strategies as st
 
 from heuncli.errors import Finding
-from heuncli.spec import units as u
-from heuncli.spec.grammar import Scope
+from heuncli.expressions import units as u
+from heuncli.expressions.grammar import Scope
 from heuncli.spec.quantity import in_time, number
 
 SCOPE = Scope(parameters={"L": 2.0, "m": 3.0})

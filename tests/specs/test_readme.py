@@ -13,9 +13,9 @@ from pydantic import BaseModel
 
 from heuncli.cli.entry import enter
 from heuncli.cli.requests import COMMANDS, LATER_COMMANDS
+from heuncli.expressions.grammar import ARITY, CONSTANTS
+from heuncli.expressions.units import UNITS
 from heuncli.spec import format as document
-from heuncli.spec.grammar import ARITY, CONSTANTS
-from heuncli.spec.units import UNITS
 
 ROOT = Path(__file__).parents[2]
 TEXT = (ROOT / "README.md").read_text()

@@ -22,7 +22,7 @@ from heuncli.report.paths import find
 from heuncli.report.quantities import walk
 from heuncli.report.scene import scene_of
 from heuncli.spec.load import load
-from heuncli.study import Options, Study, solve
+from heuncli.study.solve import Options, Study, solve
 
 FOLDER = Path(__file__).parents[2] / "specs"
 HEAVY = ("cardan", "crane", "engine", "friction", "jib")  # too long for the plain kernel

@@ -6,8 +6,8 @@ from collections.abc import Iterator
 
 from heuncli.errors import Finding
 from heuncli.spec import format as f
-from heuncli.spec.meanings import body_axes, tensor
 from heuncli.spec.rules.registry import Found, Path_, Scene, rule
+from heuncli.spec.semantics import body_axes, tensor
 from heuncli.spec.turns import principal
 
 BROKEN = 1e-3  # contract: principal moments that break the triangle rule by more are refused

@@ -5,12 +5,12 @@ from __future__ import annotations
 from collections.abc import Iterator
 from typing import TYPE_CHECKING, Any
 
+from heuncli.expressions import units as u
+from heuncli.expressions.programs import Expression
+from heuncli.nearest import did_you_mean
 from heuncli.spec import format as f
-from heuncli.spec import units as u
-from heuncli.spec.expression import Expression
-from heuncli.spec.meanings import instants_of, type_of
-from heuncli.spec.nearest import did_you_mean
 from heuncli.spec.rules.registry import Found, Path_, Scene, rule
+from heuncli.spec.semantics import instants_of, type_of
 
 if TYPE_CHECKING:
     from heuncli.spec.rules.outcome import Astray, Quantity, Shape

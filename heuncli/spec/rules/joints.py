@@ -5,11 +5,11 @@ from __future__ import annotations
 import math
 from collections.abc import Iterator
 
+from heuncli.expressions.programs import Expression, across, breakpoints
 from heuncli.spec import format as f
-from heuncli.spec.expression import Expression, across, breakpoints
 from heuncli.spec.fields import End
-from heuncli.spec.meanings import drive_of, span_of
 from heuncli.spec.rules.registry import Found, Path_, Scene, rule
+from heuncli.spec.semantics import drive_of, span_of
 
 SAME = 1e-9  # relative: a held value and a drive's
 LOOKED_AT = 1000  # parts of the run at whose ends a driven length is looked at

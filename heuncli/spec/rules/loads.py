@@ -4,10 +4,10 @@ from __future__ import annotations
 
 from collections.abc import Iterator
 
+from heuncli.expressions import units as u
 from heuncli.spec import format as f
-from heuncli.spec import units as u
-from heuncli.spec.meanings import span_of
 from heuncli.spec.rules.registry import Found, Scene, rule
+from heuncli.spec.semantics import span_of
 
 TURNING = ("ball", "pin", "universal", "cylinder")
 SLIDING = ("slide", "line", "plane")

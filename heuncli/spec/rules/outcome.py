@@ -5,7 +5,7 @@ from __future__ import annotations
 from collections.abc import Mapping
 from typing import Any, NamedTuple
 
-from heuncli.spec import units as u
+from heuncli.expressions import units as u
 from heuncli.spec.names import Names
 from heuncli.spec.rules.registry import Scene
 from heuncli.spec.rules.sections import is_run

@@ -6,8 +6,8 @@ import math
 from collections.abc import Iterator
 
 from heuncli.spec import format as f
-from heuncli.spec.meanings import body_axes
 from heuncli.spec.rules.registry import Found, Path_, Scene, rule
+from heuncli.spec.semantics import body_axes
 from heuncli.spec.turns import IDENTITY, unit
 
 FLAT = 1e-9  # of a direction's length: what may stand out of the plane

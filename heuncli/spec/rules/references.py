@@ -4,12 +4,12 @@ from __future__ import annotations
 
 from collections.abc import Iterable, Iterator
 
+from heuncli.nearest import did_you_mean
 from heuncli.spec import format as f
 from heuncli.spec.fields import End
-from heuncli.spec.meanings import end_of
 from heuncli.spec.names import GROUND, mapping
-from heuncli.spec.nearest import did_you_mean
 from heuncli.spec.rules.registry import Found, Path_, Scene, rule
+from heuncli.spec.semantics import end_of
 
 
 def ends(scene: Scene) -> Iterator[tuple[Path_, End]]:

@@ -5,8 +5,8 @@ from __future__ import annotations
 from collections.abc import Iterator
 
 from heuncli.spec import format as f
-from heuncli.spec.meanings import point_in
 from heuncli.spec.rules.registry import Found, Scene, rule
+from heuncli.spec.semantics import point_in
 from heuncli.spec.turns import cross, length, unit
 
 PARALLEL = 1e-9

@@ -1,0 +1,40 @@
+"""Poses and rates at the start that fit all joints (contract section 1, "Assembly")."""
+
+from __future__ import annotations
+
+import numpy as np
+
+from heuncli.assembly.chosen import chosen, pose_choices, rate_choices
+from heuncli.assembly.conditions import demands
+from heuncli.assembly.gaps import size_of
+from heuncli.assembly.poses import Placing
+from heuncli.assembly.rates import Moving
+from heuncli.mechanism.model import Assembly, Mechanism
+
+
+def assemble(mechanism: Mechanism, t0: float = 0.0) -> Assembly:
+    """Poses and rates at t0: what is held, and for the rest the nearest to the drawing that fits.
+
+    Raises SolveError: does-not-fit, held-conflict, rates-do-not-fit, singular-pose.
+    """
+    found = demands(mechanism, t0)
+    size = size_of(mechanism)
+    placing = Placing(mechanism, found, size)
+    placing.fit()
+    moving = Moving(mechanism, found, placing.poses, size)
+    moving.fit()
+    moving.check()
+
+    n = len(mechanism.bodies)
+    x, r = placing.poses.x, moving.rates
+    folds = [f"the loop at joint {name} started in line: folded in a fixed way" for name in placing.folded]
+    choices = pose_choices(mechanism, placing.drawn, placing.poses, placing.tree, placing.fitted, size)
+    choices += rate_choices(mechanism, r, moving.tree, moving.fitted, size)
+    return Assembly(
+        position=x[:n],
+        rotation=placing.poses.R[:n],
+        velocity=r.v[:n] + np.cross(r.w[:n], x[:n] - r.s[:n]),
+        angular_velocity=r.w[:n],
+        chosen=(*folds, *chosen(choices)),
+        gap=placing.gap,
+    )

@@ -1,0 +1,119 @@
+"""Sentences on the start values that were chosen for the user (`heun model` lists them)."""
+
+from __future__ import annotations
+
+from collections import defaultdict
+from collections.abc import Iterable
+from typing import NamedTuple
+
+import numpy as np
+
+from heuncli.assembly.rates import Rates
+from heuncli.assembly.walk import Poses, Tree
+from heuncli.mechanism.model import Mechanism
+from heuncli.results import Array
+from heuncli.shapes.rotations import to_vector
+
+LISTED = 8  # bodies told one by one; more of the same are told together
+SMALL = 1e-12  # a change below this, of the scene's size or in rad, is rounding
+
+FORMS = {
+    "position": "position {} m",
+    "orientation": "orientation turned by {} deg",
+    "velocity": "velocity of the centre {} m/s",
+    "angular velocity": "angular velocity {} rad/s",
+}
+FITTED, FROM_JOINT = "fitted to the joints", "from joint"
+
+
+class Choice(NamedTuple):
+    """One start value: whose, which, how it came about; its value in the unit of FORMS where it is not the default.
+
+    size: what the value's components are measured by, to leave out the dust of rounding.
+    """
+
+    body: str
+    what: str
+    how: str
+    joint: str = ""
+    value: Array | None = None
+    size: float = 1.0
+
+
+def chosen(choices: Iterable[Choice]) -> tuple[str, ...]:
+    """One sentence a body and origin; where many bodies share one, they are told together."""
+    groups: dict[tuple[str, str], list[Choice]] = defaultdict(list)
+    for c in choices:
+        groups[c.what, c.how].append(c)
+    single: dict[tuple[str, str, str], list[str]] = defaultdict(list)
+    together: list[str] = []
+    for (what, how), members in groups.items():
+        if len(members) > LISTED:
+            names = ", ".join(c.body for c in members[:3])
+            origin = "from the joints that lead to them" if how == FROM_JOINT else how
+            together.append(f"{names} and {len(members) - 3:,} more: {what} {origin}")
+            continue
+        for c in members:
+            text = what if c.value is None else FORMS[what].format(_vector(c.value, c.size))
+            single[c.body, how, c.joint].append(text)
+    sentences = []
+    for (body, how, joint), said in single.items():
+        if how in (FITTED, FROM_JOINT):
+            sentences.append(f"{body}: {', '.join(said)}, {how} {joint}".rstrip())
+        else:
+            sentences.append(f"{body}: {' and '.join(said)} {how}")
+    return (*sentences, *together)
+
+
+def pose_choices(
+    mechanism: Mechanism, drawn: Poses, poses: Poses, tree: Tree, fitted: set[int], size: float
+) -> list[Choice]:
+    """The positions and orientations that were left out."""
+    moved = np.max(np.abs(poses.x - drawn.x), axis=1) > SMALL * size
+    turned = np.max(np.abs(poses.R - drawn.R), axis=(1, 2)) > SMALL
+    found = []
+    for i, body in enumerate(mechanism.bodies):
+        how, joint = _origin(mechanism, tree, i, fitted)
+        if body.position is None:
+            if moved[i]:
+                found.append(Choice(body.name, "position", how, joint, poses.x[i], size))
+            else:
+                found.append(Choice(body.name, "position", _default(body.near_position)))
+        if body.rotation is None:
+            if turned[i]:
+                turn = np.degrees(to_vector(poses.R[i] @ drawn.R[i].T))
+                found.append(Choice(body.name, "orientation", how, joint, turn))
+            else:
+                found.append(Choice(body.name, "orientation", _default(body.near_rotation)))
+    return found
+
+
+def rate_choices(mechanism: Mechanism, rates: Rates, tree: Tree, fitted: set[int], size: float) -> list[Choice]:
+    """The velocities (of the centre of mass) and angular velocities that were left out."""
+    scale = float(np.max(np.abs(rates.v)) + size * np.max(np.abs(rates.w)))
+    moving = np.max(np.abs(rates.v), axis=1) > SMALL * scale
+    turning = np.max(np.abs(rates.w), axis=1) * size > SMALL * scale
+    found = []
+    for i, body in enumerate(mechanism.bodies):
+        how, joint = _origin(mechanism, tree, i, fitted)
+        if body.velocity is None:
+            told = (how, joint, rates.v[i], scale) if moving[i] else ("zero",)
+            found.append(Choice(body.name, "velocity", *told))
+        if body.angular_velocity is None:
+            told = (how, joint, rates.w[i], scale / size) if turning[i] else ("zero",)
+            found.append(Choice(body.name, "angular velocity", *told))
+    return found
+
+
+def _origin(mechanism: Mechanism, tree: Tree, body: int, fitted: set[int]) -> tuple[str, str]:
+    if body in fitted or tree.via[body] < 0:
+        return FITTED, ""
+    return FROM_JOINT, mechanism.joints[tree.via[body]].name
+
+
+def _default(near: Array | None) -> str:
+    return "as drawn" if near is None else "as near says"
+
+
+def _vector(a: Array, size: float) -> str:
+    return "(" + ", ".join(f"{v:.6g}" for v in np.where(np.abs(a) < 1e-9 * size, 0.0, a).tolist()) + ")"

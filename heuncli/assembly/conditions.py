@@ -1,0 +1,186 @@
+"""What each joint asks of poses and rates at the start.
+
+Every kind is one way to hold the `to` point and one way to turn, both seen from the axes of the body `from`. A held
+angle, a held travel and drives only make the two stricter, so that no later step of the assembly knows kinds of joints.
+"""
+
+from __future__ import annotations
+
+import math
+from dataclasses import dataclass
+from typing import Literal, NamedTuple
+
+import numpy as np
+
+from heuncli.assembly.drives import Jet, drive_jet
+from heuncli.errors import Problem, SolveError
+from heuncli.mechanism.model import GROUND, Drive, Joint, Mechanism
+from heuncli.results import Array
+from heuncli.shapes.rotations import about, perpendicular, turn_onto
+
+Hold = Literal["none", "point", "line", "plane", "distance"]
+Turn = Literal["free", "axis", "square", "all"]
+
+KINDS: dict[str, tuple[Hold, Turn]] = {
+    "ball": ("point", "free"),
+    "pin": ("point", "axis"),
+    "universal": ("point", "square"),
+    "weld": ("point", "all"),
+    "slide": ("line", "all"),
+    "cylinder": ("line", "axis"),
+    "line": ("line", "free"),
+    "plane": ("plane", "free"),
+    "rod": ("distance", "free"),
+    "flat line": ("line", "free"),  # upright as drawn: in the plane nothing tilts them
+    "flat plane": ("plane", "free"),
+}
+
+SAME_AXES = np.eye(3)
+SAME = 1e-9  # a held value and a drive that agree to this (rad, m, or relative) say the same
+
+
+class Ask(NamedTuple):
+    """How the `to` point is held and how `to` may turn: of poses, or of rates."""
+
+    hold: Hold
+    turn: Turn
+
+    @property
+    def strong(self) -> bool:
+        """Whether a body may be placed by this joint alone (all but line, plane and rod)."""
+        return self.hold == "point" or self.turn != "free"
+
+
+@dataclass(frozen=True, eq=False)
+class Demand:
+    """What one joint asks at the start; a, b, p, q, axis and to_axis as in Joint, p moved on by a known travel.
+
+    across: two unit vectors (2, 3) perpendicular to axis, axes of a, where they are needed. relative: the R_a^T R_b
+    that `all` asks for. length: that `distance` asks for [m]. spin, slip, stretch: (rate, acceleration) of the angle
+    about the axis [rad/s], of the travel along it [m/s] and of the length, where `rate` asks for them.
+    """
+
+    joint: int
+    a: int
+    b: int
+    p: Array
+    q: Array
+    axis: Array
+    to_axis: Array
+    across: Array
+    pose: Ask
+    rate: Ask
+    relative: Array
+    length: float
+    spin: tuple[float, float]
+    slip: tuple[float, float]
+    stretch: tuple[float, float]
+
+
+def demands(mechanism: Mechanism, t0: float) -> list[Demand]:
+    """One Demand a joint, in the order of the joints. Raises SolveError where a held value contradicts a drive."""
+    problems: list[Problem] = []
+    found = [_demand(mechanism, k, joint, t0, problems) for k, joint in enumerate(mechanism.joints)]
+    if problems:
+        raise SolveError(*problems)
+    return found
+
+
+def _demand(mechanism: Mechanism, k: int, joint: Joint, t0: float, problems: list[Problem]) -> Demand:
+    drive = joint.drive
+    driven = {drive.quantity: drive_jet(drive.value, t0)} if drive else {}
+    problems += [_not_computable(drive, t0) for jet in driven.values() if drive and not all(map(math.isfinite, jet))]
+    zero_free = drive.quantity if drive and drive.zero_assembled else None
+    angle, spin = _known(joint, driven.get("angle"), ("angle", "rad", joint.angle), ("rate", "rad/s", joint.rate),
+                         joint.to_axis_given or zero_free == "angle", problems)  # fmt: skip
+    travel, slip = _known(joint, driven.get("travel"), ("travel", "m", joint.travel), ("speed", "m/s", joint.speed),
+                          zero_free == "travel", problems)  # fmt: skip
+    length, stretch = joint.length, (0.0, 0.0)
+    if jet := driven.get("length"):
+        length, stretch = jet.value, (jet.rate, jet.acceleration)
+    if length is not None and length <= 0.0:
+        message = f"joint {joint.name} (rod): its length is {length:.6g} m at the start"
+        problems.append(Problem("no-length", message, hint="give a length above zero; for zero take a ball"))
+
+    hold, turn = KINDS[joint.kind]
+    relative, p = SAME_AXES, joint.p
+    across = np.array(perpendicular(joint.axis)) if hold == "line" or turn == "axis" else SAME_AXES[:2]
+    pose, rate = Ask(hold, turn), Ask(hold, turn)
+    if turn == "all":
+        relative = _kept(mechanism, joint)
+    if turn == "axis" and angle is not None:
+        pose, relative = Ask(pose.hold, "all"), about(joint.axis, angle)
+    if turn == "axis" and spin is not None:
+        rate = Ask(rate.hold, "all")
+    if hold == "line" and travel is not None:
+        pose, p = Ask("point", pose.turn), joint.p + travel * joint.axis
+    if hold == "line" and slip is not None:
+        rate = Ask("point", rate.turn)
+    if hold == "distance" and length is None:  # as assembled: asks nothing of the pose, but keeps its length then
+        pose = Ask("none", "free")
+    return Demand(
+        k, joint.a, joint.b, p, joint.q, joint.axis, joint.to_axis, across,
+        pose, rate, relative, length or 0.0, spin or (0.0, 0.0), slip or (0.0, 0.0), stretch,
+    )  # fmt: skip
+
+
+def _not_computable(drive: Drive, t0: float) -> Problem:
+    message = f"drive {drive.name}: {drive.quantity} '{drive.value.source}' or a derivative cannot be computed"
+    hint = "a drive needs finite rates and accelerations: begin it smoothly, as t**2 or with a table"
+    return Problem("not-computable", f"{message} at t = {t0:g} s", drive.value.place, hint)
+
+
+Given = tuple[str, str, float | None]  # what, its unit, the initial value
+
+
+def _known(
+    joint: Joint, jet: Jet | None, value: Given, rate: Given, zero_free: bool, problems: list[Problem]
+) -> tuple[float | None, tuple[float, float] | None]:
+    """A coordinate's value at the start, and its (rate, acceleration), from drive and initial; None where free.
+
+    zero_free: the coordinate is counted from the assembled start, so that its value there is zero and holds nothing.
+    """
+    held = value[2]
+    if zero_free:
+        problems += [_not_zero(joint, value, v) for v in (held, jet and jet.value) if v is not None and abs(v) > SAME]
+        held = None
+    elif jet:
+        problems += _compare(joint, value, jet.value)
+        held = jet.value
+    if jet:
+        problems += _compare(joint, rate, jet.rate)
+        return held, (jet.rate, jet.acceleration)
+    return held, None if rate[2] is None else (rate[2], 0.0)
+
+
+def _kept(mechanism: Mechanism, joint: Joint) -> Array:
+    """R_a^T R_b that a slide or weld keeps: that of the given attitudes, else axes agree."""
+    Ra, Rb = (np.eye(3) if i == GROUND else mechanism.bodies[i].rotation for i in (joint.a, joint.b))
+    if Ra is not None and Rb is not None:
+        return Ra.T @ Rb
+    return turn_onto(joint.to_axis, joint.axis) if joint.to_axis_given else SAME_AXES
+
+
+def _compare(joint: Joint, given: Given, driven: float) -> list[Problem]:
+    what, unit, held = given
+    if held is None or joint.drive is None:
+        return []
+    gap = held - driven
+    if what == "angle":  # counts full turns, but one attitude is one attitude
+        gap = math.remainder(gap, math.tau)
+    if abs(gap) <= SAME * max(1.0, abs(driven)):
+        return []
+    message = (
+        f"joint {joint.name}: initial {what} {held:.6g} {unit} contradicts drive {joint.drive.name}, "
+        f"which asks for {driven:.6g} {unit} at the start"
+    )
+    return [Problem("held-conflict", message, hint=f"leave out the initial {what}; the drive sets it")]
+
+
+def _not_zero(joint: Joint, given: Given, value: float) -> Problem:
+    what, unit, _ = given
+    return Problem(
+        "held-conflict",
+        f"joint {joint.name}: {what} {value:.6g} {unit} at the start, but it is counted from the assembled start",
+        hint="let it be zero there, or leave out to_axis and zero: assembled",
+    )

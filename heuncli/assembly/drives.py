@@ -1,0 +1,20 @@
+"""A drive's prescribed coordinate at one instant: the one place where the assembly meets expressions in time."""
+
+from __future__ import annotations
+
+from typing import NamedTuple
+
+from heuncli.expressions.programs import Expression
+
+
+class Jet(NamedTuple):
+    """A coordinate, its rate and its acceleration."""
+
+    value: float
+    rate: float
+    acceleration: float
+
+
+def drive_jet(expression: Expression, t: float) -> Jet:
+    """The expression and its first and second derivative at t."""
+    return Jet(*expression.derivatives(t))

@@ -1,0 +1,233 @@
+"""The fit of an island: poses that close its loops, as near as possible to where they started.
+
+    (1) with `near`: what near says is fixed, the others meet it as well as they can; then it is let go
+    (2) close: least |e − C y|² + μ (Σθ² + 0.01 Σd²/L²) step by step (Levenberg-Marquardt), turns at most 0.3 rad;
+        where that stalls with a gap (links in line have no slope), again with small fixed pseudo-random turns
+    (3) polish: least Σθ² from the start of (2), then least Σd², among the poses that are closed
+θ turns of left-out attitudes, d shifts of left-out pivots, L the scene's size; y, C, e as in reduced.py.
+"""
+
+from __future__ import annotations
+
+import math
+from collections.abc import Sequence
+
+import numpy as np
+
+from heuncli.assembly.conditions import Demand
+from heuncli.assembly.islands import Island
+from heuncli.assembly.reduced import Reduced, least
+from heuncli.assembly.rows import Rows, pose_rows
+from heuncli.assembly.walk import Poses, place
+from heuncli.results import Array
+from heuncli.shapes.rotations import from_vector, to_vector
+
+SHIFT = 1e-2  # weight of (d/L)² against θ²: shifts are cheap; cheaper ones (1e-6) run hundreds of L off to save a turn
+TURN = 0.3  # largest turn of one step [rad]
+FLAT = 1e-7  # slope of |e|² against |C| |e|: below it there is no way down
+KICKS = (1, 2, 3, 4)  # times 0.05 rad
+STEPS = 200
+POLISH = 60  # steps; more only creep, where long shifts save ever smaller turns
+NOISE = 1e-14  # of the largest: an eigenvalue below it comes from a row that repeats others
+TINY = 1e-15  # of the scene's size: as closed as rounding allows
+STILL = 1e-12  # turns [rad] and shifts (by the size) below which nothing is left to polish
+NEARLY = 1e-5  # the same, below which sums of squares no longer tell, but the steps still do
+
+
+class Fit:
+    """One island in its poses, which it changes."""
+
+    def __init__(
+        self, poses: Poses, island: Island, found: Sequence[Demand], depth: Sequence[int], size: float, planar: bool
+    ) -> None:
+        self.poses = poses
+        self.island = island
+        self.found = found
+        self.depth = depth
+        self.size = size
+        self.planar = planar
+        self.joints = [k for k in island.via if k >= 0] + island.closures
+        self.bodies = sorted({i for k in self.joints for i in (found[k].a, found[k].b)} | set(island.members))
+
+    def free(self) -> list[tuple[bool, bool]]:
+        """Whether each member may turn, and shift."""
+        return [(self.poses.turns[i], self.poses.shifts[i]) for i in self.island.members]
+
+    def pivots(self) -> Array:
+        """Where the pivots of the island's bodies are, world, (n+1, 3)."""
+        p = self.poses
+        s = np.zeros(p.x.shape)
+        s[self.bodies] = p.x[self.bodies] + np.einsum("nij,nj->ni", p.R[self.bodies], p.pivot[self.bodies])
+        return s
+
+    def rows(self) -> dict[int, Rows]:
+        """The rows of all its joints."""
+        s = self.pivots()
+        return {k: pose_rows(self.found[k], self.poses.x, self.poses.R, s) for k in self.joints}
+
+    def reduced(self, rows: dict[int, Rows]) -> Reduced:
+        """Its rows in the freedoms its tree leaves."""
+        return Reduced(self.island, self.found, rows, self.free(), self.size)
+
+    def gap(self, rows: dict[int, Rows]) -> float:
+        """Root of the sum of squares of all gaps, lengths by L."""
+        return math.sqrt(sum(float(r.hold @ r.hold) / self.size**2 + float(r.turn @ r.turn) for r in rows.values()))
+
+    def saved(self) -> tuple[Array, Array]:
+        """The members' poses, to be put back."""
+        return self.poses.x[self.island.members].copy(), self.poses.R[self.island.members].copy()
+
+    def restore(self, saved: tuple[Array, Array]) -> None:
+        """Put them back."""
+        self.poses.x[self.island.members], self.poses.R[self.island.members] = saved
+
+    def apply(self, z: Array) -> None:
+        """Turn and shift the members, and close the joints of the tree again."""
+        for i, (body, k) in enumerate(zip(self.island.members, self.island.via, strict=True)):
+            turn, shift = z[6 * i : 6 * i + 3], z[6 * i + 3 : 6 * i + 6]
+            if self.poses.turns[body]:
+                self.poses.turn(body, from_vector(turn) @ self.poses.R[body])
+            if self.poses.shifts[body]:
+                self.poses.x[body] += self.size * shift
+            if k >= 0:
+                place(self.poses, self.found[k], body)
+
+    def close(self, limit: float) -> bool:
+        """Step (2) without kicks: whether the gap came below limit (of L)."""
+        rows = self.rows()
+        gap, damping = self.gap(rows), 1.0
+        for _ in range(STEPS):
+            if gap <= TINY:
+                break
+            r = self.reduced(rows)
+            if gap > limit and _norm(r.C.T @ r.e) <= FLAT * _norm(r.C) * _norm(r.e):
+                break
+            before = self.saved()
+            z = _limited(_damped(r, damping * gap * gap))
+            for attempt in range(12 if gap > limit else 1):
+                self.apply(z)
+                new_rows = self.rows()
+                new_gap = self.gap(new_rows)
+                if new_gap < gap:
+                    break
+                self.restore(before)
+                z = z / 3.0
+                if attempt % 3 == 2:
+                    damping *= 64.0
+                    z = _limited(_damped(r, damping * gap * gap))
+            else:
+                break
+            rows, gap, damping = new_rows, new_gap, max(damping / 4.0, 1e-3)
+        return gap <= limit
+
+    def settle(self, limit: float, kicks: Sequence[int] = KICKS) -> tuple[bool, int]:
+        """Step (2): whether it closed, and which kick it took (0: none). If not: where the gap is least."""
+        start = self.saved()
+        if self.close(limit):
+            return True, 0
+        best, least_gap = self.saved(), self.gap(self.rows())
+        for kick in kicks:
+            self.restore(start)
+            self.apply(self._kick(0.05 * kick))
+            if self.close(limit):
+                return True, kick
+            gap = self.gap(self.rows())
+            if gap < 0.999 * least_gap:
+                best, least_gap = self.saved(), gap
+        self.restore(best)
+        return False, 0
+
+    def _kick(self, angle: float) -> Array:
+        """A turn of each member about a direction that only its depth in the tree tells: no name, no order."""
+        z = np.zeros(6 * len(self.island.members))
+        for i, body in enumerate(self.island.members):
+            # two irrational steps spread the directions over the sphere
+            height = 1.0 - 2.0 * math.fmod(0.7548776662466927 * (self.depth[body] + 0.5), 1.0)
+            around = math.tau * math.fmod(0.5698402909980532 * (self.depth[body] + 0.5), 1.0)
+            across = math.sqrt(1.0 - height * height)
+            u = (across * math.cos(around), across * math.sin(around), height)
+            z[6 * i : 6 * i + 3] = (0.0, 0.0, math.copysign(angle, height)) if self.planar else np.multiply(angle, u)
+        return z
+
+    def meet(self, near: Sequence[tuple[bool, bool]], limit: float) -> None:
+        """Step (1): near (turns, shifts of each member) stays, the others meet it as well as they can."""
+        if not any(map(any, near)):
+            return
+        p = self.poses
+        turns, shifts, pivot = list(p.turns), list(p.shifts), p.pivot.copy()
+        for body, (attitude, position) in zip(self.island.members, near, strict=True):
+            turns[body] = turns[body] and not attitude
+            if position:
+                shifts[body] = False
+                pivot[body] = 0.0
+        self.poses = Poses(p.x, p.R, pivot, shifts, turns)
+        self.settle(limit, KICKS[:1])
+        self.poses = p
+
+    def polish(self, start: tuple[Array, Array], limit: float) -> None:
+        """Step (3): start are the poses before (2)."""
+        last, factor, length = np.zeros(0), 1.0, math.inf
+        for _ in range(POLISH):
+            z = least(self.reduced(self.rows()), self._moved(start))[0]
+            if _norm(z) < STILL or (_norm(z) < NEARLY and _norm(z) > 0.5 * length):
+                return
+            if last.size:  # the bend of the closed poses makes steps too long or too short, by what the last one tells
+                factor = min(max(factor / max(1.0 - float(z @ last) / float(last @ last), 0.2), 1e-3), 4.0)
+            before, sums = self.saved(), self._sums(start)
+            last, length = z, _norm(z)
+            for _ in range(10):
+                self.apply(_limited(factor * z))
+                if self.close(limit) and (_norm(z) < NEARLY or _lower(self._sums(start), sums)):
+                    break
+                self.restore(before)
+                factor *= 0.5
+            else:
+                return
+
+    def _moved(self, start: tuple[Array, Array]) -> Array:
+        """Turns and shifts (by L) from the start, (6m,); zero where they may not."""
+        p, members = self.poses, self.island.members
+        z = np.zeros((len(members), 2, 3))
+        for i, body in enumerate(members):
+            turned = p.R[body] - start[1][i]
+            if p.turns[body]:
+                z[i, 0] = to_vector(p.R[body] @ start[1][i].T)
+            if p.shifts[body]:
+                z[i, 1] = (p.x[body] - start[0][i] + turned @ p.pivot[body]) / self.size
+        return z.ravel()
+
+    def _sums(self, start: tuple[Array, Array]) -> tuple[float, float]:
+        """Σθ² and Σ(d/L)²."""
+        sums = np.sum(np.square(self._moved(start).reshape(-1, 2, 3)), axis=(0, 2))
+        return float(sums[0]), float(sums[1])
+
+
+def _lower(new: tuple[float, float], old: tuple[float, float]) -> bool:
+    """Whether the turns became less, or stayed and the shifts became less (to rounding)."""
+    slack = 1e-13
+    if new[0] < old[0] * (1.0 - slack):
+        return True
+    return new[0] <= old[0] * (1.0 + slack) + slack**2 and new[1] <= old[1] * (1.0 + slack) + slack**2
+
+
+def _damped(r: Reduced, mu: float) -> Array:
+    """z of least |e − C y|² + μ (Σθ² + SHIFT Σ(d/L)²), (6m,)."""
+    weight = np.tile([1.0, 1.0, 1.0, SHIFT, SHIFT, SHIFT], len(r.t) // 6)[:, None]
+    solved = np.linalg.solve(r.B.T @ (weight * r.B), np.column_stack([-(r.B.T @ (weight[:, 0] * r.t)), r.C.T]))
+    y, K = solved[:, 0], solved[:, 1:]
+    s, Q = np.linalg.eigh(r.C @ K)
+    told = s > NOISE * float(np.max(s, initial=0.0))
+    y = y + K @ (Q[:, told] @ ((Q[:, told].T @ (r.e - r.C @ y)) / (s[told] + mu)))
+    z: Array = r.t + r.B @ y
+    return z
+
+
+def _limited(z: Array) -> Array:
+    """z, shortened where a turn is larger than one step may be."""
+    turns = z.reshape(-1, 6)[:, :3]
+    largest = math.sqrt(float(np.max(np.sum(turns * turns, axis=1), initial=0.0)))
+    return z * (TURN / largest) if largest > TURN else z
+
+
+def _norm(a: Array) -> float:
+    return float(np.linalg.norm(a))

@@ -1,0 +1,115 @@
+"""Poses that fit: the walk outward, then the islands that it leaves open, each followed by what hangs on it."""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+
+import numpy as np
+
+from heuncli.assembly.conditions import Demand
+from heuncli.assembly.errors import does_not_fit, no_length, too_many
+from heuncli.assembly.fit import Fit
+from heuncli.assembly.gaps import Closure
+from heuncli.assembly.islands import TOGETHER, Island, Islands, settle
+from heuncli.assembly.walk import Poses, Tree, place, spanning, start, walk
+from heuncli.mechanism.model import GROUND, Mechanism
+
+OPEN = 1e-10  # of the scene's size (rad for angles): a gap above it is open (design.md section 2)
+NO_LENGTH = 1e-9  # of the scene's size: a rod's direction must be known
+ROUNDING = 64.0 * float(np.finfo(float).eps)  # of the largest coordinate: no gap can be closed further
+
+
+class Placing:
+    """The poses of a mechanism on their way from the drawing to where all joints are closed; it is written to.
+
+    drawn: where they start; poses: where they are; tree: how the walk reaches them. fitted: bodies fitted in an island.
+    folded: joints whose loop was folded in a fixed way. gap: the largest that is left [m].
+    """
+
+    def __init__(self, mechanism: Mechanism, found: Sequence[Demand], size: float) -> None:
+        self.mechanism = mechanism
+        self.found = found
+        self.size = size
+        self.drawn = start(mechanism)
+        self.poses = self.drawn.copy()
+        self.tree, self.islands = _loops(mechanism, found)
+        self.fitted: set[int] = set()
+        self.folded: list[str] = []
+        self.gap = 0.0
+        self.limit = OPEN
+        self._gaps = Closure(found, [d.pose for d in found])
+
+    def fit(self) -> None:
+        """Close all joints. Raises SolveError: does-not-fit, held-conflict."""
+        walk(self.poses, self.tree, self.found)
+        self.limit = max(OPEN, ROUNDING * float(np.max(np.abs(self.poses.x), initial=0.0)) / self.size)
+        if stuck := settle(self.tree, self.islands, self._open, self._fit, self._again):
+            raise self._refusal(stuck)
+        for d in self.found:
+            if d.pose.hold == "none" and _span(d, self.poses) < NO_LENGTH * self.size:
+                raise no_length(self.mechanism, d.joint)
+
+    def _open(self) -> list[int]:
+        """Joints that are open."""
+        distance, angle = self._gaps(self.poses.x, self.poses.R)
+        self.gap = float(np.max(np.maximum(distance, self.size * angle), initial=0.0))
+        is_open = np.maximum(distance / self.size, angle) > self.limit
+        return [int(k) for k in np.flatnonzero(is_open)]
+
+    def _again(self, body: int) -> None:
+        self.poses.x[body], self.poses.R[body] = self.drawn.x[body], self.drawn.R[body]
+        if self.tree.via[body] >= 0:
+            place(self.poses, self.found[self.tree.via[body]], body)
+
+    def _fit(self, island: Island, afresh: bool) -> None:
+        if afresh:
+            for body in island.members:
+                self._again(body)
+        if len(island.members) > TOGETHER:
+            raise too_many(self.mechanism, island, "poses")
+        fit = Fit(self.poses, island, self.found, self.tree.depth, self.size, self.mechanism.planar)
+        before = fit.saved()
+        bodies = [self.mechanism.bodies[i] for i in island.members]
+        fit.meet([(b.near_rotation is not None, b.near_position is not None) for b in bodies], self.limit)
+        begun = fit.saved()
+        closed, kick = fit.settle(self.limit)
+        if closed:
+            fit.polish(begun, self.limit)
+            self.fitted.update(island.members)
+            if kick:
+                self.folded.append(self.mechanism.joints[(island.closures or island.via)[0]].name)
+        elif self.islands.moving(island.above) == GROUND:
+            raise self._refusal(fit.joints)
+        else:
+            fit.restore(before)
+            self.islands.widened(island.closures[0])  # what it hangs on may have to turn, too
+
+    def _refusal(self, joints: Sequence[int]) -> Exception:
+        distance, angle = self._gaps(self.poses.x, self.poses.R)
+        return does_not_fit(self.mechanism, distance, angle, self.size, joints)
+
+
+def _span(d: Demand, poses: Poses) -> float:
+    """Distance of a joint's points [m]."""
+    D = poses.x[d.b] + poses.R[d.b] @ d.q - poses.x[d.a] - poses.R[d.a] @ d.p
+    return float(np.sqrt(D @ D))
+
+
+def _loops(mechanism: Mechanism, found: Sequence[Demand]) -> tuple[Tree, Islands]:
+    """The tree of the walk, from ground and held positions, and in loops from `near` positions too; and its loops."""
+    bodies = mechanism.bodies
+    asks = [(d.a, d.b, d.pose) for d in found]
+    links = [d.pose.hold != "none" for d in found]
+    first = [b.rotation is not None for b in bodies]
+    fixed = [b.position is not None and b.rotation is not None for b in bodies]
+    held = [b.position is not None for b in bodies]
+    tree = spanning(mechanism, asks, held, first)
+    islands = Islands(tree, found, links, fixed)
+    roots = [
+        h or (b.near_position is not None and islands.loops(i))
+        for i, (b, h) in enumerate(zip(bodies, held, strict=True))
+    ]
+    if roots != held:
+        tree = spanning(mechanism, asks, roots, first)
+        islands = Islands(tree, found, links, fixed)
+    return tree, islands

@@ -1,0 +1,157 @@
+"""The rows of some bodies' joints, reduced to the freedoms the tree leaves, and the smallest answer in them.
+
+    z = t + B y        turn and shift (by the scene's size L) of all members, from the freedoms y
+    C y = e            what is left of the rows: closures, and tree joints a held body cannot follow
+Tree joints are solved outward body by body, so that dense algebra meets only the freedoms and the closures.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Mapping, Sequence
+from dataclasses import dataclass
+from functools import cached_property
+
+import numpy as np
+
+from heuncli.assembly.conditions import Demand
+from heuncli.assembly.islands import Island
+from heuncli.assembly.rows import Rows
+from heuncli.results import Array
+from heuncli.shapes.rotations import hat
+
+RANK = 1e-9  # of the largest singular value, or of 1 (all is scaled): below it, a row or column counts as dependent
+Free = Sequence[tuple[bool, bool]]  # whether each member may turn, and shift
+
+
+@dataclass(frozen=True, eq=False)
+class Step:
+    """How a member follows the one before: z = own + follow z_before + N y_here. before: its place, -1 for none.
+
+    rest, lack: rows (r, 6) on z_before that it cannot follow, as it is held, and their right side.
+    """
+
+    own: Array
+    follow: Array
+    N: Array
+    before: int
+    rest: Array
+    lack: Array
+
+
+class Reduced:
+    """An island's rows in its freedoms. What is no member stays."""
+
+    def __init__(
+        self, island: Island, found: Sequence[Demand], rows: Mapping[int, Rows], free: Free, size: float
+    ) -> None:
+        place = {body: i for i, body in enumerate(island.members)}
+        self.free = free
+        self.steps = [
+            _step(body, found[k], rows[k], place, free[i], size) if k >= 0 else _root(free[i])
+            for i, (body, k) in enumerate(zip(island.members, island.via, strict=True))
+        ]
+        self.starts = np.cumsum([0, *(step.N.shape[1] for step in self.steps)]).tolist()
+        pieces = [self._pull_back([(step.before, step.rest)], step.lack) for step in self.steps if len(step.lack)]
+        for k in island.closures:
+            d = found[k]
+            J_a, J_b, c = _blocks(d, rows[k], size)
+            pieces.append(self._pull_back([(place.get(d.a, -1), J_a), (place.get(d.b, -1), J_b)], c))
+        self.C = np.concatenate([C for C, _ in pieces] or [np.zeros((0, self.count))])
+        self.e = np.concatenate([e for _, e in pieces] or [np.zeros(0)])
+
+    @property
+    def count(self) -> int:
+        """Freedoms."""
+        return int(self.starts[-1])
+
+    def _pull_back(self, terms: Sequence[tuple[int, Array]], c: Array) -> tuple[Array, Array]:
+        """Rows on members' z, taken inward to rows on y, and their right side."""
+        C, e = np.zeros((len(c), self.count)), c.copy()
+        pending: dict[int, Array] = {}
+        for i, J in terms:
+            if i >= 0:
+                pending[i] = pending[i] + J if i in pending else J
+        while pending:
+            i = max(pending)
+            J, step = pending.pop(i), self.steps[i]
+            C[:, self.starts[i] : self.starts[i + 1]] = J @ step.N
+            e -= J @ step.own
+            if step.before >= 0:
+                before = J @ step.follow
+                pending[step.before] = pending[step.before] + before if step.before in pending else before
+        return C, e
+
+    @cached_property
+    def B(self) -> Array:
+        """Of z = t + B y, (6m, n)."""
+        B = np.zeros((6 * len(self.steps), self.count))
+        for i, step in enumerate(self.steps):
+            start, end = self.starts[i], self.starts[i + 1]
+            B[6 * i : 6 * i + 6, start:end] = step.N
+            if step.before >= 0:
+                B[6 * i : 6 * i + 6, :start] = step.follow @ B[6 * step.before : 6 * step.before + 6, :start]
+        return B
+
+    @cached_property
+    def t(self) -> Array:
+        """Of z = t + B y, (6m,)."""
+        t = np.zeros(6 * len(self.steps))
+        for i, step in enumerate(self.steps):
+            t[6 * i : 6 * i + 6] = step.own
+            if step.before >= 0:
+                t[6 * i : 6 * i + 6] += step.follow @ t[6 * step.before : 6 * step.before + 6]
+        return t
+
+
+def _blocks(d: Demand, row: Rows, size: float) -> tuple[Array, Array, Array]:
+    """Rows on (turn, shift/L) of `from` and of `to`, (h+k, 6) each, and the right side, lengths by L."""
+    h, k = len(row.F), len(row.T)
+    J_a, J_b = np.zeros((h + k, 6)), np.zeros((h + k, 6))
+    if h:
+        J_b[:h, :3], J_b[:h, 3:] = -(row.F @ hat(row.r_b)) / size, row.F
+        J_a[:h, :3], J_a[:h, 3:] = (row.F @ hat(row.r_a)) / size, -row.F
+    J_b[h:, :3], J_a[h:, :3] = row.T, -row.T
+    return J_a, J_b, np.concatenate([row.hold / size, row.turn])
+
+
+def _step(body: int, d: Demand, row: Rows, place: Mapping[int, int], may: tuple[bool, bool], size: float) -> Step:
+    J_a, J_b, c = _blocks(d, row, size)
+    J, J_before, before = (J_b, J_a, d.a) if body == d.b else (J_a, J_b, d.b)
+    E = _root(may).N
+    U, S, V = np.linalg.svd(J @ E)
+    rank = int(np.sum(S > RANK * max(1.0, S[0]))) if len(S) else 0
+    inverse = E @ ((V[:rank].T / S[:rank]) @ U[:, :rank].T)
+    rest = U[:, rank:].T
+    return Step(
+        inverse @ c, -(inverse @ J_before), E @ V[rank:].T, place.get(before, -1), rest @ J_before, rest @ c
+    )  # fmt: skip
+
+
+def _root(may: tuple[bool, bool]) -> Step:
+    N = np.eye(6)[:, np.repeat(np.array(may), 3)]
+    return Step(np.zeros(6), np.zeros((6, 6)), N, -1, np.zeros((0, 6)), np.zeros(0))
+
+
+def least(r: Reduced, moved: Array) -> tuple[Array, Array]:
+    """z (6m,) with C y = e and least Σ(turns)², then least Σ(shifts)², of z + moved; and what C y = e lacks.
+
+    Only what may turn, or shift, counts.
+    """
+    y, N, lack = solve(r.C, r.e)
+    may = np.repeat(np.array(r.free, dtype=bool).reshape(-1, 2), 3, axis=1)
+    turns = np.arange(may.size) % 6 < 3
+    for counted in (may.ravel() & turns, may.ravel() & ~turns):
+        step, null, _ = solve(r.B[counted] @ N, -((r.t + moved)[counted] + r.B[counted] @ y))
+        y = y + N @ step
+        N = N @ null
+    return r.t + r.B @ y, lack
+
+
+def solve(A: Array, b: Array) -> tuple[Array, Array, Array]:
+    """Shortest x of least |A x − b|, a basis of the null space of A (n, n−r), and b − A x."""
+    if not A.size:
+        return np.zeros(A.shape[1]), np.eye(A.shape[1]), b
+    U, S, V = np.linalg.svd(A, full_matrices=A.shape[0] < A.shape[1])
+    rank = int(np.sum(S > RANK * max(1.0, S[0])))
+    x = V[:rank].T @ ((U[:, :rank].T @ b) / S[:rank])
+    return x, V[rank:].T, b - A @ x

@@ -1,0 +1,177 @@
+"""Programs from the inside out: each part of an expression becomes code in postfix order; what is constant, a number.
+
+The kernel's evaluator alone decides what a number is, also here, where constants are folded.
+"""
+
+from __future__ import annotations
+
+import math
+from array import array
+from dataclasses import dataclass
+
+from heuncli.errors import Finding
+from heuncli.expressions.programs import Code, Expression, Switch, Table, outside
+from heuncli.kernel.choose import program
+
+OP = program.OPERATIONS
+MOST_NODES = 500
+BEYOND = "no division by 0, no root or logarithm of what is negative, nothing beyond 1e308"
+COMPARISONS = {"<": "lt", "<=": "le", ">": "gt", ">=": "ge", "==": "eq", "!=": "ne"}
+
+
+@dataclass(frozen=True)
+class Part:
+    """A program for a part of an expression; constant where it is a number; uses: its variables."""
+
+    code: Code
+    depth: int
+    uses: frozenset[int]
+    constant: float | None = None
+
+
+class Emitter:
+    """The constants, variables, tables and switches of one expression, and the parts made so far."""
+
+    def __init__(self) -> None:
+        self.nodes = 0
+        self.constants: list[float] = []
+        self.variables: dict[tuple[str, str], int] = {}
+        self.tables: list[Table] = []
+        self.switches: list[Switch] = []
+        self.left: Finding | None = None  # a table was asked for a number outside its range ...
+        self.branches = False  # ... which matters not where it stands in a branch that is not chosen
+
+    def finished(self, text: str, part: Part) -> Expression:
+        """The expression that is this part. Raises Finding where it is a number that is none."""
+        is_none = part.constant is not None and not math.isfinite(part.constant)
+        if self.left is not None and (is_none or not self.branches):
+            raise self.left
+        if is_none:
+            raise Finding("not-computable", f"'{text.strip()}' is not a finite number", BEYOND)
+        return Expression(
+            source=text, constant=part.constant, uses=tuple(self.variables), time_dependent=0 in part.uses,
+            code=part.code, constants=tuple(self.constants), tables=tuple(self.tables), depth=part.depth,
+            switches=tuple(self.switches),
+        )  # fmt: skip
+
+    def time(self) -> Part:
+        """The variable t."""
+        return self.counted(Part((OP["var"], 0), 1, frozenset({0})))
+
+    def coordinate(self, joint: str, quantity: str) -> Part:
+        """The variable that is a joint's coordinate."""
+        number = self.variables.setdefault((joint, quantity), len(self.variables) + 1)
+        return self.counted(Part((OP["var"], number), 1, frozenset({number})))
+
+    def look_up(self, table: Table, argument: Part) -> Part:
+        """A table's value at the argument."""
+        if table not in self.tables:
+            self.tables.append(table)
+        code = (*argument.code, OP["table"], self.tables.index(table), table.pieces, table.kind)
+        if argument.constant is not None:
+            value = self.run(code, argument.depth, table)
+            if math.isnan(value) and math.isfinite(argument.constant):
+                message, hint = outside(table)
+                self.left = Finding("not-computable", f"{message}, not {argument.constant:.9g}", hint)
+            return self.number(value)
+        if argument.uses <= {0}:
+            self.switches.append(Switch((*argument.code, OP["knot"], *code[-3:]), None))
+        return self.counted(Part(code, argument.depth, argument.uses))
+
+    def chain(self, first: Part, links: list[tuple[str, Part, Part]]) -> Part:
+        """a < b < c as one condition, in which each part is run once; links: comparison, left, right."""
+        if all(part.constant is not None for _, left, right in links for part in (left, right)):
+            truth = self.number(1.0)
+            for name, left, right in links:
+                truth = self.apply("mul", truth, self.apply(name, left, right))
+            return truth
+        code, depth, uses = first.code, first.depth, first.uses
+        for n, (name, left, right) in enumerate(links):
+            self.switch_of_comparison(name, left, right)
+            code = (*code, *right.code, OP[name], 0 if n == len(links) - 1 else 1)  # 1: the right one is needed again
+            depth, uses = max(depth, 1 + n + right.depth), uses | right.uses
+        return self.counted(Part(code + (OP["mul"], 0) * (len(links) - 1), depth, uses))
+
+    def number(self, value: float) -> Part:
+        self.constants.append(value)
+        return self.counted(Part((OP["const"], len(self.constants) - 1), 1, frozenset(), value))
+
+    def counted(self, part: Part) -> Part:
+        self.nodes += 1
+        if self.nodes > MOST_NODES:
+            raise Finding("expression-limit", f"an expression of more than {MOST_NODES} parts")
+        return part
+
+    def run(self, code: Code, depth: int, table: Table | None = None) -> float:
+        """The number that constant code gives; a table of it is the one given."""
+        numbers = array("d", self.constants)
+        if table is not None:
+            code = (*code[:-3], len(numbers), *code[-2:])
+            numbers.extend(table.numbers)
+        stack = array("d", bytes(8 * depth))
+        return float(program.evaluate(array("i", code), numbers, 0, len(code) // 2, array("d", (0.0,)), stack))
+
+    def apply(self, name: str, *parts: Part, argument: int = 0) -> Part:
+        """An operation on its operands; carried out at once on numbers."""
+        code: Code = ()
+        depth = 1
+        uses: frozenset[int] = frozenset()
+        for n, part in enumerate(parts):
+            code += part.code
+            depth = max(depth, n + part.depth)
+            uses |= part.uses
+        whole = (*code, OP[name], argument)
+        if not uses:
+            return self.number(self.run(whole, depth))
+        if uses <= {0}:
+            self.switch(name, parts)
+        return self.counted(Part(whole, depth, uses))
+
+    def choose(self, condition: Part, then: Part, otherwise: Part) -> Part:
+        """then where the condition is not 0, else otherwise; only the chosen one is run."""
+        self.branches = True
+        if condition.constant is not None:
+            if math.isnan(condition.constant):
+                return condition
+            return then if condition.constant != 0.0 else otherwise
+        code = (
+            *condition.code, OP["unless"], len(then.code) // 2 + 1, *then.code,
+            OP["jump"], len(otherwise.code) // 2, *otherwise.code,
+        )  # fmt: skip
+        depth = max(condition.depth, then.depth, otherwise.depth)
+        return self.counted(Part(code, depth, condition.uses | then.uses | otherwise.uses))
+
+    def truth(self, part: Part) -> Part:
+        return self.apply("ne", part, self.number(0.0))
+
+    def switch(self, name: str, parts: tuple[Part, ...]) -> None:
+        a = parts[0].code
+        if name in ("sign", "step"):
+            self.switches.append(Switch((*a, OP[name], 0), a))
+        elif name == "abs":
+            self.switches.append(Switch((*a, OP["step"], 0), a))
+        elif name in ("min", "max"):
+            self.switch_of_comparison("lt" if name == "min" else "gt", parts[1], parts[0])
+        elif name in COMPARISONS.values():
+            self.switch_of_comparison(name, parts[0], parts[1])
+        elif name == "atan2":  # jumps by a turn where y changes its sign at x < 0
+            zero, two = self.number(0.0).code, self.number(2.0).code
+            turned = (*a, OP["step"], 0)
+            left = (
+                *parts[1].code,
+                *zero,
+                OP["lt"],
+                0,
+                OP["unless"],
+                len(turned) // 2 + 1,
+                *turned,
+                OP["jump"],
+                1,
+                *two,
+            )
+            self.switches.append(Switch(left, a))
+
+    def switch_of_comparison(self, name: str, left: Part, right: Part) -> None:
+        if (left.uses | right.uses) == {0}:
+            code = left.code + right.code
+            self.switches.append(Switch((*code, OP[name], 0), (*code, OP["sub"], 0)))

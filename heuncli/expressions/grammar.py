@@ -1,0 +1,370 @@
+"""From text to program: the grammar of expressions, read by precedence.
+
+    a if c else b  <  or  <  and  <  not  <  comparisons  <  + -  <  * /  <  unary + -  <  **
+
+Nothing is evaluated but by the kernel's evaluator, no Python code object is made, and a text can reach nothing but the
+names it is given. Raises Finding.
+"""
+
+from __future__ import annotations
+
+import math
+import re
+from collections.abc import Mapping
+from dataclasses import dataclass, field
+
+from heuncli.errors import Finding
+from heuncli.expressions.codegen import COMPARISONS, MOST_NODES, Emitter, Part
+from heuncli.expressions.programs import Expression, Table
+from heuncli.expressions.units import in_si
+from heuncli.nearest import did_you_mean, nearest
+
+LONGEST, DEEPEST = 2000, 48
+LARGEST_POWER = 64  # whole powers up to this one are multiplied out
+
+CONSTANTS = {"pi": math.pi, "deg": math.pi / 180.0, "rpm": math.pi / 30.0}
+ARITY: dict[str, tuple[int, int]] = {
+    **dict.fromkeys(
+        [
+            "sin",
+            "cos",
+            "tan",
+            "asin",
+            "acos",
+            "atan",
+            "sinh",
+            "cosh",
+            "tanh",
+            "exp",
+            "log",
+            "sqrt",
+            "abs",
+            "sign",
+            "step",
+        ],
+        (1, 1),
+    ),
+    "atan2": (2, 2),
+    **dict.fromkeys(("min", "max", "hypot"), (2, MOST_NODES)),
+    "table": (2, 2),
+}
+WORDS = frozenset({"if", "else", "and", "or", "not"})
+RESERVED = frozenset({"t", *CONSTANTS, *ARITY, *WORDS})
+COORDINATES = {"pin": ("angle", "rate"), "slide": ("travel", "speed")}  # of the joints of one freedom
+BINARY = {"+": (1, "add"), "-": (1, "sub"), "*": (2, "mul"), "/": (2, "div")}
+OTHER_NAMES = {  # what people write who come from elsewhere
+    "arcsin": "asin", "arccos": "acos", "arctan": "atan", "arctan2": "atan2", "ln": "log", "fabs": "abs", "sgn": "sign",
+    "heaviside": "step", "time": "t", "PI": "pi", "Pi": "pi", "π": "pi", "degrees": "deg", "pow": "**", "sqr": "**2",
+}  # fmt: skip
+
+TOKEN = re.compile(
+    r"\s*(?:(?P<number>(?:\d+\.?\d*|\.\d+)(?:[eE][+-]?\d+)?)|(?P<name>[^\W\d]\w*)|(?P<mark>\*\*|[<>=!]=|//|&&|\|\||\S))"
+)
+
+
+@dataclass(frozen=True)
+class Scope:
+    """The names an expression may use. A parameter or table of value None is known, but was itself in error.
+
+    joints gives the type of each; time and coordinates may be used only where in_time.
+    """
+
+    parameters: Mapping[str, float | None] = field(default_factory=dict)
+    joints: Mapping[str, str] = field(default_factory=dict)
+    tables: Mapping[str, Table | None] = field(default_factory=dict)
+    in_time: bool = False
+
+
+class Follows(Finding):
+    """Something this value depends on is in error; that error is told, this one is not."""
+
+    def __init__(self) -> None:
+        super().__init__("follows", "depends on something that is in error")
+
+
+def compile_expression(text: str, scope: Scope) -> Expression:
+    """The expression a text means. Raises Finding."""
+    if len(text) > LONGEST:
+        raise Finding("expression-limit", f"an expression of {len(text)} characters; at most {LONGEST} are read")
+    return _Parser(text, scope).parse()
+
+
+class _Parser:
+    """One reading of one text."""
+
+    def __init__(self, text: str, scope: Scope) -> None:
+        self.text, self.scope = text, scope
+        self.tokens = [
+            (found.lastgroup or "", found[found.lastgroup or 0], found.end()) for found in TOKEN.finditer(text)
+        ]
+        self.at = 0
+        self.nested = 0
+        self.emit = Emitter()
+
+    def parse(self) -> Expression:
+        if not self.tokens:
+            raise Finding("expression-syntax", "an empty expression")
+        part = self.expression()
+        if self.at < len(self.tokens):
+            raise self.unexpected()
+        return self.emit.finished(self.text, part)
+
+    # tokens
+
+    @property
+    def token(self) -> str:
+        """The next token, empty at the end."""
+        return self.tokens[self.at][1] if self.at < len(self.tokens) else ""
+
+    @property
+    def kind(self) -> str:
+        return self.tokens[self.at][0] if self.at < len(self.tokens) else ""
+
+    def take(self, token: str) -> bool:
+        if self.token == token:
+            self.at += 1
+            return True
+        return False
+
+    def expect(self, token: str, where: str) -> None:
+        if not self.take(token):
+            found = f", found '{self.token}'" if self.token else ""
+            hint = None if found else "inside { } and [ ] an expression with a comma needs quotes"
+            raise self.syntax(f"expected '{token}' {where}{found}", hint)
+
+    def syntax(self, message: str, hint: str | None = None) -> Finding:
+        place = self.tokens[self.at][2] - len(self.token) + 1 if self.at < len(self.tokens) else len(self.text) + 1
+        return Finding("expression-syntax", f"'{self.text.strip()}' at character {place}: {message}", hint)
+
+    def unexpected(self) -> Finding:
+        """What does not belong where it stands, with the hint for what was probably meant."""
+        hints = {
+            "^": "a power is written **", "%": "write x - n*y; there is no remainder", "//": "write /",
+            "&&": "write and", "||": "write or", "&": "write and", "|": "write or", "!": "write not",
+            "=": "compare with ==",
+            ":": "a value by cases is: a if c else b", "?": "a value by cases is: a if c else b",
+            "×": "write *", "·": "write *", "÷": "write /", "−": "write the plain minus sign -",
+        }  # fmt: skip
+        if not self.token:
+            return self.syntax("it ends too early")
+        hint = hints.get(self.token)
+        if (
+            hint is None
+            and self.kind in ("name", "number")
+            and self.at
+            and self.tokens[self.at - 1][0] in ("name", "number")
+        ):
+            before = self.tokens[self.at - 1][1]
+            known = self.token in self.scope.parameters or self.token in RESERVED
+            hint = (None if known else in_si(before, self.token)) or f"for a product write {before}*{self.token}"
+        if hint is None and self.token == ",":
+            hint = self.decimal(self.at)
+        if hint is None and self.token == "." and self.at and self.tokens[self.at - 1][1] == ")":
+            hint = "only a joint has coordinates: shaft.angle, guide.travel"
+        return self.syntax(f"'{self.token}' is not expected here", hint)
+
+    def decimal(self, comma: int) -> str | None:
+        """A hint for 1,5: the comma stands right between two numbers."""
+        around = self.tokens[max(comma - 1, 0) : comma + 2]
+        if [kind for kind, _, _ in around] != ["number", "mark", "number"]:
+            return None
+        (_, whole, _), (_, _, end), (_, part, last) = around
+        if last - len(part) != end or not part.isdigit():
+            return None
+        return f"a decimal is written with a point: {whole}.{part}"
+
+    # the grammar
+
+    def expression(self) -> Part:
+        """A value, perhaps by cases."""
+        self.nested += 1
+        if self.nested > DEEPEST:
+            raise Finding("expression-limit", f"an expression nested more than {DEEPEST} deep")
+        part = self.disjunction()
+        if self.take("if"):
+            condition = self.disjunction()
+            self.expect("else", "after 'if'")
+            part = self.emit.choose(condition, part, self.expression())
+        self.nested -= 1
+        return part
+
+    def disjunction(self) -> Part:
+        part = self.conjunction()
+        while self.take("or"):
+            part = self.emit.choose(part, self.emit.number(1.0), self.emit.truth(self.conjunction()))
+        return part
+
+    def conjunction(self) -> Part:
+        part = self.negation()
+        while self.take("and"):
+            part = self.emit.choose(part, self.emit.truth(self.negation()), self.emit.number(0.0))
+        return part
+
+    def negation(self) -> Part:
+        turns = 0
+        while self.take("not"):
+            turns += 1
+        part = self.comparison()
+        for _ in range(min(turns, 2 + turns % 2)):
+            part = self.emit.apply("eq", part, self.emit.number(0.0))
+        return part
+
+    def comparison(self) -> Part:
+        """a, a < b, or a chain a < b < c, in which b is run once."""
+        first = self.binary(1)
+        if self.token not in COMPARISONS:
+            return first
+        right, parts = first, []
+        while self.token in COMPARISONS:
+            name = COMPARISONS[self.token]
+            self.at += 1
+            left, right = right, self.binary(1)
+            parts.append((name, left, right))
+        return self.emit.apply(*parts[0]) if len(parts) == 1 else self.emit.chain(first, parts)
+
+    def binary(self, level: int) -> Part:
+        part = self.unary()
+        while self.token in BINARY and BINARY[self.token][0] >= level:
+            precedence, name = BINARY[self.token]
+            self.at += 1
+            part = self.emit.apply(name, part, self.binary(precedence + 1))
+        return part
+
+    def unary(self) -> Part:
+        minus, signs = False, 0
+        while self.token in ("-", "+"):
+            minus ^= self.token == "-"
+            signs += 1
+            self.at += 1
+        part = self.power()
+        return self.emit.apply("neg", part) if minus else part
+
+    def power(self) -> Part:
+        part = self.operand()
+        if not self.take("**"):
+            return part
+        self.nested += 1
+        if self.nested > DEEPEST:
+            raise Finding("expression-limit", f"an expression nested more than {DEEPEST} deep")
+        exponent = self.unary()  # binds to the right: 2**-3**2
+        self.nested -= 1
+        n = exponent.constant
+        if n is not None and n == int(n if math.isfinite(n) else 0.0) and 2.0 <= abs(n) <= LARGEST_POWER:
+            whole = self.emit.apply("power", part, argument=int(abs(n)))
+            return whole if n > 0.0 else self.emit.apply("div", self.emit.number(1.0), whole)
+        return self.emit.apply("pow", part, exponent)
+
+    def operand(self) -> Part:
+        kind, token = self.kind, self.token
+        if kind == "number":
+            self.at += 1
+            if self.kind == "name" and self.token not in WORDS:
+                raise self.unexpected()
+            value = float(token)
+            if not math.isfinite(value):
+                raise Finding("not-computable", f"{token} is too large a number")
+            return self.emit.number(value)
+        if kind == "name" and token not in WORDS:
+            self.at += 1
+            if self.take("("):
+                return self.call(token)
+            if self.take("."):
+                return self.coordinate(token)
+            return self.name(token)
+        if self.take("("):
+            part = self.expression()
+            self.expect(")", "to close a parenthesis")
+            return part
+        raise self.unexpected()
+
+    def call(self, name: str) -> Part:
+        if name not in ARITY:
+            raise self.unknown(name, ARITY, "function")
+        if name == "table":
+            return self.table()
+        parts: list[Part] = []
+        decimal = None
+        while not self.take(")"):
+            if parts:
+                decimal = decimal or self.decimal(self.at)
+                self.expect(",", f"or ')' in {name}(...)")
+            parts.append(self.expression())
+        least, most = ARITY[name]
+        if not least <= len(parts) <= most:
+            count = f"{least}" if least == most else f"{least} or more"
+            message = f"{name}() takes {count} argument{'s' if count != '1' else ''}, not {len(parts)}"
+            hint = "log is the natural logarithm; to the base b: log(x)/log(b)" if name == "log" else decimal
+            raise Finding("function-arguments", message, hint)
+        part = self.emit.apply(name, *parts[:2])
+        for other in parts[2:]:
+            part = self.emit.apply(name, part, other)
+        return part
+
+    def table(self) -> Part:
+        """table(name, x), the name of an entry of `tables:`."""
+        name = self.token if self.kind == "name" else ""
+        self.at += 1
+        if not name or not self.take(","):
+            raise Finding("function-arguments", "table() takes a table's name and a value: table(gas, shaft.angle)")
+        argument = self.expression()
+        self.expect(")", "to close table(...)")
+        if not self.scope.in_time:
+            raise Finding("not-in-time", "a table may stand only in a value in time (forces, drives)")
+        if name not in self.scope.tables:
+            known = sorted(self.scope.tables)
+            raise Finding("unknown-table", f"'{name}' is not a table", did_you_mean(name, known, "tables"))
+        table = self.scope.tables[name]
+        if table is None:
+            raise Follows
+        return self.emit.look_up(table, argument)
+
+    def coordinate(self, joint: str) -> Part:
+        """joint.quantity, of a joint of one freedom."""
+        quantity = self.token
+        if self.kind != "name":
+            raise self.unexpected()
+        self.at += 1
+        joints = self.scope.joints
+        if not self.scope.in_time:
+            raise Finding("not-in-time", f"{joint}.{quantity} may stand only in a value in time (forces, drives)")
+        if joint not in joints:
+            hint = did_you_mean(joint, joints, "joints")
+            raise Finding("unknown-name", f"'{joint}.{quantity}': '{joint}' is not a joint", hint)
+        words = COORDINATES.get(joints[joint], ())
+        if quantity not in words:
+            known = "; ".join(f"{kind}: {', '.join(w)}" for kind, w in COORDINATES.items())
+            has = f"has {' and '.join(words)}" if words else "has no coordinate of its own"
+            message = f"'{joint}.{quantity}': a joint of type {joints[joint]} {has}, not '{quantity}'"
+            raise Finding("unknown-coordinate", message, f"coordinates of joints: {known}")
+        return self.emit.coordinate(joint, quantity)
+
+    def name(self, name: str) -> Part:
+        if name in self.scope.parameters:
+            value = self.scope.parameters[name]
+            if value is None:
+                raise Follows
+            return self.emit.number(value)
+        if name in CONSTANTS:
+            return self.emit.number(CONSTANTS[name])
+        if name == "t":
+            if not self.scope.in_time:
+                raise Finding("not-in-time", "the time t may stand only in a value in time (forces, drives)")
+            return self.emit.time()
+        if name in ARITY:
+            raise Finding("function-arguments", f"{name} is a function: write {name}(...)")
+        raise self.unknown(name, [*self.scope.parameters, *RESERVED], "parameter")
+
+    def unknown(self, name: str, known: Mapping[str, object] | list[str], kind: str) -> Finding:
+        if name in OTHER_NAMES:
+            return Finding("unknown-name", f"'{name}' is not a {kind}", f"write {OTHER_NAMES[name]}")
+        if kind == "parameter" and name in self.scope.joints:
+            words = COORDINATES.get(self.scope.joints[name])
+            hint = f"write {name}.{words[0]} or {name}.{words[1]}" if words else None
+            return Finding("unknown-name", f"'{name}' is a joint, not a number", hint)
+        message, near = f"'{name}' is not a {kind}", nearest(name, known)
+        is_near = near is not None and near.lower() == name.lower()
+        if not is_near and kind == "parameter" and (hint := in_si("", name)) is not None:
+            return Finding("unknown-name", message, hint)
+        listed = list(self.scope.parameters) if kind == "parameter" else sorted(known)
+        hint = f"did you mean {near}?" if near else did_you_mean(name, listed, f"{kind}s")
+        return Finding("unknown-name", message, hint)

@@ -1,0 +1,102 @@
+"""Expressions that have no value where a run fails: which, where they stand, and why. Loaded on the way to an error."""
+
+from __future__ import annotations
+
+import math
+from collections.abc import Iterator, Mapping
+from dataclasses import replace
+
+from heuncli.errors import Problem
+from heuncli.expressions.programs import KNOT, TABLE, Expression, Table, outside
+from heuncli.mechanism.model import Mechanism
+from heuncli.results import Array
+from heuncli.tree.layout import Layout
+
+NEAREST, FARTHEST = 52, 20  # what fails at t may have no value only beyond: from 2**-52 to 2**-20 of the run's length
+BOUNDLESS = 1e3  # a value that grows so many times over within 2**-20 of the run is on its way to infinity
+HELD = 1  # a table's kind (expressions/programs.py)
+DERIVATIVES = ("value", "rate", "acceleration")
+
+Moving = Mapping[tuple[str, str], tuple[float, float]]  # a joint's coordinate and its rate of change
+
+
+def moving(layout: Layout, freedoms: Array) -> Moving:
+    """The coordinates of the joints at one instant; freedoms (n_f, 4): motion.Recovered."""
+    found: dict[tuple[str, str], tuple[float, float]] = {}
+    joints = layout.mechanism.joints
+    for freedom, (q, u, a) in zip(layout.freedoms, freedoms[:, :3].tolist(), strict=True):
+        if freedom.joint >= 0 and freedom.quantity in ("angle", "travel"):
+            name = joints[freedom.joint].name
+            found[name, freedom.quantity] = q, u
+            found[name, "rate" if freedom.quantity == "angle" else "speed"] = u, a if math.isfinite(a) else 0.0
+    return found
+
+
+def without_value(mechanism: Mechanism, t: float, length: float, coordinates: Moving) -> list[Problem]:
+    """The expressions without a finite value at t or just beyond, else those that grow without bound there.
+
+    length: of the run; coordinates: at t, by joint and quantity.
+    """
+    scale = max(abs(t), length)
+    for beyond in (0.0, *(scale * 2.0**-k for k in range(NEAREST, FARTHEST - 1, -1))):
+        problems = [
+            _problem(expression, t + beyond, _values(expression, beyond, coordinates), lacking)
+            for expression, driven in _in_time(mechanism)
+            if (lacking := _lacking(expression, t + beyond, _values(expression, beyond, coordinates), driven))
+        ]
+        if problems:
+            return problems
+    back = -scale * 2.0**-FARTHEST
+    return [
+        _problem(expression, t, _values(expression, 0.0, coordinates), "")
+        for expression, _ in _in_time(mechanism)
+        if abs(expression.value(t, _values(expression, 0.0, coordinates)))
+        > BOUNDLESS * abs(expression.value(t + back, _values(expression, back, coordinates))) > 0.0
+    ]
+
+
+def _in_time(mechanism: Mechanism) -> Iterator[tuple[Expression, bool]]:
+    """Every expression that is not one number, and whether it drives."""
+    driven = {id(joint.drive.value) for joint in mechanism.joints if joint.drive is not None}
+    for expression in mechanism.expressions():
+        if expression.constant is None:
+            yield expression, id(expression) in driven
+
+
+def _values(expression: Expression, later: float, coordinates: Moving) -> list[float]:
+    """The coordinates an expression uses, carried on by their rates."""
+    return [q + later * u for q, u in (coordinates.get(use, (math.nan, 0.0)) for use in expression.uses)]
+
+
+def _lacking(expression: Expression, t: float, values: list[float], driven: bool) -> str:
+    """What of an expression is not finite: its value; of a drive its rate or acceleration, too."""
+    if any(map(math.isnan, values)):
+        return ""  # of coordinates that are not known nothing can be said
+    jet = expression.derivatives(t) if driven else (expression.value(t, values),)
+    return next((name for name, x in zip(DERIVATIVES, jet, strict=False) if not math.isfinite(x)), "")
+
+
+def _problem(expression: Expression, t: float, values: list[float], lacking: str) -> Problem:
+    """What an expression lacks (nothing: a bound) at an instant."""
+    at = "".join(f", {joint}.{key} = {x:.9g}" for (joint, key), x in zip(expression.uses, values, strict=True))
+    subject = f"'{expression.source.strip()}'"
+    table = _left(expression, t, values) if lacking else None
+    if table is not None:
+        message, hint = outside(table)
+        return Problem("no-value", f"{subject} has no value at t = {t:.9g} s{at}: {message}", expression.place, hint)
+    what = f"has no finite {lacking}" if lacking else "grows without bound"
+    hint = "keep it within the domain of its functions, as with max(x, 0) or 'a if c else b', or end the run before"
+    return Problem("no-value", f"{subject} {what} at t = {t:.9g} s{at}", expression.place, hint)
+
+
+def _left(expression: Expression, t: float, values: list[float]) -> Table | None:
+    """The table whose range was left: the one with which, held at its ends, there is a value."""
+    for place, table in enumerate(expression.tables):
+        code = list(expression.code)
+        for i in range(0, len(code) - 3, 2):
+            if code[i] in (TABLE, KNOT) and code[i + 1 : i + 4] == [place, table.pieces, table.kind]:
+                code[i + 3] = HELD
+        held = replace(expression, code=tuple(code))
+        if math.isfinite(held.value(t, values)):
+            return table
+    return None

@@ -1,0 +1,63 @@
+"""No numbers where no acceleration exists: the sentences that say so."""
+
+from __future__ import annotations
+
+import math
+
+import numpy as np
+
+from heuncli.errors import Problem, SolveError
+from heuncli.integration.runner import Recovered
+from heuncli.tree.prepare import Scene
+
+NO_MOMENT = 1e-9  # of the loads there: a smaller moment about an axis without inertia is rounding
+
+
+def refuse(scene: Scene, found: Recovered) -> None:
+    """Raise SolveError for answers that are not finite, freedoms with nothing behind them, moments without inertia."""
+    finite = np.isfinite(found.bodies).all(axis=(1, 2))
+    if not finite.all():
+        raise SolveError(*not_finite(scene, found, int(np.flatnonzero(~finite)[0])))
+    if (found.idle > 0).any():
+        raise SolveError(nothing_behind(scene, float(found.times[int(np.flatnonzero(found.idle > 0)[0])])))
+    layout, gravity = scene.layout, scene.mechanism.gravity
+    for spin in scene.idle:
+        rows = found.bodies[:, layout.place[spin.body]]
+        R = rows[:, 0:9].reshape(-1, 3, 3)
+        alpha = np.einsum("tki,tk->ti", R, rows[:, 18:21])
+        moment = np.abs(alpha @ (spin.axes @ spin.lent).T).max(initial=0.0)
+        # what is given or turns, not the acceleration, which such a moment makes as large as it likes
+        force = np.abs(rows[:, 27:30]).max(initial=0.0) + np.abs(found.loads[:, :, 0:3]).max(initial=0.0)
+        body = scene.mechanism.bodies[spin.body]
+        scale = (force + body.mass * float(np.abs(gravity).max())) * layout.size
+        scale += np.abs(found.loads[:, :, 3:6]).max(initial=0.0)
+        scale += float(np.trace(body.inertia)) * float(np.sum(rows[:, 12:15] ** 2, axis=1).max())
+        if moment > NO_MOMENT * scale:
+            axis = ", ".join(f"{x:.4g}" for x in spin.axes[0])
+            name = scene.mechanism.bodies[spin.body].name
+            message = (
+                f"bodies.{name} has no inertia about its axis ({axis}), and a moment of {moment:.4g} N m acts about it"
+            )
+            hint = "give the body its moment of inertia about that axis, or let the load act on the axis"
+            raise SolveError(Problem("no-inertia", message, hint=hint))
+
+
+def not_finite(scene: Scene, found: Recovered, instant: int) -> list[Problem]:
+    """The expressions without a value there, else that no acceleration exists."""
+    from heuncli.integration.domains import moving, without_value  # only on the way to an error
+
+    t, length = float(found.times[instant]), float(found.times[-1])
+    problems = without_value(scene.mechanism, t, length, moving(scene.layout, found.freedoms[instant]))
+    message = f"at t = {t:.9g} s no finite acceleration exists"
+    return problems or [Problem("not-a-number", message, hint="look at points that coincide, and at very large values")]
+
+
+def nothing_behind(scene: Scene, t: float) -> Problem:
+    """A freedom moves no mass: which bodies have no inertia about some axis."""
+    thin = []
+    for body in scene.mechanism.bodies:
+        moments, axes = np.linalg.eigh(body.inertia)
+        if moments[0] <= 1e-12 * moments[-1] + math.ulp(0.0):
+            thin.append(f"{body.name} about ({', '.join(f'{x:.4g}' for x in axes[:, 0])})")
+    message = f"at t = {t:.6g} s a freedom has no inertia behind it; without inertia: {', '.join(thin) or 'none'}"
+    return Problem("no-inertia", message, hint="give those bodies their moments of inertia, or hold the turn")

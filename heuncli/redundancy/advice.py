@@ -1,0 +1,176 @@
+"""How to make a redundant model determinate: joints replaced by looser ones, found by trying.
+
+A looser joint holds part of what the one before held, so where the freedoms stay the same the motion does. Joints that
+are driven, loaded, named in an expression or hold a start value keep their kind: they need it.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Iterator, Mapping
+from dataclasses import replace
+from itertools import combinations, product
+
+import numpy as np
+
+from heuncli.expressions.programs import Expression
+from heuncli.integration.runner import Runner
+from heuncli.kinetostatics.bodies import body_states
+from heuncli.mechanism.joints import JOINTS
+from heuncli.mechanism.model import GROUND, Joint, JointLoad, Load, PointLoad
+from heuncli.redundancy.count import NEIGHBOUR, freedoms_of_tree, redundancy
+from heuncli.redundancy.neighbours import neighbours
+from heuncli.redundancy.self_stress import self_stress
+from heuncli.results import Array, Block
+from heuncli.tree.prepare import Scene, arranged
+
+MOST_TRIED = 400  # replacements tried before the hint is given up
+ONE = 1e-6  # of the largest: what is open in a joint has one direction if less lies across it
+
+# What a joint may be replaced by so that it holds less; the gentlest first. A pin with side play is a line.
+LOOSER: dict[str, tuple[str, ...]] = {
+    "pin": ("universal", "ball", "cylinder", "line"),
+    "slide": ("cylinder", "line"),
+    "cylinder": ("line",),
+    "universal": ("ball",),
+    "weld": ("ball",),
+    "ball": ("line",),
+}
+FLATTER: dict[str, tuple[str, ...]] = {"pin": ("flat line",), "slide": ("flat line",), "weld": ("pin",)}  # planar
+NAMES = {"flat line": "line"}
+
+Choices = Mapping[int, tuple[Joint, ...]]  # joint -> what may take its place
+
+
+def advice(scene: Scene, model: Block) -> list[str]:
+    """A replacement of joints that leaves nothing open and changes no freedom, or that none was found.
+
+    Nothing where nothing is held twice.
+    """
+    if not model["redundant"]:
+        return []
+    choices = choices_of(scene)
+    for tried, changed in enumerate(_replacements(scene.mechanism.joints, choices, model["redundant"])):
+        if tried >= MOST_TRIED:
+            break
+        if _left(scene, changed, model) == 0:
+            return [f"determinate with {told(scene, changed, ' and ')}: the same motion, and no reaction is open"]
+    return stepwise(scene, choices, model)
+
+
+def stepwise(scene: Scene, choices: Choices, model: Block) -> list[str]:
+    """Joints loosened one after another, inner ones first, wherever that opens less and changes no freedom."""
+    changed, left = dict[int, Joint](), int(model["redundant"])
+    for k, kinds in choices.items():
+        for other in reversed(kinds):
+            found = _left(scene, {**changed, k: other}, model) if left else None
+            if found is not None and found < left:
+                changed[k], left = other, found
+                break
+    if not changed:
+        return ["no looser joints were found that leave less open; `stiffness` on the joints concerned makes a split"]
+    if left == 0:
+        return [f"determinate with {told(scene, changed, ', ')}: the same motion, and no reaction is open"]
+    rest = f"{left} of {model['redundant']} are left; for those give joints their `stiffness`"
+    return [f"with {told(scene, changed, ', ')} only {rest}"]
+
+
+def choices_of(scene: Scene) -> Choices:
+    """Of each joint that may change what may take its place; inner joints first."""
+    mechanism = scene.mechanism
+    joints = mechanism.joints
+    looser = FLATTER if mechanism.planar else LOOSER
+    loaded = {joints[load.joint].name for load in mechanism.loads if isinstance(load, JointLoad)}
+    loaded |= {name for load in mechanism.loads for e in _expressions(load) for name, _ in e.uses}
+    along = open_directions(scene)
+    found: dict[int, tuple[Joint, ...]] = {}
+    for k in sorted(range(len(joints)), key=lambda k: GROUND in (joints[k].a, joints[k].b)):
+        j = joints[k]
+        given = any(value is not None for value in (j.angle, j.rate, j.travel, j.speed))
+        if j.drive is None and not given and j.name not in loaded:
+            others = (loosened(j, kind, along[k]) for kind in looser.get(j.kind, ()))
+            found[k] = tuple(other for other in others if other is not None)
+    return found
+
+
+def _expressions(load: Load) -> list[Expression]:
+    values = load.vector if isinstance(load, PointLoad) else (load.value,)
+    return [value for value in values if value is not None]
+
+
+def open_directions(scene: Scene) -> list[Array | None]:
+    """Of each joint the one direction in `from` axes in which its force is open; None where there are more, or none."""
+    runner = Runner(scene.layout)
+    here = runner.recovered(np.zeros(1), scene.layout.y0[None, :])
+    poses = neighbours(runner, 0.0, here.states[0], (NEIGHBOUR,)) or here
+    states = body_states(scene.layout, poses)
+    stress = self_stress(scene.layout, states, poses.gap)
+    assert stress is not None
+    found: list[Array | None] = []
+    for joint, share in zip(scene.mechanism.joints, stress.shares, strict=True):
+        F = share[:, :3] / np.where(stress.largest > 0.0, stress.largest, 1.0)[:, None]
+        F = F if joint.a == GROUND else states.R[:, joint.a].transpose(0, 2, 1) @ F
+        U, sigma, _ = np.linalg.svd(F.transpose(1, 0, 2).reshape(3, -1), full_matrices=False)
+        n = U[:, 0] * np.sign(U[np.argmax(np.abs(U[:, 0])), 0])
+        found.append(n if sigma[0] > ONE and sigma[1:].max(initial=0.0) <= ONE * sigma[0] else None)
+    return found
+
+
+def _left(scene: Scene, changed: Mapping[int, Joint], model: Block) -> int | None:
+    """What is left redundant with these joints; None where they free something, or leave a spin to nobody."""
+    joints = tuple(changed.get(k, j) for k, j in enumerate(scene.mechanism.joints))
+    other = arranged(replace(scene.mechanism, joints=joints), scene.start)
+    found = redundancy(other, Runner(other.layout))
+    freedoms = freedoms_of_tree(other.layout) - (len(other.layout.rows) - found.dependent)
+    return found.generic if freedoms == model["freedoms"] and len(other.idle) <= len(scene.idle) else None
+
+
+def _replacements(joints: tuple[Joint, ...], choices: Choices, redundant: int) -> Iterator[dict[int, Joint]]:
+    """Up to three joints made looser by as many conditions as are redundant, few ones first."""
+
+    def less(k: int, other: Joint) -> int:
+        return JOINTS[joints[k].kind].rows - JOINTS[other.kind].rows
+
+    most = max((less(k, other) for k, others in choices.items() for other in others), default=0)
+    for n in (1, 2, 3):
+        if n * most < redundant:
+            continue
+        for chosen in combinations(choices, n):
+            for others in product(*(choices[k] for k in chosen)):
+                if sum(map(less, chosen, others)) == redundant:
+                    yield dict(zip(chosen, others, strict=True))
+
+
+def loosened(joint: Joint, kind: str, along: Array | None) -> Joint | None:
+    """The joint as another kind at the same place, None where its axis is not told.
+
+    A ball, or a pin in the plane, may give way along the one direction in which it is open; a universal gets a second
+    axis across its first.
+    """
+    if kind in ("line", "flat line") and joint.kind in ("ball", "pin") and (kind, joint.kind) != ("line", "pin"):
+        return replace(joint, kind=kind, axis=along, to_axis=along) if along is not None else None
+    if kind != "universal":
+        return replace(joint, kind=kind)
+    e = np.zeros(3)
+    e[int(np.argmin(np.abs(joint.to_axis)))] = 1.0
+    across = e - (e @ joint.to_axis) * joint.to_axis
+    return replace(joint, kind=kind, to_axis=across / np.sqrt(across @ across), to_axis_given=True)
+
+
+def told(scene: Scene, changed: Mapping[int, Joint], between: str) -> str:
+    """The replacements in words that can be typed: an axis where it is not the joint's own."""
+    words = []
+    for k, other in changed.items():
+        before = scene.mechanism.joints[k]
+        text = f"{other.name} as {NAMES.get(other.kind, other.kind)}"
+        if other.kind == "universal":
+            text += f" (to_axis {_numbers(other.to_axis)})"
+        elif JOINTS[other.kind].has_axis and other.axis is not before.axis:
+            text += f" (axis {_numbers(other.axis)})"
+        words.append(text)
+    return between.join(words)
+
+
+def _numbers(direction: Array) -> str:
+    """A direction to all its digits, for a rounded one would leave a joint out of true."""
+    exact = np.where(np.abs(direction) < 1e-12, 0.0, direction)
+    return "[" + ", ".join(f"{x:.15g}" for x in exact / np.abs(exact).max()) + "]"

@@ -1,0 +1,104 @@
+"""Sums of open components that are certain: few, readable, and true in neighbouring poses too.
+
+A sum is certain if the shares of every self-stress in it cancel. Forces and moments apart (together only where nothing
+else is certain): first pairs, components whose shares are proportional; then each further one by those named before it.
+What constant factors leave is told by factors that turn (turning.py).
+"""
+
+from __future__ import annotations
+
+from collections.abc import Mapping, Sequence
+
+import numpy as np
+
+from heuncli.redundancy.turning_sums import Shares, turning_sums
+from heuncli.results import Array, Block
+
+SAME = 1e-7  # of a row's length: what is left of it when it is told by others
+
+
+def certain_sums(poses: Shares, told: Shares, values: Mapping[str, Array], length: float) -> list[Block]:
+    """Sums over open components; factors that turn are arrays (n_t,), at one instant alone numbers.
+
+    poses: shares where the sums must hold; told: the same at the asked instants; values: (n_t,), of any one solution.
+    length: what divides moments where they stand beside forces [m].
+    """
+    force = [name for name in poses if ".force." in name]
+    moment = [name for name in poses if ".moment." in name]
+    steady, turning = list[dict[str, float]](), list[dict[str, Array]]()
+    for names in (force, moment):
+        constant, left = relations({name: poses[name].ravel() for name in names})
+        steady += constant
+        turning += turning_sums({name: poses[name] for name in left}, told)
+    if not steady and not turning:
+        steady, left = relations({name: poses[name].ravel() for name in (*force, *moment)})
+        unit = {name: 1.0 if ".force." in name else length for name in left}
+        scaled = [{name: part[name] / unit[name] for name in left} for part in (poses, told)]
+        turning = [{name: c / unit[name] for name, c in terms.items()} for terms in turning_sums(*scaled)]
+    found: list[Mapping[str, float | Array]] = [*steady, *turning]
+    if all(len(value) == 1 for value in values.values()):
+        found = [{name: float(np.asarray(c).item()) for name, c in terms.items()} for terms in found]
+    return [
+        {"terms": terms, "value": sum((c * values[name] for name, c in terms.items()), np.zeros(1))} for terms in found
+    ]
+
+
+def relations(rows: Mapping[str, Array]) -> tuple[list[dict[str, float]], list[str]]:
+    """Combinations of rows (K,) that vanish, as {name: factor}, and the names of those that are left free.
+
+    Pairs, then echelon form, the earliest names left free.
+    """
+    scale = {name: float(np.sqrt(row @ row)) for name, row in rows.items()}
+    names = [name for name in rows if scale[name] > 0.0]  # open only where no sum is read from
+    if not names:
+        return [], []
+    stacked = np.stack([rows[name] / scale[name] for name in names])
+    same = stacked @ stacked.T
+    found: list[dict[str, float]] = []
+    heads: list[int] = []
+    for i, name in enumerate(names):
+        head = next(
+            (
+                h
+                for h in heads
+                if abs(same[i, h]) > 0.999 and np.linalg.norm(stacked[i] - same[i, h] * stacked[h]) <= SAME
+            ),
+            None,
+        )
+        if head is None:
+            heads.append(i)
+        else:
+            found.append(tidy({names[head]: -float(same[i, head]) * scale[name] / scale[names[head]], name: 1.0}))
+    more, free = echelon([names[h] for h in heads], stacked[heads], scale)
+    return found + more, free
+
+
+def echelon(
+    names: Sequence[str], rows: Array, scale: Mapping[str, float]
+) -> tuple[list[dict[str, float]], list[str]]:
+    """Each row (of unit length) that those before it can tell, told by an independent set of them; and that set."""
+    found: list[dict[str, float]] = []
+    free: list[int] = []
+    basis = np.zeros((0, rows.shape[1]))  # orthonormal, of the free rows
+    for i, name in enumerate(names):
+        rest = rows[i] - basis.T @ (basis @ rows[i])
+        rest = rest - basis.T @ (basis @ rest)
+        size = float(np.sqrt(rest @ rest))
+        if size > SAME:
+            basis = np.vstack([basis, rest / size])
+            free.append(i)
+            continue
+        c = np.linalg.solve(basis @ rows[free].T, basis @ rows[i])
+        told = {names[f]: -float(x) * scale[name] / scale[names[f]] for f, x in zip(free, c, strict=True)}
+        small = 1e-9 * max(abs(x) * scale[n] for n, x in told.items())
+        found.append(tidy({n: x for n, x in told.items() if abs(x) * scale[n] > small} | {name: 1.0}))
+    return found, [names[f] for f in free]
+
+
+def tidy(terms: dict[str, float]) -> dict[str, float]:
+    """First term positive, whole numbers whole."""
+    first = next(iter(terms.values()))
+    sign = 1.0 if first > 0.0 else -1.0
+    smallest = min(abs(x) for x in terms.values())
+    scaled = {name: sign * x / (abs(first) if abs(first) >= smallest else 1.0) for name, x in terms.items()}
+    return {name: float(round(x)) if abs(x - round(x)) <= 1e-9 and round(x) != 0 else x for name, x in scaled.items()}

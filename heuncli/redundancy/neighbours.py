@@ -1,0 +1,64 @@
+"""Neighbouring poses: moved a little along admissible rates, so that no accident of one pose is taken for a law."""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+
+import numpy as np
+
+from heuncli.integration.runner import Recovered, Runner
+from heuncli.results import Array
+from heuncli.tree.layout import Layout
+
+DIRECTIONS = 3
+SEED = 1901  # fixed: the same scene gives the same verdicts
+
+
+def neighbours(runner: Runner, t: float, state: Array, by: Sequence[float]) -> Recovered | None:
+    """Poses displaced by each of `by` (rad, or of the size) along fixed pseudo-random admissible rates, both ways.
+
+    None if nothing moves.
+    """
+    layout = runner.layout
+    rng = np.random.default_rng(SEED)
+    start = np.repeat(state[None, :], DIRECTIONS, axis=0)
+    slots = rate_slots(layout)
+    start[:, slots] = rng.uniform(-1.0, 1.0, (DIRECTIONS, len(slots))) / layout.weights[slots]
+    admissible = runner.recovered(np.full(DIRECTIONS, t), start).states
+    largest = np.abs(admissible[:, slots] * layout.weights[slots]).max(axis=1, initial=0.0)
+    moving = largest > 1e-6
+    if not moving.any():
+        return None
+    steps = [(k, sign * step / largest[k]) for k in np.flatnonzero(moving) for step in by for sign in (1.0, -1.0)]
+    moved = [displaced(layout, admissible[k], step) for k, step in steps]
+    found = runner.recovered(np.full(len(steps), t), np.array(moved), choose=True)
+    closed = found.gap <= 1e-10 * layout.size
+    if not closed.any():
+        return None
+    return runner.recovered(np.full(int(closed.sum()), t), found.states[closed], choose=True)
+
+
+def rate_slots(layout: Layout) -> Array:
+    """Places of the controlled rates in the state."""
+    D = layout.groups
+    found: Array = np.concatenate([np.arange(D[9 + 3 * b], D[10 + 3 * b]) for b in range(D[1])]).astype(int)
+    return found
+
+
+def displaced(layout: Layout, state: Array, by: float) -> Array:
+    """The state with its coordinates moved by rates * by."""
+    moved = state.copy()
+    I = layout.I
+    for b in range(I[0]):
+        at = I[10] + 8 * b
+        if I[at + 1]:
+            q, w = state[I[at + 4] : I[at + 4] + 4], 0.5 * by * state[I[at + 5] : I[at + 5] + 3]
+            turn = np.array([
+                -w @ q[1:], *(w * q[0] + np.cross(w, q[1:])),
+            ])  # fmt: skip
+            moved[I[at + 4] : I[at + 4] + 4] = (q + turn) / np.sqrt(np.sum((q + turn) ** 2))
+    for k in range(I[1]):
+        f = I[11] + 8 * k
+        if not I[f + 3]:
+            moved[I[f + 1]] += by * state[I[f + 2]]
+    return moved

@@ -1,0 +1,74 @@
+"""Open components made visible: `nan` where a self-stress has a share, and the list of what is open at some instant.
+
+A component in any direction c of a wrench is open where c . share is; so `axial` may be certain where x, y, z are not.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Mapping
+
+import numpy as np
+
+from heuncli.kinetostatics.reactions import JointLoads
+from heuncli.redundancy.self_stress import SelfStress
+from heuncli.results import Array, Block, Mask
+
+WORLD = ("x", "y", "z")
+
+
+def opened(values: Array, is_open: Mask) -> Array:
+    """The values, nan where open."""
+    found: Array = np.where(is_open, np.nan, values)
+    return found
+
+
+def wrench_open(stress: SelfStress, share: Array) -> tuple[Mask, Mask]:
+    """Which of force and moment x, y, z are open, (n_t, 3) each, for a share (n_t, 6, k)."""
+    return stress.reaches(share[:, :3]), stress.reaches(share[:, 3:], stress.length)
+
+
+def names_of(parts: Mapping[str, Mask]) -> list[str]:
+    """Names of the components open at some instant: "force.z" of (n_t, 3), "axial" of (n_t,)."""
+    found = []
+    for name, is_open in parts.items():
+        if is_open.ndim == 1:
+            found += [name] if is_open.any() else []
+        else:
+            found += [f"{name}.{WORLD[i]}" for i in range(3) if is_open[:, i].any()]
+    return found
+
+
+def open_joint(block: Block, load: JointLoads, share: Array, stress: SelfStress) -> None:
+    """Open components of a joint's block, in place."""
+    force, moment = wrench_open(stress, share)
+    parts: dict[str, Mask] = {"force": force, "moment": moment}
+    if load.axis is not None:
+        n = load.axis
+        F, M = share[:, :3], share[:, 3:]
+        axial = np.einsum("ti,tik->tk", n, F)[:, None]
+        across = F - n[:, :, None] * axial
+        about = np.einsum("ti,tik->tk", n, M)[:, None]
+        parts["axial"] = stress.reaches(axial)[:, 0]
+        parts["radial"] = np.asarray(stress.reaches(across).any(axis=1))
+        tilting = stress.reaches(M - n[:, :, None] * about, stress.length)
+        parts["tilting"] = np.asarray(tilting.any(axis=1))
+        if load.drive is not None:
+            # what acts along the driven freedom is the drive's, and no part of the constraint's load
+            turns = load.joint.drive is not None and load.joint.drive.quantity == "angle"
+            parts["drive"] = stress.reaches(about, stress.length)[:, 0] if turns else parts["axial"]
+            if turns:
+                parts["moment"] = tilting
+            else:
+                parts["force"], parts["axial"] = stress.reaches(across), np.zeros_like(parts["axial"])
+    if load.tension is not None:
+        parts["tension"] = np.asarray(force.any(axis=1))
+    for name, is_open in parts.items():
+        if name in block:
+            block[name] = opened(block[name], is_open)
+    block["open"] = names_of({name: is_open for name, is_open in parts.items() if name in block})
+
+
+def open_support(block: Block, share: Array, stress: SelfStress) -> None:
+    """Open components of a support's force and moment ON the ground, in place."""
+    force, moment = wrench_open(stress, share)
+    block["force"], block["moment"] = opened(block["force"], force), opened(block["moment"], moment)

@@ -1,0 +1,123 @@
+"""What redundant joints leave undecided, made visible: a split where one is chosen, open components, certain sums."""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+from dataclasses import dataclass
+
+import numpy as np
+
+from heuncli.integration.runner import Recovered, Runner
+from heuncli.kinetostatics.bodies import BodyStates, body_states
+from heuncli.kinetostatics.reactions import JointLoads
+from heuncli.redundancy.certain_sums import certain_sums
+from heuncli.redundancy.neighbours import neighbours
+from heuncli.redundancy.open_components import names_of, open_joint, open_support, wrench_open
+from heuncli.redundancy.self_stress import SelfStress, self_stress
+from heuncli.redundancy.split import split
+from heuncli.results import Array, Block
+from heuncli.tree.prepare import Scene
+
+# [rad] or of the size: how far neighbouring poses lie in which a certain sum must hold too; several, for what has one
+# freedom gives two poses each, and among more components than poses some sums hold by accident
+NEAR = (0.05, 0.1, 0.2, 0.4)
+NEARLY = 1e-6  # relative singular value of the closures below which reactions are not to be trusted
+SUMS_FROM = 9  # instants whose self-stresses certain sums are read from
+
+
+@dataclass(frozen=True, eq=False)
+class Decided:
+    """The joints' loads after the split chosen in words; the self-stresses, and those it left (None: none)."""
+
+    joints: list[JointLoads]
+    words: tuple[str, ...] = ()
+    stress: SelfStress | None = None
+    left: SelfStress | None = None
+    found: SelfStress | None = None  # as looked for, also where there are none
+
+    def singular(self, times: Array, redundant: int) -> list[str]:
+        """Sentences on instants at which more is open than `redundant`, or nearly so."""
+        return singular_poses(self.found, times, redundant) if self.found is not None else []
+
+    def show(self, base: Block, reactions: Block) -> None:
+        """Mark what is open, or was until a split was chosen, in the blocks of foundation and joints, in place."""
+        if self.left is not None:
+            put_verdicts(self.left, self.joints, base, reactions)
+        if self.words and self.stress is not None:
+            mark_chosen(self.stress, self.joints, reactions)
+
+    def sums(self, scene: Scene, runner: Runner, found: Recovered) -> list[Block]:
+        """Certain sums of what is open."""
+        return sums_of(scene, runner, found, self.joints, self.left) if self.left is not None else []
+
+
+def decide(scene: Scene, found: Recovered, states: BodyStates, joints: list[JointLoads], least_norm: bool) -> Decided:
+    """Find the self-stresses and apply the split that was asked for."""
+    stress = self_stress(scene.layout, states, found.gap)
+    if stress is None or not stress.count.any():
+        return Decided(joints, found=stress)
+    chosen = split(joints, states, stress, least_norm)
+    return Decided(chosen.joints, chosen.words, stress, chosen.stress, stress)
+
+
+def singular_poses(stress: SelfStress, times: Array, redundant: int) -> list[str]:
+    """Where the rank of the closures drops below the generic one, and where it comes near to that."""
+    found = []
+    more = np.flatnonzero(stress.count > redundant)
+    if len(more):
+        told = ", ".join(f"{t:.6g}" for t in times[more[:5]]) + (" ..." if len(more) > 5 else "")
+        found.append(f"singular pose at t = {told} s: what is open only there is open there only")
+    near = np.flatnonzero((stress.least < NEARLY) & (stress.count <= redundant))
+    if len(near):
+        k = near[int(np.argmin(stress.least[near]))]
+        found.append(
+            f"nearly singular pose at t = {times[k]:.6g} s (smallest singular value {stress.least[k]:.1e}): "
+            "reactions grow there without bound, their error by as much"
+        )
+    return found
+
+
+def put_verdicts(stress: SelfStress, joints: Sequence[JointLoads], base: Block, reactions: Block) -> None:
+    """Make the open components of joints and supports visible, in place."""
+    for load, share in zip(joints, stress.shares, strict=True):
+        open_joint(reactions[load.joint.name], load, share, stress)
+        support = base.get("supports", {}).get(load.joint.name)
+        if support is not None:
+            open_support(support, share, stress)
+
+
+def mark_chosen(stress: SelfStress, joints: Sequence[JointLoads], reactions: Block) -> None:
+    """Tell which components were open before a split was chosen, in place."""
+    for load, share in zip(joints, stress.shares, strict=True):
+        force, moment = wrench_open(stress, share)
+        names = names_of({"force": force, "moment": moment})
+        if names:
+            reactions[load.joint.name]["chosen"] = names
+
+
+def sums_of(
+    scene: Scene, runner: Runner, found: Recovered, joints: Sequence[JointLoads], stress: SelfStress
+) -> list[Block]:
+    """Certain sums of the joints' open components, true at the asked instants and in neighbouring poses."""
+    pick = np.unique(np.linspace(0, len(found.times) - 1, SUMS_FROM).astype(int))
+    near = neighbours(runner, float(found.times[0]), found.states[0], NEAR)
+    beside = self_stress(scene.layout, body_states(scene.layout, near), near.gap) if near is not None else None
+    if any(j.joint.stiffness is not None for j in joints):
+        beside = None  # what a stiffness leaves undecided is known at the asked instants only
+    poses, told, values = dict[str, Array](), dict[str, Array](), dict[str, Array]()
+    for k, load in enumerate(joints):
+        is_open = np.concatenate(wrench_open(stress, stress.shares[k]), axis=1).any(axis=0)
+        for i in np.flatnonzero(is_open).tolist():
+            name = f"joints.{load.joint.name}.{'force' if i < 3 else 'moment'}.{'xyz'[i % 3]}"
+            told[name] = relative(stress, k, i)
+            parts = [told[name][pick], *([relative(beside, k, i)] if beside is not None else [])]
+            most = max(part.shape[1] for part in parts)
+            poses[name] = np.concatenate([np.pad(part, ((0, 0), (0, most - part.shape[1]))) for part in parts])
+            values[name] = (load.force if i < 3 else load.moment)[:, i % 3]
+    return certain_sums(poses, told, values, stress.length)
+
+
+def relative(stress: SelfStress, joint: int, component: int) -> Array:
+    """Shares of every self-stress in one component, each relative to its largest, (n_t, k)."""
+    found: Array = stress.shares[joint][:, component] / np.where(stress.largest > 0.0, stress.largest, 1.0)
+    return found

@@ -1,0 +1,102 @@
+"""A split of what redundancy leaves open, on request: by the joints' stiffness, by the least norm.
+
+Neither follows from the laws of rigid bodies; both add self-stresses to one solution. Stiffness: least sum of
+F^2/k + M^2/k over the joints that have one, components in `from` axes; what they do not feel stays open. Least norm:
+least sum F^2 + (M/length)^2 over all joints; independent of the units. theory.md 2b (weights).
+"""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+from dataclasses import dataclass, replace
+
+import numpy as np
+
+from heuncli.kinetostatics.bodies import BodyStates
+from heuncli.kinetostatics.reactions import JointLoads, carried
+from heuncli.redundancy.self_stress import SelfStress
+from heuncli.results import Array
+
+FELT = 1e-9  # of the largest: a self-stress that strains less is not decided by the stiffness
+
+
+@dataclass(frozen=True, eq=False)
+class Split:
+    """Joint loads after a choice, the self-stresses it left undecided (None: none), and how it was made, in words."""
+
+    joints: list[JointLoads]
+    stress: SelfStress | None
+    words: tuple[str, ...]
+
+
+def split(joints: list[JointLoads], states: BodyStates, stress: SelfStress, least_norm: bool) -> Split:
+    """Apply the joints' stiffness where it is given, then the least norm if asked for."""
+    words: list[str] = []
+    left: SelfStress | None = stress
+    if any(j.joint.stiffness is not None for j in joints):
+        joints, left = decided(joints, states, stress, [stiffness_map(j, states) for j in joints])
+        words.append("chosen by stiffness")
+    if least_norm and left is not None:
+        maps = [np.broadcast_to(np.diag([1.0] * 3 + [1.0 / stress.length] * 3), (len(states.x), 6, 6)) for _ in joints]
+        joints, left = decided(joints, states, left, maps)
+        words.append(f"chosen by least norm, moments divided by {stress.length:.4g} m")
+    return Split(joints, left, tuple(words))
+
+
+def stiffness_map(load: JointLoads, states: BodyStates) -> Array:
+    """Map of a wrench (world axes) to strains F/sqrt(k), M/sqrt(k) in `from` axes, (n_t, 6, 6); zero where rigid."""
+    n_t = len(load.force)
+    found = np.zeros((n_t, 6, 6))
+    if load.joint.stiffness is None:
+        return found
+    axes = np.stack([states.direction(load.joint.a, e) for e in np.eye(3)], axis=1)
+    for part, k in enumerate(load.joint.stiffness):
+        found[:, 3 * part : 3 * part + 3, 3 * part : 3 * part + 3] = axes / np.sqrt(k)[:, None]
+    return found
+
+
+def decided(
+    joints: Sequence[JointLoads], states: BodyStates, stress: SelfStress, maps: Sequence[Array]
+) -> tuple[list[JointLoads], SelfStress | None]:
+    """Add the self-stresses that make the sum of squares of the mapped wrenches least; those without effect stay."""
+    S = np.concatenate([np.einsum("tij,tjk->tik", m, s) for m, s in zip(maps, stress.shares, strict=True)], axis=1)
+    W = np.concatenate([np.einsum("tij,tj->ti", m, _wrench(j)) for m, j in zip(maps, joints, strict=True)], axis=1)
+    size = np.where(stress.largest > 0.0, stress.largest, 1.0)
+    U, sigma, V = np.linalg.svd(S / size[:, None, :], full_matrices=False)
+    felt = sigma > FELT * np.maximum(sigma.max(axis=1, initial=0.0), 1e-300)[:, None]
+    inverse = np.where(felt, 1.0 / np.where(felt, sigma, 1.0), 0.0)
+    c = -np.einsum("tki,tk,tjk,tj->ti", V, inverse, U, W) / size
+    shared = [_added(j, states, np.einsum("tik,tk->ti", s, c)) for j, s in zip(joints, stress.shares, strict=True)]
+    alive = stress.largest > 0.0
+    undecided = alive.sum(axis=1) - (felt.sum(axis=1))
+    if not (undecided > 0).any():
+        return shared, None
+    # what was not felt: the self-stresses' part outside the rows of V that were
+    rest = np.eye(S.shape[2]) - np.einsum("tki,tk,tkj->tij", V, felt.astype(float), V)
+    turned = np.einsum("tij,tj->tij", rest, alive.astype(float)) / size[:, :, None]
+    shares = tuple(np.einsum("tik,tkj->tij", s, turned) for s in stress.shares)
+    parts = [np.maximum(np.abs(s[:, :3]).max(axis=1), np.abs(s[:, 3:]).max(axis=1) / stress.length) for s in shares]
+    largest = np.max(parts, axis=0)
+    largest = np.where(largest > 1e-9, largest, 0.0)
+    return shared, replace(stress, shares=shares, largest=largest, count=undecided)
+
+
+def _wrench(load: JointLoads) -> Array:
+    F, M = load.whole
+    return np.concatenate([F, M], axis=1)
+
+
+def _added(load: JointLoads, states: BodyStates, more: Array) -> JointLoads:
+    F, M = load.whole
+    F, M = F + more[:, :3], M + more[:, 3:]
+    force, moment = carried(load.joint, states, F, M)
+    drive = load.drive
+    if drive is not None and load.axis is not None and load.joint.drive is not None:
+        whole = M if load.joint.drive.quantity == "angle" else F
+        drive = np.sum(whole * load.axis, axis=1)
+    tension = load.tension
+    if tension is not None:
+        along = np.sum(load.force * more[:, :3], axis=1)
+        size = np.sqrt(np.sum(load.force**2, axis=1))
+        tension = tension + np.where(size > 0.0, along / np.where(size > 0.0, size, 1.0) * np.sign(tension), 0.0)
+    return replace(load, force=force, moment=moment, drive=drive, tension=tension)

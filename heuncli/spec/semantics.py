@@ -1,0 +1,121 @@
+"""What single entries mean, for the rules and for resolve alike: attitudes, inertia, drives, instants, points.
+
+All but body_axes take any document that could be read, also one in which a rule will find an error.
+"""
+
+from __future__ import annotations
+
+from typing import Any, Literal
+
+from heuncli.errors import Finding
+from heuncli.expressions.programs import Expression
+from heuncli.spec import format as f
+from heuncli.spec import models as m
+from heuncli.spec import turns
+from heuncli.spec.fields import End
+
+DEFAULT_SAMPLES = 201
+ORIENTATIONS: dict[str, tuple[str, ...]] = {
+    "axis": ("axis", "angle"),
+    "quaternion": ("quaternion",),
+    "rodrigues": ("rodrigues",),
+    "euler": ("euler", "sequence"),
+    "matrix": ("matrix",),
+}
+
+
+def body_axes(value: f.Orientation) -> m.Matrix:
+    """The rotation an orientation means. Raises Finding."""
+    given = {key for keys in ORIENTATIONS.values() for key in keys if getattr(value, key) is not None}
+    forms = [name for name, keys in ORIENTATIONS.items() if given & set(keys)]
+    known = "{axis, angle}, {quaternion}, {rodrigues}, {euler, sequence} or {matrix}"
+    if len(forms) != 1:
+        what = f"an orientation by {' and '.join(forms)}" if forms else "an empty orientation"
+        raise Finding("orientation", what, f"one of {known}")
+    missing = [key for key in ORIENTATIONS[forms[0]] if key not in given]
+    if missing:
+        hint = (
+            "sequence: zyx turns about z, then the new y, then the new x"
+            if missing == ["sequence"]
+            else f"one of {known}"
+        )
+        raise Finding("orientation", f"an orientation without {missing[0]}", hint)
+    if value.axis is not None and value.angle is not None:
+        if not any(value.axis):
+            raise Finding("orientation", "the axis is [0, 0, 0], which is no direction", "[0, 0, 1] is the z axis")
+        return turns.about(value.axis, value.angle)
+    if value.quaternion is not None:
+        return turns.of_unit_quaternion(value.quaternion)
+    if value.rodrigues is not None:
+        return turns.of_rodrigues(value.rodrigues)
+    if value.euler is not None:
+        return turns.of_euler(value.euler, value.sequence or "")
+    assert value.matrix is not None
+    return turns.of_matrix(value.matrix)
+
+
+def tensor(owner: f.Body | f.Piece) -> m.Matrix:
+    """The inertia tensor about the centre of mass: moments on the diagonal, deviation moments negated beside it."""
+    inertia = owner.inertia
+    if isinstance(inertia, float):  # planar: a flat body with this moment about z
+        return ((0.5 * inertia, 0.0, 0.0), (0.0, 0.5 * inertia, 0.0), (0.0, 0.0, inertia))
+    rows: Any = inertia
+    if isinstance(rows[0], tuple):
+        a, b, c = rows
+        off = (0.5 * (a[1] + b[0]), 0.5 * (a[2] + c[0]), 0.5 * (b[2] + c[1]))
+        return ((a[0], off[0], off[1]), (off[0], b[1], off[2]), (off[1], off[2], c[2]))
+    x, y, z = rows
+    a, b, c = (-d if d != 0.0 else 0.0 for d in owner.deviation or (0.0, 0.0, 0.0))
+    return ((x, c, b), (c, y, a), (b, a, z))
+
+
+def drive_of(drive: f.Drive) -> tuple[Literal["angle", "travel", "length"], Expression] | None:
+    """Quantity and value of a drive that has one."""
+    if drive.angle is not None:
+        return "angle", drive.angle
+    if drive.travel is not None:
+        return "travel", drive.travel
+    return ("length", drive.length) if drive.length is not None else None
+
+
+def type_of(document: f.Document) -> Literal["motion", "impulse", "state"]:
+    """What is solved, by default what the rest of the scene asks for."""
+    analysis = document.analysis
+    if analysis.type is not None:
+        return analysis.type
+    if analysis.duration is not None or analysis.times is not None:
+        return "motion"
+    return "impulse" if document.impulses else "state"
+
+
+def instants_of(document: f.Document) -> tuple[float, ...]:
+    """The instants asked for, [s]; empty where they are in error."""
+    analysis = document.analysis
+    if type_of(document) != "motion":
+        return (0.0,)
+    if analysis.times is not None:
+        return tuple(analysis.times)
+    count = analysis.samples if analysis.samples is not None else DEFAULT_SAMPLES
+    if analysis.duration is None or not 2 <= count <= 10_000_000:
+        return ()
+    return (*tuple(analysis.duration * i / (count - 1) for i in range(count - 1)), analysis.duration)
+
+
+def span_of(analysis: f.Analysis) -> float:
+    """How long the run lasts [s]; 0 where there is none."""
+    if analysis.times:
+        return max(analysis.times)
+    return analysis.duration or 0.0
+
+
+def end_of(reduce_to: str | End) -> End | None:
+    """The point a section is reduced to, if it is one."""
+    if isinstance(reduce_to, End):
+        return reduce_to
+    body, dot, point = reduce_to.partition(".")
+    return End.model_construct(body=body, at=point) if dot else None
+
+
+def point_in(body: f.Body, place: object) -> m.Vec | None:
+    """A point given by place or by name, in body axes."""
+    return body.points.get(place) if isinstance(place, str) else place  # type: ignore[return-value]

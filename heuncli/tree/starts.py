@@ -1,0 +1,79 @@
+"""Where the joints stand in the assembled mechanism: coordinates, rates, reference attitudes, directions."""
+
+from __future__ import annotations
+
+import math
+from dataclasses import dataclass
+
+import numpy as np
+
+from heuncli.mechanism.joints import JOINTS, Direction
+from heuncli.mechanism.model import GROUND, Assembly, Joint, Mechanism
+from heuncli.results import Array
+from heuncli.shapes.rotations import about, perpendicular, to_quaternion
+
+Z = np.array([0.0, 0.0, 1.0])
+
+
+@dataclass(frozen=True, eq=False)
+class JointStart:
+    """Where a joint stands at the start: R_ref (to axes -> from axes at angle zero), angle, rate, travel, speed."""
+
+    R_ref: Array
+    angle: float
+    rate: float
+    travel: float
+    speed: float
+
+
+def joint_start(mechanism: Mechanism, start: Assembly, joint: Joint) -> JointStart:
+    """Coordinates and reference attitude of a joint in the assembled mechanism (contract: where the angle is zero)."""
+    xa, Ra, va, wa = pose(start, joint.a)
+    xb, Rb, vb, wb = pose(start, joint.b)
+    R = Ra.T @ Rb
+    kind = JOINTS[joint.kind]
+    n = joint.axis
+    D = Ra.T @ (xb + Rb @ joint.q - xa) - joint.p
+    rate = float((Ra @ (Z if kind.turns == ("z",) else n)) @ (wb - wa))
+    v = vb + np.cross(wb, Rb @ joint.q) - va - np.cross(wa, Rb @ joint.q + xb - xa)
+    travel, speed = float(D @ n), float((Ra @ n) @ v)
+    if kind.turns != ("axis",):
+        return JointStart(R, 0.0, rate, travel, speed)
+    near = joint.angle if joint.angle is not None else 0.0
+    if joint.drive is not None and joint.drive.quantity == "angle":
+        near = joint.drive.value.derivatives(0.0)[0]
+    assembled = joint.to_axis_given or (joint.drive is not None and joint.drive.zero_assembled)
+    if assembled:
+        return JointStart(about(n, -near) @ R, near, rate, travel, speed)
+    return JointStart(np.eye(3), unwrapped(axial_angle(R, n), near), rate, travel, speed)
+
+
+def joint_frame(joint: Joint, direction: Direction) -> Array:
+    """A direction of the joint in `from` axes: its axis, or one of the two across it."""
+    if direction == "axis":
+        return joint.axis
+    if direction == "z":
+        return Z
+    if direction == "across":
+        return np.cross(Z, joint.axis)
+    e, f = perpendicular(joint.axis)
+    return e if direction == "first" else f
+
+
+def unwrapped(angle: float, near: float) -> float:
+    """The angle of the same position that is nearest to `near`."""
+    return angle + 2.0 * math.pi * round((near - angle) / (2.0 * math.pi))
+
+
+def axial_angle(R: Array, axis: Array) -> float:
+    """Angle of a rotation that is one about `axis`, in (-pi, pi]."""
+    q = to_quaternion(R)
+    cosine, sine = float(q[0]), float(q[1:] @ axis)
+    return 2.0 * (math.atan2(sine, cosine) if cosine >= 0.0 else math.atan2(-sine, -cosine))
+
+
+def pose(start: Assembly, body: int) -> tuple[Array, Array, Array, Array]:
+    """Position, rotation, velocity, angular velocity of a body, or of the ground."""
+    if body == GROUND:
+        return np.zeros(3), np.eye(3), np.zeros(3), np.zeros(3)
+    return start.position[body], start.rotation[body], start.velocity[body], start.angular_velocity[body]
