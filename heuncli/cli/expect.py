@@ -11,8 +11,8 @@ import numpy as np
 from heuncli.cli.measure import peak
 from heuncli.cli.solving import SAME_INSTANT, report_of
 from heuncli.errors import HeunError, Place, Problem
-from heuncli.report.paths import find
 from heuncli.results import Array, Results
+from heuncli.results_paths import find
 from heuncli.spec.models import Expect
 from heuncli.study.solve import Study
 

@@ -11,9 +11,9 @@ from heuncli.cli.solving import SAME_INSTANT, extremes, report_of
 from heuncli.errors import Problem
 from heuncli.report.export import dump
 from heuncli.report.numbers import OPEN
-from heuncli.report.paths import find
 from heuncli.report.scene import Scene
 from heuncli.results import Array, Results
+from heuncli.results_paths import find
 from heuncli.study.solve import Study
 
 FORMS = "expected [max | min | max abs | first | final | at T] PATH"

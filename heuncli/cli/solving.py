@@ -11,8 +11,8 @@ import numpy as np
 from heuncli.cli.entry import UsageError
 from heuncli.cli.output import say
 from heuncli.errors import Problem
-from heuncli.report.page import PARTS
 from heuncli.results import Array, Results
+from heuncli.results_schema import PARTS
 from heuncli.spec.models import Spec
 from heuncli.study import extremes as peaks
 from heuncli.study.solve import Study

@@ -12,9 +12,10 @@ from typing import NamedTuple
 import numpy as np
 
 from heuncli.report.numbers import OPEN, OPEN_NOTE
-from heuncli.report.quantities import XYZ, Series
+from heuncli.report.quantities import Series
 from heuncli.report.scene import Scene
 from heuncli.results import Array, Results
+from heuncli.results_schema import XYZ
 
 
 class Row(NamedTuple):

@@ -16,27 +16,16 @@ from heuncli.report import layout, runs
 from heuncli.report.blocks import BLOCKS, Block, build
 from heuncli.report.layout import Found
 from heuncli.report.numbers import Certainty, certainty
-from heuncli.report.quantities import Series, is_static, walk, walk_impulse
+from heuncli.report.quantities import Series, walk, walk_impulse
 from heuncli.report.scene import Scene
 from heuncli.report.sums import sums_table
 from heuncli.report.table import Table
 from heuncli.results import Array, Results
+from heuncli.results_schema import PARTS, is_static
 
 REPORTS = ("motion", "points", "foundation", "joints", "sections", "forces", "energy")
 TABLE_DEFAULT = frozenset(REPORTS) - {"motion", "points"}
 EXPORT_DEFAULT = frozenset(REPORTS) - {"points"}
-# Which parts of the results belong to which report; the rest (model, accuracy, ...) always stays.
-PARTS = {
-    "bodies": "motion",
-    "coordinates": "motion",
-    "system_vector": "motion",
-    "points": "points",
-    "foundation": "foundation",
-    "joints": "joints",
-    "sections": "sections",
-    "forces": "forces",
-    "energy": "energy",
-}
 
 
 def restrict(results: Results, wanted: Set[str]) -> Results:

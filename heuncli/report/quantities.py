@@ -7,19 +7,16 @@ results later needs at most a row in UNITS.
 
 from __future__ import annotations
 
-from collections.abc import Iterator, Sequence
+from collections.abc import Iterator
 from typing import NamedTuple
 
 import numpy as np
 
 from heuncli.report.scene import Scene
 from heuncli.results import Array, Block, Results
+from heuncli.results_schema import TIMED, XYZ, is_static
 
-TIMED = ("bodies", "points", "coordinates", "foundation", "joints", "sections", "forces", "energy", "system_vector")
-# Inside the blocks above, yet the same at all instants: (block, depth, key); bodies and sections may bear such names.
-STATIC = frozenset({("foundation", 0, "about"), ("sections", 1, "s"), ("sections", 1, "side")})
 OF_ALL_CUTS = frozenset({"normal", "first_axis"})  # in a run of cuts not one a cut
-XYZ = ("x", "y", "z")
 
 UNITS = {
     "position": "m",
@@ -94,11 +91,6 @@ class Series(NamedTuple):
     def path(self) -> str:
         """The quantity's path in the JSON, without component."""
         return ".".join(part for part in (self.kind, self.name, self.quantity) if part)
-
-
-def is_static(kind: str, keys: Sequence[str], key: str) -> bool:
-    """Whether what stands at this place of a block that runs over the instants is the same at all of them."""
-    return (kind, len(keys), key) in STATIC
 
 
 def walk(results: Results, scene: Scene) -> Iterator[Series]:

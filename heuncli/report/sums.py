@@ -8,9 +8,9 @@ import numpy as np
 
 from heuncli.report.blocks import short
 from heuncli.report.numbers import Certainty, largest, style, write
-from heuncli.report.quantities import XYZ
 from heuncli.report.table import Table
 from heuncli.results import Results
+from heuncli.results_schema import XYZ
 
 MOST_TERMS = 6  # contract section 2: tables show short sums of forces, JSON all
 TURNS = "(t): a factor that turns with the pose, as at the first instant; --format json has them all"

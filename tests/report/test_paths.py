@@ -9,8 +9,8 @@ import pytest
 
 from heuncli.errors import SpecError
 from heuncli.report.export import to_json
-from heuncli.report.paths import find
 from heuncli.report.quantities import walk
+from heuncli.results_paths import find
 from tests.report.fakes import SCENE, pendulum
 from tests.report.test_export import BLOW
 

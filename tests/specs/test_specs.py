@@ -18,9 +18,9 @@ import pytest
 from heuncli.cli.entry import enter
 from heuncli.cli.expect import compare
 from heuncli.report.export import present, to_csv, to_json
-from heuncli.report.paths import find
 from heuncli.report.quantities import walk
 from heuncli.report.scene import scene_of
+from heuncli.results_paths import find
 from heuncli.spec.load import load
 from heuncli.study.solve import Options, Study, solve
 

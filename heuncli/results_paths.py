@@ -14,8 +14,8 @@ import numpy as np
 
 from heuncli.errors import Problem, SpecError
 from heuncli.nearest import nearest
-from heuncli.report.quantities import TIMED, XYZ, is_static
 from heuncli.results import Array, Results
+from heuncli.results_schema import TIMED, XYZ, is_static
 
 MOST_NAMES = 12  # of the known names an error lists
 
