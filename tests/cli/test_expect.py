@@ -10,7 +10,7 @@ import pytest
 
 from heuncli.cli.expect import compare, wanted
 from heuncli.errors import Place
-from tests.report.fakes import FakeStudy, pendulum
+from tests.shared.fakes import FakeStudy, pendulum
 
 STUDY = FakeStudy(np.linspace(0.0, 2.0, 21))
 PLACE = Place("fake.yaml", 7, 3)

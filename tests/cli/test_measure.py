@@ -9,7 +9,7 @@ import pytest
 
 from heuncli.cli import measure
 from heuncli.errors import HeunError
-from tests.report.fakes import SCENE, FakeStudy
+from tests.shared.fakes import SCENE, FakeStudy
 
 STUDY = FakeStudy(np.linspace(0.0, 2.0, 21))
 

@@ -17,12 +17,12 @@ import pytest
 from heuncli.results import Array
 from heuncli.spec.load import load
 from heuncli.study.solve import Options, Study, solve
-from tests.identities.cases import tree_scene
+from tests.closed_forms.test_theory_2j_motion import free_top, heavy_top
+from tests.closed_forms.test_theory_golden_a import SCENE as GOLDEN_A
 from tests.oracle.values import to_yaml
-from tests.references.bars import chain, double, rods, top
-from tests.references.test_theory_2j_motion import free_top, heavy_top
-from tests.references.test_theory_golden_a import SCENE as GOLDEN_A
-from tests.scenes import near
+from tests.shared.bars import chain, double, rods, top
+from tests.shared.scenes import near
+from tests.shared.trees import tree_scene
 
 RIM = "points: {x: [1, 0, 0], y: [0, 1, 0], z: [0, 0, 1], "  # so that attitudes are seen in places
 SCENES = {

@@ -13,8 +13,8 @@ import numpy as np
 import pytest
 
 from heuncli.results import Array, Results
-from tests.references.bars import HEAD
-from tests.scenes import near, solved, study
+from tests.shared.bars import HEAD
+from tests.shared.scenes import near, solved, study
 
 I, C = 0.5, 0.3
 Pieces = Sequence[tuple[float, float, float]]  # start, torque there, its slope

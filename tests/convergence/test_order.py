@@ -10,9 +10,9 @@ import pytest
 from heuncli.integration import tableaus
 from heuncli.integration.tableaus import Row, Tableau
 from heuncli.results import Array
-from tests.references.bars import chain, double, rods
-from tests.references.test_theory_2j_motion import heavy_top
-from tests.scenes import study
+from tests.closed_forms.test_theory_2j_motion import heavy_top
+from tests.shared.bars import chain, double, rods
+from tests.shared.scenes import study
 
 METHODS = [value for value in vars(tableaus).values() if isinstance(value, Tableau)]
 

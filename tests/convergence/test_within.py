@@ -8,7 +8,7 @@ import numpy as np
 import pytest
 
 from heuncli.integration import runner as motion
-from tests.scenes import near, study
+from tests.shared.scenes import near, study
 
 SPECS = Path(__file__).parents[2] / "specs"
 JUMPS = """

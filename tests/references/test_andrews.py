@@ -14,7 +14,7 @@ import pytest
 
 from heuncli.results import Results
 from tests.oracle.published import END, END_RATES, START, andrews
-from tests.scenes import moving, near, solved
+from tests.shared.scenes import moving, near, solved
 
 ENOUGH = 1e-9
 PINS_AT_START = {

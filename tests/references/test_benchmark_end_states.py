@@ -8,8 +8,8 @@ from pathlib import Path
 import numpy as np
 import pytest
 
-from tests.references.bars import BENCHMARKS
-from tests.scenes import near, solved
+from tests.shared.bars import BENCHMARKS
+from tests.shared.scenes import near, solved
 
 END_STATES = json.loads((Path(__file__).parent / "end_states.json").read_text(encoding="utf-8"))
 

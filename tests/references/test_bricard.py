@@ -15,7 +15,7 @@ from heuncli.study.solve import Study
 from tests.oracle.published import bricard
 from tests.oracle.read import model
 from tests.oracle.solve import Solution, solve
-from tests.scenes import instants, moving, near, study, terms_at
+from tests.shared.scenes import instants, moving, near, study, terms_at
 
 TABLE = {  # t: place of the hinge, crank's rate and acceleration, force and moment of the ground about P0
     0.0: ((1, -1, 0), 0, 1.9580838, (-1.958084, 47.091916, -7.832335), (-17.338832, 5.228084, 26.16)),

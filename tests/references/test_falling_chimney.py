@@ -13,8 +13,8 @@ import numpy as np
 import pytest
 
 from heuncli.results import Results
-from tests.references.bars import HEAD
-from tests.scenes import near, solved
+from tests.shared.bars import HEAD
+from tests.shared.scenes import near, solved
 
 G = 9.81
 

@@ -10,7 +10,7 @@ from functools import cache
 import pytest
 
 from heuncli.results import Results
-from tests.scenes import near, solved
+from tests.shared.scenes import near, solved
 
 DIGITS = 2e-8  # half of the last digit printed, and the error of the reference (1e-11 local, fast transient)
 

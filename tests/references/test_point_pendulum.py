@@ -12,7 +12,7 @@ import numpy as np
 import pytest
 
 from heuncli.results import Results
-from tests.scenes import near, solved
+from tests.shared.scenes import near, solved
 
 EXACT = {  # t: place, tension
     0.5: (-0.391048791551, -0.920369948785), 1.0: (0.986291751132, -0.165010853126),

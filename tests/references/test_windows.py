@@ -12,7 +12,7 @@ import pytest
 
 from heuncli.results import Results
 from tests.oracle.published import windows
-from tests.scenes import moving, near, solved
+from tests.shared.scenes import moving, near, solved
 
 TIMES = (0.0, 0.5, 1.0, 5.0, 10.0)
 TWO = {

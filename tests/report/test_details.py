@@ -17,7 +17,7 @@ from heuncli.report.table import plain
 from heuncli.results import Results
 from heuncli.spec.load import load
 from heuncli.study import extremes as peaks
-from tests.report.fakes import SCENE, FakeStudy, pendulum
+from tests.shared.fakes import SCENE, FakeStudy, pendulum
 
 ONE = np.array([0.5])
 SPECS = Path(__file__).parents[2] / "specs"

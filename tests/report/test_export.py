@@ -15,7 +15,7 @@ from heuncli.errors import LimitError
 from heuncli.report import export
 from heuncli.report.export import to_csv, to_json
 from heuncli.report.quantities import walk
-from tests.report.fakes import SCENE, pendulum
+from tests.shared.fakes import SCENE, pendulum
 
 T = np.linspace(0.0, 2.0, 7)
 BLOW = {

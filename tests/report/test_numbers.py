@@ -8,7 +8,7 @@ import numpy as np
 import pytest
 
 from heuncli.report.numbers import certainty, rough, style, trim, write, write_times
-from tests.report.fakes import ACCURATE, SCENE, pendulum
+from tests.shared.fakes import ACCURATE, SCENE, pendulum
 
 T = np.linspace(0.0, 2.0, 11)
 

@@ -15,7 +15,7 @@ from heuncli.report.page import Page, page_of, restrict
 from heuncli.report.table import plain
 from heuncli.results import Array, Results
 from heuncli.study import extremes as peaks
-from tests.report.fakes import ACCURATE, SCENE, FakeStudy, pendulum, vectors
+from tests.shared.fakes import ACCURATE, SCENE, FakeStudy, pendulum, vectors
 
 T = np.linspace(0.0, 2.0, 21)
 

@@ -11,8 +11,8 @@ from heuncli.errors import SpecError
 from heuncli.report.export import to_json
 from heuncli.report.quantities import walk
 from heuncli.results_paths import find
-from tests.report.fakes import SCENE, pendulum
 from tests.report.test_export import BLOW
+from tests.shared.fakes import SCENE, pendulum
 
 T = np.linspace(0.0, 2.0, 7)
 SUMS = [{"terms": {"joints.a.force.x": 1}, "value": 2.0 * T}]

@@ -8,7 +8,7 @@ import numpy as np
 
 from heuncli.report.numbers import Certainty
 from heuncli.report.sums import sums_table
-from tests.report.fakes import pendulum
+from tests.shared.fakes import pendulum
 
 T = np.linspace(0.0, 2.0, 5)
 

@@ -1,0 +1,143 @@
+"""Stresses in sections by hand: circle, tube, rectangle (Saint-Venant's torsion by Timoshenko's table), given moments.
+
+A bar welded to the ground, loaded by a force and a couple at its tip without weight: all six resultants are known.
+"""
+
+from __future__ import annotations
+
+import math
+
+import numpy as np
+import pytest
+
+from heuncli.results import Array, Block
+from tests.shared.scenes import near, solved
+
+F = np.array([700.0, -40.0, 25.0])  # N, Q1, Q2 = F
+C = np.array([12.0, 3.0, -5.0])  # about x, y, z: T; and M at the cut with the lever of F
+LEVER = 0.4  # from the cut to the tip [m]
+M = C + np.cross([LEVER, 0.0, 0.0], F)
+AREA = {"circle": math.pi * 0.02**2, "tube": math.pi * (0.02**2 - 0.015**2), "rectangle": 0.03 * 0.06}
+
+
+def stress(properties: str, force: Array = F, couple: Array = C, more: str = "", beside: float = 0.0) -> Block:
+    """The stress block of a cut with normal x, e1 = y, its point somewhat beside the bar's axis."""
+    found = solved(f"""
+heun: 1
+ground: {{points: {{O: [0, 0, 0]}}}}
+bodies:
+  bar:
+    shapes: [{{type: box, center: [0.5, 0, 0], size: [1, 0.03, 0.06], density: 1000}}]
+    points: {{root: [0, 0, 0], tip: [1, 0, 0]}}
+joints: {{wall: {{type: weld, from: ground.O, to: bar.root}}}}
+forces:
+  push: {{type: force, on: bar.tip, vector: {force.tolist()}}}
+  twist: {{type: couple, on: bar.tip, vector: {couple.tolist()}}}
+sections:
+  cut: {{body: bar, at: [{1 - LEVER}, {beside}, 0], normal: [1, 0, 0], first_axis: [0, 1, 0],
+         properties: {properties}{more}}}
+""")
+    cut = found.sections["cut"]
+    about = [cut["N"][0], cut["Q1"][0], cut["Q2"][0]]
+    near(about, force, 700.0, 1e-13)
+    if "reduce_to" not in more and not beside:
+        near([cut[name][0] for name in ("T", "M1", "M2")], couple + np.cross([LEVER, 0.0, 0.0], force), 700.0, 1e-13)
+    return {name: float(value[0]) for name, value in cut["stress"].items()}
+
+
+def expected(block: Block, axial: float, bending: float, torsion: float, area: float) -> None:
+    """All parts of the block, with mean shear |Q|/A, and von Mises of the largest normal with both shears added."""
+    shear = math.hypot(F[1], F[2]) / area
+    near(block["normal_max"], axial + bending, abs(axial) + bending, 1e-13)
+    near(block["normal_min"], axial - bending, abs(axial) + bending, 1e-13)
+    near(block["shear_torsion"], torsion, torsion, 1e-13)
+    near(block["shear_mean"], shear, shear, 1e-13)
+    mises = math.sqrt((abs(axial) + bending) ** 2 + 3 * (torsion + shear) ** 2)
+    near(block["mises"], mises, mises, 1e-13)
+
+
+def test_circle() -> None:
+    """W = π R³/4 in bending, π R³/2 in torsion, whatever the direction of bending."""
+    R = 0.02
+    bending, torsion = math.hypot(M[1], M[2]) / (math.pi * R**3 / 4), abs(M[0]) / (math.pi * R**3 / 2)
+    expected(stress("{circle: {radius: 0.02}}"), F[0] / AREA["circle"], bending, torsion, AREA["circle"])
+
+
+def test_tube() -> None:
+    """W = π (R⁴ − r⁴)/(4 R)."""
+    R, r = 0.02, 0.015
+    W = math.pi * (R**4 - r**4) / (4 * R)
+    found = stress("{tube: {radius: 0.02, inner_radius: 0.015}}")
+    expected(found, F[0] / AREA["tube"], math.hypot(M[1], M[2]) / W, abs(M[0]) / (2 * W), AREA["tube"])
+
+
+# Largest shear stress T/(k a² b) of a rectangle b ≥ a (Timoshenko & Goodier, Theory of Elasticity, table of § 109)
+TORSION = {1.0: 0.208, 1.2: 0.219, 1.5: 0.231, 2.0: 0.246, 2.5: 0.258, 3.0: 0.267, 4.0: 0.282, 5.0: 0.291, 10.0: 0.312}
+
+
+@pytest.mark.parametrize("ratio", TORSION)
+@pytest.mark.parametrize("upright", [True, False])
+def test_torsion_of_rectangles(ratio: float, upright: bool) -> None:
+    """To the three digits of the table, the long side along either axis."""
+    a = 0.02
+    b = ratio * a
+    width, height = (a, b) if upright else (b, a)
+    found = stress(f"{{rectangle: {{width: {width}, height: {height}}}}}")
+    assert abs(M[0]) / (found["shear_torsion"] * a * a * b) == pytest.approx(TORSION[ratio], abs=6e-4)
+
+
+def test_square_in_torsion_exactly() -> None:
+    """Saint-Venant's series with hundreds of terms, to more digits than the table has."""
+    n = np.arange(1, 4000, 2)
+    J = 1 / 3 * (1 - 192 / math.pi**5 * np.sum(np.tanh(n * math.pi / 2) / n**5))
+    slope = 1 - 8 / math.pi**2 * np.sum(1 / (n[:20] ** 2 * np.cosh(np.minimum(n[:20] * math.pi / 2, 700.0))))
+    found = stress("{rectangle: {width: 0.02, height: 0.02}}")
+    near(found["shear_torsion"], abs(M[0]) / (J / slope * 0.02**3), found["shear_torsion"], 1e-13)
+    assert J == pytest.approx(0.1406, abs=5e-5)
+
+
+def test_rectangle() -> None:
+    """Width along e1, height along e2: the corner has |M1|/(b h²/6) + |M2|/(h b²/6)."""
+    b, h = 0.03, 0.06
+    found = stress("{rectangle: {width: 30 mm, height: 60 mm}}")
+    bending = abs(M[1]) / (b * h**2 / 6) + abs(M[2]) / (h * b**2 / 6)
+    expected(found, F[0] / (b * h), bending, found["shear_torsion"], b * h)
+    assert found["shear_torsion"] == pytest.approx(abs(M[0]) / (0.246 * b**2 * h), rel=3e-3)
+
+
+def test_given_moments() -> None:
+    """Any section by its area, moments, torsion constant and extents."""
+    text = "{area: 2e-3, I1: 4e-7, I2: 3e-7, J: 1e-7, c1: 0.02, c2: 0.05}"
+    found = stress(text)
+    bending = abs(M[1]) * 0.05 / 4e-7 + abs(M[2]) * 0.02 / 3e-7
+    expected(found, F[0] / 2e-3, bending, abs(M[0]) * 0.05 / 1e-7, 2e-3)
+
+
+def test_push_and_pull() -> None:
+    """normal_max and normal_min change places with the sign of everything; von Mises stays."""
+    one, other = stress("{circle: {radius: 0.02}}"), stress("{circle: {radius: 0.02}}", -F, -C)
+    near([other["normal_max"], other["normal_min"]], [-one["normal_min"], -one["normal_max"]], one["mises"], 1e-13)
+    near(other["mises"], one["mises"], one["mises"], 1e-13)
+
+
+def test_utilisation() -> None:
+    found = stress("{circle: {radius: 0.02}}", more=", strength: 235e6")
+    near(found["utilisation"], found["mises"] / 235e6, 1.0, 1e-13)
+    assert "utilisation" not in stress("{circle: {radius: 0.02}}")
+
+
+def test_always_about_the_centroid() -> None:
+    """Wherever the moments themselves are taken."""
+    plain = stress("{circle: {radius: 0.02}}")
+    for where in ("bar.tip", "ground.O", "centroid"):
+        other = stress("{circle: {radius: 0.02}}", more=f", reduce_to: {where}")
+        for name, value in plain.items():
+            near(other[name], value, plain["mises"], 1e-12)
+
+
+def test_a_cut_point_beside_the_centroid() -> None:
+    """Stresses go by the centroid of the shapes' cut, not by the point that names the plane."""
+    plain = stress("{circle: {radius: 0.02}}")
+    other = stress("{circle: {radius: 0.02}}", beside=0.01)
+    for name, value in plain.items():
+        near(other[name], value, plain["mises"], 1e-12)

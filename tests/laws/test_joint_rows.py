@@ -1,0 +1,103 @@
+"""The rows of every joint kind against finite differences (theory.md 2b row by row): gaps, rates, accelerations."""
+
+from __future__ import annotations
+
+from typing import Any
+
+import numpy as np
+import pytest
+
+from heuncli.assembly.conditions import Demand, demands
+from heuncli.assembly.rows import Rows, acceleration_rows, missing, pose_rows, rate_rows
+from heuncli.shapes.rotations import from_vector
+from tests.shared.drafts import body, in_time, joint, scene
+
+KINDS = ("ball", "pin", "universal", "weld", "slide", "cylinder", "line", "plane", "rod")
+GIVEN = {"pin": {"angle": 0.7}, "slide": {"travel": 0.3}, "cylinder": {"angle": -0.4, "travel": 0.2}}
+
+
+def demand(kind: str, t: float = 0.0, **given: Any) -> Demand:
+    if kind == "rod":
+        given["length"] = 1.3
+    if kind == "universal":
+        given["to_axis"] = (0.2, 1.0, -0.4)
+    s = scene(
+        [body("a"), body("b")],
+        [joint("j", kind, "a", (0.3, -0.2, 0.5), "b", (-0.4, 0.1, 0.2), (0.3, 0.5, -0.8), **given)],
+    )
+    return demands(s, t)[0]
+
+
+def moved(x: Any, R: Any, v: Any, w: Any, dt: float) -> tuple[Any, Any]:
+    return x + dt * v, np.array([from_vector(dt * wi) @ Ri for wi, Ri in zip(w, R, strict=True)])
+
+
+def lacking(row: Rows) -> Any:
+    return np.concatenate([row.hold, row.turn])
+
+
+@pytest.mark.parametrize("given", [False, True])
+@pytest.mark.parametrize("kind", KINDS)
+def test_gaps_change_as_the_rows_say_however_large_they_are(kind: str, given: bool) -> None:
+    rng = np.random.default_rng(3)
+    d = demand(kind, **(GIVEN.get(kind, {}) if given else {}))
+    for _ in range(5):
+        x, v, w = rng.normal(size=(3, 3, 3))
+        R = np.array([from_vector(a) for a in rng.normal(size=(3, 3))])
+        row = pose_rows(d, x, R, x)  # pivots: the origins
+        h = 1e-6
+        gaps = [lacking(pose_rows(d, *pose, pose[0])) for pose in (moved(x, R, v, w, h), moved(x, R, v, w, -h))]
+        zero = Rows(row.F, row.T, np.zeros(len(row.F)), np.zeros(len(row.T)), row.r_a, row.r_b)
+        speed = -np.concatenate(missing(d, zero, v, w))
+        assert (gaps[1] - gaps[0]) / (2 * h) == pytest.approx(speed, abs=2e-8)
+
+
+def closed(d: Demand, rng: np.random.Generator) -> tuple[Any, Any]:
+    """A random pose in which the joint is closed, found by a few Newton steps on its own rows."""
+    x = rng.normal(size=(3, 3))
+    R = np.array([from_vector(a) for a in rng.normal(size=(3, 3))])
+    for _ in range(40):
+        row = pose_rows(d, x, R, x)
+        R[1] = from_vector(np.clip(np.linalg.pinv(row.T) @ row.turn, -0.3, 0.3)) @ R[1] if len(row.T) else R[1]
+        x[1] += row.F.T @ pose_rows(d, x, R, x).hold
+    assert np.max(np.abs(lacking(pose_rows(d, x, R, x))), initial=0.0) < 1e-14
+    return x, R
+
+
+DRIVES = {
+    "pin": ("angle", "0.7 + 0.5*t + 0.3*t**2"),
+    "slide": ("travel", "0.3 - 0.4*t + 0.6*t**2"),
+    "cylinder": ("travel", "0.2 + 0.9*t - 0.2*t**2"),
+    "rod": ("length", "1.3 - 0.8*t + 0.5*t**2"),
+}
+
+
+@pytest.mark.parametrize(("kind", "driven"), [*((k, False) for k in KINDS), *((k, True) for k in DRIVES)])
+def test_accelerations_are_the_second_derivative_of_closed_gaps(kind: str, driven: bool) -> None:
+    """Along rates that fit, moved on with accelerations a, the gap grows as (F a_u + T a_σ − right side) dt²/2."""
+    rng = np.random.default_rng(5)
+    given = {"drive": (DRIVES[kind][0], in_time(DRIVES[kind][1]))} if driven else {}
+    d = demand(kind, **given)
+    for _ in range(5):
+        x, R = closed(d, rng)
+        v, w, a, b = rng.normal(size=(4, 3, 3))
+        row = rate_rows(d, x, R, x)
+        if len(row.T):
+            w[1] += np.linalg.pinv(row.T) @ missing(d, row, v, w)[1]
+        v[1] += row.F.T @ missing(d, row, v, w)[0]
+        assert np.max(np.abs(np.concatenate(missing(d, row, v, w)))) < 1e-14
+        asked = acceleration_rows(d, row, x, R, v, w)
+        grown = -np.concatenate(missing(d, asked, a, b))
+        h = 1e-4
+        gaps = []
+        for t in (h, 0.0, -h):
+            pose = onward(x, R, v, w, a, b, t)
+            gaps.append(-lacking(pose_rows(demand(kind, t, **given), *pose, pose[0])))
+        assert (gaps[0] - gaps[2]) / (2 * h) == pytest.approx(np.zeros(len(grown)), abs=1e-7)
+        assert (gaps[0] - 2 * gaps[1] + gaps[2]) / h**2 == pytest.approx(grown, abs=2e-6)
+
+
+def onward(x: Any, R: Any, v: Any, w: Any, a: Any, b: Any, t: float) -> tuple[Any, Any]:
+    """Poses after t, for constant accelerations a, b: R' = hat(w + b t) R solved to t³."""
+    turns = w * t + b * t * t / 2 + np.cross(b, w) * t**3 / 12
+    return x + v * t + a * t * t / 2, np.array([from_vector(turn) @ Ri for turn, Ri in zip(turns, R, strict=True)])

@@ -1,0 +1,175 @@
+"""Rods without axial inertia on balls (theory 3): the spin is undetermined and harmless, a moment is refused."""
+
+from __future__ import annotations
+
+from typing import Any
+
+import numpy as np
+import pytest
+
+from heuncli.errors import SolveError
+from tests.oracle.masses import mass_of
+from tests.oracle.read import Placed, directed
+from tests.oracle.scenes import random_scene
+from tests.oracle.transforms import entry
+from tests.oracle.turns import Array, attitude, unit
+from tests.shared.scenes import moving, near, solved
+
+TIMES = (0.0, 0.1, 0.3)
+SEEDS = range(10)
+
+
+def rods(seed: int) -> tuple[dict[str, Any], dict[str, Placed]]:
+    """Several rods on balls at and near their axes' points, all forces on the axes."""
+    rng = np.random.default_rng(seed)
+    loads = ("force", "spring", "actuator")
+    return random_scene(rng, int(rng.integers(2, 6)), kinds=("ball",), masses="thin", loads=loads)
+
+
+def axis_of(body: dict[str, Any]) -> Array:
+    """The rod's axis, body axes."""
+    rod = body["shapes"][0]
+    return unit(np.array(rod["to"]) - np.array(rod["from"]))
+
+
+def with_axial(scene: dict[str, Any], ratio: float) -> dict[str, Any]:
+    """The rods as bodies of given mass properties with some axial inertia, and without spin about the axis."""
+    bodies = {}
+    for name, body in scene["bodies"].items():
+        m, n, R = mass_of(body), axis_of(body), attitude(body["orientation"])
+        rest = {k: v for k, v in body.items() if k != "shapes"}
+        lent = ratio * float(np.trace(m.inertia)) / 2 * np.outer(n, n)
+        spin = directed(body["angular_velocity"], R)
+        axial = R @ n * float(spin @ (R @ n))
+        foot = R @ np.array(body["shapes"][0]["from"])  # the origin lies beside the axis and had its share of the spin
+        velocity = directed(body["velocity"], R) + np.cross(axial, foot)
+        new = {"angular_velocity": (spin - axial).tolist(), "velocity": velocity.tolist()}
+        bodies[name] = {**rest, **entry(m._replace(inertia=m.inertia + lent)), **new}
+    return {**scene, "bodies": bodies}
+
+
+@pytest.mark.parametrize("ratio", [1e-3, 1e-6, 1e-9])
+@pytest.mark.parametrize("seed", SEEDS)
+def test_any_axial_inertia_gives_the_same(seed: int, ratio: float) -> None:
+    """Centres, reactions and foundation do not know the axial inertia, be it nothing or 1e-3 of the transverse one.
+
+    The smaller ones at the start only, where their condition 1/ratio costs nothing: a motion turns rounding into spin.
+    """
+    scene, _ = rods(seed)
+    pair = [moving(s, TIMES, 1e-12) if ratio >= 1e-3 else s for s in (scene, with_axial(scene, ratio))]
+    thin, thick = (solved(s) for s in pair)
+    F = max(1.0, *(float(np.abs(j["force"]).max()) for j in thin.joints.values()))
+    tolerance = 1e-9
+    for name, body in thin.bodies.items():
+        for key in ("center", "center_velocity", "center_acceleration"):
+            near(thick.bodies[name][key], body[key], max(1.0, float(np.abs(body[key]).max())), tolerance)
+    for name, joint in thin.joints.items():
+        near(thick.joints[name]["force"], joint["force"], F, tolerance)
+        near(joint["moment"], 0.0, F, 1e-13)
+    near(thick.foundation["force"], thin.foundation["force"], F, tolerance)
+    near(thick.foundation["moment"], thin.foundation["moment"], F, tolerance)
+
+
+@pytest.mark.parametrize("seed", SEEDS)
+def test_spin_is_harmless(seed: int) -> None:
+    """Whatever spin about its axis a rod starts with, it counts as none."""
+    scene, state = rods(seed)
+    bodies = {}
+    for k, (name, body) in enumerate(scene["bodies"].items()):
+        R = state[name].rotation
+        more = (7.0 + k) * R @ axis_of(body)
+        foot = R @ np.array(body["shapes"][0]["from"])
+        velocity = directed(body["velocity"], R) - np.cross(more, foot)
+        spin = directed(body["angular_velocity"], R) + more
+        bodies[name] = {**body, "angular_velocity": spin.tolist(), "velocity": velocity.tolist()}
+    still, spun = (solved(moving(s, TIMES, 1e-12)) for s in (scene, {**scene, "bodies": bodies}))
+    F = max(1.0, *(float(np.abs(j["force"]).max()) for j in still.joints.values()))
+    for name, body in still.bodies.items():
+        near(spun.bodies[name]["center"], body["center"], max(1.0, float(np.abs(body["center"]).max())))
+        along = np.einsum("tij,j->ti", spun.bodies[name]["rotation"], axis_of(scene["bodies"][name]))
+        rate = float(np.abs(spun.bodies[name]["angular_velocity"]).max())
+        near(np.sum(along * spun.bodies[name]["angular_velocity"], axis=1), 0.0, max(1.0, rate))
+    for name, joint in still.joints.items():
+        near(spun.joints[name]["force"], joint["force"], F)
+    assert any("spin about its own axis is undetermined and harmless" in r for r in still.model["reasons"])
+
+
+ROD = """
+heun: 1
+gravity: [0, 0, -9.81]
+ground: {points: {O: [0, 0, 0]}}
+bodies:
+  rod:
+    shapes: [{type: rod, from: [0, 0, 0], to: [1, 0, 0], mass: 2}]
+    points: {root: [0, 0, 0], tip: [1, 0, 0], beside: [0.5, 0.1, 0]}
+joints:
+  pivot: {type: ball, from: ground.O, to: rod.root}
+"""
+
+
+@pytest.mark.parametrize("load", [
+    "forces: {twist: {type: couple, on: rod.tip, vector: [0.3, 0, 0], frame: body}}",
+    "forces: {push: {type: force, on: rod.beside, vector: [0, 0, 1]}}",
+], ids=["couple", "force beside the axis"])  # fmt: skip
+def test_a_moment_about_the_axis_is_refused(load: str) -> None:
+    """Nothing could answer it: no acceleration exists. Body and axis are named."""
+    with pytest.raises(SolveError) as refusal:
+        solved(ROD + load)
+    (problem,) = refusal.value.problems
+    assert problem.code == "no-inertia"
+    assert "rod" in problem.message and "1, 0, 0)" in problem.message
+
+
+def test_a_damper_on_the_ball_leaves_the_spin_at_nothing() -> None:
+    """It resists the spin too, of which there is none: the same as with some axial inertia and no spin."""
+    drag = "forces: {drag: {type: damper, joint: pivot, coefficient: 0.1}}\n"
+    drag += "analysis: {times: [0, 0.1], tolerance: 1e-12}"
+    thin = ROD.replace("points: {root", "angular_velocity: [0, 1, 0.5]\n    points: {root")
+    shapes = "shapes: [{type: rod, from: [0, 0, 0], to: [1, 0, 0], mass: 2}]"
+    thick = thin.replace(shapes, "mass: 2\n    center: [0.5, 0, 0]\n    inertia: [0.01, 1/6, 1/6]")
+    found, other = solved(thin + drag), solved(thick + drag)
+    near(found.points["rod.tip"]["position"], other.points["rod.tip"]["position"], 1.0, 1e-11)
+    near(found.joints["pivot"]["force"], other.joints["pivot"]["force"], 20.0, 1e-11)
+
+
+def test_a_moment_across_the_axis_is_not() -> None:
+    """The same couple across the axis turns the rod: m g L/2 less 0.3 N m about y, over m L²/3."""
+    found = solved(ROD + "forces: {twist: {type: couple, on: rod.tip, vector: [0, 0.3, 0], frame: body}}")
+    near(found.bodies["rod"]["angular_acceleration"][0], [0.0, (2 * 9.81 * 0.5 + 0.3) / (2 / 3), 0.0], 10.0, 1e-14)
+
+
+@pytest.mark.parametrize("cables", [1, 2])
+def test_rounding_is_no_moment(cables: int) -> None:
+    """Thin bars hung on cables in no particular direction, slack in part: what rounding puts on the axis is nothing."""
+    rng, up = np.random.default_rng(7), np.array([0.0, 0.0, 3.0])
+    for _ in range(20):
+        a, b, gravity = rng.uniform(-2, 2, (3, 3))
+        points = f"points: {{p: {a.tolist()}, q: {b.tolist()}}}"
+        held = "  j0: {type: rod, from: {body: ground, at: [0, 0, 0]}, to: bar.p}\n"
+        if cables == 2:
+            held += f"  j1: {{type: rod, from: {{body: ground, at: {(b + up).tolist()}}}, to: bar.q}}\n"
+        found = solved(f"""
+heun: 1
+gravity: {gravity.tolist()}
+bodies: {{bar: {{shapes: [{{type: rod, from: {a.tolist()}, to: {b.tolist()}, mass: 1}}], {points}}}}}
+joints:
+{held}analysis: {{duration: 0.1, samples: 3}}
+""")
+        axis = np.einsum("tij,j->ti", found.bodies["bar"]["rotation"], (b - a) / np.linalg.norm(b - a))
+        near(np.sum(axis * found.bodies["bar"]["angular_velocity"], axis=1), 0.0, 1.0, 1e-9)
+
+
+@pytest.mark.parametrize("more", ["", "analysis: {duration: 0.1, samples: 3}\n"])
+def test_a_point_mass_held_aside_is_refused(more: str) -> None:
+    """A massless lever with its load and its guide on one end and its mass on the other: the lever would fly round."""
+    with pytest.raises(SolveError, match=r"bodies\.b has no inertia about its axis"):
+        solved("""
+heun: 1
+gravity: [0, 0, -9.81]
+ground: {points: {O: [0, 0, 0]}}
+bodies:
+  b: {shapes: [{type: point, at: [0.3, 0.3, 0.3], mass: 1}], points: {p: [0, 0, 0]}}
+joints:
+  J: {type: plane, normal: [-0.58, 0.37, -0.07], from: ground.O, to: b.p}
+forces: {f: {type: force, on: b.p, vector: [-4.2, 6.04, -18.97]}}
+""" + more)
