@@ -14,26 +14,13 @@ import numpy as np
 
 from heuncli.assembly.drives import Jet, drive_jet
 from heuncli.errors import Problem, SolveError
+from heuncli.joint_kinds import JOINTS
 from heuncli.mechanism.model import GROUND, Drive, Joint, Mechanism
 from heuncli.results import Array
 from heuncli.shapes.rotations import about, perpendicular, turn_onto
 
 Hold = Literal["none", "point", "line", "plane", "distance"]
 Turn = Literal["free", "axis", "square", "all"]
-
-KINDS: dict[str, tuple[Hold, Turn]] = {
-    "ball": ("point", "free"),
-    "pin": ("point", "axis"),
-    "universal": ("point", "square"),
-    "weld": ("point", "all"),
-    "slide": ("line", "all"),
-    "cylinder": ("line", "axis"),
-    "line": ("line", "free"),
-    "plane": ("plane", "free"),
-    "rod": ("distance", "free"),
-    "flat line": ("line", "free"),  # upright as drawn: in the plane nothing tilts them
-    "flat plane": ("plane", "free"),
-}
 
 SAME_AXES = np.eye(3)
 SAME = 1e-9  # a held value and a drive that agree to this (rad, m, or relative) say the same
@@ -102,7 +89,8 @@ def _demand(mechanism: Mechanism, k: int, joint: Joint, t0: float, problems: lis
         message = f"joint {joint.name} (rod): its length is {length:.6g} m at the start"
         problems.append(Problem("no-length", message, hint="give a length above zero; for zero take a ball"))
 
-    hold, turn = KINDS[joint.kind]
+    kind = JOINTS[joint.kind]
+    hold, turn = kind.hold.asks, kind.turn.asks
     relative, p = SAME_AXES, joint.p
     across = np.array(perpendicular(joint.axis)) if hold == "line" or turn == "axis" else SAME_AXES[:2]
     pose, rate = Ask(hold, turn), Ask(hold, turn)

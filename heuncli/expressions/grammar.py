@@ -17,6 +17,7 @@ from heuncli.errors import Finding
 from heuncli.expressions.codegen import COMPARISONS, MOST_NODES, Emitter, Part
 from heuncli.expressions.programs import Expression, Table
 from heuncli.expressions.units import in_si
+from heuncli.joint_kinds import RATES, TYPES
 from heuncli.nearest import did_you_mean, nearest
 
 LONGEST, DEEPEST = 2000, 48
@@ -50,7 +51,12 @@ ARITY: dict[str, tuple[int, int]] = {
 }
 WORDS = frozenset({"if", "else", "and", "or", "not"})
 RESERVED = frozenset({"t", *CONSTANTS, *ARITY, *WORDS})
-COORDINATES = {"pin": ("angle", "rate"), "slide": ("travel", "speed")}  # of the joints of one freedom
+COORDINATES = {  # of the joints of one freedom
+    kind.name: (quantity, RATES[quantity])
+    for kind in TYPES.values()
+    for quantity in kind.coordinates
+    if kind.coordinates == (quantity,)
+}
 BINARY = {"+": (1, "add"), "-": (1, "sub"), "*": (2, "mul"), "/": (2, "div")}
 OTHER_NAMES = {  # what people write who come from elsewhere
     "arcsin": "asin", "arccos": "acos", "arctan": "atan", "arctan2": "atan2", "ln": "log", "fabs": "abs", "sgn": "sign",

@@ -5,8 +5,8 @@ from __future__ import annotations
 import numpy as np
 
 from heuncli.integration.runner import Recovered
+from heuncli.joint_kinds import JOINTS
 from heuncli.kinetostatics.bodies import BodyStates
-from heuncli.mechanism.joints import JOINTS
 from heuncli.mechanism.model import Joint, Mechanism
 from heuncli.results import Array, Block
 from heuncli.tree.layout import Layout
@@ -17,9 +17,9 @@ def coordinates(layout: Layout, found: Recovered, states: BodyStates) -> Block:
     block: Block = {}
     for k, joint in enumerate(layout.mechanism.joints):
         kind = JOINTS[joint.kind]
-        if kind.turns == ("axis",):
+        if "angle" in kind.coordinates:
             block[joint.name] = _turning(layout, found, states, k, joint)
-        if kind.shifts == ("axis",) and not kind.ball and kind.turns != ("z",):
+        if "travel" in kind.coordinates:
             travel = _sliding(states, joint)
             if joint.name in block:
                 block[joint.name]["angular_acceleration"] = block[joint.name].pop("acceleration")

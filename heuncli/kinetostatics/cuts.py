@@ -13,14 +13,13 @@ from typing import Any
 import numpy as np
 
 from heuncli.errors import Problem, SpecError
-from heuncli.mechanism.model import GROUND, Joint, Mechanism, PairLoad, PointLoad
+from heuncli.joint_kinds import JOINTS
+from heuncli.mechanism.model import GROUND, Mechanism, PairLoad, PointLoad
 from heuncli.results import Array
 from heuncli.shapes.forms import Form
 from heuncli.shapes.inertia import pseudo_inertia
 
 EQUAL = 1e-9  # components of the body axes along the normal that count as equal (contract: default first_axis)
-# Joints whose `to` point wanders over `from`.
-MOVES = frozenset({"slide", "cylinder", "line", "plane", "flat line", "flat plane"})
 BEFORE, BEYOND = 1.0, -1.0
 
 
@@ -59,7 +58,7 @@ def attached(mechanism: Mechanism, body: int) -> list[tuple[str, Array]]:
     for joint in mechanism.joints:
         if joint.b == body:
             found.append((f"joint {joint.name}", joint.q))
-        if joint.a == body and joint.kind not in MOVES:
+        if joint.a == body and not JOINTS[joint.kind].wanders:
             found.append((f"joint {joint.name}", joint.p))
     for load in mechanism.loads:
         if isinstance(load, PointLoad):
@@ -204,8 +203,3 @@ def _pieces(
         what = f"runs along a rod of the body {section.body}; the rod's mass lies on the side chosen"
         warnings.append(f"sections.{name}: the plane {what}")
     return form.pieces(n, d, side), figures.centroid, tuple(warnings)
-
-
-def wanders(joint: Joint) -> bool:
-    """Whether the place where a joint loads its `from` body moves over that body."""
-    return joint.kind in MOVES

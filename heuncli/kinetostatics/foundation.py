@@ -9,6 +9,7 @@ from __future__ import annotations
 import numpy as np
 
 from heuncli.integration.runner import Recovered
+from heuncli.joint_kinds import JOINTS
 from heuncli.kinetostatics.bodies import BodyStates
 from heuncli.kinetostatics.reactions import JointLoads, in_plane, support_loads
 from heuncli.mechanism.model import GROUND, JointLoad, Mechanism, PairLoad, PointLoad
@@ -29,14 +30,12 @@ def inertia_loads(mechanism: Mechanism, states: BodyStates) -> tuple[Array, Arra
 
 
 def load_slots(mechanism: Mechanism) -> list[list[int]]:
-    """Which of the kernel's loads belong to each load of the mechanism (a cylinder's damper and friction make two)."""
+    """Which of the kernel's loads belong to each load of the mechanism: in a joint one for each motion it acts on."""
     slots, at = [], 0
     for load in mechanism.loads:
-        two = False
-        if isinstance(load, JointLoad) and load.kind != "torque":
-            two = mechanism.joints[load.joint].kind == "cylinder"
-        slots.append([at, at + 1] if two else [at])
-        at += len(slots[-1])
+        count = len(JOINTS[mechanism.joints[load.joint].kind].motions) if isinstance(load, JointLoad) else 1
+        slots.append(list(range(at, at + count)))
+        at += count
     return slots
 
 
@@ -76,7 +75,7 @@ def foundation(
         if on_ground is None:
             continue
         supports[load_.joint.name] = {"force": on_ground[0], "moment": on_ground[1]}
-        if load_.joint.drive is not None and load_.joint.kind != "rod":
+        if load_.joint.drive is not None and not JOINTS[load_.joint.kind].keeps_distance:
             sign = -1.0 if load_.joint.a == GROUND else 1.0
             name = load_.joint.drive.name
             elements[f"drives.{name}" if name in elements else name] = {  # a force may bear its name, too

@@ -13,12 +13,12 @@ from dataclasses import dataclass
 import numpy as np
 
 from heuncli.integration.runner import Recovered
+from heuncli.joint_kinds import JOINTS
 from heuncli.kinetostatics.bodies import BodyStates
-from heuncli.mechanism.joints import JOINTS
 from heuncli.mechanism.model import GROUND, Joint
 from heuncli.results import Array
 from heuncli.tree.layout import Layout
-from heuncli.tree.starts import joint_frame
+from heuncli.tree.starts import joint_frame, to_direction
 
 
 @dataclass(frozen=True, eq=False)
@@ -52,7 +52,7 @@ class JointLoads:
     @property
     def whole(self) -> tuple[Array, Array]:
         """Force and moment ON `to` about its point, the drive's included."""
-        if self.joint.kind == "rod":
+        if JOINTS[self.joint.kind].keeps_distance:
             return self.force, self.moment
         return self.force + self.drive_force, self.moment + self.drive_moment
 
@@ -77,7 +77,7 @@ def joint_loads(layout: Layout, found: Recovered, states: BodyStates) -> list[Jo
                     drive = found.freedoms[:, n, 3]
         else:
             force, moment = _from_multipliers(layout, found, states, k, joint, point)
-            if joint.kind == "rod":
+            if kind.keeps_distance:
                 push = found.rows[:, layout.rows.index(k), 0]
                 drive, tension = (push if joint.drive is not None else None), -push
         force, moment = carried(joint, states, force, moment)
@@ -93,7 +93,7 @@ def _from_multipliers(
     rows = [r for r, owner in enumerate(layout.rows) if owner == k]
     lam = found.rows[:, rows, 0]
     kind = JOINTS[joint.kind]
-    if joint.kind == "rod":
+    if kind.keeps_distance:
         D = point - states.place(joint.a, joint.p)
         return lam[:, :1] * D / np.sqrt(np.sum(D * D, axis=1))[:, None], np.zeros_like(point)
     force, moment = np.zeros_like(point), np.zeros_like(point)
@@ -101,8 +101,8 @@ def _from_multipliers(
         force = force + lam[:, column, None] * states.direction(joint.a, joint_frame(joint, d))
     R_ref = layout.starts[k].R_ref
     for column, (d, e) in enumerate(kind.dots, start=len(kind.guides)):
-        f = joint.to_axis if joint.kind == "universal" else R_ref.T @ joint_frame(joint, e)
-        m = np.cross(states.direction(joint.b, f), states.direction(joint.a, joint_frame(joint, d)))
+        on_to = states.direction(joint.b, to_direction(joint, R_ref, e))
+        m = np.cross(on_to, states.direction(joint.a, joint_frame(joint, d)))
         moment = moment + lam[:, column, None] * m
     return force, moment
 
@@ -122,12 +122,11 @@ def carried(joint: Joint, states: BodyStates, force: Array, moment: Array) -> tu
         n = n / np.sqrt(np.sum(n * n, axis=1))[:, None]
         moment = np.sum(moment * n, axis=1)[:, None] * n
     elif kind.turns:
-        n = states.direction(joint.a, joint_frame(joint, "z" if kind.turns == ("z",) else "axis"))
+        n = states.direction(joint.a, joint_frame(joint, kind.turns[0]))
         moment = moment - np.sum(moment * n, axis=1)[:, None] * n
-    if joint.kind != "rod":
-        for d in kind.shifts:
-            n = states.direction(joint.a, joint_frame(joint, d))
-            force = force - np.sum(force * n, axis=1)[:, None] * n
+    for d in kind.shifts:
+        n = states.direction(joint.a, joint_frame(joint, d))
+        force = force - np.sum(force * n, axis=1)[:, None] * n
     return force, moment
 
 

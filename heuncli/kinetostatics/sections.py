@@ -16,8 +16,9 @@ from dataclasses import dataclass
 import numpy as np
 
 from heuncli.integration.runner import Recovered
+from heuncli.joint_kinds import JOINTS
 from heuncli.kinetostatics.bodies import BodyStates
-from heuncli.kinetostatics.cuts import Cuts, wanders
+from heuncli.kinetostatics.cuts import Cuts
 from heuncli.kinetostatics.foundation import load_slots
 from heuncli.kinetostatics.stress import MODULI, stresses
 from heuncli.mechanism.model import Joint, Mechanism, PairLoad, PointLoad
@@ -48,7 +49,7 @@ def joint_attachments(
             on.append(Attachment(joint.q, _inward(R, force), _inward(R, moment)))
         if joint.a == body:
             F, M, place = -_inward(R, force), -_inward(R, moment), _inward(R, point - states.x[:, body])
-            at = place if wanders(joint) else joint.p
+            at = place if JOINTS[joint.kind].wanders else joint.p
             on.append(Attachment(at, F, M + np.cross(place - at, F)))
     return on
 
@@ -76,7 +77,7 @@ def load_attachments(mechanism: Mechanism, body: int, found: Recovered, states: 
                 on.append(Attachment(joint.q, F, M))
             if joint.a == body:
                 place = _inward(R, found.loads[:, slots[0], 6:9] - states.x[:, body])
-                at = place if wanders(joint) else joint.p
+                at = place if JOINTS[joint.kind].wanders else joint.p
                 on.append(Attachment(at, -F, -M - np.cross(place - at, F)))
     return on
 

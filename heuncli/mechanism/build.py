@@ -6,7 +6,7 @@ from typing import TYPE_CHECKING, Any
 
 import numpy as np
 
-from heuncli.mechanism.joints import PLANAR
+from heuncli.joint_kinds import TYPES, Kind
 from heuncli.mechanism.model import (
     GROUND,
     Body,
@@ -41,7 +41,7 @@ def forms_of(spec: Any) -> dict[str, Form]:
 def build(spec: Any, forms: dict[str, Form]) -> Mechanism:
     """The mechanism of a validated spec (spec.models.Spec)."""
     index = {name: i for i, name in enumerate(spec.bodies)} | {"ground": GROUND}
-    joints = {name: k for k, name in enumerate(spec.joints)}
+    joints = {name: (k, TYPES[j.type]) for k, (name, j) in enumerate(spec.joints.items())}
     drives = {d.joint: (name, d) for name, d in spec.drives.items()}
     planar = spec.space == "planar"
     return Mechanism(
@@ -94,7 +94,7 @@ def body(name: str, b: Any, shape: Form | None) -> Body:
 
 
 def joint(name: str, j: Any, index: dict[str, int], driven: Any, planar: bool) -> Joint:
-    """One joint with its drive; in the plane a ball is a pin about z."""
+    """One joint with its drive, as what it is in the plane where that was declared."""
     given = j.axis if j.axis is not None else j.normal
     axis = unit(given) if given is not None else np.array([0.0, 0.0, 1.0])
     initial = j.initial
@@ -106,7 +106,7 @@ def joint(name: str, j: Any, index: dict[str, int], driven: Any, planar: bool) -
         parts = (j.stiffness.force, j.stiffness.moment)
         stiffness = tuple(INFINITE if part is None else np.array(part) for part in parts)
     return Joint(
-        name=name, kind=PLANAR[j.type][0] if planar else j.type,
+        name=name, kind=(TYPES[j.type].planar if planar else None) or j.type,
         a=index[j.from_.body], p=np.array(j.from_.point), b=index[j.to.body], q=np.array(j.to.point),
         axis=axis, to_axis=unit(j.to_axis) if j.to_axis is not None else axis, to_axis_given=j.to_axis is not None,
         angle=initial.angle if initial else None, rate=initial.rate if initial else None,
@@ -115,7 +115,7 @@ def joint(name: str, j: Any, index: dict[str, int], driven: Any, planar: bool) -
     )  # fmt: skip
 
 
-def load(name: str, f: Any, index: dict[str, int], joints: dict[str, int]) -> Load:
+def load(name: str, f: Any, index: dict[str, int], joints: dict[str, tuple[int, Kind]]) -> Load:
     """One applied load."""
     match f.type:
         case "force":
@@ -128,9 +128,11 @@ def load(name: str, f: Any, index: dict[str, int], joints: dict[str, int]) -> Lo
             spring = (None, f.stiffness, f.length, f.damping) if f.type == "spring" else (f.value, 0.0, 0.0, 0.0)
             return PairLoad(name, index[a.body], np.array(a.point), index[b.body], np.array(b.point), *spring)
         case "torque":
-            return JointLoad(name, "torque", joints[f.joint], f.value, 0.0, 0.0, 0.0, 0.0, 1.0)
+            return JointLoad(name, "torque", joints[f.joint][0], f.value, 1.0, 1.0, 1.0)
         case "damper":
-            return JointLoad(name, "damper", joints[f.joint], None, f.coefficient, f.sliding or 0.0, 0.0, 0.0, 1.0)
+            # the coefficient is that of the one motion; a joint of both gives that of the sliding apart
+            k, kind = joints[f.joint]
+            sliding = f.coefficient if kind.motions == ("sliding",) else f.sliding or 0.0
+            return JointLoad(name, "damper", k, None, f.coefficient, sliding, 1.0)
         case _:
-            torque, force = f.torque or 0.0, f.force or 0.0
-            return JointLoad(name, "friction", joints[f.joint], None, 0.0, 0.0, torque, force, f.speed)
+            return JointLoad(name, "friction", joints[f.joint][0], None, f.torque or 0.0, f.force or 0.0, f.speed)

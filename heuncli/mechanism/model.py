@@ -115,10 +115,8 @@ class JointLoad:
     kind: Literal["torque", "damper", "friction"]
     joint: int
     value: Expression | None  # torque: N m about the axis, or N along the slide
-    coefficient: float  # damper: N m s (turning), or N s/m (slide, line, plane)
-    sliding: float  # damper of a cylinder: N s/m
-    torque: float  # friction about the axis [N m]
-    force: float  # friction along the axis [N]
+    turning: float  # damper: N m s; friction: N m; torque: 1
+    sliding: float  # damper: N s/m; friction: N; thrust: 1
     speed: float  # friction: where tanh(rate/speed) bends
 
 

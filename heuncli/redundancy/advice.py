@@ -14,8 +14,8 @@ import numpy as np
 
 from heuncli.expressions.programs import Expression
 from heuncli.integration.runner import Runner
+from heuncli.joint_kinds import ABOUT_Z, JOINTS, POINT
 from heuncli.kinetostatics.bodies import body_states
-from heuncli.mechanism.joints import JOINTS
 from heuncli.mechanism.model import GROUND, Joint, JointLoad, Load, PointLoad
 from heuncli.redundancy.count import NEIGHBOUR, freedoms_of_tree, redundancy
 from heuncli.redundancy.neighbours import neighbours
@@ -25,18 +25,6 @@ from heuncli.tree.prepare import Scene, arranged
 
 MOST_TRIED = 400  # replacements tried before the hint is given up
 ONE = 1e-6  # of the largest: what is open in a joint has one direction if less lies across it
-
-# What a joint may be replaced by so that it holds less; the gentlest first. A pin with side play is a line.
-LOOSER: dict[str, tuple[str, ...]] = {
-    "pin": ("universal", "ball", "cylinder", "line"),
-    "slide": ("cylinder", "line"),
-    "cylinder": ("line",),
-    "universal": ("ball",),
-    "weld": ("ball",),
-    "ball": ("line",),
-}
-FLATTER: dict[str, tuple[str, ...]] = {"pin": ("flat line",), "slide": ("flat line",), "weld": ("pin",)}  # planar
-NAMES = {"flat line": "line"}
 
 Choices = Mapping[int, tuple[Joint, ...]]  # joint -> what may take its place
 
@@ -78,7 +66,6 @@ def choices_of(scene: Scene) -> Choices:
     """Of each joint that may change what may take its place; inner joints first."""
     mechanism = scene.mechanism
     joints = mechanism.joints
-    looser = FLATTER if mechanism.planar else LOOSER
     loaded = {joints[load.joint].name for load in mechanism.loads if isinstance(load, JointLoad)}
     loaded |= {name for load in mechanism.loads for e in _expressions(load) for name, _ in e.uses}
     along = open_directions(scene)
@@ -87,7 +74,8 @@ def choices_of(scene: Scene) -> Choices:
         j = joints[k]
         given = any(value is not None for value in (j.angle, j.rate, j.travel, j.speed))
         if j.drive is None and not given and j.name not in loaded:
-            others = (loosened(j, kind, along[k]) for kind in looser.get(j.kind, ()))
+            looser = JOINTS[j.kind].looser_in_plane if mechanism.planar else JOINTS[j.kind].looser
+            others = (loosened(j, kind, along[k]) for kind in looser)
             found[k] = tuple(other for other in others if other is not None)
     return found
 
@@ -143,12 +131,13 @@ def _replacements(joints: tuple[Joint, ...], choices: Choices, redundant: int) -
 def loosened(joint: Joint, kind: str, along: Array | None) -> Joint | None:
     """The joint as another kind at the same place, None where its axis is not told.
 
-    A ball, or a pin in the plane, may give way along the one direction in which it is open; a universal gets a second
-    axis across its first.
+    What held the point and has no axis to slide along (a ball, or in the plane a pin) may give way along the one
+    direction in which it is open; what needs a second axis gets one across its first.
     """
-    if kind in ("line", "flat line") and joint.kind in ("ball", "pin") and (kind, joint.kind) != ("line", "pin"):
+    before, after = JOINTS[joint.kind], JOINTS[kind]
+    if before.hold is POINT and after.shifts == ("axis",) and (not before.has_axis or after.turn is ABOUT_Z):
         return replace(joint, kind=kind, axis=along, to_axis=along) if along is not None else None
-    if kind != "universal":
+    if after.to_axis != "required":
         return replace(joint, kind=kind)
     e = np.zeros(3)
     e[int(np.argmin(np.abs(joint.to_axis)))] = 1.0
@@ -161,10 +150,11 @@ def told(scene: Scene, changed: Mapping[int, Joint], between: str) -> str:
     words = []
     for k, other in changed.items():
         before = scene.mechanism.joints[k]
-        text = f"{other.name} as {NAMES.get(other.kind, other.kind)}"
-        if other.kind == "universal":
+        kind = JOINTS[other.kind]
+        text = f"{other.name} as {kind.spoken or kind.name}"
+        if kind.to_axis == "required":
             text += f" (to_axis {_numbers(other.to_axis)})"
-        elif JOINTS[other.kind].has_axis and other.axis is not before.axis:
+        elif kind.has_axis and other.axis is not before.axis:
             text += f" (axis {_numbers(other.axis)})"
         words.append(text)
     return between.join(words)

@@ -7,8 +7,8 @@ from typing import TYPE_CHECKING, NamedTuple
 import numpy as np
 
 from heuncli.integration.runner import Runner
+from heuncli.joint_kinds import JOINTS
 from heuncli.kinetostatics.bodies import body_states
-from heuncli.mechanism.joints import JOINTS, PLANAR
 from heuncli.results import Block
 from heuncli.tree.layout import Layout
 from heuncli.tree.prepare import Scene
@@ -17,7 +17,6 @@ if TYPE_CHECKING:
     from heuncli.redundancy.self_stress import SelfStress
 
 NEIGHBOUR = 1e-3  # [rad] or of the size: poses in which the generic rank is counted
-IN_PLANE = dict(PLANAR.values())  # kind -> conditions in the plane
 
 
 def freedoms_of_tree(layout: Layout) -> int:
@@ -64,10 +63,11 @@ def model_of(scene: Scene, runner: Runner, method: str) -> Block:
     mechanism, layout = scene.mechanism, scene.layout
     found = redundancy(scene, runner)
     redundant, at_start, stress = found.generic, found.at_start, found.stress
-    rows = sum(IN_PLANE[j.kind] if mechanism.planar else JOINTS[j.kind].rows for j in mechanism.joints)
+    kinds = [JOINTS[j.kind] for j in mechanism.joints]
+    rows = sum(kind.rows_in_plane if mechanism.planar else kind.rows for kind in kinds)
     driven = sum(1 for j in mechanism.joints if j.drive is not None)
     grubler = (3 if mechanism.planar else 6) * len(mechanism.bodies) - rows - driven
-    rods = sum(1 for j in mechanism.joints if j.drive is not None and j.kind == "rod")
+    rods = sum(1 for j in mechanism.joints if j.drive is not None and JOINTS[j.kind].keeps_distance)
     freedoms = freedoms_of_tree(layout) - (len(layout.rows) - found.dependent)
     block: Block = {
         "space": "planar" if mechanism.planar else "spatial", "freedoms": freedoms, "driven": driven,

@@ -15,12 +15,12 @@ from dataclasses import dataclass
 
 import numpy as np
 
+from heuncli.joint_kinds import JOINTS
 from heuncli.kinetostatics.bodies import BodyStates
-from heuncli.mechanism.joints import JOINTS
 from heuncli.mechanism.model import GROUND
 from heuncli.results import Array, Mask
 from heuncli.tree.layout import Layout
-from heuncli.tree.starts import joint_frame
+from heuncli.tree.starts import joint_frame, to_direction
 
 RANK = 1e-9  # of the largest singular value, or of 1 (a unit load at the length L): below it, rows are dependent
 GAP = 100.0  # a pose is known to gap/L only: so many times that is the least that can count
@@ -153,13 +153,13 @@ def _row_wrenches(layout: Layout, states: BodyStates) -> Array:
         Q = states.place(joint.b, joint.q)
         zero = np.zeros_like(Q)
         pairs = []
-        if joint.kind == "rod":
+        if kind.keeps_distance:
             D = Q - states.place(joint.a, joint.p)
             pairs.append((D / np.sqrt(np.sum(D * D, axis=1))[:, None], zero))
         pairs += [(states.direction(joint.a, joint_frame(joint, d)), zero) for d in kind.guides]
         for d, e in kind.dots:
-            f = joint.to_axis if joint.kind == "universal" else layout.starts[k].R_ref.T @ joint_frame(joint, e)
-            turn = np.cross(states.direction(joint.b, f), states.direction(joint.a, joint_frame(joint, d)))
+            on_to = states.direction(joint.b, to_direction(joint, layout.starts[k].R_ref, e))
+            turn = np.cross(on_to, states.direction(joint.a, joint_frame(joint, d)))
             pairs.append((zero, turn))
         out += [np.concatenate([f, m + np.cross(Q, f)], axis=1) for f, m in pairs]
     return np.stack(out, axis=1)

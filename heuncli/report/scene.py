@@ -12,9 +12,9 @@ from typing import NamedTuple
 
 import numpy as np
 
+from heuncli.joint_kinds import TYPES, Kind
 from heuncli.spec.models import Body, End, Force, Friction, Section, Spec, Vec
 
-TURNING_JOINTS = frozenset({"ball", "pin", "universal", "cylinder"})
 TURN = {"value": "N·m", "rate": "rad/s"}
 PUSH = {"value": "N", "rate": "m/s"}
 FORCE_UNITS = {"couple": TURN, "force": PUSH, "actuator": PUSH, "spring": PUSH}
@@ -63,16 +63,16 @@ class Scene:
     def unit(self, kind: str, name: str, quantity: str) -> str | None:
         """The unit of a quantity that depends on the kind of the thing; None where the quantity itself tells."""
         if kind == "coordinates" and quantity == "acceleration":
-            return "rad/s²" if self._type(name) in ("pin", "universal") else "m/s²"
+            return "rad/s²" if self._kind(name).coordinates == ("angle",) else "m/s²"
         if kind == "joints" and quantity == "drive":
-            return "N·m" if self._type(name) == "pin" else "N"
+            return "N·m" if self._kind(name).drives == ("angle",) else "N"
         if kind == "forces" and quantity in TURN:
             return self._force_units(self.forces.get(name))[quantity]
         return None
 
-    def _type(self, joint: str | None) -> str:
+    def _kind(self, joint: str | None) -> Kind:
         info = self.joints.get(joint or "")
-        return info.type if info else "pin"
+        return TYPES[info.type if info else "pin"]
 
     def _force_units(self, force: ForceInfo | None) -> Mapping[str, str]:
         if force is None:
@@ -81,7 +81,7 @@ class Scene:
             return TURN if force.turning else PUSH
         if force.type in FORCE_UNITS:
             return FORCE_UNITS[force.type]
-        return TURN if self._type(force.joint) in TURNING_JOINTS else PUSH
+        return TURN if self._kind(force.joint).motions[:1] == ("turning",) else PUSH
 
 
 def scene_of(spec: Spec) -> Scene:

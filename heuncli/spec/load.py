@@ -8,6 +8,7 @@ from typing import Any
 
 from heuncli.errors import Place, Problem, SpecError
 from heuncli.expressions.programs import Table
+from heuncli.joint_kinds import TYPES
 from heuncli.spec import format as f
 from heuncli.spec.document import Reader
 from heuncli.spec.fields import Context
@@ -155,7 +156,10 @@ def in_the_plane(data: dict[str, Any]) -> dict[str, Any]:
 def _turns_in_the_plane(joint: Any) -> bool:
     if type(joint) is not dict:
         return False
-    return joint.get("type") == "pin" or (joint.get("type") == "ball" and not {"axis", "to_axis"} & joint.keys())
+    kind = TYPES.get(str(joint.get("type")))
+    if kind is None or kind.planar != "pin":
+        return False
+    return kind.has_axis or not {"axis", "to_axis"} & joint.keys()
 
 
 def in_order(problems: list[Problem]) -> list[Problem]:

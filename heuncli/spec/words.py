@@ -2,14 +2,8 @@
 
 from __future__ import annotations
 
-JOINT_WORDS = {
-    "revolute": "pin", "hinge": "pin", "pivot": "pin", "rotational": "pin", "rotary": "pin", "bearing": "pin",
-    "spherical": "ball", "sphere": "ball", "socket": "ball", "ballsocket": "ball", "prismatic": "slide",
-    "translational": "slide", "slider": "slide", "sliding": "slide", "guide": "slide", "cylindrical": "cylinder",
-    "fixed": "weld", "rigid": "weld", "lock": "weld", "distance": "rod", "link": "rod", "cable": "rod", "rope": "rod",
-    "inline": "line", "in_line": "line", "pointonline": "line", "inplane": "plane", "in_plane": "plane",
-    "planar": "plane", "pointonplane": "plane", "cardan": "universal", "hooke": "universal", "u": "universal",
-}  # fmt: skip
+from heuncli.joint_kinds import SYNONYMS
+
 FORCE_WORDS = {
     "moment": "couple", "motor": "torque", "thrust": "torque", "springdamper": "spring", "spring_damper": "spring",
     "dashpot": "damper", "load": "force", "cylinder": "actuator", "coulomb": "friction",
@@ -32,7 +26,7 @@ LATER = {  # of the format, but of a later version: (block or key, word)
     ("joints", "curve"), ("shapes", "mesh"), ("keys", "restitution"), ("keys", "sweep"),
 }  # fmt: skip
 TYPES = {  # by the key above the entry: code, what it is called, foreign words
-    "joints": ("unknown-joint-type", "a joint type", JOINT_WORDS),
+    "joints": ("unknown-joint-type", "a joint type", SYNONYMS),
     "forces": ("unknown-force-type", "a force type", FORCE_WORDS),
     "shapes": ("unknown-shape-type", "a shape", SHAPE_WORDS),
 }

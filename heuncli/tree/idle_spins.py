@@ -10,7 +10,7 @@ from dataclasses import dataclass
 
 import numpy as np
 
-from heuncli.mechanism.joints import JOINTS
+from heuncli.joint_kinds import JOINTS
 from heuncli.mechanism.model import Mechanism, PairLoad, PointLoad
 from heuncli.results import Array
 
@@ -35,7 +35,8 @@ def idle_spins(mechanism: Mechanism, size: float) -> list[IdleSpin]:
         for end, point in ((joint.a, joint.p), (joint.b, joint.q)):
             if end >= 0:
                 points[end].append(point)
-                if not JOINTS[joint.kind].ball or (joint.kind in ("line", "plane") and end == joint.a):
+                kind = JOINTS[joint.kind]
+                if not kind.ball or (kind.wanders and end == joint.a):
                     held.add(end)
     for load in mechanism.loads:
         if isinstance(load, PointLoad) and load.kind == "force" and load.point is not None:

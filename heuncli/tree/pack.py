@@ -11,18 +11,18 @@ from array import array
 import numpy as np
 
 from heuncli.expressions.programs import Expression, Pack
-from heuncli.mechanism.joints import JOINTS, Direction
+from heuncli.joint_kinds import JOINTS, Direction
 from heuncli.mechanism.model import GROUND, Assembly, Joint, JointLoad, Mechanism, PairLoad, PointLoad
 from heuncli.mechanism.size import size_of_scene
 from heuncli.results import Array
 from heuncli.shapes.rotations import to_quaternion
 from heuncli.tree.layout import Freedom, Layout
 from heuncli.tree.spanning import Hang, Spanning, span
-from heuncli.tree.starts import JointStart, Z, joint_frame, joint_start, pose
+from heuncli.tree.starts import JointStart, Z, joint_frame, joint_start, pose, to_direction
 
 HEADER = 48
 NEARLY_SINGULAR = 0.2  # least pivot of the scaled closures below which the stages of a step are settled too
-JOINT_LOADS = {"torque": 4, "damper": 6, "friction": 8}  # even kinds turn, the next odd one slides
+JOINT_LOADS = {"torque": (4, 5), "damper": (6, 7), "friction": (8, 9)}  # of the turning, of the sliding
 
 
 def lay_out(mechanism: Mechanism, start: Assembly, inertias: Array, work: bool = True) -> Layout:
@@ -186,7 +186,7 @@ class _Builder:
                 freedoms.append((k, sign * axes[name], "first" if name == "axis" else "second", 0.0, rates[name]))
         else:
             freedoms += [(0, sign * axes[name], "angle", s.angle, s.rate) for name in turns]
-        if kind.shifts == ("axis",) and joint.kind not in ("line", "flat line"):
+        if "travel" in kind.coordinates:
             freedoms.append((2, sign * (R_ref @ joint.axis if h.reverse else joint.axis), "travel", s.travel, s.speed))
         else:
             freedoms += [(2, joint_frame(joint, d), d, *self._shift(joint, d)) for d in kind.shifts]
@@ -222,7 +222,7 @@ class _Builder:
             a, b = self.sweep(joint.a), self.sweep(joint.b)
             path = sorted(set(self._path(a)) | set(self._path(b)), reverse=True)
             zero = np.zeros(3)
-            if joint.kind == "rod":
+            if kind.keeps_distance:
                 drive = self.programs[id(joint.drive.value)] if joint.drive is not None else (0, 0)
                 xa, Ra, _, _ = pose(self.start, joint.a)
                 xb, Rb, _, _ = pose(self.start, joint.b)
@@ -232,9 +232,9 @@ class _Builder:
             for d in kind.guides:
                 self._row(k, [0, a, b], (0, 0), path, [joint_frame(joint, d), zero, P, Q], 0.0, 1.0)
             for d, e in kind.dots:
-                f = joint.to_axis if joint.kind == "universal" else s.R_ref.T @ joint_frame(joint, e)
-                self._row(k, [1, a, b], (0, 0), path, [joint_frame(joint, d), f, P, Q], 0.0, self.size)
-            if kind.turns == ("axis",):
+                pair = [joint_frame(joint, d), to_direction(joint, s.R_ref, e)]
+                self._row(k, [1, a, b], (0, 0), path, [*pair, P, Q], 0.0, self.size)
+            if "angle" in kind.coordinates:
                 self.counters[k] = -1
 
     def _row(
@@ -296,22 +296,13 @@ class _Builder:
     def _joint_load(self, load: JointLoad) -> None:
         joint = self.mechanism.joints[load.joint]
         kind = JOINTS[joint.kind]
-        slides = kind.slides
-        ends = [self.sweep(joint.a), self.sweep(joint.b), int(kind.has_axis and joint.kind != "universal")]
+        ends = [self.sweep(joint.a), self.sweep(joint.b), int(kind.has_one_axis)]
         p, q = self.relative(joint.a, joint.p), self.relative(joint.b, joint.q)
-        first = JOINT_LOADS[load.kind]
         values: list[Expression | float] = [] if load.value is None else [load.value]
-        turning, sliding = load.coefficient, load.sliding
-        if load.kind == "friction":
-            turning, sliding = load.torque, load.force
-        elif slides:
-            turning, sliding = 0.0, load.coefficient
-        parts = [(first, turning), (first + 1, sliding)]
-        if load.kind == "torque":
-            parts = [(first + int(slides), 1.0)]
-        elif joint.kind != "cylinder":
-            parts = [parts[int(slides)]]
-        for number, coefficient in parts:
+        turns, slides = JOINT_LOADS[load.kind]
+        parts = {"turning": (turns, load.turning), "sliding": (slides, load.sliding)}
+        for motion in kind.motions:
+            number, coefficient = parts[motion]
             self._load([number, *ends], values, p, q, [0.0, 0.0, coefficient, *joint.axis.tolist(), load.speed])
 
     def finish(self, work: bool) -> Layout:

@@ -16,7 +16,7 @@ from dataclasses import dataclass
 import numpy as np
 
 from heuncli.errors import Problem, SolveError
-from heuncli.mechanism.joints import JOINTS
+from heuncli.joint_kinds import JOINTS
 from heuncli.mechanism.model import GROUND, Joint, Mechanism
 from heuncli.results import Array
 

@@ -7,7 +7,7 @@ from dataclasses import dataclass
 
 import numpy as np
 
-from heuncli.mechanism.joints import JOINTS, Direction
+from heuncli.joint_kinds import JOINTS, Direction
 from heuncli.mechanism.model import GROUND, Assembly, Joint, Mechanism
 from heuncli.results import Array
 from heuncli.shapes.rotations import about, perpendicular, to_quaternion
@@ -37,7 +37,7 @@ def joint_start(mechanism: Mechanism, start: Assembly, joint: Joint) -> JointSta
     rate = float((Ra @ (Z if kind.turns == ("z",) else n)) @ (wb - wa))
     v = vb + np.cross(wb, Rb @ joint.q) - va - np.cross(wa, Rb @ joint.q + xb - xa)
     travel, speed = float(D @ n), float((Ra @ n) @ v)
-    if kind.turns != ("axis",):
+    if "angle" not in kind.coordinates:
         return JointStart(R, 0.0, rate, travel, speed)
     near = joint.angle if joint.angle is not None else 0.0
     if joint.drive is not None and joint.drive.quantity == "angle":
@@ -58,6 +58,13 @@ def joint_frame(joint: Joint, direction: Direction) -> Array:
         return np.cross(Z, joint.axis)
     e, f = perpendicular(joint.axis)
     return e if direction == "first" else f
+
+
+def to_direction(joint: Joint, R_ref: Array, direction: Direction) -> Array:
+    """A direction of the joint that is fixed in `to`, in `to` axes: its second axis, or what one of `from` was."""
+    if direction == "to_axis":
+        return joint.to_axis
+    return np.asarray(R_ref.T @ joint_frame(joint, direction))
 
 
 def unwrapped(angle: float, near: float) -> float:

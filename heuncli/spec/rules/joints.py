@@ -6,6 +6,7 @@ import math
 from collections.abc import Iterator
 
 from heuncli.expressions.programs import Expression, across, breakpoints
+from heuncli.joint_kinds import RATES, TYPES, named
 from heuncli.spec import format as f
 from heuncli.spec.fields import End
 from heuncli.spec.rules.registry import Found, Path_, Scene, rule
@@ -13,7 +14,7 @@ from heuncli.spec.semantics import drive_of, span_of
 
 SAME = 1e-9  # relative: a held value and a drive's
 LOOKED_AT = 1000  # parts of the run at whose ends a driven length is looked at
-DRIVEN = {"angle": ("pin",), "travel": ("slide", "cylinder"), "length": ("rod",)}
+DRIVEN = ("angle", "travel", "length")
 
 
 def directions(scene: Scene) -> Iterator[tuple[Path_, tuple[float, float, float]]]:
@@ -76,18 +77,19 @@ def drive_form(scene: Scene) -> Iterator[Found]:
     for name, drive in scene.document.drives.items():
         path = ("drives", name)
         quantities = [key for key in DRIVEN if getattr(drive, key) is not None]
-        kind = scene.names.joints.get(drive.joint)
-        fitting = [key for key, kinds in DRIVEN.items() if kind in kinds]
+        kind = TYPES.get(scene.names.joints.get(drive.joint, ""))
+        fitting = kind.drives if kind is not None else ()
         if len(quantities) != 1:
             what = " and ".join(quantities) if quantities else "nothing"
-            hint = f"a {kind} has {fitting[0]}" if fitting else "one of angle, travel, length"
+            hint = f"a {kind.name} has {fitting[0]}" if kind is not None and fitting else f"one of {', '.join(DRIVEN)}"
             yield Found(path, f"the drive prescribes {what}", hint, key=True)
             continue
         quantity = quantities[0]
-        if kind in {k for kinds in DRIVEN.values() for k in kinds} | {"ball", "universal", "weld", "line", "plane"}:
+        if kind is not None:
             if quantity not in fitting:
-                hint = f"a {kind} has {fitting[0]}" if fitting else "drives act on pin, slide, cylinder and rod"
-                yield Found((*path, quantity), f"a {kind} has no {quantity} to be driven", hint, key=True)
+                driven_kinds = named([kind for kind in TYPES.values() if kind.drives], "and")
+                hint = f"a {kind.name} has {fitting[0]}" if fitting else f"drives act on {driven_kinds}"
+                yield Found((*path, quantity), f"a {kind.name} has no {quantity} to be driven", hint, key=True)
             elif quantity == "length" and drive.zero is not None:
                 yield Found(
                     (*path, "zero"), "a length is not counted from the assembled one", "zero is for angle and travel"
@@ -121,7 +123,7 @@ def drive_contradicts(scene: Scene) -> Iterator[Found]:
         relative = scene.document.drives[name].zero == "assembled" or getattr(joint, "to_axis", None) is not None
         for key, expected in (
             (quantity, at_start[0]),
-            ({"angle": "rate", "travel": "speed"}.get(quantity, ""), at_start[1]),
+            (RATES.get(quantity, ""), at_start[1]),
         ):
             held = getattr(initial, key, None)
             if held is None or (relative and key == quantity):

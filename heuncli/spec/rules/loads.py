@@ -5,19 +5,21 @@ from __future__ import annotations
 from collections.abc import Iterator
 
 from heuncli.expressions import units as u
+from heuncli.joint_kinds import FREE, POINT, TYPES, Kind, named, taking
 from heuncli.spec import format as f
 from heuncli.spec.rules.registry import Found, Scene, rule
 from heuncli.spec.semantics import span_of
 
-TURNING = ("ball", "pin", "universal", "cylinder")
-SLIDING = ("slide", "line", "plane")
+ON_MOTION = {"turning": "about a", "sliding": "along a"}
+FRICTION = {"turning": "torque", "sliding": "force"}  # the key of each motion
 
 
-def loads(scene: Scene) -> Iterator[tuple[str, f.Torque | f.Damper | f.Friction, str]]:
-    """Loads in joints that exist, with the type of the joint."""
+def loads(scene: Scene) -> Iterator[tuple[str, f.Torque | f.Damper | f.Friction, Kind]]:
+    """Loads in joints that exist, with the kind of the joint; one whose type is in error takes no load."""
     for name, load in scene.document.forces.items():
         if isinstance(load, f.Torque | f.Damper | f.Friction) and load.joint in scene.names.joints:
-            yield name, load, scene.names.joints[load.joint]
+            written = scene.names.joints[load.joint]
+            yield name, load, TYPES.get(written, Kind(written, POINT, FREE))
 
 
 @rule("load-joint")
@@ -26,39 +28,40 @@ def load_joint(scene: Scene) -> Iterator[Found]:
     for name, load, kind in loads(scene):
         path = ("forces", name)
         if isinstance(load, f.Torque):
-            if kind not in ("pin", "slide"):
+            if not kind.takes("torque"):
+                where = " or ".join(f"{ON_MOTION[fit.motions[0]]} {fit.name}" for fit in taking("torque"))
                 hint = "between two points use actuator, on a body couple"
-                yield Found((*path, "joint"), f"a torque acts about a pin or along a slide, not in a {kind}", hint)
+                yield Found((*path, "joint"), f"a torque acts {where}, not in a {kind.name}", hint)
         elif isinstance(load, f.Damper):
-            if kind not in TURNING + SLIDING:
+            of_both = [fit for fit in taking("damper") if len(fit.motions) == 2]
+            if not kind.takes("damper"):
                 hint = "between two points use a spring with damping"
-                yield Found((*path, "joint"), f"a damper resists nothing in a {kind}", hint)
+                yield Found((*path, "joint"), f"a damper resists nothing in a {kind.name}", hint)
             if load.coefficient is None and load.sliding is None:
-                known = "coefficient (of turning), sliding, or both" if kind == "cylinder" else "coefficient"
+                known = "coefficient (of turning), sliding, or both" if kind in of_both else "coefficient"
                 yield Found(path, "a damper that resists nothing", f"give {known}", key=True)
-            if load.sliding is not None and kind != "cylinder":
-                yield Found(
-                    (*path, "sliding"), f"sliding is for a cylinder, not for a {kind}", "use coefficient", key=True
-                )
+            if load.sliding is not None and kind not in of_both:
+                message = f"sliding is for a {named(of_both, 'or')}, not for a {kind.name}"
+                yield Found((*path, "sliding"), message, "use coefficient", key=True)
         else:
-            given = [key for key in ("torque", "force") if getattr(load, key) is not None]
-            fitting = {"pin": ["torque"], "slide": ["force"], "cylinder": ["torque", "force"]}.get(kind)
-            if fitting is None:
-                yield Found((*path, "joint"), f"friction acts in a pin, slide or cylinder, not in a {kind}")
+            given = [key for key in FRICTION.values() if getattr(load, key) is not None]
+            fitting = [FRICTION[motion] for motion in kind.motions]
+            if not kind.takes("friction"):
+                message = f"friction acts in a {named(taking('friction'), 'or')}, not in a {kind.name}"
+                yield Found((*path, "joint"), message)
             elif len(given) != 1:
                 what = "both torque and force" if given else "neither torque nor force"
-                yield Found(path, f"friction of {what}", f"a {kind} takes {' or '.join(fitting)}", key=True)
+                yield Found(path, f"friction of {what}", f"a {kind.name} takes {' or '.join(fitting)}", key=True)
             elif given[0] not in fitting:
-                yield Found(
-                    (*path, given[0]), f"friction of a {kind} is a {fitting[0]}", f"write {fitting[0]}", key=True
-                )
+                message = f"friction of a {kind.name} is a {fitting[0]}"
+                yield Found((*path, given[0]), message, f"write {fitting[0]}", key=True)
 
 
 @rule("dimension")
 def load_dimension(scene: Scene) -> Iterator[Found]:
     """Where the joint decides between turning and sliding, the unit fits."""
     for name, load, kind in loads(scene):
-        sliding = kind in SLIDING
+        sliding = kind.motions == ("sliding",)
         if isinstance(load, f.Torque):
             checks = [("value", load.value, u.FORCE if sliding else u.MOMENT)]
         elif isinstance(load, f.Damper):

@@ -5,6 +5,7 @@ from __future__ import annotations
 import math
 from collections.abc import Iterator
 
+from heuncli.joint_kinds import ABOUT_AXIS, TYPES
 from heuncli.spec import format as f
 from heuncli.spec.rules.registry import Found, Path_, Scene, rule
 from heuncli.spec.semantics import body_axes
@@ -52,10 +53,11 @@ def _across(path: Path_, vector: tuple[float | None, ...], across: tuple[str, ..
 def _joints(scene: Scene) -> Iterator[Found]:
     for name, joint in scene.document.joints.items():
         path: Path_ = ("joints", name)
-        if isinstance(joint, f.Universal | f.CylinderJoint):
+        kind = TYPES[joint.type]
+        if kind.planar is None:
             yield Found((*path, "type"), f"a joint of type {joint.type} has no place in a planar scene", OR_ELSE)
             continue
-        along_z = isinstance(joint, f.Pin)
+        along_z = kind.turn is ABOUT_AXIS
         for key in ("axis", "to_axis", "normal"):
             direction = getattr(joint, key, None)
             if direction is None or direction == (0.0, 0.0, 0.0):

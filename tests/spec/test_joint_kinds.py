@@ -1,0 +1,92 @@
+"""The table of joints against the file format, and against what mechanics says of every row."""
+
+from __future__ import annotations
+
+from types import NoneType
+from typing import get_args
+
+import pytest
+
+from heuncli.joint_kinds import JOINTS, RATES, SYNONYMS, TYPES, Kind
+from heuncli.spec import format as f
+from heuncli.spec.fields import keys_of
+
+ROWS = pytest.mark.parametrize("kind", JOINTS.values(), ids=JOINTS)
+WRITTEN = pytest.mark.parametrize("kind", TYPES.values(), ids=TYPES)
+
+
+def test_the_format_and_the_table_know_the_same_kinds() -> None:
+    assert list(f.JOINTS) == list(TYPES)
+
+
+@WRITTEN
+def test_keys(kind: Kind) -> None:
+    """The format takes the keys that the row has a use for, and no other."""
+    keys = {"type", "from", "to", "stiffness"}
+    keys |= {kind.axis_key} if kind.axis_key else set()
+    keys |= {"to_axis"} if kind.to_axis != "never" else set()
+    keys |= {"initial"} if kind.coordinates else set()
+    keys |= {"length", "tension_only"} if kind.keeps_distance else set()
+    assert set(keys_of(f.JOINTS[kind.name])) == keys
+
+
+@WRITTEN
+def test_what_must_be_given(kind: Kind) -> None:
+    fields = f.JOINTS[kind.name].model_fields
+    must = {key for key in ("axis", "normal", "to_axis") if key in fields and fields[key].is_required()}
+    wanted = {kind.axis_key, "to_axis" if kind.to_axis == "required" else None}
+    assert must == wanted - {None}
+
+
+@WRITTEN
+def test_start_values(kind: Kind) -> None:
+    """Each coordinate and its rate may be held at the start."""
+    fields = f.JOINTS[kind.name].model_fields
+    parts = get_args(fields["initial"].annotation) if "initial" in fields else ()
+    models = [part for part in parts if part is not NoneType]
+    held = {key for model in models for key in keys_of(model)}
+    assert held == {*kind.coordinates, *(RATES[quantity] for quantity in kind.coordinates)}
+
+
+def test_drives_have_keys() -> None:
+    assert {quantity for kind in TYPES.values() for quantity in kind.drives} < set(keys_of(f.Drive))
+
+
+def test_loads_have_types() -> None:
+    assert {load for kind in TYPES.values() for load in kind.loads} < set(f.LOADS)
+
+
+@ROWS
+def test_what_is_not_held_is_free(kind: Kind) -> None:
+    """Six freedoms of one body against another: held ones are rows, the others freedoms; a rod's are not told apart."""
+    free = len(kind.shifts) + (3 if kind.ball else len(kind.turns))
+    assert kind.rows + free == 6 or (kind.keeps_distance and kind.rows == 1)
+
+
+@ROWS
+def test_loads_act_on_what_is_free(kind: Kind) -> None:
+    assert "turning" not in kind.motions or kind.ball or kind.turns
+    assert "sliding" not in kind.motions or kind.shifts
+    assert bool(kind.loads) <= bool(kind.motions)
+    assert set(kind.coordinates) <= {*["angle"] * bool(kind.turns), *["travel"] * bool(kind.shifts)}
+
+
+@ROWS
+def test_looser_joints_hold_less(kind: Kind) -> None:
+    assert all(JOINTS[other].rows < kind.rows for other in kind.looser)
+    assert all(JOINTS[other].rows_in_plane < kind.rows_in_plane for other in kind.looser_in_plane)
+
+
+@WRITTEN
+def test_the_planar_form_holds_no_less_of_the_plane(kind: Kind) -> None:
+    """A planar scene may add what holds the plane, and take nothing away."""
+    if kind.planar is not None:
+        flat = JOINTS[kind.planar]
+        assert flat.rows >= kind.rows
+        assert 1 <= flat.rows_in_plane <= 3
+
+
+def test_a_word_means_one_kind() -> None:
+    words = [word for kind in TYPES.values() for word in kind.synonyms]
+    assert len(words) == len(set(words)) == len(SYNONYMS)
+    assert not set(words) & set(TYPES)
