@@ -11,9 +11,9 @@ from dataclasses import dataclass
 
 from heuncli.errors import Finding
 from heuncli.expressions.programs import Code, Expression, Switch, Table, outside
-from heuncli.kernel.choose import program
+from heuncli.kernel.choose import expressions
 
-OP = program.OPERATIONS
+OP = expressions.OPERATIONS
 MOST_NODES = 500
 BEYOND = "no division by 0, no root or logarithm of what is negative, nothing beyond 1e308"
 COMPARISONS = {"<": "lt", "<=": "le", ">": "gt", ">=": "ge", "==": "eq", "!=": "ne"}
@@ -24,7 +24,6 @@ class Part:
     """A program for a part of an expression; constant where it is a number; uses: its variables."""
 
     code: Code
-    depth: int
     uses: frozenset[int]
     constant: float | None = None
 
@@ -50,18 +49,18 @@ class Emitter:
             raise Finding("not-computable", f"'{text.strip()}' is not a finite number", BEYOND)
         return Expression(
             source=text, constant=part.constant, uses=tuple(self.variables), time_dependent=0 in part.uses,
-            code=part.code, constants=tuple(self.constants), tables=tuple(self.tables), depth=part.depth,
+            code=part.code, constants=tuple(self.constants), tables=tuple(self.tables),
             switches=tuple(self.switches),
         )  # fmt: skip
 
     def time(self) -> Part:
         """The variable t."""
-        return self.counted(Part((OP["var"], 0), 1, frozenset({0})))
+        return self.counted(Part((OP["var"], 0), frozenset({0})))
 
     def coordinate(self, joint: str, quantity: str) -> Part:
         """The variable that is a joint's coordinate."""
         number = self.variables.setdefault((joint, quantity), len(self.variables) + 1)
-        return self.counted(Part((OP["var"], number), 1, frozenset({number})))
+        return self.counted(Part((OP["var"], number), frozenset({number})))
 
     def look_up(self, table: Table, argument: Part) -> Part:
         """A table's value at the argument."""
@@ -69,14 +68,14 @@ class Emitter:
             self.tables.append(table)
         code = (*argument.code, OP["table"], self.tables.index(table), table.pieces, table.kind)
         if argument.constant is not None:
-            value = self.run(code, argument.depth, table)
+            value = self.run(code, table)
             if math.isnan(value) and math.isfinite(argument.constant):
                 message, hint = outside(table)
                 self.left = Finding("not-computable", f"{message}, not {argument.constant:.9g}", hint)
             return self.number(value)
         if argument.uses <= {0}:
             self.switches.append(Switch((*argument.code, OP["knot"], *code[-3:]), None))
-        return self.counted(Part(code, argument.depth, argument.uses))
+        return self.counted(Part(code, argument.uses))
 
     def chain(self, first: Part, links: list[tuple[str, Part, Part]]) -> Part:
         """a < b < c as one condition, in which each part is run once; links: comparison, left, right."""
@@ -85,16 +84,16 @@ class Emitter:
             for name, left, right in links:
                 truth = self.apply("mul", truth, self.apply(name, left, right))
             return truth
-        code, depth, uses = first.code, first.depth, first.uses
+        code, uses = first.code, first.uses
         for n, (name, left, right) in enumerate(links):
             self.switch_of_comparison(name, left, right)
             code = (*code, *right.code, OP[name], 0 if n == len(links) - 1 else 1)  # 1: the right one is needed again
-            depth, uses = max(depth, 1 + n + right.depth), uses | right.uses
-        return self.counted(Part(code + (OP["mul"], 0) * (len(links) - 1), depth, uses))
+            uses |= right.uses
+        return self.counted(Part(code + (OP["mul"], 0) * (len(links) - 1), uses))
 
     def number(self, value: float) -> Part:
         self.constants.append(value)
-        return self.counted(Part((OP["const"], len(self.constants) - 1), 1, frozenset(), value))
+        return self.counted(Part((OP["const"], len(self.constants) - 1), frozenset(), value))
 
     def counted(self, part: Part) -> Part:
         self.nodes += 1
@@ -102,30 +101,28 @@ class Emitter:
             raise Finding("expression-limit", f"an expression of more than {MOST_NODES} parts")
         return part
 
-    def run(self, code: Code, depth: int, table: Table | None = None) -> float:
+    def run(self, code: Code, table: Table | None = None) -> float:
         """The number that constant code gives; a table of it is the one given."""
         numbers = array("d", self.constants)
         if table is not None:
             code = (*code[:-3], len(numbers), *code[-2:])
             numbers.extend(table.numbers)
-        stack = array("d", bytes(8 * depth))
-        return float(program.evaluate(array("i", code), numbers, 0, len(code) // 2, array("d", (0.0,)), stack))
+        programs = expressions.Expressions(array("i", code), numbers, 0, expressions.stack_depth(code))
+        return float(programs.evaluate(0, len(code) // 2, ()))
 
     def apply(self, name: str, *parts: Part, argument: int = 0) -> Part:
         """An operation on its operands; carried out at once on numbers."""
         code: Code = ()
-        depth = 1
         uses: frozenset[int] = frozenset()
-        for n, part in enumerate(parts):
+        for part in parts:
             code += part.code
-            depth = max(depth, n + part.depth)
             uses |= part.uses
         whole = (*code, OP[name], argument)
         if not uses:
-            return self.number(self.run(whole, depth))
+            return self.number(self.run(whole))
         if uses <= {0}:
             self.switch(name, parts)
-        return self.counted(Part(whole, depth, uses))
+        return self.counted(Part(whole, uses))
 
     def choose(self, condition: Part, then: Part, otherwise: Part) -> Part:
         """then where the condition is not 0, else otherwise; only the chosen one is run."""
@@ -138,8 +135,7 @@ class Emitter:
             *condition.code, OP["unless"], len(then.code) // 2 + 1, *then.code,
             OP["jump"], len(otherwise.code) // 2, *otherwise.code,
         )  # fmt: skip
-        depth = max(condition.depth, then.depth, otherwise.depth)
-        return self.counted(Part(code, depth, condition.uses | then.uses | otherwise.uses))
+        return self.counted(Part(code, condition.uses | then.uses | otherwise.uses))
 
     def truth(self, part: Part) -> Part:
         return self.apply("ne", part, self.number(0.0))

@@ -1,6 +1,6 @@
 """Expressions as flat programs of numbers, and the packs in which the kernel runs them.
 
-An Expression is what a user wrote, read once: a program for heuncli.kernel.program with its own constants and tables.
+An Expression is what a user wrote, read once: a program for kernel/expressions.py with its own constants and tables.
 A Pack joins the programs of many expressions in the arrays the kernel takes.
 """
 
@@ -13,9 +13,9 @@ from dataclasses import dataclass, field, replace
 from functools import cached_property
 
 from heuncli.errors import LimitError, Place, Problem
-from heuncli.kernel.choose import program
+from heuncli.kernel.choose import expressions
 
-OPS = program.OPERATIONS
+OPS = expressions.OPERATIONS
 CONST, VAR, TABLE, KNOT = OPS["const"], OPS["var"], OPS["table"], OPS["knot"]
 
 TIME = "t"
@@ -76,7 +76,6 @@ class Expression:
     code: Code = ()
     constants: tuple[float, ...] = ()
     tables: tuple[Table, ...] = ()
-    depth: int = 1
     switches: tuple[Switch, ...] = field(default=(), repr=False)
     dimension: tuple[int, int, int] | None = None  # where it was written with a unit
 
@@ -117,10 +116,9 @@ class Expression:
 
 
 class Pack:
-    """Programs side by side in flat arrays: code (int pairs), constants and tables, variables, depth of the stack.
+    """Programs side by side: code (int pairs), constants and tables, variables, and the depth of the deepest.
 
-    `variables[0]` is "t", the others are (joint, quantity) in the order of their places in the kernel's x. The kernel
-    needs a stack of 3 * depth doubles.
+    `variables[0]` is "t", the others are (joint, quantity) in the order in which the kernel takes them.
     """
 
     def __init__(self) -> None:
@@ -130,6 +128,14 @@ class Pack:
         self.variables: list[Variable] = [TIME]
         self._places: dict[Variable, int] = {TIME: 0}
         self._tables: dict[int, tuple[int, Table]] = {}
+        self._expressions: expressions.Expressions | None = None
+
+    @property
+    def expressions(self) -> expressions.Expressions:
+        """The programs as the kernel runs them; made anew only where programs were added since."""
+        if self._expressions is None:
+            self._expressions = expressions.Expressions(self.code, self.constants, len(self.variables), self.depth)
+        return self._expressions
 
     def add(self, expression: Expression) -> tuple[int, int]:
         """Append a program; gives its first pair and its number of pairs."""
@@ -142,6 +148,7 @@ class Pack:
         tables = [self._table(table) for table in expression.tables]
         variables = [0, *(self._variable(use) for use in expression.uses)]
         start = len(self.code) // 2
+        self._expressions = None
         is_data = False
         for op, argument in zip(code[::2], code[1::2], strict=True):
             if is_data:
@@ -153,7 +160,7 @@ class Pack:
             elif op in (TABLE, KNOT):
                 argument, is_data = tables[argument], True
             self.code.extend((op, argument))
-        self.depth = max(self.depth, expression.depth)
+        self.depth = max(self.depth, expressions.stack_depth(code))
         return start, len(code) // 2
 
     def _table(self, table: Table) -> int:
@@ -170,22 +177,17 @@ class Pack:
 
     def value(self, start: int, count: int, x: Sequence[float]) -> float:
         """Value of one program at x, in the order of `variables`; NaN when not computable."""
-        if len(x) != len(self.variables):
-            raise ValueError(f"the pack has {len(self.variables)} variables, not {len(x)}")
-        stack = array("d", bytes(8 * self.depth))
-        return float(program.evaluate(self.code, self.constants, start, count, array("d", x), stack))
+        return float(self.expressions.evaluate(start, count, x))
 
     def derivatives(self, start: int, count: int, t: float) -> tuple[float, float, float]:
         """Value, first and second time derivative of one program in time alone."""
-        stack, out = array("d", bytes(24 * self.depth)), array("d", (0.0, 0.0, 0.0))
-        program.derivatives(self.code, self.constants, start, count, t, stack, out)
-        return out[0], out[1], out[2]
+        value, rate, second = self.expressions.derivatives(start, count, t)
+        return value, rate, second
 
     def sample(self, start: int, count: int, times: Sequence[float]) -> array[float]:
         """Values of one program in time alone at instants."""
         out = array("d", bytes(8 * len(times)))
-        x, stack = array("d", [float("nan")] * len(self.variables)), array("d", bytes(8 * self.depth))
-        program.sample(self.code, self.constants, start, count, array("d", times), x, stack, out)
+        self.expressions.sample(start, count, array("d", times), out)
         return out
 
 
@@ -240,12 +242,9 @@ def _at_instants(expression: Expression, code: Code) -> Callable[[list[float]], 
     """A program in time alone as a function of instants; inf stands for what is no number, which is a branch, too."""
     pack = Pack()
     start, count = pack.add_code(expression, code)
-    x, stack = array("d", [math.nan] * len(pack.variables)), array("d", bytes(8 * pack.depth))
 
     def values(times: list[float]) -> list[float]:
-        out = array("d", bytes(8 * len(times)))
-        program.sample(pack.code, pack.constants, start, count, array("d", times), x, stack, out)
-        return [v if v == v else math.inf for v in out]
+        return [v if v == v else math.inf for v in pack.sample(start, count, times)]
 
     return values
 

@@ -25,7 +25,7 @@ from heuncli.errors import HeunError, Problem
 
 PACKAGE = __package__ or "heuncli.kernel"
 FOLDER = Path(__file__).parent
-COMPILED_MODULES = ("program", "tree", "loops", "step")
+COMPILED_MODULES = ("expressions", "program", "tree", "loops", "step")
 
 
 class KernelError(HeunError):
@@ -69,6 +69,6 @@ KERNEL = choose(os.environ.get("HEUN_KERNEL", ""))
 if KERNEL == "pure":
     sys.meta_path.insert(0, PlainFiles())
 
-from heuncli.kernel import loops, program, step, tree
+from heuncli.kernel import expressions, loops, program, step, tree
 
-__all__ = ["KERNEL", "loops", "program", "step", "tree"]
+__all__ = ["KERNEL", "expressions", "loops", "program", "step", "tree"]

@@ -1,9 +1,11 @@
 cdef enum:
-    CONST, VAR, ADD, SUB, MUL, DIV, POW, NEG, POWER
-    SIN, COS, TAN, ASIN, ACOS, ATAN, ATAN2, SINH, COSH, TANH, EXP, LOG, SQRT
-    ABS, SIGN, MIN, MAX, STEP, HYPOT
+    CONST, VAR
+    ADD, SUB, MUL, DIV, POW, ATAN2, HYPOT, MIN, MAX
     LT, LE, GT, GE, EQ, NE
-    UNLESS, JUMP, TABLE, KNOT
+    NEG, POWER, ABS, SIGN, STEP
+    SIN, COS, TAN, ASIN, ACOS, ATAN
+    SINH, COSH, TANH, EXP, LOG, SQRT
+    TABLE, KNOT, JUMP, UNLESS
 
 cdef double value(int *code, double *constants, Py_ssize_t start, Py_ssize_t count, double *x, double *stack) noexcept nogil
 cdef void jet(int *code, double *constants, Py_ssize_t start, Py_ssize_t count, double t, double *stack, double *out) noexcept nogil

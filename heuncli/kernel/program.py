@@ -54,11 +54,13 @@ else:
     NAN = math.nan
 
     # The codes of the operations; for C they stand in program.pxd, in the same order.
-    CONST, VAR, ADD, SUB, MUL, DIV, POW, NEG, POWER = range(9)
-    SIN, COS, TAN, ASIN, ACOS, ATAN, ATAN2, SINH, COSH, TANH, EXP, LOG, SQRT = range(9, 22)
-    ABS, SIGN, MIN, MAX, STEP, HYPOT = range(22, 28)
-    LT, LE, GT, GE, EQ, NE = range(28, 34)
-    UNLESS, JUMP, TABLE, KNOT = range(34, 38)
+    CONST, VAR = range(2)
+    ADD, SUB, MUL, DIV, POW, ATAN2, HYPOT, MIN, MAX = range(2, 11)
+    LT, LE, GT, GE, EQ, NE = range(11, 17)
+    NEG, POWER, ABS, SIGN, STEP = range(17, 22)
+    SIN, COS, TAN, ASIN, ACOS, ATAN = range(22, 28)
+    SINH, COSH, TANH, EXP, LOG, SQRT = range(28, 34)
+    TABLE, KNOT, JUMP, UNLESS = range(34, 38)
 
     # C's functions answer everywhere where Python's raise.
     def exp(x: float) -> float:

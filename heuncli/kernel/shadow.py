@@ -1,6 +1,7 @@
-"""Stand-in for `import cython` where Cython is not installed: the kernel's files then run as plain Python.
+"""Stand-in for `import cython` where the kernel runs as plain Python.
 
-Cython is a build requirement only; every name the kernel takes from it is given here with the meaning "do nothing".
+Cython is a build requirement only, and its own stand-in knows no objects behind pointers: here a pointer to one struct
+is the object itself, a pointer to the first of many is the list of them, and every other name means "do nothing".
 """
 
 from __future__ import annotations
@@ -19,6 +20,8 @@ class _Type:
 
 
 class _Block:
+    """What is both a decorator and the head of a block, like `nogil`."""
+
     def __call__(self, f: Any) -> Any:
         return f
 
@@ -33,12 +36,21 @@ class _Cython:
     compiled = False
     nogil = _Block()
 
+    @staticmethod
+    def address(x: Any) -> Any:
+        """A pointer to an object is the object."""
+        return x
+
+    @staticmethod
+    def cast(_: Any, x: Any, **__: Any) -> Any:
+        return x
+
     def __getattr__(self, name: str) -> Any:
-        if name in ("cfunc", "ccall", "inline"):
+        if name in ("cfunc", "ccall", "inline", "cclass", "final"):
             return lambda f: f
         if name in ("exceptval", "locals", "returns", "boundscheck", "wraparound", "cdivision"):
             return lambda *a, **k: lambda f: f
-        return _Type()
+        return _Type()  # pointer, double, p_double, ...
 
 
 cython = _Cython()

@@ -6,7 +6,9 @@ import cmath
 import importlib.util
 import math
 from array import array
+from collections.abc import Iterable, Sequence
 from pathlib import Path
+from random import Random
 from types import ModuleType
 from typing import Any
 
@@ -15,8 +17,9 @@ from hypothesis import given, settings
 from hypothesis import strategies as st
 
 from heuncli.expressions.grammar import Scope, compile_expression
-from heuncli.expressions.programs import Expression, Pack
-from heuncli.kernel.choose import program
+from heuncli.expressions.programs import Expression, Pack, breakpoints
+from heuncli.kernel.choose import expressions
+from tests.shared.random_programs import VARIABLES, random_program
 
 IN_TIME = Scope(parameters={"L": 1.5}, joints={"shaft": "pin", "guide": "slide"}, in_time=True)
 
@@ -188,8 +191,8 @@ def test_constants_need_no_program_run() -> None:
 @pytest.fixture(scope="module")
 def plain() -> ModuleType:
     """The evaluator as a plain Python file, whatever runs otherwise."""
-    path = Path(__file__).parents[2] / "heuncli" / "kernel" / "program.py"
-    spec = importlib.util.spec_from_file_location("plain_program", path)
+    path = Path(__file__).parents[2] / "heuncli" / "kernel" / "expressions.py"
+    spec = importlib.util.spec_from_file_location("plain_expressions", path)
     assert spec is not None
     assert spec.loader is not None
     module = importlib.util.module_from_spec(spec)
@@ -197,7 +200,13 @@ def plain() -> ModuleType:
     return module
 
 
-@pytest.mark.skipif(not program.COMPILED, reason="there is only the plain form")
+def answers(form: ModuleType, pack: Pack, count: int, x: Sequence[float]) -> list[str]:
+    """Value, and value with derivatives in time alone, of the pack's first program, to the last bit."""
+    programs = form.Expressions(pack.code, pack.constants, len(pack.variables), pack.depth)
+    return bits([programs.evaluate(0, count, x), *programs.derivatives(0, count, x[0])])
+
+
+@pytest.mark.skipif(not expressions.COMPILED, reason="there is only the plain form")
 @given(text=EXPRESSIONS, t=st.floats(-5.0, 5.0))
 @settings(max_examples=EXAMPLES, deadline=None, derandomize=True)
 def test_compiled_and_plain_give_the_same_bits(plain: ModuleType, text: str, t: float) -> None:
@@ -205,22 +214,100 @@ def test_compiled_and_plain_give_the_same_bits(plain: ModuleType, text: str, t: 
         expression = read(text)
     except ValueError:
         return
-    pack = expression.pack
-    stack, out, other = array("d", bytes(24 * pack.depth)), array("d", bytes(24)), array("d", bytes(24))
-    start = (pack.code, pack.constants, 0, expression.count)
-    values = [form.evaluate(*start, array("d", [t]), stack) for form in (program, plain)]
-    program.derivatives(*start, t, stack, out)
-    plain.derivatives(*start, t, stack, other)
-    assert bits(values[:1]) == bits(values[1:])
-    assert bits(out) == bits(other)
-    if all(map(math.isfinite, out)):
-        assert out[0] == values[0]
+    compiled = answers(expressions, expression.pack, expression.count, [t])
+    assert compiled == answers(plain, expression.pack, expression.count, [t])
+    if "nan" not in compiled:
+        assert compiled[0] == compiled[1]
 
 
-def bits(numbers: Any) -> list[str]:
+@pytest.mark.skipif(not expressions.COMPILED, reason="there is only the plain form")
+def test_any_program_gives_the_same_bits_compiled_and_plain(plain: ModuleType) -> None:
+    """All operations on numbers of all sizes, infinite and none; about three in four have a value."""
+    random = Random(5)
+    have_value, seen = 0, set()
+    for _ in range(3000):
+        program = random_program(random)
+        code, constants = program.numbered(expressions.OPERATIONS), array("d", program.constants)
+        x = [random.uniform(-3.0, 3.0) for _ in range(VARIABLES)]
+        found = []
+        for form in (expressions, plain):
+            programs = form.Expressions(code, constants, VARIABLES, form.stack_depth(code))
+            count = len(program.code)
+            found.append(bits([programs.evaluate(0, count, x), *programs.derivatives(0, count, x[0])]))
+        assert found[0] == found[1], program
+        have_value += found[0][0] != "nan"
+        seen |= {op for op, _ in program.code if isinstance(op, str)}
+    assert seen == set(expressions.OPERATIONS)
+    assert 1500 < have_value < 2900
+
+
+class Watched(list[Any]):
+    """A stack that keeps in mind how far up it was used."""
+
+    top = 0
+
+    def __setitem__(self, i: Any, x: Any) -> None:
+        self.top = max(self.top, i + 1)
+        super().__setitem__(i, x)
+
+
+def test_no_program_needs_more_stack_than_was_counted(plain: ModuleType) -> None:
+    random = Random(6)
+    exact = 0
+    for _ in range(1000):
+        program = random_program(random)
+        code = program.numbered(plain.OPERATIONS)
+        depth = plain.stack_depth(code)
+        programs = plain.Expressions(code, array("d", program.constants), VARIABLES, depth)
+        programs.programs.stack, programs.programs.jets = Watched([0.0] * (depth + 8)), Watched([None] * (depth + 4))
+        programs.evaluate(0, len(program.code), [1.0] * VARIABLES)
+        programs.derivatives(0, len(program.code), 1.0)
+        assert max(programs.programs.stack.top, programs.programs.jets.top) <= depth
+        exact += programs.programs.stack.top == depth
+    assert exact > 700  # the others leave out a branch
+
+
+@pytest.mark.parametrize(("text", "depth"), [
+    ("min(100*t, 5)", 3), ("max(100*t, 5, 7)", 3), ("t", 1), ("1 + t", 2), ("t < 1 < 2*t", 4), ("t*t if t else 1", 2),
+])  # fmt: skip
+def test_a_pack_counts_its_depth_from_the_code(text: str, depth: int) -> None:
+    """Of the switches, too: where the branches of min change is found by min's operands in the other order."""
+    expression, pack = read(text), Pack()
+    for code in (expression.code, *(switch.decision for switch in expression.switches)):
+        pack.add_code(expression, code)
+    assert pack.depth == depth
+
+
+def test_a_switch_deeper_than_its_expression_is_met() -> None:
+    assert breakpoints(read("min(100*t, 5)"), 0.0, 1.0) == [math.nextafter(0.05, 1.0)]
+
+
+def test_programs_added_later_are_run_too() -> None:
+    pack = Pack()
+    first = pack.add(read("2*t"))
+    assert pack.value(*first, [3.0]) == 6.0
+    second = pack.add(read("t - guide.speed*(1 + 2*t)"))
+    assert [pack.value(*span, [3.0, 1.0]) for span in (first, second)] == [6.0, -4.0]
+
+
+@pytest.mark.parametrize(("start", "count"), [(-1, 1), (0, 0), (0, 4), (3, 1)])
+def test_what_is_no_program_is_not_run(start: int, count: int) -> None:
+    programs = read("2*t").pack.expressions
+    for run in (
+        lambda: programs.evaluate(start, count, [1.0]),
+        lambda: programs.derivatives(start, count, 1.0),
+        lambda: programs.sample(start, count, array("d", [1.0]), array("d", [0.0])),
+    ):
+        with pytest.raises(ValueError, match="no program"):
+            run()
+    with pytest.raises(ValueError, match="2 instants"):
+        programs.sample(0, 3, array("d", [1.0, 2.0]), array("d", [0.0]))
+
+
+def bits(numbers: Iterable[float]) -> list[str]:
     """Numbers to the last bit; one NaN is like another."""
     return [float(x).hex() if x == x else "nan" for x in numbers]
 
 
 def test_the_table_of_operations_is_complete() -> None:
-    assert sorted(program.OPERATIONS.values()) == list(range(len(program.OPERATIONS)))
+    assert sorted(expressions.OPERATIONS.values()) == list(range(len(expressions.OPERATIONS)))

@@ -1,0 +1,786 @@
+"""The evaluator of expressions: a stack machine that runs programs in postfix order.
+
+An instruction takes its operands from the top of a stack and leaves its result there. What is not a number (the root of
+-1, division by zero, a place outside a table) is NaN, and so is all that depends on it; nothing raises.
+
+    CONST k            puts constants[k] on the stack, VAR k the variable k: 0 is the time t, the others are coordinates
+    ADD ... MAX        two operands, one result
+    LT ... NE          the same, 1 or 0; with the argument 1 the right operand stays above the result, for 0 < t < 1
+    NEG ... SQRT       one operand; POWER n is the whole power n
+    UNLESS k, JUMP k   skip k instructions, UNLESS only where the number it takes off the stack is 0: only one of the
+                       two branches of a condition is run, so the other may be NaN
+    TABLE k, KNOT k    the table that stands in the constants from k, as (period, knots, coefficients), at the operand:
+                       its value, or the number of its piece. An instruction follows that is data: (pieces, outside).
+
+A table is a piecewise cubic, c0 + c1 h + c2 h² + c3 h³ with h from the knot at which the piece begins.
+
+`jet` carries the first and second derivative in time along. They are those of the chosen branches; at a jump or kink
+they are those of the piece that begins there.
+"""
+
+from __future__ import annotations
+
+try:
+    import cython
+except ImportError:  # Cython is a build requirement only
+    from heuncli.kernel.shadow import cython
+if not cython.compiled:  # also where it is installed: its own stand-in knows no objects behind pointers
+    from heuncli.kernel.shadow import cython
+
+from array import array
+from collections.abc import Callable, Sequence
+
+if cython.compiled:
+    from cython.cimports.libc.math import (
+        NAN,
+        acos,
+        asin,
+        atan,
+        atan2,
+        cos,
+        cosh,
+        exp,
+        fabs,
+        floor,
+        log,
+        pow,
+        sin,
+        sinh,
+        sqrt,
+        tan,
+        tanh,
+    )
+else:
+    import math
+    from math import acos, asin, atan, atan2, fabs, log, sqrt, tanh
+
+    from heuncli.kernel.structs import Instruction, Jet, Program, Programs, Table
+
+    NAN = math.nan
+
+    # What stands for C in expressions.pxd, in the same order.
+    CONST, VAR = range(2)
+    ADD, SUB, MUL, DIV, POW, ATAN2, HYPOT, MIN, MAX = range(2, 11)
+    LT, LE, GT, GE, EQ, NE = range(11, 17)
+    NEG, POWER, ABS, SIGN, STEP = range(17, 22)
+    SIN, COS, TAN, ASIN, ACOS, ATAN = range(22, 28)
+    SINH, COSH, TANH, EXP, LOG, SQRT = range(28, 34)
+    TABLE, KNOT, JUMP, UNLESS = range(34, 38)
+
+    REFUSED, HELD, PERIODIC = range(3)  # what a table says beyond its ends
+
+    # C's functions answer everywhere where Python's raise.
+    def exp(x: float) -> float:
+        return math.exp(x) if x < 709.8 else _or_infinite(math.exp, x)
+
+    def _or_infinite(f: Callable[[float], float], x: float) -> float:
+        try:
+            return f(x)
+        except OverflowError:
+            return math.inf
+
+    def sinh(x: float) -> float:
+        return math.sinh(x) if -710.0 < x < 710.0 else math.copysign(_or_infinite(math.sinh, abs(x)), x)
+
+    def cosh(x: float) -> float:
+        return math.cosh(x) if -710.0 < x < 710.0 else _or_infinite(math.cosh, x)
+
+    def sin(x: float) -> float:
+        return math.sin(x) if x - x == 0.0 else NAN
+
+    def cos(x: float) -> float:
+        return math.cos(x) if x - x == 0.0 else NAN
+
+    def tan(x: float) -> float:
+        return math.tan(x) if x - x == 0.0 else NAN
+
+    def floor(x: float) -> float:
+        return x if x == 0.0 or x - x != 0.0 else float(math.floor(x))
+
+    def pow(x: float, y: float) -> float:
+        try:
+            return math.pow(x, y)
+        except ValueError:  # 0 to a negative power is shut out before
+            return math.nan
+        except OverflowError:
+            return -math.inf if x < 0.0 and math.fmod(y, 2.0) != 0.0 else math.inf
+
+
+OPERATIONS = {
+    "const": CONST, "var": VAR, "add": ADD, "sub": SUB, "mul": MUL, "div": DIV, "pow": POW, "atan2": ATAN2,
+    "hypot": HYPOT, "min": MIN, "max": MAX, "lt": LT, "le": LE, "gt": GT, "ge": GE, "eq": EQ, "ne": NE, "neg": NEG,
+    "power": POWER, "abs": ABS, "sign": SIGN, "step": STEP, "sin": SIN, "cos": COS, "tan": TAN, "asin": ASIN,
+    "acos": ACOS, "atan": ATAN, "sinh": SINH, "cosh": COSH, "tanh": TANH, "exp": EXP, "log": LOG, "sqrt": SQRT,
+    "table": TABLE, "knot": KNOT, "jump": JUMP, "unless": UNLESS,
+}  # fmt: skip
+
+COMPILED = cython.compiled
+
+
+# Values
+
+
+@cython.cfunc
+@cython.nogil
+@cython.exceptval(check=False)
+def value(programs: cython.pointer[Programs], program: Program) -> cython.double:
+    """Value of a program at the variables; NaN when not computable."""
+    stack: cython.p_double = programs.stack
+    at: cython.Py_ssize_t = program.start
+    end: cython.Py_ssize_t = at + program.count
+    top: cython.Py_ssize_t = -1
+    while at < end:
+        op: cython.int = programs.code[at].op
+        k: cython.int = programs.code[at].argument
+        at += 1
+        if op == CONST:
+            top += 1
+            stack[top] = programs.constants[k]
+        elif op == VAR:
+            top += 1
+            stack[top] = programs.variables[k]
+        elif op <= MAX:
+            top -= 1
+            stack[top] = of_two(op, stack[top], stack[top + 1])
+        elif op <= NE:
+            top -= 1
+            stack[top] = compare(op, stack[top], stack[top + 1])
+            top += k
+        elif op <= SQRT:
+            stack[top] = of_one(op, stack[top], k)
+        elif op <= KNOT:
+            stack[top] = of_table(op, programs.constants, table_at(programs, at, k), stack[top])
+            at += 1
+        elif op == JUMP:
+            at += k
+        else:
+            condition: cython.double = stack[top]
+            top -= 1
+            if condition == 0.0:
+                at += k
+            elif condition != condition:
+                return NAN
+    return stack[0] if stack[0] - stack[0] == 0.0 else NAN
+
+
+@cython.cfunc
+@cython.inline
+@cython.nogil
+@cython.exceptval(check=False)
+def of_two(op: cython.int, a: cython.double, b: cython.double) -> cython.double:
+    """An operation on two numbers."""
+    if op == ADD:
+        return a + b
+    elif op == SUB:
+        return a - b
+    elif op == MUL:
+        return a * b
+    elif op == DIV:
+        return a / b if b != 0.0 else NAN
+    elif op == POW:
+        return real_power(a, b)
+    elif op == ATAN2:
+        return atan2(a, b)
+    elif op == HYPOT:
+        return length(a, b)
+    elif op == MIN:
+        return b if b < a or b != b else a
+    else:
+        return b if b > a or b != b else a
+
+
+@cython.cfunc
+@cython.nogil
+@cython.exceptval(check=False)
+def compare(op: cython.int, a: cython.double, b: cython.double) -> cython.double:
+    """1 or 0; NaN where an operand is."""
+    holds: cython.bint
+    if a != a or b != b:
+        return NAN
+    if op == LT:
+        holds = a < b
+    elif op == LE:
+        holds = a <= b
+    elif op == GT:
+        holds = a > b
+    elif op == GE:
+        holds = a >= b
+    elif op == EQ:
+        holds = a == b
+    else:
+        holds = a != b
+    return 1.0 if holds else 0.0
+
+
+@cython.cfunc
+@cython.inline
+@cython.nogil
+@cython.exceptval(check=False)
+def of_one(op: cython.int, a: cython.double, n: cython.int) -> cython.double:
+    """An operation on one number; n: the exponent of a whole power."""
+    if op <= STEP:
+        return piecewise(op, a, n)
+    elif op <= ATAN:
+        return trigonometric(op, a)
+    else:
+        return exponential(op, a)
+
+
+@cython.cfunc
+@cython.inline
+@cython.nogil
+@cython.exceptval(check=False)
+def piecewise(op: cython.int, a: cython.double, n: cython.int) -> cython.double:
+    """-a, the whole power n, |a|, and its jumps."""
+    if op == NEG:
+        return -a
+    elif op == POWER:
+        return power(a, n)
+    elif op == ABS:
+        return fabs(a)
+    elif op == SIGN:
+        return 1.0 if a > 0.0 else -1.0 if a < 0.0 else a
+    else:
+        return 1.0 if a >= 0.0 else 0.0 if a < 0.0 else NAN
+
+
+@cython.cfunc
+@cython.inline
+@cython.nogil
+@cython.exceptval(check=False)
+def trigonometric(op: cython.int, a: cython.double) -> cython.double:
+    """The functions of the circle and their inverses."""
+    if op == SIN:
+        return sin(a)
+    elif op == COS:
+        return cos(a)
+    elif op == TAN:
+        return tan(a)
+    elif op == ASIN:
+        return asin(a) if -1.0 <= a and a <= 1.0 else NAN
+    elif op == ACOS:
+        return acos(a) if -1.0 <= a and a <= 1.0 else NAN
+    else:
+        return atan(a)
+
+
+@cython.cfunc
+@cython.inline
+@cython.nogil
+@cython.exceptval(check=False)
+def exponential(op: cython.int, a: cython.double) -> cython.double:
+    """The functions of the hyperbola, the exponential, and what undoes powers."""
+    if op == SINH:
+        return sinh(a)
+    elif op == COSH:
+        return cosh(a)
+    elif op == TANH:
+        return tanh(a)
+    elif op == EXP:
+        return exp(a)
+    elif op == LOG:
+        return log(a) if a > 0.0 else NAN
+    else:
+        return sqrt(a) if a >= 0.0 else NAN
+
+
+@cython.cfunc
+@cython.nogil
+@cython.exceptval(check=False)
+def power(x: cython.double, n: cython.int) -> cython.double:
+    """x to the whole power n >= 0, by squaring."""
+    product: cython.double = 1.0
+    while n > 0:
+        if n & 1:
+            product = product * x
+        x = x * x
+        n = n >> 1
+    return product
+
+
+@cython.cfunc
+@cython.nogil
+@cython.exceptval(check=False)
+def real_power(x: cython.double, y: cython.double) -> cython.double:
+    """x**y; NaN for a negative base with a broken exponent and for 0 to a negative power."""
+    if x == 0.0 and y < 0.0:
+        return NAN
+    return pow(x, y)
+
+
+@cython.cfunc
+@cython.nogil
+@cython.exceptval(check=False)
+def length(a: cython.double, b: cython.double) -> cython.double:
+    """sqrt(a² + b²) without overflow."""
+    larger: cython.double = fabs(a)
+    smaller: cython.double = fabs(b)
+    if larger < smaller:
+        larger, smaller = smaller, larger
+    if not larger > 0.0:
+        return larger + smaller
+    ratio: cython.double = smaller / larger
+    return larger * sqrt(1.0 + ratio * ratio)
+
+
+# Tables
+
+
+@cython.cfunc
+@cython.inline
+@cython.nogil
+@cython.exceptval(check=False)
+def table_at(programs: cython.pointer[Programs], at: cython.Py_ssize_t, k: cython.Py_ssize_t) -> Table:
+    """The table that stands in the constants from k; its data are the instruction at `at`."""
+    pieces: cython.int = programs.code[at].op
+    return Table(pieces, programs.code[at].argument, programs.constants[k], k + 1, k + 2 + pieces)
+
+
+@cython.cfunc
+@cython.inline
+@cython.nogil
+@cython.exceptval(check=False)
+def of_table(op: cython.int, c: cython.p_double, table: Table, x: cython.double) -> cython.double:
+    """The table's value at x, or the number of its piece there."""
+    if op == KNOT:
+        return piece_counted(c, table, x)
+    inside: cython.double = in_range(c, table, x)
+    if inside != inside:
+        return NAN
+    number: cython.int = piece(c, table, inside)
+    h: cython.double = inside - c[table.knots + number]
+    i: cython.Py_ssize_t = table.coefficients + 4 * number
+    return ((c[i + 3] * h + c[i + 2]) * h + c[i + 1]) * h + c[i]
+
+
+@cython.cfunc
+@cython.nogil
+@cython.exceptval(check=False)
+def in_range(c: cython.p_double, table: Table, x: cython.double) -> cython.double:
+    """The point of the table's own range that stands for x; NaN where there is none."""
+    first: cython.double = c[table.knots]
+    last: cython.double = c[table.knots + table.pieces]
+    if x != x:
+        return NAN
+    if table.outside == PERIODIC:
+        x = x - table.period * floor((x - first) / table.period)
+        if x < first:
+            x = first
+        elif x >= last:
+            x = first if x - last < table.period else NAN
+        return x
+    if x < first:
+        return first if table.outside == HELD else NAN
+    if x > last:
+        return last if table.outside == HELD else NAN
+    return x
+
+
+@cython.cfunc
+@cython.nogil
+@cython.exceptval(check=False)
+def piece(c: cython.p_double, table: Table, x: cython.double) -> cython.int:
+    """Number of the piece that holds x, by bisection; a knot belongs to the piece that begins there."""
+    low: cython.int = 0
+    high: cython.int = table.pieces
+    middle: cython.int
+    knots: cython.Py_ssize_t = table.knots
+    while high - low > 1:
+        middle = (low + high) >> 1
+        if c[knots + middle] <= x:
+            low = middle
+        else:
+            high = middle
+    return low
+
+
+@cython.cfunc
+@cython.nogil
+@cython.exceptval(check=False)
+def piece_counted(c: cython.p_double, table: Table, x: cython.double) -> cython.double:
+    """Number of the piece that holds x, counted on over the periods; -1 before a table that ends, n beyond it."""
+    n: cython.int = table.pieces
+    first: cython.double = c[table.knots]
+    if table.outside == PERIODIC:
+        return piece(c, table, in_range(c, table, x)) + n * floor((x - first) / table.period)
+    if x < first:
+        return -1.0
+    if x > c[table.knots + n]:
+        return float(n)
+    return float(piece(c, table, x))
+
+
+# Values with their derivatives in time
+
+
+@cython.cfunc
+@cython.nogil
+@cython.exceptval(check=False)
+def jet(programs: cython.pointer[Programs], program: Program, t: cython.double) -> Jet:
+    """Value, first and second derivative of a program in time alone; NaN when not computable."""
+    jets: cython.pointer[Jet] = programs.jets
+    at: cython.Py_ssize_t = program.start
+    end: cython.Py_ssize_t = at + program.count
+    top: cython.Py_ssize_t = -1
+    while at < end:
+        op: cython.int = programs.code[at].op
+        k: cython.int = programs.code[at].argument
+        at += 1
+        if op == CONST:
+            top += 1
+            jets[top] = Jet(programs.constants[k], 0.0, 0.0)
+        elif op == VAR:
+            top += 1
+            jets[top] = Jet(t if k == 0 else NAN, 1.0, 0.0)
+        elif op <= MAX:
+            top -= 1
+            jets[top] = jet_of_two(op, jets[top], jets[top + 1])
+        elif op <= NE:
+            top -= 1
+            jets[top] = constant(compare(op, jets[top].value, jets[top + 1].value))
+            top += k
+        elif op <= SQRT:
+            jets[top] = jet_of_one(op, jets[top], k)
+        elif op <= KNOT:
+            jets[top] = jet_of_table(op, programs.constants, table_at(programs, at, k), jets[top])
+            at += 1
+        elif op == JUMP:
+            at += k
+        else:
+            condition: cython.double = jets[top].value
+            top -= 1
+            if condition == 0.0:
+                at += k
+            elif condition != condition:
+                return Jet(NAN, NAN, NAN)
+    if jets[0].value - jets[0].value == 0.0:
+        return jets[0]
+    return Jet(NAN, NAN, NAN)
+
+
+@cython.cfunc
+@cython.inline
+@cython.nogil
+@cython.exceptval(check=False)
+def constant(f: cython.double) -> Jet:
+    """What stands still at f, for a while at least."""
+    return Jet(f, 0.0, 0.0)
+
+
+@cython.cfunc
+@cython.inline
+@cython.nogil
+@cython.exceptval(check=False)
+def chain(u: Jet, f: cython.double, df: cython.double, ddf: cython.double) -> Jet:
+    """f(u), given f and its derivatives in u there; where u stands still so does f(u), whatever f' is."""
+    if u.rate == 0.0 and u.second == 0.0:
+        return Jet(f, u.rate, u.second)
+    return Jet(f, df * u.rate, ddf * u.rate * u.rate + df * u.second)
+
+
+@cython.cfunc
+@cython.inline
+@cython.nogil
+@cython.exceptval(check=False)
+def jet_of_two(op: cython.int, a: Jet, b: Jet) -> Jet:
+    """An operation on two jets."""
+    if op == ADD:
+        return Jet(a.value + b.value, a.rate + b.rate, a.second + b.second)
+    elif op == SUB:
+        return Jet(a.value - b.value, a.rate - b.rate, a.second - b.second)
+    elif op == MUL:
+        return jet_of_product(a, b)
+    elif op == DIV:
+        return jet_of_quotient(a, b)
+    elif op == POW:
+        return jet_of_power(a, b)
+    elif op == ATAN2:
+        return jet_of_angle(a, b)
+    elif op == HYPOT:
+        return jet_of_length(a, b)
+    is_b: cython.bint = b.value < a.value if op == MIN else b.value > a.value
+    if is_b or b.value != b.value:
+        return b
+    return a
+
+
+@cython.cfunc
+@cython.inline
+@cython.nogil
+@cython.exceptval(check=False)
+def jet_of_product(a: Jet, b: Jet) -> Jet:
+    """(a b)' = a' b + a b',  (a b)'' = a'' b + 2 a' b' + a b''."""
+    return Jet(
+        a.value * b.value,
+        a.rate * b.value + a.value * b.rate,
+        a.second * b.value + 2.0 * a.rate * b.rate + a.value * b.second,
+    )
+
+
+@cython.cfunc
+@cython.inline
+@cython.nogil
+@cython.exceptval(check=False)
+def jet_of_quotient(a: Jet, b: Jet) -> Jet:
+    """q = a/b from a = q b:  q' = (a' - q b')/b,  q'' = (a'' - 2 q' b' - q b'')/b."""
+    if b.value == 0.0:
+        return constant(NAN)
+    q: cython.double = a.value / b.value
+    rate: cython.double = (a.rate - q * b.rate) / b.value
+    return Jet(q, rate, (a.second - 2.0 * rate * b.rate - q * b.second) / b.value)
+
+
+@cython.cfunc
+@cython.nogil
+@cython.exceptval(check=False)
+def jet_of_power(a: Jet, b: Jet) -> Jet:
+    """y = a**b; where b moves, by y = exp(w), w = b log a, so that a must be positive there."""
+    x: cython.double = a.value
+    n: cython.double = b.value
+    y: cython.double = real_power(x, n)
+    if b.rate == 0.0 and b.second == 0.0:
+        return chain(a, y, scaled_power(n, x, n - 1.0), scaled_power(n * (n - 1.0), x, n - 2.0))
+    rate: cython.double = NAN
+    second: cython.double = NAN
+    if x > 0.0:
+        rate = b.rate * log(x) + n * a.rate / x
+        second = b.second * log(x) + 2.0 * b.rate * a.rate / x + n * (a.second - a.rate * a.rate / x) / x
+    return Jet(y, y * rate, y * (rate * rate + second))
+
+
+@cython.cfunc
+@cython.nogil
+@cython.exceptval(check=False)
+def scaled_power(c: cython.double, x: cython.double, y: cython.double) -> cython.double:
+    """c x**y, and 0 for c = 0 also where x**y is not a number."""
+    return c * real_power(x, y) if c != 0.0 else 0.0
+
+
+@cython.cfunc
+@cython.nogil
+@cython.exceptval(check=False)
+def jet_of_angle(a: Jet, b: Jet) -> Jet:
+    """The angle φ of (b, a), r² = a² + b²:  r² φ' = b a' - a b',  r² φ'' = b a'' - a b'' - 2 φ' (a a' + b b')."""
+    x: cython.double = b.value
+    y: cython.double = a.value
+    square: cython.double = y * y + x * x
+    if not square > 0.0:
+        return Jet(atan2(y, x), NAN, NAN)
+    rate: cython.double = (x * a.rate - y * b.rate) / square
+    second: cython.double = (x * a.second - y * b.second - 2.0 * rate * (y * a.rate + x * b.rate)) / square
+    return Jet(atan2(y, x), rate, second)
+
+
+@cython.cfunc
+@cython.nogil
+@cython.exceptval(check=False)
+def jet_of_length(a: Jet, b: Jet) -> Jet:
+    """r² = a² + b²:  r r' = a a' + b b',  r r'' = a'² + b'² + a a'' + b b'' - r'²."""
+    r: cython.double = length(a.value, b.value)
+    if not r > 0.0:
+        return Jet(r, NAN, NAN)
+    rate: cython.double = (a.value * a.rate + b.value * b.rate) / r
+    square: cython.double = a.rate * a.rate + b.rate * b.rate + a.value * a.second + b.value * b.second
+    return Jet(r, rate, (square - rate * rate) / r)
+
+
+@cython.cfunc
+@cython.inline
+@cython.nogil
+@cython.exceptval(check=False)
+def jet_of_one(op: cython.int, u: Jet, n: cython.int) -> Jet:
+    """An operation on one jet; n: the exponent of a whole power."""
+    if op <= STEP:
+        return jet_of_piecewise(op, u, n)
+    elif op <= ATAN:
+        return jet_of_trigonometric(op, u)
+    else:
+        return jet_of_exponential(op, u)
+
+
+@cython.cfunc
+@cython.inline
+@cython.nogil
+@cython.exceptval(check=False)
+def jet_of_piecewise(op: cython.int, u: Jet, n: cython.int) -> Jet:
+    """-u, the whole power n, |u|, and its jumps, between which it stands still."""
+    a: cython.double = u.value
+    if op == POWER:
+        return chain(u, power(a, n), n * power(a, n - 1), n * (n - 1) * power(a, n - 2))
+    elif op == NEG or (op == ABS and a < 0.0):
+        return Jet(-a, -u.rate, -u.second)
+    elif op == ABS:
+        return u
+    else:
+        return constant(piecewise(op, a, n))
+
+
+@cython.cfunc
+@cython.inline
+@cython.nogil
+@cython.exceptval(check=False)
+def jet_of_trigonometric(op: cython.int, u: Jet) -> Jet:
+    """The functions of the circle and their inverses; asin and acos have no derivatives at -1 and 1."""
+    a: cython.double = u.value
+    f: cython.double = trigonometric(op, a)
+    df: cython.double
+    if op == SIN:
+        return chain(u, f, cos(a), -f)
+    elif op == COS:
+        return chain(u, f, -sin(a), -f)
+    elif op == TAN:
+        df = 1.0 + f * f
+        return chain(u, f, df, 2.0 * f * df)
+    elif op == ATAN:
+        df = 1.0 / (1.0 + a * a)
+        return chain(u, f, df, -2.0 * a * df * df)
+    elif f != f:
+        return constant(NAN)
+    root: cython.double = sqrt((1.0 - a) * (1.0 + a))
+    df = 1.0 / root if root > 0.0 else NAN
+    if op == ASIN:
+        return chain(u, f, df, a * df * df * df)
+    return chain(u, f, -df, -a * df * df * df)
+
+
+@cython.cfunc
+@cython.inline
+@cython.nogil
+@cython.exceptval(check=False)
+def jet_of_exponential(op: cython.int, u: Jet) -> Jet:
+    """The functions of the hyperbola, the exponential, and what undoes powers."""
+    a: cython.double = u.value
+    f: cython.double = exponential(op, a)
+    df: cython.double
+    if op == SINH:
+        return chain(u, f, cosh(a), f)
+    elif op == COSH:
+        return chain(u, f, sinh(a), f)
+    elif op == TANH:
+        df = 1.0 - f * f
+        return chain(u, f, df, -2.0 * f * df)
+    elif op == EXP:
+        return chain(u, f, f, f)
+    elif f != f:
+        return constant(NAN)
+    elif op == LOG:
+        df = 1.0 / a
+        return chain(u, f, df, -df * df)
+    df = 0.5 / f if f > 0.0 else NAN
+    return chain(u, f, df, -df * df / f if f > 0.0 else NAN)
+
+
+@cython.cfunc
+@cython.nogil
+@cython.exceptval(check=False)
+def jet_of_table(op: cython.int, c: cython.p_double, table: Table, u: Jet) -> Jet:
+    """The table at u, or the number of its piece there; beyond ends that are held it stands still."""
+    if op == KNOT:
+        return constant(piece_counted(c, table, u.value))
+    inside: cython.double = in_range(c, table, u.value)
+    if inside != inside:
+        return constant(NAN)
+    number: cython.int = piece(c, table, inside)
+    h: cython.double = inside - c[table.knots + number]
+    i: cython.Py_ssize_t = table.coefficients + 4 * number
+    f: cython.double = ((c[i + 3] * h + c[i + 2]) * h + c[i + 1]) * h + c[i]
+    if table.outside == HELD and inside != u.value:
+        return constant(f)
+    return chain(u, f, (3.0 * c[i + 3] * h + 2.0 * c[i + 2]) * h + c[i + 1], 6.0 * c[i + 3] * h + 2.0 * c[i + 2])
+
+
+# The door
+
+
+def stack_depth(code: Sequence[int]) -> int:
+    """How many numbers a program has on its stack at most; code: pairs (operation, argument), one after another."""
+    height = deepest = 0
+    is_data = False
+    for op, argument in zip(code[::2], code[1::2], strict=True):
+        if is_data:
+            is_data = False
+        elif op <= VAR:
+            height += 1
+        elif op <= NE:
+            height -= 1 if op <= MAX or argument == 0 else 0
+        elif op in (TABLE, KNOT):
+            is_data = True
+        elif op in (JUMP, UNLESS):  # after JUMP the other branch begins, where this one's result is not there
+            height -= 1
+        deepest = max(deepest, height)
+    return deepest
+
+
+@cython.cclass
+class Expressions:
+    """Programs side by side, with the memory they run in: the door from Python, and what the kernel's scene holds.
+
+    code: pairs (operation, argument); constants: what CONST and TABLE point into; variables: their number, t included;
+    depth: the greatest stack_depth of the programs. What is given is copied.
+    """
+
+    def __init__(self, code: array[int], constants: array[float], variables: int, depth: int) -> None:
+        self.instructions = len(code) // 2
+        self.variables = variables
+        if not cython.compiled:
+            self.programs = Programs()
+            self.programs.code = [Instruction(*pair) for pair in zip(code[::2], code[1::2], strict=True)]
+            self.programs.constants = list(constants)
+            self.programs.variables = [0.0] * max(variables, 1)
+            self.programs.stack = [0.0] * (depth + 8)
+            self.programs.jets = [Jet(0.0, 0.0, 0.0)] * (depth + 4)
+        else:
+            self.memory = (
+                array("i", code),
+                array("d", constants),
+                array("d", bytes(8 * max(variables, 1))),
+                array("d", bytes(8 * (depth + 8))),
+                array("d", bytes(24 * (depth + 4))),
+            )
+            self.programs.code = cython.cast(cython.pointer[Instruction], where(self.memory[0]))
+            self.programs.constants = cython.cast(cython.p_double, where(self.memory[1]))
+            self.programs.variables = cython.cast(cython.p_double, where(self.memory[2]))
+            self.programs.stack = cython.cast(cython.p_double, where(self.memory[3]))
+            self.programs.jets = cython.cast(cython.pointer[Jet], where(self.memory[4]))
+
+    def evaluate(self, start: cython.int, count: cython.int, x: Sequence[float]) -> float:
+        """Value of one program at the variables x; NaN when not computable."""
+        i: cython.Py_ssize_t
+        self.check(start, count)
+        if len(x) != self.variables:
+            raise ValueError(f"there are {self.variables} variables, not {len(x)}")
+        for i in range(self.variables):
+            self.programs.variables[i] = x[i]
+        return value(cython.address(self.programs), Program(start, count))
+
+    def derivatives(self, start: cython.int, count: cython.int, t: cython.double) -> tuple[float, float, float]:
+        """Value, first and second time derivative of one program in time alone."""
+        self.check(start, count)
+        found: Jet = jet(cython.address(self.programs), Program(start, count), t)
+        return found.value, found.rate, found.second
+
+    def sample(
+        self, start: cython.int, count: cython.int, times: cython.double[::1], out: cython.double[::1]
+    ) -> None:
+        """Values of one program in time alone at instants, into out, as long as times; coordinates are NaN."""
+        i: cython.Py_ssize_t
+        self.check(start, count)
+        if len(out) != len(times):
+            raise ValueError(f"{len(times)} instants, but room for {len(out)} values")
+        for i in range(self.variables):
+            self.programs.variables[i] = NAN
+        for i in range(len(times)):
+            self.programs.variables[0] = times[i]
+            out[i] = value(cython.address(self.programs), Program(start, count))
+
+    def check(self, start: cython.Py_ssize_t, count: cython.Py_ssize_t) -> None:
+        """Raise where there is no such program."""
+        if start < 0 or count < 1 or start + count > self.instructions:
+            raise ValueError(f"no program of {count} instructions from {start}: there are {self.instructions}")
+
+
+@cython.cfunc
+def where(memory: array[int] | array[float]) -> cython.size_t:
+    """Address of an array's first number."""
+    address: cython.size_t = memory.buffer_info()[0]
+    return address

@@ -1,0 +1,97 @@
+"""Random programs for the evaluator, instruction by instruction: more than any text can say, in all its operations."""
+
+from __future__ import annotations
+
+import math
+from array import array
+from dataclasses import dataclass, field
+from random import Random
+
+ONE = (
+    "neg", "abs", "sign", "step", "sin", "cos", "tan", "asin", "acos", "atan", "sinh", "cosh", "tanh", "exp", "log",
+    "sqrt",
+)  # fmt: skip
+TWO = ("add", "sub", "mul", "div", "pow", "atan2", "hypot", "min", "max")
+COMPARISONS = ("lt", "le", "gt", "ge", "eq", "ne")
+NUMBERS = (
+    0.0, -0.0, 1.0, -1.0, 0.5, -0.5, 2.0, 3.0, -7.0, 0.1, 1e-3, 1e8, 709.9, -745.3, 1e308, -1e308, 1e-308, 5e-324,
+    math.inf, -math.inf, math.nan,
+)  # fmt: skip
+VARIABLES = 3
+
+
+@dataclass
+class Program:
+    """Code as (name or number of pieces, argument), with the constants it points into."""
+
+    code: list[tuple[str | int, int]] = field(default_factory=list)
+    constants: list[float] = field(default_factory=list)
+
+    def numbered(self, operations: dict[str, int]) -> array[int]:
+        """The code as an evaluator with these numbers of operations takes it."""
+        return array("i", [x for op, k in self.code for x in (operations[op] if isinstance(op, str) else op, k)])
+
+
+def random_program(random: Random) -> Program:
+    program = Program()
+    _part(program, random, random.choice((1, 2, 3, 4, 6)))
+    return program
+
+
+def _part(program: Program, random: Random, deep: int) -> None:
+    """A part that leaves one number on the stack."""
+    emit = program.code.append
+    kind = random.random() if deep else 0.0
+    if kind < 0.12:
+        if random.random() < 0.5:
+            emit(("var", random.choice((0, 0, 0, 1, 2))))
+        else:
+            emit(("const", len(program.constants)))
+            program.constants.append(random.choice(NUMBERS) if random.random() < 0.4 else random.uniform(-4.0, 4.0))
+    elif kind < 0.45:
+        _part(program, random, deep - 1)
+        _part(program, random, deep - 1)
+        emit((random.choice(TWO), 0))
+    elif kind < 0.68:
+        _part(program, random, deep - 1)
+        emit((random.choice(ONE), 0))
+    elif kind < 0.73:
+        _part(program, random, deep - 1)
+        emit(("power", random.choice((2, 3, 4, 7, 64))))
+    elif kind < 0.8:
+        _comparisons(program, random, deep)
+    elif kind < 0.9:
+        _branches(program, random, deep)
+    else:
+        _table(program, random, deep)
+
+
+def _comparisons(program: Program, random: Random, deep: int) -> None:
+    links = random.choice((1, 1, 2, 3))
+    _part(program, random, deep - 1)
+    for n in range(links):
+        _part(program, random, deep - 1)
+        program.code.append((random.choice(COMPARISONS), int(n < links - 1)))
+    program.code += [("mul", 0)] * (links - 1)
+
+
+def _branches(program: Program, random: Random, deep: int) -> None:
+    _part(program, random, deep - 1)
+    unless = len(program.code)
+    program.code.append(("unless", 0))
+    _part(program, random, deep - 1)
+    jump = len(program.code)
+    program.code.append(("jump", 0))
+    _part(program, random, deep - 1)
+    program.code[unless] = ("unless", jump - unless)
+    program.code[jump] = ("jump", len(program.code) - jump - 1)
+
+
+def _table(program: Program, random: Random, deep: int) -> None:
+    _part(program, random, deep - 1)
+    pieces, outside = random.choice((1, 2, 3, 8)), random.choice((0, 1, 2))
+    knots = sorted(random.choice((0.0, -0.0, random.uniform(-3.0, 3.0))) + 0.01 * k for k in range(pieces + 1))
+    at = len(program.constants)
+    program.constants += [knots[-1] - knots[0], *knots]
+    program.constants += [random.uniform(-2.0, 2.0) for _ in range(4 * pieces)]
+    program.code += [(random.choice(("table", "table", "knot")), at), (pieces, outside)]
