@@ -1,12 +1,12 @@
 """Paths into the results, as in the JSON: `joints.elbow.force.z`, `impulses.0.foundation.force.z`.
 
-List places are numbers, or x, y, z. Where a number runs over the instants the path stops short of the instant, or names
-it as the first list place.
+Places in lists are numbers, or x, y, z on axes of space. Where a number runs over the instants the path stops short of
+the instant, or names it as the first place.
 """
 
 from __future__ import annotations
 
-from collections.abc import Iterable
+from collections.abc import Collection, Sequence
 from dataclasses import fields
 from typing import Any, NamedTuple
 
@@ -15,83 +15,104 @@ import numpy as np
 from heuncli.errors import Problem, SpecError
 from heuncli.nearest import nearest
 from heuncli.results import Array, Results
-from heuncli.results_schema import TIMED, XYZ, is_static
+from heuncli.results_schema import INDEX, INSTANT, SPACE, Axis, Quantity, Shape, leading_key, quantity, unknown_key
 
 MOST_NAMES = 12  # of the known names an error lists
 
 
-class Found(NamedTuple):
-    """What a path leads to: `values` with the instants first if `timed`, else without."""
+class Numbers(NamedTuple):
+    """What a path leads to: `values` with the instants first if `timed`, and the other axes as the schema has them."""
 
     values: Array
     timed: bool
+    axes: Shape
+
+    @property
+    def of_vectors(self) -> bool:
+        """Whether the last axis is that of a vector's components; a run of three cuts is none."""
+        return self.axes[-1:] == (SPACE,)
 
 
-def find(results: Results, path: str) -> Found:
+def find(results: Results, path: str) -> Numbers:
     """The numbers at a path; nan is open. Raises SpecError [unknown-path] with what is known at the place it fails."""
+    keys, node, rest = _walk(results, path)
+    values = _numbers(path, keys, node)
+    row = quantity(keys)
+    # a blow has one instant, and no axis for it
+    timed = row is not None and row.timed and keys[0] != "impulses" and isinstance(node, np.ndarray)
+    axes = _axes(results, keys, row, values.ndim, timed)
+    if len(rest) > len(axes):
+        raise _unknown(path, keys, rest[len(axes)], [])
+    if timed and len(rest) == len(axes):
+        timed = False  # the instant is named, too
+    elif timed:
+        for word in rest:
+            values = values[:, _index(path, keys, word, axes[1], values.shape[1])]
+            axes = (axes[0], *axes[2:])
+        return Numbers(values, True, axes[1:])
+    for word in rest:
+        values = np.asarray(values[_index(path, keys, word, axes[0], len(values))])
+        axes = axes[1:]
+    return Numbers(values, False, axes)
+
+
+def _walk(results: Results, path: str) -> tuple[list[str], Any, list[str]]:
+    """The keys that a path names, what stands there, and the places behind them."""
     node: Any = {f.name: getattr(results, f.name) for f in fields(results)}
-    tokens: list[str] = path.split(".")
-    walked: list[str] = []
-    while tokens and not isinstance(node, np.ndarray):
+    keys: list[str] = []
+    rest = path.split(".")
+    while rest and isinstance(node, (dict, list, tuple)):
         if isinstance(node, dict):
-            key, used = _longest_key(node, tokens)
+            key, behind = leading_key(node, rest)
             if key is None:
-                raise _unknown(path, walked, tokens[0], sorted(node))
-            node, tokens, walked = node[key], tokens[used:], [*walked, key]
-        elif isinstance(node, (list, tuple)):
-            place = _place(path, walked, tokens[0], len(node))
-            node, tokens, walked = node[place], tokens[1:], [*walked, str(place)]
+                raise _unknown(path, keys, unknown_key(node, rest), sorted(node))
+            node, rest = node[key], behind
+            keys.append(key)
         else:
-            break
-    if isinstance(node, (dict, str)) or (node is None and tokens):
+            at = _index(path, keys, rest[0], INDEX, len(node))
+            node, rest = node[at], rest[1:]
+            keys.append(str(at))
+    if isinstance(node, (dict, str)) or (node is None and rest):
         known = sorted(node) if isinstance(node, dict) else []
-        raise _unknown(path, walked, tokens[0] if tokens else "", known)
-    timed = isinstance(node, np.ndarray) and _is_timed(walked)
-    values = _numbers(path, walked, node)
-    if len(tokens) > values.ndim:
-        raise _unknown(path, walked, tokens[values.ndim], [])
-    if timed and len(tokens) < values.ndim:
-        for token in tokens:
-            values = values[:, _place(path, walked, token, values.shape[1])]
-        return Found(values, timed=True)
-    for token in tokens:
-        values = np.asarray(values[_place(path, walked, token, len(values))])
-    return Found(values, timed=False)
+        raise _unknown(path, keys, rest[0] if rest else "", known)
+    return keys, node, rest
 
 
-def _is_timed(walked: list[str]) -> bool:
-    if walked[0] == "certain_sums":
-        return walked[-1] == "value"
-    return walked[0] in TIMED and not is_static(walked[0], walked[1:-1], walked[-1])
+def _axes(results: Results, keys: Sequence[str], row: Quantity | None, dimensions: int, timed: bool) -> Shape:
+    """The axes of what stands under the keys, the instants among them if it runs over them."""
+    if row is None or not row.units:
+        return (INDEX,) * dimensions
+    return ((INSTANT,) if timed else ()) + row.axes(run=_is_run(results, keys))
 
 
-def _longest_key(node: dict[str, Any], tokens: list[str]) -> tuple[str | None, int]:
-    """The key that the most leading tokens spell together (names of points hold a dot), and how many they are."""
-    for used in range(min(len(tokens), 8), 0, -1):
-        if (key := ".".join(tokens[:used])) in node:
-            return key, used
-    return None, 0
+def _is_run(results: Results, keys: Sequence[str]) -> bool:
+    """Whether the keys lead into a run of cuts, of the whole motion or of one blow."""
+    sections = results.sections
+    if keys[0] == "impulses":
+        sections, keys = results.impulses[int(keys[1])].get("sections", {}), keys[2:]
+    return keys[0] == "sections" and "s" in sections[keys[1]]
 
 
-def _place(path: str, walked: list[str], token: str, size: int) -> int:
-    place = XYZ.index(token) if token in XYZ else int(token) if token.isdecimal() else size
-    if place >= size:
-        raise _unknown(path, walked, token, [*XYZ[:size]] if size <= 3 else [f"0 ... {size - 1}"])
-    return place
+def _index(path: str, keys: Sequence[str], word: str, axis: Axis, size: int) -> int:
+    index = axis.index_of(word, size)
+    if index is None:
+        known = [*axis.letters] or [f"0 ... {size - 1}"] if size else []
+        raise _unknown(path, keys, word, known)
+    return index
 
 
-def _numbers(path: str, walked: list[str], node: Any) -> Array:
+def _numbers(path: str, keys: Sequence[str], node: Any) -> Array:
     try:
         return np.asarray(np.nan if node is None else node, dtype=np.float64)
     except (TypeError, ValueError):
-        raise _unknown(path, walked, "", []) from None
+        raise _unknown(path, keys, "", []) from None
 
 
-def _unknown(path: str, walked: list[str], token: str, known: Iterable[str]) -> SpecError:
+def _unknown(path: str, keys: Sequence[str], word: str, known: Collection[str]) -> SpecError:
     names = list(known)
-    at = ".".join(walked) or "the results"
-    what = f"{at} has no '{token}'" if token else f"{at} is not a number"
+    at = ".".join(keys) or "the results"
+    what = f"{at} has no '{word}'" if word else f"{at} is not a number"
     listed = ", ".join(names[:MOST_NAMES]) + (", ..." if len(names) > MOST_NAMES else "")
-    near = nearest(token, names)
+    near = nearest(word, names)
     hint = f"did you mean {near}?" if near else None
     return SpecError(Problem("unknown-path", f"{path}: {what}" + (f"; known: {listed}" if names else ""), hint=hint))

@@ -10,8 +10,8 @@ from heuncli.cli.entry import UsageError
 from heuncli.cli.solving import SAME_INSTANT, extremes, report_of
 from heuncli.errors import Problem
 from heuncli.report.export import dump
+from heuncli.report.labels import Labels
 from heuncli.report.numbers import OPEN
-from heuncli.report.scene import Scene
 from heuncli.results import Array, Results
 from heuncli.results_paths import find
 from heuncli.study.solve import Study
@@ -63,10 +63,10 @@ def value(asked: Measure, study: Study) -> tuple[float, float | None]:
     if asked.how == "at":
         at = _instant(asked, results.time)
         found, t = find(study.resample(np.array([at])), asked.path), at
-        number = _one(asked, found.values[0])
+        number = _one(asked, found.values[0], found.of_vectors)
     elif asked.how or len(results.time) == 1:
         place = -1 if asked.how == "final" else 0
-        t, number = float(results.time[place]), _one(asked, found.values[place])
+        t, number = float(results.time[place]), _one(asked, found.values[place], found.of_vectors)
     else:
         raise _refuse(asked, f"runs over {len(results.time)} instants: say max, min, max abs, first, final or at T")
     return number, t
@@ -77,8 +77,8 @@ def peak(study: Study, path: str, how: str) -> tuple[float, float]:
 
     A vector counts by its magnitude, a run of cuts over all its cuts.
     """
-    shape = find(study.results, path).values.shape[1:]
-    vector = len(shape) > 0 and shape[-1] == 3
+    asked = find(study.results, path)
+    shape, vector = asked.values.shape[1:], asked.of_vectors
 
     def columns(results: Results) -> Array:
         values = find(results, path).values
@@ -95,7 +95,7 @@ def peak(study: Study, path: str, how: str) -> tuple[float, float]:
     return float(np.sqrt(result)) if vector else result, float(at[0])
 
 
-def write(asked: Measure, study: Study, scene: Scene, form: str) -> str:
+def write(asked: Measure, study: Study, labels: Labels, form: str) -> str:
     """The number as text, all its digits; as JSON with its instant."""
     number, at = value(asked, study)
     if form == "json":
@@ -103,10 +103,10 @@ def write(asked: Measure, study: Study, scene: Scene, form: str) -> str:
     return f"{OPEN if np.isnan(number) else repr(number)}\n"
 
 
-def _one(asked: Measure, numbers: Array) -> float:
+def _one(asked: Measure, numbers: Array, of_vectors: bool) -> float:
     if numbers.size == 1:
         return float(numbers.reshape(()))
-    if numbers.shape == (3,):
+    if of_vectors and numbers.ndim == 1:
         return float(np.linalg.norm(numbers))
     raise _refuse(asked, f"is {numbers.size} numbers: say which, as .x or .0")
 

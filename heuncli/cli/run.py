@@ -16,11 +16,12 @@ from heuncli.cli.requests import FORMATS, Run
 from heuncli.cli.solving import choice, extremes, instants, overrides, positive, timings, warn
 from heuncli.errors import Problem
 from heuncli.report.heading import write_heading, write_heading_markdown
+from heuncli.report.labels import Labels, labels_of
 from heuncli.report.layout import Found
-from heuncli.report.page import EXPORT_DEFAULT, REPORTS, TABLE_DEFAULT, page_of, restrict
-from heuncli.report.scene import Scene, scene_of
+from heuncli.report.page import EXPORT_DEFAULT, TABLE_DEFAULT, page_of, restrict
 from heuncli.report.table import Table, markdown, plain
 from heuncli.results import Results
+from heuncli.results_schema import REPORTS
 from heuncli.spec.load import load
 from heuncli.spec.rules.not_yet import METHODS
 from heuncli.study.solve import Options, Study, solve
@@ -54,9 +55,9 @@ def main(request: Run) -> int:
     wanted = asked.wanted if asked else _wanted(only, spec.report, form)
     study = solve(spec, replace(options, wanted=wanted))
     if asked:
-        text = measure.write(asked, study, scene_of(spec), form)
+        text = measure.write(asked, study, labels_of(spec), form)
     else:
-        text = _report(request, form, study, scene_of(spec), wanted or frozenset(REPORTS))
+        text = _report(request, form, study, labels_of(spec), wanted or frozenset(REPORTS))
     emit(text, request.output)
     warnings = warn(spec, study.results, request.quiet)
     if request.verbose:
@@ -100,14 +101,14 @@ def _wanted(only: frozenset[str] | None, report: Sequence[str] | None, form: str
     return TABLE_DEFAULT if form in TABLES else EXPORT_DEFAULT
 
 
-def _report(request: Run, form: str, study: Study, scene: Scene, wanted: frozenset[str]) -> str:
+def _report(request: Run, form: str, study: Study, labels: Labels, wanted: frozenset[str]) -> str:
     at = instants(request.at, study.results.time) if request.at is not None else None
     shown = study.results if at is None else study.resample(at)
     if form not in TABLES:
         from heuncli.report.export import to_csv, to_json  # tables do without
 
-        return to_json(restrict(shown, wanted)) if form == "json" else to_csv(restrict(shown, wanted), scene)
-    page = page_of(restrict(study.results, wanted), scene)
+        return to_json(restrict(shown, wanted)) if form == "json" else to_csv(restrict(shown, wanted), labels)
+    page = page_of(restrict(study.results, wanted), labels)
     if request.all or at is not None or len(study.results.time) == 1:
         tables = page.instants(restrict(shown, wanted), every_cut=request.all)
     else:

@@ -12,7 +12,7 @@ from heuncli.cli.entry import UsageError
 from heuncli.cli.output import say
 from heuncli.errors import Problem
 from heuncli.results import Array, Results
-from heuncli.results_schema import PARTS
+from heuncli.results_schema import REPORT_OF
 from heuncli.spec.models import Spec
 from heuncli.study import extremes as peaks
 from heuncli.study.solve import Study
@@ -85,7 +85,7 @@ def extremes(
 
 def report_of(path: str) -> frozenset[str] | None:
     """Which report a path needs; None where that cannot be told from its first word."""
-    report = PARTS.get(path.split(".")[0])
+    report = REPORT_OF.get(path.split(".")[0])
     return frozenset({report}) if report else None
 
 

@@ -11,9 +11,9 @@ from typing import NamedTuple
 
 import numpy as np
 
+from heuncli.report.labels import Labels
 from heuncli.report.numbers import OPEN, OPEN_NOTE
 from heuncli.report.quantities import Series
-from heuncli.report.scene import Scene
 from heuncli.results import Array, Results
 from heuncli.results_schema import XYZ
 
@@ -67,8 +67,8 @@ class Plan(NamedTuple):
     kind: str
     what: str
     quantities: tuple[str, ...]
-    heading: Callable[[Results, Scene], str]
-    note: Callable[[str, Scene], str] = lambda name, scene: ""
+    heading: Callable[[Results, Labels], str]
+    note: Callable[[str, Labels], str] = lambda name, labels: ""
     only: str | None = None
     lasting: bool = True
     missing: tuple[str, str] = (OPEN, OPEN_NOTE)
@@ -103,31 +103,31 @@ SPOKEN_UNITS = {"Pa": ("MPa", 1e-6)}  # what the tables say instead, and how lar
 NO_AXIS = ("none", "none: there is no force, so no axis")
 
 
-def _about(results: Results, scene: Scene) -> str:
+def _about(results: Results, labels: Labels) -> str:
     about = np.asarray(results.foundation.get("about", (0.0, 0.0, 0.0))) + 0.0
     x, y, z = (f"{component:.6g}" for component in about)
-    return f"{scene.about} = ({x}, {y}, {z}) m" if scene.about else f"{POINTS[bool(about.any())]} ({x}, {y}, {z}) m"
+    return f"{labels.about} = ({x}, {y}, {z}) m" if labels.about else f"{POINTS[bool(about.any())]} ({x}, {y}, {z}) m"
 
 
-def _joint_note(name: str, scene: Scene) -> str:
-    info = scene.joints.get(name)
+def _joint_note(name: str, labels: Labels) -> str:
+    info = labels.joints.get(name)
     return f"{info.type}, {info.from_} → {info.to}" if info else ""
 
 
-def _force_note(name: str, scene: Scene) -> str:
-    info = scene.forces.get(name)
+def _force_note(name: str, labels: Labels) -> str:
+    info = labels.forces.get(name)
     return (f"{info.type} on {info.joint}" if info.joint else info.type) if info else ""
 
 
-def _section_note(name: str, scene: Scene) -> str:
-    info = scene.sections.get(name)
+def _section_note(name: str, labels: Labels) -> str:
+    info = labels.sections.get(name)
     return f"{info.body}; e1 = {info.first_axis}; moments about {info.about}" if info else ""
 
 
-def _foundation_note(name: str, scene: Scene) -> str:
+def _foundation_note(name: str, labels: Labels) -> str:
     kind, _, own = name.partition(" ")
     notes = {"support": _joint_note, "element": _force_note}
-    return notes[kind](own, scene) if kind in notes else ""
+    return notes[kind](own, labels) if kind in notes else ""
 
 
 FOUNDATION = Plan(
@@ -135,8 +135,8 @@ FOUNDATION = Plan(
     "foundation",
     "",
     ("force", "moment"),
-    lambda results, scene: (
-        f"FOUNDATION  force and moment ON the ground, world axes, moment about {_about(results, scene)}"
+    lambda results, labels: (
+        f"FOUNDATION  force and moment ON the ground, world axes, moment about {_about(results, labels)}"
     ),
     _foundation_note,
 )
@@ -145,9 +145,9 @@ MASS_EFFECT = Plan(
     "foundation",
     "",
     ("force", "moment_orbital", "moment_spin"),
-    lambda results, scene: (
+    lambda results, labels: (
         "MASS EFFECT  F = Σ m ẍ, orbital and spin moment the rates of Σ m x × ẋ and Σ I σ,"
-        f" world axes, about {_about(results, scene)}"
+        f" world axes, about {_about(results, labels)}"
     ),
     only="mass_effect",
 )
@@ -157,14 +157,14 @@ BLOCKS = (
         "bodies",
         "body",
         ("center", "center_velocity", "center_acceleration", "angular_velocity", "angular_acceleration"),
-        lambda results, scene: "MOTION  of the centres of mass, and angular velocity of the bodies, world axes",
+        lambda results, labels: "MOTION  of the centres of mass, and angular velocity of the bodies, world axes",
     ),
     Plan(
         "motion",
         "coordinates",
         "joint",
         ("angle", "rate", "travel", "speed", "acceleration", "angular_acceleration"),
-        lambda results, scene: 'COORDINATES  of the joints, of "to" against "from"',
+        lambda results, labels: 'COORDINATES  of the joints, of "to" against "from"',
         _joint_note,
     ),
     Plan(
@@ -172,7 +172,7 @@ BLOCKS = (
         "points",
         "point",
         ("position", "velocity", "acceleration"),
-        lambda results, scene: "POINTS  world axes",
+        lambda results, labels: "POINTS  world axes",
     ),
     FOUNDATION,
     MASS_EFFECT,
@@ -181,7 +181,7 @@ BLOCKS = (
         "foundation",
         "",
         ("point", "direction", "pitch"),
-        lambda results, scene: "CENTRAL AXIS  of the foundation's wrench: its point nearest the moment's, world axes",
+        lambda results, labels: "CENTRAL AXIS  of the foundation's wrench: its point nearest the moment's, world axes",
         only="axis",
         lasting=False,
         missing=NO_AXIS,
@@ -191,7 +191,7 @@ BLOCKS = (
         "joints",
         "joint",
         ("force", "moment", "axial", "radial", "tilting", "tension", "drive"),
-        lambda results, scene: (
+        lambda results, labels: (
             'JOINTS  what "from" exerts ON "to" (drive, friction apart), world axes, moment about the "to" point'
         ),
         _joint_note,
@@ -201,7 +201,7 @@ BLOCKS = (
         "sections",
         "section",
         ("N", "Q1", "Q2", "T", "M1", "M2", *STRESSES),
-        lambda results, scene: "SECTIONS  the piece beyond the cut ON the part before it; N > 0 tension; e2 = n × e1",
+        lambda results, labels: "SECTIONS  the piece beyond the cut ON the part before it; N > 0 tension; e2 = n × e1",
         _section_note,
     ),
     Plan(
@@ -209,7 +209,7 @@ BLOCKS = (
         "forces",
         "force",
         ("value", "length", "rate", "power"),
-        lambda results, scene: "FORCES  value, length of its line, rate of its length or turning, power it puts in",
+        lambda results, labels: "FORCES  value, length of its line, rate of its length or turning, power it puts in",
         _force_note,
     ),
     Plan(
@@ -217,12 +217,12 @@ BLOCKS = (
         "energy",
         "",
         ("kinetic", "potential", "work"),
-        lambda results, scene: "ENERGY  potential from the world's origin; kinetic + potential − work is constant",
+        lambda results, labels: "ENERGY  potential from the world's origin; kinetic + potential − work is constant",
     ),
 )
 
 
-def build(plan: Plan, results: Results, scene: Scene, series: Iterable[Series]) -> Block | None:
+def build(plan: Plan, results: Results, labels: Labels, series: Iterable[Series]) -> Block | None:
     """The block of one plan out of the walked series of its kind; None where there is nothing to show.
 
     Runs of cuts are left to report/runs.py.
@@ -240,7 +240,7 @@ def build(plan: Plan, results: Results, scene: Scene, series: Iterable[Series]) 
     for name, own in named.items():
         rows = [row for quantity in plan.quantities if quantity in own for row in rows_of(own[quantity])]
         label = _group_name(plan, name)
-        groups.append(Group(label, plan.note(label, scene), tuple(rows), whole=not name))
+        groups.append(Group(label, plan.note(label, labels), tuple(rows), whole=not name))
     notes: tuple[str, ...] = ()
     if plan is FOUNDATION:
         groups, notes = _supports(groups, results)
@@ -248,7 +248,7 @@ def build(plan: Plan, results: Results, scene: Scene, series: Iterable[Series]) 
         notes = _chosen(results)
     if plan.kind == "energy" and groups:
         groups = [_with_sum(groups[0])]
-    heading = plan.heading(results, scene)
+    heading = plan.heading(results, labels)
     return Block(plan.key, heading, plan.what, tuple(groups), notes, plan.missing) if groups else None
 
 

@@ -13,13 +13,15 @@ from typing import Any
 import numpy as np
 
 from heuncli.errors import LimitError, Problem
+from heuncli.report.labels import Labels
 from heuncli.report.quantities import Series, walk, walk_impulse
-from heuncli.report.scene import Scene
 from heuncli.results import Results
+from heuncli.results_schema import row_of
 
 FORMAT = 1
 MOST_NUMBERS = 200_000_000  # about 4 GB of text
 ALWAYS = frozenset({"title", "spec", "version", "model", "status", "time"})
+CERTAIN_SUM = row_of("certain_sums.NUMBER.value")
 CSV_HEADER = "time,kind,name,quantity,component,unit,value\n"
 
 
@@ -31,19 +33,20 @@ def to_json(results: Results) -> str:
     return "".join(chunks) + "\n"
 
 
-def to_csv(results: Results, scene: Scene) -> str:
+def to_csv(results: Results, labels: Labels) -> str:
     """The results in long form, a line a number; an empty value is open, an empty time holds for all instants."""
     _limit(results)
     lines = [CSV_HEADER]
     instants = [repr(t) for t in results.time.tolist()]
-    for series in walk(results, scene):
+    for series in walk(results, labels):
         lines += _lines(series, series.kind, series.name, [""] if series.static else instants)
     for number, block in enumerate(results.impulses):
-        for series in walk_impulse(block, scene):
+        for series in walk_impulse(block, labels):
             name = ".".join(part for part in (str(number), series.kind, series.name) if part)
             lines += _lines(series, "impulses", name, [repr(float(block["time"]))])
     for number, block in enumerate(results.certain_sums):
-        unit = "N" if any(".force." in term for term in block["terms"]) else "N·m"
+        of_moments = not any(".force." in term for term in block["terms"])
+        unit = CERTAIN_SUM.unit(turning=of_moments)
         series = Series("certain_sums", str(number), "value", unit, ("",), np.asarray(block["value"])[:, None])
         lines += _lines(series, series.kind, series.name, instants)
     return "".join(lines)

@@ -13,8 +13,8 @@ from typing import NamedTuple
 
 import numpy as np
 
+from heuncli.report.labels import Labels
 from heuncli.report.quantities import walk
-from heuncli.report.scene import Scene
 from heuncli.results import Array, Results
 
 DIGITS = 6
@@ -57,7 +57,7 @@ class Style(NamedTuple):
         return f"{value:.{max(self.decimals, 0)}f}"
 
 
-def certainty(results: Results, scene: Scene) -> Certainty:
+def certainty(results: Results, labels: Labels) -> Certainty:
     """The absolute errors of a run, from its own estimates and the largest number of each unit."""
     estimate = results.accuracy.get("estimate") or {}
     motion = _relative(estimate.get("motion"))
@@ -65,13 +65,13 @@ def certainty(results: Results, scene: Scene) -> Certainty:
     if results.accuracy.get("horizon") is not None:
         motion, loads = min(motion, HORIZON_ERROR), min(loads, HORIZON_ERROR)
     scales: dict[str, float] = {}
-    for series in walk(results, scene):
+    for series in walk(results, labels):
         scales[series.unit] = max(scales.get(series.unit, 0.0), largest(series.values))
     if "N·m" in scales:  # a moment is at least as uncertain as the largest force on the arm it may have
-        scales["N·m"] = max(scales["N·m"], scales.get("N", 0.0) * max(_reach(results), scene.size))
+        scales["N·m"] = max(scales["N·m"], scales.get("N", 0.0) * max(_reach(results), labels.size))
     for turning, moving in (("rad/s", "m/s"), ("rad/s²", "m/s²")):  # and a motion at least as what turns, at its reach
         if moving in scales:
-            scales[moving] = max(scales[moving], scales.get(turning, 0.0) * scene.size)
+            scales[moving] = max(scales[moving], scales.get(turning, 0.0) * labels.size)
     errors = {unit: scale * (loads if unit in LOAD_UNITS else motion) for unit, scale in scales.items()}
     return Certainty(errors | {"MPa": 1e-6 * errors.get("Pa", 0.0)})
 

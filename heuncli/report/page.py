@@ -1,6 +1,6 @@
 """The whole report of a run as tables: which blocks stand on the page, and what has to be searched for them.
 
-`page_of(results, scene)` first; then either `columns` and `groups` for a search and `extremes` with what it found, or
+`page_of(results, labels)` first; then either `columns` and `groups` for a search and `extremes` with what it found, or
 `instants`.
 """
 
@@ -14,23 +14,22 @@ import numpy as np
 
 from heuncli.report import layout, runs
 from heuncli.report.blocks import BLOCKS, Block, build
+from heuncli.report.labels import Labels
 from heuncli.report.layout import Found
 from heuncli.report.numbers import Certainty, certainty
 from heuncli.report.quantities import Series, walk, walk_impulse
-from heuncli.report.scene import Scene
 from heuncli.report.sums import sums_table
 from heuncli.report.table import Table
 from heuncli.results import Array, Results
-from heuncli.results_schema import PARTS, is_static
+from heuncli.results_schema import REPORT_OF, REPORTS, quantity
 
-REPORTS = ("motion", "points", "foundation", "joints", "sections", "forces", "energy")
 TABLE_DEFAULT = frozenset(REPORTS) - {"motion", "points"}
 EXPORT_DEFAULT = frozenset(REPORTS) - {"points"}
 
 
 def restrict(results: Results, wanted: Set[str]) -> Results:
     """The results without the blocks that were not asked for."""
-    unasked: dict[str, Any] = {part: {} for part, report in PARTS.items() if report not in wanted}
+    unasked: dict[str, Any] = {block: {} for block, report in REPORT_OF.items() if report not in wanted}
     return replace(results, **unasked)
 
 
@@ -38,7 +37,7 @@ class Page(NamedTuple):
     """The tables of a run: blocks and runs of cuts up to the horizon, before they are laid out."""
 
     results: Results
-    scene: Scene
+    labels: Labels
     certain: Certainty
 
     def columns(self, results: Results) -> Array:
@@ -49,14 +48,14 @@ class Page(NamedTuple):
             for group in block.groups
             for row in group.rows
         ]
-        columns += [runs.columns(run) for run in runs.runs_of(results, self.scene)]
+        columns += [runs.columns(run) for run in runs.runs_of(results, self.labels)]
         return np.concatenate(columns, axis=1) if columns else np.zeros((len(results.time), 0))
 
     def groups(self) -> list[list[int]]:
         """Which columns are compared with each other: a row alone, a resultant over all cuts of its run."""
         n = sum(len(group.rows) for block in self._lasting(self.results) for group in block.groups)
         groups = [[column] for column in range(n)]
-        for run in runs.runs_of(self.results, self.scene):
+        for run in runs.runs_of(self.results, self.labels):
             for _ in runs.RESULTANTS:
                 groups.append(list(range(n, n + len(run.s))))
                 n += len(run.s)
@@ -76,7 +75,7 @@ class Page(NamedTuple):
             tables += layout.extremes_table(block, times, part._replace(low=low, high=high), self.certain)
             start += len(rows)
         column = start
-        for run in runs.runs_of(self.results, self.scene):
+        for run in runs.runs_of(self.results, self.labels):
             own = slice(start, start + len(runs.RESULTANTS))
             first = column + len(run.s) * np.arange(len(runs.RESULTANTS))
             part = found.part(own)
@@ -89,14 +88,14 @@ class Page(NamedTuple):
         """The tables at the instants of `results`, which is the same run at any instants."""
         horizon = self.results.accuracy.get("horizon")
         tables: list[Table] = []
-        for block in _blocks(results, self.scene):
+        for block in _blocks(results, self.labels):
             tables += layout.instants_tables(block, results.time, horizon, self.certain)
-        for run in runs.runs_of(results, self.scene):
+        for run in runs.runs_of(results, self.labels):
             tables += runs.instants_tables(run, results.time, horizon, self.certain, every=every_cut)
         return [*tables, *self._ending()]
 
     def _lasting(self, results: Results) -> list[Block]:
-        return _blocks(results, self.scene, lasting=True)
+        return _blocks(results, self.labels, lasting=True)
 
     def _ending(self) -> list[Table]:
         sums = sums_table(self.results, self.certain)
@@ -105,9 +104,9 @@ class Page(NamedTuple):
     def _impulses(self) -> list[Table]:
         tables: list[Table] = []
         for impulse in self.results.impulses:
-            series = list(walk_impulse(impulse, self.scene))
+            series = list(walk_impulse(impulse, self.labels))
             for plan in BLOCKS:
-                block = build(plan, self.results, self.scene, series)
+                block = build(plan, self.results, self.labels, series)
                 if block is not None:
                     heading = f"IMPULSE at t = {float(impulse['time']):.6g} s  {block.heading}"
                     named = block._replace(heading=heading, notes=())
@@ -115,36 +114,45 @@ class Page(NamedTuple):
         return tables
 
 
-def page_of(results: Results, scene: Scene) -> Page:
+def page_of(results: Results, labels: Labels) -> Page:
     """The page of a run, ending before its horizon."""
     horizon = results.accuracy.get("horizon")
-    certain = certainty(results, scene)
+    certain = certainty(results, labels)
     if horizon is not None:
         results = until(results, float(horizon))
-    return Page(results, scene, certain)
+    return Page(results, labels, certain)
 
 
 def until(results: Results, horizon: float) -> Results:
     """The results at the instants before the horizon; at least the first."""
     count = max(1, int(np.searchsorted(results.time, horizon)))
-    return _cut(results, count) if count < len(results.time) else results
+    return first_instants(results, count) if count < len(results.time) else results
 
 
-def _cut(results: Results, count: int) -> Results:
-    n = len(results.time)
+def first_instants(results: Results, count: int) -> Results:
+    """The results at the first of their instants."""
 
-    def first(part: str, keys: tuple[str, ...], block: Any) -> Any:
-        if isinstance(block, dict):
-            return {k: v if is_static(part, keys, k) else first(part, (*keys, k), v) for k, v in block.items()}
-        return block[:count] if isinstance(block, np.ndarray) and len(block) == n else block
+    def first(keys: tuple[str, ...], value: Any) -> Any:
+        if isinstance(value, dict):
+            return {key: first((*keys, key), member) for key, member in value.items()}
+        row = quantity(keys)
+        return value[:count] if row is not None and row.timed else value
 
-    timed = {part: first(part, (), getattr(results, part)) for part in PARTS}
-    sums = [first("certain_sums", (), block) for block in results.certain_sums]
-    return replace(results, time=results.time[:count], certain_sums=sums, **timed)
+    blocks = {block: first((block,), getattr(results, block)) for block in REPORT_OF}
+    sums = [_first_of_sum(block, count) for block in results.certain_sums]
+    return replace(results, time=results.time[:count], certain_sums=sums, **blocks)
 
 
-def _blocks(results: Results, scene: Scene, *, lasting: bool = False) -> list[Block]:
-    series: Sequence[Series] = list(walk(results, scene))
-    blocks = [build(plan, results, scene, series) for plan in BLOCKS if plan.lasting or not lasting]
+def _first_of_sum(block: dict[str, Any], count: int) -> dict[str, Any]:
+    """A certain sum at the first instants; a factor that turns with the pose is an array over them."""
+    factors = {
+        path: factor[:count] if isinstance(factor, np.ndarray) else factor for path, factor in block["terms"].items()
+    }
+    return {"terms": factors, "value": block["value"][:count]}
+
+
+def _blocks(results: Results, labels: Labels, *, lasting: bool = False) -> list[Block]:
+    series: Sequence[Series] = list(walk(results, labels))
+    blocks = [build(plan, results, labels, series) for plan in BLOCKS if plan.lasting or not lasting]
     made = [block for block in blocks if block is not None]
     return [layout.abridged(block) for block in made] if lasting else made

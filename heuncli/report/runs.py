@@ -7,13 +7,14 @@ from typing import NamedTuple
 
 import numpy as np
 
+from heuncli.report.labels import Labels
 from heuncli.report.layout import Found, Indices
 from heuncli.report.numbers import BEYOND, OPEN, OPEN_NOTE, Certainty, Style, largest, style, write, write_times
-from heuncli.report.scene import Scene
 from heuncli.report.table import Column, Table
 from heuncli.results import Array, Results
+from heuncli.results_schema import row_of
 
-RESULTANTS = (("N", "N"), ("Q1", "N"), ("Q2", "N"), ("T", "N·m"), ("M1", "N·m"), ("M2", "N·m"))
+RESULTANTS = tuple((name, row_of(f"sections.SECTION.{name}").unit()) for name in ("N", "Q1", "Q2", "T", "M1", "M2"))
 MOST_CUTS = 25  # a diagram is read, not listed: evenly spaced cuts, with all jumps and extremes
 
 
@@ -27,13 +28,13 @@ class Run(NamedTuple):
     values: Array
 
 
-def runs_of(results: Results, scene: Scene) -> list[Run]:
+def runs_of(results: Results, labels: Labels) -> list[Run]:
     """The runs of cuts among the sections."""
     runs = []
     for name, section in results.sections.items():
         if "s" not in section:
             continue
-        info = scene.sections.get(name)
+        info = labels.sections.get(name)
         of = f"{name} {info.body}" if info else name
         axis = f"e1 = {info.first_axis}, e2 = n × e1" if info else "e2 = n × e1"
         about = info.about if info else "the cut's point"

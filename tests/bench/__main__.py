@@ -23,7 +23,7 @@ import numpy as np
 from heuncli.integration.runner import Runner
 from heuncli.kernel.choose import KERNEL
 from heuncli.report.export import to_csv, to_json
-from heuncli.report.scene import scene_of
+from heuncli.report.labels import labels_of
 from heuncli.spec.load import load
 from heuncli.study.solve import solve
 from heuncli.tree.prepare import Scene, prepare
@@ -165,7 +165,7 @@ def process() -> None:
 def export() -> None:
     """JSON and CSV, microseconds a number."""
     spec = load(str(SCENES / "chain10.yaml"), overrides={"analysis.samples": "2001"})
-    results, scene = solve(spec).results, scene_of(spec)
+    results, scene = solve(spec).results, labels_of(spec)
     for name, write in (("JSON", to_json), ("CSV", lambda found: to_csv(found, scene))):
         text = write(results)
         numbers = text.count(",") + 1 if name == "JSON" else text.count("\n")

@@ -18,8 +18,8 @@ import pytest
 from heuncli.cli.entry import enter
 from heuncli.cli.expect import compare
 from heuncli.report.export import present, to_csv, to_json
+from heuncli.report.labels import labels_of
 from heuncli.report.quantities import walk
-from heuncli.report.scene import scene_of
 from heuncli.results_paths import find
 from heuncli.spec.load import load
 from heuncli.study.solve import Options, Study, solve
@@ -112,7 +112,7 @@ def same(read: Any, written: Any, where: str) -> None:
 @each
 def test_its_csv_says_the_same(name: str) -> None:
     study = study_of(name)
-    rows = list(csv.DictReader(io.StringIO(to_csv(study.results, scene_of(study.spec)))))
+    rows = list(csv.DictReader(io.StringIO(to_csv(study.results, labels_of(study.spec)))))
     assert {row["unit"] for row in rows if row["kind"] == "joints" and row["quantity"] == "force"} <= {"N"}
     for joint, part in study.results.joints.items():
         found = [
@@ -127,7 +127,7 @@ def test_every_result_may_be_expected(name: str) -> None:
     """When a spec is read every path into the results is known, with the shape and the dimension that are found."""
     results = study_of(name).results
     items: list[dict[str, Any]] = []
-    for series in walk(results, scene_of(study_of(name).spec)):
+    for series in walk(results, labels_of(study_of(name).spec)):
         if series.quantity == "side":  # words
             continue
         found = find(results, series.path)

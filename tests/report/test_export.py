@@ -15,7 +15,7 @@ from heuncli.errors import LimitError
 from heuncli.report import export
 from heuncli.report.export import to_csv, to_json
 from heuncli.report.quantities import walk
-from tests.shared.fakes import SCENE, pendulum
+from tests.shared.fakes import LABELS, pendulum
 
 T = np.linspace(0.0, 2.0, 7)
 BLOW = {
@@ -74,8 +74,8 @@ def rows(text: str) -> list[dict[str, str]]:
 
 def test_csv_holds_every_number_once() -> None:
     results = pendulum(T)
-    lines = rows(to_csv(results, SCENE))
-    assert len(lines) == sum(series.values.size for series in walk(results, SCENE))
+    lines = rows(to_csv(results, LABELS))
+    assert len(lines) == sum(series.values.size for series in walk(results, LABELS))
     found = [
         float(r["value"])
         for r in lines
@@ -87,7 +87,7 @@ def test_csv_holds_every_number_once() -> None:
 
 
 def test_csv_units_follow_the_kind_of_the_thing() -> None:
-    units = {(r["name"], r["quantity"]): r["unit"] for r in rows(to_csv(pendulum(T), SCENE))}
+    units = {(r["name"], r["quantity"]): r["unit"] for r in rows(to_csv(pendulum(T), LABELS))}
     assert units["elbow", "acceleration"] == "rad/s²"
     assert units["push", "value"] == "N"
     assert units["motor", "value"] == "N·m"
@@ -96,7 +96,7 @@ def test_csv_units_follow_the_kind_of_the_thing() -> None:
 
 
 def test_csv_names_the_cuts_of_a_run_by_their_number_and_tells_where_they_are() -> None:
-    lines = [r for r in rows(to_csv(pendulum(T), SCENE)) if r["name"] == "along"]
+    lines = [r for r in rows(to_csv(pendulum(T), LABELS)) if r["name"] == "along"]
     places = {r["component"]: float(r["value"]) for r in lines if r["quantity"] == "s"}
     assert list(places) == ["0", "1", "2", "3", "4"]
     assert places["4"] == 0.8
@@ -112,13 +112,13 @@ def test_csv_names_the_cuts_of_a_run_by_their_number_and_tells_where_they_are() 
 def test_csv_leaves_what_is_open_empty() -> None:
     results = pendulum(T)
     results.joints["pivot"]["force"][2, 1] = np.nan
-    empty = [r for r in rows(to_csv(results, SCENE)) if r["value"] == "" and r["quantity"] != "side"]
+    empty = [r for r in rows(to_csv(results, LABELS)) if r["value"] == "" and r["quantity"] != "side"]
     assert [(r["name"], r["component"], r["time"]) for r in empty] == [("pivot", "y", repr(float(T[2])))]
 
 
 def test_csv_has_impulses_in_newton_seconds_and_sums() -> None:
     sums = [{"terms": {"joints.a.force.x": 1, "joints.b.force.x": 1}, "value": 2.0 * T}]
-    lines = rows(to_csv(pendulum(T, impulses=[BLOW], certain_sums=sums), SCENE))
+    lines = rows(to_csv(pendulum(T, impulses=[BLOW], certain_sums=sums), LABELS))
     blow = {(r["name"], r["quantity"], r["component"]): r for r in lines if r["kind"] == "impulses"}
     assert blow["0.foundation", "force", "z"]["unit"] == "N·s"
     assert blow["0.foundation", "force", "z"]["value"] == "2.0"
@@ -134,7 +134,7 @@ def test_what_no_disk_would_hold_is_refused(monkeypatch: pytest.MonkeyPatch) -> 
         to_json(pendulum(T))
 
 
-@pytest.mark.parametrize("write", [to_json, lambda results: to_csv(results, SCENE)], ids=["json", "csv"])
+@pytest.mark.parametrize("write", [to_json, lambda results: to_csv(results, LABELS)], ids=["json", "csv"])
 def test_cost_grows_no_faster_than_the_numbers(write: Any) -> None:
     def seconds(n: int) -> float:
         results = pendulum(np.linspace(0.0, 2.0, n))

@@ -8,7 +8,7 @@ import numpy as np
 import pytest
 
 from heuncli.report.numbers import certainty, rough, style, trim, write, write_times
-from tests.shared.fakes import ACCURATE, SCENE, pendulum
+from tests.shared.fakes import ACCURATE, LABELS, pendulum
 
 T = np.linspace(0.0, 2.0, 11)
 
@@ -56,7 +56,7 @@ def test_instants_are_told_to_a_hundred_thousandth_of_the_run() -> None:
 
 
 def test_the_error_of_loads_is_relative_to_the_largest_of_them() -> None:
-    errors = certainty(pendulum(T), SCENE)
+    errors = certainty(pendulum(T), LABELS)
     assert errors.error("N") == pytest.approx(5e-10 * pendulum(T).joints["pivot"]["force"].max(), rel=0.01)
     assert errors.error("rad") == pytest.approx(4e-11 * 1.0, rel=0.1)
     assert errors.error("furlong") == 0.0
@@ -65,12 +65,12 @@ def test_the_error_of_loads_is_relative_to_the_largest_of_them() -> None:
 def test_a_moment_is_no_more_certain_than_a_force_on_its_arm() -> None:
     results = pendulum(T)
     reach = 0.5 * np.linalg.norm(np.ptp(results.joints["elbow"]["point"], axis=0))
-    assert certainty(results, SCENE).error("N·m") >= 0.99 * reach * certainty(results, SCENE).error("N")
+    assert certainty(results, LABELS).error("N·m") >= 0.99 * reach * certainty(results, LABELS).error("N")
 
 
 def test_before_the_horizon_the_error_is_that_at_the_horizon() -> None:
     lost = {**ACCURATE, "horizon": 1.0, "estimate": {"motion": 0.3, "reactions": 5.0}}
-    assert certainty(pendulum(T, accuracy=lost), SCENE).error("rad") == pytest.approx(1e-3, rel=0.1)
+    assert certainty(pendulum(T, accuracy=lost), LABELS).error("rad") == pytest.approx(1e-3, rel=0.1)
 
 
 def test_errors_are_spoken_of_in_one_digit() -> None:

@@ -15,7 +15,7 @@ from heuncli.report.page import Page, page_of, restrict
 from heuncli.report.table import plain
 from heuncli.results import Array, Results
 from heuncli.study import extremes as peaks
-from tests.shared.fakes import ACCURATE, SCENE, FakeStudy, pendulum, vectors
+from tests.shared.fakes import ACCURATE, LABELS, FakeStudy, pendulum, vectors
 
 T = np.linspace(0.0, 2.0, 21)
 
@@ -23,7 +23,7 @@ T = np.linspace(0.0, 2.0, 21)
 def extremes_page(
     study: FakeStudy, wanted: frozenset[str] = frozenset({"foundation", "joints", "energy", "sections"})
 ) -> str:
-    page = page_of(restrict(study.results, wanted), SCENE)
+    page = page_of(restrict(study.results, wanted), LABELS)
     found = peaks.search(lambda t: page.columns(restrict(study.resample(t), wanted)), study.search_times, page.groups())
     return "\n".join(plain(table) for table in page.extremes(Found(*found[:-1])))
 
@@ -67,7 +67,7 @@ def test_what_is_0_throughout_takes_no_line_but_is_told() -> None:
     assert [line.split()[0] for line in pivot.splitlines()[1:]] == ["Fx", "Fz", "|F|"]
     assert "what is 0 throughout is left out" in text
     nothing = FakeStudy(T, {"joints": {"idle": {"force": np.zeros((len(T), 3)), "point": np.zeros((len(T), 3))}}})
-    alone = page_of(restrict(nothing.results, {"joints"}), SCENE)
+    alone = page_of(restrict(nothing.results, {"joints"}), LABELS)
     zero = np.zeros(4)
     (table,) = alone.extremes(Found(zero, zero, zero.astype(int), zero, zero, zero.astype(int)))
     assert "idle\n  0 throughout\n" in plain(table)
@@ -121,7 +121,7 @@ def test_open_components_are_named_together_and_partly_open_ones_are_marked() ->
 
 def test_open_components_read_open_at_an_instant() -> None:
     study = Changed(T, change=opened)
-    page = page_of(restrict(study.results, {"joints"}), SCENE)
+    page = page_of(restrict(study.results, {"joints"}), LABELS)
     (table,) = page.instants(restrict(study.resample(np.array([0.5])), {"joints"}))
     assert table.rows[0][2:6] == ("2.52441", "0", "open", "open")
 
@@ -139,7 +139,7 @@ def test_a_chosen_split_is_labelled() -> None:
 
 def test_beyond_the_horizon_nothing_is_claimed() -> None:
     study = FakeStudy(T, {"accuracy": {**ACCURATE, "horizon": 1.2, "estimate": {"motion": 0.02, "reactions": 0.1}}})
-    page = page_of(restrict(study.results, frozenset({"joints"})), SCENE)
+    page = page_of(restrict(study.results, frozenset({"joints"})), LABELS)
     assert page.results.time[-1] == pytest.approx(1.1)
     shown = restrict(study.resample(np.array([0.5, 1.5])), frozenset({"joints"}))
     lines = [line.split() for line in plain(page.instants(shown)[0]).splitlines()]
@@ -158,7 +158,7 @@ def test_fewer_certain_digits_show_fewer_digits() -> None:
 
 def instants_page(times: list[float], wanted: set[str], **options: Any) -> list[str]:
     study = FakeStudy(T)
-    page = page_of(restrict(study.results, wanted), SCENE)
+    page = page_of(restrict(study.results, wanted), LABELS)
     shown = restrict(study.resample(np.array(times)), wanted)
     return [plain(table) for table in page.instants(shown, **options)]
 
@@ -227,7 +227,7 @@ def test_a_run_of_cuts_shows_extremes_over_place_and_time() -> None:
 @pytest.mark.parametrize(("n_cuts", "most"), [(3, 3), (25, 25), (200, 25)])
 def test_a_diagram_can_be_read_for_few_cuts_and_for_many(n_cuts: int, most: int) -> None:
     study = Changed(T, change=long_run(n_cuts))
-    page = page_of(restrict(study.results, {"sections"}), SCENE)
+    page = page_of(restrict(study.results, {"sections"}), LABELS)
     shown = restrict(study.resample(np.array([0.5])), {"sections"})
     (table,) = page.instants(shown)
     assert len(table.rows) <= most
@@ -240,7 +240,7 @@ def test_a_thinned_diagram_keeps_both_rows_of_a_jump() -> None:
     side: list[str | None] = [None] * 100
     side[41], side[42] = "before", "beyond"
     study = Changed(T, change=long_run(100, side))
-    page = page_of(restrict(study.results, {"sections"}), SCENE)
+    page = page_of(restrict(study.results, {"sections"}), LABELS)
     (table,) = page.instants(restrict(study.resample(np.array([0.5])), {"sections"}))
     assert [row[1] for row in table.rows if row[1]] == ["before", "beyond"]
 
@@ -280,7 +280,7 @@ def test_a_planar_scene_says_what_there_is_not() -> None:
 
 
 def test_nothing_asked_for_leaves_nothing_to_search() -> None:
-    page = page_of(restrict(pendulum(T), frozenset()), SCENE)
+    page = page_of(restrict(pendulum(T), frozenset()), LABELS)
     assert isinstance(page, Page)
     assert page.columns(page.results).shape == (len(T), 0)
     assert page.groups() == []

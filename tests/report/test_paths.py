@@ -12,7 +12,7 @@ from heuncli.report.export import to_json
 from heuncli.report.quantities import walk
 from heuncli.results_paths import find
 from tests.report.test_export import BLOW
-from tests.shared.fakes import SCENE, pendulum
+from tests.shared.fakes import LABELS, pendulum
 
 T = np.linspace(0.0, 2.0, 7)
 SUMS = [{"terms": {"joints.a.force.x": 1}, "value": 2.0 * T}]
@@ -20,7 +20,7 @@ RESULTS = pendulum(T, impulses=[BLOW], certain_sums=SUMS)
 
 
 def test_every_walked_quantity_has_its_path() -> None:
-    for series in walk(RESULTS, SCENE):
+    for series in walk(RESULTS, LABELS):
         for component, column in zip(series.components, series.values.T, strict=True):
             path = f"{series.path}.{component}" if component else series.path
             if series.quantity != "side":

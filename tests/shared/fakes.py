@@ -9,7 +9,7 @@ from typing import Any
 
 import numpy as np
 
-from heuncli.report.scene import ForceInfo, JointInfo, Scene, SectionInfo
+from heuncli.report.labels import ForceInfo, JointInfo, Labels, SectionInfo
 from heuncli.results import Array, Block, Results
 
 ACCURATE: Block = {
@@ -25,7 +25,7 @@ WORK: Block = {
     "evaluations": 812,
     "seconds": {"load": 0.03, "build": 0.004, "integrate": 0.0004, "check": 0.0006, "recover": 0.001},
 }
-SCENE = Scene(
+LABELS = Labels(
     joints={"pivot": JointInfo("ball", "ground.O", "upper.top"), "elbow": JointInfo("pin", "upper.end", "lower.top")},
     forces={"push": ForceInfo("force"), "motor": ForceInfo("torque", "elbow")},
     sections={"middle": SectionInfo("lower"), "along": SectionInfo("lower")},

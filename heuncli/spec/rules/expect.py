@@ -13,20 +13,22 @@ from heuncli.spec.rules.registry import Found, Path_, Scene, rule
 from heuncli.spec.semantics import instants_of, type_of
 
 if TYPE_CHECKING:
-    from heuncli.spec.rules.outcome import Astray, Quantity, Shape
+    from heuncli.results_schema import Shape
+    from heuncli.spec.rules.outcome import Astray, Outcome
 
 SAME_INSTANT = 1e-9
 RAGGED = -1  # the length of a list whose members have different ones
+Lengths = tuple[int | None, ...]  # of nested lists, the outer first; None: not known before the run
 
 
-def outcomes(scene: Scene) -> Iterator[tuple[Path_, f.Expect, Quantity | None, Astray | None]]:
+def outcomes(scene: Scene) -> Iterator[tuple[Path_, f.Expect, Outcome | None, Astray | None]]:
     """Every expectation with what its path leads to, or where it goes astray; neither where only the run can tell."""
     if scene.document.expect:
-        from heuncli.spec.rules.outcome import Quantity, outcome  # a run of a scene without expectations starts faster
+        from heuncli.spec.rules.outcome import Outcome, outcome  # a run of a scene without expectations starts faster
 
         for i, item in scene.document.expect.items():
             found = outcome(item.of, scene)
-            yield ("expect", i), item, *((found, None) if isinstance(found, Quantity) else (None, found))
+            yield ("expect", i), item, *((found, None) if isinstance(found, Outcome) else (None, found))
 
 
 @rule("expect-path")
@@ -47,7 +49,7 @@ def expect_form(scene: Scene) -> Iterator[Found]:
     for path, item, quantity, _ in outcomes(scene):
         if item.at is not None and item.peak is not None:
             yield Found((*path, "peak"), "both at and peak", "at is one instant, peak is over all of them", key=True)
-        if RAGGED in shape_of(item.is_):
+        if RAGGED in lengths_of(item.is_):
             yield Found((*path, "is"), "lists of different lengths", "[1, 2, 3], or [[1, 0], [0, 1]]")
         if quantity is not None:
             if item.peak is not None and not quantity.timed:
@@ -93,34 +95,39 @@ def instants_found(scene: Scene, asked: int) -> int | None:
     return None if may_stop and asked > 1 else asked
 
 
-def sizes(path: Path_, item: f.Expect, quantity: Quantity, instants: int | None) -> Iterator[Found]:
+def sizes(path: Path_, item: f.Expect, quantity: Outcome, instants: int | None) -> Iterator[Found]:
     """As many numbers as the result has there, in the same lists."""
     over_instants = quantity.timed and item.at is None and item.peak is None and instants != 1
-    found: Shape = () if item.peak is not None else (instants, *quantity.shape) if over_instants else quantity.shape
-    given = shape_of(item.is_)
-    if RAGGED in given or fits(given, found):
+    axes: Shape = () if item.peak is not None else quantity.axes
+    at_one = tuple(axis.size for axis in axes)
+    lengths: Lengths = (instants, *at_one) if over_instants else at_one
+    given = lengths_of(item.is_)
+    if RAGGED in given or fits(given, lengths):
         return
-    if over_instants and fits(given, quantity.shape):
-        yield Found(path, f"{told(given)} for {item.of} at all instants", "give at: an instant, or peak: max")
+    if over_instants and fits(given, at_one):
+        yield Found(path, f"{described(given)} for {item.of} at all instants", "give at: an instant, or peak: max")
     else:
-        hint = f"name one of its numbers, as {item.of}.{'x' if found[-1:] == (3,) else 0}" if found else None
-        yield Found(path, f"{told(given)} for {item.of}, which is {told(found)}", hint or "give one number")
+        letters = axes[-1].letters if axes else ()
+        hint = f"name one of its numbers, as {item.of}.{letters[0] if letters else 0}" if lengths else None
+        message = f"{described(given)} for {item.of}, which is {described(lengths)}"
+        yield Found(path, message, hint or "give one number")
 
 
-def fits(given: Shape, found: Shape) -> bool:
-    return len(given) == len(found) and all(b is None or a == b for a, b in zip(given, found, strict=True))
+def fits(given: Lengths, expected: Lengths) -> bool:
+    """Whether the lists have the expected lengths, where these are known."""
+    return len(given) == len(expected) and all(b is None or a == b for a, b in zip(given, expected, strict=True))
 
 
-def shape_of(value: Any) -> Shape:
+def lengths_of(value: Any) -> Lengths:
     """Lengths of the lists in which numbers are given, the outer first."""
     if not isinstance(value, tuple):
         return ()
-    inner = {shape_of(member) for member in value}
+    inner = {lengths_of(member) for member in value}
     return (len(value), *inner.pop()) if len(inner) == 1 else (RAGGED,)
 
 
-def told(shape: Shape) -> str:
-    """A shape in words."""
-    if not shape:
+def described(lengths: Lengths) -> str:
+    """Lengths of lists in words."""
+    if not lengths:
         return "one number"
-    return "a list of " + " lists of ".join("some" if size is None else str(size) for size in shape)
+    return "a list of " + " lists of ".join("some" if length is None else str(length) for length in lengths)

@@ -4,11 +4,12 @@ from __future__ import annotations
 
 import pytest
 
-from heuncli.report.scene import ForceInfo, JointInfo, Scene, _section
+from heuncli.report.labels import ForceInfo, JointInfo, Labels, _section
+from heuncli.results_schema import quantity
 from heuncli.spec.models import End, Section
 
 KINDS = ("ball", "pin", "slide", "cylinder", "universal", "weld", "line", "plane", "rod")
-SCENE = Scene(
+LABELS = Labels(
     {kind: JointInfo(kind, "ground.O", "b.p") for kind in KINDS},
     {
         "couple": ForceInfo("couple"),
@@ -23,17 +24,17 @@ SCENE = Scene(
 
 
 @pytest.mark.parametrize(
-    ("kind", "name", "quantity", "unit"),
+    ("kind", "name", "key", "unit"),
     [
         ("coordinates", "pin", "acceleration", "rad/s²"),
         ("coordinates", "slide", "acceleration", "m/s²"),
         ("coordinates", "cylinder", "acceleration", "m/s²"),
-        ("coordinates", "pin", "angle", None),
+        ("coordinates", "pin", "angle", "rad"),
         ("joints", "pin", "drive", "N·m"),
         ("joints", "slide", "drive", "N"),
         ("joints", "cylinder", "drive", "N"),
         ("joints", "rod", "drive", "N"),
-        ("joints", "pin", "force", None),
+        ("joints", "pin", "force", "N"),
         ("forces", "couple", "value", "N·m"),
         ("forces", "spring", "value", "N"),
         ("forces", "spring", "rate", "m/s"),
@@ -43,11 +44,13 @@ SCENE = Scene(
         ("forces", "grease", "value", "N·m"),
         ("forces", "rail", "rate", "m/s"),
         ("forces", "brake", "value", "N"),
-        ("forces", "motor", "power", None),
+        ("forces", "motor", "power", "W"),
     ],
 )
-def test_units(kind: str, name: str, quantity: str, unit: str | None) -> None:
-    assert SCENE.unit(kind, name, quantity) == unit
+def test_units(kind: str, name: str, key: str, unit: str) -> None:
+    row = quantity((kind, name, key))
+    assert row is not None
+    assert row.unit(len(row.units) > 1 and LABELS.turns(kind, name)) == unit
 
 
 @pytest.mark.parametrize(

@@ -1,6 +1,6 @@
-"""What a report must know of the scene beyond the numbers: what kind each joint and force is, and what a section cuts.
+"""What a report must know of the scene beyond the numbers: of what kind each joint and force is, what a section cuts.
 
-From it follow the units that the results alone do not tell: a pin's drive is a torque, a slide's a force.
+From the kinds follow the units that the results alone do not determine: a pin's drive is a torque, a slide's a force.
 """
 
 from __future__ import annotations
@@ -15,9 +15,7 @@ import numpy as np
 from heuncli.joint_kinds import TYPES, Kind
 from heuncli.spec.models import Body, End, Force, Friction, Section, Spec, Vec
 
-TURN = {"value": "N·m", "rate": "rad/s"}
-PUSH = {"value": "N", "rate": "m/s"}
-FORCE_UNITS = {"couple": TURN, "force": PUSH, "actuator": PUSH, "spring": PUSH}
+PUSHING_FORCES = frozenset({"force", "actuator", "spring"})
 AXES = ("x", "y", "z")
 ABOUT = {"at": "the cut's point", "centroid": "the cut's centroid", "line": "the cut's point, and Heun's line"}
 EQUAL_COMPONENTS = 1e-9  # contract section 1, sections: components this near count as equal
@@ -48,7 +46,7 @@ class SectionInfo(NamedTuple):
 
 
 @dataclass(frozen=True)
-class Scene:
+class Labels:
     """The kinds of everything named in the results; `about` is the ground point where M_s is taken, if one is there.
 
     size: how far a body's points and shapes reach from its origin at most [m].
@@ -60,38 +58,34 @@ class Scene:
     about: str | None = None
     size: float = 0.0
 
-    def unit(self, kind: str, name: str, quantity: str) -> str | None:
-        """The unit of a quantity that depends on the kind of the thing; None where the quantity itself tells."""
-        if kind == "coordinates" and quantity == "acceleration":
-            return "rad/s²" if self._kind(name).coordinates == ("angle",) else "m/s²"
-        if kind == "joints" and quantity == "drive":
-            return "N·m" if self._kind(name).drives == ("angle",) else "N"
-        if kind == "forces" and quantity in TURN:
-            return self._force_units(self.forces.get(name))[quantity]
-        return None
+    def turns(self, block: str, name: str) -> bool:
+        """Whether it turns, not slides: which of the two units of a quantity of `block` holds for `name`."""
+        if block == "coordinates":
+            return self._kind(name).coordinates == ("angle",)
+        if block == "joints":
+            return self._kind(name).drives == ("angle",)
+        return self._force_turns(self.forces.get(name))
 
     def _kind(self, joint: str | None) -> Kind:
         info = self.joints.get(joint or "")
         return TYPES[info.type if info else "pin"]
 
-    def _force_units(self, force: ForceInfo | None) -> Mapping[str, str]:
-        if force is None:
-            return PUSH
+    def _force_turns(self, force: ForceInfo | None) -> bool:
+        if force is None or force.type in PUSHING_FORCES:
+            return False
         if force.turning is not None:
-            return TURN if force.turning else PUSH
-        if force.type in FORCE_UNITS:
-            return FORCE_UNITS[force.type]
-        return TURN if self._kind(force.joint).motions[:1] == ("turning",) else PUSH
+            return force.turning
+        return force.type == "couple" or self._kind(force.joint).motions[:1] == ("turning",)
 
 
-def scene_of(spec: Spec) -> Scene:
-    """The Scene of a loaded spec."""
+def labels_of(spec: Spec) -> Labels:
+    """The labels of a loaded spec."""
     joints = {name: JointInfo(joint.type, _end(joint.from_), _end(joint.to)) for name, joint in spec.joints.items()}
     forces = {name: _force(force) for name, force in spec.forces.items()}
     sections = {name: _section(section) for name, section in spec.sections.items()}
     about = spec.foundation.about or (0.0, 0.0, 0.0)
     named = next((name for name, point in spec.ground.points.items() if tuple(point) == tuple(about)), None)
-    return Scene(joints, forces, sections, named, max(map(_reach, spec.bodies.values()), default=0.0))
+    return Labels(joints, forces, sections, named, max(map(_reach, spec.bodies.values()), default=0.0))
 
 
 def _reach(body: Body) -> float:
