@@ -63,132 +63,108 @@ class Quantity(NamedTuple):
         return tuple(axis for axis in self.shape if run or axis is not CUT)
 
 
-def scalar(path: str, unit: str, meaning: str) -> Quantity:
-    """A number at each instant."""
-    return Quantity(path, tuple(unit.split(" | ")), (), meaning)
+def at(place: str, meaning: str, *quantities: Quantity) -> tuple[Quantity, ...]:
+    """Quantities that stand in one place of the results and share a meaning, told in their order."""
+    return tuple(q._replace(path=f"{place}.{q.path}" if place else q.path, meaning=meaning) for q in quantities)
 
 
-def vector(path: str, unit: str, meaning: str) -> Quantity:
-    """Three components at each instant, in world axes."""
-    return Quantity(path, (unit,), (SPACE,), meaning)
+def scalar(name: str, unit: str, shape: Shape = (), timed: bool = True) -> Quantity:
+    """A number at each instant; of two units, `N | N·m`, the first is of what slides, the second of what turns."""
+    return Quantity(name, tuple(unit.split(" | ")), shape, "", timed)
 
 
-def cut_scalar(path: str, unit: str, meaning: str) -> Quantity:
-    """A number at each instant, of each cut."""
-    return Quantity(path, (unit,), (CUT,), meaning)
+def vector(name: str, unit: str) -> Quantity:
+    """Components in world axes at each instant."""
+    return scalar(name, unit, (SPACE,))
 
 
-def cut_vector(path: str, unit: str, meaning: str) -> Quantity:
-    """Three components at each instant, of each cut, in world axes."""
-    return Quantity(path, (unit,), (CUT, SPACE), meaning)
+def cut_scalar(name: str, unit: str) -> Quantity:
+    """A number of each cut at each instant."""
+    return scalar(name, unit, (CUT,))
 
 
-def constant(path: str, unit: str, shape: Shape, meaning: str) -> Quantity:
-    """What does not run over the instants."""
-    return Quantity(path, (unit,), shape, meaning, timed=False)
+def cut_vector(name: str, unit: str) -> Quantity:
+    """Components of each cut in world axes at each instant."""
+    return scalar(name, unit, (CUT, SPACE))
 
 
-def words(path: str, meaning: str) -> Quantity:
-    """Text, or names, or a block of its own form: no number, or known after the run only."""
-    return Quantity(path, (), (), meaning, timed=False)
+def words(name: str) -> Quantity:
+    """Text, names, or a block of its own form: no number that runs over the instants."""
+    return Quantity(name, (), (), "", timed=False)
 
 
+OPEN = "the components that are open at some instant, and those that a chosen split gives"
+NOT_YET = "not yet"
 ROWS: tuple[Quantity, ...] = (
-    words("model", "what was solved: see `heun model`"),
-    words("status", "`code`: completed or stopped, and a `message`"),
-    scalar("time", "s", "the instants"),
-    vector("bodies.BODY.position", "m", "of the body's origin"),
-    vector("bodies.BODY.velocity", "m/s", "of the body's origin"),
-    Quantity("bodies.BODY.rotation", ("1",), (SPACE, SPACE), "matrix; its columns are the body axes"),
-    vector("bodies.BODY.center", "m", "of the centre of mass"),
-    vector("bodies.BODY.center_velocity", "m/s", "of the centre of mass"),
-    vector("bodies.BODY.center_acceleration", "m/s²", "of the centre of mass"),
-    vector("bodies.BODY.angular_velocity", "rad/s", "of the body"),
-    vector("bodies.BODY.angular_acceleration", "rad/s²", "of the body"),
-    vector("points.POINT.position", "m", "of a named point, `body.point`"),
-    vector("points.POINT.velocity", "m/s", "of a named point, `body.point`"),
-    vector("points.POINT.acceleration", "m/s²", "of a named point, `body.point`"),
-    scalar("coordinates.JOINT.angle", "rad", "turning of `to` against `from`; counts full turns"),
-    scalar("coordinates.JOINT.rate", "rad/s", "turning of `to` against `from`; counts full turns"),
-    scalar("coordinates.JOINT.acceleration", "m/s² | rad/s²", "of a slide or cylinder along, of a pin about the axis"),
-    scalar("coordinates.JOINT.travel", "m", "sliding of `to` against `from`"),
-    scalar("coordinates.JOINT.speed", "m/s", "sliding of `to` against `from`"),
-    scalar("coordinates.JOINT.angular_acceleration", "rad/s²", "of a cylinder about its axis"),
-    constant("foundation.about", "m", (SPACE,), "point about which its moments are taken"),
-    vector("foundation.force", "N", "total ON the ground, moment about `about`"),
-    vector("foundation.moment", "N·m", "total ON the ground, moment about `about`"),
-    vector("foundation.axis.point", "m", "central axis: its point nearest `about`; none where there is no force"),
-    vector("foundation.axis.direction", "1", "central axis: its direction"),
-    scalar("foundation.axis.pitch", "m", "central axis: moment along it over force"),
-    vector("foundation.mass_effect.force", "N", "+Σ m ẍ, (56)"),
-    vector("foundation.mass_effect.moment_orbital", "N·m", "rate of Σ m x × ẋ, x from `about`"),
-    vector("foundation.mass_effect.moment_spin", "N·m", "rate of Σ I σ"),
-    vector("foundation.supports.JOINT.force", "N", "of a joint ON the ground, about the joint's `to` point"),
-    vector("foundation.supports.JOINT.moment", "N·m", "of a joint ON the ground, about the joint's `to` point"),
-    vector("foundation.elements.ELEMENT.force", "N", "of a load or drive ON the ground, about `point`"),
-    vector("foundation.elements.ELEMENT.moment", "N·m", "of a load or drive ON the ground, about `point`"),
-    vector("foundation.elements.ELEMENT.point", "m", "of a load or drive ON the ground, about `point`"),
-    words("foundation.shares", "by cause: not yet"),
-    vector("joints.JOINT.point", "m", "the joint's `to` point, now"),
-    vector("joints.JOINT.force", "N", "of the constraint, `from` ON `to`, about `point`"),
-    vector("joints.JOINT.moment", "N·m", "of the constraint, `from` ON `to`, about `point`"),
-    words("joints.JOINT.open", "components that are open at some instant"),
-    words("joints.JOINT.chosen", "components that a chosen split gives"),
-    scalar("joints.JOINT.drive", "N | N·m", "of the drive ON `to`, along or about the axis"),
-    scalar("joints.JOINT.axial", "N", "of the force: along the axis"),
-    scalar("joints.JOINT.radial", "N", "of the force: magnitude across the axis"),
-    scalar("joints.JOINT.tilting", "N·m", "of the moment: magnitude across the axis"),
-    scalar("joints.JOINT.tension", "N", "of a rod, > 0 pulls"),
-    words("joints.JOINT.shares", "by cause: not yet"),
-    cut_vector("sections.SECTION.point", "m", "about which its moments are taken"),
-    vector("sections.SECTION.normal", "1", "n, into the piece cut off; e1"),
-    vector("sections.SECTION.first_axis", "1", "n, into the piece cut off; e1"),
-    words("sections.SECTION.open", "components that are open at some instant"),
-    cut_vector("sections.SECTION.force", "N", "the piece ON the remainder, about `point`"),
-    cut_vector("sections.SECTION.moment", "N·m", "the piece ON the remainder, about `point`"),
-    cut_scalar("sections.SECTION.N", "N", "along n, > 0 tension"),
-    cut_scalar("sections.SECTION.Q1", "N", "shear along e1, e2"),
-    cut_scalar("sections.SECTION.Q2", "N", "shear along e1, e2"),
-    cut_scalar("sections.SECTION.T", "N·m", "torsion about n"),
-    cut_scalar("sections.SECTION.M1", "N·m", "bending about e1, e2"),
-    cut_scalar("sections.SECTION.M2", "N·m", "bending about e1, e2"),
-    cut_vector("sections.SECTION.line.point", "m", "Heun's reduction line"),
-    cut_vector("sections.SECTION.line.direction", "1", "Heun's reduction line"),
-    cut_vector("sections.SECTION.line.pressure_centre", "m", "where the moment in the plane is zero"),
-    cut_scalar("sections.SECTION.line.kind", "1", "0: a line, 1: none, 2: any"),
-    cut_scalar("sections.SECTION.stress.normal_max", "Pa", "over the section's edge, tension positive"),
-    cut_scalar("sections.SECTION.stress.normal_min", "Pa", "over the section's edge, tension positive"),
-    cut_scalar("sections.SECTION.stress.shear_torsion", "Pa", "largest of torsion; mean of Q1, Q2"),
-    cut_scalar("sections.SECTION.stress.shear_mean", "Pa", "largest of torsion; mean of Q1, Q2"),
-    cut_scalar("sections.SECTION.stress.mises", "Pa", "von Mises, on the safe side"),
-    cut_scalar("sections.SECTION.stress.utilisation", "1", "`mises` over `strength`"),
-    constant("sections.SECTION.s", "m", (CUT,), "of a run: place of each cut from its first point"),
-    words("sections.SECTION.side", "of a run: before or beyond a joint, force or point mass in the cut's plane"),
-    words("sections.SECTION.shares", "by cause: not yet"),
-    scalar("forces.FORCE.value", "N | N·m", "as in the spec; > 0 pushes apart"),
-    scalar("forces.FORCE.length", "m", "of its line"),
-    scalar("forces.FORCE.rate", "m/s | rad/s", "of its length, or of sliding or turning in its joint"),
-    scalar("forces.FORCE.power", "W", "put into the bodies"),
-    scalar("energy.kinetic", "J", "kinetic + potential − work is constant"),
-    scalar("energy.potential", "J", "kinetic + potential − work is constant"),
-    scalar("energy.work", "J", "kinetic + potential − work is constant"),
-    vector("system_vector.total", "N·m/s", "Heun's B (44)"),
-    vector("system_vector.bodies.BODY", "N·m/s", "Heun's B (44)"),
-    constant("impulses.NUMBER.time", "s", (), "of a blow: not yet"),
-    words("impulses.NUMBER.names", "of a blow: not yet"),
-    vector("impulses.NUMBER.bodies.BODY.center_velocity_jump", "m/s", "of a blow: not yet"),
-    vector("impulses.NUMBER.bodies.BODY.angular_velocity_jump", "rad/s", "of a blow: not yet"),
-    scalar("impulses.NUMBER.energy_jump", "J", "of a blow: not yet"),
-    words("certain_sums.NUMBER.terms", "factor of each open component: a number, or one an instant"),
-    scalar("certain_sums.NUMBER.value", "N | N·m", "their certain sum"),
-    constant("accuracy.energy_drift", "1", (), "of the largest kinetic energy"),
-    constant("accuracy.constraint_gap", "m", (), "largest gap of any loop"),
-    constant("accuracy.balance_residual", "1", (), "of a body's largest load"),
-    constant("accuracy.horizon", "s", (), "nothing is claimed from then on; null: none"),
-    constant("accuracy.estimate.motion", "1", (), "error of any point, of the scene's size"),
-    constant("accuracy.estimate.reactions", "1", (), "of the largest reaction"),
-    words("work", "kernel, steps, evaluations and seconds it took"),
-    words("title", "as in the spec"),
+    *at("", "what was solved, as `heun model` tells it", words("model")),
+    *at("", "completed or stopped, and a message", words("status")),
+    *at("", "the instants", scalar("time", "s")),
+    *at("bodies.BODY", "of the body's origin", vector("position", "m"), vector("velocity", "m/s")),
+    *at("bodies.BODY", "of the body: its axes are the columns", scalar("rotation", "1", (SPACE, SPACE))),
+    *at("bodies.BODY", "of the centre of mass",
+        vector("center", "m"), vector("center_velocity", "m/s"), vector("center_acceleration", "m/s²")),
+    *at("bodies.BODY", "of the body", vector("angular_velocity", "rad/s"), vector("angular_acceleration", "rad/s²")),
+    *at("points.POINT", "of a named point, `body.point`",
+        vector("position", "m"), vector("velocity", "m/s"), vector("acceleration", "m/s²")),
+    *at("coordinates.JOINT", "of `to` against `from`, turns counted; a cylinder's `acceleration` is along its axis",
+        scalar("angle", "rad"), scalar("rate", "rad/s"), scalar("acceleration", "m/s² | rad/s²"),
+        scalar("travel", "m"), scalar("speed", "m/s"), scalar("angular_acceleration", "rad/s²")),
+    *at("foundation", "total ON the ground, moment about `about`",
+        scalar("about", "m", (SPACE,), timed=False), vector("force", "N"), vector("moment", "N·m")),
+    *at("foundation.axis", "central axis: its point nearest `about`, direction, moment over force",
+        vector("point", "m"), vector("direction", "1"), scalar("pitch", "m")),
+    *at("foundation.mass_effect", "+Σ m ẍ, and the rates of Σ m x × ẋ and of Σ I σ (56)",
+        vector("force", "N"), vector("moment_orbital", "N·m"), vector("moment_spin", "N·m")),
+    *at("foundation.supports.JOINT", "of a joint ON the ground, moment about its `to` point",
+        vector("force", "N"), vector("moment", "N·m")),
+    *at("foundation.elements.ELEMENT", "of a force or drive ON the ground, moment about `point`",
+        vector("force", "N"), vector("moment", "N·m"), vector("point", "m")),
+    *at("foundation", NOT_YET, words("shares")),
+    *at("joints.JOINT", "of the constraint alone, `from` ON `to`, moment about `point`: where `to` is now",
+        vector("point", "m"), vector("force", "N"), vector("moment", "N·m")),
+    *at("joints.JOINT", OPEN, words("open"), words("chosen")),
+    *at("joints.JOINT", "of the drive ON `to`, along or about the axis", scalar("drive", "N | N·m")),
+    *at("joints.JOINT", "of the force along and across the axis, of the moment across it",
+        scalar("axial", "N"), scalar("radial", "N"), scalar("tilting", "N·m")),
+    *at("joints.JOINT", "of a rod, > 0 pulls", scalar("tension", "N")),
+    *at("joints.JOINT", NOT_YET, words("shares")),
+    *at("sections.SECTION", "about which moments are taken", cut_vector("point", "m")),
+    *at("sections.SECTION", "n, into the piece cut off, and e1; e2 = n × e1",
+        vector("normal", "1"), vector("first_axis", "1")),
+    *at("sections.SECTION", OPEN, words("open")),
+    *at("sections.SECTION", "of the piece ON the remainder", cut_vector("force", "N"), cut_vector("moment", "N·m")),
+    *at("sections.SECTION", "force along n (> 0 tension), e1, e2",
+        cut_scalar("N", "N"), cut_scalar("Q1", "N"), cut_scalar("Q2", "N")),
+    *at("sections.SECTION", "moment about n, e1, e2",
+        cut_scalar("T", "N·m"), cut_scalar("M1", "N·m"), cut_scalar("M2", "N·m")),
+    *at("sections.SECTION.line", "reduction line; where the moment in the plane is zero; 0: a line, 1: none, 2: any",
+        cut_vector("point", "m"), cut_vector("direction", "1"), cut_vector("pressure_centre", "m"),
+        cut_scalar("kind", "1")),
+    *at("sections.SECTION.stress", "over the section, on the safe side; `mises` over `strength`",
+        cut_scalar("normal_max", "Pa"), cut_scalar("normal_min", "Pa"), cut_scalar("shear_torsion", "Pa"),
+        cut_scalar("shear_mean", "Pa"), cut_scalar("mises", "Pa"), cut_scalar("utilisation", "1")),
+    *at("sections.SECTION", "of a run: from its first point to each cut", scalar("s", "m", (CUT,), timed=False)),
+    *at("sections.SECTION", "of a run: before or beyond what acts in the plane of the cut", words("side")),
+    *at("sections.SECTION", NOT_YET, words("shares")),
+    *at("forces.FORCE", "as in the spec; of its line; of that, or in its joint; put into the bodies",
+        scalar("value", "N | N·m"), scalar("length", "m"), scalar("rate", "m/s | rad/s"), scalar("power", "W")),
+    *at("energy", "kinetic + potential − work is constant",
+        scalar("kinetic", "J"), scalar("potential", "J"), scalar("work", "J")),
+    *at("system_vector", "Heun's B (44)", vector("total", "N·m/s")),
+    *at("system_vector.bodies", "each body's part in it", vector("BODY", "N·m/s")),
+    *at("impulses.NUMBER", NOT_YET, scalar("time", "s", timed=False), words("names")),
+    *at("impulses.NUMBER.bodies.BODY", NOT_YET,
+        vector("center_velocity_jump", "m/s"), vector("angular_velocity_jump", "rad/s")),
+    *at("impulses.NUMBER", NOT_YET, scalar("energy_jump", "J")),
+    *at("certain_sums.NUMBER", "the factor of each open component", words("terms")),
+    *at("certain_sums.NUMBER", "of the open components in `terms`, each times its factor", scalar("value", "N | N·m")),
+    *at("accuracy", "drift, gap and residual; nothing is claimed after the horizon (null: none)",
+        scalar("energy_drift", "1", timed=False), scalar("constraint_gap", "m", timed=False),
+        scalar("balance_residual", "1", timed=False), scalar("horizon", "s", timed=False)),
+    *at("accuracy.estimate", "error, of the scene's size and of the largest reaction",
+        scalar("motion", "1", timed=False), scalar("reactions", "1", timed=False)),
+    *at("", "kernel, steps, evaluations, seconds", words("work")),
+    *at("", "as in the spec", words("title")),
 )  # fmt: skip
 
 # The blocks that run over the instants, in their order, and the report each belongs to; the rest always stays.

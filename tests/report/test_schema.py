@@ -1,0 +1,171 @@
+"""One schema of results: shapes come from it and never from an array's length, and the README's table is it."""
+
+from __future__ import annotations
+
+from itertools import groupby
+from pathlib import Path
+
+import numpy as np
+import pytest
+
+from heuncli.cli import measure
+from heuncli.errors import HeunError, SpecError
+from heuncli.expressions.units import parse_unit
+from heuncli.report.export import to_csv
+from heuncli.report.page import until
+from heuncli.results import Results
+from heuncli.results_paths import find
+from heuncli.results_schema import NOT_YET, ROWS, SPACE, TREE, Node, Quantity, quantity
+from heuncli.spec.load import load
+from tests.shared.fakes import LABELS, FakeStudy, pendulum, vectors
+
+T = np.linspace(0.0, 2.0, 5)
+README = Path(__file__).parents[2] / "README.md"
+
+
+def run_of(count: int, t: np.ndarray = T) -> dict[str, object]:
+    """A run of cuts; at the cut k M2 is k + 1 times a wave, so that the last one has the largest."""
+    wave = np.sin(t)[:, None] * np.arange(1.0, count + 1.0)
+    force = np.stack([vectors(t, k, 0.0, 0.0) for k in range(count)], axis=1)
+    s = np.linspace(0.0, 1.0, count)
+    return {"s": s, "side": [None] * count, "normal": vectors(t, 1.0, 0.0, 0.0), "force": force,
+            **dict.fromkeys(("N", "Q1", "Q2", "T", "M1", "M2"), wave)}  # fmt: skip
+
+
+class Cuts(FakeStudy):
+    """A study with one run of as many cuts as `changes` says."""
+
+    def resample(self, times: np.ndarray) -> Results:
+        """At any instants."""
+        t = np.asarray(times)
+        return pendulum(t, sections={"run": run_of(int(self.changes["count"]), t)})
+
+
+def number(words: str, count: int) -> float:
+    return float(measure.write(measure.parse(words), Cuts(T, {"count": count}), LABELS, "table"))
+
+
+@pytest.mark.parametrize("count", [2, 3, 4])
+def test_a_run_of_three_cuts_is_no_vector(count: int) -> None:
+    """Its extremes are those of its cuts, and no magnitude over them."""
+    assert number("max abs sections.run.M2", count) == pytest.approx(count, rel=1e-9)
+    assert number("min sections.run.M2", count) == pytest.approx(0.0, abs=1e-9)
+    assert number("max sections.run.force", count) == pytest.approx(count - 1.0, rel=1e-12)
+    for how in ("first", "final", "at 0.5"):
+        with pytest.raises(HeunError, match=f"is {count} numbers"):
+            number(f"{how} sections.run.M2", count)
+
+
+@pytest.mark.parametrize("count", [2, 3, 4])
+def test_letters_are_of_space_and_cuts_are_counted(count: int) -> None:
+    results = pendulum(T, sections={"run": run_of(count)})
+    with pytest.raises(SpecError, match=f"has no 'x'; known: 0 ... {count - 1}"):
+        find(results, "sections.run.M2.x")
+    assert find(results, "sections.run.force.1.x").values.shape == T.shape
+    assert find(results, "sections.run.force.1").of_vectors
+    assert not find(results, "sections.run.M2").of_vectors
+    components = {line.split(",")[4] for line in to_csv(results, LABELS).splitlines() if ",run,M2," in line}
+    assert components == {str(cut) for cut in range(count)}
+
+
+def test_what_stands_for_all_instants_is_not_cut_with_them() -> None:
+    """Three cuts, three components of a point, at three instants: only the instants are shortened."""
+    t = T[:3]
+    whole = pendulum(t, sections={"run": run_of(3, t)}, certain_sums=[
+        {"terms": {"joints.a.force.x": np.ones(3), "joints.b.force.x": 1.0}, "value": t},
+    ])  # fmt: skip
+    short = until(whole, t[1])
+    assert short.time.shape == (1,)
+    assert short.sections["run"]["s"].shape == (3,)
+    assert short.sections["run"]["M2"].shape == (1, 3)
+    assert short.foundation["about"].shape == (3,)
+    assert short.certain_sums[0]["value"].shape == short.certain_sums[0]["terms"]["joints.a.force.x"].shape == (1,)
+
+
+SCENE = """
+heun: 1
+bodies:
+  b: {{shapes: [{{type: rod, from: [0, 0, 0], to: [1, 0, 0], mass: 1}}], points: {{p: [1, 0, 0]}}}}
+sections:
+  run: {{body: b, from: [0.1, 0, 0], to: [0.9, 0, 0], count: 3}}
+  one: {{body: b, at: [0.5, 0, 0], normal: [1, 0, 0], reduce_to: line}}
+analysis: {{times: [0, 0.5, 1]}}
+expect: [{}]
+"""
+
+
+def judged(item: str) -> str:
+    try:
+        load("x.yaml", text=SCENE.format(item))
+    except SpecError as error:
+        return "\n".join(str(problem) for problem in error.problems)
+    return ""
+
+
+@pytest.mark.parametrize(
+    ("item", "message"),
+    [
+        ("{of: sections.run.M2.x, at: 0, is: 1}", "'x' is not a result"),
+        ("{of: sections.run.M2.2, at: 0, is: 1}", ""),
+        ("{of: sections.run.force.2.x, at: 0, is: 1}", ""),
+        ("{of: sections.one.force.x, at: 0, is: 1}", ""),
+        ("{of: sections.one.line.kind, at: 0, is: 1}", ""),
+        ("{of: sections.one.force, at: 0, is: 1}", "name one of its numbers, as sections.one.force.x"),
+        ("{of: sections.run.M2, at: 0, is: 1}", "name one of its numbers, as sections.run.M2.0"),
+        ("{of: energy.kinetic, is: [1, 2]}", "name one of its numbers, as energy.kinetic.0"),  # of three instants
+        ("{of: points.b.p.position.z, at: 0, is: 1}", ""),
+        ("{of: points.b.q.position.z, at: 0, is: 1}", "did you mean b.p?"),
+        ("{of: points.b, at: 0, is: 1}", "'b' is not a result"),
+    ],
+)
+def test_expectations_know_the_shapes(item: str, message: str) -> None:
+    told = judged(item)
+    assert message in told
+    assert bool(told) == bool(message)
+
+
+def test_every_unit_has_a_dimension() -> None:
+    for row in ROWS:
+        for unit in row.units:
+            assert parse_unit(unit)[0] == 1.0, row.path
+
+
+def test_every_row_is_found_by_its_path() -> None:
+    for row in ROWS:
+        assert quantity(row.path.split(".")) is row
+    assert quantity(("joints", "elbow", "forc")) is None
+    assert quantity(("joints", "elbow")) is None
+    blow = quantity(("impulses", "3", "joints", "elbow", "force"))
+    assert blow is not None
+    assert blow.units == ("N·s",)
+
+
+def leaves(node: Node) -> list[Quantity]:
+    return [row for below in node.values() for row in (leaves(below) if isinstance(below, dict) else [below])]
+
+
+def test_the_readme_has_the_schema_as_a_table() -> None:
+    text = README.read_text()
+    table = readme_table()
+    assert table in text, f"### Results of README.md should be:\n\n{table}"
+    assert len(leaves(TREE)) > len(ROWS)  # with what a blow has
+
+
+def readme_table() -> str:
+    """A line for the numbers that stand in one place and have one meaning."""
+    lines = ["| path | SI unit | |", "|---|---|---|"]
+    numbers = [row for row in ROWS if row.units and row.meaning != NOT_YET]
+    for (place, meaning), group in groupby(numbers, lambda row: (row.path.rpartition(".")[0], row.meaning)):
+        rows = list(group)
+        first, *others = [row.path.rpartition(".")[2] for row in rows]
+        names = [f"`{place}.{first}`" if place else f"`{first}`", *(f"`{name}`" for name in others)]
+        units = [unit_of(row) for row in rows]
+        units = units[:1] if len(set(units)) == 1 else units
+        lines.append(f"| {', '.join(names)} | {', '.join(units)} | {meaning} |")
+    return "\n".join(lines) + "\n"
+
+
+def unit_of(row: Quantity) -> str:
+    """The unit; *m* of a vector, **1** of a matrix."""
+    stars = "*" * row.shape.count(SPACE)
+    return f"{stars}{' or '.join(row.units)}{stars}"
