@@ -10,7 +10,6 @@ from typing import Any
 import numpy as np
 
 from heuncli.cli.entry import UsageError, tell, worst
-from heuncli.cli.expect import Case, compare, wanted
 from heuncli.cli.output import emit
 from heuncli.cli.requests import Check
 from heuncli.cli.solving import choice, warn
@@ -21,6 +20,7 @@ from heuncli.report.table import Column, Table, plain
 from heuncli.report.words import count
 from heuncli.results import Array
 from heuncli.spec.load import load
+from heuncli.study.expect import Case, compare, wanted
 from heuncli.study.solve import Options, solve
 
 FORMATS = ("table", "json")

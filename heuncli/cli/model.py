@@ -20,7 +20,7 @@ def main(request: Model) -> int:
     """Run the command; returns the exit code."""
     form = choice("--format", request.format or "text", FORMATS)
     spec = load(request.spec, overrides=overrides(request.set), checking=False)
-    model: Mapping[str, Any] = describe(spec).model
+    model: Mapping[str, Any] = describe(spec)
     emit(dump(dict(model)) if form == "json" else note(spec.title, model), request.output)
     warn(spec, None, request.quiet)
     return 0

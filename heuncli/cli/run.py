@@ -13,17 +13,17 @@ import numpy as np
 from heuncli.cli.entry import UsageError
 from heuncli.cli.output import emit, say
 from heuncli.cli.requests import FORMATS, Run
-from heuncli.cli.solving import choice, extremes, instants, overrides, positive, timings, warn
+from heuncli.cli.solving import choice, instants, overrides, positive, timings, warn
 from heuncli.errors import Problem
+from heuncli.integration.tableaus import METHODS
 from heuncli.report.heading import write_heading, write_heading_markdown
 from heuncli.report.labels import Labels, labels_of
 from heuncli.report.layout import Found
-from heuncli.report.page import EXPORT_DEFAULT, TABLE_DEFAULT, page_of, restrict
+from heuncli.report.page import EXPORT_DEFAULT, TABLE_DEFAULT, page_of
 from heuncli.report.table import Table, markdown, plain
 from heuncli.results import Results
 from heuncli.results_schema import REPORTS
 from heuncli.spec.load import load
-from heuncli.spec.rules.not_yet import METHODS
 from heuncli.study.solve import Options, Study, solve
 
 ENDINGS = {".json": "json", ".csv": "csv", ".md": "markdown"}
@@ -46,7 +46,6 @@ def main(request: Run) -> int:
         tolerance=positive("--tolerance", request.tolerance),
         method=_method(request.method),
         least_norm=request.least_norm,
-        reduce=not request.no_reduce,
         time_limit=positive("--time-limit", request.time_limit),
     )
     begun = time.perf_counter()
@@ -55,7 +54,7 @@ def main(request: Run) -> int:
     wanted = asked.wanted if asked else _wanted(only, spec.report, form)
     study = solve(spec, replace(options, wanted=wanted))
     if asked:
-        text = measure.write(asked, study, labels_of(spec), form)
+        text = measure.write(asked, study, form)
     else:
         text = _report(request, form, study, labels_of(spec), wanted or frozenset(REPORTS))
     emit(text, request.output)
@@ -107,12 +106,12 @@ def _report(request: Run, form: str, study: Study, labels: Labels, wanted: froze
     if form not in TABLES:
         from heuncli.report.export import to_csv, to_json  # tables do without
 
-        return to_json(restrict(shown, wanted)) if form == "json" else to_csv(restrict(shown, wanted), labels)
-    page = page_of(restrict(study.results, wanted), labels)
+        return to_json(shown) if form == "json" else to_csv(shown, labels)
+    page = page_of(study.results, labels)
     if request.all or at is not None or len(study.results.time) == 1:
-        tables = page.instants(restrict(shown, wanted), every_cut=request.all)
+        tables = page.instants(shown, every_cut=request.all)
     else:
-        found = extremes(study, lambda results: page.columns(restrict(results, wanted)), page.groups(), ROUNDS)
+        found = study.extremes(page.columns, page.groups(), wanted, ROUNDS)
         tables = page.extremes(Found(*found[:-1]))
         if not found.searched:
             tables.append(Table("", notes=(NOT_SEARCHED,)))

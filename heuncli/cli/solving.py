@@ -1,9 +1,9 @@
-"""What the commands share around a solved scene: options read from words, warnings told, extremes searched for."""
+"""What the commands share: options read from words, warnings and timings written."""
 
 from __future__ import annotations
 
 import math
-from collections.abc import Callable, Mapping, Sequence
+from collections.abc import Mapping, Sequence
 from typing import Any
 
 import numpy as np
@@ -12,12 +12,8 @@ from heuncli.cli.entry import UsageError
 from heuncli.cli.output import say
 from heuncli.errors import Problem
 from heuncli.results import Array, Results
-from heuncli.results_schema import REPORT_OF
 from heuncli.spec.models import Spec
-from heuncli.study import extremes as peaks
-from heuncli.study.solve import Study
 
-MOST_SEARCHED = 1_000_000  # numbers to look at for extremes between the samples
 SAME_INSTANT = 1e-9  # of the run's length: instants this near to each other are one
 
 
@@ -60,33 +56,6 @@ def instants(words: str, times: Array) -> Array:
             raise UsageError(Problem("bad-option", f"--at {t:.6g}: {message}"))
     within: Array = np.clip(np.array(asked), times[0], times[-1])
     return within
-
-
-def extremes(
-    study: Study, columns: Callable[[Results], Array], groups: Sequence[Sequence[int]], rounds: int = peaks.ROUNDS
-) -> peaks.Extremes:
-    """The extremes over the run, before its horizon, of the columns made of its results.
-
-    Where there are so many that a search would outweigh the run, those of the asked instants.
-    """
-    results = study.results
-    times = results.time
-    if sum(map(len, groups)) * len(study.search_times) <= MOST_SEARCHED:
-        times = study.search_times
-    else:
-        rounds = 0
-    horizon = results.accuracy.get("horizon")
-    if horizon is not None:
-        times = times[times < horizon] if times[0] < horizon else times[:1]
-    if rounds == 0 and len(times) == len(results.time):
-        return peaks.search(lambda _: columns(results), times, groups, rounds)
-    return peaks.search(lambda t: columns(study.resample(t)), times, groups, rounds)
-
-
-def report_of(path: str) -> frozenset[str] | None:
-    """Which report a path needs; None where that cannot be told from its first word."""
-    report = REPORT_OF.get(path.split(".")[0])
-    return frozenset({report}) if report else None
 
 
 def warn(spec: Spec, results: Results | None, quiet: bool, place: str = "heun") -> list[str]:

@@ -36,9 +36,9 @@ def _of_cuts(spec: Spec) -> list[str]:
     """Warnings of the sections. Raises SpecError with every one that cannot be cut."""
     if not spec.sections:
         return []
-    from heuncli.tree.prepare import drawn  # with NumPy, which other specs are judged without
+    from heuncli.study.setup import draw  # with NumPy, which other specs are judged without
 
-    return [f"{spec.path}: {warning}" for cut in drawn(spec)[1] for warning in cut.warnings]
+    return [f"{spec.path}: {warning}" for cut in draw(spec)[1] for warning in cut.warnings]
 
 
 def _summary(spec: Spec, warnings: int) -> str:

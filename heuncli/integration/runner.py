@@ -11,6 +11,7 @@ from array import array
 from bisect import bisect_right
 from collections.abc import Sequence
 from dataclasses import dataclass, field
+from functools import cache
 from typing import Any
 
 import numpy as np
@@ -75,6 +76,7 @@ def stops(mechanism: Mechanism, t0: float, t1: float) -> list[float]:
     return sorted({t for e in expressions if e.time_dependent for t in breakpoints(e, t0, t1)})
 
 
+@cache
 def method_arrays(tableau: Tableau) -> tuple[array[int], array[float]]:
     """A tableau as the kernel's MI and T (layout: kernel/step.py)."""
     rows = [(), *tableau.stages, tableau.solution, *tableau.extra, tableau.error3, tableau.error5, *tableau.dense]

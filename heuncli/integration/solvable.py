@@ -8,12 +8,12 @@ import numpy as np
 
 from heuncli.errors import Problem, SolveError
 from heuncli.integration.runner import Recovered
-from heuncli.tree.prepare import Scene
+from heuncli.tree.prepare import PreparedScene
 
 NO_MOMENT = 1e-9  # of the loads there: a smaller moment about an axis without inertia is rounding
 
 
-def refuse(scene: Scene, found: Recovered) -> None:
+def refuse(scene: PreparedScene, found: Recovered) -> None:
     """Raise SolveError for answers that are not finite, freedoms with nothing behind them, moments without inertia."""
     finite = np.isfinite(found.bodies).all(axis=(1, 2))
     if not finite.all():
@@ -42,7 +42,7 @@ def refuse(scene: Scene, found: Recovered) -> None:
             raise SolveError(Problem("no-inertia", message, hint=hint))
 
 
-def not_finite(scene: Scene, found: Recovered, instant: int) -> list[Problem]:
+def not_finite(scene: PreparedScene, found: Recovered, instant: int) -> list[Problem]:
     """The expressions without a value there, else that no acceleration exists."""
     from heuncli.integration.domains import moving, without_value  # only on the way to an error
 
@@ -52,7 +52,7 @@ def not_finite(scene: Scene, found: Recovered, instant: int) -> list[Problem]:
     return problems or [Problem("not-a-number", message, hint="look at points that coincide, and at very large values")]
 
 
-def nothing_behind(scene: Scene, t: float) -> Problem:
+def nothing_behind(scene: PreparedScene, t: float) -> Problem:
     """A freedom moves no mass: which bodies have no inertia about some axis."""
     thin = []
     for body in scene.mechanism.bodies:

@@ -241,3 +241,5 @@ DOP853 = Tableau(
         ),
     ),
 )
+
+METHODS = {"auto": DOP853, "DOP853": DOP853}  # by the names of --method and analysis.method

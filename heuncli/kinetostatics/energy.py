@@ -11,6 +11,8 @@ from heuncli.mechanism.model import Mechanism, PairLoad
 from heuncli.results import Array, Block
 from heuncli.tree.layout import Layout
 
+AT_REST = 1e-20  # of the weight's work over the scene's size: less kinetic energy is none, and no scale
+
 
 def energy(layout: Layout, found: Recovered, states: BodyStates) -> Block:
     """Kinetic energy, potential energy (gravity from the world's origin, springs), work of all else, (n_t,) [J]."""
@@ -39,3 +41,13 @@ def system_vector(mechanism: Mechanism, states: BodyStates) -> Block:
     own: Array = twice_e[:, :, None] * w + np.einsum("nij,tnj->tni", T, np.cross(w, u))
     B = m[:, None] * np.cross(states.v_centre, states.a_centre) + np.einsum("tnij,tnj->tni", states.R, own)
     return {"total": B.sum(axis=1), "bodies": {b.name: B[:, i] for i, b in enumerate(mechanism.bodies)}}
+
+
+def energy_drift(kinetic: Array, potential: Array, work: Array, lift: float) -> float:
+    """Change of kinetic + potential - work from the start, relative to the largest kinetic energy; 0 at rest.
+
+    lift: the work of the weight over the scene's size [J], by which rest is judged.
+    """
+    total = kinetic + potential - work
+    largest = float(kinetic.max(initial=0.0))
+    return float(np.abs(total - total[0]).max(initial=0.0)) / largest if largest > AT_REST * lift else 0.0

@@ -10,7 +10,7 @@ column the force, the skew part of the rest the moment about the body's origin. 
 
 from __future__ import annotations
 
-from collections.abc import Sequence
+from collections.abc import Mapping, Sequence
 from dataclasses import dataclass
 
 import numpy as np
@@ -22,8 +22,6 @@ from heuncli.kinetostatics.cuts import Cuts
 from heuncli.kinetostatics.foundation import load_slots
 from heuncli.kinetostatics.stress import MODULI, stresses
 from heuncli.mechanism.model import Joint, Mechanism, PairLoad, PointLoad
-from heuncli.redundancy.open_components import names_of
-from heuncli.redundancy.self_stress import OPEN, SelfStress
 from heuncli.results import Array, Block, Mask
 
 NONE = 1e-12  # of |s'| + |M'| / reach: a smaller normal or shear force has no line
@@ -233,6 +231,12 @@ def planes(cuts: Cuts, states: BodyStates) -> Planes:
 
 
 MOMENTS = frozenset({"moment", "T", "M1", "M2", "T0", "M10", "M20"})
+ABOUT_CENTROID = ("T0", "M10", "M20")
+
+
+def components_at_rest(cuts: Cuts, states: BodyStates, on: Sequence[Attachment]) -> Block:
+    """All components of what attached loads alone put on the cuts, no weight, no inertia: (n_t, k), (n_t, k, 3)."""
+    return planes(cuts, states).components(*piece_loads(cuts, np.zeros((3, len(states.x), 4)), on))
 
 
 def section(
@@ -240,35 +244,25 @@ def section(
     states: BodyStates,
     gravity: Array,
     on: Sequence[Attachment],
-    stress: SelfStress | None,
-    shares: Sequence[Sequence[Attachment]],
+    is_open: Mapping[str, Mask],
     planar: bool = False,
 ) -> Block:
     """The block of one section: a single cut without its axis of cuts, a run with `s` and `side`.
 
-    shares: what each self-stress attaches to the body; a component one of them reaches is open, nan.
+    is_open: which components, of those of `Planes.components`, are indeterminate: they become nan.
     """
-    n_t = len(states.x)
     where = planes(cuts, states)
     force, moment = piece_loads(cuts, acceleration_matrix(cuts.body, states, gravity), on)
     if planar:
         force[2], moment[:2] = 0.0, 0.0
-    found = where.components(force, moment)
-    is_open: dict[str, Mask] = {}
-    if stress is not None:
-        for j, own in enumerate(shares):
-            limit = np.where(stress.largest[:, j] > 0.0, OPEN * stress.largest[:, j], np.inf)
-            for name, share in where.components(*piece_loads(cuts, np.zeros((3, n_t, 4)), own)).items():
-                scale = limit * (stress.length if name in MOMENTS else 1.0)
-                reached = np.abs(share) > scale.reshape(-1, *([1] * (share.ndim - 1)))
-                is_open[name] = is_open.get(name, False) | reached
-        found = {
-            name: np.where(is_open[name], np.nan, value) if name in is_open else value for name, value in found.items()
-        }
-    about_centroid = {name[:-1]: found.pop(name) for name in ("T0", "M10", "M20") if name in found}
+    found = {
+        name: np.where(is_open[name], np.nan, value) if name in is_open else value
+        for name, value in where.components(force, moment).items()
+    }
+    about_centroid = {name[:-1]: found.pop(name) for name in ABOUT_CENTROID if name in found}
     block: Block = {
         "point": where.outward(where.about, place=True), "normal": where.R @ cuts.n, "first_axis": where.R @ cuts.e1,
-        "open": names_of({n: v.reshape(-1, 3) if v.ndim == 3 else v.ravel() for n, v in is_open.items() if n in found}),
+        "open": [],
     } | found  # fmt: skip
     if cuts.properties is not None:
         moduli = MODULI[cuts.properties.kind](cuts.properties.values)

@@ -21,7 +21,7 @@ from heuncli.redundancy.count import NEIGHBOUR, freedoms_of_tree, redundancy
 from heuncli.redundancy.neighbours import neighbours
 from heuncli.redundancy.self_stress import self_stress
 from heuncli.results import Array, Block
-from heuncli.tree.prepare import Scene, arranged
+from heuncli.tree.prepare import PreparedScene, arranged
 
 MOST_TRIED = 400  # replacements tried before the hint is given up
 ONE = 1e-6  # of the largest: what is open in a joint has one direction if less lies across it
@@ -29,7 +29,7 @@ ONE = 1e-6  # of the largest: what is open in a joint has one direction if less 
 Choices = Mapping[int, tuple[Joint, ...]]  # joint -> what may take its place
 
 
-def advice(scene: Scene, model: Block) -> list[str]:
+def advice(scene: PreparedScene, model: Block) -> list[str]:
     """A replacement of joints that leaves nothing open and changes no freedom, or that none was found.
 
     Nothing where nothing is held twice.
@@ -45,7 +45,7 @@ def advice(scene: Scene, model: Block) -> list[str]:
     return stepwise(scene, choices, model)
 
 
-def stepwise(scene: Scene, choices: Choices, model: Block) -> list[str]:
+def stepwise(scene: PreparedScene, choices: Choices, model: Block) -> list[str]:
     """Joints loosened one after another, inner ones first, wherever that opens less and changes no freedom."""
     changed, left = dict[int, Joint](), int(model["redundant"])
     for k, kinds in choices.items():
@@ -62,7 +62,7 @@ def stepwise(scene: Scene, choices: Choices, model: Block) -> list[str]:
     return [f"with {told(scene, changed, ', ')} only {rest}"]
 
 
-def choices_of(scene: Scene) -> Choices:
+def choices_of(scene: PreparedScene) -> Choices:
     """Of each joint that may change what may take its place; inner joints first."""
     mechanism = scene.mechanism
     joints = mechanism.joints
@@ -85,7 +85,7 @@ def _expressions(load: Load) -> list[Expression]:
     return [value for value in values if value is not None]
 
 
-def open_directions(scene: Scene) -> list[Array | None]:
+def open_directions(scene: PreparedScene) -> list[Array | None]:
     """Of each joint the one direction in `from` axes in which its force is open; None where there are more, or none."""
     runner = Runner(scene.layout)
     here = runner.recovered(np.zeros(1), scene.layout.y0[None, :])
@@ -103,7 +103,7 @@ def open_directions(scene: Scene) -> list[Array | None]:
     return found
 
 
-def _left(scene: Scene, changed: Mapping[int, Joint], model: Block) -> int | None:
+def _left(scene: PreparedScene, changed: Mapping[int, Joint], model: Block) -> int | None:
     """What is left redundant with these joints; None where they free something, or leave a spin to nobody."""
     joints = tuple(changed.get(k, j) for k, j in enumerate(scene.mechanism.joints))
     other = arranged(replace(scene.mechanism, joints=joints), scene.start)
@@ -145,7 +145,7 @@ def loosened(joint: Joint, kind: str, along: Array | None) -> Joint | None:
     return replace(joint, kind=kind, to_axis=across / np.sqrt(across @ across), to_axis_given=True)
 
 
-def told(scene: Scene, changed: Mapping[int, Joint], between: str) -> str:
+def told(scene: PreparedScene, changed: Mapping[int, Joint], between: str) -> str:
     """The replacements in words that can be typed: an axis where it is not the joint's own."""
     words = []
     for k, other in changed.items():

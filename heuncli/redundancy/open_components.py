@@ -5,13 +5,18 @@ A component in any direction c of a wrench is open where c . share is; so `axial
 
 from __future__ import annotations
 
-from collections.abc import Mapping
+from collections.abc import Mapping, Sequence
+from typing import TYPE_CHECKING
 
 import numpy as np
 
+from heuncli.kinetostatics.bodies import BodyStates
 from heuncli.kinetostatics.reactions import JointLoads
-from heuncli.redundancy.self_stress import SelfStress
+from heuncli.redundancy.self_stress import OPEN, SelfStress
 from heuncli.results import Array, Block, Mask
+
+if TYPE_CHECKING:  # loaded where a scene has sections
+    from heuncli.kinetostatics.cuts import Cuts
 
 WORLD = ("x", "y", "z")
 
@@ -72,3 +77,29 @@ def open_support(block: Block, share: Array, stress: SelfStress) -> None:
     """Open components of a support's force and moment ON the ground, in place."""
     force, moment = wrench_open(stress, share)
     block["force"], block["moment"] = opened(block["force"], force), opened(block["moment"], moment)
+
+
+def open_in_section(
+    cuts: Cuts, states: BodyStates, joints: Sequence[JointLoads], stress: SelfStress
+) -> dict[str, Mask]:
+    """Of each component of a section's loads whether it is open: some self-stress has a share in it."""
+    from heuncli.kinetostatics.sections import MOMENTS, components_at_rest, joint_attachments
+
+    is_open: dict[str, Mask] = {}
+    for k in range(stress.largest.shape[1]):
+        parts = zip(joints, stress.shares, strict=True)
+        on = joint_attachments(cuts.body, states, [(j.joint, j.point, s[:, :3, k], s[:, 3:, k]) for j, s in parts])
+        limit = np.where(stress.largest[:, k] > 0.0, OPEN * stress.largest[:, k], np.inf)
+        for name, share in components_at_rest(cuts, states, on).items():
+            scale = limit * (stress.length if name in MOMENTS else 1.0)
+            reached = np.abs(share) > scale.reshape(-1, *([1] * (share.ndim - 1)))
+            is_open[name] = is_open.get(name, False) | reached
+    return is_open
+
+
+def names_in_section(is_open: Mapping[str, Mask]) -> list[str]:
+    """Names of a section's components that are open at some instant, in some cut."""
+    from heuncli.kinetostatics.sections import ABOUT_CENTROID
+
+    shown = {name: mask for name, mask in is_open.items() if name not in ABOUT_CENTROID}
+    return names_of({name: mask.reshape(-1, 3) if mask.ndim == 3 else mask.ravel() for name, mask in shown.items()})

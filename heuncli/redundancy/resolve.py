@@ -16,7 +16,7 @@ from heuncli.redundancy.open_components import names_of, open_joint, open_suppor
 from heuncli.redundancy.self_stress import SelfStress, self_stress
 from heuncli.redundancy.split import split
 from heuncli.results import Array, Block
-from heuncli.tree.prepare import Scene
+from heuncli.tree.prepare import PreparedScene
 
 # [rad] or of the size: how far neighbouring poses lie in which a certain sum must hold too; several, for what has one
 # freedom gives two poses each, and among more components than poses some sums hold by accident
@@ -39,19 +39,21 @@ class Decided:
         """Sentences on instants at which more is open than `redundant`, or nearly so."""
         return singular_poses(self.found, times, redundant) if self.found is not None else []
 
-    def show(self, base: Block, reactions: Block) -> None:
+    def show(self, base: Block | None, reactions: Block | None) -> None:
         """Mark what is open, or was until a split was chosen, in the blocks of foundation and joints, in place."""
         if self.left is not None:
             put_verdicts(self.left, self.joints, base, reactions)
-        if self.words and self.stress is not None:
+        if self.words and self.stress is not None and reactions is not None:
             mark_chosen(self.stress, self.joints, reactions)
 
-    def sums(self, scene: Scene, runner: Runner, found: Recovered) -> list[Block]:
+    def sums(self, scene: PreparedScene, runner: Runner, found: Recovered) -> list[Block]:
         """Certain sums of what is open."""
         return sums_of(scene, runner, found, self.joints, self.left) if self.left is not None else []
 
 
-def decide(scene: Scene, found: Recovered, states: BodyStates, joints: list[JointLoads], least_norm: bool) -> Decided:
+def decide(
+    scene: PreparedScene, found: Recovered, states: BodyStates, joints: list[JointLoads], least_norm: bool
+) -> Decided:
     """Find the self-stresses and apply the split that was asked for."""
     stress = self_stress(scene.layout, states, found.gap)
     if stress is None or not stress.count.any():
@@ -77,13 +79,14 @@ def singular_poses(stress: SelfStress, times: Array, redundant: int) -> list[str
     return found
 
 
-def put_verdicts(stress: SelfStress, joints: Sequence[JointLoads], base: Block, reactions: Block) -> None:
+def put_verdicts(stress: SelfStress, joints: Sequence[JointLoads], base: Block | None, reactions: Block | None) -> None:
     """Make the open components of joints and supports visible, in place."""
+    supports = base.get("supports", {}) if base is not None else {}
     for load, share in zip(joints, stress.shares, strict=True):
-        open_joint(reactions[load.joint.name], load, share, stress)
-        support = base.get("supports", {}).get(load.joint.name)
-        if support is not None:
-            open_support(support, share, stress)
+        if reactions is not None:
+            open_joint(reactions[load.joint.name], load, share, stress)
+        if load.joint.name in supports:
+            open_support(supports[load.joint.name], share, stress)
 
 
 def mark_chosen(stress: SelfStress, joints: Sequence[JointLoads], reactions: Block) -> None:
@@ -96,7 +99,7 @@ def mark_chosen(stress: SelfStress, joints: Sequence[JointLoads], reactions: Blo
 
 
 def sums_of(
-    scene: Scene, runner: Runner, found: Recovered, joints: Sequence[JointLoads], stress: SelfStress
+    scene: PreparedScene, runner: Runner, found: Recovered, joints: Sequence[JointLoads], stress: SelfStress
 ) -> list[Block]:
     """Certain sums of the joints' open components, true at the asked instants and in neighbouring poses."""
     pick = np.unique(np.linspace(0, len(found.times) - 1, SUMS_FROM).astype(int))

@@ -6,7 +6,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Sequence, Set
+from collections.abc import Sequence
 from dataclasses import replace
 from typing import Any, NamedTuple
 
@@ -25,12 +25,6 @@ from heuncli.results_schema import REPORT_OF, REPORTS, quantity
 
 TABLE_DEFAULT = frozenset(REPORTS) - {"motion", "points"}
 EXPORT_DEFAULT = frozenset(REPORTS) - {"points"}
-
-
-def restrict(results: Results, wanted: Set[str]) -> Results:
-    """The results without the blocks that were not asked for."""
-    unasked: dict[str, Any] = {block: {} for block, report in REPORT_OF.items() if report not in wanted}
-    return replace(results, **unasked)
 
 
 class Page(NamedTuple):

@@ -1,27 +1,28 @@
-"""The kernel's answers at some instants made into Results: reactions, verdicts, sums, sections, foundation, energy.
+"""The kernel's answers at some instants made into blocks of Results: reactions, verdicts, sums, sections, foundation.
 
 Reads as the list of what is computed; each thing has its own module. Raises SolveError where no acceleration exists.
 """
 
 from __future__ import annotations
 
-from collections.abc import Sequence
+from collections.abc import Set
 from dataclasses import dataclass
+from functools import cached_property
 from typing import TYPE_CHECKING, Any
 
 import numpy as np
 
-from heuncli.integration.runner import Recovered, Runner
+from heuncli.integration.runner import Recovered
 from heuncli.integration.solvable import refuse
+from heuncli.kinetostatics.balance import balance_residual
 from heuncli.kinetostatics.bodies import BodyStates, body_states
 from heuncli.kinetostatics.coordinates import coordinates, points
-from heuncli.kinetostatics.energy import energy, system_vector
+from heuncli.kinetostatics.energy import energy, energy_drift, system_vector
 from heuncli.kinetostatics.foundation import foundation, load_slots
 from heuncli.kinetostatics.reactions import JointLoads, joint_loads
 from heuncli.mechanism.model import JointLoad, Mechanism, PairLoad
 from heuncli.results import Array, Block
-from heuncli.study.checked import balance_residual, energy_drift
-from heuncli.tree.prepare import Scene
+from heuncli.study.setup import Setup
 
 if TYPE_CHECKING:  # loaded where a scene has closed chains, or sections
     from heuncli.redundancy.resolve import Decided
@@ -29,67 +30,102 @@ if TYPE_CHECKING:  # loaded where a scene has closed chains, or sections
 
 
 @dataclass(frozen=True, eq=False)
-class Composed:
-    """The blocks of Results that are functions of the state, and how a split was chosen, in words."""
+class Recovery:
+    """What follows from the kernel's answers at some instants; each thing is computed when it is first asked for."""
 
-    blocks: dict[str, Any]
-    sums: list[Block]
-    split: tuple[str, ...]
-    accuracy: Block
-    decided: Decided | None
+    setup: Setup
+    recovered: Recovered
+    least_norm: bool
+
+    @cached_property
+    def states(self) -> BodyStates:
+        """Places, velocities and accelerations of the bodies."""
+        return body_states(self.setup.scene.layout, self.recovered)
+
+    @cached_property
+    def decided(self) -> Decided | None:
+        """What redundant joints leave open, after the split that was asked for; None without closed chains."""
+        layout = self.setup.scene.layout
+        if not layout.rows:
+            return None
+        from heuncli.redundancy.resolve import decide  # a tree starts faster without it
+
+        joints = joint_loads(layout, self.recovered, self.states)
+        return decide(self.setup.scene, self.recovered, self.states, joints, self.least_norm)
+
+    @cached_property
+    def joints(self) -> list[JointLoads]:
+        """The joints' reactions."""
+        if self.decided is not None:
+            return self.decided.joints
+        return joint_loads(self.setup.scene.layout, self.recovered, self.states)
+
+    @cached_property
+    def energy(self) -> Block:
+        """Kinetic and potential energy, and work."""
+        return energy(self.setup.scene.layout, self.recovered, self.states)
+
+    @property
+    def indeterminate(self) -> SelfStress | None:
+        """The self-stresses that no split has resolved."""
+        return self.decided.left if self.decided is not None else None
 
 
-def compose(
-    scene: Scene, runner: Runner, found: Recovered, about: Array, wanted: frozenset[str], least_norm: bool
-) -> Composed:
-    """All wanted blocks at the instants of `found`."""
-    mechanism, layout = scene.mechanism, scene.layout
-    states = body_states(layout, found)
-    joints = joint_loads(layout, found, states)
-    refuse(scene, found)
-    decided = decided_of(scene, found, states, joints, least_norm)
-    left, words = None, tuple[str, ...]()
-    if decided is not None:
-        joints, left, words = decided.joints, decided.left, decided.words
-    power = energy(layout, found, states)
-    reactions = {j.joint.name: joint_block(j) for j in joints}
-    base = foundation(mechanism, found, states, joints, about)
-    if decided is not None:
-        decided.show(base, reactions)
-    blocks: dict[str, Block] = {"foundation": base, "joints": reactions, "energy": power}
+def recover(setup: Setup, recovered: Recovered, least_norm: bool) -> Recovery:
+    """What follows from the kernel's answers. Raises SolveError where no acceleration exists."""
+    refuse(setup.scene, recovered)
+    return Recovery(setup, recovered, least_norm)
+
+
+def blocks(recovery: Recovery, wanted: Set[str]) -> dict[str, Any]:
+    """The blocks of the reports that are wanted, as the fields of Results."""
+    mechanism, layout = recovery.setup.scene.mechanism, recovery.setup.scene.layout
+    recovered, states = recovery.recovered, recovery.states
+    found: dict[str, Any] = {}
+    if "foundation" in wanted:
+        found["foundation"] = foundation(mechanism, recovered, states, recovery.joints, about(recovery.setup))
+    if "joints" in wanted:
+        found["joints"] = {j.joint.name: joint_block(j) for j in recovery.joints}
+    if found and recovery.decided is not None:
+        recovery.decided.show(found.get("foundation"), found.get("joints"))
+    if "energy" in wanted:
+        found["energy"] = recovery.energy
     if "motion" in wanted:
-        blocks["bodies"] = {b.name: body_block(states, i) for i, b in enumerate(mechanism.bodies)}
-        blocks["coordinates"] = coordinates(layout, found, states)
-        blocks["system_vector"] = system_vector(mechanism, states)
+        found["bodies"] = {b.name: body_block(states, i) for i, b in enumerate(mechanism.bodies)}
+        found["coordinates"] = coordinates(layout, recovered, states)
+        found["system_vector"] = system_vector(mechanism, states)
     if "points" in wanted:
-        blocks["points"] = points(mechanism, states)
+        found["points"] = points(mechanism, states)
     if "sections" in wanted:
-        blocks["sections"] = sections(scene, found, states, joints, left)
+        found["sections"] = sections(recovery)
     if "forces" in wanted:
-        blocks["forces"] = forces(mechanism, found)
-    sums = decided.sums(scene, runner, found) if decided is not None and "joints" in wanted else []
-    lift = sum(body.mass for body in mechanism.bodies) * float(np.abs(mechanism.gravity).max()) * layout.size
-    accuracy = {
+        found["forces"] = forces(mechanism, recovered)
+    return found
+
+
+def about(setup: Setup) -> Array:
+    """The point about which the foundation's moment is taken, world axes."""
+    given = setup.spec.foundation.about
+    return np.array(given if given is not None else (0.0, 0.0, 0.0))
+
+
+def certain_sums(recovery: Recovery) -> list[Block]:
+    """Sums of indeterminate components that are determined."""
+    if recovery.decided is None:
+        return []
+    return recovery.decided.sums(recovery.setup.scene, recovery.setup.runner, recovery.recovered)
+
+
+def accuracy(recovery: Recovery) -> Block:
+    """How well the instants balance: energy, closures, d'Alembert's principle."""
+    scene, recovered, power = recovery.setup.scene, recovery.recovered, recovery.energy
+    mechanism, size = scene.mechanism, scene.layout.size
+    lift = sum(body.mass for body in mechanism.bodies) * float(np.abs(mechanism.gravity).max()) * size
+    return {
         "energy_drift": energy_drift(power["kinetic"], power["potential"], power["work"], lift),
-        "constraint_gap": float(found.gap.max(initial=0.0)),
-        "balance_residual": balance_residual(mechanism, found, states, joints, layout.size),
+        "constraint_gap": float(recovered.gap.max(initial=0.0)),
+        "balance_residual": balance_residual(mechanism, recovered, recovery.states, recovery.joints, size),
     }
-    shown = {name: block for name, block in blocks.items() if name not in ASKED or name in wanted}
-    return Composed(shown, sums, words, accuracy, decided)
-
-
-ASKED = frozenset({"foundation", "joints", "energy"})  # blocks that are made in any case, and shown where wanted
-
-
-def decided_of(
-    scene: Scene, found: Recovered, states: BodyStates, joints: list[JointLoads], least_norm: bool
-) -> Decided | None:
-    """What redundant joints leave open; None where there are no closed chains."""
-    if not scene.layout.rows:
-        return None
-    from heuncli.redundancy.resolve import decide  # a tree starts faster without it
-
-    return decide(scene, found, states, joints, least_norm)
 
 
 def body_block(states: BodyStates, i: int) -> Block:
@@ -123,34 +159,34 @@ def joint_block(load: JointLoads) -> Block:
     return block
 
 
-def sections(
-    scene: Scene, found: Recovered, states: BodyStates, joints: Sequence[JointLoads], stress: SelfStress | None
-) -> Block:
+def sections(recovery: Recovery) -> Block:
     """The blocks of all sections."""
+    scene, states, stress = recovery.setup.scene, recovery.states, recovery.indeterminate
     block: Block = {}
-    if not scene.cuts:
+    if not recovery.setup.cuts:
         return block
     # only scenes with sections load it
     from heuncli.kinetostatics.sections import joint_attachments, load_attachments, section
 
-    for cuts in scene.cuts:
-        on = joint_attachments(cuts.body, states, [(j.joint, j.point, *j.whole) for j in joints])
-        on += load_attachments(scene.mechanism, cuts.body, found, states)
-        shares = []
-        if stress is not None:
-            for k in range(stress.largest.shape[1]):
-                parts = zip(joints, stress.shares, strict=True)
-                wrenches = [(j.joint, j.point, s[:, :3, k], s[:, 3:, k]) for j, s in parts]
-                shares.append(joint_attachments(cuts.body, states, wrenches))
-        block[cuts.name] = section(cuts, states, scene.mechanism.gravity, on, stress, shares, scene.mechanism.planar)
+    for cuts in recovery.setup.cuts:
+        on = joint_attachments(cuts.body, states, [(j.joint, j.point, *j.whole) for j in recovery.joints])
+        on += load_attachments(scene.mechanism, cuts.body, recovery.recovered, states)
+        if stress is None:
+            block[cuts.name] = section(cuts, states, scene.mechanism.gravity, on, {}, scene.mechanism.planar)
+            continue
+        from heuncli.redundancy.open_components import names_in_section, open_in_section
+
+        is_open = open_in_section(cuts, states, recovery.joints, stress)
+        own = section(cuts, states, scene.mechanism.gravity, on, is_open, scene.mechanism.planar)
+        block[cuts.name] = own | {"open": names_in_section(is_open)}
     return block
 
 
-def forces(mechanism: Mechanism, found: Recovered) -> Block:
+def forces(mechanism: Mechanism, recovered: Recovered) -> Block:
     """Values, lengths, rates and powers of the applied loads."""
     block: Block = {}
     for load, slots in zip(mechanism.loads, load_slots(mechanism), strict=True):
-        rows = found.loads[:, slots]
+        rows = recovered.loads[:, slots]
         block[load.name] = {"value": rows[:, 0, 12]}
         if isinstance(load, PairLoad):
             block[load.name] |= {"length": rows[:, 0, 13], "rate": rows[:, 0, 14]}

@@ -25,8 +25,9 @@ from heuncli.kernel.choose import KERNEL
 from heuncli.report.export import to_csv, to_json
 from heuncli.report.labels import labels_of
 from heuncli.spec.load import load
+from heuncli.study.setup import set_up
 from heuncli.study.solve import solve
-from heuncli.tree.prepare import Scene, prepare
+from heuncli.tree.prepare import PreparedScene
 from tests.bench.chart import chart
 
 SCENES = Path(__file__).parent / "scenes"
@@ -43,7 +44,7 @@ def median_ms(f: Callable[[], Any], repeats: int = 15) -> float:
     return 1e3 * statistics.median(found)
 
 
-def error(name: str, scene: Scene, runner: Runner, times: Any, states: Any) -> float:
+def error(name: str, scene: PreparedScene, runner: Runner, times: Any, states: Any) -> float:
     """Largest distance of a centre of mass from the reference at the end [m]."""
     found = runner.recovered(times[-1:], states[-1:]).bodies[0]
     worst = 0.0
@@ -58,14 +59,14 @@ def motion() -> None:
     """The benchmark scenes: integration of one run alone, to 1e-9 and 1e-12 m; and with the check run."""
     for name in ("double", "top", "chain10", "crank"):
         spec = load(str(SCENES / f"{name}.yaml"))
-        scene = prepare(spec)
+        scene = set_up(spec).scene
         runner = Runner(scene.layout)
         times = np.array(spec.analysis.times)
         for goal in (1e-9, 1e-12) if KERNEL == "compiled" else (1e-9,):
             one_motion(name, scene, runner, times, goal)
         study = solve(spec)
-        seconds, size = study.results.work["seconds"], study.scene.layout.size
-        off = error(name, study.scene, study.runner, times, study.found.states)
+        seconds, size = study.results.work["seconds"], study.setup.scene.layout.size
+        off = error(name, study.setup.scene, study.setup.runner, times, study.history.recovered.states)
         print(
             f"{name:8s} as asked, to {spec.analysis.tolerance:.0e} of {size:.3g} m: "
             f"{1e3 * seconds['integrate']:.3f} ms, "
@@ -74,7 +75,7 @@ def motion() -> None:
         )
 
 
-def one_motion(name: str, scene: Scene, runner: Runner, times: Any, goal: float) -> None:
+def one_motion(name: str, scene: PreparedScene, runner: Runner, times: Any, goal: float) -> None:
     """The loosest tolerance that reaches the goal [m], and what it costs."""
     repeats = 15 if KERNEL == "compiled" else 1
     for tolerance in (10.0 ** (-0.5 * k) for k in range(8, 29)):
@@ -95,7 +96,7 @@ def charted() -> None:
     runs: dict[str, list[tuple[float, float]]] = {}
     for name in ("double", "top", "chain10", "crank"):
         spec = load(str(SCENES / f"{name}.yaml"))
-        scene = prepare(spec)
+        scene = set_up(spec).scene
         runner = Runner(scene.layout)
         times = np.array(spec.analysis.times)
         points = runs[name[0] if name != "crank" else "k"] = []
@@ -125,14 +126,14 @@ def chains() -> None:
     cost = {}
     for n in (10, 100, 1000):
         spec = load("chain.yaml", chain(n))
-        runner = Runner(prepare(spec).layout)
+        runner = set_up(spec).runner
         run = runner.trajectory([0.05], 1e-6)
         cost[n] = median_ms(partial(runner.trajectory, [0.05], 1e-6), 15) / run.evaluations / n
         print(f"chain of {n:5d}: {1e6 * cost[n]:.0f} ns a body and evaluation, {cost[n] / cost[10]:.2f} times 10's")
     begun = time.perf_counter()
     spec = load("chain.yaml", chain(10_000))
     read = time.perf_counter()
-    scene = prepare(spec)
+    scene = set_up(spec).scene
     built = time.perf_counter()
     run = Runner(scene.layout).trajectory([0.05], 1e-6)
     print(

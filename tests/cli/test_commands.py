@@ -117,6 +117,7 @@ def test_what_is_expected_at_an_instant_that_was_set_away_stops_no_run(heun: Heu
         (["run", "hanging.yaml", "--tolerance", "-1"], "positive"),
         (["run", "hanging.yaml", "--measure", "joints.pivt.force.z"], "no 'pivt'"),
         (["run", "hanging.yaml", "--by-cause"], "not in this version yet"),
+        (["run", "hanging.yaml", "--no-reduce"], "not in this version yet"),
         (["run", "hanging.yaml", "--method", "rk4"], "not yet: a method other than auto and DOP853 [not-yet]"),
         (["run", "hanging.yaml", "-o", "hanging.yaml"], "the spec itself"),
         (["validate", "hanging.yaml", "wrong.yaml"], "wrong.yaml:9:"),

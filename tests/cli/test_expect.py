@@ -8,8 +8,8 @@ from typing import Any
 import numpy as np
 import pytest
 
-from heuncli.cli.expect import compare, wanted
 from heuncli.errors import Place
+from heuncli.study.expect import compare, wanted
 from tests.shared.fakes import FakeStudy, pendulum
 
 STUDY = FakeStudy(np.linspace(0.0, 2.0, 21))

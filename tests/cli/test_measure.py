@@ -9,13 +9,13 @@ import pytest
 
 from heuncli.cli import measure
 from heuncli.errors import HeunError
-from tests.shared.fakes import LABELS, FakeStudy
+from tests.shared.fakes import FakeStudy
 
 STUDY = FakeStudy(np.linspace(0.0, 2.0, 21))
 
 
 def number(words: str) -> float:
-    return float(measure.write(measure.parse(words), STUDY, LABELS, "table"))
+    return float(measure.write(measure.parse(words), STUDY, "table"))
 
 
 @pytest.mark.parametrize(
@@ -44,13 +44,13 @@ def test_the_forms(words: str, value: float) -> None:
 
 
 def test_all_digits_are_printed() -> None:
-    text = measure.write(measure.parse("final energy.kinetic"), STUDY, LABELS, "table")
+    text = measure.write(measure.parse("final energy.kinetic"), STUDY, "table")
     assert float(text) == STUDY.results.energy["kinetic"][-1]
     assert text.endswith("\n")
 
 
 def test_json_tells_the_instant_too() -> None:
-    text = measure.write(measure.parse("max joints.pivot.force.x"), STUDY, LABELS, "json")
+    text = measure.write(measure.parse("max joints.pivot.force.x"), STUDY, "json")
     block = json.loads(text)
     assert block["measure"] == "max joints.pivot.force.x"
     assert block["value"] == pytest.approx(3.0)
@@ -59,7 +59,7 @@ def test_json_tells_the_instant_too() -> None:
 
 def test_what_is_open_reads_open() -> None:
     study = FakeStudy(STUDY.times, {"energy": {"kinetic": np.full(1, np.nan)}})
-    assert measure.write(measure.parse("final energy.kinetic"), study, LABELS, "table") == "open\n"
+    assert measure.write(measure.parse("final energy.kinetic"), study, "table") == "open\n"
 
 
 @pytest.mark.parametrize(

@@ -16,12 +16,12 @@ import numpy as np
 import pytest
 
 from heuncli.cli.entry import enter
-from heuncli.cli.expect import compare
 from heuncli.report.export import present, to_csv, to_json
 from heuncli.report.labels import labels_of
 from heuncli.report.quantities import walk
 from heuncli.results_paths import find
 from heuncli.spec.load import load
+from heuncli.study.expect import compare
 from heuncli.study.solve import Options, Study, solve
 
 FOLDER = Path(__file__).parents[2] / "specs"

@@ -16,6 +16,7 @@ import pytest
 
 from heuncli.results import Array
 from heuncli.spec.load import load
+from heuncli.study.recover import blocks, recover
 from heuncli.study.solve import Options, Study, solve
 from tests.closed_forms.test_theory_2j_motion import free_top, heavy_top
 from tests.closed_forms.test_theory_golden_a import SCENE as GOLDEN_A
@@ -52,9 +53,10 @@ class Exact(NamedTuple):
 
 def places(study: Study, local: float) -> Array:
     """The same by one run at a local tolerance."""
-    run = study.runner.trajectory(study.times, local)
-    found = study._results(study.runner.recovered(run.times, run.states))
-    return read_places(found.bodies, found.points)
+    runner = study.setup.runner
+    run = runner.trajectory(study.history.times, local)
+    found = blocks(recover(study.setup, runner.recovered(run.times, run.states), False), {"motion", "points"})
+    return read_places(found["bodies"], found["points"])
 
 
 def read_places(bodies: dict[str, dict[str, Array]], points: dict[str, dict[str, Array]]) -> Array:
@@ -65,7 +67,7 @@ def read_places(bodies: dict[str, dict[str, Array]], points: dict[str, dict[str,
 def exact(name: str) -> Exact:
     study = solve(load("scene.yaml", SCENES[name]))
     first, second = places(study, 1e-15), places(study, 2e-15)
-    return Exact(first, distance(first, second) + 1e-15 * study.scene.layout.size)
+    return Exact(first, distance(first, second) + 1e-15 * study.setup.scene.layout.size)
 
 
 def distance(a: Array, b: Array) -> float:
@@ -76,7 +78,7 @@ def distance(a: Array, b: Array) -> float:
 def measured(name: str, tolerance: float) -> tuple[float, float, float]:
     """Estimate, true error, and how far that is sure, all relative to the scene's size."""
     study = solve(load("scene.yaml", SCENES[name]), Options(tolerance=tolerance))
-    found, size, wanted = study.results, study.scene.layout.size, exact(name)
+    found, size, wanted = study.results, study.setup.scene.layout.size, exact(name)
     error = distance(read_places(found.bodies, found.points), wanted.places)
     return found.accuracy["estimate"]["motion"], error / size, wanted.sure / size
 
@@ -126,8 +128,10 @@ def test_reactions_are_judged_too() -> None:
     for name in ("double", "chain10", "two rods", "golden A"):
         for tolerance in (1e-5, 1e-8, 1e-11):
             study = solve(load("scene.yaml", SCENES[name]), Options(tolerance=tolerance))
-            run = study.runner.trajectory(study.times, 1e-15)
-            wanted = study._results(study.runner.recovered(run.times, run.states)).joints
+            runner = study.setup.runner
+            run = runner.trajectory(study.history.times, 1e-15)
+            recovered = runner.recovered(run.times, run.states)
+            wanted = blocks(recover(study.setup, recovered, False), {"joints"})["joints"]
             forces = {j: b["force"] for j, b in study.results.joints.items()}
             size = max(float(np.abs(F).max()) for F in forces.values())
             error = max(float(np.abs(F - wanted[j]["force"]).max()) for j, F in forces.items()) / size

@@ -96,12 +96,12 @@ RUNS = {
 def test_order_of_runs(name: str, dense: bool) -> None:
     """Over eight decades of local tolerance: error ~ steps^-order, and error ~ tolerance."""
     s = study(RUNS[name])
-    end = float(s.times[-1])
+    end = float(s.history.times[-1])
     times = np.linspace(0.0, end, 101) if dense else np.array([end])
 
     def centres(tolerance: float) -> tuple[Array, int]:
-        run = s.runner.trajectory(times, tolerance)
-        found = s.runner.recovered(run.times, run.states)
+        run = s.setup.runner.trajectory(times, tolerance)
+        found = s.setup.runner.recovered(run.times, run.states)
         return found.bodies[:, :, 0:12], run.steps
 
     exact, _ = centres(1e-15)

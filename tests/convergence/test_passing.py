@@ -17,7 +17,8 @@ from heuncli.integration.runner import Runner, Trajectory
 from heuncli.integration.singular import passages
 from heuncli.results import Array
 from heuncli.spec.load import load
-from heuncli.tree.prepare import Scene, prepare
+from heuncli.study.setup import set_up
+from heuncli.tree.prepare import PreparedScene
 from tests.shared.parallelogram import parallelogram
 from tests.shared.scenes import study
 
@@ -25,8 +26,8 @@ TURN = 2.0  # s
 
 
 @cache
-def scene(rate: float, coupler: float = 1.0) -> Scene:
-    return prepare(load("scene.yaml", parallelogram(rate, TURN, 5, coupler=coupler)))
+def scene(rate: float, coupler: float = 1.0) -> PreparedScene:
+    return set_up(load("scene.yaml", parallelogram(rate, TURN, 5, coupler=coupler))).scene
 
 
 @cache
@@ -80,6 +81,6 @@ def test_passages_are_told() -> None:
 def test_coming_near_is_no_passage(coupler: float) -> None:
     """A coupler a little too short or too long keeps the chain from lying flat."""
     s = study(parallelogram(0.2, TURN, 5, coupler=coupler))
-    assert s.checked is not None
-    assert min(s.checked.run.pivots) < 0.05
-    assert s.passages == []
+    assert s.history.checked is not None
+    assert min(s.history.checked.run.pivots) < 0.05
+    assert s.history.singular == ()

@@ -37,24 +37,24 @@ def test_the_asked_instants_again(name: str, kept: int, monkeypatch: pytest.Monk
     monkeypatch.setattr(motion, "KEPT", kept)
     monkeypatch.chdir(SPECS)
     s = study(SCENES[name])
-    assert s.checked is not None
-    run = s.checked.run
-    assert len(run.kept) <= max(2, kept // s.scene.layout.n_state)
-    wanted = s.runner.recovered(run.times, run.states).bodies
+    assert s.history.checked is not None
+    run = s.history.checked.run
+    assert len(run.kept) <= max(2, kept // s.setup.scene.layout.n_state)
+    wanted = s.setup.runner.recovered(run.times, run.states).bodies
     for pick in (slice(None), slice(0, None, 37), slice(-1, None), slice(0, 1)):
         times = run.times[pick]
-        again = s.runner.recovered(times, s.runner.within(run, times)).bodies
+        again = s.setup.runner.recovered(times, s.setup.runner.within(run, times)).bodies
         # through a flat pose rounding is magnified, by as much as the tolerance of the run allows
         tolerance = 1e-10 if name == "flat_four_bar" else 1e-12
-        near(again[:, :, :12], wanted[pick][:, :, :12], s.scene.layout.size, tolerance)
+        near(again[:, :, :12], wanted[pick][:, :, :12], s.setup.scene.layout.size, tolerance)
         near(again[:, :, 12:18], wanted[pick][:, :, 12:18], float(np.abs(wanted[:, :, 12:18]).max()), 10 * tolerance)
 
 
 def test_a_singular_pose_between_does_no_harm() -> None:
     """The instants next to a flat pose, where a run begun there could not go on."""
     s = study(SCENES["flat_four_bar"])
-    assert s.checked is not None
-    ends = s.checked.run.ends
+    assert s.history.checked is not None
+    ends = s.history.checked.run.ends
     flat = 1.2152618
     times = np.sort(np.concatenate([flat + np.array([-1e-3, -1e-6, -1e-9, 0.0, 1e-9, 1e-6]), ends[20:25]]))
     found = s.resample(times)

@@ -31,7 +31,7 @@ REPLACED = re.compile(r"(\w+) as (\w+)(?: \((to_axis|axis) (\[[^]]*\])\))?")
 
 def advice(text: str) -> str:
     """The last note of the model."""
-    return describe(load("scene.yaml", text)).model["notes"][-1]
+    return describe(load("scene.yaml", text))["notes"][-1]
 
 
 def done(text: str, note: str) -> Results:
@@ -98,7 +98,7 @@ def test_nothing_looser_for_one_body_on_many_supports(name: str) -> None:
 
 def test_no_advice_where_nothing_is_held_twice() -> None:
     for name in ("slider_crank", "engine", "double"):
-        notes = describe(load(SPECS / f"{name}.yaml")).model["notes"]
+        notes = describe(load(SPECS / f"{name}.yaml"))["notes"]
         assert not any("determinate with" in note or "looser" in note for note in notes)
 
 

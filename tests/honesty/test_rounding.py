@@ -8,7 +8,7 @@ import numpy as np
 import pytest
 
 from heuncli.errors import SolveError
-from heuncli.study.solve import unbalanced
+from heuncli.study.warnings import unbalanced
 from tests.shared.scenes import near, solved
 
 

@@ -51,6 +51,8 @@ RARE = {
     "heuncli.spec.tables",
     "heuncli.redundancy.advice",
     "heuncli.cli.measure",
+    "heuncli.study.measure",
+    "heuncli.study.expect",
     "heuncli.report.export",
     "heuncli.cli.app",
 }

@@ -12,12 +12,12 @@ import pytest
 from heuncli.report.heading import write_heading
 from heuncli.report.labels import JointInfo, Labels, labels_of
 from heuncli.report.layout import Found
-from heuncli.report.page import page_of, restrict
+from heuncli.report.page import page_of
 from heuncli.report.table import plain
 from heuncli.results import Results
 from heuncli.spec.load import load
 from heuncli.study import extremes as peaks
-from tests.shared.fakes import LABELS, FakeStudy, pendulum
+from tests.shared.fakes import LABELS, FakeStudy, pendulum, restrict
 
 ONE = np.array([0.5])
 SPECS = Path(__file__).parents[2] / "specs"

@@ -11,11 +11,11 @@ import pytest
 
 from heuncli.report.heading import write_heading
 from heuncli.report.layout import MANY, Found
-from heuncli.report.page import Page, page_of, restrict
+from heuncli.report.page import Page, page_of
 from heuncli.report.table import plain
 from heuncli.results import Array, Results
 from heuncli.study import extremes as peaks
-from tests.shared.fakes import ACCURATE, LABELS, FakeStudy, pendulum, vectors
+from tests.shared.fakes import ACCURATE, LABELS, FakeStudy, pendulum, restrict, vectors
 
 T = np.linspace(0.0, 2.0, 21)
 

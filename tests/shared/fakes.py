@@ -2,8 +2,8 @@
 
 from __future__ import annotations
 
-from collections.abc import Mapping
-from dataclasses import dataclass, field
+from collections.abc import Mapping, Set
+from dataclasses import dataclass, field, replace
 from types import SimpleNamespace
 from typing import Any
 
@@ -11,6 +11,8 @@ import numpy as np
 
 from heuncli.report.labels import ForceInfo, JointInfo, Labels, SectionInfo
 from heuncli.results import Array, Block, Results
+from heuncli.results_schema import REPORT_OF
+from heuncli.study.solve import Study
 
 ACCURATE: Block = {
     "energy_drift": 2e-12,
@@ -126,8 +128,20 @@ class FakeStudy:
         """At any instants."""
         return pendulum(np.asarray(times), **self.changes)
 
+    def only(self, times: Array, wanted: Set[str]) -> Results:
+        """Some reports at any instants."""
+        return restrict(self.resample(times), wanted)
+
+    extremes = Study.extremes
+
 
 def spec_like(**changes: Any) -> Any:
     """What the commands take from a loaded spec."""
     blank: dict[str, Any] = {"joints": {}, "forces": {}, "sections": {}, "expect": (), "warnings": (), "report": None}
     return SimpleNamespace(**{**blank, **changes})
+
+
+def restrict(results: Results, wanted: Set[str]) -> Results:
+    """The results without the blocks that were not asked for."""
+    unasked: dict[str, Any] = {block: {} for block, report in REPORT_OF.items() if report not in wanted}
+    return replace(results, **unasked)

@@ -8,12 +8,11 @@ from typing import Any
 
 import numpy as np
 
-from heuncli.cli.measure import peak
-from heuncli.cli.solving import SAME_INSTANT, report_of
 from heuncli.errors import HeunError, Place, Problem
 from heuncli.results import Array, Results
 from heuncli.results_paths import find
 from heuncli.spec.models import Expect
+from heuncli.study.measure import SAME_INSTANT, peak, report_of
 from heuncli.study.solve import Study
 
 # Where the spec gives neither rel nor abs.
@@ -39,7 +38,7 @@ class Case:
 
 
 def wanted(expectations: Sequence[Expect]) -> frozenset[str] | None:
-    """The reports that the expectations need; None where that cannot be told."""
+    """The reports that the expectations need; None where that is not known."""
     reports = [report_of(item.of) for item in expectations]
     known = [report for report in reports if report is not None]
     return frozenset().union(*known) if len(known) == len(reports) else None

@@ -1,7 +1,6 @@
-"""How far the numbers can be trusted: the check run, the energy balance, the residual of d'Alembert's principle.
+"""How far a motion can be trusted: the check run.
 
-The estimate is 2 |A - B|, B a second run at 1/30 of A's local tolerance, over all points and asked instants; it owns
-the `accuracy` block.
+The estimate is 2 |A - B|, B a second run at 1/30 of A's local tolerance, over all points and asked instants.
 """
 
 from __future__ import annotations
@@ -14,11 +13,9 @@ from dataclasses import dataclass, replace
 import numpy as np
 
 from heuncli.errors import LimitError, SolveError
+from heuncli.expressions.programs import across
 from heuncli.integration.runner import MOST_STEPS, Recovered, Runner, Trajectory
-from heuncli.kinetostatics.bodies import BodyStates
-from heuncli.kinetostatics.foundation import ends, inertia_loads, load_slots
-from heuncli.kinetostatics.reactions import JointLoads, in_plane
-from heuncli.mechanism.model import GROUND, Mechanism, PointLoad
+from heuncli.integration.tableaus import DOP853, Tableau
 from heuncli.mechanism.size import marks
 from heuncli.results import Array
 from heuncli.tree.layout import Layout
@@ -32,7 +29,6 @@ FUTILE = 20  # times the steps of the coarser run: a finer one that takes more f
 LEAST = 3e-14  # no local tolerance of A below, none of B below a thirtieth: the steps would only chase rounding
 NO_LOAD = 1e-11  # of the largest m (a - g): smaller joint loads are none
 CLAIM = 1e-3  # beyond this relative error nothing is claimed
-AT_REST = 1e-20  # of the weight's work over the scene's size: less kinetic energy is none, and no scale
 ROUNDING = 4e-16  # rounding of one evaluation of a place, relative to the size; the estimate is never below
 CHUNK = 2_000_000  # numbers compared at a time
 
@@ -41,10 +37,12 @@ CHUNK = 2_000_000  # numbers compared at a time
 class Checked:
     """A run that was checked.
 
-    motion (n_t,): estimated error of any point, relative to the size; reactions: see `compare`.
+    recovered: what the sweep knows at the run's instants; motion (n_t,): estimated error of any point, relative to the
+    size; reactions: see `compare`.
     """
 
     run: Trajectory
+    recovered: Recovered
     motion: Array
     reactions: float
     horizon: float | None
@@ -53,12 +51,19 @@ class Checked:
 
 
 def checked_run(
-    runner: Runner, times: Array, tolerance: float, halts: Sequence[float], deadline: float | None
+    runner: Runner,
+    times: Array,
+    tolerance: float,
+    jumps: Sequence[float],
+    deadline: float | None,
+    method: Tableau = DOP853,
 ) -> Checked:
     """Integrate so that the motion's estimated error is below `tolerance`; at most two reruns, then say what is."""
 
     def run(local: float, most_steps: int = MOST_STEPS) -> Trajectory:
-        return runner.trajectory(times, local, halts=halts, deadline=deadline, most_steps=most_steps)
+        return runner.trajectory(
+            times, local, halts=jumps, deadline=deadline, most_steps=most_steps, tableau=method
+        )
 
     def finer(local: float, than: Trajectory) -> Trajectory | None:
         """A run at a smaller tolerance; None where rounding (near a singular pose, say) makes it collapse."""
@@ -87,14 +92,15 @@ def checked_run(
     lost, best = 0.0, None
     for attempt in range(RERUNS + 1):
         b = finer(a.tolerance / RATIO, a)
-        # without a finer run a coarser one tells, with a larger, still honest estimate
+        # without a finer run a coarser one serves, with a larger, still honest estimate
         check = b if b is not None else run(a.tolerance * RATIO)
-        motion, reactions = compare(runner, a, check)
+        recovered = recovered_at(runner, a.times, a.states, jumps)
+        motion, reactions = compare(runner, a, recovered, check, jumps)
         seconds = check.seconds
         if best is not None and motion.max(initial=0.0) >= best.motion.max(initial=0.0):
             return replace(best, lost_seconds=best.lost_seconds + a.seconds + seconds)
         late = np.flatnonzero(motion > CLAIM)
-        best = Checked(a, motion, reactions, float(a.times[late[0]]) if len(late) else None, seconds, lost)
+        best = Checked(a, recovered, motion, reactions, float(a.times[late[0]]) if len(late) else None, seconds, lost)
         miss = float(motion.max(initial=0.0)) / tolerance
         if miss <= 1.0 or attempt == RERUNS or a.tolerance <= LEAST or b is None:
             break
@@ -110,7 +116,17 @@ def checked_run(
     return best
 
 
-def compare(runner: Runner, a: Trajectory, b: Trajectory) -> tuple[Array, float]:
+def recovered_at(runner: Runner, times: Array, states: Array, jumps: Sequence[float]) -> Recovered:
+    """What the sweep knows; at a jump, and at what holds at one instant alone, what comes after it."""
+    later = times.copy()
+    for before, after in across(jumps):
+        later[(times > before) & (times < after)] = after
+    return replace(runner.recovered(later, states), times=times)
+
+
+def compare(
+    runner: Runner, a: Trajectory, recovered: Recovered, b: Trajectory, jumps: Sequence[float]
+) -> tuple[Array, float]:
     """2 |A - B|: of any point, (n_t,), relative to the scene's size; of joint loads, relative to the largest."""
     layout = runner.layout
     step = max(1, CHUNK // (30 * len(layout.place) + 1))
@@ -122,27 +138,27 @@ def compare(runner: Runner, a: Trajectory, b: Trajectory) -> tuple[Array, float]
     masses = np.array([layout.mechanism.bodies[h.body].mass for h in layout.spanning.hangs])[:, None]
     for i in range(0, n, step):
         piece = slice(i, min(i + step, n))
-        A = runner.recovered(a.times[piece], a.states[piece])
-        B = runner.recovered(b.times[piece], b.states[piece])
-        motion[piece] = distance(layout, A, B) / layout.size
+        B = recovered_at(runner, a.times[piece], b.states[piece], jumps)
+        bodies, rows = recovered.bodies[piece], recovered.rows[piece]
+        motion[piece] = distance(layout, bodies, B.bodies) / layout.size
         for x, y, arm in (
-            (A.bodies[..., 27:30], B.bodies[..., 27:30], 1.0),
-            (A.bodies[..., 24:27], B.bodies[..., 24:27], layout.size),
-            (A.rows[..., 0], B.rows[..., 0], 1.0),
+            (bodies[..., 27:30], B.bodies[..., 27:30], 1.0),
+            (bodies[..., 24:27], B.bodies[..., 24:27], layout.size),
+            (rows[..., 0], B.rows[..., 0], 1.0),
         ):
             worst = max(worst, float(np.abs(x - y).max(initial=0.0)) / arm)
             largest = max(largest, float(np.abs(x).max(initial=0.0)) / arm)
-        inertia = max(inertia, float(np.abs(A.bodies[..., 21:24] * masses).max(initial=0.0)))
+        inertia = max(inertia, float(np.abs(bodies[..., 21:24] * masses).max(initial=0.0)))
     motion[n:] = motion[n - 1] if n else 0.0
     # a body that nothing holds has no reactions; what the sweep leaves at its six freedoms is rounding
     reactions = (2.0 * worst + ROUNDING * largest) / largest if largest > NO_LOAD * inertia else 0.0
     return 2.0 * motion + ROUNDING, reactions
 
 
-def distance(layout: Layout, a: Recovered, b: Recovered) -> Array:
-    """Largest distance of any named point or centre of mass between two sets of states, (n_t,) [m]."""
-    dR = (b.bodies[..., 0:9] - a.bodies[..., 0:9]).reshape(*a.bodies.shape[:2], 3, 3)
-    dr = b.bodies[..., 9:12] - a.bodies[..., 9:12]
+def distance(layout: Layout, a: Array, b: Array) -> Array:
+    """Largest distance of any named point or centre of mass between two sets of `Recovered.bodies`, (n_t,) [m]."""
+    dR = (b[..., 0:9] - a[..., 0:9]).reshape(*a.shape[:2], 3, 3)
+    dr = b[..., 9:12] - a[..., 9:12]
     owner, arms = [], []
     for i, body in enumerate(layout.mechanism.bodies):
         k = layout.place[i]
@@ -151,49 +167,3 @@ def distance(layout: Layout, a: Recovered, b: Recovered) -> Array:
             arms.append(p - layout.reference[k])
     d = dr[:, owner] + np.einsum("tnij,nj->tni", dR[:, owner], np.array(arms))
     return np.asarray(np.sqrt(np.max(np.sum(d * d, axis=2), axis=1)))
-
-
-def balance_residual(
-    mechanism: Mechanism, found: Recovered, states: BodyStates, joints: list[JointLoads], size: float
-) -> float:
-    """Largest d'Alembert residual of any body, relative to its largest load; from the reported numbers alone."""
-    ma, spin = inertia_loads(mechanism, states)
-    weight = np.array([b.mass for b in mechanism.bodies])[:, None] * mechanism.gravity
-    force, moment = weight - ma, -spin
-    largest = np.maximum(np.abs(ma).max(axis=2, initial=0.0), np.abs(weight).max(axis=1, initial=0.0))
-
-    def put(body: int, place: Array, F: Array, M: Array) -> None:
-        if body == GROUND:
-            return
-        force[:, body] += F
-        moment[:, body] += M + np.cross(place - states.centre[:, body], F)
-        largest[:, body] = np.maximum(largest[:, body], np.maximum(np.abs(F).max(axis=1), np.abs(M).max(axis=1) / size))
-
-    for load, slots in zip(mechanism.loads, load_slots(mechanism), strict=True):
-        F, M = found.loads[:, slots, 0:3].sum(axis=1), found.loads[:, slots, 3:6].sum(axis=1)
-        X, Y = found.loads[:, slots[0], 6:9], found.loads[:, slots[0], 9:12]
-        if isinstance(load, PointLoad):
-            put(load.body, X, F, M)
-        else:
-            a, b = ends(mechanism, load)
-            put(b, X, F, M)
-            put(a, Y, -F, -M)
-    for j in joints:
-        F, M = j.whole
-        put(j.joint.b, j.point, F, M)
-        put(j.joint.a, j.point, -F, -M)
-    if mechanism.planar:
-        force, moment = in_plane(force, moment)
-    residual = np.maximum(np.sqrt(np.sum(force**2, axis=2)), np.sqrt(np.sum(moment**2, axis=2)) / size)
-    scale = np.where(largest > 0.0, largest, 1.0)
-    return float((residual / scale).max(initial=0.0))
-
-
-def energy_drift(kinetic: Array, potential: Array, work: Array, lift: float) -> float:
-    """Change of kinetic + potential - work from the start, relative to the largest kinetic energy; 0 at rest.
-
-    lift: the work of the weight over the scene's size [J], by which rest is judged.
-    """
-    total = kinetic + potential - work
-    largest = float(kinetic.max(initial=0.0))
-    return float(np.abs(total - total[0]).max(initial=0.0)) / largest if largest > AT_REST * lift else 0.0

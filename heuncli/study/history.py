@@ -1,0 +1,85 @@
+"""What happens: the motion asked for with its check run, or the one instant of a state; and the instants between.
+
+Impure: integrating looks at the clock.
+"""
+
+from __future__ import annotations
+
+from dataclasses import dataclass, field
+
+import numpy as np
+
+from heuncli.expressions.programs import across
+from heuncli.integration.checked import Checked, checked_run, recovered_at
+from heuncli.integration.runner import Recovered, Runner, in_time, stops
+from heuncli.integration.singular import passages
+from heuncli.integration.solvable import refuse
+from heuncli.results import Array
+from heuncli.study.extremes import distinct
+from heuncli.study.setup import Setup
+
+SEARCH_PER_STEP = 4  # instants looked at in each step of the integrator when extremes are searched
+MOST_SEARCHED = 20_000
+
+
+@dataclass(frozen=True, eq=False)
+class History:
+    """The kernel's answers at the instants asked for; of a motion the checked run behind them.
+
+    tolerance: what the motion was to keep; jumps: instants at which a load or drive jumps or bends; singular: those of
+    singular poses that the run came through; seconds: what took how long.
+    """
+
+    recovered: Recovered
+    tolerance: float
+    checked: Checked | None = None
+    jumps: tuple[float, ...] = ()
+    singular: tuple[float, ...] = ()
+    seconds: dict[str, float] = field(default_factory=dict)
+
+    @property
+    def times(self) -> Array:
+        """The instants, (n_t,) ascending; fewer than asked for where the run stopped."""
+        return self.recovered.times
+
+
+def integrate(setup: Setup, tolerance: float, deadline: float | None) -> History:
+    """The history that the analysis asks for; nothing moves in a state.
+
+    Raises SolveError where no acceleration exists or the motion cannot be continued, LimitError past the deadline.
+    """
+    times, runner = np.array(setup.spec.analysis.times, dtype=float), setup.runner
+    start = setup.scene.layout.y0[None, :]
+    if setup.method is None:
+        in_time(deadline, "before the loads were found")
+        return History(runner.recovered(times[:1], start), tolerance, seconds={"integrate": 0.0, "check": 0.0})
+    refuse(setup.scene, runner.recovered(np.zeros(1), start))  # before a long run, not after it
+    jumps = tuple(stops(setup.scene.mechanism, 0.0, float(times[-1])))
+    checked = checked_run(runner, times, tolerance, jumps, deadline, setup.method)
+    seconds = {"integrate": checked.run.seconds, "check": checked.check_seconds}
+    if checked.lost_seconds:
+        seconds["lost"] = checked.lost_seconds
+    in_time(deadline, "before the loads were found")
+    return History(checked.recovered, tolerance, checked, jumps, tuple(passages(runner, checked.run)), seconds)
+
+
+def resample(runner: Runner, history: History, times: Array) -> Recovered:
+    """The kernel's answers at other instants within the run, (n,) ascending; in a state there is one instant only."""
+    if history.checked is None:
+        return history.recovered
+    times = np.asarray(times, dtype=float)
+    return recovered_at(runner, times, runner.within(history.checked.run, times), history.jumps)
+
+
+def search_times(history: History) -> Array:
+    """Instants close enough to bracket every extreme: the asked ones and some within each step, (n,) ascending."""
+    times = history.times
+    if history.checked is None:
+        return times
+    marks = np.concatenate([[0.0], history.checked.run.ends])
+    per_step = max(1, min(SEARCH_PER_STEP, MOST_SEARCHED // max(len(marks), 1)))
+    inner = (marks[:-1, None] + np.diff(marks)[:, None] * (np.arange(per_step) / per_step)).ravel()
+    # a jump has a value on either side of it
+    grid = np.concatenate([inner, [t for pair in across(history.jumps) if pair[0] > 0.0 for t in pair]])
+    grid = grid[(grid > times[0]) & (grid < times[-1])]
+    return distinct(np.concatenate([times, grid]))

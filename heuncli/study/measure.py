@@ -1,0 +1,106 @@
+"""One number of a run, such as the largest of sections.middle.M1 or energy.kinetic at 0.5 s."""
+
+from __future__ import annotations
+
+from typing import Literal, NamedTuple
+
+import numpy as np
+
+from heuncli.errors import HeunError, Problem
+from heuncli.results import Array, Results
+from heuncli.results_paths import find
+from heuncli.results_schema import REPORT_OF
+from heuncli.study.solve import Study
+
+SAME_INSTANT = 1e-9  # of the run's length: instants this near to each other are one
+
+
+class NotOneNumber(HeunError):
+    """What is to be measured is no single number of this run."""
+
+    exit_code = 2
+
+    def __init__(self, message: str) -> None:
+        super().__init__(Problem("bad-option", message))
+
+
+class Measure(NamedTuple):
+    """What is measured; how is empty for a number that has no instants, abs for the largest magnitude."""
+
+    how: Literal["", "max", "min", "abs", "first", "final", "at"]
+    path: str
+    at: float | None = None
+
+    @property
+    def wanted(self) -> frozenset[str] | None:
+        """The report that has to be computed; None for the usual ones."""
+        return report_of(self.path)
+
+
+def report_of(path: str) -> frozenset[str] | None:
+    """Which report a path needs; None where its first word does not say."""
+    report = REPORT_OF.get(path.split(".")[0])
+    return frozenset({report}) if report else None
+
+
+def value(asked: Measure, study: Study) -> tuple[float, float | None]:
+    """The number, and its instant if it has one; nan is open. Raises NotOneNumber."""
+    results, path = study.results, asked.path
+    there = find(results, path)
+    if not there.timed:
+        if asked.how:
+            raise NotOneNumber(f"{path} has no instants: give the path alone")
+        if there.values.size != 1:
+            raise NotOneNumber(f"{path} is {there.values.size} numbers: say which, as .x or .0")
+        return float(there.values.reshape(())), None
+    if asked.how in ("max", "min", "abs"):
+        return peak(study, path, asked.how)
+    if asked.how == "at":
+        at = instant_of(asked, results.time)
+        there = find(study.resample(np.array([at])), path)
+        return one_number(path, there.values[0], there.of_vectors), at
+    if asked.how or len(results.time) == 1:
+        k = -1 if asked.how == "final" else 0
+        return one_number(path, there.values[k], there.of_vectors), float(results.time[k])
+    raise NotOneNumber(f"{path} runs over {len(results.time)} instants: say max, min, max abs, first, final or at T")
+
+
+def peak(study: Study, path: str, how: str) -> tuple[float, float]:
+    """Highest (`max`), lowest (`min`) or largest (`abs`) value over the run, searched between the samples, and when.
+
+    A vector counts by its magnitude, a run of cuts over all its cuts.
+    """
+    asked = find(study.results, path)
+    shape, vector = asked.values.shape[1:], asked.of_vectors
+
+    def columns(results: Results) -> Array:
+        values = find(results, path).values
+        flat = values.reshape(len(values), -1)
+        # The square of a magnitude is smooth where the magnitude is zero.
+        return np.einsum("ijk,ijk->ij", *2 * [flat.reshape(len(values), -1, 3)]) if vector else flat
+
+    n = int(np.prod(shape, dtype=int)) // (3 if vector else 1)
+    bounds = study.extremes(columns, [list(range(n))], report_of(path))
+    low, high = float(bounds.low[0]), float(bounds.high[0])
+    if how == "abs" and abs(low) > abs(high):
+        how, low = "min", abs(low)
+    result, at = (low, bounds.low_at) if how == "min" else (high, bounds.high_at)
+    return float(np.sqrt(result)) if vector else result, float(at[0])
+
+
+def one_number(path: str, values: Array, of_vectors: bool) -> float:
+    """A number, or the magnitude of a vector. Raises NotOneNumber."""
+    if values.size == 1:
+        return float(values.reshape(()))
+    if of_vectors and values.ndim == 1:
+        return float(np.linalg.norm(values))
+    raise NotOneNumber(f"{path} is {values.size} numbers: say which, as .x or .0")
+
+
+def instant_of(asked: Measure, times: Array) -> float:
+    """The instant asked for, if the run has it. Raises NotOneNumber."""
+    at = float(asked.at or 0.0)
+    slack = SAME_INSTANT * float(np.ptp(times))
+    if not times[0] - slack <= at <= times[-1] + slack:
+        raise NotOneNumber(f"{asked.path} at {at:.6g}: the run goes from {times[0]:.6g} to {times[-1]:.6g} s")
+    return float(np.clip(at, times[0], times[-1]))

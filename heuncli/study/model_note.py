@@ -1,0 +1,97 @@
+"""The engineer's note on the model: which one was made of the scene, and why; the block `model` of the results."""
+
+from __future__ import annotations
+
+from typing import TYPE_CHECKING
+
+import numpy as np
+
+from heuncli.integration.runner import Runner
+from heuncli.joint_kinds import JOINTS
+from heuncli.mechanism.model import Mechanism
+from heuncli.redundancy.count import freedoms_of_tree, redundancy
+from heuncli.results import Block
+from heuncli.tree.layout import Layout
+from heuncli.tree.prepare import PreparedScene
+
+if TYPE_CHECKING:  # loaded where a scene has closed chains
+    from heuncli.redundancy.self_stress import SelfStress
+
+NO_SHARE = 1e-8  # of a self-stress's largest share: a joint with less takes no part
+
+
+def model_note(scene: PreparedScene, runner: Runner, method: str) -> Block:
+    """The block `model`: freedoms, loops, redundancy, and the reasons in sentences."""
+    mechanism, layout = scene.mechanism, scene.layout
+    count = redundancy(scene, runner)
+    block: Block = {
+        "space": "planar" if mechanism.planar else "spatial",
+        "freedoms": freedoms_of_tree(layout) - (len(layout.rows) - count.dependent),
+        "driven": sum(1 for j in mechanism.joints if j.drive is not None),
+        "bodies": len(mechanism.bodies), "loops": len(layout.spanning.cut), "redundant": count.generic,
+        "method": method, "reasons": [], "joints": len(mechanism.joints), "grubler": grubler(mechanism),
+        "chosen": list(scene.start.chosen), "notes": [],
+    }  # fmt: skip
+    block["reasons"] = reasons(scene, block)
+    if count.at_start > count.generic:
+        more = _count(count.at_start - count.generic, "condition depends", "conditions depend")
+        block["notes"].append(f"the start is a singular pose: {more} on the others just there")
+    if count.generic and count.stress is not None:
+        block["notes"] += held_twice(layout, count.stress)
+    return block
+
+
+def grubler(mechanism: Mechanism) -> int:
+    """Grübler's count of freedoms: 6 (in the plane 3) a body less the joints' conditions and the drives."""
+    kinds = [JOINTS[j.kind] for j in mechanism.joints]
+    rows = sum(kind.rows_in_plane if mechanism.planar else kind.rows for kind in kinds)
+    # a driven distance is held anyway
+    drives = sum(1 for j in mechanism.joints if j.drive is not None and not JOINTS[j.kind].keeps_distance)
+    return (3 if mechanism.planar else 6) * len(mechanism.bodies) - rows - drives
+
+
+def reasons(scene: PreparedScene, model: Block) -> list[str]:
+    """The model in sentences."""
+    mechanism, layout = scene.mechanism, scene.layout
+    where = "in the plane" if mechanism.planar else "in space"
+    bodies = _count(len(layout.place), "body", "bodies")
+    found = [f"{bodies} {where}, {_count(model['freedoms'], 'freedom', 'freedoms')}"]
+    cut = [mechanism.joints[k].name for k in layout.spanning.cut]
+    if cut:
+        found.append(f"closed at {_some(cut)}; the other joints make the tree that carries the motion")
+    driven = [j.name for j in mechanism.joints if j.drive is not None]
+    if driven:
+        found.append(f"driven: {_some(driven)}")
+    floating = [mechanism.bodies[h.body].name for h in layout.spanning.hangs if h.joint < 0]
+    if floating:
+        found.append(f"carried by nothing, free: {_some(floating)}")
+    if model["redundant"]:
+        found.append(
+            f"Grübler counts {model['grubler']}, there are {model['freedoms']}: "
+            f"{_count(model['redundant'], 'condition holds', 'conditions hold')} what others hold already"
+        )
+    for spin in scene.idle:
+        name = mechanism.bodies[spin.body].name
+        found.append(f"{name}: the spin about its own axis is undetermined and harmless; taken as zero")
+    return found
+
+
+def held_twice(layout: Layout, stress: SelfStress) -> list[str]:
+    """Which joints take part in the self-stresses, and by which loads."""
+    notes = []
+    for joint, share in zip(layout.mechanism.joints, stress.shares, strict=True):
+        size = np.where(stress.largest > 0.0, stress.largest, 1.0)
+        parts = np.abs(share / size[:, None, :]).max(axis=(0, 2))
+        parts[3:] /= stress.length
+        names = [f"{'F' if i < 3 else 'M'}{'xyz'[i % 3]}" for i in range(6) if parts[i] > NO_SHARE]
+        if names:
+            notes.append(f"held more than once: {joint.name} {', '.join(names)}")
+    return notes
+
+
+def _count(n: int, one: str, many: str) -> str:
+    return f"{n} {one if n == 1 else many}"
+
+
+def _some(names: list[str]) -> str:
+    return ", ".join(names[:5]) + (f" and {len(names) - 5} more" if len(names) > 5 else "")

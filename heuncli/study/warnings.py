@@ -1,0 +1,65 @@
+"""How a run ended, and what its reader is warned of, in sentences."""
+
+from __future__ import annotations
+
+from heuncli.results import Block
+from heuncli.study.history import History
+from heuncli.study.recover import Recovery
+from heuncli.study.setup import Setup
+
+UNBALANCED = 1e-6  # of a body's largest load: rounding stays far below, near a singular pose, too
+MOST_TIMES = 5  # that a sentence lists
+
+
+def status(history: History) -> Block:
+    """Whether the run came to its end."""
+    if history.checked is None:
+        return {"code": "completed", "message": "one instant, nothing integrated"}
+    run = history.checked.run
+    if run.stopped is not None:
+        why = f"at t = {run.times[-1]:.6g} s the rod {run.stopped} would have to push (tension_only)"
+        return {"code": "stopped", "message": why}
+    return {"code": "completed", "message": f"{run.steps} steps to t = {run.times[-1]:.6g} s"}
+
+
+def warnings(setup: Setup, history: History, recovery: Recovery, joints: Block, residual: float) -> tuple[str, ...]:
+    """Everything worth a warning at the instants of `recovery`; joints: their block, residual: d'Alembert's."""
+    singular = []
+    if recovery.decided is not None:
+        singular = recovery.decided.singular(recovery.recovered.times, setup.model["redundant"])
+    return (
+        *unbalanced(residual),
+        *(warning for cuts in setup.cuts for warning in cuts.warnings),
+        *(of_the_motion(history) if history.checked is not None else of_ropes(setup, joints)),
+        *singular,
+    )
+
+
+def unbalanced(residual: float) -> list[str]:
+    """A sentence where the numbers do not fulfil d'Alembert's principle."""
+    wrong = f"the forces balance to {residual:.1g} of the largest only: the loads are not to be trusted"
+    return [wrong] if residual > UNBALANCED else []
+
+
+def of_the_motion(history: History) -> list[str]:
+    """A tolerance that was missed, singular poses, an early end."""
+    assert history.checked is not None
+    checked, tolerance = history.checked, history.tolerance
+    found = []
+    if (worst := float(checked.motion.max(initial=0.0))) > tolerance:
+        missed = f"the tolerance {tolerance:.3g} was not reached"
+        found.append(f"{missed}: the motion is estimated to {worst:.2g} of the scene's size")
+    if history.singular:
+        at = ", ".join(f"{t:.6g}" for t in history.singular[:MOST_TIMES])
+        at += " ..." if len(history.singular) > MOST_TIMES else ""
+        goes = "this one goes on smoothly" if checked.horizon is None else "rounding decides which is followed"
+        found.append(f"passes through a singular pose at t = {at} s: another motion branches off there, {goes}")
+    if checked.run.stopped is not None:
+        found.append(f"stopped before the end: {status(history)['message']}")
+    return found
+
+
+def of_ropes(setup: Setup, joints: Block) -> list[str]:
+    """Ropes that would have to push at the one instant of a state."""
+    ropes = [j.name for j in setup.scene.mechanism.joints if j.tension_only and j.name in joints]
+    return [f"the rod {name} would have to push (tension_only)" for name in ropes if joints[name]["tension"][0] < 0.0]
