@@ -8,13 +8,14 @@ apply, or was not asked for, is absent (an empty dict or None). Knows nothing of
 from __future__ import annotations
 
 from dataclasses import dataclass, field
-from typing import Any
+from typing import Any, NamedTuple
 
 import numpy as np
 from numpy.typing import NDArray
 
 Array = NDArray[np.float64]
 Mask = NDArray[np.bool_]
+Indices = NDArray[np.intp]
 Block = dict[str, Any]
 
 
@@ -22,17 +23,7 @@ Block = dict[str, Any]
 class Results:
     """Everything a run reports; field names and the nesting below them are those of the contract's section 3.
 
-    bodies:     name -> position, velocity, center, center_velocity, center_acceleration, angular_velocity,
-                angular_acceleration (n_t, 3); rotation (n_t, 3, 3)
-    points:     "body.point" -> position, velocity, acceleration (n_t, 3)
-    coordinates: joint -> angle, rate, acceleration | travel, speed, acceleration, angular_acceleration (n_t,)
-    foundation: about (3,), force, moment (n_t, 3), axis {point, direction, pitch}, mass_effect {force, moment_orbital,
-                moment_spin}, supports {joint: {force, moment}}, elements {force name: {force, moment, point}}
-    joints:     name -> point, force, moment (n_t, 3), open [str], drive, axial, radial, tilting, tension (n_t,)
-    sections:   name -> see the contract
-    forces:     name -> value, length, rate, power (n_t,)
-    energy:     kinetic, potential, work (n_t,)
-    system_vector: total (n_t, 3), bodies {name: (n_t, 3)}
+    What stands in a block, in which shape and unit, says heuncli/results_schema.py.
     """
 
     title: str
@@ -55,3 +46,25 @@ class Results:
     accuracy: Block = field(default_factory=dict)
     work: Block = field(default_factory=dict)
     warnings: tuple[str, ...] = ()
+
+
+class Extremes(NamedTuple):
+    """Lowest and highest value of each of n groups of columns over a run, (n,), with the instant and the column.
+
+    `searched`: whether the instants between the samples were looked at. A group that is nan throughout stays nan.
+    """
+
+    low: Array
+    low_at: Array
+    low_column: Indices
+    high: Array
+    high_at: Array
+    high_column: Indices
+    searched: bool
+
+    def part(self, groups: slice) -> Extremes:
+        """Those of some of the groups."""
+        return Extremes(
+            self.low[groups], self.low_at[groups], self.low_column[groups],
+            self.high[groups], self.high_at[groups], self.high_column[groups], self.searched,
+        )  # fmt: skip

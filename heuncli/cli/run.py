@@ -18,7 +18,6 @@ from heuncli.errors import Problem
 from heuncli.integration.tableaus import METHODS
 from heuncli.report.heading import write_heading, write_heading_markdown
 from heuncli.report.labels import Labels, labels_of
-from heuncli.report.layout import Found
 from heuncli.report.page import EXPORT_DEFAULT, TABLE_DEFAULT, page_of
 from heuncli.report.table import Table, markdown, plain
 from heuncli.results import Results
@@ -111,9 +110,9 @@ def _report(request: Run, form: str, study: Study, labels: Labels, wanted: froze
     if request.all or at is not None or len(study.results.time) == 1:
         tables = page.instants(shown, every_cut=request.all)
     else:
-        found = study.extremes(page.columns, page.groups(), wanted, ROUNDS)
-        tables = page.extremes(Found(*found[:-1]))
-        if not found.searched:
+        extremes = study.extremes(page.columns, page.groups(), wanted, ROUNDS)
+        tables = page.extremes(extremes)
+        if not extremes.searched:
             tables.append(Table("", notes=(NOT_SEARCHED,)))
     if not tables:
         tables = [Table("", notes=(f"nothing to show of {', '.join(sorted(wanted))}: the scene has none",))]

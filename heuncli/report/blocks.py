@@ -1,21 +1,46 @@
-"""Which quantities the tables show, under which heading, by which short names.
+"""Results as rows of numbers with short names, in groups, in blocks: the tables before they are laid out.
 
-A block is one table of the report, a group what belongs to one name in it, a row one number over the instants. The rows
-of BLOCKS say which quantities of which kind go into a block; the walk over the results does the rest.
+A block is one table of the report, a group what belongs to one name in it, a row one number over the instants.
 """
 
 from __future__ import annotations
 
-from collections.abc import Callable, Iterable
+from collections.abc import Iterable, Sequence
 from typing import NamedTuple
 
 import numpy as np
 
 from heuncli.report.labels import Labels
-from heuncli.report.numbers import OPEN, OPEN_NOTE
+from heuncli.report.numbers import OPEN, OPEN_NOTE, Certainty, Style, largest, style, write
+from heuncli.report.plans import FOUNDATION, MASS_EFFECT, Plan
 from heuncli.report.quantities import Series
 from heuncli.results import Array, Results
 from heuncli.results_schema import XYZ
+
+# Vector -> the short name its components begin with. What is not listed is called by its own name.
+SYMBOLS = {
+    "force": "F",
+    "moment": "M",
+    "moment_orbital": "M orbital ",
+    "moment_spin": "M spin ",
+    "position": "",
+    "center": "",
+    "velocity": "v",
+    "center_velocity": "v",
+    "acceleration": "a",
+    "center_acceleration": "a",
+    "angular_velocity": "ω",
+    "angular_acceleration": "α",
+}
+# Quantities that share their decimals with another: noise in one shows against the others.
+FAMILIES = {
+    **dict.fromkeys(("axial", "radial", "tension", "N", "Q1", "Q2"), "force"),
+    **dict.fromkeys(("tilting", "T", "M1", "M2", "moment_orbital", "moment_spin"), "moment"),
+}
+POSITIONS = frozenset({"position", "center", "point", "direction"})  # vectors whose length means nothing
+EVEN = frozenset({"radial", "tilting"})
+FREE = "nothing stands on the ground: the scene is free"
+SPOKEN_UNITS = {"Pa": ("MPa", 1e-6)}  # what the tables say instead, and how large it is
 
 
 class Row(NamedTuple):
@@ -41,6 +66,11 @@ class Group(NamedTuple):
     rows: tuple[Row, ...]
     whole: bool = False
 
+    @property
+    def title(self) -> str:
+        """Name and note as one line."""
+        return f"{self.name}  {self.note}".rstrip()
+
 
 class Block(NamedTuple):
     """One table of the report before it is laid out; `what` heads the column of the groups' names.
@@ -56,170 +86,24 @@ class Block(NamedTuple):
     missing: tuple[str, str] = (OPEN, OPEN_NOTE)
 
 
-class Plan(NamedTuple):
-    """How a kind of results becomes a block: the quantities in their order, and the text about it.
-
-    `only` takes one name of the kind. What is not `lasting` (a line in space) has no extremes: it shows at instants.
-    `missing` as in Block.
-    """
-
-    key: str
-    kind: str
-    what: str
-    quantities: tuple[str, ...]
-    heading: Callable[[Results, Labels], str]
-    note: Callable[[str, Labels], str] = lambda name, labels: ""
-    only: str | None = None
-    lasting: bool = True
-    missing: tuple[str, str] = (OPEN, OPEN_NOTE)
+def family_styles(rows: Sequence[Row], certain: Certainty) -> dict[tuple[str, str], Style]:
+    """The style of each family of rows, by family and unit."""
+    scales: dict[tuple[str, str], float] = {}
+    for row in rows:
+        key = (row.family, row.unit)
+        scales[key] = max(scales.get(key, 0.0), largest(row.values))
+    return {key: style(scale, certain.error(key[1])) for key, scale in scales.items()}
 
 
-# Vector -> the short name its components begin with. What is not listed is called by its own name.
-SYMBOLS = {
-    "force": "F",
-    "moment": "M",
-    "moment_orbital": "M orbital ",
-    "moment_spin": "M spin ",
-    "position": "",
-    "center": "",
-    "velocity": "v",
-    "center_velocity": "v",
-    "acceleration": "a",
-    "center_acceleration": "a",
-    "angular_velocity": "ω",
-    "angular_acceleration": "α",
-}
-# Quantities that share their decimals with another: a noise in one is told from its companions.
-FAMILIES = {
-    **dict.fromkeys(("axial", "radial", "tension", "N", "Q1", "Q2"), "force"),
-    **dict.fromkeys(("tilting", "T", "M1", "M2", "moment_orbital", "moment_spin"), "moment"),
-}
-STRESSES = ("normal_max", "normal_min", "shear_torsion", "shear_mean", "mises", "utilisation")
-PLACES = frozenset({"position", "center", "point", "direction"})  # vectors whose length tells nothing
-EVEN = frozenset({"radial", "tilting"})
-FREE = "nothing stands on the ground: the scene is free"
-POINTS = ("the origin", "the point")
-SPOKEN_UNITS = {"Pa": ("MPa", 1e-6)}  # what the tables say instead, and how large it is
-NO_AXIS = ("none", "none: there is no force, so no axis")
-
-
-def _about(results: Results, labels: Labels) -> str:
-    about = np.asarray(results.foundation.get("about", (0.0, 0.0, 0.0))) + 0.0
-    x, y, z = (f"{component:.6g}" for component in about)
-    return f"{labels.about} = ({x}, {y}, {z}) m" if labels.about else f"{POINTS[bool(about.any())]} ({x}, {y}, {z}) m"
-
-
-def _joint_note(name: str, labels: Labels) -> str:
-    info = labels.joints.get(name)
-    return f"{info.type}, {info.from_} → {info.to}" if info else ""
-
-
-def _force_note(name: str, labels: Labels) -> str:
-    info = labels.forces.get(name)
-    return (f"{info.type} on {info.joint}" if info.joint else info.type) if info else ""
-
-
-def _section_note(name: str, labels: Labels) -> str:
-    info = labels.sections.get(name)
-    return f"{info.body}; e1 = {info.first_axis}; moments about {info.about}" if info else ""
-
-
-def _foundation_note(name: str, labels: Labels) -> str:
-    kind, _, own = name.partition(" ")
-    notes = {"support": _joint_note, "element": _force_note}
-    return notes[kind](own, labels) if kind in notes else ""
-
-
-FOUNDATION = Plan(
-    "foundation",
-    "foundation",
-    "",
-    ("force", "moment"),
-    lambda results, labels: (
-        f"FOUNDATION  force and moment ON the ground, world axes, moment about {_about(results, labels)}"
-    ),
-    _foundation_note,
-)
-MASS_EFFECT = Plan(
-    "foundation",
-    "foundation",
-    "",
-    ("force", "moment_orbital", "moment_spin"),
-    lambda results, labels: (
-        "MASS EFFECT  F = Σ m ẍ, orbital and spin moment the rates of Σ m x × ẋ and Σ I σ,"
-        f" world axes, about {_about(results, labels)}"
-    ),
-    only="mass_effect",
-)
-BLOCKS = (
-    Plan(
-        "motion",
-        "bodies",
-        "body",
-        ("center", "center_velocity", "center_acceleration", "angular_velocity", "angular_acceleration"),
-        lambda results, labels: "MOTION  of the centres of mass, and angular velocity of the bodies, world axes",
-    ),
-    Plan(
-        "motion",
-        "coordinates",
-        "joint",
-        ("angle", "rate", "travel", "speed", "acceleration", "angular_acceleration"),
-        lambda results, labels: 'COORDINATES  of the joints, of "to" against "from"',
-        _joint_note,
-    ),
-    Plan(
-        "points",
-        "points",
-        "point",
-        ("position", "velocity", "acceleration"),
-        lambda results, labels: "POINTS  world axes",
-    ),
-    FOUNDATION,
-    MASS_EFFECT,
-    Plan(
-        "foundation",
-        "foundation",
-        "",
-        ("point", "direction", "pitch"),
-        lambda results, labels: "CENTRAL AXIS  of the foundation's wrench: its point nearest the moment's, world axes",
-        only="axis",
-        lasting=False,
-        missing=NO_AXIS,
-    ),
-    Plan(
-        "joints",
-        "joints",
-        "joint",
-        ("force", "moment", "axial", "radial", "tilting", "tension", "drive"),
-        lambda results, labels: (
-            'JOINTS  what "from" exerts ON "to" (drive, friction apart), world axes, moment about the "to" point'
-        ),
-        _joint_note,
-    ),
-    Plan(
-        "sections",
-        "sections",
-        "section",
-        ("N", "Q1", "Q2", "T", "M1", "M2", *STRESSES),
-        lambda results, labels: "SECTIONS  the piece beyond the cut ON the part before it; N > 0 tension; e2 = n × e1",
-        _section_note,
-    ),
-    Plan(
-        "forces",
-        "forces",
-        "force",
-        ("value", "length", "rate", "power"),
-        lambda results, labels: "FORCES  value, length of its line, rate of its length or turning, power it puts in",
-        _force_note,
-    ),
-    Plan(
-        "energy",
-        "energy",
-        "",
-        ("kinetic", "potential", "work"),
-        lambda results, labels: "ENERGY  potential from the world's origin; kinetic + potential − work is constant",
-    ),
-)
+def texts_of(group: Group, numbers: Array, certain: Certainty) -> list[list[str]]:
+    """The numbers of each row as text, (n, n_rows) -> n_rows lists of n; the rows of a family share their decimals."""
+    texts: list[list[str]] = [[] for _ in group.rows]
+    for key, how in family_styles(group.rows, certain).items():
+        members = [i for i, row in enumerate(group.rows) if (row.family, row.unit) == key]
+        flat = write(numbers[:, members].ravel().tolist(), how)
+        for column, member in enumerate(members):
+            texts[member] = flat[column :: len(members)]
+    return texts
 
 
 def build(plan: Plan, results: Results, labels: Labels, series: Iterable[Series]) -> Block | None:
@@ -259,7 +143,7 @@ def rows_of(series: Series) -> list[Row]:
     if len(series.components) == 1:
         return [Row(spoken, unit, family, size * series.values[:, 0], even=quantity in EVEN)]
     symbol = SYMBOLS.get(quantity, f"{spoken} ")
-    vector = "" if quantity in PLACES else symbol.strip()
+    vector = "" if quantity in POSITIONS else symbol.strip()
     columns = zip(series.components, series.values.T, strict=True)
     rows = [Row(f"{symbol}{component}", unit, family, column, vector=vector) for component, column in columns]
     if series.components == XYZ and vector:

@@ -83,19 +83,19 @@ def _errors(results: Results) -> str:
     if not results.work.get("steps"):
         return "exact but for rounding"
     estimate = results.accuracy.get("estimate") or {}
-    parts = _told("motion within {} of the scene's size", estimate.get("motion"))
-    parts += _told("loads within {} of the largest", estimate.get("reactions"))
+    parts = _sentence("motion within {} of the scene's size", estimate.get("motion"))
+    parts += _sentence("loads within {} of the largest", estimate.get("reactions"))
     return ", ".join(parts) if parts else "not estimated"
 
 
 def _residuals(results: Results) -> str:
     accuracy = results.accuracy
-    parts = _told("energy kept to {}", accuracy.get("energy_drift")) if results.work.get("steps") else []
-    parts += _told("joints closed to {} m", accuracy.get("constraint_gap") or None)
-    parts += _told("forces balance to {}", accuracy.get("balance_residual"))
+    parts = _sentence("energy kept to {}", accuracy.get("energy_drift")) if results.work.get("steps") else []
+    parts += _sentence("joints closed to {} m", accuracy.get("constraint_gap") or None)
+    parts += _sentence("forces balance to {}", accuracy.get("balance_residual"))
     return ", ".join(parts)
 
 
-def _told(text: str, value: float | None) -> list[str]:
+def _sentence(text: str, value: float | None) -> list[str]:
     known = value is not None and math.isfinite(value)
     return [text.format(rough(float(np.float64(value))))] if known and value is not None else []

@@ -30,7 +30,7 @@ class JointInfo(NamedTuple):
 
 
 class ForceInfo(NamedTuple):
-    """A force's type, the joint it acts in if it does, and whether it resists turning where the type does not tell."""
+    """A force's type, the joint it acts in if it does, and whether it resists turning if the type leaves that open."""
 
     type: str
     joint: str | None = None

@@ -24,6 +24,7 @@ LOAD_UNITS = frozenset({"N", "N·m", "N·s", "N·m·s", "Pa"})
 LARGE, SMALL = 1e7, 1e-4  # families beyond these are written with an exponent
 OPEN = "open"
 OPEN_NOTE = "open: the laws of rigid bodies do not give this number (redundant supports)"
+ZERO_NOTE = "what is 0 throughout is left out"
 BEYOND = "?"
 
 

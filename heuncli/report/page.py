@@ -1,6 +1,6 @@
 """The whole report of a run as tables: which blocks stand on the page, and what has to be searched for them.
 
-`page_of(results, labels)` first; then either `columns` and `groups` for a search and `extremes` with what it found, or
+`page_of(results, labels)` first; then either `columns` and `groups` for a search and `extremes` with its outcome, or
 `instants`.
 """
 
@@ -12,15 +12,15 @@ from typing import Any, NamedTuple
 
 import numpy as np
 
-from heuncli.report import layout, runs
-from heuncli.report.blocks import BLOCKS, Block, build
+from heuncli.report import extremes, instants, runs
+from heuncli.report.blocks import Block, build
 from heuncli.report.labels import Labels
-from heuncli.report.layout import Found
 from heuncli.report.numbers import Certainty, certainty
+from heuncli.report.plans import PLANS
 from heuncli.report.quantities import Series, walk, walk_impulse
 from heuncli.report.sums import sums_table
 from heuncli.report.table import Table
-from heuncli.results import Array, Results
+from heuncli.results import Array, Extremes, Results
 from heuncli.results_schema import REPORT_OF, REPORTS, quantity
 
 TABLE_DEFAULT = frozenset(REPORTS) - {"motion", "points"}
@@ -55,8 +55,8 @@ class Page(NamedTuple):
                 n += len(run.s)
         return groups
 
-    def extremes(self, found: Found) -> list[Table]:
-        """The tables with extremes, from what the search found for each of `groups`."""
+    def extremes(self, searched: Extremes) -> list[Table]:
+        """The tables with extremes, from those searched for each of `groups`."""
         tables: list[Table] = []
         start = 0
         times = self.results.time
@@ -64,15 +64,15 @@ class Page(NamedTuple):
             rows = [row for group in block.groups for row in group.rows]
             own = slice(start, start + len(rows))
             even = np.array([row.even for row in rows], dtype=bool)
-            part = found.part(own)
+            part = searched.part(own)
             low, high = (np.where(even, np.sqrt(np.abs(bound)), bound) for bound in (part.low, part.high))
-            tables += layout.extremes_table(block, times, part._replace(low=low, high=high), self.certain)
+            tables += extremes.extremes_table(block, times, part._replace(low=low, high=high), self.certain)
             start += len(rows)
         column = start
         for run in runs.runs_of(self.results, self.labels):
             own = slice(start, start + len(runs.RESULTANTS))
             first = column + len(run.s) * np.arange(len(runs.RESULTANTS))
-            part = found.part(own)
+            part = searched.part(own)
             cuts = part._replace(low_column=part.low_column - first, high_column=part.high_column - first)
             tables += runs.extremes_tables(run, times, cuts, self.certain)
             start, column = own.stop, column + len(run.s) * len(runs.RESULTANTS)
@@ -83,7 +83,7 @@ class Page(NamedTuple):
         horizon = self.results.accuracy.get("horizon")
         tables: list[Table] = []
         for block in _blocks(results, self.labels):
-            tables += layout.instants_tables(block, results.time, horizon, self.certain)
+            tables += instants.instants_tables(block, results.time, horizon, self.certain)
         for run in runs.runs_of(results, self.labels):
             tables += runs.instants_tables(run, results.time, horizon, self.certain, every=every_cut)
         return [*tables, *self._ending()]
@@ -99,12 +99,12 @@ class Page(NamedTuple):
         tables: list[Table] = []
         for impulse in self.results.impulses:
             series = list(walk_impulse(impulse, self.labels))
-            for plan in BLOCKS:
+            for plan in PLANS:
                 block = build(plan, self.results, self.labels, series)
                 if block is not None:
                     heading = f"IMPULSE at t = {float(impulse['time']):.6g} s  {block.heading}"
                     named = block._replace(heading=heading, notes=())
-                    tables += layout.instants_tables(named, np.array([float(impulse["time"])]), None, self.certain)
+                    tables += instants.instants_tables(named, np.array([float(impulse["time"])]), None, self.certain)
         return tables
 
 
@@ -147,6 +147,6 @@ def _first_of_sum(block: dict[str, Any], count: int) -> dict[str, Any]:
 
 def _blocks(results: Results, labels: Labels, *, lasting: bool = False) -> list[Block]:
     series: Sequence[Series] = list(walk(results, labels))
-    blocks = [build(plan, results, labels, series) for plan in BLOCKS if plan.lasting or not lasting]
+    blocks = [build(plan, results, labels, series) for plan in PLANS if plan.lasting or not lasting]
     made = [block for block in blocks if block is not None]
-    return [layout.abridged(block) for block in made] if lasting else made
+    return [extremes.abridged(block) for block in made] if lasting else made

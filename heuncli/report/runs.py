@@ -1,4 +1,4 @@
-"""Runs of cuts: the extremes over place and time, the envelope along the body, the diagram at an instant."""
+"""Runs of cuts: the extremes over position and time, the envelope along the body, the diagram at an instant."""
 
 from __future__ import annotations
 
@@ -8,10 +8,9 @@ from typing import NamedTuple
 import numpy as np
 
 from heuncli.report.labels import Labels
-from heuncli.report.layout import Found, Indices
 from heuncli.report.numbers import BEYOND, OPEN, OPEN_NOTE, Certainty, Style, largest, style, write, write_times
 from heuncli.report.table import Column, Table
-from heuncli.results import Array, Results
+from heuncli.results import Array, Extremes, Indices, Results
 from heuncli.results_schema import row_of
 
 RESULTANTS = tuple((name, row_of(f"sections.SECTION.{name}").unit()) for name in ("N", "Q1", "Q2", "T", "M1", "M2"))
@@ -19,7 +18,7 @@ MOST_CUTS = 25  # a diagram is read, not listed: evenly spaced cuts, with all ju
 
 
 class Run(NamedTuple):
-    """One run of cuts: places along the body, sides, and the resultants (6, n_t, n_cuts) in the order of RESULTANTS."""
+    """One run of cuts: positions along the body, sides, and the resultants (6, n_t, n_cuts) as in RESULTANTS."""
 
     name: str
     heading: str
@@ -52,23 +51,23 @@ def columns(run: Run) -> Array:
     return run.values.transpose(1, 0, 2).reshape(n_t, len(RESULTANTS) * n_cuts)
 
 
-def extremes_tables(run: Run, times: Array, found: Found, certain: Certainty) -> list[Table]:
-    """Extremes over place and time, (6,) each with the cut as column; and at each cut the value farthest from zero."""
+def extremes_tables(run: Run, times: Array, extremes: Extremes, certain: Certainty) -> list[Table]:
+    """Extremes over position and time, (6,) each with the cut as column; at each cut the value farthest from zero."""
     styles = _styles(run, certain)
     span = float(np.ptp(times))
     rows = []
     for i, (label, unit) in enumerate(RESULTANTS):
-        low, high = write([float(found.low[i]), float(found.high[i])], styles[unit])
+        low, high = write([float(extremes.low[i]), float(extremes.high[i])], styles[unit])
         if low == high:
             rows.append((label, unit, low, "", "", high, "", ""))
             continue
-        cuts = int(found.low_column[i]), int(found.high_column[i])
-        clock = write_times([float(found.low_at[i]), float(found.high_at[i])], span)
+        cuts = int(extremes.low_column[i]), int(extremes.high_column[i])
+        clock = write_times([float(extremes.low_at[i]), float(extremes.high_at[i])], span)
         low_at, high_at = (
             "" if _steady(run.values[i, :, cut], styles[unit]) else t for cut, t in zip(cuts, clock, strict=True)
         )
-        places = _places(run.s)
-        rows.append((label, unit, low, places[cuts[0]], low_at, high, places[cuts[1]], high_at))
+        positions = _positions(run.s)
+        rows.append((label, unit, low, positions[cuts[0]], low_at, high, positions[cuts[1]], high_at))
     heads = ("min", "at s [m]", "t [s]", "max", "at s [m]", "t [s]")
     lead = (Column("", "left"), Column("", "left"))
     table = Table(run.heading, (*lead, *(Column(head) for head in heads)), tuple(rows))
@@ -114,16 +113,16 @@ def thinned(run: Run) -> Indices:
 
 def _diagram(run: Run, values: Array, kept: Indices, styles: dict[str, Style], notes: Sequence[str]) -> Table:
     """A line a cut; `values` is (6, n_cuts)."""
-    places = _places(run.s)
+    positions = _positions(run.s)
     texts = [write(values[i, kept].tolist(), styles[unit]) for i, (_, unit) in enumerate(RESULTANTS)]
     sides = any(side is not None for side in run.side)
     rows = tuple(
-        (places[cut], *([run.side[cut] or ""] if sides else []), *(column[j] for column in texts))
+        (positions[cut], *([run.side[cut] or ""] if sides else []), *(column[j] for column in texts))
         for j, cut in enumerate(kept)
     )
     heads = [Column("s [m]"), *([Column("side", "left")] if sides else [])]
-    told = [note for note in notes if note] + ([OPEN_NOTE] if any(OPEN in column for column in texts) else [])
-    return Table("", (*heads, *(Column(f"{label} [{unit}]") for label, unit in RESULTANTS)), rows, tuple(told))
+    below = [note for note in notes if note] + ([OPEN_NOTE] if any(OPEN in column for column in texts) else [])
+    return Table("", (*heads, *(Column(f"{label} [{unit}]") for label, unit in RESULTANTS)), rows, tuple(below))
 
 
 def _styles(run: Run, certain: Certainty) -> dict[str, Style]:
@@ -145,7 +144,7 @@ def _steady(values: Array, how: Style) -> bool:
     return how.write(float(np.min(values))) == how.write(float(np.max(values)))
 
 
-def _places(s: Array) -> list[str]:
+def _positions(s: Array) -> list[str]:
     return write(s.tolist(), style(largest(s), 0.0))
 
 

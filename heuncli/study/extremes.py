@@ -14,13 +14,12 @@ units or text.
 from __future__ import annotations
 
 from collections.abc import Callable, Sequence
-from typing import NamedTuple
 
 import numpy as np
 from numpy.typing import NDArray
 
-Array = NDArray[np.float64]
-Indices = NDArray[np.intp]
+from heuncli.results import Array, Extremes, Indices
+
 Sample = Callable[[Array], Array]
 
 ROUNDS = 3  # after two a smooth peak is right to seven digits, after three to rounding
@@ -28,21 +27,6 @@ SPREAD = 0.05  # distance of the outer probes from the vertex, as part of the br
 GOLDEN = 0.381966011250105  # (3 - √5) / 2: where to look when no parabola tells
 MOST_COLUMNS = 400  # of quantities that vary; beyond, the grid's own values stand: a batch is 8 instants a quantity
 FLAT = 1e-13  # a quantity that varies by less than this part of itself has no peak worth a search
-
-
-class Extremes(NamedTuple):
-    """Lowest and highest value of each group of columns, (n_groups,), with the instant and the column.
-
-    `searched` tells whether the instants between the samples were looked at. A group that is nan throughout stays nan.
-    """
-
-    low: Array
-    low_at: Array
-    low_column: Indices
-    high: Array
-    high_at: Array
-    high_column: Indices
-    searched: bool
 
 
 def search(

@@ -15,7 +15,7 @@ import numpy as np
 from heuncli.errors import Problem, SpecError
 from heuncli.integration.tableaus import METHODS
 from heuncli.kernel.choose import KERNEL
-from heuncli.results import Array, Block, Results
+from heuncli.results import Array, Block, Extremes, Results
 from heuncli.results_schema import REPORTS
 from heuncli.spec.models import Spec
 from heuncli.study import extremes
@@ -147,7 +147,7 @@ class Study:
         groups: Sequence[Sequence[int]],
         wanted: frozenset[str] | None,
         rounds: int = extremes.ROUNDS,
-    ) -> extremes.Extremes:
+    ) -> Extremes:
         """The extremes over the run, before its horizon, of the columns made of its results.
 
         wanted: the reports that the columns are made of, None where that is not known. Where there are so many columns

@@ -11,7 +11,6 @@ import pytest
 
 from heuncli.report.heading import write_heading
 from heuncli.report.labels import JointInfo, Labels, labels_of
-from heuncli.report.layout import Found
 from heuncli.report.page import page_of
 from heuncli.report.table import plain
 from heuncli.results import Results
@@ -71,7 +70,7 @@ def test_a_steady_cut_has_no_instant() -> None:
     found = peaks.search(
         lambda t: page.columns(restrict(study.resample(t), {"sections"})), study.search_times, page.groups()
     )
-    lines = plain(page.extremes(Found(*found[:-1]))[0]).splitlines()
+    lines = plain(page.extremes(found)[0]).splitlines()
     assert next(line.split() for line in lines if line.startswith("N ")) == ["N", "N", "0", "1.0", "3.0", "0"]
     assert next(line.split() for line in lines if line.startswith("M2"))[-3:] == ["2.52441", "0", "1.0"]
 

@@ -9,11 +9,11 @@ from typing import Any
 import numpy as np
 import pytest
 
+from heuncli.report.extremes import MANY
 from heuncli.report.heading import write_heading
-from heuncli.report.layout import MANY, Found
 from heuncli.report.page import Page, page_of
 from heuncli.report.table import plain
-from heuncli.results import Array, Results
+from heuncli.results import Array, Extremes, Results
 from heuncli.study import extremes as peaks
 from tests.shared.fakes import ACCURATE, LABELS, FakeStudy, pendulum, restrict, vectors
 
@@ -25,7 +25,7 @@ def extremes_page(
 ) -> str:
     page = page_of(restrict(study.results, wanted), LABELS)
     found = peaks.search(lambda t: page.columns(restrict(study.resample(t), wanted)), study.search_times, page.groups())
-    return "\n".join(plain(table) for table in page.extremes(Found(*found[:-1])))
+    return "\n".join(plain(table) for table in page.extremes(found))
 
 
 def line_of(text: str, group: str, label: str) -> list[str]:
@@ -69,7 +69,7 @@ def test_what_is_0_throughout_takes_no_line_but_is_told() -> None:
     nothing = FakeStudy(T, {"joints": {"idle": {"force": np.zeros((len(T), 3)), "point": np.zeros((len(T), 3))}}})
     alone = page_of(restrict(nothing.results, {"joints"}), LABELS)
     zero = np.zeros(4)
-    (table,) = alone.extremes(Found(zero, zero, zero.astype(int), zero, zero, zero.astype(int)))
+    (table,) = alone.extremes(Extremes(zero, zero, zero.astype(int), zero, zero, zero.astype(int), searched=True))
     assert "idle\n  0 throughout\n" in plain(table)
 
 

@@ -1,0 +1,112 @@
+"""Blocks as tables of instants: a line for each, group by group; for one instant a line for each group."""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+
+import numpy as np
+
+from heuncli.report.blocks import Block, Group, texts_of
+from heuncli.report.numbers import BEYOND, OPEN, ZERO_NOTE, Certainty, write_times
+from heuncli.report.table import Column, Table
+from heuncli.results import Array
+
+Cells = dict[str, dict[str, list[str]]]  # group -> label -> a text for each instant
+
+
+def instants_tables(block: Block, times: Array, horizon: float | None, certain: Certainty) -> list[Table]:
+    """A line for each instant, group by group; for one instant a line for each group."""
+    word, note = block.missing
+    if word != OPEN and all(np.isnan(row.values).all() for group in block.groups for row in group.rows):
+        return [Table(block.heading, notes=(note,))]
+    tables: list[Table] = []
+    notes = list(block.notes)
+    lay = _at_one if len(times) == 1 else _one_below_the_other
+    for groups in _same_columns(block.groups):
+        cells = {group.name: _group_texts(block, group, times, horizon, certain) for group in groups}
+        units = {row.label: row.unit for group in groups for row in group.rows}
+        labels = _not_zero(groups, cells) if word == OPEN else _in_order(groups)
+        if len(labels) < len(units):
+            notes.append(ZERO_NOTE if labels else f"0 throughout: {', '.join(group.name for group in groups)}")
+        columns = [Column(f"{label} [{units[label]}]" if units[label] != "1" else label) for label in labels]
+        lead, rows = lay(block, groups, labels, cells, times)
+        tables += [Table("" if tables else block.heading, (*lead, *columns), tuple(rows))] if labels else []
+    if any(word in row for table in tables for row in table.rows if not isinstance(row, str)):
+        notes.append(note)
+    if not tables:
+        return [Table(block.heading, notes=("0 throughout",))]
+    return [*tables[:-1], tables[-1]._replace(notes=tuple(dict.fromkeys(notes)))]
+
+
+def _at_one(
+    block: Block, groups: Sequence[Group], labels: Sequence[str], cells: Cells, times: Array
+) -> tuple[list[Column], list[tuple[str, ...] | str]]:
+    """Leading columns, and a row for each group."""
+    named = any(group.name for group in groups)
+    noted = any(group.note for group in groups)
+    rows: list[tuple[str, ...] | str] = []
+    for group in groups:
+        about = [group.name] * named + [group.note] * noted
+        rows.append((*about, *(cells[group.name].get(label, [""])[0] for label in labels)))
+    return [Column(block.what, "left")] * named + [Column("", "left")] * noted, rows
+
+
+def _one_below_the_other(
+    block: Block, groups: Sequence[Group], labels: Sequence[str], cells: Cells, times: Array
+) -> tuple[list[Column], list[tuple[str, ...] | str]]:
+    """Leading columns, and a row for each instant of each group."""
+    clock = write_times(times.tolist(), float(np.ptp(times)))
+    empty = [""] * len(times)
+    rows: list[tuple[str, ...] | str] = []
+    for group in groups:
+        rows += [group.title] if group.name else []
+        columns = [cells[group.name].get(label, empty) for label in labels]
+        rows += list(zip(clock, *columns, strict=True))
+    return [Column("t [s]")], rows
+
+
+def _in_order(groups: Sequence[Group]) -> list[str]:
+    """The labels of all groups, each after those it follows in its own."""
+    order: list[str] = []
+    for group in groups:
+        behind = 0
+        for row in group.rows:
+            if row.label not in order:
+                order.insert(behind, row.label)
+            behind = order.index(row.label) + 1
+    return order
+
+
+def _group_texts(
+    block: Block, group: Group, times: Array, horizon: float | None, certain: Certainty
+) -> dict[str, list[str]]:
+    """The cells of a group by label, one an instant."""
+    numbers = np.stack([row.values for row in group.rows], axis=1)
+    beyond = [horizon is not None and t >= horizon for t in times.tolist()]
+    word = {OPEN: block.missing[0]}
+    return {
+        row.label: [BEYOND if far else word.get(text, text) for text, far in zip(own, beyond, strict=True)]
+        for row, own in zip(group.rows, texts_of(group, numbers, certain), strict=True)
+    }
+
+
+def _not_zero(groups: Sequence[Group], cells: Cells) -> list[str]:
+    """The labels of what is not 0 throughout, vectors whole, in their order."""
+    whole = {row.label: row.vector or row.label for group in groups for row in group.rows}
+    shown = {whole[label] for own in cells.values() for label, texts in own.items() if set(texts) - {BEYOND} != {"0"}}
+    return [label for label in _in_order(groups) if whole[label] in shown]
+
+
+def _same_columns(groups: Sequence[Group]) -> list[list[Group]]:
+    """The groups in tables whose columns have one unit each."""
+    tables: list[tuple[dict[str, str], list[Group]]] = []
+    for group in groups:
+        units = {row.label: row.unit for row in group.rows}
+        for known, members in tables:
+            if all(known.get(label, unit) == unit for label, unit in units.items()):
+                known |= units
+                members.append(group)
+                break
+        else:
+            tables.append((units, [group]))
+    return [members for _, members in tables]

@@ -1,0 +1,156 @@
+"""Which quantities the tables show, under which heading, with which note on each thing.
+
+A plan is one table of the report: of one kind of results it takes the named quantities, in their order.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Callable
+from typing import NamedTuple
+
+import numpy as np
+
+from heuncli.report.labels import Labels
+from heuncli.report.numbers import OPEN, OPEN_NOTE
+from heuncli.results import Results
+
+STRESSES = ("normal_max", "normal_min", "shear_torsion", "shear_mean", "mises", "utilisation")
+POINTS = ("the origin", "the point")
+NO_AXIS = ("none", "none: there is no force, so no axis")
+
+
+class Plan(NamedTuple):
+    """How a kind of results becomes a block: the quantities in their order, and the text about it.
+
+    `only` takes one name of the kind. What is not `lasting` (a line in space) has no extremes: it shows at instants.
+    `missing`: what stands for nan, and the note that explains it.
+    """
+
+    key: str
+    kind: str
+    what: str
+    quantities: tuple[str, ...]
+    heading: Callable[[Results, Labels], str]
+    note: Callable[[str, Labels], str] = lambda name, labels: ""
+    only: str | None = None
+    lasting: bool = True
+    missing: tuple[str, str] = (OPEN, OPEN_NOTE)
+
+
+def _about(results: Results, labels: Labels) -> str:
+    about = np.asarray(results.foundation.get("about", (0.0, 0.0, 0.0))) + 0.0
+    x, y, z = (f"{component:.6g}" for component in about)
+    return f"{labels.about} = ({x}, {y}, {z}) m" if labels.about else f"{POINTS[bool(about.any())]} ({x}, {y}, {z}) m"
+
+
+def _joint_note(name: str, labels: Labels) -> str:
+    info = labels.joints.get(name)
+    return f"{info.type}, {info.from_} → {info.to}" if info else ""
+
+
+def _force_note(name: str, labels: Labels) -> str:
+    info = labels.forces.get(name)
+    return (f"{info.type} on {info.joint}" if info.joint else info.type) if info else ""
+
+
+def _section_note(name: str, labels: Labels) -> str:
+    info = labels.sections.get(name)
+    return f"{info.body}; e1 = {info.first_axis}; moments about {info.about}" if info else ""
+
+
+def _foundation_note(name: str, labels: Labels) -> str:
+    kind, _, own = name.partition(" ")
+    notes = {"support": _joint_note, "element": _force_note}
+    return notes[kind](own, labels) if kind in notes else ""
+
+
+FOUNDATION = Plan(
+    "foundation",
+    "foundation",
+    "",
+    ("force", "moment"),
+    lambda results, labels: (
+        f"FOUNDATION  force and moment ON the ground, world axes, moment about {_about(results, labels)}"
+    ),
+    _foundation_note,
+)
+MASS_EFFECT = Plan(
+    "foundation",
+    "foundation",
+    "",
+    ("force", "moment_orbital", "moment_spin"),
+    lambda results, labels: (
+        "MASS EFFECT  F = Σ m ẍ, orbital and spin moment the rates of Σ m x × ẋ and Σ I σ,"
+        f" world axes, about {_about(results, labels)}"
+    ),
+    only="mass_effect",
+)
+PLANS = (
+    Plan(
+        "motion",
+        "bodies",
+        "body",
+        ("center", "center_velocity", "center_acceleration", "angular_velocity", "angular_acceleration"),
+        lambda results, labels: "MOTION  of the centres of mass, and angular velocity of the bodies, world axes",
+    ),
+    Plan(
+        "motion",
+        "coordinates",
+        "joint",
+        ("angle", "rate", "travel", "speed", "acceleration", "angular_acceleration"),
+        lambda results, labels: 'COORDINATES  of the joints, of "to" against "from"',
+        _joint_note,
+    ),
+    Plan(
+        "points",
+        "points",
+        "point",
+        ("position", "velocity", "acceleration"),
+        lambda results, labels: "POINTS  world axes",
+    ),
+    FOUNDATION,
+    MASS_EFFECT,
+    Plan(
+        "foundation",
+        "foundation",
+        "",
+        ("point", "direction", "pitch"),
+        lambda results, labels: "CENTRAL AXIS  of the foundation's wrench: its point nearest the moment's, world axes",
+        only="axis",
+        lasting=False,
+        missing=NO_AXIS,
+    ),
+    Plan(
+        "joints",
+        "joints",
+        "joint",
+        ("force", "moment", "axial", "radial", "tilting", "tension", "drive"),
+        lambda results, labels: (
+            'JOINTS  what "from" exerts ON "to" (drive, friction apart), world axes, moment about the "to" point'
+        ),
+        _joint_note,
+    ),
+    Plan(
+        "sections",
+        "sections",
+        "section",
+        ("N", "Q1", "Q2", "T", "M1", "M2", *STRESSES),
+        lambda results, labels: "SECTIONS  the piece beyond the cut ON the part before it; N > 0 tension; e2 = n × e1",
+        _section_note,
+    ),
+    Plan(
+        "forces",
+        "forces",
+        "force",
+        ("value", "length", "rate", "power"),
+        lambda results, labels: "FORCES  value, length of its line, rate of its length or turning, power it puts in",
+        _force_note,
+    ),
+    Plan(
+        "energy",
+        "energy",
+        "",
+        ("kinetic", "potential", "work"),
+        lambda results, labels: "ENERGY  potential from the world's origin; kinetic + potential − work is constant",
+    ),
+)
