@@ -1,21 +1,27 @@
-"""How the kernel is compiled when the package is built: Cython in pure-Python mode, optional by default.
+"""How the package is built: the kernel by Cython in pure-Python mode, optional by default, one wheel for every CPython.
 
-The modules stand in pyproject.toml (`tool.setuptools.ext-modules`). HEUN_KERNEL at build time:
+The kernel's modules stand in heuncli/kernel/modules.py. HEUN_KERNEL at build time:
 
     unset      compile; where that fails (no compiler, no Python headers, no Cython) install the plain files instead
     require    a failed compilation fails the build
     pure       compile nothing
 
-`python -m heuncli.build` compiles in place, in a checkout. Impure: reads HEUN_KERNEL, writes the build tree.
+A compiled kernel asks for nothing but Python's stable interface (PEP 384), so that one wheel serves the oldest Python
+that heun runs on and all that follow. `python -m heuncli.build` compiles in place, in a checkout. Impure: reads
+HEUN_KERNEL, writes the build tree.
 """
 
 from __future__ import annotations
 
 import os
+import shutil
 import sys
+import sysconfig
 from pathlib import Path
+from runpy import run_path
 
-from setuptools import Extension, setup
+from setuptools import Distribution, Extension
+from setuptools.command.bdist_wheel import bdist_wheel
 from setuptools.command.build_ext import build_ext
 
 # The kernel validates before it enters the loops and guards its divisors itself.
@@ -29,35 +35,60 @@ DIRECTIVES = {
 # No contraction to fused multiply-adds, so that compiled and plain files give the same bits.
 GNU_FLAGS = ("-O3", "-ffp-contract=off")
 MSVC_FLAGS = ("/O2", "/fp:precise")
+# Builds of CPython without the global lock have no stable interface yet, other Pythons none at all.
+STABLE = sys.implementation.name == "cpython" and not sysconfig.get_config_var("Py_GIL_DISABLED")
+
+
+def oldest(distribution: Distribution) -> int:
+    """The minor version of the oldest Python served; 3.11's stable interface is the first with buffers, for arrays."""
+    return int(str(distribution.python_requires).removeprefix(">=3."))  # type: ignore[attr-defined]
 
 
 class BuildKernel(build_ext):
     """build_ext with the kernel's flags and the meaning of HEUN_KERNEL."""
 
     def finalize_options(self) -> None:
+        limit = ("Py_LIMITED_API", f"0x03{oldest(self.distribution):02X}0000")
+        for extension in self.distribution.ext_modules or []:
+            extension.py_limited_api = STABLE  # type: ignore[attr-defined]
+            extension.define_macros = [limit] if STABLE else []
         super().finalize_options()
         self.kernel = os.environ.get("HEUN_KERNEL", "")
         if self.kernel not in ("", "require", "compiled", "pure"):
             raise SystemExit(f"HEUN_KERNEL={self.kernel}: known: require, compiled, pure")
         self.cython_directives = DIRECTIVES
         self.cython_c_in_temp = True
+        self.folders = [Path(self.build_lib, "heuncli", "kernel")]
+        if self.inplace:
+            self.folders.append(Path("heuncli", "kernel"))
         if self.kernel == "pure":
             for extension in self.extensions:
                 self.forget(extension)
             self.extensions = []
 
-    def forget(self, extension: Extension) -> None:
-        """Remove what an earlier build left, or it would be packed beside a newer source."""
-        Path(self.get_ext_fullpath(extension.name)).unlink(missing_ok=True)
+    def forget(self, extension: Extension, but: str = "") -> None:
+        """Remove what earlier builds left: it would be packed beside a newer source, or imported in its place.
+
+        A file for one version of Python alone comes before one for all, whichever is newer.
+        """
+        name = extension.name.rpartition(".")[2]
+        for folder in self.folders:
+            for file in folder.glob(f"{name}.*"):
+                if file.suffix in (".so", ".pyd") and file.name != but:
+                    file.unlink()
 
     def build_extensions(self) -> None:
         flags = MSVC_FLAGS if self.compiler.compiler_type == "msvc" else GNU_FLAGS
         for extension in self.extensions:
             extension.extra_compile_args = list(flags)
+            extension.optional = self.kernel not in ("require", "compiled")
+            self.forget(extension, but=Path(self.get_ext_fullpath(extension.name)).name)
         super().build_extensions()
+        if not self.is_compiled():  # compiled modules call each other as C functions: all of them, or none
+            for extension in self.extensions:
+                self.forget(extension)
 
     def build_extension(self, ext: Extension) -> None:
-        ext.optional = self.kernel not in ("require", "compiled")
         try:
             super().build_extension(ext)
         except Exception as reason:  # whatever stops a compiler: the plain files run everywhere
@@ -66,6 +97,30 @@ class BuildKernel(build_ext):
             self.forget(ext)
             print(f"heun: {ext.name} is not compiled, its plain file will run instead: {reason}", file=sys.stderr)
 
+    def is_compiled(self) -> bool:
+        """Whether the build tree holds every module of the kernel in compiled form."""
+        files = [Path(self.get_ext_fullpath(extension.name)) for extension in self.extensions]
+        return bool(files) and all(file.exists() for file in files)
+
+
+class Wheel(bdist_wheel):
+    """bdist_wheel with nothing left from another day, labelled by what was compiled, not by what might have been."""
+
+    def run(self) -> None:
+        if not self.skip_build:
+            shutil.rmtree(self.get_finalized_command("build").build_lib, ignore_errors=True)
+            self.run_command("build")
+            self.skip_build = True
+        kernel = self.get_finalized_command("build_ext")
+        assert isinstance(kernel, BuildKernel)
+        if not kernel.is_compiled():
+            self.distribution.ext_modules = []
+            self.root_is_pure = True
+        elif STABLE:
+            self.py_limited_api = f"cp3{oldest(self.distribution)}"
+        super().run()
+
 
 if __name__ == "__main__":
-    setup(script_args=["build_ext", "--inplace"])
+    sys.argv = ["setup.py", "build_ext", "--inplace"]
+    run_path("setup.py")

@@ -2,21 +2,30 @@
 
 from __future__ import annotations
 
+import re
 from pathlib import Path
 
 import pytest
 
-from heuncli.kernel.choose import COMPILED_MODULES, FOLDER, KERNEL
+from heuncli.kernel import choose
+from heuncli.kernel.form import FOLDER, KERNEL, MODULES
+
+
+def sources(name: str) -> set[Path]:
+    """The files a kernel module is compiled from: its own, and the declarations it takes from its neighbours."""
+    own = {path for path in (FOLDER / f"{name}.py", FOLDER / f"{name}.pxd") if path.exists()}
+    imports = re.compile(r"from (?:cython\.cimports\.)?heuncli\.kernel\.(\w+) ")
+    neighbours = {name for path in own for name in imports.findall(path.read_text(encoding="utf-8"))}
+    return own | {path for path in (FOLDER / f"{neighbour}.pxd" for neighbour in neighbours) if path.exists()}
 
 
 def pytest_configure() -> None:
     """A compiled kernel older than its source would test yesterday's code."""
     if KERNEL == "pure":
         return
-    for name in COMPILED_MODULES:
-        sources = [p for p in (FOLDER / f"{name}.py", FOLDER / f"{name}.pxd") if p.exists()]
-        built = max(p.stat().st_mtime for p in FOLDER.glob(f"{name}.*") if p not in sources)
-        if any(p.stat().st_mtime > built for p in sources):
+    for name in MODULES:
+        built = Path(getattr(choose, name).__file__).stat().st_mtime
+        if any(path.stat().st_mtime > built for path in sources(name)):
             raise pytest.UsageError(
                 f"heuncli.kernel.{name} is compiled from older text: python -m heuncli.build, or HEUN_KERNEL=pure"
             )

@@ -63,7 +63,7 @@ def worst(codes: Sequence[int]) -> int:
 
 def version() -> str:
     """The version, and which kernel runs."""
-    from heuncli.kernel.choose import KERNEL
+    from heuncli.kernel.form import KERNEL
 
     return f"heun {VERSION} ({KERNEL} kernel, Python {sys.version.split()[0]})"
 

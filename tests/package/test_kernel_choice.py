@@ -10,13 +10,13 @@ from pathlib import Path
 
 import pytest
 
-from heuncli.kernel import choose
+from heuncli.kernel import choose, form
 
-ROOT = choose.FOLDER.parent.parent
+ROOT = form.FOLDER.parent.parent
 REPORT = """\
 import json
-from heuncli.kernel import choose
-print(json.dumps([choose.KERNEL, [getattr(choose, name).__file__ for name in choose.COMPILED_MODULES]]))
+from heuncli.kernel import choose, form
+print(json.dumps([form.KERNEL, [getattr(choose, name).__file__ for name in form.MODULES]]))
 """
 
 
@@ -32,12 +32,12 @@ def loaded(wish: str | None) -> tuple[str, list[str]]:
 
 
 def test_pure_takes_the_plain_files_whatever_lies_beside_them() -> None:
-    assert loaded("pure") == ("pure", [".py"] * len(choose.COMPILED_MODULES))
+    assert loaded("pure") == ("pure", [".py"] * len(form.MODULES))
 
 
 def test_left_alone_it_takes_the_compiled_ones_if_all_are_there() -> None:
     kernel, endings = loaded(None)
-    built = all(choose.is_built(name) for name in choose.COMPILED_MODULES)
+    built = all(form.is_built(name) for name in form.MODULES)
     assert kernel == ("compiled" if built else "pure")
     assert all((ending == ".py") != built for ending in endings)
 
@@ -45,27 +45,27 @@ def test_left_alone_it_takes_the_compiled_ones_if_all_are_there() -> None:
 def test_what_runs_here_is_what_was_asked_for() -> None:
     """The suite itself: with HEUN_KERNEL=require it must not have fallen back."""
     wish = os.environ.get("HEUN_KERNEL", "")
-    assert choose.step.COMPILED == (choose.KERNEL == "compiled")
-    assert choose.KERNEL == {"require": "compiled", "compiled": "compiled", "pure": "pure"}.get(wish, choose.KERNEL)
+    assert choose.step.COMPILED == (form.KERNEL == "compiled")
+    assert form.KERNEL == {"require": "compiled", "compiled": "compiled", "pure": "pure"}.get(wish, form.KERNEL)
 
 
 def test_one_module_missing_makes_all_of_them_plain(monkeypatch: pytest.MonkeyPatch) -> None:
-    monkeypatch.setattr(choose, "is_built", lambda name: name != "tree")
-    assert choose.choose("") == "pure"
-    with pytest.raises(choose.KernelError, match=r"missing: tree.*\[kernel-not-compiled\]") as error:
-        choose.choose("require")
+    monkeypatch.setattr(form, "is_built", lambda name: name != "tree")
+    assert form.choose("") == "pure"
+    with pytest.raises(form.KernelError, match=r"missing: tree.*\[kernel-not-compiled\]") as error:
+        form.choose("require")
     assert error.value.exit_code == 2
     assert "C compiler" in str(error.value)
 
 
 def test_all_there(monkeypatch: pytest.MonkeyPatch) -> None:
-    monkeypatch.setattr(choose, "is_built", lambda name: True)
-    assert [choose.choose(wish) for wish in ("", "compiled", "require", "pure")] == ["compiled"] * 3 + ["pure"]
+    monkeypatch.setattr(form, "is_built", lambda name: True)
+    assert [form.choose(wish) for wish in ("", "compiled", "require", "pure")] == ["compiled"] * 3 + ["pure"]
 
 
 def test_an_unknown_wish_is_an_error() -> None:
-    with pytest.raises(choose.KernelError, match=r"'fast'; known: pure, compiled, require \[unknown-kernel\]"):
-        choose.choose("fast")
+    with pytest.raises(form.KernelError, match=r"'fast'; known: pure, compiled, require \[unknown-kernel\]"):
+        form.choose("fast")
 
 
 def test_the_command_says_so_without_a_traceback() -> None:

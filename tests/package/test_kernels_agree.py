@@ -11,7 +11,7 @@ from typing import Any
 
 import pytest
 
-from heuncli.kernel.choose import KERNEL
+from heuncli.kernel.form import KERNEL
 
 SPECS = Path(__file__).parents[2] / "specs"
 SCENES = {

@@ -6,25 +6,20 @@ import re
 import tomllib
 from pathlib import Path
 
-from heuncli.kernel.choose import COMPILED_MODULES
+from heuncli.kernel.form import FOLDER, MODULES
 
 ROOT = Path(__file__).parents[2]
 PROJECT = tomllib.loads((ROOT / "pyproject.toml").read_text())
 
 
-def test_the_modules_compiled_are_the_modules_chosen_between() -> None:
-    extensions = PROJECT["tool"]["setuptools"]["ext-modules"]
-    assert [extension["name"] for extension in extensions] == [f"heuncli.kernel.{name}" for name in COMPILED_MODULES]
-    for extension in extensions:
-        assert [ROOT / source for source in extension["sources"]] == [
-            ROOT / f"{extension['name'].replace('.', '/')}.py"
-        ]
-        assert all((ROOT / source).exists() for source in extension["sources"])
+def test_the_modules_compiled_are_those_written_for_cython() -> None:
+    written = {path.stem for path in FOLDER.glob("*.py") if "\n    import cython\n" in path.read_text(encoding="utf-8")}
+    assert sorted(MODULES) == sorted(written)
 
 
 def test_the_protected_modules_are_the_compiled_ones() -> None:
     contract = next(c for c in PROJECT["tool"]["importlinter"]["contracts"] if c["type"] == "protected")
-    assert {f"heuncli.kernel.{name}" for name in COMPILED_MODULES} < set(contract["protected_modules"])
+    assert {f"heuncli.kernel.{name}" for name in (*MODULES, "shadow")} <= set(contract["protected_modules"])
 
 
 def test_nothing_is_needed_at_run_time_that_only_builds() -> None:

@@ -112,5 +112,5 @@ def test_help_and_version_do_without_the_heavy_ones(words: tuple[str, ...]) -> N
     assert not loaded(*words) & {"numpy", "scipy", "yaml", "rich", "heuncli.spec.load"}
 
 
-def test_the_version_asks_for_nothing_but_the_kernel() -> None:
+def test_the_version_asks_only_which_kernel_there_is() -> None:
     assert not loaded("--version") & {"typer", "pydantic", "dataclasses", "inspect"}
