@@ -61,11 +61,11 @@ else:
     # What stands for C in expressions.pxd, in the same order.
     CONST, VAR = range(2)
     ADD, SUB, MUL, DIV, POW, ATAN2, HYPOT, MIN, MAX = range(2, 11)
-    LT, LE, GT, GE, EQ, NE = range(11, 17)
-    NEG, POWER, ABS, SIGN, STEP = range(17, 22)
-    SIN, COS, TAN, ASIN, ACOS, ATAN = range(22, 28)
-    SINH, COSH, TANH, EXP, LOG, SQRT = range(28, 34)
-    TABLE, KNOT, JUMP, UNLESS = range(34, 38)
+    NEG, POWER, ABS, SIGN, STEP = range(11, 16)
+    SIN, COS, TAN, ASIN, ACOS, ATAN = range(16, 22)
+    SINH, COSH, TANH, EXP, LOG, SQRT = range(22, 28)
+    TABLE, KNOT, JUMP, UNLESS = range(28, 32)
+    LT, LE, GT, GE, EQ, NE = range(32, 38)
 
     REFUSED, HELD, PERIODIC = range(3)  # what a table says beyond its ends
 
@@ -125,42 +125,42 @@ COMPILED = cython.compiled
 @cython.exceptval(check=False)
 def value(programs: cython.pointer[Programs], program: Program) -> cython.double:
     """Value of a program at the variables; NaN when not computable."""
-    stack: cython.p_double = programs.stack
+    stack: cython.p_double = programs.stack  # what lies below x
+    height: cython.Py_ssize_t = 0
+    x: cython.double = NAN  # the topmost number
     at: cython.Py_ssize_t = program.start
     end: cython.Py_ssize_t = at + program.count
-    top: cython.Py_ssize_t = -1
     while at < end:
         op: cython.int = programs.code[at].op
         k: cython.int = programs.code[at].argument
         at += 1
-        if op == CONST:
-            top += 1
-            stack[top] = programs.constants[k]
-        elif op == VAR:
-            top += 1
-            stack[top] = programs.variables[k]
+        if op <= VAR:
+            stack[height] = x
+            height += 1
+            x = programs.constants[k] if op == CONST else programs.variables[k]
         elif op <= MAX:
-            top -= 1
-            stack[top] = of_two(op, stack[top], stack[top + 1])
-        elif op <= NE:
-            top -= 1
-            stack[top] = compare(op, stack[top], stack[top + 1])
-            top += k
+            height -= 1
+            x = of_two(op, stack[height], x)
         elif op <= SQRT:
-            stack[top] = of_one(op, stack[top], k)
+            x = of_one(op, x, k)
         elif op <= KNOT:
-            stack[top] = of_table(op, programs.constants, table_at(programs, at, k), stack[top])
+            x = of_table(op, programs.constants, table_at(programs, at, k), x)
             at += 1
         elif op == JUMP:
             at += k
-        else:
-            condition: cython.double = stack[top]
-            top -= 1
-            if condition == 0.0:
+        elif op == UNLESS:
+            if x == 0.0:
                 at += k
-            elif condition != condition:
+            elif x != x:
                 return NAN
-    return stack[0] if stack[0] - stack[0] == 0.0 else NAN
+            height -= 1
+            x = stack[height]
+        elif k == 1:
+            stack[height - 1] = compare(op, stack[height - 1], x)
+        else:
+            height -= 1
+            x = compare(op, stack[height], x)
+    return x if x - x == 0.0 else NAN
 
 
 @cython.cfunc
@@ -190,6 +190,7 @@ def of_two(op: cython.int, a: cython.double, b: cython.double) -> cython.double:
 
 
 @cython.cfunc
+@cython.inline
 @cython.nogil
 @cython.exceptval(check=False)
 def compare(op: cython.int, a: cython.double, b: cython.double) -> cython.double:
@@ -285,6 +286,7 @@ def exponential(op: cython.int, a: cython.double) -> cython.double:
 
 
 @cython.cfunc
+@cython.inline
 @cython.nogil
 @cython.exceptval(check=False)
 def power(x: cython.double, n: cython.int) -> cython.double:
@@ -299,6 +301,7 @@ def power(x: cython.double, n: cython.int) -> cython.double:
 
 
 @cython.cfunc
+@cython.inline
 @cython.nogil
 @cython.exceptval(check=False)
 def real_power(x: cython.double, y: cython.double) -> cython.double:
@@ -309,6 +312,7 @@ def real_power(x: cython.double, y: cython.double) -> cython.double:
 
 
 @cython.cfunc
+@cython.inline
 @cython.nogil
 @cython.exceptval(check=False)
 def length(a: cython.double, b: cython.double) -> cython.double:
@@ -332,8 +336,8 @@ def length(a: cython.double, b: cython.double) -> cython.double:
 @cython.exceptval(check=False)
 def table_at(programs: cython.pointer[Programs], at: cython.Py_ssize_t, k: cython.Py_ssize_t) -> Table:
     """The table that stands in the constants from k; its data are the instruction at `at`."""
-    pieces: cython.int = programs.code[at].op
-    return Table(pieces, programs.code[at].argument, programs.constants[k], k + 1, k + 2 + pieces)
+    data: Instruction = programs.code[at]
+    return Table(data.op, data.argument, programs.constants[k], k + 1, k + 2 + data.op)
 
 
 @cython.cfunc
@@ -354,6 +358,7 @@ def of_table(op: cython.int, c: cython.p_double, table: Table, x: cython.double)
 
 
 @cython.cfunc
+@cython.inline
 @cython.nogil
 @cython.exceptval(check=False)
 def in_range(c: cython.p_double, table: Table, x: cython.double) -> cython.double:
@@ -377,6 +382,7 @@ def in_range(c: cython.p_double, table: Table, x: cython.double) -> cython.doubl
 
 
 @cython.cfunc
+@cython.inline
 @cython.nogil
 @cython.exceptval(check=False)
 def piece(c: cython.p_double, table: Table, x: cython.double) -> cython.int:
@@ -395,6 +401,7 @@ def piece(c: cython.p_double, table: Table, x: cython.double) -> cython.int:
 
 
 @cython.cfunc
+@cython.inline
 @cython.nogil
 @cython.exceptval(check=False)
 def piece_counted(c: cython.p_double, table: Table, x: cython.double) -> cython.double:
@@ -418,44 +425,42 @@ def piece_counted(c: cython.p_double, table: Table, x: cython.double) -> cython.
 @cython.exceptval(check=False)
 def jet(programs: cython.pointer[Programs], program: Program, t: cython.double) -> Jet:
     """Value, first and second derivative of a program in time alone; NaN when not computable."""
-    jets: cython.pointer[Jet] = programs.jets
+    jets: cython.pointer[Jet] = programs.jets  # what lies below x
+    height: cython.Py_ssize_t = 0
+    x: Jet = constant(NAN)  # the topmost
     at: cython.Py_ssize_t = program.start
     end: cython.Py_ssize_t = at + program.count
-    top: cython.Py_ssize_t = -1
     while at < end:
         op: cython.int = programs.code[at].op
         k: cython.int = programs.code[at].argument
         at += 1
-        if op == CONST:
-            top += 1
-            jets[top] = Jet(programs.constants[k], 0.0, 0.0)
-        elif op == VAR:
-            top += 1
-            jets[top] = Jet(t if k == 0 else NAN, 1.0, 0.0)
+        if op <= VAR:
+            jets[height] = x
+            height += 1
+            x = constant(programs.constants[k]) if op == CONST else Jet(t if k == 0 else NAN, 1.0, 0.0)
         elif op <= MAX:
-            top -= 1
-            jets[top] = jet_of_two(op, jets[top], jets[top + 1])
-        elif op <= NE:
-            top -= 1
-            jets[top] = constant(compare(op, jets[top].value, jets[top + 1].value))
-            top += k
+            height -= 1
+            x = jet_of_two(op, jets[height], x)
         elif op <= SQRT:
-            jets[top] = jet_of_one(op, jets[top], k)
+            x = jet_of_one(op, x, k)
         elif op <= KNOT:
-            jets[top] = jet_of_table(op, programs.constants, table_at(programs, at, k), jets[top])
+            x = jet_of_table(op, programs.constants, table_at(programs, at, k), x)
             at += 1
         elif op == JUMP:
             at += k
-        else:
-            condition: cython.double = jets[top].value
-            top -= 1
-            if condition == 0.0:
+        elif op == UNLESS:
+            if x.value == 0.0:
                 at += k
-            elif condition != condition:
+            elif x.value != x.value:
                 return Jet(NAN, NAN, NAN)
-    if jets[0].value - jets[0].value == 0.0:
-        return jets[0]
-    return Jet(NAN, NAN, NAN)
+            height -= 1
+            x = jets[height]
+        elif k == 1:
+            jets[height - 1] = constant(compare(op, jets[height - 1].value, x.value))
+        else:
+            height -= 1
+            x = constant(compare(op, jets[height].value, x.value))
+    return x if x.value - x.value == 0.0 else Jet(NAN, NAN, NAN)
 
 
 @cython.cfunc
@@ -531,6 +536,7 @@ def jet_of_quotient(a: Jet, b: Jet) -> Jet:
 
 
 @cython.cfunc
+@cython.inline
 @cython.nogil
 @cython.exceptval(check=False)
 def jet_of_power(a: Jet, b: Jet) -> Jet:
@@ -549,6 +555,7 @@ def jet_of_power(a: Jet, b: Jet) -> Jet:
 
 
 @cython.cfunc
+@cython.inline
 @cython.nogil
 @cython.exceptval(check=False)
 def scaled_power(c: cython.double, x: cython.double, y: cython.double) -> cython.double:
@@ -557,6 +564,7 @@ def scaled_power(c: cython.double, x: cython.double, y: cython.double) -> cython
 
 
 @cython.cfunc
+@cython.inline
 @cython.nogil
 @cython.exceptval(check=False)
 def jet_of_angle(a: Jet, b: Jet) -> Jet:
@@ -572,6 +580,7 @@ def jet_of_angle(a: Jet, b: Jet) -> Jet:
 
 
 @cython.cfunc
+@cython.inline
 @cython.nogil
 @cython.exceptval(check=False)
 def jet_of_length(a: Jet, b: Jet) -> Jet:
@@ -622,13 +631,16 @@ def jet_of_piecewise(op: cython.int, u: Jet, n: cython.int) -> Jet:
 def jet_of_trigonometric(op: cython.int, u: Jet) -> Jet:
     """The functions of the circle and their inverses; asin and acos have no derivatives at -1 and 1."""
     a: cython.double = u.value
-    f: cython.double = trigonometric(op, a)
+    f: cython.double
     df: cython.double
     if op == SIN:
+        f = sin(a)
         return chain(u, f, cos(a), -f)
     elif op == COS:
+        f = cos(a)
         return chain(u, f, -sin(a), -f)
-    elif op == TAN:
+    f = trigonometric(op, a)
+    if op == TAN:
         df = 1.0 + f * f
         return chain(u, f, df, 2.0 * f * df)
     elif op == ATAN:
@@ -671,6 +683,7 @@ def jet_of_exponential(op: cython.int, u: Jet) -> Jet:
 
 
 @cython.cfunc
+@cython.inline
 @cython.nogil
 @cython.exceptval(check=False)
 def jet_of_table(op: cython.int, c: cython.p_double, table: Table, u: Jet) -> Jet:
@@ -701,8 +714,8 @@ def stack_depth(code: Sequence[int]) -> int:
             is_data = False
         elif op <= VAR:
             height += 1
-        elif op <= NE:
-            height -= 1 if op <= MAX or argument == 0 else 0
+        elif op <= MAX or (op >= LT and argument == 0):
+            height -= 1
         elif op in (TABLE, KNOT):
             is_data = True
         elif op in (JUMP, UNLESS):  # after JUMP the other branch begins, where this one's result is not there

@@ -56,11 +56,11 @@ else:
     # The codes of the operations; for C they stand in program.pxd, in the same order.
     CONST, VAR = range(2)
     ADD, SUB, MUL, DIV, POW, ATAN2, HYPOT, MIN, MAX = range(2, 11)
-    LT, LE, GT, GE, EQ, NE = range(11, 17)
-    NEG, POWER, ABS, SIGN, STEP = range(17, 22)
-    SIN, COS, TAN, ASIN, ACOS, ATAN = range(22, 28)
-    SINH, COSH, TANH, EXP, LOG, SQRT = range(28, 34)
-    TABLE, KNOT, JUMP, UNLESS = range(34, 38)
+    NEG, POWER, ABS, SIGN, STEP = range(11, 16)
+    SIN, COS, TAN, ASIN, ACOS, ATAN = range(16, 22)
+    SINH, COSH, TANH, EXP, LOG, SQRT = range(22, 28)
+    TABLE, KNOT, JUMP, UNLESS = range(28, 32)
+    LT, LE, GT, GE, EQ, NE = range(32, 38)
 
     # C's functions answer everywhere where Python's raise.
     def exp(x: float) -> float:
