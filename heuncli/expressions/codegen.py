@@ -1,4 +1,4 @@
-"""Programs from the inside out: each part of an expression becomes code in postfix order; what is constant, a number.
+"""Code for the parts of an expression, in postfix order; a part that is constant is folded into one number.
 
 The kernel's evaluator alone decides what a number is, also here, where constants are folded.
 """
@@ -21,14 +21,14 @@ COMPARISONS = {"<": "lt", "<=": "le", ">": "gt", ">=": "ge", "==": "eq", "!=": "
 
 @dataclass(frozen=True)
 class Part:
-    """A program for a part of an expression; constant where it is a number; uses: its variables."""
+    """The code of a part of an expression, the variables it uses, and its value where it is constant."""
 
     code: Code
     uses: frozenset[int]
     constant: float | None = None
 
 
-class Emitter:
+class Codegen:
     """The constants, variables, tables and switches of one expression, and the parts made so far."""
 
     def __init__(self) -> None:
@@ -37,15 +37,15 @@ class Emitter:
         self.variables: dict[tuple[str, str], int] = {}
         self.tables: list[Table] = []
         self.switches: list[Switch] = []
-        self.left: Finding | None = None  # a table was asked for a number outside its range ...
-        self.branches = False  # ... which matters not where it stands in a branch that is not chosen
+        self.out_of_range: Finding | None = None  # a table at a constant outside its range: an error ...
+        self.branches = False  # ... unless it may stand in a branch that is not chosen
 
     def finished(self, text: str, part: Part) -> Expression:
-        """The expression that is this part. Raises Finding where it is a number that is none."""
-        is_none = part.constant is not None and not math.isfinite(part.constant)
-        if self.left is not None and (is_none or not self.branches):
-            raise self.left
-        if is_none:
+        """The expression that is this part. Raises Finding where it is constant and not finite."""
+        is_not_finite = part.constant is not None and not math.isfinite(part.constant)
+        if self.out_of_range is not None and (is_not_finite or not self.branches):
+            raise self.out_of_range
+        if is_not_finite:
             raise Finding("not-computable", f"'{text.strip()}' is not a finite number", BEYOND)
         return Expression(
             source=text, constant=part.constant, uses=tuple(self.variables), time_dependent=0 in part.uses,
@@ -71,7 +71,7 @@ class Emitter:
             value = self.run(code, table)
             if math.isnan(value) and math.isfinite(argument.constant):
                 message, hint = outside(table)
-                self.left = Finding("not-computable", f"{message}, not {argument.constant:.9g}", hint)
+                self.out_of_range = Finding("not-computable", f"{message}, not {argument.constant:.9g}", hint)
             return self.number(value)
         if argument.uses <= {0}:
             self.switches.append(Switch((*argument.code, OP["knot"], *code[-3:]), None))

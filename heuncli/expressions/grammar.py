@@ -14,7 +14,7 @@ from collections.abc import Mapping
 from dataclasses import dataclass, field
 
 from heuncli.errors import Finding
-from heuncli.expressions.codegen import COMPARISONS, MOST_NODES, Emitter, Part
+from heuncli.expressions.codegen import COMPARISONS, MOST_NODES, Codegen, Part
 from heuncli.expressions.programs import Expression, Table
 from heuncli.expressions.units import in_si
 from heuncli.joint_kinds import RATES, TYPES
@@ -105,7 +105,7 @@ class _Parser:
         ]
         self.at = 0
         self.nested = 0
-        self.emit = Emitter()
+        self.codegen = Codegen()
 
     def parse(self) -> Expression:
         if not self.tokens:
@@ -113,7 +113,7 @@ class _Parser:
         part = self.expression()
         if self.at < len(self.tokens):
             raise self.unexpected()
-        return self.emit.finished(self.text, part)
+        return self.codegen.finished(self.text, part)
 
     # tokens
 
@@ -190,20 +190,20 @@ class _Parser:
         if self.take("if"):
             condition = self.disjunction()
             self.expect("else", "after 'if'")
-            part = self.emit.choose(condition, part, self.expression())
+            part = self.codegen.choose(condition, part, self.expression())
         self.nested -= 1
         return part
 
     def disjunction(self) -> Part:
         part = self.conjunction()
         while self.take("or"):
-            part = self.emit.choose(part, self.emit.number(1.0), self.emit.truth(self.conjunction()))
+            part = self.codegen.choose(part, self.codegen.number(1.0), self.codegen.truth(self.conjunction()))
         return part
 
     def conjunction(self) -> Part:
         part = self.negation()
         while self.take("and"):
-            part = self.emit.choose(part, self.emit.truth(self.negation()), self.emit.number(0.0))
+            part = self.codegen.choose(part, self.codegen.truth(self.negation()), self.codegen.number(0.0))
         return part
 
     def negation(self) -> Part:
@@ -212,7 +212,7 @@ class _Parser:
             turns += 1
         part = self.comparison()
         for _ in range(min(turns, 2 + turns % 2)):
-            part = self.emit.apply("eq", part, self.emit.number(0.0))
+            part = self.codegen.apply("eq", part, self.codegen.number(0.0))
         return part
 
     def comparison(self) -> Part:
@@ -226,14 +226,14 @@ class _Parser:
             self.at += 1
             left, right = right, self.binary(1)
             parts.append((name, left, right))
-        return self.emit.apply(*parts[0]) if len(parts) == 1 else self.emit.chain(first, parts)
+        return self.codegen.apply(*parts[0]) if len(parts) == 1 else self.codegen.chain(first, parts)
 
     def binary(self, level: int) -> Part:
         part = self.unary()
         while self.token in BINARY and BINARY[self.token][0] >= level:
             precedence, name = BINARY[self.token]
             self.at += 1
-            part = self.emit.apply(name, part, self.binary(precedence + 1))
+            part = self.codegen.apply(name, part, self.binary(precedence + 1))
         return part
 
     def unary(self) -> Part:
@@ -243,7 +243,7 @@ class _Parser:
             signs += 1
             self.at += 1
         part = self.power()
-        return self.emit.apply("neg", part) if minus else part
+        return self.codegen.apply("neg", part) if minus else part
 
     def power(self) -> Part:
         part = self.operand()
@@ -256,9 +256,9 @@ class _Parser:
         self.nested -= 1
         n = exponent.constant
         if n is not None and n == int(n if math.isfinite(n) else 0.0) and 2.0 <= abs(n) <= LARGEST_POWER:
-            whole = self.emit.apply("power", part, argument=int(abs(n)))
-            return whole if n > 0.0 else self.emit.apply("div", self.emit.number(1.0), whole)
-        return self.emit.apply("pow", part, exponent)
+            whole = self.codegen.apply("power", part, argument=int(abs(n)))
+            return whole if n > 0.0 else self.codegen.apply("div", self.codegen.number(1.0), whole)
+        return self.codegen.apply("pow", part, exponent)
 
     def operand(self) -> Part:
         kind, token = self.kind, self.token
@@ -269,7 +269,7 @@ class _Parser:
             value = float(token)
             if not math.isfinite(value):
                 raise Finding("not-computable", f"{token} is too large a number")
-            return self.emit.number(value)
+            return self.codegen.number(value)
         if kind == "name" and token not in WORDS:
             self.at += 1
             if self.take("("):
@@ -301,9 +301,9 @@ class _Parser:
             message = f"{name}() takes {count} argument{'s' if count != '1' else ''}, not {len(parts)}"
             hint = "log is the natural logarithm; to the base b: log(x)/log(b)" if name == "log" else decimal
             raise Finding("function-arguments", message, hint)
-        part = self.emit.apply(name, *parts[:2])
+        part = self.codegen.apply(name, *parts[:2])
         for other in parts[2:]:
-            part = self.emit.apply(name, part, other)
+            part = self.codegen.apply(name, part, other)
         return part
 
     def table(self) -> Part:
@@ -322,7 +322,7 @@ class _Parser:
         table = self.scope.tables[name]
         if table is None:
             raise Follows
-        return self.emit.look_up(table, argument)
+        return self.codegen.look_up(table, argument)
 
     def coordinate(self, joint: str) -> Part:
         """joint.quantity, of a joint of one freedom."""
@@ -342,20 +342,20 @@ class _Parser:
             has = f"has {' and '.join(words)}" if words else "has no coordinate of its own"
             message = f"'{joint}.{quantity}': a joint of type {joints[joint]} {has}, not '{quantity}'"
             raise Finding("unknown-coordinate", message, f"coordinates of joints: {known}")
-        return self.emit.coordinate(joint, quantity)
+        return self.codegen.coordinate(joint, quantity)
 
     def name(self, name: str) -> Part:
         if name in self.scope.parameters:
             value = self.scope.parameters[name]
             if value is None:
                 raise Follows
-            return self.emit.number(value)
+            return self.codegen.number(value)
         if name in CONSTANTS:
-            return self.emit.number(CONSTANTS[name])
+            return self.codegen.number(CONSTANTS[name])
         if name == "t":
             if not self.scope.in_time:
                 raise Finding("not-in-time", "the time t may stand only in a value in time (forces, drives)")
-            return self.emit.time()
+            return self.codegen.time()
         if name in ARITY:
             raise Finding("function-arguments", f"{name} is a function: write {name}(...)")
         raise self.unknown(name, [*self.scope.parameters, *RESERVED], "parameter")

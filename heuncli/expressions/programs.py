@@ -191,33 +191,34 @@ class Pack:
         return out
 
 
-def breakpoints(expression: Expression, t0: float, t1: float) -> list[float]:
+def discontinuities(expression: Expression, t0: float, t1: float) -> list[float]:
     """The instants in (t0, t1) at which a branch of the expression changes with time alone: its jumps and kinks.
 
-    Each is the first double at which the new branch holds; two may be neighbours (sign at its zero): then the piece
-    between them is one instant long, to be stepped over. What depends on coordinates is not looked at. Raises
+    Each is the first double at which the new branch holds; two may be neighbours (sign at its zero): then the segment
+    between them is a single instant, to be stepped over. Branches that depend on coordinates are left out. Raises
     LimitError where there are too many to tell apart.
     """
     return sorted({t for switch in expression.switches for t in _changes(expression, switch, t0, t1)})
 
 
-def across(instants: Sequence[float]) -> list[tuple[float, float]]:
-    """For ascending changes of branch the last instant before and the first after; neighbouring doubles are one change.
+def one_sided_limits(instants: Sequence[float]) -> list[tuple[float, float]]:
+    """For each of ascending discontinuities the last instant before it and the first after it.
 
-    sign(t - 1) is zero at t = 1 alone: what is before and after it counts, not the instant between.
+    Neighbouring doubles are one discontinuity: sign(t - 1) is zero at t = 1 alone, and its limits are those of the
+    branches before and after that instant.
     """
-    found: list[tuple[float, float]] = []
+    limits: list[tuple[float, float]] = []
     for t in instants:
         before = math.nextafter(t, -math.inf)
-        if found and found[-1][1] >= before:
-            found[-1] = (found[-1][0], t)
+        if limits and limits[-1][1] >= before:
+            limits[-1] = (limits[-1][0], t)
         else:
-            found.append((before, t))
-    return found
+            limits.append((before, t))
+    return limits
 
 
 def _changes(expression: Expression, switch: Switch, t0: float, t1: float) -> list[float]:
-    """Where one switch changes: seen on a grid that is refined until it is fine against what it shows."""
+    """Where one switch changes: seen on a grid, refined until it has many cells for each change it shows."""
     decide = _at_instants(expression, switch.decision)
     cells, last = COARSEST, math.nextafter(t1, -math.inf)
     while True:
@@ -234,7 +235,7 @@ def _changes(expression: Expression, switch: Switch, t0: float, t1: float) -> li
         cells *= 4
     spans = [(grid[i], grid[i + 1]) for i in changed]
     if switch.margin is not None:
-        spans += _touched(_at_instants(expression, switch.margin), grid, branches, decide)
+        spans += _near_zeros(_at_instants(expression, switch.margin), grid, branches, decide)
     return [t for low, high in spans for t in _between(decide, low, high) if t0 < t < t1]
 
 
@@ -251,7 +252,7 @@ def _at_instants(expression: Expression, code: Code) -> Callable[[list[float]], 
 
 def _between(decide: Callable[[list[float]], list[float]], low: float, high: float) -> list[float]:
     """Changes of branch in (low, high], from left to right, each found to the last bit."""
-    found: list[float] = []
+    instants: list[float] = []
     branch, end = decide([low, high])
     while branch != end:
         a, b = low, high
@@ -260,18 +261,18 @@ def _between(decide: Callable[[list[float]], list[float]], low: float, high: flo
                 a = middle
             else:
                 b = middle
-        found.append(b)
+        instants.append(b)
         low, branch = b, decide([b])[0]
-    return found
+    return instants
 
 
-def _touched(
+def _near_zeros(
     margin: Callable[[list[float]], list[float]],
     grid: list[float],
     branches: list[float],
     decide: Callable[[list[float]], list[float]],
 ) -> list[tuple[float, float]]:
-    """Spans from a point of the grid to where, between points of one branch, the margin dips through zero."""
+    """Spans in which the margin passes through zero and back between neighbouring points of the grid."""
     margins = list(map(abs, margin(grid)))
     spans: list[tuple[float, float]] = []
     for i in range(1, len(grid) - 1):
@@ -285,10 +286,10 @@ def _touched(
         a, b = grid[i - 1], grid[i + 1]
         for _ in range(60):  # the least margin by thirds; 60 of them leave nothing of the span
             c, d = a + (b - a) / 3.0, b - (b - a) / 3.0
-            there = [t for t, branch in zip((c, d), decide([c, d]), strict=True) if branch != branches[i]]
-            if there:
-                spans += [(grid[i - 1], there[0]), (there[0], grid[i + 1])]
+            other = [t for t, branch in zip((c, d), decide([c, d]), strict=True) if branch != branches[i]]
+            if other:
+                spans += [(grid[i - 1], other[0]), (other[0], grid[i + 1])]
                 break
-            near = margin([c, d])
-            a, b = (a, d) if abs(near[0]) <= abs(near[1]) else (c, b)
+            left, right = margin([c, d])
+            a, b = (a, d) if abs(left) <= abs(right) else (c, b)
     return spans

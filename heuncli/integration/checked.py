@@ -13,7 +13,7 @@ from dataclasses import dataclass, replace
 import numpy as np
 
 from heuncli.errors import LimitError, SolveError
-from heuncli.expressions.programs import across
+from heuncli.expressions.programs import one_sided_limits
 from heuncli.integration.runner import MOST_STEPS, Recovered, Runner, Trajectory
 from heuncli.integration.tableaus import DOP853, Tableau
 from heuncli.mechanism.size import marks
@@ -119,7 +119,7 @@ def checked_run(
 def recovered_at(runner: Runner, times: Array, states: Array, jumps: Sequence[float]) -> Recovered:
     """What the sweep knows; at a jump, and at what holds at one instant alone, what comes after it."""
     later = times.copy()
-    for before, after in across(jumps):
+    for before, after in one_sided_limits(jumps):
         later[(times > before) & (times < after)] = after
     return replace(runner.recovered(later, states), times=times)
 

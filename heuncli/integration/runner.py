@@ -17,7 +17,7 @@ from typing import Any
 import numpy as np
 
 from heuncli.errors import LimitError, Problem, SolveError
-from heuncli.expressions.programs import across, breakpoints
+from heuncli.expressions.programs import discontinuities, one_sided_limits
 from heuncli.integration.tableaus import DOP853, Tableau
 from heuncli.kernel.choose import step
 from heuncli.mechanism.model import Mechanism
@@ -73,7 +73,7 @@ class Trajectory:
 def stops(mechanism: Mechanism, t0: float, t1: float) -> list[float]:
     """Instants in (t0, t1) at which some load or drive jumps or bends."""
     expressions = set(mechanism.expressions())
-    return sorted({t for e in expressions if e.time_dependent for t in breakpoints(e, t0, t1)})
+    return sorted({t for e in expressions if e.time_dependent for t in discontinuities(e, t0, t1)})
 
 
 @cache
@@ -191,7 +191,7 @@ class Runner:
         every, room = 1, max(2, KEPT // n)
         last = float(ts[-1]) if len(ts) else 0.0
         in_time(deadline, f"before the run of {last:.6g} s began")
-        stops = across([h for h in halts if 0.0 < h < last])
+        stops = one_sided_limits([h for h in halts if 0.0 < h < last])
         pieces = list(zip([0.0, *(t for _, t in stops)], [*(t for t, _ in stops), left(last)], strict=True))
         pieces = [piece for piece in pieces if piece[1] > piece[0]] or pieces[-1:]  # not what is at t = 0 alone
         for begin, before_end in pieces:

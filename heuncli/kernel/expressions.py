@@ -3,14 +3,14 @@
 An instruction takes its operands from the top of a stack and leaves its result there. What is not a number (the root of
 -1, division by zero, a place outside a table) is NaN, and so is all that depends on it; nothing raises.
 
-    CONST k            puts constants[k] on the stack, VAR k the variable k: 0 is the time t, the others are coordinates
+    CONST k, VAR k     put constants[k] or variables[k] on the stack; variable 0 is the time t, the others coordinates
     ADD ... MAX        two operands, one result
-    LT ... NE          the same, 1 or 0; with the argument 1 the right operand stays above the result, for 0 < t < 1
     NEG ... SQRT       one operand; POWER n is the whole power n
-    UNLESS k, JUMP k   skip k instructions, UNLESS only where the number it takes off the stack is 0: only one of the
-                       two branches of a condition is run, so the other may be NaN
     TABLE k, KNOT k    the table that stands in the constants from k, as (period, knots, coefficients), at the operand:
                        its value, or the number of its piece. An instruction follows that is data: (pieces, outside).
+    JUMP k, UNLESS k   skip k instructions, UNLESS only where the number it takes off the stack is 0: only one of the
+                       two branches of a condition is run, so the other may be NaN
+    LT ... NE          1 or 0; with the argument 1 the right operand stays above the result, for 0 < t < 1
 
 A table is a piecewise cubic, c0 + c1 h + c2 h² + c3 h³ with h from the knot at which the piece begins.
 

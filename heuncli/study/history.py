@@ -9,7 +9,7 @@ from dataclasses import dataclass, field
 
 import numpy as np
 
-from heuncli.expressions.programs import across
+from heuncli.expressions.programs import one_sided_limits
 from heuncli.integration.checked import Checked, checked_run, recovered_at
 from heuncli.integration.runner import Recovered, Runner, in_time, stops
 from heuncli.integration.singular import passages
@@ -80,6 +80,6 @@ def search_times(history: History) -> Array:
     per_step = max(1, min(SEARCH_PER_STEP, MOST_SEARCHED // max(len(marks), 1)))
     inner = (marks[:-1, None] + np.diff(marks)[:, None] * (np.arange(per_step) / per_step)).ravel()
     # a jump has a value on either side of it
-    grid = np.concatenate([inner, [t for pair in across(history.jumps) if pair[0] > 0.0 for t in pair]])
+    grid = np.concatenate([inner, [t for pair in one_sided_limits(history.jumps) if pair[0] > 0.0 for t in pair]])
     grid = grid[(grid > times[0]) & (grid < times[-1])]
     return distinct(np.concatenate([times, grid]))

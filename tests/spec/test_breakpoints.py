@@ -9,7 +9,7 @@ import pytest
 from heuncli.errors import LimitError
 from heuncli.expressions.curves import fit
 from heuncli.expressions.grammar import Scope, compile_expression
-from heuncli.expressions.programs import Expression, Table, breakpoints
+from heuncli.expressions.programs import Expression, Table, discontinuities
 
 TRIANGLE = fit("triangle", [0.0, 0.25, 0.5], [0.0, 1.0, 0.0], "linear", None, 0.5)
 RAMP = fit("ramp", [1.0, 2.0, 4.0], [0.0, 1.0, 5.0], "linear", "hold", None)
@@ -52,12 +52,12 @@ def after(t: float) -> float:
     ("table(ramp, 5*t)", [0.2, 0.4, after(0.8)]),
 ])  # fmt: skip
 def test_where_branches_change(text: str, expected: list[float]) -> None:
-    assert breakpoints(read(text), 0.0, 2.0) == expected
+    assert discontinuities(read(text), 0.0, 2.0) == expected
 
 
 def test_each_is_the_first_instant_of_its_branch() -> None:
     expression = read("step(sin(7*t) - 0.3) + abs(cos(3*t)) + min(sin(t), 0.5)")
-    found = breakpoints(expression, 0.0, 10.0)
+    found = discontinuities(expression, 0.0, 10.0)
     assert len(found) > 30
     for t in found:
         left, right = (expression.derivatives(s) for s in (math.nextafter(t, -math.inf), t))
@@ -65,21 +65,21 @@ def test_each_is_the_first_instant_of_its_branch() -> None:
 
 
 def test_many_and_narrow_ones_are_found() -> None:
-    assert len(breakpoints(read("step(sin(1000*t))"), 0.0, 1.0)) == 318
-    narrow = breakpoints(read("step(sin(2*pi*t) - 1 + 1e-10)"), 0.0, 3.0)
+    assert len(discontinuities(read("step(sin(1000*t))"), 0.0, 1.0)) == 318
+    narrow = discontinuities(read("step(sin(2*pi*t) - 1 + 1e-10)"), 0.0, 3.0)
     assert len(narrow) == 6
     width = math.acos(1.0 - 1e-10) / math.pi
     assert [b - a for a, b in zip(narrow[::2], narrow[1::2], strict=True)] == pytest.approx([width] * 3, rel=1e-4)
-    assert breakpoints(read("step(t - 50)*step(50.00001 - t)"), 0.0, 100.0) == [50.0, after(50.00001)]
-    assert breakpoints(read("abs((t - 1)**2)"), 0.0, 2.0) == []  # touches zero from above
+    assert discontinuities(read("step(t - 50)*step(50.00001 - t)"), 0.0, 100.0) == [50.0, after(50.00001)]
+    assert discontinuities(read("abs((t - 1)**2)"), 0.0, 2.0) == []  # touches zero from above
 
 
 def test_a_piece_that_is_no_number_is_a_branch_too() -> None:
-    found = breakpoints(read("step(sqrt(t - 1) - 0.5)"), 0.0, 2.0)
+    found = discontinuities(read("step(sqrt(t - 1) - 0.5)"), 0.0, 2.0)
     assert found == [1.0, 1.25]
 
 
 def test_without_end_is_refused() -> None:
     with pytest.raises(LimitError) as caught:
-        breakpoints(read("step(sin(1e7*t))"), 0.0, 1.0)
+        discontinuities(read("step(sin(1e7*t))"), 0.0, 1.0)
     assert caught.value.problems[0].code == "too-many-jumps"

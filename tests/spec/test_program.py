@@ -17,7 +17,7 @@ from hypothesis import given, settings
 from hypothesis import strategies as st
 
 from heuncli.expressions.grammar import Scope, compile_expression
-from heuncli.expressions.programs import Expression, Pack, breakpoints
+from heuncli.expressions.programs import Expression, Pack, discontinuities
 from heuncli.kernel.choose import expressions
 from tests.shared.random_programs import VARIABLES, random_program
 
@@ -279,7 +279,7 @@ def test_a_pack_counts_its_depth_from_the_code(text: str, depth: int) -> None:
 
 
 def test_a_switch_deeper_than_its_expression_is_met() -> None:
-    assert breakpoints(read("min(100*t, 5)"), 0.0, 1.0) == [math.nextafter(0.05, 1.0)]
+    assert discontinuities(read("min(100*t, 5)"), 0.0, 1.0) == [math.nextafter(0.05, 1.0)]
 
 
 def test_programs_added_later_are_run_too() -> None:

@@ -5,7 +5,7 @@ from __future__ import annotations
 import math
 from collections.abc import Iterator
 
-from heuncli.expressions.programs import Expression, across, breakpoints
+from heuncli.expressions.programs import Expression, discontinuities, one_sided_limits
 from heuncli.joint_kinds import RATES, TYPES, named
 from heuncli.spec import format as f
 from heuncli.spec.fields import End
@@ -135,7 +135,8 @@ def drive_contradicts(scene: Scene) -> Iterator[Found]:
 
 def changes(value: Expression, duration: float) -> list[tuple[float, float]]:
     """The last instant before and the first after each change of branch within the run, not what is at 0 alone."""
-    return [(a, b) for a, b in across(breakpoints(value, 0.0, duration)) if a > 0.0] if duration > 0.0 else []
+    instants = discontinuities(value, 0.0, duration) if duration > 0.0 else []
+    return [(before, after) for before, after in one_sided_limits(instants) if before > 0.0]
 
 
 @rule("drive-jumps")
