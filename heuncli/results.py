@@ -7,8 +7,9 @@ apply, or was not asked for, is absent (an empty dict or None). Knows nothing of
 
 from __future__ import annotations
 
+from collections.abc import Mapping
 from dataclasses import dataclass, field
-from typing import Any, NamedTuple
+from typing import Any, NamedTuple, TypedDict
 
 import numpy as np
 from numpy.typing import NDArray
@@ -17,6 +18,46 @@ Array = NDArray[np.float64]
 Mask = NDArray[np.bool_]
 Indices = NDArray[np.intp]
 Block = dict[str, Any]
+
+
+class Status(TypedDict):
+    """How the run ended: completed or stopped, and a sentence."""
+
+    code: str
+    message: str
+
+
+class CertainSum(TypedDict):
+    """A sum of open components, each by its factor, which is known: (n_t,); a factor is a number, or one an instant."""
+
+    terms: Mapping[str, float | Array]
+    value: Array
+
+
+class Estimate(TypedDict, total=False):
+    """Estimated errors, relative to the scene's size and to the largest reaction."""
+
+    motion: float
+    reactions: float
+
+
+class Accuracy(TypedDict, total=False):
+    """How well the equations are solved; horizon: None where there is none."""
+
+    energy_drift: float
+    constraint_gap: float
+    balance_residual: float
+    horizon: float | None
+    estimate: Estimate
+
+
+class Work(TypedDict, total=False):
+    """What the run took."""
+
+    kernel: str
+    steps: int
+    evaluations: int
+    seconds: dict[str, float]
 
 
 @dataclass(frozen=True, eq=False)
@@ -30,7 +71,7 @@ class Results:
     spec: Block
     version: str
     model: Block
-    status: Block
+    status: Status
     time: Array
     bodies: Block = field(default_factory=dict)
     points: Block = field(default_factory=dict)
@@ -42,9 +83,9 @@ class Results:
     energy: Block = field(default_factory=dict)
     system_vector: Block = field(default_factory=dict)
     impulses: list[Block] = field(default_factory=list)
-    certain_sums: list[Block] = field(default_factory=list)
-    accuracy: Block = field(default_factory=dict)
-    work: Block = field(default_factory=dict)
+    certain_sums: list[CertainSum] = field(default_factory=list)
+    accuracy: Accuracy = field(default_factory=Accuracy)
+    work: Work = field(default_factory=Work)
     warnings: tuple[str, ...] = ()
 
 

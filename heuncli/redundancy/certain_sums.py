@@ -12,12 +12,12 @@ from collections.abc import Mapping, Sequence
 import numpy as np
 
 from heuncli.redundancy.turning_sums import Shares, turning_sums
-from heuncli.results import Array, Block
+from heuncli.results import Array, CertainSum
 
 SAME = 1e-7  # of a row's length: what is left of it when it is told by others
 
 
-def certain_sums(poses: Shares, told: Shares, values: Mapping[str, Array], length: float) -> list[Block]:
+def certain_sums(poses: Shares, told: Shares, values: Mapping[str, Array], length: float) -> list[CertainSum]:
     """Sums over open components; factors that turn are arrays (n_t,), at one instant alone numbers.
 
     poses: shares where the sums must hold; told: the same at the asked instants; values: (n_t,), of any one solution.

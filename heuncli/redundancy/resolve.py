@@ -15,7 +15,7 @@ from heuncli.redundancy.neighbours import neighbours
 from heuncli.redundancy.open_components import names_of, open_joint, open_support, wrench_open
 from heuncli.redundancy.self_stress import SelfStress, self_stress
 from heuncli.redundancy.split import split
-from heuncli.results import Array, Block
+from heuncli.results import Array, Block, CertainSum
 from heuncli.tree.prepare import PreparedScene
 
 # [rad] or of the size: how far neighbouring poses lie in which a certain sum must hold too; several, for what has one
@@ -46,7 +46,7 @@ class Decided:
         if self.words and self.stress is not None and reactions is not None:
             mark_chosen(self.stress, self.joints, reactions)
 
-    def sums(self, scene: PreparedScene, runner: Runner, found: Recovered) -> list[Block]:
+    def sums(self, scene: PreparedScene, runner: Runner, found: Recovered) -> list[CertainSum]:
         """Certain sums of what is open."""
         return sums_of(scene, runner, found, self.joints, self.left) if self.left is not None else []
 
@@ -100,7 +100,7 @@ def mark_chosen(stress: SelfStress, joints: Sequence[JointLoads], reactions: Blo
 
 def sums_of(
     scene: PreparedScene, runner: Runner, found: Recovered, joints: Sequence[JointLoads], stress: SelfStress
-) -> list[Block]:
+) -> list[CertainSum]:
     """Certain sums of the joints' open components, true at the asked instants and in neighbouring poses."""
     pick = np.unique(np.linspace(0, len(found.times) - 1, SUMS_FROM).astype(int))
     near = neighbours(runner, float(found.times[0]), found.states[0], NEAR)

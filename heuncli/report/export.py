@@ -44,10 +44,10 @@ def to_csv(results: Results, labels: Labels) -> str:
         for series in walk_impulse(block, labels):
             name = ".".join(part for part in (str(number), series.kind, series.name) if part)
             lines += _lines(series, "impulses", name, [repr(float(block["time"]))])
-    for number, block in enumerate(results.certain_sums):
-        of_moments = not any(".force." in term for term in block["terms"])
+    for number, certain in enumerate(results.certain_sums):
+        of_moments = not any(".force." in term for term in certain["terms"])
         unit = CERTAIN_SUM.unit(turning=of_moments)
-        series = Series("certain_sums", str(number), "value", unit, ("",), np.asarray(block["value"])[:, None])
+        series = Series("certain_sums", str(number), "value", unit, ("",), np.asarray(certain["value"])[:, None])
         lines += _lines(series, series.kind, series.name, instants)
     return "".join(lines)
 

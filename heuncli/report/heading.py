@@ -8,7 +8,7 @@ import numpy as np
 
 from heuncli.report.numbers import rough
 from heuncli.report.words import count
-from heuncli.results import Results
+from heuncli.results import Estimate, Results
 
 PLANAR = "; what points out of the xy plane does not exist and reads 0"
 
@@ -82,7 +82,7 @@ def _run(results: Results) -> str:
 def _errors(results: Results) -> str:
     if not results.work.get("steps"):
         return "exact but for rounding"
-    estimate = results.accuracy.get("estimate") or {}
+    estimate = results.accuracy.get("estimate", Estimate())
     parts = _sentence("motion within {} of the scene's size", estimate.get("motion"))
     parts += _sentence("loads within {} of the largest", estimate.get("reactions"))
     return ", ".join(parts) if parts else "not estimated"

@@ -15,7 +15,7 @@ import numpy as np
 
 from heuncli.report.labels import Labels
 from heuncli.report.quantities import walk
-from heuncli.results import Array, Results
+from heuncli.results import Array, Estimate, Results
 
 DIGITS = 6
 ROUNDING = 1e-12  # what an exact solution in double precision is certain to, relative to the largest
@@ -60,7 +60,7 @@ class Style(NamedTuple):
 
 def certainty(results: Results, labels: Labels) -> Certainty:
     """The absolute errors of a run, from its own estimates and the largest number of each unit."""
-    estimate = results.accuracy.get("estimate") or {}
+    estimate = results.accuracy.get("estimate", Estimate())
     motion = _relative(estimate.get("motion"))
     loads = max(_relative(estimate.get("reactions")), _relative(results.accuracy.get("balance_residual")))
     if results.accuracy.get("horizon") is not None:

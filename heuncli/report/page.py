@@ -20,7 +20,7 @@ from heuncli.report.plans import PLANS
 from heuncli.report.quantities import Series, walk, walk_impulse
 from heuncli.report.sums import sums_table
 from heuncli.report.table import Table
-from heuncli.results import Array, Extremes, Results
+from heuncli.results import Array, CertainSum, Extremes, Results
 from heuncli.results_schema import REPORT_OF, REPORTS, quantity
 
 TABLE_DEFAULT = frozenset(REPORTS) - {"motion", "points"}
@@ -137,7 +137,7 @@ def first_instants(results: Results, count: int) -> Results:
     return replace(results, time=results.time[:count], certain_sums=sums, **blocks)
 
 
-def _first_of_sum(block: dict[str, Any], count: int) -> dict[str, Any]:
+def _first_of_sum(block: CertainSum, count: int) -> CertainSum:
     """A certain sum at the first instants; a factor that turns with the pose is an array over them."""
     factors = {
         path: factor[:count] if isinstance(factor, np.ndarray) else factor for path, factor in block["terms"].items()

@@ -2,14 +2,14 @@
 
 from __future__ import annotations
 
-from typing import Any
+from collections.abc import Mapping
 
 import numpy as np
 
 from heuncli.report.blocks import short
 from heuncli.report.numbers import Certainty, largest, style, write
 from heuncli.report.table import Table
-from heuncli.results import Results
+from heuncli.results import Array, CertainSum, Results
 from heuncli.results_schema import XYZ
 
 MOST_TERMS = 6  # contract section 2: tables show short sums of forces, JSON all
@@ -28,7 +28,7 @@ def sums_table(results: Results, certain: Certainty) -> Table | None:
     return Table("CERTAIN SUMS  of components that redundancy leaves open", notes=tuple(notes))
 
 
-def _line(block: dict[str, Any], certain: Certainty) -> str | None:
+def _line(block: CertainSum, certain: Certainty) -> str | None:
     terms = {path: np.atleast_1d(np.asarray(factor, dtype=np.float64)) for path, factor in block["terms"].items()}
     if len(terms) > MOST_TERMS or not all(_is_force(path) for path in terms):
         return None
@@ -58,13 +58,13 @@ def _is_force(path: str) -> bool:
     return bool(FORCES.intersection(path.split(".")[-2:]))
 
 
-def _opposite(terms: dict[str, Any]) -> bool:
+def _opposite(terms: Mapping[str, Array]) -> bool:
     """Whether the sum says that two components are equal."""
     factors = list(terms.values())
     return len(factors) == 2 and bool(np.all(factors[0] + factors[1] == 0.0))
 
 
-def _sum(terms: dict[str, Any]) -> str:
+def _sum(terms: Mapping[str, Array]) -> str:
     text = ""
     for path, factors in terms.items():
         steady = bool(np.all(factors == factors[0]))

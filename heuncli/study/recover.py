@@ -21,7 +21,7 @@ from heuncli.kinetostatics.energy import energy, energy_drift, system_vector
 from heuncli.kinetostatics.foundation import foundation, load_slots
 from heuncli.kinetostatics.reactions import JointLoads, joint_loads
 from heuncli.mechanism.model import JointLoad, Mechanism, PairLoad
-from heuncli.results import Array, Block
+from heuncli.results import Accuracy, Array, Block, CertainSum
 from heuncli.study.setup import Setup
 
 if TYPE_CHECKING:  # loaded where a scene has closed chains, or sections
@@ -109,14 +109,14 @@ def about(setup: Setup) -> Array:
     return np.array(given if given is not None else (0.0, 0.0, 0.0))
 
 
-def certain_sums(recovery: Recovery) -> list[Block]:
+def certain_sums(recovery: Recovery) -> list[CertainSum]:
     """Sums of indeterminate components that are determined."""
     if recovery.decided is None:
         return []
     return recovery.decided.sums(recovery.setup.scene, recovery.setup.runner, recovery.recovered)
 
 
-def accuracy(recovery: Recovery) -> Block:
+def accuracy(recovery: Recovery) -> Accuracy:
     """How well the instants balance: energy, closures, d'Alembert's principle."""
     scene, recovered, power = recovery.setup.scene, recovery.recovered, recovery.energy
     mechanism, size = scene.mechanism, scene.layout.size

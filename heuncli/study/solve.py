@@ -15,7 +15,7 @@ import numpy as np
 from heuncli.errors import Problem, SpecError
 from heuncli.integration.tableaus import METHODS
 from heuncli.kernel.choose import KERNEL
-from heuncli.results import Array, Block, Extremes, Results
+from heuncli.results import Array, Block, Estimate, Extremes, Results
 from heuncli.results_schema import REPORTS
 from heuncli.spec.models import Spec
 from heuncli.study import extremes
@@ -79,9 +79,9 @@ def compose(setup: Setup, history: History, recovery: Recovery, wanted: frozense
     balance = accuracy(recovery)
     checked = history.checked
     gap = checked.run.gap if checked is not None else setup.scene.start.gap
-    estimate = {"motion": 0.0, "reactions": 0.0}
+    estimate = Estimate(motion=0.0, reactions=0.0)
     if checked is not None:
-        estimate = {"motion": float(checked.motion.max(initial=0.0)), "reactions": checked.reactions}
+        estimate = Estimate(motion=float(checked.motion.max(initial=0.0)), reactions=checked.reactions)
     return Results(
         title=setup.spec.title,
         spec={"path": setup.spec.path, "sha256": setup.spec.sha256},

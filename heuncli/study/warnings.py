@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from heuncli.results import Block
+from heuncli.results import Block, Status
 from heuncli.study.history import History
 from heuncli.study.recover import Recovery
 from heuncli.study.setup import Setup
@@ -11,7 +11,7 @@ UNBALANCED = 1e-6  # of a body's largest load: rounding stays far below, near a 
 MOST_TIMES = 5  # that a sentence lists
 
 
-def status(history: History) -> Block:
+def status(history: History) -> Status:
     """Whether the run came to its end."""
     if history.checked is None:
         return {"code": "completed", "message": "one instant, nothing integrated"}
