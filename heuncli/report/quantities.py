@@ -7,7 +7,8 @@ those of the schema: what is added to the results later needs a row there.
 
 from __future__ import annotations
 
-from collections.abc import Iterator, Sequence
+from collections.abc import Iterator
+from functools import cache
 from typing import NamedTuple
 
 import numpy as np
@@ -52,7 +53,8 @@ def walk_impulse(impulse: Block, labels: Labels) -> Iterator[Series]:
             yield from _Walk("", labels, at_a_blow=True).block((), node, {kind: part})
 
 
-def component_names(axes: Shape, sizes: Sequence[int]) -> tuple[str, ...]:
+@cache
+def component_names(axes: Shape, sizes: tuple[int, ...]) -> tuple[str, ...]:
     """Names of the components of an array with these axes: `x`, `3.z`; one empty name for a single number."""
     names: tuple[str, ...] = ("",)
     for axis, size in zip(axes, sizes, strict=True):

@@ -4,6 +4,7 @@ from __future__ import annotations
 
 from itertools import groupby
 from pathlib import Path
+from typing import get_args
 
 import numpy as np
 import pytest
@@ -15,7 +16,8 @@ from heuncli.report.export import to_csv
 from heuncli.report.page import until
 from heuncli.results import Results
 from heuncli.results_paths import find
-from heuncli.results_schema import NOT_YET, ROWS, SPACE, TREE, Node, Quantity, quantity
+from heuncli.results_schema import NOT_YET, REPORTS, ROWS, SPACE, TREE, Node, Quantity, quantity
+from heuncli.spec.format import Head
 from heuncli.spec.load import load
 from tests.shared.fakes import LABELS, FakeStudy, pendulum, vectors
 
@@ -138,6 +140,11 @@ def test_every_row_is_found_by_its_path() -> None:
     blow = quantity(("impulses", "3", "joints", "elbow", "force"))
     assert blow is not None
     assert blow.units == ("N·s",)
+
+
+def test_the_format_asks_for_the_reports_there_are() -> None:
+    (words,) = (kind for kind in get_args(Head.model_fields["report"].annotation) if kind is not type(None))
+    assert get_args(get_args(words)[0]) == (*REPORTS, "shares")
 
 
 def leaves(node: Node) -> list[Quantity]:
