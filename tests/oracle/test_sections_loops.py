@@ -10,12 +10,11 @@ from functools import cache
 import numpy as np
 import pytest
 
-from tests.laws.test_told_otherwise_trees import cut_through
 from tests.oracle.weld import SAW, Section, section
 from tests.shared.loops import DRIVEN, QUICK, SEEDS, loop_scene
 from tests.shared.scenes import instants, near
 from tests.shared.seeds import spared
-from tests.shared.trees import Case, case
+from tests.shared.trees import Case, case, cut_through
 
 THESE = spared([s for s in [*SEEDS[:24], *DRIVEN[:8]] if s // 2 % 2], QUICK)  # those with shapes
 

@@ -11,13 +11,12 @@ from typing import Any
 import numpy as np
 import pytest
 
-from tests.laws.test_told_otherwise_trees import cut_through
 from tests.oracle.masses import Mass, Plane, cut
 from tests.oracle.read import end
 from tests.oracle.turns import Array, random_unit, unit
 from tests.oracle.weld import section
 from tests.shared.scenes import instants, near
-from tests.shared.trees import Case, case, seeds, tree_scene
+from tests.shared.trees import Case, case, cut_through, seeds, tree_scene
 
 SEEDS = seeds(15)
 

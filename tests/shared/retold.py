@@ -3,12 +3,12 @@
 from __future__ import annotations
 
 from collections.abc import Mapping
-from dataclasses import dataclass, field
 from typing import Any
 
 import numpy as np
 
 from heuncli.results import Array, Block, Results
+from tests.oracle.tellings import Telling
 from tests.shared.scenes import largest, near
 
 Meaning = tuple[str, tuple[int, int, int]]  # what it does when axes turn; powers of mass, length, time
@@ -35,44 +35,40 @@ SECTION = {
 POWERS = {"kinetic": (SCALAR, ENERGY), "potential": (SCALAR, ENERGY), "work": (SCALAR, ENERGY)}
 
 
-@dataclass(frozen=True, eq=False)
-class Told:
-    """A way of telling: axes turned by Q (det −1: mirrored), a length of 1 called `length` and so on, other names."""
-
-    Q: Array = field(default_factory=lambda: np.eye(3))
-    mass: float = 1.0
-    length: float = 1.0
-    time: float = 1.0
-    bodies: Mapping[str, str] = field(default_factory=dict)
-    joints: Mapping[str, str] = field(default_factory=dict)
-
-    def of(self, value: Array, kind: str, dimension: tuple[int, int, int]) -> Array:
-        """A number of the first telling as the second should say it."""
-        det = float(np.sign(np.linalg.det(self.Q)))
-        m, l, t = dimension
-        scaled = np.asarray(value) * self.mass**m * self.length**l * self.time**t
-        if kind == TENSOR:
-            return self.Q @ scaled @ self.Q.T
-        if kind in (POLAR, AXIAL):
-            return (scaled @ self.Q.T) * (det if kind == AXIAL else 1.0)
-        return scaled * (det if kind in (SECOND, THIRD) else 1.0)
-
-    def same(self, first: Block, second: Block, table: Mapping[str, Meaning], tolerance: float, force: float,
-             length: float) -> float:
-        """Assert that two blocks say the same; the largest deviation. force, length: sizes of the second."""
-        worst = 0.0
-        for name, (kind, dimension) in table.items():
-            assert (name in first) == (name in second), name
-            if name not in first:
-                continue
-            want = self.of(first[name], kind, dimension)
-            size = {FORCE: force, MOMENT: force * length, LENGTH: length}.get(dimension, 1.0)
-            size = max(size if dimension != ANGLE else 1.0, float(np.abs(want).max(initial=0.0)))
-            worst = max(worst, near(second[name], want, size, tolerance))
-        return worst
+def as_told(told: Telling, value: Array, kind: str, dimension: tuple[int, int, int]) -> Array:
+    """A number of the first telling as the second should say it."""
+    det = float(np.sign(np.linalg.det(told.Q)))
+    m, l, t = dimension
+    scaled = np.asarray(value) * told.mass**m * told.length**l * told.time**t
+    if kind == TENSOR:
+        return told.Q @ scaled @ told.Q.T
+    if kind in (POLAR, AXIAL):
+        return (scaled @ told.Q.T) * (det if kind == AXIAL else 1.0)
+    return scaled * (det if kind in (SECOND, THIRD) else 1.0)
 
 
-def same_results(told: Told, first: Results, second: Results, tolerance: float, points: bool = True) -> float:
+def same(told: Telling, first: Block, second: Block, table: Mapping[str, Meaning], tolerance: float, force: float,
+         length: float) -> float:
+    """Assert that two blocks say the same; the largest deviation. force, length: sizes of the second."""
+    worst = 0.0
+    for name, (kind, dimension) in table.items():
+        assert (name in first) == (name in second), name
+        if name not in first:
+            continue
+        want = as_told(told, first[name], kind, dimension)
+        size = {FORCE: force, MOMENT: force * length, LENGTH: length}.get(dimension, 1.0)
+        size = max(size if dimension != ANGLE else 1.0, float(np.abs(want).max(initial=0.0)))
+        worst = max(worst, near(second[name], want, size, tolerance))
+    return worst
+
+
+def from_the_other_end(joint: Block, point: Array) -> Block:
+    """A reaction as its joint's other end tells it: about that end's point, and turned round; drive and sizes stay."""
+    moment = joint["moment"] - np.cross(point - joint["point"], joint["force"])
+    return {**joint, "force": -joint["force"], "moment": -moment, "point": point}
+
+
+def same_results(told: Telling, first: Results, second: Results, tolerance: float) -> float:
     """Assert that all blocks of two runs say the same; the largest deviation, in the sizes of the scene."""
     F = max(largest({n: j["force"] for n, j in second.joints.items()}), float(np.abs(second.foundation["force"]).max()))
     L = max(largest({n: b["center"] for n, b in second.bodies.items()}), told.length)
@@ -81,13 +77,19 @@ def same_results(told: Told, first: Results, second: Results, tolerance: float, 
 
     def blocks(a: Block, b: Block, table: Mapping[str, Any], names: Mapping[str, str]) -> None:
         assert {names.get(n, n) for n in a} == set(b)
-        worst.extend(told.same(a[n], b[names.get(n, n)], table, tolerance, F, L) for n in a)
+        worst.extend(same(told, a[n], b[names.get(n, n)], table, tolerance, F, L) for n in a)
 
     blocks(first.bodies, second.bodies, BODY, told.bodies)
-    if points:
-        renamed = {p: told.bodies.get(p.split(".")[0], p.split(".")[0]) + "." + p.split(".")[1] for p in first.points}
-        blocks(first.points, second.points, POINT, renamed)
-    blocks(first.joints, second.joints, JOINT, told.joints)
+    renamed = {p: told.bodies.get(p.split(".")[0], p.split(".")[0]) + "." + p.split(".")[1] for p in first.points}
+    blocks(first.points, second.points, POINT, renamed)
+    joints = {
+        name: from_the_other_end(joint, second.joints[name]["point"]) if name in told.reversed else joint
+        for name, joint in first.joints.items()
+    }
+    blocks(joints, second.joints, JOINT, told.joints)
+    for name, joint in joints.items():  # a drive's number turns in a mirror or not as its joint's axis does: not here
+        if told.reversed and "drive" in joint:
+            worst.append(near(second.joints[name]["drive"], joint["drive"], F, tolerance))
     blocks(first.sections, second.sections, SECTION, {})
     blocks(first.foundation.get("supports", {}), second.foundation.get("supports", {}), WRENCH, told.joints)
     blocks({"": first.foundation}, {"": second.foundation}, WRENCH, {})

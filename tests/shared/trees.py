@@ -15,6 +15,7 @@ from tests.oracle.read import Model, Placed, model, state_at
 from tests.oracle.scenes import ALL_KINDS, random_scene
 from tests.oracle.solve import Solution, solve
 from tests.oracle.transforms import entry, without_mass
+from tests.oracle.turns import Array, random_unit
 from tests.shared.scenes import moving, study
 from tests.shared.seeds import spared
 
@@ -93,3 +94,20 @@ def force_of(read: Model, o: Solution) -> float:
     loads += [np.linalg.norm(r.force) for r in o.reactions.values()]
     loads += [m.mass * np.linalg.norm(o.acceleration[b]) for b, m in read.masses.items()]
     return float(max(loads))
+
+
+def inside(shape: dict[str, Any], rng: np.random.Generator) -> Array:
+    """A place inside a shape, not its centre, where another shape may have a point."""
+    if "from" in shape:
+        return 0.4 * np.array(shape["from"]) + 0.6 * np.array(shape["to"])
+    reach = min(shape["size"]) / 2 if "size" in shape else shape["radius"]
+    return np.array(shape["center"]) + 0.4 * reach * random_unit(rng)
+
+
+def cut_through(body: dict[str, Any], rng: np.random.Generator) -> dict[str, Any] | None:
+    """An oblique cut of a body with shapes."""
+    solid = [s for s in body.get("shapes", ()) if s["type"] != "point"]
+    if not solid:
+        return None
+    at = inside(solid[0], rng)
+    return {"at": at.tolist(), "normal": random_unit(rng).tolist(), "first_axis": random_unit(rng).tolist()}
