@@ -14,15 +14,15 @@ from heuncli.spec.semantics import instants_of, type_of
 
 if TYPE_CHECKING:
     from heuncli.results_schema import Shape
-    from heuncli.spec.rules.outcome import Astray, Outcome
+    from heuncli.spec.rules.outcome import Outcome, UnknownWord
 
 SAME_INSTANT = 1e-9
 RAGGED = -1  # the length of a list whose members have different ones
 Lengths = tuple[int | None, ...]  # of nested lists, the outer first; None: not known before the run
 
 
-def outcomes(scene: Scene) -> Iterator[tuple[Path_, f.Expect, Outcome | None, Astray | None]]:
-    """Every expectation with what its path leads to, or where it goes astray; neither where only the run can tell."""
+def outcomes(scene: Scene) -> Iterator[tuple[Path_, f.Expect, Outcome | None, UnknownWord | None]]:
+    """Every expectation with what its path leads to, or the word of it that is unknown; neither where only the run can tell."""
     if scene.document.expect:
         from heuncli.spec.rules.outcome import Outcome, outcome  # a run of a scene without expectations starts faster
 
@@ -34,12 +34,13 @@ def outcomes(scene: Scene) -> Iterator[tuple[Path_, f.Expect, Outcome | None, As
 @rule("expect-path")
 def expect_path(scene: Scene) -> Iterator[Found]:
     """`of` leads to a result."""
-    for path, item, _, astray in outcomes(scene):
-        if astray is not None and astray.word:
-            hint = did_you_mean(astray.word, astray.known, "words here") if astray.known else "the path ends before it"
-            yield Found((*path, "of"), f"'{item.of}': '{astray.word}' is not a result", hint)
-        elif astray is not None:
-            hint = f"it goes on with one of {', '.join(astray.known)}"
+    for path, item, _, unknown in outcomes(scene):
+        if unknown is not None and unknown.word:
+            known = unknown.known
+            hint = did_you_mean(unknown.word, known, "words here") if known else "the path ends before it"
+            yield Found((*path, "of"), f"'{item.of}': '{unknown.word}' is not a result", hint)
+        elif unknown is not None:
+            hint = f"it goes on with one of {', '.join(unknown.known)}"
             yield Found((*path, "of"), f"'{item.of}' is not a number", hint)
 
 

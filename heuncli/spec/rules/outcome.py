@@ -29,37 +29,37 @@ class Outcome(NamedTuple):
     timed: bool
 
 
-class Astray(NamedTuple):
+class UnknownWord(NamedTuple):
     """The word of a path that leads nowhere (empty: it ends too early), with those that would lead on."""
 
     word: str
     known: list[str]
 
 
-class Led(NamedTuple):
-    """A quantity, the keys that led to it, and the words that say which of its numbers are meant."""
+class Reached(NamedTuple):
+    """A quantity, the keys that lead to it, and the words that say which of its numbers are meant."""
 
     quantity: Quantity
     keys: list[str]
     rest: list[str]
 
 
-def outcome(path: str, scene: Scene) -> Outcome | Astray | None:
+def outcome(path: str, scene: Scene) -> Outcome | UnknownWord | None:
     """What a path leads to; None where that is seen only after the run."""
-    led = follow(path.split("."), scene.names)
-    if not isinstance(led, Led):
-        return led
+    reached = follow(path.split("."), scene.names)
+    if not isinstance(reached, Reached):
+        return reached
     run = False
-    if led.keys[0] == "sections":
-        section = scene.document.sections.get(led.keys[1])
+    if reached.keys[0] == "sections":
+        section = scene.document.sections.get(reached.keys[1])
         if section is None:
             return None
         run = is_run(section)
-    dimensions = tuple(u.parse_unit(unit)[1] for unit in led.quantity.units)
-    return part(Outcome(dimensions, led.quantity.axes(run), led.quantity.timed), led.rest)
+    dimensions = tuple(u.parse_unit(unit)[1] for unit in reached.quantity.units)
+    return part(Outcome(dimensions, reached.quantity.axes(run), reached.quantity.timed), reached.rest)
 
 
-def follow(path: list[str], names: Names) -> Led | Astray | None:
+def follow(path: list[str], names: Names) -> Reached | UnknownWord | None:
     """The quantity that the first words of a path lead to."""
     node: Node | Quantity | None = TREE
     keys: list[str] = []
@@ -68,12 +68,12 @@ def follow(path: list[str], names: Names) -> Led | Astray | None:
         known = keys_in(node, names)
         key, behind = leading_key(known, rest)
         if key is None:
-            return Astray(unknown_key(known, rest) if rest else "", known)
+            return UnknownWord(unknown_key(known, rest) if rest else "", known)
         if key in AFTER_THE_RUN and not keys:
             return None
         node, rest = below(node, key), behind
         keys.append(key)
-    return Led(node, keys, rest) if node is not None and node.units else None
+    return Reached(node, keys, rest) if node is not None and node.units else None
 
 
 def keys_in(node: Node, names: Names) -> list[str]:
@@ -101,14 +101,14 @@ def named(word: str, names: Names) -> list[str]:
     return [word]
 
 
-def part(whole: Outcome, words: list[str]) -> Outcome | Astray:
+def part(whole: Outcome, words: list[str]) -> Outcome | UnknownWord:
     """What is left of a quantity where places of lists are named: of its axes, or the instant first."""
     axes, timed = whole.axes, whole.timed
     if timed and len(words) == len(axes) + 1:
         axes, timed = (INSTANT, *axes), False
     if len(words) > len(axes):
-        return Astray(words[len(axes)], [])
+        return UnknownWord(words[len(axes)], [])
     for word, axis in zip(words, axes, strict=False):
         if axis.index_of(word) is None:
-            return Astray(word, list(axis.letters) or ["0, 1, 2, ..."])
+            return UnknownWord(word, list(axis.letters) or ["0, 1, 2, ..."])
     return whole._replace(axes=axes[len(words) :], timed=timed)
