@@ -22,7 +22,7 @@ Lengths = tuple[int | None, ...]  # of nested lists, the outer first; None: not 
 
 
 def outcomes(scene: Scene) -> Iterator[tuple[Path_, f.Expect, Outcome | None, UnknownWord | None]]:
-    """Every expectation with what its path leads to, or the word of it that is unknown; neither where only the run can tell."""
+    """Every expectation with the quantity at its path, or the word that is unknown; neither if only the run shows."""
     if scene.document.expect:
         from heuncli.spec.rules.outcome import Outcome, outcome  # a run of a scene without expectations starts faster
 
