@@ -7,7 +7,6 @@ angle, a held travel and drives only make the two stricter, so that no later ste
 from __future__ import annotations
 
 import math
-from dataclasses import dataclass
 from typing import Literal, NamedTuple
 
 import numpy as np
@@ -16,6 +15,7 @@ from heuncli.assembly.drives import Jet, drive_jet
 from heuncli.errors import Problem, SolveError
 from heuncli.joint_kinds import JOINTS
 from heuncli.mechanism.model import GROUND, Drive, Joint, Mechanism
+from heuncli.records import record
 from heuncli.results import Array
 from heuncli.shapes.rotations import about, perpendicular, turn_onto
 
@@ -38,7 +38,7 @@ class Ask(NamedTuple):
         return self.hold == "point" or self.turn != "free"
 
 
-@dataclass(frozen=True, eq=False)
+@record
 class Demand:
     """What one joint asks at the start; a, b, p, q, axis and to_axis as in Joint, p moved on by a known travel.
 

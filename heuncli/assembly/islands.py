@@ -7,17 +7,17 @@ and so do the ground and bodies that are held altogether.
 from __future__ import annotations
 
 from collections.abc import Callable, Iterable, Sequence
-from dataclasses import dataclass
 
 from heuncli.assembly.conditions import Demand
 from heuncli.assembly.walk import Tree
 from heuncli.mechanism.model import GROUND
+from heuncli.records import record
 
 PASSES = 100
 TOGETHER = 1000  # bodies in one island: dense matrices of its freedoms must fit into memory and patience
 
 
-@dataclass(frozen=True, eq=False)
+@record
 class Island:
     """Members, outward; the joint each hangs on (-1: none); the other joints of their loops; what the loops hang on."""
 

@@ -9,7 +9,6 @@ then least Σv². Then accelerations must exist for them: J a = −γ − g̈_t.
 from __future__ import annotations
 
 from collections.abc import Sequence
-from dataclasses import dataclass, replace
 from functools import cached_property
 
 import numpy as np
@@ -21,6 +20,7 @@ from heuncli.assembly.reduced import Reduced, least, solve
 from heuncli.assembly.rows import Rows, acceleration_rows, missing, rate_rows
 from heuncli.assembly.walk import Poses, spanning
 from heuncli.mechanism.model import GROUND, Directed, Mechanism
+from heuncli.records import record, replace
 from heuncli.results import Array
 
 OPEN = 1e-10  # of the scene's speed: what a joint lacks above it is open
@@ -30,7 +30,7 @@ ROUNDING = 1e-12  # of speed^2/size: accelerations below it are asked for by rou
 SOLVABLE = 1e-8  # of the largest acceleration asked for: what may stay unsolved (design.md section 2)
 
 
-@dataclass(frozen=True, eq=False)
+@record
 class Rates:
     """Rates while they are assembled: v and w are written to. The last row is the ground.
 

@@ -8,7 +8,6 @@ Tree joints are solved outward body by body, so that dense algebra meets only th
 from __future__ import annotations
 
 from collections.abc import Mapping, Sequence
-from dataclasses import dataclass
 from functools import cached_property
 
 import numpy as np
@@ -16,6 +15,7 @@ import numpy as np
 from heuncli.assembly.conditions import Demand
 from heuncli.assembly.islands import Island
 from heuncli.assembly.rows import Rows
+from heuncli.records import record
 from heuncli.results import Array
 from heuncli.shapes.rotations import hat
 
@@ -23,7 +23,7 @@ RANK = 1e-9  # of the largest singular value, or of 1 (all is scaled): below it,
 Free = Sequence[tuple[bool, bool]]  # whether each member may turn, and shift
 
 
-@dataclass(frozen=True, eq=False)
+@record
 class Step:
     """How a member follows the one before: z = own + follow z_before + N y_here. before: its place, -1 for none.
 

@@ -10,11 +10,11 @@ The right sides are what is lacking: minus the gap, or what is missing in the ra
 from __future__ import annotations
 
 import math
-from dataclasses import dataclass
 
 import numpy as np
 
 from heuncli.assembly.conditions import Ask, Demand
+from heuncli.records import record
 from heuncli.results import Array
 from heuncli.shapes.rotations import cross, hat, to_vector
 
@@ -22,7 +22,7 @@ NOTHING = np.zeros((0, 3))
 NONE = np.zeros(0)
 
 
-@dataclass(frozen=True, eq=False)
+@record
 class Rows:
     """F (h, 3), T (k, 3), what is lacking (h,), (k,), and the levers (3,) from the bodies' pivots to P_b, world."""
 

@@ -8,17 +8,17 @@ from __future__ import annotations
 
 from collections import deque
 from collections.abc import Sequence
-from dataclasses import dataclass
 
 import numpy as np
 
 from heuncli.assembly.conditions import Ask, Demand
 from heuncli.mechanism.model import Mechanism
+from heuncli.records import record
 from heuncli.results import Array
 from heuncli.shapes.rotations import orthonormal, turn_onto
 
 
-@dataclass(frozen=True, eq=False)
+@record
 class Tree:
     """Who is reached through which joint, roots first.
 
@@ -93,7 +93,7 @@ def spanning(
     return Tree(order, via, parent, depth)
 
 
-@dataclass(frozen=True, eq=False)
+@record
 class Poses:
     """Where the bodies are while they are assembled: its arrays are written to. The last row is the ground.
 

@@ -3,7 +3,6 @@
 from __future__ import annotations
 
 from collections.abc import Iterator, Sequence
-from dataclasses import dataclass
 from pathlib import Path
 from typing import Any
 
@@ -14,6 +13,7 @@ from heuncli.cli.output import emit
 from heuncli.cli.requests import Check
 from heuncli.cli.solving import choice, warn
 from heuncli.errors import HeunError, Problem
+from heuncli.records import record
 from heuncli.report.export import dump
 from heuncli.report.numbers import OPEN
 from heuncli.report.table import Column, Table, plain
@@ -29,7 +29,7 @@ SKIPPED = "broken"  # folders of specs that are wrong on purpose
 FAILED = 1
 
 
-@dataclass(frozen=True, eq=False)
+@record
 class Checked:
     """One file: its cases, or the error that kept it from being solved."""
 

@@ -7,11 +7,11 @@ from __future__ import annotations
 
 import math
 from array import array
-from dataclasses import dataclass
 
 from heuncli.errors import Finding
 from heuncli.expressions.programs import Code, Expression, Switch, Table, outside
 from heuncli.kernel.choose import expressions
+from heuncli.records import record
 
 OP = expressions.OPERATIONS
 MOST_NODES = 500
@@ -19,7 +19,7 @@ BEYOND = "no division by 0, no root or logarithm of what is negative, nothing be
 COMPARISONS = {"<": "lt", "<=": "le", ">": "gt", ">=": "ge", "==": "eq", "!=": "ne"}
 
 
-@dataclass(frozen=True)
+@record
 class Part:
     """The code of a part of an expression, the variables it uses, and its value where it is constant."""
 

@@ -11,7 +11,8 @@ from __future__ import annotations
 import math
 import re
 from collections.abc import Mapping
-from dataclasses import dataclass, field
+from types import MappingProxyType
+from typing import Any
 
 from heuncli.errors import Finding
 from heuncli.expressions.codegen import COMPARISONS, MOST_NODES, Codegen, Part
@@ -19,6 +20,7 @@ from heuncli.expressions.programs import Expression, Table
 from heuncli.expressions.units import in_si
 from heuncli.joint_kinds import RATES, TYPES
 from heuncli.nearest import did_you_mean, nearest
+from heuncli.records import record
 
 LONGEST, DEEPEST = 2000, 48
 LARGEST_POWER = 64  # whole powers up to this one are multiplied out
@@ -68,16 +70,19 @@ TOKEN = re.compile(
 )
 
 
-@dataclass(frozen=True)
+NONE: Mapping[str, Any] = MappingProxyType({})
+
+
+@record
 class Scope:
     """The names an expression may use. A parameter or table of value None is known, but was itself in error.
 
     joints gives the type of each; time and coordinates may be used only where in_time.
     """
 
-    parameters: Mapping[str, float | None] = field(default_factory=dict)
-    joints: Mapping[str, str] = field(default_factory=dict)
-    tables: Mapping[str, Table | None] = field(default_factory=dict)
+    parameters: Mapping[str, float | None] = NONE
+    joints: Mapping[str, str] = NONE
+    tables: Mapping[str, Table | None] = NONE
     in_time: bool = False
 
 

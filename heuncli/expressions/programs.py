@@ -9,11 +9,11 @@ from __future__ import annotations
 import math
 from array import array
 from collections.abc import Callable, Sequence
-from dataclasses import dataclass, field, replace
 from functools import cached_property
 
 from heuncli.errors import LimitError, Place, Problem
 from heuncli.kernel.choose import expressions
+from heuncli.records import record, replace
 
 OPS = expressions.OPERATIONS
 CONST, VAR, TABLE, KNOT = OPS["const"], OPS["var"], OPS["table"], OPS["knot"]
@@ -25,7 +25,7 @@ CELLS_PER_CHANGE = 16  # a grid with fewer is not fine enough to trust
 Code = tuple[int, ...]  # pairs (operation, argument), one after another
 
 
-@dataclass(frozen=True, eq=False)
+@record
 class Table:
     """A function given by points, as the kernel reads it: a piecewise cubic.
 
@@ -48,7 +48,7 @@ def outside(table: Table) -> tuple[str, str]:
     return message, "extend the table, or give it a period, or outside: hold"
 
 
-@dataclass(frozen=True)
+@record
 class Switch:
     """A place in an expression where a branch may change with time alone.
 
@@ -60,7 +60,7 @@ class Switch:
     margin: Code | None
 
 
-@dataclass(frozen=True, eq=False)
+@record
 class Expression:
     """A number that may depend on time and on coordinates of joints; SI.
 
@@ -76,7 +76,7 @@ class Expression:
     code: Code = ()
     constants: tuple[float, ...] = ()
     tables: tuple[Table, ...] = ()
-    switches: tuple[Switch, ...] = field(default=(), repr=False)
+    switches: tuple[Switch, ...] = ()
     dimension: tuple[int, int, int] | None = None  # where it was written with a unit
 
     @classmethod

@@ -8,7 +8,6 @@ from __future__ import annotations
 import contextlib
 import time
 from collections.abc import Sequence
-from dataclasses import dataclass, replace
 
 import numpy as np
 
@@ -17,6 +16,7 @@ from heuncli.expressions.programs import one_sided_limits
 from heuncli.integration.runner import MOST_STEPS, Recovered, Runner, Trajectory
 from heuncli.integration.tableaus import DOP853, Tableau
 from heuncli.mechanism.size import marks
+from heuncli.records import record, replace
 from heuncli.results import Array
 from heuncli.tree.layout import Layout
 
@@ -33,7 +33,7 @@ ROUNDING = 4e-16  # rounding of one evaluation of a place, relative to the size;
 CHUNK = 2_000_000  # numbers compared at a time
 
 
-@dataclass(frozen=True, eq=False)
+@record
 class Checked:
     """A run that was checked.
 

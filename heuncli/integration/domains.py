@@ -4,11 +4,11 @@ from __future__ import annotations
 
 import math
 from collections.abc import Iterator, Mapping
-from dataclasses import replace
 
 from heuncli.errors import Problem
 from heuncli.expressions.programs import KNOT, TABLE, Expression, Table, outside
 from heuncli.mechanism.model import Mechanism
+from heuncli.records import replace
 from heuncli.results import Array
 from heuncli.tree.layout import Layout
 

@@ -10,7 +10,6 @@ import time
 from array import array
 from bisect import bisect_right
 from collections.abc import Sequence
-from dataclasses import dataclass, field
 from functools import cache
 from typing import Any
 
@@ -21,6 +20,7 @@ from heuncli.expressions.programs import discontinuities, one_sided_limits
 from heuncli.integration.tableaus import DOP853, Tableau
 from heuncli.kernel.choose import step
 from heuncli.mechanism.model import Mechanism
+from heuncli.records import record
 from heuncli.results import Array
 from heuncli.tree.layout import Layout
 
@@ -49,7 +49,7 @@ TROUBLE = {
 }
 
 
-@dataclass(frozen=True, eq=False)
+@record
 class Trajectory:
     """The state at the asked instants.
 
@@ -66,7 +66,7 @@ class Trajectory:
     seconds: float
     pieces: tuple[tuple[float, float], ...] = ()  # first and last instant of each stretch without jumps
     kept: tuple[tuple[int, Array], ...] = ()  # number of a step, the state before it; the first one and others
-    pivots: Array = field(default_factory=lambda: np.zeros(0))  # least of the closures in each step
+    pivots: Array = np.zeros(0)  # least of the closures in each step
     stopped: str | None = None  # the joint of the rope that would push just after the last instant
 
 
@@ -316,7 +316,7 @@ class Runner:
         )
 
 
-@dataclass(frozen=True, eq=False)
+@record
 class Recovered:
     """The kernel's answers at the instants, sweep order; layouts: kernel/step.py `recover`."""
 

@@ -2,12 +2,12 @@
 
 from __future__ import annotations
 
-from dataclasses import dataclass
+from heuncli.records import record
 
 Row = tuple[tuple[int, float], ...]
 
 
-@dataclass(frozen=True)
+@record
 class Tableau:
     """An explicit embedded method with dense output.
 

@@ -2,17 +2,16 @@
 
 from __future__ import annotations
 
-from dataclasses import dataclass
-
 import numpy as np
 
 from heuncli.integration.runner import Recovered
 from heuncli.mechanism.model import GROUND
+from heuncli.records import record
 from heuncli.results import Array
 from heuncli.tree.layout import Layout
 
 
-@dataclass(frozen=True, eq=False)
+@record
 class BodyStates:
     """World axes; bodies in the order of the spec. x, v, a: of the origin; centre: of the centre of mass.
 

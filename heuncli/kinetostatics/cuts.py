@@ -7,7 +7,6 @@ plane of a cut inside the run, two cuts are made, just before it and just beyond
 from __future__ import annotations
 
 from collections.abc import Sequence
-from dataclasses import dataclass
 from typing import Any
 
 import numpy as np
@@ -15,6 +14,7 @@ import numpy as np
 from heuncli.errors import Problem, SpecError
 from heuncli.joint_kinds import JOINTS
 from heuncli.mechanism.model import GROUND, Mechanism, PairLoad, PointLoad
+from heuncli.records import record
 from heuncli.results import Array
 from heuncli.shapes.forms import Form
 from heuncli.shapes.inertia import pseudo_inertia
@@ -23,7 +23,7 @@ EQUAL = 1e-9  # components of the body axes along the normal that count as equal
 BEFORE, BEYOND = 1.0, -1.0
 
 
-@dataclass(frozen=True, eq=False)
+@record
 class Cuts:
     """The cuts of one section, k of them; body axes, SI.
 

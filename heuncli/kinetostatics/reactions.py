@@ -8,20 +8,19 @@ the balance residual of the bodies, where it can be seen.
 
 from __future__ import annotations
 
-from dataclasses import dataclass
-
 import numpy as np
 
 from heuncli.integration.runner import Recovered
 from heuncli.joint_kinds import JOINTS
 from heuncli.kinetostatics.bodies import BodyStates
 from heuncli.mechanism.model import GROUND, Joint
+from heuncli.records import record
 from heuncli.results import Array
 from heuncli.tree.layout import Layout
 from heuncli.tree.starts import joint_frame, to_direction
 
 
-@dataclass(frozen=True, eq=False)
+@record
 class JointLoads:
     """Of one joint: ON `to`, world axes, moment about the `to` point `point`; (n_t, 3) [N], [N m].
 

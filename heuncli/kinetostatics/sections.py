@@ -11,7 +11,6 @@ column the force, the skew part of the rest the moment about the body's origin. 
 from __future__ import annotations
 
 from collections.abc import Mapping, Sequence
-from dataclasses import dataclass
 
 import numpy as np
 
@@ -22,12 +21,13 @@ from heuncli.kinetostatics.cuts import Cuts
 from heuncli.kinetostatics.foundation import load_slots
 from heuncli.kinetostatics.stress import MODULI, stresses
 from heuncli.mechanism.model import Joint, Mechanism, PairLoad, PointLoad
+from heuncli.records import record
 from heuncli.results import Array, Block, Mask
 
 NONE = 1e-12  # of |s'| + |M'| / reach: a smaller normal or shear force has no line
 
 
-@dataclass(frozen=True, eq=False)
+@record
 class Attachment:
     """A load that enters a body at a place: force and couple ON the body, body axes, (n_t, 3); at (3,) or (n_t, 3)."""
 
@@ -163,7 +163,7 @@ def shifted(force: Array, moment: Array, by: Array) -> Array:
     return moment - crossed(by, force)
 
 
-@dataclass(frozen=True, eq=False)
+@record
 class Planes:
     """Where the cuts are and where their moments are taken: body axes, (3, n_t, k)."""
 

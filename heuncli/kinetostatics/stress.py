@@ -9,14 +9,14 @@ from __future__ import annotations
 
 import math
 from collections.abc import Callable, Mapping
-from dataclasses import dataclass
 
 import numpy as np
 
+from heuncli.records import record
 from heuncli.results import Array, Block
 
 
-@dataclass(frozen=True)
+@record
 class SectionModuli:
     """Area [m2], second moments about e1 and e2 [m4], half extents c1 along e1 and c2 along e2 [m], W_T [m3].
 

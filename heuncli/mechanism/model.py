@@ -6,16 +6,16 @@ Vectors are (3,) float64. Body index -1 is the ground. Values in time stay expre
 from __future__ import annotations
 
 from collections.abc import Iterator
-from dataclasses import dataclass
 from typing import Literal
 
 from heuncli.expressions.programs import Expression
+from heuncli.records import record
 from heuncli.results import Array
 
 GROUND = -1
 
 
-@dataclass(frozen=True, eq=False)
+@record
 class Directed:
     """A vector given in world axes or in the body's own."""
 
@@ -23,7 +23,7 @@ class Directed:
     in_body: bool
 
 
-@dataclass(frozen=True, eq=False)
+@record
 class Body:
     """A rigid body: mass [kg], centre of mass [m] and inertia about it [kg m2] in body axes; what of its start is held.
 
@@ -43,7 +43,7 @@ class Body:
     near_rotation: Array | None
 
 
-@dataclass(frozen=True, eq=False)
+@record
 class Drive:
     """A coordinate prescribed in time: angle [rad], travel [m] or length [m]."""
 
@@ -53,7 +53,7 @@ class Drive:
     zero_assembled: bool
 
 
-@dataclass(frozen=True, eq=False)
+@record
 class Joint:
     """A joint between the points p of body a ("from") and q of body b ("to"), both in their body's axes.
 
@@ -80,7 +80,7 @@ class Joint:
     drive: Drive | None
 
 
-@dataclass(frozen=True, eq=False)
+@record
 class PointLoad:
     """A force [N] at a body's point, or a couple [N m] on it (point None or where the couple enters)."""
 
@@ -92,7 +92,7 @@ class PointLoad:
     in_body: bool
 
 
-@dataclass(frozen=True, eq=False)
+@record
 class PairLoad:
     """A spring or actuator along the line between two points; value None for a spring. Positive pushes apart [N]."""
 
@@ -107,7 +107,7 @@ class PairLoad:
     damping: float
 
 
-@dataclass(frozen=True, eq=False)
+@record
 class JointLoad:
     """A torque (thrust), damper or friction in a joint; acts on `to`, opposite on `from`."""
 
@@ -123,7 +123,7 @@ class JointLoad:
 Load = PointLoad | PairLoad | JointLoad
 
 
-@dataclass(frozen=True, eq=False)
+@record
 class Mechanism:
     """A scene, ready to be assembled."""
 
@@ -151,7 +151,7 @@ class Mechanism:
                 yield joint.drive.value
 
 
-@dataclass(frozen=True, eq=False)
+@record
 class Assembly:
     """Poses and rates at the start that fit all joints, world axes.
 

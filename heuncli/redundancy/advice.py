@@ -7,7 +7,6 @@ are driven, loaded, named in an expression or hold a start value keep their kind
 from __future__ import annotations
 
 from collections.abc import Iterator, Mapping
-from dataclasses import replace
 from itertools import combinations, product
 
 import numpy as np
@@ -17,6 +16,7 @@ from heuncli.integration.runner import Runner
 from heuncli.joint_kinds import ABOUT_Z, JOINTS, POINT
 from heuncli.kinetostatics.bodies import body_states
 from heuncli.mechanism.model import GROUND, Joint, JointLoad, Load, PointLoad
+from heuncli.records import replace
 from heuncli.redundancy.count import NEIGHBOUR, freedoms_of_tree, redundancy
 from heuncli.redundancy.neighbours import neighbours
 from heuncli.redundancy.self_stress import self_stress

@@ -3,13 +3,13 @@
 from __future__ import annotations
 
 from collections.abc import Sequence
-from dataclasses import dataclass
 
 import numpy as np
 
 from heuncli.integration.runner import Recovered, Runner
 from heuncli.kinetostatics.bodies import BodyStates, body_states
 from heuncli.kinetostatics.reactions import JointLoads
+from heuncli.records import record
 from heuncli.redundancy.certain_sums import certain_sums
 from heuncli.redundancy.neighbours import neighbours
 from heuncli.redundancy.open_components import names_of, open_joint, open_support, wrench_open
@@ -25,7 +25,7 @@ NEARLY = 1e-6  # relative singular value of the closures below which reactions a
 SUMS_FROM = 9  # instants whose self-stresses certain sums are read from
 
 
-@dataclass(frozen=True, eq=False)
+@record
 class Decided:
     """The joints' loads after the split chosen in words; the self-stresses, and those it left (None: none)."""
 

@@ -11,13 +11,13 @@ design: closure Jacobian on tree coordinates, SVD, one statics sweep a null vect
 from __future__ import annotations
 
 from collections.abc import Sequence
-from dataclasses import dataclass
 
 import numpy as np
 
 from heuncli.joint_kinds import JOINTS
 from heuncli.kinetostatics.bodies import BodyStates
 from heuncli.mechanism.model import GROUND
+from heuncli.records import record
 from heuncli.results import Array, Mask
 from heuncli.tree.layout import Layout
 from heuncli.tree.starts import joint_frame, to_direction
@@ -28,7 +28,7 @@ TINY = 1e-13  # a self-stress without a share in any joint
 OPEN = 1e-8  # of a self-stress's largest share: above it a component is open
 
 
-@dataclass(frozen=True, eq=False)
+@record
 class SelfStress:
     """Self-stresses at the asked instants, k of them at most (zero where an instant has fewer).
 

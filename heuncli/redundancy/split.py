@@ -8,19 +8,19 @@ least sum F^2 + (M/length)^2 over all joints; independent of the units. theory.m
 from __future__ import annotations
 
 from collections.abc import Sequence
-from dataclasses import dataclass, replace
 
 import numpy as np
 
 from heuncli.kinetostatics.bodies import BodyStates
 from heuncli.kinetostatics.reactions import JointLoads, carried
+from heuncli.records import record, replace
 from heuncli.redundancy.self_stress import SelfStress
 from heuncli.results import Array
 
 FELT = 1e-9  # of the largest: a self-stress that strains less is not decided by the stiffness
 
 
-@dataclass(frozen=True, eq=False)
+@record
 class Split:
     """Joint loads after a choice, the self-stresses it left undecided (None: none), and how it was made, in words."""
 

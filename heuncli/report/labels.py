@@ -6,13 +6,14 @@ From the kinds follow the units that the results alone do not determine: a pin's
 from __future__ import annotations
 
 from collections.abc import Mapping
-from dataclasses import dataclass, field
 from itertools import chain
-from typing import NamedTuple
+from types import MappingProxyType
+from typing import Any, NamedTuple
 
 import numpy as np
 
 from heuncli.joint_kinds import TYPES, Kind
+from heuncli.records import record
 from heuncli.spec.models import Body, End, Force, Friction, Section, Spec, Vec
 
 PUSHING_FORCES = frozenset({"force", "actuator", "spring"})
@@ -45,16 +46,19 @@ class SectionInfo(NamedTuple):
     about: str = "the cut's point"
 
 
-@dataclass(frozen=True)
+NONE: Mapping[str, Any] = MappingProxyType({})
+
+
+@record
 class Labels:
     """The kinds of everything named in the results; `about` is the ground point where M_s is taken, if one is there.
 
     size: how far a body's points and shapes reach from its origin at most [m].
     """
 
-    joints: Mapping[str, JointInfo] = field(default_factory=dict)
-    forces: Mapping[str, ForceInfo] = field(default_factory=dict)
-    sections: Mapping[str, SectionInfo] = field(default_factory=dict)
+    joints: Mapping[str, JointInfo] = NONE
+    forces: Mapping[str, ForceInfo] = NONE
+    sections: Mapping[str, SectionInfo] = NONE
     about: str | None = None
     size: float = 0.0
 

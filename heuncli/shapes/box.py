@@ -7,10 +7,9 @@ Gauss-Legendre from line to line gives them to rounding, for many planes at once
 
 from __future__ import annotations
 
-from dataclasses import dataclass
-
 import numpy as np
 
+from heuncli.records import record
 from heuncli.results import Array
 from heuncli.shapes.inertia import assembled
 from heuncli.shapes.outlines import Outline, Planes, polygon
@@ -21,7 +20,7 @@ CORNERS = np.array([[i, j, k] for i in (-1.0, 1.0) for j in (-1.0, 1.0) for k in
 EDGES = np.array([(a, b) for a in range(8) for b in range(a + 1, 8) if np.abs(CORNERS[a] - CORNERS[b]).sum() == 2.0])
 
 
-@dataclass(frozen=True, eq=False)
+@record
 class Columns:
     """The box in columns along x3: where in x1 and x2, how much of the base, and the height g of the plane, (k, m)."""
 
@@ -33,7 +32,7 @@ class Columns:
     base: Array
 
 
-@dataclass(frozen=True, eq=False)
+@record
 class Box(Thick):
     """A box: centre, half sizes along its own axes (the columns of `axes`), density [kg/m3]."""
 

@@ -8,12 +8,12 @@ mean of both.
 from __future__ import annotations
 
 from collections.abc import Callable, Iterable
-from dataclasses import dataclass
 from typing import TypeVar
 
 import numpy as np
 from numpy.typing import NDArray
 
+from heuncli.records import record
 from heuncli.results import Array
 from heuncli.shapes.box import Box
 from heuncli.shapes.frustum import Frustum
@@ -86,7 +86,7 @@ def solid(shape: Shape) -> Solid:
     return make(shape, shape.mass / float(make(shape, 1.0).whole()[3, 3]))
 
 
-@dataclass(frozen=True, eq=False)
+@record
 class Figures:
     """How planes meet a body, one entry a plane.
 
@@ -99,7 +99,7 @@ class Figures:
     places: NDArray[np.intp]
 
 
-@dataclass(frozen=True, eq=False)
+@record
 class Form:
     """The shapes of a body; `near` [m] is how far off a plane still counts as in it."""
 

@@ -9,10 +9,9 @@ taken as such: all terms carry the factor r - q, so that thin walls lose nothing
 
 from __future__ import annotations
 
-from dataclasses import dataclass
-
 import numpy as np
 
+from heuncli.records import record
 from heuncli.results import Array
 from heuncli.shapes.inertia import assembled
 from heuncli.shapes.outlines import SIDES, Corners, Flags, Outline, Planes, circle
@@ -50,7 +49,7 @@ def bounds(constants: Array, slopes: Array) -> tuple[Array, Array]:
     return np.where(empty, 0.0, low), np.where(empty, -1.0, high)
 
 
-@dataclass(frozen=True, eq=False)
+@record
 class Lines:
     """The planes in local axes: n = (s, 0, c), x along e, y along f, offsets from the start (k,)."""
 
@@ -61,7 +60,7 @@ class Lines:
     d: Array
 
 
-@dataclass(frozen=True, eq=False)
+@record
 class Chord:
     """The middle lines of cuts through a round shape, end to end: x, z (k, 2) and the room r - x, r + x (2, k, 2).
 
@@ -82,7 +81,7 @@ class Chord:
         return x, z, np.sqrt(left * right)
 
 
-@dataclass(frozen=True, eq=False)
+@record
 class Frustum(Thick):
     """A ring-shaped body about an axis: radii at its start and end, outer and inner (0: full), density [kg/m3]."""
 

@@ -6,11 +6,11 @@ Only for a warning: two figures nearer to each other than 1e-3 of their size cou
 from __future__ import annotations
 
 from collections.abc import Callable, Sequence
-from dataclasses import dataclass
 
 import numpy as np
 from numpy.typing import NDArray
 
+from heuncli.records import record
 from heuncli.results import Array
 from heuncli.shapes.rotations import perpendicular
 
@@ -22,7 +22,7 @@ SIDES = 96  # of the polygons for curved outlines: 5e-4 of a radius off
 RESOLUTION = 1e-3
 
 
-@dataclass(frozen=True, eq=False)
+@record
 class Outline:
     """Convex figures, one a plane: whether the plane meets the shape (k,), and its corners (c, m, 3) [m] at c planes.
 
@@ -54,7 +54,7 @@ def polygon(n: Array, points: Array, present: Flags) -> Array:
     return np.take_along_axis(points, order[..., None], axis=1)
 
 
-@dataclass(frozen=True, eq=False)
+@record
 class Shadow:
     """Polygons in the plane's own coordinates (k, m, 2), with centre and the circles inside and outside about it."""
 

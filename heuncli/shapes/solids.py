@@ -8,12 +8,12 @@ A point or a rod can lie in a plane; `side` (k,) then tells: +1 the plane is jus
 
 from __future__ import annotations
 
-from dataclasses import dataclass
 from typing import Protocol
 
 import numpy as np
 from numpy.typing import NDArray
 
+from heuncli.records import record
 from heuncli.results import Array
 from heuncli.shapes.inertia import assembled
 from heuncli.shapes.outlines import Outline, circle
@@ -50,7 +50,7 @@ class Thick:
         return np.zeros(len(d), dtype=bool)
 
 
-@dataclass(frozen=True, eq=False)
+@record
 class Point:
     """A point mass [kg]."""
 
@@ -79,7 +79,7 @@ class Point:
         return np.abs(n @ self.at - d) <= near
 
 
-@dataclass(frozen=True, eq=False)
+@record
 class Rod:
     """A uniform straight rod without thickness between two points, line density [kg/m]."""
 
@@ -128,7 +128,7 @@ class Rod:
         return (np.abs(n @ self.start - d) <= near) & (np.abs(n @ self.end - d) <= near)
 
 
-@dataclass(frozen=True, eq=False)
+@record
 class Ball(Thick):
     """A full sphere, density [kg/m3]. Its pieces are caps of height t = R - (d - n.c), polynomials in t."""
 

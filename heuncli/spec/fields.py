@@ -5,7 +5,6 @@ Each reads by way of the validation's context, in which the parameters, joints a
 
 from __future__ import annotations
 
-from dataclasses import dataclass
 from typing import Annotated, Any
 
 from pydantic import BaseModel, BeforeValidator, ConfigDict, Discriminator, Tag
@@ -14,10 +13,11 @@ from pydantic_core import core_schema
 from heuncli.errors import Finding
 from heuncli.expressions import units as u
 from heuncli.expressions.programs import Expression
+from heuncli.records import record
 from heuncli.spec.quantity import Scope, in_time, kind_of, number
 
 
-@dataclass(frozen=True)
+@record
 class Context:
     """What values may refer to: on loading, and in time."""
 

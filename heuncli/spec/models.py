@@ -9,12 +9,12 @@ named tuples, because they are made faster at the start than dataclasses.
 from __future__ import annotations
 
 from collections.abc import Mapping
-from dataclasses import dataclass
 from types import MappingProxyType
 from typing import Literal, NamedTuple
 
 from heuncli.errors import Place, Problem
 from heuncli.expressions.programs import Expression, Table
+from heuncli.records import record
 
 Vec = tuple[float, float, float]
 Matrix = tuple[Vec, Vec, Vec]
@@ -226,7 +226,7 @@ class Properties(NamedTuple):
     values: Mapping[str, float]
 
 
-@dataclass(frozen=True)  # a tuple has a `count` of its own
+@record
 class Section:
     """A cut (`at`), or a run of `count` cuts from `from_` to `to`, all in body axes; normal is given or from -> to."""
 

@@ -4,13 +4,13 @@ from __future__ import annotations
 
 import math
 import re
-from dataclasses import replace
 from typing import Any
 
 from heuncli.errors import Finding
 from heuncli.expressions.grammar import RESERVED, WORDS, Follows, Scope, compile_expression
 from heuncli.expressions.programs import Expression
 from heuncli.expressions.units import Dimension, describe, in_si, parse_unit, si_unit
+from heuncli.records import replace
 
 # A number and then something that begins like a unit; "2 if t < 1 else 3" is an expression all the same.
 WITH_UNIT = re.compile(r"\s*([+-]?\s*(?:\d+\.?\d*|\.\d+)(?:[eE][+-]?\d+)?+)\s*((?:[^\W\d_]|°|1/)[^,]*)\s*\Z")

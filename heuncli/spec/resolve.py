@@ -6,11 +6,11 @@ For documents in which no rule found an error.
 from __future__ import annotations
 
 from collections.abc import Mapping
-from dataclasses import dataclass
 from typing import Any
 
 from heuncli.errors import Place, Problem
 from heuncli.expressions.programs import Expression, Table
+from heuncli.records import record
 from heuncli.spec import format as f
 from heuncli.spec import models as m
 from heuncli.spec.fields import End
@@ -21,7 +21,7 @@ from heuncli.spec.turns import IDENTITY
 DEFAULT_TOLERANCE = 1e-9
 
 
-@dataclass(frozen=True)
+@record
 class Meaning:
     """What resolve needs beside the document."""
 

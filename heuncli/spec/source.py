@@ -11,7 +11,6 @@ import hashlib
 import re
 import sys
 from collections.abc import Iterator
-from dataclasses import dataclass, field
 from pathlib import Path
 from typing import Any
 
@@ -19,6 +18,7 @@ import yaml
 from yaml import events
 
 from heuncli.errors import Place, Problem, SpecError
+from heuncli.records import record
 
 LARGEST = 64_000_000  # characters; a scene of 100,000 bodies has about 40 million
 DEEPEST = 64
@@ -47,15 +47,15 @@ UNSEEN_NAMES = {
 }  # fmt: skip
 
 
-@dataclass(frozen=True)
+@record
 class Source:
     """What a file holds: plain data, and for every path the place of its value and of its key."""
 
     file: str
     sha256: str
     data: Any
-    values: dict[Path_, Mark] = field(repr=False)
-    keys: dict[Path_, Mark] = field(repr=False)
+    values: dict[Path_, Mark]
+    keys: dict[Path_, Mark]
     problems: tuple[Problem, ...] = ()
 
     def place(self, path: Path_, key: bool = False) -> Place:
@@ -172,14 +172,13 @@ def yaml_hint(text: str, line: int, what: str) -> str | None:
     return None
 
 
-@dataclass
 class Frame:
-    """An open mapping or list."""
+    """An open mapping or list; skipped: the value of a key that was refused."""
 
-    container: dict[str, Any] | list[Any]
-    path: Path_
-    key: str | None = None
-    skipped: bool = False  # the value of a key that was refused
+    def __init__(self, container: dict[str, Any] | list[Any], path: Path_) -> None:
+        self.container, self.path = container, path
+        self.key: str | None = None
+        self.skipped = False
 
 
 class Builder:

@@ -5,7 +5,6 @@ from __future__ import annotations
 import csv
 import math
 from collections.abc import Iterator
-from dataclasses import dataclass
 from pathlib import Path
 
 from heuncli.errors import Finding, Place
@@ -13,6 +12,7 @@ from heuncli.expressions.curves import fit
 from heuncli.expressions.programs import Table
 from heuncli.expressions.units import parse_unit
 from heuncli.nearest import nearest
+from heuncli.records import record
 from heuncli.spec.format import Table as Entry
 from heuncli.spec.quantity import Scope, number
 
@@ -20,7 +20,7 @@ SAME = 1e-6  # a period and its span, and the values at its two ends, are printe
 MOST_ROWS = 2_000_000
 
 
-@dataclass(frozen=True)
+@record
 class Wrong:
     """A finding at a key of the entry, or at a place in its file."""
 

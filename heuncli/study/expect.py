@@ -3,12 +3,12 @@
 from __future__ import annotations
 
 from collections.abc import Sequence
-from dataclasses import dataclass
 from typing import Any
 
 import numpy as np
 
 from heuncli.errors import HeunError, Place, Problem
+from heuncli.records import record
 from heuncli.results import Array, Results
 from heuncli.results_paths import find
 from heuncli.spec.models import Expect
@@ -19,7 +19,7 @@ from heuncli.study.solve import Study
 DEFAULT_REL, DEFAULT_ABS = 1e-6, 1e-9
 
 
-@dataclass(frozen=True, eq=False)
+@record
 class Case:
     """One comparison: what was expected where, what was found (nan is open), and if they differ why that fails."""
 

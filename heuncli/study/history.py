@@ -5,7 +5,8 @@ Impure: integrating looks at the clock.
 
 from __future__ import annotations
 
-from dataclasses import dataclass, field
+from collections.abc import Mapping
+from types import MappingProxyType
 
 import numpy as np
 
@@ -14,6 +15,7 @@ from heuncli.integration.checked import Checked, checked_run, recovered_at
 from heuncli.integration.runner import Recovered, Runner, in_time, stops
 from heuncli.integration.singular import passages
 from heuncli.integration.solvable import refuse
+from heuncli.records import record
 from heuncli.results import Array
 from heuncli.study.extremes import distinct
 from heuncli.study.setup import Setup
@@ -22,7 +24,7 @@ SEARCH_PER_STEP = 4  # instants looked at in each step of the integrator when ex
 MOST_SEARCHED = 20_000
 
 
-@dataclass(frozen=True, eq=False)
+@record
 class History:
     """The kernel's answers at the instants asked for; of a motion the checked run behind them.
 
@@ -35,7 +37,7 @@ class History:
     checked: Checked | None = None
     jumps: tuple[float, ...] = ()
     singular: tuple[float, ...] = ()
-    seconds: dict[str, float] = field(default_factory=dict)
+    seconds: Mapping[str, float] = MappingProxyType({})
 
     @property
     def times(self) -> Array:

@@ -6,7 +6,6 @@ Reads as the list of what is computed; each thing has its own module. Raises Sol
 from __future__ import annotations
 
 from collections.abc import Set
-from dataclasses import dataclass
 from functools import cached_property
 from typing import TYPE_CHECKING, Any
 
@@ -21,6 +20,7 @@ from heuncli.kinetostatics.energy import energy, energy_drift, system_vector
 from heuncli.kinetostatics.foundation import foundation, load_slots
 from heuncli.kinetostatics.reactions import JointLoads, joint_loads
 from heuncli.mechanism.model import JointLoad, Mechanism, PairLoad
+from heuncli.records import record
 from heuncli.results import Accuracy, Array, Block, CertainSum
 from heuncli.study.setup import Setup
 
@@ -29,7 +29,7 @@ if TYPE_CHECKING:  # loaded where a scene has closed chains, or sections
     from heuncli.redundancy.self_stress import SelfStress
 
 
-@dataclass(frozen=True, eq=False)
+@record
 class Recovery:
     """What follows from the kernel's answers at some instants; each thing is computed when it is first asked for."""
 

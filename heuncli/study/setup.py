@@ -2,13 +2,13 @@
 
 from __future__ import annotations
 
-from dataclasses import dataclass
 from typing import TYPE_CHECKING
 
 from heuncli.integration.runner import Runner
 from heuncli.integration.tableaus import METHODS, Tableau
 from heuncli.mechanism.build import build, forms_of
 from heuncli.mechanism.model import Mechanism
+from heuncli.records import record
 from heuncli.results import Block
 from heuncli.spec.models import Spec
 from heuncli.study.model_note import model_note
@@ -18,7 +18,7 @@ if TYPE_CHECKING:  # loaded where a scene has sections
     from heuncli.kinetostatics.cuts import Cuts
 
 
-@dataclass(frozen=True, eq=False)
+@record
 class Setup:
     """All that is known of a scene before anything moves; method is None where nothing is integrated."""
 

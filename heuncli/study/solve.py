@@ -7,7 +7,6 @@ from __future__ import annotations
 
 import time
 from collections.abc import Callable, Sequence
-from dataclasses import dataclass
 from functools import cached_property
 
 import numpy as np
@@ -15,6 +14,7 @@ import numpy as np
 from heuncli.errors import Problem, SpecError
 from heuncli.integration.tableaus import METHODS
 from heuncli.kernel.choose import KERNEL
+from heuncli.records import record
 from heuncli.results import Array, Block, Estimate, Extremes, Results
 from heuncli.results_schema import REPORTS
 from heuncli.spec.models import Spec
@@ -28,7 +28,7 @@ from heuncli.version import VERSION
 MOST_SEARCHED = 1_000_000  # numbers to look at for extremes between the samples
 
 
-@dataclass(frozen=True)
+@record
 class Options:
     """What a command asks beside the spec; None leaves it to the spec. wanted: reports, None for all."""
 
@@ -107,7 +107,7 @@ def compose(setup: Setup, history: History, recovery: Recovery, wanted: frozense
     )
 
 
-@dataclass(frozen=True, eq=False)
+@record
 class Study:
     """A solved scene: `results` at the asked instants, `resample` for any others of the same run."""
 

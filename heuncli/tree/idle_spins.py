@@ -6,19 +6,18 @@ is given some inertia about that axis and no spin; a moment about it would have 
 
 from __future__ import annotations
 
-from dataclasses import dataclass
-
 import numpy as np
 
 from heuncli.joint_kinds import JOINTS
 from heuncli.mechanism.model import Mechanism, PairLoad, PointLoad
+from heuncli.records import record
 from heuncli.results import Array
 
 NO_INERTIA = 1e-12  # of the body's largest moment of inertia, or of m L^2
 ON_AXIS = 1e-9  # of the size: how far off a point may lie
 
 
-@dataclass(frozen=True, eq=False)
+@record
 class IdleSpin:
     """A body's axes (body components, (k, 3), k = 1 or 3) of undetermined spin, and the inertia lent to it."""
 

@@ -3,16 +3,16 @@
 from __future__ import annotations
 
 from array import array
-from dataclasses import dataclass
 
 from heuncli.expressions.programs import Pack
 from heuncli.mechanism.model import Mechanism
+from heuncli.records import record
 from heuncli.results import Array
 from heuncli.tree.spanning import Spanning
 from heuncli.tree.starts import JointStart
 
 
-@dataclass(frozen=True, eq=False)
+@record
 class Freedom:
     """A scalar freedom of the tree: which joint's which coordinate, and where it stands in the state (-1: driven)."""
 
@@ -22,7 +22,7 @@ class Freedom:
     u: int
 
 
-@dataclass(frozen=True, eq=False)
+@record
 class Layout:
     """A scene laid out for the kernel, with what is needed to read its answers.
 

@@ -2,19 +2,18 @@
 
 from __future__ import annotations
 
-from dataclasses import dataclass, replace
-
 import numpy as np
 
 from heuncli.assembly.assemble import assemble
 from heuncli.mechanism.model import Assembly, Mechanism, PairLoad
 from heuncli.mechanism.size import size_of_scene
+from heuncli.records import record, replace
 from heuncli.tree.idle_spins import IdleSpin, idle_spins
 from heuncli.tree.layout import Layout
 from heuncli.tree.pack import lay_out
 
 
-@dataclass(frozen=True, eq=False)
+@record
 class PreparedScene:
     """A mechanism with its start and its layout for the kernel."""
 

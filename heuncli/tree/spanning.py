@@ -11,20 +11,20 @@ from __future__ import annotations
 
 from collections import defaultdict, deque
 from collections.abc import Collection
-from dataclasses import dataclass
 
 import numpy as np
 
 from heuncli.errors import Problem, SolveError
 from heuncli.joint_kinds import JOINTS
 from heuncli.mechanism.model import GROUND, Joint, Mechanism
+from heuncli.records import record
 from heuncli.results import Array
 
 NO_INERTIA = 1e-12  # of the body's largest moment of inertia
 ALONG = 1.0 - 1e-9  # cosine: an axis that is that of the missing inertia
 
 
-@dataclass(frozen=True)
+@record
 class Hang:
     """How a body hangs in the tree: its joint (-1: free), and whether the body is the joint's `from` side."""
 
@@ -34,7 +34,7 @@ class Hang:
     reverse: bool
 
 
-@dataclass(frozen=True)
+@record
 class Spanning:
     """Bodies, parents first, each with the joint it hangs on; and the joints that were cut."""
 

@@ -3,19 +3,19 @@
 from __future__ import annotations
 
 import math
-from dataclasses import dataclass
 
 import numpy as np
 
 from heuncli.joint_kinds import JOINTS, Direction
 from heuncli.mechanism.model import GROUND, Assembly, Joint, Mechanism
+from heuncli.records import record
 from heuncli.results import Array
 from heuncli.shapes.rotations import about, perpendicular, to_quaternion
 
 Z = np.array([0.0, 0.0, 1.0])
 
 
-@dataclass(frozen=True, eq=False)
+@record
 class JointStart:
     """Where a joint stands at the start: R_ref (to axes -> from axes at angle zero), angle, rate, travel, speed."""
 

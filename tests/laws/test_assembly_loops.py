@@ -2,7 +2,6 @@
 
 from __future__ import annotations
 
-from dataclasses import replace
 from itertools import pairwise
 from typing import Any
 
@@ -11,6 +10,7 @@ import pytest
 
 from heuncli.assembly.assemble import assemble
 from heuncli.mechanism.model import GROUND, Assembly, Mechanism
+from heuncli.records import replace
 from heuncli.shapes.rotations import from_vector, to_vector
 from tests.laws.test_assembly_trees import calls, same_motion
 from tests.shared.drafts import (

@@ -2,7 +2,6 @@
 
 from __future__ import annotations
 
-from dataclasses import replace
 from typing import Any
 
 import numpy as np
@@ -11,6 +10,7 @@ import pytest
 from heuncli.assembly.assemble import assemble
 from heuncli.errors import SolveError
 from heuncli.mechanism.model import Assembly, Mechanism
+from heuncli.records import replace
 from tests.laws.test_assembly_loops import four_bar, random_loop, slider_crank
 from tests.shared.drafts import (
     X,

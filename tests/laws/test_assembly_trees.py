@@ -3,7 +3,6 @@
 from __future__ import annotations
 
 import sys
-from dataclasses import replace
 from types import FrameType
 from typing import Any
 
@@ -13,6 +12,7 @@ import pytest
 from heuncli.assembly.assemble import assemble
 from heuncli.errors import SolveError
 from heuncli.mechanism.model import GROUND, Assembly, Directed, Mechanism
+from heuncli.records import replace
 from heuncli.shapes.rotations import from_vector, to_vector
 from tests.shared.drafts import (
     X,

@@ -9,6 +9,7 @@ from typing import Any
 import numpy as np
 import pytest
 
+from heuncli import records
 from heuncli.report.heading import write_heading
 from heuncli.report.labels import JointInfo, Labels, labels_of
 from heuncli.report.page import page_of
@@ -35,7 +36,7 @@ def test_without_a_force_there_is_no_axis_and_that_is_not_called_open() -> None:
 
 
 def test_the_origin_is_called_so() -> None:
-    unnamed = replace(LABELS, about=None)
+    unnamed = records.replace(LABELS, about=None)
     assert "about the origin (0, 0, 0) m" in at_one("foundation", unnamed)[0]
     elsewhere = pendulum(ONE).foundation | {"about": np.array([0.0, 0.0, 2.0])}
     assert "about the point (0, 0, 2) m" in at_one("foundation", unnamed, foundation=elsewhere)[0]
@@ -77,7 +78,7 @@ def test_a_steady_cut_has_no_instant() -> None:
 
 def test_a_moment_that_is_noise_beside_the_force_on_its_arm_reads_0() -> None:
     section = {"N": np.array([1.2e6]), "Q1": np.array([-694064.0]), "M1": np.array([1.6e-11]), "open": []}
-    (text,) = at_one("sections", replace(LABELS, size=0.3), sections={"cut": section})
+    (text,) = at_one("sections", records.replace(LABELS, size=0.3), sections={"cut": section})
     assert text.splitlines()[1:3] == ["section    N [N]   Q1 [N]", "cut      1200000  -694064"]
 
 

@@ -14,6 +14,7 @@ import pytest
 from scipy.spatial.transform import Rotation
 
 from heuncli.errors import SpecError
+from heuncli.records import fields
 from heuncli.spec import models as m
 from heuncli.spec.load import load
 from heuncli.spec.rules import not_yet
@@ -254,17 +255,17 @@ def test_drives_and_impulses() -> None:
 
 def test_sections() -> None:
     x = (1.0, 0.0, 0.0)
-    assert section("{body: b, at: [1, 0, 0], normal: [1, 0, 0]}") == m.Section("b", x, at=x)
+    assert fields(section("{body: b, at: [1, 0, 0], normal: [1, 0, 0]}")) == fields(m.Section("b", x, at=x))
     named = section("{body: b, at: q, normal: [1, 0, 0], side: before, first_axis: [0, 1, 0], reduce_to: centroid, "
                     "properties: {circle: {radius: 10 mm}}, strength: 200 MPa}")  # fmt: skip
-    assert named == m.Section(
+    assert fields(named) == fields(m.Section(
         "b", x, at=(2.0, 0.0, 0.0), at_name="q", side="before", first_axis=(0.0, 1.0, 0.0), reduce_to="centroid",
         properties=m.Properties("circle", {"radius": 0.01}), strength=2e8,
-    )  # fmt: skip
+    ))  # fmt: skip
     run = section("{body: b, from: p, to: [1, 0, 0], count: 5, reduce_to: b.q}")
-    assert run == m.Section(
+    assert fields(run) == fields(m.Section(
         "b", x, from_=(0.0, 0.0, 0.0), to=x, count=5, reduce_to=m.End("b", (2.0, 0.0, 0.0), "q")
-    )
+    ))  # fmt: skip
     by_place = section("{body: b, at: p, normal: [1, 0, 0], reduce_to: {body: ground, at: [0, 0, 9]}}")
     assert by_place.reduce_to == m.End("ground", (0.0, 0.0, 9.0))
     for text, kind in (

@@ -1,0 +1,57 @@
+"""Frozen records: what one stage hands to the next.
+
+`@record` is to its users what `@dataclass(frozen=True, eq=False)` is: fields from the annotations, given by place or by
+name, none set afterwards, each record equal to itself alone. A dataclass is written as source and compiled when it is
+imported, half a millisecond each, and a small run imports sixty; a record class takes a hundredth of that. Defaults are
+shared by all records of a class, so they must be immutable.
+"""
+
+from __future__ import annotations
+
+from typing import Any, TypeVar, dataclass_transform
+
+T = TypeVar("T")
+
+
+@dataclass_transform(frozen_default=True, eq_default=False)
+def record(cls: type[T]) -> type[T]:
+    """A class whose annotated names are the fields of its records."""
+    names = tuple(cls.__annotations__)
+    known = frozenset(names)
+    required = frozenset(name for name in names if name not in cls.__dict__)
+
+    def __init__(self: T, *values: Any, **named: Any) -> None:
+        given = dict(zip(names, values)) if values else {}  # noqa: B905 - too many are seen by their number
+        given.update(named)
+        if len(given) != len(values) + len(named) or not required <= given.keys() <= known:
+            twice = [*names[: len(values)], *named]
+            wrong = (required - given.keys()) or (given.keys() - known) or {n for n in twice if twice.count(n) > 1}
+            raise TypeError(f"{cls.__name__}: fields missing, unknown or given twice: {', '.join(sorted(wrong))}")
+        self.__dict__.update(given)
+
+    made: Any = cls
+    made.__init__, made.__repr__ = __init__, _text
+    made.__setattr__ = made.__delattr__ = _frozen
+    made.__record_fields__ = names
+    return cls
+
+
+def replace(one: T, **changes: Any) -> T:
+    """A record like this one but for some fields."""
+    cls: Any = type(one)
+    given = {name: getattr(one, name) for name in cls.__record_fields__}
+    made: T = cls(**{**given, **changes})
+    return made
+
+
+def fields(one: Any) -> dict[str, Any]:
+    """The fields of a record and their values."""
+    return {name: getattr(one, name) for name in type(one).__record_fields__}
+
+
+def _frozen(self: Any, name: str, *value: Any) -> None:
+    raise AttributeError(f"{type(self).__name__}.{name} cannot be changed: records are frozen")
+
+
+def _text(self: Any) -> str:
+    return f"{type(self).__name__}({', '.join(f'{name}={value!r}' for name, value in fields(self).items())})"
