@@ -2,19 +2,19 @@
 
 from __future__ import annotations
 
+from collections.abc import Sequence
+
 import numpy as np
 
-from heuncli.integration.runner import Recovered
+from heuncli.kinetostatics.actions import Action
 from heuncli.kinetostatics.bodies import BodyStates
-from heuncli.kinetostatics.foundation import ends, inertia_loads, load_slots
-from heuncli.kinetostatics.reactions import JointLoads, in_plane
-from heuncli.mechanism.model import GROUND, Mechanism, PointLoad
+from heuncli.kinetostatics.foundation import inertia_loads
+from heuncli.kinetostatics.reactions import in_plane
+from heuncli.mechanism.model import GROUND, Mechanism
 from heuncli.results import Array
 
 
-def balance_residual(
-    mechanism: Mechanism, found: Recovered, states: BodyStates, joints: list[JointLoads], size: float
-) -> float:
+def balance_residual(mechanism: Mechanism, states: BodyStates, actions: Sequence[Action], size: float) -> float:
     """Largest d'Alembert residual of any body, relative to its largest load; from the reported numbers alone."""
     ma, spin = inertia_loads(mechanism, states)
     weight = np.array([b.mass for b in mechanism.bodies])[:, None] * mechanism.gravity
@@ -28,19 +28,9 @@ def balance_residual(
         moment[:, body] += M + np.cross(place - states.centre[:, body], F)
         largest[:, body] = np.maximum(largest[:, body], np.maximum(np.abs(F).max(axis=1), np.abs(M).max(axis=1) / size))
 
-    for load, slots in zip(mechanism.loads, load_slots(mechanism), strict=True):
-        F, M = found.loads[:, slots, 0:3].sum(axis=1), found.loads[:, slots, 3:6].sum(axis=1)
-        X, Y = found.loads[:, slots[0], 6:9], found.loads[:, slots[0], 9:12]
-        if isinstance(load, PointLoad):
-            put(load.body, X, F, M)
-        else:
-            a, b = ends(mechanism, load)
-            put(b, X, F, M)
-            put(a, Y, -F, -M)
-    for j in joints:
-        F, M = j.whole
-        put(j.joint.b, j.point, F, M)
-        put(j.joint.a, j.point, -F, -M)
+    for action in actions:
+        for end, F, M in action.on_bodies():
+            put(end.body, end.position, F, M)
     if mechanism.planar:
         force, moment = in_plane(force, moment)
     residual = np.maximum(np.sqrt(np.sum(force**2, axis=2)), np.sqrt(np.sum(moment**2, axis=2)) / size)

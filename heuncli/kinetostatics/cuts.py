@@ -13,7 +13,7 @@ import numpy as np
 
 from heuncli.errors import Problem, SpecError
 from heuncli.joint_kinds import JOINTS
-from heuncli.mechanism.model import GROUND, Mechanism, PairLoad, PointLoad
+from heuncli.mechanism.model import GROUND, Mechanism
 from heuncli.records import record
 from heuncli.results import Array
 from heuncli.shapes.forms import Form
@@ -61,11 +61,7 @@ def attached(mechanism: Mechanism, body: int) -> list[tuple[str, Array]]:
         if joint.a == body and not JOINTS[joint.kind].wanders:
             found.append((f"joint {joint.name}", joint.p))
     for load in mechanism.loads:
-        if isinstance(load, PointLoad):
-            if load.body == body and load.point is not None:
-                found.append((f"force {load.name}", load.point))
-        elif isinstance(load, PairLoad):
-            found += [(f"force {load.name}", p) for owner, p in ((load.a, load.p), (load.b, load.q)) if owner == body]
+        found += [(f"force {load.name}", point) for owner, point in load.points if owner == body]
     return found
 
 

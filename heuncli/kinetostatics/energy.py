@@ -2,11 +2,13 @@
 
 from __future__ import annotations
 
+from collections.abc import Sequence
+
 import numpy as np
 
 from heuncli.integration.runner import Recovered
+from heuncli.kinetostatics.actions import AppliedLoad
 from heuncli.kinetostatics.bodies import BodyStates
-from heuncli.kinetostatics.foundation import load_slots
 from heuncli.mechanism.model import Mechanism, PairLoad
 from heuncli.results import Array, Block
 from heuncli.tree.layout import Layout
@@ -14,7 +16,7 @@ from heuncli.tree.layout import Layout
 AT_REST = 1e-20  # of the weight's work over the scene's size: less kinetic energy is none, and no scale
 
 
-def energy(layout: Layout, found: Recovered, states: BodyStates) -> Block:
+def energy(layout: Layout, found: Recovered, states: BodyStates, loads: Sequence[AppliedLoad]) -> Block:
     """Kinetic energy, potential energy (gravity from the world's origin, springs), work of all else, (n_t,) [J]."""
     mechanism = layout.mechanism
     m = np.array([b.mass for b in mechanism.bodies])
@@ -23,9 +25,10 @@ def energy(layout: Layout, found: Recovered, states: BodyStates) -> Block:
     kinetic = 0.5 * np.einsum("n,tni,tni->t", m, states.v_centre, states.v_centre)
     kinetic = kinetic + 0.5 * np.einsum("tni,nij,tnj->t", w, inertia, w)
     potential = -np.einsum("n,tni,i->t", m, states.centre, mechanism.gravity)
-    for load, slots in zip(mechanism.loads, load_slots(mechanism), strict=True):
+    for applied in loads:
+        load = applied.load
         if isinstance(load, PairLoad) and load.value is None:
-            potential = potential + 0.5 * load.stiffness * np.square(found.loads[:, slots[0], 13] - load.length)
+            potential = potential + 0.5 * load.stiffness * np.square(applied.length - load.length)
     work = found.states[:, layout.I[8]] if layout.work else np.zeros_like(kinetic)
     return {"kinetic": kinetic, "potential": potential, "work": work}
 

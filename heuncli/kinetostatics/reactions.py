@@ -13,11 +13,12 @@ import numpy as np
 from heuncli.integration.runner import Recovered
 from heuncli.joint_kinds import JOINTS
 from heuncli.kinetostatics.bodies import BodyStates
-from heuncli.mechanism.model import GROUND, Joint
+from heuncli.kinetostatics.closure_wrenches import closure_wrenches
+from heuncli.mechanism.model import Joint
 from heuncli.records import record
 from heuncli.results import Array
 from heuncli.tree.layout import Layout
-from heuncli.tree.starts import joint_frame, to_direction
+from heuncli.tree.starts import joint_frame
 
 
 @record
@@ -59,6 +60,7 @@ class JointLoads:
 def joint_loads(layout: Layout, found: Recovered, states: BodyStates) -> list[JointLoads]:
     """Reactions of all joints, in the order of the spec."""
     hang_of = {h.joint: (i, h) for i, h in enumerate(layout.spanning.hangs) if h.joint >= 0}
+    rows = closure_wrenches(layout, states, found.rows[:, :, 0]) if layout.rows else None
     loads = []
     for k, joint in enumerate(layout.mechanism.joints):
         kind = JOINTS[joint.kind]
@@ -75,7 +77,8 @@ def joint_loads(layout: Layout, found: Recovered, states: BodyStates) -> list[Jo
                 if freedom.joint == k and freedom.q < 0:
                     drive = found.freedoms[:, n, 3]
         else:
-            force, moment = _from_multipliers(layout, found, states, k, joint, point)
+            assert rows is not None
+            force, moment = (_of_joint(layout, k, wrenches) for wrenches in rows)
             if kind.keeps_distance:
                 push = found.rows[:, layout.rows.index(k), 0]
                 drive, tension = (push if joint.drive is not None else None), -push
@@ -86,24 +89,13 @@ def joint_loads(layout: Layout, found: Recovered, states: BodyStates) -> list[Jo
     return loads
 
 
-def _from_multipliers(
-    layout: Layout, found: Recovered, states: BodyStates, k: int, joint: Joint, point: Array
-) -> tuple[Array, Array]:
-    rows = [r for r, owner in enumerate(layout.rows) if owner == k]
-    lam = found.rows[:, rows, 0]
-    kind = JOINTS[joint.kind]
-    if kind.keeps_distance:
-        D = point - states.place(joint.a, joint.p)
-        return lam[:, :1] * D / np.sqrt(np.sum(D * D, axis=1))[:, None], np.zeros_like(point)
-    force, moment = np.zeros_like(point), np.zeros_like(point)
-    for column, d in enumerate(kind.guides):
-        force = force + lam[:, column, None] * states.direction(joint.a, joint_frame(joint, d))
-    R_ref = layout.starts[k].R_ref
-    for column, (d, e) in enumerate(kind.dots, start=len(kind.guides)):
-        on_to = states.direction(joint.b, to_direction(joint, R_ref, e))
-        m = np.cross(on_to, states.direction(joint.a, joint_frame(joint, d)))
-        moment = moment + lam[:, column, None] * m
-    return force, moment
+def _of_joint(layout: Layout, joint: int, rows: Array) -> Array:
+    """The sum over the closure rows of a cut joint, of their forces or of their moments."""
+    total = np.zeros_like(rows[:, 0])
+    for r, owner in enumerate(layout.rows):
+        if owner == joint:
+            total = total + rows[:, r]
+    return total
 
 
 def in_plane(force: Array, moment: Array) -> tuple[Array, Array]:
@@ -127,12 +119,3 @@ def carried(joint: Joint, states: BodyStates, force: Array, moment: Array) -> tu
         n = states.direction(joint.a, joint_frame(joint, d))
         force = force - np.sum(force * n, axis=1)[:, None] * n
     return force, moment
-
-
-def support_loads(load: JointLoads) -> tuple[Array, Array] | None:
-    """Force and moment ON the ground, about the `to` point, where the joint is a support; None between bodies."""
-    if load.joint.a == GROUND:
-        return -load.force, -load.moment
-    if load.joint.b == GROUND:
-        return load.force, load.moment
-    return None

@@ -14,13 +14,10 @@ from collections.abc import Mapping, Sequence
 
 import numpy as np
 
-from heuncli.integration.runner import Recovered
-from heuncli.joint_kinds import JOINTS
+from heuncli.kinetostatics.actions import Action
 from heuncli.kinetostatics.bodies import BodyStates
 from heuncli.kinetostatics.cuts import Cuts
-from heuncli.kinetostatics.foundation import load_slots
 from heuncli.kinetostatics.stress import MODULI, stresses
-from heuncli.mechanism.model import Joint, Mechanism, PairLoad, PointLoad
 from heuncli.records import record
 from heuncli.results import Array, Block, Mask
 
@@ -36,47 +33,21 @@ class Attachment:
     moment: Array
 
 
-def joint_attachments(
-    body: int, states: BodyStates, wrenches: Sequence[tuple[Joint, Array, Array, Array]]
-) -> list[Attachment]:
-    """What joints put on a body, from (joint, `to` point, force and moment ON `to` about it), world axes."""
+def attachments(body: int, states: BodyStates, actions: Sequence[Action]) -> list[Attachment]:
+    """What actions put on a body, each at the point where it enters, or where it is at the instant."""
     R = states.R[:, body]
     on: list[Attachment] = []
-    for joint, point, force, moment in wrenches:
-        if joint.b == body:
-            on.append(Attachment(joint.q, _inward(R, force), _inward(R, moment)))
-        if joint.a == body:
-            F, M, place = -_inward(R, force), -_inward(R, moment), _inward(R, point - states.x[:, body])
-            at = place if JOINTS[joint.kind].wanders else joint.p
-            on.append(Attachment(at, F, M + np.cross(place - at, F)))
-    return on
-
-
-def load_attachments(mechanism: Mechanism, body: int, found: Recovered, states: BodyStates) -> list[Attachment]:
-    """What applied loads put on a body at places; couples at theirs."""
-    R = states.R[:, body]
-    on: list[Attachment] = []
-    for applied, slots in zip(mechanism.loads, load_slots(mechanism), strict=True):
-        F = _inward(R, found.loads[:, slots, 0:3].sum(axis=1))
-        M = _inward(R, found.loads[:, slots, 3:6].sum(axis=1))
-        if isinstance(applied, PointLoad):
-            if applied.body == body:
-                at = applied.point if applied.point is not None else mechanism.bodies[body].center
-                on.append(Attachment(at, F, M))
-        elif isinstance(applied, PairLoad):
-            on += [
-                Attachment(p, sign * F, sign * M)
-                for owner, p, sign in ((applied.b, applied.q, 1.0), (applied.a, applied.p, -1.0))
-                if owner == body
-            ]
-        else:
-            joint = mechanism.joints[applied.joint]
-            if joint.b == body:
-                on.append(Attachment(joint.q, F, M))
-            if joint.a == body:
-                place = _inward(R, found.loads[:, slots[0], 6:9] - states.x[:, body])
-                at = place if JOINTS[joint.kind].wanders else joint.p
-                on.append(Attachment(at, -F, -M - np.cross(place - at, F)))
+    for action in actions:
+        for end, force, moment in action.on_bodies():
+            if end.body != body:
+                continue
+            F, M = _inward(R, force), _inward(R, moment)
+            if end.point is None:
+                on.append(Attachment(_inward(R, end.position - states.x[:, body]), F, M))
+                continue
+            if end.apart:
+                M = M + np.cross(_inward(R, end.position - states.x[:, body]) - end.point, F)
+            on.append(Attachment(end.point, F, M))
     return on
 
 

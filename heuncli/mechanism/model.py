@@ -91,6 +91,16 @@ class PointLoad:
     vector: tuple[Expression, Expression, Expression]
     in_body: bool
 
+    @property
+    def values(self) -> tuple[Expression, ...]:
+        """Its values in time."""
+        return self.vector
+
+    @property
+    def points(self) -> tuple[tuple[int, Array], ...]:
+        """Bodies with the points at which it acts on them, body axes."""
+        return ((self.body, self.point),) if self.point is not None else ()
+
 
 @record
 class PairLoad:
@@ -106,6 +116,16 @@ class PairLoad:
     length: float
     damping: float
 
+    @property
+    def values(self) -> tuple[Expression, ...]:
+        """Its values in time."""
+        return (self.value,) if self.value is not None else ()
+
+    @property
+    def points(self) -> tuple[tuple[int, Array], ...]:
+        """Bodies with the points at which it acts on them, body axes."""
+        return (self.a, self.p), (self.b, self.q)
+
 
 @record
 class JointLoad:
@@ -118,6 +138,16 @@ class JointLoad:
     turning: float  # damper: N m s; friction: N m; torque: 1
     sliding: float  # damper: N s/m; friction: N; thrust: 1
     speed: float  # friction: where tanh(rate/speed) bends
+
+    @property
+    def values(self) -> tuple[Expression, ...]:
+        """Its values in time."""
+        return (self.value,) if self.value is not None else ()
+
+    @property
+    def points(self) -> tuple[tuple[int, Array], ...]:
+        """None of its own: it acts at its joint."""
+        return ()
 
 
 Load = PointLoad | PairLoad | JointLoad
@@ -142,10 +172,7 @@ class Mechanism:
     def expressions(self) -> Iterator[Expression]:
         """The values in time of the loads, then those of the drives."""
         for load in self.loads:
-            if isinstance(load, PointLoad):
-                yield from load.vector
-            elif load.value is not None:
-                yield load.value
+            yield from load.values
         for joint in self.joints:
             if joint.drive is not None:
                 yield joint.drive.value

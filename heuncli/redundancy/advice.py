@@ -11,11 +11,10 @@ from itertools import combinations, product
 
 import numpy as np
 
-from heuncli.expressions.programs import Expression
 from heuncli.integration.runner import Runner
 from heuncli.joint_kinds import ABOUT_Z, JOINTS, POINT
 from heuncli.kinetostatics.bodies import body_states
-from heuncli.mechanism.model import GROUND, Joint, JointLoad, Load, PointLoad
+from heuncli.mechanism.model import GROUND, Joint, JointLoad
 from heuncli.records import replace
 from heuncli.redundancy.count import NEIGHBOUR, freedoms_of_tree, redundancy
 from heuncli.redundancy.neighbours import neighbours
@@ -67,7 +66,7 @@ def choices_of(scene: PreparedScene) -> Choices:
     mechanism = scene.mechanism
     joints = mechanism.joints
     loaded = {joints[load.joint].name for load in mechanism.loads if isinstance(load, JointLoad)}
-    loaded |= {name for load in mechanism.loads for e in _expressions(load) for name, _ in e.uses}
+    loaded |= {name for load in mechanism.loads for value in load.values for name, _ in value.uses}
     along = open_directions(scene)
     found: dict[int, tuple[Joint, ...]] = {}
     for k in sorted(range(len(joints)), key=lambda k: GROUND in (joints[k].a, joints[k].b)):
@@ -78,11 +77,6 @@ def choices_of(scene: PreparedScene) -> Choices:
             others = (loosened(j, kind, along[k]) for kind in looser)
             found[k] = tuple(other for other in others if other is not None)
     return found
-
-
-def _expressions(load: Load) -> list[Expression]:
-    values = load.vector if isinstance(load, PointLoad) else (load.value,)
-    return [value for value in values if value is not None]
 
 
 def open_directions(scene: PreparedScene) -> list[Array | None]:

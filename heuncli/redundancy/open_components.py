@@ -10,6 +10,7 @@ from typing import TYPE_CHECKING
 
 import numpy as np
 
+from heuncli.kinetostatics.actions import joint_action
 from heuncli.kinetostatics.bodies import BodyStates
 from heuncli.kinetostatics.reactions import JointLoads
 from heuncli.redundancy.self_stress import OPEN, SelfStress
@@ -83,12 +84,12 @@ def open_in_section(
     cuts: Cuts, states: BodyStates, joints: Sequence[JointLoads], stress: SelfStress
 ) -> dict[str, Mask]:
     """Of each component of a section's loads whether it is open: some self-stress has a share in it."""
-    from heuncli.kinetostatics.sections import MOMENTS, components_at_rest, joint_attachments
+    from heuncli.kinetostatics.sections import MOMENTS, attachments, components_at_rest
 
     is_open: dict[str, Mask] = {}
     for k in range(stress.largest.shape[1]):
         parts = zip(joints, stress.shares, strict=True)
-        on = joint_attachments(cuts.body, states, [(j.joint, j.point, s[:, :3, k], s[:, 3:, k]) for j, s in parts])
+        on = attachments(cuts.body, states, [joint_action(j, s[:, :3, k], s[:, 3:, k]) for j, s in parts])
         limit = np.where(stress.largest[:, k] > 0.0, OPEN * stress.largest[:, k], np.inf)
         for name, share in components_at_rest(cuts, states, on).items():
             scale = limit * (stress.length if name in MOMENTS else 1.0)

@@ -14,13 +14,12 @@ from collections.abc import Sequence
 
 import numpy as np
 
-from heuncli.joint_kinds import JOINTS
 from heuncli.kinetostatics.bodies import BodyStates
+from heuncli.kinetostatics.closure_wrenches import closure_wrenches
 from heuncli.mechanism.model import GROUND
 from heuncli.records import record
 from heuncli.results import Array, Mask
 from heuncli.tree.layout import Layout
-from heuncli.tree.starts import joint_frame, to_direction
 
 RANK = 1e-9  # of the largest singular value, or of 1 (a unit load at the length L): below it, rows are dependent
 GAP = 100.0  # a pose is known to gap/L only: so many times that is the least that can count
@@ -142,27 +141,10 @@ def islands(layout: Layout) -> list[list[int]]:
 
 def _row_wrenches(layout: Layout, states: BodyStates) -> Array:
     """Of each row, what lambda = 1 puts on b: force, moment about the world's origin, (n_t, m, 6)."""
-    out = []
-    done: set[int] = set()
-    for k in layout.rows:
-        if k in done:
-            continue
-        done.add(k)
-        joint = layout.mechanism.joints[k]
-        kind = JOINTS[joint.kind]
-        Q = states.place(joint.b, joint.q)
-        zero = np.zeros_like(Q)
-        pairs = []
-        if kind.keeps_distance:
-            D = Q - states.place(joint.a, joint.p)
-            pairs.append((D / np.sqrt(np.sum(D * D, axis=1))[:, None], zero))
-        pairs += [(states.direction(joint.a, joint_frame(joint, d)), zero) for d in kind.guides]
-        for d, e in kind.dots:
-            on_to = states.direction(joint.b, to_direction(joint, layout.starts[k].R_ref, e))
-            turn = np.cross(on_to, states.direction(joint.a, joint_frame(joint, d)))
-            pairs.append((zero, turn))
-        out += [np.concatenate([f, m + np.cross(Q, f)], axis=1) for f, m in pairs]
-    return np.stack(out, axis=1)
+    force, moment = closure_wrenches(layout, states, np.ones((len(states.x), len(layout.rows))))
+    joints = [layout.mechanism.joints[k] for k in layout.rows]
+    Q = np.stack([states.place(joint.b, joint.q) for joint in joints], axis=1)
+    return np.concatenate([force, moment + np.cross(Q, force)], axis=2)
 
 
 def _free_directions(layout: Layout, states: BodyStates, place: int) -> list[tuple[str, Array]]:

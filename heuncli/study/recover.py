@@ -5,7 +5,7 @@ Reads as the list of what is computed; each thing has its own module. Raises Sol
 
 from __future__ import annotations
 
-from collections.abc import Set
+from collections.abc import Sequence, Set
 from functools import cached_property
 from typing import TYPE_CHECKING, Any
 
@@ -13,13 +13,14 @@ import numpy as np
 
 from heuncli.integration.runner import Recovered
 from heuncli.integration.solvable import refuse
+from heuncli.kinetostatics.actions import Action, AppliedLoad, applied_loads, joint_actions, whole_joint_actions
 from heuncli.kinetostatics.balance import balance_residual
 from heuncli.kinetostatics.bodies import BodyStates, body_states
 from heuncli.kinetostatics.coordinates import coordinates, points
 from heuncli.kinetostatics.energy import energy, energy_drift, system_vector
-from heuncli.kinetostatics.foundation import foundation, load_slots
+from heuncli.kinetostatics.foundation import foundation
 from heuncli.kinetostatics.reactions import JointLoads, joint_loads
-from heuncli.mechanism.model import JointLoad, Mechanism, PairLoad
+from heuncli.mechanism.model import JointLoad, PairLoad
 from heuncli.records import record
 from heuncli.results import Accuracy, Array, Block, CertainSum
 from heuncli.study.setup import Setup
@@ -61,9 +62,19 @@ class Recovery:
         return joint_loads(self.setup.scene.layout, self.recovered, self.states)
 
     @cached_property
+    def loads(self) -> list[AppliedLoad]:
+        """The applied loads."""
+        return applied_loads(self.setup.scene.mechanism, self.recovered)
+
+    @property
+    def applied(self) -> list[Action]:
+        """The actions of the applied loads."""
+        return [load.action for load in self.loads]
+
+    @cached_property
     def energy(self) -> Block:
         """Kinetic and potential energy, and work."""
-        return energy(self.setup.scene.layout, self.recovered, self.states)
+        return energy(self.setup.scene.layout, self.recovered, self.states, self.loads)
 
     @property
     def indeterminate(self) -> SelfStress | None:
@@ -83,7 +94,8 @@ def blocks(recovery: Recovery, wanted: Set[str]) -> dict[str, Any]:
     recovered, states = recovery.recovered, recovery.states
     found: dict[str, Any] = {}
     if "foundation" in wanted:
-        found["foundation"] = foundation(mechanism, recovered, states, recovery.joints, about(recovery.setup))
+        actions = [*recovery.applied, *joint_actions(recovery.joints)]
+        found["foundation"] = foundation(mechanism, states, actions, about(recovery.setup))
     if "joints" in wanted:
         found["joints"] = {j.joint.name: joint_block(j) for j in recovery.joints}
     if found and recovery.decided is not None:
@@ -99,7 +111,7 @@ def blocks(recovery: Recovery, wanted: Set[str]) -> dict[str, Any]:
     if "sections" in wanted:
         found["sections"] = sections(recovery)
     if "forces" in wanted:
-        found["forces"] = forces(mechanism, recovered)
+        found["forces"] = forces(recovery.loads)
     return found
 
 
@@ -120,11 +132,12 @@ def accuracy(recovery: Recovery) -> Accuracy:
     """How well the instants balance: energy, closures, d'Alembert's principle."""
     scene, recovered, power = recovery.setup.scene, recovery.recovered, recovery.energy
     mechanism, size = scene.mechanism, scene.layout.size
+    actions = [*recovery.applied, *whole_joint_actions(recovery.joints)]
     lift = sum(body.mass for body in mechanism.bodies) * float(np.abs(mechanism.gravity).max()) * size
     return {
         "energy_drift": energy_drift(power["kinetic"], power["potential"], power["work"], lift),
         "constraint_gap": float(recovered.gap.max(initial=0.0)),
-        "balance_residual": balance_residual(mechanism, recovered, recovery.states, recovery.joints, size),
+        "balance_residual": balance_residual(mechanism, recovery.states, actions, size),
     }
 
 
@@ -166,11 +179,11 @@ def sections(recovery: Recovery) -> Block:
     if not recovery.setup.cuts:
         return block
     # only scenes with sections load it
-    from heuncli.kinetostatics.sections import joint_attachments, load_attachments, section
+    from heuncli.kinetostatics.sections import attachments, section
 
+    actions = [*whole_joint_actions(recovery.joints), *recovery.applied]
     for cuts in recovery.setup.cuts:
-        on = joint_attachments(cuts.body, states, [(j.joint, j.point, *j.whole) for j in recovery.joints])
-        on += load_attachments(scene.mechanism, cuts.body, recovery.recovered, states)
+        on = attachments(cuts.body, states, actions)
         if stress is None:
             block[cuts.name] = section(cuts, states, scene.mechanism.gravity, on, {}, scene.mechanism.planar)
             continue
@@ -182,15 +195,14 @@ def sections(recovery: Recovery) -> Block:
     return block
 
 
-def forces(mechanism: Mechanism, recovered: Recovered) -> Block:
+def forces(loads: Sequence[AppliedLoad]) -> Block:
     """Values, lengths, rates and powers of the applied loads."""
     block: Block = {}
-    for load, slots in zip(mechanism.loads, load_slots(mechanism), strict=True):
-        rows = recovered.loads[:, slots]
-        block[load.name] = {"value": rows[:, 0, 12]}
-        if isinstance(load, PairLoad):
-            block[load.name] |= {"length": rows[:, 0, 13], "rate": rows[:, 0, 14]}
-        elif isinstance(load, JointLoad):
-            block[load.name] |= {"rate": rows[:, 0, 14]}
-        block[load.name]["power"] = rows[:, :, 15].sum(axis=1)
+    for applied in loads:
+        own: Block = {"value": applied.value}
+        if isinstance(applied.load, PairLoad):
+            own["length"] = applied.length
+        if isinstance(applied.load, PairLoad | JointLoad):
+            own["rate"] = applied.rate
+        block[applied.load.name] = own | {"power": applied.power}
     return block

@@ -9,7 +9,7 @@ from __future__ import annotations
 import numpy as np
 
 from heuncli.joint_kinds import JOINTS
-from heuncli.mechanism.model import Mechanism, PairLoad, PointLoad
+from heuncli.mechanism.model import Mechanism, PointLoad
 from heuncli.records import record
 from heuncli.results import Array
 
@@ -38,12 +38,11 @@ def idle_spins(mechanism: Mechanism, size: float) -> list[IdleSpin]:
                 if not kind.ball or (kind.wanders and end == joint.a):
                     held.add(end)
     for load in mechanism.loads:
-        if isinstance(load, PointLoad) and load.kind == "force" and load.point is not None:
-            points[load.body].append(load.point)
-        elif isinstance(load, PairLoad):
-            for end, point in ((load.a, load.p), (load.b, load.q)):
-                if end >= 0:
-                    points[end].append(point)
+        if isinstance(load, PointLoad) and load.kind == "couple":
+            continue
+        for end, point in load.points:
+            if end >= 0:
+                points[end].append(point)
     found = []
     for i, body in enumerate(mechanism.bodies):
         if i in held:

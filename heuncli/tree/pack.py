@@ -44,9 +44,7 @@ def lay_out(mechanism: Mechanism, start: Assembly, inertias: Array, work: bool =
 
 def _programs(mechanism: Mechanism, pack: Pack) -> tuple[dict[int, tuple[int, int]], set[tuple[str, str]]]:
     """Put every expression in time into the pack; where each stands, by identity, and the coordinates they name."""
-    expressions: list[Expression] = []
-    for load in mechanism.loads:
-        expressions += load.vector if isinstance(load, PointLoad) else [load.value] if load.value is not None else []
+    expressions = [value for load in mechanism.loads for value in load.values]
     driven = [j.drive.value for j in mechanism.joints if j.drive is not None]
     programs = {id(e): pack.add(e) for e in expressions if e.constant is None} | {id(e): pack.add(e) for e in driven}
     return programs, {use for e in expressions for use in e.uses}

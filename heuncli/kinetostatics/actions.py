@@ -1,0 +1,132 @@
+"""The actions on the bodies: what applied loads, joints and drives exert, one list that all sums and balances read.
+
+An action is a force and a moment ON one body; unless it comes from outside, another body feels the opposite (action
+and reaction), each at its own end. World axes, moments about the position of the end.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Iterator, Sequence
+from typing import Literal
+
+from heuncli.integration.runner import Recovered
+from heuncli.joint_kinds import JOINTS
+from heuncli.kinetostatics.reactions import JointLoads
+from heuncli.mechanism.model import GROUND, Joint, JointLoad, Load, Mechanism, PairLoad, PointLoad
+from heuncli.records import record
+from heuncli.results import Array
+
+
+@record
+class End:
+    """Where an action enters a body; the moment is about `position` (n_t, 3), world.
+
+    point: where that is in the body's axes (3,), None where it moves over the body. apart: the position is that of the
+    other body's point, from which this one is as far as the closure's gap or the rod's length.
+    """
+
+    body: int
+    position: Array
+    point: Array | None
+    apart: bool = False
+
+
+@record
+class Action:
+    """Force [N] and moment [N m] ON the body of `to`, (n_t, 3); the opposite ON that of `from_`, None: from outside.
+
+    name: of the load, of the joint (its constraint alone, unless the drive is included on purpose), or of the drive.
+    """
+
+    kind: Literal["load", "joint", "drive"]
+    name: str
+    to: End
+    from_: End | None
+    force: Array
+    moment: Array
+
+    def on_bodies(self) -> Iterator[tuple[End, Array, Array]]:
+        """Each end with the force and moment ON the body there, about its position."""
+        yield self.to, self.force, self.moment
+        if self.from_ is not None:
+            yield self.from_, -self.force, -self.moment
+
+    def on_ground(self) -> tuple[Array, Array, Array] | None:
+        """Force and moment ON the ground and the position that the moment is about; None where it acts elsewhere."""
+        ends = ((force, moment, end.position) for end, force, moment in self.on_bodies() if end.body == GROUND)
+        return next(ends, None)
+
+
+@record
+class AppliedLoad:
+    """An applied load at the asked instants: its action, value, length [m], rate and power [W] (n_t,).
+
+    value: the force or moment of a load between two bodies; length and rate: of the line between its points, or of the
+    turning or sliding of its joint (then without a length).
+    """
+
+    load: Load
+    action: Action
+    value: Array
+    length: Array
+    rate: Array
+    power: Array
+
+
+def applied_loads(mechanism: Mechanism, found: Recovered) -> list[AppliedLoad]:
+    """The applied loads in the order of the spec; of a joint's load the parts of its several motions together."""
+    loads: list[AppliedLoad] = []
+    at = 0
+    for load in mechanism.loads:
+        joint = mechanism.joints[load.joint] if isinstance(load, JointLoad) else None
+        count = len(JOINTS[joint.kind].motions) if joint is not None else 1
+        rows = found.loads[:, at : at + count]
+        at += count
+        force, moment = rows[:, :, 0:3].sum(axis=1), rows[:, :, 3:6].sum(axis=1)
+        to, from_ = _ends(mechanism, load, joint, rows[:, 0, 6:9], rows[:, 0, 9:12])
+        action = Action("load", load.name, to, from_, force, moment)
+        loads.append(
+            AppliedLoad(load, action, rows[:, 0, 12], rows[:, 0, 13], rows[:, 0, 14], rows[:, :, 15].sum(axis=1))
+        )
+    return loads
+
+
+def _ends(
+    mechanism: Mechanism, load: Load, joint: Joint | None, on_to: Array, on_from: Array
+) -> tuple[End, End | None]:
+    """Where a load acts; on_to, on_from: the kernel's positions of its points, world."""
+    if isinstance(load, PointLoad):
+        point = load.point if load.point is not None else mechanism.bodies[load.body].center
+        return End(load.body, on_to, point), None
+    if isinstance(load, PairLoad):
+        return End(load.b, on_to, load.q), End(load.a, on_from, load.p)
+    assert joint is not None
+    return _joint_ends(joint, on_to)
+
+
+def _joint_ends(joint: Joint, position: Array) -> tuple[End, End]:
+    """The ends of what acts in a joint, at its `to` point."""
+    point = None if JOINTS[joint.kind].wanders else joint.p
+    return End(joint.b, position, joint.q), End(joint.a, position, point, apart=True)
+
+
+def joint_actions(joints: Sequence[JointLoads]) -> list[Action]:
+    """What the joints' constraints exert, each followed by its drive; a rod's force is its drive's, and one action."""
+    actions: list[Action] = []
+    for load in joints:
+        actions.append(joint_action(load, load.force, load.moment))
+        drive = load.joint.drive
+        if drive is not None and not JOINTS[load.joint.kind].keeps_distance:
+            ends = _joint_ends(load.joint, load.point)
+            actions.append(Action("drive", drive.name, *ends, load.drive_force, load.drive_moment))
+    return actions
+
+
+def whole_joint_actions(joints: Sequence[JointLoads]) -> list[Action]:
+    """What the joints exert with their drives, one action a joint."""
+    return [joint_action(load, *load.whole) for load in joints]
+
+
+def joint_action(load: JointLoads, force: Array, moment: Array) -> Action:
+    """The action of a force and a moment about the `to` point in a joint, ON `to`."""
+    return Action("joint", load.joint.name, *_joint_ends(load.joint, load.point), force, moment)
