@@ -8,6 +8,6 @@ from typing import Any
 import pytest
 
 
-def spared(seeds: Iterable[int], quick: Container[int]) -> list[Any]:
+def spared(seeds: Iterable[Any], quick: Container[Any]) -> list[Any]:
     """The seeds, all but the quick ones marked heavy: a plain run of theirs takes more than a second or two."""
     return [seed if seed in quick else pytest.param(seed, marks=pytest.mark.heavy) for seed in seeds]

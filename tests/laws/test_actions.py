@@ -1,0 +1,101 @@
+"""The list of actions: each enters its bodies at their own points, all together end in the ground; rows do no work."""
+
+from __future__ import annotations
+
+from functools import cache
+
+import numpy as np
+import pytest
+
+from heuncli.joint_kinds import JOINTS
+from heuncli.kinetostatics.actions import joint_actions
+from heuncli.kinetostatics.closure_wrenches import closure_wrenches
+from heuncli.kinetostatics.foundation import inertia_loads
+from heuncli.mechanism.model import GROUND
+from heuncli.study.history import resample
+from heuncli.study.recover import Recovery, recover
+from tests.oracle.turns import Array, cross
+from tests.shared import doubles
+from tests.shared.loops import loop
+from tests.shared.seeds import spared
+from tests.shared.trees import TIMES, Case, tree
+
+SCENES = [
+    *((tree, seed) for seed in range(13)), *((loop, seed) for seed in range(12)),
+    *((loop, seed) for seed in range(1000, 1008)),
+]  # fmt: skip
+CASES = spared(SCENES, {(tree, 0), (tree, 1), (loop, 1), (loop, 2), (loop, 1000)})
+
+
+@cache
+def recovery(make: object, seed: int) -> tuple[Case, Recovery]:
+    """A random scene with all that is recovered at its instants."""
+    c: Case = make(seed)  # type: ignore[operator]
+    study = c.study
+    return c, recover(study.setup, resample(study.setup.runner, study.history, np.array(TIMES)), least_norm=False)
+
+
+@pytest.mark.parametrize("of", CASES)
+def test_actions_enter_at_the_points_of_their_bodies(of: tuple[object, int]) -> None:
+    """Where a lever lies between, as in a rod, the force runs along it."""
+    c, r = recovery(*of)
+    seen = 0
+    for action in [*r.applied, *joint_actions(r.joints)]:
+        for end, force, _ in action.on_bodies():
+            if end.point is None or (action.from_ is None and not action.force.any()):
+                continue  # it moves over the body, or is a couple, which may enter anywhere
+            seen += 1
+            lever = end.position - r.states.place(end.body, end.point)
+            off = cross_all(lever, force) if end.apart else lever * c.force[0]
+            assert np.abs(off).max() <= 1e-9 * max(c.force) * c.length
+    assert seen
+
+
+@pytest.mark.parametrize("of", CASES)
+def test_what_comes_from_outside_ends_in_the_ground(of: tuple[object, int]) -> None:
+    """Supports, drives and loads between ground and body carry what acts from outside, less the inertia."""
+    c, r = recovery(*of)
+    mechanism = r.setup.scene.mechanism
+    ma, spin = inertia_loads(mechanism, r.states)
+    net = np.array([b.mass for b in mechanism.bodies])[:, None] * mechanism.gravity - ma
+    force, moment = net.sum(axis=1), (np.cross(r.states.centre, net) - spin).sum(axis=1)
+    for action in [*r.applied, *joint_actions(r.joints)]:
+        if action.from_ is None:
+            force = force + action.force
+            moment = moment + cross_all(action.to.position, action.force) + action.moment
+        elif (on_ground := action.on_ground()) is not None:
+            F, M, position = on_ground
+            force, moment = force - F, moment - M - cross_all(position, F)
+    for k in range(len(TIMES)):
+        assert np.abs(force[k]).max() <= 1e-9 * c.force[k]
+        assert np.abs(moment[k]).max() <= 1e-9 * c.force[k] * c.length
+
+
+@pytest.mark.parametrize("seed", spared(doubles.SEEDS[:36], doubles.QUICK))
+def test_closure_rows_do_no_work(seed: int) -> None:
+    """A row's wrench does no power on the relative motion that its joint leaves free; a driven rod's moves its end."""
+    c, r = recovery(doubles.redundant, seed)
+    layout, states = r.setup.scene.layout, r.states
+    force, moment = closure_wrenches(layout, states, np.ones((len(TIMES), len(layout.rows))))
+    assert len(layout.rows)
+    speed = max(np.abs(states.v).max() + np.abs(states.omega).max() * c.length, 1e-6)  # of some that stand still
+    for row, k in enumerate(layout.rows):
+        joint = layout.mechanism.joints[k]
+        Q = states.place(joint.b, joint.q)
+        turning = spin(r, joint.b) - spin(r, joint.a)
+        slip = states.velocity(joint.b, Q) - states.velocity(joint.a, Q)
+        if JOINTS[joint.kind].keeps_distance:
+            slip = states.velocity(joint.b, Q) - states.velocity(joint.a, states.place(joint.a, joint.p))
+        power = np.sum(force[:, row] * slip + moment[:, row] * turning, axis=1)
+        assert np.abs(force[:, row]).max() + np.abs(moment[:, row]).max() >= 0.5
+        assert np.abs(power).max() <= 1e-8 * speed
+
+
+def spin(r: Recovery, body: int) -> Array:
+    """Angular velocity of a body, or of the ground, (n_t, 3)."""
+    return r.states.omega[:, body] if body != GROUND else np.zeros((len(TIMES), 3))
+
+
+def cross_all(a: Array, b: Array) -> Array:
+    """Products instant by instant, written apart from what is tested."""
+    return np.array([cross(x, y) for x, y in zip(a, b, strict=True)])
