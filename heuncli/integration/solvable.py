@@ -2,12 +2,11 @@
 
 from __future__ import annotations
 
-import math
-
 import numpy as np
 
 from heuncli.errors import Problem, SolveError
 from heuncli.integration.runner import Recovered
+from heuncli.tree.idle_spins import without_inertia
 from heuncli.tree.prepare import PreparedScene
 
 NO_MOMENT = 1e-9  # of the loads there: a smaller moment about an axis without inertia is rounding
@@ -56,8 +55,11 @@ def nothing_behind(scene: PreparedScene, t: float) -> Problem:
     """A freedom moves no mass: which bodies have no inertia about some axis."""
     thin = []
     for body in scene.mechanism.bodies:
-        moments, axes = np.linalg.eigh(body.inertia)
-        if moments[0] <= 1e-12 * moments[-1] + math.ulp(0.0):
-            thin.append(f"{body.name} about ({', '.join(f'{x:.4g}' for x in axes[:, 0])})")
-    message = f"at t = {t:.6g} s a freedom has no inertia behind it; without inertia: {', '.join(thin) or 'none'}"
+        axes, _ = without_inertia(body, scene.layout.size)
+        if len(axes):
+            # the sign of an eigenvector is anybody's choice, and a point mass has no axis rather than another
+            n = axes[0] * np.sign(axes[0][np.argmax(np.abs(axes[0]))]) + 0.0
+            told = f"its axis ({', '.join(f'{x:.4g}' for x in n)})" if len(axes) == 1 else "its axis (any)"
+            thin.append(f"bodies.{body.name} has no inertia about {told}")
+    message = ": ".join([f"at t = {t:.6g} s a freedom has no inertia behind it", *(["; ".join(thin)] if thin else [])])
     return Problem("no-inertia", message, hint="give those bodies their moments of inertia, or hold the turn")

@@ -458,7 +458,7 @@ def loads(I: cython.p_int, P: cython.p_double, W: cython.p_double, C: cython.p_i
 @cython.cfunc
 @cython.nogil
 @cython.exceptval(check=False)
-@cython.locals(i=cython.Py_ssize_t, j=cython.Py_ssize_t, k=cython.Py_ssize_t, b=cython.Py_ssize_t, B=cython.Py_ssize_t, Q=cython.Py_ssize_t, F=cython.Py_ssize_t, p=cython.Py_ssize_t, T=cython.Py_ssize_t, bad=cython.int, m=cython.double, x=cython.double, y=cython.double, z=cython.double, a=cython.double, c=cython.double, d=cython.double, e=cython.double, f=cython.double, g=cython.double, h=cython.double, D=cython.double)
+@cython.locals(i=cython.Py_ssize_t, j=cython.Py_ssize_t, k=cython.Py_ssize_t, b=cython.Py_ssize_t, B=cython.Py_ssize_t, Q=cython.Py_ssize_t, F=cython.Py_ssize_t, p=cython.Py_ssize_t, T=cython.Py_ssize_t, bad=cython.int, m=cython.double, x=cython.double, y=cython.double, z=cython.double, a=cython.double, c=cython.double, d=cython.double, e=cython.double, f=cython.double, g=cython.double, h=cython.double, D=cython.double, mass=cython.double, turning=cython.double)
 def factor(I: cython.p_int, P: cython.p_double, W: cython.p_double) -> cython.int:
     """Articulated inertias from the tips to the roots, reduced by every freedom that is not driven; the number of freedoms with no inertia behind them."""
     T = I[25]
@@ -488,6 +488,9 @@ def factor(I: cython.p_int, P: cython.p_double, W: cython.p_double) -> cython.in
         B = I[20] + 80 * i
         b = I[10] + 8 * i
         p = I[b]
+        # a freedom's inertia is nothing beside that before any freedom was taken out: what is left of it is rounding
+        mass = 1e-14 * (W[B + 42] + W[B + 45] + W[B + 47])
+        turning = 1e-14 * (W[B + 27] + W[B + 30] + W[B + 32])
         if I[b + 1]:
             # A = L D L', G = A^-1 C, K <- K - C' G; no inverse: a nearly thin rod's loses digits in all directions
             a = W[B + 27]
@@ -496,7 +499,7 @@ def factor(I: cython.p_int, P: cython.p_double, W: cython.p_double) -> cython.in
             e = W[B + 30]
             f = W[B + 31]
             g = W[B + 32]
-            h = 1e-14 * (a + e + g)
+            h = turning
             if a > h:
                 a = 1.0 / a
             else:
@@ -550,7 +553,7 @@ def factor(I: cython.p_int, P: cython.p_double, W: cython.p_double) -> cython.in
             if I[j] == 2:
                 symmetric(W, B + 42, W, F, W, F + 6)
                 D = W[F] * W[F + 6] + W[F + 1] * W[F + 7] + W[F + 2] * W[F + 8]
-                h = 1e-14 * (W[B + 42] + W[B + 45] + W[B + 47])
+                h = mass
                 if I[b + 1]:
                     W[F + 3] = 0.0
                     W[F + 4] = 0.0
@@ -560,7 +563,7 @@ def factor(I: cython.p_int, P: cython.p_double, W: cython.p_double) -> cython.in
             else:
                 symmetric(W, B + 27, W, F, W, F + 3)
                 D = W[F] * W[F + 3] + W[F + 1] * W[F + 4] + W[F + 2] * W[F + 5]
-                h = 1e-14 * (W[B + 27] + W[B + 30] + W[B + 32])
+                h = turning
                 x = W[F]
                 y = W[F + 1]
                 z = W[F + 2]

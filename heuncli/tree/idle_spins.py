@@ -9,7 +9,7 @@ from __future__ import annotations
 import numpy as np
 
 from heuncli.joint_kinds import JOINTS
-from heuncli.mechanism.model import Mechanism, PointLoad
+from heuncli.mechanism.model import Body, Mechanism, PointLoad
 from heuncli.records import record
 from heuncli.results import Array
 
@@ -47,9 +47,7 @@ def idle_spins(mechanism: Mechanism, size: float) -> list[IdleSpin]:
     for i, body in enumerate(mechanism.bodies):
         if i in held:
             continue
-        scale = max(float(np.trace(body.inertia)), 1e-9 * body.mass * size * size)
-        moments, axes = np.linalg.eigh(body.inertia)
-        null = axes[:, moments <= NO_INERTIA * scale].T
+        null, largest = without_inertia(body, size)
         if not len(null):
             continue
         arms = [p - body.center for p in points[i]]
@@ -61,6 +59,13 @@ def idle_spins(mechanism: Mechanism, size: float) -> list[IdleSpin]:
             if off > ON_AXIS * size or np.sum(np.square(null @ n)) < 1.0 - 1e-9:
                 continue
             null = n[None, :]
-        lent = max(float(moments[-1]), body.mass * max(reach, 1e-3 * size) ** 2)
+        lent = max(largest, body.mass * max(reach, 1e-3 * size) ** 2)
         found.append(IdleSpin(i, null, lent * null.T @ null))
     return found
+
+
+def without_inertia(body: Body, size: float) -> tuple[Array, float]:
+    """The principal axes about which a body has no inertia (body components, (k, 3)); its largest moment of inertia."""
+    scale = max(float(np.trace(body.inertia)), 1e-9 * body.mass * size * size)
+    moments, axes = np.linalg.eigh(body.inertia)
+    return axes[:, moments <= NO_INERTIA * scale].T, float(moments[-1])
