@@ -131,11 +131,6 @@ TOKEN = re.compile(r"\s*(?:(\*\*|[*·⋅×/^()])|([+-]?\d+)|([^\W\d_²³⁴]+|°
 SUPERSCRIPTS = {"²": 2, "³": 3, "⁴": 4}
 
 
-def unit_table() -> list[tuple[str, float, str]]:
-    """Every unit: its symbol, its size in SI, and what it measures; for the README and `heun explain`."""
-    return [(symbol, size, NAMES[dimension][0]) for symbol, (size, dimension) in UNITS.items()]
-
-
 def describe(dimension: Dimension) -> str:
     """A dimension in words: 'a length', or its SI unit where no word is known."""
     if dimension in NAMES:

@@ -165,10 +165,6 @@ class Mechanism:
     joints: tuple[Joint, ...]
     loads: tuple[Load, ...]
 
-    def body_index(self, name: str) -> int:
-        """Index of a body; -1 for the ground. Raises StopIteration for a name the spec layer let through."""
-        return GROUND if name == "ground" else next(i for i, b in enumerate(self.bodies) if b.name == name)
-
     def expressions(self) -> Iterator[Expression]:
         """The values in time of the loads, then those of the drives."""
         for load in self.loads:

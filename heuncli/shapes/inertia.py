@@ -10,23 +10,9 @@ Leading axes of any length are allowed everywhere: (..., 4, 4).
 
 from __future__ import annotations
 
-from enum import Enum
-
 import numpy as np
 
 from heuncli.results import Array
-
-REFUSED = 1e-3  # contract section 1: principal moments may break A1 + A2 >= A3 by less than this part
-ROUNDING = 1e-9  # tensors are typed with some ten digits; below this nobody is warned
-
-
-class Verdict(Enum):
-    """What an inertia tensor about the centre of mass is worth."""
-
-    POSSIBLE = "a possible body"
-    ROUGH = "the principal moments break A1 + A2 >= A3 by less than 1e-3; taken as they are"
-    IMPOSSIBLE = "no body has these principal moments: each must be at most the sum of the other two"
-    NEGATIVE = "no body has a negative principal moment"
 
 
 def second_moment(inertia: Array) -> Array:
@@ -58,31 +44,3 @@ def properties(P: Array) -> tuple[float, Array, Array]:
     mass = float(P[3, 3])
     center = P[:3, 3] / mass
     return mass, center, tensor(P[:3, :3] - mass * np.outer(center, center))
-
-
-def moved(P: Array, R: Array, p: Array) -> Array:
-    """P of the same matter after x -> R x + p; also: P in the axes in which the old ones stand at p, turned by R."""
-    G = np.eye(4)
-    G[:3, :3] = R
-    G[:3, 3] = p
-    return G @ P @ G.T
-
-
-def principal(inertia: Array) -> tuple[Array, Array]:
-    """Principal moments, ascending (3,) [kg m2], and their axes as columns, right-handed (3, 3)."""
-    moments, axes = np.linalg.eigh(inertia)
-    if np.linalg.det(axes) < 0.0:
-        axes[:, 2] = -axes[:, 2]
-    return moments, axes
-
-
-def judged(inertia: Array) -> Verdict:
-    """Whether a body can have this inertia about its centre of mass; nothing at all counts as possible."""
-    A1, A2, A3 = np.linalg.eigvalsh(inertia)
-    largest = max(abs(A1), abs(A3))
-    if -ROUNDING * largest > A1:
-        return Verdict.NEGATIVE
-    excess = A3 - A1 - A2
-    if excess > REFUSED * largest:
-        return Verdict.IMPOSSIBLE
-    return Verdict.ROUGH if excess > ROUNDING * largest else Verdict.POSSIBLE

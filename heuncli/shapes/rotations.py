@@ -56,18 +56,6 @@ def to_quaternion(R: Array) -> Array:
     return q_ / math.sqrt(float(q_ @ q_))
 
 
-def from_quaternion(q: Array) -> Array:
-    """Rotation of a quaternion (w, x, y, z), normalised here, (3, 3)."""
-    w, x, y, z = (q / math.sqrt(float(q @ q))).tolist()
-    return np.array(
-        [
-            [1 - 2 * (y * y + z * z), 2 * (x * y - w * z), 2 * (x * z + w * y)],
-            [2 * (x * y + w * z), 1 - 2 * (x * x + z * z), 2 * (y * z - w * x)],
-            [2 * (x * z - w * y), 2 * (y * z + w * x), 1 - 2 * (x * x + y * y)],
-        ]
-    )
-
-
 def turn_onto(a: Array, b: Array) -> Array:
     """Smallest rotation that takes the unit vector a onto the unit vector b, (3, 3).
 

@@ -22,6 +22,7 @@ from tests.shared.drafts import (
     body,
     centre,
     coordinates,
+    index,
     joint,
     largest_gap,
     largest_rate_gap,
@@ -105,7 +106,7 @@ def test_random_trees_close_and_move_as_asked(seed: int) -> None:
 def same_motion(s: Mechanism, a: Assembly, t: Mechanism, b: Assembly, tolerance: float = 1e-12) -> None:
     """The same bodies (by name) have the same centres, attitudes relative to the start and rates."""
     for i, one in enumerate(s.bodies):
-        k = t.body_index(one.name)
+        k = index(t, one.name)
         assert centre(t, b, k) == pytest.approx(centre(s, a, i), abs=tolerance)
         assert b.rotation[k] == pytest.approx(a.rotation[i], abs=tolerance)
         assert b.angular_velocity[k] == pytest.approx(a.angular_velocity[i], abs=tolerance)

@@ -8,7 +8,6 @@ import pytest
 from heuncli.results import Array
 from heuncli.shapes import quadrature
 from heuncli.shapes.forms import form
-from heuncli.shapes.inertia import moved as carried
 from heuncli.spec.models import Shape
 from tests.oracle.masses import Plane, cloud
 from tests.shared import polyhedra
@@ -18,6 +17,7 @@ from tests.shared.solids import (
     axis_of,
     beyond,
     blur,
+    carried,
     difference,
     moved,
     planes,

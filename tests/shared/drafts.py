@@ -89,8 +89,12 @@ def pose(scene: Mechanism, a: Assembly, body: int) -> tuple[Any, Any]:
     return (np.zeros(3), np.eye(3)) if body == GROUND else (a.position[body], a.rotation[body])
 
 
+def index(scene: Mechanism, body: str) -> int:
+    return GROUND if body == "ground" else [b.name for b in scene.bodies].index(body)
+
+
 def point(scene: Mechanism, a: Assembly, body: str, at: Any) -> Any:
-    x, R = pose(scene, a, scene.body_index(body))
+    x, R = pose(scene, a, index(scene, body))
     return x + R @ vec(at)
 
 

@@ -99,3 +99,10 @@ def stretched(shape: Shape, factor: float) -> Shape:
     longer = {key: vec(factor * np.array(value)) for key, value in places.items() if value is not None}
     wider = {key: factor * value for key, value in radii.items() if value is not None}
     return shape._replace(**longer, **wider)  # type: ignore[arg-type]
+
+
+def carried(P: Array, R: Array, p: Array) -> Array:
+    """The pseudo-inertia of the same matter after x -> R x + p: G P G^T, G = [[R, p], [0, 1]]."""
+    G = np.eye(4)
+    G[:3, :3], G[:3, 3] = R, p
+    return np.asarray(G @ P @ G.T)

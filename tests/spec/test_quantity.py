@@ -108,11 +108,10 @@ def test_in_time_a_multiple_of_time_is_meant() -> None:
 
 
 def test_the_list_of_units_is_readable() -> None:
-    listed = u.unit_table()
-    assert len(listed) == len(u.UNITS)
-    assert all(measures.startswith(("a ", "an ")) and size > 0.0 for _, size, measures in listed)
-    for symbol, _, _ in listed:
-        assert u.parse_unit(symbol) == u.UNITS[symbol]
+    for symbol, (size, dimension) in u.UNITS.items():
+        assert u.parse_unit(symbol) == (size, dimension)
+        assert u.describe(dimension).startswith(("a ", "an ")) and size > 0.0
+        assert dimension in u.NAMES
     for spelling, symbol in u.SPELLINGS.items():
         assert symbol in u.UNITS, spelling
 
