@@ -51,7 +51,7 @@ def test_a_reader_that_goes_away_is_141_and_silent(folder: Path) -> None:
 @pytest.mark.parametrize("form", ["json", "csv"])
 def test_unbuffered_output_is_whole_or_said_not_to_be(form: str, folder: Path) -> None:
     """PYTHONUNBUFFERED makes writes that take a part only; ulimit -f counts kilobytes."""
-    command = f"PYTHONUNBUFFERED=1 heun run swinging.yaml --set analysis.samples=4001 --format {form}"
+    command = f"PYTHONUNBUFFERED=1 heun run swinging.yaml --set analysis.samples=501 --format {form}"
     whole = shell(f"{command} | wc -c; exit ${{PIPESTATUS[0]}}", folder)
     assert whole.returncode == 0 and int(whole.stdout) > 300_000
     cut = shell(f"ulimit -f 100; trap '' XFSZ; {command} > part", folder)

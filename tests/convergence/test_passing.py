@@ -77,7 +77,7 @@ def test_passages_are_told() -> None:
     assert any(w.startswith("passes through a singular pose at t = 0.70845, 1.21526 s") for w in warnings)
 
 
-@pytest.mark.parametrize("coupler", [0.97, 1.01])
+@pytest.mark.parametrize("coupler", [pytest.param(0.97, marks=pytest.mark.heavy), 1.01])
 def test_coming_near_is_no_passage(coupler: float) -> None:
     """A coupler a little too short or too long keeps the chain from lying flat."""
     s = study(parallelogram(0.2, TURN, 5, coupler=coupler))

@@ -36,6 +36,7 @@ joints:
 """
 
 
+@pytest.mark.heavy
 def test_folded_it_goes_on_as_well_as_it_can() -> None:
     """Crank and rod of one length, folded: 1e-12 cannot be had past the dead centre, and that is said."""
     text = slider_crank(math.pi / 2 + 1e-3, 1.0, "analysis: {duration: 1, samples: 21, tolerance: 1e-12}")
