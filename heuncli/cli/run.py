@@ -14,7 +14,7 @@ from heuncli.cli.output import emit, say
 from heuncli.cli.requests import FORMATS, Run
 from heuncli.cli.solving import choice, instants, overrides, positive, timings, warn
 from heuncli.errors import Problem
-from heuncli.integration.tableaus import METHODS
+from heuncli.integration.methods import METHODS
 from heuncli.records import replace
 from heuncli.report.heading import write_heading, write_heading_markdown
 from heuncli.report.labels import Labels, labels_of

@@ -13,12 +13,13 @@ import numpy as np
 
 from heuncli.errors import LimitError, SolveError
 from heuncli.expressions.programs import one_sided_limits
+from heuncli.integration.methods import DOP853, Method
 from heuncli.integration.runner import MOST_STEPS, Recovered, Runner, Trajectory
-from heuncli.integration.tableaus import DOP853, Tableau
 from heuncli.mechanism.size import marks
 from heuncli.records import record, replace
 from heuncli.results import Array
 from heuncli.tree.layout import Layout
+from heuncli.tree.tables import Table
 
 RATIO = 30.0  # local tolerance of A over that of B
 FIRST = 1.0  # local tolerance of the first run over the tolerance asked
@@ -56,13 +57,13 @@ def checked_run(
     tolerance: float,
     jumps: Sequence[float],
     deadline: float | None,
-    method: Tableau = DOP853,
+    method: Method = DOP853,
 ) -> Checked:
     """Integrate so that the motion's estimated error is below `tolerance`; at most two reruns, then say what is."""
 
     def run(local: float, most_steps: int = MOST_STEPS) -> Trajectory:
         return runner.trajectory(
-            times, local, halts=jumps, deadline=deadline, most_steps=most_steps, tableau=method
+            times, local, halts=jumps, deadline=deadline, most_steps=most_steps, method=method
         )
 
     def finer(local: float, than: Trajectory) -> Trajectory | None:
@@ -142,23 +143,22 @@ def compare(
         bodies, rows = recovered.bodies[piece], recovered.rows[piece]
         motion[piece] = distance(layout, bodies, B.bodies) / layout.size
         for x, y, arm in (
-            (bodies[..., 27:30], B.bodies[..., 27:30], 1.0),
-            (bodies[..., 24:27], B.bodies[..., 24:27], layout.size),
-            (rows[..., 0], B.rows[..., 0], 1.0),
+            (bodies["joint_force"], B.bodies["joint_force"], 1.0),
+            (bodies["joint_moment"], B.bodies["joint_moment"], layout.size),
+            (rows["multiplier"], B.rows["multiplier"], 1.0),
         ):
             worst = max(worst, float(np.abs(x - y).max(initial=0.0)) / arm)
             largest = max(largest, float(np.abs(x).max(initial=0.0)) / arm)
-        inertia = max(inertia, float(np.abs(bodies[..., 21:24] * masses).max(initial=0.0)))
+        inertia = max(inertia, float(np.abs(bodies["a"] * masses).max(initial=0.0)))
     motion[n:] = motion[n - 1] if n else 0.0
     # a body that nothing holds has no reactions; what the sweep leaves at its six freedoms is rounding
     reactions = (2.0 * worst + ROUNDING * largest) / largest if largest > NO_LOAD * inertia else 0.0
     return 2.0 * motion + ROUNDING, reactions
 
 
-def distance(layout: Layout, a: Array, b: Array) -> Array:
+def distance(layout: Layout, a: Table, b: Table) -> Array:
     """Largest distance of any named point or centre of mass between two sets of `Recovered.bodies`, (n_t,) [m]."""
-    dR = (b[..., 0:9] - a[..., 0:9]).reshape(*a.shape[:2], 3, 3)
-    dr = b[..., 9:12] - a[..., 9:12]
+    dR, dr = b["R"] - a["R"], b["r"] - a["r"]
     owner, arms = [], []
     for i, body in enumerate(layout.mechanism.bodies):
         k = layout.place[i]

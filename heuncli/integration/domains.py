@@ -9,8 +9,8 @@ from heuncli.errors import Problem
 from heuncli.expressions.programs import KNOT, TABLE, Expression, Table, outside
 from heuncli.mechanism.model import Mechanism
 from heuncli.records import replace
-from heuncli.results import Array
 from heuncli.tree.layout import Layout
+from heuncli.tree.tables import Table as Rows
 
 NEAREST, FARTHEST = 52, 20  # what fails at t may have no value only beyond: from 2**-52 to 2**-20 of the run's length
 BOUNDLESS = 1e3  # a value that grows so many times over within 2**-20 of the run is on its way to infinity
@@ -20,11 +20,11 @@ DERIVATIVES = ("value", "rate", "acceleration")
 Moving = Mapping[tuple[str, str], tuple[float, float]]  # a joint's coordinate and its rate of change
 
 
-def moving(layout: Layout, freedoms: Array) -> Moving:
-    """The coordinates of the joints at one instant; freedoms (n_f, 4): motion.Recovered."""
+def moving(layout: Layout, freedoms: Rows) -> Moving:
+    """The coordinates of the joints at one instant; freedoms (n_f,): runner.Recovered."""
     found: dict[tuple[str, str], tuple[float, float]] = {}
     joints = layout.mechanism.joints
-    for freedom, (q, u, a) in zip(layout.freedoms, freedoms[:, :3].tolist(), strict=True):
+    for freedom, (q, u, a, _) in zip(layout.freedoms, freedoms.tolist(), strict=True):
         if freedom.joint >= 0 and freedom.quantity in ("angle", "travel"):
             name = joints[freedom.joint].name
             found[name, freedom.quantity] = q, u

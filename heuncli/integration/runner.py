@@ -7,41 +7,41 @@ from __future__ import annotations
 
 import math
 import time
-from array import array
 from bisect import bisect_right
 from collections.abc import Sequence
-from functools import cache
 from typing import Any
 
 import numpy as np
 
 from heuncli.errors import LimitError, Problem, SolveError
 from heuncli.expressions.programs import discontinuities, one_sided_limits
-from heuncli.integration.tableaus import DOP853, Tableau
-from heuncli.kernel.choose import step
+from heuncli.integration.methods import DOP853, Method
+from heuncli.kernel.choose import steps as kernel
 from heuncli.mechanism.model import Mechanism
 from heuncli.records import record
+from heuncli.response import Workspace, workspace_of
 from heuncli.results import Array
 from heuncli.tree.layout import Layout
+from heuncli.tree.tables import BODY_ANSWER, CLOSURE_ANSWER, FREEDOM_ANSWER, LOAD_ANSWER, STATE_ANSWER, Table, parts
 
 CHUNK = 2_000  # body-steps between two looks at the clock
 KEPT = 20_000_000  # numbers of states kept for going back to, at the ends of all steps or every second, fourth ...
 MOST_STEPS = 20_000_000
 LEAST_RATE = 1e-5  # of a radian or of the scene's size in the time asked for: slower ones are judged as if that fast
 
-ROPE = 5  # the kernel's code where a rope would push
+REACHED, MORE, ROPE_SLACK = (kernel.CODES[name] for name in ("reached", "more", "rope slack"))
 TROUBLE = {
-    2: (
+    kernel.CODES["collapsed"]: (
         "step-collapsed",
         "the step length fell to the rounding error of the time",
         "a load or a rate grows without bound there",
     ),
-    3: (
+    kernel.CODES["not a number"]: (
         "not-a-number",
         "no finite acceleration exists beyond this instant",
         "look at the expressions and tables, and at points that coincide",
     ),
-    4: (
+    kernel.CODES["closures lost"]: (
         "closure-lost",
         "the closed chains cannot be held together beyond this instant",
         "the mechanism locks or reaches the end of its range there",
@@ -76,29 +76,6 @@ def stops(mechanism: Mechanism, t0: float, t1: float) -> list[float]:
     return sorted({t for e in expressions if e.time_dependent for t in discontinuities(e, t0, t1)})
 
 
-@cache
-def method_arrays(tableau: Tableau) -> tuple[array[int], array[float]]:
-    """A tableau as the kernel's MI and T (layout: kernel/step.py)."""
-    rows = [(), *tableau.stages, tableau.solution, *tableau.extra, tableau.error3, tableau.error5, *tableau.dense]
-    first = 40
-    starts = [first]
-    for row in rows:
-        starts.append(starts[-1] + len(row))
-    ints = [len(tableau.stages) + 1, len(tableau.extra), len(tableau.dense), 0, 0, 0, 0, 0, *starts]
-    ints += [0] * (first - len(ints)) + [stage for row in rows for stage, _ in row]
-    floats = [*tableau.nodes, *([0.0] * (first - len(tableau.nodes))), *(c for row in rows for _, c in row)]
-    return array("i", ints), array("d", floats)
-
-
-def door(data: Any) -> Any:
-    """What the kernel takes: the array itself compiled, a list (twice as fast) in plain Python."""
-    if step.COMPILED:
-        if len(data):
-            return data
-        return np.zeros(1, dtype=np.intc if isinstance(data, array) and data.typecode == "i" else np.float64)
-    return list(data) if len(data) else [0.0]
-
-
 def left(t: float) -> float:
     """The last instant before t: at a jump, that of the value before it."""
     return math.nextafter(t, -math.inf)
@@ -116,35 +93,28 @@ def in_time(deadline: float | None, where: str) -> None:
         raise LimitError(Problem("time-limit", f"the time limit was reached {where}", hint=hint))
 
 
-class Desk:
-    """The kernel's work arrays for one integration over the asked instants ts, at most `most` steps at a time."""
+class Integration:
+    """The kernel's loop over the asked instants, at most `most` steps at a time, and what it writes."""
 
-    def __init__(self, layout: Layout, tableau: Tableau, ts: Array, most: int) -> None:
-        n = layout.n_state
-        self.n, self.n_t = n, len(ts)
-        self.MI, self.T = (door(x) for x in method_arrays(tableau))
-        self.D, self.Z = door(layout.groups[:]), door(np.zeros(16))
-        self.G = door(np.concatenate([layout.weights, np.zeros(2 * layout.groups[1])]))
-        self.y, self.z, self.K = door(np.zeros(n)), door(np.zeros(3 * n)), door(np.zeros(len(tableau.nodes) * n))
-        self.F = door(np.zeros((3 + len(tableau.dense)) * n + 2 * n))
-        self.asked, self.out = door(ts), door(np.zeros(len(ts) * n))
-        self.ends, self.passed = door(np.zeros(most)), door(np.zeros(most * (n + 1)))
+    def __init__(self, layout: Layout, workspace: Workspace, method: Method, times: Array, **given: Any) -> None:
+        n = self.n = layout.n_state
+        most = given.pop("most")
+        self.ends = np.zeros(most)
+        self.passed = np.zeros(most * (n + 1))
+        self.samples = np.zeros(len(times) * n)
+        start = {"groups": layout.groups, "energy_group": layout.energy_group, "weights": layout.weights, **given}
+        output = {"times": times, "samples": self.samples, "ends": self.ends, "passed": self.passed}
+        self.loop = kernel.Integration(workspace, method.arrays, start, output)
 
-    def advance(self, scene: tuple[Any, ...], most: int) -> int:
-        """Up to `most` steps; the kernel's code."""
-        code: int = step.advance(
-            *scene, self.MI, self.T, self.D, self.Z, self.G, self.y, self.K, self.z, self.F,
-            self.asked, self.n_t, self.out, self.ends, self.passed, most,
-        )  # fmt: skip
-        return code
-
-    def reached(self, count: int) -> Array:
+    def reached(self) -> Array:
         """The states at the ends of the steps just done, and how near to singular the steps came, (count, n + 1)."""
-        return np.array(self.passed[: count * (self.n + 1)], dtype=float).reshape(count, self.n + 1)
+        count = self.loop.done
+        return self.passed[: count * (self.n + 1)].reshape(count, self.n + 1).copy()
 
     def states(self) -> Array:
         """The states at the asked instants, (n_t, n)."""
-        return np.array(self.out, dtype=float)[: self.n_t * self.n].reshape(self.n_t, self.n)
+        self.loop.fetch()
+        return self.samples.reshape(-1, self.n)
 
 
 class Runner:
@@ -152,10 +122,7 @@ class Runner:
 
     def __init__(self, layout: Layout) -> None:
         self.layout = layout
-        pack = layout.pack
-        depth = max(pack.depth, 1)
-        self.scene = tuple(door(x) for x in (layout.I, layout.P, layout.W, pack.code, pack.constants))
-        self.scene += (door(np.zeros(max(len(pack.variables), 1) + 3)), door(np.zeros(3 * depth + 8)))
+        self.workspace = workspace_of(layout)
         self.size = layout.size
 
     def trajectory(
@@ -166,7 +133,7 @@ class Runner:
         halts: Sequence[float] = (),
         deadline: float | None = None,
         most_steps: int = MOST_STEPS,
-        tableau: Tableau = DOP853,
+        method: Method = DOP853,
     ) -> Trajectory:
         """Integrate from the start at t = 0 over the asked instants (ascending); `tolerance` is the local one.
 
@@ -178,13 +145,12 @@ class Runner:
         layout, n = self.layout, self.layout.n_state
         ts = np.ascontiguousarray(times, dtype=float)
         most = max(1, CHUNK // max(len(layout.mechanism.bodies), 1))
-        desk = Desk(layout, tableau, ts, most)
-        Z, y = desk.Z, desk.y
-        y[:n] = layout.y0 if step.COMPILED else layout.y0.tolist()
-        Z[8] = tolerance
         # where nothing moves or pulls yet (a load like t**4), there is still a rate that matters in the time asked for
-        Z[13] = LEAST_RATE / float(ts[-1]) if len(ts) and ts[-1] > 0.0 else 0.0
-        self.scene[0][40] = int(any(j.tension_only for j in layout.mechanism.joints))
+        rate = LEAST_RATE / float(ts[-1]) if len(ts) and ts[-1] > 0.0 else 0.0
+        run = Integration(layout, self.workspace, method, ts, most=most, tolerance=tolerance, rate=rate, following=0)
+        loop = run.loop
+        loop.start_at(layout.y0.tolist())
+        roped = any(j.tension_only for j in layout.mechanism.joints)
         ends: list[float] = []
         pivots: list[Array] = []
         kept = [(0, layout.y0)]
@@ -196,37 +162,37 @@ class Runner:
         pieces = [piece for piece in pieces if piece[1] > piece[0]] or pieces[-1:]  # not what is at t = 0 alone
         for begin, before_end in pieces:
             # up to a jump with the value before it, from there with the one after
-            Z[0], Z[9], Z[10], Z[14], code = begin, before_end, right(before_end), 1.0, 1
-            while code == 1:
-                before = int(Z[4])
-                code = desk.advance(self.scene, most)
-                done = int(Z[4]) - before
-                ends += list(desk.ends[:done])
-                reached = desk.reached(done)
+            loop.begin(begin, before_end, right(before_end))
+            code = MORE
+            while code == MORE:
+                before = loop.steps
+                code = loop.advance(most, roped)
+                ends += run.ends[: loop.steps - before].tolist()
+                reached = run.reached()
                 pivots.append(reached[:, n])
                 kept += [(k, row[:n]) for k, row in enumerate(reached, before + 1) if k % every == 0]
                 while len(kept) > room:
                     every *= 2
                     kept = [(k, state) for k, state in kept if k % every == 0]
-                if code in (0, 1):
-                    in_time(deadline, f"at t = {Z[0]:.6g} s of {last:.6g} s")
-                if code == 1 and Z[4] > most_steps:
-                    message = f"{most_steps} steps were done at t = {Z[0]:.6g} s of {last:.6g} s"
+                if code in (REACHED, MORE):
+                    in_time(deadline, f"at t = {loop.t:.6g} s of {last:.6g} s")
+                if code == MORE and loop.steps > most_steps:
+                    message = f"{most_steps} steps were done at t = {loop.t:.6g} s of {last:.6g} s"
                     raise LimitError(Problem("step-limit", message))
-            if code == ROPE:
+            if code == ROPE_SLACK:
                 break
-            if code > 1:
-                raise self._failed(code, float(Z[0]), np.array(y[:n], dtype=float), last)
-        states = desk.states()
+            if code != REACHED:
+                raise self._failed(code, loop.t, np.array(loop.state()), last)
+        states = run.states()
         stopped = None
-        if code == ROPE:
-            stopped = layout.mechanism.joints[layout.rows[int(Z[2]) - 1]].name
-            ts = np.append(ts[: desk.D[2]], Z[0])
-            states = np.vstack([states[: len(ts) - 1], np.array(y[:n], dtype=float)])
+        if code == ROPE_SLACK:
+            stopped = layout.mechanism.joints[layout.rows[loop.rope]].name
+            ts = np.append(ts[: loop.sampled], loop.t)
+            states = np.vstack([states[: len(ts) - 1], np.array(loop.state())])
             if len(ts) > 1 and ts[-1] == ts[-2]:
                 ts, states = ts[:-1], states[:-1]
         return Trajectory(
-            times=ts, states=states, ends=np.array(ends), steps=int(Z[4]), evaluations=int(Z[5]), gap=float(Z[7]),
+            times=ts, states=states, ends=np.array(ends), steps=loop.steps, evaluations=loop.evaluations, gap=loop.gap,
             tolerance=tolerance, seconds=time.perf_counter() - begun, pieces=tuple(pieces), kept=tuple(kept),
             pivots=np.concatenate(pivots) if pivots else np.zeros(0),
             stopped=stopped,
@@ -267,65 +233,59 @@ class Runner:
         return out
 
     def _again(self, run: Trajectory, first: int, last: int, state: Array, times: Array) -> Array:
-        n = self.layout.n_state
-        desk = Desk(self.layout, DOP853, times, last - first + 1)
-        Z, y = desk.Z, desk.y
-        y[:n] = state if step.COMPILED else state.tolist()
-        desk.D[4] = 1
-        Z[0], Z[8] = run.ends[first - 1] if first else 0.0, math.inf
-        self.scene[0][40] = 0
+        again = Integration(
+            self.layout, self.workspace, DOP853, times,
+            most=last - first + 1, tolerance=math.inf, rate=0.0, following=1,
+        )  # fmt: skip
+        loop = again.loop
+        loop.start_at(state.tolist())
+        t = run.ends[first - 1] if first else 0.0
         while first <= last:
-            begin, before_end = run.pieces[bisect_right(run.pieces, Z[0], key=lambda piece: piece[1])]
+            begin, before_end = run.pieces[bisect_right(run.pieces, t, key=lambda piece: piece[1])]
             end = right(before_end)
             to = min(last, int(np.searchsorted(run.ends, end)))  # a piece ends with a step
-            steps = run.ends[first : to + 1]
-            desk.ends[: len(steps)] = steps if step.COMPILED else steps.tolist()
-            Z[0], Z[9], Z[10], Z[14] = max(Z[0], begin), before_end, end, 1.0
-            desk.advance(self.scene, len(steps))
+            loop.follow(run.ends[first : to + 1])
+            loop.begin(max(t, begin), before_end, end)
+            loop.advance(to + 1 - first, False)
+            t = loop.t
             first = to + 1
-        return desk.states()
+        return again.states()
 
     def recovered(self, times: Array, states: Array, *, choose: bool = False) -> Recovered:
         """Everything the sweep knows at the given states (brought onto the closures first).
 
         choose: pick the independent closure rows at every instant anew, for poses that do not follow one another.
         """
-        layout, n = self.layout, self.layout.n_state
-        n_b, n_f, n_l, n_r = len(layout.place), len(layout.freedoms), layout.I[3], len(layout.rows)
-        width = 30 * n_b + 4 * n_f + 16 * n_l + 2 * n_r + 3
-        Y = np.array(states, dtype=float).reshape(len(times), n)
-        flat, out = door(Y.ravel()), door(np.zeros(len(times) * width))
-        self.scene[0][38] = int(choose)
-        at = door(np.ascontiguousarray(times, dtype=float))
-        step.states(*self.scene, n, len(times), at, flat, door(np.zeros(n)), out, width)
-        if choose:
-            self.scene[0][38] = 0
-        data = np.array(out, dtype=float).reshape(len(times), width)
-        cuts = np.cumsum([30 * n_b, 4 * n_f, 16 * n_l, 2 * n_r])
-        bodies, freedoms, loads, rows, rest = np.split(data, cuts, axis=1)
+        layout, n_t = self.layout, len(times)
+        sizes = [
+            (BODY_ANSWER, len(layout.place)),
+            (FREEDOM_ANSWER, len(layout.freedoms)),
+            (LOAD_ANSWER, len(layout.tables["loads"])),
+            (CLOSURE_ANSWER, len(layout.rows)),
+            (STATE_ANSWER, 1),
+        ]
+        width = sum(kind.itemsize // 8 * count for kind, count in sizes)
+        at = np.ascontiguousarray(times, dtype=float)
+        settled = np.array(states, dtype=float).reshape(n_t, layout.n_state)
+        flat, out = settled.ravel(), np.zeros(n_t * width)
+        self.workspace.recover(at, flat, out, width, choose)
+        bodies, freedoms, loads, rows, whole = parts(out.reshape(n_t, width), sizes)
         return Recovered(
-            times=np.asarray(times, dtype=float),
-            states=np.array(flat, dtype=float)[: Y.size].reshape(Y.shape),
-            bodies=bodies.reshape(len(times), n_b, 30),
-            freedoms=freedoms.reshape(len(times), n_f, 4),
-            loads=loads.reshape(len(times), n_l, 16),
-            rows=rows.reshape(len(times), n_r, 2),
-            gap=rest[:, 0],
-            idle=rest[:, 1],
-            pivot=rest[:, 2],
-        )
+            times=at, states=flat.reshape(settled.shape), bodies=bodies, freedoms=freedoms, loads=loads, rows=rows,
+            gap=whole["gap"][:, 0], idle=whole["idle"][:, 0], pivot=whole["pivot"][:, 0],
+        )  # fmt: skip
 
 
 @record
 class Recovered:
-    """The kernel's answers at the instants, sweep order; layouts: kernel/step.py `recover`."""
+    """The kernel's answers at the instants, tables (n_t, n) in tree order; their fields: tree/tables.py."""
 
     times: Array
     states: Array
-    bodies: Array
-    freedoms: Array
-    loads: Array
-    rows: Array
+    bodies: Table
+    freedoms: Table
+    loads: Table
+    rows: Table
     gap: Array
     idle: Array
     pivot: Array  # least pivot of the closures chosen at the first instant, 1: far from singular

@@ -14,7 +14,7 @@ NO_MOMENT = 1e-9  # of the loads there: a smaller moment about an axis without i
 
 def refuse(scene: PreparedScene, found: Recovered) -> None:
     """Raise SolveError for answers that are not finite, freedoms with nothing behind them, moments without inertia."""
-    finite = np.isfinite(found.bodies).all(axis=(1, 2))
+    finite = np.isfinite(found.bodies.view(np.float64)).all(axis=1)
     if not finite.all():
         raise SolveError(*not_finite(scene, found, int(np.flatnonzero(~finite)[0])))
     if (found.idle > 0).any():
@@ -22,15 +22,15 @@ def refuse(scene: PreparedScene, found: Recovered) -> None:
     layout, gravity = scene.layout, scene.mechanism.gravity
     for spin in scene.idle:
         rows = found.bodies[:, layout.place[spin.body]]
-        R = rows[:, 0:9].reshape(-1, 3, 3)
-        alpha = np.einsum("tki,tk->ti", R, rows[:, 18:21])
+        R = rows["R"]
+        alpha = np.einsum("tki,tk->ti", R, rows["alpha"])
         moment = np.abs(alpha @ (spin.axes @ spin.lent).T).max(initial=0.0)
         # what is given or turns, not the acceleration, which such a moment makes as large as it likes
-        force = np.abs(rows[:, 27:30]).max(initial=0.0) + np.abs(found.loads[:, :, 0:3]).max(initial=0.0)
+        force = np.abs(rows["joint_force"]).max(initial=0.0) + np.abs(found.loads["force"]).max(initial=0.0)
         body = scene.mechanism.bodies[spin.body]
         scale = (force + body.mass * float(np.abs(gravity).max())) * layout.size
-        scale += np.abs(found.loads[:, :, 3:6]).max(initial=0.0)
-        scale += float(np.trace(body.inertia)) * float(np.sum(rows[:, 12:15] ** 2, axis=1).max())
+        scale += np.abs(found.loads["moment"]).max(initial=0.0)
+        scale += float(np.trace(body.inertia)) * float(np.sum(rows["omega"] ** 2, axis=1).max())
         if moment > NO_MOMENT * scale:
             axis = ", ".join(f"{x:.4g}" for x in spin.axes[0])
             name = scene.mechanism.bodies[spin.body].name

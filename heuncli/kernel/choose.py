@@ -8,6 +8,6 @@ from __future__ import annotations
 
 from heuncli.kernel.form import KERNEL  # isort: split
 
-from heuncli.kernel import expressions, loops, program, step, tree
+from heuncli.kernel import expressions, scene, steps, workspace
 
-__all__ = ["KERNEL", "expressions", "loops", "program", "step", "tree"]
+__all__ = ["KERNEL", "expressions", "scene", "steps", "workspace"]

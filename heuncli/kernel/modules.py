@@ -1,3 +1,3 @@
 """The names of the kernel's modules: what is compiled, what is imported through choose.py, what the tests expect."""
 
-MODULES = ("expressions", "program", "tree", "loops", "step")
+MODULES = ("expressions", "tree", "loads", "closures", "selection", "response", "workspace", "steps")

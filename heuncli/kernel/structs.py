@@ -2,6 +2,18 @@
 
 from __future__ import annotations
 
+from typing import Any
+
+from heuncli.kernel.algebra import Vec3
+
+
+class Fields(type):
+    """Makes slots of a class's annotations: a struct has its fields and no others."""
+
+    def __new__(mcs, name: str, bases: tuple[type, ...], names: dict[str, Any]) -> Fields:
+        names["__slots__"] = tuple(names.get("__annotations__", ()))
+        return super().__new__(mcs, name, bases, names)
+
 
 class Instruction:
     """An operation and its argument."""
@@ -57,3 +69,117 @@ class Programs:
     variables: list[float]
     stack: list[float]
     jets: list[Jet]
+
+
+class PointMotion:
+    """A point's place and velocity."""
+
+    __slots__ = ("v", "x")
+
+    def __init__(self, x: Vec3, v: Vec3) -> None:
+        self.x = x
+        self.v = v
+
+
+class Carried:
+    """How a body carries a place with it: velocity, centripetal acceleration, and its angular velocity."""
+
+    __slots__ = ("centripetal", "omega", "v")
+
+    def __init__(self, v: Vec3, centripetal: Vec3, omega: Vec3) -> None:
+        self.v = v
+        self.centripetal = centripetal
+        self.omega = omega
+
+
+class Instants(metaclass=Fields):
+    """States to recover, and room for the work."""
+
+    count: int
+    n: int
+    width: int
+    afresh: bool
+    times: list[float]
+    states: list[float]
+    out: list[float]
+    y: list[float]
+    dy: list[float]
+
+    def __init__(self, *fields: Any) -> None:
+        for name, value in zip(type(self).__annotations__, fields, strict=True):
+            setattr(self, name, value)
+
+
+class Group(metaclass=Fields):
+    """Components of the state whose errors are measured together: coordinates, then rates, one body's."""
+
+    coordinates: int
+    rates: int
+    end: int
+    rate: float
+    trial: float
+
+
+class Method(metaclass=Fields):
+    """A Runge-Kutta method; steps.pxd says what the fields are."""
+
+    stages: int
+    extra: int
+    dense_rows: int
+    estimates: int
+    exponent: float
+    begin: list[int]
+    stage: list[int]
+    coefficient: list[float]
+    node: list[float]
+
+
+class Run(metaclass=Fields):
+    """The stepping loop's state; steps.pxd says what the fields are."""
+
+    n: int
+    group_count: int
+    energy_group: int
+    following: int
+    fresh: int
+    last: int
+    near: int
+    rejected_before: int
+    dodges: int
+    rope: int
+    steps: int
+    evaluations: int
+    rejected: int
+    most: int
+    done: int
+    next_sample: int
+    sample_count: int
+    t: float
+    h: float
+    proposed: float
+    stop: float
+    before_end: float
+    end: float
+    tolerance: float
+    rate: float
+    energy_scale: float
+    error: float
+    gap: float
+    best: float
+    best_h: float
+    pivot_at_start: float
+    groups: list[Group]
+    weights: list[float]
+    y: list[float]
+    z: list[float]
+    carry: list[float]
+    z_carry: list[float]
+    K: list[list[float]]
+    coarse: list[float]
+    fine: list[float]
+    dense: list[list[float]]
+    stage: list[float]
+    times: list[float]
+    samples: list[list[float]]
+    ends: list[float]
+    passed: list[list[float]]

@@ -1,8 +1,35 @@
-cdef void kinematics(int *I, double *P, double *W, int *C, double *N, double *X, double *S, double t, double *y, Py_ssize_t o) noexcept nogil
-cdef double loads(int *I, double *P, double *W, int *C, double *N, double *X, double *S) noexcept nogil
-cdef int factor(int *I, double *P, double *W) noexcept nogil
-cdef void upward(int *I, double *P, double *W) noexcept nogil
-cdef void downward(int *I, double *P, double *W, int bias) noexcept nogil
-cdef void derivative(int *I, double *W, double *y, Py_ssize_t o, double *z, Py_ssize_t k, double power) noexcept nogil
-cdef void balance(int *I, double *P, double *W) noexcept nogil
-cdef void push(int *I, double *W, Py_ssize_t b, Py_ssize_t X, Py_ssize_t F, Py_ssize_t M, double sign) noexcept nogil
+"""Signatures of tree.py for C."""
+
+from heuncli.kernel.algebra cimport (
+    Mat3, Quaternion, Sym3, Vec3, add, add_both, add_cross, add_matrix, add_scaled, add_symmetric, add_transformed,
+    attitude, both_levers, cross, dot, factor, lever, lever_rows, multiple_of_unit, product, quaternion_rate,
+    rotate, rotate_back, rotation, scaled, skew, solve, solve_columns, sub, sub_dyad, sub_product, sub_square,
+    trace, transform, turned, unit_matrix,
+)
+from heuncli.kernel.expressions cimport Jet, jet
+from heuncli.kernel.scene cimport Body, Freedom, SHIFT, Scene, TURN_IN_BODY, TURN_IN_PARENT, Variable
+
+cdef struct PointMotion:
+    Vec3 x
+    Vec3 v
+
+cdef void coordinates(Scene *scene, double t, double *y) noexcept nogil
+cdef void kinematics(Scene *scene, double t, double *y) noexcept nogil
+cdef void hang(Scene *scene, Body *body) noexcept nogil
+cdef void orient(Scene *scene, Body *body) noexcept nogil
+cdef void turn(Body *body, Freedom *freedom) noexcept nogil
+cdef void velocity_terms(Body *body) noexcept nogil
+cdef Vec3 direction_of(Scene *scene, int body, Vec3 a) noexcept nogil
+cdef PointMotion point_of(Scene *scene, int body, Vec3 q) noexcept nogil
+cdef void push(Scene *scene, int body, Vec3 at, Vec3 force, Vec3 moment) noexcept nogil
+cdef int factor_tree(Scene *scene) noexcept nogil
+cdef int eliminate_ball(Body *body, double least) noexcept nogil
+cdef int eliminate(Body *body, Freedom *freedom, double least) noexcept nogil
+cdef void add_branch(Body *parent, Body *body) noexcept nogil
+cdef void upward(Scene *scene, bint inertial) noexcept nogil
+cdef double answered(Body *body, Freedom *freedom) noexcept nogil
+cdef void pass_up(Body *parent, Body *body, bint inertial) noexcept nogil
+cdef void downward(Scene *scene, bint inertial) noexcept nogil
+cdef void derivative(Scene *scene, double *y, double *dy, double power) noexcept nogil
+cdef void balance(Scene *scene, bint inertial) noexcept nogil
+cdef void newton_euler(Body *body, bint inertial) noexcept nogil

@@ -82,12 +82,11 @@ def applied_loads(mechanism: Mechanism, found: Recovered) -> list[AppliedLoad]:
         count = len(JOINTS[joint.kind].motions) if joint is not None else 1
         rows = found.loads[:, at : at + count]
         at += count
-        force, moment = rows[:, :, 0:3].sum(axis=1), rows[:, :, 3:6].sum(axis=1)
-        to, from_ = _ends(mechanism, load, joint, rows[:, 0, 6:9], rows[:, 0, 9:12])
+        force, moment = rows["force"].sum(axis=1), rows["moment"].sum(axis=1)
+        to, from_ = _ends(mechanism, load, joint, rows["at"][:, 0], rows["from_at"][:, 0])
         action = Action("load", load.name, to, from_, force, moment)
-        loads.append(
-            AppliedLoad(load, action, rows[:, 0, 12], rows[:, 0, 13], rows[:, 0, 14], rows[:, :, 15].sum(axis=1))
-        )
+        value, span, rate = (rows[name][:, 0] for name in ("value", "span", "rate"))
+        loads.append(AppliedLoad(load, action, value, span, rate, rows["power"].sum(axis=1)))
     return loads
 
 

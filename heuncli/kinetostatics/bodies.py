@@ -60,10 +60,8 @@ def body_states(layout: Layout, found: Recovered) -> BodyStates:
     bodies = layout.mechanism.bodies
     order = [layout.place[i] for i in range(len(bodies))]
     rows = found.bodies[:, order]
-    n_t, n = rows.shape[:2]
-    R = rows[:, :, 0:9].reshape(n_t, n, 3, 3)
-    r, w, v, alpha = rows[:, :, 9:12], rows[:, :, 12:15], rows[:, :, 15:18], rows[:, :, 18:21]
-    a = rows[:, :, 21:24] + layout.mechanism.gravity
+    R, r, w, v, alpha = (rows[name] for name in ("R", "r", "omega", "v", "alpha"))
+    a = rows["a"] + layout.mechanism.gravity
 
     def of(points: Array) -> tuple[Array, Array, Array]:
         arm = np.einsum("tnij,nj->tni", R, points)

@@ -37,7 +37,7 @@ def _turning(layout: Layout, found: Recovered, states: BodyStates, k: int, joint
     acceleration = np.sum(n * (ub - ua), axis=1)
     counted = next((i for i, f in enumerate(layout.freedoms) if f.joint == k), None)
     if counted is not None:
-        return {"angle": found.freedoms[:, counted, 0], "rate": rate, "acceleration": acceleration}
+        return {"angle": found.freedoms["q"][:, counted], "rate": rate, "acceleration": acceleration}
     # a cut joint: the angle of the pose, on the turn that was counted
     Ra = states.R[:, joint.a] if joint.a >= 0 else np.broadcast_to(np.eye(3), (len(n), 3, 3))
     Rb = states.R[:, joint.b] if joint.b >= 0 else np.broadcast_to(np.eye(3), (len(n), 3, 3))

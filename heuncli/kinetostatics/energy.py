@@ -29,7 +29,7 @@ def energy(layout: Layout, found: Recovered, states: BodyStates, loads: Sequence
         load = applied.load
         if isinstance(load, PairLoad) and load.value is None:
             potential = potential + 0.5 * load.stiffness * np.square(applied.length - load.length)
-    work = found.states[:, layout.I[8]] if layout.work else np.zeros_like(kinetic)
+    work = found.states[:, layout.work_at] if layout.work_at >= 0 else np.zeros_like(kinetic)
     return {"kinetic": kinetic, "potential": potential, "work": work}
 
 

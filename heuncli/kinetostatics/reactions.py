@@ -60,7 +60,7 @@ class JointLoads:
 def joint_loads(layout: Layout, found: Recovered, states: BodyStates) -> list[JointLoads]:
     """Reactions of all joints, in the order of the spec."""
     hang_of = {h.joint: (i, h) for i, h in enumerate(layout.spanning.hangs) if h.joint >= 0}
-    rows = closure_wrenches(layout, states, found.rows[:, :, 0]) if layout.rows else None
+    rows = closure_wrenches(layout, states, found.rows["multiplier"]) if layout.rows else None
     loads = []
     for k, joint in enumerate(layout.mechanism.joints):
         kind = JOINTS[joint.kind]
@@ -69,18 +69,18 @@ def joint_loads(layout: Layout, found: Recovered, states: BodyStates) -> list[Jo
         drive = tension = None
         if k in hang_of:
             i, h = hang_of[k]
-            force, moment = found.bodies[:, i, 27:30], found.bodies[:, i, 24:27]
+            force, moment = found.bodies["joint_force"][:, i], found.bodies["joint_moment"][:, i]
             if h.reverse:
                 arm = states.place(joint.a, joint.p) - point
                 force, moment = -force, -moment - np.cross(arm, force)
             for n, freedom in enumerate(layout.freedoms):
                 if freedom.joint == k and freedom.q < 0:
-                    drive = found.freedoms[:, n, 3]
+                    drive = found.freedoms["drive"][:, n]
         else:
             assert rows is not None
             force, moment = (_of_joint(layout, k, wrenches) for wrenches in rows)
             if kind.keeps_distance:
-                push = found.rows[:, layout.rows.index(k), 0]
+                push = found.rows["multiplier"][:, layout.rows.index(k)]
                 drive, tension = (push if joint.drive is not None else None), -push
         force, moment = carried(joint, states, force, moment)
         if layout.mechanism.planar:

@@ -19,8 +19,7 @@ NEIGHBOUR = 1e-3  # [rad] or of the size: poses in which the generic rank is cou
 
 def freedoms_of_tree(layout: Layout) -> int:
     """Freedoms of the tree alone: scalar ones that are not driven, three for each ball."""
-    balls = sum(1 for i in range(len(layout.place)) if layout.I[layout.I[10] + 8 * i + 1])
-    return sum(1 for f in layout.freedoms if f.q >= 0) + 3 * balls
+    return sum(1 for f in layout.freedoms if f.q >= 0) + 3 * int(layout.bodies["ball"].sum())
 
 
 class Redundancy(NamedTuple):

@@ -40,25 +40,22 @@ def neighbours(runner: Runner, t: float, state: Array, by: Sequence[float]) -> R
 
 def rate_slots(layout: Layout) -> Array:
     """Places of the controlled rates in the state."""
-    D = layout.groups
-    found: Array = np.concatenate([np.arange(D[9 + 3 * b], D[10 + 3 * b]) for b in range(D[1])]).astype(int)
+    bounds = zip(layout.groups[1::3], layout.groups[2::3], strict=True)
+    found: Array = np.concatenate([np.arange(first, end) for first, end in bounds]).astype(int)
     return found
 
 
 def displaced(layout: Layout, state: Array, by: float) -> Array:
     """The state with its coordinates moved by rates * by."""
     moved = state.copy()
-    I = layout.I
-    for b in range(I[0]):
-        at = I[10] + 8 * b
-        if I[at + 1]:
-            q, w = state[I[at + 4] : I[at + 4] + 4], 0.5 * by * state[I[at + 5] : I[at + 5] + 3]
-            turn = np.array([
-                -w @ q[1:], *(w * q[0] + np.cross(w, q[1:])),
-            ])  # fmt: skip
-            moved[I[at + 4] : I[at + 4] + 4] = (q + turn) / np.sqrt(np.sum((q + turn) ** 2))
-    for k in range(I[1]):
-        f = I[11] + 8 * k
-        if not I[f + 3]:
-            moved[I[f + 1]] += by * state[I[f + 2]]
+    for body in layout.bodies[layout.bodies["ball"] == 1]:
+        attitude, rate = body["attitude_at"], body["rate_at"]
+        q, w = state[attitude : attitude + 4], 0.5 * by * state[rate : rate + 3]
+        turn = np.array([
+            -w @ q[1:], *(w * q[0] + np.cross(w, q[1:])),
+        ])  # fmt: skip
+        moved[attitude : attitude + 4] = (q + turn) / np.sqrt(np.sum((q + turn) ** 2))
+    for freedom in layout.freedoms:
+        if freedom.q >= 0:
+            moved[freedom.q] += by * state[freedom.u]
     return moved

@@ -14,12 +14,14 @@ from collections.abc import Sequence
 
 import numpy as np
 
+from heuncli.kernel.choose import scene as kernel
 from heuncli.kinetostatics.bodies import BodyStates
 from heuncli.kinetostatics.closure_wrenches import closure_wrenches
 from heuncli.mechanism.model import GROUND
 from heuncli.records import record
 from heuncli.results import Array, Mask
 from heuncli.tree.layout import Layout
+from heuncli.tree.tables import vectors
 
 RANK = 1e-9  # of the largest singular value, or of 1 (a unit load at the length L): below it, rows are dependent
 GAP = 100.0  # a pose is known to gap/L only: so many times that is the least that can count
@@ -98,7 +100,7 @@ def path(layout: Layout, place: int) -> list[int]:
     found = []
     while place >= 0:
         found.append(place)
-        place = layout.I[layout.I[10] + 8 * place]
+        place = int(layout.bodies["parent"][place])
     return found
 
 
@@ -149,19 +151,16 @@ def _row_wrenches(layout: Layout, states: BodyStates) -> Array:
 
 def _free_directions(layout: Layout, states: BodyStates, place: int) -> list[tuple[str, Array]]:
     """Directions that the joint of a body leaves free, ("turn" | "shift", (n_t, 3)); driven ones are not free."""
-    I, P = layout.I, layout.P
-    h = layout.spanning.hangs[place]
-    at = I[10] + 8 * place
+    h, body = layout.spanning.hangs[place], layout.bodies[place]
     found: list[tuple[str, Array]] = []
-    if I[at + 1]:
+    if body["ball"]:
         found += [("turn", np.broadcast_to(e, states.x[:, 0].shape)) for e in np.eye(3)]
-    for k in range(I[at + 2], I[at + 2] + I[at + 3]):
-        f = I[11] + 8 * k
-        if I[f + 3]:
+    for freedom in layout.tables["freedoms"][body["first_freedom"] : body["end_freedom"]]:
+        if freedom["driven"]:
             continue
-        d = np.array(P[I[17] + 4 * k : I[17] + 4 * k + 3])
-        owner = h.body if I[f] == 1 else h.parent
-        found.append(("shift" if I[f] == 2 else "turn", states.direction(owner, d)))
+        owner = h.body if freedom["kind"] == kernel.TURN_IN_BODY else h.parent
+        what = "shift" if freedom["kind"] == kernel.SHIFT else "turn"
+        found.append((what, states.direction(owner, vectors(freedom["direction"]))))
     return found
 
 

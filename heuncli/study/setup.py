@@ -4,8 +4,8 @@ from __future__ import annotations
 
 from typing import TYPE_CHECKING
 
+from heuncli.integration.methods import METHODS, Method
 from heuncli.integration.runner import Runner
-from heuncli.integration.tableaus import METHODS, Tableau
 from heuncli.mechanism.build import build, forms_of
 from heuncli.mechanism.model import Mechanism
 from heuncli.records import record
@@ -26,7 +26,7 @@ class Setup:
     scene: PreparedScene
     cuts: tuple[Cuts, ...]
     runner: Runner
-    method: Tableau | None
+    method: Method | None
     model: Block
 
 
@@ -38,8 +38,8 @@ def set_up(spec: Spec, method: str | None = None) -> Setup:
     mechanism, cuts = draw(spec)
     scene = prepare(mechanism, spec.analysis.times[0] if spec.analysis.type == "state" else 0.0)
     runner = Runner(scene.layout)
-    tableau = METHODS[method or spec.analysis.method] if spec.analysis.type == "motion" else None
-    return Setup(spec, scene, cuts, runner, tableau, model_note(scene, runner, tableau.name if tableau else "none"))
+    chosen = METHODS[method or spec.analysis.method] if spec.analysis.type == "motion" else None
+    return Setup(spec, scene, cuts, runner, chosen, model_note(scene, runner, chosen.name if chosen else "none"))
 
 
 def draw(spec: Spec) -> tuple[Mechanism, tuple[Cuts, ...]]:

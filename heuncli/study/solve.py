@@ -12,7 +12,7 @@ from functools import cached_property
 import numpy as np
 
 from heuncli.errors import Problem, SpecError
-from heuncli.integration.tableaus import METHODS
+from heuncli.integration.methods import METHODS
 from heuncli.kernel.choose import KERNEL
 from heuncli.records import record
 from heuncli.results import Array, Block, Estimate, Extremes, Results

@@ -1,4 +1,4 @@
-"""The assembled mechanism laid out for the kernel: flat arrays, and what is needed to read its answers."""
+"""The assembled mechanism laid out for the kernel: its tables, and what is needed to read its answers."""
 
 from __future__ import annotations
 
@@ -10,6 +10,7 @@ from heuncli.records import record
 from heuncli.results import Array
 from heuncli.tree.spanning import Spanning
 from heuncli.tree.starts import JointStart
+from heuncli.tree.tables import Table
 
 
 @record
@@ -26,9 +27,11 @@ class Freedom:
 class Layout:
     """A scene laid out for the kernel, with what is needed to read its answers.
 
-    place: body -> sweep place (spanning.hangs is in sweep order); reference (n, 3): each body's joint point in its own
-    axes, sweep order; rows: joint of each closure row; starts: where the joints stand at the start; y0: the state
-    there.
+    place: body -> its place in the tree (spanning.hangs is in that order); reference (n, 3): each body's joint point in
+    its own axes, tree order; rows: joint of each closure row; starts: where the joints stand at the start; y0: the
+    state there. tables: the kernel's structs by name (kernel/scene.py); indices: what the closure rows point into.
+    groups (n_g, 3): components of the state whose errors count together, first coordinate, first rate, end; the group
+    of the drives' work is `energy_group` (-1: none).
     """
 
     mechanism: Mechanism
@@ -41,15 +44,36 @@ class Layout:
     counters: dict[int, int]  # cut joint -> place of its counted angle in the state
     size: float
     y0: Array
-    groups: array[int]  # the kernel's D
+    groups: array[int]
+    energy_group: int
     weights: Array
-    I: array[int]
-    P: array[float]
-    W: array[float]
+    tables: dict[str, Table]
+    indices: array[int]
+    answer_count: int  # freedoms of the tree, a ball's three turns among them
+    column_count: int
     pack: Pack
-    work: bool
+    work_at: int  # where the work stands in the state; -1: it is not asked for
+
+    @property
+    def bodies(self) -> Table:
+        """The kernel's bodies, tree order."""
+        return self.tables["bodies"]
 
     @property
     def n_state(self) -> int:
         """Length of the state."""
         return len(self.y0)
+
+    @property
+    def driven(self) -> bool:
+        """Whether a coordinate is prescribed."""
+        return any(j.drive is not None for j in self.mechanism.joints)
+
+    def path(self, body: int) -> list[int]:
+        """Places in the tree from a body to the root; empty for the ground."""
+        parents, found = self.bodies["parent"], []
+        at = self.place.get(body, -1)
+        while at >= 0:
+            found.append(at)
+            at = int(parents[at])
+        return found

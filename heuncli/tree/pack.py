@@ -1,17 +1,17 @@
-"""The assembled mechanism as the kernel's flat arrays (layouts: kernel/tree.py, kernel/loops.py, kernel/step.py).
-
-The one place that knows both names and offsets.
-"""
+"""The assembled mechanism as the kernel's tables (their fields: kernel/scene.py)."""
 
 from __future__ import annotations
 
 import math
 from array import array
+from typing import Any
 
 import numpy as np
 
+from heuncli import tolerances
 from heuncli.expressions.programs import Expression, Pack
 from heuncli.joint_kinds import JOINTS, Direction
+from heuncli.kernel.choose import scene as kernel
 from heuncli.mechanism.model import GROUND, Assembly, Joint, JointLoad, Mechanism, PairLoad, PointLoad
 from heuncli.mechanism.size import size_of_scene
 from heuncli.results import Array
@@ -19,10 +19,15 @@ from heuncli.shapes.rotations import to_quaternion
 from heuncli.tree.layout import Freedom, Layout
 from heuncli.tree.spanning import Hang, Spanning, span
 from heuncli.tree.starts import JointStart, Z, joint_frame, joint_start, pose, to_direction
+from heuncli.tree.tables import limits, symmetric, table
 
-HEADER = 48
-NEARLY_SINGULAR = 0.2  # least pivot of the scaled closures below which the stages of a step are settled too
-JOINT_LOADS = {"torque": (4, 5), "damper": (6, 7), "friction": (8, 9)}  # of the turning, of the sliding
+NO_PROGRAM = (0, 0)
+JOINT_LOADS = {  # of the turning, of the sliding
+    "torque": (kernel.TORQUE, kernel.THRUST),
+    "damper": (kernel.TURN_DAMPER, kernel.SHIFT_DAMPER),
+    "friction": (kernel.TURN_FRICTION, kernel.SHIFT_FRICTION),
+}
+Scalar = tuple[int, Array, str, float, float]  # of a freedom: kind, direction, quantity, coordinate, rate
 
 
 def lay_out(mechanism: Mechanism, start: Assembly, inertias: Array, work: bool = True) -> Layout:
@@ -68,17 +73,13 @@ class _Builder:
         self.place = {h.body: i for i, h in enumerate(spanning.hangs)}
         self.size = size_of_scene(mechanism, start)
         self.reference = np.array([self._reference(h) for h in spanning.hangs])
-        self.body_ints: list[int] = []
-        self.body_floats: list[float] = []
-        self.freedom_ints: list[int] = []
-        self.freedom_floats: list[float] = []
+        self.body_rows: list[dict[str, Any]] = []
+        self.freedom_rows: list[dict[str, Any]] = []
         self.freedoms: list[Freedom] = []
         self.y: list[float] = []
         self.weights: list[float] = []
         self.groups: list[int] = []
-        self.n_sweep = 0
-        self.sweep_start: list[int] = []
-        self.sweep_count: list[int] = []
+        self.answer_count = 0
 
     def _reference(self, h: Hang) -> Array:
         body = self.mechanism.bodies[h.body]
@@ -91,7 +92,7 @@ class _Builder:
         """A body's point from its joint point, body axes; a ground point as it is."""
         return point if body == GROUND else point - self.reference[self.place[body]]
 
-    def sweep(self, body: int) -> int:
+    def in_tree(self, body: int) -> int:
         return body if body == GROUND else self.place[body]
 
     def bodies(self) -> None:
@@ -113,7 +114,7 @@ class _Builder:
             rates: list[float] = []
             weights: list[float] = []
             for (kind, direction, quantity, x, u), drive in zip(freedoms, driven, strict=True):
-                weight = 1.0 / self.size if kind == 2 else 1.0
+                weight = 1.0 / self.size if kind == kernel.SHIFT else 1.0
                 at_q = at_u = -1
                 if drive is None:
                     at_q, at_u = n_q, n_u
@@ -122,9 +123,18 @@ class _Builder:
                     self.weights.append(weight)
                     rates.append(u)
                     weights.append(weight)
-                place = self.n_sweep + 3 * ball + len(self.freedoms) - f0
-                self.freedom_ints += [kind, at_q, at_u, int(drive is not None), *(drive or (0, 0)), place, i]
-                self.freedom_floats += [*direction.tolist(), 0.0]
+                self.freedom_rows.append(
+                    {
+                        "kind": kind,
+                        "q_at": at_q,
+                        "u_at": at_u,
+                        "driven": int(drive is not None),
+                        "answer_at": self.answer_count + 3 * ball + len(self.freedoms) - f0,
+                        "body": i,
+                        "program": drive or NO_PROGRAM,
+                        "direction": direction,
+                    }
+                )
                 self.freedoms.append(Freedom(h.joint, quantity, at_q, at_u))
             if ball:
                 self.y += w.tolist()
@@ -132,45 +142,54 @@ class _Builder:
             self.y += rates
             self.weights += weights
             self.groups += [g0, g0 + q, len(self.y)]
-            has_ref = int(not np.array_equal(R_ref, np.eye(3)))
-            self.body_ints += [self.sweep(h.parent), int(ball), f0, len(freedoms), g0, g0 + q, self.n_sweep, has_ref]
-            self.body_floats += [
-                body.mass, *(body.mass * c).tolist(), J[0, 0], J[0, 1], J[0, 2], J[1, 1], J[1, 2], J[2, 2],
-                *joint_point.tolist(), *R_ref.ravel().tolist(), *self.reference[i].tolist(), *([0.0] * 15),
-            ]  # fmt: skip
-            self.sweep_start.append(self.n_sweep)
-            self.sweep_count.append(3 * ball + len(freedoms))
-            self.n_sweep += 3 * ball + len(freedoms)
+            self.body_rows.append(
+                {
+                    "parent": self.in_tree(h.parent),
+                    "ball": int(ball),
+                    "attitude_at": g0,
+                    "rate_at": g0 + q,
+                    "first_freedom": f0,
+                    "end_freedom": len(self.freedoms),
+                    "answer_at": self.answer_count,
+                    "framed": int(not np.array_equal(R_ref, np.eye(3))),
+                    "mass": body.mass,
+                    "first_moment": body.mass * c,
+                    "inertia": symmetric(J),
+                    "joint_in_parent": joint_point,
+                    "frame": R_ref.ravel(),
+                }
+            )
+            self.answer_count += 3 * ball + len(freedoms)
 
     def _driven(self, h: Hang, quantity: str) -> tuple[int, int] | None:
         drive = self.mechanism.joints[h.joint].drive if h.joint >= 0 else None
         return self.programs[id(drive.value)] if drive is not None and drive.quantity == quantity else None
 
-    def _hang(self, h: Hang) -> tuple[Array, Array, bool, list[tuple[int, Array, str, float, float]]]:
+    def _hang(self, h: Hang) -> tuple[Array, Array, bool, list[Scalar]]:
         """Joint point in the parent, R_ref, ball, and freedoms (kind, direction, quantity, coordinate, rate)."""
         if h.joint < 0:
             return self._free(h)
         return self._jointed(h)
 
-    def _free(self, h: Hang) -> tuple[Array, Array, bool, list[tuple[int, Array, str, float, float]]]:
+    def _free(self, h: Hang) -> tuple[Array, Array, bool, list[Scalar]]:
         """A body that nothing carries: its centre of mass and its attitude, in the plane where that was declared."""
         x, R, v, w = pose(self.start, h.body)
         c = R @ self.mechanism.bodies[h.body].center
         place, speed = x + c, v + np.cross(w, c)
         e = np.eye(3)
         names = ("x", "y", "z")
-        shifts = [(2, e[k], names[k], float(place[k]), float(speed[k])) for k in range(3)]
+        shifts = [(kernel.SHIFT, e[k], names[k], float(place[k]), float(speed[k])) for k in range(3)]
         if self.mechanism.planar:
             base = np.array([0.0, 0.0, place[2]])
-            return base, R, False, [(0, e[2], "turn", 0.0, float(w[2])), *shifts[:2]]
+            return base, R, False, [(kernel.TURN_IN_PARENT, e[2], "turn", 0.0, float(w[2])), *shifts[:2]]
         return np.zeros(3), e, True, shifts
 
-    def _jointed(self, h: Hang) -> tuple[Array, Array, bool, list[tuple[int, Array, str, float, float]]]:
+    def _jointed(self, h: Hang) -> tuple[Array, Array, bool, list[Scalar]]:
         joint, s = self.mechanism.joints[h.joint], self.starts[h.joint]
         kind = JOINTS[joint.kind]
         axes = {"axis": joint.axis, "to_axis": joint.to_axis, "z": Z}
         R_ref = s.R_ref
-        freedoms: list[tuple[int, Array, str, float, float]] = []
+        freedoms: list[Scalar] = []
         sign = 1.0
         if h.reverse:
             axes = {"axis": joint.axis, "to_axis": joint.to_axis}
@@ -180,14 +199,15 @@ class _Builder:
         turns = kind.turns[::-1] if h.reverse else kind.turns
         if len(turns) == 2:
             rates = self._universal_rates(joint)
-            for k, name in enumerate(turns):
-                freedoms.append((k, sign * axes[name], "first" if name == "axis" else "second", 0.0, rates[name]))
+            for where, name in zip((kernel.TURN_IN_PARENT, kernel.TURN_IN_BODY), turns, strict=True):
+                freedoms.append((where, sign * axes[name], "first" if name == "axis" else "second", 0.0, rates[name]))
         else:
-            freedoms += [(0, sign * axes[name], "angle", s.angle, s.rate) for name in turns]
+            freedoms += [(kernel.TURN_IN_PARENT, sign * axes[name], "angle", s.angle, s.rate) for name in turns]
         if "travel" in kind.coordinates:
-            freedoms.append((2, sign * (R_ref @ joint.axis if h.reverse else joint.axis), "travel", s.travel, s.speed))
+            axis = sign * (R_ref @ joint.axis if h.reverse else joint.axis)
+            freedoms.append((kernel.SHIFT, axis, "travel", s.travel, s.speed))
         else:
-            freedoms += [(2, joint_frame(joint, d), d, *self._shift(joint, d)) for d in kind.shifts]
+            freedoms += [(kernel.SHIFT, joint_frame(joint, d), d, *self._shift(joint, d)) for d in kind.shifts]
         point = joint.q if h.reverse else joint.p
         return self.relative(h.parent, point), R_ref, kind.ball, freedoms
 
@@ -209,58 +229,63 @@ class _Builder:
     def rows(self) -> None:
         """Closure rows of the cut joints, their paths, freedoms and couplings, and counted angles."""
         self.row_joint: list[int] = []
-        self.row_ints: list[list[int]] = []
-        self.row_floats: list[float] = []
+        self.closure_rows: list[dict[str, Any]] = []
         self.paths: list[list[int]] = []
         self.counters: dict[int, int] = {}
         for k in self.spanning.cut:
             joint, s = self.mechanism.joints[k], self.starts[k]
             kind = JOINTS[joint.kind]
-            P, Q = self.relative(joint.a, joint.p), self.relative(joint.b, joint.q)
-            a, b = self.sweep(joint.a), self.sweep(joint.b)
-            path = sorted(set(self._path(a)) | set(self._path(b)), reverse=True)
-            zero = np.zeros(3)
+            common = self._ends_of(joint)
             if kind.keeps_distance:
-                drive = self.programs[id(joint.drive.value)] if joint.drive is not None else (0, 0)
-                xa, Ra, _, _ = pose(self.start, joint.a)
-                xb, Rb, _, _ = pose(self.start, joint.b)
-                D = xb + Rb @ joint.q - xa - Ra @ joint.p
-                length = joint.length if joint.length is not None else math.sqrt(float(D @ D))
-                self._row(k, [2, a, b], drive, path, [zero, zero, P, Q], length if not drive[1] else 0.0, 1.0)
+                drive = self.programs[id(joint.drive.value)] if joint.drive is not None else NO_PROGRAM
+                length = 0.0 if drive[1] else joint.length if joint.length is not None else self._distance(joint)
+                row = {"kind": kernel.ROD, "rope": int(joint.tension_only), "program": drive, "length": length}
+                self._row(k, common | row | {"weight": 1.0})
             for d in kind.guides:
-                self._row(k, [0, a, b], (0, 0), path, [joint_frame(joint, d), zero, P, Q], 0.0, 1.0)
+                self._row(k, common | {"kind": kernel.GUIDE, "e": joint_frame(joint, d), "weight": 1.0})
             for d, e in kind.dots:
-                pair = [joint_frame(joint, d), to_direction(joint, s.R_ref, e)]
-                self._row(k, [1, a, b], (0, 0), path, [*pair, P, Q], 0.0, self.size)
+                f = to_direction(joint, s.R_ref, e)
+                self._row(k, common | {"kind": kernel.DOT, "e": joint_frame(joint, d), "g": f, "weight": self.size})
             if "angle" in kind.coordinates:
                 self.counters[k] = -1
 
-    def _row(
-        self,
-        joint: int,
-        head: list[int],
-        drive: tuple[int, int],
-        path: list[int],
-        vectors: list[Array],
-        length: float,
-        weight: float,
-    ) -> None:
+    def _ends_of(self, joint: Joint) -> dict[str, Any]:
+        """Bodies and points of a closure row, and what not every kind has."""
+        zero = np.zeros(3)
+        return {
+            "a": self.in_tree(joint.a),
+            "b": self.in_tree(joint.b),
+            "rope": 0,
+            "program": NO_PROGRAM,
+            "e": zero,
+            "g": zero,
+            "p": self.relative(joint.a, joint.p),
+            "q": self.relative(joint.b, joint.q),
+            "length": 0.0,
+        }
+
+    def _distance(self, joint: Joint) -> float:
+        """Of the joint's two points at the start [m]."""
+        xa, Ra, _, _ = pose(self.start, joint.a)
+        xb, Rb, _, _ = pose(self.start, joint.b)
+        D = xb + Rb @ joint.q - xa - Ra @ joint.p
+        return math.sqrt(float(D @ D))
+
+    def _row(self, joint: int, row: dict[str, Any]) -> None:
         self.row_joint.append(joint)
-        self.row_ints.append([*head, joint, *drive])
-        self.paths.append(path)
-        self.row_floats += [x for v in vectors for x in v.tolist()] + [length, weight, *([0.0] * 10)]
+        self.closure_rows.append(row)
+        self.paths.append(sorted(set(self._path(row["a"])) | set(self._path(row["b"])), reverse=True))
 
     def _path(self, i: int) -> list[int]:
         path = []
         while i >= 0:
             path.append(i)
-            i = self.body_ints[8 * i]
+            i = self.body_rows[i]["parent"]
         return path
 
     def loads(self) -> None:
         """Applied loads."""
-        self.load_ints: list[int] = []
-        self.load_floats: list[float] = []
+        self.load_rows: list[dict[str, Any]] = []
         for load in self.mechanism.loads:
             if isinstance(load, PointLoad):
                 self._point_load(load)
@@ -269,116 +294,83 @@ class _Builder:
             else:
                 self._joint_load(load)
 
-    def _load(self, head: list[int], values: list[Expression | float], p: Array, q: Array, tail: list[float]) -> None:
-        programs: list[int] = []
+    def _load(self, values: list[Expression | float], **given: Any) -> None:
+        """A load with up to three components; what is not given is zero."""
+        programs: list[tuple[int, int]] = []
         constants: list[float] = []
         for value in [*values, *([0.0] * (3 - len(values)))]:
             constant = value if isinstance(value, float) else value.constant
-            programs += (0, 0) if constant is not None or isinstance(value, float) else self.programs[id(value)]
+            programs.append(self.programs[id(value)] if constant is None else NO_PROGRAM)
             constants.append(constant if constant is not None else 0.0)
-        self.load_ints += [*head, *programs, *([0] * 6)]
-        self.load_floats += [*p.tolist(), *q.tolist(), *constants, *tail]
+        zero = np.zeros(3)
+        row = {"in_body": 0, "p": zero, "axis": zero, "stiffness": 0.0, "length": 0.0, "coefficient": 0.0, "speed": 0.0}
+        row |= dict(zip("xyz", programs, strict=True))
+        self.load_rows.append(row | {"vector": constants} | given)
 
     def _point_load(self, load: PointLoad) -> None:
         q = np.zeros(3) if load.point is None else self.relative(load.body, load.point)
-        kind = 0 if load.kind == "force" else 1
-        head = [kind, GROUND, self.sweep(load.body), int(load.in_body)]
-        self._load(head, list(load.vector), np.zeros(3), q, [0.0] * 7)
+        kind = kernel.FORCE if load.kind == "force" else kernel.COUPLE
+        self._load(list(load.vector), kind=kind, a=GROUND, b=self.in_tree(load.body), in_body=int(load.in_body), q=q)
 
     def _pair_load(self, load: PairLoad) -> None:
-        head = [2 if load.value is None else 3, self.sweep(load.a), self.sweep(load.b), 0]
-        p, q = self.relative(load.a, load.p), self.relative(load.b, load.q)
-        values: list[Expression | float] = [] if load.value is None else [load.value]
-        self._load(head, values, p, q, [load.stiffness, load.length, load.damping, 0.0, 0.0, 0.0, 0.0])
+        self._load(
+            [] if load.value is None else [load.value],
+            kind=kernel.SPRING if load.value is None else kernel.ACTUATOR,
+            a=self.in_tree(load.a),
+            b=self.in_tree(load.b),
+            p=self.relative(load.a, load.p),
+            q=self.relative(load.b, load.q),
+            stiffness=load.stiffness,
+            length=load.length,
+            coefficient=load.damping,
+        )
 
     def _joint_load(self, load: JointLoad) -> None:
         joint = self.mechanism.joints[load.joint]
         kind = JOINTS[joint.kind]
-        ends = [self.sweep(joint.a), self.sweep(joint.b), int(kind.has_one_axis)]
-        p, q = self.relative(joint.a, joint.p), self.relative(joint.b, joint.q)
-        values: list[Expression | float] = [] if load.value is None else [load.value]
         turns, slides = JOINT_LOADS[load.kind]
         parts = {"turning": (turns, load.turning), "sliding": (slides, load.sliding)}
         for motion in kind.motions:
             number, coefficient = parts[motion]
-            self._load([number, *ends], values, p, q, [0.0, 0.0, coefficient, *joint.axis.tolist(), load.speed])
+            self._load(
+                [] if load.value is None else [load.value],
+                kind=number,
+                a=self.in_tree(joint.a),
+                b=self.in_tree(joint.b),
+                in_body=int(kind.has_one_axis),
+                p=self.relative(joint.a, joint.p),
+                q=self.relative(joint.b, joint.q),
+                coefficient=coefficient,
+                axis=joint.axis,
+                speed=load.speed,
+            )
 
     def finish(self, work: bool) -> Layout:
-        """Lay the parts end to end, set the header."""
-        n, n_f, n_l, n_r = len(self.spanning.hangs), len(self.freedoms), len(self.load_ints) // 16, len(self.row_joint)
-        controlled, D_work = len(self.y), -1
+        """Counted angles and the work join the state; the tables are made."""
+        driven = any(j.drive is not None for j in self.mechanism.joints)
+        energy_group = -1
         for k in self.counters:
             self.counters[k] = len(self.y)
             self.y.append(self.starts[k].angle)
             self.weights.append(0.0)
+        work_at = len(self.y) if work else -1
         if work:
             self.y.append(0.0)
-            self.weights.append(0.0)
-            if any(j.drive is not None for j in self.mechanism.joints):
+            self.weights.append(1.0 if driven else 0.0)
+            if driven:
                 # the drives' work may vary where the motion does not: it has a say in the step
-                D_work = len(self.groups) // 3
-                self.weights[-1] = 1.0
-                self.groups += [len(self.y) - 1, len(self.y) - 1, len(self.y)]
-        H = [0] * HEADER
-        H[:9] = [n, n_f, self.n_sweep, n_l, n_r, controlled, 0, int(work), len(self.y) - 1]
-        ints = [*H]
-
-        def put(data: list[int]) -> int:
-            at = len(ints)
-            ints.extend(data)
-            return at
-
-        H[10] = put(self.body_ints)
-        H[11] = put(self.freedom_ints)
-        H[12] = put(self.load_ints)
-        variables = [0, 0]
-        joints = self.mechanism.joints
-        by_name = {(joints[f.joint].name, f.quantity): i for i, f in enumerate(self.freedoms) if f.joint >= 0}
-        for name, quantity in (use for use in self.pack.variables if not isinstance(use, str)):
-            base = {"rate": "angle", "speed": "travel"}.get(quantity, quantity)
-            variables += [by_name[name, base], int(base != quantity)]
-        H[14], H[15] = put(variables), len(variables) // 2
-        # rows with their paths and lists
-        e_start = 0
-        row_at = len(ints)
-        H[13] = row_at
-        ints.extend([0] * (16 * n_r))
-        dofs: dict[tuple[int, ...], tuple[int, int, int]] = {}
-        for r, (head, path) in enumerate(zip(self.row_ints, self.paths, strict=True)):
-            key = tuple(path)
-            if key not in dofs:
-                at_path = put(path)
-                places = [self.sweep_start[i] + m for i in path for m in range(self.sweep_count[i])]
-                dofs[key] = (at_path, put(places), len(places))
-            at_path, at_dofs, count = dofs[key]
-            ints[row_at + 16 * r : row_at + 16 * r + 11] = [*head, at_path, len(path), e_start, at_dofs, count]
-            e_start += count
-        for r, coupled in enumerate(couplings(self.paths)):
-            rope = self.mechanism.joints[self.row_joint[r]].tension_only
-            ints[row_at + 16 * r + 11 : row_at + 16 * r + 15] = [put(coupled), len(coupled), -1, int(rope)]
-        H[28], H[30] = put([0] * max(n_r, 1)), put([0] * max(n_r, 1))
-        counted = [(self.sweep(joints[k].a), self.sweep(joints[k].b), at, 0) for k, at in self.counters.items()]
-        H[32], H[33] = put([x for counter in counted for x in counter]), len(counted)
-
-        floats = [*self.mechanism.gravity.tolist(), self.size, 1.0, 1.0, 1.0, NEARLY_SINGULAR]
-        H[16] = len(floats)
-        floats += self.body_floats
-        H[17] = len(floats)
-        floats += self.freedom_floats
-        H[18] = len(floats)
-        floats += self.load_floats
-        H[19] = len(floats)
-        floats += self.row_floats
-        H[35] = len(floats)
-        floats += [x for k in self.counters for x in (*self.mechanism.joints[k].axis.tolist(), 0.0)]
-
-        lengths = {20: 80 * n, 21: 16 * n_f, 22: self.n_sweep, 23: 16 * n_l, 25: 40, 24: 16 * n_r, 26: e_start,
-                   27: n_r * n_r, 34: 6 * n if n_r else 0, 36: self.n_sweep, 37: 3 * n_r}  # fmt: skip
-        for slot, at in zip(lengths, np.cumsum([0, *lengths.values()]).tolist(), strict=False):
-            H[slot] = at
-        H[39] = int(any(j.drive is not None for j in self.mechanism.joints))
-        ints[:HEADER] = H
-        groups = [len(self.y), len(self.groups) // 3, 0, D_work, *([0] * 4), *self.groups]
+                energy_group = len(self.groups) // 3
+                self.groups += [work_at, work_at, work_at + 1]
+        indices, column_count = self._index_rows()
+        tables = {
+            "bodies": table(kernel.Body, self.body_rows),
+            "freedoms": table(kernel.Freedom, self.freedom_rows),
+            "loads": table(kernel.Load, self.load_rows),
+            "closures": table(kernel.Closure, self.closure_rows),
+            "counters": table(kernel.Counter, self._counter_rows()),
+            "variables": table(kernel.Variable, self._variable_rows()),
+            "limits": limits(tolerances.KERNEL),
+        }
         return Layout(
             mechanism=self.mechanism,
             spanning=self.spanning,
@@ -390,14 +382,63 @@ class _Builder:
             counters=self.counters,
             size=self.size,
             y0=np.array(self.y),
-            groups=array("i", groups),
+            groups=array("i", self.groups),
+            energy_group=energy_group,
             weights=np.array(self.weights),
-            I=array("i", ints),
-            P=array("d", floats),
-            W=array("d", bytes(8 * (sum(lengths.values()) + 1))),
+            tables=tables,
+            indices=indices,
+            answer_count=self.answer_count,
+            column_count=column_count,
             pack=self.pack,
-            work=work,
+            work_at=work_at,
         )
+
+    def _index_rows(self) -> tuple[array[int], int]:
+        """Paths, answers and couplings of the closure rows, which rows of one path share; the columns' length."""
+        indices = array("i")
+        shared: dict[tuple[int, ...], dict[str, int]] = {}
+        column = 0
+
+        def put(data: list[int]) -> int:
+            indices.extend(data)
+            return len(indices) - len(data)
+
+        for row, path, coupled in zip(self.closure_rows, self.paths, couplings(self.paths), strict=True):
+            key = tuple(path)
+            if key not in shared:
+                answers = [n for i in path for n in self._answers(i)]
+                shared[key] = {
+                    "path": put(path),
+                    "path_count": len(path),
+                    "answers": put(answers),
+                    "answer_count": len(answers),
+                }
+            row |= shared[key] | {"column": column, "rank": -1}
+            row |= {"couplings": put(coupled), "coupling_count": len(coupled)}
+            column += row["answer_count"]
+        return indices, column
+
+    def _answers(self, i: int) -> range:
+        """The answers of a body's freedoms."""
+        row = self.body_rows[i]
+        return range(row["answer_at"], row["answer_at"] + 3 * row["ball"] + row["end_freedom"] - row["first_freedom"])
+
+    def _counter_rows(self) -> list[dict[str, Any]]:
+        joints = self.mechanism.joints
+        return [
+            {"a": self.in_tree(joints[k].a), "b": self.in_tree(joints[k].b), "at": at, "axis": joints[k].axis}
+            for k, at in self.counters.items()
+        ]
+
+    def _variable_rows(self) -> list[dict[str, Any]]:
+        """The first is the time, which is no coordinate."""
+        joints = self.mechanism.joints
+        by_name = {(joints[f.joint].name, f.quantity): i for i, f in enumerate(self.freedoms) if f.joint >= 0}
+        rows = [{"freedom": 0, "is_rate": 0}]
+        for name, quantity in (use for use in self.pack.variables if not isinstance(use, str)):
+            base = {"rate": "angle", "speed": "travel"}.get(quantity, quantity)
+            rows.append({"freedom": by_name[name, base], "is_rate": int(base != quantity)})
+        return rows
 
 
 def couplings(paths: list[list[int]]) -> list[list[int]]:

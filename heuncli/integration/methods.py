@@ -1,6 +1,12 @@
-"""Runge-Kutta tableaus as data: rows of (stage, coefficient), zeros left out."""
+"""The methods by which the motion is integrated, as data: rows of (stage, coefficient), zeros left out."""
 
 from __future__ import annotations
+
+from array import array
+from collections.abc import Mapping
+from functools import cached_property
+from types import MappingProxyType
+from typing import Any
 
 from heuncli.records import record
 
@@ -8,11 +14,13 @@ Row = tuple[tuple[int, float], ...]
 
 
 @record
-class Tableau:
-    """An explicit embedded method with dense output.
+class Method:
+    """An explicit embedded Runge-Kutta method with dense output.
 
-    nodes: of all stages; stages: rows of the stages 1..; solution; extra: further stages for the dense output; error3,
-    error5: estimators, combined as h e5^2 / sqrt(e5^2 + 0.01 e3^2); dense: rows of the interpolating polynomial.
+    nodes: of all stages; stages: rows of the stages 1..; solution; extra: further stages for the dense output;
+    estimates: the rows of the error, one, or two, of which the first is coarser (then h e5^2 / sqrt(e5^2 + 0.01 e3^2));
+    error_order: of the estimate in h; dense: rows of the interpolating polynomial in nested form, beside the three that
+    every method has: y + x (F0 + (1 - x) (F1 + x (F2 + (1 - x) (F3 + ...)))).
     """
 
     name: str
@@ -21,13 +29,32 @@ class Tableau:
     stages: tuple[Row, ...]
     solution: Row
     extra: tuple[Row, ...]
-    error3: Row
-    error5: Row
+    estimates: tuple[Row, ...]
+    error_order: int
     dense: tuple[Row, ...]
+
+    @cached_property
+    def arrays(self) -> dict[str, Any]:
+        """The method as the kernel takes it (kernel/steps.pxd)."""
+        rows = [(), *self.stages, self.solution, *self.extra, *self.estimates, *self.dense]
+        begin = [0]
+        for row in rows:
+            begin.append(begin[-1] + len(row))
+        return {
+            "stages": len(self.stages) + 1,
+            "extra": len(self.extra),
+            "dense_rows": len(self.dense),
+            "estimates": len(self.estimates),
+            "exponent": 1.0 / self.error_order,
+            "begin": array("i", begin),
+            "stage": array("i", [stage for row in rows for stage, _ in row]),
+            "coefficient": array("d", [c for row in rows for _, c in row]),
+            "node": array("d", self.nodes),
+        }
 
 
 # Dormand and Prince 8(5,3), dense output of order 7: Hairer, Norsett, Wanner, Solving ODEs I (1993), II.10 and DOP853.
-DOP853 = Tableau(
+DOP853 = Method(
     name="DOP853",
     order=8,
     nodes=(
@@ -162,26 +189,29 @@ DOP853 = Tableau(
             (14, -9.15095847217987),
         ),
     ),
-    error3=(
-        (0, -0.18980075407240762),
-        (5, 4.450312892752409),
-        (6, 1.8915178993145003),
-        (7, -5.801203960010585),
-        (8, -0.4226823213237919),
-        (9, -0.1521609496625161),
-        (10, 0.20136540080403034),
-        (11, 0.02265179219836082),
+    estimates=(
+        (
+            (0, -0.18980075407240762),
+            (5, 4.450312892752409),
+            (6, 1.8915178993145003),
+            (7, -5.801203960010585),
+            (8, -0.4226823213237919),
+            (9, -0.1521609496625161),
+            (10, 0.20136540080403034),
+            (11, 0.02265179219836082),
+        ),
+        (
+            (0, 0.01312004499419488),
+            (5, -1.2251564463762044),
+            (6, -0.4957589496572502),
+            (7, 1.6643771824549864),
+            (8, -0.35032884874997366),
+            (9, 0.3341791187130175),
+            (10, 0.08192320648511571),
+            (11, -0.022355307863886294),
+        ),
     ),
-    error5=(
-        (0, 0.01312004499419488),
-        (5, -1.2251564463762044),
-        (6, -0.4957589496572502),
-        (7, 1.6643771824549864),
-        (8, -0.35032884874997366),
-        (9, 0.3341791187130175),
-        (10, 0.08192320648511571),
-        (11, -0.022355307863886294),
-    ),
+    error_order=8,
     dense=(
         (
             (0, -8.428938276109013),
@@ -242,4 +272,4 @@ DOP853 = Tableau(
     ),
 )
 
-METHODS = {"auto": DOP853, "DOP853": DOP853}  # by the names of --method and analysis.method
+METHODS: Mapping[str, Method] = MappingProxyType({"auto": DOP853, "DOP853": DOP853})  # by the names of --method

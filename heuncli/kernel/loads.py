@@ -1,0 +1,152 @@
+"""Applied loads: forces and couples from outside, between two points, and between the two bodies of a joint.
+
+Each is put on the bodies as force and moment; what it does there (value, rate, power) is kept for the results.
+"""
+
+from __future__ import annotations
+
+try:
+    import cython
+except ImportError:
+    from heuncli.kernel.shadow import cython
+
+if not cython.compiled:
+    from math import tanh
+
+    from heuncli.kernel.algebra import Vec3, cross, dot, norm, scaled, sub
+    from heuncli.kernel.expressions import value
+    from heuncli.kernel.scene import (
+        ACTUATOR,
+        COUPLE,
+        FORCE,
+        SHIFT_DAMPER,
+        SHIFT_FRICTION,
+        SPRING,
+        THRUST,
+        TURN_FRICTION,
+        Body,
+        Load,
+        Scene,
+    )
+    from heuncli.kernel.shadow import cython
+    from heuncli.kernel.structs import PointMotion
+    from heuncli.kernel.tree import direction_of, point_of, push
+
+
+def apply_loads(scene: cython.pointer[Scene]) -> cython.double:
+    """Put all applied loads on the bodies; power of those that have no potential [W]."""
+    i: cython.Py_ssize_t
+    power: cython.double = 0.0
+    zero: Vec3 = Vec3(0.0, 0.0, 0.0)
+    for i in range(scene.load_count):
+        load: cython.pointer[Load] = cython.address(scene.loads[i])
+        there: PointMotion = point_of(scene, load.b, load.q)
+        given: Vec3 = given_vector(scene, load)
+        load.at = there.x
+        load.force = zero
+        load.moment = zero
+        if load.kind == FORCE or load.kind == COUPLE:
+            outer_load(scene, load, given, there.v)
+            power += load.power
+        elif load.kind == SPRING or load.kind == ACTUATOR:
+            power += pair_load(scene, load, given, there.v)
+        else:
+            joint_load(scene, load, given, there.v)
+            power += load.power
+    return power
+
+
+def given_vector(scene: cython.pointer[Scene], load: cython.pointer[Load]) -> Vec3:
+    """The load's given components: numbers, or expressions at this instant."""
+    return Vec3(
+        value(scene.programs, load.x) if load.x.count else load.vector.x,
+        value(scene.programs, load.y) if load.y.count else load.vector.y,
+        value(scene.programs, load.z) if load.z.count else load.vector.z,
+    )
+
+
+def outer_load(scene: cython.pointer[Scene], load: cython.pointer[Load], given: Vec3, v: Vec3) -> cython.void:
+    """A force on a point that moves with v, or a couple, from outside the system."""
+    turned: Vec3 = direction_of(scene, load.b, given) if load.in_body else given
+    load.value = norm(turned)
+    if load.kind == FORCE:
+        load.force = turned
+        load.power = dot(turned, v)
+    else:
+        load.moment = turned
+        load.power = dot(turned, omega_of(scene, load.b))
+    push(scene, load.b, load.at, load.force, load.moment)
+
+
+def pair_load(scene: cython.pointer[Scene], load: cython.pointer[Load], given: Vec3, v: Vec3) -> cython.double:
+    """A spring F = -k (l - l0) - c ldot, or an actuator, along the line between two points; positive pushes apart.
+
+    Gives the power of what has no potential: the actuator's, or the spring's damping.
+    """
+    here: PointMotion = point_of(scene, load.a, load.p)
+    span: Vec3 = sub(load.at, here.x)
+    load.from_at = here.x
+    load.span = norm(span)
+    load.rate = dot(span, sub(v, here.v))
+    if load.span > 0.0:
+        load.rate = load.rate / load.span
+    lost: cython.double
+    if load.kind == SPRING:
+        load.value = -load.stiffness * (load.span - load.length) - load.coefficient * load.rate
+        lost = -load.coefficient * load.rate * load.rate
+    else:
+        load.value = given.x
+        lost = load.value * load.rate
+    load.power = load.value * load.rate
+    if load.span > 0.0:
+        F: cython.double = load.value
+        load.force = Vec3(F * span.x / load.span, F * span.y / load.span, F * span.z / load.span)
+    push(scene, load.b, load.at, load.force, load.moment)
+    push(scene, load.a, load.from_at, scaled(-1.0, load.force), load.moment)
+    return lost
+
+
+def joint_load(scene: cython.pointer[Scene], load: cython.pointer[Load], given: Vec3, v: Vec3) -> cython.void:
+    """A torque or thrust about or along the joint's axis, a damper or friction against its turning or sliding.
+
+    Friction is Coulomb's, smoothed: F tanh(rate / speed), against the direction of the motion.
+    """
+    axis: Vec3 = direction_of(scene, load.a, load.axis)
+    slides: cython.bint = load.kind == THRUST or load.kind == SHIFT_DAMPER or load.kind == SHIFT_FRICTION
+    motion: Vec3 = sliding_in(scene, load, v) if slides else sub(omega_of(scene, load.b), omega_of(scene, load.a))
+    acts: Vec3
+    load.rate = dot(motion, axis)
+    if load.kind <= THRUST:
+        load.value = given.x
+        load.power = load.value * load.rate
+        acts = scaled(load.value, axis)
+    else:
+        speed: cython.double = norm(motion)
+        against: cython.double = load.coefficient
+        if load.kind >= TURN_FRICTION:
+            against = load.coefficient * tanh(speed / load.speed) / speed if speed > 0.0 else 0.0
+        load.value = -against * load.rate if load.in_body else -against * speed
+        load.power = -against * speed * speed
+        acts = scaled(-against, motion)
+    if slides:
+        load.force = acts
+    else:
+        load.moment = acts
+    load.from_at = load.at
+    push(scene, load.b, load.at, load.force, load.moment)
+    push(scene, load.a, load.at, scaled(-1.0, load.force), scaled(-1.0, load.moment))
+
+
+def sliding_in(scene: cython.pointer[Scene], load: cython.pointer[Load], v: Vec3) -> Vec3:
+    """Velocity of b's point, which moves with v, as seen from a."""
+    if load.a < 0:
+        return v
+    a: cython.pointer[Body] = cython.address(scene.bodies[load.a])
+    return sub(sub(v, cross(a.omega, sub(load.at, a.r))), a.v)
+
+
+def omega_of(scene: cython.pointer[Scene], body: cython.int) -> Vec3:
+    """Angular velocity of a body; none of the ground's."""
+    if body < 0:
+        return Vec3(0.0, 0.0, 0.0)
+    return scene.bodies[body].omega

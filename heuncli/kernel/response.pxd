@@ -1,0 +1,24 @@
+"""Signatures of response.py for C."""
+
+from heuncli.kernel.algebra cimport Quaternion, slightly_turned
+from heuncli.kernel.closures cimport (
+    acceleration_along, count_turns, factor_closures, measure_rows, push_closures, solve_closures,
+)
+from heuncli.kernel.loads cimport apply_loads
+from heuncli.kernel.scene cimport Body, Closure, Freedom, Scene
+from heuncli.kernel.tree cimport balance, derivative, downward, factor_tree, kinematics, upward
+from libc.math cimport fabs, sqrt
+
+cdef int configure(Scene *scene, double t) noexcept nogil
+cdef void respond(Scene *scene, bint inertial) noexcept nogil
+cdef int evaluate(Scene *scene, double t, double *y, double *dy) noexcept nogil
+cdef double driving_power(Scene *scene) noexcept nogil
+cdef double settle(Scene *scene, double t, double *y) noexcept nogil
+cdef bint must_choose_anew(Scene *scene, double gap) noexcept nogil
+cdef void normalise(Scene *scene, double *y) noexcept nogil
+cdef void refactor(Scene *scene, double t, double *y) noexcept nogil
+cdef double close_gaps(Scene *scene, double t, double *y) noexcept nogil
+cdef void correct_rates(Scene *scene, double *y) noexcept nogil
+cdef double largest_gap(Scene *scene) noexcept nogil
+cdef void take_back(Scene *scene) noexcept nogil
+cdef void move(Scene *scene, double *y, bint rates) noexcept nogil

@@ -1,0 +1,227 @@
+"""The one linear map: at a configuration the tree and the closures are factored once, then any load is answered.
+
+    configure   factors of tree and closures at the present kinematics: no loads
+    respond     loads on the bodies -> accelerations and multipliers; inertial: with velocity terms, drives and gravity
+Accelerations, projection onto the closures, single columns (steps.py's neighbours, heuncli/response.py): all of them
+are answers of this map. theory: J M^-1 J' lambda = -(J Vdot_free + gamma).
+"""
+
+from __future__ import annotations
+
+try:
+    import cython
+except ImportError:
+    from heuncli.kernel.shadow import cython
+
+if not cython.compiled:
+    from math import fabs, sqrt
+
+    from heuncli.kernel.algebra import Quaternion, slightly_turned
+    from heuncli.kernel.closures import (
+        acceleration_along,
+        count_turns,
+        factor_closures,
+        measure_rows,
+        push_closures,
+        solve_closures,
+    )
+    from heuncli.kernel.loads import apply_loads
+    from heuncli.kernel.scene import Body, Closure, Freedom, Scene
+    from heuncli.kernel.shadow import cython
+    from heuncli.kernel.tree import balance, derivative, downward, factor_tree, kinematics, upward
+
+
+def configure(scene: cython.pointer[Scene], t: cython.double) -> cython.int:
+    """Factors of the tree and of the closures; how many freedoms have no inertia behind them, -1 for lost closures."""
+    idle: cython.int = factor_tree(scene)
+    if scene.selected_count:
+        measure_rows(scene, t)
+        scene.pivot = factor_closures(scene)
+        if scene.pivot < scene.pivot_of_step:
+            scene.pivot_of_step = scene.pivot
+        if scene.pivot < 0.0:
+            return -1
+    return idle
+
+
+def respond(scene: cython.pointer[Scene], inertial: cython.bint) -> cython.void:
+    """Accelerations and multipliers that answer the loads on the bodies."""
+    r: cython.Py_ssize_t
+    upward(scene, inertial)
+    downward(scene, inertial)
+    if scene.selected_count:
+        for r in range(scene.closure_count):
+            row: cython.pointer[Closure] = cython.address(scene.closures[r])
+            row.demand = acceleration_along(scene, row, inertial)
+            if inertial:
+                row.demand = row.gamma + row.demand
+        solve_closures(scene)
+        downward(scene, inertial)
+
+
+def evaluate(scene: cython.pointer[Scene], t: cython.double, y: cython.p_double, dy: cython.p_double) -> cython.int:
+    """Time derivative dy of the state y at t; as `configure` gives, for what has no inertia or cannot be closed.
+
+    Where something is driven the joint loads are found too, for the work of the drives.
+    """
+    power: cython.double = 0.0
+    kinematics(scene, t, y)
+    count_turns(scene, dy)
+    if scene.load_count:
+        power = apply_loads(scene)
+    idle: cython.int = configure(scene, t)
+    respond(scene, True)
+    if scene.driven:
+        push_closures(scene)
+        balance(scene, True)
+        power += driving_power(scene)
+    derivative(scene, y, dy, power)
+    return idle
+
+
+def driving_power(scene: cython.pointer[Scene]) -> cython.double:
+    """Power of all drives [W]."""
+    i: cython.Py_ssize_t
+    power: cython.double = 0.0
+    for i in range(scene.freedom_count):
+        freedom: cython.pointer[Freedom] = cython.address(scene.freedoms[i])
+        if freedom.driven:
+            power += freedom.drive * freedom.u
+    for i in range(scene.closure_count):
+        row: cython.pointer[Closure] = cython.address(scene.closures[i])
+        if row.program.count:
+            power += row.multiplier * row.prescribed_rate
+    return power
+
+
+def settle(scene: cython.pointer[Scene], t: cython.double, y: cython.p_double) -> cython.double:
+    """Bring y onto the unit quaternions and the closures, positions and rates; the gap left over all rows [m]."""
+    normalise(scene, y)
+    if scene.closure_count == 0:
+        return 0.0
+    kinematics(scene, t, y)
+    measure_rows(scene, t)
+    if scene.selected_count == 0:  # rows that nothing answers may still open, in a singular pose say
+        return largest_gap(scene)
+    factor_tree(scene)
+    scene.pivot = factor_closures(scene)
+    gap: cython.double = close_gaps(scene, t, y)
+    correct_rates(scene, y)
+    if scene.pivot < scene.limits.near_singular:
+        pivot: cython.double = scene.pivot
+        refactor(scene, t, y)
+        scene.pivot = pivot
+        correct_rates(scene, y)
+    return gap
+
+
+def must_choose_anew(scene: cython.pointer[Scene], gap: cython.double) -> cython.bint:
+    """Whether a row that was left out opens, or the chosen ones come near to depending on each other."""
+    return not gap <= scene.limits.reopened * scene.size or scene.pivot < scene.limits.pivot_drop * scene.pivot_chosen
+
+
+def normalise(scene: cython.pointer[Scene], y: cython.p_double) -> cython.void:
+    """Quaternions back to length 1."""
+    i: cython.Py_ssize_t
+    k: cython.Py_ssize_t
+    s: cython.double
+    for i in range(scene.body_count):
+        if scene.bodies[i].ball:
+            k = scene.bodies[i].attitude_at
+            s = 1.0 / sqrt(y[k] * y[k] + y[k + 1] * y[k + 1] + y[k + 2] * y[k + 2] + y[k + 3] * y[k + 3])
+            y[k] *= s
+            y[k + 1] *= s
+            y[k + 2] *= s
+            y[k + 3] *= s
+
+
+def refactor(scene: cython.pointer[Scene], t: cython.double, y: cython.p_double) -> cython.void:
+    """Kinematics, rows and factors at y."""
+    kinematics(scene, t, y)
+    measure_rows(scene, t)
+    factor_tree(scene)
+    scene.pivot = factor_closures(scene)
+
+
+def close_gaps(scene: cython.pointer[Scene], t: cython.double, y: cython.p_double) -> cython.double:
+    """Newton's steps of least motion, in the measure of M, until the gaps are rounding; the largest gap left [m].
+
+    Near a singular pose the rows turn with every small move: there a step must at least halve the gap.
+    """
+    n: cython.int
+    before: cython.double
+    r: cython.Py_ssize_t
+    gap: cython.double = largest_gap(scene)
+    for n in range(5):
+        if gap <= scene.limits.closed * scene.size:
+            break
+        before = gap
+        for r in range(scene.closure_count):
+            scene.closures[r].demand = scene.closures[r].gap
+        take_back(scene)
+        move(scene, y, False)
+        kinematics(scene, t, y)
+        measure_rows(scene, t)
+        gap = largest_gap(scene)
+        factor_tree(scene)
+        scene.pivot = factor_closures(scene)
+        if scene.pivot < scene.limits.near_singular:
+            if gap > 0.5 * before:
+                break
+        elif gap <= scene.limits.nearly_closed * scene.size:
+            break
+    return gap
+
+
+def correct_rates(scene: cython.pointer[Scene], y: cython.p_double) -> cython.void:
+    """The least change of the velocities, in the measure of M, that meets the rates of all rows."""
+    r: cython.Py_ssize_t
+    for r in range(scene.closure_count):
+        scene.closures[r].demand = scene.closures[r].rate
+    take_back(scene)
+    move(scene, y, True)
+
+
+def largest_gap(scene: cython.pointer[Scene]) -> cython.double:
+    """Largest gap of all rows [m], the turning ones by their weight."""
+    r: cython.Py_ssize_t
+    largest: cython.double = 0.0
+    gap: cython.double
+    for r in range(scene.closure_count):
+        gap = fabs(scene.closures[r].gap) * scene.closures[r].weight
+        if not gap <= largest:
+            largest = gap
+    return largest
+
+
+def take_back(scene: cython.pointer[Scene]) -> cython.void:
+    """The least motion, in the measure of M, that takes back what the rows demand: an answer to no load at all."""
+    i: cython.Py_ssize_t
+    for i in range(scene.answer_count):
+        scene.e[i] = 0.0
+    solve_closures(scene)
+    downward(scene, False)
+
+
+def move(scene: cython.pointer[Scene], y: cython.p_double, rates: cython.bint) -> cython.void:
+    """Add the answer found (small turns and shifts) to the coordinates of the state, or to its velocities."""
+    i: cython.Py_ssize_t
+    k: cython.Py_ssize_t
+    for i in range(scene.body_count):
+        body: cython.pointer[Body] = cython.address(scene.bodies[i])
+        if body.ball and rates:
+            k = body.rate_at
+            y[k] += body.alpha.x
+            y[k + 1] += body.alpha.y
+            y[k + 2] += body.alpha.z
+        elif body.ball:
+            k = body.attitude_at
+            q: Quaternion = slightly_turned(Quaternion(y[k], y[k + 1], y[k + 2], y[k + 3]), body.alpha)
+            y[k] = q.w
+            y[k + 1] = q.x
+            y[k + 2] = q.y
+            y[k + 3] = q.z
+    for i in range(scene.freedom_count):
+        freedom: cython.pointer[Freedom] = cython.address(scene.freedoms[i])
+        if not freedom.driven:
+            y[freedom.u_at if rates else freedom.q_at] += freedom.udot

@@ -1,0 +1,198 @@
+"""The structs of scene.py for C, field by field in the same order (a test compares them), and the scene they make."""
+
+from heuncli.kernel.algebra cimport Ldl3, Mat3, Sym3, Vec3
+from heuncli.kernel.expressions cimport Program, Programs
+
+cdef enum:
+    TURN_IN_PARENT, TURN_IN_BODY, SHIFT
+
+cdef enum:
+    FORCE, COUPLE, SPRING, ACTUATOR, TORQUE, THRUST, TURN_DAMPER, SHIFT_DAMPER, TURN_FRICTION, SHIFT_FRICTION
+
+cdef enum:
+    GUIDE, DOT, ROD
+
+cdef struct Body:
+    int parent
+    int ball
+    int attitude_at
+    int rate_at
+    int first_freedom
+    int end_freedom
+    int answer_at
+    int framed
+    double mass
+    Vec3 first_moment
+    Sym3 inertia
+    Vec3 joint_in_parent
+    Mat3 frame
+    Mat3 R
+    Vec3 r
+    Vec3 omega
+    Vec3 v
+    Vec3 arm
+    Vec3 alpha_bias
+    Vec3 a_bias
+    Vec3 mc
+    Vec3 gyroscopic
+    Vec3 centrifugal
+    Vec3 M_applied
+    Vec3 f_applied
+    Sym3 A
+    Mat3 C
+    Sym3 K
+    Ldl3 turning
+    Mat3 G
+    Vec3 M_branch
+    Vec3 f_branch
+    Vec3 alpha
+    Vec3 a
+    Vec3 M_joint
+    Vec3 f_joint
+    Vec3 M_column
+    Vec3 f_column
+
+cdef struct Freedom:
+    int kind
+    int q_at
+    int u_at
+    int driven
+    int answer_at
+    int body
+    Program program
+    Vec3 direction
+    double offset
+    Vec3 s
+    Vec3 U_turn
+    Vec3 U_shift
+    double D
+    double q
+    double u
+    double udot
+    double drive
+
+cdef struct Load:
+    int kind
+    int a
+    int b
+    int in_body
+    Program x
+    Program y
+    Program z
+    Vec3 p
+    Vec3 q
+    Vec3 vector
+    double stiffness
+    double length
+    double coefficient
+    Vec3 axis
+    double speed
+    Vec3 force
+    Vec3 moment
+    Vec3 at
+    Vec3 from_at
+    double value
+    double span
+    double rate
+    double power
+
+cdef struct Closure:
+    int kind
+    int a
+    int b
+    int rope
+    Program program
+    int path
+    int path_count
+    int column
+    int answers
+    int answer_count
+    int couplings
+    int coupling_count
+    int rank
+    Vec3 e
+    Vec3 g
+    Vec3 p
+    Vec3 q
+    double length
+    double weight
+    Vec3 f
+    Vec3 m
+    Vec3 Q
+    double gap
+    double rate
+    double gamma
+    double multiplier
+    double demand
+    double prescribed_rate
+    double pivot
+    double scale
+    double pose_scale
+
+cdef struct Counter:
+    int a
+    int b
+    int at
+    int unused
+    Vec3 axis
+
+cdef struct Variable:
+    int freedom
+    int is_rate
+
+cdef struct Limits:
+    int dodges
+    int unused
+    double no_inertia
+    double moves_nothing
+    double across
+    double independent
+    double preference
+    double pivot_drop
+    double near_singular
+    double locked
+    double locked_step
+    double closed
+    double nearly_closed
+    double reopened
+    double lost
+    double least_step
+    double rope_step
+    double dodge
+    double pivot_rounding
+    double pivot_noise
+
+cdef struct Scene:
+    int body_count
+    int freedom_count
+    int load_count
+    int closure_count
+    int counter_count
+    int variable_count
+    int answer_count          # freedoms, a ball's three turns among them
+    int selected_count        # independent closure rows
+    int driven                # something is driven: the work of drives counts
+    int work_at               # where the work stands in the state; -1: it is not asked for
+    int roped                 # ropes are watched
+    Vec3 gravity
+    double size
+    Limits limits
+    double pivot_chosen       # least pivot of the closures when their rows were chosen
+    double pivot              # now
+    double pivot_of_step      # least since the step began
+    double gap                # of the state recovered last, over all rows [m]
+    double pivot_recovered    # least pivot of the closures there
+    Body *bodies
+    Freedom *freedoms
+    Load *loads
+    Closure *closures
+    Counter *counters
+    Variable *variables
+    Programs *programs
+    int *indices              # paths, answers and couplings of the closure rows
+    int *selected             # independent rows, ascending
+    int *envelope             # first coupled row of each of them
+    double *e                 # load that each freedom answers
+    double *spread            # one row's D^-1 e_r, spread over all freedoms
+    double *columns           # e_r of all rows, one after the other
+    double *A                 # J M^-1 J' over the independent rows, and its Cholesky factor

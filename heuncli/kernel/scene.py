@@ -1,0 +1,247 @@
+"""The scene as the kernel sees it: one struct a body, freedom, load, closure row; scene.pxd is the same for C.
+
+    [n; f] = [A C; C' K] [alpha; a] + [M_branch; f_branch]       what a joint must exert on the branch from its body
+                                                                 outward, about the body's joint point r; world axes
+Rows of NumPy tables (tree/tables.py makes their types from these classes) are the compiled kernel's memory; the plain
+kernel makes objects of them. Fields up to the blank line are given when the scene is packed, the others are the
+kernel's own. World axes unless said otherwise; `a` is throughout the acceleration less that of gravity.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Iterable
+from typing import Any
+
+from heuncli.kernel.algebra import Ldl3, Mat3, Sym3, Vec3
+from heuncli.kernel.structs import Fields, Program, Programs
+
+# Kinds of freedoms, loads and closure rows; for C they stand in scene.pxd, in the same order.
+TURN_IN_PARENT, TURN_IN_BODY, SHIFT = range(3)
+FORCE, COUPLE, SPRING, ACTUATOR, TORQUE, THRUST, TURN_DAMPER, SHIFT_DAMPER, TURN_FRICTION, SHIFT_FRICTION = range(10)
+GUIDE, DOT, ROD = range(3)
+
+VALUES = {"Vec3": Vec3, "Mat3": Mat3, "Sym3": Sym3, "Ldl3": Ldl3, "Program": Program}
+
+
+class Record(metaclass=Fields):
+    """A struct in plain Python: fields in the order of their annotations, from nested tuples as NumPy gives them."""
+
+    def __init__(self, row: Iterable[Any]) -> None:
+        for (name, kind), value in zip(type(self).__annotations__.items(), row, strict=True):
+            setattr(self, name, VALUES[kind](*value) if kind in VALUES else value)
+
+
+class Body(Record):
+    """A rigid body on its joint; parents come before their children."""
+
+    parent: int  # -1: the ground
+    ball: int  # 1: all turns are free; the state holds the body's own attitude and angular velocity
+    attitude_at: int  # of a ball: where its quaternion stands in the state
+    rate_at: int  # and its angular velocity
+    first_freedom: int  # scalar freedoms, in the order from the parent outward
+    end_freedom: int
+    answer_at: int  # a ball's three turns, then its freedoms, among the loads e that the freedoms answer
+    framed: int  # 1: `frame` is not 1
+    mass: float
+    first_moment: Vec3  # m c, body axes from the joint point
+    inertia: Sym3  # J about the joint point, body axes
+    joint_in_parent: Vec3  # the joint point in the parent, from its joint point, its axes
+    frame: Mat3  # attitude in the parent where all coordinates are zero
+
+    R: Mat3  # attitude, body to world
+    r: Vec3  # joint point
+    omega: Vec3
+    v: Vec3  # of the joint point
+    arm: Vec3  # from the parent's joint point to this one
+    alpha_bias: Vec3  # of alpha against the parent's: what hangs on velocities and prescribed accelerations
+    a_bias: Vec3
+    mc: Vec3  # R (m c)
+    gyroscopic: Vec3  # omega x J omega
+    centrifugal: Vec3  # omega x (omega x m c)
+    M_applied: Vec3  # applied moment about the joint point
+    f_applied: Vec3
+    A: Sym3  # articulated inertia of the branch
+    C: Mat3
+    K: Sym3
+    turning: Ldl3  # of a ball: factors of A
+    G: Mat3  # of a ball: A^-1 C
+    M_branch: Vec3
+    f_branch: Vec3
+    alpha: Vec3
+    a: Vec3
+    M_joint: Vec3  # load of the joint on the body, by Newton's and Euler's laws
+    f_joint: Vec3
+    M_column: Vec3  # M_branch and f_branch of one closure row's unit load
+    f_column: Vec3
+
+
+class Freedom(Record):
+    """A scalar freedom of a joint: a turn about an axis, or a shift along a direction."""
+
+    kind: int
+    q_at: int  # where coordinate and rate stand in the state; -1: driven
+    u_at: int
+    driven: int
+    answer_at: int
+    body: int
+    program: Program  # of the drive
+    direction: Vec3  # fixed in the parent, or (TURN_IN_BODY) in the body
+    offset: float  # of the coordinate against the drive's
+
+    s: Vec3  # its direction
+    U_turn: Vec3  # inertia against it, I s: moment and force
+    U_shift: Vec3
+    D: float  # 1 / (s . I s); zero where it is driven or moves nothing
+    q: float
+    u: float
+    udot: float  # prescribed, or found
+    drive: float  # load of the drive along it
+
+
+class Load(Record):
+    """An applied load on body b, or between the bodies a and b (on b, the opposite on a)."""
+
+    kind: int
+    a: int
+    b: int
+    in_body: int  # the vector's components are in b's axes; of joint loads: told along the axis
+    x: Program  # components of `vector` that vary; x alone for a single value
+    y: Program
+    z: Program
+    p: Vec3  # point of a, from its joint point, its axes
+    q: Vec3  # point of b
+    vector: Vec3
+    stiffness: float
+    length: float
+    coefficient: float
+    axis: Vec3  # in a
+    speed: float
+
+    force: Vec3  # on b
+    moment: Vec3
+    at: Vec3  # where on b
+    from_at: Vec3  # where on a
+    value: float
+    span: float  # distance of the two points
+    rate: float
+    power: float
+
+
+class Closure(Record):
+    """A closure row J V = 0: multiplier 1 puts the force f at the point Q and the couple m on b, the opposite on a.
+
+    GUIDE: e . (Q - P) = length, e fixed in a. DOT: e . g = 0, e fixed in a, g in b. ROD: |Q - P| = length.
+    """
+
+    kind: int
+    a: int
+    b: int
+    rope: int  # 1: it may only pull
+    program: Program  # of the length, where it is driven
+    path: int  # first of the bodies between its two ends and the ground, tips first, in `indices`
+    path_count: int
+    column: int  # its first answer in `columns`
+    answers: int  # which answers of the freedoms these are, in `indices`
+    answer_count: int
+    couplings: int  # earlier rows whose paths meet its own, in `indices`
+    coupling_count: int
+    rank: int  # its place among the independent rows; -1: left out
+    e: Vec3
+    g: Vec3
+    p: Vec3  # point of a, from its joint point, its axes
+    q: Vec3  # point of b
+    length: float
+    weight: float  # of the gap [m per unit]
+
+    f: Vec3
+    m: Vec3
+    Q: Vec3
+    gap: float
+    rate: float
+    gamma: float  # J Vdot + gamma = 0
+    multiplier: float
+    demand: float  # right-hand side of A lambda = -demand
+    prescribed_rate: float
+    pivot: float  # what is left of its own answer by the rows chosen before it, scaled
+    scale: float  # 1 / sqrt of what its two sides answer, each alone; zero: it moves nothing
+    pose_scale: float  # the same, and not less than a part of what it could answer across its arms
+
+
+class Counter(Record):
+    """The angle of a pin that was cut, counted on over many turns as a state of its own."""
+
+    a: int
+    b: int
+    at: int  # where it stands in the state
+    unused: int
+    axis: Vec3  # in a
+
+
+class Variable(Record):
+    """A coordinate that expressions use: of which freedom, and its rate (1) or itself (0)."""
+
+    freedom: int
+    is_rate: int
+
+
+class Limits(Record):
+    """Thresholds of the kernel: heuncli/tolerances.py derives each."""
+
+    dodges: int  # lengths tried for a step whose stages come near to a singular pose
+    unused: int
+    no_inertia: float  # of all directions' inertia: what has less moves nothing
+    moves_nothing: float  # of what a row's freedoms could answer: a row that answers less is none
+    across: float  # part of what a row could answer across its arms that counts as its scale in any pose
+    independent: float  # least scaled pivot of a row that is chosen
+    preference: float  # a later row must have so many times the pivot of an earlier one
+    pivot_drop: float  # of the pivot when the rows were chosen: below it they are chosen anew
+    near_singular: float  # pivot below which the stages of a step are settled, too
+    locked: float  # pivot, with a step of `locked_step` of the time, at which the closures lock
+    locked_step: float
+    closed: float  # gaps of the scene's size: rounding, nothing to mend
+    nearly_closed: float  # rounding after a correction
+    reopened: float  # a row that was left out opens
+    lost: float  # the closures cannot be held
+    least_step: float  # of the time: rounding
+    rope_step: float  # of the time: how near a run comes to where a rope would push
+    dodge: float  # ratio of the lengths tried
+    pivot_rounding: float  # what rounding makes of the closures, times h rate / pivot
+    pivot_noise: float  # what a step at the least of the lengths tried may be off by, likewise
+
+
+class Scene(metaclass=Fields):
+    """A scene and the kernel's work on it; scene.pxd says what the fields are."""
+
+    body_count: int
+    freedom_count: int
+    load_count: int
+    closure_count: int
+    counter_count: int
+    variable_count: int
+    answer_count: int
+    selected_count: int
+    driven: int
+    work_at: int
+    roped: int
+    gravity: Vec3
+    size: float
+    limits: Limits
+    pivot_chosen: float
+    pivot: float
+    pivot_of_step: float
+    gap: float
+    pivot_recovered: float
+    bodies: list[Body]
+    freedoms: list[Freedom]
+    loads: list[Load]
+    closures: list[Closure]
+    counters: list[Counter]
+    variables: list[Variable]
+    programs: Programs
+    indices: list[int]
+    selected: list[int]
+    envelope: list[int]
+    e: list[float]
+    spread: list[float]
+    columns: list[float]
+    A: list[float]

@@ -1,0 +1,723 @@
+"""The stepping loop: an adaptive embedded Runge-Kutta method with dense output, and the states at asked instants.
+
+A method is data (integration/methods.py). The error of a step is measured body by body and the largest counts, for a
+resting neighbour must not dilute it: coordinates against tol (angles) and tol * size (shifts), rates against tol * the
+largest rate the body has had. Hairer, Norsett, Wanner, Solving Ordinary Differential Equations I (1993), II.4-II.6.
+"""
+
+from __future__ import annotations
+
+from array import array
+from typing import Any
+
+try:
+    import cython
+except ImportError:
+    from heuncli.kernel.shadow import cython
+
+if not cython.compiled:
+    from math import fabs, pow, sqrt
+
+    from heuncli.kernel.algebra import Vec3, norm
+    from heuncli.kernel.closures import slack
+    from heuncli.kernel.response import evaluate, must_choose_anew, settle
+    from heuncli.kernel.scene import Body, Scene
+    from heuncli.kernel.selection import select_independent_rows
+    from heuncli.kernel.shadow import cython
+    from heuncli.kernel.structs import Group, Method, Run
+    from heuncli.kernel.workspace import Workspace
+
+    # What `advance` answers; for C these stand in steps.pxd, in the same order.
+    REACHED, MORE, COLLAPSED, NOT_A_NUMBER, CLOSURES_LOST, ROPE_SLACK, ACCEPTED, AGAIN = range(8)
+
+CODES = {
+    "reached": REACHED,
+    "more": MORE,
+    "collapsed": COLLAPSED,
+    "not a number": NOT_A_NUMBER,
+    "closures lost": CLOSURES_LOST,
+    "rope slack": ROPE_SLACK,
+}
+
+
+def combine(
+    method: cython.pointer[Method], row: cython.int, K: cython.pp_double, n: cython.int, out: cython.p_double
+) -> cython.void:
+    """out = sum over stages of the row's coefficients times K, in blocks that stay in the cache."""
+    i: cython.Py_ssize_t
+    j: cython.Py_ssize_t
+    begin: cython.Py_ssize_t = 0
+    end: cython.Py_ssize_t
+    while begin < n:
+        end = begin + 256 if begin + 256 < n else n
+        for i in range(begin, end):
+            out[i] = 0.0
+        for j in range(method.begin[row], method.begin[row + 1]):
+            c: cython.double = method.coefficient[j]
+            k: cython.p_double = K[method.stage[j]]
+            for i in range(begin, end):
+                out[i] += c * k[i]
+        begin = end
+
+
+def clipped(run: cython.pointer[Run], t: cython.double) -> cython.double:
+    """An instant of the piece: beyond its end other branches of the expressions hold."""
+    return run.before_end if t > run.before_end else t
+
+
+def norm_of(run: cython.pointer[Run], x: cython.p_double, begin: cython.int, end: cython.int) -> cython.double:
+    """Weighted norm of some components."""
+    i: cython.Py_ssize_t
+    g: cython.double
+    square: cython.double = 0.0
+    for i in range(begin, end):
+        g = x[i] * run.weights[i]
+        square += g * g
+    return sqrt(square)
+
+
+def step_error(method: cython.pointer[Method], run: cython.pointer[Run]) -> cython.double:
+    """Largest error over the groups, 1 = just allowed; not a number where one is not."""
+    b: cython.int
+    error: cython.double
+    worst: cython.double = 0.0
+    for b in range(run.group_count):
+        error = group_error(method, run, b)
+        if error != error:
+            return error
+        if error > worst:
+            worst = error
+    return worst
+
+
+def group_error(method: cython.pointer[Method], run: cython.pointer[Run], b: cython.int) -> cython.double:
+    """Error of a group, h e5 / sqrt(1 + 0.01 (e3 / e5)^2) of the two estimates, or h e of one."""
+    group: cython.pointer[Group] = cython.address(run.groups[b])
+    i: cython.Py_ssize_t
+    e: cython.double
+    g: cython.double
+    fine: cython.double = 0.0
+    coarse: cython.double = 0.0
+    rate: cython.double = norm_of(run, run.z, group.rates, group.end)
+    if rate < group.rate:
+        rate = group.rate
+    group.trial = rate
+    floor: cython.double = 0.01 * run.rate
+    if b == run.energy_group:
+        # energy, against the largest work so far or a part of what the bodies may have of it
+        floor = 0.01 * run.energy_scale * run.rate * run.rate
+    scale: cython.double = 1.0 / run.tolerance
+    for i in range(group.coordinates, group.end):
+        if i == group.rates:
+            scale = 1.0 / (run.tolerance * (rate + floor + 1e-200))
+        g = run.weights[i] * scale
+        e = run.fine[i] * g
+        fine += e * e
+        if method.estimates == 2:
+            e = run.coarse[i] * g
+            coarse += e * e
+    if fine > 0.0:
+        return run.h * fine / sqrt(fine + 0.01 * coarse)
+    return fine  # 0, or not a number
+
+
+def begin_piece(scene: cython.pointer[Scene], method: cython.pointer[Method], run: cython.pointer[Run]) -> cython.int:
+    """The derivative at the start of a piece and a first step from it; ROPE_SLACK where a rope would push at once."""
+    i: cython.Py_ssize_t
+    h: cython.double
+    scene.pivot_of_step = (
+        0.0 if run.following else 1.0
+    )  # how near to a singular pose a step followed comes is not known
+    if scene.closure_count:
+        select_independent_rows(scene, run.t, run.y, True)
+        settle(scene, run.t, run.y)
+    evaluate(scene, run.t, run.y, run.K[0])
+    run.evaluations += 1
+    if scene.roped:
+        run.rope = slack(scene)
+        if run.rope:
+            return ROPE_SLACK
+    h = first_step(scene, method, run)
+    if run.proposed <= 0.0 or h < run.proposed:
+        run.proposed = h
+    run.fresh = 0
+    run.rejected_before = 0
+    for i in range(run.n):
+        run.carry[i] = 0.0
+    return REACHED
+
+
+def first_step(scene: cython.pointer[Scene], method: cython.pointer[Method], run: cython.pointer[Run]) -> cython.double:
+    """A first step from the largest rate and acceleration; sets the rate scales."""
+    b: cython.int
+    u: cython.double
+    v: cython.double
+    rate: cython.double = 0.0
+    acceleration: cython.double = 0.0
+    for b in range(run.group_count):
+        if b != run.energy_group:
+            group: cython.pointer[Group] = cython.address(run.groups[b])
+            u = norm_of(run, run.y, group.rates, group.end)
+            v = norm_of(run, run.K[0], group.rates, group.end)
+            if u > group.rate:
+                group.rate = u
+            if u > rate:
+                rate = u
+            if v > acceleration:
+                acceleration = v
+    if rate > run.rate:
+        run.rate = rate
+    if sqrt(acceleration) > rate:
+        rate = sqrt(acceleration)
+    v = load_rate(scene, run)
+    if v > run.rate:
+        run.rate = v
+    if rate > 0.0:
+        return pow(run.tolerance, method.exponent) / rate
+    return run.end - run.t
+
+
+def load_rate(scene: cython.pointer[Scene], run: cython.pointer[Run]) -> cython.double:
+    """A part of the rate that the applied loads could cause: what is held at rest has no rate of its own [1/s]."""
+    i: cython.Py_ssize_t
+    u: cython.double
+    g: cython.double
+    largest: cython.double = norm(scene.gravity) / scene.size
+    run.energy_scale = 0.0
+    for i in range(scene.body_count):
+        body: cython.pointer[Body] = cython.address(scene.bodies[i])
+        g = body.mass * scene.size
+        run.energy_scale += g * scene.size
+        u = (manhattan(body.f_applied) + manhattan(body.M_applied) / scene.size) / g
+        if u > largest:
+            largest = u
+    return 0.1 * sqrt(largest)
+
+
+def manhattan(a: Vec3) -> cython.double:
+    """|x| + |y| + |z|."""
+    return fabs(a.x) + fabs(a.y) + fabs(a.z)
+
+
+def propose(run: cython.pointer[Run]) -> cython.void:
+    """Length of the next step; the last of a piece ends it, the one before is halved with it."""
+    run.last = 0
+    run.h = run.proposed
+    run.stop = run.end
+    if run.following:
+        run.stop = run.ends[run.done]
+        run.h = run.stop - run.t
+        run.last = 1
+    elif run.t + 1.01 * run.h >= run.end:
+        run.h = run.end - run.t
+        run.last = 1
+    elif run.t + 2.0 * run.h > run.end:
+        run.h = 0.5 * (run.end - run.t)
+
+
+def blocked(scene: cython.pointer[Scene], run: cython.pointer[Run]) -> cython.int:
+    """Why there is no further step: the closures lock while rates grow, or the step is rounding of the time."""
+    if run.last:
+        return REACHED
+    if scene.closure_count and scene.pivot < scene.limits.locked and run.h <= scene.limits.locked_step * fabs(run.end):
+        return CLOSURES_LOST
+    if run.h <= scene.limits.least_step * fabs(run.end) or run.h < 1e-300:
+        return COLLAPSED
+    return REACHED
+
+
+def attempt(scene: cython.pointer[Scene], method: cython.pointer[Method], run: cython.pointer[Run]) -> cython.int:
+    """The stages of a step and its solution z, with its small parts beside it; what `evaluate` says there.
+
+    What is off the closures by a little is accelerated by a lot near a singular pose: there the stages are settled.
+    """
+    s: cython.int
+    i: cython.Py_ssize_t
+    t: cython.double
+    change: cython.double
+    for s in range(1, method.stages):
+        combine(method, s, run.K, run.n, run.stage)
+        for i in range(run.n):
+            run.stage[i] = run.y[i] + run.h * run.stage[i]
+        t = clipped(run, run.t + method.node[s] * run.h)
+        if run.near:
+            settle(scene, t, run.stage)
+        evaluate(scene, t, run.stage, run.K[s])
+    combine(method, method.stages, run.K, run.n, run.z)
+    for i in range(run.n):
+        change = run.h * run.z[i] + run.carry[i]
+        run.z[i] = run.y[i] + change
+        run.z_carry[i] = change - (run.z[i] - run.y[i])
+    run.evaluations += method.stages
+    return evaluate(scene, clipped(run, run.t + run.h), run.z, run.K[method.stages])
+
+
+def rope_slack(scene: cython.pointer[Scene], run: cython.pointer[Run]) -> cython.int:
+    """Halve the way to where a rope would push; the run ends just before it."""
+    run.rope = slack(scene)
+    if run.rope == 0:
+        return ACCEPTED
+    run.proposed = 0.5 * run.h
+    if run.proposed <= scene.limits.rope_step * (run.end + fabs(run.t)):
+        return ROPE_SLACK
+    return AGAIN
+
+
+def judge(
+    scene: cython.pointer[Scene], method: cython.pointer[Method], run: cython.pointer[Run], trouble: cython.int
+) -> cython.int:
+    """ACCEPTED, AGAIN with another length, or NOT_A_NUMBER."""
+    error: cython.double
+    noise: cython.double = 0.0
+    row: cython.int = method.stages + 1 + method.extra
+    run.error = 0.0
+    if run.following:
+        return ACCEPTED
+    combine(method, row, run.K, run.n, run.coarse)
+    combine(method, row + method.estimates - 1, run.K, run.n, run.fine)
+    error = step_error(method, run)
+    if run.near:
+        if dodge(scene, run, error, trouble):
+            return AGAIN
+        noise = singular_noise(scene, run)
+    if error != error or trouble < 0:
+        # outside what the scene can do: a much smaller step, or the end of it
+        run.proposed = 0.1 * run.h
+        run.rejected += 1
+        run.rejected_before = 1
+        if run.proposed < scene.limits.least_step * (run.end - run.t) or run.proposed <= 1e-15 * fabs(run.t):
+            return NOT_A_NUMBER
+        return AGAIN
+    if error > 1.0 + noise:
+        factor: cython.double = 0.9 * pow(error, -method.exponent)
+        run.proposed = run.h * (factor if factor > 0.2 else 0.2)
+        run.rejected += 1
+        run.rejected_before = 1
+        return AGAIN
+    run.error = error
+    return ACCEPTED
+
+
+def dodge(
+    scene: cython.pointer[Scene], run: cython.pointer[Run], error: cython.double, trouble: cython.int
+) -> cython.int:
+    """Whether to try another length that may keep the stages off a singular pose; at last the best of those tried."""
+    noise: cython.double = 1e300  # what rounding makes of the closures at the worst of the stages, by the tolerance
+    if scene.pivot_of_step > 0.0:
+        noise = scene.limits.pivot_rounding * run.h * run.rate / (scene.pivot_of_step * run.tolerance)
+    broken: cython.bint = error != error or trouble < 0
+    if run.dodges >= scene.limits.dodges or run.last:
+        return 0
+    if not (noise > 0.1 or broken or (error > 1.0 and run.dodges > 0)):
+        return 0
+    worse: cython.double = error if error > noise else noise
+    if broken:
+        worse = 1e300
+    if run.dodges == 0 or worse < run.best:
+        run.best = worse
+        run.best_h = run.h
+    run.dodges += 1
+    run.proposed = run.best_h if run.dodges == scene.limits.dodges else scene.limits.dodge * run.h
+    run.rejected += 1
+    return 1
+
+
+def singular_noise(scene: cython.pointer[Scene], run: cython.pointer[Run]) -> cython.double:
+    """What a step that found no better way may be off by, also by what its start makes of the rounding."""
+    pivot: cython.double = scene.pivot_of_step
+    if run.pivot_at_start < pivot:
+        pivot = run.pivot_at_start
+    if pivot > 0.0 and run.dodges == scene.limits.dodges:
+        return scene.limits.pivot_noise * run.h * run.rate / (pivot * run.tolerance)
+    return 0.0
+
+
+def interpolant(scene: cython.pointer[Scene], method: cython.pointer[Method], run: cython.pointer[Run]) -> cython.void:
+    """The interpolating polynomial over the step y -> z, in nested form: its rows of coefficients."""
+    s: cython.int
+    i: cython.Py_ssize_t
+    t: cython.double
+    change: cython.double
+    last: cython.p_double = run.K[method.stages]
+    for s in range(method.stages + 1, method.stages + 1 + method.extra):
+        combine(method, s, run.K, run.n, run.stage)
+        for i in range(run.n):
+            run.stage[i] = run.y[i] + run.h * run.stage[i]
+        t = clipped(run, run.t + method.node[s] * run.h)
+        if scene.closure_count and scene.pivot_of_step < scene.limits.near_singular:
+            settle(scene, t, run.stage)
+        evaluate(scene, t, run.stage, run.K[s])
+    run.evaluations += method.extra
+    first: cython.p_double = run.K[0]
+    for i in range(run.n):
+        change = run.z[i] - run.y[i]
+        run.dense[0][i] = change
+        run.dense[1][i] = run.h * first[i] - change
+        run.dense[2][i] = 2.0 * change - run.h * (last[i] + first[i])
+    for s in range(method.dense_rows):
+        combine(method, method.stages + 1 + method.extra + method.estimates + s, run.K, run.n, run.dense[3 + s])
+        for i in range(run.n):
+            run.dense[3 + s][i] *= run.h
+
+
+def interpolate(run: cython.pointer[Run], rows: cython.int, x: cython.double, out: cython.p_double) -> cython.void:
+    """State at the fraction x of the step: y + x (F0 + (1 - x) (F1 + x (F2 + (1 - x) (F3 + ...))))."""
+    i: cython.Py_ssize_t
+    k: cython.int
+    factor: cython.double
+    for i in range(run.n):
+        out[i] = 0.0
+    for k in range(rows - 1, -1, -1):
+        factor = x if k % 2 == 0 else 1.0 - x
+        row: cython.p_double = run.dense[k]
+        for i in range(run.n):
+            out[i] = (out[i] + row[i]) * factor
+    for i in range(run.n):
+        out[i] = run.y[i] + out[i]
+
+
+def sample(scene: cython.pointer[Scene], method: cython.pointer[Method], run: cython.pointer[Run]) -> cython.void:
+    """The asked instants within the step y -> z, those at its end only where the piece ends."""
+    i: cython.Py_ssize_t
+    t: cython.double
+    x: cython.double
+    have: cython.bint = False
+    until: cython.double = run.stop if run.last else run.t
+    while run.next_sample < run.sample_count:
+        t = run.times[run.next_sample]
+        if not (t < run.t + run.h or t <= until):
+            break
+        at: cython.p_double = run.samples[run.next_sample]
+        x = (t - run.t) / run.h
+        if x >= 1.0:
+            for i in range(run.n):
+                at[i] = run.z[i]
+        else:
+            if not have:
+                interpolant(scene, method, run)
+                have = True
+            interpolate(run, 3 + method.dense_rows, x, at)
+        run.next_sample += 1
+
+
+def growth(method: cython.pointer[Method], run: cython.pointer[Run]) -> cython.double:
+    """By what factor the next step may be longer; none after a rejection."""
+    factor: cython.double = 6.0
+    if run.error > 1.0:
+        factor = 1.0
+    elif run.error > 0.0:
+        factor = 0.9 * pow(run.error, -method.exponent)
+        if factor > 6.0:
+            factor = 6.0
+    if run.rejected_before and factor > 1.0:
+        factor = 1.0
+    return factor
+
+
+def accept(scene: cython.pointer[Scene], method: cython.pointer[Method], run: cython.pointer[Run]) -> cython.int:
+    """The step stands: samples, the new state with its derivative, the next length; CLOSURES_LOST, or REACHED."""
+    i: cython.Py_ssize_t
+    b: cython.Py_ssize_t
+    code: cython.int = REACHED
+    factor: cython.double = growth(method, run)
+    run.dodges = 0
+    sample(scene, method, run)
+    for i in range(run.n):
+        run.y[i] = run.z[i]
+        run.carry[i] = run.z_carry[i]
+    if not run.following:
+        for b in range(run.group_count):
+            run.groups[b].rate = run.groups[b].trial
+            if run.groups[b].rate > run.rate and b != run.energy_group:
+                run.rate = run.groups[b].rate
+    run.t = run.stop if run.last else run.t + run.h
+    if not run.last or run.proposed < run.h * factor:
+        # a step cut short by the end of the piece says nothing against a longer one after it
+        run.proposed = run.h * factor
+    run.rejected_before = 0
+    run.steps += 1
+    run.ends[run.done] = run.t
+    pivot: cython.double = scene.pivot_of_step
+    if scene.closure_count:
+        code = land(scene, run)
+        run.pivot_at_start = scene.pivot
+    else:
+        for i in range(run.n):
+            run.K[0][i] = run.K[method.stages][i]
+    if code == REACHED:
+        if not run.following:
+            for i in range(run.n):
+                run.passed[run.done][i] = run.y[i]
+            run.passed[run.done][run.n] = pivot
+        run.done += 1
+    return code
+
+
+def land(scene: cython.pointer[Scene], run: cython.pointer[Run]) -> cython.int:
+    """Bring the end of a step back onto the closures, with its derivative; CLOSURES_LOST where they cannot be held."""
+    t: cython.double = clipped(run, run.t)
+    gap: cython.double = settle(scene, t, run.y)
+    if must_choose_anew(scene, gap):
+        select_independent_rows(scene, t, run.y, False)
+        gap = settle(scene, t, run.y)
+    if gap > run.gap or gap != gap:
+        run.gap = gap
+    if not gap <= scene.limits.lost * scene.size:
+        return CLOSURES_LOST
+    evaluate(scene, t, run.y, run.K[0])
+    run.evaluations += 2
+    return REACHED
+
+
+def run_steps(scene: cython.pointer[Scene], method: cython.pointer[Method], run: cython.pointer[Run]) -> cython.int:
+    """Up to `most` accepted steps towards the end of the piece: REACHED, MORE to do, or why it cannot be continued.
+
+    Following, `ends` gives the steps, none is judged, and the first one's stages are settled.
+    """
+    code: cython.int
+    trouble: cython.int
+    run.done = 0
+    run.dodges = 0
+    if run.fresh and begin_piece(scene, method, run) == ROPE_SLACK:
+        return ROPE_SLACK
+    sample_start(run)
+    run.pivot_at_start = scene.pivot
+    while run.t < run.end:
+        if run.done >= run.most:
+            return MORE
+        propose(run)
+        code = blocked(scene, run)
+        if code != REACHED:
+            return code
+        run.near = scene.closure_count > 0 and (
+            scene.pivot_of_step < scene.limits.near_singular or run.pivot_at_start < scene.limits.near_singular
+        )
+        scene.pivot_of_step = 1.0
+        trouble = attempt(scene, method, run)
+        code = rope_slack(scene, run) if scene.roped and not run.following else ACCEPTED
+        if code == ACCEPTED:
+            code = judge(scene, method, run, trouble)
+        if code == ACCEPTED:
+            code = accept(scene, method, run)
+            if code != REACHED:
+                return code
+        elif code != AGAIN:
+            return code
+    return REACHED
+
+
+def sample_start(run: cython.pointer[Run]) -> cython.void:
+    """Asked instants up to the start of the first step."""
+    i: cython.Py_ssize_t
+    while run.next_sample < run.sample_count and run.times[run.next_sample] <= run.t:
+        for i in range(run.n):
+            run.samples[run.next_sample][i] = run.y[i]
+        run.next_sample += 1
+
+
+class Integration:
+    """One integration of a scene over asked instants: the loop's state and its output."""
+
+    def __init__(
+        self, workspace: Workspace, method: dict[str, Any], start: dict[str, Any], output: dict[str, Any]
+    ) -> None:
+        """method: numbers and arrays by name (integration/methods.py); start: groups (first coordinate, first rate and
+        end of each, flat), energy_group, weights, tolerance, rate; output: times, samples, ends, passed, which are
+        written into: all of them flat arrays.
+        """
+        if not cython.compiled:
+            self.run, self.method = Run(), Method()
+        self.workspace = workspace
+        self.output = output
+        self.keep: list[Any] = []
+        self.take_method(method)
+        self.take_start(start)
+        self.take_output(output)
+
+    def take_method(self, method: dict[str, Any]) -> None:
+        """The method's rows."""
+        of: cython.pointer[Method] = cython.address(self.method)
+        of.stages = method["stages"]
+        of.extra = method["extra"]
+        of.dense_rows = method["dense_rows"]
+        of.estimates = method["estimates"]
+        of.exponent = method["exponent"]
+        if cython.compiled:
+            of.begin = self.ints(method["begin"])
+            of.stage = self.ints(method["stage"])
+            of.coefficient = self.doubles(method["coefficient"])
+            of.node = self.doubles(method["node"])
+        else:
+            of.begin, of.stage = method["begin"].tolist(), method["stage"].tolist()
+            of.coefficient, of.node = method["coefficient"].tolist(), method["node"].tolist()
+
+    def take_start(self, start: dict[str, Any]) -> None:
+        """The loop's state before the first piece, and its room."""
+        run: cython.pointer[Run] = cython.address(self.run)
+        n: cython.int = len(start["weights"])
+        stages: cython.int = self.method.stages + 1 + self.method.extra
+        rows: cython.int = 3 + self.method.dense_rows
+        run.n = n
+        run.group_count = len(start["groups"]) // 3
+        run.energy_group = start["energy_group"]
+        run.tolerance = start["tolerance"]
+        run.rate = start["rate"]
+        run.following = start["following"]
+        run.next_sample = 0
+        run.rope = 0
+        run.steps = 0
+        run.evaluations = 0
+        run.rejected = 0
+        run.done = 0
+        run.dodges = 0
+        run.proposed = 0.0
+        run.energy_scale = 0.0
+        run.gap = 0.0
+        groups = array("i", start["groups"])
+        if cython.compiled:
+            run.weights = self.doubles(start["weights"])
+            run.groups = cython.cast(cython.pointer[Group], self.doubles(bytes(run.group_count * cython.sizeof(Group))))
+            run.y, run.z = self.zeros(n), self.zeros(n)
+            run.carry, run.z_carry = self.zeros(n), self.zeros(n)
+            run.coarse, run.fine, run.stage = self.zeros(n), self.zeros(n), self.zeros(n)
+            run.K, run.dense = self.matrix(stages, n), self.matrix(rows, n)
+        else:
+            run.weights = array("d", start["weights"]).tolist()
+            run.groups = [Group() for _ in range(run.group_count)]
+            run.y, run.z, run.carry, run.z_carry = [0.0] * n, [0.0] * n, [0.0] * n, [0.0] * n
+            run.coarse, run.fine, run.stage = [0.0] * n, [0.0] * n, [0.0] * n
+            run.K, run.dense = [[0.0] * n for _ in range(stages)], [[0.0] * n for _ in range(rows)]
+        for b in range(run.group_count):
+            run.groups[b].coordinates = groups[3 * b]
+            run.groups[b].rates = groups[3 * b + 1]
+            run.groups[b].end = groups[3 * b + 2]
+            run.groups[b].rate = 0.0
+            run.groups[b].trial = 0.0
+
+    def take_output(self, output: dict[str, Any]) -> None:
+        """The asked instants, and where states at them and at the ends of the steps go."""
+        run: cython.pointer[Run] = cython.address(self.run)
+        n: cython.int = run.n
+        run.sample_count = len(output["times"])
+        run.most = len(output["ends"])
+        if cython.compiled:
+            run.times = self.doubles(output["times"])
+            run.samples = self.over(output["samples"], run.sample_count, n)
+            run.ends = self.over(output["ends"], 1, run.most)[0]
+            run.passed = self.over(output["passed"], run.most, n + 1)
+        else:
+            run.times = array("d", output["times"]).tolist()
+            run.samples = [[0.0] * n for _ in range(run.sample_count)]
+            run.ends = array("d", output["ends"]).tolist()
+            run.passed = [[0.0] * (n + 1) for _ in range(run.most)]
+
+    def ints(self, numbers: Any) -> cython.p_int:
+        """A copy of some integers."""
+        memory = array("i", numbers) or array("i", [0])
+        view: cython.int[::1] = memory
+        self.keep.append(memory)
+        return cython.address(view[0])
+
+    def doubles(self, numbers: Any) -> cython.p_double:
+        """A copy of some numbers."""
+        memory = array("d", numbers) or array("d", [0.0])
+        view: cython.double[::1] = memory
+        self.keep.append(memory)
+        return cython.address(view[0])
+
+    def zeros(self, count: cython.Py_ssize_t) -> cython.p_double:
+        """Zeros."""
+        return self.doubles(bytes(8 * count))
+
+    def over(self, numbers: Any, rows: cython.Py_ssize_t, n: cython.Py_ssize_t) -> cython.pp_double:
+        """The rows of a flat array, in its own memory."""
+        i: cython.Py_ssize_t
+        begin: cython.pp_double = cython.cast(cython.pp_double, self.zeros(rows))
+        self.keep.append(numbers)
+        if rows:
+            view: cython.double[::1] = numbers
+            for i in range(rows):
+                begin[i] = cython.address(view[i * n])
+        return begin
+
+    def matrix(self, rows: cython.Py_ssize_t, n: cython.Py_ssize_t) -> cython.pp_double:
+        """Rows of zeros."""
+        return self.over(array("d", bytes(8 * max(rows * n, 1))), rows, n)
+
+    def begin(self, t: cython.double, before_end: cython.double, end: cython.double) -> None:
+        """A piece from t to its end, of which `before_end` is the last instant."""
+        self.run.t, self.run.before_end, self.run.end, self.run.fresh = t, before_end, end, 1
+
+    def start_at(self, state: Any) -> None:
+        """The state at the start of the first piece."""
+        i: cython.Py_ssize_t
+        for i in range(self.run.n):
+            self.run.y[i] = float(state[i])
+
+    def follow(self, ends: Any) -> None:
+        """The ends of the steps to be done again."""
+        i: cython.Py_ssize_t
+        for i in range(len(ends)):
+            self.run.ends[i] = ends[i]
+
+    def advance(self, most: cython.int, roped: cython.bint) -> int:
+        """Up to `most` steps; REACHED, MORE to do, or why not. roped: stop where a rope would push."""
+        code: cython.int
+        scene: cython.pointer[Scene] = cython.address(self.workspace.scene)
+        run: cython.pointer[Run] = cython.address(self.run)
+        method: cython.pointer[Method] = cython.address(self.method)
+        run.most = most
+        scene.roped = roped
+        with cython.nogil:
+            code = run_steps(scene, method, run)
+        if not cython.compiled:
+            self.output["ends"][: run.done] = run.ends[: run.done]
+            for k in range(run.done):
+                self.output["passed"][k * (run.n + 1) : (k + 1) * (run.n + 1)] = run.passed[k]
+        return code
+
+    def fetch(self) -> None:
+        """Bring the samples into `output` (where the kernel does not write there itself)."""
+        if not cython.compiled:
+            n = self.run.n
+            for k in range(self.run.sample_count):
+                self.output["samples"][k * n : (k + 1) * n] = self.run.samples[k]
+
+    def state(self) -> list[float]:
+        """The state reached."""
+        return [self.run.y[i] for i in range(self.run.n)]
+
+    @property
+    def t(self) -> float:
+        """The instant reached."""
+        return self.run.t
+
+    @property
+    def done(self) -> int:
+        """Steps of the last call."""
+        return self.run.done
+
+    @property
+    def steps(self) -> int:
+        """Accepted steps."""
+        return self.run.steps
+
+    @property
+    def evaluations(self) -> int:
+        """Evaluations of the derivative."""
+        return self.run.evaluations
+
+    @property
+    def gap(self) -> float:
+        """The largest gap that closures were left with [m]."""
+        return self.run.gap
+
+    @property
+    def rope(self) -> int:
+        """The closure row of the rope that would push; -1: none."""
+        return self.run.rope - 1
+
+    @property
+    def sampled(self) -> int:
+        """How many of the asked instants are done."""
+        return self.run.next_sample

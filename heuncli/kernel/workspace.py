@@ -1,0 +1,440 @@
+"""A scene in the kernel's memory, and what it answers at single states: the doors that heuncli/response.py opens.
+
+    recover     everything the sweep knows at given states
+    columns     one factorisation, many loads: what answers each
+    jacobian    the closure rows on the tree's freedoms
+    carried     the joint loads that closure multipliers alone leave in the tree
+Everything goes in and out as flat arrays of double (tree/tables.py names their parts); nothing is kept between calls.
+"""
+
+from __future__ import annotations
+
+from array import array
+from typing import Any
+
+try:
+    import cython
+except ImportError:
+    from heuncli.kernel.shadow import cython
+
+if not cython.compiled:
+    from heuncli.kernel.algebra import Mat3, Vec3, add, add_cross, dot
+    from heuncli.kernel.closures import clear_path, measure_rows, push_closures, put_unit_load
+    from heuncli.kernel.expressions import Expressions
+    from heuncli.kernel.response import configure, evaluate, must_choose_anew, respond, settle
+    from heuncli.kernel.scene import SHIFT, Body, Closure, Counter, Freedom, Limits, Load, Scene, Variable
+    from heuncli.kernel.selection import select_independent_rows
+    from heuncli.kernel.shadow import cython
+    from heuncli.kernel.structs import Instants
+    from heuncli.kernel.tree import balance, kinematics
+
+
+def put(out: cython.p_double, at: cython.Py_ssize_t, a: Vec3) -> cython.Py_ssize_t:
+    """Write a vector; where the next one goes."""
+    out[at] = a.x
+    out[at + 1] = a.y
+    out[at + 2] = a.z
+    return at + 3
+
+
+def put_matrix(out: cython.p_double, at: cython.Py_ssize_t, R: Mat3) -> cython.Py_ssize_t:
+    """Write a matrix by rows."""
+    at = put(out, at, Vec3(R.xx, R.xy, R.xz))
+    at = put(out, at, Vec3(R.yx, R.yy, R.yz))
+    return put(out, at, Vec3(R.zx, R.zy, R.zz))
+
+
+def put_body(out: cython.p_double, at: cython.Py_ssize_t, body: cython.pointer[Body]) -> cython.Py_ssize_t:
+    """A body's motion and joint load, as tables.BODY_ANSWER."""
+    at = put_matrix(out, at, body.R)
+    at = put(out, at, body.r)
+    at = put(out, at, body.omega)
+    at = put(out, at, body.v)
+    at = put(out, at, body.alpha)
+    at = put(out, at, body.a)
+    at = put(out, at, body.M_joint)
+    return put(out, at, body.f_joint)
+
+
+def put_load(out: cython.p_double, at: cython.Py_ssize_t, load: cython.pointer[Load]) -> cython.Py_ssize_t:
+    """An applied load, as tables.LOAD_ANSWER."""
+    at = put(out, at, load.force)
+    at = put(out, at, load.moment)
+    at = put(out, at, load.at)
+    at = put(out, at, load.from_at)
+    out[at] = load.value
+    out[at + 1] = load.span
+    out[at + 2] = load.rate
+    out[at + 3] = load.power
+    return at + 4
+
+
+def put_answers(scene: cython.pointer[Scene], out: cython.p_double, at: cython.Py_ssize_t) -> cython.Py_ssize_t:
+    """All bodies, freedoms, loads and closure rows, one after the other."""
+    i: cython.Py_ssize_t
+    for i in range(scene.body_count):
+        at = put_body(out, at, cython.address(scene.bodies[i]))
+    for i in range(scene.freedom_count):
+        freedom: cython.pointer[Freedom] = cython.address(scene.freedoms[i])
+        out[at] = freedom.q
+        out[at + 1] = freedom.u
+        out[at + 2] = freedom.udot
+        out[at + 3] = freedom.drive
+        at += 4
+    for i in range(scene.load_count):
+        at = put_load(out, at, cython.address(scene.loads[i]))
+    for i in range(scene.closure_count):
+        out[at] = scene.closures[i].multiplier
+        out[at + 1] = scene.closures[i].gap
+        at += 2
+    return at
+
+
+def recover_state(
+    scene: cython.pointer[Scene], t: cython.double, y: cython.p_double, dy: cython.p_double, afresh: cython.bint
+) -> cython.int:
+    """Settle y on the closures and find accelerations, multipliers and joint loads there; as `evaluate` gives.
+
+    Leaves the gap over all rows in scene.gap and the least pivot in scene.pivot_recovered.
+    """
+    scene.gap = 0.0
+    scene.pivot_recovered = 1.0
+    if scene.closure_count:
+        if afresh:
+            select_independent_rows(scene, t, y, True)
+        scene.gap = settle(scene, t, y)
+        scene.pivot_recovered = scene.pivot
+        if must_choose_anew(scene, scene.gap):
+            select_independent_rows(scene, t, y, False)
+            scene.gap = settle(scene, t, y)
+    idle: cython.int = evaluate(scene, t, y, dy)
+    if not scene.driven:
+        push_closures(scene)
+        balance(scene, True)
+    return idle
+
+
+def recover_states(scene: cython.pointer[Scene], instants: cython.pointer[Instants]) -> cython.void:
+    """Recover one state after the other; the rows chosen at one are the next one's, too, unless afresh."""
+    j: cython.Py_ssize_t
+    i: cython.Py_ssize_t
+    at: cython.Py_ssize_t
+    idle: cython.int
+    n: cython.Py_ssize_t = instants.n
+    for j in range(instants.count):
+        for i in range(n):
+            instants.y[i] = instants.states[j * n + i]
+        idle = recover_state(scene, instants.times[j], instants.y, instants.dy, j == 0 or instants.afresh)
+        for i in range(n):
+            instants.states[j * n + i] = instants.y[i]
+        at = put_answers(scene, instants.out, j * instants.width)
+        instants.out[at] = scene.gap
+        instants.out[at + 1] = idle
+        instants.out[at + 2] = scene.pivot_recovered
+
+
+def answer_column(
+    scene: cython.pointer[Scene], load: cython.p_double, out: cython.p_double, inertial: cython.bint
+) -> cython.void:
+    """What answers one column of loads (moment about the joint point, force; a body each), as tables.COLUMN_ANSWER."""
+    i: cython.Py_ssize_t
+    at: cython.Py_ssize_t = 0
+    for i in range(scene.body_count):
+        scene.bodies[i].M_applied = Vec3(load[6 * i], load[6 * i + 1], load[6 * i + 2])
+        scene.bodies[i].f_applied = Vec3(load[6 * i + 3], load[6 * i + 4], load[6 * i + 5])
+    respond(scene, inertial)
+    push_closures(scene)
+    balance(scene, inertial)
+    for i in range(scene.body_count):
+        body: cython.pointer[Body] = cython.address(scene.bodies[i])
+        at = put(out, at, body.alpha)
+        at = put(out, at, body.a)
+        at = put(out, at, body.M_joint)
+        at = put(out, at, body.f_joint)
+    for i in range(scene.closure_count):
+        out[at] = scene.closures[i].multiplier
+        at += 1
+
+
+def carry(scene: cython.pointer[Scene], multipliers: cython.p_double, out: cython.p_double) -> cython.void:
+    """Joint loads (moment about the joint point, force; a body each) that hold closure multipliers at rest."""
+    i: cython.Py_ssize_t
+    at: cython.Py_ssize_t = 0
+    zero: Vec3 = Vec3(0.0, 0.0, 0.0)
+    for i in range(scene.body_count):
+        scene.bodies[i].M_applied = zero
+        scene.bodies[i].f_applied = zero
+        scene.bodies[i].alpha = zero
+        scene.bodies[i].a = zero
+    for i in range(scene.closure_count):
+        scene.closures[i].multiplier = multipliers[i]
+    push_closures(scene)
+    balance(scene, False)
+    for i in range(scene.body_count):
+        at = put(out, at, scene.bodies[i].M_joint)
+        at = put(out, at, scene.bodies[i].f_joint)
+
+
+def jacobian_row(scene: cython.pointer[Scene], row: cython.pointer[Closure], out: cython.p_double) -> cython.void:
+    """J of one row on the tree's freedoms (a ball's turns about the world's axes): the rate of its gap for each.
+
+    out holds zeros; the unit load's moment about each freedom's axis, or force along it, stands there afterwards.
+    """
+    n: cython.Py_ssize_t
+    k: cython.Py_ssize_t
+    clear_path(scene, row)
+    put_unit_load(scene, row, row.b, -1.0)
+    put_unit_load(scene, row, row.a, 1.0)
+    for n in range(row.path, row.path + row.path_count):
+        body: cython.pointer[Body] = cython.address(scene.bodies[scene.indices[n]])
+        if body.ball:
+            put(out, body.answer_at, body.M_column)
+        for k in range(body.first_freedom, body.end_freedom):
+            freedom: cython.pointer[Freedom] = cython.address(scene.freedoms[k])
+            if not freedom.driven:
+                out[freedom.answer_at] = dot(freedom.s, body.f_column if freedom.kind == SHIFT else body.M_column)
+        if body.parent >= 0:
+            parent: cython.pointer[Body] = cython.address(scene.bodies[body.parent])
+            moment: Vec3 = add_cross(body.M_column, body.arm, body.f_column)
+            parent.M_column = add(parent.M_column, moment)
+            parent.f_column = add(parent.f_column, body.f_column)
+
+
+class Workspace:
+    """A scene's tables in the kernel's memory (copies), with its work arrays."""
+
+    def __init__(
+        self, tables: dict[str, Any], indices: array[int], expressions: Expressions, numbers: dict[str, Any]
+    ) -> None:
+        """tables: structured arrays by name (tree/tables.py); indices: of the closure rows; numbers: single ones."""
+        if not cython.compiled:
+            self.scene = Scene()
+        scene: cython.pointer[Scene] = cython.address(self.scene)
+        x, y, z = numbers["gravity"]
+        self.keep: list[Any] = [expressions]
+        scene.gravity = Vec3(x, y, z)
+        scene.size = numbers["size"]
+        scene.driven = numbers["driven"]
+        scene.work_at = numbers["work_at"]
+        scene.answer_count = numbers["answer_count"]
+        scene.selected_count = 0
+        scene.roped = 0
+        scene.pivot_chosen = 1.0
+        scene.pivot = 1.0
+        scene.pivot_of_step = 1.0
+        scene.programs = cython.address(expressions.programs)
+        scene.body_count = len(tables["bodies"])
+        scene.freedom_count = len(tables["freedoms"])
+        scene.load_count = len(tables["loads"])
+        scene.closure_count = len(tables["closures"])
+        scene.counter_count = len(tables["counters"])
+        scene.variable_count = len(tables["variables"])
+        self.take_tables(tables)
+        self.take_arrays(indices, numbers["column_count"])
+
+    def take_tables(self, tables: dict[str, Any]) -> None:
+        """Copy the tables: their rows are the structs, or become the objects."""
+        scene: cython.pointer[Scene] = cython.address(self.scene)
+        if cython.compiled:
+            scene.bodies = cython.cast(cython.pointer[Body], self.rows(tables["bodies"], cython.sizeof(Body)))
+            scene.freedoms = cython.cast(cython.pointer[Freedom], self.rows(tables["freedoms"], cython.sizeof(Freedom)))
+            scene.loads = cython.cast(cython.pointer[Load], self.rows(tables["loads"], cython.sizeof(Load)))
+            scene.closures = cython.cast(cython.pointer[Closure], self.rows(tables["closures"], cython.sizeof(Closure)))
+            scene.counters = cython.cast(cython.pointer[Counter], self.rows(tables["counters"], cython.sizeof(Counter)))
+            scene.variables = cython.cast(
+                cython.pointer[Variable], self.rows(tables["variables"], cython.sizeof(Variable))
+            )
+            limits: cython.pointer[Limits] = cython.cast(
+                cython.pointer[Limits], self.rows(tables["limits"], cython.sizeof(Limits))
+            )
+            scene.limits = limits[0]
+        else:
+            scene.bodies = [Body(row) for row in tables["bodies"].tolist()]
+            scene.freedoms = [Freedom(row) for row in tables["freedoms"].tolist()]
+            scene.loads = [Load(row) for row in tables["loads"].tolist()]
+            scene.closures = [Closure(row) for row in tables["closures"].tolist()]
+            scene.counters = [Counter(row) for row in tables["counters"].tolist()]
+            scene.variables = [Variable(row) for row in tables["variables"].tolist()]
+            scene.limits = Limits(tables["limits"].tolist()[0])
+
+    def take_arrays(self, indices: array[int], column_count: cython.Py_ssize_t) -> None:
+        """Copy the indices, make room for the work."""
+        scene: cython.pointer[Scene] = cython.address(self.scene)
+        answers: cython.Py_ssize_t = scene.answer_count
+        rows: cython.Py_ssize_t = scene.closure_count
+        if cython.compiled:
+            scene.indices = self.ints(indices)
+            scene.selected = self.ints(array("i", bytes(4 * rows)))
+            scene.envelope = self.ints(array("i", bytes(4 * rows)))
+            scene.e = self.doubles(answers)
+            scene.spread = self.doubles(answers)
+            scene.columns = self.doubles(column_count)
+            scene.A = self.doubles(rows * rows)
+        else:
+            scene.indices = indices.tolist()
+            scene.selected, scene.envelope = [0] * rows, [0] * rows
+            scene.e, scene.spread = [0.0] * answers, [0.0] * answers
+            scene.columns, scene.A = [0.0] * column_count, [0.0] * (rows * rows)
+
+    def rows(self, table: Any, size: cython.Py_ssize_t) -> cython.p_void:
+        """A copy of a table's rows, each of the struct's size."""
+        if table.dtype.itemsize != size:
+            raise ValueError(f"a row of {table.dtype.itemsize} bytes is no struct of {size}")
+        memory = bytearray(table.tobytes() or bytes(size))
+        view: cython.uchar[::1] = memory
+        self.keep.append(memory)
+        return cython.address(view[0])
+
+    def ints(self, numbers: array[int]) -> cython.p_int:
+        """A copy of some integers."""
+        memory = array("i", numbers) or array("i", [0])
+        view: cython.int[::1] = memory
+        self.keep.append(memory)
+        return cython.address(view[0])
+
+    def doubles(self, count: cython.Py_ssize_t) -> cython.p_double:
+        """Zeros."""
+        memory = array("d", bytes(8 * max(count, 1)))
+        view: cython.double[::1] = memory
+        self.keep.append(memory)
+        return cython.address(view[0])
+
+    def recover(self, times: Any, states: Any, out: Any, width: cython.Py_ssize_t, afresh: cython.bint) -> None:
+        """Everything the sweep knows at given states, which are settled in place; flat, `width` numbers an instant.
+
+        After the answers of an instant: the gap over all rows, how many freedoms had no inertia behind them, and the
+        least pivot of the closures. afresh: choose the closure rows at every instant anew.
+        """
+        scene: cython.pointer[Scene] = cython.address(self.scene)
+        count: cython.Py_ssize_t = len(times)
+        n: cython.Py_ssize_t = len(states) // max(count, 1)
+        work = array("d", bytes(16 * max(n, 1)))
+        if count == 0:
+            return
+        if cython.compiled:
+            at: cython.double[::1] = times
+            Y: cython.double[::1] = states
+            to: cython.double[::1] = out
+            room: cython.double[::1] = work
+            instants: Instants = Instants(
+                count,
+                n,
+                width,
+                afresh,
+                cython.address(at[0]),
+                cython.address(Y[0]),
+                cython.address(to[0]),
+                cython.address(room[0]),
+                cython.address(room[n]),
+            )
+            with cython.nogil:
+                recover_states(scene, cython.address(instants))
+        else:
+            lists = times.tolist(), states.tolist(), out.tolist()
+            plain = Instants(count, n, width, afresh, *lists, [0.0] * n, [0.0] * n)
+            recover_states(scene, plain)
+            states[:], out[:] = plain.states, plain.out
+
+    def columns(self, t: cython.double, state: Any, loads: Any, inertial: Any, out: Any) -> int:
+        """One factorisation at a state, many columns of loads: what answers each, as COLUMN_ANSWER and multipliers.
+
+        loads: moment about the joint point and force, a body each, a column after the other; inertial: of each column,
+        whether velocity terms, drives and gravity count. Flat arrays. Gives what `configure` gives.
+        """
+        c: cython.Py_ssize_t
+        scene: cython.pointer[Scene] = cython.address(self.scene)
+        count: cython.Py_ssize_t = len(inertial)
+        height: cython.Py_ssize_t = 6 * scene.body_count
+        width: cython.Py_ssize_t = self.column_width
+        if cython.compiled:
+            F: cython.double[::1] = loads
+            to: cython.double[::1] = out
+            idle: cython.int = self.configure_at(t, state)
+            for c in range(count):
+                answer_column(scene, cython.address(F[height * c]), cython.address(to[width * c]), inertial[c])
+        else:
+            idle = self.configure_at(t, state)
+            for c in range(count):
+                answer = [0.0] * width
+                answer_column(scene, loads[height * c : height * c + height].tolist(), answer, inertial[c])
+                out[width * c : width * c + width] = answer
+        return idle
+
+    @property
+    def column_width(self) -> int:
+        """Numbers that answer one column."""
+        return 12 * self.scene.body_count + self.scene.closure_count
+
+    def jacobians(self, times: Any, states: Any, out: Any) -> None:
+        """J of all closure rows on the tree's freedoms at settled states: flat, instants, rows, freedoms."""
+        j: cython.Py_ssize_t
+        r: cython.Py_ssize_t
+        scene: cython.pointer[Scene] = cython.address(self.scene)
+        rows: cython.Py_ssize_t = scene.closure_count
+        width: cython.Py_ssize_t = scene.answer_count
+        n: cython.Py_ssize_t = len(states) // max(len(times), 1)
+        for j in range(len(times)):
+            self.measure_at(times[j], states[n * j : n * j + n])
+            for r in range(rows):
+                self.jacobian_into(r, out, width * (rows * j + r))
+
+    def jacobian_into(self, r: cython.Py_ssize_t, out: Any, at: cython.Py_ssize_t) -> None:
+        """J of one row, written from place `at` on."""
+        scene: cython.pointer[Scene] = cython.address(self.scene)
+        if cython.compiled:
+            to: cython.double[::1] = out
+            jacobian_row(scene, cython.address(scene.closures[r]), cython.address(to[at]))
+        else:
+            answer = [0.0] * scene.answer_count
+            jacobian_row(scene, scene.closures[r], answer)
+            out[at : at + scene.answer_count] = answer
+
+    def carried(self, times: Any, states: Any, multipliers: Any, out: Any) -> None:
+        """Joint loads that hold closure multipliers at rest: flat, instants, columns, bodies, moment and force.
+
+        multipliers: instants, columns, rows; as many columns at each instant.
+        """
+        j: cython.Py_ssize_t
+        c: cython.Py_ssize_t
+        scene: cython.pointer[Scene] = cython.address(self.scene)
+        instants: cython.Py_ssize_t = len(times)
+        rows: cython.Py_ssize_t = scene.closure_count
+        width: cython.Py_ssize_t = 6 * scene.body_count
+        n: cython.Py_ssize_t = len(states) // max(instants, 1)
+        columns: cython.Py_ssize_t = len(multipliers) // max(instants * rows, 1)
+        for j in range(instants):
+            self.measure_at(times[j], states[n * j : n * j + n])
+            for c in range(columns * j, columns * j + columns):
+                if cython.compiled:
+                    z: cython.double[::1] = multipliers
+                    to: cython.double[::1] = out
+                    carry(scene, cython.address(z[rows * c]), cython.address(to[width * c]))
+                else:
+                    answer = [0.0] * width
+                    carry(scene, multipliers[rows * c : rows * c + rows].tolist(), answer)
+                    out[width * c : width * c + width] = answer
+
+    def configure_at(self, t: cython.double, state: Any) -> int:
+        """Choose the closure rows and factor at a state, which is not changed."""
+        scene: cython.pointer[Scene] = cython.address(self.scene)
+        if cython.compiled:
+            y: cython.double[::1] = array("d", state)
+            if scene.closure_count:
+                select_independent_rows(scene, t, cython.address(y[0]), True)
+            kinematics(scene, t, cython.address(y[0]))
+            return configure(scene, t)
+        plain = list(state)
+        if scene.closure_count:
+            select_independent_rows(scene, t, plain, True)
+        kinematics(scene, t, plain)
+        return configure(scene, t)
+
+    def measure_at(self, t: cython.double, state: Any) -> None:
+        """Kinematics and closure rows at a state, which is not changed."""
+        scene: cython.pointer[Scene] = cython.address(self.scene)
+        if cython.compiled:
+            y: cython.double[::1] = array("d", state)
+            kinematics(scene, t, cython.address(y[0]))
+        else:
+            kinematics(scene, t, list(state))
+        measure_rows(scene, t)

@@ -1,0 +1,86 @@
+"""The kernel's structs as NumPy types: tables whose rows are its memory, and the parts of its flat answers.
+
+The types follow from the fields of kernel/scene.py; the order of an answer's parts is that in which
+kernel/workspace.py writes them.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Iterable, Mapping
+from typing import Any
+
+import numpy as np
+
+from heuncli.kernel.choose import scene
+from heuncli.results import Array
+
+Table = np.ndarray[Any, np.dtype[np.void]]
+
+NUMBERS = {"int": np.dtype(np.intc), "float": np.dtype(np.float64)}
+VALUES = {
+    name: np.dtype([(part, np.intc if name == "Program" else np.float64) for part in parts.split()], align=True)
+    for name, parts in {
+        "Vec3": "x y z",
+        "Mat3": "xx xy xz yx yy yz zx zy zz",
+        "Sym3": "xx xy xz yy yz zz",
+        "Ldl3": "yx zx zy xx yy zz",
+        "Program": "start count",
+    }.items()
+}
+
+
+def type_of(record: type[scene.Record]) -> np.dtype[np.void]:
+    """The NumPy type of a struct."""
+    kinds = {**NUMBERS, **VALUES}
+    return np.dtype([(name, kinds[kind]) for name, kind in record.__annotations__.items()], align=True)
+
+
+def table(record: type[scene.Record], rows: list[dict[str, Any]]) -> Table:
+    """Rows given by field; what is not given is the kernel's own, and zero."""
+    found: Table = np.zeros(len(rows), type_of(record))
+    for name in rows[0] if rows else ():
+        kind = found.dtype[name]
+        column = [row[name] for row in rows]
+        found[name] = np.array([tuple(map(float, value)) for value in column] if kind.names else column, dtype=kind)
+    return found
+
+
+def symmetric(J: Array) -> tuple[float, ...]:
+    """A symmetric matrix as Sym3."""
+    return J[0, 0], J[0, 1], J[0, 2], J[1, 1], J[1, 2], J[2, 2]
+
+
+def vectors(column: Table) -> Array:
+    """A column of Vec3 as an array (n, 3)."""
+    return np.stack([column["x"], column["y"], column["z"]], axis=-1)
+
+
+def _answer(vectors: str, numbers: str = "") -> np.dtype[np.void]:
+    parts: list[tuple[str, Any, Any]] = [(v, np.float64, (3, 3) if v == "R" else (3,)) for v in vectors.split()]
+    return np.dtype([*parts, *((n, np.float64, ()) for n in numbers.split())])
+
+
+# World axes; r, v, a (less g), joint_moment: of and about the body's joint point; joint loads ON the body.
+BODY_ANSWER = _answer("R r omega v alpha a joint_moment joint_force")
+FREEDOM_ANSWER = _answer("", "q u udot drive")
+# force, moment: ON b, at the point `at` of b; `from_at`: its counterpart on a.
+LOAD_ANSWER = _answer("force moment at from_at", "value span rate power")
+CLOSURE_ANSWER = _answer("", "multiplier gap")
+STATE_ANSWER = _answer("", "gap idle pivot")
+COLUMN_ANSWER = _answer("alpha a joint_moment joint_force")
+
+
+def parts(flat: Array, sizes: Iterable[tuple[np.dtype[np.void], int]]) -> list[Table]:
+    """Rows of numbers (n_t, width) as tables (n_t, n), one after the other; joined without copying where possible."""
+    found, at = [], 0
+    for kind, count in sizes:
+        end = at + count * (kind.itemsize // 8)
+        block = np.ascontiguousarray(flat[:, at:end])
+        found.append(block.view(kind) if count else np.zeros((len(flat), 0), kind))
+        at = end
+    return found
+
+
+def limits(values: Mapping[str, float]) -> Table:
+    """The kernel's thresholds as its table of one row."""
+    return table(scene.Limits, [dict(values)])
