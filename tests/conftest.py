@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import re
+import sys
 from pathlib import Path
 
 import pytest
@@ -13,10 +14,13 @@ from heuncli.kernel.form import FOLDER, KERNEL, MODULES
 
 def sources(name: str) -> set[Path]:
     """The files a kernel module is compiled from: its own, and the declarations it takes from its neighbours."""
-    own = {path for path in (FOLDER / f"{name}.py", FOLDER / f"{name}.pxd") if path.exists()}
-    imports = re.compile(r"from (?:cython\.cimports\.)?heuncli\.kernel\.(\w+) ")
-    neighbours = {name for path in own for name in imports.findall(path.read_text(encoding="utf-8"))}
-    return own | {path for path in (FOLDER / f"{neighbour}.pxd" for neighbour in neighbours) if path.exists()}
+    imports = re.compile(r"^from heuncli\.kernel\.(\w+) cimport", re.MULTILINE)
+    found, new = {FOLDER / f"{name}.py"}, {FOLDER / f"{name}.pxd"}
+    while new:
+        found |= new
+        neighbours = {near for path in new for near in imports.findall(path.read_text(encoding="utf-8"))}
+        new = {FOLDER / f"{near}.pxd" for near in neighbours} - found
+    return found
 
 
 def pytest_configure() -> None:
@@ -24,7 +28,7 @@ def pytest_configure() -> None:
     if KERNEL == "pure":
         return
     for name in MODULES:
-        built = Path(getattr(choose, name).__file__).stat().st_mtime
+        built = Path(str(sys.modules[f"{choose.__package__}.{name}"].__file__)).stat().st_mtime
         if any(path.stat().st_mtime > built for path in sources(name)):
             raise pytest.UsageError(
                 f"heuncli.kernel.{name} is compiled from older text: python -m heuncli.build, or HEUN_KERNEL=pure"

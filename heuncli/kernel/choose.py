@@ -1,6 +1,6 @@
 """The one door to the kernel from outside: its modules, in the form chosen for this process (form.py).
 
-Import them from here (`from heuncli.kernel.choose import tree`), never directly: the choice has to stand before the
+Import them from here (`from heuncli.kernel.choose import steps`), never directly: the choice has to stand before the
 first of them is loaded.
 """
 
