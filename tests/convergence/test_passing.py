@@ -57,7 +57,7 @@ RATES = [1.0, 0.3, 2.9, *np.random.default_rng(17).uniform(0.05, 4.0, 17).tolist
 def test_the_parallelogram_stays_one(rate: float, tolerance: float) -> None:
     """Bars parallel to rounding, at the pendulum's angle to what the local tolerance makes of two seconds' growth."""
     found, runner = run(rate, tolerance)
-    R = runner.recovered(found.times, found.states).bodies[-1, :, :9].reshape(-1, 3, 3)
+    R = runner.recovered(found.times, found.states).bodies["R"][-1]
     turned = {name: np.arctan2(R[runner.layout.place[i], 0, 1], R[runner.layout.place[i], 0, 0])
               for i, name in enumerate(b.name for b in scene(rate).mechanism.bodies)}  # fmt: skip
     assert abs(np.sin(turned["coupler"])) <= 1e-8  # what a gap of 1e-16 lets it turn in a flat pose

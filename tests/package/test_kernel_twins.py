@@ -9,7 +9,7 @@ import pytest
 
 from heuncli.kernel.choose import scene
 from heuncli.kernel.form import FOLDER
-from heuncli.tree import records
+from heuncli.tree import tables as records
 
 FOR_C = {"int": "int", "float": "double"}
 FUNCTIONS = [
