@@ -5,14 +5,13 @@ from __future__ import annotations
 from collections.abc import Callable, Mapping
 from typing import Any
 
-from pydantic import ValidationError
-
 from heuncli.nearest import misspelt
 from heuncli.spec import format as f
 from heuncli.spec.fields import Context, Model, keys_of
 from heuncli.spec.quantity import kind_of
+from heuncli.spec.reading import read
 from heuncli.spec.rules.registry import Found, Path_
-from heuncli.spec.verdicts import unknown_key, unknown_type, verdicts
+from heuncli.spec.verdicts import unknown_key, unknown_type
 
 Tell = Callable[[str, Found], None]
 
@@ -32,24 +31,23 @@ class Reader:
 
     def model(self, path: Path_, data: Any, model: type[Model]) -> Any:
         """One model; after telling what is wrong with it what is left without that, or None."""
-        try:
-            return model.model_validate(data, context=self.context)
-        except ValidationError as error:
-            for code, found in verdicts(error, data, model):
-                self.tell(code, found._replace(path=(*path, *found.path)))
-            return self.rest(path, data, model, {str(e["loc"][0]) for e in error.errors() if e["loc"]})
+        entry = read(model, data, self.context)
+        if not entry.findings:
+            return entry.value
+        for code, found in entry.findings:
+            self.tell(code, found._replace(path=(*path, *found.path)))
+        return self.rest(path, data, model, entry.wrong)
 
     def rest(self, path: Path_, data: Any, model: type[Model], wrong: set[str]) -> Any:
         """The model without the keys in error, so that its other values are judged, too; None where it needs them."""
         if not wrong or type(data) is not dict:
             return None
         right = {key: value for key, value in data.items() if key not in wrong}
-        try:
-            found = model.model_validate({**misspelt(data, keys_of(model)), **right}, context=self.context)
-        except ValidationError:
+        entry = read(model, {**misspelt(data, keys_of(model)), **right}, self.context)
+        if entry.findings:
             return None
         self.partial[path] = frozenset(right)
-        return found
+        return entry.value
 
     def follows(self, path: Path_) -> bool:
         """Whether an objection at this path may only follow from what an entry was read without."""
@@ -73,16 +71,17 @@ class Reader:
         """The keys that are no blocks."""
         blocks = {*f.ENTRIES, *f.SINGLE, *f.READ_BEFORE, "expect"}
         own = {key: value for key, value in self.data.items() if key not in blocks}
-        known = [*f.Head.model_fields, *f.SINGLE, *f.READ_BEFORE, *f.ENTRIES, "expect"]
-        for key in [key for key in own if key not in f.Head.model_fields]:
+        own_keys = keys_of(f.Head)
+        known = [*own_keys, *f.SINGLE, *f.READ_BEFORE, *f.ENTRIES, "expect"]
+        for key in [key for key in own if key not in own_keys]:
             del own[key]
             self.tell(*unknown_key((key,), known))
-        return self.model((), own, f.Head) or f.Head.model_construct(heun=1)
+        return self.model((), own, f.Head) or f.Head(heun=1)
 
     def single(self, key: str, model: type[Model]) -> Any:
         """A block that is one entry; its defaults where it is left out or in error."""
         data = self.data.get(key, {})
-        return (self.model((key,), data, model) if data != {} else None) or model.model_construct()
+        return (self.model((key,), data, model) if data != {} else None) or model()
 
     def entries(self, block: str, models: type[Model] | Mapping[str, type[Model]]) -> dict[str, Any]:
         """A block of named entries."""
@@ -109,7 +108,7 @@ class Reader:
         shapes = [
             self.typed((*path, "shapes", i), shape, f.SHAPES, "shapes") for i, shape in enumerate(body.shapes or [])
         ]
-        return None if None in shapes else body.model_copy(update={"shapes": shapes})
+        return None if None in shapes else body.replaced(shapes=shapes)
 
     def expectations(self) -> dict[int, f.Expect]:
         """The list of expectations, by their places in it."""
