@@ -5,13 +5,14 @@ from __future__ import annotations
 from collections.abc import Callable, Mapping
 from typing import Any
 
+from pydantic import ValidationError
+
 from heuncli.nearest import misspelt
 from heuncli.spec import format as f
 from heuncli.spec.fields import Context, Model, keys_of
 from heuncli.spec.quantity import kind_of
-from heuncli.spec.reading import read
 from heuncli.spec.rules.registry import Found, Path_
-from heuncli.spec.verdicts import unknown_key, unknown_type
+from heuncli.spec.verdicts import unknown_key, unknown_type, verdicts
 
 Tell = Callable[[str, Found], None]
 
@@ -31,23 +32,24 @@ class Reader:
 
     def model(self, path: Path_, data: Any, model: type[Model]) -> Any:
         """One model; after telling what is wrong with it what is left without that, or None."""
-        entry = read(model, data, self.context)
-        if not entry.findings:
-            return entry.value
-        for code, found in entry.findings:
-            self.tell(code, found._replace(path=(*path, *found.path)))
-        return self.rest(path, data, model, entry.wrong)
+        try:
+            return model.model_validate(data, context=self.context)
+        except ValidationError as error:
+            for code, found in verdicts(error, data, model):
+                self.tell(code, found._replace(path=(*path, *found.path)))
+            return self.rest(path, data, model, {str(e["loc"][0]) for e in error.errors() if e["loc"]})
 
     def rest(self, path: Path_, data: Any, model: type[Model], wrong: set[str]) -> Any:
         """The model without the keys in error, so that its other values are judged, too; None where it needs them."""
         if not wrong or type(data) is not dict:
             return None
         right = {key: value for key, value in data.items() if key not in wrong}
-        entry = read(model, {**misspelt(data, keys_of(model)), **right}, self.context)
-        if entry.findings:
+        try:
+            found = model.model_validate({**misspelt(data, keys_of(model)), **right}, context=self.context)
+        except ValidationError:
             return None
         self.partial[path] = frozenset(right)
-        return entry.value
+        return found
 
     def follows(self, path: Path_) -> bool:
         """Whether an objection at this path may only follow from what an entry was read without."""
@@ -71,17 +73,16 @@ class Reader:
         """The keys that are no blocks."""
         blocks = {*f.ENTRIES, *f.SINGLE, *f.READ_BEFORE, "expect"}
         own = {key: value for key, value in self.data.items() if key not in blocks}
-        own_keys = keys_of(f.Head)
-        known = [*own_keys, *f.SINGLE, *f.READ_BEFORE, *f.ENTRIES, "expect"]
-        for key in [key for key in own if key not in own_keys]:
+        known = [*f.Head.model_fields, *f.SINGLE, *f.READ_BEFORE, *f.ENTRIES, "expect"]
+        for key in [key for key in own if key not in f.Head.model_fields]:
             del own[key]
             self.tell(*unknown_key((key,), known))
-        return self.model((), own, f.Head) or f.Head(heun=1)
+        return self.model((), own, f.Head) or f.Head.model_construct(heun=1)
 
     def single(self, key: str, model: type[Model]) -> Any:
         """A block that is one entry; its defaults where it is left out or in error."""
         data = self.data.get(key, {})
-        return (self.model((key,), data, model) if data != {} else None) or model()
+        return (self.model((key,), data, model) if data != {} else None) or model.model_construct()
 
     def entries(self, block: str, models: type[Model] | Mapping[str, type[Model]]) -> dict[str, Any]:
         """A block of named entries."""
@@ -108,7 +109,7 @@ class Reader:
         shapes = [
             self.typed((*path, "shapes", i), shape, f.SHAPES, "shapes") for i, shape in enumerate(body.shapes or [])
         ]
-        return None if None in shapes else body.replaced(shapes=shapes)
+        return None if None in shapes else body.model_copy(update={"shapes": shapes})
 
     def expectations(self) -> dict[int, f.Expect]:
         """The list of expectations, by their places in it."""

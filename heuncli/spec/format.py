@@ -1,13 +1,14 @@
-"""The file format, version 1: the whole of it as models, keys as users write them, values read to SI.
+"""The file format, version 1: the whole of it as pydantic models, keys as users write them, values read to SI.
 
-A model's reader is built when the first entry of its kind is read: a scene pays for what it has. Reading here looks at
-one value at a time; what concerns several of them together stands in `rules`, the meaning in `resolve`. Nothing
+A model's validator is built when the first entry of its kind is read: a scene pays for what it has. Reading here looks
+at one value at a time; what concerns several of them together stands in `rules`, the meaning in `resolve`. Nothing
 outside `spec` sees these models.
 """
 
 from collections.abc import Mapping
-from types import MappingProxyType
 from typing import Annotated, Any, Literal, NamedTuple
+
+from pydantic import Field, StrictBool, Tag
 
 from heuncli.spec.fields import (
     FORM,
@@ -27,7 +28,6 @@ from heuncli.spec.fields import (
     Either,
     EitherInTime,
     Expected,
-    Field,
     Force,
     ForceInTime,
     FormatVersion,
@@ -48,7 +48,6 @@ from heuncli.spec.fields import (
     Pressure,
     Rate,
     Stiffness,
-    Tag,
     Tensor,
     Time,
     TurningStiffness,
@@ -57,7 +56,6 @@ from heuncli.spec.fields import (
 
 Frame = Literal["world", "body"]
 Points = dict[str, Position]
-NO_POINTS: Mapping[str, tuple[float, float, float]] = MappingProxyType({})
 
 
 class Orientation(Model):
@@ -75,7 +73,7 @@ class Orientation(Model):
 class Ground(Model):
     """What does not move."""
 
-    points: Points = Field(default=NO_POINTS)
+    points: Points = Field(default_factory=dict)
 
 
 class Rod(Model):
@@ -173,7 +171,7 @@ class Body(Model):
     inertia: InertiaForms | None = None
     deviation: tuple[Inertia, Inertia, Inertia] | None = None
     shapes: Annotated[list[Shape], InParts()] | None = None
-    points: Points = Field(default=NO_POINTS)
+    points: Points = Field(default_factory=dict)
     position: Position | None = None
     orientation: Orientation | None = None
     near: Near | None = None
@@ -279,7 +277,7 @@ class Plane(AnyJoint):
 class RodJoint(AnyJoint):
     type: Literal["rod"]
     length: Length | None = None
-    tension_only: bool = False
+    tension_only: StrictBool = False
 
 
 Joint = Ball | Pin | Slide | CylinderJoint | Universal | Weld | Line | Plane | RodJoint

@@ -138,7 +138,7 @@ class Resolver:
             axis=getattr(joint, "axis", None),
             to_axis=getattr(joint, "to_axis", None),
             normal=getattr(joint, "normal", None),
-            initial=m.Initial(**initial.given()) if initial is not None else None,
+            initial=m.Initial(**initial.model_dump()) if initial is not None else None,
             length=getattr(joint, "length", None),
             tension_only=getattr(joint, "tension_only", False),
             stiffness=stiffness(joint.stiffness),
@@ -229,10 +229,10 @@ def properties(value: f.Properties | None) -> m.Properties | None:
     """A named shape with its sizes, or the numbers themselves."""
     if value is None:
         return None
-    given = {key: own for key, own in value.given().items() if own is not None}
+    given = value.model_dump(exclude_none=True)
     for kind in ("circle", "tube", "rectangle"):
         if kind in given:
-            return m.Properties(kind, given[kind].given())
+            return m.Properties(kind, given[kind])
     return m.Properties("general", given)
 
 

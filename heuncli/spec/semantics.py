@@ -113,7 +113,7 @@ def end_of(reduce_to: str | End) -> End | None:
     if isinstance(reduce_to, End):
         return reduce_to
     body, dot, point = reduce_to.partition(".")
-    return End(body=body, at=point) if dot else None
+    return End.model_construct(body=body, at=point) if dot else None
 
 
 def point_in(body: f.Body, place: object) -> m.Vec | None:

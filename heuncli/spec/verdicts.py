@@ -1,16 +1,60 @@
-"""What reading one entry may object to, in the words and codes of specs."""
+"""What pydantic objects to, in the words, codes and places of specs."""
 
 from __future__ import annotations
 
-from collections.abc import Iterable, Sequence
-from typing import Any
+import types
+from collections.abc import Iterator
+from typing import Annotated, Any, Union, get_args, get_origin
 
+from pydantic import ValidationError
+
+from heuncli.errors import Finding
 from heuncli.nearest import did_you_mean, nearest
+from heuncli.spec.fields import Model
 from heuncli.spec.quantity import Follows, kind_of
 from heuncli.spec.rules.registry import Found, Path_
 from heuncli.spec.words import KEY_WORDS, LATER, TYPES
 
+KINDS = {  # pydantic's error types for a value of the wrong kind
+    "dict_type": "a mapping", "model_type": "a mapping", "model_attributes_type": "a mapping", "list_type": "a list",
+    "tuple_type": "a list", "string_type": "a text", "bool_type": "true or false", "int_type": "a whole number",
+}  # fmt: skip
 FORMS = {"single": "a number", "list": "a list", "rows": "a list of lists", "mapping": "a mapping"}
+
+
+def verdicts(error: ValidationError, data: Any, model: type[Model]) -> Iterator[tuple[str, Found]]:
+    """Codes and findings, one for each thing that is wrong with data read as a model; paths are within the data."""
+    short: set[Path_] = set()
+    for item in error.errors(include_url=False, include_input=True):
+        path = path_of(item["loc"], data)
+        kind, context = item["type"], item.get("ctx", {})
+        if kind == "value_error" and isinstance(context.get("error"), Finding):
+            finding = context["error"]
+            yield finding.code, Found(path, finding.message, finding.hint)
+        elif kind == "missing" and isinstance(item["loc"][-1], int):
+            if path not in short:
+                short.add(path)
+                value = at(data, path)
+                yield "wrong-length", Found(path, f"{len(value)} values instead of {needed(item['loc'])}")
+        elif kind == "missing":
+            yield missing(path, str(item["loc"][-1]), at(data, path))
+        elif kind == "extra_forbidden":
+            yield unknown_key(path, keys_known(path[:-1], data, model))
+        elif kind == "too_long":
+            message = f"{context['actual_length']} values instead of {context['max_length']}"
+            cut = any(isinstance(part, str) and part.count("(") > part.count(")") for part in item["input"])
+            hint = "inside [ ] an expression with a comma is written in quotes" if cut else None
+            yield "wrong-length", Found(path, message, hint)
+        elif kind in ("union_tag_invalid", "union_tag_not_found"):
+            yield "wrong-kind", wrong_form(path, context, data)
+        elif kind == "literal_error":
+            yield wrong_word(path, item["input"], str(context["expected"]))
+        else:
+            expected = KINDS.get(kind, "something else")
+            hint = (
+                "write it in quotes" if expected == "a text" and isinstance(item["input"], int | float | bool) else None
+            )
+            yield "wrong-kind", Found(path, f"expected {expected}, found {kind_of(item['input'])}", hint)
 
 
 def is_told(code: str) -> bool:
@@ -18,17 +62,29 @@ def is_told(code: str) -> bool:
     return code != Follows().code
 
 
-def wrong_kind(path: Path_, expected: str, value: Any) -> tuple[str, Found]:
-    """A value of another kind than its key takes."""
-    hint = "write it in quotes" if expected == "a text" and isinstance(value, int | float | bool) else None
-    return "wrong-kind", Found(path, f"expected {expected}, found {kind_of(value)}", hint)
+def path_of(location: tuple[str | int, ...], data: Any) -> Path_:
+    """The path in the data, without the tags that pydantic puts between."""
+    path: Path_ = ()
+    node = data
+    for part in location:
+        if (isinstance(node, dict) and part in node) or (
+            isinstance(node, list) and isinstance(part, int) and part < len(node)
+        ):
+            node = node[part]  # type: ignore[index]
+            path = (*path, part)
+    return path
 
 
-def wrong_length(path: Path_, values: list[Any], needed: int) -> tuple[str, Found]:
-    """A list with more or fewer values than its key takes."""
-    cut = len(values) > needed and any(isinstance(v, str) and v.count("(") > v.count(")") for v in values)
-    hint = "inside [ ] an expression with a comma is written in quotes" if cut else None
-    return "wrong-length", Found(path, f"{len(values)} values instead of {needed}", hint)
+def at(data: Any, path: Path_) -> Any:
+    """The value at a path that exists."""
+    for part in path:
+        data = data[part]
+    return data
+
+
+def needed(location: tuple[str | int, ...]) -> int:
+    """How many values the list must have: four of a quaternion, else three."""
+    return 4 if "quaternion" in location else 3
 
 
 def missing(path: Path_, key: str, owner: dict[str, Any]) -> tuple[str, Found]:
@@ -71,20 +127,51 @@ def unknown_type(entry: Any, block: str, known: list[str]) -> tuple[str, Found]:
     return code, Found(("type",), f"'{tag}' is not {what}; known: {listed}", hint)
 
 
-def wrong_form(path: Path_, tags: Iterable[str], value: Any) -> tuple[str, Found]:
+def wrong_form(path: Path_, context: dict[str, Any], data: Any) -> Found:
     """A value in a form that its key does not take."""
+    tags = [tag.strip(" '") for tag in str(context.get("expected_tags", "")).split(",")]
     forms = " or ".join("a name" if tag == "single" and path[-1:] == ("at",) else FORMS[tag] for tag in tags)
-    return "wrong-kind", Found(path, f"expected {forms}, found {kind_of(value)}")
+    return Found(path, f"expected {forms}, found {kind_of(at(data, path))}")
 
 
 def article(word: str) -> str:
     return "an" if word[:1].lower() in "aeio" else "a"
 
 
-def wrong_word(path: Path_, found: Any, known: Sequence[str]) -> tuple[str, Found]:
+def wrong_word(path: Path_, found: Any, expected: str) -> tuple[str, Found]:
     """A word that is none of those that may stand here."""
+    known = [word.strip(" '") for word in expected.replace(" or ", ", ").split(",")]
     if not isinstance(found, str):
         return "wrong-kind", Found(path, f"expected one of {', '.join(known)}, found {kind_of(found)}")
     near = nearest(found, known)
     message = f"'{found}' is not known here; known: {', '.join(known)}"
     return "unknown-word", Found(path, message, f"did you mean {near}?" if near else None)
+
+
+def models_in(annotation: Any) -> tuple[int, list[type[Model]]]:
+    """The models that a field may hold, and how many keys or indices stand between: 1 for dict[str, X] and list[X]."""
+    origin = get_origin(annotation)
+    if origin is Annotated:
+        return models_in(get_args(annotation)[0])
+    if origin in (Union, types.UnionType):
+        found = [models_in(part) for part in get_args(annotation)]
+        return max(depth for depth, _ in found), [model for _, models in found for model in models]
+    if origin in (dict, list):
+        depth, models = models_in(get_args(annotation)[-1])
+        return depth + 1, models
+    return 0, [annotation] if isinstance(annotation, type) and issubclass(annotation, Model) else []
+
+
+def keys_known(path: Path_, data: Any, model: type[Model]) -> list[str]:
+    """The keys of the mapping at a path within data that a model reads."""
+    found: type[Model] | None = model
+    between = 0
+    for part in path:
+        if between == 0:
+            fields = found.model_fields if found is not None else {}
+            field = next((field for name, field in fields.items() if (field.alias or name) == part), None)
+            between, models = models_in(field.annotation) if field is not None else (0, [])
+            found = models[0] if models else None
+        else:
+            between -= 1
+    return [field.alias or name for name, field in found.model_fields.items()] if found is not None else []

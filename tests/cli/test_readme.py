@@ -9,13 +9,13 @@ import sys
 from pathlib import Path
 
 import pytest
+from pydantic import BaseModel
 
 from heuncli.cli.entry import enter
 from heuncli.cli.requests import COMMANDS, LATER_COMMANDS
 from heuncli.expressions.grammar import ARITY, CONSTANTS
 from heuncli.expressions.units import UNITS
 from heuncli.spec import format as document
-from heuncli.spec.fields import Model, keys_of
 
 ROOT = Path(__file__).parents[2]
 TEXT = (ROOT / "README.md").read_text()
@@ -76,8 +76,8 @@ def test_the_first_example_runs(monkeypatch: pytest.MonkeyPatch, capsys: pytest.
 
 
 def keys() -> set[str]:
-    models = [m for m in vars(document).values() if isinstance(m, type) and issubclass(m, Model) and m is not Model]
-    return {key for model in models for key in keys_of(model)}
+    models = [m for m in vars(document).values() if isinstance(m, type) and issubclass(m, BaseModel)]
+    return {field.alias or name for model in models for name, field in model.model_fields.items()}
 
 
 def test_every_key_unit_function_and_command_is_named() -> None:

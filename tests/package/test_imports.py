@@ -12,7 +12,7 @@ import pytest
 import heuncli
 
 ROOT = Path(heuncli.__file__).parent
-UNWANTED = ("yaml", "rich", "typer", "scipy")
+UNWANTED = ("yaml", "pydantic", "rich", "typer", "scipy")
 NUMERIC = (
     "errors",
     "results",

@@ -17,7 +17,6 @@ from heuncli.report.page import until
 from heuncli.results import Results
 from heuncli.results_paths import find
 from heuncli.results_schema import NOT_YET, REPORTS, ROWS, SPACE, TREE, Node, Quantity, quantity
-from heuncli.spec.fields import fields_of
 from heuncli.spec.format import Head
 from heuncli.spec.load import load
 from tests.shared.fakes import LABELS, FakeStudy, pendulum, vectors
@@ -144,7 +143,7 @@ def test_every_row_is_found_by_its_path() -> None:
 
 
 def test_the_format_asks_for_the_reports_there_are() -> None:
-    (words,) = (kind for kind in get_args(fields_of(Head)["report"].annotation) if kind is not type(None))
+    (words,) = (kind for kind in get_args(Head.model_fields["report"].annotation) if kind is not type(None))
     assert get_args(get_args(words)[0]) == (*REPORTS, "shares")
 
 

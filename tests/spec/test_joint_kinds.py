@@ -9,7 +9,7 @@ import pytest
 
 from heuncli.joint_kinds import JOINTS, RATES, SYNONYMS, TYPES, Kind
 from heuncli.spec import format as f
-from heuncli.spec.fields import fields_of, keys_of
+from heuncli.spec.fields import keys_of
 
 ROWS = pytest.mark.parametrize("kind", JOINTS.values(), ids=JOINTS)
 WRITTEN = pytest.mark.parametrize("kind", TYPES.values(), ids=TYPES)
@@ -32,8 +32,8 @@ def test_keys(kind: Kind) -> None:
 
 @WRITTEN
 def test_what_must_be_given(kind: Kind) -> None:
-    fields = fields_of(f.JOINTS[kind.name])
-    must = {key for key in ("axis", "normal", "to_axis") if key in fields and fields[key].required}
+    fields = f.JOINTS[kind.name].model_fields
+    must = {key for key in ("axis", "normal", "to_axis") if key in fields and fields[key].is_required()}
     wanted = {kind.axis_key, "to_axis" if kind.to_axis == "required" else None}
     assert must == wanted - {None}
 
@@ -41,7 +41,7 @@ def test_what_must_be_given(kind: Kind) -> None:
 @WRITTEN
 def test_start_values(kind: Kind) -> None:
     """Each coordinate and its rate may be held at the start."""
-    fields = fields_of(f.JOINTS[kind.name])
+    fields = f.JOINTS[kind.name].model_fields
     parts = get_args(fields["initial"].annotation) if "initial" in fields else ()
     models = [part for part in parts if part is not NoneType]
     held = {key for model in models for key in keys_of(model)}

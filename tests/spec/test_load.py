@@ -417,10 +417,10 @@ def test_standard_input_looks_for_tables_where_it_is(tmp_path: Path, monkeypatch
     assert found.tables["f"].y == (1.0, 2.0)
 
 
-def test_the_numeric_part_can_know_the_types_without_yaml() -> None:
+def test_the_numeric_part_can_know_the_types_without_yaml_and_pydantic() -> None:
     code = (
         "import sys, heuncli.spec.models, heuncli.expressions.programs; "
-        "print([m for m in ('yaml', 'heuncli.spec.format', 'numpy', 'scipy', 'rich', 'typer') if m in sys.modules])"
+        "print([m for m in ('yaml', 'pydantic', 'numpy', 'scipy', 'rich', 'typer') if m in sys.modules])"
     )
     assert subprocess.run([sys.executable, "-c", code], check=True, capture_output=True, text=True).stdout == "[]\n"
 

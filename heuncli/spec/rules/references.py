@@ -46,13 +46,13 @@ def ends_unread(scene: Scene) -> Iterator[tuple[Path_, End]]:
                 value = mapping(data).get(key)
                 body, _, point = value.partition(".") if isinstance(value, str) else ("", "", "")
                 if body and point and "." not in point:
-                    yield (block, name, key), End(body=body, at=point)
+                    yield (block, name, key), End.model_construct(body=body, at=point)
 
 
 def ground_end(about: str) -> End:
     """'ground.O' or 'O' as an end."""
     body, dot, point = about.partition(".")
-    return End(body=body if dot else GROUND, at=point if dot else body)
+    return End.model_construct(body=body if dot else GROUND, at=point if dot else body)
 
 
 def bodies_spoken_of(scene: Scene) -> Iterator[tuple[Path_, str, bool]]:
