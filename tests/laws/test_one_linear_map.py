@@ -1,0 +1,89 @@
+"""The one linear map: what answers single columns of loads adds up to what answers them together, and is reciprocal."""
+
+from __future__ import annotations
+
+import numpy as np
+import pytest
+
+from heuncli.integration.runner import Recovered
+from heuncli.response import Columns, columns
+from heuncli.results import Array
+from heuncli.study.solve import Study
+from tests.shared.loops import loop
+from tests.shared.scenes import near
+from tests.shared.trees import tree
+
+ANSWERS = ("alpha", "a", "joint_moment", "joint_force")
+CASES = [("tree", seed) for seed in (0, 1, 4, 6, 8, 9)] + [("loop", seed) for seed in (1, 2, 3, 4, 8, 1000, 1003)]
+ROUNDING = 1e-12  # of the largest of all columns: they cancel in the sum
+
+
+def recovered(kind: str, seed: int) -> tuple[Study, Recovered]:
+    """A random scene in motion: its last instant."""
+    study = (tree if kind == "tree" else loop)(seed).study
+    history = study.history.recovered
+    return study, study.setup.runner.recovered(history.times[-1:], history.states[-1:], choose=True)
+
+
+def load_columns(study: Study, found: Recovered) -> Array:
+    """Every applied load alone, (n, bodies, 6): moment about the joint point and force on each body."""
+    layout, bodies = study.setup.runner.layout, found.bodies[0]
+    out = np.zeros((len(layout.tables["loads"]), len(bodies), 6))
+    for column, load, answer in zip(out, layout.tables["loads"], found.loads[0], strict=True):
+        for body, sign, at in ((load["b"], 1.0, answer["at"]), (load["a"], -1.0, answer["from_at"])):
+            if body >= 0:
+                column[body, 3:] += sign * answer["force"]
+                column[body, :3] += sign * (answer["moment"] + np.cross(at - bodies["r"][body], answer["force"]))
+    return out
+
+
+def answers(study: Study, found: Recovered, loads: Array, inertial: list[bool]) -> Columns:
+    return columns(study.setup.runner.workspace, float(found.times[0]), found.states[0], loads, np.array(inertial))
+
+
+@pytest.mark.parametrize(("kind", "seed"), CASES)
+def test_shares_add_up(kind: str, seed: int) -> None:
+    """Each load alone, and what needs none (weight, velocities, drives): together the motion and all reactions."""
+    study, found = recovered(kind, seed)
+    loads = load_columns(study, found)
+    nothing = np.zeros((1, *loads.shape[1:]))
+    shares = answers(study, found, np.concatenate([loads, nothing]), [*([False] * len(loads)), True])
+    for name in ANSWERS:
+        largest = max(float(np.abs(shares.bodies[name]).max()), 1.0)
+        near(shares.bodies[name].sum(axis=0), found.bodies[name][0], largest, 100 * ROUNDING)
+    largest = max(float(np.abs(shares.multipliers).max(initial=0.0)), 1.0)
+    near(shares.multipliers.sum(axis=0), found.rows["multiplier"][0], largest, 1e4 * ROUNDING)
+
+
+@pytest.mark.parametrize(("kind", "seed"), CASES)
+def test_reciprocity(kind: str, seed: int) -> None:
+    """Betti's law for accelerations: load i works on the answer to load j as j does on that to i, and never against."""
+    study, found = recovered(kind, seed)
+    loads = np.random.default_rng(seed).uniform(-1.0, 1.0, (4, found.bodies.shape[1], 6))
+    shares = answers(study, found, loads, [False] * 4)
+    twists = np.concatenate([shares.bodies["alpha"], shares.bodies["a"]], axis=2)
+    work = np.einsum("ibk,jbk->ij", loads, twists)
+    # what the closures and drives hold is the difference of two answers, each as large as that of a body let go
+    largest = float(np.abs(work).max()) + 1.0 / float(study.setup.runner.layout.bodies["mass"].min())
+    near(work, work.T, largest, ROUNDING)
+    assert np.linalg.eigvalsh(work + work.T).min() >= -ROUNDING * largest
+    twice = answers(study, found, 2.0 * loads[:1], [False])
+    near(twice.bodies["alpha"], 2.0 * shares.bodies["alpha"][:1], largest, ROUNDING)
+
+
+@pytest.mark.parametrize(("kind", "seed"), CASES)
+def test_columns_meet_the_closures_and_newton(kind: str, seed: int) -> None:
+    """Every column balances by itself: the roots' joint forces and the loads together move the masses."""
+    study, found = recovered(kind, seed)
+    layout = study.setup.runner.layout
+    loads = np.random.default_rng(100 + seed).uniform(-1.0, 1.0, (2, found.bodies.shape[1], 6))
+    shares = answers(study, found, loads, [False, False])
+    mass = layout.bodies["mass"]
+    roots = layout.bodies["parent"] < 0
+    moments = np.stack([layout.bodies["first_moment"][part] for part in "xyz"], axis=1)  # body axes
+    mc = np.einsum("bij,bj->bi", found.bodies["R"][0], moments)
+    rate = mass[:, None] * shares.bodies["a"] + np.cross(shares.bodies["alpha"], mc)
+    if layout.rows and any(j.a < 0 or j.b < 0 for j in (layout.mechanism.joints[k] for k in layout.rows)):
+        pytest.skip("a closure stands on the ground, too: its multiplier is not among the roots' forces")
+    held = shares.bodies["joint_force"][:, roots].sum(axis=1)
+    near(held + loads[:, :, 3:].sum(axis=1), rate.sum(axis=1), max(1.0, float(np.abs(rate).max())), ROUNDING)
