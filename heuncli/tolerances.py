@@ -1,10 +1,104 @@
 """Every threshold at which a verdict can change, by concept; each with the reason for its size.
 
 EPS is the rounding of one operation, 2.2e-16. A sum of some dozen terms of alternating sign keeps 13 to 14 digits of
-the largest of them: what lies below that is rounding.
+the largest of them: what lies below that is rounding. A singular value, or an angle found from a pose, keeps about
+nine digits, for poses are closed to 1e-10 of the scene's size (OPEN_GAP). What is typed by hand has a few digits only.
+Sizes are relative (to the scene's size, to the largest load, to the run's length) unless a unit stands there. Plain
+numbers, and no imports: reading a spec needs some of them.
 """
 
 from __future__ import annotations
+
+EPS = 2.0**-52
+
+# -- rank: which conditions of the joints hold what others hold already
+RANK = 1e-9  # of the largest singular value, or of 1 (rows are scaled to it): nine digits, what a closed pose gives
+RANK_OF_GAP = 100.0  # times the gap: a pose is known to its gap only, and singular values amplify it by some tens
+NEIGHBOUR = 1e-3  # [rad] or of the size: an accident of the start is left by 1e-3, far above RANK, the machine hardly
+MOVES = 1e-6  # of rates drawn between -1 and 1: less, after projection on the closures, is rounding
+SUSPECT_PIVOT = 0.05  # a step of an ordinary loop stays above; below, a singular pose is looked for within it
+SINGULAR_MET = 4.0  # times the width left of the search over its first: the value falls to zero at most so steeply
+NEARLY_SINGULAR = 1e-6  # relative singular value: reactions err by gap / value, 1e-10 / 1e-6, and keep four digits
+
+# -- open: which components no law of rigid bodies decides, and the sums that are certain
+NO_SELF_STRESS = 1e-13  # of unit multipliers: a null vector that puts less into every joint is rounding
+OPEN_SHARE = 1e-8  # of a self-stress's largest share: a null vector is known to RANK, ten times better
+STRAINED = 1e-9  # of the largest strain: RANK again, a self-stress that strains less is not decided by the stiffness
+STILL_OPEN = 1e-9  # of unit share: what is left of self-stresses after a split, if below, is rounding of their parts
+DEPENDENT_SHARES = 1e-7  # of a row's length: shares known to OPEN_SHARE, with a digit for the elimination
+ABSENT_FACTOR = 1e-9  # of the largest, or of unit length: a factor below it stands for a component that is not there
+WHOLE_FACTOR = 1e-9  # a factor so near to a whole number is that number; shares are not known better
+# [rad] or of the size: poses in which a certain sum must hold too; large, for what turns must show, and several, for
+# what has one freedom gives two poses each, and among more components than poses some sums hold by accident
+SUM_POSES = (0.05, 0.1, 0.2, 0.4)
+ONE_DIRECTION = 1e-6  # of the largest: over poses NEIGHBOUR apart an open force in one direction turns by NEIGHBOUR**2
+ZERO_COMPONENT = 1e-12  # of a unit direction that is proposed: smaller ones are rounding and would be printed as such
+
+# -- no inertia
+NO_INERTIA = 1e-12  # of the body's largest moment: a tensor turned into other axes keeps 14 digits, some are typed
+POINT_MASS = 1e-9  # of m L^2: a body whose radius of gyration is 3e-5 of the scene's size is no point mass yet
+ON_AXIS = 1e-9  # of the size: points typed with ten digits; what is nearer to the thin axis acts on it
+ALONG = 1.0 - 1e-9  # cosine of an axis with that of the missing inertia: 4.5e-5 rad, for the spin it frees is idle
+ALONG_SQUARED = 1.0 - 1e-9  # square of the same cosine, as found from the points on the axis: 3e-5 rad
+LENT_REACH = 1e-3  # of the size: the least radius of gyration of an inertia lent to an idle spin (it cancels)
+NO_MOMENT = 1e-9  # of the loads at a body: a smaller moment about its thin axis is what ON_AXIS lets pass
+
+# -- gaps of poses and rates that are assembled
+OPEN_GAP = 1e-10  # of the size, or rad: a quadratic iteration goes below at once, a joint that cannot close stays above
+GAP_ROUNDING = 64.0 * EPS  # of the largest coordinate: some dozen roundings far from the origin
+OPEN_RATE = 1e-10  # of the scene's speed: as OPEN_GAP
+AT_REST = 1e-6  # [rad/s] the least speed a scene is taken to have: rounding about rest opens no joint
+SOLVABLE = 1e-8  # of the acceleration asked for: what may stay unsolved, a digit above RANK
+NO_ACCELERATION = 1e-12  # of speed^2/size: accelerations below are asked for by rounding of the rates alone
+SAME_VALUE = 1e-9  # rad, m, or relative beyond 1: a held value and a drive that agree so far say the same; typed digits
+NO_LENGTH = 1e-9  # of the size: a shorter rod's direction has one digit beyond OPEN_GAP
+CLOSED = 1e-15  # of the size: as closed as rounding allows
+NO_SLOPE = 1e-7  # of |C| |e|: square root of some dozen roundings, below which a sum of squares has no slope
+REPEATED_ROW = 1e-14  # of the largest eigenvalue: some dozen roundings, the row repeats others
+POLISHED = 1e-12  # turns [rad] and shifts (by the size): nothing is left to polish
+SUMS_BLIND = 1e-5  # the same: squares of steps below 1e-5 are 1e-10 and drown in what closing leaves in the sums
+SAME_SUM = 1e-13  # of a sum of squares: hundreds of roundings
+UNMOVED = 1e-12  # of the size, or rad: a smaller change of the start is rounding, and no choice to tell
+DUST = 1e-9  # of the size: components that a chosen value is printed without
+
+# -- same instant, same place, same direction
+SAME_INSTANT = 1e-9  # of the run's length: instants typed with ten digits
+ONE_PLACE = 1e-12  # of the largest coordinate: a scene of less extent is one place, whose size is taken as 1 m
+IN_PLANE = 1e-12  # of the body's size, or of coordinates along the normal: nearer to a cutting plane counts as in it
+LEAST_EXTENT = 1e-9  # [m] what IN_PLANE is measured by where all lies in the origin
+TOUCHING = 1e3  # times IN_PLANE: outlines of a cut that come so near are one
+OUTLINES_APART = 1e-3  # of their radii: polygons of 96 sides are 5e-4 of a radius off the curves they stand for
+OFF_AXIS = 2e-15  # sine of a normal to a body of revolution's axis: rounding of a unit vector, 9 EPS
+EQUAL_COMPONENTS = 1e-9  # of a unit normal: equal ones, of which x goes before y before z (the contract's number)
+PARALLEL = 1e-9  # sine between directions typed with ten digits: below, they are one line
+UPRIGHT = 1e-9  # 1 - cosine of a body's z axis to the world's: 4.5e-5 rad, as typed quaternions leave
+
+# -- loads that are none
+NO_FORCE = 1e-12  # of the largest load it is summed from: hundreds of roundings; it has no line of action
+NO_LOAD = 1e-11  # of the largest m (a - g): what a sweep leaves at six freedoms that nothing holds
+NO_ENERGY = 1e-20  # of the weight's work over the size: squares of speeds of 1e-10, as OPEN_RATE lets pass
+UNBALANCED = 1e-6  # of a body's largest load: rounding stays far below, near a singular pose, too
+CONSTANT = 1e-13  # of its size: a quantity that varies less varies by hundreds of roundings, and has no peak
+
+# -- accuracy
+CLAIMED = 1e-3  # of the whole: the contract's error at the horizon, beyond which nothing is claimed
+LEAST_ASKED = 1e-15  # a tolerance must be above the rounding of one number
+LEAST_TOLERANCE = 3e-14  # local tolerance: a thirtieth of it, of the check run, is 5 EPS; below, steps chase rounding
+COARSEST_RETRY = 1e-6  # local tolerance beyond which a run that collapsed is not tried again: three digits are left
+PLACE_ROUNDING = 4e-16  # of the size: rounding of one evaluation of a place, 2 EPS; no estimate is below
+WRITTEN = 1e-12  # of the largest: digits of what was solved exactly, all that some thousand roundings leave
+LEAST_RATE = 1e-5  # of a radian, or of the size, in the time asked for: slower ones are judged as if that fast
+BOUNDLESS = 1e3  # a value that grows so many times over within 2**-20 of the run is on its way to infinity
+QUADRATURE = 1e-14  # of the scale: whole against halves; planes that graze thin walls then err by as much
+
+# -- what is typed in a spec
+UNIT_TYPED = 1e-2  # a unit quaternion or rotation matrix may be this far off: two digits at least
+UNIT_EXACT = 1e-14  # some dozen roundings: nearer to a rotation, a matrix is taken as it stands
+INERTIA_REFUSED = 1e-3  # of the largest moment: the contract's bound on a broken triangle rule
+INERTIA_TYPED = 1e-9  # of the largest moment: moments typed with ten digits keep the rule, and symmetry, this well
+TABLE_ENDS = 1e-6  # of the span: a table's period and the values at its ends are printed with seven digits
+EXPECTED_RELATIVE = 1e-6  # of the largest number expected: the contract's default
+EXPECTED_ABSOLUTE = 1e-9  # the contract's default
 
 # The kernel's thresholds (kernel/scene.py, Limits).
 KERNEL: dict[str, float] = {

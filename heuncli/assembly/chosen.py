@@ -8,6 +8,7 @@ from typing import NamedTuple
 
 import numpy as np
 
+from heuncli import tolerances
 from heuncli.assembly.rates import Rates
 from heuncli.assembly.walk import Poses, Tree
 from heuncli.mechanism.model import Mechanism
@@ -15,7 +16,6 @@ from heuncli.results import Array
 from heuncli.shapes.rotations import to_vector
 
 LISTED = 8  # bodies told one by one; more of the same are told together
-SMALL = 1e-12  # a change below this, of the scene's size or in rad, is rounding
 
 FORMS = {
     "position": "position {} m",
@@ -69,8 +69,8 @@ def pose_choices(
     mechanism: Mechanism, drawn: Poses, poses: Poses, tree: Tree, fitted: set[int], size: float
 ) -> list[Choice]:
     """The positions and orientations that were left out."""
-    moved = np.max(np.abs(poses.x - drawn.x), axis=1) > SMALL * size
-    turned = np.max(np.abs(poses.R - drawn.R), axis=(1, 2)) > SMALL
+    moved = np.max(np.abs(poses.x - drawn.x), axis=1) > tolerances.UNMOVED * size
+    turned = np.max(np.abs(poses.R - drawn.R), axis=(1, 2)) > tolerances.UNMOVED
     found = []
     for i, body in enumerate(mechanism.bodies):
         how, joint = _origin(mechanism, tree, i, fitted)
@@ -91,8 +91,8 @@ def pose_choices(
 def rate_choices(mechanism: Mechanism, rates: Rates, tree: Tree, fitted: set[int], size: float) -> list[Choice]:
     """The velocities (of the centre of mass) and angular velocities that were left out."""
     scale = float(np.max(np.abs(rates.v)) + size * np.max(np.abs(rates.w)))
-    moving = np.max(np.abs(rates.v), axis=1) > SMALL * scale
-    turning = np.max(np.abs(rates.w), axis=1) * size > SMALL * scale
+    moving = np.max(np.abs(rates.v), axis=1) > tolerances.UNMOVED * scale
+    turning = np.max(np.abs(rates.w), axis=1) * size > tolerances.UNMOVED * scale
     found = []
     for i, body in enumerate(mechanism.bodies):
         how, joint = _origin(mechanism, tree, i, fitted)
@@ -116,4 +116,4 @@ def _default(near: Array | None) -> str:
 
 
 def _vector(a: Array, size: float) -> str:
-    return "(" + ", ".join(f"{v:.6g}" for v in np.where(np.abs(a) < 1e-9 * size, 0.0, a).tolist()) + ")"
+    return "(" + ", ".join(f"{v:.6g}" for v in np.where(np.abs(a) < tolerances.DUST * size, 0.0, a).tolist()) + ")"

@@ -11,6 +11,7 @@ from typing import Literal, NamedTuple
 
 import numpy as np
 
+from heuncli import tolerances
 from heuncli.assembly.drives import Jet, drive_jet
 from heuncli.errors import Problem, SolveError
 from heuncli.joint_kinds import JOINTS
@@ -23,7 +24,6 @@ Hold = Literal["none", "point", "line", "plane", "distance"]
 Turn = Literal["free", "axis", "square", "all"]
 
 SAME_AXES = np.eye(3)
-SAME = 1e-9  # a held value and a drive that agree to this (rad, m, or relative) say the same
 
 
 class Ask(NamedTuple):
@@ -130,7 +130,8 @@ def _known(
     """
     held = value[2]
     if zero_free:
-        problems += [_not_zero(joint, value, v) for v in (held, jet and jet.value) if v is not None and abs(v) > SAME]
+        both = (v for v in (held, jet and jet.value) if v is not None)
+        problems += [_not_zero(joint, value, v) for v in both if abs(v) > tolerances.SAME_VALUE]
         held = None
     elif jet:
         problems += _compare(joint, value, jet.value)
@@ -156,7 +157,7 @@ def _compare(joint: Joint, given: Given, driven: float) -> list[Problem]:
     gap = held - driven
     if what == "angle":  # counts full turns, but one attitude is one attitude
         gap = math.remainder(gap, math.tau)
-    if abs(gap) <= SAME * max(1.0, abs(driven)):
+    if abs(gap) <= tolerances.SAME_VALUE * max(1.0, abs(driven)):
         return []
     message = (
         f"joint {joint.name}: initial {what} {held:.6g} {unit} contradicts drive {joint.drive.name}, "

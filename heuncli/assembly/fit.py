@@ -14,6 +14,7 @@ from collections.abc import Sequence
 
 import numpy as np
 
+from heuncli import tolerances
 from heuncli.assembly.conditions import Demand
 from heuncli.assembly.islands import Island
 from heuncli.assembly.reduced import Reduced, least
@@ -24,14 +25,11 @@ from heuncli.shapes.rotations import from_vector, to_vector
 
 SHIFT = 1e-2  # weight of (d/L)² against θ²: shifts are cheap; cheaper ones (1e-6) run hundreds of L off to save a turn
 TURN = 0.3  # largest turn of one step [rad]
-FLAT = 1e-7  # slope of |e|² against |C| |e|: below it there is no way down
-KICKS = (1, 2, 3, 4)  # times 0.05 rad
+KICKS = (1, 2, 3, 4)  # times KICK
+KICK = 0.05  # [rad]
+BETTER = 0.999  # of the least gap so far: a kick that leaves more of it found nothing better
 STEPS = 200
 POLISH = 60  # steps; more only creep, where long shifts save ever smaller turns
-NOISE = 1e-14  # of the largest: an eigenvalue below it comes from a row that repeats others
-TINY = 1e-15  # of the scene's size: as closed as rounding allows
-STILL = 1e-12  # turns [rad] and shifts (by the size) below which nothing is left to polish
-NEARLY = 1e-5  # the same, below which sums of squares no longer tell, but the steps still do
 
 
 class Fit:
@@ -97,10 +95,10 @@ class Fit:
         rows = self.rows()
         gap, damping = self.gap(rows), 1.0
         for _ in range(STEPS):
-            if gap <= TINY:
+            if gap <= tolerances.CLOSED:
                 break
             r = self.reduced(rows)
-            if gap > limit and _norm(r.C.T @ r.e) <= FLAT * _norm(r.C) * _norm(r.e):
+            if gap > limit and _norm(r.C.T @ r.e) <= tolerances.NO_SLOPE * _norm(r.C) * _norm(r.e):
                 break
             before = self.saved()
             z = _limited(_damped(r, damping * gap * gap))
@@ -128,11 +126,11 @@ class Fit:
         best, least_gap = self.saved(), self.gap(self.rows())
         for kick in kicks:
             self.restore(start)
-            self.apply(self._kick(0.05 * kick))
+            self.apply(self._kick(KICK * kick))
             if self.close(limit):
                 return True, kick
             gap = self.gap(self.rows())
-            if gap < 0.999 * least_gap:
+            if gap < BETTER * least_gap:
                 best, least_gap = self.saved(), gap
         self.restore(best)
         return False, 0
@@ -169,7 +167,7 @@ class Fit:
         last, factor, length = np.zeros(0), 1.0, math.inf
         for _ in range(POLISH):
             z = least(self.reduced(self.rows()), self._moved(start))[0]
-            if _norm(z) < STILL or (_norm(z) < NEARLY and _norm(z) > 0.5 * length):
+            if _norm(z) < tolerances.POLISHED or (_norm(z) < tolerances.SUMS_BLIND and _norm(z) > 0.5 * length):
                 return
             if last.size:  # the bend of the closed poses makes steps too long or too short, by what the last one tells
                 factor = min(max(factor / max(1.0 - float(z @ last) / float(last @ last), 0.2), 1e-3), 4.0)
@@ -177,7 +175,7 @@ class Fit:
             last, length = z, _norm(z)
             for _ in range(10):
                 self.apply(_limited(factor * z))
-                if self.close(limit) and (_norm(z) < NEARLY or _lower(self._sums(start), sums)):
+                if self.close(limit) and (_norm(z) < tolerances.SUMS_BLIND or _lower(self._sums(start), sums)):
                     break
                 self.restore(before)
                 factor *= 0.5
@@ -204,7 +202,7 @@ class Fit:
 
 def _lower(new: tuple[float, float], old: tuple[float, float]) -> bool:
     """Whether the turns became less, or stayed and the shifts became less (to rounding)."""
-    slack = 1e-13
+    slack = tolerances.SAME_SUM
     if new[0] < old[0] * (1.0 - slack):
         return True
     return new[0] <= old[0] * (1.0 + slack) + slack**2 and new[1] <= old[1] * (1.0 + slack) + slack**2
@@ -216,7 +214,7 @@ def _damped(r: Reduced, mu: float) -> Array:
     solved = np.linalg.solve(r.B.T @ (weight * r.B), np.column_stack([-(r.B.T @ (weight[:, 0] * r.t)), r.C.T]))
     y, K = solved[:, 0], solved[:, 1:]
     s, Q = np.linalg.eigh(r.C @ K)
-    told = s > NOISE * float(np.max(s, initial=0.0))
+    told = s > tolerances.REPEATED_ROW * float(np.max(s, initial=0.0))
     y = y + K @ (Q[:, told] @ ((Q[:, told].T @ (r.e - r.C @ y)) / (s[told] + mu)))
     z: Array = r.t + r.B @ y
     return z

@@ -6,6 +6,7 @@ from collections.abc import Sequence
 
 import numpy as np
 
+from heuncli import tolerances
 from heuncli.assembly.conditions import Demand
 from heuncli.assembly.errors import does_not_fit, no_length, too_many
 from heuncli.assembly.fit import Fit
@@ -13,10 +14,6 @@ from heuncli.assembly.gaps import Closure
 from heuncli.assembly.islands import TOGETHER, Island, Islands, settle
 from heuncli.assembly.walk import Poses, Tree, place, spanning, start, walk
 from heuncli.mechanism.model import GROUND, Mechanism
-
-OPEN = 1e-10  # of the scene's size (rad for angles): a gap above it is open (design.md section 2)
-NO_LENGTH = 1e-9  # of the scene's size: a rod's direction must be known
-ROUNDING = 64.0 * float(np.finfo(float).eps)  # of the largest coordinate: no gap can be closed further
 
 
 class Placing:
@@ -36,17 +33,18 @@ class Placing:
         self.fitted: set[int] = set()
         self.folded: list[str] = []
         self.gap = 0.0
-        self.limit = OPEN
+        self.limit = tolerances.OPEN_GAP
         self._gaps = Closure(found, [d.pose for d in found])
 
     def fit(self) -> None:
         """Close all joints. Raises SolveError: does-not-fit, held-conflict."""
         walk(self.poses, self.tree, self.found)
-        self.limit = max(OPEN, ROUNDING * float(np.max(np.abs(self.poses.x), initial=0.0)) / self.size)
+        farthest = float(np.max(np.abs(self.poses.x), initial=0.0))
+        self.limit = max(tolerances.OPEN_GAP, tolerances.GAP_ROUNDING * farthest / self.size)
         if stuck := settle(self.tree, self.islands, self._open, self._fit, self._again):
             raise self._refusal(stuck)
         for d in self.found:
-            if d.pose.hold == "none" and _span(d, self.poses) < NO_LENGTH * self.size:
+            if d.pose.hold == "none" and _span(d, self.poses) < tolerances.NO_LENGTH * self.size:
                 raise no_length(self.mechanism, d.joint)
 
     def _open(self) -> list[int]:

@@ -13,6 +13,7 @@ from functools import cached_property
 
 import numpy as np
 
+from heuncli import tolerances
 from heuncli.assembly.conditions import Demand
 from heuncli.assembly.errors import rates_do_not_fit, singular_pose, too_many
 from heuncli.assembly.islands import TOGETHER, Island, Islands, settle
@@ -23,11 +24,7 @@ from heuncli.mechanism.model import GROUND, Directed, Mechanism
 from heuncli.records import record, replace
 from heuncli.results import Array
 
-OPEN = 1e-10  # of the scene's speed: what a joint lacks above it is open
 CHECKED = 2000  # joints of an island up to which this is told beforehand; beyond, the motion tells
-STILL = 1e-6  # [rad/s] the least speed a scene is taken to have: rounding about rest opens no joint
-ROUNDING = 1e-12  # of speed^2/size: accelerations below it are asked for by rounding alone
-SOLVABLE = 1e-8  # of the largest acceleration asked for: what may stay unsolved (design.md section 2)
 
 
 @record
@@ -46,7 +43,7 @@ class Rates:
 
     def scale(self, size: float) -> float:
         """The scene's speed [m/s]."""
-        return float(np.max(np.abs(self.v)) + size * (np.max(np.abs(self.w)) + STILL))
+        return float(np.max(np.abs(self.v)) + size * (np.max(np.abs(self.w)) + tolerances.AT_REST))
 
 
 def start_rates(mechanism: Mechanism, poses: Poses) -> Rates:
@@ -139,7 +136,7 @@ class Moving:
         return np.array([_norm(hold) for hold, _ in lack]), np.array([_norm(turn) for _, turn in lack])
 
     def _limit(self) -> float:
-        return OPEN * self.rates.scale(self.size)
+        return tolerances.OPEN_RATE * self.rates.scale(self.size)
 
     def _open(self) -> list[int]:
         speed, spin = self._lacking()
@@ -184,8 +181,8 @@ class Moving:
             if asked == 0.0 or len(joints) > CHECKED:
                 continue
             reduced = Reduced(island, self.found, rows, [(True, True)] * len(island.members), self.size)
-            rounding = ROUNDING * r.scale(self.size) ** 2 / self.size
-            if self.size * _norm(solve(reduced.C, reduced.e)[2]) > SOLVABLE * asked + rounding:
+            rounding = tolerances.NO_ACCELERATION * r.scale(self.size) ** 2 / self.size
+            if self.size * _norm(solve(reduced.C, reduced.e)[2]) > tolerances.SOLVABLE * asked + rounding:
                 raise singular_pose(self.mechanism, island.closures[0], joints)
 
 

@@ -12,6 +12,7 @@ from functools import cached_property
 
 import numpy as np
 
+from heuncli import tolerances
 from heuncli.assembly.conditions import Demand
 from heuncli.assembly.islands import Island
 from heuncli.assembly.rows import Rows
@@ -19,7 +20,6 @@ from heuncli.records import record
 from heuncli.results import Array
 from heuncli.shapes.rotations import hat
 
-RANK = 1e-9  # of the largest singular value, or of 1 (all is scaled): below it, a row or column counts as dependent
 Free = Sequence[tuple[bool, bool]]  # whether each member may turn, and shift
 
 
@@ -119,7 +119,7 @@ def _step(body: int, d: Demand, row: Rows, place: Mapping[int, int], may: tuple[
     J, J_before, before = (J_b, J_a, d.a) if body == d.b else (J_a, J_b, d.b)
     E = _root(may).N
     U, S, V = np.linalg.svd(J @ E)
-    rank = int(np.sum(S > RANK * max(1.0, S[0]))) if len(S) else 0
+    rank = int(np.sum(S > tolerances.RANK * max(1.0, S[0]))) if len(S) else 0
     inverse = E @ ((V[:rank].T / S[:rank]) @ U[:, :rank].T)
     rest = U[:, rank:].T
     return Step(
@@ -152,6 +152,6 @@ def solve(A: Array, b: Array) -> tuple[Array, Array, Array]:
     if not A.size:
         return np.zeros(A.shape[1]), np.eye(A.shape[1]), b
     U, S, V = np.linalg.svd(A, full_matrices=A.shape[0] < A.shape[1])
-    rank = int(np.sum(S > RANK * max(1.0, S[0])))
+    rank = int(np.sum(S > tolerances.RANK * max(1.0, S[0])))
     x = V[:rank].T @ ((U[:, :rank].T @ b) / S[:rank])
     return x, V[rank:].T, b - A @ x

@@ -13,6 +13,7 @@ import math
 
 import numpy as np
 
+from heuncli import tolerances
 from heuncli.assembly.conditions import Ask, Demand
 from heuncli.records import record
 from heuncli.results import Array
@@ -20,6 +21,8 @@ from heuncli.shapes.rotations import cross, hat, to_vector
 
 NOTHING = np.zeros((0, 3))
 NONE = np.zeros(0)
+SERIES = 1e-4  # [rad] below it the first term of a series is exact and the closed form cancels
+NEARLY_OPPOSITE = -0.99  # cosine: beyond, the turn's own bend would outweigh what closes it
 
 
 @record
@@ -78,7 +81,7 @@ def _inverse_jacobian(phi: Array) -> Array:
     """d phi = this @ w dt, for exp(phi) turned on by w (fixed axes), (3, 3)."""
     angle2 = float(phi @ phi)
     angle = math.sqrt(angle2)
-    factor = 1.0 / 12.0 if angle < 1e-4 else (1.0 - 0.5 * angle / math.tan(0.5 * angle)) / angle2
+    factor = 1.0 / 12.0 if angle < SERIES else (1.0 - 0.5 * angle / math.tan(0.5 * angle)) / angle2
     V = hat(phi)
     return np.eye(3) - 0.5 * V + factor * (V @ V)
 
@@ -89,15 +92,15 @@ def _axis_gap(d: Demand, Ra: Array, Rb: Array) -> tuple[Array, Array]:
     n, n_b = Ra @ d.axis, Rb @ d.to_axis
     m = cross(n, n_b)
     sin, cos = math.sqrt(float(m @ m)), float(n @ n_b)
-    if sin < 1e-9:
+    if sin < tolerances.PARALLEL:
         if cos > 0.0:
             return E, -(E @ m)
-        m, sin = E[0], 1e-9  # exactly opposite: any direction will do
+        m, sin = E[0], tolerances.PARALLEL  # exactly opposite: any direction will do
     else:
         m = m / sin
     phi = math.atan2(sin, cos)
     k = cross(m, n)
-    T = np.outer(m, m) + np.outer(k, phi * (cos / sin * k - n)) if cos > -0.99 else np.outer(m, m)
+    T = np.outer(m, m) + np.outer(k, phi * (cos / sin * k - n)) if cos > NEARLY_OPPOSITE else np.outer(m, m)
     return E @ T, -phi * (E @ m)
 
 

@@ -11,6 +11,7 @@ from collections.abc import Sequence
 
 import numpy as np
 
+from heuncli import tolerances
 from heuncli.assembly.conditions import Ask, Demand
 from heuncli.mechanism.model import Mechanism
 from heuncli.records import record
@@ -165,7 +166,7 @@ def _square(m: Array, n: Array) -> Array:
     """The unit vector perpendicular to n nearest to m; where m is along n, toward a world axis."""
     s = m - (m @ n) * n
     size = float(np.sqrt(s @ s))
-    if size < 1e-9:
+    if size < tolerances.PARALLEL:
         e = np.zeros(3)
         e[int(np.argmin(np.abs(n)))] = 1.0
         s = e - (e @ n) * n

@@ -8,13 +8,12 @@ from typing import Any
 
 import numpy as np
 
+from heuncli import tolerances
 from heuncli.cli.entry import UsageError
 from heuncli.cli.output import say
 from heuncli.errors import Problem
 from heuncli.results import Array, Results
 from heuncli.spec.models import Spec
-
-SAME_INSTANT = 1e-9  # of the run's length: instants this near to each other are one
 
 
 def choice(option: str, value: str, known: Sequence[str]) -> str:
@@ -48,7 +47,7 @@ def instants(words: str, times: Array) -> Array:
         asked = sorted({float(word) for word in words.split(",")})
     except ValueError:
         raise UsageError(Problem("bad-option", f"--at {words}: expected numbers", hint="such as --at 0.5,1")) from None
-    slack = SAME_INSTANT * float(np.ptp(times))
+    slack = tolerances.SAME_INSTANT * float(np.ptp(times))
     for t in asked:
         if not times[0] - slack <= t <= times[-1] + slack:
             span = f"the run goes from {times[0]:.6g} to {times[-1]:.6g} s"

@@ -11,6 +11,7 @@ from collections.abc import Sequence
 
 import numpy as np
 
+from heuncli import tolerances
 from heuncli.errors import LimitError, SolveError
 from heuncli.expressions.programs import one_sided_limits
 from heuncli.integration.methods import DOP853, Method
@@ -25,12 +26,7 @@ RATIO = 30.0  # local tolerance of A over that of B
 FIRST = 1.0  # local tolerance of the first run over the tolerance asked
 RERUNS = 2
 COLLAPSED = ("step-collapsed", "closure-lost")  # how a run ends where rounding keeps it from a singular pose
-COARSEST = 1e-6  # a collapsed run is not tried again beyond this local tolerance
 FUTILE = 20  # times the steps of the coarser run: a finer one that takes more fights with rounding
-LEAST = 3e-14  # no local tolerance of A below, none of B below a thirtieth: the steps would only chase rounding
-NO_LOAD = 1e-11  # of the largest m (a - g): smaller joint loads are none
-CLAIM = 1e-3  # beyond this relative error nothing is claimed
-ROUNDING = 4e-16  # rounding of one evaluation of a place, relative to the size; the estimate is never below
 CHUNK = 2_000_000  # numbers compared at a time
 
 
@@ -84,12 +80,12 @@ def checked_run(
         except SolveError as error:
             collapsed = runner.layout.rows and error.problems[0].code in COLLAPSED
             coarser = [local * RATIO**k for k in (1, 2, 3)] if collapsed else []
-            for other in (x for x in coarser if x <= COARSEST):
+            for other in (x for x in coarser if x <= tolerances.COARSEST_RETRY):
                 with contextlib.suppress(SolveError):
                     return run(other)
             raise
 
-    a = first(max(tolerance * FIRST, LEAST))
+    a = first(max(tolerance * FIRST, tolerances.LEAST_TOLERANCE))
     lost, best = 0.0, None
     for attempt in range(RERUNS + 1):
         b = finer(a.tolerance / RATIO, a)
@@ -100,15 +96,15 @@ def checked_run(
         seconds = check.seconds
         if best is not None and motion.max(initial=0.0) >= best.motion.max(initial=0.0):
             return replace(best, lost_seconds=best.lost_seconds + a.seconds + seconds)
-        late = np.flatnonzero(motion > CLAIM)
+        late = np.flatnonzero(motion > tolerances.CLAIMED)
         best = Checked(a, recovered, motion, reactions, float(a.times[late[0]]) if len(late) else None, seconds, lost)
         miss = float(motion.max(initial=0.0)) / tolerance
-        if miss <= 1.0 or attempt == RERUNS or a.tolerance <= LEAST or b is None:
+        if miss <= 1.0 or attempt == RERUNS or a.tolerance <= tolerances.LEAST_TOLERANCE or b is None:
             break
         lost += a.seconds
         if miss > RATIO / 2.0:
             lost += seconds
-            other = finer(max(a.tolerance / (2.0 * miss), LEAST), a)
+            other = finer(max(a.tolerance / (2.0 * miss), tolerances.LEAST_TOLERANCE), a)
             if other is None:
                 break
             b = other
@@ -152,8 +148,9 @@ def compare(
         inertia = max(inertia, float(np.abs(bodies["a"] * masses).max(initial=0.0)))
     motion[n:] = motion[n - 1] if n else 0.0
     # a body that nothing holds has no reactions; what the sweep leaves at its six freedoms is rounding
-    reactions = (2.0 * worst + ROUNDING * largest) / largest if largest > NO_LOAD * inertia else 0.0
-    return 2.0 * motion + ROUNDING, reactions
+    some = largest > tolerances.NO_LOAD * inertia
+    reactions = (2.0 * worst + tolerances.PLACE_ROUNDING * largest) / largest if some else 0.0
+    return 2.0 * motion + tolerances.PLACE_ROUNDING, reactions
 
 
 def distance(layout: Layout, a: Table, b: Table) -> Array:

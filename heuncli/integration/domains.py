@@ -5,6 +5,7 @@ from __future__ import annotations
 import math
 from collections.abc import Iterator, Mapping
 
+from heuncli import tolerances
 from heuncli.errors import Problem
 from heuncli.expressions.programs import KNOT, TABLE, Expression, Table, outside
 from heuncli.mechanism.model import Mechanism
@@ -13,7 +14,6 @@ from heuncli.tree.layout import Layout
 from heuncli.tree.tables import Table as Rows
 
 NEAREST, FARTHEST = 52, 20  # what fails at t may have no value only beyond: from 2**-52 to 2**-20 of the run's length
-BOUNDLESS = 1e3  # a value that grows so many times over within 2**-20 of the run is on its way to infinity
 HELD = 1  # a table's kind (expressions/programs.py)
 DERIVATIVES = ("value", "rate", "acceleration")
 
@@ -51,7 +51,7 @@ def without_value(mechanism: Mechanism, t: float, length: float, coordinates: Mo
         _problem(expression, t, _values(expression, 0.0, coordinates), "")
         for expression, _ in _in_time(mechanism)
         if abs(expression.value(t, _values(expression, 0.0, coordinates)))
-        > BOUNDLESS * abs(expression.value(t + back, _values(expression, back, coordinates))) > 0.0
+        > tolerances.BOUNDLESS * abs(expression.value(t + back, _values(expression, back, coordinates))) > 0.0
     ]
 
 

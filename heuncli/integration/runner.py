@@ -13,6 +13,7 @@ from typing import Any
 
 import numpy as np
 
+from heuncli import tolerances
 from heuncli.errors import LimitError, Problem, SolveError
 from heuncli.expressions.programs import discontinuities, one_sided_limits
 from heuncli.integration.methods import DOP853, Method
@@ -27,7 +28,6 @@ from heuncli.tree.tables import BODY_ANSWER, CLOSURE_ANSWER, FREEDOM_ANSWER, LOA
 CHUNK = 2_000  # body-steps between two looks at the clock
 KEPT = 20_000_000  # numbers of states kept for going back to, at the ends of all steps or every second, fourth ...
 MOST_STEPS = 20_000_000
-LEAST_RATE = 1e-5  # of a radian or of the scene's size in the time asked for: slower ones are judged as if that fast
 
 REACHED, MORE, ROPE_SLACK = (kernel.CODES[name] for name in ("reached", "more", "rope slack"))
 TROUBLE = {
@@ -146,7 +146,7 @@ class Runner:
         ts = np.ascontiguousarray(times, dtype=float)
         most = max(1, CHUNK // max(len(layout.mechanism.bodies), 1))
         # where nothing moves or pulls yet (a load like t**4), there is still a rate that matters in the time asked for
-        rate = LEAST_RATE / float(ts[-1]) if len(ts) and ts[-1] > 0.0 else 0.0
+        rate = tolerances.LEAST_RATE / float(ts[-1]) if len(ts) and ts[-1] > 0.0 else 0.0
         run = Integration(layout, self.workspace, method, ts, most=most, tolerance=tolerance, rate=rate, following=0)
         loop = run.loop
         loop.start_at(layout.y0.tolist())

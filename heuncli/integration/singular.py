@@ -4,19 +4,18 @@ from __future__ import annotations
 
 import numpy as np
 
+from heuncli import tolerances
 from heuncli.integration.runner import Runner, Trajectory
 from heuncli.results import Array
 
-SUSPECT = 0.05  # least pivot of the closures within a step below which a singular pose is looked for
 PROBES = 17  # instants looked at in a round
 ROUNDS = 5  # each narrows the place by PROBES / 2
 MOST = 100  # places looked at: a mechanism that goes through such a pose for ever need not be followed for ever
-MET = 1e-6  # relative singular value of the closures: what comes as near as the last round can tell went through
 
 
 def passages(runner: Runner, run: Trajectory) -> list[float]:
     """Instants [s] at which the rank of the closures fell, the first hundred."""
-    suspects = np.flatnonzero(run.pivots < SUSPECT)
+    suspects = np.flatnonzero(run.pivots < tolerances.SUSPECT_PIVOT)
     found: list[float] = []
     for steps in np.split(suspects, np.flatnonzero(np.diff(suspects) > 1) + 1)[:MOST]:
         if len(steps):
@@ -24,7 +23,7 @@ def passages(runner: Runner, run: Trajectory) -> list[float]:
             end = float(run.ends[steps[-1]])
             for a, b in valleys(runner, run, np.linspace(begin, end, 8 * len(steps) + 1)):
                 t = met(runner, run, a, b)
-                if t is not None and not (found and t - found[-1] <= 1e-9 * end):
+                if t is not None and not (found and t - found[-1] <= tolerances.SAME_INSTANT * end):
                     found.append(t)
     return found
 
@@ -57,4 +56,4 @@ def met(runner: Runner, run: Trajectory, a: float, b: float) -> float | None:
         a, b = float(times[max(k - 1, 0)]), float(times[min(k + 1, PROBES - 1)])
         if low == 0.0:
             break
-    return t if low <= max(MET, 4.0 * (b - a) / span) else None
+    return t if low <= tolerances.SINGULAR_MET * (b - a) / span else None

@@ -4,12 +4,11 @@ from __future__ import annotations
 
 import numpy as np
 
+from heuncli import tolerances
 from heuncli.errors import Problem, SolveError
 from heuncli.integration.runner import Recovered
 from heuncli.tree.idle_spins import without_inertia
 from heuncli.tree.prepare import PreparedScene
-
-NO_MOMENT = 1e-9  # of the loads there: a smaller moment about an axis without inertia is rounding
 
 
 def refuse(scene: PreparedScene, found: Recovered) -> None:
@@ -31,7 +30,7 @@ def refuse(scene: PreparedScene, found: Recovered) -> None:
         scale = (force + body.mass * float(np.abs(gravity).max())) * layout.size
         scale += np.abs(found.loads["moment"]).max(initial=0.0)
         scale += float(np.trace(body.inertia)) * float(np.sum(rows["omega"] ** 2, axis=1).max())
-        if moment > NO_MOMENT * scale:
+        if moment > tolerances.NO_MOMENT * scale:
             axis = ", ".join(f"{x:.4g}" for x in spin.axes[0])
             name = scene.mechanism.bodies[spin.body].name
             message = (

@@ -11,6 +11,7 @@ from typing import Any
 
 import numpy as np
 
+from heuncli import tolerances
 from heuncli.errors import Problem, SpecError
 from heuncli.joint_kinds import JOINTS
 from heuncli.mechanism.model import GROUND, Mechanism
@@ -19,7 +20,6 @@ from heuncli.results import Array
 from heuncli.shapes.forms import Form
 from heuncli.shapes.inertia import pseudo_inertia
 
-EQUAL = 1e-9  # components of the body axes along the normal that count as equal (contract: default first_axis)
 BEFORE, BEYOND = 1.0, -1.0
 
 
@@ -87,7 +87,7 @@ def first_axis(n: Array, given: Sequence[float] | None) -> Array:
         a = a / np.sqrt(a @ a)
     else:
         out = np.abs(n)
-        a = np.eye(3)[int(np.flatnonzero(out <= out.min() + EQUAL)[0])]
+        a = np.eye(3)[int(np.flatnonzero(out <= out.min() + tolerances.EQUAL_COMPONENTS)[0])]
     e = a - (a @ n) * n
     found: Array = e / np.sqrt(e @ e)
     return found
@@ -110,9 +110,10 @@ def _lay(mechanism: Mechanism, spec: Any, name: str, section: Any, index: dict[s
         s = share * float(np.sqrt((last - first) @ (last - first)))
     d = points @ n
     if form is not None:
-        near = max(form.near, 1e-12 * float(np.abs(things).max(initial=0.0)))
+        near = max(form.near, tolerances.IN_PLANE * float(np.abs(things).max(initial=0.0)))
     else:
-        near = 1e-12 * float(max(np.abs(things).max(initial=0.0), np.abs(d).max(), 1e-9))
+        extent = max(np.abs(things).max(initial=0.0), np.abs(d).max(), tolerances.LEAST_EXTENT)
+        near = tolerances.IN_PLANE * float(extent)
     touches = np.abs(things[None, :] - d[:, None]) <= near
     meets = touches.any(axis=1)
     if form is not None:

@@ -6,14 +6,13 @@ from collections.abc import Sequence
 
 import numpy as np
 
+from heuncli import tolerances
 from heuncli.integration.runner import Recovered
 from heuncli.kinetostatics.actions import AppliedLoad
 from heuncli.kinetostatics.bodies import BodyStates
 from heuncli.mechanism.model import Mechanism, PairLoad
 from heuncli.results import Array, Block
 from heuncli.tree.layout import Layout
-
-AT_REST = 1e-20  # of the weight's work over the scene's size: less kinetic energy is none, and no scale
 
 
 def energy(layout: Layout, found: Recovered, states: BodyStates, loads: Sequence[AppliedLoad]) -> Block:
@@ -53,4 +52,4 @@ def energy_drift(kinetic: Array, potential: Array, work: Array, lift: float) -> 
     """
     total = kinetic + potential - work
     largest = float(kinetic.max(initial=0.0))
-    return float(np.abs(total - total[0]).max(initial=0.0)) / largest if largest > AT_REST * lift else 0.0
+    return float(np.abs(total - total[0]).max(initial=0.0)) / largest if largest > tolerances.NO_ENERGY * lift else 0.0

@@ -10,13 +10,12 @@ from collections.abc import Sequence
 
 import numpy as np
 
+from heuncli import tolerances
 from heuncli.kinetostatics.actions import Action
 from heuncli.kinetostatics.bodies import BodyStates
 from heuncli.kinetostatics.reactions import in_plane
 from heuncli.mechanism.model import Mechanism
 from heuncli.results import Array, Block
-
-NO_FORCE = 1e-12  # of the largest load: below it s is zero and has no axis
 
 
 def inertia_loads(mechanism: Mechanism, states: BodyStates) -> tuple[Array, Array]:
@@ -74,7 +73,7 @@ def central_axis(s: Array, M: Array, about: Array, scale: float) -> Block:
     """Central axis of the wrench (s, M about `about`): point nearest `about`, direction, pitch [m]; nan where s = 0."""
     s2 = np.sum(s * s, axis=1)
     largest = max(float(np.sqrt(s2.max(initial=0.0))), scale)
-    none = s2 <= (NO_FORCE * largest) ** 2
+    none = s2 <= (tolerances.NO_FORCE * largest) ** 2
     safe = np.where(none, np.nan, s2)
     return {
         "point": about + np.cross(s, M) / safe[:, None],

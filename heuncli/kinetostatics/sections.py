@@ -14,14 +14,13 @@ from collections.abc import Mapping, Sequence
 
 import numpy as np
 
+from heuncli import tolerances
 from heuncli.kinetostatics.actions import Action
 from heuncli.kinetostatics.bodies import BodyStates
 from heuncli.kinetostatics.cuts import Cuts
 from heuncli.kinetostatics.stress import MODULI, stresses
 from heuncli.records import record
 from heuncli.results import Array, Block, Mask
-
-NONE = 1e-12  # of |s'| + |M'| / reach: a smaller normal or shear force has no line
 
 
 @record
@@ -269,7 +268,7 @@ def reduction_line(where: Planes, force: Array, moment: Array) -> Block:
     reach = reach or float(np.sqrt(np.abs(cuts.pieces[:, :3, :3]).max() / cuts.pieces[:, 3, 3].max()))
     size = np.sqrt(np.sum(force**2, axis=0)) + np.sqrt(np.sum(moment**2, axis=0)) / reach
     q = np.sqrt(np.sum(Q**2, axis=0))
-    no_N, no_Q = np.abs(N) <= NONE * size, q <= NONE * size
+    no_N, no_Q = np.abs(N) <= tolerances.NO_FORCE * size, q <= tolerances.NO_FORCE * size
     twist = along(cuts.n, crossed(Q, M_t))
     free_N = np.where(no_N, np.nan, N)
     free_Q = np.where(no_Q | no_N, np.nan, q)
@@ -277,7 +276,7 @@ def reduction_line(where: Planes, force: Array, moment: Array) -> Block:
     point = local - twist / (free_N * free_Q**2) * Q
     direction = crossed(n, Q) / free_Q
     pressure = local + crossed(n, M_t) / free_N
-    parallel = np.abs(twist) <= NONE * size * size * reach
+    parallel = np.abs(twist) <= tolerances.NO_FORCE * size * size * reach
     kind = np.where(no_N, np.where(parallel, 2.0, 1.0), np.where(no_Q, 2.0, 0.0))
     return {
         "point": outward(point, place=True), "direction": outward(direction),

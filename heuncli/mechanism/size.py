@@ -6,6 +6,7 @@ import math
 
 import numpy as np
 
+from heuncli import tolerances
 from heuncli.mechanism.model import GROUND, Assembly, Body, Mechanism
 from heuncli.results import Array
 
@@ -16,7 +17,7 @@ def size_of_scene(mechanism: Mechanism, start: Assembly) -> float:
     places += [j.p for j in mechanism.joints if j.a == GROUND] + [j.q for j in mechanism.joints if j.b == GROUND]
     x = np.array(places)
     reach = 2.0 * float(np.sqrt(np.max(np.sum(np.square(x - x.mean(axis=0)), axis=1))))
-    return reach if reach > 1e-12 * float(np.max(np.abs(x), initial=0.0)) else 1.0
+    return reach if reach > tolerances.ONE_PLACE * float(np.max(np.abs(x), initial=0.0)) else 1.0
 
 
 def marks(body: Body) -> list[Array]:

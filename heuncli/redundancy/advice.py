@@ -11,19 +11,19 @@ from itertools import combinations, product
 
 import numpy as np
 
+from heuncli import tolerances
 from heuncli.integration.runner import Runner
 from heuncli.joint_kinds import ABOUT_Z, JOINTS, POINT
 from heuncli.kinetostatics.bodies import body_states
 from heuncli.mechanism.model import GROUND, Joint, JointLoad
 from heuncli.records import replace
-from heuncli.redundancy.count import NEIGHBOUR, freedoms_of_tree, redundancy
+from heuncli.redundancy.count import freedoms_of_tree, redundancy
 from heuncli.redundancy.neighbours import neighbours
 from heuncli.redundancy.self_stress import self_stress
 from heuncli.results import Array, Block
 from heuncli.tree.prepare import PreparedScene, arranged
 
 MOST_TRIED = 400  # replacements tried before the hint is given up
-ONE = 1e-6  # of the largest: what is open in a joint has one direction if less lies across it
 
 Choices = Mapping[int, tuple[Joint, ...]]  # joint -> what may take its place
 
@@ -83,7 +83,7 @@ def open_directions(scene: PreparedScene) -> list[Array | None]:
     """Of each joint the one direction in `from` axes in which its force is open; None where there are more, or none."""
     runner = Runner(scene.layout)
     here = runner.recovered(np.zeros(1), scene.layout.y0[None, :])
-    poses = neighbours(runner, 0.0, here.states[0], (NEIGHBOUR,)) or here
+    poses = neighbours(runner, 0.0, here.states[0], (tolerances.NEIGHBOUR,)) or here
     states = body_states(scene.layout, poses)
     stress = self_stress(scene.layout, states, poses.gap)
     assert stress is not None
@@ -93,7 +93,8 @@ def open_directions(scene: PreparedScene) -> list[Array | None]:
         F = F if joint.a == GROUND else states.R[:, joint.a].transpose(0, 2, 1) @ F
         U, sigma, _ = np.linalg.svd(F.transpose(1, 0, 2).reshape(3, -1), full_matrices=False)
         n = U[:, 0] * np.sign(U[np.argmax(np.abs(U[:, 0])), 0])
-        found.append(n if sigma[0] > ONE and sigma[1:].max(initial=0.0) <= ONE * sigma[0] else None)
+        across, least = float(sigma[1:].max(initial=0.0)), tolerances.ONE_DIRECTION
+        found.append(n if sigma[0] > least and across <= least * sigma[0] else None)
     return found
 
 
@@ -156,5 +157,5 @@ def told(scene: PreparedScene, changed: Mapping[int, Joint], between: str) -> st
 
 def _numbers(direction: Array) -> str:
     """A direction to all its digits, for a rounded one would leave a joint out of true."""
-    exact = np.where(np.abs(direction) < 1e-12, 0.0, direction)
+    exact = np.where(np.abs(direction) < tolerances.ZERO_COMPONENT, 0.0, direction)
     return "[" + ", ".join(f"{x:.15g}" for x in exact / np.abs(exact).max()) + "]"

@@ -11,10 +11,11 @@ from collections.abc import Mapping, Sequence
 
 import numpy as np
 
+from heuncli import tolerances
 from heuncli.redundancy.turning_sums import Shares, turning_sums
 from heuncli.results import Array, CertainSum
 
-SAME = 1e-7  # of a row's length: what is left of it when it is told by others
+WORTH_A_LOOK = 0.999  # cosine of two rows: below it they are not proportional, which saves the difference
 
 
 def certain_sums(poses: Shares, told: Shares, values: Mapping[str, Array], length: float) -> list[CertainSum]:
@@ -61,7 +62,8 @@ def relations(rows: Mapping[str, Array]) -> tuple[list[dict[str, float]], list[s
             (
                 h
                 for h in heads
-                if abs(same[i, h]) > 0.999 and np.linalg.norm(stacked[i] - same[i, h] * stacked[h]) <= SAME
+                if abs(same[i, h]) > WORTH_A_LOOK
+                and np.linalg.norm(stacked[i] - same[i, h] * stacked[h]) <= tolerances.DEPENDENT_SHARES
             ),
             None,
         )
@@ -84,13 +86,13 @@ def echelon(
         rest = rows[i] - basis.T @ (basis @ rows[i])
         rest = rest - basis.T @ (basis @ rest)
         size = float(np.sqrt(rest @ rest))
-        if size > SAME:
+        if size > tolerances.DEPENDENT_SHARES:
             basis = np.vstack([basis, rest / size])
             free.append(i)
             continue
         c = np.linalg.solve(basis @ rows[free].T, basis @ rows[i])
         told = {names[f]: -float(x) * scale[name] / scale[names[f]] for f, x in zip(free, c, strict=True)}
-        small = 1e-9 * max(abs(x) * scale[n] for n, x in told.items())
+        small = tolerances.ABSENT_FACTOR * max(abs(x) * scale[n] for n, x in told.items())
         found.append(tidy({n: x for n, x in told.items() if abs(x) * scale[n] > small} | {name: 1.0}))
     return found, [names[f] for f in free]
 
@@ -101,4 +103,5 @@ def tidy(terms: dict[str, float]) -> dict[str, float]:
     sign = 1.0 if first > 0.0 else -1.0
     smallest = min(abs(x) for x in terms.values())
     scaled = {name: sign * x / (abs(first) if abs(first) >= smallest else 1.0) for name, x in terms.items()}
-    return {name: float(round(x)) if abs(x - round(x)) <= 1e-9 and round(x) != 0 else x for name, x in scaled.items()}
+    near = {name: x for name, x in scaled.items() if abs(x - round(x)) <= tolerances.WHOLE_FACTOR and round(x) != 0}
+    return scaled | {name: float(round(x)) for name, x in near.items()}

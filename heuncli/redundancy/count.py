@@ -6,6 +6,7 @@ from typing import TYPE_CHECKING, NamedTuple
 
 import numpy as np
 
+from heuncli import tolerances
 from heuncli.integration.runner import Runner
 from heuncli.kinetostatics.bodies import body_states
 from heuncli.tree.layout import Layout
@@ -13,8 +14,6 @@ from heuncli.tree.prepare import PreparedScene
 
 if TYPE_CHECKING:
     from heuncli.redundancy.self_stress import SelfStress
-
-NEIGHBOUR = 1e-3  # [rad] or of the size: poses in which the generic rank is counted
 
 
 def freedoms_of_tree(layout: Layout) -> int:
@@ -45,7 +44,7 @@ def redundancy(scene: PreparedScene, runner: Runner) -> Redundancy:
     here = runner.recovered(np.zeros(1), layout.y0[None, :])
     stress = self_stress(layout, body_states(layout, here), here.gap)
     assert stress is not None
-    near = neighbours(runner, 0.0, here.states[0], (NEIGHBOUR,))
+    near = neighbours(runner, 0.0, here.states[0], (tolerances.NEIGHBOUR,))
     if near is None:
         return Redundancy(int(stress.count[0]), int(stress.count[0]), int(stress.dependent[0]), stress)
     beside = self_stress(layout, body_states(layout, near), near.gap)

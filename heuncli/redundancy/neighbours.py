@@ -6,6 +6,7 @@ from collections.abc import Sequence
 
 import numpy as np
 
+from heuncli import tolerances
 from heuncli.integration.runner import Recovered, Runner
 from heuncli.results import Array
 from heuncli.tree.layout import Layout
@@ -26,13 +27,13 @@ def neighbours(runner: Runner, t: float, state: Array, by: Sequence[float]) -> R
     start[:, slots] = rng.uniform(-1.0, 1.0, (DIRECTIONS, len(slots))) / layout.weights[slots]
     admissible = runner.recovered(np.full(DIRECTIONS, t), start).states
     largest = np.abs(admissible[:, slots] * layout.weights[slots]).max(axis=1, initial=0.0)
-    moving = largest > 1e-6
+    moving = largest > tolerances.MOVES
     if not moving.any():
         return None
     steps = [(k, sign * step / largest[k]) for k in np.flatnonzero(moving) for step in by for sign in (1.0, -1.0)]
     moved = [displaced(layout, admissible[k], step) for k, step in steps]
     found = runner.recovered(np.full(len(steps), t), np.array(moved), choose=True)
-    closed = found.gap <= 1e-10 * layout.size
+    closed = found.gap <= tolerances.OPEN_GAP * layout.size
     if not closed.any():
         return None
     return runner.recovered(np.full(int(closed.sum()), t), found.states[closed], choose=True)

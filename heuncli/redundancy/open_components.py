@@ -10,10 +10,11 @@ from typing import TYPE_CHECKING
 
 import numpy as np
 
+from heuncli import tolerances
 from heuncli.kinetostatics.actions import joint_action
 from heuncli.kinetostatics.bodies import BodyStates
 from heuncli.kinetostatics.reactions import JointLoads
-from heuncli.redundancy.self_stress import OPEN, SelfStress
+from heuncli.redundancy.self_stress import SelfStress
 from heuncli.results import Array, Block, Mask
 
 if TYPE_CHECKING:  # loaded where a scene has sections
@@ -90,7 +91,7 @@ def open_in_section(
     for k in range(stress.largest.shape[1]):
         parts = zip(joints, stress.shares, strict=True)
         on = attachments(cuts.body, states, [joint_action(j, s[:, :3, k], s[:, 3:, k]) for j, s in parts])
-        limit = np.where(stress.largest[:, k] > 0.0, OPEN * stress.largest[:, k], np.inf)
+        limit = np.where(stress.largest[:, k] > 0.0, tolerances.OPEN_SHARE * stress.largest[:, k], np.inf)
         for name, share in components_at_rest(cuts, states, on).items():
             scale = limit * (stress.length if name in MOMENTS else 1.0)
             reached = np.abs(share) > scale.reshape(-1, *([1] * (share.ndim - 1)))

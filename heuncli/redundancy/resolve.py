@@ -6,6 +6,7 @@ from collections.abc import Sequence
 
 import numpy as np
 
+from heuncli import tolerances
 from heuncli.integration.runner import Recovered, Runner
 from heuncli.kinetostatics.bodies import BodyStates, body_states
 from heuncli.kinetostatics.reactions import JointLoads
@@ -18,10 +19,6 @@ from heuncli.redundancy.split import split
 from heuncli.results import Array, Block, CertainSum
 from heuncli.tree.prepare import PreparedScene
 
-# [rad] or of the size: how far neighbouring poses lie in which a certain sum must hold too; several, for what has one
-# freedom gives two poses each, and among more components than poses some sums hold by accident
-NEAR = (0.05, 0.1, 0.2, 0.4)
-NEARLY = 1e-6  # relative singular value of the closures below which reactions are not to be trusted
 SUMS_FROM = 9  # instants whose self-stresses certain sums are read from
 
 
@@ -69,7 +66,7 @@ def singular_poses(stress: SelfStress, times: Array, redundant: int) -> list[str
     if len(more):
         told = ", ".join(f"{t:.6g}" for t in times[more[:5]]) + (" ..." if len(more) > 5 else "")
         found.append(f"singular pose at t = {told} s: what is open only there is open there only")
-    near = np.flatnonzero((stress.least < NEARLY) & (stress.count <= redundant))
+    near = np.flatnonzero((stress.least < tolerances.NEARLY_SINGULAR) & (stress.count <= redundant))
     if len(near):
         k = near[int(np.argmin(stress.least[near]))]
         found.append(
@@ -103,7 +100,7 @@ def sums_of(
 ) -> list[CertainSum]:
     """Certain sums of the joints' open components, true at the asked instants and in neighbouring poses."""
     pick = np.unique(np.linspace(0, len(found.times) - 1, SUMS_FROM).astype(int))
-    near = neighbours(runner, float(found.times[0]), found.states[0], NEAR)
+    near = neighbours(runner, float(found.times[0]), found.states[0], tolerances.SUM_POSES)
     beside = self_stress(scene.layout, body_states(scene.layout, near), near.gap) if near is not None else None
     if any(j.joint.stiffness is not None for j in joints):
         beside = None  # what a stiffness leaves undecided is known at the asked instants only

@@ -14,6 +14,7 @@ from collections.abc import Sequence
 
 import numpy as np
 
+from heuncli import tolerances
 from heuncli.kernel.choose import scene as kernel
 from heuncli.kinetostatics.bodies import BodyStates
 from heuncli.kinetostatics.closure_wrenches import closure_wrenches
@@ -22,11 +23,6 @@ from heuncli.records import record
 from heuncli.results import Array, Mask
 from heuncli.tree.layout import Layout
 from heuncli.tree.tables import vectors
-
-RANK = 1e-9  # of the largest singular value, or of 1 (a unit load at the length L): below it, rows are dependent
-GAP = 100.0  # a pose is known to gap/L only: so many times that is the least that can count
-TINY = 1e-13  # a self-stress without a share in any joint
-OPEN = 1e-8  # of a self-stress's largest share: above it a component is open
 
 
 @record
@@ -48,7 +44,7 @@ class SelfStress:
 
     def reaches(self, shares: Array, length: float = 1.0) -> Mask:
         """Whether a self-stress has a share in components (..., n_t, c, k) -> (..., n_t, c); moments: give `length`."""
-        limit = OPEN * np.where(self.largest > 0.0, self.largest, np.inf)
+        limit = tolerances.OPEN_SHARE * np.where(self.largest > 0.0, self.largest, np.inf)
         return np.asarray((np.abs(shares) / length > limit[:, None, :]).any(axis=-1))
 
 
@@ -79,11 +75,12 @@ def self_stress(layout: Layout, states: BodyStates, gap: Array) -> SelfStress | 
         shares = tuple(s * np.array([1.0, 1.0, 0.0, 0.0, 0.0, 1.0])[:, None] for s in shares)
         size = np.array([1.0, 1.0, 1.0, length, length, length])[:, None]
         stacked = np.concatenate([s / size for s in shares], axis=1)
-        counts = np.linalg.matrix_rank(stacked, tol=OPEN) if stacked.shape[2] else counts
+        counts = np.linalg.matrix_rank(stacked, tol=tolerances.OPEN_SHARE) if stacked.shape[2] else counts
     parts = [np.abs(s[:, :3]).max(axis=1, initial=0.0) for s in shares]
     parts += [np.abs(s[:, 3:]).max(axis=1, initial=0.0) / length for s in shares]
     largest = np.max(parts, axis=0)
-    return SelfStress(shares, np.where(largest > TINY, largest, 0.0), counts, length, least, dependent)
+    largest = np.where(largest > tolerances.NO_SELF_STRESS, largest, 0.0)
+    return SelfStress(shares, largest, counts, length, least, dependent)
 
 
 def _length(layout: Layout, joints: Sequence[int] | range | set[int]) -> float:
@@ -191,7 +188,7 @@ def _null_space(
     unit = np.maximum(np.sqrt(np.sum(J * J, axis=2)), 1.0)[:, :, None]
     J = J / unit
     # rows that never touch a free direction (across a flat mechanism, say) are self-stresses by themselves
-    idle = np.abs(J).max(axis=(0, 2), initial=0.0) <= RANK
+    idle = np.abs(J).max(axis=(0, 2), initial=0.0) <= tolerances.RANK
     Z_rest, open_rest, kept = _null_of(J[:, ~idle], gap / L)
     k = Z_rest.shape[2]
     Z = np.zeros((n_t, m, k + int(idle.sum())))
@@ -209,7 +206,7 @@ def _null_of(J: Array, gap: Array) -> tuple[Array, Array, Array]:
     if S.shape[1] < m:
         S = np.concatenate([S, np.zeros((n_t, m - S.shape[1]))], axis=1)
     top = np.maximum(S.max(axis=1, initial=0.0), 1.0)
-    limit = np.maximum(RANK, GAP * gap) * top
+    limit = np.maximum(tolerances.RANK, tolerances.RANK_OF_GAP * gap) * top
     rank = np.sum(S > limit[:, None], axis=1)
     k_max = int((m - rank).max(initial=0))
     last = np.take_along_axis(S, np.maximum(rank - 1, 0)[:, None], axis=1)[:, 0]

@@ -11,13 +11,12 @@ from collections.abc import Sequence
 
 import numpy as np
 
+from heuncli import tolerances
 from heuncli.kinetostatics.bodies import BodyStates
 from heuncli.kinetostatics.reactions import JointLoads, carried
 from heuncli.records import record, replace
 from heuncli.redundancy.self_stress import SelfStress
 from heuncli.results import Array
-
-FELT = 1e-9  # of the largest: a self-stress that strains less is not decided by the stiffness
 
 
 @record
@@ -63,7 +62,7 @@ def decided(
     W = np.concatenate([np.einsum("tij,tj->ti", m, _wrench(j)) for m, j in zip(maps, joints, strict=True)], axis=1)
     size = np.where(stress.largest > 0.0, stress.largest, 1.0)
     U, sigma, V = np.linalg.svd(S / size[:, None, :], full_matrices=False)
-    felt = sigma > FELT * np.maximum(sigma.max(axis=1, initial=0.0), 1e-300)[:, None]
+    felt = sigma > tolerances.STRAINED * np.maximum(sigma.max(axis=1, initial=0.0), 1e-300)[:, None]
     inverse = np.where(felt, 1.0 / np.where(felt, sigma, 1.0), 0.0)
     c = -np.einsum("tki,tk,tjk,tj->ti", V, inverse, U, W) / size
     shared = [_added(j, states, np.einsum("tik,tk->ti", s, c)) for j, s in zip(joints, stress.shares, strict=True)]
@@ -77,7 +76,7 @@ def decided(
     shares = tuple(np.einsum("tik,tkj->tij", s, turned) for s in stress.shares)
     parts = [np.maximum(np.abs(s[:, :3]).max(axis=1), np.abs(s[:, 3:]).max(axis=1) / stress.length) for s in shares]
     largest = np.max(parts, axis=0)
-    largest = np.where(largest > 1e-9, largest, 0.0)
+    largest = np.where(largest > tolerances.STILL_OPEN, largest, 0.0)
     return shared, replace(stress, shares=shares, largest=largest, count=undecided)
 
 

@@ -11,11 +11,11 @@ from collections.abc import Mapping
 
 import numpy as np
 
+from heuncli import tolerances
 from heuncli.results import Array
 
-SAME = 1e-7  # of the largest singular value of some rows: below it one of them is told by the others
 MOST_TERMS = 24  # nobody reads longer sums, and they take long to find
-ABSENT = 1e-9  # of unit length: a factor that is nowhere larger is none
+LARGE = 0.1  # of unit length: the first factor that large is positive at the start
 
 Shares = Mapping[str, Array]  # components' shares of every self-stress, (poses, k)
 
@@ -48,7 +48,8 @@ def dependent(poses: Shares) -> list[list[str]]:
         for _ in range(2):
             rest = rest - Q @ (Q.transpose(0, 2, 1) @ rest)
         size = np.sqrt(np.sum(rest * rest, axis=(1, 2)))
-        new = size > SAME * np.maximum(np.sqrt(np.sum(rows[:, i] ** 2, axis=1)), SAME)
+        own = np.sqrt(np.sum(rows[:, i] ** 2, axis=1))
+        new = size > tolerances.DEPENDENT_SHARES * np.maximum(own, tolerances.DEPENDENT_SHARES)
         is_free = bool((usual & new).any())
         (free if is_free else told).append(i)
         if is_free:
@@ -58,7 +59,7 @@ def dependent(poses: Shares) -> list[list[str]]:
         return []
     back = Q[usual].transpose(0, 2, 1)
     c = np.linalg.solve(back @ rows[usual][:, free].transpose(0, 2, 1), back @ rows[usual][:, told].transpose(0, 2, 1))
-    used = (np.abs(c) > ABSENT * np.maximum(np.abs(c).max(axis=1, keepdims=True), 1.0)).any(axis=0)
+    used = (np.abs(c) > tolerances.ABSENT_FACTOR * np.maximum(np.abs(c).max(axis=1, keepdims=True), 1.0)).any(axis=0)
     return [[*(names[f] for f in np.array(free)[used[:, k]]), names[i]] for k, i in enumerate(told)]
 
 
@@ -75,14 +76,14 @@ def factors(rows: Array) -> Array | None:
         R = np.pad(R, ((0, 0), (0, n - R.shape[1]), (0, 0)))
     diagonal = np.abs(np.diagonal(R, axis1=1, axis2=2))
     most = np.abs(R).max(axis=(1, 2))
-    usual = (diagonal[:, :-1] > SAME * most[:, None]).all(axis=1)
-    if not usual.any() or (diagonal[usual, -1] > SAME * most[usual]).any():
+    usual = (diagonal[:, :-1] > tolerances.DEPENDENT_SHARES * most[:, None]).all(axis=1)
+    if not usual.any() or (diagonal[usual, -1] > tolerances.DEPENDENT_SHARES * most[usual]).any():
         return None
     c = np.ones((len(rows), n))
     c[usual, :-1] = -np.linalg.solve(R[usual, :-1, :-1], R[usual, :-1, -1:])[:, :, 0]
     for t in np.flatnonzero(~usual):
         U, sigma, _ = np.linalg.svd(R[t].T)
-        N = U[:, sigma <= SAME * max(float(sigma[0]), 1e-300)]
+        N = U[:, sigma <= tolerances.DEPENDENT_SHARES * max(float(sigma[0]), 1e-300)]
         if not N.shape[1]:
             return None
         known = np.flatnonzero(usual)
@@ -90,5 +91,5 @@ def factors(rows: Array) -> Array | None:
         c[t] = N @ (N.T @ before)
     c = c / size
     unit: Array = c / np.sqrt(np.sum(c * c, axis=1))[:, None]
-    unit *= np.sign(unit[0, np.argmax(np.abs(unit[0]) > 0.1)])
+    unit *= np.sign(unit[0, np.argmax(np.abs(unit[0]) > LARGE)])
     return unit

@@ -12,6 +12,7 @@ from typing import Any, NamedTuple
 
 import numpy as np
 
+from heuncli import tolerances
 from heuncli.joint_kinds import TYPES, Kind
 from heuncli.records import record
 from heuncli.spec.models import Body, End, Force, Friction, Section, Spec, Vec
@@ -19,7 +20,6 @@ from heuncli.spec.models import Body, End, Force, Friction, Section, Spec, Vec
 PUSHING_FORCES = frozenset({"force", "actuator", "spring"})
 AXES = ("x", "y", "z")
 ABOUT = {"at": "the cut's point", "centroid": "the cut's centroid", "line": "the cut's point, and Heun's line"}
-EQUAL_COMPONENTS = 1e-9  # contract section 1, sections: components this near count as equal
 
 
 class JointInfo(NamedTuple):
@@ -116,8 +116,8 @@ def _first_axis(section: Section) -> str:
     if section.first_axis is not None:
         return f"body {_vector(section.first_axis)}"
     normal = np.abs(np.asarray(section.normal) / np.linalg.norm(section.normal))
-    least = float(np.min(normal))
-    return f"body {next(name for name, n in zip(AXES, normal, strict=True) if n <= least + EQUAL_COMPONENTS)}"
+    least = float(np.min(normal)) + tolerances.EQUAL_COMPONENTS
+    return f"body {next(name for name, n in zip(AXES, normal, strict=True) if n <= least)}"
 
 
 def _end(end: End) -> str:

@@ -13,13 +13,12 @@ from typing import NamedTuple
 
 import numpy as np
 
+from heuncli import tolerances
 from heuncli.report.labels import Labels
 from heuncli.report.quantities import walk
 from heuncli.results import Array, Estimate, Results
 
 DIGITS = 6
-ROUNDING = 1e-12  # what an exact solution in double precision is certain to, relative to the largest
-HORIZON_ERROR = 1e-3  # contract section 3: the estimate at the horizon, before which the tables stop
 LOAD_UNITS = frozenset({"N", "N·m", "N·s", "N·m·s", "Pa"})
 LARGE, SMALL = 1e7, 1e-4  # families beyond these are written with an exponent
 OPEN = "open"
@@ -64,7 +63,7 @@ def certainty(results: Results, labels: Labels) -> Certainty:
     motion = _relative(estimate.get("motion"))
     loads = max(_relative(estimate.get("reactions")), _relative(results.accuracy.get("balance_residual")))
     if results.accuracy.get("horizon") is not None:
-        motion, loads = min(motion, HORIZON_ERROR), min(loads, HORIZON_ERROR)
+        motion, loads = min(motion, tolerances.CLAIMED), min(loads, tolerances.CLAIMED)
     scales: dict[str, float] = {}
     for series in walk(results, labels):
         scales[series.unit] = max(scales.get(series.unit, 0.0), largest(series.values))
@@ -120,7 +119,7 @@ def rough(value: float) -> str:
 
 
 def _relative(error: float | None) -> float:
-    return max(error, ROUNDING) if error is not None and math.isfinite(error) else ROUNDING
+    return max(error, tolerances.WRITTEN) if error is not None and math.isfinite(error) else tolerances.WRITTEN
 
 
 def _reach(results: Results) -> float:

@@ -13,12 +13,13 @@ from typing import TypeVar
 import numpy as np
 from numpy.typing import NDArray
 
+from heuncli import tolerances
 from heuncli.records import record
 from heuncli.results import Array
 from heuncli.shapes.box import Box
 from heuncli.shapes.frustum import Frustum
 from heuncli.shapes.outlines import places
-from heuncli.shapes.solids import IN_PLANE, Ball, Point, Rod, Solid
+from heuncli.shapes.solids import Ball, Point, Rod, Solid
 from heuncli.spec.models import Shape, Vec
 
 Value = TypeVar("Value")
@@ -157,11 +158,11 @@ class Form:
             weight[bare] += met
             moment[bare] += met[:, None] * outline.corners(bare)[:, 0]
         with np.errstate(invalid="ignore"):
-            return Figures(area, moment / weight[:, None], places(outlines, n, 1e3 * self.near))
+            return Figures(area, moment / weight[:, None], places(outlines, n, tolerances.TOUCHING * self.near))
 
 
 def form(shapes: Iterable[Shape]) -> Form:
     """The form of a body from the spec's shapes."""
     parts = tuple(solid(shape) for shape in shapes)
     reach = [max(abs(h) for h in part.extent(axis)) for part in parts for axis in np.eye(3)]
-    return Form(parts, IN_PLANE * max(reach))
+    return Form(parts, tolerances.IN_PLANE * max(reach))

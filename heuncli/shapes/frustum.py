@@ -11,6 +11,7 @@ from __future__ import annotations
 
 import numpy as np
 
+from heuncli import tolerances
 from heuncli.records import record
 from heuncli.results import Array
 from heuncli.shapes.inertia import assembled
@@ -18,8 +19,6 @@ from heuncli.shapes.outlines import SIDES, Corners, Flags, Outline, Planes, circ
 from heuncli.shapes.quadrature import Owners, adaptive, gauss
 from heuncli.shapes.rotations import perpendicular
 from heuncli.shapes.solids import Thick
-
-ACROSS = 2e-15  # a normal less than this off the axis differs from it by rounding
 
 
 def segments(u: Array, r: Array, q: Array) -> tuple[Array, Array, Array, Array]:
@@ -101,7 +100,7 @@ class Frustum(Thick):
         c = float(n @ self.axis)
         across = np.cross(self.axis, n)
         s = float(np.sqrt(across @ across))
-        f = across / s if s > ACROSS else perpendicular(self.axis)[1]
+        f = across / s if s > tolerances.OFF_AXIS else perpendicular(self.axis)[1]
         f = f - (f @ self.axis) * self.axis  # a small s has left little of the product's right angle
         f = f / np.sqrt(f @ f)
         return Lines(s, c, np.cross(f, self.axis), f, d - n @ self.start)
@@ -139,7 +138,7 @@ class Frustum(Thick):
         line = self.lines(n, d)
         s, c, k = line.s, line.c, len(d)
         none, full = np.zeros(k), np.full(k, self.length)
-        if s <= ACROSS:
+        if s <= tolerances.OFF_AXIS:
             at = np.clip(line.d / c, 0.0, self.length)
             return self.placed(line, self.slices(at, full) if c > 0.0 else self.slices(none, at))
 
@@ -205,7 +204,7 @@ class Frustum(Thick):
 
     def area(self, n: Array, d: Array) -> tuple[Array, Array]:
         line = self.lines(n, d)
-        if line.s <= ACROSS:
+        if line.s <= tolerances.OFF_AXIS:
             z = line.d / line.c
             r, q = self.radii(z)
             areas = np.where((z > 0.0) & (z < self.length), np.pi * (r - q) * (r + q), 0.0)
@@ -218,7 +217,7 @@ class Frustum(Thick):
 
     def outlines(self, n: Array, d: Array) -> tuple[Outline, ...]:
         line = self.lines(n, d)
-        if line.s <= ACROSS:
+        if line.s <= tolerances.OFF_AXIS:
             z = line.d / line.c
             r, q = self.radii(z)
 

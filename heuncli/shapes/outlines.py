@@ -10,6 +10,7 @@ from collections.abc import Callable, Sequence
 import numpy as np
 from numpy.typing import NDArray
 
+from heuncli import tolerances
 from heuncli.records import record
 from heuncli.results import Array
 from heuncli.shapes.rotations import perpendicular
@@ -19,7 +20,6 @@ Planes = NDArray[np.intp]
 Corners = Callable[[Planes], Array]
 
 SIDES = 96  # of the polygons for curved outlines: 5e-4 of a radius off
-RESOLUTION = 1e-3
 
 
 @record
@@ -124,7 +124,7 @@ def separate(outlines: Sequence[Outline], planes: Planes, n: Array, near: float)
     for i, A in enumerate(shadows):
         for j, B in enumerate(shadows[:i]):
             distance = np.sqrt(((A.center - B.center) ** 2).sum(axis=1))
-            gap = RESOLUTION * (A.outer + B.outer) + near
+            gap = tolerances.OUTLINES_APART * (A.outer + B.outer) + near
             one = met[:, i] & met[:, j] & (distance <= A.outer + B.outer + gap)
             full = holes[i] is None and holes[j] is None
             unsure = one & (distance > A.inner + B.inner) if full else one

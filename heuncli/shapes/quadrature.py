@@ -11,6 +11,7 @@ from functools import cache
 import numpy as np
 from numpy.typing import NDArray
 
+from heuncli import tolerances
 from heuncli.results import Array
 
 Owners = NDArray[np.intp]
@@ -21,7 +22,6 @@ SMALL = {
     3: ([-(0.6**0.5), 0.0, 0.6**0.5], [5.0 / 9.0, 8.0 / 9.0, 5.0 / 9.0]),
 }
 NODES = 16
-ENOUGH = 1e-14  # whole against halves, in parts of the scale; planes that graze thin walls then err by as much
 DEEPEST = 48
 
 
@@ -49,7 +49,7 @@ def piecewise(low: Array, high: Array, breaks: Array, n: int) -> tuple[Array, Ar
 
 
 def adaptive(f: Callable[[Array, Owners], Array], low: Array, high: Array, breaks: Array, scale: Array) -> Array:
-    """Integrals (k, m) of m functions from low to high, (k,), to about ENOUGH times scale, (k, m) or (m,).
+    """Integrals (k, m) of m functions from low to high, (k,), to about QUADRATURE times scale, (k, m) or (m,).
 
     f(z, owner) takes places z (i, n) and the integrals they belong to (i,), and gives (i, n, m). At the breaks (k, j)
     f may have square roots: z = start + length sin^2(psi/2) makes them smooth in psi, in which pieces are halved until
@@ -72,7 +72,7 @@ def adaptive(f: Callable[[Array, Owners], Array], low: Array, high: Array, break
     )
     whole = over(piece, owner)
     total = np.zeros((len(low), whole.shape[-1]))
-    limit = ENOUGH * np.broadcast_to(scale, total.shape)
+    limit = tolerances.QUADRATURE * np.broadcast_to(scale, total.shape)
     for depth in range(DEEPEST):
         if not len(owner):
             break

@@ -6,6 +6,7 @@ import math
 
 import numpy as np
 
+from heuncli import tolerances
 from heuncli.results import Array
 
 
@@ -59,7 +60,7 @@ def to_quaternion(R: Array) -> Array:
 def turn_onto(a: Array, b: Array) -> Array:
     """Smallest rotation that takes the unit vector a onto the unit vector b, (3, 3).
 
-    Opposite vectors (to 1e-9): half a turn about the coordinate axis most nearly perpendicular to them.
+    Opposite vectors (to PARALLEL): half a turn about the coordinate axis most nearly perpendicular to them.
     """
     v = cross(a, b)
     c = float(a @ b)
@@ -74,7 +75,7 @@ def turn_onto(a: Array, b: Array) -> Array:
             ]
         )
     # Beyond a right angle 1 + c would cancel: half a turn takes a to -a, and -a is near b.
-    if float(v @ v) < 1e-18:
+    if float(v @ v) < tolerances.PARALLEL**2:
         v = np.zeros(3)
         v[int(np.argmin(np.abs(a)))] = 1.0
     e = v - (v @ a) * a

@@ -18,8 +18,6 @@ from heuncli.results import Array
 from heuncli.shapes.inertia import assembled
 from heuncli.shapes.outlines import Outline, circle
 
-IN_PLANE = 1e-12  # of the body's size: nearer to a plane counts as in it
-
 
 class Solid(Protocol):
     """A homogeneous shape in body axes."""

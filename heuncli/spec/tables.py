@@ -7,6 +7,7 @@ import math
 from collections.abc import Iterator
 from pathlib import Path
 
+from heuncli import tolerances
 from heuncli.errors import Finding, Place
 from heuncli.expressions.curves import fit
 from heuncli.expressions.programs import Table
@@ -16,7 +17,6 @@ from heuncli.records import record
 from heuncli.spec.format import Table as Entry
 from heuncli.spec.quantity import Scope, number
 
-SAME = 1e-6  # a period and its span, and the values at its two ends, are printed with some digits
 MOST_ROWS = 2_000_000
 
 
@@ -120,13 +120,13 @@ def shape_of(x: list[float], y: list[float], entry: Entry) -> Iterator[Wrong]:
     if entry.outside is not None:
         yield Wrong(("outside",), Finding("table-form", "both period and outside", "a periodic table has no outside"))
     span = x[-1] - x[0]
-    if abs(entry.period - span) > SAME * span:
+    if abs(entry.period - span) > tolerances.TABLE_ENDS * span:
         message = f"the period is {entry.period:.9g}, but x spans {span:.9g} (SI)"
         unit = f"a period has its own unit: '{entry.period:g} {entry.x_unit}'" if entry.x_unit else None
         yield Wrong(
             ("period",), Finding("table-period", message, unit or "the last point repeats the first, one period on")
         )
-    elif abs(y[-1] - y[0]) > SAME * (max(y) - min(y)):
+    elif abs(y[-1] - y[0]) > tolerances.TABLE_ENDS * (max(y) - min(y)):
         message = f"the ends of a periodic table must agree, but y is {y[0]:.9g} and {y[-1]:.9g} (SI)"
         yield Wrong(("period",), Finding("table-period", message, "the last point repeats the first, one period on"))
 

@@ -7,12 +7,11 @@ from __future__ import annotations
 
 import math
 
+from heuncli import tolerances
 from heuncli.errors import Finding
 from heuncli.spec.models import Matrix, Vec
 
 IDENTITY: Matrix = ((1.0, 0.0, 0.0), (0.0, 1.0, 0.0), (0.0, 0.0, 1.0))
-ROUGH = 1e-2  # a unit quaternion or rotation matrix may be this far off: it was typed with few digits
-EXACT = 1e-14
 
 
 def length(v: Vec) -> float:
@@ -63,7 +62,7 @@ def of_quaternion(q: tuple[float, float, float, float]) -> Matrix:
 def of_unit_quaternion(q: tuple[float, float, float, float]) -> Matrix:
     """Rotation of a quaternion meant to be of unit length. Raises Finding."""
     n = math.hypot(*q)
-    if abs(n - 1.0) > ROUGH:
+    if abs(n - 1.0) > tolerances.UNIT_TYPED:
         raise Finding("orientation", f"the quaternion has the length {n:.6g} instead of 1", "its order is w, x, y, z")
     return of_quaternion(q)
 
@@ -98,12 +97,13 @@ def of_matrix(m: Matrix) -> Matrix:
         for j in range(3)
     )
     handed = sum(a * b for a, b in zip(cross(m[0], m[1]), m[2], strict=True))
-    if off > ROUGH or handed < 0.0:
-        what = "its columns are not perpendicular and of length 1" if off > ROUGH else "it is a mirror, not a turn"
+    if off > tolerances.UNIT_TYPED or handed < 0.0:
+        skew = off > tolerances.UNIT_TYPED
+        what = "its columns are not perpendicular and of length 1" if skew else "it is a mirror, not a turn"
         raise Finding(
             "orientation", f"the matrix is not a rotation: {what}", "columns are the body's axes in world axes"
         )
-    return m if off <= EXACT else of_quaternion(to_quaternion(m))
+    return m if off <= tolerances.UNIT_EXACT else of_quaternion(to_quaternion(m))
 
 
 def to_quaternion(R: Matrix) -> tuple[float, float, float, float]:

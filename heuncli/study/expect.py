@@ -7,16 +7,16 @@ from typing import Any
 
 import numpy as np
 
+from heuncli import tolerances
 from heuncli.errors import HeunError, Place, Problem
 from heuncli.records import record
 from heuncli.results import Array, Results
 from heuncli.results_paths import find
 from heuncli.spec.models import Expect
-from heuncli.study.measure import SAME_INSTANT, peak, report_of
+from heuncli.study.measure import peak, report_of
 from heuncli.study.solve import Study
 
 # Where the spec gives neither rel nor abs.
-DEFAULT_REL, DEFAULT_ABS = 1e-6, 1e-9
 
 
 @record
@@ -70,7 +70,7 @@ def _found(study: Study, item: Expect) -> Array:
 
 def _instant(times: Array, at: float) -> int:
     place = int(np.argmin(np.abs(times - at)))
-    if abs(times[place] - at) > SAME_INSTANT * max(float(np.ptp(times)), abs(at)):
+    if abs(times[place] - at) > tolerances.SAME_INSTANT * max(float(np.ptp(times)), abs(at)):
         message = f"t = {at:.6g} s is not an instant of the output; the nearest is {times[place]:.6g} s"
         raise HeunError(Problem("no-such-instant", message))
     return place
@@ -98,7 +98,7 @@ def _tolerance(expected: Array, rel: float | None, absolute: float | None) -> fl
     """rel is of the largest number expected."""
     scale = float(np.max(np.abs(np.nan_to_num(expected)))) if expected.size else 0.0
     if rel is None and absolute is None:
-        rel, absolute = DEFAULT_REL, DEFAULT_ABS
+        rel, absolute = tolerances.EXPECTED_RELATIVE, tolerances.EXPECTED_ABSOLUTE
     return max((rel or 0.0) * scale, absolute or 0.0)
 
 

@@ -18,6 +18,7 @@ from collections.abc import Callable, Sequence
 import numpy as np
 from numpy.typing import NDArray
 
+from heuncli import tolerances
 from heuncli.results import Array, Extremes, Indices
 
 Sample = Callable[[Array], Array]
@@ -26,7 +27,6 @@ ROUNDS = 3  # after two a smooth peak is right to seven digits, after three to r
 SPREAD = 0.05  # distance of the outer probes from the vertex, as part of the bracket; a tenth of it a round later
 GOLDEN = 0.381966011250105  # (3 - √5) / 2: where to look when no parabola tells
 MOST_COLUMNS = 400  # of quantities that vary; beyond, the grid's own values stand: a batch is 8 instants a quantity
-FLAT = 1e-13  # a quantity that varies by less than this part of itself has no peak worth a search
 
 
 def search(
@@ -100,7 +100,7 @@ def _vertex(a: Array, b: Array, c: Array, fa: Array, fb: Array, fc: Array) -> Ar
 def _varies(values: Array) -> NDArray[np.bool_]:
     """Which columns have a peak worth a search."""
     known = np.nan_to_num(values)
-    varies: NDArray[np.bool_] = np.ptp(known, axis=0) > FLAT * np.abs(known).max(axis=0)
+    varies: NDArray[np.bool_] = np.ptp(known, axis=0) > tolerances.CONSTANT * np.abs(known).max(axis=0)
     return varies
 
 

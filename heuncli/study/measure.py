@@ -6,13 +6,12 @@ from typing import Literal, NamedTuple
 
 import numpy as np
 
+from heuncli import tolerances
 from heuncli.errors import HeunError, Problem
 from heuncli.results import Array, Results
 from heuncli.results_paths import find
 from heuncli.results_schema import REPORT_OF
 from heuncli.study.solve import Study
-
-SAME_INSTANT = 1e-9  # of the run's length: instants this near to each other are one
 
 
 class NotOneNumber(HeunError):
@@ -100,7 +99,7 @@ def one_number(path: str, values: Array, of_vectors: bool) -> float:
 def instant_of(asked: Measure, times: Array) -> float:
     """The instant asked for, if the run has it. Raises NotOneNumber."""
     at = float(asked.at or 0.0)
-    slack = SAME_INSTANT * float(np.ptp(times))
+    slack = tolerances.SAME_INSTANT * float(np.ptp(times))
     if not times[0] - slack <= at <= times[-1] + slack:
         raise NotOneNumber(f"{asked.path} at {at:.6g}: the run goes from {times[0]:.6g} to {times[-1]:.6g} s")
     return float(np.clip(at, times[0], times[-1]))

@@ -6,6 +6,7 @@ from typing import TYPE_CHECKING
 
 import numpy as np
 
+from heuncli import tolerances
 from heuncli.integration.runner import Runner
 from heuncli.joint_kinds import JOINTS
 from heuncli.mechanism.model import Mechanism
@@ -16,8 +17,6 @@ from heuncli.tree.prepare import PreparedScene
 
 if TYPE_CHECKING:  # loaded where a scene has closed chains
     from heuncli.redundancy.self_stress import SelfStress
-
-NO_SHARE = 1e-8  # of a self-stress's largest share: a joint with less takes no part
 
 
 def model_note(scene: PreparedScene, runner: Runner, method: str) -> Block:
@@ -83,7 +82,7 @@ def held_twice(layout: Layout, stress: SelfStress) -> list[str]:
         size = np.where(stress.largest > 0.0, stress.largest, 1.0)
         parts = np.abs(share / size[:, None, :]).max(axis=(0, 2))
         parts[3:] /= stress.length
-        names = [f"{'F' if i < 3 else 'M'}{'xyz'[i % 3]}" for i in range(6) if parts[i] > NO_SHARE]
+        names = [f"{'F' if i < 3 else 'M'}{'xyz'[i % 3]}" for i in range(6) if parts[i] > tolerances.OPEN_SHARE]
         if names:
             notes.append(f"held more than once: {joint.name} {', '.join(names)}")
     return notes

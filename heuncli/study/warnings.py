@@ -2,12 +2,12 @@
 
 from __future__ import annotations
 
+from heuncli import tolerances
 from heuncli.results import Block, Status
 from heuncli.study.history import History
 from heuncli.study.recover import Recovery
 from heuncli.study.setup import Setup
 
-UNBALANCED = 1e-6  # of a body's largest load: rounding stays far below, near a singular pose, too
 MOST_TIMES = 5  # that a sentence lists
 
 
@@ -38,7 +38,7 @@ def warnings(setup: Setup, history: History, recovery: Recovery, joints: Block, 
 def unbalanced(residual: float) -> list[str]:
     """A sentence where the numbers do not fulfil d'Alembert's principle."""
     wrong = f"the forces balance to {residual:.1g} of the largest only: the loads are not to be trusted"
-    return [wrong] if residual > UNBALANCED else []
+    return [wrong] if residual > tolerances.UNBALANCED else []
 
 
 def of_the_motion(history: History) -> list[str]:

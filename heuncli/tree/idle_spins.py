@@ -8,13 +8,11 @@ from __future__ import annotations
 
 import numpy as np
 
+from heuncli import tolerances
 from heuncli.joint_kinds import JOINTS
 from heuncli.mechanism.model import Body, Mechanism, PointLoad
 from heuncli.records import record
 from heuncli.results import Array
-
-NO_INERTIA = 1e-12  # of the body's largest moment of inertia, or of m L^2
-ON_AXIS = 1e-9  # of the size: how far off a point may lie
 
 
 @record
@@ -53,19 +51,19 @@ def idle_spins(mechanism: Mechanism, size: float) -> list[IdleSpin]:
         arms = [p - body.center for p in points[i]]
         far = max(arms, key=lambda d: float(d @ d), default=np.zeros(3))
         reach = float(np.sqrt(far @ far))
-        if reach > ON_AXIS * size:
+        if reach > tolerances.ON_AXIS * size:
             n = far / reach
             off = max(float(np.sqrt(np.sum(np.square(d - (d @ n) * n)))) for d in arms)
-            if off > ON_AXIS * size or np.sum(np.square(null @ n)) < 1.0 - 1e-9:
+            if off > tolerances.ON_AXIS * size or np.sum(np.square(null @ n)) < tolerances.ALONG_SQUARED:
                 continue
             null = n[None, :]
-        lent = max(largest, body.mass * max(reach, 1e-3 * size) ** 2)
+        lent = max(largest, body.mass * max(reach, tolerances.LENT_REACH * size) ** 2)
         found.append(IdleSpin(i, null, lent * null.T @ null))
     return found
 
 
 def without_inertia(body: Body, size: float) -> tuple[Array, float]:
     """The principal axes about which a body has no inertia (body components, (k, 3)); its largest moment of inertia."""
-    scale = max(float(np.trace(body.inertia)), 1e-9 * body.mass * size * size)
+    scale = max(float(np.trace(body.inertia)), tolerances.POINT_MASS * body.mass * size * size)
     moments, axes = np.linalg.eigh(body.inertia)
-    return axes[:, moments <= NO_INERTIA * scale].T, float(moments[-1])
+    return axes[:, moments <= tolerances.NO_INERTIA * scale].T, float(moments[-1])

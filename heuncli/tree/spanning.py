@@ -14,14 +14,12 @@ from collections.abc import Collection
 
 import numpy as np
 
+from heuncli import tolerances
 from heuncli.errors import Problem, SolveError
 from heuncli.joint_kinds import JOINTS
 from heuncli.mechanism.model import GROUND, Joint, Mechanism
 from heuncli.records import record
 from heuncli.results import Array
-
-NO_INERTIA = 1e-12  # of the body's largest moment of inertia
-ALONG = 1.0 - 1e-9  # cosine: an axis that is that of the missing inertia
 
 
 @record
@@ -111,7 +109,7 @@ def null_axes(mechanism: Mechanism) -> dict[int, Array]:
     if not mechanism.bodies:
         return {}
     moments, axes = np.linalg.eigh(np.array([body.inertia for body in mechanism.bodies]))
-    none = moments <= NO_INERTIA * np.maximum(moments[:, 2:], 0.0)
+    none = moments <= tolerances.NO_INERTIA * np.maximum(moments[:, 2:], 0.0)
     return {int(i): axes[i][:, none[i]].T for i in np.flatnonzero(none.any(axis=1))}
 
 
@@ -121,7 +119,7 @@ def _leaves(joint: Joint, to: bool, null: Array) -> bool:
     if kind.ball or len(null) > 1:
         return kind.ball
     own = joint.to_axis if to else joint.axis
-    return bool(kind.turns) and abs(float(null[0] @ own)) > ALONG
+    return bool(kind.turns) and abs(float(null[0] @ own)) > tolerances.ALONG
 
 
 def _over_driven(mechanism: Mechanism, k: int) -> Problem:

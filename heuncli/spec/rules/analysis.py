@@ -4,6 +4,7 @@ from __future__ import annotations
 
 from collections.abc import Iterator
 
+from heuncli import tolerances
 from heuncli.spec.rules.registry import Found, Scene, rule
 
 MOST_SAMPLES = 10_000_000
@@ -58,5 +59,5 @@ def analysis_type(scene: Scene) -> Iterator[Found]:
 def tolerance(scene: Scene) -> Iterator[Found]:
     """A tolerance is between rounding and the whole."""
     value = scene.document.analysis.tolerance
-    if value is not None and not 1e-15 < value < 1.0:
+    if value is not None and not tolerances.LEAST_ASKED < value < 1.0:
         yield Found(("analysis", "tolerance"), f"tolerance {value:g} is not between 1e-15 and 1", "the default is 1e-9")

@@ -4,14 +4,12 @@ from __future__ import annotations
 
 from collections.abc import Iterator
 
+from heuncli import tolerances
 from heuncli.errors import Finding
 from heuncli.spec import format as f
 from heuncli.spec.rules.registry import Found, Path_, Scene, rule
 from heuncli.spec.semantics import body_axes, tensor
 from heuncli.spec.turns import principal
-
-BROKEN = 1e-3  # contract: principal moments that break the triangle rule by more are refused
-ROUNDING = 1e-9  # relative; moments typed with ten digits keep the rule this well
 
 
 @rule("no-bodies")
@@ -160,7 +158,7 @@ def inertia_form(scene: Scene) -> Iterator[Found]:
         if isinstance(inertia, tuple) and isinstance(inertia[0], tuple):
             size = max(abs(x) for row in inertia for x in row)
             for i, j in ((0, 1), (0, 2), (1, 2)):
-                if abs(inertia[i][j] - inertia[j][i]) > ROUNDING * size:
+                if abs(inertia[i][j] - inertia[j][i]) > tolerances.INERTIA_TYPED * size:
                     message = f"the tensor is not symmetric: {inertia[i][j]:g} and {inertia[j][i]:g}"
                     yield Found((*path, "inertia"), message)
                     break
@@ -179,7 +177,7 @@ def triangle(scene: Scene) -> Iterator[tuple[Path_, str, float]]:
             )
             scale = max(abs(a), abs(c))
             broken = max(-a, c - a - b) / scale if scale > 0.0 else 0.0
-        if broken > ROUNDING:
+        if broken > tolerances.INERTIA_TYPED:
             yield (*path, "inertia"), ", ".join(f"{m:g}" for m in moments), broken
 
 
@@ -191,7 +189,7 @@ def off_diagonal(m: tuple[tuple[float, ...], ...]) -> bool:
 def inertia_not_physical(scene: Scene) -> Iterator[Found]:
     """No principal moment is negative, or greater than the sum of the others."""
     for path, moments, broken in triangle(scene):
-        if broken > BROKEN:
+        if broken > tolerances.INERTIA_REFUSED:
             message = f"no body has the principal moments {moments}: each is at most the sum of the other two"
             yield Found(
                 path, message, "is it about the centre of mass? is the sign of the deviation right (element = -D)?"
@@ -202,7 +200,7 @@ def inertia_not_physical(scene: Scene) -> Iterator[Found]:
 def inertia_rounded(scene: Scene) -> Iterator[Found]:
     """Moments that break the rule by less than 1e-3 are taken for rounded."""
     for path, moments, broken in triangle(scene):
-        if broken <= BROKEN:
+        if broken <= tolerances.INERTIA_REFUSED:
             yield Found(path, f"the principal moments {moments} break A1 + A2 >= A3 by {broken:.1e}; taken as they are")
 
 

@@ -5,6 +5,7 @@ from __future__ import annotations
 from collections.abc import Iterator
 from typing import TYPE_CHECKING, Any
 
+from heuncli import tolerances
 from heuncli.expressions import units as u
 from heuncli.expressions.programs import Expression
 from heuncli.nearest import did_you_mean
@@ -16,7 +17,6 @@ if TYPE_CHECKING:
     from heuncli.results_schema import Shape
     from heuncli.spec.rules.outcome import Outcome, UnknownWord
 
-SAME_INSTANT = 1e-9
 RAGGED = -1  # the length of a list whose members have different ones
 Lengths = tuple[int | None, ...]  # of nested lists, the outer first; None: not known before the run
 
@@ -82,7 +82,7 @@ def expect_instants(scene: Scene) -> Iterator[Found]:
     for path, item, quantity, _ in outcomes(scene):
         if item.at is not None:
             nearest = min(instants, key=lambda t: abs(t - item.at))  # type: ignore[operator]
-            if abs(nearest - item.at) > SAME_INSTANT * max(instants[-1], abs(item.at)):
+            if abs(nearest - item.at) > tolerances.SAME_INSTANT * max(instants[-1], abs(item.at)):
                 message = f"{item.at:g} s is not an instant of the output; the nearest is {nearest:g} s"
                 yield Found((*path, "at"), message, "add it to analysis.times, or choose other samples")
                 continue

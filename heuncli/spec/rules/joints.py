@@ -5,6 +5,7 @@ from __future__ import annotations
 import math
 from collections.abc import Iterator
 
+from heuncli import tolerances
 from heuncli.expressions.programs import Expression, discontinuities, one_sided_limits
 from heuncli.joint_kinds import RATES, TYPES, named
 from heuncli.spec import format as f
@@ -12,7 +13,6 @@ from heuncli.spec.fields import End
 from heuncli.spec.rules.registry import Found, Path_, Scene, rule
 from heuncli.spec.semantics import drive_of, span_of
 
-SAME = 1e-9  # relative: a held value and a drive's
 LOOKED_AT = 1000  # parts of the run at whose ends a driven length is looked at
 DRIVEN = ("angle", "travel", "length")
 
@@ -128,7 +128,7 @@ def drive_contradicts(scene: Scene) -> Iterator[Found]:
             held = getattr(initial, key, None)
             if held is None or (relative and key == quantity):
                 continue
-            if abs(held - expected) > SAME * max(abs(held), abs(expected), 1.0):
+            if abs(held - expected) > tolerances.SAME_VALUE * max(abs(held), abs(expected), 1.0):
                 message = f"{key} is held at {held:g}, but the drive {name} prescribes {expected:g} at t = 0"
                 yield Found(("joints", joint_name, "initial", key), message, "leave it out: the drive sets it")
 
@@ -150,7 +150,7 @@ def drive_jumps(scene: Scene) -> Iterator[Found]:
             continue
         for last, t in changes(value, duration):
             before, after = value.value(last), value.value(t)
-            if abs(after - before) > SAME * max(abs(before), abs(after), 1.0):
+            if abs(after - before) > tolerances.SAME_VALUE * max(abs(before), abs(after), 1.0):
                 message = f"the drive jumps from {before:g} to {after:g} at t = {t:g} s"
                 yield Found(path, message, "a body cannot jump: let the value run over a short time")
                 break
@@ -177,6 +177,6 @@ def rate_jumps(scene: Scene) -> Iterator[Path_]:
     for name, _, quantity, value in drives(scene):
         for last, t in changes(value, duration):
             before, after = value.derivatives(last)[1], value.derivatives(t)[1]
-            if abs(after - before) > SAME * max(abs(before), abs(after), 1.0):
+            if abs(after - before) > tolerances.SAME_VALUE * max(abs(before), abs(after), 1.0):
                 yield ("drives", name, quantity)
                 break

@@ -5,13 +5,13 @@ from __future__ import annotations
 import math
 from collections.abc import Iterator
 
+from heuncli import tolerances
 from heuncli.joint_kinds import ABOUT_AXIS, TYPES
 from heuncli.spec import format as f
 from heuncli.spec.rules.registry import Found, Path_, Scene, rule
 from heuncli.spec.semantics import body_axes
 from heuncli.spec.turns import IDENTITY, unit
 
-FLAT = 1e-9  # of a direction's length: what may stand out of the plane
 OR_ELSE = "or declare space: spatial"
 # Vectors of bodies and of loads with the components that they cannot have in the plane.
 MOTIONS = {"velocity": ("z",), "angular_velocity": ("x", "y")}
@@ -29,7 +29,7 @@ def not_planar(scene: Scene) -> Iterator[Found]:
         )
     yield from _joints(scene)
     for name, body in scene.document.bodies.items():
-        if body.orientation is not None and abs(upright(body.orientation) - 1.0) > FLAT:
+        if body.orientation is not None and abs(upright(body.orientation) - 1.0) > tolerances.UPRIGHT:
             yield Found(("bodies", name, "orientation"), "in a planar scene a body is turned about z only", OR_ELSE)
         for key, across in MOTIONS.items():
             given = getattr(body, key)
@@ -63,7 +63,7 @@ def _joints(scene: Scene) -> Iterator[Found]:
             if direction is None or direction == (0.0, 0.0, 0.0):
                 continue
             x, y, z = unit(direction)
-            if (math.hypot(x, y) if along_z else abs(z)) > FLAT:
+            if (math.hypot(x, y) if along_z else abs(z)) > tolerances.PARALLEL:
                 wants = "is the z axis" if along_z else "lies in the xy plane"
                 yield Found((*path, key), f"in a planar scene {key} of a {joint.type} {wants}", OR_ELSE)
 

@@ -4,12 +4,12 @@ from __future__ import annotations
 
 from collections.abc import Iterator
 
+from heuncli import tolerances
 from heuncli.spec import format as f
 from heuncli.spec.rules.registry import Found, Scene, rule
 from heuncli.spec.semantics import point_in
 from heuncli.spec.turns import cross, length, unit
 
-PARALLEL = 1e-9
 GENERAL = ("area", "I1", "I2", "J", "c1", "c2")
 REDUCED_TO = ("at", "centroid", "line")
 
@@ -95,7 +95,7 @@ def first_axis(scene: Scene) -> Iterator[Found]:
                 normal = (end[0] - start[0], end[1] - start[1], end[2] - start[2])
         if section.first_axis is None or normal is None or not any(normal) or not any(section.first_axis):
             continue
-        if length(cross(unit(section.first_axis), unit(normal))) < PARALLEL:
+        if length(cross(unit(section.first_axis), unit(normal))) < tolerances.PARALLEL:
             hint = "it is made perpendicular to the normal, and must not vanish by that"
             yield Found(("sections", name, "first_axis"), "first_axis points along the normal", hint)
 
