@@ -17,6 +17,7 @@ from heuncli import tolerances
 from heuncli.errors import LimitError, Problem, SolveError
 from heuncli.expressions.programs import discontinuities, one_sided_limits
 from heuncli.integration.methods import DOP853, Method
+from heuncli.kernel.choose import integration
 from heuncli.kernel.choose import steps as kernel
 from heuncli.mechanism.model import Mechanism
 from heuncli.records import record
@@ -63,6 +64,7 @@ class Trajectory:
     evaluations: int
     gap: float
     tolerance: float  # local, of this run
+    method: Method
     seconds: float
     pieces: tuple[tuple[float, float], ...] = ()  # first and last instant of each stretch without jumps
     kept: tuple[tuple[int, Array], ...] = ()  # number of a step, the state before it; the first one and others
@@ -102,9 +104,9 @@ class Integration:
         self.ends = np.zeros(most)
         self.passed = np.zeros(most * (n + 1))
         self.samples = np.zeros(len(times) * n)
-        start = {"groups": layout.groups, "energy_group": layout.energy_group, "weights": layout.weights, **given}
+        start = {"groups": layout.tables["groups"], "energy_group": layout.energy_group, "weights": layout.weights}
         output = {"times": times, "samples": self.samples, "ends": self.ends, "passed": self.passed}
-        self.loop = kernel.Integration(workspace, method.arrays, start, output)
+        self.loop = integration.Integration(workspace, method.arrays, start | given, output)
 
     def reached(self) -> Array:
         """The states at the ends of the steps just done, and how near to singular the steps came, (count, n + 1)."""
@@ -115,6 +117,40 @@ class Integration:
         """The states at the asked instants, (n_t, n)."""
         self.loop.fetch()
         return self.samples.reshape(-1, self.n)
+
+
+class Steps:
+    """The steps done: their ends, how near to singular each came, and some of their states to go back to."""
+
+    def __init__(self, start: Array) -> None:
+        self.ends: list[float] = []
+        self.pivots: list[Array] = []
+        self.kept: list[tuple[int, Array]] = [(0, start)]  # before which step, the state
+        self.every, self.room = 1, max(2, KEPT // max(len(start), 1))
+
+    def add(self, run: Integration) -> None:
+        """The steps of the last call; where there are too many states, every second of them goes."""
+        reached, before = run.reached(), len(self.ends)
+        self.ends += run.ends[: len(reached)].tolist()
+        self.pivots.append(reached[:, run.n])
+        self.kept += [(k, row[: run.n]) for k, row in enumerate(reached, before + 1) if k % self.every == 0]
+        while len(self.kept) > self.room:
+            self.every *= 2
+            self.kept = [(k, state) for k, state in self.kept if k % self.every == 0]
+
+
+def segments(last: float, jumps: Sequence[float]) -> list[tuple[float, float]]:
+    """First and last instant of each stretch of (0, last) without jumps."""
+    limits = one_sided_limits([t for t in jumps if 0.0 < t < last])
+    found = list(zip([0.0, *(t for _, t in limits)], [*(t for t, _ in limits), left(last)], strict=True))
+    return [piece for piece in found if piece[1] > piece[0]] or found[-1:]  # not what is at t = 0 alone
+
+
+def cut_short(times: Array, run: Integration) -> tuple[Array, Array]:
+    """The instants up to where a rope would push, and that one; the states there."""
+    ts = np.append(times[: run.loop.sampled], run.loop.t)
+    states = np.vstack([run.states()[: len(ts) - 1], np.array(run.loop.state())])
+    return (ts[:-1], states[:-1]) if len(ts) > 1 and ts[-1] == ts[-2] else (ts, states)
 
 
 class Runner:
@@ -142,60 +178,43 @@ class Runner:
         Raises SolveError where the motion cannot be continued, LimitError past the deadline (time.monotonic()).
         """
         begun = time.perf_counter()
-        layout, n = self.layout, self.layout.n_state
+        layout = self.layout
         ts = np.ascontiguousarray(times, dtype=float)
-        most = max(1, CHUNK // max(len(layout.mechanism.bodies), 1))
-        # where nothing moves or pulls yet (a load like t**4), there is still a rate that matters in the time asked for
-        rate = tolerances.LEAST_RATE / float(ts[-1]) if len(ts) and ts[-1] > 0.0 else 0.0
-        run = Integration(layout, self.workspace, method, ts, most=most, tolerance=tolerance, rate=rate, following=0)
-        loop = run.loop
-        loop.start_at(layout.y0.tolist())
-        roped = any(j.tension_only for j in layout.mechanism.joints)
-        ends: list[float] = []
-        pivots: list[Array] = []
-        kept = [(0, layout.y0)]
-        every, room = 1, max(2, KEPT // n)
         last = float(ts[-1]) if len(ts) else 0.0
+        # where nothing moves or pulls yet (a load like t**4), there is still a rate that matters in the time asked for
+        rate = tolerances.LEAST_RATE / last if last > 0.0 else 0.0
+        most = max(1, CHUNK // max(len(layout.mechanism.bodies), 1))
+        run = Integration(
+            layout, self.workspace, method, ts,
+            most=most, state=layout.y0, tolerance=tolerance, rate=rate, following=0,
+        )  # fmt: skip
+        steps = Steps(layout.y0)
+        roped = any(j.tension_only for j in layout.mechanism.joints)
         in_time(deadline, f"before the run of {last:.6g} s began")
-        stops = one_sided_limits([h for h in halts if 0.0 < h < last])
-        pieces = list(zip([0.0, *(t for _, t in stops)], [*(t for t, _ in stops), left(last)], strict=True))
-        pieces = [piece for piece in pieces if piece[1] > piece[0]] or pieces[-1:]  # not what is at t = 0 alone
+        pieces = segments(last, halts)
         for begin, before_end in pieces:
             # up to a jump with the value before it, from there with the one after
-            loop.begin(begin, before_end, right(before_end))
+            run.loop.begin(begin, before_end, right(before_end))
             code = MORE
             while code == MORE:
-                before = loop.steps
-                code = loop.advance(most, roped)
-                ends += run.ends[: loop.steps - before].tolist()
-                reached = run.reached()
-                pivots.append(reached[:, n])
-                kept += [(k, row[:n]) for k, row in enumerate(reached, before + 1) if k % every == 0]
-                while len(kept) > room:
-                    every *= 2
-                    kept = [(k, state) for k, state in kept if k % every == 0]
+                code = run.loop.advance(most, roped)
+                steps.add(run)
                 if code in (REACHED, MORE):
-                    in_time(deadline, f"at t = {loop.t:.6g} s of {last:.6g} s")
-                if code == MORE and loop.steps > most_steps:
-                    message = f"{most_steps} steps were done at t = {loop.t:.6g} s of {last:.6g} s"
+                    in_time(deadline, f"at t = {run.loop.t:.6g} s of {last:.6g} s")
+                if code == MORE and run.loop.steps > most_steps:
+                    message = f"{most_steps} steps were done at t = {run.loop.t:.6g} s of {last:.6g} s"
                     raise LimitError(Problem("step-limit", message))
             if code == ROPE_SLACK:
                 break
             if code != REACHED:
-                raise self._failed(code, loop.t, np.array(loop.state()), last)
-        states = run.states()
-        stopped = None
-        if code == ROPE_SLACK:
-            stopped = layout.mechanism.joints[layout.rows[loop.rope]].name
-            ts = np.append(ts[: loop.sampled], loop.t)
-            states = np.vstack([states[: len(ts) - 1], np.array(loop.state())])
-            if len(ts) > 1 and ts[-1] == ts[-2]:
-                ts, states = ts[:-1], states[:-1]
+                raise self._failed(code, run.loop.t, np.array(run.loop.state()), last)
+        ts, states = (ts, run.states()) if code == REACHED else cut_short(ts, run)
         return Trajectory(
-            times=ts, states=states, ends=np.array(ends), steps=loop.steps, evaluations=loop.evaluations, gap=loop.gap,
-            tolerance=tolerance, seconds=time.perf_counter() - begun, pieces=tuple(pieces), kept=tuple(kept),
-            pivots=np.concatenate(pivots) if pivots else np.zeros(0),
-            stopped=stopped,
+            times=ts, states=states, ends=np.array(steps.ends), steps=run.loop.steps,
+            evaluations=run.loop.evaluations, gap=run.loop.gap, tolerance=tolerance, method=method,
+            seconds=time.perf_counter() - begun, pieces=tuple(pieces), kept=tuple(steps.kept),
+            pivots=np.concatenate(steps.pivots) if steps.pivots else np.zeros(0),
+            stopped=None if code == REACHED else layout.mechanism.joints[layout.rows[run.loop.rope]].name,
         )  # fmt: skip
 
     def _failed(self, code: int, t: float, state: Array, last: float) -> SolveError:
@@ -234,11 +253,10 @@ class Runner:
 
     def _again(self, run: Trajectory, first: int, last: int, state: Array, times: Array) -> Array:
         again = Integration(
-            self.layout, self.workspace, DOP853, times,
-            most=last - first + 1, tolerance=math.inf, rate=0.0, following=1,
+            self.layout, self.workspace, run.method, times,
+            most=last - first + 1, state=state, tolerance=math.inf, rate=0.0, following=1,
         )  # fmt: skip
         loop = again.loop
-        loop.start_at(state.tolist())
         t = run.ends[first - 1] if first else 0.0
         while first <= last:
             begin, before_end = run.pieces[bisect_right(run.pieces, t, key=lambda piece: piece[1])]

@@ -1,3 +1,14 @@
 """The names of the kernel's modules: what is compiled, what is imported through choose.py, what the tests expect."""
 
-MODULES = ("expressions", "tree", "loads", "closures", "selection", "response", "workspace", "steps")
+MODULES = (
+    "memory",
+    "expressions",
+    "tree",
+    "loads",
+    "closures",
+    "selection",
+    "response",
+    "workspace",
+    "steps",
+    "integration",
+)

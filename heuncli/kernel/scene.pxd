@@ -140,6 +140,14 @@ cdef struct Variable:
     int freedom
     int is_rate
 
+cdef struct Group:
+    int coordinates
+    int rates
+    int end
+    int unused
+    double rate
+    double trial
+
 cdef struct Limits:
     int dodges
     int unused

@@ -184,6 +184,18 @@ class Variable(Record):
     is_rate: int
 
 
+class Group(Record):
+    """Components of the state whose errors are measured together, one body's: its coordinates, then its rates."""
+
+    coordinates: int
+    rates: int
+    end: int
+    unused: int
+
+    rate: float  # the largest it has had
+    trial: float  # of the step under way
+
+
 class Limits(Record):
     """Thresholds of the kernel: heuncli/tolerances.py derives each."""
 

@@ -3,9 +3,8 @@
 from heuncli.kernel.algebra cimport Vec3, norm
 from heuncli.kernel.closures cimport slack
 from heuncli.kernel.response cimport evaluate, must_choose_anew, settle
-from heuncli.kernel.scene cimport Body, Scene
+from heuncli.kernel.scene cimport Body, Group, Scene
 from heuncli.kernel.selection cimport select_independent_rows
-from heuncli.kernel.workspace cimport Workspace
 from libc.math cimport fabs, pow, sqrt
 
 cdef enum:
@@ -22,13 +21,6 @@ cdef struct Method:
     int *stage                # which stages a row combines
     double *coefficient
     double *node
-
-cdef struct Group:            # components of the state whose errors are measured together: one body's
-    int coordinates           # the first coordinate, the first rate, the end
-    int rates
-    int end
-    double rate               # the largest rate it has had
-    double trial
 
 cdef struct Run:
     int n                     # length of the state
@@ -102,18 +94,3 @@ cdef int accept(Scene *scene, Method *method, Run *run) noexcept nogil
 cdef int land(Scene *scene, Run *run) noexcept nogil
 cdef void sample_start(Run *run) noexcept nogil
 cdef int run_steps(Scene *scene, Method *method, Run *run) noexcept nogil
-
-cdef class Integration:
-    cdef Run run
-    cdef Method method
-    cdef Workspace workspace
-    cdef dict output
-    cdef list keep
-    cpdef object take_method(self, dict method)
-    cpdef object take_start(self, dict start)
-    cpdef object take_output(self, dict output)
-    cdef int *ints(self, object numbers) except NULL
-    cdef double *doubles(self, object numbers) except NULL
-    cdef double *zeros(self, Py_ssize_t count) except NULL
-    cdef double **over(self, object numbers, Py_ssize_t rows, Py_ssize_t n) except NULL
-    cdef double **matrix(self, Py_ssize_t rows, Py_ssize_t n) except NULL

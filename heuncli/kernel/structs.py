@@ -110,16 +110,6 @@ class Instants(metaclass=Fields):
             setattr(self, name, value)
 
 
-class Group(metaclass=Fields):
-    """Components of the state whose errors are measured together: coordinates, then rates, one body's."""
-
-    coordinates: int
-    rates: int
-    end: int
-    rate: float
-    trial: float
-
-
 class Method(metaclass=Fields):
     """A Runge-Kutta method; steps.pxd says what the fields are."""
 
@@ -168,7 +158,7 @@ class Run(metaclass=Fields):
     best: float
     best_h: float
     pivot_at_start: float
-    groups: list[Group]
+    groups: list[Any]
     weights: list[float]
     y: list[float]
     z: list[float]

@@ -3,6 +3,7 @@
 from heuncli.kernel.algebra cimport Mat3, Vec3, add, add_cross, dot
 from heuncli.kernel.closures cimport clear_path, measure_rows, push_closures, put_unit_load
 from heuncli.kernel.expressions cimport Expressions
+from heuncli.kernel.memory cimport Memory
 from heuncli.kernel.response cimport configure, evaluate, must_choose_anew, respond, settle
 from heuncli.kernel.scene cimport Body, Closure, Counter, Freedom, Limits, Load, SHIFT, Scene, Variable
 from heuncli.kernel.selection cimport select_independent_rows
@@ -32,9 +33,7 @@ cdef void jacobian_row(Scene *scene, Closure *row, double *out) noexcept nogil
 
 cdef class Workspace:
     cdef Scene scene
-    cdef list keep
+    cdef Expressions expressions
+    cdef Memory memory
     cpdef object take_tables(self, dict tables)
     cpdef object take_arrays(self, object indices, Py_ssize_t column_count)
-    cdef void *rows(self, object table, Py_ssize_t size) except NULL
-    cdef int *ints(self, object numbers) except NULL
-    cdef double *doubles(self, Py_ssize_t count) except NULL

@@ -21,6 +21,7 @@ if not cython.compiled:
     from heuncli.kernel.algebra import Mat3, Vec3, add, add_cross, dot
     from heuncli.kernel.closures import clear_path, measure_rows, push_closures, put_unit_load
     from heuncli.kernel.expressions import Expressions
+    from heuncli.kernel.memory import Memory
     from heuncli.kernel.response import configure, evaluate, must_choose_anew, respond, settle
     from heuncli.kernel.scene import SHIFT, Body, Closure, Counter, Freedom, Limits, Load, Scene, Variable
     from heuncli.kernel.selection import select_independent_rows
@@ -211,7 +212,8 @@ class Workspace:
             self.scene = Scene()
         scene: cython.pointer[Scene] = cython.address(self.scene)
         x, y, z = numbers["gravity"]
-        self.keep: list[Any] = [expressions]
+        self.expressions = expressions
+        self.memory = Memory()
         scene.gravity = Vec3(x, y, z)
         scene.size = numbers["size"]
         scene.driven = numbers["driven"]
@@ -236,16 +238,22 @@ class Workspace:
         """Copy the tables: their rows are the structs, or become the objects."""
         scene: cython.pointer[Scene] = cython.address(self.scene)
         if cython.compiled:
-            scene.bodies = cython.cast(cython.pointer[Body], self.rows(tables["bodies"], cython.sizeof(Body)))
-            scene.freedoms = cython.cast(cython.pointer[Freedom], self.rows(tables["freedoms"], cython.sizeof(Freedom)))
-            scene.loads = cython.cast(cython.pointer[Load], self.rows(tables["loads"], cython.sizeof(Load)))
-            scene.closures = cython.cast(cython.pointer[Closure], self.rows(tables["closures"], cython.sizeof(Closure)))
-            scene.counters = cython.cast(cython.pointer[Counter], self.rows(tables["counters"], cython.sizeof(Counter)))
+            scene.bodies = cython.cast(cython.pointer[Body], self.memory.rows(tables["bodies"], cython.sizeof(Body)))
+            scene.freedoms = cython.cast(
+                cython.pointer[Freedom], self.memory.rows(tables["freedoms"], cython.sizeof(Freedom))
+            )
+            scene.loads = cython.cast(cython.pointer[Load], self.memory.rows(tables["loads"], cython.sizeof(Load)))
+            scene.closures = cython.cast(
+                cython.pointer[Closure], self.memory.rows(tables["closures"], cython.sizeof(Closure))
+            )
+            scene.counters = cython.cast(
+                cython.pointer[Counter], self.memory.rows(tables["counters"], cython.sizeof(Counter))
+            )
             scene.variables = cython.cast(
-                cython.pointer[Variable], self.rows(tables["variables"], cython.sizeof(Variable))
+                cython.pointer[Variable], self.memory.rows(tables["variables"], cython.sizeof(Variable))
             )
             limits: cython.pointer[Limits] = cython.cast(
-                cython.pointer[Limits], self.rows(tables["limits"], cython.sizeof(Limits))
+                cython.pointer[Limits], self.memory.rows(tables["limits"], cython.sizeof(Limits))
             )
             scene.limits = limits[0]
         else:
@@ -262,42 +270,13 @@ class Workspace:
         scene: cython.pointer[Scene] = cython.address(self.scene)
         answers: cython.Py_ssize_t = scene.answer_count
         rows: cython.Py_ssize_t = scene.closure_count
-        if cython.compiled:
-            scene.indices = self.ints(indices)
-            scene.selected = self.ints(array("i", bytes(4 * rows)))
-            scene.envelope = self.ints(array("i", bytes(4 * rows)))
-            scene.e = self.doubles(answers)
-            scene.spread = self.doubles(answers)
-            scene.columns = self.doubles(column_count)
-            scene.A = self.doubles(rows * rows)
-        else:
-            scene.indices = indices.tolist()
-            scene.selected, scene.envelope = [0] * rows, [0] * rows
-            scene.e, scene.spread = [0.0] * answers, [0.0] * answers
-            scene.columns, scene.A = [0.0] * column_count, [0.0] * (rows * rows)
-
-    def rows(self, table: Any, size: cython.Py_ssize_t) -> cython.p_void:
-        """A copy of a table's rows, each of the struct's size."""
-        if table.dtype.itemsize != size:
-            raise ValueError(f"a row of {table.dtype.itemsize} bytes is no struct of {size}")
-        memory = bytearray(table.tobytes() or bytes(size))
-        view: cython.uchar[::1] = memory
-        self.keep.append(memory)
-        return cython.address(view[0])
-
-    def ints(self, numbers: array[int]) -> cython.p_int:
-        """A copy of some integers."""
-        memory = array("i", numbers) or array("i", [0])
-        view: cython.int[::1] = memory
-        self.keep.append(memory)
-        return cython.address(view[0])
-
-    def doubles(self, count: cython.Py_ssize_t) -> cython.p_double:
-        """Zeros."""
-        memory = array("d", bytes(8 * max(count, 1)))
-        view: cython.double[::1] = memory
-        self.keep.append(memory)
-        return cython.address(view[0])
+        scene.indices = self.memory.ints(indices)
+        scene.selected = self.memory.ints(bytes(4 * rows))
+        scene.envelope = self.memory.ints(bytes(4 * rows))
+        scene.e = self.memory.zeros(answers)
+        scene.spread = self.memory.zeros(answers)
+        scene.columns = self.memory.zeros(column_count)
+        scene.A = self.memory.zeros(rows * rows)
 
     def recover(self, times: Any, states: Any, out: Any, width: cython.Py_ssize_t, afresh: cython.bint) -> None:
         """Everything the sweep knows at given states, which are settled in place; flat, `width` numbers an instant.

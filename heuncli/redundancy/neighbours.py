@@ -41,8 +41,8 @@ def neighbours(runner: Runner, t: float, state: Array, by: Sequence[float]) -> R
 
 def rate_slots(layout: Layout) -> Array:
     """Places of the controlled rates in the state."""
-    bounds = zip(layout.groups[1::3], layout.groups[2::3], strict=True)
-    found: Array = np.concatenate([np.arange(first, end) for first, end in bounds]).astype(int)
+    groups = layout.tables["groups"]
+    found: Array = np.concatenate([np.arange(g["rates"], g["end"]) for g in groups]).astype(int)
     return found
 
 

@@ -30,8 +30,7 @@ class Layout:
     place: body -> its place in the tree (spanning.hangs is in that order); reference (n, 3): each body's joint point in
     its own axes, tree order; rows: joint of each closure row; starts: where the joints stand at the start; y0: the
     state there. tables: the kernel's structs by name (kernel/scene.py); indices: what the closure rows point into.
-    groups (n_g, 3): components of the state whose errors count together, first coordinate, first rate, end; the group
-    of the drives' work is `energy_group` (-1: none).
+    energy_group: which of the groups of components is the drives' work (-1: none).
     """
 
     mechanism: Mechanism
@@ -44,7 +43,6 @@ class Layout:
     counters: dict[int, int]  # cut joint -> place of its counted angle in the state
     size: float
     y0: Array
-    groups: array[int]
     energy_group: int
     weights: Array
     tables: dict[str, Table]

@@ -78,7 +78,7 @@ class _Builder:
         self.freedoms: list[Freedom] = []
         self.y: list[float] = []
         self.weights: list[float] = []
-        self.groups: list[int] = []
+        self.groups: list[dict[str, Any]] = []
         self.answer_count = 0
 
     def _reference(self, h: Hang) -> Array:
@@ -141,7 +141,7 @@ class _Builder:
                 self.weights += [1.0] * 3
             self.y += rates
             self.weights += weights
-            self.groups += [g0, g0 + q, len(self.y)]
+            self.groups.append({"coordinates": g0, "rates": g0 + q, "end": len(self.y)})
             self.body_rows.append(
                 {
                     "parent": self.in_tree(h.parent),
@@ -359,8 +359,8 @@ class _Builder:
             self.weights.append(1.0 if driven else 0.0)
             if driven:
                 # the drives' work may vary where the motion does not: it has a say in the step
-                energy_group = len(self.groups) // 3
-                self.groups += [work_at, work_at, work_at + 1]
+                energy_group = len(self.groups)
+                self.groups.append({"coordinates": work_at, "rates": work_at, "end": work_at + 1})
         indices, column_count = self._index_rows()
         tables = {
             "bodies": table(kernel.Body, self.body_rows),
@@ -369,6 +369,7 @@ class _Builder:
             "closures": table(kernel.Closure, self.closure_rows),
             "counters": table(kernel.Counter, self._counter_rows()),
             "variables": table(kernel.Variable, self._variable_rows()),
+            "groups": table(kernel.Group, self.groups),
             "limits": limits(tolerances.KERNEL),
         }
         return Layout(
@@ -382,7 +383,6 @@ class _Builder:
             counters=self.counters,
             size=self.size,
             y0=np.array(self.y),
-            groups=array("i", self.groups),
             energy_group=energy_group,
             weights=np.array(self.weights),
             tables=tables,

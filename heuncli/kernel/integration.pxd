@@ -1,0 +1,16 @@
+"""The door to steps.py, for C."""
+
+from heuncli.kernel.memory cimport Memory
+from heuncli.kernel.scene cimport Group, Scene
+from heuncli.kernel.steps cimport Method, Run, run_steps
+from heuncli.kernel.workspace cimport Workspace
+
+cdef class Integration:
+    cdef Run run
+    cdef Method method
+    cdef Workspace workspace
+    cdef dict output
+    cdef Memory memory
+    cpdef object take_method(self, dict method)
+    cpdef object take_start(self, dict start)
+    cpdef object take_output(self, dict output)

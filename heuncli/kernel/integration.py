@@ -1,0 +1,163 @@
+"""The door to the stepping loop: one integration of a scene over asked instants, piece by piece.
+
+The loop itself is steps.py; here stand its state, its room and its output.
+"""
+
+from __future__ import annotations
+
+from typing import Any
+
+try:
+    import cython
+except ImportError:
+    from heuncli.kernel.shadow import cython
+
+if not cython.compiled:
+    from heuncli.kernel.memory import Memory
+    from heuncli.kernel.scene import Group, Scene
+    from heuncli.kernel.shadow import cython
+    from heuncli.kernel.steps import run_steps
+    from heuncli.kernel.structs import Method, Run
+    from heuncli.kernel.workspace import Workspace
+
+
+class Integration:
+    """One integration of a scene over asked instants: the loop's state and its output."""
+
+    def __init__(
+        self, workspace: Workspace, method: dict[str, Any], start: dict[str, Any], output: dict[str, Any]
+    ) -> None:
+        """method: numbers and arrays by name (integration/methods.py); start: groups (a table), energy_group, weights,
+        state, tolerance, rate, following; output: times, samples, ends, passed, which are written into: flat arrays.
+        """
+        if not cython.compiled:
+            self.run, self.method = Run(), Method()
+        self.workspace = workspace
+        self.output = output
+        self.memory = Memory()
+        self.take_method(method)
+        self.take_start(start)
+        self.take_output(output)
+
+    def take_method(self, method: dict[str, Any]) -> None:
+        """The method's rows."""
+        to: cython.pointer[Method] = cython.address(self.method)
+        to.stages = method["stages"]
+        to.extra = method["extra"]
+        to.dense_rows = method["dense_rows"]
+        to.estimates = method["estimates"]
+        to.exponent = method["exponent"]
+        to.begin = self.memory.ints(method["begin"])
+        to.stage = self.memory.ints(method["stage"])
+        to.coefficient = self.memory.doubles(method["coefficient"])
+        to.node = self.memory.doubles(method["node"])
+
+    def take_start(self, start: dict[str, Any]) -> None:
+        """The loop's state before the first piece, and its room."""
+        run: cython.pointer[Run] = cython.address(self.run)
+        n: cython.int = len(start["weights"])
+        run.n = n
+        run.energy_group = start["energy_group"]
+        run.tolerance = start["tolerance"]
+        run.rate = start["rate"]
+        run.following = start["following"]
+        run.next_sample = run.rope = run.steps = run.evaluations = run.rejected = run.done = run.dodges = 0
+        run.proposed = run.energy_scale = run.gap = 0.0
+        run.weights = self.memory.doubles(start["weights"])
+        run.y = self.memory.doubles(start["state"])
+        run.z = self.memory.zeros(n)
+        run.carry = self.memory.zeros(n)
+        run.z_carry = self.memory.zeros(n)
+        run.coarse = self.memory.zeros(n)
+        run.fine = self.memory.zeros(n)
+        run.stage = self.memory.zeros(n)
+        run.K = self.memory.matrix(self.method.stages + 1 + self.method.extra, n)
+        run.dense = self.memory.matrix(3 + self.method.dense_rows, n)
+        run.group_count = len(start["groups"])
+        if cython.compiled:
+            groups: cython.p_void = self.memory.rows(start["groups"], cython.sizeof(Group))
+            run.groups = cython.cast(cython.pointer[Group], groups)
+        else:
+            run.groups = [Group(row) for row in start["groups"].tolist()]
+
+    def take_output(self, output: dict[str, Any]) -> None:
+        """The asked instants, and where states at them and at the ends of the steps go."""
+        run: cython.pointer[Run] = cython.address(self.run)
+        run.sample_count = len(output["times"])
+        run.most = len(output["ends"])
+        run.times = self.memory.doubles(output["times"])
+        run.samples = self.memory.over(output["samples"], run.sample_count, run.n)
+        run.ends = self.memory.over(output["ends"], 1, run.most)[0]
+        run.passed = self.memory.over(output["passed"], run.most, run.n + 1)
+
+    def begin(self, t: cython.double, before_end: cython.double, end: cython.double) -> None:
+        """A piece from t to its end, of which `before_end` is the last instant."""
+        self.run.t, self.run.before_end, self.run.end, self.run.fresh = t, before_end, end, 1
+
+    def follow(self, ends: Any) -> None:
+        """The ends of the steps to be done again."""
+        i: cython.Py_ssize_t
+        for i in range(len(ends)):
+            self.run.ends[i] = float(ends[i])
+
+    def advance(self, most: cython.int, roped: cython.bint) -> int:
+        """Up to `most` steps; REACHED, MORE to do, or why not. roped: stop where a rope would push."""
+        code: cython.int
+        scene: cython.pointer[Scene] = cython.address(self.workspace.scene)
+        run: cython.pointer[Run] = cython.address(self.run)
+        method: cython.pointer[Method] = cython.address(self.method)
+        run.most = most
+        scene.roped = roped
+        with cython.nogil:
+            code = run_steps(scene, method, run)
+        if not cython.compiled:
+            self.output["ends"][: run.done] = run.ends[: run.done]
+            for k in range(run.done):
+                self.output["passed"][k * (run.n + 1) : (k + 1) * (run.n + 1)] = run.passed[k]
+        return code
+
+    def fetch(self) -> None:
+        """Bring the samples into `output` (compiled, they are written there)."""
+        if not cython.compiled:
+            n = self.run.n
+            for k in range(self.run.sample_count):
+                self.output["samples"][k * n : (k + 1) * n] = self.run.samples[k]
+
+    def state(self) -> list[float]:
+        """The state reached."""
+        return [self.run.y[i] for i in range(self.run.n)]
+
+    @property
+    def t(self) -> float:
+        """The instant reached."""
+        return self.run.t
+
+    @property
+    def done(self) -> int:
+        """Steps of the last call."""
+        return self.run.done
+
+    @property
+    def steps(self) -> int:
+        """Accepted steps."""
+        return self.run.steps
+
+    @property
+    def evaluations(self) -> int:
+        """Evaluations of the derivative."""
+        return self.run.evaluations
+
+    @property
+    def gap(self) -> float:
+        """The largest gap that closures were left with [m]."""
+        return self.run.gap
+
+    @property
+    def rope(self) -> int:
+        """The closure row of the rope that would push; -1: none."""
+        return self.run.rope - 1
+
+    @property
+    def sampled(self) -> int:
+        """How many of the asked instants are done."""
+        return self.run.next_sample

@@ -1,0 +1,10 @@
+"""Signatures of memory.py for C."""
+
+cdef class Memory:
+    cdef list kept
+    cdef int *ints(self, object numbers) except NULL
+    cdef double *doubles(self, object numbers) except NULL
+    cdef double *zeros(self, Py_ssize_t count) except NULL
+    cdef double **over(self, object numbers, Py_ssize_t rows, Py_ssize_t n) except NULL
+    cdef double **matrix(self, Py_ssize_t rows, Py_ssize_t n) except NULL
+    cdef void *rows(self, object table, Py_ssize_t size) except NULL

@@ -1,0 +1,69 @@
+"""Where the kernel's numbers lie: compiled, in arrays that this keeps alive; in plain Python, in lists."""
+
+from __future__ import annotations
+
+from array import array
+from typing import Any
+
+try:
+    import cython
+except ImportError:
+    from heuncli.kernel.shadow import cython
+
+if not cython.compiled:
+    from heuncli.kernel.shadow import cython
+
+
+class Memory:
+    """The arrays behind the pointers that were handed out."""
+
+    def __init__(self) -> None:
+        self.kept: list[Any] = []
+
+    def ints(self, numbers: Any) -> cython.p_int:
+        """A copy of some integers."""
+        memory = array("i", numbers) or array("i", [0])
+        if not cython.compiled:
+            return memory.tolist()
+        view: cython.int[::1] = memory
+        self.kept.append(memory)
+        return cython.address(view[0])
+
+    def doubles(self, numbers: Any) -> cython.p_double:
+        """A copy of some numbers."""
+        memory = array("d", numbers) or array("d", [0.0])
+        if not cython.compiled:
+            return memory.tolist()
+        view: cython.double[::1] = memory
+        self.kept.append(memory)
+        return cython.address(view[0])
+
+    def zeros(self, count: cython.Py_ssize_t) -> cython.p_double:
+        """Zeros."""
+        return self.doubles(bytes(8 * count))
+
+    def over(self, numbers: Any, rows: cython.Py_ssize_t, n: cython.Py_ssize_t) -> cython.pp_double:
+        """The rows of a flat array: compiled, in its own memory; plain, zeros to be fetched from later."""
+        i: cython.Py_ssize_t
+        if not cython.compiled:
+            return [[0.0] * n for _ in range(rows)]
+        begin: cython.pp_double = cython.cast(cython.pp_double, self.zeros(rows))
+        self.kept.append(numbers)
+        if rows:
+            view: cython.double[::1] = numbers
+            for i in range(rows):
+                begin[i] = cython.address(view[i * n])
+        return begin
+
+    def matrix(self, rows: cython.Py_ssize_t, n: cython.Py_ssize_t) -> cython.pp_double:
+        """Rows of zeros."""
+        return self.over(array("d", bytes(8 * max(rows * n, 1))), rows, n)
+
+    def rows(self, table: Any, size: cython.Py_ssize_t) -> cython.p_void:
+        """A copy of a table's rows, each of a struct's size; compiled only."""
+        if table.dtype.itemsize != size:
+            raise ValueError(f"a row of {table.dtype.itemsize} bytes is no struct of {size}")
+        memory = bytearray(table.tobytes() or bytes(size))
+        view: cython.uchar[::1] = memory
+        self.kept.append(memory)
+        return cython.address(view[0])
