@@ -53,17 +53,46 @@ def columns(at: workspace.Workspace, t: float, state: Array, loads: Array, inert
     return Columns(np.ascontiguousarray(rows[:, : 12 * n_b]).view(COLUMN_ANSWER), rows[:, 12 * n_b :])
 
 
-def jacobian(at: workspace.Workspace, times: Array, states: Array, shape: tuple[int, int]) -> Array:
-    """J of the closure rows on the tree's freedoms at settled states, (n_t, rows, freedoms); shape: the latter two."""
-    out = np.zeros(len(times) * shape[0] * shape[1])
+@record
+class Jacobian:
+    """J of the closure rows on the tree's freedoms, the rate of each row's gap for each freedom of its path.
+
+    entries (n_t, n): one row after the other; row, freedom (n,): of each entry. A ball has three freedoms, its turns
+    about the world's axes; driven ones have the entry zero.
+    """
+
+    entries: Array
+    row: Array
+    freedom: Array
+    shape: tuple[int, int]  # how many rows and freedoms there are
+
+    def block(self, rows: Array, freedoms: Array) -> Array:
+        """Some rows on some freedoms, (n_t, rows, freedoms)."""
+        at_row, at_freedom = (np.full(count, -1) for count in self.shape)
+        at_row[rows], at_freedom[freedoms] = np.arange(len(rows)), np.arange(len(freedoms))
+        i, j = at_row[self.row], at_freedom[self.freedom]
+        inside = (i >= 0) & (j >= 0)
+        J = np.zeros((len(self.entries), len(rows), len(freedoms)))
+        J[:, i[inside], j[inside]] = self.entries[:, inside]
+        return J
+
+
+def jacobian(at: workspace.Workspace, layout: Layout, times: Array, states: Array) -> Jacobian:
+    """J of all closure rows at settled states."""
+    out = np.zeros(len(times) * layout.column_count)
     at.jacobians(times, np.ascontiguousarray(states, dtype=float).ravel(), out)
-    return out.reshape(len(times), *shape)
+    indices, closures = np.array(layout.indices), layout.tables["closures"]
+    paths = [indices[row["answers"] : row["answers"] + row["answer_count"]] for row in closures]
+    freedom = np.concatenate([np.zeros(0, dtype=int), *paths])
+    row: Array = np.repeat(np.arange(len(closures)), closures["answer_count"])
+    shape = (len(closures), layout.answer_count)
+    return Jacobian(out.reshape(len(times), layout.column_count), row, freedom, shape)
 
 
 def carried(at: workspace.Workspace, times: Array, states: Array, multipliers: Array, n_b: int) -> Array:
     """Joint loads ON the bodies, moment about the joint point and force, that hold closure multipliers at rest.
 
-    multipliers (n_t, k, rows); gives (n_t, k, n_b, 6).
+    At settled states; multipliers (n_t, k, rows); gives (n_t, k, n_b, 6), tree order.
     """
     n_t, k = multipliers.shape[:2]
     out = np.zeros(n_t * k * n_b * 6)

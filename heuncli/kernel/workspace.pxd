@@ -24,6 +24,7 @@ cdef Py_ssize_t put(double *out, Py_ssize_t at, Vec3 a) noexcept nogil
 cdef Py_ssize_t put_matrix(double *out, Py_ssize_t at, Mat3 R) noexcept nogil
 cdef Py_ssize_t put_body(double *out, Py_ssize_t at, Body *body) noexcept nogil
 cdef Py_ssize_t put_load(double *out, Py_ssize_t at, Load *load) noexcept nogil
+cdef Py_ssize_t put_row(double *out, Py_ssize_t at, Closure *row) noexcept nogil
 cdef Py_ssize_t put_answers(Scene *scene, double *out, Py_ssize_t at) noexcept nogil
 cdef int recover_state(Scene *scene, double t, double *y, double *dy, bint afresh) noexcept nogil
 cdef void recover_states(Scene *scene, Instants *instants) noexcept nogil

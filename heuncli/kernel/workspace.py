@@ -70,6 +70,15 @@ def put_load(out: cython.p_double, at: cython.Py_ssize_t, load: cython.pointer[L
     return at + 4
 
 
+def put_row(out: cython.p_double, at: cython.Py_ssize_t, row: cython.pointer[Closure]) -> cython.Py_ssize_t:
+    """A closure row's unit load, multiplier and gap, as tables.CLOSURE_ANSWER."""
+    at = put(out, at, row.f)
+    at = put(out, at, row.m)
+    out[at] = row.multiplier
+    out[at + 1] = row.gap
+    return at + 2
+
+
 def put_answers(scene: cython.pointer[Scene], out: cython.p_double, at: cython.Py_ssize_t) -> cython.Py_ssize_t:
     """All bodies, freedoms, loads and closure rows, one after the other."""
     i: cython.Py_ssize_t
@@ -85,9 +94,7 @@ def put_answers(scene: cython.pointer[Scene], out: cython.p_double, at: cython.P
     for i in range(scene.load_count):
         at = put_load(out, at, cython.address(scene.loads[i]))
     for i in range(scene.closure_count):
-        out[at] = scene.closures[i].multiplier
-        out[at + 1] = scene.closures[i].gap
-        at += 2
+        at = put_row(out, at, cython.address(scene.closures[i]))
     return at
 
 
@@ -174,26 +181,32 @@ def carry(scene: cython.pointer[Scene], multipliers: cython.p_double, out: cytho
     for i in range(scene.body_count):
         at = put(out, at, scene.bodies[i].M_joint)
         at = put(out, at, scene.bodies[i].f_joint)
+    for i in range(scene.closure_count):
+        scene.closures[i].multiplier = 0.0  # where no row is independent none is solved for, and they stay as they are
 
 
 def jacobian_row(scene: cython.pointer[Scene], row: cython.pointer[Closure], out: cython.p_double) -> cython.void:
-    """J of one row on the tree's freedoms (a ball's turns about the world's axes): the rate of its gap for each.
+    """J of one row on the freedoms of its path, as its column stands (a ball's turns about the world's axes).
 
-    out holds zeros; the unit load's moment about each freedom's axis, or force along it, stands there afterwards.
+    The rate of the row's gap for each freedom: the unit load's moment about its axis, or force along it; a driven one
+    gives nothing.
     """
     n: cython.Py_ssize_t
     k: cython.Py_ssize_t
+    at: cython.Py_ssize_t = row.column
     clear_path(scene, row)
     put_unit_load(scene, row, row.b, -1.0)
     put_unit_load(scene, row, row.a, 1.0)
     for n in range(row.path, row.path + row.path_count):
         body: cython.pointer[Body] = cython.address(scene.bodies[scene.indices[n]])
         if body.ball:
-            put(out, body.answer_at, body.M_column)
+            at = put(out, at, body.M_column)
         for k in range(body.first_freedom, body.end_freedom):
             freedom: cython.pointer[Freedom] = cython.address(scene.freedoms[k])
+            out[at] = 0.0
             if not freedom.driven:
-                out[freedom.answer_at] = dot(freedom.s, body.f_column if freedom.kind == SHIFT else body.M_column)
+                out[at] = dot(freedom.s, body.f_column if freedom.kind == SHIFT else body.M_column)
+            at += 1
         if body.parent >= 0:
             parent: cython.pointer[Body] = cython.address(scene.bodies[body.parent])
             moment: Vec3 = add_cross(body.M_column, body.arm, body.f_column)
@@ -345,28 +358,25 @@ class Workspace:
         return 12 * self.scene.body_count + self.scene.closure_count
 
     def jacobians(self, times: Any, states: Any, out: Any) -> None:
-        """J of all closure rows on the tree's freedoms at settled states: flat, instants, rows, freedoms."""
+        """J of all closure rows at settled states, flat: an instant after the other, each row on its own path."""
         j: cython.Py_ssize_t
         r: cython.Py_ssize_t
         scene: cython.pointer[Scene] = cython.address(self.scene)
         rows: cython.Py_ssize_t = scene.closure_count
-        width: cython.Py_ssize_t = scene.answer_count
-        n: cython.Py_ssize_t = len(states) // max(len(times), 1)
-        for j in range(len(times)):
+        instants: cython.Py_ssize_t = len(times)
+        n: cython.Py_ssize_t = len(states) // max(instants, 1)
+        width: cython.Py_ssize_t = len(out) // max(instants, 1)
+        for j in range(instants):
             self.measure_at(times[j], states[n * j : n * j + n])
-            for r in range(rows):
-                self.jacobian_into(r, out, width * (rows * j + r))
-
-    def jacobian_into(self, r: cython.Py_ssize_t, out: Any, at: cython.Py_ssize_t) -> None:
-        """J of one row, written from place `at` on."""
-        scene: cython.pointer[Scene] = cython.address(self.scene)
-        if cython.compiled:
-            to: cython.double[::1] = out
-            jacobian_row(scene, cython.address(scene.closures[r]), cython.address(to[at]))
-        else:
-            answer = [0.0] * scene.answer_count
-            jacobian_row(scene, scene.closures[r], answer)
-            out[at : at + scene.answer_count] = answer
+            if cython.compiled:
+                to: cython.double[::1] = out
+                for r in range(rows):
+                    jacobian_row(scene, cython.address(scene.closures[r]), cython.address(to[width * j]))
+            else:
+                answer = [0.0] * width
+                for r in range(rows):
+                    jacobian_row(scene, scene.closures[r], answer)
+                out[width * j : width * j + width] = answer
 
     def carried(self, times: Any, states: Any, multipliers: Any, out: Any) -> None:
         """Joint loads that hold closure multipliers at rest: flat, instants, columns, bodies, moment and force.

@@ -13,12 +13,12 @@ import numpy as np
 from heuncli.integration.runner import Recovered
 from heuncli.joint_kinds import JOINTS
 from heuncli.kinetostatics.bodies import BodyStates
-from heuncli.kinetostatics.closure_wrenches import closure_wrenches
 from heuncli.mechanism.model import Joint
 from heuncli.records import record
 from heuncli.results import Array
 from heuncli.tree.layout import Layout
 from heuncli.tree.starts import joint_frame
+from heuncli.tree.tables import Table
 
 
 @record
@@ -60,7 +60,6 @@ class JointLoads:
 def joint_loads(layout: Layout, found: Recovered, states: BodyStates) -> list[JointLoads]:
     """Reactions of all joints, in the order of the spec."""
     hang_of = {h.joint: (i, h) for i, h in enumerate(layout.spanning.hangs) if h.joint >= 0}
-    rows = closure_wrenches(layout, states, found.rows["multiplier"]) if layout.rows else None
     loads = []
     for k, joint in enumerate(layout.mechanism.joints):
         kind = JOINTS[joint.kind]
@@ -77,8 +76,7 @@ def joint_loads(layout: Layout, found: Recovered, states: BodyStates) -> list[Jo
                 if freedom.joint == k and freedom.q < 0:
                     drive = found.freedoms["drive"][:, n]
         else:
-            assert rows is not None
-            force, moment = (_of_joint(layout, k, wrenches) for wrenches in rows)
+            force, moment = (_of_joint(layout, k, found.rows, of) for of in ("f", "m"))
             if kind.keeps_distance:
                 push = found.rows["multiplier"][:, layout.rows.index(k)]
                 drive, tension = (push if joint.drive is not None else None), -push
@@ -89,12 +87,12 @@ def joint_loads(layout: Layout, found: Recovered, states: BodyStates) -> list[Jo
     return loads
 
 
-def _of_joint(layout: Layout, joint: int, rows: Array) -> Array:
-    """The sum over the closure rows of a cut joint, of their forces or of their moments."""
-    total = np.zeros_like(rows[:, 0])
+def _of_joint(layout: Layout, joint: int, rows: Table, of: str) -> Array:
+    """The sum over the closure rows of a cut joint, of their forces "f" or of their moments "m"."""
+    total = np.zeros_like(rows[of][:, 0])
     for r, owner in enumerate(layout.rows):
         if owner == joint:
-            total = total + rows[:, r]
+            total = total + rows["multiplier"][:, r, None] * rows[of][:, r]
     return total
 
 

@@ -85,7 +85,7 @@ def open_directions(scene: PreparedScene) -> list[Array | None]:
     here = runner.recovered(np.zeros(1), scene.layout.y0[None, :])
     poses = neighbours(runner, 0.0, here.states[0], (tolerances.NEIGHBOUR,)) or here
     states = body_states(scene.layout, poses)
-    stress = self_stress(scene.layout, states, poses.gap)
+    stress = self_stress(runner, poses, states)
     assert stress is not None
     found: list[Array | None] = []
     for joint, share in zip(scene.mechanism.joints, stress.shares, strict=True):

@@ -42,12 +42,12 @@ def redundancy(scene: PreparedScene, runner: Runner) -> Redundancy:
     from heuncli.redundancy.self_stress import self_stress
 
     here = runner.recovered(np.zeros(1), layout.y0[None, :])
-    stress = self_stress(layout, body_states(layout, here), here.gap)
+    stress = self_stress(runner, here, body_states(layout, here))
     assert stress is not None
     near = neighbours(runner, 0.0, here.states[0], (tolerances.NEIGHBOUR,))
     if near is None:
         return Redundancy(int(stress.count[0]), int(stress.count[0]), int(stress.dependent[0]), stress)
-    beside = self_stress(layout, body_states(layout, near), near.gap)
+    beside = self_stress(runner, near, body_states(layout, near))
     assert beside is not None
     at_start = int(stress.count[0])
     dependent = min(stress.dependent[0], beside.dependent.min())

@@ -17,7 +17,6 @@ from heuncli.redundancy.open_components import names_of, open_joint, open_suppor
 from heuncli.redundancy.self_stress import SelfStress, self_stress
 from heuncli.redundancy.split import split
 from heuncli.results import Array, Block, CertainSum
-from heuncli.tree.prepare import PreparedScene
 
 SUMS_FROM = 9  # instants whose self-stresses certain sums are read from
 
@@ -43,16 +42,16 @@ class Decided:
         if self.words and self.stress is not None and reactions is not None:
             mark_chosen(self.stress, self.joints, reactions)
 
-    def sums(self, scene: PreparedScene, runner: Runner, found: Recovered) -> list[CertainSum]:
+    def sums(self, runner: Runner, found: Recovered) -> list[CertainSum]:
         """Certain sums of what is open."""
-        return sums_of(scene, runner, found, self.joints, self.left) if self.left is not None else []
+        return sums_of(runner, found, self.joints, self.left) if self.left is not None else []
 
 
 def decide(
-    scene: PreparedScene, found: Recovered, states: BodyStates, joints: list[JointLoads], least_norm: bool
+    runner: Runner, found: Recovered, states: BodyStates, joints: list[JointLoads], least_norm: bool
 ) -> Decided:
     """Find the self-stresses and apply the split that was asked for."""
-    stress = self_stress(scene.layout, states, found.gap)
+    stress = self_stress(runner, found, states)
     if stress is None or not stress.count.any():
         return Decided(joints, found=stress)
     chosen = split(joints, states, stress, least_norm)
@@ -96,12 +95,12 @@ def mark_chosen(stress: SelfStress, joints: Sequence[JointLoads], reactions: Blo
 
 
 def sums_of(
-    scene: PreparedScene, runner: Runner, found: Recovered, joints: Sequence[JointLoads], stress: SelfStress
+    runner: Runner, found: Recovered, joints: Sequence[JointLoads], stress: SelfStress
 ) -> list[CertainSum]:
     """Certain sums of the joints' open components, true at the asked instants and in neighbouring poses."""
     pick = np.unique(np.linspace(0, len(found.times) - 1, SUMS_FROM).astype(int))
     near = neighbours(runner, float(found.times[0]), found.states[0], tolerances.SUM_POSES)
-    beside = self_stress(scene.layout, body_states(scene.layout, near), near.gap) if near is not None else None
+    beside = self_stress(runner, near, body_states(runner.layout, near)) if near is not None else None
     if any(j.joint.stiffness is not None for j in joints):
         beside = None  # what a stiffness leaves undecided is known at the asked instants only
     poses, told, values = dict[str, Array](), dict[str, Array](), dict[str, Array]()

@@ -10,32 +10,28 @@ design: closure Jacobian on tree coordinates, SVD, one statics sweep a null vect
 
 from __future__ import annotations
 
-from collections.abc import Sequence
-
 import numpy as np
 
 from heuncli import tolerances
-from heuncli.kernel.choose import scene as kernel
+from heuncli.integration.runner import Recovered, Runner
 from heuncli.kinetostatics.bodies import BodyStates
-from heuncli.kinetostatics.closure_wrenches import closure_wrenches
-from heuncli.mechanism.model import GROUND
 from heuncli.records import record
+from heuncli.redundancy.islands import Island, islands, mean_lever
+from heuncli.response import carried, jacobian
 from heuncli.results import Array, Mask
-from heuncli.tree.layout import Layout
-from heuncli.tree.tables import vectors
 
 
 @record
 class SelfStress:
     """Self-stresses at the asked instants, k of them at most (zero where an instant has fewer).
 
-    shares: for each joint (n_t, 6, k), force and moment ON `to` about the `to` point, world axes; largest (n_t, k):
+    shares (n_j, n_t, 6, k): of each joint, force and moment ON `to` about the `to` point, world axes; largest (n_t, k):
     each one's largest share, moments by `length`; count (n_t,): how many there are; dependent (n_t,): how many rows
     depend on others, in a planar scene also those across the plane; length [m]; least (n_t,): the smallest singular
     value that was kept, relative.
     """
 
-    shares: tuple[Array, ...]
+    shares: Array
     largest: Array
     count: Array
     length: float
@@ -48,153 +44,53 @@ class SelfStress:
         return np.asarray((np.abs(shares) / length > limit[:, None, :]).any(axis=-1))
 
 
-def self_stress(layout: Layout, states: BodyStates, gap: Array) -> SelfStress | None:
-    """All self-stresses, island by island; None where there can be none (no closed chain)."""
+def self_stress(runner: Runner, recovered: Recovered, states: BodyStates) -> SelfStress | None:
+    """All self-stresses at recovered states, island by island; None where there can be none (no closed chain)."""
+    layout = runner.layout
     if not layout.rows:
         return None
-    n_t = len(states.x)
-    wrenches = _row_wrenches(layout, states)
-    sides = _sides(layout)
+    n_t = len(recovered.times)
+    J = jacobian(runner.workspace, layout, recovered.times, recovered.states)
     columns: list[Array] = []
     counts = np.zeros(n_t, dtype=int)
     least = np.ones(n_t)
-    length = _length(layout, range(len(layout.mechanism.joints)))
-    for rows in islands(layout):
-        L = _length(layout, {layout.rows[r] for r in rows})
-        Z, count, smallest = _null_space(layout, states, wrenches, rows, L, gap)
+    for island in islands(layout):
+        null, count, smallest = _null_space(J.block(island.rows, island.freedoms), island, recovered.gap)
         counts += count
         least = np.minimum(least, smallest)
-        spread = np.zeros((n_t, len(layout.rows), Z.shape[2]))
-        spread[:, rows] = Z
-        columns.append(spread)
+        Z = np.zeros((n_t, len(layout.rows), null.shape[2]))
+        Z[:, island.rows] = null
+        columns.append(Z)
     Z = np.concatenate(columns, axis=2)
     dependent = counts
-    shares = _statics(layout, states, wrenches, sides, Z)
+    length = mean_lever(layout, range(len(layout.mechanism.joints)))
+    shares = _shares(runner, recovered, states, Z)
+    size = np.array([1.0, 1.0, 1.0, length, length, length])[:, None]
     if layout.mechanism.planar:
         # what does not exist cannot be open
-        shares = tuple(s * np.array([1.0, 1.0, 0.0, 0.0, 0.0, 1.0])[:, None] for s in shares)
-        size = np.array([1.0, 1.0, 1.0, length, length, length])[:, None]
-        stacked = np.concatenate([s / size for s in shares], axis=1)
-        counts = np.linalg.matrix_rank(stacked, tol=tolerances.OPEN_SHARE) if stacked.shape[2] else counts
-    parts = [np.abs(s[:, :3]).max(axis=1, initial=0.0) for s in shares]
-    parts += [np.abs(s[:, 3:]).max(axis=1, initial=0.0) / length for s in shares]
-    largest = np.max(parts, axis=0)
+        shares *= np.array([1.0, 1.0, 0.0, 0.0, 0.0, 1.0])[:, None]
+        if Z.shape[2]:
+            counts = np.linalg.matrix_rank(np.concatenate(list(shares / size), axis=1), tol=tolerances.OPEN_SHARE)
+    largest = (np.abs(shares).max(axis=0, initial=0.0) / size).max(axis=1)
     largest = np.where(largest > tolerances.NO_SELF_STRESS, largest, 0.0)
     return SelfStress(shares, largest, counts, length, least, dependent)
 
 
-def _length(layout: Layout, joints: Sequence[int] | range | set[int]) -> float:
-    """Mean distance of the joints' points from the centres of their bodies [m]."""
-    bodies = layout.mechanism.bodies
-    of = [layout.mechanism.joints[k] for k in joints]
-    arms = [p - bodies[b].center for j in of for b, p in ((j.a, j.p), (j.b, j.q)) if b != GROUND]
-    mean = float(np.mean([np.sqrt(a @ a) for a in arms])) if arms else 0.0
-    return mean or layout.size
-
-
-def path(layout: Layout, place: int) -> list[int]:
-    """Sweep places from a body to the root; empty for the ground."""
-    found = []
-    while place >= 0:
-        found.append(place)
-        place = int(layout.bodies["parent"][place])
-    return found
-
-
-def _sides(layout: Layout) -> list[tuple[set[int], set[int]]]:
-    """Of each row the bodies (sweep places) that carry its b side to the ground, and its a side, less common ones."""
-    found = []
-    for k in layout.rows:
-        joint = layout.mechanism.joints[k]
-        b, a = (set(path(layout, layout.place[x])) if x != GROUND else set() for x in (joint.b, joint.a))
-        found.append((b - a, a - b))
-    return found
-
-
-def islands(layout: Layout) -> list[list[int]]:
-    """Rows whose loops share a body, together."""
-    sides = _sides(layout)
-    owner: dict[int, int] = {}
-    group = list(range(len(layout.rows)))
-
-    def root(r: int) -> int:
-        while group[r] != r:
-            group[r] = group[group[r]]
-            r = group[r]
-        return r
-
-    first: dict[int, int] = {}
-    for r, (b, a) in enumerate(sides):
-        for other in (owner.get(i) for i in b | a):
-            if other is not None:
-                group[root(r)] = root(other)
-        for i in b | a:
-            owner.setdefault(i, r)
-        same = first.setdefault(layout.rows[r], r)
-        group[root(r)] = root(same)
-    found: dict[int, list[int]] = {}
-    for r in range(len(layout.rows)):
-        found.setdefault(root(r), []).append(r)
-    return list(found.values())
-
-
-def _row_wrenches(layout: Layout, states: BodyStates) -> Array:
-    """Of each row, what lambda = 1 puts on b: force, moment about the world's origin, (n_t, m, 6)."""
-    force, moment = closure_wrenches(layout, states, np.ones((len(states.x), len(layout.rows))))
-    joints = [layout.mechanism.joints[k] for k in layout.rows]
-    Q = np.stack([states.place(joint.b, joint.q) for joint in joints], axis=1)
-    return np.concatenate([force, moment + np.cross(Q, force)], axis=2)
-
-
-def _free_directions(layout: Layout, states: BodyStates, place: int) -> list[tuple[str, Array]]:
-    """Directions that the joint of a body leaves free, ("turn" | "shift", (n_t, 3)); driven ones are not free."""
-    h, body = layout.spanning.hangs[place], layout.bodies[place]
-    found: list[tuple[str, Array]] = []
-    if body["ball"]:
-        found += [("turn", np.broadcast_to(e, states.x[:, 0].shape)) for e in np.eye(3)]
-    for freedom in layout.tables["freedoms"][body["first_freedom"] : body["end_freedom"]]:
-        if freedom["driven"]:
-            continue
-        owner = h.body if freedom["kind"] == kernel.TURN_IN_BODY else h.parent
-        what = "shift" if freedom["kind"] == kernel.SHIFT else "turn"
-        found.append((what, states.direction(owner, vectors(freedom["direction"]))))
-    return found
-
-
-def _null_space(
-    layout: Layout, states: BodyStates, wrenches: Array, rows: list[int], L: float, gap: Array
-) -> tuple[Array, Array, Array]:
+def _null_space(J: Array, island: Island, gap: Array) -> tuple[Array, Array, Array]:
     """Null vectors of J' on the island's rows (n_t, m, k_max), how many (n_t,), smallest kept singular value (n_t,)."""
-    n_t, m = len(states.x), len(rows)
-    sides = _sides(layout)
-    members = sorted({i for r in rows for side in sides[r] for i in side})
-    columns: list[Array] = []
-    own = wrenches[:, rows]
-    for i in members:
-        h = layout.spanning.hangs[i]
-        sign = np.array([1.0 if i in sides[r][0] else -1.0 if i in sides[r][1] else 0.0 for r in rows])
-        on = np.flatnonzero(sign)
-        r_i = states.place(h.body, layout.reference[i])
-        for what, e in _free_directions(layout, states, i):
-            parts = [e, np.zeros_like(e)] if what == "shift" else [np.cross(r_i, e), e]
-            twist = np.concatenate(parts, axis=1)
-            # v = e x (x - r) of a turn about a line through r: at the origin r x e
-            column = np.zeros((n_t, m))
-            column[:, on] = (own[:, on] @ twist[:, :, None])[:, :, 0] * (sign[on] / (1.0 if what == "shift" else L))
-            columns.append(column)
-    J = np.stack(columns, axis=2) if columns else np.zeros((n_t, m, 0))
-    is_couple = np.abs(own[:, :, :3]).max(axis=2, initial=0.0) == 0.0
-    J = J * np.where(is_couple, L, 1.0)[:, :, None]
+    L = island.length
+    measure = np.where(island.couples, L, 1.0)[:, None]
+    J = J * measure / np.where(island.turns, L, 1.0)
     unit = np.maximum(np.sqrt(np.sum(J * J, axis=2)), 1.0)[:, :, None]
     J = J / unit
     # rows that never touch a free direction (across a flat mechanism, say) are self-stresses by themselves
     idle = np.abs(J).max(axis=(0, 2), initial=0.0) <= tolerances.RANK
     Z_rest, open_rest, kept = _null_of(J[:, ~idle], gap / L)
-    k = Z_rest.shape[2]
-    Z = np.zeros((n_t, m, k + int(idle.sum())))
+    k, alone = Z_rest.shape[2], int(idle.sum())
+    Z = np.zeros((len(J), len(idle), k + alone))
     Z[:, ~idle, :k] = Z_rest
-    Z[:, np.flatnonzero(idle), k + np.arange(int(idle.sum()))] = 1.0
-    return Z / unit * np.where(is_couple, L, 1.0)[:, :, None], open_rest + int(idle.sum()), kept
+    Z[:, np.flatnonzero(idle), k + np.arange(alone)] = 1.0
+    return Z / unit * measure, open_rest + alone, kept
 
 
 def _null_of(J: Array, gap: Array) -> tuple[Array, Array, Array]:
@@ -217,23 +113,30 @@ def _null_of(J: Array, gap: Array) -> tuple[Array, Array, Array]:
     return Z, m - rank, kept
 
 
-def _statics(
-    layout: Layout, states: BodyStates, wrenches: Array, sides: list[tuple[set[int], set[int]]], Z: Array
-) -> tuple[Array, ...]:
-    """Shares of the null vectors in every joint, (n_t, 6, k) each: a joint of the tree balances what hangs on it."""
-    hang_of = {h.joint: (i, h) for i, h in enumerate(layout.spanning.hangs) if h.joint >= 0}
-    found = []
-    for k, joint in enumerate(layout.mechanism.joints):
-        if k in hang_of:
-            i, h = hang_of[k]
-            sign = np.array([1.0 if i in b else -1.0 if i in a else 0.0 for b, a in sides])
-            on = np.flatnonzero(sign)
-            total = -(wrenches[:, on] * sign[on, None]).transpose(0, 2, 1) @ Z[:, on]
-            total = -total if h.reverse else total
-        else:
-            own = [r for r, owner in enumerate(layout.rows) if owner == k]
-            total = wrenches[:, own].transpose(0, 2, 1) @ Z[:, own]
-        Q = states.place(joint.b, joint.q)
-        force, moment = total[:, :3], total[:, 3:]
-        found.append(np.concatenate([force, moment - np.cross(Q[:, :, None], force, axis=1)], axis=1))
-    return tuple(found)
+def _shares(runner: Runner, recovered: Recovered, states: BodyStates, Z: Array) -> Array:
+    """Shares of multipliers Z (n_t, rows, k) in every joint, (n_j, n_t, 6, k).
+
+    A joint of the tree balances what hangs on it; a cut one carries its rows.
+    """
+    layout = runner.layout
+    joints, hangs = layout.mechanism.joints, layout.spanning.hangs
+    n_t, _, k = Z.shape
+    shares = np.zeros((len(joints), n_t, 6, k))
+    loads = carried(runner.workspace, recovered.times, recovered.states, Z.transpose(0, 2, 1), len(hangs))
+    places = [i for i, h in enumerate(hangs) if h.joint >= 0]
+    of_tree = [hangs[i].joint for i in places]
+    moment_and_force = loads[:, :, places].transpose(2, 0, 3, 1)
+    shares[of_tree, :, :3], shares[of_tree, :, 3:] = moment_and_force[:, :, 3:], moment_and_force[:, :, :3]
+    for h in hangs:
+        if h.reverse:  # the load is ON `from`, and about its point
+            joint = joints[h.joint]
+            arm = states.place(joint.a, joint.p) - states.place(joint.b, joint.q)
+            force = shares[h.joint, :, :3]
+            shares[h.joint, :, 3:] += np.cross(arm[:, :, None], force, axis=1)
+            shares[h.joint] *= -1.0
+    rows = np.array(layout.rows)
+    unit = np.concatenate([recovered.rows["f"], recovered.rows["m"]], axis=2).transpose(0, 2, 1)
+    for cut in layout.spanning.cut:
+        own = np.flatnonzero(rows == cut)
+        shares[cut] = unit[:, :, own] @ Z[:, own]
+    return shares

@@ -73,7 +73,7 @@ def decided(
     # what was not felt: the self-stresses' part outside the rows of V that were
     rest = np.eye(S.shape[2]) - np.einsum("tki,tk,tkj->tij", V, felt.astype(float), V)
     turned = np.einsum("tij,tj->tij", rest, alive.astype(float)) / size[:, :, None]
-    shares = tuple(np.einsum("tik,tkj->tij", s, turned) for s in stress.shares)
+    shares = np.stack([np.einsum("tik,tkj->tij", s, turned) for s in stress.shares])
     parts = [np.maximum(np.abs(s[:, :3]).max(axis=1), np.abs(s[:, 3:]).max(axis=1) / stress.length) for s in shares]
     largest = np.max(parts, axis=0)
     largest = np.where(largest > tolerances.STILL_OPEN, largest, 0.0)

@@ -52,7 +52,7 @@ class Recovery:
         from heuncli.redundancy.resolve import decide  # a tree starts faster without it
 
         joints = joint_loads(layout, self.recovered, self.states)
-        return decide(self.setup.scene, self.recovered, self.states, joints, self.least_norm)
+        return decide(self.setup.runner, self.recovered, self.states, joints, self.least_norm)
 
     @cached_property
     def joints(self) -> list[JointLoads]:
@@ -125,7 +125,7 @@ def certain_sums(recovery: Recovery) -> list[CertainSum]:
     """Sums of indeterminate components that are determined."""
     if recovery.decided is None:
         return []
-    return recovery.decided.sums(recovery.setup.scene, recovery.setup.runner, recovery.recovered)
+    return recovery.decided.sums(recovery.setup.runner, recovery.recovered)
 
 
 def accuracy(recovery: Recovery) -> Accuracy:

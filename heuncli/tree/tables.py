@@ -63,9 +63,10 @@ def _answer(vectors: str, numbers: str = "") -> np.dtype[np.void]:
 # World axes; r, v, a (less g), joint_moment: of and about the body's joint point; joint loads ON the body.
 BODY_ANSWER = _answer("R r omega v alpha a joint_moment joint_force")
 FREEDOM_ANSWER = _answer("", "q u udot drive")
+# f, m: ON b for a multiplier of 1, about the `to` point.
 # force, moment: ON b, at the point `at` of b; `from_at`: its counterpart on a.
 LOAD_ANSWER = _answer("force moment at from_at", "value span rate power")
-CLOSURE_ANSWER = _answer("", "multiplier gap")
+CLOSURE_ANSWER = _answer("f m", "multiplier gap")
 STATE_ANSWER = _answer("", "gap idle pivot")
 COLUMN_ANSWER = _answer("alpha a joint_moment joint_force")
 

@@ -9,6 +9,7 @@ import sys
 from pathlib import Path
 from typing import Any
 
+import numpy as np
 import pytest
 
 from heuncli.kernel.form import KERNEL
@@ -41,3 +42,37 @@ def test_same_bits(scene: str) -> None:
     for results in (compiled, plain):
         del results["work"]["seconds"]
     assert compiled == plain
+
+
+MAPS = """
+import json, sys
+import numpy as np
+from heuncli.response import carried, columns, jacobian
+from heuncli.spec.load import load
+from heuncli.study.setup import set_up
+setup = set_up(load(sys.argv[1]))
+layout, runner = setup.scene.layout, setup.runner
+found = runner.recovered(np.zeros(2), np.array([layout.y0, layout.y0]))
+at = runner.workspace, found.times, found.states
+multipliers = np.sin(1.0 + np.arange(2 * 3 * len(layout.rows))).reshape(2, 3, -1)
+loads = np.cos(np.arange(2 * 6 * len(layout.place))).reshape(2, -1, 6)
+answers = columns(at[0], 0.0, found.states[0], loads, np.array([True, False]))
+print(json.dumps({
+    "jacobian": jacobian(at[0], layout, *at[1:]).entries.tolist(),
+    "carried": carried(*at, multipliers, len(layout.place)).tolist(),
+    "columns": [answers.bodies.tolist(), answers.multipliers.tolist()],
+}, default=list))
+"""
+
+
+@pytest.mark.skipif(KERNEL == "pure", reason="there is no compiled kernel to compare with")
+@pytest.mark.parametrize("scene", ["crane", "four_bar", "engine", "cardan", "bricard"])
+def test_same_bits_of_the_one_linear_map(scene: str) -> None:
+    told = {}
+    for kernel in ("compiled", "pure"):
+        command = [sys.executable, "-c", MAPS, str(SPECS / f"{scene}.yaml")]
+        environment = {**os.environ, "HEUN_KERNEL": kernel, "PYTHONPATH": str(SPECS.parent)}
+        done = subprocess.run(command, capture_output=True, text=True, env=environment, check=True)
+        told[kernel] = json.loads(done.stdout)
+    assert told["compiled"] == told["pure"]
+    assert all(np.any(told["pure"][name]) for name in ("jacobian", "carried"))

@@ -1,0 +1,85 @@
+"""Islands: the closed loops that share bodies. What one loop carries depends on the others of its island, on no more.
+
+A self-stress lives in one island, so each is looked at alone and measured by its own length.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Iterable
+
+import numpy as np
+
+from heuncli.kernel.choose import scene as kernel
+from heuncli.mechanism.model import GROUND
+from heuncli.records import record
+from heuncli.results import Array, Mask
+from heuncli.tree.layout import Layout
+
+
+@record
+class Island:
+    """Closure rows of loops that share bodies; freedoms: of those bodies, a ball's three turns and no driven ones.
+
+    couples (rows,): which rows carry a couple and no force; turns (freedoms,): which freedoms are turns.
+    length [m]: mean distance of the cut joints' points from the centres of their bodies.
+    """
+
+    rows: Array
+    freedoms: Array
+    couples: Mask
+    turns: Mask
+    length: float
+
+
+def islands(layout: Layout) -> list[Island]:
+    """All islands, in the order of their first rows."""
+    loops = {k: loop_of(layout, k) for k in layout.spanning.cut}
+    group = {k: k for k in loops}
+
+    def root(k: int) -> int:
+        while group[k] != k:
+            group[k] = group[group[k]]
+            k = group[k]
+        return k
+
+    through: dict[int, int] = {}  # body -> a cut joint whose loop it is in
+    for k, loop in loops.items():
+        for i in loop:
+            group[root(k)] = root(through.setdefault(i, k))
+    found: dict[int, tuple[list[int], set[int]]] = {}
+    for r, k in enumerate(layout.rows):
+        rows, bodies = found.setdefault(root(k), ([], set()))
+        rows.append(r)
+        bodies |= loops[k]
+    return [_island(layout, np.array(rows), sorted(bodies)) for rows, bodies in found.values()]
+
+
+def loop_of(layout: Layout, joint: int) -> set[int]:
+    """Bodies (tree order) around the loop of a cut joint: on the path to one of its ends and not to the other."""
+    cut = layout.mechanism.joints[joint]
+    return set(layout.path(cut.a)) ^ set(layout.path(cut.b))
+
+
+def _island(layout: Layout, rows: Array, bodies: list[int]) -> Island:
+    freedoms: list[int] = []
+    turns: list[bool] = []
+    for body in layout.bodies[bodies]:
+        if body["ball"]:
+            freedoms += range(body["answer_at"], body["answer_at"] + 3)
+            turns += [True] * 3
+        own = layout.tables["freedoms"][body["first_freedom"] : body["end_freedom"]]
+        own = own[own["driven"] == 0]
+        freedoms += own["answer_at"].tolist()
+        turns += (own["kind"] != kernel.SHIFT).tolist()
+    couples = layout.tables["closures"]["kind"][rows] == kernel.DOT
+    length = mean_lever(layout, {layout.rows[r] for r in rows.tolist()})
+    return Island(rows, np.array(freedoms, dtype=int), couples, np.array(turns, dtype=bool), length)
+
+
+def mean_lever(layout: Layout, joints: Iterable[int]) -> float:
+    """Mean distance of the joints' points from the centres of their bodies [m]; without any, the scene's size."""
+    bodies = layout.mechanism.bodies
+    of = [layout.mechanism.joints[k] for k in joints]
+    arms = [p - bodies[b].center for j in of for b, p in ((j.a, j.p), (j.b, j.q)) if b != GROUND]
+    mean = float(np.mean([np.sqrt(a @ a) for a in arms])) if arms else 0.0
+    return mean or layout.size
