@@ -37,7 +37,7 @@ def main(folder: Path) -> list[str]:
     with tarfile.open(source) as archive:
         names = {member.name.partition("/")[2] for member in archive.getmembers() if member.isfile()}
     generated = {name for name in names if name.startswith("heuncli.egg-info/")} | {"PKG-INFO", "setup.cfg"}
-    top = ("*.in", "README.md", "pyproject.toml", "setup.py", ".ci/*")
+    top = ("README.md", "pyproject.toml", ".ci/*")
     wrong = differ(source.name, names - generated, files("heuncli/**/*", "specs/**/*", "tests/**/*", *top))
 
     package = files("heuncli/**/*")

@@ -1,6 +1,6 @@
 """How the package is built: the kernel by Cython in pure-Python mode, optional by default, one wheel for every CPython.
 
-The kernel's modules stand in heuncli/kernel/modules.py. HEUN_KERNEL at build time:
+The kernel's modules stand in pyproject.toml (`tool.setuptools.ext-modules`). HEUN_KERNEL at build time:
 
     unset      compile; where that fails (no compiler, no Python headers, no Cython) install the plain files instead
     require    a failed compilation fails the build
@@ -18,11 +18,11 @@ import shutil
 import sys
 import sysconfig
 from pathlib import Path
-from runpy import run_path
 
-from setuptools import Distribution, Extension
+from setuptools import Distribution, Extension, setup
 from setuptools.command.bdist_wheel import bdist_wheel
 from setuptools.command.build_ext import build_ext
+from setuptools.command.sdist import sdist
 
 # The kernel validates before it enters the loops and guards its divisors itself.
 DIRECTIVES = {
@@ -121,6 +121,14 @@ class Wheel(bdist_wheel):
         super().run()
 
 
+class Source(sdist):
+    """sdist with what a checkout has beyond the package: examples, tests, and the gate."""
+
+    def make_release_tree(self, base_dir: str, files: list[str]) -> None:
+        found = [path for folder in ("specs", "tests", ".ci") for path in Path(folder).rglob("*") if path.is_file()]
+        more = {path.as_posix() for path in found if "__pycache__" not in path.parts}
+        super().make_release_tree(base_dir, sorted({*files, *more}))
+
+
 if __name__ == "__main__":
-    sys.argv = ["setup.py", "build_ext", "--inplace"]
-    run_path("setup.py")
+    setup(script_args=["build_ext", "--inplace"])

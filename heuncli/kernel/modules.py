@@ -1,4 +1,4 @@
-"""The names of the kernel's modules: what is compiled, what is imported through choose.py, what the tests expect."""
+"""The names of the kernel's compiled modules, as pyproject.toml has them."""
 
 MODULES = (
     "memory",

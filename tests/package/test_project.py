@@ -15,6 +15,8 @@ PROJECT = tomllib.loads((ROOT / "pyproject.toml").read_text())
 def test_the_modules_compiled_are_those_written_for_cython() -> None:
     written = {path.stem for path in FOLDER.glob("*.py") if "\n    import cython\n" in path.read_text(encoding="utf-8")}
     assert sorted(MODULES) == sorted(written)
+    extensions = [row["name"] for row in PROJECT["tool"]["setuptools"]["ext-modules"]]
+    assert extensions == [f"heuncli.kernel.{name}" for name in MODULES]
 
 
 def test_the_protected_modules_are_the_compiled_ones() -> None:
