@@ -1,0 +1,473 @@
+"""A row a threshold: what is seen on either side of it, by the smallest scene, or the smallest call, that reaches it.
+
+`seen(x)` answers with the verdict where the judged quantity is x, in the threshold's own measure; what it answers with
+numbers it holds against their closed form, so that both sides are honest: a refusal, a warning, or a right number.
+"""
+
+from __future__ import annotations
+
+import math
+from collections.abc import Callable
+from typing import Any, NamedTuple
+
+import numpy as np
+
+from heuncli.errors import HeunError
+from heuncli.kinetostatics.cuts import first_axis
+from heuncli.kinetostatics.energy import energy_drift
+from heuncli.kinetostatics.foundation import central_axis
+from heuncli.redundancy.certain_sums import relations, tidy
+from heuncli.redundancy.self_stress import _null_of
+from heuncli.redundancy.turning_sums import factors
+from heuncli.results import Results
+from heuncli.spec.load import load
+from heuncli.spec.turns import of_matrix
+from heuncli.study.expect import compare
+from heuncli.study.warnings import unbalanced
+from tests.shared.scenes import near, solved, study
+
+FACTORS = (0.01, 1 / 3, 3.0, 100.0)
+
+
+class Row(NamedTuple):
+    """A threshold by name (KERNEL.x: of the kernel), its boundary as a scene, and the verdicts on either side.
+
+    factors: of the threshold, where the verdict is looked at.
+    """
+
+    name: str
+    seen: Callable[[float], str]
+    below: str
+    above: str
+    factors: tuple[float, ...] = FACTORS
+
+
+# ---- what reading a spec says
+def read(text: str) -> str:
+    """The code of the first error, else of the first warning, else `fine`."""
+    try:
+        spec = load("scene.yaml", text)
+    except HeunError as error:
+        return f"refused: {error.problems[0].code}"
+    return f"warned: {spec.warnings[0].code}" if spec.warnings else "fine"
+
+
+def bar(more: str = "", tail: str = "", inertia: str = "[0.08, 0.08, 0.001]", kind: str = "ball") -> str:
+    """A bar of 1 m and 1 kg that hangs from the origin."""
+    return f"""
+heun: 1
+gravity: [0, 0, -9.81]
+ground: {{points: {{O: [0, 0, 0]}}}}
+bodies:
+  bar: {{mass: 1, center: [0, 0, -0.5], inertia: {inertia}, points: {{top: [0, 0, 0], end: [0, 0, -1]}}{more}}}
+joints:
+  pivot: {{type: {kind}, from: ground.O, to: bar.top}}
+{tail}"""
+
+
+BAR_SIZE = 1.25  # m, of the scene: twice the largest distance of O, top, centre and end from their mean
+WEIGHT = 9.81
+
+
+def quaternion(x: float) -> str:
+    return read(bar(f", orientation: {{quaternion: [{1 + x!r}, 0, 0, 0]}}"))
+
+
+def matrix(x: float) -> str:
+    given = ((1.0 + x / 2, 0.0, 0.0), (0.0, 1.0, 0.0), (0.0, 0.0, 1.0))
+    R = of_matrix(given)
+    near(R, np.eye(3), 1.0, 2 * x)
+    return "as typed" if R == given else "made a rotation"
+
+
+def principal(x: float) -> str:
+    return read(bar(inertia=f"[1, 1, {2 / (1 - x)!r}]"))
+
+
+def unsymmetric(x: float) -> str:
+    return read(bar(inertia=f"[[1, {x!r}, 0], [0, 1, 0], [0, 0, 1]]"))
+
+
+def periodic(x: float) -> str:
+    return read(bar(tail=f"tables: {{w: {{x: [0, 1, 2], y: [0, 1, 0], period: {2 * (1 + x)!r}}}}}"))
+
+
+def along_the_normal(x: float) -> str:
+    section = f"{{body: bar, at: [0, 0, -0.3], normal: [0, 0, 1], first_axis: [{x!r}, 0, 1]}}"
+    return read(bar(", piece: {mass: 0.7, center: [0, 0, -0.65], inertia: [1, 1, 1]}", f"sections: {{s: {section}}}"))
+
+
+def tilted(x: float) -> str:
+    text = bar(f", orientation: {{axis: [1, 0, 0], angle: {2 * math.asin(math.sqrt(x / 2))!r}}}", kind="pin")
+    return read(text.replace("gravity: [0, 0, -9.81]", "space: planar"))
+
+
+def held_and_driven(x: float) -> str:
+    drive = "drives: {m: {joint: pivot, angle: 0.5 + t}}\nanalysis: {duration: 1, samples: 3}"
+    joint = f"pin, axis: [0, 1, 0], initial: {{angle: {0.5 + x!r}}}"
+    return read(bar(tail=drive, kind=joint))
+
+
+def expected_at(x: float) -> str:
+    expect = f"expect: [{{of: joints.pivot.force.z, at: {0.5 + x!r}, is: 9.81}}]"
+    return read(bar(tail=f"analysis: {{duration: 1, samples: 3}}\n{expect}"))
+
+
+def tolerance(x: float) -> str:
+    return read(bar(tail=f"analysis: {{duration: 1, samples: 3, tolerance: {x!r}}}"))
+
+
+def expectation(wanted: str) -> str:
+    done = study(bar(tail=f"expect: [{wanted}]"))
+    return "passed" if compare(done, done.spec.expect[0]).passed else "failed"
+
+
+def relatively_off(x: float) -> str:
+    return expectation(f"{{of: joints.pivot.force.z, is: {WEIGHT / (1 - x)!r}}}")
+
+
+def absolutely_off(x: float) -> str:
+    return expectation(f"{{of: joints.pivot.force.x, is: {x!r}}}")
+
+
+# ---- what solving says
+def verdict(text: str, right: Callable[[Results], None] = lambda found: None) -> str:
+    """The code of a refusal, else the first warning's first words, else `fine`; numbers are held against `right`."""
+    try:
+        found = solved(text)
+    except HeunError as error:
+        return f"refused: {error.problems[0].code}"
+    right(found)
+    return f"warned: {found.warnings[0].split(' at ')[0]}" if found.warnings else "fine"
+
+
+def carries_the_weight(found: Results) -> None:
+    near(found.joints["pivot"]["force"][0], [0, 0, WEIGHT], WEIGHT, 1e-9)
+
+
+def too_far(gap: float, at: float = 0.0) -> str:
+    """A bar of 1 m between two balls 1 m + gap apart."""
+
+    def right(found: Results) -> None:
+        near(found.foundation["force"][0], [0, 0, -WEIGHT], WEIGHT, 1e-8)
+        assert found.accuracy["constraint_gap"] >= 0.3 * gap
+
+    return verdict(f"""
+heun: 1
+gravity: [0, 0, -9.81]
+ground: {{points: {{A: [{at!r}, 0, 0], B: [{at + 1 + gap!r}, 0, 0]}}}}
+bodies:
+  bar: {{mass: 1, center: [0.5, 0, 0], inertia: [0.001, 0.08, 0.08], points: {{a: [0, 0, 0], b: [1, 0, 0]}}}}
+joints:
+  A: {{type: ball, from: ground.A, to: bar.a}}
+  B: {{type: ball, from: ground.B, to: bar.b}}
+""", right)  # fmt: skip
+
+
+def no_length(x: float) -> str:
+    """A rod from the ground to a point of a hanging bar that is x of the size away."""
+    here = f"H: [{x * BAR_SIZE!r}, 0, -1]"
+    text = bar(tail="  short: {type: rod, from: ground.H, to: bar.end}", more=", position: [0, 0, 0]")
+    return verdict(text.replace("O: [0, 0, 0]", f"O: [0, 0, 0], {here}"))
+
+
+def rates(slip: float, spin: float) -> str:
+    """The bar's top held at the origin, and told to move."""
+    more = f", position: [0, 0, 0], velocity: [{slip!r}, 0, 0], angular_velocity: [0, {spin!r}, 0]"
+    return verdict(bar(more), lambda found: near(found.joints["pivot"]["force"][0, 2], WEIGHT + spin**2 / 2, WEIGHT))
+
+
+def spun(inertia: float) -> str:
+    """A couple of 1 mN m about the bar's own axis, about which it has that much inertia."""
+
+    def right(found: Results) -> None:
+        carries_the_weight(found)
+        near(found.bodies["bar"]["angular_acceleration"][0], [0, 0, 1e-3 / inertia], 1e-3 / inertia)
+
+    couple = "forces: {c: {type: couple, on: bar, vector: [0, 0, 0.001]}}"
+    return verdict(bar(tail=couple, inertia=f"[0.1, 0.1, {inertia!r}]"), right)
+
+
+def point_mass(x: float) -> str:
+    """A couple on a small ball of that inertia, of 1 kg: no point mass above x m L^2, which NO_INERTIA multiplies."""
+    inertia = x * 1e-12 * BAR_SIZE**2
+    more = "forces: {c: {type: couple, on: bar, vector: [0, 0, 0.001]}}"
+    text = bar(tail=more, inertia=f"[{inertia!r}, {inertia!r}, {inertia!r}]")
+    return verdict(text.replace("center: [0, 0, -0.5]", "center: [0, 0, 0]"), carries_the_weight)
+
+
+def pushed_off_axis(x: float) -> str:
+    """A thin bar pushed at a point x of the size off its axis, across."""
+    push = f"forces: {{f: {{type: force, on: {{body: bar, at: [{x * BAR_SIZE!r}, 0, -1]}}, vector: [0, 1, 0]}}}}"
+    return verdict(bar(tail=push, inertia="[0.1, 0.1, 0]"))
+
+
+def couple_about_a_wire(x: float) -> str:
+    """A couple about the axis of a thin bar: x of the loads there (weight, support, couple)."""
+    M = x * 2 * WEIGHT * BAR_SIZE / (1 - x)
+    couple = f"forces: {{c: {{type: couple, on: bar, vector: [0, 0, {M!r}]}}}}"
+    return verdict(bar(tail=couple, inertia="[0.1, 0.1, 0]"), carries_the_weight)
+
+
+def turns_hardly(inertia: float) -> str:
+    """A couple about a pin along the bar, about which it has that much inertia; the trace at the pin is 0.7 kg m^2."""
+
+    def right(found: Results) -> None:
+        near(found.bodies["bar"]["angular_acceleration"][0], [0, 0, 1e-3 / inertia], 1e-3 / inertia)
+
+    couple = "forces: {c: {type: couple, on: bar, vector: [0, 0, 0.001]}}"
+    text = bar(tail=couple, kind="pin, axis: [0, 0, 1]", inertia=f"[0.1, 0.1, {inertia!r}]")
+    return verdict(text, right)
+
+
+def needs_side(x: float) -> str:
+    """A cut through a bar of 1 m, x off the place of a load."""
+    push = f"forces: {{f: {{type: force, on: {{body: bar, at: [0, 0, {-0.3 - x!r}]}}, vector: [0, 1, 0]}}}}"
+    section = "sections: {s: {body: bar, at: [0, 0, -0.3], normal: [0, 0, -1]}}"
+    text = bar(tail=f"{push}\n{section}")
+    solid = "shapes: [{type: cylinder, from: [0, 0, 0], to: [0, 0, -1], radius: 10 mm, mass: 1}]"
+    text = text.replace("mass: 1, center: [0, 0, -0.5], inertia: [0.08, 0.08, 0.001]", solid)
+
+    def right(found: Results) -> None:
+        near(found.sections["s"]["N"][0], 0.7 * WEIGHT, WEIGHT)
+
+    return verdict(text, right)
+
+
+def two_legs(x: float) -> str:
+    """A cut through two legs, 0.1 m square, x of the sum of their half diagonals apart."""
+    half = 0.05 + 0.5 * x * 0.1 * math.sqrt(2)
+    legs = ", ".join(f"{{type: box, center: [{s * half!r}, 0, -0.5], size: [0.1, 0.1, 1], mass: 0.5}}" for s in (-1, 1))
+    text = bar(tail="sections: {s: {body: bar, at: [0, 0, -0.3], normal: [0, 0, -1]}}")
+    text = text.replace("mass: 1, center: [0, 0, -0.5], inertia: [0.08, 0.08, 0.001]", f"shapes: [{legs}]")
+    return verdict(text, lambda found: near(found.sections["s"]["N"][0], 0.7 * WEIGHT, WEIGHT)).split(" in ")[0]
+
+
+def one_place(x: float) -> str:
+    """A body on a ball 1 m off the origin, and its centre 3/4 x beyond: a scene of the size x, or of 1 m."""
+    body = f"{{mass: 1, center: [{0.75 * x!r}, 0, 0], inertia: [0, 0, 0], points: {{p: [0, 0, 0]}}}}"
+    text = f"heun: 1\nground: {{points: {{O: [1, 0, 0]}}}}\nbodies: {{b: {body}}}\n"
+    found = study(text + "joints: {j: {type: ball, from: ground.O, to: b.p}}").setup.scene.layout.size
+    return "1 m" if found == 1.0 else "its extent"
+
+
+def parallelogram(angle: float) -> str:
+    """Bars of 1 m and 1 kg, so far from flat, in the plane: D'Alembert gives what the coupler's pin carries."""
+    c, s = math.cos(angle), math.sin(angle)
+    p, q = f"[{c!r}, {s!r}, 0]", f"[{1 + c!r}, {s!r}, 0]"
+
+    def right(found: Results) -> None:
+        # theta'' = -6/5 g cos(theta); the coupler moves with the bars' ends, half of it hangs on either pin
+        ax, ay = -s * -1.2 * WEIGHT * c, c * -1.2 * WEIGHT * c
+        force = found.joints["C"]["force"][0]
+        near(force[1], 0.5 * (ay + WEIGHT), WEIGHT, 1e-7)
+        if not np.isnan(force[0]):
+            near(force[0], 0.5 * ax, WEIGHT, 1e-7)
+
+    return verdict(f"""
+heun: 1
+space: planar
+gravity: [0, -9.81, 0]
+ground: {{points: {{A: [0, 0, 0], B: [1, 0, 0]}}}}
+bodies:
+  left: {{shapes: [{{type: rod, from: [0, 0, 0], to: {p}, mass: 1}}], points: {{f: [0, 0, 0], t: {p}}}}}
+  right: {{shapes: [{{type: rod, from: [1, 0, 0], to: {q}, mass: 1}}], points: {{f: [1, 0, 0], t: {q}}}}}
+  top: {{shapes: [{{type: rod, from: {p}, to: {q}, mass: 1}}], points: {{l: {p}, r: {q}}}}}
+joints:
+  A: {{type: pin, from: ground.A, to: left.f}}
+  B: {{type: pin, from: ground.B, to: right.f}}
+  C: {{type: pin, from: left.t, to: top.l}}
+  D: {{type: pin, from: top.r, to: right.t}}
+""", right)  # fmt: skip
+
+
+def inclined(x: float) -> str:
+    """A bar on two balls, inclined by x: its axial force is open, and so what of it acts along z."""
+    b = f"[{math.cos(x)!r}, 0, {math.sin(x)!r}]"
+    found = solved(f"""
+heun: 1
+gravity: [0, 0, -9.81]
+ground: {{points: {{A: [0, 0, 0], B: {b}}}}}
+bodies:
+  bar: {{mass: 1, center: [0, 0, 0], inertia: [0.1, 0.1, 0.1], points: {{a: [0, 0, 0], b: {b}}}}}
+joints:
+  A: {{type: ball, from: ground.A, to: bar.a}}
+  B: {{type: ball, from: ground.B, to: bar.b}}
+""")
+    force = found.joints["A"]["force"][0, 2]
+    if np.isnan(force):
+        return "open"
+    near(force, WEIGHT, WEIGHT)
+    return "a number"
+
+
+def stiff(x: float) -> str:
+    """Two bars, each between two balls: one soft, one stiffer by x^-2, whose open force strains it x as much."""
+    points, bodies, joints = [], [], []
+    for k, stiffness in enumerate((1.0, x**-2)):
+        points += [f"A{k}: [0, {k}, 0]", f"B{k}: [1, {k}, 0]"]
+        bodies.append(f"  b{k}: {{mass: 1, center: [0.5, {k}, 0], inertia: [0.1, 0.1, 0.1], "
+                      f"points: {{a: [0, {k}, 0], b: [1, {k}, 0]}}}}")  # fmt: skip
+        joints += [f"  {n}{k}: {{type: ball, from: ground.{n}{k}, to: b{k}.{n.lower()}, stiffness: {stiffness!r}}}"
+                   for n in "AB"]  # fmt: skip
+    push = "forces: {f: {type: force, on: {body: b1, at: [0.5, 1, 0]}, vector: [1, 0, 0]}}"
+    head = f"heun: 1\nground: {{points: {{{', '.join(points)}}}}}\nbodies:\n"
+    found = solved(head + "\n".join(bodies) + "\njoints:\n" + "\n".join(joints) + "\n" + push)
+    near(found.foundation["force"][0], [1, 0, 0], 1.0)
+    force = found.joints["A1"]["force"][0, 0]
+    if np.isnan(force):
+        return "open"
+    near(abs(force), 0.5, 1.0, 1e-6)
+    return "shared"
+
+
+# ---- the smallest calls
+def null_of(smallest: float, gap: float) -> str:
+    J = np.array([[[1.0, 0.0], [0.0, smallest]]])
+    return "dependent" if _null_of(J, np.array([gap]))[1][0] else "independent"
+
+
+def proportional(x: float) -> str:
+    found, _ = relations({"a": np.array([1.0, 0.0]), "b": np.array([1.0, x])})
+    return "a sum" if found else "none"
+
+
+def told_by_turning(x: float) -> str:
+    rows = np.array([[[1.0, 0.0], [1.0, x]]])
+    return "a sum" if factors(rows) is not None else "none"
+
+
+def present(x: float) -> str:
+    a, b, c = np.eye(3)
+    (terms,), _ = relations({"a": a, "b": b, "c": c, "sum": a + b + x * c})
+    return "present" if "c" in terms else "absent"
+
+
+def whole(x: float) -> str:
+    return "whole" if tidy({"a": 1.0, "b": 2.0 + x})["b"] == 2.0 else "as found"
+
+
+def axis_of(x: float) -> str:
+    found: Any = central_axis(np.array([[x, 0, 0]]), np.array([[0, 0, x]]), np.zeros(3), 1.0)
+    return "no axis" if np.isnan(found["pitch"][0]) else "an axis"
+
+
+def equal(x: float) -> str:
+    # z is the least; of x and z alike, x goes first
+    n = np.array([0.6 + x, 0.8, 0.6]) / math.sqrt((0.6 + x) ** 2 + 1.0)
+    return "x" if first_axis(n, None)[0] > 0.5 else "z"
+
+
+def drift(x: float) -> str:
+    found = energy_drift(np.array([0.0, x]), np.zeros(2), np.zeros(2), 1.0)
+    return "at rest" if found == 0.0 else "a drift"
+
+
+ROWS = (
+    # what is typed
+    Row("UNIT_TYPED", quaternion, "fine", "refused: orientation"),
+    Row("UNIT_EXACT", matrix, "as typed", "made a rotation"),
+    Row("INERTIA_REFUSED", principal, "warned: inertia-rounded", "refused: inertia-not-physical"),
+    Row("INERTIA_TYPED", principal, "fine", "warned: inertia-rounded"),
+    Row("INERTIA_TYPED", unsymmetric, "fine", "refused: inertia-form"),
+    Row("TABLE_ENDS", periodic, "fine", "refused: table-period"),
+    Row("EXPECTED_RELATIVE", relatively_off, "passed", "failed"),
+    Row("EXPECTED_ABSOLUTE", absolutely_off, "passed", "failed"),
+    Row("LEAST_ASKED", tolerance, "refused: tolerance", "fine"),
+    # same instant, place, direction
+    Row("SAME_INSTANT", expected_at, "fine", "refused: expect-instants"),
+    Row("SAME_VALUE", held_and_driven, "fine", "refused: drive-contradicts"),
+    Row("PARALLEL", along_the_normal, "refused: first-axis", "fine"),
+    Row("UPRIGHT", tilted, "fine", "refused: not-planar"),
+    Row("EQUAL_COMPONENTS", equal, "x", "z"),
+    Row("IN_PLANE", needs_side, "refused: needs-side", "fine"),
+    Row("OUTLINES_APART", two_legs, "fine", "warned: sections.s: the plane meets the body bar"),
+    Row("ONE_PLACE", one_place, "1 m", "its extent"),
+    # gaps
+    Row("OPEN_GAP", too_far, "fine", "refused: does-not-fit"),
+    Row("GAP_ROUNDING", lambda x: too_far(x * 1e5, 1e5), "fine", "refused: does-not-fit", (1 / 3, 3.0, 100.0)),
+    Row("NO_LENGTH", no_length, "refused: no-length", "fine"),
+    Row("OPEN_RATE", lambda x: rates(x * BAR_SIZE * 2.0, 2.0), "fine", "refused: rates-do-not-fit"),
+    Row("AT_REST", lambda x: rates(x * 1e-10 * BAR_SIZE, 0.0), "fine", "refused: rates-do-not-fit"),
+    # no inertia
+    Row("NO_INERTIA", lambda x: spun(0.2 * x), "refused: no-inertia", "fine"),
+    Row("POINT_MASS", point_mass, "refused: no-inertia", "fine"),
+    Row("ON_AXIS", pushed_off_axis, "fine", "refused: no-inertia"),
+    Row("NO_MOMENT", couple_about_a_wire, "fine", "refused: no-inertia"),
+    Row("KERNEL.no_inertia", lambda x: turns_hardly(0.7 * x), "refused: no-inertia", "fine"),
+    # rank, open
+    Row("RANK", lambda x: parallelogram(x / math.sqrt(2)), "warned: singular pose", "warned: nearly singular pose"),
+    Row("NEARLY_SINGULAR", lambda x: parallelogram(x / math.sqrt(2)), "warned: nearly singular pose", "fine"),
+    Row("RANK_OF_GAP", lambda x: null_of(1e-6 * x, 1e-6), "dependent", "independent"),
+    Row("OPEN_SHARE", inclined, "a number", "open"),
+    Row("STRAINED", stiff, "open", "shared"),
+    Row("DEPENDENT_SHARES", proportional, "a sum", "none"),
+    Row("DEPENDENT_SHARES", told_by_turning, "a sum", "none"),
+    Row("ABSENT_FACTOR", present, "absent", "present"),
+    Row("WHOLE_FACTOR", whole, "whole", "as found"),
+    # loads
+    Row("NO_FORCE", axis_of, "no axis", "an axis"),
+    Row("NO_ENERGY", drift, "at rest", "a drift"),
+    Row("UNBALANCED", lambda x: "warned" if unbalanced(x) else "fine", "fine", "warned"),
+)
+
+# Those that decide no verdict: on either side the same numbers, to their digits.
+EXEMPT = {
+    "EPS": "the rounding of one operation; others are told by it",
+    "CLOSED": "ends a search: the verdict is OPEN_GAP's",
+    "NO_SLOPE": "ends a search, which then starts again from elsewhere: the verdict is OPEN_GAP's",
+    "REPEATED_ROW": "rows a step of the search does without: the verdict is OPEN_GAP's",
+    "POLISHED": "ends a search: the poses are closed on either side",
+    "SUMS_BLIND": "what accepts a step of the search, among closed poses",
+    "SAME_SUM": "what accepts a step of the search, among closed poses",
+    "UNMOVED": "whether the note says `as drawn`, or to six digits the same place",
+    "DUST": "digits of a note",
+    "LEAST_EXTENT": "what IN_PLANE is measured by where all lies in the origin",
+    "OFF_AXIS": "two formulas for the same piece of a body of revolution",
+    "QUADRATURE": "ends a quadrature",
+    "CONSTANT": "whether a peak of a thirteenth digit is looked for",
+    "WRITTEN": "the digits that a table writes",
+    "ZERO_COMPONENT": "the digits of a direction that is proposed",
+    "PLACE_ROUNDING": "a summand of the estimate",
+    "LENT_REACH": "an inertia lent to a spin on which nothing depends",
+    "LEAST_RATE": "what steps are judged by where nothing moves: the estimate says what they are worth",
+    "LEAST_TOLERANCE": "where finer runs are not tried: the estimate says what was reached",
+    "COARSEST_RETRY": "where coarser runs are not tried: the collapse is refused, what came through has its estimate",
+    "KERNEL.preference": "which of the rows alike carry the motion",
+    "KERNEL.closed": "ends the settling of gaps, which the run reports",
+    "KERNEL.nearly_closed": "ends the settling of gaps, which the run reports",
+    "KERNEL.pivot_drop": "when rows are chosen anew: costs digits, which the estimate shows",
+    "KERNEL.near_singular": "which stages are settled: costs digits, which the estimate shows",
+    "KERNEL.dodges": "lengths of steps that are tried: the estimate says what was reached",
+    "KERNEL.dodge": "lengths of steps that are tried: the estimate says what was reached",
+    "KERNEL.pivot_rounding": "lengths of steps that are tried: the estimate says what was reached",
+    "KERNEL.pivot_noise": "lengths of steps that are tried: the estimate says what was reached",
+}
+# Those that decide one, and have no scene at their boundary yet.
+WANTED = {
+    "NEIGHBOUR": "which rank is the generic one, where a machine can hardly leave its singular start",
+    "MOVES": "whether a displaced pose counts",
+    "SUM_POSES": "which sums of one pose are accidents",
+    "SUSPECT_PIVOT": "whether a singular pose is looked for in a step",
+    "SINGULAR_MET": "whether a run passed through a singular pose or beside it",
+    "NO_SELF_STRESS": "whether a null vector is a self-stress",
+    "STILL_OPEN": "what a split leaves open",
+    "ONE_DIRECTION": "whether advice proposes a line",
+    "ALONG": "which joint the tree cuts beside a thin rod",
+    "ALONG_SQUARED": "whether a thin rod loaded along a line has that line as its axis",
+    "SOLVABLE": "whether accelerations exist at the start",
+    "NO_ACCELERATION": "whether accelerations exist at the start",
+    "TOUCHING": "whether two outlines without extent are one",
+    "NO_LOAD": "whether reactions have an estimate",
+    "CLAIMED": "the horizon",
+    "BOUNDLESS": "the words on a run that fails",
+    "KERNEL.moves_nothing": "whether a row is one",
+    "KERNEL.across": "what a pivot is measured by",
+    "KERNEL.independent": "which rows carry the motion; one left out must not read as no reaction",
+    "KERNEL.locked": "whether a step that collapsed is a lock",
+    "KERNEL.locked_step": "whether a step that collapsed is a lock",
+    "KERNEL.reopened": "when a row that was left out is taken in again",
+    "KERNEL.lost": "whether closures are lost",
+    "KERNEL.least_step": "whether a step has collapsed",
+    "KERNEL.rope_step": "the instant at which a rope goes slack",
+}

@@ -1,0 +1,46 @@
+"""On either side of each threshold: the verdict changes there, and with that threshold alone."""
+
+from __future__ import annotations
+
+import pytest
+
+from heuncli import tolerances
+from tests.honesty.boundaries import EXEMPT, ROWS, WANTED, Row
+
+
+def names(rows: tuple[Row, ...]) -> list[str]:
+    return [f"{row.name}-{i}" for i, row in enumerate(rows)]
+
+
+def value(name: str) -> float:
+    of_kernel = name.removeprefix("KERNEL.")
+    found: float = tolerances.KERNEL[of_kernel] if of_kernel != name else getattr(tolerances, name)
+    return found
+
+
+@pytest.mark.parametrize("row", ROWS, ids=names(ROWS))
+def test_the_verdict_changes_at_the_threshold(row: Row) -> None:
+    limit = value(row.name)
+    seen = [row.seen(factor * limit) for factor in row.factors]
+    assert seen == [row.below if factor < 1.0 else row.above for factor in row.factors]
+
+
+@pytest.mark.parametrize("row", ROWS, ids=names(ROWS))
+def test_it_is_this_threshold_that_decides(row: Row, monkeypatch: pytest.MonkeyPatch) -> None:
+    """Ten times as large, it takes what was three times above it to its other side."""
+    limit = value(row.name)
+    if row.name.startswith("KERNEL."):
+        monkeypatch.setitem(tolerances.KERNEL, row.name.removeprefix("KERNEL."), 10.0 * limit)
+    else:
+        monkeypatch.setattr(tolerances, row.name, 10.0 * limit)
+    assert row.seen(3.0 * limit) == row.below
+
+
+def test_each_threshold_has_its_row() -> None:
+    """A new one needs a row, or a reason why it decides no verdict."""
+    known = [name for name in vars(tolerances) if name.isupper() and name != "KERNEL"]
+    known += [f"KERNEL.{name}" for name in tolerances.KERNEL]
+    with_row = {row.name for row in ROWS}
+    assert not with_row & (EXEMPT.keys() | WANTED.keys())
+    assert not EXEMPT.keys() & WANTED.keys()
+    assert set(known) == with_row | EXEMPT.keys() | WANTED.keys()
