@@ -250,18 +250,12 @@ class _Builder:
                 self.counters[k] = -1
 
     def _ends_of(self, joint: Joint) -> dict[str, Any]:
-        """Bodies and points of a closure row, and what not every kind has."""
-        zero = np.zeros(3)
+        """Bodies and points of a closure row."""
         return {
             "a": self.in_tree(joint.a),
             "b": self.in_tree(joint.b),
-            "rope": 0,
-            "program": NO_PROGRAM,
-            "e": zero,
-            "g": zero,
             "p": self.relative(joint.a, joint.p),
             "q": self.relative(joint.b, joint.q),
-            "length": 0.0,
         }
 
     def _distance(self, joint: Joint) -> float:
@@ -302,10 +296,7 @@ class _Builder:
             constant = value if isinstance(value, float) else value.constant
             programs.append(self.programs[id(value)] if constant is None else NO_PROGRAM)
             constants.append(constant if constant is not None else 0.0)
-        zero = np.zeros(3)
-        row = {"in_body": 0, "p": zero, "axis": zero, "stiffness": 0.0, "length": 0.0, "coefficient": 0.0, "speed": 0.0}
-        row |= dict(zip("xyz", programs, strict=True))
-        self.load_rows.append(row | {"vector": constants} | given)
+        self.load_rows.append(dict(zip("xyz", programs, strict=True)) | {"vector": constants} | given)
 
     def _point_load(self, load: PointLoad) -> None:
         q = np.zeros(3) if load.point is None else self.relative(load.body, load.point)

@@ -36,12 +36,13 @@ def type_of(record: type[scene.Record]) -> np.dtype[np.void]:
 
 
 def table(record: type[scene.Record], rows: list[dict[str, Any]]) -> Table:
-    """Rows given by field; what is not given is the kernel's own, and zero."""
+    """Rows given by field; what a row does not give is zero, or the kernel's own."""
     found: Table = np.zeros(len(rows), type_of(record))
-    for name in rows[0] if rows else ():
+    for name in dict.fromkeys(name for row in rows for name in row):
         kind = found.dtype[name]
-        column = [row[name] for row in rows]
-        found[name] = np.array([tuple(map(float, value)) for value in column] if kind.names else column, dtype=kind)
+        column = {i: row[name] for i, row in enumerate(rows) if name in row}
+        values = [tuple(map(float, value)) for value in column.values()] if kind.names else list(column.values())
+        found[name][list(column)] = np.array(values, dtype=kind)
     return found
 
 
