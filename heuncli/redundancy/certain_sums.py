@@ -53,7 +53,7 @@ def relations(rows: Mapping[str, Array]) -> tuple[list[dict[str, float]], list[s
     names = [name for name in rows if scale[name] > 0.0]  # open only where no sum is read from
     if not names:
         return [], []
-    stacked = np.stack([rows[name] / scale[name] for name in names])
+    stacked = in_few_axes(np.stack([rows[name] / scale[name] for name in names]))
     same = stacked @ stacked.T
     found: list[dict[str, float]] = []
     heads: list[int] = []
@@ -75,26 +75,33 @@ def relations(rows: Mapping[str, Array]) -> tuple[list[dict[str, float]], list[s
     return found + more, free
 
 
+def in_few_axes(rows: Array) -> Array:
+    """Rows (n, K) in orthonormal axes that span them, (n, at most n): the same lengths and angles, shorter to add up."""
+    n, K = rows.shape
+    return rows if K <= n else np.asarray(np.linalg.qr(rows.T, mode="r")).T
+
+
 def echelon(
     names: Sequence[str], rows: Array, scale: Mapping[str, float]
 ) -> tuple[list[dict[str, float]], list[str]]:
-    """Each row (of unit length) that those before it can tell, told by an independent set of them; and that set."""
-    found: list[dict[str, float]] = []
+    """Each row (of unit length) that depends on those before it, by an independent set of them; and that set."""
+    sums: list[dict[str, float]] = []
     free: list[int] = []
-    basis = np.zeros((0, rows.shape[1]))  # orthonormal, of the free rows
+    Q = np.zeros_like(rows)  # orthonormal, of the free rows
     for i, name in enumerate(names):
+        basis = Q[: len(free)]
         rest = rows[i] - basis.T @ (basis @ rows[i])
         rest = rest - basis.T @ (basis @ rest)
         size = float(np.sqrt(rest @ rest))
         if size > tolerances.DEPENDENT_SHARES:
-            basis = np.vstack([basis, rest / size])
+            Q[len(free)] = rest / size
             free.append(i)
             continue
         c = np.linalg.solve(basis @ rows[free].T, basis @ rows[i])
-        told = {names[f]: -float(x) * scale[name] / scale[names[f]] for f, x in zip(free, c, strict=True)}
-        small = tolerances.ABSENT_FACTOR * max(abs(x) * scale[n] for n, x in told.items())
-        found.append(tidy({n: x for n, x in told.items() if abs(x) * scale[n] > small} | {name: 1.0}))
-    return found, [names[f] for f in free]
+        others = {names[f]: -float(x) * scale[name] / scale[names[f]] for f, x in zip(free, c, strict=True)}
+        small = tolerances.ABSENT_FACTOR * max(abs(x) * scale[n] for n, x in others.items())
+        sums.append(tidy({n: x for n, x in others.items() if abs(x) * scale[n] > small} | {name: 1.0}))
+    return sums, [names[f] for f in free]
 
 
 def tidy(terms: dict[str, float]) -> dict[str, float]:

@@ -103,20 +103,28 @@ def sums_of(
     beside = self_stress(runner, near, body_states(runner.layout, near)) if near is not None else None
     if any(j.joint.stiffness is not None for j in joints):
         beside = None  # what a stiffness leaves undecided is known at the asked instants only
-    poses, told, values = dict[str, Array](), dict[str, Array](), dict[str, Array]()
+    at_instants = relative_shares(stress)
+    in_poses = at_instants[:, pick]
+    if beside is not None:
+        in_poses = one_after_the_other(in_poses, relative_shares(beside))
+    poses, asked, values = dict[str, Array](), dict[str, Array](), dict[str, Array]()
     for k, load in enumerate(joints):
         is_open = np.concatenate(wrench_open(stress, stress.shares[k]), axis=1).any(axis=0)
         for i in np.flatnonzero(is_open).tolist():
             name = f"joints.{load.joint.name}.{'force' if i < 3 else 'moment'}.{'xyz'[i % 3]}"
-            told[name] = relative(stress, k, i)
-            parts = [told[name][pick], *([relative(beside, k, i)] if beside is not None else [])]
-            most = max(part.shape[1] for part in parts)
-            poses[name] = np.concatenate([np.pad(part, ((0, 0), (0, most - part.shape[1]))) for part in parts])
+            poses[name], asked[name] = in_poses[k, :, i], at_instants[k, :, i]
             values[name] = (load.force if i < 3 else load.moment)[:, i % 3]
-    return certain_sums(poses, told, values, stress.length)
+    return certain_sums(poses, asked, values, stress.length)
 
 
-def relative(stress: SelfStress, joint: int, component: int) -> Array:
-    """Shares of every self-stress in one component, each relative to its largest, (n_t, k)."""
-    found: Array = stress.shares[joint][:, component] / np.where(stress.largest > 0.0, stress.largest, 1.0)
-    return found
+def relative_shares(stress: SelfStress) -> Array:
+    """Shares of every self-stress in all components, relative to its largest, (n_j, n_t, 6, k)."""
+    return np.asarray(stress.shares / np.where(stress.largest > 0.0, stress.largest, 1.0)[:, None])
+
+
+def one_after_the_other(a: Array, b: Array) -> Array:
+    """Shares (n_j, n_t, 6, k) in some poses and in others; where there are fewer self-stresses, zeros."""
+    out = np.zeros((len(a), a.shape[1] + b.shape[1], 6, max(a.shape[3], b.shape[3])))
+    out[:, : a.shape[1], :, : a.shape[3]] = a
+    out[:, a.shape[1] :, :, : b.shape[3]] = b
+    return out

@@ -14,6 +14,7 @@ import numpy as np
 from heuncli import tolerances
 from heuncli.results import Array
 
+TOGETHER = 32  # rows that are freed of what the rows before them span in one product
 MOST_TERMS = 24  # nobody reads longer sums, and they take long to find
 LARGE = 0.1  # of unit length: the first factor that large is positive at the start
 
@@ -39,28 +40,37 @@ def dependent(poses: Shares) -> list[list[str]]:
         return []
     rows = np.stack([poses[n] for n in names], axis=1)
     rows = rows / np.sqrt(np.sum(rows * rows, axis=2)).max(axis=0)[None, :, None]
-    Q = np.zeros((len(rows), rows.shape[2], 0))  # orthonormal in each pose, zero where a free row is told there
+    Q = np.zeros_like(rows)  # orthonormal in each pose, zero where a free row depends on others there
     usual = np.ones(len(rows), dtype=bool)  # poses in which all the free ones are independent
     free: list[int] = []
     told: list[int] = []
     for i in range(len(names)):
-        rest = rows[:, i, :, None]
-        for _ in range(2):
-            rest = rest - Q @ (Q.transpose(0, 2, 1) @ rest)
+        if i % TOGETHER == 0:
+            before = len(free)
+            ahead = across(rows[:, i : i + TOGETHER], Q[:, :before])
+        rest = across(ahead[:, i % TOGETHER, None], Q[:, before : len(free)])
         size = np.sqrt(np.sum(rest * rest, axis=(1, 2)))
         own = np.sqrt(np.sum(rows[:, i] ** 2, axis=1))
         new = size > tolerances.DEPENDENT_SHARES * np.maximum(own, tolerances.DEPENDENT_SHARES)
-        is_free = bool((usual & new).any())
-        (free if is_free else told).append(i)
-        if is_free:
+        if (usual & new).any():
             usual &= new
-            Q = np.concatenate([Q, rest * (new / np.where(new, size, 1.0))[:, None, None]], axis=2)
+            Q[:, len(free)] = rest[:, 0] * (new / np.where(new, size, 1.0))[:, None]
+            free.append(i)
+        else:
+            told.append(i)
     if not told:
         return []
-    back = Q[usual].transpose(0, 2, 1)
+    back = Q[usual][:, : len(free)]
     c = np.linalg.solve(back @ rows[usual][:, free].transpose(0, 2, 1), back @ rows[usual][:, told].transpose(0, 2, 1))
     used = (np.abs(c) > tolerances.ABSENT_FACTOR * np.maximum(np.abs(c).max(axis=1, keepdims=True), 1.0)).any(axis=0)
     return [[*(names[f] for f in np.array(free)[used[:, k]]), names[i]] for k, i in enumerate(told)]
+
+
+def across(rows: Array, basis: Array) -> Array:
+    """What of rows (poses, n, k) lies across an orthonormal basis (poses, m, k); taken away twice, for rounding."""
+    for _ in range(2):
+        rows = rows - (rows @ basis.transpose(0, 2, 1)) @ basis
+    return rows
 
 
 def factors(rows: Array) -> Array | None:
