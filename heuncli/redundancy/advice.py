@@ -40,7 +40,7 @@ def advice(scene: PreparedScene, model: Block) -> list[str]:
         if tried >= MOST_TRIED:
             break
         if _left(scene, changed, model) == 0:
-            return [f"determinate with {told(scene, changed, ' and ')}: the same motion, and no reaction is open"]
+            return [f"determinate with {in_words(scene, changed, ' and ')}: the same motion, and no reaction is open"]
     return stepwise(scene, choices, model)
 
 
@@ -56,9 +56,9 @@ def stepwise(scene: PreparedScene, choices: Choices, model: Block) -> list[str]:
     if not changed:
         return ["no looser joints were found that leave less open; `stiffness` on the joints concerned makes a split"]
     if left == 0:
-        return [f"determinate with {told(scene, changed, ', ')}: the same motion, and no reaction is open"]
+        return [f"determinate with {in_words(scene, changed, ', ')}: the same motion, and no reaction is open"]
     rest = f"{left} of {model['redundant']} are left; for those give joints their `stiffness`"
-    return [f"with {told(scene, changed, ', ')} only {rest}"]
+    return [f"with {in_words(scene, changed, ', ')} only {rest}"]
 
 
 def choices_of(scene: PreparedScene) -> Choices:
@@ -124,7 +124,7 @@ def _replacements(joints: tuple[Joint, ...], choices: Choices, redundant: int) -
 
 
 def loosened(joint: Joint, kind: str, along: Array | None) -> Joint | None:
-    """The joint as another kind at the same place, None where its axis is not told.
+    """The joint as another kind at the same place, None where its axis is not known.
 
     What held the point and has no axis to slide along (a ball, or in the plane a pin) may give way along the one
     direction in which it is open; what needs a second axis gets one across its first.
@@ -140,7 +140,7 @@ def loosened(joint: Joint, kind: str, along: Array | None) -> Joint | None:
     return replace(joint, kind=kind, to_axis=across / np.sqrt(across @ across), to_axis_given=True)
 
 
-def told(scene: PreparedScene, changed: Mapping[int, Joint], between: str) -> str:
+def in_words(scene: PreparedScene, changed: Mapping[int, Joint], between: str) -> str:
     """The replacements in words that can be typed: an axis where it is not the joint's own."""
     words = []
     for k, other in changed.items():

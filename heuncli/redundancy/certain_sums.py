@@ -2,7 +2,7 @@
 
 A sum is certain if the shares of every self-stress in it cancel. Forces and moments apart (together only where nothing
 else is certain): first pairs, components whose shares are proportional; then each further one by those named before it.
-What constant factors leave is told by factors that turn (turning.py).
+What constant factors leave is expressed by factors that turn with the pose (turning_sums.py).
 """
 
 from __future__ import annotations
@@ -18,10 +18,10 @@ from heuncli.results import Array, CertainSum
 WORTH_A_LOOK = 0.999  # cosine of two rows: below it they are not proportional, which saves the difference
 
 
-def certain_sums(poses: Shares, told: Shares, values: Mapping[str, Array], length: float) -> list[CertainSum]:
+def certain_sums(poses: Shares, asked: Shares, values: Mapping[str, Array], length: float) -> list[CertainSum]:
     """Sums over open components; factors that turn are arrays (n_t,), at one instant alone numbers.
 
-    poses: shares where the sums must hold; told: the same at the asked instants; values: (n_t,), of any one solution.
+    poses: shares where the sums must hold; asked: the same at the asked instants; values: (n_t,), of any one solution.
     length: what divides moments where they stand beside forces [m].
     """
     force = [name for name in poses if ".force." in name]
@@ -30,11 +30,11 @@ def certain_sums(poses: Shares, told: Shares, values: Mapping[str, Array], lengt
     for names in (force, moment):
         constant, left = relations({name: poses[name].ravel() for name in names})
         steady += constant
-        turning += turning_sums({name: poses[name] for name in left}, told)
+        turning += turning_sums({name: poses[name] for name in left}, asked)
     if not steady and not turning:
         steady, left = relations({name: poses[name].ravel() for name in (*force, *moment)})
         unit = {name: 1.0 if ".force." in name else length for name in left}
-        scaled = [{name: part[name] / unit[name] for name in left} for part in (poses, told)]
+        scaled = [{name: part[name] / unit[name] for name in left} for part in (poses, asked)]
         turning = [{name: c / unit[name] for name, c in terms.items()} for terms in turning_sums(*scaled)]
     found: list[Mapping[str, float | Array]] = [*steady, *turning]
     if all(len(value) == 1 for value in values.values()):
@@ -76,7 +76,7 @@ def relations(rows: Mapping[str, Array]) -> tuple[list[dict[str, float]], list[s
 
 
 def in_few_axes(rows: Array) -> Array:
-    """Rows (n, K) in orthonormal axes that span them, (n, at most n): the same lengths and angles, shorter to add up."""
+    """Rows (n, K) in orthonormal axes that span them, (n, at most n): the same lengths and angles, fewer numbers."""
     n, K = rows.shape
     return rows if K <= n else np.asarray(np.linalg.qr(rows.T, mode="r")).T
 

@@ -1,4 +1,4 @@
-"""What redundant joints leave undecided, made visible: a split where one is chosen, open components, certain sums."""
+"""What redundant joints leave indeterminate, made visible: a split where one is chosen, open components, sums."""
 
 from __future__ import annotations
 
@@ -22,18 +22,18 @@ SUMS_FROM = 9  # instants whose self-stresses certain sums are read from
 
 
 @record
-class Decided:
-    """The joints' loads after the split chosen in words; the self-stresses, and those it left (None: none)."""
+class Resolution:
+    """The joints' loads after the split described in words; the self-stresses, and those it left (None: none)."""
 
     joints: list[JointLoads]
     words: tuple[str, ...] = ()
     stress: SelfStress | None = None
     left: SelfStress | None = None
-    found: SelfStress | None = None  # as looked for, also where there are none
+    searched: SelfStress | None = None  # the search for them, also where there are none
 
     def singular(self, times: Array, redundant: int) -> list[str]:
-        """Sentences on instants at which more is open than `redundant`, or nearly so."""
-        return singular_poses(self.found, times, redundant) if self.found is not None else []
+        """Sentences on instants with more self-stresses than `redundant`, or nearly so."""
+        return singular_poses(self.searched, times, redundant) if self.searched is not None else []
 
     def show(self, base: Block | None, reactions: Block | None) -> None:
         """Mark what is open, or was until a split was chosen, in the blocks of foundation and joints, in place."""
@@ -42,37 +42,38 @@ class Decided:
         if self.words and self.stress is not None and reactions is not None:
             mark_chosen(self.stress, self.joints, reactions)
 
-    def sums(self, runner: Runner, found: Recovered) -> list[CertainSum]:
+    def sums(self, runner: Runner, recovered: Recovered) -> list[CertainSum]:
         """Certain sums of what is open."""
-        return sums_of(runner, found, self.joints, self.left) if self.left is not None else []
+        return sums_of(runner, recovered, self.joints, self.left) if self.left is not None else []
 
 
-def decide(
-    runner: Runner, found: Recovered, states: BodyStates, joints: list[JointLoads], least_norm: bool
-) -> Decided:
+def resolve(
+    runner: Runner, recovered: Recovered, states: BodyStates, joints: list[JointLoads], least_norm: bool
+) -> Resolution:
     """Find the self-stresses and apply the split that was asked for."""
-    stress = self_stress(runner, found, states)
+    stress = self_stress(runner, recovered, states)
     if stress is None or not stress.count.any():
-        return Decided(joints, found=stress)
+        return Resolution(joints, searched=stress)
     chosen = split(joints, states, stress, least_norm)
-    return Decided(chosen.joints, chosen.words, stress, chosen.stress, stress)
+    return Resolution(chosen.joints, chosen.words, stress, chosen.stress, stress)
 
 
 def singular_poses(stress: SelfStress, times: Array, redundant: int) -> list[str]:
     """Where the rank of the closures drops below the generic one, and where it comes near to that."""
-    found = []
+    sentences = []
     more = np.flatnonzero(stress.count > redundant)
     if len(more):
-        told = ", ".join(f"{t:.6g}" for t in times[more[:5]]) + (" ..." if len(more) > 5 else "")
-        found.append(f"singular pose at t = {told} s: what is open only there is open there only")
+        at = ", ".join(f"{t:.6g}" for t in times[more[:5]]) + (" ..." if len(more) > 5 else "")
+        when = "this instant" if len(more) == 1 else "these instants"
+        sentences.append(f"singular pose at t = {at} s: some components are indeterminate at {when} only")
     near = np.flatnonzero((stress.least < tolerances.NEARLY_SINGULAR) & (stress.count <= redundant))
     if len(near):
         k = near[int(np.argmin(stress.least[near]))]
-        found.append(
+        sentences.append(
             f"nearly singular pose at t = {times[k]:.6g} s (smallest singular value {stress.least[k]:.1e}): "
             "reactions grow there without bound, their error by as much"
         )
-    return found
+    return sentences
 
 
 def put_verdicts(stress: SelfStress, joints: Sequence[JointLoads], base: Block | None, reactions: Block | None) -> None:
@@ -86,7 +87,7 @@ def put_verdicts(stress: SelfStress, joints: Sequence[JointLoads], base: Block |
 
 
 def mark_chosen(stress: SelfStress, joints: Sequence[JointLoads], reactions: Block) -> None:
-    """Tell which components were open before a split was chosen, in place."""
+    """Name the components that were open before a split was chosen, in place."""
     for load, share in zip(joints, stress.shares, strict=True):
         force, moment = wrench_open(stress, share)
         names = names_of({"force": force, "moment": moment})
@@ -95,14 +96,14 @@ def mark_chosen(stress: SelfStress, joints: Sequence[JointLoads], reactions: Blo
 
 
 def sums_of(
-    runner: Runner, found: Recovered, joints: Sequence[JointLoads], stress: SelfStress
+    runner: Runner, recovered: Recovered, joints: Sequence[JointLoads], stress: SelfStress
 ) -> list[CertainSum]:
     """Certain sums of the joints' open components, true at the asked instants and in neighbouring poses."""
-    pick = np.unique(np.linspace(0, len(found.times) - 1, SUMS_FROM).astype(int))
-    near = neighbours(runner, float(found.times[0]), found.states[0], tolerances.SUM_POSES)
+    pick = np.unique(np.linspace(0, len(recovered.times) - 1, SUMS_FROM).astype(int))
+    near = neighbours(runner, float(recovered.times[0]), recovered.states[0], tolerances.SUM_POSES)
     beside = self_stress(runner, near, body_states(runner.layout, near)) if near is not None else None
     if any(j.joint.stiffness is not None for j in joints):
-        beside = None  # what a stiffness leaves undecided is known at the asked instants only
+        beside = None  # what a stiffness leaves indeterminate is known at the asked instants only
     at_instants = relative_shares(stress)
     in_poses = at_instants[:, pick]
     if beside is not None:

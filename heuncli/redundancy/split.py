@@ -1,4 +1,4 @@
-"""A split of what redundancy leaves open, on request: by the joints' stiffness, by the least norm.
+"""A split of what redundancy leaves indeterminate, on request: by the joints' stiffness, by the least norm.
 
 Neither follows from the laws of rigid bodies; both add self-stresses to one solution. Stiffness: least sum of
 F^2/k + M^2/k over the joints that have one, components in `from` axes; what they do not feel stays open. Least norm:
@@ -21,7 +21,7 @@ from heuncli.results import Array
 
 @record
 class Split:
-    """Joint loads after a choice, the self-stresses it left undecided (None: none), and how it was made, in words."""
+    """Joint loads after a choice, the self-stresses it left (None: none), and how it was made, in words."""
 
     joints: list[JointLoads]
     stress: SelfStress | None
@@ -33,11 +33,11 @@ def split(joints: list[JointLoads], states: BodyStates, stress: SelfStress, leas
     words: list[str] = []
     left: SelfStress | None = stress
     if any(j.joint.stiffness is not None for j in joints):
-        joints, left = decided(joints, states, stress, [stiffness_map(j, states) for j in joints])
+        joints, left = with_least_strain(joints, states, stress, [stiffness_map(j, states) for j in joints])
         words.append("chosen by stiffness")
     if least_norm and left is not None:
         maps = [np.broadcast_to(np.diag([1.0] * 3 + [1.0 / stress.length] * 3), (len(states.x), 6, 6)) for _ in joints]
-        joints, left = decided(joints, states, left, maps)
+        joints, left = with_least_strain(joints, states, left, maps)
         words.append(f"chosen by least norm, moments divided by {stress.length:.4g} m")
     return Split(joints, left, tuple(words))
 
@@ -45,16 +45,16 @@ def split(joints: list[JointLoads], states: BodyStates, stress: SelfStress, leas
 def stiffness_map(load: JointLoads, states: BodyStates) -> Array:
     """Map of a wrench (world axes) to strains F/sqrt(k), M/sqrt(k) in `from` axes, (n_t, 6, 6); zero where rigid."""
     n_t = len(load.force)
-    found = np.zeros((n_t, 6, 6))
+    strains = np.zeros((n_t, 6, 6))
     if load.joint.stiffness is None:
-        return found
+        return strains
     axes = np.stack([states.direction(load.joint.a, e) for e in np.eye(3)], axis=1)
     for part, k in enumerate(load.joint.stiffness):
-        found[:, 3 * part : 3 * part + 3, 3 * part : 3 * part + 3] = axes / np.sqrt(k)[:, None]
-    return found
+        strains[:, 3 * part : 3 * part + 3, 3 * part : 3 * part + 3] = axes / np.sqrt(k)[:, None]
+    return strains
 
 
-def decided(
+def with_least_strain(
     joints: Sequence[JointLoads], states: BodyStates, stress: SelfStress, maps: Sequence[Array]
 ) -> tuple[list[JointLoads], SelfStress | None]:
     """Add the self-stresses that make the sum of squares of the mapped wrenches least; those without effect stay."""
@@ -62,22 +62,22 @@ def decided(
     W = np.concatenate([np.einsum("tij,tj->ti", m, _wrench(j)) for m, j in zip(maps, joints, strict=True)], axis=1)
     size = np.where(stress.largest > 0.0, stress.largest, 1.0)
     U, sigma, V = np.linalg.svd(S / size[:, None, :], full_matrices=False)
-    felt = sigma > tolerances.STRAINED * np.maximum(sigma.max(axis=1, initial=0.0), 1e-300)[:, None]
-    inverse = np.where(felt, 1.0 / np.where(felt, sigma, 1.0), 0.0)
+    strained = sigma > tolerances.STRAINED * np.maximum(sigma.max(axis=1, initial=0.0), 1e-300)[:, None]
+    inverse = np.where(strained, 1.0 / np.where(strained, sigma, 1.0), 0.0)
     c = -np.einsum("tki,tk,tjk,tj->ti", V, inverse, U, W) / size
     shared = [_added(j, states, np.einsum("tik,tk->ti", s, c)) for j, s in zip(joints, stress.shares, strict=True)]
     alive = stress.largest > 0.0
-    undecided = alive.sum(axis=1) - (felt.sum(axis=1))
-    if not (undecided > 0).any():
+    rest_count = alive.sum(axis=1) - strained.sum(axis=1)
+    if not (rest_count > 0).any():
         return shared, None
-    # what was not felt: the self-stresses' part outside the rows of V that were
-    rest = np.eye(S.shape[2]) - np.einsum("tki,tk,tkj->tij", V, felt.astype(float), V)
-    turned = np.einsum("tij,tj->tij", rest, alive.astype(float)) / size[:, :, None]
-    shares = np.stack([np.einsum("tik,tkj->tij", s, turned) for s in stress.shares])
+    # what strains nothing: the self-stresses' part outside the rows of V that strain something
+    rest = np.eye(S.shape[2]) - np.einsum("tki,tk,tkj->tij", V, strained.astype(float), V)
+    unstrained = np.einsum("tij,tj->tij", rest, alive.astype(float)) / size[:, :, None]
+    shares = np.stack([np.einsum("tik,tkj->tij", s, unstrained) for s in stress.shares])
     parts = [np.maximum(np.abs(s[:, :3]).max(axis=1), np.abs(s[:, 3:]).max(axis=1) / stress.length) for s in shares]
     largest = np.max(parts, axis=0)
     largest = np.where(largest > tolerances.STILL_OPEN, largest, 0.0)
-    return shared, replace(stress, shares=shares, largest=largest, count=undecided)
+    return shared, replace(stress, shares=shares, largest=largest, count=rest_count)
 
 
 def _wrench(load: JointLoads) -> Array:

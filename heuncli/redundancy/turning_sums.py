@@ -21,17 +21,17 @@ LARGE = 0.1  # of unit length: the first factor that large is positive at the st
 Shares = Mapping[str, Array]  # components' shares of every self-stress, (poses, k)
 
 
-def turning_sums(poses: Shares, told: Shares) -> list[dict[str, Array]]:
-    """Of each component that a few before it tell in all poses: factors at the told instants, (n_t,) each."""
-    found: list[dict[str, Array]] = []
-    for names in dependent(poses):
-        if len(names) <= MOST_TERMS and (c := factors(np.stack([told[n] for n in names], axis=1))) is not None:
-            found.append(dict(zip(names, c.T, strict=True)))
-    return found
+def turning_sums(poses: Shares, asked: Shares) -> list[dict[str, Array]]:
+    """Of each component that depends on a few before it in all poses: factors at the asked instants, (n_t,) each."""
+    sums: list[dict[str, Array]] = []
+    for names in dependent_components(poses):
+        if len(names) <= MOST_TERMS and (c := factors(np.stack([asked[n] for n in names], axis=1))) is not None:
+            sums.append(dict(zip(names, c.T, strict=True)))
+    return sums
 
 
-def dependent(poses: Shares) -> list[list[str]]:
-    """Each component that those before it tell in every pose, last, after the independent ones that it takes.
+def dependent_components(poses: Shares) -> list[list[str]]:
+    """Each component that depends on those before it in every pose, last, after the independent ones that it takes.
 
     Being independent in one pose is enough to be so: in others it is by accident that they are not.
     """
@@ -43,7 +43,7 @@ def dependent(poses: Shares) -> list[list[str]]:
     Q = np.zeros_like(rows)  # orthonormal in each pose, zero where a free row depends on others there
     usual = np.ones(len(rows), dtype=bool)  # poses in which all the free ones are independent
     free: list[int] = []
-    told: list[int] = []
+    bound: list[int] = []
     for i in range(len(names)):
         if i % TOGETHER == 0:
             before = len(free)
@@ -57,13 +57,13 @@ def dependent(poses: Shares) -> list[list[str]]:
             Q[:, len(free)] = rest[:, 0] * (new / np.where(new, size, 1.0))[:, None]
             free.append(i)
         else:
-            told.append(i)
-    if not told:
+            bound.append(i)
+    if not bound:
         return []
     back = Q[usual][:, : len(free)]
-    c = np.linalg.solve(back @ rows[usual][:, free].transpose(0, 2, 1), back @ rows[usual][:, told].transpose(0, 2, 1))
+    c = np.linalg.solve(back @ rows[usual][:, free].transpose(0, 2, 1), back @ rows[usual][:, bound].transpose(0, 2, 1))
     used = (np.abs(c) > tolerances.ABSENT_FACTOR * np.maximum(np.abs(c).max(axis=1, keepdims=True), 1.0)).any(axis=0)
-    return [[*(names[f] for f in np.array(free)[used[:, k]]), names[i]] for k, i in enumerate(told)]
+    return [[*(names[f] for f in np.array(free)[used[:, k]]), names[i]] for k, i in enumerate(bound)]
 
 
 def across(rows: Array, basis: Array) -> Array:
@@ -74,7 +74,7 @@ def across(rows: Array, basis: Array) -> Array:
 
 
 def factors(rows: Array) -> Array | None:
-    """Unit vectors c (n_t, n) with c . rows = 0 for rows (n_t, n, k), the last of which the others tell.
+    """Unit vectors c (n_t, n) with c . rows = 0 for rows (n_t, n, k), the last of which depends on the others.
 
     No factor jumps, the first large one is positive at the start; where the others are dependent, too, c is near to
     that of the nearest instant where they are not. None where there are none at some instant.

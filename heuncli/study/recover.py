@@ -26,7 +26,7 @@ from heuncli.results import Accuracy, Array, Block, CertainSum
 from heuncli.study.setup import Setup
 
 if TYPE_CHECKING:  # loaded where a scene has closed chains, or sections
-    from heuncli.redundancy.resolve import Decided
+    from heuncli.redundancy.resolve import Resolution
     from heuncli.redundancy.self_stress import SelfStress
 
 
@@ -44,15 +44,15 @@ class Recovery:
         return body_states(self.setup.scene.layout, self.recovered)
 
     @cached_property
-    def decided(self) -> Decided | None:
+    def decided(self) -> Resolution | None:
         """What redundant joints leave open, after the split that was asked for; None without closed chains."""
         layout = self.setup.scene.layout
         if not layout.rows:
             return None
-        from heuncli.redundancy.resolve import decide  # a tree starts faster without it
+        from heuncli.redundancy.resolve import resolve  # a tree starts faster without it
 
         joints = joint_loads(layout, self.recovered, self.states)
-        return decide(self.setup.runner, self.recovered, self.states, joints, self.least_norm)
+        return resolve(self.setup.runner, self.recovered, self.states, joints, self.least_norm)
 
     @cached_property
     def joints(self) -> list[JointLoads]:
