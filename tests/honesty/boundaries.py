@@ -7,7 +7,7 @@ numbers it holds against their closed form, so that both sides are honest: a ref
 from __future__ import annotations
 
 import math
-from collections.abc import Callable
+from collections.abc import Callable, Sequence
 from typing import Any, NamedTuple
 
 import numpy as np
@@ -188,6 +188,23 @@ def spun(inertia: float) -> str:
     return verdict(bar(tail=couple, inertia=f"[0.1, 0.1, {inertia!r}]"), right)
 
 
+def wire(x: float) -> str:
+    """A solid wire swings on a ball, its moment about its axis x of the trace: as a thin rod does.
+
+    Its own spin, told or not, matters to nothing else.
+    """
+    radius = math.sqrt(x / 3)
+    thin = "shapes: [{type: rod, from: [0, 0, 0], to: [0, 0, -1], mass: 1}]"
+    solid = thin.replace("type: rod", f"type: cylinder, radius: {radius!r}")
+    swings = ", orientation: {axis: [1, 0, 0], angle: 1}, angular_velocity: [0.3, 0.2, 0.1]"
+    text = bar(swings, "analysis: {duration: 0.02, samples: 2}")
+    given = "mass: 1, center: [0, 0, -0.5], inertia: [0.08, 0.08, 0.001]"
+    found, rod = solved(text.replace(given, solid)), solved(text.replace(given, thin))
+    near(found.bodies["bar"]["center"], rod.bodies["bar"]["center"], 1.0, 1e-9)
+    near(found.joints["pivot"]["force"], rod.joints["pivot"]["force"], WEIGHT, 1e-8)
+    return "thin" if any("spin about its own axis" in note for note in found.model["reasons"]) else "turning"
+
+
 def point_mass(x: float) -> str:
     """A couple on a small ball of that inertia, of 1 kg: no point mass above x m L^2, which NO_INERTIA multiplies."""
     inertia = x * 1e-12 * BAR_SIZE**2
@@ -251,34 +268,60 @@ def one_place(x: float) -> str:
     return "1 m" if found == 1.0 else "its extent"
 
 
-def parallelogram(angle: float) -> str:
-    """Bars of 1 m and 1 kg, so far from flat, in the plane: D'Alembert gives what the coupler's pin carries."""
-    c, s = math.cos(angle), math.sin(angle)
-    p, q = f"[{c!r}, {s!r}, 0]", f"[{1 + c!r}, {s!r}, 0]"
-
-    def right(found: Results) -> None:
-        # theta'' = -6/5 g cos(theta); the coupler moves with the bars' ends, half of it hangs on either pin
-        ax, ay = -s * -1.2 * WEIGHT * c, c * -1.2 * WEIGHT * c
-        force = found.joints["C"]["force"][0]
-        near(force[1], 0.5 * (ay + WEIGHT), WEIGHT, 1e-7)
-        if not np.isnan(force[0]):
-            near(force[0], 0.5 * ax, WEIGHT, 1e-7)
-
-    return verdict(f"""
+def four_bar(p: Sequence[float], q: Sequence[float], more: str = "", tail: str = "") -> str:
+    """Bars of 1 kg in the plane, from (0, 0) to p and from (1, 0) to q, and a coupler from p to q."""
+    P, Q = (f"[{float(x)!r}, {float(y)!r}, 0]" for x, y in (p, q))
+    return f"""
 heun: 1
 space: planar
 gravity: [0, -9.81, 0]
 ground: {{points: {{A: [0, 0, 0], B: [1, 0, 0]}}}}
 bodies:
-  left: {{shapes: [{{type: rod, from: [0, 0, 0], to: {p}, mass: 1}}], points: {{f: [0, 0, 0], t: {p}}}}}
-  right: {{shapes: [{{type: rod, from: [1, 0, 0], to: {q}, mass: 1}}], points: {{f: [1, 0, 0], t: {q}}}}}
-  top: {{shapes: [{{type: rod, from: {p}, to: {q}, mass: 1}}], points: {{l: {p}, r: {q}}}}}
+  left: {{shapes: [{{type: rod, from: [0, 0, 0], to: {P}, mass: 1}}], points: {{f: [0, 0, 0], t: {P}}}{more}}}
+  right: {{shapes: [{{type: rod, from: [1, 0, 0], to: {Q}, mass: 1}}], points: {{f: [1, 0, 0], t: {Q}}}}}
+  top: {{shapes: [{{type: rod, from: {P}, to: {Q}, mass: 1}}], points: {{l: {P}, r: {Q}}}}}
 joints:
   A: {{type: pin, from: ground.A, to: left.f}}
   B: {{type: pin, from: ground.B, to: right.f}}
   C: {{type: pin, from: left.t, to: top.l}}
   D: {{type: pin, from: top.r, to: right.t}}
-""", right)  # fmt: skip
+{tail}"""
+
+
+def parallelogram(angle: float) -> str:
+    """Bars of 1 m, so far from flat: d'Alembert gives what the coupler's pin carries."""
+    c, s = math.cos(angle), math.sin(angle)
+
+    def right(found: Results) -> None:
+        # theta'' = -6/5 g cos(theta); the coupler moves with the bars' ends, half of it hangs on either pin
+        ax, ay = 1.2 * WEIGHT * c * s, -1.2 * WEIGHT * c * c
+        force = found.joints["C"]["force"][0]
+        near(force[1], 0.5 * (ay + WEIGHT), WEIGHT, 1e-7)
+        if not np.isnan(force[0]):
+            near(force[0], 0.5 * ax, WEIGHT, 1e-7)
+
+    return verdict(four_bar((c, s), (1 + c, s)), right)
+
+
+def beside_flat(x: float) -> str:
+    """Bars of 1 m past the pose in which they lie flat, the coupler longer by the square of x, which keeps them off it.
+
+    The closures' least singular value there goes with the root of that length. The right bar turns back.
+    """
+    b = 1.0 + 1.8e-9 * (x / 4.0) ** 2
+    p = np.array([math.cos(2.6), math.sin(2.6)])
+    to = np.array([1.0, 0.0]) - p
+    L = math.sqrt(float(to @ to))
+    k = (L * L + b * b - 1.0) / (2.0 * L)  # from p to the foot of the height on the diagonal
+    q = p + (k * to + math.sqrt(b * b - k * k) * np.array([-to[1], to[0]])) / L
+
+    def right(found: Results) -> None:
+        ends = [found.points[name]["position"][-1] for name in ("left.t", "right.t")]
+        assert ends[0][1] < 0.0 < ends[1][1]
+        near(math.sqrt(float(np.sum((ends[1] - ends[0]) ** 2))), b, 1.0, 1e-11)
+
+    tail = "analysis: {duration: 0.3, samples: 3}"
+    return verdict(four_bar(p, q, ", angular_velocity: [0, 0, 4]", tail), right).split(" singular")[0]
 
 
 def inclined(x: float) -> str:
@@ -299,6 +342,15 @@ joints:
         return "open"
     near(force, WEIGHT, WEIGHT)
     return "a number"
+
+
+def carried_by_nothing(x: float) -> str:
+    """A body on a ball at its centre, held up but for x of its weight: whether that is a load to judge by."""
+    up = f"forces: {{f: {{type: force, on: bar.top, vector: [0, 0, {WEIGHT * (1 - x)!r}]}}}}"
+    text = bar(", angular_velocity: [0, 0, 1]", f"{up}\nanalysis: {{duration: 0.1, samples: 3}}")
+    found = solved(text.replace("center: [0, 0, -0.5]", "center: [0, 0, 0]"))
+    near(found.joints["pivot"]["force"][:, 2], x * WEIGHT, WEIGHT, 1e-14)
+    return "judged" if found.accuracy["estimate"]["reactions"] > 0.0 else "none"
 
 
 def stiff(x: float) -> str:
@@ -391,6 +443,7 @@ ROWS = (
     Row("AT_REST", lambda x: rates(x * 1e-10 * BAR_SIZE, 0.0), "fine", "refused: rates-do-not-fit"),
     # no inertia
     Row("NO_INERTIA", lambda x: spun(0.2 * x), "refused: no-inertia", "fine"),
+    Row("NO_INERTIA", wire, "thin", "turning"),
     Row("POINT_MASS", point_mass, "refused: no-inertia", "fine"),
     Row("ON_AXIS", pushed_off_axis, "fine", "refused: no-inertia"),
     Row("NO_MOMENT", couple_about_a_wire, "fine", "refused: no-inertia"),
@@ -398,6 +451,7 @@ ROWS = (
     # rank, open
     Row("RANK", lambda x: parallelogram(x / math.sqrt(2)), "warned: singular pose", "warned: nearly singular pose"),
     Row("NEARLY_SINGULAR", lambda x: parallelogram(x / math.sqrt(2)), "warned: nearly singular pose", "fine"),
+    Row("SINGULAR_MET", beside_flat, "warned: passes through a", "fine", (1 / 3, 3.0)),
     Row("RANK_OF_GAP", lambda x: null_of(1e-6 * x, 1e-6), "dependent", "independent"),
     Row("OPEN_SHARE", inclined, "a number", "open"),
     Row("STRAINED", stiff, "open", "shared"),
@@ -407,6 +461,7 @@ ROWS = (
     Row("WHOLE_FACTOR", whole, "whole", "as found"),
     # loads
     Row("NO_FORCE", axis_of, "no axis", "an axis"),
+    Row("NO_LOAD", carried_by_nothing, "none", "judged"),
     Row("NO_ENERGY", drift, "at rest", "a drift"),
     Row("UNBALANCED", lambda x: "warned" if unbalanced(x) else "fine", "fine", "warned"),
 )
@@ -449,7 +504,6 @@ WANTED = {
     "MOVES": "whether a displaced pose counts",
     "SUM_POSES": "which sums of one pose are accidents",
     "SUSPECT_PIVOT": "whether a singular pose is looked for in a step",
-    "SINGULAR_MET": "whether a run passed through a singular pose or beside it",
     "NO_SELF_STRESS": "whether a null vector is a self-stress",
     "STILL_OPEN": "what a split leaves open",
     "ONE_DIRECTION": "whether advice proposes a line",
@@ -458,7 +512,6 @@ WANTED = {
     "SOLVABLE": "whether accelerations exist at the start",
     "NO_ACCELERATION": "whether accelerations exist at the start",
     "TOUCHING": "whether two outlines without extent are one",
-    "NO_LOAD": "whether reactions have an estimate",
     "CLAIMED": "the horizon",
     "BOUNDLESS": "the words on a run that fails",
     "KERNEL.moves_nothing": "whether a row is one",
