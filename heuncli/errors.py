@@ -8,7 +8,7 @@ from __future__ import annotations
 from typing import NamedTuple
 
 
-class Place(NamedTuple):
+class SourceLocation(NamedTuple):
     """Where in a file: 1-based line and column, and the dotted path of the value."""
 
     file: str
@@ -25,12 +25,12 @@ class Problem(NamedTuple):
 
     code: str
     message: str
-    place: Place | None = None
+    location: SourceLocation | None = None
     hint: str | None = None
 
     def __str__(self) -> str:
-        path = f"{self.place.path}: " if self.place and self.place.path else ""
-        where = f"{self.place}: {path}" if self.place else ""
+        path = f"{self.location.path}: " if self.location and self.location.path else ""
+        where = f"{self.location}: {path}" if self.location else ""
         hint = f"\n  hint: {self.hint}" if self.hint else ""
         return f"{where}{self.message} [{self.code}]{hint}"
 

@@ -115,7 +115,7 @@ def _demand(mechanism: Mechanism, k: int, joint: Joint, t0: float, problems: lis
 def _not_computable(drive: Drive, t0: float) -> Problem:
     message = f"drive {drive.name}: {drive.quantity} '{drive.value.source}' or a derivative cannot be computed"
     hint = "a drive needs finite rates and accelerations: begin it smoothly, as t**2 or with a table"
-    return Problem("not-computable", f"{message} at t = {t0:g} s", drive.value.place, hint)
+    return Problem("not-computable", f"{message} at t = {t0:g} s", drive.value.location, hint)
 
 
 Given = tuple[str, str, float | None]  # what, its unit, the initial value

@@ -85,14 +85,14 @@ def _check(path: str, quiet: bool) -> Checked:
 
 
 def _placed(error: HeunError) -> bool:
-    return all(problem.place for problem in error.problems)
+    return all(problem.location for problem in error.problems)
 
 
 def _table(checked: Sequence[Checked], skipped: Sequence[str]) -> str:
     cases = [case for one in checked for case in one.cases]
     rows = tuple(
         (
-            f"{one.path}:{case.place.line}",
+            f"{one.path}:{case.location.line}",
             case.of,
             case.when,
             _text(case.expected),
@@ -125,7 +125,7 @@ def _json(checked: Sequence[Checked]) -> str:
             cases.append(
                 {
                     "file": one.path,
-                    "line": case.place.line,
+                    "line": case.location.line,
                     "of": case.of,
                     "when": case.when,
                     "expected": case.expected,

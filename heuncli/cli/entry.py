@@ -53,7 +53,7 @@ def enter(argv: Sequence[str]) -> int:
 def tell(problems: Sequence[Problem], label: str = "") -> None:
     """Every problem on standard error, as place, finding, code and hint."""
     for problem in problems:
-        say(f"{'' if problem.place else 'heun: '}{label}{problem}")
+        say(f"{'' if problem.location else 'heun: '}{label}{problem}")
 
 
 def worst(codes: Sequence[int]) -> int:
@@ -111,10 +111,10 @@ def _debug() -> None:
 
 
 def _bug_report(bug: Exception, argv: Sequence[str]) -> str:
-    place = bug.__traceback__
-    while place is not None and place.tb_next is not None:
-        place = place.tb_next
-    where = f" at {Path(place.tb_frame.f_code.co_filename).name}:{place.tb_lineno}" if place else ""
+    location = bug.__traceback__
+    while location is not None and location.tb_next is not None:
+        location = location.tb_next
+    where = f" at {Path(location.tb_frame.f_code.co_filename).name}:{location.tb_lineno}" if location else ""
     return (
         f"heun: this is a bug in heun: {type(bug).__name__}: {bug}{where}\n"
         f"  please report it with the spec, this line, and: heun {' '.join(argv)} (version {VERSION})\n"

@@ -11,7 +11,7 @@ from array import array
 from collections.abc import Callable, Sequence
 from functools import cached_property
 
-from heuncli.errors import LimitError, Place, Problem
+from heuncli.errors import LimitError, Problem, SourceLocation
 from heuncli.kernel.choose import expressions
 from heuncli.records import record, replace
 
@@ -72,7 +72,7 @@ class Expression:
     constant: float | None
     uses: tuple[tuple[str, str], ...] = ()
     time_dependent: bool = False
-    place: Place | None = None
+    location: SourceLocation | None = None
     code: Code = ()
     constants: tuple[float, ...] = ()
     tables: tuple[Table, ...] = ()
@@ -80,13 +80,13 @@ class Expression:
     dimension: tuple[int, int, int] | None = None  # where it was written with a unit
 
     @classmethod
-    def of(cls, value: float, place: Place | None = None) -> Expression:
+    def of(cls, value: float, location: SourceLocation | None = None) -> Expression:
         """The expression that is one number."""
-        return cls(source=repr(value), constant=value, place=place, code=(CONST, 0), constants=(value,))
+        return cls(source=repr(value), constant=value, location=location, code=(CONST, 0), constants=(value,))
 
-    def at(self, place: Place) -> Expression:
+    def at(self, location: SourceLocation) -> Expression:
         """The same expression, with its place in a file."""
-        return replace(self, place=place)
+        return replace(self, location=location)
 
     @cached_property
     def pack(self) -> Pack:
@@ -231,7 +231,7 @@ def _changes(expression: Expression, switch: Switch, t0: float, t1: float) -> li
         if cells >= FINEST:
             message = f"'{expression.source}' jumps or bends too often between {t0:g} and {t1:g} s"
             hint = f"at most about {FINEST // CELLS_PER_CHANGE} jumps and kinks can be met exactly"
-            raise LimitError(Problem("too-many-jumps", message, expression.place, hint))
+            raise LimitError(Problem("too-many-jumps", message, expression.location, hint))
         cells *= 4
     spans = [(grid[i], grid[i + 1]) for i in changed]
     if switch.margin is not None:

@@ -51,7 +51,8 @@ def without_value(mechanism: Mechanism, t: float, length: float, coordinates: Mo
         _problem(expression, t, _values(expression, 0.0, coordinates), "")
         for expression, _ in _in_time(mechanism)
         if abs(expression.value(t, _values(expression, 0.0, coordinates)))
-        > tolerances.BOUNDLESS * abs(expression.value(t + back, _values(expression, back, coordinates))) > 0.0
+        > tolerances.BOUNDLESS * abs(expression.value(t + back, _values(expression, back, coordinates)))
+        > 0.0
     ]
 
 
@@ -83,10 +84,10 @@ def _problem(expression: Expression, t: float, values: list[float], lacking: str
     table = _left(expression, t, values) if lacking else None
     if table is not None:
         message, hint = outside(table)
-        return Problem("no-value", f"{subject} has no value at t = {t:.9g} s{at}: {message}", expression.place, hint)
+        return Problem("no-value", f"{subject} has no value at t = {t:.9g} s{at}: {message}", expression.location, hint)
     what = f"has no finite {lacking}" if lacking else "grows without bound"
     hint = "keep it within the domain of its functions, as with max(x, 0) or 'a if c else b', or end the run before"
-    return Problem("no-value", f"{subject} {what} at t = {t:.9g} s{at}", expression.place, hint)
+    return Problem("no-value", f"{subject} {what} at t = {t:.9g} s{at}", expression.location, hint)
 
 
 def _left(expression: Expression, t: float, values: list[float]) -> Table | None:

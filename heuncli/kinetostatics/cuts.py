@@ -118,7 +118,7 @@ def _lay(mechanism: Mechanism, spec: Any, name: str, section: Any, index: dict[s
     meets = touches.any(axis=1)
     if form is not None:
         meets = meets | form.masses_in_plane(n, d) | form.rods_in_plane(n, d)
-    where = spec.place(f"sections.{name}")
+    where = spec.location(f"sections.{name}")
     if s is None:
         wish = {"before": BEFORE, "beyond": BEYOND, None: 0.0}[section.side]
         if meets[0] and section.side is None:

@@ -6,7 +6,7 @@ from collections.abc import Callable, Mapping
 from pathlib import Path
 from typing import Any
 
-from heuncli.errors import Place, Problem, SpecError
+from heuncli.errors import Problem, SourceLocation, SpecError
 from heuncli.expressions.programs import Table
 from heuncli.joint_kinds import TYPES
 from heuncli.spec import format as f
@@ -50,29 +50,29 @@ class Loading:
         if type(source.data) is not dict:
             message = f"a spec is a mapping, this is {kind_of(source.data)}"
             raise SpecError(
-                *self.problems, Problem("not-a-scene", message, source.place(()), "it starts with 'heun: 1'")
+                *self.problems, Problem("not-a-scene", message, source.location(()), "it starts with 'heun: 1'")
             )
         without_empty = {k: {} if v is None and k in (*NAMED, "ground") else v for k, v in source.data.items()}
         given, self.set, problems = override(without_empty, overrides)
         self.data = in_the_plane(given) if given.get("space") == "planar" else given
         self.problems += problems
 
-    def place(self, path: Path_, key: bool = False) -> Place:
+    def location(self, path: Path_, key: bool = False) -> SourceLocation:
         """Where a path stands: in the file, or on the command line."""
         for depth in range(len(path), 0, -1):
             given = self.set.get(path[:depth])
             if given is not None:
-                return Place(given.file, given.line, given.column, dotted(path))
-        made = [place for given, place in self.set.items() if given[: len(path)] == path]
+                return SourceLocation(given.file, given.line, given.column, dotted(path))
+        made = [location for given, location in self.set.items() if given[: len(path)] == path]
         if made and path not in self.source.values:  # a key that came into being with what was set below it
-            return Place(made[0].file, made[0].line, made[0].column, dotted(path))
-        return self.source.place(path, key)
+            return SourceLocation(made[0].file, made[0].line, made[0].column, dotted(path))
+        return self.source.location(path, key)
 
     def tell(self, code: str, found: Found) -> None:
         """Add an error in what is read, unless it only follows from another."""
         self.unread.update(map(str, found.path[:1]))
         if is_told(code):
-            self.problems.append(Problem(code, found.message, self.place(found.path, found.key), found.hint))
+            self.problems.append(Problem(code, found.message, self.location(found.path, found.key), found.hint))
 
     def spec(self) -> Spec:
         """The scene. Raises SpecError."""
@@ -89,7 +89,7 @@ class Loading:
         values = {name: value for name, value in parameters.items() if value is not None}
         built = {name: table for name, table in tables.items() if table is not None}
         warnings = tuple(in_order(self.warnings))
-        meaning = Meaning(self.source.file, self.source.sha256, values, built, warnings, self.places())
+        meaning = Meaning(self.source.file, self.source.sha256, values, built, warnings, self.locations())
         return resolve(scene.document, meaning)
 
     def parameters(self) -> dict[str, float | None]:
@@ -115,8 +115,8 @@ class Loading:
             tables[name], wrong = build_table(name, entry, scope, folder) if entry is not None else (None, [])
             for item in wrong:
                 finding = item.finding
-                if item.place is not None:
-                    self.problems.append(Problem(finding.code, finding.message, item.place, finding.hint))
+                if item.location is not None:
+                    self.problems.append(Problem(finding.code, finding.message, item.location, finding.hint))
                 else:
                     self.tell(finding.code, Found((*path, *item.keys), finding.message, finding.hint))
         return tables
@@ -133,14 +133,14 @@ class Loading:
         for rule, found in found_by(self.rules, scene):
             if rule.follows and follows(found.path):
                 continue
-            problem = Problem(rule.code, found.message, self.place(found.path, found.key), found.hint)
+            problem = Problem(rule.code, found.message, self.location(found.path, found.key), found.hint)
             (self.warnings if rule.is_warning else self.problems).append(problem)
 
-    def places(self) -> dict[str, Place]:
+    def locations(self) -> dict[str, SourceLocation]:
         """Places for stages that come later: of every entry, and of every value that may go wrong in time."""
         values = self.source.values
         wanted = [path for path in values if 0 < len(path) <= 2 or (path and path[0] in PLACED)]
-        return {dotted(path): self.place(path, key=len(path) <= 2) for path in (*wanted, *self.set)}
+        return {dotted(path): self.location(path, key=len(path) <= 2) for path in (*wanted, *self.set)}
 
 
 def in_the_plane(data: dict[str, Any]) -> dict[str, Any]:
@@ -164,6 +164,6 @@ def _turns_in_the_plane(joint: Any) -> bool:
 
 def in_order(problems: list[Problem]) -> list[Problem]:
     """By file, line and column; each once."""
-    places = [p.place or Place("", 0, 0) for p in problems]
-    order = sorted(range(len(problems)), key=lambda i: (places[i].file, places[i].line, places[i].column))
+    locations = [p.location or SourceLocation("", 0, 0) for p in problems]
+    order = sorted(range(len(problems)), key=lambda i: (locations[i].file, locations[i].line, locations[i].column))
     return list(dict.fromkeys(problems[i] for i in order))

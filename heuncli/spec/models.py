@@ -12,7 +12,7 @@ from collections.abc import Mapping
 from types import MappingProxyType
 from typing import Literal, NamedTuple
 
-from heuncli.errors import Place, Problem
+from heuncli.errors import Problem, SourceLocation
 from heuncli.expressions.programs import Expression, Table
 from heuncli.records import record
 
@@ -20,7 +20,7 @@ Vec = tuple[float, float, float]
 Matrix = tuple[Vec, Vec, Vec]
 Vector = tuple[Expression, Expression, Expression]
 Frame = Literal["world", "body"]
-NOWHERE: Mapping[str, Place] = MappingProxyType({})
+NOWHERE: Mapping[str, SourceLocation] = MappingProxyType({})
 
 
 class End(NamedTuple):
@@ -274,11 +274,11 @@ class Expect(NamedTuple):
     is_: float | tuple[object, ...] | None
     rel: float | None
     abs: float | None
-    place: Place
+    location: SourceLocation
 
 
 class Spec(NamedTuple):
-    """A validated scene. `place("joints.elbow")` tells where in the file a thing stands, for errors found later."""
+    """A validated scene. `location("joints.elbow")`: where in the file a value stands, for errors of later stages."""
 
     title: str
     path: str
@@ -299,10 +299,10 @@ class Spec(NamedTuple):
     foundation: Foundation
     expect: tuple[Expect, ...]
     warnings: tuple[Problem, ...]
-    places: Mapping[str, Place] = NOWHERE
+    locations: Mapping[str, SourceLocation] = NOWHERE
 
-    def place(self, path: str) -> Place:
+    def location(self, path: str) -> SourceLocation:
         """Where a dotted path stands, or the nearest thing around it that does."""
-        while path and path not in self.places:
+        while path and path not in self.locations:
             path = path.rpartition(".")[0]
-        return self.places.get(path) or Place(self.path, 1, 1)
+        return self.locations.get(path) or SourceLocation(self.path, 1, 1)

@@ -6,7 +6,7 @@ import copy
 from collections.abc import Mapping
 from typing import Any
 
-from heuncli.errors import Place, Problem, SpecError
+from heuncli.errors import Problem, SourceLocation, SpecError
 from heuncli.nearest import did_you_mean
 from heuncli.spec.names import NAMED, mapping
 from heuncli.spec.source import Path_, parse
@@ -16,26 +16,28 @@ OWN = ("title", "gravity", "space", "report")  # keys without a dot, beside the 
 
 def override(
     data: dict[str, Any], given: Mapping[str, str]
-) -> tuple[dict[str, Any], dict[Path_, Place], list[Problem]]:
+) -> tuple[dict[str, Any], dict[Path_, SourceLocation], list[Problem]]:
     """The data with values replaced, the places of these, and what is wrong with them."""
     if not given:
         return data, {}, []
     data = copy.deepcopy(data)
-    places: dict[Path_, Place] = {}
+    locations: dict[Path_, SourceLocation] = {}
     problems: list[Problem] = []
     for key, text in given.items():
         word = f"--set {key}={text}"
         try:
             value = parse(word, text if text.strip() else "''", "").data
         except SpecError as error:
-            problems += [Problem(p.code, p.message, Place(word, 1, len(key) + 2, key), p.hint) for p in error.problems]
+            problems += [
+                Problem(p.code, p.message, SourceLocation(word, 1, len(key) + 2, key), p.hint) for p in error.problems
+            ]
             continue
         path = path_of(key, data)
         reason = put(data, path, value)
         if reason is not None:
-            problems.append(Problem("no-such-key", reason[0], Place(word, 1, 1), reason[1]))
-        places[path] = Place(word, 1, len(key) + 2, ".".join(map(str, path)))
-    return data, places, problems
+            problems.append(Problem("no-such-key", reason[0], SourceLocation(word, 1, 1), reason[1]))
+        locations[path] = SourceLocation(word, 1, len(key) + 2, ".".join(map(str, path)))
+    return data, locations, problems
 
 
 def path_of(key: str, data: dict[str, Any]) -> Path_:

@@ -8,7 +8,7 @@ from __future__ import annotations
 from collections.abc import Mapping
 from typing import Any
 
-from heuncli.errors import Place, Problem
+from heuncli.errors import Problem, SourceLocation
 from heuncli.expressions.programs import Expression, Table
 from heuncli.records import record
 from heuncli.spec import format as f
@@ -30,12 +30,12 @@ class Meaning:
     parameters: Mapping[str, float]
     tables: Mapping[str, Table]
     warnings: tuple[Problem, ...]
-    places: Mapping[str, Place]
+    locations: Mapping[str, SourceLocation]
 
 
 def resolve(document: f.Document, meaning: Meaning) -> m.Spec:
     """The scene that a document without errors means."""
-    r = Resolver(document, meaning.places)
+    r = Resolver(document, meaning.locations)
     analysis = document.analysis
     instants = instants_of(document)
     kind = type_of(document)
@@ -62,15 +62,15 @@ def resolve(document: f.Document, meaning: Meaning) -> m.Spec:
         foundation=m.Foundation(r.about(document.foundation.about)),
         expect=tuple(r.expect(i, item) for i, item in document.expect.items()),
         warnings=meaning.warnings,
-        places=meaning.places,
+        locations=meaning.locations,
     )  # fmt: skip
 
 
 class Resolver:
     """Follows the references of one document."""
 
-    def __init__(self, document: f.Document, places: Mapping[str, Place]) -> None:
-        self.document, self.places = document, places
+    def __init__(self, document: f.Document, locations: Mapping[str, SourceLocation]) -> None:
+        self.document, self.locations = document, locations
 
     def point(self, body: str, name: str) -> m.Vec:
         points = self.document.ground.points if body == GROUND else self.document.bodies[body].points
@@ -83,7 +83,7 @@ class Resolver:
         return m.End(end.body, end.at)
 
     def placed(self, value: Expression, path: str) -> Expression:
-        return value.at(self.places[path]) if path in self.places else value
+        return value.at(self.locations[path]) if path in self.locations else value
 
     def vector(self, values: tuple[Expression, Expression, Expression], path: str) -> m.Vector:
         x, y, z = (self.placed(value, f"{path}.vector.{i}") for i, value in enumerate(values))
@@ -199,8 +199,8 @@ class Resolver:
         return about  # type: ignore[return-value]
 
     def expect(self, i: int, item: f.Expect) -> m.Expect:
-        place = self.places.get(f"expect.{i}", Place("", 1, 1))
-        return m.Expect(item.of, item.at, item.peak, numbers(item.is_), item.rel, numbers(item.abs), place)
+        location = self.locations.get(f"expect.{i}", SourceLocation("", 1, 1))
+        return m.Expect(item.of, item.at, item.peak, numbers(item.is_), item.rel, numbers(item.abs), location)
 
 
 def directed(value: object) -> m.Directed | None:

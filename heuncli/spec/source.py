@@ -17,7 +17,7 @@ from typing import Any
 import yaml
 from yaml import events
 
-from heuncli.errors import Place, Problem, SpecError
+from heuncli.errors import Problem, SourceLocation, SpecError
 from heuncli.records import record
 
 LARGEST = 64_000_000  # characters; a scene of 100,000 bodies has about 40 million
@@ -58,14 +58,14 @@ class Source:
     keys: dict[Path_, Mark]
     problems: tuple[Problem, ...] = ()
 
-    def place(self, path: Path_, key: bool = False) -> Place:
+    def location(self, path: Path_, key: bool = False) -> SourceLocation:
         """Where a value, or its key, stands; the nearest thing around it where it stands nowhere."""
         known: Path_ = path
         while known and known not in self.values:
             known = known[:-1]
         use_key = key and known == path and known in self.keys
         line, column = (self.keys if use_key else self.values).get(known, (0, 0))
-        return Place(self.file, line + 1, column + 1, dotted(path))
+        return SourceLocation(self.file, line + 1, column + 1, dotted(path))
 
 
 def dotted(path: Path_) -> str:
@@ -90,27 +90,29 @@ def read(path: str, text: str | None) -> Source:
                 " (it looks like UTF-16)" if raw[:2] in (b"\xff\xfe", b"\xfe\xff") else ""
             )
             message = f"byte 0x{raw[error.start]:02x} is not UTF-8"
-            raise SpecError(Problem("not-utf8", message, Place(file, line + 1, column), hint)) from None
+            raise SpecError(Problem("not-utf8", message, SourceLocation(file, line + 1, column), hint)) from None
     else:
         try:
             raw = text.encode()
         except UnicodeEncodeError as error:
             line, column = position(text, error.start)
-            raise SpecError(Problem("not-utf8", "a character is not Unicode", Place(file, line, column))) from None
+            raise SpecError(
+                Problem("not-utf8", "a character is not Unicode", SourceLocation(file, line, column))
+            ) from None
         text = text.removeprefix("\ufeff")
     return parse(file, text, hashlib.sha256(raw).hexdigest())
 
 
 def unreadable(path: str, error: Exception) -> Problem:
     """Why a file cannot be read, in words."""
-    place = Place(path, 1, 1)
+    location = SourceLocation(path, 1, 1)
     if isinstance(error, FileNotFoundError):
-        return Problem("unreadable", "there is no such file", place, "paths are relative to where heun was started")
+        return Problem("unreadable", "there is no such file", location, "paths are relative to where heun was started")
     if isinstance(error, IsADirectoryError):
-        return Problem("unreadable", "this is a folder, not a spec", place, "for folders of specs: heun check")
+        return Problem("unreadable", "this is a folder, not a spec", location, "for folders of specs: heun check")
     if isinstance(error, PermissionError):
-        return Problem("unreadable", "the file may not be read", place, "look at its permissions")
-    return Problem("unreadable", f"the file cannot be read: {getattr(error, 'strerror', None) or error}", place)
+        return Problem("unreadable", "the file may not be read", location, "look at its permissions")
+    return Problem("unreadable", f"the file cannot be read: {getattr(error, 'strerror', None) or error}", location)
 
 
 def position(text: str, index: int) -> tuple[int, int]:
@@ -121,11 +123,15 @@ def position(text: str, index: int) -> tuple[int, int]:
 def parse(file: str, text: str, sha256: str) -> Source:
     """The data in a text. Raises SpecError for what cannot be read on; what can be is in the source's problems."""
     if len(text) > LARGEST:
-        raise SpecError(Problem("too-large", f"{len(text)} characters; at most {LARGEST} are read", Place(file, 1, 1)))
+        raise SpecError(
+            Problem("too-large", f"{len(text)} characters; at most {LARGEST} are read", SourceLocation(file, 1, 1))
+        )
     if unseen := re.search(UNSEEN if text.isascii() else f"{UNSEEN}|{UNSEEN_BEYOND_ASCII}", text):
         name = f"U+{ord(unseen[0]):04X}" + (f" ({UNSEEN_NAMES[unseen[0]]})" if unseen[0] in UNSEEN_NAMES else "")
         message = f"the character {name} may not stand in a spec"
-        raise SpecError(Problem("bad-character", message, Place(file, *position(text, unseen.start())), "delete it"))
+        raise SpecError(
+            Problem("bad-character", message, SourceLocation(file, *position(text, unseen.start())), "delete it")
+        )
     builder = Builder(file)
     try:
         for event in event_stream(text):
@@ -136,11 +142,11 @@ def parse(file: str, text: str, sha256: str) -> Source:
         what = error.problem or str(error)
         opened = error.context_mark if "flow" in (error.context or "") else None
         hint = f"look at the bracket opened in line {opened.line + 1}" if opened else yaml_hint(text, line, what)
-        problem = Problem("not-yaml", f"not YAML: {what}", Place(file, line, column), hint)
+        problem = Problem("not-yaml", f"not YAML: {what}", SourceLocation(file, line, column), hint)
         raise SpecError(*builder.problems, problem) from None
     if builder.documents == 0 or builder.root is None:
         hint = f"write the scene into it; the smallest is: {SMALLEST}"
-        raise SpecError(*builder.problems, Problem("empty", "the file is empty", Place(file, 1, 1), hint))
+        raise SpecError(*builder.problems, Problem("empty", "the file is empty", SourceLocation(file, 1, 1), hint))
     return Source(file, sha256, builder.root, builder.values, builder.keys, tuple(builder.problems))
 
 
@@ -195,7 +201,7 @@ class Builder:
 
     def problem(self, code: str, message: str, event: Any, path: Path_ = (), hint: str | None = None) -> Problem:
         mark = event.start_mark
-        return Problem(code, message, Place(self.file, mark.line + 1, mark.column + 1, dotted(path)), hint)
+        return Problem(code, message, SourceLocation(self.file, mark.line + 1, mark.column + 1, dotted(path)), hint)
 
     def take(self, event: Any) -> None:
         """One event."""

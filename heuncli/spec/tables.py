@@ -8,7 +8,7 @@ from collections.abc import Iterator
 from pathlib import Path
 
 from heuncli import tolerances
-from heuncli.errors import Finding, Place
+from heuncli.errors import Finding, SourceLocation
 from heuncli.expressions.curves import fit
 from heuncli.expressions.programs import Table
 from heuncli.expressions.units import parse_unit
@@ -26,7 +26,7 @@ class Wrong:
 
     keys: tuple[str | int, ...]
     finding: Finding
-    place: Place | None = None
+    location: SourceLocation | None = None
 
 
 class NoColumn(Exception):
@@ -154,7 +154,7 @@ def from_file(entry: Entry, file: str, folder: Path, wrong: list[Wrong]) -> list
         wrong.append(Wrong((key,), Finding(finding.code, message, finding.hint)))
         return None
     except CsvError as error:
-        wrong.append(Wrong(("file",), error.finding, Place(str(path), error.line, error.column)))
+        wrong.append(Wrong(("file",), error.finding, SourceLocation(str(path), error.line, error.column)))
         return None
 
 

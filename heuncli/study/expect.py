@@ -8,7 +8,7 @@ from typing import Any
 import numpy as np
 
 from heuncli import tolerances
-from heuncli.errors import HeunError, Place, Problem
+from heuncli.errors import HeunError, Problem, SourceLocation
 from heuncli.records import record
 from heuncli.results import Array, Results
 from heuncli.results_paths import find
@@ -23,7 +23,7 @@ from heuncli.study.solve import Study
 class Case:
     """One comparison: what was expected where, what was found (nan is open), and if they differ why that fails."""
 
-    place: Place
+    location: SourceLocation
     of: str
     when: str
     expected: Array
@@ -52,8 +52,8 @@ def compare(study: Study, item: Expect) -> Case:
     try:
         found = _found(study, item)
     except HeunError as error:
-        return Case(item.place, item.of, when, expected, None, tolerance, error.problems[0].message)
-    return Case(item.place, item.of, when, expected, found, tolerance, _failure(expected, found, tolerance))
+        return Case(item.location, item.of, when, expected, None, tolerance, error.problems[0].message)
+    return Case(item.location, item.of, when, expected, found, tolerance, _failure(expected, found, tolerance))
 
 
 def _found(study: Study, item: Expect) -> Array:
@@ -69,11 +69,11 @@ def _found(study: Study, item: Expect) -> Array:
 
 
 def _instant(times: Array, at: float) -> int:
-    place = int(np.argmin(np.abs(times - at)))
-    if abs(times[place] - at) > tolerances.SAME_INSTANT * max(float(np.ptp(times)), abs(at)):
-        message = f"t = {at:.6g} s is not an instant of the output; the nearest is {times[place]:.6g} s"
+    location = int(np.argmin(np.abs(times - at)))
+    if abs(times[location] - at) > tolerances.SAME_INSTANT * max(float(np.ptp(times)), abs(at)):
+        message = f"t = {at:.6g} s is not an instant of the output; the nearest is {times[location]:.6g} s"
         raise HeunError(Problem("no-such-instant", message))
-    return place
+    return location
 
 
 def _failure(expected: Array, found: Array, tolerance: float) -> str | None:

@@ -8,19 +8,19 @@ from typing import Any
 import numpy as np
 import pytest
 
-from heuncli.errors import Place
+from heuncli.errors import SourceLocation
 from heuncli.study.expect import compare, wanted
 from tests.shared.fakes import FakeStudy, pendulum
 
 STUDY = FakeStudy(np.linspace(0.0, 2.0, 21))
-PLACE = Place("fake.yaml", 7, 3)
+PLACE = SourceLocation("fake.yaml", 7, 3)
 FX = "joints.pivot.force.x"
 FX_AT_1 = 3.0 * np.sin(2.0)
 
 
 def expectation(of: str, is_: Any, **more: Any) -> Any:
     return SimpleNamespace(
-        **{"of": of, "is_": is_, "at": None, "peak": None, "rel": None, "abs": None, "place": PLACE, **more}
+        **{"of": of, "is_": is_, "at": None, "peak": None, "rel": None, "abs": None, "location": PLACE, **more}
     )
 
 

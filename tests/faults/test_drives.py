@@ -60,7 +60,7 @@ def test_refused_when_read(case: str) -> None:
     problem = raised.value.problems[0]
     assert problem.code == code
     assert words in str(raised.value)
-    assert problem.place is not None and (problem.place.line or 0) > 0
+    assert problem.location is not None and (problem.location.line or 0) > 0
 
 
 @pytest.mark.parametrize("drive", ["abs(t - 1.5)", "max(0, t - 0.5)**2", "step(t - 2)", "0.1*abs(t)"])

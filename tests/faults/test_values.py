@@ -51,8 +51,12 @@ def test_named_with_place_text_and_instant(load: str, value: str, instant: float
     assert problem.message.startswith(f"'{value}' has no finite value at t = ")
     assert at(problem) == pytest.approx(instant, abs=1e-6)
     key = {FORCE: "forces.f.vector.0", TORQUE: "forces.f.value", DRIVE: "drives.d.angle"}[load]
-    assert problem.place is not None
-    assert (problem.place.line, problem.place.column, problem.place.path) == (10, load.index('"VALUE') + 1, key)
+    assert problem.location is not None
+    assert (problem.location.line, problem.location.column, problem.location.path) == (
+        10,
+        load.index('"VALUE') + 1,
+        key,
+    )
     assert problem.hint
 
 
@@ -104,7 +108,7 @@ def test_each_that_fails_is_told() -> None:
     force = FORCE.replace('["VALUE", 0, 0]', '["log(1 - t)", 0, "3*log(1 - t)"]')
     with pytest.raises(SolveError) as raised:
         solved(SCENE.replace("LOAD", force))
-    paths = [p.place.path for p in raised.value.problems if p.place]
+    paths = [p.location.path for p in raised.value.problems if p.location]
     assert paths == ["forces.f.vector.0", "forces.f.vector.2"]
 
 

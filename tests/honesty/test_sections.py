@@ -44,7 +44,7 @@ def refused(section: str) -> str:
     with pytest.raises(SpecError) as refusal:
         fork(section)
     (problem,) = refusal.value.problems
-    assert problem.place is not None and problem.place.path.startswith("sections.cut")
+    assert problem.location is not None and problem.location.path.startswith("sections.cut")
     return problem.code
 
 
@@ -134,7 +134,9 @@ def test_a_point_mass_in_the_plane_needs_a_side(side: str) -> None:
 
 def test_a_plane_along_a_rod_is_told() -> None:
     """The rod's mass lies on the side chosen, with a warning."""
-    text = HEAD + """
+    text = (
+        HEAD
+        + """
 bodies:
   tee:
     shapes:
@@ -145,6 +147,7 @@ bodies:
 joints: {wall: {type: weld, from: ground.O, to: tee.root}}
 sections: {cut: {body: tee, at: [0.5, 0, 0], normal: [1, 0, 0], first_axis: [0, 0, 1], side: SIDE}}
 """
+    )
     for side, mass in (("before", 4.0), ("beyond", 2.0)):
         found = solved(text.replace("SIDE", side))
         near(found.sections["cut"]["Q1"][0], -9.81 * mass, 50.0, 1e-14)
@@ -157,14 +160,16 @@ def test_a_couple_on_a_cut_body_needs_its_point() -> None:
     with pytest.raises(SpecError) as refusal:
         solved(f"{HEAD}{FORK}{load}sections: {{cut: {{body: fork, at: [0.05, 0, 0], normal: [1, 0, 0]}}}}\n")
     (problem,) = refusal.value.problems
-    assert problem.place is not None and problem.place.path.startswith("forces.twist")
+    assert problem.location is not None and problem.location.path.startswith("forces.twist")
 
 
 @pytest.mark.parametrize("joint", ["slide", "line"])
 def test_a_bead_runs_past_the_cut(joint: str) -> None:
     """A bead of 2 kg on a level bar: beyond the cut it weighs there and bends by its lever, before it not at all."""
     turning = ", orientation: {axis: [0, 0, 1], angle: 0}, angular_velocity: [0, 0, 0]" if joint == "slide" else ""
-    found = solved(HEAD + f"""
+    found = solved(
+        HEAD
+        + f"""
 bodies:
   bar:
     shapes: [{{type: box, center: [1, 0, 0], size: [2, 0.1, 0.1], density: 100}}]
@@ -178,7 +183,8 @@ sections:
   cut: {{body: bar, at: [1, 0, 0], normal: [1, 0, 0], first_axis: [0, 0, 1]}}
   run: {{body: bar, from: [0, 0, 0], to: [2, 0, 0], count: 5, first_axis: [0, 0, 1]}}
 analysis: {{times: [0, 0.3, 0.7, 1.1, 1.5], tolerance: 1e-12}}
-""")
+"""
+    )
     place = 1.9 - np.array([0, 0.3, 0.7, 1.1, 1.5])
     block = found.sections["cut"]
     there = (place > 1.0) * 2 * 9.81

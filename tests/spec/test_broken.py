@@ -43,7 +43,7 @@ def test_each_is_found_where_it_stands(path: Path) -> None:
     assert code in {p.code for p in problems}
     assert {p.code for p in problems} <= {code, "not-yet"}
     if line is not None:
-        places = [(p.place.line, p.place.column) for p in problems if p.code == code and p.place is not None]
+        places = [(p.location.line, p.location.column) for p in problems if p.code == code and p.location is not None]
         assert (int(line), int(column)) in places
 
 

@@ -128,9 +128,7 @@ def test_files_with_accidents(text: str, line: int, words: str) -> None:
     ("1,2\n", (1, 3), 1, "no column 3", "from 1 to 2"),
     ("1,2\n", (0, 1), 0, "no column 0", "from 1 to 2"),
 ])  # fmt: skip
-def test_columns_that_are_not_there(
-    text: str, wanted: tuple[object, ...], number: int, words: str, hint: str
-) -> None:
+def test_columns_that_are_not_there(text: str, wanted: tuple[object, ...], number: int, words: str, hint: str) -> None:
     with pytest.raises(NoColumn) as caught:
         columns_of(text, *wanted)
     assert caught.value.number == number
@@ -146,8 +144,8 @@ def test_a_column_that_is_not_there_is_told_where_it_is_asked_for(tmp_path: Path
         with pytest.raises(SpecError) as caught:
             load(spec)
         (problem,) = caught.value.problems
-        assert problem.place is not None
-        assert (problem.place.file, problem.place.path) == (str(spec), f"tables.f.{key}")
+        assert problem.location is not None
+        assert (problem.location.file, problem.location.path) == (str(spec), f"tables.f.{key}")
         assert "gas.csv" in problem.message
         assert "the first row is: angle, pressure" in (problem.hint or "")
 
@@ -191,8 +189,8 @@ def test_tables_with_accidents(entry: str, code: str, path: str, words: str) -> 
     with pytest.raises(SpecError) as caught:
         load("x.yaml", text=BODY + f"tables: {{f: {entry}}}\n")
     (problem,) = caught.value.problems
-    assert problem.place is not None
-    assert (problem.code, problem.place.path) == (code, path)
+    assert problem.location is not None
+    assert (problem.code, problem.location.path) == (code, path)
     assert words in f"{problem.message} {problem.hint}"
 
 
@@ -203,7 +201,7 @@ def test_an_accident_in_a_file_is_told_in_that_file(tmp_path: Path) -> None:
     with pytest.raises(SpecError) as caught:
         load(spec)
     (problem,) = caught.value.problems
-    assert str(problem.place) == f"{tmp_path / 'gas.csv'}:3:1"
+    assert str(problem.location) == f"{tmp_path / 'gas.csv'}:3:1"
 
 
 def test_units_inside_lists() -> None:

@@ -27,7 +27,9 @@ def problems(text: str) -> list[str]:
     with pytest.raises(SpecError) as caught:
         load("x.yaml", text=text)
     assert caught.value.exit_code == 2
-    return [f"{p.place.line}:{p.place.column} {p.place.path} {p.code}" for p in caught.value.problems if p.place]
+    return [
+        f"{p.location.line}:{p.location.column} {p.location.path} {p.code}" for p in caught.value.problems if p.location
+    ]
 
 
 MANY = """\
@@ -382,7 +384,7 @@ def found_in(text: str) -> list[str]:
     try:
         assert isinstance(load("x.yaml", text="\n".join(lines)), Spec)
     except SpecError as error:
-        return [f"{p.place.line} {p.place.path} {p.code}" for p in error.problems if p.place]
+        return [f"{p.location.line} {p.location.path} {p.code}" for p in error.problems if p.location]
     return []
 
 
@@ -543,8 +545,8 @@ def test_no_damage_to_a_spec_gives_anything_but_errors(path: Path) -> None:
             assert error.problems
             lines = damaged.count("\n") + 2
             for problem in error.problems:
-                assert problem.place is not None
-                assert problem.place.line <= lines or problem.code == "table-file"
+                assert problem.location is not None
+                assert problem.location.line <= lines or problem.code == "table-file"
         else:
             assert isinstance(found, Spec)
 

@@ -70,8 +70,8 @@ def test_a_small_scene_with_all_its_defaults(tmp_path: Path) -> None:
     blocks = (found.joints, found.drives, found.forces, found.impulses, found.sections, found.tables)
     assert all(block == {} for block in blocks)
     assert found.analysis == m.Analysis("state", (0.0,), None, 1e-9, "auto", None)
-    assert str(found.place("bodies.b.mass")) == f"{path}:2:10"
-    assert str(found.place("nowhere")) == f"{path}:1:1"
+    assert str(found.location("bodies.b.mass")) == f"{path}:2:10"
+    assert str(found.location("nowhere")) == f"{path}:1:1"
 
 
 @pytest.mark.parametrize(("text", "expected"), [
@@ -224,7 +224,7 @@ def test_forces() -> None:
     assert [v.constant for v in push.vector] == [None, 1000.0, None]
     assert [v.time_dependent for v in push.vector] == [True, False, False]
     assert push.vector[2].uses == (("shaft", "rate"),)
-    assert str(push.vector[2].place).startswith("x.yaml:5:")
+    assert str(push.vector[2].location).startswith("x.yaml:5:")
     twist = force("{type: couple, on: a, vector: [0, 0, 1 N*m]}")
     assert (twist.type, twist.body, twist.on, twist.frame) == ("couple", "a", None, "world")
     assert force("{type: couple, on: a.q, vector: [0, 0, 1]}").on == m.End("a", (1.0, 2.0, 3.0), "q")
@@ -332,7 +332,7 @@ expect:
     assert first[:6] == ("bodies.b.position", 0.5, None, (0.0, None, 2.0), 1e-6, None)
     assert second[:6] == ("energy.kinetic", None, "max", 3.25, None, 1e-9)
     assert (third.is_, fourth.is_, fifth.is_) == (None, 0.0, 6.0)
-    assert str(second.place) == "x.yaml:8:5"
+    assert str(second.location) == "x.yaml:8:5"
 
 
 def test_parameters_in_any_order() -> None:
@@ -400,8 +400,8 @@ def test_overrides_that_have_no_place(key: str, value: str, code: str, words: st
     (problem,) = caught.value.problems
     assert problem.code == code
     assert words in f"{problem.message} {problem.hint}"
-    assert problem.place is not None
-    assert problem.place.file == f"--set {key}={value}"
+    assert problem.location is not None
+    assert problem.location.file == f"--set {key}={value}"
 
 
 def test_the_file_is_not_changed_by_overrides() -> None:

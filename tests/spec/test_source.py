@@ -23,7 +23,7 @@ def codes(text: str) -> list[tuple[str, int, int]]:
         problems = parse("f", text, "").problems
     except SpecError as error:
         problems = error.problems
-    return [(p.code, p.place.line, p.place.column) for p in problems if p.place]
+    return [(p.code, p.location.line, p.location.column) for p in problems if p.location]
 
 
 @pytest.mark.parametrize(("word", "value"), [
@@ -48,7 +48,7 @@ def test_everything_has_its_place() -> None:
     assert source.data == {"a": 1, "b": {"c": [10, {"d": 20}], "e": "x"}}
 
     def at(*path: Any, key: bool = False) -> tuple[int, int]:
-        place = source.place(path, key)
+        place = source.location(path, key)
         return place.line, place.column
 
     assert at("a") == (1, 4)
@@ -58,7 +58,7 @@ def test_everything_has_its_place() -> None:
     assert at("b", "c", 1, "d", key=True) == (3, 12)
     assert at("b", "e") == (4, 8)
     assert at("b", "nowhere", "at all") == (3, 3)
-    assert source.place(("b", "c", 1, "d")).path == "b.c.1.d"
+    assert source.location(("b", "c", 1, "d")).path == "b.c.1.d"
 
 
 @pytest.mark.parametrize(("text", "expected"), [
@@ -97,7 +97,7 @@ def test_accidents(text: str, expected: list[tuple[str, int, int]]) -> None:
 def test_the_first_of_two_equal_keys_stands() -> None:
     source = parse("f", "a: {b: 1}\na: {b: [2, 3]}\n", "")
     assert source.data == {"a": {"b": 1}}
-    assert source.place(("a", "b")).line == 1
+    assert source.location(("a", "b")).line == 1
 
 
 def test_hints_for_usual_accidents() -> None:
@@ -117,7 +117,7 @@ def test_files(tmp_path: Path) -> None:
     path.write_bytes(b"\xef\xbb\xbfa: \xc3\xa4\n")
     source = read(str(path), None)
     assert source.data == {"a": "ä"}
-    assert source.place(("a",)).line == 1
+    assert source.location(("a",)).line == 1
     assert source.sha256 == hashlib.sha256(path.read_bytes()).hexdigest()
 
 
@@ -131,8 +131,8 @@ def test_other_encodings(tmp_path: Path, content: bytes, code: str, line: int, c
     with pytest.raises(SpecError) as caught:
         read(str(path), None)
     (problem,) = caught.value.problems
-    assert problem.place is not None
-    assert (problem.code, problem.place.line, problem.place.column) == (code, line, column)
+    assert problem.location is not None
+    assert (problem.code, problem.location.line, problem.location.column) == (code, line, column)
 
 
 def test_what_cannot_be_read(tmp_path: Path) -> None:
@@ -170,9 +170,9 @@ def test_any_text_is_a_source_or_an_error(text: str) -> None:
         problems = source.problems
     lines = text.split("\n")
     for problem in problems:
-        assert problem.place is not None
-        assert 1 <= problem.place.line <= len(lines) + 1
-        assert problem.place.column >= 1
+        assert problem.location is not None
+        assert 1 <= problem.location.line <= len(lines) + 1
+        assert problem.location.column >= 1
 
 
 def test_the_hint_for_an_empty_file_is_a_scene() -> None:
