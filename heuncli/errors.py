@@ -1,4 +1,4 @@
-"""What can go wrong, as values: a Problem says place, finding, next step and code; an error carries all at once.
+"""What can go wrong, as values: a Problem has a message, a location, a hint and a code; an error carries all of them.
 
 Named tuples: to import dataclasses would take 10 ms, and `heun --version` needs no others.
 """
@@ -21,7 +21,7 @@ class SourceLocation(NamedTuple):
 
 
 class Problem(NamedTuple):
-    """One finding: a sentence, its code, and where and what next if that is known."""
+    """One thing wrong: a sentence and its code, and, where known, the location and what to do next."""
 
     code: str
     message: str
@@ -36,7 +36,7 @@ class Problem(NamedTuple):
 
 
 class Finding(ValueError):
-    """A problem found by code that does not know the place; whoever knows it makes it a Problem."""
+    """A problem in a value, raised by code that does not know where the value stands; the caller adds the location."""
 
     def __init__(self, code: str, message: str, hint: str | None = None) -> None:
         super().__init__(message)

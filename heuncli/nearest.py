@@ -1,4 +1,4 @@
-"""Hints for words that mean nothing: the nearest known one, or all of them where they are few."""
+"""Hints for unknown words: the nearest known one, or all known ones where they are few."""
 
 from __future__ import annotations
 
@@ -16,22 +16,22 @@ def nearest(word: str, known: Iterable[str]) -> str | None:
     for name in known:
         if name.lower() == word.lower():
             return name
-    found = difflib.get_close_matches(word, known, 1, 0.6)
-    return found[0] if found else None
+    matches = difflib.get_close_matches(word, known, 1, 0.6)
+    return matches[0] if matches else None
 
 
 def misspelt(data: Mapping[str, Any], known: Collection[str]) -> dict[str, Any]:
-    """What stands under unknown keys, by the known ones that they are like: a misspelt key is not a missing one."""
-    found = {word: value for key, value in data.items() if key not in known and (word := nearest(key, known))}
-    return {word: value for word, value in found.items() if word not in data}
+    """Values under unknown keys, by the known key that each resembles: a misspelt key is not reported as missing."""
+    by_known_key = {word: value for key, value in data.items() if key not in known and (word := nearest(key, known))}
+    return {word: value for word, value in by_known_key.items() if word not in data}
 
 
 def did_you_mean(word: str, known: Iterable[str], kind: str) -> str | None:
     """'did you mean x?', or the list of what is known, or that there is none."""
     known = list(known)
-    found = nearest(word, known)
-    if found is not None:
-        return f"did you mean {found}?"
+    meant = nearest(word, known)
+    if meant is not None:
+        return f"did you mean {meant}?"
     if not known:
         return f"there are no {kind}"
     listed = ", ".join(known[:MOST_LISTED])

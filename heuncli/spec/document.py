@@ -1,4 +1,4 @@
-"""Plain data -> Document: every entry read by its model, every objection told at its path."""
+"""Plain data -> Document: every entry read by its model, every violation reported with its path."""
 
 from __future__ import annotations
 
@@ -11,17 +11,17 @@ from heuncli.nearest import misspelt
 from heuncli.spec import format as f
 from heuncli.spec.fields import Context, Model, keys_of
 from heuncli.spec.quantity import kind_of
-from heuncli.spec.rules.registry import Found, Path_
+from heuncli.spec.rules.registry import Path_, Violation
 from heuncli.spec.verdicts import unknown_key, unknown_type, verdicts
 
-Tell = Callable[[str, Found], None]
+Report = Callable[[str, Violation], None]
 
 
 class Reader:
-    """Reads the blocks of one spec; tells what is wrong and goes on with the next entry."""
+    """Reads the blocks of one spec; reports what is wrong in an entry and goes on with the next."""
 
-    def __init__(self, data: dict[str, Any], context: Context, tell: Tell) -> None:
-        self.data, self.context, self.tell = data, context, tell
+    def __init__(self, data: dict[str, Any], context: Context, report: Report) -> None:
+        self.data, self.context, self.report = data, context, report
         self.partial: dict[Path_, frozenset[str]] = {}  # entries read without some keys in error, with those left
 
     def document(self) -> f.Document:
@@ -31,28 +31,28 @@ class Reader:
         return f.Document(head=self.head(), expect=self.expectations(), **blocks, **single)  # type: ignore[arg-type]
 
     def model(self, path: Path_, data: Any, model: type[Model]) -> Any:
-        """One model; after telling what is wrong with it what is left without that, or None."""
+        """One model; what is wrong in it is reported and the rest read; None where the rest is not enough."""
         try:
             return model.model_validate(data, context=self.context)
         except ValidationError as error:
-            for code, found in verdicts(error, data, model):
-                self.tell(code, found._replace(path=(*path, *found.path)))
+            for code, violation in verdicts(error, data, model):
+                self.report(code, violation._replace(path=(*path, *violation.path)))
             return self.rest(path, data, model, {str(e["loc"][0]) for e in error.errors() if e["loc"]})
 
     def rest(self, path: Path_, data: Any, model: type[Model], wrong: set[str]) -> Any:
-        """The model without the keys in error, so that its other values are judged, too; None where it needs them."""
+        """The model without the keys in error, so that its other values are checked, too; None where it needs these."""
         if not wrong or type(data) is not dict:
             return None
         right = {key: value for key, value in data.items() if key not in wrong}
         try:
-            found = model.model_validate({**misspelt(data, keys_of(model)), **right}, context=self.context)
+            entry = model.model_validate({**misspelt(data, keys_of(model)), **right}, context=self.context)
         except ValidationError:
             return None
         self.partial[path] = frozenset(right)
-        return found
+        return entry
 
     def follows(self, path: Path_) -> bool:
-        """Whether an objection at this path may only follow from what an entry was read without."""
+        """Whether a violation at this path may be a mere consequence of keys that were left out as wrong."""
         return any(
             path[: len(entry)] == entry and (len(path) == len(entry) or path[len(entry)] not in kept)
             for entry, kept in self.partial.items()
@@ -65,8 +65,8 @@ class Reader:
         model = models.get(tag) if type(tag) is str else None
         if model is not None:
             return self.model(path, data, model)
-        code, found = unknown_type(data, block, list(models))
-        self.tell(code, found._replace(path=(*path, *found.path)))
+        code, violation = unknown_type(data, block, list(models))
+        self.report(code, violation._replace(path=(*path, *violation.path)))
         return None
 
     def head(self) -> f.Head:
@@ -76,7 +76,7 @@ class Reader:
         known = [*f.Head.model_fields, *f.SINGLE, *f.READ_BEFORE, *f.ENTRIES, "expect"]
         for key in [key for key in own if key not in f.Head.model_fields]:
             del own[key]
-            self.tell(*unknown_key((key,), known))
+            self.report(*unknown_key((key,), known))
         return self.model((), own, f.Head) or f.Head.model_construct(heun=1)
 
     def single(self, key: str, model: type[Model]) -> Any:
@@ -88,11 +88,11 @@ class Reader:
         """A block of named entries."""
         entries = self.data.get(block, {})
         if type(entries) is not dict:
-            self.tell(
-                "wrong-kind", Found((block,), f"expected a mapping, found {kind_of(entries)}", "its keys are names")
+            self.report(
+                "wrong-kind", Violation((block,), f"expected a mapping, found {kind_of(entries)}", "its keys are names")
             )
             return {}
-        found: dict[str, Any] = {}
+        read: dict[str, Any] = {}
         for name, data in entries.items():
             path = (block, name)
             entry = (
@@ -101,8 +101,8 @@ class Reader:
             if entry is not None and getattr(entry, "shapes", None) is not None:
                 entry = self.with_shapes(path, entry)
             if entry is not None:
-                found[name] = entry
-        return found
+                read[name] = entry
+        return read
 
     def with_shapes(self, path: Path_, body: f.Body) -> f.Body | None:
         """A body with its shapes read; None where one is in error."""
@@ -112,10 +112,10 @@ class Reader:
         return None if None in shapes else body.model_copy(update={"shapes": shapes})
 
     def expectations(self) -> dict[int, f.Expect]:
-        """The list of expectations, by their places in it."""
+        """The list of expectations, by their indices in it."""
         items = self.data.get("expect", [])
         if type(items) is not list:
-            self.tell("wrong-kind", Found(("expect",), f"expected a list, found {kind_of(items)}"))
+            self.report("wrong-kind", Violation(("expect",), f"expected a list, found {kind_of(items)}"))
             return {}
         read = {i: self.model(("expect", i), item, f.Expect) for i, item in enumerate(items)}
         return {i: item for i, item in read.items() if item is not None}

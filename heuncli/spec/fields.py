@@ -89,10 +89,10 @@ class Whole(Value):
     """A whole number."""
 
     def read(self, value: Any, info: Any) -> int:
-        found = number(value, u.NUMBER, info.context.load)
-        if found != int(found):
-            raise Finding("wrong-kind", f"expected a whole number, found {found:g}")
-        return int(found)
+        count = number(value, u.NUMBER, info.context.load)
+        if count != int(count):
+            raise Finding("wrong-kind", f"expected a whole number, found {count:g}")
+        return int(count)
 
 
 class Version(Value):

@@ -18,11 +18,11 @@ from heuncli.spec.overrides import override
 from heuncli.spec.parameters import evaluate_parameters
 from heuncli.spec.quantity import Scope, kind_of
 from heuncli.spec.resolve import Meaning, resolve
-from heuncli.spec.rules.every import RULES, Found, Scene, found_by
+from heuncli.spec.rules.every import RULES, DraftDocument, Violation, violations
 from heuncli.spec.source import Path_, Source, dotted, read
-from heuncli.spec.verdicts import is_told
+from heuncli.spec.verdicts import is_primary
 
-PLACED = ("analysis", "drives", "expect", "forces")  # of these, later stages know every value's place
+PLACED = ("analysis", "drives", "expect", "forces")  # blocks of which later stages can locate every value
 
 
 def load(
@@ -58,21 +58,23 @@ class Loading:
         self.problems += problems
 
     def location(self, path: Path_, key: bool = False) -> SourceLocation:
-        """Where a path stands: in the file, or on the command line."""
+        """Where the value of a path stands: in the file, or on the command line."""
         for depth in range(len(path), 0, -1):
             given = self.set.get(path[:depth])
             if given is not None:
                 return SourceLocation(given.file, given.line, given.column, dotted(path))
         made = [location for given, location in self.set.items() if given[: len(path)] == path]
-        if made and path not in self.source.values:  # a key that came into being with what was set below it
+        if made and path not in self.source.values:  # a key that exists only because a key below it was set
             return SourceLocation(made[0].file, made[0].line, made[0].column, dotted(path))
         return self.source.location(path, key)
 
-    def tell(self, code: str, found: Found) -> None:
-        """Add an error in what is read, unless it only follows from another."""
-        self.unread.update(map(str, found.path[:1]))
-        if is_told(code):
-            self.problems.append(Problem(code, found.message, self.location(found.path, found.key), found.hint))
+    def report(self, code: str, violation: Violation) -> None:
+        """Add an error in what is read, unless it is the consequence of another."""
+        self.unread.update(map(str, violation.path[:1]))
+        if is_primary(code):
+            self.problems.append(
+                Problem(code, violation.message, self.location(violation.path, violation.key), violation.hint)
+            )
 
     def spec(self) -> Spec:
         """The scene. Raises SpecError."""
@@ -81,22 +83,22 @@ class Loading:
         scope = Scope(parameters)
         tables = self.tables(scope)
         context = Context(scope, Scope(parameters, names.joints, tables, in_time=True))
-        reader = Reader(self.data, context, self.tell)
-        scene = Scene(reader.document(), names, frozenset(self.unread))
-        self.judge(scene, reader.follows)
+        reader = Reader(self.data, context, self.report)
+        draft = DraftDocument(reader.document(), names, frozenset(self.unread))
+        self.judge(draft, reader.follows)
         if self.problems:
             raise SpecError(*in_order(self.problems))
         values = {name: value for name, value in parameters.items() if value is not None}
         built = {name: table for name, table in tables.items() if table is not None}
         warnings = tuple(in_order(self.warnings))
         meaning = Meaning(self.source.file, self.source.sha256, values, built, warnings, self.locations())
-        return resolve(scene.document, meaning)
+        return resolve(draft.document, meaning)
 
     def parameters(self) -> dict[str, float | None]:
         """Values of the parameters; None for those in error."""
         values, findings = evaluate_parameters(self.block("parameters"))
         for name, finding in findings:
-            self.tell(finding.code, Found(("parameters", name), finding.message, finding.hint))
+            self.report(finding.code, Violation(("parameters", name), finding.message, finding.hint))
         return values
 
     def tables(self, scope: Scope) -> dict[str, Table | None]:
@@ -107,7 +109,7 @@ class Loading:
         from heuncli.spec.tables import build_table  # with csv 2 ms that few scenes need
 
         folder = Path() if self.path == "-" else Path(self.path).parent
-        reader = Reader(self.data, Context(scope, scope), self.tell)
+        reader = Reader(self.data, Context(scope, scope), self.report)
         tables: dict[str, Table | None] = {}
         for name, data in entries.items():
             path = ("tables", name)
@@ -118,26 +120,30 @@ class Loading:
                 if item.location is not None:
                     self.problems.append(Problem(finding.code, finding.message, item.location, finding.hint))
                 else:
-                    self.tell(finding.code, Found((*path, *item.keys), finding.message, finding.hint))
+                    self.report(finding.code, Violation((*path, *item.keys), finding.message, finding.hint))
         return tables
 
     def block(self, name: str) -> dict[str, Any]:
         """A block of named values; empty where it is none."""
         value = self.data.get(name, {})
         if type(value) is not dict:
-            self.tell("wrong-kind", Found((name,), f"expected a mapping, found {kind_of(value)}", "its keys are names"))
+            self.report(
+                "wrong-kind", Violation((name,), f"expected a mapping, found {kind_of(value)}", "its keys are names")
+            )
         return mapping(value)
 
-    def judge(self, scene: Scene, follows: Callable[[Path_], bool]) -> None:
-        """Apply the rules; what may only follow from another error is not told."""
-        for rule, found in found_by(self.rules, scene):
-            if rule.follows and follows(found.path):
+    def judge(self, draft: DraftDocument, follows: Callable[[Path_], bool]) -> None:
+        """Apply the rules; what may be the consequence of another error is not reported."""
+        for rule, violation in violations(self.rules, draft):
+            if rule.follows and follows(violation.path):
                 continue
-            problem = Problem(rule.code, found.message, self.location(found.path, found.key), found.hint)
+            problem = Problem(
+                rule.code, violation.message, self.location(violation.path, violation.key), violation.hint
+            )
             (self.warnings if rule.is_warning else self.problems).append(problem)
 
     def locations(self) -> dict[str, SourceLocation]:
-        """Places for stages that come later: of every entry, and of every value that may go wrong in time."""
+        """Locations for later stages: of every entry, and of every value that may fail during the run."""
         values = self.source.values
         wanted = [path for path in values if 0 < len(path) <= 2 or (path and path[0] in PLACED)]
         return {dotted(path): self.location(path, key=len(path) <= 2) for path in (*wanted, *self.set)}

@@ -24,7 +24,7 @@ NOWHERE: Mapping[str, SourceLocation] = MappingProxyType({})
 
 
 class End(NamedTuple):
-    """A point of a body ("ground" or a body's name), in its axes; name is None for one given by its place."""
+    """A point of a body ("ground" or a body's name), in its axes; name is None for one given by coordinates."""
 
     body: str
     point: Vec

@@ -17,7 +17,7 @@ OWN = ("title", "gravity", "space", "report")  # keys without a dot, beside the 
 def override(
     data: dict[str, Any], given: Mapping[str, str]
 ) -> tuple[dict[str, Any], dict[Path_, SourceLocation], list[Problem]]:
-    """The data with values replaced, the places of these, and what is wrong with them."""
+    """The data with values replaced, the locations of these, and the problems with them."""
     if not given:
         return data, {}, []
     data = copy.deepcopy(data)
@@ -41,7 +41,7 @@ def override(
 
 
 def path_of(key: str, data: dict[str, Any]) -> Path_:
-    """A parameter's name, or a dotted key; numbers are places in lists."""
+    """A parameter's name, or a dotted key; numbers are indices in lists."""
     if "." not in key and (key in mapping(data.get("parameters")) or key not in OWN):
         return ("parameters", key)
     path: list[str | int] = []
@@ -54,7 +54,7 @@ def path_of(key: str, data: dict[str, Any]) -> Path_:
 
 
 def below(node: Any, part: str | int) -> Any:
-    """What stands under a key or at a place in a list; None where nothing does."""
+    """The value under a key or at an index of a list; None where there is none."""
     if type(node) is dict:
         return node.get(part)
     return node[part] if type(node) is list and isinstance(part, int) and part < len(node) else None
@@ -65,7 +65,7 @@ def in_list(node: list[Any], part: str | int) -> bool:
 
 
 def put(data: dict[str, Any], path: Path_, value: Any) -> tuple[str, str | None] | None:
-    """Store a value; or why there is no place for it, with a hint.
+    """Store a value; or return why it cannot be stored, with a hint.
 
     What users name (a parameter, a body, a point) must be there; other keys may be new: the format judges them.
     """
@@ -75,8 +75,8 @@ def put(data: dict[str, Any], path: Path_, value: Any) -> tuple[str, str | None]
         if type(node) is list:
             if not in_list(node, part):
                 return (
-                    f"'{'.'.join(map(str, path[:depth]))}' has no place {part}",
-                    f"places count from 0 to {len(node) - 1}",
+                    f"'{'.'.join(map(str, path[:depth]))}' has no entry {part}",
+                    f"entries are counted from 0 to {len(node) - 1}",
                 )
         elif type(node) is not dict:
             return f"'{'.'.join(map(str, path[:depth]))}' is a value without keys", None

@@ -34,13 +34,13 @@ def in_time(value: Any, dimension: Dimension | None, scope: Scope) -> Expression
         raise Finding("wrong-kind", f"expected a number, found {kind_of(value)}", hint_for(value))
     if NOT_A_NUMBER.match(value.strip()):
         raise Finding("not-finite", f"'{value.strip()}' is not a finite number")
-    found = WITH_UNIT.match(value)
-    if found is None or re.split(r"\W", found[2], maxsplit=1)[0] in WORDS:
+    with_unit = WITH_UNIT.match(value)
+    if with_unit is None or re.split(r"\W", with_unit[2], maxsplit=1)[0] in WORDS:
         return compile_expression(value, scope)
-    size, measured = measure(found[1], found[2].strip(), scope)
+    size, measured = measure(with_unit[1], with_unit[2].strip(), scope)
     if dimension is not None and measured != dimension:
         hint = (
-            product_hint(found[1], found[2].strip(), scope)
+            product_hint(with_unit[1], with_unit[2].strip(), scope)
             or f"a number without a unit is taken in {si_unit(dimension)}"
         )
         raise Finding("dimension", f"'{value.strip()}' is {describe(measured)}, expected {describe(dimension)}", hint)
@@ -69,8 +69,8 @@ def product_hint(figure: str, unit: str, scope: Scope) -> str | None:
 
 def inside_hint(figure: str, unit: str) -> str | None:
     """For '40 mm * 2': what goes on after the unit makes it an expression, in which there are no units."""
-    found = re.match(r"([^\W\d]+)(\s*[-+*/].*)", unit)
-    return in_si(figure.replace(" ", ""), found[1], found[2]) if found is not None else None
+    parts = re.match(r"([^\W\d]+)(\s*[-+*/].*)", unit)
+    return in_si(figure.replace(" ", ""), parts[1], parts[2]) if parts is not None else None
 
 
 def finite(value: float) -> float:

@@ -145,9 +145,9 @@ class Resolver:
         )
 
     def drive(self, name: str, drive: f.Drive) -> m.Drive:
-        found = drive_of(drive)
-        assert found is not None
-        return m.Drive(drive.joint, found[0], self.placed(found[1], f"drives.{name}.{found[0]}"), drive.zero)
+        driven = drive_of(drive)
+        assert driven is not None
+        return m.Drive(drive.joint, driven[0], self.placed(driven[1], f"drives.{name}.{driven[0]}"), drive.zero)
 
     def force(self, name: str, load: f.Load) -> m.Force:
         path = f"forces.{name}"
@@ -178,7 +178,7 @@ class Resolver:
 
     def section(self, section: f.Section) -> m.Section:
         body = self.document.bodies[section.body]
-        at, start, end = (point_in(body, place) for place in (section.at, section.from_, section.to))
+        at, start, end = (point_in(body, at_or_name) for at_or_name in (section.at, section.from_, section.to))
         normal = section.normal
         if normal is None:
             assert start is not None

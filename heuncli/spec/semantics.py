@@ -116,6 +116,6 @@ def end_of(reduce_to: str | End) -> End | None:
     return End.model_construct(body=body, at=point) if dot else None
 
 
-def point_in(body: f.Body, place: object) -> m.Vec | None:
-    """A point given by place or by name, in body axes."""
-    return body.points.get(place) if isinstance(place, str) else place  # type: ignore[return-value]
+def point_in(body: f.Body, at: object) -> m.Vec | None:
+    """A point given by coordinates or by name, in body axes."""
+    return body.points.get(at) if isinstance(at, str) else at  # type: ignore[return-value]

@@ -1,8 +1,8 @@
-"""YAML text -> plain data and the place of everything in it; strict, and before any meaning.
+"""YAML text -> plain data and the location of every value; strict, without any knowledge of mechanics.
 
 Scalars are those of YAML 1.2 (`on` and `012` are what they look like, `1e-3` is a number). Refused: tags, anchors,
 aliases, merge keys, keys given twice, several documents, nesting beyond 64, characters that shift lines unseen.
-PyYAML's parser gives the events; data and places are built here without recursion.
+PyYAML's parser gives the events; data and locations are built here without recursion.
 """
 
 from __future__ import annotations
@@ -49,7 +49,7 @@ UNSEEN_NAMES = {
 
 @record
 class Source:
-    """What a file holds: plain data, and for every path the place of its value and of its key."""
+    """Content of a file: plain data, and for every path the location of its value and of its key."""
 
     file: str
     sha256: str
@@ -59,7 +59,7 @@ class Source:
     problems: tuple[Problem, ...] = ()
 
     def location(self, path: Path_, key: bool = False) -> SourceLocation:
-        """Where a value, or its key, stands; the nearest thing around it where it stands nowhere."""
+        """Where a value, or its key, stands; for a value that is absent, where the nearest mapping around it stands."""
         known: Path_ = path
         while known and known not in self.values:
             known = known[:-1]
@@ -188,7 +188,7 @@ class Frame:
 
 
 class Builder:
-    """Builds data and places from events; a thing that can be passed over becomes a problem."""
+    """Builds data and locations from events; an error after which reading can go on is added to the problems."""
 
     def __init__(self, file: str) -> None:
         self.file = file
@@ -292,7 +292,7 @@ class Builder:
                 path = (*top.path, key)
                 if top.skipped:
                     top.skipped = False
-                    return ("", *path)  # the places of what is passed over must not stand for the first one
+                    return ("", *path)  # a skipped value must not overwrite the location of the first one
                 top.container[key] = value  # type: ignore[call-overload]
         self.values[path] = (event.start_mark.line, event.start_mark.column)
         return path

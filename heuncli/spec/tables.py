@@ -22,7 +22,7 @@ MOST_ROWS = 2_000_000
 
 @record
 class Wrong:
-    """A finding at a key of the entry, or at a place in its file."""
+    """A finding at a key of the entry, or at a location in its file."""
 
     keys: tuple[str | int, ...]
     finding: Finding
@@ -30,7 +30,7 @@ class Wrong:
 
 
 class NoColumn(Exception):
-    """A column that the file has not: which of those wanted, and what is wrong with it."""
+    """A column that the file does not have: which of those wanted, and the finding."""
 
     def __init__(self, number: int, finding: Finding) -> None:
         super().__init__(finding.message)
@@ -38,7 +38,7 @@ class NoColumn(Exception):
 
 
 class CsvError(Exception):
-    """A place in a CSV file and what is wrong there."""
+    """Line and column in a CSV file, and what is wrong there."""
 
     def __init__(self, line: int, column: int, finding: Finding) -> None:
         super().__init__(finding.message)
@@ -176,21 +176,21 @@ def columns_of(text: str, *wanted: object) -> list[list[float]]:
     header = [cell.strip() for cell in rows[0][1]]
     is_header = not all(as_number(cell, mark) is not None for cell in header)
     body = rows[1:] if is_header else rows
-    places = [column(i, key, header if is_header else [], len(header)) for i, key in enumerate(wanted)]
-    found: list[list[float]] = [[] for _ in wanted]
+    indices = [column(i, key, header if is_header else [], len(header)) for i, key in enumerate(wanted)]
+    columns: list[list[float]] = [[] for _ in wanted]
     for n, row in body:
-        for place, values in zip(places, found, strict=True):
-            if place >= len(row):
+        for index, values in zip(indices, columns, strict=True):
+            if index >= len(row):
                 raise CsvError(
-                    n, 1, Finding("table-file", f"the row has {len(row)} cells, column {place + 1} is missing")
+                    n, 1, Finding("table-file", f"the row has {len(row)} cells, column {index + 1} is missing")
                 )
-            value = as_number(row[place], mark)
+            value = as_number(row[index], mark)
             if value is None:
                 raise CsvError(
-                    n, 1, Finding("table-file", f"'{row[place].strip()}' in column {place + 1} is not a number")
+                    n, 1, Finding("table-file", f"'{row[index].strip()}' in column {index + 1} is not a number")
                 )
             values.append(value)
-    return found
+    return columns
 
 
 def cells(n: int, line: str, mark: str | None) -> list[str]:
@@ -216,7 +216,7 @@ def as_number(cell: str, mark: str | None) -> float | None:
 
 
 def column(number: int, key: object, header: list[str], count: int) -> int:
-    """Place of a column, from 0; number: of those wanted."""
+    """Index of a column, from 0; number: which of those wanted."""
     if isinstance(key, str) and not key.isdigit():
         if key in header:
             return header.index(key)
@@ -224,8 +224,8 @@ def column(number: int, key: object, header: list[str], count: int) -> int:
         near = nearest(key, header)
         hint = f"did you mean {near}? {hint}" if near else f"{hint}; columns may be named by 1, 2, ..., too"
         raise NoColumn(number, Finding("table-file", f"there is no column '{key}'", hint))
-    place = int(str(key)) if str(key).isdigit() else 0
-    if not 1 <= place <= count:
+    index = int(str(key)) if str(key).isdigit() else 0
+    if not 1 <= index <= count:
         finding = Finding("table-file", f"there is no column {key}", f"columns are counted from 1 to {count}")
         raise NoColumn(number, finding)
-    return place - 1
+    return index - 1

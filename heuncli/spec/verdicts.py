@@ -1,4 +1,4 @@
-"""What pydantic objects to, in the words, codes and places of specs."""
+"""pydantic's errors in the words, codes and paths of specs."""
 
 from __future__ import annotations
 
@@ -12,7 +12,7 @@ from heuncli.errors import Finding
 from heuncli.nearest import did_you_mean, nearest
 from heuncli.spec.fields import Model
 from heuncli.spec.quantity import Follows, kind_of
-from heuncli.spec.rules.registry import Found, Path_
+from heuncli.spec.rules.registry import Path_, Violation
 from heuncli.spec.words import KEY_WORDS, LATER, TYPES
 
 KINDS = {  # pydantic's error types for a value of the wrong kind
@@ -22,20 +22,20 @@ KINDS = {  # pydantic's error types for a value of the wrong kind
 FORMS = {"single": "a number", "list": "a list", "rows": "a list of lists", "mapping": "a mapping"}
 
 
-def verdicts(error: ValidationError, data: Any, model: type[Model]) -> Iterator[tuple[str, Found]]:
-    """Codes and findings, one for each thing that is wrong with data read as a model; paths are within the data."""
+def verdicts(error: ValidationError, data: Any, model: type[Model]) -> Iterator[tuple[str, Violation]]:
+    """Codes and violations, one for each thing wrong in data read as a model; paths are within the data."""
     short: set[Path_] = set()
     for item in error.errors(include_url=False, include_input=True):
         path = path_of(item["loc"], data)
         kind, context = item["type"], item.get("ctx", {})
         if kind == "value_error" and isinstance(context.get("error"), Finding):
             finding = context["error"]
-            yield finding.code, Found(path, finding.message, finding.hint)
+            yield finding.code, Violation(path, finding.message, finding.hint)
         elif kind == "missing" and isinstance(item["loc"][-1], int):
             if path not in short:
                 short.add(path)
                 value = at(data, path)
-                yield "wrong-length", Found(path, f"{len(value)} values instead of {needed(item['loc'])}")
+                yield "wrong-length", Violation(path, f"{len(value)} values instead of {needed(item['loc'])}")
         elif kind == "missing":
             yield missing(path, str(item["loc"][-1]), at(data, path))
         elif kind == "extra_forbidden":
@@ -44,7 +44,7 @@ def verdicts(error: ValidationError, data: Any, model: type[Model]) -> Iterator[
             message = f"{context['actual_length']} values instead of {context['max_length']}"
             cut = any(isinstance(part, str) and part.count("(") > part.count(")") for part in item["input"])
             hint = "inside [ ] an expression with a comma is written in quotes" if cut else None
-            yield "wrong-length", Found(path, message, hint)
+            yield "wrong-length", Violation(path, message, hint)
         elif kind in ("union_tag_invalid", "union_tag_not_found"):
             yield "wrong-kind", wrong_form(path, context, data)
         elif kind == "literal_error":
@@ -54,11 +54,11 @@ def verdicts(error: ValidationError, data: Any, model: type[Model]) -> Iterator[
             hint = (
                 "write it in quotes" if expected == "a text" and isinstance(item["input"], int | float | bool) else None
             )
-            yield "wrong-kind", Found(path, f"expected {expected}, found {kind_of(item['input'])}", hint)
+            yield "wrong-kind", Violation(path, f"expected {expected}, found {kind_of(item['input'])}", hint)
 
 
-def is_told(code: str) -> bool:
-    """Whether a finding is one of its own, not the consequence of another."""
+def is_primary(code: str) -> bool:
+    """Whether an error is one of its own, not the consequence of another."""
     return code != Follows().code
 
 
@@ -87,65 +87,65 @@ def needed(location: tuple[str | int, ...]) -> int:
     return 4 if "quaternion" in location else 3
 
 
-def missing(path: Path_, key: str, owner: dict[str, Any]) -> tuple[str, Found]:
+def missing(path: Path_, key: str, owner: dict[str, Any]) -> tuple[str, Violation]:
     """A key that must be there."""
     if key == "heun":
-        return "missing-key", Found(path, "'heun' is missing", "a spec starts with the line 'heun: 1'")
+        return "missing-key", Violation(path, "'heun' is missing", "a spec starts with the line 'heun: 1'")
     present = [k for k in owner if KEY_WORDS.get(k) == key]
     hint = f"'{present[0]}' is called {key} here" if present else None
-    return "missing-key", Found(path, f"'{key}' is missing", hint, key=True)
+    return "missing-key", Violation(path, f"'{key}' is missing", hint, key=True)
 
 
-def unknown_key(path: Path_, known: list[str]) -> tuple[str, Found]:
+def unknown_key(path: Path_, known: list[str]) -> tuple[str, Violation]:
     """A key that means nothing here."""
     key = str(path[-1])
     if ("keys", key) in LATER:
-        return "not-yet", Found(path, f"not yet: {key}", key=True)
+        return "not-yet", Violation(path, f"not yet: {key}", key=True)
     if key.isdigit() and key not in known:
         comma = "a decimal is written with a point, as 1.5; a comma ends the value"
-        return "unknown-key", Found(path, f"'{key}' is not known here", comma, key=True)
+        return "unknown-key", Violation(path, f"'{key}' is not known here", comma, key=True)
     word = KEY_WORDS.get(key.lower())
     hint = f"it is called {word} here" if word in known else did_you_mean(key, known, "keys here")
-    return "unknown-key", Found(path, f"'{key}' is not known here", hint, key=True)
+    return "unknown-key", Violation(path, f"'{key}' is not known here", hint, key=True)
 
 
-def unknown_type(entry: Any, block: str, known: list[str]) -> tuple[str, Found]:
+def unknown_type(entry: Any, block: str, known: list[str]) -> tuple[str, Violation]:
     """An entry that is no mapping, or whose type is none; its path is within the entry."""
     code, what, words = TYPES[block]
     listed = ", ".join(known)
     if type(entry) is not dict:
-        return "wrong-kind", Found((), f"expected a mapping, found {kind_of(entry)}")
+        return "wrong-kind", Violation((), f"expected a mapping, found {kind_of(entry)}")
     if "type" not in entry:
-        return "missing-key", Found((), "'type' is missing", f"known: {listed}", key=True)
+        return "missing-key", Violation((), "'type' is missing", f"known: {listed}", key=True)
     tag = entry["type"]
     if type(tag) is not str:
-        return "wrong-kind", Found(("type",), f"expected {what}, found {kind_of(tag)}", f"known: {listed}")
+        return "wrong-kind", Violation(("type",), f"expected {what}, found {kind_of(tag)}", f"known: {listed}")
     if (block, tag) in LATER:
-        return "not-yet", Found(("type",), f"not yet: {what.removeprefix('a ')} {tag}")
+        return "not-yet", Violation(("type",), f"not yet: {what.removeprefix('a ')} {tag}")
     word = words.get(tag.lower().replace("-", "_"))
     hint = f"{article(tag)} {tag} is type: {word}" if word else did_you_mean(tag, known, "types")
-    return code, Found(("type",), f"'{tag}' is not {what}; known: {listed}", hint)
+    return code, Violation(("type",), f"'{tag}' is not {what}; known: {listed}", hint)
 
 
-def wrong_form(path: Path_, context: dict[str, Any], data: Any) -> Found:
+def wrong_form(path: Path_, context: dict[str, Any], data: Any) -> Violation:
     """A value in a form that its key does not take."""
     tags = [tag.strip(" '") for tag in str(context.get("expected_tags", "")).split(",")]
     forms = " or ".join("a name" if tag == "single" and path[-1:] == ("at",) else FORMS[tag] for tag in tags)
-    return Found(path, f"expected {forms}, found {kind_of(at(data, path))}")
+    return Violation(path, f"expected {forms}, found {kind_of(at(data, path))}")
 
 
 def article(word: str) -> str:
     return "an" if word[:1].lower() in "aeio" else "a"
 
 
-def wrong_word(path: Path_, found: Any, expected: str) -> tuple[str, Found]:
-    """A word that is none of those that may stand here."""
+def wrong_word(path: Path_, word: Any, expected: str) -> tuple[str, Violation]:
+    """A word that is not one of those allowed here."""
     known = [word.strip(" '") for word in expected.replace(" or ", ", ").split(",")]
-    if not isinstance(found, str):
-        return "wrong-kind", Found(path, f"expected one of {', '.join(known)}, found {kind_of(found)}")
-    near = nearest(found, known)
-    message = f"'{found}' is not known here; known: {', '.join(known)}"
-    return "unknown-word", Found(path, message, f"did you mean {near}?" if near else None)
+    if not isinstance(word, str):
+        return "wrong-kind", Violation(path, f"expected one of {', '.join(known)}, found {kind_of(word)}")
+    near = nearest(word, known)
+    message = f"'{word}' is not known here; known: {', '.join(known)}"
+    return "unknown-word", Violation(path, message, f"did you mean {near}?" if near else None)
 
 
 def models_in(annotation: Any) -> tuple[int, list[type[Model]]]:
@@ -154,8 +154,8 @@ def models_in(annotation: Any) -> tuple[int, list[type[Model]]]:
     if origin is Annotated:
         return models_in(get_args(annotation)[0])
     if origin in (Union, types.UnionType):
-        found = [models_in(part) for part in get_args(annotation)]
-        return max(depth for depth, _ in found), [model for _, models in found for model in models]
+        parts = [models_in(part) for part in get_args(annotation)]
+        return max(depth for depth, _ in parts), [model for _, models in parts for model in models]
     if origin in (dict, list):
         depth, models = models_in(get_args(annotation)[-1])
         return depth + 1, models
@@ -164,14 +164,14 @@ def models_in(annotation: Any) -> tuple[int, list[type[Model]]]:
 
 def keys_known(path: Path_, data: Any, model: type[Model]) -> list[str]:
     """The keys of the mapping at a path within data that a model reads."""
-    found: type[Model] | None = model
+    owner: type[Model] | None = model
     between = 0
     for part in path:
         if between == 0:
-            fields = found.model_fields if found is not None else {}
+            fields = owner.model_fields if owner is not None else {}
             field = next((field for name, field in fields.items() if (field.alias or name) == part), None)
             between, models = models_in(field.annotation) if field is not None else (0, [])
-            found = models[0] if models else None
+            owner = models[0] if models else None
         else:
             between -= 1
-    return [field.alias or name for name, field in found.model_fields.items()] if found is not None else []
+    return [field.alias or name for name, field in owner.model_fields.items()] if owner is not None else []

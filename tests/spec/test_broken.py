@@ -30,7 +30,7 @@ def head(path: Path) -> re.Match[str]:
 
 
 @pytest.mark.parametrize("path", FILES, ids=lambda path: path.stem)
-def test_each_is_found_where_it_stands(path: Path) -> None:
+def test_each_is_violation_where_it_stands(path: Path) -> None:
     kind, code, line, column, _, name, value = head(path).groups()
     assert path.stem == code
     overrides = {name: value} if name else {}
@@ -53,9 +53,11 @@ def codes_in(path: Path) -> set[str]:
     for node in ast.walk(ast.parse(path.read_text())):
         if isinstance(node, ast.Call) and node.args:
             name = getattr(node.func, "id", getattr(node.func, "attr", ""))
-            if name in ("Finding", "Problem", "problem", "rule", "tell"):
+            if name in ("Finding", "Problem", "problem", "rule", "report"):
                 found |= texts(node.args[0])
-        elif isinstance(node, ast.Tuple) and len(node.elts) == 2 and is_found(node.elts[1]):  # a code and a Found
+        elif (
+            isinstance(node, ast.Tuple) and len(node.elts) == 2 and is_violation(node.elts[1])
+        ):  # a code and a Violation
             found |= texts(node.elts[0])
         elif isinstance(node, ast.Assign) and getattr(node.targets[0], "id", "") == "TYPES":
             found |= {code for row in ast.walk(node.value) if isinstance(row, ast.Tuple) for code in texts(row.elts[0])}
@@ -66,8 +68,8 @@ def texts(node: ast.expr) -> set[str]:
     return {node.value} if isinstance(node, ast.Constant) and isinstance(node.value, str) else set()
 
 
-def is_found(node: ast.expr) -> bool:
-    return isinstance(node, ast.Call) and getattr(node.func, "id", "") in ("Found", "wrong_form")
+def is_violation(node: ast.expr) -> bool:
+    return isinstance(node, ast.Call) and getattr(node.func, "id", "") in ("Violation", "wrong_form")
 
 
 def test_every_code_has_its_file() -> None:

@@ -11,7 +11,7 @@ from heuncli.errors import SpecError
 from heuncli.spec.load import load
 from heuncli.spec.models import Spec
 from heuncli.spec.rules import not_yet
-from heuncli.spec.rules.every import RULES, Scene
+from heuncli.spec.rules.every import RULES, DraftDocument
 
 ROOT = Path(__file__).parents[2]
 
@@ -517,7 +517,7 @@ def test_rules_of_the_plane(text: str, code: str) -> None:
 
 
 def test_what_is_not_yet_solved_is_refused_by_name(monkeypatch: pytest.MonkeyPatch) -> None:
-    def where(scene: Scene) -> list[tuple[str | int, ...]]:
+    def where(scene: DraftDocument) -> list[tuple[str | int, ...]]:
         return [("forces", name, "type") for name, load in scene.document.forces.items() if load.type == "damper"]
 
     monkeypatch.setattr(not_yet, "NOT_YET", (("dampers", where),))

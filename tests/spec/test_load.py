@@ -386,7 +386,7 @@ analysis: {{duration: 1}}
     ("bodies.b.points.z", "[0, 0, 0]", "no-such-key", "point 'z'"),
     ("bodies.b.masss", "1", "unknown-key", "mass"),
     ("bodies.b.mass.x", "1", "no-such-key", "without keys"),
-    ("bodies.b.center.7", "1", "no-such-key", "no place 7"),
+    ("bodies.b.center.7", "1", "no-such-key", "no entry 7"),
     ("bodies.b.mass", "1 m", "dimension", "a length"),
     ("bodies.b.mass", "[", "not-yaml", "not YAML"),
     ("bodies.b.mass", "", "expression-syntax", "empty"),

@@ -7,44 +7,46 @@ from collections.abc import Iterator
 from heuncli import tolerances
 from heuncli.errors import Finding
 from heuncli.spec import format as f
-from heuncli.spec.rules.registry import Found, Path_, Scene, rule
+from heuncli.spec.rules.registry import DraftDocument, Path_, Violation, rule
 from heuncli.spec.semantics import body_axes, tensor
 from heuncli.spec.turns import principal
 
 
 @rule("no-bodies")
-def no_bodies(scene: Scene) -> Iterator[Found]:
+def no_bodies(draft: DraftDocument) -> Iterator[Violation]:
     """A scene has bodies."""
-    if not scene.names.entries["bodies"]:
-        yield Found((), "the scene has no bodies", "bodies: {bar: {mass: 1, center: [0, 0, 0], inertia: [0, 0, 0]}}")
+    if not draft.names.entries["bodies"]:
+        yield Violation(
+            (), "the scene has no bodies", "bodies: {bar: {mass: 1, center: [0, 0, 0], inertia: [0, 0, 0]}}"
+        )
 
 
 @rule("mass-or-shapes")
-def mass_or_shapes(scene: Scene) -> Iterator[Found]:
+def mass_or_shapes(draft: DraftDocument) -> Iterator[Violation]:
     """Either mass, center and inertia, or shapes."""
-    for name, body in scene.document.bodies.items():
+    for name, body in draft.document.bodies.items():
         given = [key for key in ("mass", "center", "inertia") if getattr(body, key) is not None]
         path = ("bodies", name)
         if body.shapes is not None:
             extra = [*given, *(["deviation"] if body.deviation is not None else [])]
             if extra:
-                yield Found(
+                yield Violation(
                     (*path, extra[0]), f"{' and '.join(extra)} beside shapes", "shapes give all of them", key=True
                 )
             if not body.shapes:
-                yield Found(
+                yield Violation(
                     (*path, "shapes"), "shapes is an empty list", "without shapes give mass, center and inertia"
                 )
         elif len(given) < 3:
             missing = [key for key in ("mass", "center", "inertia") if key not in given]
             hint = "inertia: [0, 0, 0] makes a point mass" if missing == ["inertia"] else "or give shapes instead"
-            yield Found(path, f"{' and '.join(missing)} missing", hint, key=True)
+            yield Violation(path, f"{' and '.join(missing)} missing", hint, key=True)
 
 
 @rule("not-positive")
-def not_positive(scene: Scene) -> Iterator[Found]:
+def not_positive(draft: DraftDocument) -> Iterator[Violation]:
     """Masses, sizes, stiffnesses are more than 0."""
-    for name, body in scene.document.bodies.items():
+    for name, body in draft.document.bodies.items():
         path: Path_ = ("bodies", name)
         yield from positive(path, body, "mass")
         if body.piece is not None:
@@ -55,21 +57,21 @@ def not_positive(scene: Scene) -> Iterator[Found]:
             if not isinstance(shape, f.Cone):
                 yield from positive(at, shape, "radius", "inner_radius")
             elif min(shape.radius, shape.to_radius) < 0.0 or max(shape.radius, shape.to_radius) == 0.0:
-                yield Found((*at, "radius"), "a cone's radii must not be negative, nor both 0")
+                yield Violation((*at, "radius"), "a cone's radii must not be negative, nor both 0")
             if isinstance(shape, f.Box) and min(shape.size) <= 0.0:
-                yield Found((*at, "size"), f"a size must be more than 0, not {min(shape.size):g}")
-    for name, joint in scene.document.joints.items():
+                yield Violation((*at, "size"), f"a size must be more than 0, not {min(shape.size):g}")
+    for name, joint in draft.document.joints.items():
         path = ("joints", name)
         yield from positive(path, joint, "length")
         parts = (joint.stiffness, *(getattr(joint.stiffness, key, None) for key in ("force", "moment")))
         numbers = [n for part in parts for n in (part if isinstance(part, tuple) else (part,)) if isinstance(n, float)]
         if any(n <= 0.0 for n in numbers):
-            yield Found((*path, "stiffness"), f"a stiffness must be more than 0, not {min(numbers):g}")
-    for name, load in scene.document.forces.items():
+            yield Violation((*path, "stiffness"), f"a stiffness must be more than 0, not {min(numbers):g}")
+    for name, load in draft.document.forces.items():
         path = ("forces", name)
         if isinstance(load, f.Friction) and load.speed.constant is not None and load.speed.constant <= 0.0:
-            yield Found((*path, "speed"), f"speed must be more than 0, not {load.speed.constant:g}")
-    for name, section in scene.document.sections.items():
+            yield Violation((*path, "speed"), f"speed must be more than 0, not {load.speed.constant:g}")
+    for name, section in draft.document.sections.items():
         path = ("sections", name)
         yield from positive(path, section, "strength")
         if section.piece is not None:
@@ -80,38 +82,38 @@ def not_positive(scene: Scene) -> Iterator[Found]:
                 yield from positive((*path, "properties", kind), shape_of, "radius", "inner_radius", "width", "height")
         if section.properties is not None:
             yield from positive((*path, "properties"), section.properties, "area", "I1", "I2", "J", "c1", "c2")
-    yield from positive(("analysis",), scene.document.analysis, "duration", "step")
+    yield from positive(("analysis",), draft.document.analysis, "duration", "step")
 
 
-def positive(path: Path_, owner: object, *keys: str) -> Iterator[Found]:
+def positive(path: Path_, owner: object, *keys: str) -> Iterator[Violation]:
     """The values given are more than 0."""
     for key in keys:
         value = getattr(owner, key, None)
         if isinstance(value, float) and value <= 0.0:
-            yield Found((*path, key), f"{key} must be more than 0, not {value:g}")
+            yield Violation((*path, key), f"{key} must be more than 0, not {value:g}")
 
 
 @rule("negative")
-def negative(scene: Scene) -> Iterator[Found]:
+def negative(draft: DraftDocument) -> Iterator[Violation]:
     """Coefficients of springs, dampers and friction, and tolerances of expectations, are not negative."""
-    for name, load in scene.document.forces.items():
+    for name, load in draft.document.forces.items():
         for key in ("stiffness", "length", "damping", "sliding", "coefficient", "torque", "force"):
             value = getattr(load, key, None)
             value = getattr(value, "constant", value)
             if isinstance(value, float) and value < 0.0:
-                yield Found(("forces", name, key), f"{key} must not be negative, but is {value:g}")
-    for i, item in scene.document.expect.items():
+                yield Violation(("forces", name, key), f"{key} must not be negative, but is {value:g}")
+    for i, item in draft.document.expect.items():
         for key in ("rel", "abs"):
             value = getattr(item, key)
             value = getattr(value, "constant", value)
             if value is not None and value < 0.0:
-                yield Found(("expect", i, key), f"{key} must not be negative, but is {value:g}")
+                yield Violation(("expect", i, key), f"{key} must not be negative, but is {value:g}")
 
 
 @rule("shape-form")
-def shape_form(scene: Scene) -> Iterator[Found]:
+def shape_form(draft: DraftDocument) -> Iterator[Violation]:
     """A shape has one of mass and density, and an extent."""
-    for name, body in scene.document.bodies.items():
+    for name, body in draft.document.bodies.items():
         for i, shape in enumerate(body.shapes or []):
             path = ("bodies", name, "shapes", i)
             density = "line_density" if isinstance(shape, f.Rod) else "density"
@@ -119,40 +121,40 @@ def shape_form(scene: Scene) -> Iterator[Found]:
                 given = [key for key in ("mass", density) if getattr(shape, key) is not None]
                 if len(given) != 1:
                     what = "both mass and" if given else "neither mass nor"
-                    yield Found(path, f"{what} {density}", "give one of the two")
+                    yield Violation(path, f"{what} {density}", "give one of the two")
             if isinstance(shape, f.Rod | f.Cylinder | f.Cone) and shape.from_ == shape.to:
-                yield Found((*path, "to"), "from and to are the same point")
+                yield Violation((*path, "to"), "from and to are the same point")
             if isinstance(shape, f.Cylinder) and shape.inner_radius is not None and shape.inner_radius >= shape.radius:
                 message = f"inner_radius {shape.inner_radius:g} is not less than radius {shape.radius:g}"
-                yield Found((*path, "inner_radius"), message)
+                yield Violation((*path, "inner_radius"), message)
 
 
-def tensors(scene: Scene) -> Iterator[tuple[Path_, f.Body | f.Piece]]:
+def tensors(draft: DraftDocument) -> Iterator[tuple[Path_, f.Body | f.Piece]]:
     """Every body and piece with an inertia."""
-    for name, body in scene.document.bodies.items():
+    for name, body in draft.document.bodies.items():
         if body.inertia is not None:
             yield ("bodies", name), body
         if body.piece is not None:
             yield ("bodies", name, "piece"), body.piece
-    for name, section in scene.document.sections.items():
+    for name, section in draft.document.sections.items():
         if section.piece is not None:
             yield ("sections", name, "piece"), section.piece
 
 
 @rule("inertia-form")
-def inertia_form(scene: Scene) -> Iterator[Found]:
+def inertia_form(draft: DraftDocument) -> Iterator[Violation]:
     """One number in the plane only; deviation beside a list only; a tensor is symmetric."""
-    planar = scene.document.head.space == "planar"
-    for path, owner in tensors(scene):
+    planar = draft.document.head.space == "planar"
+    for path, owner in tensors(draft):
         inertia = owner.inertia
         if isinstance(inertia, float) and not planar:
-            yield Found(
+            yield Violation(
                 (*path, "inertia"), "one number instead of three", "one number is for space: planar; else [A1, A2, A3]"
             )
         if owner.deviation is not None and not isinstance(inertia, tuple | list):
-            yield Found((*path, "deviation"), "deviation beside one number", "it goes with [A1, A2, A3]", key=True)
+            yield Violation((*path, "deviation"), "deviation beside one number", "it goes with [A1, A2, A3]", key=True)
         elif owner.deviation is not None and isinstance(inertia[0], tuple):  # type: ignore[index]
-            yield Found(
+            yield Violation(
                 (*path, "deviation"), "deviation beside a full tensor", "the tensor holds them: element = -D", key=True
             )
         if isinstance(inertia, tuple) and isinstance(inertia[0], tuple):
@@ -160,13 +162,13 @@ def inertia_form(scene: Scene) -> Iterator[Found]:
             for i, j in ((0, 1), (0, 2), (1, 2)):
                 if abs(inertia[i][j] - inertia[j][i]) > tolerances.INERTIA_TYPED * size:
                     message = f"the tensor is not symmetric: {inertia[i][j]:g} and {inertia[j][i]:g}"
-                    yield Found((*path, "inertia"), message)
+                    yield Violation((*path, "inertia"), message)
                     break
 
 
-def triangle(scene: Scene) -> Iterator[tuple[Path_, str, float]]:
+def triangle(draft: DraftDocument) -> Iterator[tuple[Path_, str, float]]:
     """Bodies whose principal moments no body has: path, the moments, by how much of the largest the rule is broken."""
-    for path, owner in tensors(scene):
+    for path, owner in tensors(draft):
         if isinstance(owner.inertia, float):
             moments: tuple[float, ...] = (owner.inertia,)
             broken = 1.0 if owner.inertia < 0.0 else 0.0
@@ -186,37 +188,39 @@ def off_diagonal(m: tuple[tuple[float, ...], ...]) -> bool:
 
 
 @rule("inertia-not-physical")
-def inertia_not_physical(scene: Scene) -> Iterator[Found]:
+def inertia_not_physical(draft: DraftDocument) -> Iterator[Violation]:
     """No principal moment is negative, or greater than the sum of the others."""
-    for path, moments, broken in triangle(scene):
+    for path, moments, broken in triangle(draft):
         if broken > tolerances.INERTIA_REFUSED:
             message = f"no body has the principal moments {moments}: each is at most the sum of the other two"
-            yield Found(
+            yield Violation(
                 path, message, "is it about the centre of mass? is the sign of the deviation right (element = -D)?"
             )
 
 
 @rule("inertia-rounded", is_warning=True)
-def inertia_rounded(scene: Scene) -> Iterator[Found]:
+def inertia_rounded(draft: DraftDocument) -> Iterator[Violation]:
     """Moments that break the rule by less than 1e-3 are taken for rounded."""
-    for path, moments, broken in triangle(scene):
+    for path, moments, broken in triangle(draft):
         if broken <= tolerances.INERTIA_REFUSED:
-            yield Found(path, f"the principal moments {moments} break A1 + A2 >= A3 by {broken:.1e}; taken as they are")
+            yield Violation(
+                path, f"the principal moments {moments} break A1 + A2 >= A3 by {broken:.1e}; taken as they are"
+            )
 
 
 @rule("orientation")
-def orientation(scene: Scene) -> Iterator[Found]:
+def orientation(draft: DraftDocument) -> Iterator[Violation]:
     """An orientation has one form, and is a rotation."""
-    for path, value in orientations(scene):
+    for path, value in orientations(draft):
         try:
             body_axes(value)
         except Finding as finding:
-            yield Found(path, finding.message, finding.hint)
+            yield Violation(path, finding.message, finding.hint)
 
 
-def orientations(scene: Scene) -> Iterator[tuple[Path_, f.Orientation]]:
+def orientations(draft: DraftDocument) -> Iterator[tuple[Path_, f.Orientation]]:
     """Every orientation in the document."""
-    for name, body in scene.document.bodies.items():
+    for name, body in draft.document.bodies.items():
         if body.orientation is not None:
             yield ("bodies", name, "orientation"), body.orientation
         if body.near is not None and body.near.orientation is not None:
@@ -227,21 +231,23 @@ def orientations(scene: Scene) -> Iterator[tuple[Path_, f.Orientation]]:
 
 
 @rule("piece-form")
-def piece_form(scene: Scene) -> Iterator[Found]:
+def piece_form(draft: DraftDocument) -> Iterator[Violation]:
     """A piece is for the one cut of a body without shapes."""
     cuts: dict[str, list[str]] = {}
-    for name, section in scene.document.sections.items():
+    for name, section in draft.document.sections.items():
         cuts.setdefault(section.body, []).append(name)
-        body = scene.document.bodies.get(section.body)
+        body = draft.document.bodies.get(section.body)
         if section.piece is not None and body is not None and body.shapes is not None:
-            yield Found(
+            yield Violation(
                 ("sections", name, "piece"), "a piece of a body with shapes", "shapes are cut by themselves", key=True
             )
-    for name, body in scene.document.bodies.items():
+    for name, body in draft.document.bodies.items():
         if body.piece is None:
             continue
         if body.shapes is not None:
-            yield Found(("bodies", name, "piece"), "a piece beside shapes", "shapes are cut by themselves", key=True)
+            yield Violation(
+                ("bodies", name, "piece"), "a piece beside shapes", "shapes are cut by themselves", key=True
+            )
         elif len(cuts.get(name, ())) > 1:
             message = f"one piece for {len(cuts[name])} sections ({', '.join(cuts[name])})"
-            yield Found(("bodies", name, "piece"), message, "give each section its own piece", key=True)
+            yield Violation(("bodies", name, "piece"), message, "give each section its own piece", key=True)

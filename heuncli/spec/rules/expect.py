@@ -10,7 +10,7 @@ from heuncli.expressions import units as u
 from heuncli.expressions.programs import Expression
 from heuncli.nearest import did_you_mean
 from heuncli.spec import format as f
-from heuncli.spec.rules.registry import Found, Path_, Scene, rule
+from heuncli.spec.rules.registry import DraftDocument, Path_, Violation, rule
 from heuncli.spec.semantics import instants_of, type_of
 
 if TYPE_CHECKING:
@@ -21,46 +21,48 @@ RAGGED = -1  # the length of a list whose members have different ones
 Lengths = tuple[int | None, ...]  # of nested lists, the outer first; None: not known before the run
 
 
-def outcomes(scene: Scene) -> Iterator[tuple[Path_, f.Expect, Outcome | None, UnknownWord | None]]:
-    """Every expectation with the quantity at its path, or the word that is unknown; neither if only the run shows."""
-    if scene.document.expect:
+def outcomes(draft: DraftDocument) -> Iterator[tuple[Path_, f.Expect, Outcome | None, UnknownWord | None]]:
+    """Every expectation with the quantity at its path, or the unknown word; neither if only the run can decide."""
+    if draft.document.expect:
         from heuncli.spec.rules.outcome import Outcome, outcome  # a run of a scene without expectations starts faster
 
-        for i, item in scene.document.expect.items():
-            found = outcome(item.of, scene)
-            yield ("expect", i), item, *((found, None) if isinstance(found, Outcome) else (None, found))
+        for i, item in draft.document.expect.items():
+            result = outcome(item.of, draft)
+            yield ("expect", i), item, *((result, None) if isinstance(result, Outcome) else (None, result))
 
 
 @rule("expect-path")
-def expect_path(scene: Scene) -> Iterator[Found]:
+def expect_path(draft: DraftDocument) -> Iterator[Violation]:
     """`of` leads to a result."""
-    for path, item, _, unknown in outcomes(scene):
+    for path, item, _, unknown in outcomes(draft):
         if unknown is not None and unknown.word:
             known = unknown.known
             hint = did_you_mean(unknown.word, known, "words here") if known else "the path ends before it"
-            yield Found((*path, "of"), f"'{item.of}': '{unknown.word}' is not a result", hint)
+            yield Violation((*path, "of"), f"'{item.of}': '{unknown.word}' is not a result", hint)
         elif unknown is not None:
             hint = f"it goes on with one of {', '.join(unknown.known)}"
-            yield Found((*path, "of"), f"'{item.of}' is not a number", hint)
+            yield Violation((*path, "of"), f"'{item.of}' is not a number", hint)
 
 
 @rule("expect-form")
-def expect_form(scene: Scene) -> Iterator[Found]:
+def expect_form(draft: DraftDocument) -> Iterator[Violation]:
     """An expectation is at an instant or at a peak, a number or a list, in the dimension of the result."""
-    for path, item, quantity, _ in outcomes(scene):
+    for path, item, quantity, _ in outcomes(draft):
         if item.at is not None and item.peak is not None:
-            yield Found((*path, "peak"), "both at and peak", "at is one instant, peak is over all of them", key=True)
+            yield Violation(
+                (*path, "peak"), "both at and peak", "at is one instant, peak is over all of them", key=True
+            )
         if RAGGED in lengths_of(item.is_):
-            yield Found((*path, "is"), "lists of different lengths", "[1, 2, 3], or [[1, 0], [0, 1]]")
+            yield Violation((*path, "is"), "lists of different lengths", "[1, 2, 3], or [[1, 0], [0, 1]]")
         if quantity is not None:
             if item.peak is not None and not quantity.timed:
                 hint = "leave peak out"
-                yield Found((*path, "peak"), f"{item.of} does not run over the instants", hint, key=True)
+                yield Violation((*path, "peak"), f"{item.of} does not run over the instants", hint, key=True)
             yield from dimensions((*path, "is"), item.is_, quantity.dimensions)
             yield from dimensions((*path, "abs"), item.abs, quantity.dimensions)
 
 
-def dimensions(path: Path_, value: Any, known: tuple[u.Dimension, ...]) -> Iterator[Found]:
+def dimensions(path: Path_, value: Any, known: tuple[u.Dimension, ...]) -> Iterator[Violation]:
     """Numbers written with a unit of another dimension."""
     if isinstance(value, tuple):
         for i, member in enumerate(value):
@@ -69,34 +71,34 @@ def dimensions(path: Path_, value: Any, known: tuple[u.Dimension, ...]) -> Itera
         expected = " or ".join(u.describe(dimension) for dimension in known)
         message = f"'{value.source.strip()}' is {u.describe(value.dimension)}, expected {expected}"
         units = " or ".join(u.si_unit(dimension) for dimension in known)
-        yield Found(path, message, f"a number without a unit is taken in {units}")
+        yield Violation(path, message, f"a number without a unit is taken in {units}")
 
 
 @rule("expect-instants", for_check=True)
-def expect_instants(scene: Scene) -> Iterator[Found]:
-    """An expectation fits the instants of the output: `at` is one of them, `is` has as many numbers as are found."""
-    document = scene.document
+def expect_instants(draft: DraftDocument) -> Iterator[Violation]:
+    """An expectation fits the instants of the output: `at` is one of them, `is` has as many numbers as the result."""
+    document = draft.document
     instants = instants_of(document) if type_of(document) == "motion" else (0.0,)
-    if not instants or document.analysis.type == "impulse" or "analysis" in scene.unread:
+    if not instants or document.analysis.type == "impulse" or "analysis" in draft.unread:
         return
-    for path, item, quantity, _ in outcomes(scene):
+    for path, item, quantity, _ in outcomes(draft):
         if item.at is not None:
             nearest = min(instants, key=lambda t: abs(t - item.at))  # type: ignore[operator]
             if abs(nearest - item.at) > tolerances.SAME_INSTANT * max(instants[-1], abs(item.at)):
                 message = f"{item.at:g} s is not an instant of the output; the nearest is {nearest:g} s"
-                yield Found((*path, "at"), message, "add it to analysis.times, or choose other samples")
+                yield Violation((*path, "at"), message, "add it to analysis.times, or choose other samples")
                 continue
         if quantity is not None and item.is_ is not None:
-            yield from sizes((*path, "is"), item, quantity, instants_found(scene, len(instants)))
+            yield from sizes((*path, "is"), item, quantity, output_instants(draft, len(instants)))
 
 
-def instants_found(scene: Scene, asked: int) -> int | None:
+def output_instants(draft: DraftDocument, asked: int) -> int | None:
     """How many instants the output will have; None where a rope may end the run before."""
-    may_stop = any(isinstance(joint, f.RodJoint) and joint.tension_only for joint in scene.document.joints.values())
+    may_stop = any(isinstance(joint, f.RodJoint) and joint.tension_only for joint in draft.document.joints.values())
     return None if may_stop and asked > 1 else asked
 
 
-def sizes(path: Path_, item: f.Expect, quantity: Outcome, instants: int | None) -> Iterator[Found]:
+def sizes(path: Path_, item: f.Expect, quantity: Outcome, instants: int | None) -> Iterator[Violation]:
     """As many numbers as the result has there, in the same lists."""
     over_instants = quantity.timed and item.at is None and item.peak is None and instants != 1
     axes: Shape = () if item.peak is not None else quantity.axes
@@ -106,12 +108,12 @@ def sizes(path: Path_, item: f.Expect, quantity: Outcome, instants: int | None) 
     if RAGGED in given or fits(given, lengths):
         return
     if over_instants and fits(given, at_one):
-        yield Found(path, f"{described(given)} for {item.of} at all instants", "give at: an instant, or peak: max")
+        yield Violation(path, f"{described(given)} for {item.of} at all instants", "give at: an instant, or peak: max")
     else:
         letters = axes[-1].letters if axes else ()
         hint = f"name one of its numbers, as {item.of}.{letters[0] if letters else 0}" if lengths else None
         message = f"{described(given)} for {item.of}, which is {described(lengths)}"
-        yield Found(path, message, hint or "give one number")
+        yield Violation(path, message, hint or "give one number")
 
 
 def fits(given: Lengths, expected: Lengths) -> bool:

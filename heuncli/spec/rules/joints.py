@@ -10,16 +10,16 @@ from heuncli.expressions.programs import Expression, discontinuities, one_sided_
 from heuncli.joint_kinds import RATES, TYPES, named
 from heuncli.spec import format as f
 from heuncli.spec.fields import End
-from heuncli.spec.rules.registry import Found, Path_, Scene, rule
+from heuncli.spec.rules.registry import DraftDocument, Path_, Violation, rule
 from heuncli.spec.semantics import drive_of, span_of
 
-LOOKED_AT = 1000  # parts of the run at whose ends a driven length is looked at
+LOOKED_AT = 1000  # equal parts of the run, at whose ends a driven length is evaluated
 DRIVEN = ("angle", "travel", "length")
 
 
-def directions(scene: Scene) -> Iterator[tuple[Path_, tuple[float, float, float]]]:
+def directions(draft: DraftDocument) -> Iterator[tuple[Path_, tuple[float, float, float]]]:
     """Every direction in the document."""
-    document = scene.document
+    document = draft.document
     for name, joint in document.joints.items():
         for key in ("axis", "to_axis", "normal"):
             if getattr(joint, key, None) is not None:
@@ -31,25 +31,25 @@ def directions(scene: Scene) -> Iterator[tuple[Path_, tuple[float, float, float]
 
 
 @rule("zero-direction")
-def zero_direction(scene: Scene) -> Iterator[Found]:
+def zero_direction(draft: DraftDocument) -> Iterator[Violation]:
     """A direction is not [0, 0, 0]."""
-    for path, direction in directions(scene):
+    for path, direction in directions(draft):
         if direction == (0.0, 0.0, 0.0):
-            yield Found(path, f"{path[-1]} is [0, 0, 0], which is no direction", "[0, 0, 1] is the z axis")
+            yield Violation(path, f"{path[-1]} is [0, 0, 0], which is no direction", "[0, 0, 1] is the z axis")
 
 
 @rule("same-body")
-def same_body(scene: Scene) -> Iterator[Found]:
+def same_body(draft: DraftDocument) -> Iterator[Violation]:
     """A joint, spring or actuator stands between two bodies."""
-    pairs = [("joints", name, joint.from_, joint.to) for name, joint in scene.document.joints.items()]
+    pairs = [("joints", name, joint.from_, joint.to) for name, joint in draft.document.joints.items()]
     pairs += [
         ("forces", name, load.from_, load.to)
-        for name, load in scene.document.forces.items()
+        for name, load in draft.document.forces.items()
         if isinstance(load, f.Actuator | f.Spring)
     ]
     for block, name, start, end in pairs:
         if start.body == end.body:
-            yield Found(
+            yield Violation(
                 (block, name, "to"), f"from and to are both on {start.body}", "what stands inside one body does nothing"
             )
 
@@ -59,68 +59,68 @@ def end_key(end: End) -> tuple[str, object]:
 
 
 @rule("duplicate-joint", is_warning=True)
-def duplicate_joint(scene: Scene) -> Iterator[Found]:
+def duplicate_joint(draft: DraftDocument) -> Iterator[Violation]:
     """The same joint twice holds nothing more, and leaves its reactions open."""
     seen: dict[object, str] = {}
-    for name, joint in scene.document.joints.items():
+    for name, joint in draft.document.joints.items():
         ends = frozenset((end_key(joint.from_), end_key(joint.to)))
         key = joint.type, ends, getattr(joint, "axis", None), getattr(joint, "normal", None)
         if key in seen:
-            yield Found(("joints", name), f"the same joint as {seen[key]}: their reactions are open", key=True)
+            yield Violation(("joints", name), f"the same joint as {seen[key]}: their reactions are open", key=True)
         seen.setdefault(key, name)
 
 
 @rule("drive-form")
-def drive_form(scene: Scene) -> Iterator[Found]:
+def drive_form(draft: DraftDocument) -> Iterator[Violation]:
     """A drive prescribes one coordinate, which its joint has, in time alone, and no other drive does."""
     driven: dict[str, str] = {}
-    for name, drive in scene.document.drives.items():
+    for name, drive in draft.document.drives.items():
         path = ("drives", name)
         quantities = [key for key in DRIVEN if getattr(drive, key) is not None]
-        kind = TYPES.get(scene.names.joints.get(drive.joint, ""))
+        kind = TYPES.get(draft.names.joints.get(drive.joint, ""))
         fitting = kind.drives if kind is not None else ()
         if len(quantities) != 1:
             what = " and ".join(quantities) if quantities else "nothing"
             hint = f"a {kind.name} has {fitting[0]}" if kind is not None and fitting else f"one of {', '.join(DRIVEN)}"
-            yield Found(path, f"the drive prescribes {what}", hint, key=True)
+            yield Violation(path, f"the drive prescribes {what}", hint, key=True)
             continue
         quantity = quantities[0]
         if kind is not None:
             if quantity not in fitting:
                 driven_kinds = named([kind for kind in TYPES.values() if kind.drives], "and")
                 hint = f"a {kind.name} has {fitting[0]}" if fitting else f"drives act on {driven_kinds}"
-                yield Found((*path, quantity), f"a {kind.name} has no {quantity} to be driven", hint, key=True)
+                yield Violation((*path, quantity), f"a {kind.name} has no {quantity} to be driven", hint, key=True)
             elif quantity == "length" and drive.zero is not None:
-                yield Found(
+                yield Violation(
                     (*path, "zero"), "a length is not counted from the assembled one", "zero is for angle and travel"
                 )
         value = getattr(drive, quantity)
         if value.uses:
             joint, coordinate = value.uses[0]
-            yield Found((*path, quantity), f"a drive follows time alone, not {joint}.{coordinate}", "use t")
+            yield Violation((*path, quantity), f"a drive follows time alone, not {joint}.{coordinate}", "use t")
         if drive.joint in driven:
-            yield Found((*path, "joint"), f"the joint {drive.joint} is driven by {driven[drive.joint]} already")
+            yield Violation((*path, "joint"), f"the joint {drive.joint} is driven by {driven[drive.joint]} already")
         driven.setdefault(drive.joint, name)
 
 
-def drives(scene: Scene) -> Iterator[tuple[str, str, str, Expression]]:
+def drives(draft: DraftDocument) -> Iterator[tuple[str, str, str, Expression]]:
     """Drives of one coordinate in time: name, joint, quantity, value."""
-    for name, drive in scene.document.drives.items():
-        found = drive_of(drive)
-        if found is not None and not found[1].uses:
-            yield name, drive.joint, *found
+    for name, drive in draft.document.drives.items():
+        driven = drive_of(drive)
+        if driven is not None and not driven[1].uses:
+            yield name, drive.joint, *driven
 
 
 @rule("drive-contradicts")
-def drive_contradicts(scene: Scene) -> Iterator[Found]:
+def drive_contradicts(draft: DraftDocument) -> Iterator[Violation]:
     """A held start value is the drive's own at t = 0."""
-    for name, joint_name, quantity, value in drives(scene):
-        joint = scene.document.joints.get(joint_name)
+    for name, joint_name, quantity, value in drives(draft):
+        joint = draft.document.joints.get(joint_name)
         initial = getattr(joint, "initial", None)
         if initial is None:
             continue
         at_start = value.derivatives(0.0)
-        relative = scene.document.drives[name].zero == "assembled" or getattr(joint, "to_axis", None) is not None
+        relative = draft.document.drives[name].zero == "assembled" or getattr(joint, "to_axis", None) is not None
         for key, expected in (
             (quantity, at_start[0]),
             (RATES.get(quantity, ""), at_start[1]),
@@ -130,7 +130,7 @@ def drive_contradicts(scene: Scene) -> Iterator[Found]:
                 continue
             if abs(held - expected) > tolerances.SAME_VALUE * max(abs(held), abs(expected), 1.0):
                 message = f"{key} is held at {held:g}, but the drive {name} prescribes {expected:g} at t = 0"
-                yield Found(("joints", joint_name, "initial", key), message, "leave it out: the drive sets it")
+                yield Violation(("joints", joint_name, "initial", key), message, "leave it out: the drive sets it")
 
 
 def changes(value: Expression, duration: float) -> list[tuple[float, float]]:
@@ -140,41 +140,41 @@ def changes(value: Expression, duration: float) -> list[tuple[float, float]]:
 
 
 @rule("drive-jumps")
-def drive_jumps(scene: Scene) -> Iterator[Found]:
+def drive_jumps(draft: DraftDocument) -> Iterator[Violation]:
     """A driven coordinate does not jump, and is a number all along the run."""
-    duration = span_of(scene.document.analysis)
-    for name, _, quantity, value in drives(scene):
+    duration = span_of(draft.document.analysis)
+    for name, _, quantity, value in drives(draft):
         path = ("drives", name, quantity)
         if math.isnan(value.value(0.0)):
-            yield Found(path, "the drive has no value at t = 0", "look at the domains of its functions and tables")
+            yield Violation(path, "the drive has no value at t = 0", "look at the domains of its functions and tables")
             continue
         for last, t in changes(value, duration):
             before, after = value.value(last), value.value(t)
             if abs(after - before) > tolerances.SAME_VALUE * max(abs(before), abs(after), 1.0):
                 message = f"the drive jumps from {before:g} to {after:g} at t = {t:g} s"
-                yield Found(path, message, "a body cannot jump: let the value run over a short time")
+                yield Violation(path, message, "a body cannot jump: let the value run over a short time")
                 break
 
 
 @rule("drive-length")
-def drive_length(scene: Scene) -> Iterator[Found]:
-    """A driven rod keeps a length: at no length it has no direction, so nothing tells where it would go on."""
-    duration = span_of(scene.document.analysis)
-    for name, _, quantity, value in drives(scene):
-        if quantity != "length" or scene.document.drives[name].zero == "assembled":
+def drive_length(draft: DraftDocument) -> Iterator[Violation]:
+    """A driven rod keeps a positive length: at length 0 its direction is undefined."""
+    duration = span_of(draft.document.analysis)
+    for name, _, quantity, value in drives(draft):
+        if quantity != "length" or draft.document.drives[name].zero == "assembled":
             continue
         grid = {duration * k / LOOKED_AT for k in range(LOOKED_AT + 1)}
         grid.update(t for pair in changes(value, duration) for t in pair)
         gone = next((t for t in sorted(grid) if value.value(t) <= 0.0), None)
         if gone is not None:
-            message = f"the rod {scene.document.drives[name].joint} has no length left at t = {gone:.4g} s"
-            yield Found(("drives", name, "length"), message, "let the run end before, or the length stay above 0")
+            message = f"the rod {draft.document.drives[name].joint} has no length left at t = {gone:.4g} s"
+            yield Violation(("drives", name, "length"), message, "let the run end before, or the length stay above 0")
 
 
-def rate_jumps(scene: Scene) -> Iterator[Path_]:
+def rate_jumps(draft: DraftDocument) -> Iterator[Path_]:
     """Drives whose rate jumps within the run, or at its start against rest."""
-    duration = span_of(scene.document.analysis)
-    for name, _, quantity, value in drives(scene):
+    duration = span_of(draft.document.analysis)
+    for name, _, quantity, value in drives(draft):
         for last, t in changes(value, duration):
             before, after = value.derivatives(last)[1], value.derivatives(t)[1]
             if abs(after - before) > tolerances.SAME_VALUE * max(abs(before), abs(after), 1.0):

@@ -7,60 +7,60 @@ from collections.abc import Iterator
 from heuncli.expressions import units as u
 from heuncli.joint_kinds import FREE, POINT, TYPES, Kind, named, taking
 from heuncli.spec import format as f
-from heuncli.spec.rules.registry import Found, Scene, rule
+from heuncli.spec.rules.registry import DraftDocument, Violation, rule
 from heuncli.spec.semantics import span_of
 
 ON_MOTION = {"turning": "about a", "sliding": "along a"}
 FRICTION = {"turning": "torque", "sliding": "force"}  # the key of each motion
 
 
-def loads(scene: Scene) -> Iterator[tuple[str, f.Torque | f.Damper | f.Friction, Kind]]:
+def loads(draft: DraftDocument) -> Iterator[tuple[str, f.Torque | f.Damper | f.Friction, Kind]]:
     """Loads in joints that exist, with the kind of the joint; one whose type is in error takes no load."""
-    for name, load in scene.document.forces.items():
-        if isinstance(load, f.Torque | f.Damper | f.Friction) and load.joint in scene.names.joints:
-            written = scene.names.joints[load.joint]
+    for name, load in draft.document.forces.items():
+        if isinstance(load, f.Torque | f.Damper | f.Friction) and load.joint in draft.names.joints:
+            written = draft.names.joints[load.joint]
             yield name, load, TYPES.get(written, Kind(written, POINT, FREE))
 
 
 @rule("load-joint")
-def load_joint(scene: Scene) -> Iterator[Found]:
+def load_joint(draft: DraftDocument) -> Iterator[Violation]:
     """A joint moves in the way that the load drives or resists."""
-    for name, load, kind in loads(scene):
+    for name, load, kind in loads(draft):
         path = ("forces", name)
         if isinstance(load, f.Torque):
             if not kind.takes("torque"):
                 where = " or ".join(f"{ON_MOTION[fit.motions[0]]} {fit.name}" for fit in taking("torque"))
                 hint = "between two points use actuator, on a body couple"
-                yield Found((*path, "joint"), f"a torque acts {where}, not in a {kind.name}", hint)
+                yield Violation((*path, "joint"), f"a torque acts {where}, not in a {kind.name}", hint)
         elif isinstance(load, f.Damper):
             of_both = [fit for fit in taking("damper") if len(fit.motions) == 2]
             if not kind.takes("damper"):
                 hint = "between two points use a spring with damping"
-                yield Found((*path, "joint"), f"a damper resists nothing in a {kind.name}", hint)
+                yield Violation((*path, "joint"), f"a damper resists nothing in a {kind.name}", hint)
             if load.coefficient is None and load.sliding is None:
                 known = "coefficient (of turning), sliding, or both" if kind in of_both else "coefficient"
-                yield Found(path, "a damper that resists nothing", f"give {known}", key=True)
+                yield Violation(path, "a damper that resists nothing", f"give {known}", key=True)
             if load.sliding is not None and kind not in of_both:
                 message = f"sliding is for a {named(of_both, 'or')}, not for a {kind.name}"
-                yield Found((*path, "sliding"), message, "use coefficient", key=True)
+                yield Violation((*path, "sliding"), message, "use coefficient", key=True)
         else:
             given = [key for key in FRICTION.values() if getattr(load, key) is not None]
             fitting = [FRICTION[motion] for motion in kind.motions]
             if not kind.takes("friction"):
                 message = f"friction acts in a {named(taking('friction'), 'or')}, not in a {kind.name}"
-                yield Found((*path, "joint"), message)
+                yield Violation((*path, "joint"), message)
             elif len(given) != 1:
                 what = "both torque and force" if given else "neither torque nor force"
-                yield Found(path, f"friction of {what}", f"a {kind.name} takes {' or '.join(fitting)}", key=True)
+                yield Violation(path, f"friction of {what}", f"a {kind.name} takes {' or '.join(fitting)}", key=True)
             elif given[0] not in fitting:
                 message = f"friction of a {kind.name} is a {fitting[0]}"
-                yield Found((*path, given[0]), message, f"write {fitting[0]}", key=True)
+                yield Violation((*path, given[0]), message, f"write {fitting[0]}", key=True)
 
 
 @rule("dimension")
-def load_dimension(scene: Scene) -> Iterator[Found]:
+def load_dimension(draft: DraftDocument) -> Iterator[Violation]:
     """Where the joint decides between turning and sliding, the unit fits."""
-    for name, load, kind in loads(scene):
+    for name, load, kind in loads(draft):
         sliding = kind.motions == ("sliding",)
         if isinstance(load, f.Torque):
             checks = [("value", load.value, u.FORCE if sliding else u.MOMENT)]
@@ -73,28 +73,32 @@ def load_dimension(scene: Scene) -> Iterator[Found]:
             if value.dimension is not None and value.dimension != dimension:
                 message = f"'{value.source.strip()}' is {u.describe(value.dimension)}, expected {u.describe(dimension)}"
                 hint = f"a number without a unit is taken in {u.si_unit(dimension)}"
-                yield Found(("forces", name, key), message, hint)
+                yield Violation(("forces", name, key), message, hint)
 
 
 @rule("couple-point")
-def couple_point(scene: Scene) -> Iterator[Found]:
-    """A couple on a body with sections says where it enters, which tells the side."""
-    cut = {section.body for section in scene.document.sections.values()}
-    for name, load in scene.document.forces.items():
+def couple_point(draft: DraftDocument) -> Iterator[Violation]:
+    """A couple on a body with sections has a point of application, which decides on which side of a cut it acts."""
+    cut = {section.body for section in draft.document.sections.values()}
+    for name, load in draft.document.forces.items():
         if isinstance(load, f.Couple) and load.on.at is None and load.on.body in cut:
             message = f"the couple acts on {load.on.body}, which has sections, but not at a point"
-            yield Found(("forces", name, "on"), message, f"write {load.on.body}.point: it tells the side of the cut")
+            yield Violation(
+                ("forces", name, "on"),
+                message,
+                f"write {load.on.body}.point: it decides on which side of the cut the couple acts",
+            )
 
 
 @rule("impulse-form")
-def impulse_form(scene: Scene) -> Iterator[Found]:
+def impulse_form(draft: DraftDocument) -> Iterator[Violation]:
     """A blow is on a point with a vector, or on a body with a couple."""
-    for name, blow in scene.document.impulses.items():
+    for name, blow in draft.document.impulses.items():
         point, turn = (blow.on, blow.vector), (blow.body, blow.couple)
         complete = [pair for pair in (point, turn) if None not in pair]
         stray = [part for pair in (point, turn) for part in pair if part is not None]
         if len(complete) != 1 or len(stray) != 2:
-            yield Found(
+            yield Violation(
                 ("impulses", name),
                 "a blow is {on, vector} or {body, couple}",
                 "two blows at once: two entries",
@@ -103,18 +107,18 @@ def impulse_form(scene: Scene) -> Iterator[Found]:
 
 
 @rule("impulse-time")
-def impulse_time(scene: Scene) -> Iterator[Found]:
+def impulse_time(draft: DraftDocument) -> Iterator[Violation]:
     """A blow falls within the run."""
-    analysis = scene.document.analysis
+    analysis = draft.document.analysis
     duration = span_of(analysis)
-    for name, blow in scene.document.impulses.items():
+    for name, blow in draft.document.impulses.items():
         path = ("impulses", name, "time")
         if blow.time < 0.0:
-            yield Found(path, f"a blow before the start, at {blow.time:g} s")
-        elif blow.time > duration and "analysis" not in scene.unread:
+            yield Violation(path, f"a blow before the start, at {blow.time:g} s")
+        elif blow.time > duration and "analysis" not in draft.unread:
             hint = (
                 "give analysis a longer duration"
                 if duration > 0.0
-                else "without a duration only the jump at time 0 is found"
+                else "without a duration only the jump at time 0 is computed"
             )
-            yield Found(path, f"a blow at {blow.time:g} s, after the end of the run at {duration:g} s", hint)
+            yield Violation(path, f"a blow at {blow.time:g} s, after the end of the run at {duration:g} s", hint)

@@ -5,29 +5,29 @@ from __future__ import annotations
 from collections.abc import Iterator
 
 from heuncli.spec.names import NAMED, RESERVED_FOR, is_name
-from heuncli.spec.rules.registry import Found, Scene, rule
+from heuncli.spec.rules.registry import DraftDocument, Violation, rule
 
 
 @rule("bad-name")
-def bad_name(scene: Scene) -> Iterator[Found]:
+def bad_name(draft: DraftDocument) -> Iterator[Violation]:
     """A name is a letter, then letters, digits and _."""
     hint = "a name is a letter, then letters, digits and _"
     for block in NAMED:
-        for name in scene.names.entries[block]:
+        for name in draft.names.entries[block]:
             if not is_name(name):
-                yield Found((block, name), f"'{name}' is not a name", hint, key=True)
-    for body, points in scene.names.points.items():
+                yield Violation((block, name), f"'{name}' is not a name", hint, key=True)
+    for body, points in draft.names.points.items():
         for name in points:
             if not is_name(name):
                 path = ("ground",) if body == "ground" else ("bodies", body)
-                yield Found((*path, "points", name), f"'{name}' is not a name", hint, key=True)
+                yield Violation((*path, "points", name), f"'{name}' is not a name", hint, key=True)
 
 
 @rule("reserved-name")
-def reserved_name(scene: Scene) -> Iterator[Found]:
+def reserved_name(draft: DraftDocument) -> Iterator[Violation]:
     """Some names mean something already."""
     for block, taken in RESERVED_FOR.items():
-        for name in scene.names.entries[block]:
+        for name in draft.names.entries[block]:
             if name in taken:
                 what = (
                     "the ground"
@@ -36,4 +36,4 @@ def reserved_name(scene: Scene) -> Iterator[Found]:
                     if block != "forces"
                     else "a cause of its own"
                 )
-                yield Found((block, name), f"'{name}' is taken: it is {what}", f"call it {name}_1, say", key=True)
+                yield Violation((block, name), f"'{name}' is taken: it is {what}", f"call it {name}_1, say", key=True)

@@ -1,4 +1,4 @@
-"""What the format knows and this version does not solve yet: refused by name and place, never ignored.
+"""What the format knows and this version does not solve yet: an error with its location, never ignored.
 
 One row a feature; to lift a refusal, delete its row.
 """
@@ -8,37 +8,37 @@ from __future__ import annotations
 from collections.abc import Callable, Iterable, Iterator
 
 from heuncli.spec.rules.joints import rate_jumps
-from heuncli.spec.rules.registry import Found, Path_, Scene, rule
+from heuncli.spec.rules.registry import DraftDocument, Path_, Violation, rule
 
-Where = Callable[[Scene], Iterable[Path_]]
+Where = Callable[[DraftDocument], Iterable[Path_]]
 METHODS = ("auto", "DOP853")
 
 
 def any_of(block: str) -> Where:
     """All entries of a block."""
 
-    def where(scene: Scene) -> Iterator[Path_]:
-        for name in scene.names.entries[block]:
+    def where(draft: DraftDocument) -> Iterator[Path_]:
+        for name in draft.names.entries[block]:
             yield block, name
 
     return where
 
 
-def other_method(scene: Scene) -> Iterator[Path_]:
+def other_method(draft: DraftDocument) -> Iterator[Path_]:
     """A method of integration that there is not."""
-    if scene.document.analysis.method not in METHODS:
+    if draft.document.analysis.method not in METHODS:
         yield "analysis", "method"
 
 
-def fixed_step(scene: Scene) -> Iterator[Path_]:
+def fixed_step(draft: DraftDocument) -> Iterator[Path_]:
     """The step of a method with fixed steps."""
-    if scene.document.analysis.step is not None:
+    if draft.document.analysis.step is not None:
         yield "analysis", "step"
 
 
-def shares(scene: Scene) -> Iterator[Path_]:
+def shares(draft: DraftDocument) -> Iterator[Path_]:
     """Loads by their causes."""
-    for i, name in enumerate(scene.document.head.report or ()):
+    for i, name in enumerate(draft.document.head.report or ()):
         if name == "shares":
             yield "report", i
 
@@ -53,8 +53,8 @@ NOT_YET: tuple[tuple[str, Where], ...] = (
 
 
 @rule("not-yet", follows=False)
-def not_yet(scene: Scene) -> Iterator[Found]:
+def not_yet(draft: DraftDocument) -> Iterator[Violation]:
     """Refuse what stands in the table."""
     for feature, where in NOT_YET:
-        for path in where(scene):
-            yield Found(path, f"not yet: {feature}", key=path[-1] != "type")
+        for path in where(draft):
+            yield Violation(path, f"not yet: {feature}", key=path[-1] != "type")

@@ -17,7 +17,7 @@ from heuncli.results_schema import (
     unknown_key,
 )  # fmt: skip
 from heuncli.spec.names import GROUND, Names
-from heuncli.spec.rules.registry import Scene
+from heuncli.spec.rules.registry import DraftDocument
 from heuncli.spec.rules.sections import is_run
 
 
@@ -44,14 +44,14 @@ class Reached(NamedTuple):
     rest: list[str]
 
 
-def outcome(path: str, scene: Scene) -> Outcome | UnknownWord | None:
+def outcome(path: str, draft: DraftDocument) -> Outcome | UnknownWord | None:
     """What a path leads to; None where that is seen only after the run."""
-    reached = follow(path.split("."), scene.names)
+    reached = follow(path.split("."), draft.names)
     if not isinstance(reached, Reached):
         return reached
     run = False
     if reached.keys[0] == "sections":
-        section = scene.document.sections.get(reached.keys[1])
+        section = draft.document.sections.get(reached.keys[1])
         if section is None:
             return None
         run = is_run(section)
@@ -102,7 +102,7 @@ def named(word: str, names: Names) -> list[str]:
 
 
 def part(whole: Outcome, words: list[str]) -> Outcome | UnknownWord:
-    """What is left of a quantity where places of lists are named: of its axes, or the instant first."""
+    """What is left of a quantity where indices are given: along its axes, or along the instants first."""
     axes, timed = whole.axes, whole.timed
     if timed and len(words) == len(axes) + 1:
         axes, timed = (INSTANT, *axes), False

@@ -8,7 +8,7 @@ from collections.abc import Iterator
 from heuncli import tolerances
 from heuncli.joint_kinds import ABOUT_AXIS, TYPES
 from heuncli.spec import format as f
-from heuncli.spec.rules.registry import Found, Path_, Scene, rule
+from heuncli.spec.rules.registry import DraftDocument, Path_, Violation, rule
 from heuncli.spec.semantics import body_axes
 from heuncli.spec.turns import IDENTITY, unit
 
@@ -19,43 +19,45 @@ LOADS = {"force": ("z",), "couple": ("x", "y")}
 
 
 @rule("not-planar")
-def not_planar(scene: Scene) -> Iterator[Found]:
+def not_planar(draft: DraftDocument) -> Iterator[Violation]:
     """In a scene declared planar everything turns about z and moves in the xy plane."""
-    if scene.document.head.space != "planar":
+    if draft.document.head.space != "planar":
         return
-    if scene.document.head.gravity[2] != 0.0:
-        yield Found(
+    if draft.document.head.gravity[2] != 0.0:
+        yield Violation(
             ("gravity", 2), "gravity points out of the xy plane of a planar scene", "use x and y, or space: spatial"
         )
-    yield from _joints(scene)
-    for name, body in scene.document.bodies.items():
+    yield from _joints(draft)
+    for name, body in draft.document.bodies.items():
         if body.orientation is not None and abs(upright(body.orientation) - 1.0) > tolerances.UPRIGHT:
-            yield Found(("bodies", name, "orientation"), "in a planar scene a body is turned about z only", OR_ELSE)
-        for key, across in MOTIONS.items():
+            yield Violation(("bodies", name, "orientation"), "in a planar scene a body is turned about z only", OR_ELSE)
+        for key, forbidden in MOTIONS.items():
             given = getattr(body, key)
             path: Path_ = ("bodies", name, key)
             if given is not None:
                 framed = not isinstance(given, tuple)
-                yield from _across((*path, "vector") if framed else path, given.vector if framed else given, across)
-    for name, load in scene.document.forces.items():
+                yield from _out_of_plane(
+                    (*path, "vector") if framed else path, given.vector if framed else given, forbidden
+                )
+    for name, load in draft.document.forces.items():
         if isinstance(load, f.PointForce | f.Couple):
             vector = tuple(x.constant for x in load.vector)
-            yield from _across(("forces", name, "vector"), vector, LOADS[load.type])
+            yield from _out_of_plane(("forces", name, "vector"), vector, LOADS[load.type])
 
 
-def _across(path: Path_, vector: tuple[float | None, ...], across: tuple[str, ...]) -> Iterator[Found]:
-    """Components that cannot be; None is one that changes with time."""
+def _out_of_plane(path: Path_, vector: tuple[float | None, ...], forbidden: tuple[str, ...]) -> Iterator[Violation]:
+    """Forbidden components that are not zero; None is one that changes with time."""
     for i, (letter, value) in enumerate(zip("xyz", vector, strict=True)):
-        if letter in across and value != 0.0:
-            yield Found((*path, i), f"in a planar scene {path[2]} has no {letter} component", OR_ELSE)
+        if letter in forbidden and value != 0.0:
+            yield Violation((*path, i), f"in a planar scene {path[2]} has no {letter} component", OR_ELSE)
 
 
-def _joints(scene: Scene) -> Iterator[Found]:
-    for name, joint in scene.document.joints.items():
+def _joints(draft: DraftDocument) -> Iterator[Violation]:
+    for name, joint in draft.document.joints.items():
         path: Path_ = ("joints", name)
         kind = TYPES[joint.type]
         if kind.planar is None:
-            yield Found((*path, "type"), f"a joint of type {joint.type} has no place in a planar scene", OR_ELSE)
+            yield Violation((*path, "type"), f"a joint of type {joint.type} has no place in a planar scene", OR_ELSE)
             continue
         along_z = kind.turn is ABOUT_AXIS
         for key in ("axis", "to_axis", "normal"):
@@ -65,7 +67,7 @@ def _joints(scene: Scene) -> Iterator[Found]:
             x, y, z = unit(direction)
             if (math.hypot(x, y) if along_z else abs(z)) > tolerances.PARALLEL:
                 wants = "is the z axis" if along_z else "lies in the xy plane"
-                yield Found((*path, key), f"in a planar scene {key} of a {joint.type} {wants}", OR_ELSE)
+                yield Violation((*path, key), f"in a planar scene {key} of a {joint.type} {wants}", OR_ELSE)
 
 
 def upright(orientation: f.Orientation) -> float:

@@ -1,4 +1,4 @@
-"""References: every body, point and joint that is spoken of exists."""
+"""References: every body, point and joint that is named exists."""
 
 from __future__ import annotations
 
@@ -8,13 +8,13 @@ from heuncli.nearest import did_you_mean
 from heuncli.spec import format as f
 from heuncli.spec.fields import End
 from heuncli.spec.names import GROUND, mapping
-from heuncli.spec.rules.registry import Found, Path_, Scene, rule
+from heuncli.spec.rules.registry import DraftDocument, Path_, Violation, rule
 from heuncli.spec.semantics import end_of
 
 
-def ends(scene: Scene) -> Iterator[tuple[Path_, End]]:
+def ends(draft: DraftDocument) -> Iterator[tuple[Path_, End]]:
     """Every end in the document with its path."""
-    document = scene.document
+    document = draft.document
     for name, joint in document.joints.items():
         yield ("joints", name, "from"), joint.from_
         yield ("joints", name, "to"), joint.to
@@ -34,14 +34,14 @@ def ends(scene: Scene) -> Iterator[tuple[Path_, End]]:
     about = document.foundation.about
     if isinstance(about, str):
         yield ("foundation", "about"), ground_end(about)
-    yield from ends_unread(scene)
+    yield from ends_unread(draft)
 
 
-def ends_unread(scene: Scene) -> Iterator[tuple[Path_, End]]:
+def ends_unread(draft: DraftDocument) -> Iterator[tuple[Path_, End]]:
     """Ends written as body.point in joints, forces and impulses in which something else is in error."""
-    document = scene.document
+    document = draft.document
     for block, read in (("joints", document.joints), ("forces", document.forces), ("impulses", document.impulses)):
-        for name, data in scene.names.entries[block].items():
+        for name, data in draft.names.entries[block].items():
             for key in ("from", "to", "on") if name not in read else ():
                 value = mapping(data).get(key)
                 body, _, point = value.partition(".") if isinstance(value, str) else ("", "", "")
@@ -55,65 +55,67 @@ def ground_end(about: str) -> End:
     return End.model_construct(body=body if dot else GROUND, at=point if dot else body)
 
 
-def bodies_spoken_of(scene: Scene) -> Iterator[tuple[Path_, str, bool]]:
+def bodies_spoken_of(draft: DraftDocument) -> Iterator[tuple[Path_, str, bool]]:
     """Every mention of a body: path, name, whether the ground may stand there."""
-    for path, end in ends(scene):
+    for path, end in ends(draft):
         may_be_ground = path[0] in ("joints", "foundation", "sections") or path[-1] in ("from", "to")
         yield path, end.body, may_be_ground
-    for name, section in scene.document.sections.items():
+    for name, section in draft.document.sections.items():
         yield ("sections", name, "body"), section.body, False
-    for name, blow in scene.document.impulses.items():
+    for name, blow in draft.document.impulses.items():
         if blow.body is not None:
             yield ("impulses", name, "body"), blow.body, False
 
 
 @rule("unknown-body")
-def unknown_body(scene: Scene) -> Iterator[Found]:
+def unknown_body(draft: DraftDocument) -> Iterator[Violation]:
     """Bodies exist."""
-    bodies = scene.names.entries["bodies"]
-    for path, body, _ in bodies_spoken_of(scene):
+    bodies = draft.names.entries["bodies"]
+    for path, body, _ in bodies_spoken_of(draft):
         if body != GROUND and body not in bodies:
-            yield Found(path, f"'{body}' is not a body", did_you_mean(body, [*bodies, GROUND], "bodies"))
+            yield Violation(path, f"'{body}' is not a body", did_you_mean(body, [*bodies, GROUND], "bodies"))
 
 
 @rule("ground-cannot")
-def ground_cannot(scene: Scene) -> Iterator[Found]:
+def ground_cannot(draft: DraftDocument) -> Iterator[Violation]:
     """The ground carries no loads and has no sections; foundation.about is on the ground."""
-    for path, body, may_be_ground in bodies_spoken_of(scene):
+    for path, body, may_be_ground in bodies_spoken_of(draft):
         if body == GROUND and not may_be_ground:
             what = "a section" if path[0] == "sections" else "an applied load"
-            yield Found(path, f"the ground cannot have {what}", "it does not move and has no mass: name a body")
+            yield Violation(path, f"the ground cannot have {what}", "it does not move and has no mass: name a body")
         elif path[0] == "foundation" and body != GROUND:
-            yield Found(path, "M_s is taken about a fixed point", "name a point of the ground, or give [x, y, z]")
+            yield Violation(path, "M_s is taken about a fixed point", "name a point of the ground, or give [x, y, z]")
 
 
 @rule("unknown-point")
-def unknown_point(scene: Scene) -> Iterator[Found]:
+def unknown_point(draft: DraftDocument) -> Iterator[Violation]:
     """Points exist."""
-    points = scene.names.points
-    for path, end in ends(scene):
+    points = draft.names.points
+    for path, end in ends(draft):
         if isinstance(end.at, str) and end.body in points and end.at not in points[end.body]:
             yield absent(path, end.body, end.at, points[end.body])
         elif end.at is None and path[0] != "forces" and end.body in points:
-            yield Found(path, "a point is missing", "write body.point, or {body: name, at: [x, y, z]}")
-    for name, section in scene.document.sections.items():
+            yield Violation(path, "a point is missing", "write body.point, or {body: name, at: [x, y, z]}")
+    for name, section in draft.document.sections.items():
         for key, value in (("at", section.at), ("from", section.from_), ("to", section.to)):
             if isinstance(value, str) and section.body in points and value not in points[section.body]:
                 yield absent(("sections", name, key), section.body, value, points[section.body])
 
 
-def absent(path: Path_, body: str, point: str, points: Iterable[str]) -> Found:
+def absent(path: Path_, body: str, point: str, points: Iterable[str]) -> Violation:
     """A point that its body does not have."""
     owner = "the ground" if body == GROUND else f"body {body}"
-    return Found(path, f"{owner} has no point '{point}'", did_you_mean(point, points, f"points of {body}"))
+    return Violation(path, f"{owner} has no point '{point}'", did_you_mean(point, points, f"points of {body}"))
 
 
 @rule("unknown-joint")
-def unknown_joint(scene: Scene) -> Iterator[Found]:
+def unknown_joint(draft: DraftDocument) -> Iterator[Violation]:
     """Joints exist."""
-    joints = scene.names.entries["joints"]
-    for block, entries in (("drives", scene.document.drives), ("forces", scene.document.forces)):
+    joints = draft.names.entries["joints"]
+    for block, entries in (("drives", draft.document.drives), ("forces", draft.document.forces)):
         for name, entry in entries.items():
             joint = getattr(entry, "joint", None)
             if joint is not None and joint not in joints:
-                yield Found((block, name, "joint"), f"'{joint}' is not a joint", did_you_mean(joint, joints, "joints"))
+                yield Violation(
+                    (block, name, "joint"), f"'{joint}' is not a joint", did_you_mean(joint, joints, "joints")
+                )

@@ -1,4 +1,4 @@
-"""The register of rules: each is a function over the read document, yields what it finds, and owns one error code."""
+"""The register of rules: each is a function over the document as read, yields violations, and owns one error code."""
 
 from __future__ import annotations
 
@@ -11,8 +11,8 @@ from heuncli.spec.names import Names
 Path_ = tuple[str | int, ...]
 
 
-class Found(NamedTuple):
-    """One thing a rule objects to: where, what, what next; key: the place is the key's, not the value's."""
+class Violation(NamedTuple):
+    """A violation of a rule: path, message, hint; key: the location is that of the key, not of the value."""
 
     path: Path_
     message: str
@@ -20,11 +20,11 @@ class Found(NamedTuple):
     key: bool = False
 
 
-class Scene(NamedTuple):
-    """What rules look at.
+class DraftDocument(NamedTuple):
+    """A document as far as it could be read, which the rules check.
 
-    Entries that could not be read are missing in `document`, but are among `names`; `unread` are the keys of the top
-    level in which something was.
+    Entries that could not be read are missing in `document`, but are among `names`; `unread`: the top-level keys in
+    which an entry could not be read.
     """
 
     document: Document
@@ -32,13 +32,13 @@ class Scene(NamedTuple):
     unread: frozenset[str] = frozenset()
 
 
-Check = Callable[[Scene], Iterable[Found]]
+Check = Callable[[DraftDocument], Iterable[Violation]]
 
 
 class Rule(NamedTuple):
-    """A check and the code of what it finds; a warning does not stop the run.
+    """A check and the code of its violations; a warning does not stop the run.
 
-    follows: what it finds may only follow from what could not be read; for_check: it matters to `heun check` alone.
+    follows: its violations may be consequences of what could not be read; for_check: it matters to `heun check` alone.
     """
 
     code: str
@@ -63,8 +63,8 @@ def rule(
     return register
 
 
-def found_by(rules: Iterable[Rule], scene: Scene) -> Iterator[tuple[Rule, Found]]:
-    """What the rules find, in their order."""
+def violations(rules: Iterable[Rule], draft: DraftDocument) -> Iterator[tuple[Rule, Violation]]:
+    """The violations of the rules, in their order."""
     for each in rules:
-        for found in each.check(scene):
-            yield each, found
+        for violation in each.check(draft):
+            yield each, violation

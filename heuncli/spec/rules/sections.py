@@ -6,7 +6,7 @@ from collections.abc import Iterator
 
 from heuncli import tolerances
 from heuncli.spec import format as f
-from heuncli.spec.rules.registry import Found, Scene, rule
+from heuncli.spec.rules.registry import DraftDocument, Violation, rule
 from heuncli.spec.semantics import point_in
 from heuncli.spec.turns import cross, length, unit
 
@@ -20,9 +20,9 @@ def is_run(section: f.Section) -> bool:
 
 
 @rule("section-form")
-def section_form(scene: Scene) -> Iterator[Found]:
+def section_form(draft: DraftDocument) -> Iterator[Violation]:
     """A cut has at and normal; a run has from, to and count, and takes the normal from them."""
-    for name, section in scene.document.sections.items():
+    for name, section in draft.document.sections.items():
         path = ("sections", name)
         single = [key for key in ("at", "normal") if getattr(section, key) is not None]
         run = [
@@ -32,47 +32,47 @@ def section_form(scene: Scene) -> Iterator[Found]:
         ]
         if single and run:
             message = f"{' and '.join(single)} (one cut) beside {' and '.join(run)} (a run of cuts)"
-            yield Found(path, message, "a run takes its normal from `from` to `to`", key=True)
+            yield Violation(path, message, "a run takes its normal from `from` to `to`", key=True)
         elif not run and len(single) < 2:
             missing = [key for key in ("at", "normal") if key not in single]
-            yield Found(
+            yield Violation(
                 path, f"{' and '.join(missing)} missing", "a run of cuts has from, to and count instead", key=True
             )
         elif run and len(run) < 3:
             missing = [key for key in ("from", "to", "count") if key not in run]
-            yield Found(path, f"{' and '.join(missing)} missing", "a run of cuts has from, to and count", key=True)
+            yield Violation(path, f"{' and '.join(missing)} missing", "a run of cuts has from, to and count", key=True)
         elif run:
-            yield from run_of_cuts(scene, name, section)
+            yield from run_of_cuts(draft, name, section)
         if section.reduce_to not in REDUCED_TO and isinstance(section.reduce_to, str) and "." not in section.reduce_to:
             message = f"'{section.reduce_to}' is not a point of reference"
-            yield Found(
+            yield Violation(
                 (*path, "reduce_to"), message, "known: at, centroid, line, or a point as body.point, ground.point"
             )
 
 
-def run_of_cuts(scene: Scene, name: str, section: f.Section) -> Iterator[Found]:
+def run_of_cuts(draft: DraftDocument, name: str, section: f.Section) -> Iterator[Violation]:
     """A run has two ends, two cuts at least, and decides the sides by itself."""
     path = ("sections", name)
     if section.count is not None and not 2 <= section.count <= 100_000:
-        yield Found((*path, "count"), f"a run has 2 to 100000 cuts, not {section.count}")
-    body = scene.document.bodies.get(section.body)
+        yield Violation((*path, "count"), f"a run has 2 to 100000 cuts, not {section.count}")
+    body = draft.document.bodies.get(section.body)
     if body is not None:
         ends = [point_in(body, end) for end in (section.from_, section.to)]
         if ends[0] is not None and ends[0] == ends[1]:
-            yield Found((*path, "to"), "from and to are the same point", "the normal runs from one to the other")
+            yield Violation((*path, "to"), "from and to are the same point", "the normal runs from one to the other")
     if section.side is not None:
-        yield Found((*path, "side"), "a run of cuts takes both sides by itself", "leave side out", key=True)
+        yield Violation((*path, "side"), "a run of cuts takes both sides by itself", "leave side out", key=True)
     if section.piece is not None:
-        yield Found(
+        yield Violation(
             (*path, "piece"), "a piece belongs to a single cut", "a run of cuts needs a body with shapes", key=True
         )
 
 
 @rule("section-matter")
-def section_matter(scene: Scene) -> Iterator[Found]:
+def section_matter(draft: DraftDocument) -> Iterator[Violation]:
     """A cut needs shapes to cut, or the piece it separates."""
-    for name, section in scene.document.sections.items():
-        body = scene.document.bodies.get(section.body)
+    for name, section in draft.document.sections.items():
+        body = draft.document.bodies.get(section.body)
         if body is None or body.shapes is not None or section.piece is not None:
             continue
         if body.piece is None or is_run(section):
@@ -80,15 +80,15 @@ def section_matter(scene: Scene) -> Iterator[Found]:
             hint = "give the body shapes" + (
                 "" if is_run(section) else ", or the section piece: {mass, center, inertia}"
             )
-            yield Found(("sections", name, "body"), message, hint)
+            yield Violation(("sections", name, "body"), message, hint)
 
 
 @rule("first-axis")
-def first_axis(scene: Scene) -> Iterator[Found]:
+def first_axis(draft: DraftDocument) -> Iterator[Violation]:
     """first_axis does not point along the normal."""
-    for name, section in scene.document.sections.items():
+    for name, section in draft.document.sections.items():
         normal = section.normal
-        body = scene.document.bodies.get(section.body)
+        body = draft.document.bodies.get(section.body)
         if normal is None and body is not None:
             start, end = point_in(body, section.from_), point_in(body, section.to)
             if start is not None and end is not None:
@@ -97,34 +97,34 @@ def first_axis(scene: Scene) -> Iterator[Found]:
             continue
         if length(cross(unit(section.first_axis), unit(normal))) < tolerances.PARALLEL:
             hint = "it is made perpendicular to the normal, and must not vanish by that"
-            yield Found(("sections", name, "first_axis"), "first_axis points along the normal", hint)
+            yield Violation(("sections", name, "first_axis"), "first_axis points along the normal", hint)
 
 
 @rule("properties-form")
-def properties_form(scene: Scene) -> Iterator[Found]:
+def properties_form(draft: DraftDocument) -> Iterator[Violation]:
     """Properties are those of one named shape, or all six numbers; strength goes with them."""
-    for name, section in scene.document.sections.items():
+    for name, section in draft.document.sections.items():
         properties = section.properties
         path = ("sections", name)
         if properties is None:
             if section.strength is not None:
                 hint = "properties: {circle: {radius: 10 mm}}"
-                yield Found((*path, "strength"), "strength without properties gives no stress", hint, key=True)
+                yield Violation((*path, "strength"), "strength without properties gives no stress", hint, key=True)
             continue
         shapes = [key for key in ("circle", "tube", "rectangle") if getattr(properties, key) is not None]
         numbers = [key for key in GENERAL if getattr(properties, key) is not None]
         if len(shapes) + bool(numbers) != 1:
-            yield Found(
+            yield Violation(
                 (*path, "properties"),
                 "properties of one shape are needed",
                 f"circle, tube, rectangle, or all of {GENERAL}",
             )
         elif numbers and len(numbers) < len(GENERAL):
             missing = ", ".join(key for key in GENERAL if key not in numbers)
-            yield Found((*path, "properties"), f"properties without {missing}", f"all of {', '.join(GENERAL)}")
+            yield Violation((*path, "properties"), f"properties without {missing}", f"all of {', '.join(GENERAL)}")
         tube = properties.tube
         if tube is not None and tube.inner_radius >= tube.radius:
-            yield Found(
+            yield Violation(
                 (*path, "properties", "tube"),
                 f"inner_radius {tube.inner_radius:g} is not less than radius {tube.radius:g}",
             )
