@@ -1,4 +1,4 @@
-"""How far a motion can be trusted: the check run.
+"""Error estimate of a motion by a second run.
 
 The estimate is 2 |A - B|, B a second run at 1/30 of A's local tolerance, over all points and asked instants.
 """
@@ -25,8 +25,8 @@ from heuncli.tree.tables import Table
 RATIO = 30.0  # local tolerance of A over that of B
 FIRST = 1.0  # local tolerance of the first run over the tolerance asked
 RERUNS = 2
-COLLAPSED = ("step-collapsed", "closure-lost")  # how a run ends where rounding keeps it from a singular pose
-FUTILE = 20  # times the steps of the coarser run: a finer one that takes more fights with rounding
+COLLAPSED = ("step-collapsed", "closure-lost")  # how a run may end near a singular pose because of rounding
+FUTILE = 20  # a finer run that takes more than so many times the steps of the coarser one is dominated by rounding
 CHUNK = 2_000_000  # numbers compared at a time
 
 
@@ -34,8 +34,8 @@ CHUNK = 2_000_000  # numbers compared at a time
 class Checked:
     """A run that was checked.
 
-    recovered: what the sweep knows at the run's instants; motion (n_t,): estimated error of any point, relative to the
-    size; reactions: see `compare`.
+    recovered: accelerations and loads at the run's instants; motion (n_t,): estimated error of any point, relative to
+    the size; reactions: see `compare`.
     """
 
     run: Trajectory
@@ -44,7 +44,7 @@ class Checked:
     reactions: float
     horizon: float | None
     check_seconds: float
-    lost_seconds: float  # runs that missed the tolerance
+    lost_seconds: float  # of runs that missed the tolerance
 
 
 def checked_run(
@@ -55,11 +55,11 @@ def checked_run(
     deadline: float | None,
     method: Method = DOP853,
 ) -> Checked:
-    """Integrate so that the motion's estimated error is below `tolerance`; at most two reruns, then say what is."""
+    """Integrate until the motion's estimated error is below `tolerance`, with at most two reruns; else the best run."""
 
     def run(local: float, most_steps: int = MOST_STEPS) -> Trajectory:
         return runner.trajectory(
-            times, local, halts=jumps, deadline=deadline, most_steps=most_steps, method=method
+            times, local, discontinuities=jumps, deadline=deadline, most_steps=most_steps, method=method
         )
 
     def finer(local: float, than: Trajectory) -> Trajectory | None:
@@ -74,7 +74,7 @@ def checked_run(
             return None
 
     def first(local: float) -> Trajectory:
-        """The run asked for; where closures make it collapse, one that rounding in a singular pose lets through."""
+        """The run asked for; where it collapses at a singular pose, a coarser one that passes it."""
         try:
             return run(local)
         except SolveError as error:
@@ -89,7 +89,7 @@ def checked_run(
     lost, best = 0.0, None
     for attempt in range(RERUNS + 1):
         b = finer(a.tolerance / RATIO, a)
-        # without a finer run a coarser one serves, with a larger, still honest estimate
+        # without a finer run a coarser one serves for the comparison: the estimate is larger, never too small
         check = b if b is not None else run(a.tolerance * RATIO)
         recovered = recovered_at(runner, a.times, a.states, jumps)
         motion, reactions = compare(runner, a, recovered, check, jumps)
@@ -114,7 +114,7 @@ def checked_run(
 
 
 def recovered_at(runner: Runner, times: Array, states: Array, jumps: Sequence[float]) -> Recovered:
-    """What the sweep knows; at a jump, and at what holds at one instant alone, what comes after it."""
+    """Accelerations and loads; at a discontinuity the right limits."""
     later = times.copy()
     for before, after in one_sided_limits(jumps):
         later[(times > before) & (times < after)] = after
@@ -134,10 +134,10 @@ def compare(
     motion, worst, largest, inertia = np.zeros(len(a.times)), 0.0, 0.0, 0.0
     masses = np.array([layout.mechanism.bodies[h.body].mass for h in layout.spanning.hangs])[:, None]
     for i in range(0, n, step):
-        piece = slice(i, min(i + step, n))
-        B = recovered_at(runner, a.times[piece], b.states[piece], jumps)
-        bodies, rows = recovered.bodies[piece], recovered.rows[piece]
-        motion[piece] = distance(layout, bodies, B.bodies) / layout.size
+        chunk = slice(i, min(i + step, n))
+        B = recovered_at(runner, a.times[chunk], b.states[chunk], jumps)
+        bodies, rows = recovered.bodies[chunk], recovered.rows[chunk]
+        motion[chunk] = distance(layout, bodies, B.bodies) / layout.size
         for x, y, arm in (
             (bodies["joint_force"], B.bodies["joint_force"], 1.0),
             (bodies["joint_moment"], B.bodies["joint_moment"], layout.size),
@@ -147,7 +147,7 @@ def compare(
             largest = max(largest, float(np.abs(x).max(initial=0.0)) / arm)
         inertia = max(inertia, float(np.abs(bodies["a"] * masses).max(initial=0.0)))
     motion[n:] = motion[n - 1] if n else 0.0
-    # a body that nothing holds has no reactions; what the sweep leaves at its six freedoms is rounding
+    # a free body has no reactions: what the sweep leaves at its six freedoms is rounding
     some = largest > tolerances.NO_LOAD * inertia
     reactions = (2.0 * worst + tolerances.PLACE_ROUNDING * largest) / largest if some else 0.0
     return 2.0 * motion + tolerances.PLACE_ROUNDING, reactions

@@ -1,4 +1,4 @@
-"""Expressions that have no value where a run fails: which, where they stand, and why. Loaded on the way to an error."""
+"""Expressions without a value where a run fails: which, their location, and why. Imported only for an error."""
 
 from __future__ import annotations
 
@@ -13,23 +13,26 @@ from heuncli.records import replace
 from heuncli.tree.layout import Layout
 from heuncli.tree.tables import Table as Rows
 
-NEAREST, FARTHEST = 52, 20  # what fails at t may have no value only beyond: from 2**-52 to 2**-20 of the run's length
+NEAREST, FARTHEST = (
+    52,
+    20,
+)  # an expression may lose its value only just after t: instants from 2**-52 to 2**-20 of the run's length later
 HELD = 1  # a table's kind (expressions/programs.py)
 DERIVATIVES = ("value", "rate", "acceleration")
 
 Moving = Mapping[tuple[str, str], tuple[float, float]]  # a joint's coordinate and its rate of change
 
 
-def moving(layout: Layout, freedoms: Rows) -> Moving:
+def joint_coordinates(layout: Layout, freedoms: Rows) -> Moving:
     """The coordinates of the joints at one instant; freedoms (n_f,): runner.Recovered."""
-    found: dict[tuple[str, str], tuple[float, float]] = {}
+    coordinates: dict[tuple[str, str], tuple[float, float]] = {}
     joints = layout.mechanism.joints
     for freedom, (q, u, a, _) in zip(layout.freedoms, freedoms.tolist(), strict=True):
         if freedom.joint >= 0 and freedom.quantity in ("angle", "travel"):
             name = joints[freedom.joint].name
-            found[name, freedom.quantity] = q, u
-            found[name, "rate" if freedom.quantity == "angle" else "speed"] = u, a if math.isfinite(a) else 0.0
-    return found
+            coordinates[name, freedom.quantity] = q, u
+            coordinates[name, "rate" if freedom.quantity == "angle" else "speed"] = u, a if math.isfinite(a) else 0.0
+    return coordinates
 
 
 def without_value(mechanism: Mechanism, t: float, length: float, coordinates: Moving) -> list[Problem]:
@@ -40,9 +43,9 @@ def without_value(mechanism: Mechanism, t: float, length: float, coordinates: Mo
     scale = max(abs(t), length)
     for beyond in (0.0, *(scale * 2.0**-k for k in range(NEAREST, FARTHEST - 1, -1))):
         problems = [
-            _problem(expression, t + beyond, _values(expression, beyond, coordinates), lacking)
+            _problem(expression, t + beyond, _values(expression, beyond, coordinates), not_finite)
             for expression, driven in _in_time(mechanism)
-            if (lacking := _lacking(expression, t + beyond, _values(expression, beyond, coordinates), driven))
+            if (not_finite := _not_finite(expression, t + beyond, _values(expression, beyond, coordinates), driven))
         ]
         if problems:
             return problems
@@ -57,7 +60,7 @@ def without_value(mechanism: Mechanism, t: float, length: float, coordinates: Mo
 
 
 def _in_time(mechanism: Mechanism) -> Iterator[tuple[Expression, bool]]:
-    """Every expression that is not one number, and whether it drives."""
+    """Every expression that is not constant, and whether it drives a joint."""
     driven = {id(joint.drive.value) for joint in mechanism.joints if joint.drive is not None}
     for expression in mechanism.expressions():
         if expression.constant is None:
@@ -65,37 +68,37 @@ def _in_time(mechanism: Mechanism) -> Iterator[tuple[Expression, bool]]:
 
 
 def _values(expression: Expression, later: float, coordinates: Moving) -> list[float]:
-    """The coordinates an expression uses, carried on by their rates."""
+    """The coordinates an expression uses, extrapolated linearly by their rates."""
     return [q + later * u for q, u in (coordinates.get(use, (math.nan, 0.0)) for use in expression.uses)]
 
 
-def _lacking(expression: Expression, t: float, values: list[float], driven: bool) -> str:
-    """What of an expression is not finite: its value; of a drive its rate or acceleration, too."""
+def _not_finite(expression: Expression, t: float, values: list[float], driven: bool) -> str:
+    """Which of an expression's value and, for a drive, its rate and acceleration is not finite; empty if none."""
     if any(map(math.isnan, values)):
-        return ""  # of coordinates that are not known nothing can be said
+        return ""  # a coordinate is unknown: no statement is possible
     jet = expression.derivatives(t) if driven else (expression.value(t, values),)
     return next((name for name, x in zip(DERIVATIVES, jet, strict=False) if not math.isfinite(x)), "")
 
 
-def _problem(expression: Expression, t: float, values: list[float], lacking: str) -> Problem:
-    """What an expression lacks (nothing: a bound) at an instant."""
+def _problem(expression: Expression, t: float, values: list[float], not_finite: str) -> Problem:
+    """The problem of an expression without a finite value (empty: without a bound) at an instant."""
     at = "".join(f", {joint}.{key} = {x:.9g}" for (joint, key), x in zip(expression.uses, values, strict=True))
     subject = f"'{expression.source.strip()}'"
-    table = _left(expression, t, values) if lacking else None
+    table = _table_left(expression, t, values) if not_finite else None
     if table is not None:
         message, hint = outside(table)
         return Problem("no-value", f"{subject} has no value at t = {t:.9g} s{at}: {message}", expression.location, hint)
-    what = f"has no finite {lacking}" if lacking else "grows without bound"
+    what = f"has no finite {not_finite}" if not_finite else "grows without bound"
     hint = "keep it within the domain of its functions, as with max(x, 0) or 'a if c else b', or end the run before"
     return Problem("no-value", f"{subject} {what} at t = {t:.9g} s{at}", expression.location, hint)
 
 
-def _left(expression: Expression, t: float, values: list[float]) -> Table | None:
-    """The table whose range was left: the one with which, held at its ends, there is a value."""
-    for place, table in enumerate(expression.tables):
+def _table_left(expression: Expression, t: float, values: list[float]) -> Table | None:
+    """The table whose range was left: the one that, extended by its end values, makes the expression finite."""
+    for index, table in enumerate(expression.tables):
         code = list(expression.code)
         for i in range(0, len(code) - 3, 2):
-            if code[i] in (TABLE, KNOT) and code[i + 1 : i + 4] == [place, table.pieces, table.kind]:
+            if code[i] in (TABLE, KNOT) and code[i + 1 : i + 4] == [index, table.pieces, table.kind]:
                 code[i + 3] = HELD
         held = replace(expression, code=tuple(code))
         if math.isfinite(held.value(t, values)):

@@ -1,4 +1,4 @@
-"""Motion: the kernel's stepping loop driven from one stopping point to the next, and what it knows at given instants.
+"""Motion: the kernel's stepping loop from one discontinuity in time to the next, and the recovery at given instants.
 
 Impure: a `Runner` keeps the kernel's work arrays; `trajectory` looks at the clock where a time limit is set.
 """
@@ -27,7 +27,7 @@ from heuncli.tree.layout import Layout
 from heuncli.tree.tables import BODY_ANSWER, CLOSURE_ANSWER, FREEDOM_ANSWER, LOAD_ANSWER, STATE_ANSWER, Table, parts
 
 CHUNK = 2_000  # body-steps between two looks at the clock
-KEPT = 20_000_000  # numbers of states kept for going back to, at the ends of all steps or every second, fourth ...
+KEPT = 20_000_000  # numbers in the states kept for replays, at the ends of all steps or of every second, fourth, ...
 MOST_STEPS = 20_000_000
 
 REACHED, MORE, ROPE_SLACK = (kernel.CODES[name] for name in ("reached", "more", "rope slack"))
@@ -66,37 +66,37 @@ class Trajectory:
     tolerance: float  # local, of this run
     method: Method
     seconds: float
-    pieces: tuple[tuple[float, float], ...] = ()  # first and last instant of each stretch without jumps
-    kept: tuple[tuple[int, Array], ...] = ()  # number of a step, the state before it; the first one and others
-    pivots: Array = np.zeros(0)  # least of the closures in each step
-    stopped: str | None = None  # the joint of the rope that would push just after the last instant
+    segments: tuple[tuple[float, float], ...] = ()  # first and last instant of each segment without discontinuities
+    kept: tuple[tuple[int, Array], ...] = ()  # of the first and some other steps: number, state at the beginning
+    pivots: Array = np.zeros(0)  # least pivot of the closures in each step
+    stopped: str | None = None  # the rope that would have to push just after the last instant
 
 
-def stops(mechanism: Mechanism, t0: float, t1: float) -> list[float]:
-    """Instants in (t0, t1) at which some load or drive jumps or bends."""
+def discontinuities_of(mechanism: Mechanism, t0: float, t1: float) -> list[float]:
+    """Instants in (t0, t1) at which some load or drive, or a derivative of it, is discontinuous."""
     expressions = set(mechanism.expressions())
     return sorted({t for e in expressions if e.time_dependent for t in discontinuities(e, t0, t1)})
 
 
-def left(t: float) -> float:
-    """The last instant before t: at a jump, that of the value before it."""
+def just_before(t: float) -> float:
+    """The last instant before t: at a jump, the left limit is taken there."""
     return math.nextafter(t, -math.inf)
 
 
-def right(t: float) -> float:
+def just_after(t: float) -> float:
     """The first instant after t."""
     return math.nextafter(t, math.inf)
 
 
-def in_time(deadline: float | None, where: str) -> None:
-    """Raise LimitError past the deadline (time.monotonic()); `where` says how far the work has come."""
+def check_deadline(deadline: float | None, where: str) -> None:
+    """Raise LimitError past the deadline (time.monotonic()); `where`: how far the work has come."""
     if deadline is not None and time.monotonic() > deadline:
         hint = "a longer --time-limit, a coarser --tolerance, or a shorter duration"
         raise LimitError(Problem("time-limit", f"the time limit was reached {where}", hint=hint))
 
 
 class Integration:
-    """The kernel's loop over the asked instants, at most `most` steps at a time, and what it writes."""
+    """The kernel's loop over the asked instants, at most `most` steps at a time, with the arrays it writes to."""
 
     def __init__(self, layout: Layout, workspace: Workspace, method: Method, times: Array, **given: Any) -> None:
         n = self.n = layout.n_state
@@ -109,7 +109,7 @@ class Integration:
         self.loop = integration.Integration(workspace, method.arrays, start | given, output)
 
     def reached(self) -> Array:
-        """The states at the ends of the steps just done, and how near to singular the steps came, (count, n + 1)."""
+        """The states at the ends of the steps just done, and in the last column their least pivots, (count, n + 1)."""
         count = self.loop.done
         return self.passed[: count * (self.n + 1)].reshape(count, self.n + 1).copy()
 
@@ -120,16 +120,16 @@ class Integration:
 
 
 class Steps:
-    """The steps done: their ends, how near to singular each came, and some of their states to go back to."""
+    """The steps done: the instants of their ends, their least pivots, and some of the states for replays."""
 
     def __init__(self, start: Array) -> None:
         self.ends: list[float] = []
         self.pivots: list[Array] = []
-        self.kept: list[tuple[int, Array]] = [(0, start)]  # before which step, the state
+        self.kept: list[tuple[int, Array]] = [(0, start)]  # number of a step, the state at its beginning
         self.every, self.room = 1, max(2, KEPT // max(len(start), 1))
 
     def add(self, run: Integration) -> None:
-        """The steps of the last call; where there are too many states, every second of them goes."""
+        """Add the steps of the last call; while there are too many states, every second of them is dropped."""
         reached, before = run.reached(), len(self.ends)
         self.ends += run.ends[: len(reached)].tolist()
         self.pivots.append(reached[:, run.n])
@@ -139,15 +139,16 @@ class Steps:
             self.kept = [(k, state) for k, state in self.kept if k % self.every == 0]
 
 
-def segments(last: float, jumps: Sequence[float]) -> list[tuple[float, float]]:
-    """First and last instant of each stretch of (0, last) without jumps."""
+def smooth_segments(last: float, jumps: Sequence[float]) -> list[tuple[float, float]]:
+    """First and last instant of each segment of (0, last) without discontinuities, which are at `jumps`."""
     limits = one_sided_limits([t for t in jumps if 0.0 < t < last])
-    found = list(zip([0.0, *(t for _, t in limits)], [*(t for t, _ in limits), left(last)], strict=True))
-    return [piece for piece in found if piece[1] > piece[0]] or found[-1:]  # not what is at t = 0 alone
+    segments = list(zip([0.0, *(t for _, t in limits)], [*(t for t, _ in limits), just_before(last)], strict=True))
+    # a discontinuity at t = 0 makes a first segment without length
+    return [segment for segment in segments if segment[1] > segment[0]] or segments[-1:]
 
 
 def cut_short(times: Array, run: Integration) -> tuple[Array, Array]:
-    """The instants up to where a rope would push, and that one; the states there."""
+    """The asked instants before a rope would have to push, that instant itself, and the states at all of them."""
     ts = np.append(times[: run.loop.sampled], run.loop.t)
     states = np.vstack([run.states()[: len(ts) - 1], np.array(run.loop.state())])
     return (ts[:-1], states[:-1]) if len(ts) > 1 and ts[-1] == ts[-2] else (ts, states)
@@ -166,7 +167,7 @@ class Runner:
         times: Sequence[float] | Array,
         tolerance: float,
         *,
-        halts: Sequence[float] = (),
+        discontinuities: Sequence[float] = (),
         deadline: float | None = None,
         most_steps: int = MOST_STEPS,
         method: Method = DOP853,
@@ -181,7 +182,7 @@ class Runner:
         layout = self.layout
         ts = np.ascontiguousarray(times, dtype=float)
         last = float(ts[-1]) if len(ts) else 0.0
-        # where nothing moves or pulls yet (a load like t**4), there is still a rate that matters in the time asked for
+        # at rest under a load like t**4 all rates and accelerations vanish at first: this rate then sets the scale
         rate = tolerances.LEAST_RATE / last if last > 0.0 else 0.0
         most = max(1, CHUNK // max(len(layout.mechanism.bodies), 1))
         run = Integration(
@@ -190,17 +191,17 @@ class Runner:
         )  # fmt: skip
         steps = Steps(layout.y0)
         roped = any(j.tension_only for j in layout.mechanism.joints)
-        in_time(deadline, f"before the run of {last:.6g} s began")
-        pieces = segments(last, halts)
-        for begin, before_end in pieces:
-            # up to a jump with the value before it, from there with the one after
-            run.loop.begin(begin, before_end, right(before_end))
+        check_deadline(deadline, f"before the run of {last:.6g} s began")
+        segments = smooth_segments(last, discontinuities)
+        for begin, before_end in segments:
+            # a segment ends with the left limits of what jumps, the next one begins with the right limits
+            run.loop.begin(begin, before_end, just_after(before_end))
             code = MORE
             while code == MORE:
                 code = run.loop.advance(most, roped)
                 steps.add(run)
                 if code in (REACHED, MORE):
-                    in_time(deadline, f"at t = {run.loop.t:.6g} s of {last:.6g} s")
+                    check_deadline(deadline, f"at t = {run.loop.t:.6g} s of {last:.6g} s")
                 if code == MORE and run.loop.steps > most_steps:
                     message = f"{most_steps} steps were done at t = {run.loop.t:.6g} s of {last:.6g} s"
                     raise LimitError(Problem("step-limit", message))
@@ -212,67 +213,68 @@ class Runner:
         return Trajectory(
             times=ts, states=states, ends=np.array(steps.ends), steps=run.loop.steps,
             evaluations=run.loop.evaluations, gap=run.loop.gap, tolerance=tolerance, method=method,
-            seconds=time.perf_counter() - begun, pieces=tuple(pieces), kept=tuple(steps.kept),
+            seconds=time.perf_counter() - begun, segments=tuple(segments), kept=tuple(steps.kept),
             pivots=np.concatenate(steps.pivots) if steps.pivots else np.zeros(0),
             stopped=None if code == REACHED else layout.mechanism.joints[layout.rows[run.loop.rope]].name,
         )  # fmt: skip
 
     def _failed(self, code: int, t: float, state: Array, last: float) -> SolveError:
-        """Why a run to `last` ends at t: an expression without a value there, else what the kernel's code says."""
+        """Why a run to `last` ends at t: an expression without a value there, else the meaning of the kernel's code."""
         name, message, hint = TROUBLE[code]
         if name != "closure-lost":
-            from heuncli.integration.domains import moving, without_value  # only on the way to an error
+            from heuncli.integration.domains import joint_coordinates, without_value  # only on the way to an error
 
-            found = self.recovered(np.array([t]), state[None, :])
-            problems = without_value(self.layout.mechanism, t, last, moving(self.layout, found.freedoms[0]))
+            recovered = self.recovered(np.array([t]), state[None, :])
+            coordinates = joint_coordinates(self.layout, recovered.freedoms[0])
+            problems = without_value(self.layout.mechanism, t, last, coordinates)
             if problems:
                 return SolveError(*problems)
         return SolveError(Problem(name, f"at t = {t:.9g} s: {message}", hint=hint))
 
-    def within(self, run: Trajectory, times: Array) -> Array:
-        """States (n_t, n) of a run at other instants (ascending, none after its end): its own steps are done again.
+    def resample(self, run: Trajectory, times: Array) -> Array:
+        """States (n_t, n) of a run at other instants (ascending, none after its end), by replaying its own steps.
 
-        Never more work than the run, and no step of its own making: what the run came through, this does.
+        It takes no other steps than the run, so it costs at most as much and succeeds wherever the run did.
         """
         n = self.layout.n_state
         times = np.ascontiguousarray(times, dtype=float)
         out = np.empty((len(times), n))
-        asked = np.minimum(np.searchsorted(run.ends, times), len(run.ends) - 1)  # which step an instant lies in
+        asked = np.minimum(np.searchsorted(run.ends, times), len(run.ends) - 1)  # the step in which an instant lies
         if not len(run.ends):
             out[:] = run.kept[0][1]
             return out
         starts = np.array([k for k, _ in run.kept])
         base = np.searchsorted(starts, asked, side="right") - 1
-        # steps in a row are done in one go
+        # consecutive steps are replayed together
         breaks = np.flatnonzero((np.diff(asked) > 1) & (np.diff(base) > 0)) + 1
         for group in np.split(np.arange(len(times)), breaks):
             if len(group):
                 first, state = run.kept[base[group[0]]]
-                out[group] = self._again(run, first, int(asked[group[-1]]), state, times[group])
+                out[group] = self.replay(run, first, int(asked[group[-1]]), state, times[group])
         return out
 
-    def _again(self, run: Trajectory, first: int, last: int, state: Array, times: Array) -> Array:
-        again = Integration(
+    def replay(self, run: Trajectory, first: int, last: int, state: Array, times: Array) -> Array:
+        replayed = Integration(
             self.layout, self.workspace, run.method, times,
             most=last - first + 1, state=state, tolerance=math.inf, rate=0.0, following=1,
         )  # fmt: skip
-        loop = again.loop
+        loop = replayed.loop
         t = run.ends[first - 1] if first else 0.0
         while first <= last:
-            begin, before_end = run.pieces[bisect_right(run.pieces, t, key=lambda piece: piece[1])]
-            end = right(before_end)
-            to = min(last, int(np.searchsorted(run.ends, end)))  # a piece ends with a step
+            begin, before_end = run.segments[bisect_right(run.segments, t, key=lambda segment: segment[1])]
+            end = just_after(before_end)
+            to = min(last, int(np.searchsorted(run.ends, end)))  # a segment ends with a step
             loop.follow(run.ends[first : to + 1])
             loop.begin(max(t, begin), before_end, end)
             loop.advance(to + 1 - first, False)
             t = loop.t
             first = to + 1
-        return again.states()
+        return replayed.states()
 
     def recovered(self, times: Array, states: Array, *, choose: bool = False) -> Recovered:
-        """Everything the sweep knows at the given states (brought onto the closures first).
+        """Accelerations and loads at the given states, which are projected onto the closures first.
 
-        choose: pick the independent closure rows at every instant anew, for poses that do not follow one another.
+        choose: select the independent closure rows anew at every instant, for poses that do not follow one another.
         """
         layout, n_t = self.layout, len(times)
         sizes = [
@@ -306,4 +308,4 @@ class Recovered:
     rows: Table
     gap: Array
     idle: Array
-    pivot: Array  # least pivot of the closures chosen at the first instant, 1: far from singular
+    pivot: Array  # least pivot of the closure rows selected at the first instant; 1: far from singular

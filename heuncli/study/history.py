@@ -12,9 +12,9 @@ import numpy as np
 
 from heuncli.expressions.programs import one_sided_limits
 from heuncli.integration.checked import Checked, checked_run, recovered_at
-from heuncli.integration.runner import Recovered, Runner, in_time, stops
-from heuncli.integration.singular import passages
-from heuncli.integration.solvable import refuse
+from heuncli.integration.runner import Recovered, Runner, check_deadline, discontinuities_of
+from heuncli.integration.singular import singular_poses
+from heuncli.integration.solvable import require_solvable
 from heuncli.records import record
 from heuncli.results import Array
 from heuncli.study.extremes import distinct
@@ -53,16 +53,16 @@ def integrate(setup: Setup, tolerance: float, deadline: float | None) -> History
     times, runner = np.array(setup.spec.analysis.times, dtype=float), setup.runner
     start = setup.scene.layout.y0[None, :]
     if setup.method is None:
-        in_time(deadline, "before the loads were found")
+        check_deadline(deadline, "before the loads were found")
         return History(runner.recovered(times[:1], start), tolerance, seconds={"integrate": 0.0, "check": 0.0})
-    refuse(setup.scene, runner.recovered(np.zeros(1), start))  # before a long run, not after it
-    jumps = tuple(stops(setup.scene.mechanism, 0.0, float(times[-1])))
+    require_solvable(setup.scene, runner.recovered(np.zeros(1), start))  # before a long run, not after it
+    jumps = tuple(discontinuities_of(setup.scene.mechanism, 0.0, float(times[-1])))
     checked = checked_run(runner, times, tolerance, jumps, deadline, setup.method)
     seconds = {"integrate": checked.run.seconds, "check": checked.check_seconds}
     if checked.lost_seconds:
         seconds["lost"] = checked.lost_seconds
-    in_time(deadline, "before the loads were found")
-    return History(checked.recovered, tolerance, checked, jumps, tuple(passages(runner, checked.run)), seconds)
+    check_deadline(deadline, "before the loads were found")
+    return History(checked.recovered, tolerance, checked, jumps, tuple(singular_poses(runner, checked.run)), seconds)
 
 
 def resample(runner: Runner, history: History, times: Array) -> Recovered:
@@ -70,7 +70,7 @@ def resample(runner: Runner, history: History, times: Array) -> Recovered:
     if history.checked is None:
         return history.recovered
     times = np.asarray(times, dtype=float)
-    return recovered_at(runner, times, runner.within(history.checked.run, times), history.jumps)
+    return recovered_at(runner, times, runner.resample(history.checked.run, times), history.jumps)
 
 
 def search_times(history: History) -> Array:

@@ -14,7 +14,7 @@ import pytest
 from scipy.integrate import solve_ivp
 
 from heuncli.integration.runner import Runner, Trajectory
-from heuncli.integration.singular import passages
+from heuncli.integration.singular import singular_poses
 from heuncli.results import Array
 from heuncli.spec.load import load
 from heuncli.study.setup import set_up
@@ -72,7 +72,7 @@ def test_passages_are_told() -> None:
     """All flat positions of the two seconds, with their instants."""
     for rate in RATES[:4]:
         found, runner = run(rate, 1e-9)
-        np.testing.assert_allclose(passages(runner, found), pendulum(rate)[1], atol=3e-6)
+        np.testing.assert_allclose(singular_poses(runner, found), pendulum(rate)[1], atol=3e-6)
     warnings = study(parallelogram(1.0, TURN, 5)).results.warnings
     assert any(w.startswith("passes through a singular pose at t = 0.70845, 1.21526 s") for w in warnings)
 

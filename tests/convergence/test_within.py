@@ -43,7 +43,7 @@ def test_the_asked_instants_again(name: str, kept: int, monkeypatch: pytest.Monk
     wanted = s.setup.runner.recovered(run.times, run.states).bodies
     for pick in (slice(None), slice(0, None, 37), slice(-1, None), slice(0, 1)):
         times = run.times[pick]
-        again = s.setup.runner.recovered(times, s.setup.runner.within(run, times)).bodies
+        again = s.setup.runner.recovered(times, s.setup.runner.resample(run, times)).bodies
         # through a flat pose rounding is magnified, by as much as the tolerance of the run allows
         tolerance = 1e-10 if name == "flat_four_bar" else 1e-12
         for name in ("R", "r"):
