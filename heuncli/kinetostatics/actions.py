@@ -22,7 +22,7 @@ class End:
     """Where an action enters a body; the moment is about `position` (n_t, 3), world.
 
     point: where that is in the body's axes (3,), None where it moves over the body. apart: the position is that of the
-    other body's point, from which this one is as far as the closure's gap or the rod's length.
+    other body's point, at a distance equal to the closure's gap or the rod's length.
     """
 
     body: int
@@ -73,14 +73,14 @@ class AppliedLoad:
     power: Array
 
 
-def applied_loads(mechanism: Mechanism, found: Recovered) -> list[AppliedLoad]:
+def applied_loads(mechanism: Mechanism, recovered: Recovered) -> list[AppliedLoad]:
     """The applied loads in the order of the spec; of a joint's load the parts of its several motions together."""
     loads: list[AppliedLoad] = []
     at = 0
     for load in mechanism.loads:
         joint = mechanism.joints[load.joint] if isinstance(load, JointLoad) else None
         count = len(JOINTS[joint.kind].motions) if joint is not None else 1
-        rows = found.loads[:, at : at + count]
+        rows = recovered.loads[:, at : at + count]
         at += count
         force, moment = rows["force"].sum(axis=1), rows["moment"].sum(axis=1)
         to, from_ = _ends(mechanism, load, joint, rows["at"][:, 0], rows["from_at"][:, 0])

@@ -1,4 +1,7 @@
-"""Places, velocities and accelerations of all bodies at the asked instants, from the kernel's answers."""
+"""Positions, velocities and accelerations of all bodies at the asked instants, from the kernel's answers.
+
+Rigid-body kinematics: v_P = v + σ × (P − O), a_P = a + σ̇ × (P − O) + σ × (σ × (P − O)); here σ is omega, σ̇ alpha.
+"""
 
 from __future__ import annotations
 
@@ -28,23 +31,23 @@ class BodyStates:
     v_centre: Array
     a_centre: Array
 
-    def place(self, body: int, point: Array) -> Array:
-        """World place of a body's point (body axes), (n_t, 3); a ground point as it is."""
+    def point_position(self, body: int, point: Array) -> Array:
+        """World position of a point given in body axes, (n_t, 3); a ground point as it is."""
         if body == GROUND:
             return np.broadcast_to(point, (len(self.x), 3))
         return self.x[:, body] + self.R[:, body] @ point
 
-    def velocity(self, body: int, place: Array) -> Array:
-        """Velocity of the body's point that is at a world place, (n_t, 3)."""
+    def velocity(self, body: int, position: Array) -> Array:
+        """Velocity of the body's point that is at a world position, (n_t, 3)."""
         if body == GROUND:
-            return np.zeros_like(place)
-        return self.v[:, body] + np.cross(self.omega[:, body], place - self.x[:, body])
+            return np.zeros_like(position)
+        return self.v[:, body] + np.cross(self.omega[:, body], position - self.x[:, body])
 
-    def acceleration(self, body: int, place: Array) -> Array:
-        """Acceleration of the body's point that is at a world place, (n_t, 3)."""
+    def acceleration(self, body: int, position: Array) -> Array:
+        """Acceleration of the body's point that is at a world position, (n_t, 3)."""
         if body == GROUND:
-            return np.zeros_like(place)
-        arm = place - self.x[:, body]
+            return np.zeros_like(position)
+        arm = position - self.x[:, body]
         w = self.omega[:, body]
         return self.a[:, body] + np.cross(self.alpha[:, body], arm) + np.cross(w, np.cross(w, arm))
 
@@ -55,11 +58,11 @@ class BodyStates:
         return self.R[:, body] @ vector
 
 
-def body_states(layout: Layout, found: Recovered) -> BodyStates:
-    """Read the kernel's rows: joint point and accelerations less g become origin, centre and true accelerations."""
+def body_states(layout: Layout, recovered: Recovered) -> BodyStates:
+    """From the kernel's values at the joint points (accelerations less g) to those of origins and centres of mass."""
     bodies = layout.mechanism.bodies
     order = [layout.place[i] for i in range(len(bodies))]
-    rows = found.bodies[:, order]
+    rows = recovered.bodies[:, order]
     R, r, w, v, alpha = (rows[name] for name in ("R", "r", "omega", "v", "alpha"))
     a = rows["a"] + layout.mechanism.gravity
 

@@ -12,13 +12,13 @@ from heuncli.results import Array, Block
 from heuncli.tree.layout import Layout
 
 
-def coordinates(layout: Layout, found: Recovered, states: BodyStates) -> Block:
+def coordinates(layout: Layout, recovered: Recovered, states: BodyStates) -> Block:
     """angle, rate, acceleration of pins; travel, speed, acceleration of slides; both of cylinders."""
     block: Block = {}
     for k, joint in enumerate(layout.mechanism.joints):
         kind = JOINTS[joint.kind]
         if "angle" in kind.coordinates:
-            block[joint.name] = _turning(layout, found, states, k, joint)
+            block[joint.name] = _turning(layout, recovered, states, k, joint)
         if "travel" in kind.coordinates:
             travel = _sliding(states, joint)
             if joint.name in block:
@@ -27,18 +27,18 @@ def coordinates(layout: Layout, found: Recovered, states: BodyStates) -> Block:
     return block
 
 
-def _turning(layout: Layout, found: Recovered, states: BodyStates, k: int, joint: Joint) -> Block:
+def _turning(layout: Layout, recovered: Recovered, states: BodyStates, k: int, joint: Joint) -> Block:
     n = states.direction(joint.a, joint.axis)
     zero = np.zeros_like(n)
     wa, ua = (states.omega[:, joint.a], states.alpha[:, joint.a]) if joint.a >= 0 else (zero, zero)
     wb, ub = (states.omega[:, joint.b], states.alpha[:, joint.b]) if joint.b >= 0 else (zero, zero)
     rate = np.sum(n * (wb - wa), axis=1)
-    # n turns with a: (w_a x n).(w_b - w_a) = 0, their difference is along n
+    # d/dt [n.(w_b - w_a)] = n.(u_b - u_a) + (w_a x n).(w_b - w_a); the second term is 0, for w_b - w_a is along n
     acceleration = np.sum(n * (ub - ua), axis=1)
     counted = next((i for i, f in enumerate(layout.freedoms) if f.joint == k), None)
     if counted is not None:
-        return {"angle": found.freedoms["q"][:, counted], "rate": rate, "acceleration": acceleration}
-    # a cut joint: the angle of the pose, on the turn that was counted
+        return {"angle": recovered.freedoms["q"][:, counted], "rate": rate, "acceleration": acceleration}
+    # a cut joint: the angle of the pose, in the revolution nearest to the angle that was integrated
     Ra = states.R[:, joint.a] if joint.a >= 0 else np.broadcast_to(np.eye(3), (len(n), 3, 3))
     Rb = states.R[:, joint.b] if joint.b >= 0 else np.broadcast_to(np.eye(3), (len(n), 3, 3))
     Q = np.einsum("tji,tjk,lk->til", Ra, Rb, layout.starts[k].R_ref)
@@ -46,7 +46,7 @@ def _turning(layout: Layout, found: Recovered, states: BodyStates, k: int, joint
     skew = np.stack([Q[:, 2, 1] - Q[:, 1, 2], Q[:, 0, 2] - Q[:, 2, 0], Q[:, 1, 0] - Q[:, 0, 1]], axis=1)
     sine = 0.5 * (skew @ a)
     angle = np.arctan2(sine, 0.5 * (np.trace(Q, axis1=1, axis2=2) - 1.0))
-    near = found.states[:, layout.counters[k]]
+    near = recovered.states[:, layout.counters[k]]
     return {
         "angle": angle + 2.0 * np.pi * np.round((near - angle) / (2.0 * np.pi)),
         "rate": rate,
@@ -56,15 +56,15 @@ def _turning(layout: Layout, found: Recovered, states: BodyStates, k: int, joint
 
 def _sliding(states: BodyStates, joint: Joint) -> Block:
     n = states.direction(joint.a, joint.axis)
-    Q = states.place(joint.b, joint.q)
+    Q = states.point_position(joint.b, joint.q)
     v = states.velocity(joint.b, Q) - states.velocity(joint.a, Q)
     w = states.omega[:, joint.a] if joint.a >= 0 else np.zeros_like(n)
     a = states.acceleration(joint.b, Q) - states.acceleration(joint.a, Q) - 2.0 * np.cross(w, v)
-    D = Q - states.place(joint.a, joint.p)
+    D = Q - states.point_position(joint.a, joint.p)
 
     def along(x: Array) -> Array:
-        found: Array = np.sum(n * x, axis=1)
-        return found
+        component: Array = np.sum(n * x, axis=1)
+        return component
 
     return {"travel": along(D), "speed": along(v), "acceleration": along(a)}
 
@@ -74,8 +74,10 @@ def points(mechanism: Mechanism, states: BodyStates) -> Block:
     block: Block = {}
     for i, body in enumerate(mechanism.bodies):
         for name, p in body.points.items():
-            place = states.place(i, p)
+            position = states.point_position(i, p)
             block[f"{body.name}.{name}"] = {
-                "position": place, "velocity": states.velocity(i, place), "acceleration": states.acceleration(i, place),
-            }  # fmt: skip
+                "position": position,
+                "velocity": states.velocity(i, position),
+                "acceleration": states.acceleration(i, position),
+            }
     return block

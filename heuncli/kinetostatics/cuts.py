@@ -1,7 +1,8 @@
-"""Section planes laid out: where each cut of a body runs, on which side of it things lie, and what it separates.
+"""Section planes: the cuts of each section, on which side of them attachments lie, and the pieces they separate.
 
-The piece is what lies on the side the normal n points into. A run of cuts has one normal; where something lies in the
-plane of a cut inside the run, two cuts are made, just before it and just beyond it; at the ends the one from inside.
+The piece is what lies on the side the normal n points into. A run of cuts has one normal. Where a joint, load or point
+mass lies in the plane of a cut, the section loads jump: two cuts are made there, just before and just beyond it; at the
+ends of the run only the one inside.
 """
 
 from __future__ import annotations
@@ -10,6 +11,7 @@ from collections.abc import Sequence
 from typing import Any
 
 import numpy as np
+from numpy.typing import NDArray
 
 from heuncli import tolerances
 from heuncli.errors import Problem, SpecError
@@ -53,20 +55,20 @@ class Cuts:
 
 
 def attached(mechanism: Mechanism, body: int) -> list[tuple[str, Array]]:
-    """Joints that stay where they are and loads with the points of the body, in its axes, at which they act."""
-    found: list[tuple[str, Array]] = []
+    """Loads and joints (but those whose point of action moves over the body) with their points, in body axes."""
+    points: list[tuple[str, Array]] = []
     for joint in mechanism.joints:
         if joint.b == body:
-            found.append((f"joint {joint.name}", joint.q))
+            points.append((f"joint {joint.name}", joint.q))
         if joint.a == body and not JOINTS[joint.kind].wanders:
-            found.append((f"joint {joint.name}", joint.p))
+            points.append((f"joint {joint.name}", joint.p))
     for load in mechanism.loads:
-        found += [(f"force {load.name}", point) for owner, point in load.points if owner == body]
-    return found
+        points += [(f"force {load.name}", point) for owner, point in load.points if owner == body]
+    return points
 
 
 def lay_cuts(mechanism: Mechanism, spec: Any, forms: dict[str, Form]) -> tuple[Cuts, ...]:
-    """All sections of a spec. Raises SpecError with every section that cannot be cut."""
+    """The cuts of all sections of a spec. Raises SpecError with every section that cannot be cut."""
     cuts: list[Cuts] = []
     problems: list[Problem] = []
     index = {b.name: i for i, b in enumerate(mechanism.bodies)}
@@ -88,9 +90,9 @@ def first_axis(n: Array, given: Sequence[float] | None) -> Array:
     else:
         out = np.abs(n)
         a = np.eye(3)[int(np.flatnonzero(out <= out.min() + tolerances.EQUAL_COMPONENTS)[0])]
-    e = a - (a @ n) * n
-    found: Array = e / np.sqrt(e @ e)
-    return found
+    in_plane = a - (a @ n) * n
+    e1: Array = in_plane / np.sqrt(in_plane @ in_plane)
+    return e1
 
 
 def _lay(mechanism: Mechanism, spec: Any, name: str, section: Any, index: dict[str, int], form: Form | None) -> Cuts:
@@ -98,51 +100,27 @@ def _lay(mechanism: Mechanism, spec: Any, name: str, section: Any, index: dict[s
     n = np.array(section.normal, dtype=float)
     n = n / np.sqrt(n @ n)
     e1 = first_axis(n, section.first_axis)
-    there = attached(mechanism, body)
-    things = np.array([point for _, point in there]).reshape(-1, 3) @ n
-    if section.at is not None:
-        points, s = np.array([section.at], dtype=float), None
-    else:
-        first, last = np.array(section.from_), np.array(section.to)
-        share = np.linspace(0.0, 1.0, section.count)
-        points = first + share[:, None] * (last - first)
-        points[-1] = last
-        s = share * float(np.sqrt((last - first) @ (last - first)))
+    points, s = _cut_points(section)
     d = points @ n
+    loaded = attached(mechanism, body)
+    heights = np.array([point for _, point in loaded]).reshape(-1, 3) @ n
+    near = _near(form, heights, d)
+    in_plane = np.abs(heights[None, :] - d[:, None]) <= near
+    jumps = in_plane.any(axis=1)
     if form is not None:
-        near = max(form.near, tolerances.IN_PLANE * float(np.abs(things).max(initial=0.0)))
-    else:
-        extent = max(np.abs(things).max(initial=0.0), np.abs(d).max(), tolerances.LEAST_EXTENT)
-        near = tolerances.IN_PLANE * float(extent)
-    touches = np.abs(things[None, :] - d[:, None]) <= near
-    meets = touches.any(axis=1)
-    if form is not None:
-        meets = meets | form.masses_in_plane(n, d) | form.rods_in_plane(n, d)
-    where = spec.location(f"sections.{name}")
+        jumps = jumps | form.masses_in_plane(n, d) | form.rods_in_plane(n, d)
+    location = spec.location(f"sections.{name}")
     if s is None:
-        wish = {"before": BEFORE, "beyond": BEYOND, None: 0.0}[section.side]
-        if meets[0] and section.side is None:
-            names = [name for (name, _), met in zip(there, touches[0].tolist(), strict=True) if met]
-            what = " and ".join(names) if names else "a point mass or rod of the body"
-            raise SpecError(Problem(
-                "needs-side", f"{what} {'lie' if len(names) > 1 else 'lies'} in the plane of the cut", where,
-                hint="add side: before (the cut just before it, so that it belongs to the piece) or side: beyond",
-            ))  # fmt: skip
-        side = np.array([wish])  # also for what only comes into the plane later
+        if jumps[0] and section.side is None:
+            raise SpecError(
+                _needs_side([what for (what, _), on in zip(loaded, in_plane[0], strict=True) if on], location)
+            )
+        # kept also where nothing lies in the plane: joints may move into it during the run
+        side = np.array([{"before": BEFORE, "beyond": BEYOND, None: 0.0}[section.side]])
     else:
-        rows = []
-        for k, meet in enumerate(meets.tolist()):
-            if not meet:
-                rows.append((k, 0.0))
-            elif k == 0:
-                rows.append((k, BEYOND))
-            elif k == len(d) - 1:
-                rows.append((k, BEFORE))
-            else:
-                rows += [(k, BEFORE), (k, BEYOND)]
-        take = [k for k, _ in rows]
-        points, s, d, side = points[take], s[take], d[take], np.array([x for _, x in rows])
-    pieces, centroids, warnings = _pieces(where, name, section, form, n, d, side, s is not None)
+        take, side = _sides_of_run(jumps)
+        points, s, d = points[take], s[take], d[take]
+    pieces, centroids, warnings = _cut_pieces(location, name, section, form, n, d, side, s is not None)
     about: str | tuple[int, Array] = "at"
     if section.reduce_to == "centroid":
         about = "centroid"
@@ -150,53 +128,83 @@ def _lay(mechanism: Mechanism, spec: Any, name: str, section: Any, index: dict[s
         end = section.reduce_to
         about = (GROUND if end.body == "ground" else index[end.body], np.array(end.point))
     return Cuts(
-        name,
-        body,
-        n,
-        e1,
-        np.cross(n, e1),
-        points,
-        s,
-        side,
-        near,
-        pieces,
-        centroids,
-        about,
-        section.reduce_to == "line",
-        section.properties,
-        section.strength,
-        warnings,
+        name=name, body=body, n=n, e1=e1, e2=np.cross(n, e1), points=points, s=s, side=side, near=near, pieces=pieces,
+        centroids=centroids, about=about, line=section.reduce_to == "line", properties=section.properties,
+        strength=section.strength, warnings=warnings,
+    )  # fmt: skip
+
+
+def _cut_points(section: Any) -> tuple[Array, Array | None]:
+    """Points of the cuts (k, 3) and their distances along the run (k,), None for a single cut."""
+    if section.at is not None:
+        return np.array([section.at], dtype=float), None
+    first, last = np.array(section.from_), np.array(section.to)
+    share = np.linspace(0.0, 1.0, section.count)
+    points = first + share[:, None] * (last - first)
+    points[-1] = last
+    return points, share * float(np.sqrt((last - first) @ (last - first)))
+
+
+def _near(form: Form | None, heights: Array, d: Array) -> float:
+    """The distance [m] from a plane up to which a point counts as in it: rounding of the coordinates."""
+    extent = float(np.abs(heights).max(initial=0.0))
+    if form is not None:
+        return max(form.near, tolerances.IN_PLANE * extent)
+    return tolerances.IN_PLANE * max(extent, float(np.abs(d).max()), tolerances.LEAST_EXTENT)
+
+
+def _needs_side(names: list[str], location: Any) -> Problem:
+    """The problem of a single cut with something in its plane and no side given."""
+    what = " and ".join(names) if names else "a point mass or rod of the body"
+    hint = "add side: before (the cut just before it, so that it belongs to the piece) or side: beyond"
+    return Problem(
+        "needs-side", f"{what} {'lie' if len(names) > 1 else 'lies'} in the plane of the cut", location, hint
     )
 
 
-def _pieces(
-    where: Any, name: str, section: Any, form: Form | None, n: Array, d: Array, side: Array, run: bool
+def _sides_of_run(jumps: NDArray[np.bool_]) -> tuple[list[int], Array]:
+    """For each cut of a run the index of its point and its side: two cuts where the loads jump, at the ends one."""
+    rows: list[tuple[int, float]] = []
+    for k, jump in enumerate(jumps.tolist()):
+        if not jump:
+            rows.append((k, 0.0))
+        elif k == 0:
+            rows.append((k, BEYOND))
+        elif k == len(jumps) - 1:
+            rows.append((k, BEFORE))
+        else:
+            rows += [(k, BEFORE), (k, BEYOND)]
+    return [k for k, _ in rows], np.array([side for _, side in rows])
+
+
+def _cut_pieces(
+    location: Any, name: str, section: Any, form: Form | None, n: Array, d: Array, side: Array, run: bool
 ) -> tuple[Array, Array | None, tuple[str, ...]]:
     if form is None:
         if section.piece is None:
             raise SpecError(Problem(
-                "needs-shapes", f"the body {section.body} has no shapes to cut", where,
+                "needs-shapes", f"the body {section.body} has no shapes to cut", location,
                 hint="build the body from shapes, or give a single cut its piece: {mass, center, inertia}",
             ))  # fmt: skip
         piece = section.piece
         return pseudo_inertia(piece.mass, np.array(piece.center), np.array(piece.inertia))[None], None, ()
-    # the ends of a run lie in end faces: there the limit from inside counts
+    # the ends of a run may lie in end faces: there the limits from inside are taken
     inside = side.copy()
     if run:
         inside[0], inside[-1] = BEYOND, BEFORE
-    figures = form.figures(n, d, inside)
-    if (figures.places == 0).any():
+    cross_sections = form.cross_sections(n, d, inside)
+    if (cross_sections.regions == 0).any():
         at = "a cut of the run" if run else "the plane"
         low, high = form.extent(n)
-        lies = float(d[figures.places == 0][0])
+        lies = float(d[cross_sections.regions == 0][0])
         hint = f"along the normal the body reaches from {low:.6g} to {high:.6g} m, the plane lies at {lies:.6g} m"
-        raise SpecError(Problem("misses-body", f"{at} does not meet the body {section.body}", where, hint))
+        raise SpecError(Problem("misses-body", f"{at} does not meet the body {section.body}", location, hint))
     warnings = []
-    if (figures.places > 1).any():
-        most = int(figures.places.max())
+    if (cross_sections.regions > 1).any():
+        most = int(cross_sections.regions.max())
         what = f"meets the body {section.body} in {most} separate places; the loads are their sum"
         warnings.append(f"sections.{name}: the plane {what}")
     if form.rods_in_plane(n, d).any():
         what = f"runs along a rod of the body {section.body}; the rod's mass lies on the side chosen"
         warnings.append(f"sections.{name}: the plane {what}")
-    return form.pieces(n, d, side), figures.centroid, tuple(warnings)
+    return form.pieces(n, d, side), cross_sections.centroid, tuple(warnings)

@@ -15,7 +15,7 @@ from heuncli.results import Array, Block
 from heuncli.tree.layout import Layout
 
 
-def energy(layout: Layout, found: Recovered, states: BodyStates, loads: Sequence[AppliedLoad]) -> Block:
+def energy(layout: Layout, recovered: Recovered, states: BodyStates, loads: Sequence[AppliedLoad]) -> Block:
     """Kinetic energy, potential energy (gravity from the world's origin, springs), work of all else, (n_t,) [J]."""
     mechanism = layout.mechanism
     m = np.array([b.mass for b in mechanism.bodies])
@@ -28,7 +28,7 @@ def energy(layout: Layout, found: Recovered, states: BodyStates, loads: Sequence
         load = applied.load
         if isinstance(load, PairLoad) and load.value is None:
             potential = potential + 0.5 * load.stiffness * np.square(applied.length - load.length)
-    work = found.states[:, layout.work_at] if layout.work_at >= 0 else np.zeros_like(kinetic)
+    work = recovered.states[:, layout.work_at] if layout.work_at >= 0 else np.zeros_like(kinetic)
     return {"kinetic": kinetic, "potential": potential, "work": work}
 
 

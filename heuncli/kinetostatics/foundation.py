@@ -25,8 +25,8 @@ def inertia_loads(mechanism: Mechanism, states: BodyStates) -> tuple[Array, Arra
     w = np.einsum("tnji,tnj->tni", states.R, states.omega)
     u = np.einsum("tnji,tnj->tni", states.R, states.alpha)
     spin = np.einsum("nij,tnj->tni", inertia, u) + np.cross(w, np.einsum("nij,tnj->tni", inertia, w))
-    found = m[:, None] * states.a_centre, np.einsum("tnij,tnj->tni", states.R, spin)
-    return in_plane(*found) if mechanism.planar else found
+    loads = m[:, None] * states.a_centre, np.einsum("tnij,tnj->tni", states.R, spin)
+    return in_plane(*loads) if mechanism.planar else loads
 
 
 def foundation(mechanism: Mechanism, states: BodyStates, actions: Sequence[Action], about: Array) -> Block:
@@ -47,7 +47,7 @@ def foundation(mechanism: Mechanism, states: BodyStates, actions: Sequence[Actio
             supports[action.name] = {"force": on_ground[0], "moment": on_ground[1]}
         elif on_ground is not None:
             name = action.name
-            if action.kind == "drive" and name in elements:  # a force may bear its name, too
+            if action.kind == "drive" and name in elements:  # a force may have the same name
                 name = f"drives.{name}"
             elements[name] = {"force": on_ground[0], "moment": on_ground[1], "point": on_ground[2].copy()}
     orbital = np.cross(arm, ma).sum(axis=1)

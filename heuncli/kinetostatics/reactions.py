@@ -1,9 +1,9 @@
-"""Joint reactions: what each joint's constraint alone makes `from` exert on `to`, about the `to` point.
+"""Joint reactions: force and moment of each joint's constraint, ON `to` by `from`, about the `to` point.
 
-A joint of the tree gives them by the balance of all that hangs on it; a cut joint by its multipliers, sum of
-lambda (f, m).
-Components along free directions are zero by the meaning of the joint; what the sweep left there as rounding goes into
-the balance residual of the bodies, where it can be seen.
+For a joint of the tree they follow from the balance of the branch beyond it; for a cut joint from its multipliers,
+sum of lambda (f, m).
+Components along free directions are zero by definition of the joint. The rounding that the sweep leaves there is not
+hidden: it enters the balance residual of the bodies.
 """
 
 from __future__ import annotations
@@ -57,30 +57,30 @@ class JointLoads:
         return self.force + self.drive_force, self.moment + self.drive_moment
 
 
-def joint_loads(layout: Layout, found: Recovered, states: BodyStates) -> list[JointLoads]:
+def joint_loads(layout: Layout, recovered: Recovered, states: BodyStates) -> list[JointLoads]:
     """Reactions of all joints, in the order of the spec."""
     hang_of = {h.joint: (i, h) for i, h in enumerate(layout.spanning.hangs) if h.joint >= 0}
     loads = []
     for k, joint in enumerate(layout.mechanism.joints):
         kind = JOINTS[joint.kind]
-        point = states.place(joint.b, joint.q)
+        point = states.point_position(joint.b, joint.q)
         axis = states.direction(joint.a, joint.axis) if kind.has_axis else None
         drive = tension = None
         if k in hang_of:
             i, h = hang_of[k]
-            force, moment = found.bodies["joint_force"][:, i], found.bodies["joint_moment"][:, i]
+            force, moment = recovered.bodies["joint_force"][:, i], recovered.bodies["joint_moment"][:, i]
             if h.reverse:
-                arm = states.place(joint.a, joint.p) - point
+                arm = states.point_position(joint.a, joint.p) - point
                 force, moment = -force, -moment - np.cross(arm, force)
             for n, freedom in enumerate(layout.freedoms):
                 if freedom.joint == k and freedom.q < 0:
-                    drive = found.freedoms["drive"][:, n]
+                    drive = recovered.freedoms["drive"][:, n]
         else:
-            force, moment = (_of_joint(layout, k, found.rows, of) for of in ("f", "m"))
+            force, moment = (_of_joint(layout, k, recovered.rows, of) for of in ("f", "m"))
             if kind.keeps_distance:
-                push = found.rows["multiplier"][:, layout.rows.index(k)]
+                push = recovered.rows["multiplier"][:, layout.rows.index(k)]
                 drive, tension = (push if joint.drive is not None else None), -push
-        force, moment = carried(joint, states, force, moment)
+        force, moment = constrained_part(joint, states, force, moment)
         if layout.mechanism.planar:
             force, moment = in_plane(force, moment)
         loads.append(JointLoads(joint, point, force, moment, axis, drive, tension))
@@ -101,8 +101,8 @@ def in_plane(force: Array, moment: Array) -> tuple[Array, Array]:
     return force * np.array([1.0, 1.0, 0.0]), moment * np.array([0.0, 0.0, 1.0])
 
 
-def carried(joint: Joint, states: BodyStates, force: Array, moment: Array) -> tuple[Array, Array]:
-    """Force and moment less their parts along what the joint leaves free (drives act there, and are told apart)."""
+def constrained_part(joint: Joint, states: BodyStates, force: Array, moment: Array) -> tuple[Array, Array]:
+    """Force and moment without their components in the joint's free directions (drives are reported apart)."""
     kind = JOINTS[joint.kind]
     if kind.ball:
         moment = np.zeros_like(moment)

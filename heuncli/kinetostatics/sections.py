@@ -25,7 +25,7 @@ from heuncli.results import Array, Block, Mask
 
 @record
 class Attachment:
-    """A load that enters a body at a place: force and couple ON the body, body axes, (n_t, 3); at (3,) or (n_t, 3)."""
+    """Force and couple ON a body, body axes, (n_t, 3); at: their point (3,), or (n_t, 3) if it moves over the body."""
 
     at: Array
     force: Array
@@ -33,48 +33,48 @@ class Attachment:
 
 
 def attachments(body: int, states: BodyStates, actions: Sequence[Action]) -> list[Attachment]:
-    """What actions put on a body, each at the point where it enters, or where it is at the instant."""
+    """The loads of the actions on a body, each at its point of application."""
     R = states.R[:, body]
-    on: list[Attachment] = []
+    attached: list[Attachment] = []
     for action in actions:
         for end, force, moment in action.on_bodies():
             if end.body != body:
                 continue
-            F, M = _inward(R, force), _inward(R, moment)
+            F, M = in_body_axes(R, force), in_body_axes(R, moment)
             if end.point is None:
-                on.append(Attachment(_inward(R, end.position - states.x[:, body]), F, M))
+                attached.append(Attachment(in_body_axes(R, end.position - states.x[:, body]), F, M))
                 continue
             if end.apart:
-                M = M + np.cross(_inward(R, end.position - states.x[:, body]) - end.point, F)
-            on.append(Attachment(end.point, F, M))
-    return on
+                M = M + np.cross(in_body_axes(R, end.position - states.x[:, body]) - end.point, F)
+            attached.append(Attachment(end.point, F, M))
+    return attached
 
 
-def _inward(R: Array, v: Array) -> Array:
-    found: Array = (R.transpose(0, 2, 1) @ v[:, :, None])[:, :, 0]
-    return found
+def in_body_axes(R: Array, v: Array) -> Array:
+    components: Array = (R.transpose(0, 2, 1) @ v[:, :, None])[:, :, 0]
+    return components
 
 
 HUGE = 1 << 19  # doubles from which NumPy asks for huge pages: first touch of fresh pages costs more than the products
 
 
-def room(count: int, n_t: int, k: int) -> Array:
-    """Fresh space for `count` arrays of (n_t, k) side by side, flat."""
+def scratch(count: int, n_t: int, k: int) -> Array:
+    """Uninitialised memory for `count` arrays of (n_t, k) side by side, flat."""
     size = count * n_t * k
     return np.empty(max(size, HUGE) if size > HUGE // 8 else size)[:size]
 
 
 def on_piece(cuts: Cuts, at: Array) -> Array:
-    """Whether a place lies on the piece of each cut: (k,), or (n_t, k) for a wandering place."""
+    """1 where a point lies on the piece of a cut, else 0: (k,), or (n_t, k) for a point that moves over the body."""
     beyond = at[..., None, :] @ cuts.n - cuts.points @ cuts.n
-    found: Array = np.where(np.abs(beyond) <= cuts.near, (cuts.side > 0.0), beyond > 0.0).astype(float)
-    return found
+    mask: Array = np.where(np.abs(beyond) <= cuts.near, (cuts.side > 0.0), beyond > 0.0).astype(float)
+    return mask
 
 
 def acceleration_matrix(body: int, states: BodyStates, gravity: Array) -> Array:
     """Acc = [hat(sigma.) + hat(sigma)^2, x_o.. - g] in body axes, rows first: (3, n_t, 4)."""
     R = states.R[:, body]
-    w, u = _inward(R, states.omega[:, body]), _inward(R, states.alpha[:, body])
+    w, u = in_body_axes(R, states.omega[:, body]), in_body_axes(R, states.alpha[:, body])
     A = np.empty((3, len(R), 4))
     square = np.sum(w * w, axis=1)
     for i in range(3):
@@ -83,15 +83,16 @@ def acceleration_matrix(body: int, states: BodyStates, gravity: Array) -> Array:
         A[i, :, i] -= square
         A[i, :, (i + 1) % 3] -= u[:, (i + 2) % 3]
         A[i, :, (i + 2) % 3] += u[:, (i + 1) % 3]
-    A[:, :, 3] = _inward(R, states.a[:, body] - gravity).T
+    A[:, :, 3] = in_body_axes(R, states.a[:, body] - gravity).T
     return A
 
 
 def piece_loads(cuts: Cuts, A: Array, on: Sequence[Attachment]) -> tuple[Array, Array]:
     """s' and M' about the cuts' own points, body axes, (3, n_t, k) each; A (3, n_t, 4): see acceleration_matrix.
 
-    Inertia and what is attached for good are one product of instants and cuts a component: (n_t, 4 + m) (4 + m, k), the
-    levers from the cut's point in the second factor. A wandering attachment changes pieces and is added by itself.
+    Inertia and the loads at fixed points are one product of instants and cuts a component, (n_t, 4 + m) (4 + m, k); the
+    levers from the cut's point are in the second factor. A load whose point moves over the body may change pieces and
+    is added by itself.
     """
     P, p = cuts.pieces.transpose(1, 2, 0), cuts.points.T
     fixed = [a for a in on if a.at.ndim == 1]
@@ -99,7 +100,7 @@ def piece_loads(cuts: Cuts, A: Array, on: Sequence[Attachment]) -> tuple[Array, 
     mask = np.array([on_piece(cuts, a.at) for a in fixed]).reshape(-1, len(cuts.points))
     B = [np.concatenate([A[i], *(a.force[:, i : i + 1] for a in fixed)], axis=1) for i in range(3)]
     C = np.concatenate([-P[:, 3], mask])
-    force, moment = room(6, A.shape[1], len(cuts.points)).reshape(2, 3, A.shape[1], -1)
+    force, moment = scratch(6, A.shape[1], len(cuts.points)).reshape(2, 3, A.shape[1], -1)
     for i in range(3):
         j, k = (i + 1) % 3, (i + 2) % 3
         np.matmul(B[i], C, out=force[i])
@@ -144,24 +145,27 @@ class Planes:
     about: Array
     centre: Array
 
-    def outward(self, v: Array, out: Array | None = None, place: bool = False) -> Array:
-        """World components (n_t, k, 3) of a vector, or the world place, in body axes (3, n_t, k)."""
-        found = np.empty(v.shape) if out is None else out
+    def in_world_axes(self, v: Array, out: Array | None = None, is_position: bool = False) -> Array:
+        """World components (n_t, k, 3) of a vector (3, n_t, k) in body axes, or of a position from the origin."""
+        world = np.empty(v.shape) if out is None else out
         if v.strides[1] == 0:  # the same at all instants: one product
-            np.matmul(self.R.transpose(1, 0, 2), v[:, 0], out=found)
+            np.matmul(self.R.transpose(1, 0, 2), v[:, 0], out=world)
         else:
-            np.matmul(self.R, v.transpose(1, 0, 2), out=found.transpose(1, 0, 2))
-        if place:
-            found += self.origin.T[:, :, None]
-        return found.transpose(1, 2, 0)
+            np.matmul(self.R, v.transpose(1, 0, 2), out=world.transpose(1, 0, 2))
+        if is_position:
+            world += self.origin.T[:, :, None]
+        return world.transpose(1, 2, 0)
 
     def components(self, force: Array, moment: Array) -> Block:
         """All components of loads given about the cuts' points; T0, M10, M20 about the centroid, for stresses."""
         about = moment if self.about is self.at else shifted(force, moment, self.about - self.at)
         c = self.cuts
         _, n_t, k = force.shape
-        space = room(15, n_t, k).reshape(15, n_t, k)
-        found: Block = {"force": self.outward(force, space[9:12]), "moment": self.outward(about, space[12:15])}
+        space = scratch(15, n_t, k).reshape(15, n_t, k)
+        block: Block = {
+            "force": self.in_world_axes(force, space[9:12]),
+            "moment": self.in_world_axes(about, space[12:15]),
+        }
         rows = [
             ("N", c.n, force),
             ("Q1", c.e1, force),
@@ -173,22 +177,22 @@ class Planes:
         if c.properties is not None:
             centre = moment if self.centre is self.at else shifted(force, moment, self.centre - self.at)
             rows += [("T0", c.n, centre), ("M10", c.e1, centre), ("M20", c.e2, centre)]
-        for place, (name, axis, v) in zip(space, rows, strict=False):
-            found[name] = along(axis, v, place)
-        return found
+        for out, (name, axis, v) in zip(space, rows, strict=False):
+            block[name] = along(axis, v, out)
+        return block
 
 
 def along(axis: Array, v: Array, out: Array | None = None) -> Array:
-    """axis . v of vectors (3, n_t, k), (n_t, k); what does not contribute is not multiplied."""
+    """axis . v of vectors (3, n_t, k), (n_t, k); terms with a zero in axis are skipped."""
     (first, x), *rest = [(i, x) for i, x in enumerate(axis.tolist()) if x != 0.0]
-    found: Array = np.multiply(v[first], x, out=out)
+    component: Array = np.multiply(v[first], x, out=out)
     for i, x in rest:
-        found += x * v[i]
-    return found
+        component += x * v[i]
+    return component
 
 
 def planes(cuts: Cuts, states: BodyStates) -> Planes:
-    """Places of the cuts at the asked instants."""
+    """Points of the cuts, of their moments and their centroids at the asked instants."""
     R, x = states.R[:, cuts.body], states.x[:, cuts.body]
     shape = (3, len(R), len(cuts.points))
     at = np.broadcast_to(cuts.points.T[:, None], shape)
@@ -196,7 +200,7 @@ def planes(cuts: Cuts, states: BodyStates) -> Planes:
     about = centre if cuts.about == "centroid" else at
     if not isinstance(cuts.about, str):
         owner, point = cuts.about
-        about = np.broadcast_to(_inward(R, states.place(owner, point) - x).T[:, :, None], shape)
+        about = np.broadcast_to(in_body_axes(R, states.point_position(owner, point) - x).T[:, :, None], shape)
     return Planes(cuts, R, x, at, about, centre)
 
 
@@ -205,7 +209,7 @@ ABOUT_CENTROID = ("T0", "M10", "M20")
 
 
 def components_at_rest(cuts: Cuts, states: BodyStates, on: Sequence[Attachment]) -> Block:
-    """All components of what attached loads alone put on the cuts, no weight, no inertia: (n_t, k), (n_t, k, 3)."""
+    """Section loads of the attached loads alone, without weight and inertia: (n_t, k), (n_t, k, 3)."""
     return planes(cuts, states).components(*piece_loads(cuts, np.zeros((3, len(states.x), 4)), on))
 
 
@@ -219,32 +223,34 @@ def section(
 ) -> Block:
     """The block of one section: a single cut without its axis of cuts, a run with `s` and `side`.
 
-    is_open: which components, of those of `Planes.components`, are indeterminate: they become nan.
+    is_open: masks of the indeterminate among the components of `Planes.components`: they become nan.
     """
     where = planes(cuts, states)
     force, moment = piece_loads(cuts, acceleration_matrix(cuts.body, states, gravity), on)
     if planar:
         force[2], moment[:2] = 0.0, 0.0
-    found = {
+    components = {
         name: np.where(is_open[name], np.nan, value) if name in is_open else value
         for name, value in where.components(force, moment).items()
     }
-    about_centroid = {name[:-1]: found.pop(name) for name in ABOUT_CENTROID if name in found}
+    about_centroid = {name[:-1]: components.pop(name) for name in ABOUT_CENTROID if name in components}
     block: Block = {
-        "point": where.outward(where.about, place=True), "normal": where.R @ cuts.n, "first_axis": where.R @ cuts.e1,
+        "point": where.in_world_axes(where.about, is_position=True),
+        "normal": where.R @ cuts.n,
+        "first_axis": where.R @ cuts.e1,
         "open": [],
-    } | found  # fmt: skip
+    } | components
     if cuts.properties is not None:
         moduli = MODULI[cuts.properties.kind](cuts.properties.values)
         block["stress"] = stresses(
-            moduli, {**{name: found[name] for name in ("N", "Q1", "Q2")}, **about_centroid}, cuts.strength
+            moduli, {**{name: components[name] for name in ("N", "Q1", "Q2")}, **about_centroid}, cuts.strength
         )
     if cuts.line:
-        sure = np.isfinite(np.sum([found[name] for name in ("N", "Q1", "Q2", "T", "M1", "M2")], axis=0))
+        sure = np.isfinite(np.sum([components[name] for name in ("N", "Q1", "Q2", "T", "M1", "M2")], axis=0))
         line = reduction_line(where, force, moment)
         block["line"] = {k: np.where(sure[..., None] if v.ndim == 3 else sure, v, np.nan) for k, v in line.items()}
     if cuts.s is None:
-        for key in ("point", *found):
+        for key in ("point", *components):
             block[key] = block[key][:, 0]
         for part in {"line", "stress"} & block.keys():
             block[part] = {key: value[:, 0] for key, value in block[part].items()}
@@ -260,7 +266,7 @@ def reduction_line(where: Planes, force: Array, moment: Array) -> Block:
     is zero. nan where N = 0 (no such points, or all) or Q = 0 (all points); `kind` says which: 0 a line, 1 none, 2 all.
     theory.md 2e.
     """
-    cuts, local, outward = where.cuts, where.at, where.outward
+    cuts, local, in_world_axes = where.cuts, where.at, where.in_world_axes
     n = cuts.n[:, None, None]
     N, T = along(cuts.n, force), along(cuts.n, moment)
     Q, M_t = force - n * N, moment - n * T
@@ -279,6 +285,6 @@ def reduction_line(where: Planes, force: Array, moment: Array) -> Block:
     parallel = np.abs(twist) <= tolerances.NO_FORCE * size * size * reach
     kind = np.where(no_N, np.where(parallel, 2.0, 1.0), np.where(no_Q, 2.0, 0.0))
     return {
-        "point": outward(point, place=True), "direction": outward(direction),
-        "pressure_centre": outward(pressure, place=True), "kind": kind,
+        "point": in_world_axes(point, is_position=True), "direction": in_world_axes(direction),
+        "pressure_centre": in_world_axes(pressure, is_position=True), "kind": kind,
     }  # fmt: skip

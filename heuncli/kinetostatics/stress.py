@@ -50,7 +50,7 @@ def rectangle(v: Mapping[str, float]) -> SectionModuli:
     return SectionModuli(b * h, b * h**3 / 12.0, h * b**3 / 12.0, 0.5 * b, 0.5 * h, torsion_modulus(b, h), False)
 
 
-FIFTH = 1.0045237627951382  # sum of 1/n^5 over odd n, 31/32 zeta(5): what is left of the series falls off at once
+FIFTH = 1.0045237627951382  # sum of 1/n^5 over odd n, 31/32 zeta(5): the rest of the series converges exponentially
 
 
 def torsion_modulus(b: float, h: float) -> float:

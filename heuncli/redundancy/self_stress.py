@@ -130,7 +130,7 @@ def _shares(runner: Runner, recovered: Recovered, states: BodyStates, Z: Array) 
     for h in hangs:
         if h.reverse:  # the load is ON `from`, and about its point
             joint = joints[h.joint]
-            arm = states.place(joint.a, joint.p) - states.place(joint.b, joint.q)
+            arm = states.point_position(joint.a, joint.p) - states.point_position(joint.b, joint.q)
             force = shares[h.joint, :, :3]
             shares[h.joint, :, 3:] += np.cross(arm[:, :, None], force, axis=1)
             shares[h.joint] *= -1.0

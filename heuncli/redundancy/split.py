@@ -13,7 +13,7 @@ import numpy as np
 
 from heuncli import tolerances
 from heuncli.kinetostatics.bodies import BodyStates
-from heuncli.kinetostatics.reactions import JointLoads, carried
+from heuncli.kinetostatics.reactions import JointLoads, constrained_part
 from heuncli.records import record, replace
 from heuncli.redundancy.self_stress import SelfStress
 from heuncli.results import Array
@@ -88,7 +88,7 @@ def _wrench(load: JointLoads) -> Array:
 def _added(load: JointLoads, states: BodyStates, more: Array) -> JointLoads:
     F, M = load.whole
     F, M = F + more[:, :3], M + more[:, 3:]
-    force, moment = carried(load.joint, states, F, M)
+    force, moment = constrained_part(load.joint, states, F, M)
     drive = load.drive
     if drive is not None and load.axis is not None and load.joint.drive is not None:
         whole = M if load.joint.drive.quantity == "angle" else F

@@ -18,7 +18,7 @@ from heuncli.records import record
 from heuncli.results import Array
 from heuncli.shapes.box import Box
 from heuncli.shapes.frustum import Frustum
-from heuncli.shapes.outlines import places
+from heuncli.shapes.outlines import count_regions
 from heuncli.shapes.solids import Ball, Point, Rod, Solid
 from heuncli.spec.models import Shape, Vec
 
@@ -88,7 +88,7 @@ def solid(shape: Shape) -> Solid:
 
 
 @record
-class Figures:
+class CrossSections:
     """How planes meet a body, one entry a plane.
 
     area (k,) [m2] and centroid (k, 3) [m] of all figures together, overlaps counted as often as they occur; where only
@@ -97,7 +97,7 @@ class Figures:
 
     area: Array
     centroid: Array
-    places: NDArray[np.intp]
+    regions: NDArray[np.intp]
 
 
 @record
@@ -129,13 +129,13 @@ class Form:
         return self.in_plane(Rod, n, d)
 
     def in_plane(self, kind: type[Point] | type[Rod], n: Array, d: Array) -> NDArray[np.bool_]:
-        found = [part.lies_in(n, d, self.near) for part in self.parts if isinstance(part, kind)]
-        return np.asarray(np.any([np.zeros(len(d), dtype=bool), *found], axis=0))
+        flags = [part.lies_in(n, d, self.near) for part in self.parts if isinstance(part, kind)]
+        return np.asarray(np.any([np.zeros(len(d), dtype=bool), *flags], axis=0))
 
-    def figures(self, n: Array, d: Array, side: Array) -> Figures:
+    def cross_sections(self, n: Array, d: Array, side: Array) -> CrossSections:
         """Where the planes meet the body: limits from the given side, so that end faces and shoulders count."""
-        limits = self.met_at(n, np.concatenate([d - self.near, d + self.near]))
-        count, centroids = limits.places.reshape(2, -1), limits.centroid.reshape(2, -1, 3)
+        limits = self.cross_sections_at(n, np.concatenate([d - self.near, d + self.near]))
+        count, centroids = limits.regions.reshape(2, -1), limits.centroid.reshape(2, -1, 3)
         share = np.array([0.5 * (1.0 + side), 0.5 * (1.0 - side)]) * (count > 0)
         areas = share * limits.area.reshape(2, -1)
         weight = np.where(areas.any(axis=0), areas, share)
@@ -143,13 +143,13 @@ class Form:
         with np.errstate(invalid="ignore"):
             area = areas.sum(axis=0) / share.sum(axis=0)
             centroid = moment.sum(axis=0) / weight.sum(axis=0)[:, None]
-        return Figures(area, centroid, np.where(share > 0.0, count, 0).max(axis=0))
+        return CrossSections(area, centroid, np.where(share > 0.0, count, 0).max(axis=0))
 
-    def met_at(self, n: Array, d: Array) -> Figures:
+    def cross_sections_at(self, n: Array, d: Array) -> CrossSections:
         """Where these very planes meet the body; a plane in an end face is a matter of rounding."""
         outlines = [outline for part in self.parts for outline in part.outlines(n, d)]
         if not outlines:
-            return Figures(np.zeros(len(d)), np.full((len(d), 3), np.nan), np.zeros(len(d), dtype=np.intp))
+            return CrossSections(np.zeros(len(d)), np.full((len(d), 3), np.nan), np.zeros(len(d), dtype=np.intp))
         area, moment = (np.sum(terms, axis=0) for terms in zip(*(part.area(n, d) for part in self.parts), strict=True))
         weight = area.copy()
         bare = np.flatnonzero(area == 0.0)
@@ -158,7 +158,9 @@ class Form:
             weight[bare] += met
             moment[bare] += met[:, None] * outline.corners(bare)[:, 0]
         with np.errstate(invalid="ignore"):
-            return Figures(area, moment / weight[:, None], places(outlines, n, tolerances.TOUCHING * self.near))
+            return CrossSections(
+                area, moment / weight[:, None], count_regions(outlines, n, tolerances.TOUCHING * self.near)
+            )
 
 
 def form(shapes: Iterable[Shape]) -> Form:

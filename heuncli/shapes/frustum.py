@@ -175,8 +175,8 @@ class Frustum(Thick):
         constants = np.stack([z, self.length - z, wide - x, wide + x], axis=-1)
         slopes = np.broadcast_to(np.array([-s, s, -slope * s - c, -slope * s + c]), constants.shape)
         low, high = bounds(constants, slopes)
-        within_low, within_high = bounds(constants[:, :2], slopes[:, :2])
-        return low, high, (low == within_low) & (high == within_high) & (high > low)
+        ends_low, ends_high = bounds(constants[:, :2], slopes[:, :2])
+        return low, high, (low == ends_low) & (high == ends_high) & (high > low)
 
     def chord(self, line: Lines, radii: tuple[float, float]) -> Chord:
         """The middle line of the cuts through the full shape with these radii."""
@@ -199,8 +199,8 @@ class Frustum(Thick):
         k = len(line.d)
         widest = np.sqrt(chord.room.max(axis=-1).prod(axis=0))
         scale = widest[:, None] * np.array([1.0, max(radii), self.length])
-        found = adaptive(moments, np.zeros(k), np.ones(k), np.empty((k, 0)), scale)
-        return 2.0 * chord.length[:, None] * found
+        integrals = adaptive(moments, np.zeros(k), np.ones(k), np.empty((k, 0)), scale)
+        return 2.0 * chord.length[:, None] * integrals
 
     def area(self, n: Array, d: Array) -> tuple[Array, Array]:
         line = self.lines(n, d)
@@ -209,10 +209,10 @@ class Frustum(Thick):
             r, q = self.radii(z)
             areas = np.where((z > 0.0) & (z < self.length), np.pi * (r - q) * (r + q), 0.0)
             return areas, areas[:, None] * (self.start + z[:, None] * self.axis)
-        found = self.conic(line, self.outer)
+        section = self.conic(line, self.outer)
         if max(self.inner) > 0.0:
-            found = found - self.conic(line, self.inner)
-        areas, x, z = found.T
+            section = section - self.conic(line, self.inner)
+        areas, x, z = section.T
         return areas, np.outer(x, line.e) + np.outer(z, self.axis) + np.outer(areas, self.start)
 
     def outlines(self, n: Array, d: Array) -> tuple[Outline, ...]:

@@ -90,23 +90,23 @@ def apart(A: Array, B: Array, gap: float) -> bool:
     return False
 
 
-def within(A: Array, hole: Array, gap: float) -> bool:
+def lies_in_hole(A: Array, hole: Array, gap: float) -> bool:
     """Whether the polygon A lies in the hole, nowhere nearer than the gap to its edge."""
     normals = edge_normals(hole)
     outward = np.sign(((hole - hole.mean(axis=0)) * normals).sum(axis=-1))[:, None] * normals
     return bool(np.all((A @ outward.T).max(axis=0) <= (hole * outward).sum(axis=-1) - gap))
 
 
-def places(outlines: Sequence[Outline], n: Array, near: float) -> NDArray[np.intp]:
+def count_regions(outlines: Sequence[Outline], n: Array, near: float) -> NDArray[np.intp]:
     """Number of separate places in which each plane meets the body, (k,); what touches, or is `near` [m], is one."""
     count = np.sum([outline.met for outline in outlines], axis=0)
     several = np.flatnonzero(count > 1)
     if len(several):
-        count[several] = separate(outlines, several, n, near)
+        count[several] = count_joined(outlines, several, n, near)
     return np.asarray(count)
 
 
-def separate(outlines: Sequence[Outline], planes: Planes, n: Array, near: float) -> NDArray[np.intp]:
+def count_joined(outlines: Sequence[Outline], planes: Planes, n: Array, near: float) -> NDArray[np.intp]:
     """`places` at some planes, found by joining outlines that touch; each set of joined ones goes by its first."""
     e, f = perpendicular(n)
     shadows = [shadow(outline.corners(planes), e, f) for outline in outlines]
@@ -119,7 +119,7 @@ def separate(outlines: Sequence[Outline], planes: Planes, n: Array, near: float)
         hole, there = holes[j], hollow[j]
         if hole is None or there is None or not there[cut]:
             return False
-        return within(shadows[i].corners[cut], hole.corners[cut], gap)
+        return lies_in_hole(shadows[i].corners[cut], hole.corners[cut], gap)
 
     for i, A in enumerate(shadows):
         for j, B in enumerate(shadows[:i]):

@@ -32,7 +32,7 @@ def gauss(n: int) -> tuple[Array, Array]:
     return 0.5 * (1.0 + x), 0.5 * w
 
 
-def pieces(low: Array, high: Array, breaks: Array) -> tuple[Array, Array]:
+def intervals(low: Array, high: Array, breaks: Array) -> tuple[Array, Array]:
     """Starts and lengths (..., m + 1) of the pieces into which breaks (..., m) cut [low, high]; 0 for those outside."""
     inside = np.clip(np.nan_to_num(breaks, nan=0.0), low[..., None], high[..., None])
     edges = np.sort(np.concatenate([low[..., None], inside, high[..., None]], axis=-1), axis=-1)
@@ -41,11 +41,11 @@ def pieces(low: Array, high: Array, breaks: Array) -> tuple[Array, Array]:
 
 def piecewise(low: Array, high: Array, breaks: Array, n: int) -> tuple[Array, Array]:
     """Places and weights (..., (m + 1) n) to integrate from low to high what is of degree 2n - 1 between the breaks."""
-    starts, lengths = pieces(low, high, breaks)
+    starts, lengths = intervals(low, high, breaks)
     x, w = gauss(n)
-    places = starts[..., None] + lengths[..., None] * x
+    nodes = starts[..., None] + lengths[..., None] * x
     weights = lengths[..., None] * w
-    return places.reshape(*low.shape, -1), weights.reshape(*low.shape, -1)
+    return nodes.reshape(*low.shape, -1), weights.reshape(*low.shape, -1)
 
 
 def adaptive(f: Callable[[Array, Owners], Array], low: Array, high: Array, breaks: Array, scale: Array) -> Array:
@@ -57,31 +57,31 @@ def adaptive(f: Callable[[Array, Owners], Array], low: Array, high: Array, break
     """
     x, w = gauss(NODES)
 
-    def over(piece: Array, owner: Owners) -> Array:
-        start, length, p, q = (piece[:, i, None] for i in range(4))
+    def integral_over(interval: Array, owner: Owners) -> Array:
+        start, length, p, q = (interval[:, i, None] for i in range(4))
         psi = p + (q - p) * x
         s = np.sin(0.5 * psi)
         weight = (q - p) * w * 0.5 * length * np.sin(psi)
         values: Array = np.einsum("in,inm->im", weight, f(start + length * s * s, owner))
         return values
 
-    starts, lengths = pieces(low, high, breaks)
+    starts, lengths = intervals(low, high, breaks)
     owner, slot = np.nonzero(lengths > 0.0)
-    piece = np.stack(
+    interval = np.stack(
         [starts[owner, slot], lengths[owner, slot], np.zeros(len(owner)), np.full(len(owner), np.pi)], axis=-1
     )
-    whole = over(piece, owner)
+    whole = integral_over(interval, owner)
     total = np.zeros((len(low), whole.shape[-1]))
     limit = tolerances.QUADRATURE * np.broadcast_to(scale, total.shape)
     for depth in range(DEEPEST):
         if not len(owner):
             break
-        halves, owners = np.repeat(piece, 2, axis=0), np.repeat(owner, 2)
-        halves[0::2, 3] = halves[1::2, 2] = 0.5 * (piece[:, 2] + piece[:, 3])
-        parts = over(halves, owners)
+        halves, owners = np.repeat(interval, 2, axis=0), np.repeat(owner, 2)
+        halves[0::2, 3] = halves[1::2, 2] = 0.5 * (interval[:, 2] + interval[:, 3])
+        parts = integral_over(halves, owners)
         both = parts[0::2] + parts[1::2]
         done = np.all(np.abs(both - whole) <= limit[owner], axis=-1) | (depth == DEEPEST - 1)
         np.add.at(total, owner[done], both[done])
         open_ = np.repeat(~done, 2)
-        piece, owner, whole = halves[open_], owners[open_], parts[open_]
+        interval, owner, whole = halves[open_], owners[open_], parts[open_]
     return total

@@ -15,8 +15,8 @@ BEFORE, BEYOND, OPEN = 1.0, -1.0, 0.0
 
 
 def one(f: Form, n: Array, d: float, side: float = OPEN) -> tuple[float, Array, int]:
-    found = f.figures(n, np.array([d]), np.array([side]))
-    return float(found.area[0]), found.centroid[0], int(found.places[0])
+    found = f.cross_sections(n, np.array([d]), np.array([side]))
+    return float(found.area[0]), found.centroid[0], int(found.regions[0])
 
 
 @pytest.mark.parametrize("name", [name for name in SOLIDS if name != "rod"])
@@ -27,7 +27,7 @@ def test_area_is_how_fast_the_piece_shrinks(name: str) -> None:
         low, high = f.extent(n)
         d = d[(d > low + 0.02 * (high - low)) & (d < high - 0.02 * (high - low))]
         h = 1e-4 * (high - low)
-        area = f.figures(n, d, np.zeros(len(d)))
+        area = f.cross_sections(n, d, np.zeros(len(d)))
         slope = (beyond(f, n, d - h) - beyond(f, n, d + h))[:, :, 3] / (2 * h * 1.5)
         assert np.allclose(slope[:, 3], area.area, rtol=2e-4)
         assert np.allclose(slope[:, :3] / slope[:, 3, None], area.centroid, atol=2e-4 * (high - low))
@@ -106,8 +106,8 @@ def test_places_cut_by_cut() -> None:
     """A fork with its stem: one place below, two above."""
     tines = [Shape("box", center=(x, 0, 1.5), size=(0.2, 0.2, 1), density=1.0) for x in (-1, 1)]
     f = form([*tines, Shape("box", center=(0, 0, 0.5), size=(2.2, 0.2, 1), density=1.0)])
-    found = f.figures(Z, np.array([-0.5, 0.5, 1.5, 2.5]), np.zeros(4))
-    assert found.places.tolist() == [0, 1, 2, 0]
+    found = f.cross_sections(Z, np.array([-0.5, 0.5, 1.5, 2.5]), np.zeros(4))
+    assert found.regions.tolist() == [0, 1, 2, 0]
     assert np.allclose(found.area[1:3], [0.44, 0.08])
     assert np.isnan(found.area[[0, 3]]).all()
     assert np.isnan(found.centroid[[0, 3]]).all()
@@ -115,10 +115,12 @@ def test_places_cut_by_cut() -> None:
 
 def test_end_faces_and_shoulders_are_limits() -> None:
     """A stepped shaft: radius 2 up to z = 1, then 1 up to z = 3."""
-    f = form([
-        Shape("cylinder", from_=(0, 0, 0), to=(0, 0, 1), radius=2.0, density=1.0),
-        Shape("cylinder", from_=(0, 0, 1), to=(0, 0, 3), radius=1.0, density=1.0),
-    ])
+    f = form(
+        [
+            Shape("cylinder", from_=(0, 0, 0), to=(0, 0, 1), radius=2.0, density=1.0),
+            Shape("cylinder", from_=(0, 0, 1), to=(0, 0, 3), radius=1.0, density=1.0),
+        ]
+    )
     thick, thin = 4 * np.pi, np.pi
     assert np.isclose(one(f, Z, 1.0, BEFORE)[0], thick)
     assert np.isclose(one(f, Z, 1.0, BEYOND)[0], thin)
@@ -145,10 +147,12 @@ def test_at_a_tip_the_centroid_is_the_tip(name: str) -> None:
 
 
 def test_rods_only() -> None:
-    f = form([
-        Shape("rod", from_=(0, 0, 0), to=(2, 0, 2), line_density=1.0),
-        Shape("rod", from_=(0, 0, 0), to=(0, 0, 2), line_density=5.0),
-    ])
+    f = form(
+        [
+            Shape("rod", from_=(0, 0, 0), to=(2, 0, 2), line_density=1.0),
+            Shape("rod", from_=(0, 0, 0), to=(0, 0, 2), line_density=5.0),
+        ]
+    )
     area, centroid, places = one(f, Z, 1.0)
     assert (area, places) == (0.0, 2)
     assert np.allclose(centroid, [0.5, 0, 1], atol=1e-11)
@@ -168,10 +172,12 @@ def test_a_point_in_the_plane_needs_a_side() -> None:
 
 
 def test_a_rod_in_the_plane() -> None:
-    f = form([
-        Shape("rod", from_=(0, 0, 1), to=(1, 1, 1), mass=3.0),
-        Shape("sphere", center=(0, 0, 0), radius=0.5, mass=1.0),
-    ])
+    f = form(
+        [
+            Shape("rod", from_=(0, 0, 1), to=(1, 1, 1), mass=3.0),
+            Shape("sphere", center=(0, 0, 0), radius=0.5, mass=1.0),
+        ]
+    )
     d = np.array([1.0, 0.5])
     assert f.rods_in_plane(Z, d).tolist() == [True, False]
     assert not f.masses_in_plane(Z, d).any()
@@ -182,11 +188,13 @@ def test_a_rod_in_the_plane() -> None:
 
 @pytest.mark.parametrize("side", [BEFORE, BEYOND, OPEN])
 def test_what_lies_in_the_plane_is_counted_once(side: float) -> None:
-    f = form([
-        Shape("point", at=(0.1, 0.2, 0.3), mass=2.0),
-        Shape("rod", from_=(1, 0, 0.3), to=(0, 1, 0.3), mass=3.0),
-        Shape("sphere", center=(0, 0, 0), radius=0.5, mass=1.0),
-    ])
+    f = form(
+        [
+            Shape("point", at=(0.1, 0.2, 0.3), mass=2.0),
+            Shape("rod", from_=(1, 0, 0.3), to=(0, 1, 0.3), mass=3.0),
+            Shape("sphere", center=(0, 0, 0), radius=0.5, mass=1.0),
+        ]
+    )
     d, sides = np.array([0.3]), np.array([side])
     both = f.pieces(Z, d, sides)[0] + f.pieces(-Z, -d, -sides)[0]
     assert difference(both, f.whole(), f.whole()) < 1e-15

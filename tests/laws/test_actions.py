@@ -44,7 +44,7 @@ def test_actions_enter_at_the_points_of_their_bodies(of: tuple[object, int]) -> 
             if end.point is None or (action.from_ is None and not action.force.any()):
                 continue  # it moves over the body, or is a couple, which may enter anywhere
             seen += 1
-            lever = end.position - r.states.place(end.body, end.point)
+            lever = end.position - r.states.point_position(end.body, end.point)
             off = cross_all(lever, force) if end.apart else lever * c.force[0]
             assert np.abs(off).max() <= 1e-9 * max(c.force) * c.length
     assert seen
@@ -80,11 +80,11 @@ def test_closure_rows_do_no_work(seed: int) -> None:
     speed = max(np.abs(states.v).max() + np.abs(states.omega).max() * c.length, 1e-6)  # of some that stand still
     for row, k in enumerate(layout.rows):
         joint = layout.mechanism.joints[k]
-        Q = states.place(joint.b, joint.q)
+        Q = states.point_position(joint.b, joint.q)
         turning = spin(r, joint.b) - spin(r, joint.a)
         slip = states.velocity(joint.b, Q) - states.velocity(joint.a, Q)
         if JOINTS[joint.kind].keeps_distance:
-            slip = states.velocity(joint.b, Q) - states.velocity(joint.a, states.place(joint.a, joint.p))
+            slip = states.velocity(joint.b, Q) - states.velocity(joint.a, states.point_position(joint.a, joint.p))
         power = np.sum(force[:, row] * slip + moment[:, row] * turning, axis=1)
         assert np.abs(force[:, row]).max() + np.abs(moment[:, row]).max() >= 0.5
         assert np.abs(power).max() <= 1e-8 * speed

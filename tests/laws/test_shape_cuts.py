@@ -178,7 +178,7 @@ def test_cone_cut_askew_is_a_cone_on_an_ellipse() -> None:
     axis, apex = axis_of(SOLIDS["cone"]), np.array(SOLIDS["cone"].to)
     n = unit(axis + 0.4 * unit(np.cross(axis, [1.0, 2.0, 3.0])))
     d = n @ apex - np.array([0.05, 0.2, 0.35])
-    pieces, figures = beyond(f, n, d), f.figures(n, d, np.zeros(3))
+    pieces, figures = beyond(f, n, d), f.cross_sections(n, d, np.zeros(3))
     assert np.allclose(pieces[:, 3, 3], 1.5 * figures.area * (n @ apex - d) / 3, rtol=1e-12)
     assert np.allclose(pieces[:, :3, 3] / pieces[:, 3, 3, None], apex + 0.75 * (figures.centroid - apex), atol=1e-12)
 
