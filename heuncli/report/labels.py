@@ -94,11 +94,11 @@ def labels_of(spec: Spec) -> Labels:
 
 def _reach(body: Body) -> float:
     """The largest coordinate of the body's points and shapes [m]."""
-    places = [*body.points.values(), body.center]
+    positions = [*body.points.values(), body.center]
     for shape in body.shapes or ():
-        places += [shape.from_, shape.to, shape.at, shape.center, shape.size]
+        positions += [shape.from_, shape.to, shape.at, shape.center, shape.size]
     radii = [shape.radius or 0.0 for shape in body.shapes or ()]
-    return max((abs(x) for x in chain(radii, *filter(None, places))), default=0.0)
+    return max((abs(x) for x in chain(radii, *filter(None, positions))), default=0.0)
 
 
 def _force(force: Force) -> ForceInfo:

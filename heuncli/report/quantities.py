@@ -102,6 +102,6 @@ class _Walk(NamedTuple):
 
 
 def _node(node: Node, key: str) -> Node:
-    found = below(node, key)
-    assert isinstance(found, dict), f"{key} has no rows in the schema"
-    return found
+    child = below(node, key)
+    assert isinstance(child, dict), f"{key} has no rows in the schema"
+    return child

@@ -58,8 +58,8 @@ def aligned(table: Table) -> list[tuple[str, ...]]:
     """Head and rows of cells (without the lines across), the cells of a `point` column padded to a common point."""
     rows = [row for row in table.rows if not isinstance(row, str)]
     columns = []
-    for place, column in enumerate(table.columns):
-        cells = [row[place] for row in rows]
+    for index, column in enumerate(table.columns):
+        cells = [row[index] for row in rows]
         columns.append([column.head, *(_pad(cells) if column.align == "point" else cells)])
     return list(zip(*columns, strict=True))
 
