@@ -40,7 +40,7 @@ FAMILIES = {
 POSITIONS = frozenset({"position", "center", "point", "direction"})  # vectors whose length means nothing
 EVEN = frozenset({"radial", "tilting"})
 FREE = "nothing stands on the ground: the scene is free"
-SPOKEN_UNITS = {"Pa": ("MPa", 1e-6)}  # what the tables say instead, and how large it is
+SPOKEN_UNITS = {"Pa": ("MPa", 1e-6)}  # units of the tables that are not SI: the unit shown and the factor
 
 
 class Row(NamedTuple):
@@ -170,7 +170,7 @@ def _supports(groups: list[Group], results: Results) -> tuple[list[Group], tuple
 
 
 def _chosen(results: Results) -> tuple[str, ...]:
-    """Which components stand for one choice among many."""
+    """Which open components are shown with the values of one chosen split."""
     chosen = [
         f"{name} {' '.join(short(component) for component in joint['chosen'])}"
         for name, joint in results.joints.items()
@@ -186,7 +186,7 @@ def short(component: str) -> str:
 
 
 def _with_sum(group: Group) -> Group:
-    """The energies and their constant sum, for the eye."""
+    """The energies and their sum, which is constant."""
     part = {row.label: row.values for row in group.rows}
     if not {"kinetic", "potential", "work"} <= part.keys():
         return group

@@ -1,4 +1,4 @@
-"""What was solved, and how far to trust it: the lines above every table."""
+"""What was solved, and its estimated errors: the lines above every table."""
 
 from __future__ import annotations
 

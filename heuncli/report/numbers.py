@@ -1,4 +1,4 @@
-"""How many digits a number is shown with: no more than the run can stand behind, and never more than six.
+"""How many digits a number is shown with: no more than its error estimate supports, and never more than six.
 
 The error of a run is known by kind: that of the motion relative to the size of the scene, that of the reactions
 relative to the largest reaction. So every unit has an absolute error, and below it nothing is printed. Numbers of one
@@ -67,9 +67,12 @@ def certainty(results: Results, labels: Labels) -> Certainty:
     scales: dict[str, float] = {}
     for series in walk(results, labels):
         scales[series.unit] = max(scales.get(series.unit, 0.0), largest(series.values))
-    if "N·m" in scales:  # a moment is at least as uncertain as the largest force on the arm it may have
+    if "N·m" in scales:  # a moment is at least as uncertain as the largest force times its arm
         scales["N·m"] = max(scales["N·m"], scales.get("N", 0.0) * max(_reach(results), labels.size))
-    for turning, moving in (("rad/s", "m/s"), ("rad/s²", "m/s²")):  # and a motion at least as what turns, at its reach
+    for turning, moving in (
+        ("rad/s", "m/s"),
+        ("rad/s²", "m/s²"),
+    ):  # a velocity at least as the angular one times the body's extent
         if moving in scales:
             scales[moving] = max(scales[moving], scales.get(turning, 0.0) * labels.size)
     errors = {unit: scale * (loads if unit in LOAD_UNITS else motion) for unit, scale in scales.items()}
@@ -88,7 +91,7 @@ def style(scale: float, error: float) -> Style:
         return Style(0 if error <= 0.0 else math.floor(-math.log10(max(error, 1e-300))) - 1)
     decimals = DIGITS - 1 - math.floor(math.log10(scale))
     if scale < LARGE:
-        decimals = max(decimals, 0)  # forces of a few million newtons are read best as they are
+        decimals = max(decimals, 0)  # forces of a few million newtons are written without an exponent
     if error > 0.0:
         decimals = min(decimals, math.floor(-math.log10(error)))
     return Style(decimals, exponent=not SMALL <= scale < LARGE or decimals < 0)
@@ -114,7 +117,7 @@ def write_times(times: Sequence[float], span: float) -> list[str]:
 
 
 def rough(value: float) -> str:
-    """An error in one digit, as it is spoken of: `3e-11`, `0`."""
+    """An error to one digit: `3e-11`, `0`."""
     return f"{value:.0e}".replace("e-0", "e-").replace("e+0", "e") if value else "0"
 
 

@@ -1,4 +1,4 @@
-"""The whole report of a run as tables: which blocks stand on the page, and what has to be searched for them.
+"""The whole report of a run as tables: its blocks, and the columns whose extremes have to be searched.
 
 `page_of(results, labels)` first; then either `columns` and `groups` for a search and `extremes` with its outcome, or
 `instants`.

@@ -22,7 +22,7 @@ NO_AXIS = ("none", "none: there is no force, so no axis")
 class Plan(NamedTuple):
     """How a kind of results becomes a block: the quantities in their order, and the text about it.
 
-    `only` takes one name of the kind. What is not `lasting` (a line in space) has no extremes: it shows at instants.
+    `only` takes one name of the kind. What is not `lasting` (a line in space) has no extremes: it is shown at instants.
     `missing`: what stands for nan, and the note that explains it.
     """
 

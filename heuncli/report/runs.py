@@ -14,7 +14,7 @@ from heuncli.results import Array, Extremes, Indices, Results
 from heuncli.results_schema import row_of
 
 RESULTANTS = tuple((name, row_of(f"sections.SECTION.{name}").unit()) for name in ("N", "Q1", "Q2", "T", "M1", "M2"))
-MOST_CUTS = 25  # a diagram is read, not listed: evenly spaced cuts, with all jumps and extremes
+MOST_CUTS = 25  # of a diagram: evenly spaced cuts, with all jumps and extremes
 
 
 class Run(NamedTuple):
@@ -140,7 +140,7 @@ def _farthest(values: Array) -> Indices:
 
 
 def _steady(values: Array, how: Style) -> bool:
-    """Whether the values of one cut read the same at all instants: then none of them is the one of an extreme."""
+    """Whether the values of one cut are equal at all instants to the digits shown: then an extreme has no instant."""
     return how.write(float(np.min(values))) == how.write(float(np.max(values)))
 
 

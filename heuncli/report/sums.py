@@ -59,7 +59,7 @@ def _is_force(path: str) -> bool:
 
 
 def _opposite(terms: Mapping[str, Array]) -> bool:
-    """Whether the sum says that two components are equal."""
+    """Whether the sum states that two components are equal."""
     factors = list(terms.values())
     return len(factors) == 2 and bool(np.all(factors[0] + factors[1] == 0.0))
 

@@ -1,8 +1,8 @@
 """Bodies built from shapes: their mass properties, and those of the pieces into which planes cut them.
 
 All in body axes. A family of cuts has one unit normal n (3,) and offsets d (k,), the planes n.x = d; the piece is the
-side the normal points into. side (k,): +1 the plane is just before what lies in it, -1 just beyond it, 0 undecided: the
-mean of both.
+side the normal points into. side (k,): +1 the plane is just before what lies in it, -1 just beyond it, 0: the mean of
+both.
 """
 
 from __future__ import annotations
@@ -125,7 +125,7 @@ class Form:
         return self.in_plane(Point, n, d)
 
     def rods_in_plane(self, n: Array, d: Array) -> NDArray[np.bool_]:
-        """Whether the plane runs along a rod, (k,): the rod's mass then has no side but the one it is given."""
+        """Whether the plane contains a rod, (k,): on which side the rod's mass counts is then a choice."""
         return self.in_plane(Rod, n, d)
 
     def in_plane(self, kind: type[Point] | type[Rod], n: Array, d: Array) -> NDArray[np.bool_]:
@@ -146,7 +146,7 @@ class Form:
         return CrossSections(area, centroid, np.where(share > 0.0, count, 0).max(axis=0))
 
     def cross_sections_at(self, n: Array, d: Array) -> CrossSections:
-        """Where these very planes meet the body; a plane in an end face is a matter of rounding."""
+        """Where exactly these planes meet the body; for a plane in an end face the result depends on rounding."""
         outlines = [outline for part in self.parts for outline in part.outlines(n, d)]
         if not outlines:
             return CrossSections(np.zeros(len(d)), np.full((len(d), 3), np.nan), np.zeros(len(d), dtype=np.intp))

@@ -1,4 +1,4 @@
-"""The figures in which planes meet a body: convex outlines, and how many separate places they make up.
+"""The figures in which planes meet a body: convex outlines, and the number of separate regions they form.
 
 Only for a warning: two figures nearer to each other than 1e-3 of their size count as one.
 """
@@ -98,7 +98,7 @@ def lies_in_hole(A: Array, hole: Array, gap: float) -> bool:
 
 
 def count_regions(outlines: Sequence[Outline], n: Array, near: float) -> NDArray[np.intp]:
-    """Number of separate places in which each plane meets the body, (k,); what touches, or is `near` [m], is one."""
+    """Number of separate regions in which each plane meets the body, (k,); two that touch or are `near` [m] are one."""
     count = np.sum([outline.met for outline in outlines], axis=0)
     several = np.flatnonzero(count > 1)
     if len(several):
@@ -107,7 +107,7 @@ def count_regions(outlines: Sequence[Outline], n: Array, near: float) -> NDArray
 
 
 def count_joined(outlines: Sequence[Outline], planes: Planes, n: Array, near: float) -> NDArray[np.intp]:
-    """`places` at some planes, found by joining outlines that touch; each set of joined ones goes by its first."""
+    """`count_regions` at some planes: outlines that touch are joined, each set of joined ones labelled by its first."""
     e, f = perpendicular(n)
     shadows = [shadow(outline.corners(planes), e, f) for outline in outlines]
     holes = [None if outline.hole is None else shadow(outline.hole(planes), e, f) for outline in outlines]

@@ -1,4 +1,4 @@
-"""Integrals of functions that are smooth between known places: Gauss-Legendre from each to the next, halved if needed.
+"""Integrals of functions that are smooth between known breaks: Gauss-Legendre on each interval, halved if needed.
 
 Everything runs over many integrals at once, one for each of k cuts.
 """
@@ -33,14 +33,14 @@ def gauss(n: int) -> tuple[Array, Array]:
 
 
 def intervals(low: Array, high: Array, breaks: Array) -> tuple[Array, Array]:
-    """Starts and lengths (..., m + 1) of the pieces into which breaks (..., m) cut [low, high]; 0 for those outside."""
+    """Starts and lengths (..., m + 1) of the intervals into which breaks (..., m) divide [low, high]; 0 outside."""
     inside = np.clip(np.nan_to_num(breaks, nan=0.0), low[..., None], high[..., None])
     edges = np.sort(np.concatenate([low[..., None], inside, high[..., None]], axis=-1), axis=-1)
     return edges[..., :-1], np.diff(edges, axis=-1)
 
 
 def piecewise(low: Array, high: Array, breaks: Array, n: int) -> tuple[Array, Array]:
-    """Places and weights (..., (m + 1) n) to integrate from low to high what is of degree 2n - 1 between the breaks."""
+    """Nodes and weights (..., (m + 1) n) for integrands that are of degree 2n - 1 between the breaks."""
     starts, lengths = intervals(low, high, breaks)
     x, w = gauss(n)
     nodes = starts[..., None] + lengths[..., None] * x
@@ -51,8 +51,8 @@ def piecewise(low: Array, high: Array, breaks: Array, n: int) -> tuple[Array, Ar
 def adaptive(f: Callable[[Array, Owners], Array], low: Array, high: Array, breaks: Array, scale: Array) -> Array:
     """Integrals (k, m) of m functions from low to high, (k,), to about QUADRATURE times scale, (k, m) or (m,).
 
-    f(z, owner) takes places z (i, n) and the integrals they belong to (i,), and gives (i, n, m). At the breaks (k, j)
-    f may have square roots: z = start + length sin^2(psi/2) makes them smooth in psi, in which pieces are halved until
+    f(z, owner) takes z (i, n) and the integrals they belong to (i,), and gives (i, n, m). At the breaks (k, j) f
+    may have square roots: z = start + length sin^2(psi/2) makes them smooth in psi, in which intervals are halved until
     two halves agree with their whole.
     """
     x, w = gauss(NODES)

@@ -1,9 +1,9 @@
-"""What a shape must say about itself and a family of parallel planes; the thin ones and the ball.
+"""The protocol of solids cut by parallel planes, and the simplest of them: point, rod, ball.
 
     n (3,)   unit normal, body axes        d (k,)   offsets: the planes n.x = d        piece: the part with n.x > d
 
-A point or a rod can lie in a plane; `side` (k,) then tells: +1 the plane is just before it (it belongs to the piece),
--1 just beyond it (it does not), 0 undecided (half of it).
+A point or a rod can lie in a plane; `side` (k,) then decides: +1 the plane is just before it (it belongs to the piece),
+-1 just beyond it (it does not), 0: half of it does.
 """
 
 from __future__ import annotations
