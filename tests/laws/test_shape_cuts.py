@@ -5,6 +5,7 @@ from __future__ import annotations
 import numpy as np
 import pytest
 
+from heuncli import tolerances
 from heuncli.results import Array
 from heuncli.shapes import quadrature
 from heuncli.shapes.forms import form
@@ -146,7 +147,7 @@ def test_planes_that_graze_a_rim_lose_no_accuracy(name: str, monkeypatch: pytest
     cases = grazing(SOLIDS[name], np.random.default_rng(8), 20)
     pieces = [beyond(f, n, d) for n, d in cases]
     monkeypatch.setattr(quadrature, "NODES", 40)
-    monkeypatch.setattr(quadrature, "ENOUGH", 1e-16)
+    monkeypatch.setattr(tolerances, "QUADRATURE", 1e-16)
     monkeypatch.setattr(quadrature, "DEEPEST", 10)
     for (n, d), rough in zip(cases, pieces, strict=True):
         for one, other in zip(rough, beyond(f, n, d), strict=True):
