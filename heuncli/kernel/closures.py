@@ -55,7 +55,7 @@ def place_of(scene: cython.pointer[Scene], body: cython.int, q: Vec3) -> Vec3:
 
 
 def measure_rows(scene: cython.pointer[Scene], t: cython.double) -> cython.void:
-    """Unit load, gap, rate and gamma of every row at the present kinematics (theory: rows of loops)."""
+    """Unit load, gap, rate and gamma of every row at the present kinematics."""
     r: cython.Py_ssize_t
     for r in range(scene.closure_count):
         row: cython.pointer[Closure] = cython.address(scene.closures[r])

@@ -2,8 +2,8 @@
 
     configure   factors of tree and closures at the present kinematics: no loads
     respond     loads on the bodies -> accelerations and multipliers; inertial: with velocity terms, drives and gravity
-Accelerations, projection onto the closures, single columns (steps.py's neighbours, heuncli/response.py): all of them
-are answers of this map. theory: J M^-1 J' lambda = -(J Vdot_free + gamma).
+Accelerations (49), velocity jumps (48), projection onto the closures and single columns of loads (heuncli/response.py)
+are all answers of this map: M V + ... = loads + J' lambda, with J M^-1 J' lambda = -(J V_free + gamma).
 """
 
 from __future__ import annotations
@@ -107,10 +107,8 @@ def settle(scene: cython.pointer[Scene], t: cython.double, y: cython.p_double) -
     scene.pivot = factor_closures(scene)
     gap: cython.double = close_gaps(scene, t, y)
     correct_rates(scene, y)
-    if scene.pivot < scene.limits.near_singular:
-        pivot: cython.double = scene.pivot
+    if scene.pivot < scene.limits.near_singular:  # there the rows turn with the rates' own correction: once more
         refactor(scene, t, y)
-        scene.pivot = pivot
         correct_rates(scene, y)
     return gap
 
@@ -160,11 +158,8 @@ def close_gaps(scene: cython.pointer[Scene], t: cython.double, y: cython.p_doubl
             scene.closures[r].demand = scene.closures[r].gap
         take_back(scene)
         move(scene, y, False)
-        kinematics(scene, t, y)
-        measure_rows(scene, t)
+        refactor(scene, t, y)
         gap = largest_gap(scene)
-        factor_tree(scene)
-        scene.pivot = factor_closures(scene)
         if scene.pivot < scene.limits.near_singular:
             if gap > 0.5 * before:
                 break

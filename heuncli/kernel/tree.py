@@ -1,9 +1,11 @@
 """Trees of bodies: kinematics, and the sweep that factors the mass matrix and solves with it, O(n).
 
     [n; f] = [A C; C' K] [alpha; a] + [M_branch; f_branch]       what a joint must exert on its branch (scene.py)
-A free direction s (a unit turn or a unit shift) is eliminated by U = I s, D = s . U, I <- I - U U' / D; a ball's three
-turns at once, G = A^-1 C, after which neither A nor C is left and only K is handed on: Heun's absolute angular
-velocities, (46)-(49), the state of a ball being the attitude and the angular velocity of the body itself.
+    sum over b of M_ab omegadot_b + h_a = tau_a              (49), corrected, for any number of links: what is solved
+A, C, K are the articulated inertia of a branch, its inertia against the acceleration of its joint when all its freedoms
+give way. A free direction s (a unit turn or a unit shift) is eliminated by U = I s, D = s . U, I <- I - U U' / D; a
+ball's three turns at once, G = A^-1 C, after which neither A nor C is left and only K is handed on: Heun's absolute
+angular velocities, the state of a ball being the attitude and the angular velocity of the body itself.
 Articulated inertias: Featherstone, Rigid Body Dynamics Algorithms (2008), ch. 7.
 Gravity enters as the ground's acceleration -g, so `a` is throughout the acceleration less g. `inertial` says whether
 velocity terms, prescribed accelerations and gravity count: without them the answer is that to the loads alone.
@@ -82,7 +84,7 @@ def coordinates(scene: cython.pointer[Scene], t: cython.double, y: cython.p_doub
 
 
 def kinematics(scene: cython.pointer[Scene], t: cython.double, y: cython.p_double) -> cython.void:
-    """Attitudes, joint points, velocities and velocity terms of all bodies in the state y; clears the applied loads."""
+    """Attitudes, joint points, velocities (46) and velocity terms of all bodies at y; clears the applied loads."""
     i: cython.Py_ssize_t
     coordinates(scene, t, y)
     for i in range(scene.body_count):
@@ -157,7 +159,7 @@ def turn(body: cython.pointer[Body], freedom: cython.pointer[Freedom]) -> cython
 
 
 def velocity_terms(body: cython.pointer[Body]) -> cython.void:
-    """Inertia and first moment in world axes, omega x J omega and omega x (omega x m c); no applied loads yet."""
+    """Inertia and first moment in world axes; omega x J omega and omega x (omega x m c), the bias h of (49)."""
     zero: Vec3 = Vec3(0.0, 0.0, 0.0)
     body.mc = rotate(body.R, body.first_moment)
     body.A = turned(body.R, body.inertia)
@@ -192,7 +194,7 @@ def push(scene: cython.pointer[Scene], body: cython.int, at: Vec3, force: Vec3, 
 
 
 def factor_tree(scene: cython.pointer[Scene]) -> cython.int:
-    """Articulated inertias from the tips to the roots, reduced by every freedom that is not driven.
+    """Articulated inertias, from the tips to the roots, reduced by every freedom that is not driven.
 
     Gives the number of freedoms with no inertia behind them.
     """
@@ -400,9 +402,10 @@ def balance(scene: cython.pointer[Scene], inertial: cython.bint) -> cython.void:
 
 
 def newton_euler(body: cython.pointer[Body], inertial: cython.bint) -> cython.void:
-    """What moves one body by itself, about its joint point, less the applied loads; J in the body's axes.
+    """What moves one body by itself, less the applied loads: the lost forces (57), (58) of the whole body, reversed.
 
     M = R (J alpha + omega x J omega) + m c x a,   f = m a + alpha x m c + omega x (omega x m c)
+    About its joint point, J in the body's axes.
     """
     spin: Vec3 = transform(body.inertia, rotate_back(body.R, body.alpha))
     force: Vec3 = add_scaled(cross(body.alpha, body.mc), body.mass, body.a)
