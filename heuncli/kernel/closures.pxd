@@ -4,8 +4,8 @@ from heuncli.kernel.algebra cimport (
     Vec3, add, add_cross, add_scaled, centripetal, cross, dot, norm, rotate, rotate_back, scaled, solve, sub,
 )
 from heuncli.kernel.expressions cimport Jet, jet
-from heuncli.kernel.scene cimport Body, Closure, Counter, DOT, Freedom, GUIDE, SHIFT, Scene
-from heuncli.kernel.tree cimport direction_of, push
+from heuncli.kernel.scene cimport Body, Closure, Counter, DOT, Freedom, GUIDE, Scene
+from heuncli.kernel.tree cimport direction_of, load_along, push
 from libc.math cimport sqrt
 
 cdef struct Carried:

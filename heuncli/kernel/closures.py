@@ -31,10 +31,10 @@ if not cython.compiled:
         sub,
     )
     from heuncli.kernel.expressions import jet
-    from heuncli.kernel.scene import DOT, GUIDE, SHIFT, Body, Closure, Counter, Freedom, Scene
+    from heuncli.kernel.scene import DOT, GUIDE, Body, Closure, Counter, Freedom, Scene
     from heuncli.kernel.shadow import cython
     from heuncli.kernel.structs import Carried, Jet
-    from heuncli.kernel.tree import direction_of, push
+    from heuncli.kernel.tree import direction_of, load_along, push
 
 
 def carried(scene: cython.pointer[Scene], body: cython.int, x: Vec3) -> Carried:
@@ -190,7 +190,7 @@ def give_way(body: cython.pointer[Body], freedom: cython.pointer[Freedom]) -> cy
     """The load e = -s . (M or f) of the column that a freedom answers; M += U e / D, f likewise."""
     if freedom.driven:
         return 0.0
-    e: cython.double = -dot(freedom.s, body.f_column if freedom.kind == SHIFT else body.M_column)
+    e: cython.double = -load_along(freedom, body.M_column, body.f_column)
     body.M_column = add_scaled(body.M_column, e * freedom.D, freedom.U_turn)
     body.f_column = add_scaled(body.f_column, e * freedom.D, freedom.U_shift)
     return e

@@ -25,6 +25,7 @@ cdef void push(Scene *scene, int body, Vec3 at, Vec3 force, Vec3 moment) noexcep
 cdef int factor_tree(Scene *scene) noexcept nogil
 cdef int eliminate_ball(Body *body, double least) noexcept nogil
 cdef int eliminate(Body *body, Freedom *freedom, double least) noexcept nogil
+cdef double load_along(Freedom *freedom, Vec3 M, Vec3 f) noexcept nogil
 cdef void add_branch(Body *parent, Body *body) noexcept nogil
 cdef void upward(Scene *scene, bint inertial) noexcept nogil
 cdef double answered(Body *body, Freedom *freedom) noexcept nogil

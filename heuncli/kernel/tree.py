@@ -252,6 +252,11 @@ def eliminate(body: cython.pointer[Body], freedom: cython.pointer[Freedom], leas
     return freedom.D == 0.0
 
 
+def load_along(freedom: cython.pointer[Freedom], M: Vec3, f: Vec3) -> cython.double:
+    """What a moment and a force do along a freedom: s . M of a turn, s . f of a shift."""
+    return dot(freedom.s, f if freedom.kind == SHIFT else M)
+
+
 def add_branch(parent: cython.pointer[Body], body: cython.pointer[Body]) -> cython.void:
     """The branch hangs at the arm l: K += K_b, C += C_b + l x K_b, A += A_b + C_b l' + l C_b' + (l x K_b) l'.
 
@@ -294,7 +299,7 @@ def answered(body: cython.pointer[Body], freedom: cython.pointer[Freedom]) -> cy
     """The load e = -s . (M or f) that a freedom answers; what it gives way to goes on: M += U e / D, f likewise."""
     if freedom.driven:
         return 0.0
-    e: cython.double = -dot(freedom.s, body.f_branch if freedom.kind == SHIFT else body.M_branch)
+    e: cython.double = -load_along(freedom, body.M_branch, body.f_branch)
     body.M_branch = add_scaled(body.M_branch, e * freedom.D, freedom.U_turn)
     body.f_branch = add_scaled(body.f_branch, e * freedom.D, freedom.U_shift)
     return e
@@ -398,7 +403,7 @@ def balance(scene: cython.pointer[Scene], inertial: cython.bint) -> cython.void:
         for k in range(body.first_freedom, body.end_freedom):
             freedom: cython.pointer[Freedom] = cython.address(scene.freedoms[k])
             if freedom.driven:
-                freedom.drive = dot(freedom.s, body.f_joint if freedom.kind == SHIFT else body.M_joint)
+                freedom.drive = load_along(freedom, body.M_joint, body.f_joint)
 
 
 def newton_euler(body: cython.pointer[Body], inertial: cython.bint) -> cython.void:

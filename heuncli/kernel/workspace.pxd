@@ -1,13 +1,13 @@
 """Signatures of workspace.py for C."""
 
-from heuncli.kernel.algebra cimport Mat3, Vec3, add, add_cross, dot
+from heuncli.kernel.algebra cimport Mat3, Vec3, add, add_cross
 from heuncli.kernel.closures cimport clear_path, measure_rows, push_closures, put_unit_load
 from heuncli.kernel.expressions cimport Expressions
 from heuncli.kernel.memory cimport Memory
 from heuncli.kernel.response cimport configure, evaluate, must_choose_anew, respond, settle
-from heuncli.kernel.scene cimport Body, Closure, Counter, Freedom, Limits, Load, SHIFT, Scene, Variable
+from heuncli.kernel.scene cimport Body, Closure, Counter, Freedom, Limits, Load, Scene, Variable
 from heuncli.kernel.selection cimport select_independent_rows
-from heuncli.kernel.tree cimport balance, kinematics
+from heuncli.kernel.tree cimport balance, kinematics, load_along
 
 cdef struct Instants:         # states to recover, and room for the work
     Py_ssize_t count

@@ -18,16 +18,16 @@ except ImportError:
     from heuncli.kernel.shadow import cython
 
 if not cython.compiled:
-    from heuncli.kernel.algebra import Mat3, Vec3, add, add_cross, dot
+    from heuncli.kernel.algebra import Mat3, Vec3, add, add_cross
     from heuncli.kernel.closures import clear_path, measure_rows, push_closures, put_unit_load
     from heuncli.kernel.expressions import Expressions
     from heuncli.kernel.memory import Memory
     from heuncli.kernel.response import configure, evaluate, must_choose_anew, respond, settle
-    from heuncli.kernel.scene import SHIFT, Body, Closure, Counter, Freedom, Limits, Load, Scene, Variable
+    from heuncli.kernel.scene import Body, Closure, Counter, Freedom, Limits, Load, Scene, Variable
     from heuncli.kernel.selection import select_independent_rows
     from heuncli.kernel.shadow import cython
     from heuncli.kernel.structs import Instants
-    from heuncli.kernel.tree import balance, kinematics
+    from heuncli.kernel.tree import balance, kinematics, load_along
 
 
 def put(out: cython.p_double, at: cython.Py_ssize_t, a: Vec3) -> cython.Py_ssize_t:
@@ -205,7 +205,7 @@ def jacobian_row(scene: cython.pointer[Scene], row: cython.pointer[Closure], out
             freedom: cython.pointer[Freedom] = cython.address(scene.freedoms[k])
             out[at] = 0.0
             if not freedom.driven:
-                out[at] = dot(freedom.s, body.f_column if freedom.kind == SHIFT else body.M_column)
+                out[at] = load_along(freedom, body.M_column, body.f_column)
             at += 1
         if body.parent >= 0:
             parent: cython.pointer[Body] = cython.address(scene.bodies[body.parent])
