@@ -27,6 +27,7 @@ SHIFT = 1e-2  # weight of (d/L)² against θ²: shifts are cheap; cheaper ones (
 TURN = 0.3  # largest turn of one step [rad]
 KICKS = (1, 2, 3, 4)  # times KICK
 KICK = 0.05  # [rad]
+LEAST_DAMPING = 1e-3  # times gap²: less would not be felt, and would have to be raised again step by step
 BETTER = 0.999  # of the least gap so far: a kick that leaves more of it found nothing better
 STEPS = 200
 POLISH = 60  # steps; more only creep, where long shifts save ever smaller turns
@@ -115,7 +116,7 @@ class Fit:
                     z = _limited(_damped(r, damping * gap * gap))
             else:
                 break
-            rows, gap, damping = new_rows, new_gap, max(damping / 4.0, 1e-3)
+            rows, gap, damping = new_rows, new_gap, max(damping / 4.0, LEAST_DAMPING)
         return gap <= limit
 
     def settle(self, limit: float, kicks: Sequence[int] = KICKS) -> tuple[bool, int]:

@@ -324,6 +324,18 @@ def beside_flat(x: float) -> str:
     return verdict(four_bar(p, q, ", angular_velocity: [0, 0, 4]", tail), right).split(" singular")[0]
 
 
+def rates_at_flat(more: float) -> str:
+    """Flat bars of 1 m, the right one told to turn faster: no accelerations would keep the coupler's length.
+
+    A quarter of what may stay unsolved: what is told and what is asked for are spread over four joints.
+    """
+    faster = f"t: [2.0, 0.0, 0]}}, angular_velocity: [0, 0, {1 + more!r}]"
+    text = four_bar((1, 0), (2, 0), ", angular_velocity: [0, 0, 1]").replace("t: [2.0, 0.0, 0]}", faster)
+    return verdict(
+        text, lambda found: near(found.bodies["right"]["angular_acceleration"][0, 2], -1.2 * WEIGHT, WEIGHT)
+    )
+
+
 def inclined(x: float) -> str:
     """A bar on two balls, inclined by x: its axial force is open, and so what of it acts along z."""
     b = f"[{math.cos(x)!r}, 0, {math.sin(x)!r}]"
@@ -441,6 +453,7 @@ ROWS = (
     Row("NO_LENGTH", no_length, "refused: no-length", "fine"),
     Row("OPEN_RATE", lambda x: rates(x * BAR_SIZE * 2.0, 2.0), "fine", "refused: rates-do-not-fit"),
     Row("AT_REST", lambda x: rates(x * 1e-10 * BAR_SIZE, 0.0), "fine", "refused: rates-do-not-fit"),
+    Row("SOLVABLE", lambda x: rates_at_flat(x / 4), "warned: singular pose", "refused: singular-pose"),
     # no inertia
     Row("NO_INERTIA", lambda x: spun(0.2 * x), "refused: no-inertia", "fine"),
     Row("NO_INERTIA", wire, "thin", "turning"),
@@ -509,7 +522,6 @@ WANTED = {
     "ONE_DIRECTION": "whether advice proposes a line",
     "ALONG": "which joint the tree cuts beside a thin rod",
     "ALONG_SQUARED": "whether a thin rod loaded along a line has that line as its axis",
-    "SOLVABLE": "whether accelerations exist at the start",
     "NO_ACCELERATION": "whether accelerations exist at the start",
     "TOUCHING": "whether two outlines without extent are one",
     "CLAIMED": "the horizon",
