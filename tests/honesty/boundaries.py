@@ -327,7 +327,7 @@ def beside_flat(x: float) -> str:
 def rates_at_flat(more: float) -> str:
     """Flat bars of 1 m, the right one told to turn faster: no accelerations would keep the coupler's length.
 
-    A quarter of what may stay unsolved: what is told and what is asked for are spread over four joints.
+    The ends lack twice that much along the bars, of the 0.5 m/s^2 asked for: of a pin about its bar's centre.
     """
     faster = f"t: [2.0, 0.0, 0]}}, angular_velocity: [0, 0, {1 + more!r}]"
     text = four_bar((1, 0), (2, 0), ", angular_velocity: [0, 0, 1]").replace("t: [2.0, 0.0, 0]}", faster)
