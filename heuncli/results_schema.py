@@ -64,7 +64,7 @@ class Quantity(NamedTuple):
 
 
 def at(place: str, meaning: str, *quantities: Quantity) -> tuple[Quantity, ...]:
-    """Quantities that stand in one place of the results and share a meaning, told in their order."""
+    """Quantities that stand in one place of the results and share a meaning, in their order."""
     return tuple(q._replace(path=f"{place}.{q.path}" if place else q.path, meaning=meaning) for q in quantities)
 
 

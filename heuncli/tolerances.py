@@ -58,7 +58,7 @@ REPEATED_ROW = 1e-14  # of the largest eigenvalue: some dozen roundings, the row
 POLISHED = 1e-12  # turns [rad] and shifts (by the size): nothing is left to polish
 SUMS_BLIND = 1e-5  # the same: squares of steps below 1e-5 are 1e-10 and drown in what closing leaves in the sums
 SAME_SUM = 1e-13  # of a sum of squares: hundreds of roundings
-UNMOVED = 1e-12  # of the size, or rad: a smaller change of the start is rounding, and no choice to tell
+UNMOVED = 1e-12  # of the size, or rad: a smaller change of the start is rounding, and no choice to mention
 DUST = 1e-9  # of the size: components that a chosen value is printed without
 
 # -- same instant, same place, same direction
@@ -107,7 +107,7 @@ KERNEL: dict[str, float] = {
     "no_inertia": 1e-14,  # of the trace: some dozen roundings of the sums that make an articulated inertia
     # -- rank
     "moves_nothing": 1e-24,  # squares of loads: 1e-12 of the largest load the row could exert, its rounding
-    "across": 0.01,  # a row's answer across its arms counts to a tenth of the arm: singular is told against that
+    "across": 0.01,  # a row's answer across its arms counts to a tenth of the arm, in any pose
     "independent": 1e-11,  # a pivot is a square: rows whose independent part is 3e-6 of them still count
     "preference": 1.01,  # 1 %: rows alike but for rounding are taken in their order, which keeps the choice steady
     "pivot_drop": 1e-3,  # of a pivot: 5 digits of the multipliers lost, time to look for better rows

@@ -8,7 +8,7 @@ from typing import Any
 
 import numpy as np
 
-from heuncli.cli.entry import UsageError, tell, worst
+from heuncli.cli.entry import UsageError, report_problems, worst
 from heuncli.cli.output import emit
 from heuncli.cli.requests import Check
 from heuncli.cli.solving import choice, warn
@@ -80,7 +80,7 @@ def _check(path: str, quiet: bool) -> Checked:
         warn(spec, study.results, quiet, f"heun: {path}")
         return Checked(path, tuple(compare(study, item) for item in spec.expect))
     except HeunError as error:
-        tell(error.problems, label="" if _placed(error) else f"{path}: ")
+        report_problems(error.problems, label="" if _placed(error) else f"{path}: ")
         return Checked(path, (), error)
 
 

@@ -36,13 +36,13 @@ def enter(argv: Sequence[str]) -> int:
         return gone.exit_code
     except HeunError as error:
         _debug()
-        tell(error.problems)
+        report_problems(error.problems)
         return error.exit_code
     except KeyboardInterrupt:
         say("heun: interrupted")
         return INTERRUPTED
     except MemoryError:
-        tell([Problem("out-of-memory", "the memory does not suffice", hint="fewer samples, or --only")])
+        report_problems([Problem("out-of-memory", "the memory does not suffice", hint="fewer samples, or --only")])
         return LimitError.exit_code
     except Exception as bug:
         _debug()
@@ -50,7 +50,7 @@ def enter(argv: Sequence[str]) -> int:
         return BUG
 
 
-def tell(problems: Sequence[Problem], label: str = "") -> None:
+def report_problems(problems: Sequence[Problem], label: str = "") -> None:
     """Every problem on standard error, as place, finding, code and hint."""
     for problem in problems:
         say(f"{'' if problem.location else 'heun: '}{label}{problem}")

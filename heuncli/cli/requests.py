@@ -66,7 +66,7 @@ class Run(NamedTuple):
 
 
 class Validate(NamedTuple):
-    """Read specs and tell every error of every file."""
+    """Read specs and report every error of every file."""
 
     specs: Annotated[tuple[str, ...], Option((), "YAML files; - reads standard input.", "SPEC...")]
     quiet: Annotated[bool, Option(("--quiet", "-q"), "Nothing but errors.")] = False

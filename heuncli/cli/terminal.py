@@ -1,4 +1,4 @@
-"""Tables on a terminal: headings set off, and wide tables told in parts that fit. Impure: asks the terminal."""
+"""Tables on a terminal: headings set off, and wide tables split into parts that fit. Impure: asks the terminal."""
 
 from __future__ import annotations
 

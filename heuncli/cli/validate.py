@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from heuncli.cli.entry import tell, worst
+from heuncli.cli.entry import report_problems, worst
 from heuncli.cli.output import emit, say
 from heuncli.cli.requests import Validate
 from heuncli.errors import SpecError
@@ -19,7 +19,7 @@ def main(request: Validate) -> int:
             spec = load(path)
             warnings = [*map(str, spec.warnings), *_of_cuts(spec)]
         except SpecError as error:
-            tell(error.problems)
+            report_problems(error.problems)
             codes.append(error.exit_code)
             continue
         if not request.quiet:

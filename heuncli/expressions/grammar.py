@@ -87,7 +87,7 @@ class Scope:
 
 
 class Follows(Finding):
-    """Something this value depends on is in error; that error is told, this one is not."""
+    """Something this value depends on is in error; that error is reported, this one is not."""
 
     def __init__(self) -> None:
         super().__init__("follows", "depends on something that is in error")

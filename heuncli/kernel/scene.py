@@ -104,7 +104,7 @@ class Load(Record):
     kind: int
     a: int
     b: int
-    in_body: int  # the vector's components are in b's axes; of joint loads: told along the axis
+    in_body: int  # the vector's components are in b's axes; of joint loads: reported along the axis
     x: Program  # components of `vector` that vary; x alone for a single value
     y: Program
     z: Program

@@ -1,7 +1,7 @@
 """Which closure rows carry the motion: an independent set, by pivoted Cholesky of A over all rows, scaled.
 
 A row's scale is what its two sides answer, each alone, which no cancelling between the two can make small. How near the
-chosen ones come to depending on each other is told against what a row could answer, not what it does in this pose.
+chosen ones come to depending on each other is measured against what a row could answer, not what it does in this pose.
 """
 
 from __future__ import annotations

@@ -1,4 +1,4 @@
-"""The size of a scene, which errors are told relative to, and the points by which a body's motion is judged."""
+"""The size of a scene, which errors are relative to, and the points by which a body's motion is judged."""
 
 from __future__ import annotations
 

@@ -139,8 +139,8 @@ def _refine(
         about = [np.clip(v + side_step, a, c) for side_step in (-step, 0.0 * step, step)]
         probes = np.stack([*about, b + GOLDEN * wide], axis=1)
         asked = distinct(probes)
-        found = side[:, None] * sample(asked)[np.searchsorted(asked, probes), which[:, None]]
-        T, F = np.hstack([T, probes]), np.hstack([F, found])
+        values = side[:, None] * sample(asked)[np.searchsorted(asked, probes), which[:, None]]
+        T, F = np.hstack([T, probes]), np.hstack([F, values])
         order = np.argsort(T, axis=1, kind="stable")
         T, F = np.take_along_axis(T, order, 1), np.take_along_axis(F, order, 1)
         top = np.argmax(np.where(np.isfinite(F), F, -np.inf), axis=1)

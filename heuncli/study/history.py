@@ -53,7 +53,7 @@ def integrate(setup: Setup, tolerance: float, deadline: float | None) -> History
     times, runner = np.array(setup.spec.analysis.times, dtype=float), setup.runner
     start = setup.scene.layout.y0[None, :]
     if setup.method is None:
-        check_deadline(deadline, "before the loads were found")
+        check_deadline(deadline, "before the loads were computed")
         return History(runner.recovered(times[:1], start), tolerance, seconds={"integrate": 0.0, "check": 0.0})
     require_solvable(setup.scene, runner.recovered(np.zeros(1), start))  # before a long run, not after it
     jumps = tuple(discontinuities_of(setup.scene.mechanism, 0.0, float(times[-1])))
@@ -61,7 +61,7 @@ def integrate(setup: Setup, tolerance: float, deadline: float | None) -> History
     seconds = {"integrate": checked.run.seconds, "check": checked.check_seconds}
     if checked.lost_seconds:
         seconds["lost"] = checked.lost_seconds
-    check_deadline(deadline, "before the loads were found")
+    check_deadline(deadline, "before the loads were computed")
     return History(checked.recovered, tolerance, checked, jumps, tuple(singular_poses(runner, checked.run)), seconds)
 
 

@@ -54,25 +54,25 @@ def reasons(scene: PreparedScene, model: Block) -> list[str]:
     mechanism, layout = scene.mechanism, scene.layout
     where = "in the plane" if mechanism.planar else "in space"
     bodies = _count(len(layout.place), "body", "bodies")
-    found = [f"{bodies} {where}, {_count(model['freedoms'], 'freedom', 'freedoms')}"]
+    sentences = [f"{bodies} {where}, {_count(model['freedoms'], 'freedom', 'freedoms')}"]
     cut = [mechanism.joints[k].name for k in layout.spanning.cut]
     if cut:
-        found.append(f"closed at {_some(cut)}; the other joints make the tree that carries the motion")
+        sentences.append(f"closed at {_some(cut)}; the other joints make the tree that carries the motion")
     driven = [j.name for j in mechanism.joints if j.drive is not None]
     if driven:
-        found.append(f"driven: {_some(driven)}")
+        sentences.append(f"driven: {_some(driven)}")
     floating = [mechanism.bodies[h.body].name for h in layout.spanning.hangs if h.joint < 0]
     if floating:
-        found.append(f"carried by nothing, free: {_some(floating)}")
+        sentences.append(f"carried by nothing, free: {_some(floating)}")
     if model["redundant"]:
-        found.append(
+        sentences.append(
             f"Grübler counts {model['grubler']}, there are {model['freedoms']}: "
             f"{_count(model['redundant'], 'condition holds', 'conditions hold')} what others hold already"
         )
     for spin in scene.idle:
         name = mechanism.bodies[spin.body].name
-        found.append(f"{name}: the spin about its own axis is undetermined and harmless; taken as zero")
-    return found
+        sentences.append(f"{name}: the spin about its own axis is undetermined and harmless; taken as zero")
+    return sentences
 
 
 def held_twice(layout: Layout, stress: SelfStress) -> list[str]:

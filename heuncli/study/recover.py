@@ -92,27 +92,27 @@ def blocks(recovery: Recovery, wanted: Set[str]) -> dict[str, Any]:
     """The blocks of the reports that are wanted, as the fields of Results."""
     mechanism, layout = recovery.setup.scene.mechanism, recovery.setup.scene.layout
     recovered, states = recovery.recovered, recovery.states
-    found: dict[str, Any] = {}
+    shown: dict[str, Any] = {}
     if "foundation" in wanted:
         actions = [*recovery.applied, *joint_actions(recovery.joints)]
-        found["foundation"] = foundation(mechanism, states, actions, about(recovery.setup))
+        shown["foundation"] = foundation(mechanism, states, actions, about(recovery.setup))
     if "joints" in wanted:
-        found["joints"] = {j.joint.name: joint_block(j) for j in recovery.joints}
-    if found and recovery.decided is not None:
-        recovery.decided.show(found.get("foundation"), found.get("joints"))
+        shown["joints"] = {j.joint.name: joint_block(j) for j in recovery.joints}
+    if shown and recovery.decided is not None:
+        recovery.decided.show(shown.get("foundation"), shown.get("joints"))
     if "energy" in wanted:
-        found["energy"] = recovery.energy
+        shown["energy"] = recovery.energy
     if "motion" in wanted:
-        found["bodies"] = {b.name: body_block(states, i) for i, b in enumerate(mechanism.bodies)}
-        found["coordinates"] = coordinates(layout, recovered, states)
-        found["system_vector"] = system_vector(mechanism, states)
+        shown["bodies"] = {b.name: body_block(states, i) for i, b in enumerate(mechanism.bodies)}
+        shown["coordinates"] = coordinates(layout, recovered, states)
+        shown["system_vector"] = system_vector(mechanism, states)
     if "points" in wanted:
-        found["points"] = points(mechanism, states)
+        shown["points"] = points(mechanism, states)
     if "sections" in wanted:
-        found["sections"] = sections(recovery)
+        shown["sections"] = sections(recovery)
     if "forces" in wanted:
-        found["forces"] = forces(recovery.loads)
-    return found
+        shown["forces"] = forces(recovery.loads)
+    return shown
 
 
 def about(setup: Setup) -> Array:

@@ -45,18 +45,18 @@ def of_the_motion(history: History) -> list[str]:
     """A tolerance that was missed, singular poses, an early end."""
     assert history.checked is not None
     checked, tolerance = history.checked, history.tolerance
-    found = []
+    lines = []
     if (worst := float(checked.motion.max(initial=0.0))) > tolerance:
         missed = f"the tolerance {tolerance:.3g} was not reached"
-        found.append(f"{missed}: the motion is estimated to {worst:.2g} of the scene's size")
+        lines.append(f"{missed}: the motion is estimated to {worst:.2g} of the scene's size")
     if history.singular:
         at = ", ".join(f"{t:.6g}" for t in history.singular[:MOST_TIMES])
         at += " ..." if len(history.singular) > MOST_TIMES else ""
         goes = "this one goes on smoothly" if checked.horizon is None else "rounding decides which is followed"
-        found.append(f"passes through a singular pose at t = {at} s: another motion branches off there, {goes}")
+        lines.append(f"passes through a singular pose at t = {at} s: another motion branches off there, {goes}")
     if checked.run.stopped is not None:
-        found.append(f"stopped before the end: {status(history)['message']}")
-    return found
+        lines.append(f"stopped before the end: {status(history)['message']}")
+    return lines
 
 
 def of_ropes(setup: Setup, joints: Block) -> list[str]:
