@@ -21,6 +21,9 @@ def record(cls: type[T]) -> type[T]:
     required = frozenset(name for name in names if name not in cls.__dict__)
 
     def __init__(self: T, *values: Any, **named: Any) -> None:
+        if len(values) == len(names) and not named:
+            self.__dict__.update(zip(names, values))  # noqa: B905 - as many as there are fields
+            return
         given = dict(zip(names, values)) if values else {}  # noqa: B905 - too many are seen by their number
         given.update(named)
         if len(given) != len(values) + len(named) or not required <= given.keys() <= known:

@@ -15,7 +15,8 @@ from heuncli.kinetostatics.bodies import BodyStates
 from heuncli.kinetostatics.foundation import inertia_loads
 from heuncli.kinetostatics.reactions import in_plane
 from heuncli.mechanism.model import GROUND, Mechanism
-from heuncli.results import Array
+
+AT_ONCE = 100_000  # instants times actions that are added up together
 
 
 def balance_residual(mechanism: Mechanism, states: BodyStates, actions: Sequence[Action], size: float) -> float:
@@ -25,16 +26,18 @@ def balance_residual(mechanism: Mechanism, states: BodyStates, actions: Sequence
     force, moment = weight - ma, -spin
     largest = np.maximum(np.abs(ma).max(axis=2, initial=0.0), np.abs(weight).max(axis=1, initial=0.0))
 
-    def add_load(body: int, position: Array, F: Array, M: Array) -> None:
-        if body == GROUND:
-            return
-        force[:, body] += F
-        moment[:, body] += M + np.cross(position - states.centre[:, body], F)
-        largest[:, body] = np.maximum(largest[:, body], np.maximum(np.abs(F).max(axis=1), np.abs(M).max(axis=1) / size))
-
-    for action in actions:
-        for end, F, M in action.on_bodies():
-            add_load(end.body, end.position, F, M)
+    acting = [(end, F, M) for action in actions for end, F, M in action.on_bodies() if end.body != GROUND]
+    many = max(1, AT_ONCE // max(len(states.x), 1))
+    for first in range(0, len(acting), many):
+        ends, forces, moments = zip(*acting[first : first + many], strict=True)
+        F, M = np.stack(forces, axis=1), np.stack(moments, axis=1)
+        position = np.stack([end.position for end in ends], axis=1)
+        about_centre = M + np.cross(position - states.centre[:, [end.body for end in ends]], F)
+        of_action = np.maximum(np.abs(F).max(axis=2), np.abs(M).max(axis=2) / size)
+        for k, body in enumerate(end.body for end in ends):
+            force[:, body] += F[:, k]
+            moment[:, body] += about_centre[:, k]
+            np.maximum(largest[:, body], of_action[:, k], out=largest[:, body])
     if mechanism.planar:
         force, moment = in_plane(force, moment)
     residual = np.maximum(np.sqrt(np.sum(force**2, axis=2)), np.sqrt(np.sum(moment**2, axis=2)) / size)

@@ -28,6 +28,6 @@ def marks(body: Body) -> list[Array]:
     """
     found = [body.center, *body.points.values()]
     gyration = math.sqrt(max(float(np.trace(body.inertia)), 0.0) / (2.0 * body.mass))
-    if max(float(np.sum(np.square(p - body.center))) for p in found) < gyration**2:
+    if max(x * x + y * y + z * z for x, y, z in (np.array(found) - body.center).tolist()) < gyration**2:
         found += [body.center + gyration * e for e in np.eye(3)]
     return found

@@ -156,7 +156,7 @@ def event_stream(text: str) -> Iterator[Any]:
     try:
         while True:
             event = loader.get_event()
-            if isinstance(event, events.StreamEndEvent):
+            if type(event) is events.StreamEndEvent:
                 return
             yield event
     finally:

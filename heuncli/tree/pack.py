@@ -13,7 +13,6 @@ from heuncli.expressions.programs import Expression, Pack
 from heuncli.joint_kinds import JOINTS, Direction
 from heuncli.kernel.choose import scene as kernel
 from heuncli.mechanism.model import GROUND, Assembly, Joint, JointLoad, Mechanism, PairLoad, PointLoad
-from heuncli.mechanism.size import size_of_scene
 from heuncli.results import Array
 from heuncli.shapes.rotations import to_quaternion
 from heuncli.tree.layout import Freedom, Layout
@@ -30,8 +29,8 @@ JOINT_LOADS = {  # of the turning, of the sliding
 Scalar = tuple[int, Array, str, float, float]  # of a freedom: kind, direction, quantity, coordinate, rate
 
 
-def lay_out(mechanism: Mechanism, start: Assembly, inertias: Array, work: bool = True) -> Layout:
-    """Lay the scene out. inertias (n, 3, 3): about the centres of mass, body axes, as the motion shall use them."""
+def lay_out(mechanism: Mechanism, start: Assembly, inertias: Array, size: float, work: bool = True) -> Layout:
+    """Lay the scene out. size: of the scene [m]; inertias (n, 3, 3): about the centres of mass, of the motion."""
     pack = Pack()
     programs, uses = _programs(mechanism, pack)
     names = {j.name: k for k, j in enumerate(mechanism.joints)}
@@ -40,7 +39,7 @@ def lay_out(mechanism: Mechanism, start: Assembly, inertias: Array, work: bool =
     }
     spanning = span(mechanism, kept)
     starts = [joint_start(mechanism, start, joint) for joint in mechanism.joints]
-    builder = _Builder(mechanism, start, spanning, starts, inertias, pack, programs)
+    builder = _Builder(mechanism, start, spanning, starts, inertias, size, pack, programs)
     builder.bodies()
     builder.rows()
     builder.loads()
@@ -65,13 +64,14 @@ class _Builder:
         spanning: Spanning,
         starts: list[JointStart],
         inertias: Array,
+        size: float,
         pack: Pack,
         programs: dict[int, tuple[int, int]],
     ) -> None:
         self.mechanism, self.start, self.spanning, self.starts = mechanism, start, spanning, starts
         self.inertias, self.pack, self.programs = inertias, pack, programs
         self.place = {h.body: i for i, h in enumerate(spanning.hangs)}
-        self.size = size_of_scene(mechanism, start)
+        self.size = size
         self.reference = np.array([self._reference(h) for h in spanning.hangs])
         self.body_rows: list[dict[str, Any]] = []
         self.freedom_rows: list[dict[str, Any]] = []

@@ -30,7 +30,8 @@ def prepare(mechanism: Mechanism, t0: float = 0.0) -> PreparedScene:
 
 def arranged(mechanism: Mechanism, start: Assembly) -> PreparedScene:
     """Lay out an assembled mechanism; bodies with an undetermined spin get some inertia and no spin about its axis."""
-    idle = tuple(idle_spins(mechanism, size_of_scene(mechanism, start)))
+    size = size_of_scene(mechanism, start)
+    idle = tuple(idle_spins(mechanism, size))
     inertias = np.array([b.inertia for b in mechanism.bodies])
     omega = start.angular_velocity.copy()
     for spin in idle:
@@ -40,4 +41,4 @@ def arranged(mechanism: Mechanism, start: Assembly) -> PreparedScene:
     start = replace(start, angular_velocity=omega)
     works = any(not isinstance(f, PairLoad) or f.value is not None or f.damping != 0.0 for f in mechanism.loads)
     driven = any(j.drive is not None for j in mechanism.joints)
-    return PreparedScene(mechanism, start, idle, lay_out(mechanism, start, inertias, work=works or driven))
+    return PreparedScene(mechanism, start, idle, lay_out(mechanism, start, inertias, size, work=works or driven))

@@ -32,6 +32,8 @@ def joint_start(mechanism: Mechanism, start: Assembly, joint: Joint) -> JointSta
     xb, Rb, vb, wb = pose(start, joint.b)
     R = Ra.T @ Rb
     kind = JOINTS[joint.kind]
+    if not kind.turns and "travel" not in kind.coordinates:
+        return JointStart(R, 0.0, 0.0, 0.0, 0.0)
     n = joint.axis
     D = Ra.T @ (xb + Rb @ joint.q - xa) - joint.p
     rate = float((Ra @ (Z if kind.turns == ("z",) else n)) @ (wb - wa))
