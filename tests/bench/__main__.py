@@ -1,10 +1,12 @@
-"""Speed, printed: `python -m tests.bench [PART ...]`. Nothing here asserts a time; compare ratios within one run.
+"""Speed, printed: `python -m tests.bench [PART ...] [--against PATH]`. Nothing here asserts a time.
 
-Parts: motion, chart, chain, process, export, sections. Each line: what, how far it was from the truth, how long.
+Parts: motion, chart, chain, process, export, sections; each line: what, how far it was from the truth, how long.
+figures: the few that matter in one table, with --against beside those of another checkout (tests/bench/figures.py).
 """
 
 from __future__ import annotations
 
+import argparse
 import json
 import os
 import statistics
@@ -29,6 +31,8 @@ from heuncli.study.setup import set_up
 from heuncli.study.solve import solve
 from heuncli.tree.prepare import PreparedScene
 from tests.bench.chart import chart
+from tests.bench.figures import figures
+from tests.bench.generated import chain
 
 SCENES = Path(__file__).parent / "scenes"
 REFERENCE = json.loads((SCENES / "reference.json").read_text())
@@ -108,30 +112,17 @@ def charted() -> None:
     print(chart(runs))
 
 
-def chain(n: int) -> str:
-    """A chain of n bars on ball joints, released level, as a spec."""
-    head = "heun: 1\ntitle: chain\ngravity: [0, 0, -9.81]\nground: {points: {O: [0, 0, 0]}}\nbodies:\n"
-    bar = (
-        "  b{}: {{mass: 1.0, center: [0, 0, -0.5], inertia: [0.0842, 0.0850, 0.0017], "
-        "points: {{top: [0, 0, 0], end: [0, 0, -1]}}, orientation: {{axis: [0, 1, 0], angle: -90 deg}}}}\n"
-    )
-    joint = "  j{}: {{type: ball, from: {}, to: b{}.top}}\n"
-    bodies = "".join(bar.format(i) for i in range(n))
-    joints = "".join(joint.format(i, f"b{i - 1}.end" if i else "ground.O", i) for i in range(n))
-    return f"{head}{bodies}joints:\n{joints}analysis: {{duration: 0.05, samples: 3, tolerance: 1e-6}}\n"
-
-
 def chains() -> None:
     """Cost per body and evaluation from a chain of 10 to one of 1,000; 10,000 bodies read, assembled and run."""
     cost = {}
     for n in (10, 100, 1000):
-        spec = load("chain.yaml", chain(n))
+        spec = load("chain.yaml", chain(n, duration=0.05))
         runner = set_up(spec).runner
         run = runner.trajectory([0.05], 1e-6)
         cost[n] = median_ms(partial(runner.trajectory, [0.05], 1e-6), 15) / run.evaluations / n
         print(f"chain of {n:5d}: {1e6 * cost[n]:.0f} ns a body and evaluation, {cost[n] / cost[10]:.2f} times 10's")
     begun = time.perf_counter()
-    spec = load("chain.yaml", chain(10_000))
+    spec = load("chain.yaml", chain(10_000, duration=0.05))
     read = time.perf_counter()
     scene = set_up(spec).scene
     built = time.perf_counter()
@@ -194,6 +185,13 @@ PARTS = {
 }  # fmt: skip
 
 if __name__ == "__main__":
-    print(f"kernel: {KERNEL}")
-    for part in sys.argv[1:] or PARTS:
-        PARTS[part]()
+    parser = argparse.ArgumentParser(prog="python -m tests.bench", description="Speed, printed.")
+    parser.add_argument("parts", nargs="*", choices=[*PARTS, "figures", []], metavar="PART", help=", ".join(PARTS))
+    parser.add_argument("--against", type=Path, metavar="PATH", help="another checkout, whose figures stand beside")
+    asked = parser.parse_args()
+    print(f"kernel: {KERNEL}", flush=True)
+    for part in asked.parts or (PARTS if asked.against is None else ()):
+        if part in PARTS:
+            PARTS[part]()
+    if "figures" in asked.parts or asked.against is not None:
+        figures(asked.against)
