@@ -54,8 +54,8 @@ def error(name: str, scene: PreparedScene, runner: Runner, times: Any, states: A
     worst = 0.0
     for i, body in enumerate(scene.mechanism.bodies):
         k = scene.layout.place[i]
-        place = found[k, 9:12] + found[k, :9].reshape(3, 3) @ (body.center - scene.layout.reference[k])
-        worst = max(worst, float(np.linalg.norm(place - REFERENCE[name]["center"][body.name])))
+        center = found["r"][k] + found["R"][k] @ (body.center - scene.layout.reference[k])
+        worst = max(worst, float(np.linalg.norm(center - REFERENCE[name]["center"][body.name])))
     return worst
 
 

@@ -50,8 +50,8 @@ def motions(checkout: Path, kernel: str, names: set[str]) -> dict[str, float]:
                 found[match[1]] = float(match[2])
             if names <= found.keys():
                 run.terminate()  # the scenes after these are not asked for
-                break
-    return found
+                return found
+    raise SystemExit(f"{' '.join(command)} in {checkout}: no figure of {', '.join(sorted(names - found.keys()))}")
 
 
 def processor_seconds(command: list[str], checkout: Path) -> tuple[float, str]:
@@ -100,7 +100,7 @@ def many_windows(checkout: Path) -> Figures:
     with tempfile.TemporaryDirectory() as folder:
         path = Path(folder) / "windows40.yaml"
         path.write_text(to_yaml(moving(windows(40, 0.0, 1.0), (0.0, 0.5, 1.0), 1e-6)))
-        seconds, text = processor_seconds([*HEUN, "run", str(path), "--format", "json"], checkout)
+        seconds, text = processor_seconds([*HEUN, "run", str(path), "--format", "json", "--quiet"], checkout)
     recover = json.loads(text)["work"]["seconds"]["recover"]
     return {"forty windows of bars [s]": seconds, "of that verdicts, sums and loads [s]": recover}
 
