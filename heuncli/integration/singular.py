@@ -30,10 +30,9 @@ def singular_poses(runner: Runner, run: Trajectory) -> list[float]:
 
 def least_singular_values(runner: Runner, run: Trajectory, times: Array) -> Array:
     """Estimate of the smallest relative singular value of the independent closures, (n_t,)."""
-    asked = np.concatenate(
-        [run.times[:1], times]
-    )  # the rows are selected at the first instant, and pivots are relative to those there
-    pose = runner.recovered(asked, runner.resample(run, asked))
+    # the rows are selected at the first instant, and pivots are relative to those there
+    asked = np.concatenate([run.times[:1], times])
+    pose = runner.recovered(asked, np.concatenate([run.states[:1], runner.resample(run, times)]))
     least: Array = np.sqrt(np.maximum(pose.pivot[1:], 0.0))
     return least
 
