@@ -58,15 +58,9 @@ def relations(rows: Mapping[str, Array]) -> tuple[list[dict[str, float]], list[s
     found: list[dict[str, float]] = []
     heads: list[int] = []
     for i, name in enumerate(names):
-        head = next(
-            (
-                h
-                for h in heads
-                if abs(same[i, h]) > WORTH_A_LOOK
-                and np.linalg.norm(stacked[i] - same[i, h] * stacked[h]) <= tolerances.DEPENDENT_SHARES
-            ),
-            None,
-        )
+        alike = np.array(heads, dtype=int)[np.abs(same[i, heads]) > WORTH_A_LOOK].tolist()
+        apart = (np.linalg.norm(stacked[i] - same[i, h] * stacked[h]) for h in alike)
+        head = next((h for h, d in zip(alike, apart, strict=True) if d <= tolerances.DEPENDENT_SHARES), None)
         if head is None:
             heads.append(i)
         else:
@@ -77,6 +71,7 @@ def relations(rows: Mapping[str, Array]) -> tuple[list[dict[str, float]], list[s
 
 def in_few_axes(rows: Array) -> Array:
     """Rows (n, K) in orthonormal axes that span them, (n, at most n): the same lengths and angles, fewer numbers."""
+    rows = rows[:, rows.any(axis=0)]  # most self-stresses of a large mechanism reach few of its joints
     n, K = rows.shape
     return rows if K <= n else np.asarray(np.linalg.qr(rows.T, mode="r")).T
 

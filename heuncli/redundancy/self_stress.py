@@ -98,7 +98,7 @@ def _null_of(J: Array, gap: Array) -> tuple[Array, Array, Array]:
     n_t, m = J.shape[:2]
     if m == 0:
         return np.zeros((n_t, 0, 0)), np.zeros(n_t, dtype=int), np.ones(n_t)
-    U, S, _ = np.linalg.svd(J, full_matrices=True)
+    S = np.linalg.svd(J, compute_uv=False)
     if S.shape[1] < m:
         S = np.concatenate([S, np.zeros((n_t, m - S.shape[1]))], axis=1)
     top = np.maximum(S.max(axis=1, initial=0.0), 1.0)
@@ -107,7 +107,10 @@ def _null_of(J: Array, gap: Array) -> tuple[Array, Array, Array]:
     k_max = int((m - rank).max(initial=0))
     last = np.take_along_axis(S, np.maximum(rank - 1, 0)[:, None], axis=1)[:, 0]
     kept = np.where(rank > 0, last / top, 1.0)
-    Z = U[:, :, m - k_max :].copy() if k_max else np.zeros((n_t, m, 0))
+    if k_max == 0:  # the vectors cost several times the values
+        return np.zeros((n_t, m, 0)), m - rank, kept
+    U, _, _ = np.linalg.svd(J, full_matrices=True)
+    Z = U[:, :, m - k_max :].copy()
     for t in np.flatnonzero(m - rank < k_max):
         Z[t, :, : k_max - (m - rank[t])] = 0.0
     return Z, m - rank, kept

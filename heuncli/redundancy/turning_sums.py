@@ -39,7 +39,10 @@ def dependent_components(poses: Shares) -> list[list[str]]:
     if not names:
         return []
     rows = np.stack([poses[n] for n in names], axis=1)
-    rows = rows / np.sqrt(np.sum(rows * rows, axis=2)).max(axis=0)[None, :, None]
+    rows = rows[:, :, rows.any(axis=(0, 1))]  # the self-stresses that reach some of them
+    own = np.sqrt(np.sum(rows * rows, axis=2))
+    largest = own.max(axis=0)
+    rows, own = rows / largest[None, :, None], own / largest
     Q = np.zeros_like(rows)  # orthonormal in each pose, zero where a free row depends on others there
     usual = np.ones(len(rows), dtype=bool)  # poses in which all the free ones are independent
     free: list[int] = []
@@ -49,9 +52,8 @@ def dependent_components(poses: Shares) -> list[list[str]]:
             before = len(free)
             ahead = across(rows[:, i : i + TOGETHER], Q[:, :before])
         rest = across(ahead[:, i % TOGETHER, None], Q[:, before : len(free)])
-        size = np.sqrt(np.sum(rest * rest, axis=(1, 2)))
-        own = np.sqrt(np.sum(rows[:, i] ** 2, axis=1))
-        new = size > tolerances.DEPENDENT_SHARES * np.maximum(own, tolerances.DEPENDENT_SHARES)
+        size = np.sqrt(np.einsum("tik,tik->t", rest, rest))
+        new = size > tolerances.DEPENDENT_SHARES * np.maximum(own[:, i], tolerances.DEPENDENT_SHARES)
         if (usual & new).any():
             usual &= new
             Q[:, len(free)] = rest[:, 0] * (new / np.where(new, size, 1.0))[:, None]
