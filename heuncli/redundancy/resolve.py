@@ -16,7 +16,7 @@ from heuncli.redundancy.neighbours import neighbours
 from heuncli.redundancy.open_components import names_of, open_joint, open_support, wrench_open
 from heuncli.redundancy.self_stress import SelfStress, self_stress
 from heuncli.redundancy.split import split
-from heuncli.results import Array, Block, CertainSum
+from heuncli.results import Array, Block, CertainSum, Indices
 
 SUMS_FROM = 9  # instants whose self-stresses certain sums are read from
 
@@ -104,28 +104,29 @@ def sums_of(
     beside = self_stress(runner, near, body_states(runner.layout, near)) if near is not None else None
     if any(j.joint.stiffness is not None for j in joints):
         beside = None  # what a stiffness leaves indeterminate is known at the asked instants only
-    at_instants = relative_shares(stress)
+    reached = [np.concatenate(wrench_open(stress, share), axis=1).any(axis=0) for share in stress.shares]
+    of, component = np.nonzero(reached)  # joint, component: of each that is open
+    at_instants = relative_shares(stress, of, component)
     in_poses = at_instants[:, pick]
     if beside is not None:
-        in_poses = one_after_the_other(in_poses, relative_shares(beside))
+        in_poses = one_after_the_other(in_poses, relative_shares(beside, of, component))
     poses, asked, values = dict[str, Array](), dict[str, Array](), dict[str, Array]()
-    for k, load in enumerate(joints):
-        is_open = np.concatenate(wrench_open(stress, stress.shares[k]), axis=1).any(axis=0)
-        for i in np.flatnonzero(is_open).tolist():
-            name = f"joints.{load.joint.name}.{'force' if i < 3 else 'moment'}.{'xyz'[i % 3]}"
-            poses[name], asked[name] = in_poses[k, :, i], at_instants[k, :, i]
-            values[name] = (load.force if i < 3 else load.moment)[:, i % 3]
+    for n, (k, i) in enumerate(zip(of.tolist(), component.tolist(), strict=True)):
+        load = joints[k]
+        name = f"joints.{load.joint.name}.{'force' if i < 3 else 'moment'}.{'xyz'[i % 3]}"
+        poses[name], asked[name] = in_poses[n], at_instants[n]
+        values[name] = (load.force if i < 3 else load.moment)[:, i % 3]
     return certain_sums(poses, asked, values, stress.length)
 
 
-def relative_shares(stress: SelfStress) -> Array:
-    """Shares of every self-stress in all components, relative to its largest, (n_j, n_t, 6, k)."""
-    return np.asarray(stress.shares / np.where(stress.largest > 0.0, stress.largest, 1.0)[:, None])
+def relative_shares(stress: SelfStress, joints: Indices, components: Indices) -> Array:
+    """Shares of every self-stress in one component of each of the joints, relative to its largest, (n, n_t, k)."""
+    return np.asarray(stress.shares[joints, :, components] / np.where(stress.largest > 0.0, stress.largest, 1.0))
 
 
 def one_after_the_other(a: Array, b: Array) -> Array:
-    """Shares (n_j, n_t, 6, k) in some poses and in others; where there are fewer self-stresses, zeros."""
-    out = np.zeros((len(a), a.shape[1] + b.shape[1], 6, max(a.shape[3], b.shape[3])))
-    out[:, : a.shape[1], :, : a.shape[3]] = a
-    out[:, a.shape[1] :, :, : b.shape[3]] = b
+    """Shares (n, n_t, k) in some poses and in others; where there are fewer self-stresses, zeros."""
+    out = np.zeros((len(a), a.shape[1] + b.shape[1], max(a.shape[2], b.shape[2])))
+    out[:, : a.shape[1], : a.shape[2]] = a
+    out[:, a.shape[1] :, : b.shape[2]] = b
     return out

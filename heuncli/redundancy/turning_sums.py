@@ -48,6 +48,9 @@ def dependent_components(poses: Shares) -> list[list[str]]:
     free: list[int] = []
     bound: list[int] = []
     for i in range(len(names)):
+        if len(free) == rows.shape[2]:  # they span all there is
+            bound += range(i, len(names))
+            break
         if i % TOGETHER == 0:
             before = len(free)
             ahead = across(rows[:, i : i + TOGETHER], Q[:, :before])
