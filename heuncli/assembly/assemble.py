@@ -5,7 +5,7 @@ from __future__ import annotations
 import numpy as np
 
 from heuncli.assembly.chosen import chosen, pose_choices, rate_choices
-from heuncli.assembly.conditions import demands
+from heuncli.assembly.conditions import conditions_of
 from heuncli.assembly.gaps import size_of
 from heuncli.assembly.poses import Placing
 from heuncli.assembly.rates import Moving
@@ -17,7 +17,7 @@ def assemble(mechanism: Mechanism, t0: float = 0.0) -> Assembly:
 
     Raises SolveError: does-not-fit, held-conflict, rates-do-not-fit, singular-pose.
     """
-    found = demands(mechanism, t0)
+    found = conditions_of(mechanism, t0)
     size = size_of(mechanism)
     placing = Placing(mechanism, found, size)
     placing.fit()

@@ -15,7 +15,7 @@ from heuncli.mechanism.model import Mechanism
 from heuncli.results import Array
 from heuncli.shapes.rotations import to_vector
 
-LISTED = 8  # bodies told one by one; more of the same are told together
+LISTED = 8  # bodies listed one by one; more of the same are listed together
 
 FORMS = {
     "position": "position {} m",
@@ -41,7 +41,7 @@ class Choice(NamedTuple):
 
 
 def chosen(choices: Iterable[Choice]) -> tuple[str, ...]:
-    """One sentence a body and origin; where many bodies share one, they are told together."""
+    """One sentence a body and origin; where many bodies share one, they are listed together."""
     groups: dict[tuple[str, str], list[Choice]] = defaultdict(list)
     for c in choices:
         groups[c.what, c.how].append(c)
@@ -97,11 +97,11 @@ def rate_choices(mechanism: Mechanism, rates: Rates, tree: Tree, fitted: set[int
     for i, body in enumerate(mechanism.bodies):
         how, joint = _origin(mechanism, tree, i, fitted)
         if body.velocity is None:
-            told = (how, joint, rates.v[i], scale) if moving[i] else ("zero",)
-            found.append(Choice(body.name, "velocity", *told))
+            how_chosen = (how, joint, rates.v[i], scale) if moving[i] else ("zero",)
+            found.append(Choice(body.name, "velocity", *how_chosen))
         if body.angular_velocity is None:
-            told = (how, joint, rates.w[i], scale / size) if turning[i] else ("zero",)
-            found.append(Choice(body.name, "angular velocity", *told))
+            how_chosen = (how, joint, rates.w[i], scale / size) if turning[i] else ("zero",)
+            found.append(Choice(body.name, "angular velocity", *how_chosen))
     return found
 
 

@@ -39,7 +39,7 @@ class Ask(NamedTuple):
 
 
 @record
-class Demand:
+class Condition:
     """What one joint asks at the start; a, b, p, q, axis and to_axis as in Joint, p moved on by a known travel.
 
     across: two unit vectors (2, 3) perpendicular to axis, axes of a, where they are needed. relative: the R_a^T R_b
@@ -64,16 +64,16 @@ class Demand:
     stretch: tuple[float, float]
 
 
-def demands(mechanism: Mechanism, t0: float) -> list[Demand]:
-    """One Demand a joint, in the order of the joints. Raises SolveError where a held value contradicts a drive."""
+def conditions_of(mechanism: Mechanism, t0: float) -> list[Condition]:
+    """One Condition a joint, in the order of the joints. Raises SolveError where a held value contradicts a drive."""
     problems: list[Problem] = []
-    found = [_demand(mechanism, k, joint, t0, problems) for k, joint in enumerate(mechanism.joints)]
+    found = [_condition_of(mechanism, k, joint, t0, problems) for k, joint in enumerate(mechanism.joints)]
     if problems:
         raise SolveError(*problems)
     return found
 
 
-def _demand(mechanism: Mechanism, k: int, joint: Joint, t0: float, problems: list[Problem]) -> Demand:
+def _condition_of(mechanism: Mechanism, k: int, joint: Joint, t0: float, problems: list[Problem]) -> Condition:
     drive = joint.drive
     driven = {drive.quantity: drive_jet(drive.value, t0)} if drive else {}
     problems += [_not_computable(drive, t0) for jet in driven.values() if drive and not all(map(math.isfinite, jet))]
@@ -106,7 +106,7 @@ def _demand(mechanism: Mechanism, k: int, joint: Joint, t0: float, problems: lis
         rate = Ask("point", rate.turn)
     if hold == "distance" and length is None:  # as assembled: asks nothing of the pose, but keeps its length then
         pose = Ask("none", "free")
-    return Demand(
+    return Condition(
         k, joint.a, joint.b, p, joint.q, joint.axis, joint.to_axis, across,
         pose, rate, relative, length or 0.0, spin or (0.0, 0.0), slip or (0.0, 0.0), stretch,
     )  # fmt: skip

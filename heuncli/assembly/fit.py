@@ -15,7 +15,7 @@ from collections.abc import Sequence
 import numpy as np
 
 from heuncli import tolerances
-from heuncli.assembly.conditions import Demand
+from heuncli.assembly.conditions import Condition
 from heuncli.assembly.islands import Island
 from heuncli.assembly.reduced import Reduced, least
 from heuncli.assembly.rows import Rows, pose_rows
@@ -37,7 +37,7 @@ class Fit:
     """One island in its poses, which it changes."""
 
     def __init__(
-        self, poses: Poses, island: Island, found: Sequence[Demand], depth: Sequence[int], size: float, planar: bool
+        self, poses: Poses, island: Island, found: Sequence[Condition], depth: Sequence[int], size: float, planar: bool
     ) -> None:
         self.poses = poses
         self.island = island
@@ -215,8 +215,8 @@ def _damped(r: Reduced, mu: float) -> Array:
     solved = np.linalg.solve(r.B.T @ (weight * r.B), np.column_stack([-(r.B.T @ (weight[:, 0] * r.t)), r.C.T]))
     y, K = solved[:, 0], solved[:, 1:]
     s, Q = np.linalg.eigh(r.C @ K)
-    told = s > tolerances.REPEATED_ROW * float(np.max(s, initial=0.0))
-    y = y + K @ (Q[:, told] @ ((Q[:, told].T @ (r.e - r.C @ y)) / (s[told] + mu)))
+    kept = s > tolerances.REPEATED_ROW * float(np.max(s, initial=0.0))
+    y = y + K @ (Q[:, kept] @ ((Q[:, kept].T @ (r.e - r.C @ y)) / (s[kept] + mu)))
     z: Array = r.t + r.B @ y
     return z
 

@@ -6,7 +6,7 @@ from collections.abc import Sequence
 
 import numpy as np
 
-from heuncli.assembly.conditions import Ask, Demand
+from heuncli.assembly.conditions import Ask, Condition
 from heuncli.mechanism.model import GROUND, Mechanism
 from heuncli.results import Array
 
@@ -14,7 +14,7 @@ from heuncli.results import Array
 class Closure:
     """The gaps of all joints at once, for any number of poses: joints of one ask are stacked."""
 
-    def __init__(self, found: Sequence[Demand], asks: Sequence[Ask]) -> None:
+    def __init__(self, found: Sequence[Condition], asks: Sequence[Ask]) -> None:
         self.count = len(found)
         self.groups = []
         for ask in sorted(set(asks)):

@@ -8,7 +8,7 @@ from __future__ import annotations
 
 from collections.abc import Callable, Iterable, Sequence
 
-from heuncli.assembly.conditions import Demand
+from heuncli.assembly.conditions import Condition
 from heuncli.assembly.walk import Tree
 from heuncli.mechanism.model import GROUND
 from heuncli.records import record
@@ -34,7 +34,7 @@ Again = Callable[[int], None]
 class Islands:
     """The loops of a tree, merged in almost linear time. It changes: loops may be added and merge others."""
 
-    def __init__(self, tree: Tree, found: Sequence[Demand], links: Sequence[bool], fixed: Sequence[bool]) -> None:
+    def __init__(self, tree: Tree, found: Sequence[Condition], links: Sequence[bool], fixed: Sequence[bool]) -> None:
         """links: which joints count; fixed: which bodies stay whatever happens."""
         n = len(tree.via)
         self._tree = tree

@@ -7,7 +7,7 @@ from collections.abc import Sequence
 import numpy as np
 
 from heuncli import tolerances
-from heuncli.assembly.conditions import Demand
+from heuncli.assembly.conditions import Condition
 from heuncli.assembly.errors import does_not_fit, no_length, too_many
 from heuncli.assembly.fit import Fit
 from heuncli.assembly.gaps import Closure
@@ -23,7 +23,7 @@ class Placing:
     folded: joints whose loop was folded in a fixed way. gap: the largest that is left [m].
     """
 
-    def __init__(self, mechanism: Mechanism, found: Sequence[Demand], size: float) -> None:
+    def __init__(self, mechanism: Mechanism, found: Sequence[Condition], size: float) -> None:
         self.mechanism = mechanism
         self.found = found
         self.size = size
@@ -41,7 +41,7 @@ class Placing:
         walk(self.poses, self.tree, self.found)
         farthest = float(np.max(np.abs(self.poses.x), initial=0.0))
         self.limit = max(tolerances.OPEN_GAP, tolerances.GAP_ROUNDING * farthest / self.size)
-        if stuck := settle(self.tree, self.islands, self._open, self._fit, self._again):
+        if stuck := settle(self.tree, self.islands, self._open, self._fit, self._walk_on):
             raise self._refusal(stuck)
         for d in self.found:
             if d.pose.hold == "none" and _span(d, self.poses) < tolerances.NO_LENGTH * self.size:
@@ -54,7 +54,7 @@ class Placing:
         is_open = np.maximum(distance / self.size, angle) > self.limit
         return [int(k) for k in np.flatnonzero(is_open)]
 
-    def _again(self, body: int) -> None:
+    def _walk_on(self, body: int) -> None:
         self.poses.x[body], self.poses.R[body] = self.drawn.x[body], self.drawn.R[body]
         if self.tree.via[body] >= 0:
             place(self.poses, self.found[self.tree.via[body]], body)
@@ -62,7 +62,7 @@ class Placing:
     def _fit(self, island: Island, afresh: bool) -> None:
         if afresh:
             for body in island.members:
-                self._again(body)
+                self._walk_on(body)
         if len(island.members) > TOGETHER:
             raise too_many(self.mechanism, island, "poses")
         fit = Fit(self.poses, island, self.found, self.tree.depth, self.size, self.mechanism.planar)
@@ -87,13 +87,13 @@ class Placing:
         return does_not_fit(self.mechanism, distance, angle, self.size, joints)
 
 
-def _span(d: Demand, poses: Poses) -> float:
+def _span(d: Condition, poses: Poses) -> float:
     """Distance of a joint's points [m]."""
     D = poses.x[d.b] + poses.R[d.b] @ d.q - poses.x[d.a] - poses.R[d.a] @ d.p
     return float(np.sqrt(D @ D))
 
 
-def _loops(mechanism: Mechanism, found: Sequence[Demand]) -> tuple[Tree, Islands]:
+def _loops(mechanism: Mechanism, found: Sequence[Condition]) -> tuple[Tree, Islands]:
     """The tree of the walk, from ground and held positions, and in loops from `near` positions too; and its loops."""
     bodies = mechanism.bodies
     asks = [(d.a, d.b, d.pose) for d in found]

@@ -14,7 +14,7 @@ from functools import cached_property
 import numpy as np
 
 from heuncli import tolerances
-from heuncli.assembly.conditions import Demand
+from heuncli.assembly.conditions import Condition
 from heuncli.assembly.errors import rates_do_not_fit, singular_pose, too_many
 from heuncli.assembly.islands import TOGETHER, Island, Islands, settle
 from heuncli.assembly.reduced import Reduced, least, solve
@@ -24,7 +24,7 @@ from heuncli.mechanism.model import GROUND, Directed, Mechanism
 from heuncli.records import record, replace
 from heuncli.results import Array
 
-CHECKED = 2000  # joints of an island up to which this is told beforehand; beyond, the motion tells
+CHECKED = 2000  # joints of an island up to which this is checked beforehand; beyond, the motion shows it
 
 
 @record
@@ -75,7 +75,7 @@ class Moving:
     rates: where they are; tree: how the walk reaches them. fitted: bodies fitted in an island.
     """
 
-    def __init__(self, mechanism: Mechanism, found: Sequence[Demand], poses: Poses, size: float) -> None:
+    def __init__(self, mechanism: Mechanism, found: Sequence[Condition], poses: Poses, size: float) -> None:
         self.mechanism = mechanism
         self.found = found
         self.poses = poses
@@ -95,7 +95,7 @@ class Moving:
         return [rate_rows(d, self.poses.x, self.poses.R, self.rates.s) for d in self.found]
 
     def at_rest(self) -> bool:
-        """Whether nothing is told to move, or to start to."""
+        """Whether nothing is given a motion, or a start of one."""
         given = any(any(d.spin) or any(d.slip) or any(d.stretch) for d in self.found)
         return not given and self.rates.scale(self.size) == 0.0
 
@@ -105,7 +105,7 @@ class Moving:
             return
         for body in self.tree.order:
             self._follow(body)
-        if stuck := settle(self.tree, self.islands, self._open, self._fit, self._again):
+        if stuck := settle(self.tree, self.islands, self._open, self._fit, self._walk_on):
             raise self._refusal(stuck)
 
     def _follow(self, body: int) -> None:
@@ -120,7 +120,7 @@ class Moving:
         if r.shifts[body] and len(row.F):
             r.v[body] += sign * (row.F.T @ missing(d, row, r.v, r.w)[0])
 
-    def _again(self, body: int) -> None:
+    def _walk_on(self, body: int) -> None:
         self._rest(body)
         self._follow(body)
 
@@ -186,7 +186,7 @@ class Moving:
                 raise singular_pose(self.mechanism, island.closures[0], joints)
 
 
-def _lacking_rows(d: Demand, row: Rows, r: Rates) -> Rows:
+def _lacking_rows(d: Condition, row: Rows, r: Rates) -> Rows:
     hold, turn = missing(d, row, r.v, r.w)
     return replace(row, hold=hold, turn=turn)
 

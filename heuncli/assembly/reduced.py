@@ -13,7 +13,7 @@ from functools import cached_property
 import numpy as np
 
 from heuncli import tolerances
-from heuncli.assembly.conditions import Demand
+from heuncli.assembly.conditions import Condition
 from heuncli.assembly.islands import Island
 from heuncli.assembly.rows import Rows
 from heuncli.records import record
@@ -42,7 +42,7 @@ class Reduced:
     """An island's rows in its freedoms. What is no member stays."""
 
     def __init__(
-        self, island: Island, found: Sequence[Demand], rows: Mapping[int, Rows], free: Free, size: float
+        self, island: Island, found: Sequence[Condition], rows: Mapping[int, Rows], free: Free, size: float
     ) -> None:
         place = {body: i for i, body in enumerate(island.members)}
         self.free = free
@@ -103,7 +103,7 @@ class Reduced:
         return t
 
 
-def _blocks(d: Demand, row: Rows, size: float) -> tuple[Array, Array, Array]:
+def _blocks(d: Condition, row: Rows, size: float) -> tuple[Array, Array, Array]:
     """Rows on (turn, shift/L) of `from` and of `to`, (h+k, 6) each, and the right side, lengths by L."""
     h, k = len(row.F), len(row.T)
     J_a, J_b = np.zeros((h + k, 6)), np.zeros((h + k, 6))
@@ -114,7 +114,7 @@ def _blocks(d: Demand, row: Rows, size: float) -> tuple[Array, Array, Array]:
     return J_a, J_b, np.concatenate([row.hold / size, row.turn])
 
 
-def _step(body: int, d: Demand, row: Rows, place: Mapping[int, int], may: tuple[bool, bool], size: float) -> Step:
+def _step(body: int, d: Condition, row: Rows, place: Mapping[int, int], may: tuple[bool, bool], size: float) -> Step:
     J_a, J_b, c = _blocks(d, row, size)
     J, J_before, before = (J_b, J_a, d.a) if body == d.b else (J_a, J_b, d.b)
     E = _root(may).N

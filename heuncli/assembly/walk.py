@@ -12,7 +12,7 @@ from collections.abc import Sequence
 import numpy as np
 
 from heuncli import tolerances
-from heuncli.assembly.conditions import Ask, Demand
+from heuncli.assembly.conditions import Ask, Condition
 from heuncli.mechanism.model import Mechanism
 from heuncli.records import record
 from heuncli.results import Array
@@ -24,7 +24,7 @@ class Tree:
     """Who is reached through which joint, roots first.
 
     order: bodies as reached. via[body]: index of the joint, -1 for a root. parent[body]: the body before, -1 for the
-    ground or a root (tell by via). depth[body]: joints between it and its root.
+    ground or a root (via says which). depth[body]: joints between it and its root.
     """
 
     order: list[int]
@@ -138,7 +138,7 @@ def start(mechanism: Mechanism) -> Poses:
     )  # fmt: skip
 
 
-def place(poses: Poses, d: Demand, body: int) -> None:
+def place(poses: Poses, d: Condition, body: int) -> None:
     """Turn and shift the body at one end of a joint so that it fits the body at the other, as far as it may."""
     R, x = poses.R, poses.x
     is_to = body == d.b
@@ -150,7 +150,7 @@ def place(poses: Poses, d: Demand, body: int) -> None:
         x[body] += shift if is_to else -shift
 
 
-def asked_attitude(d: Demand, Ra: Array, Rb: Array, is_to: bool) -> Array:
+def asked_attitude(d: Condition, Ra: Array, Rb: Array, is_to: bool) -> Array:
     """The attitude of `to` (or of `from`), nearest its present one, that the joint's turn asks for, (3, 3)."""
     if d.pose.turn == "all":
         return Ra @ d.relative if is_to else Rb @ d.relative.T
@@ -174,7 +174,7 @@ def _square(m: Array, n: Array) -> Array:
     return s / size
 
 
-def to_close(d: Demand, n: Array, D: Array) -> Array:
+def to_close(d: Condition, n: Array, D: Array) -> Array:
     """The least shift of the `to` point that closes the hold, (3,); n the axis, D from its place on `from`, world."""
     hold = d.pose.hold
     if hold == "point":
@@ -188,7 +188,7 @@ def to_close(d: Demand, n: Array, D: Array) -> Array:
     return (d.length - size) * e
 
 
-def walk(poses: Poses, tree: Tree, found: Sequence[Demand], only: Sequence[int] | None = None) -> None:
+def walk(poses: Poses, tree: Tree, found: Sequence[Condition], only: Sequence[int] | None = None) -> None:
     """Place the bodies of the tree outward, or `only` those given (in the order of the tree)."""
     for body in tree.order if only is None else only:
         if tree.via[body] >= 0:
