@@ -56,7 +56,7 @@ class Run(NamedTuple):
     tolerance: Annotated[
         float | None, Option(("--tolerance",), "Error of the motion, relative to the scene.", "NUMBER")
     ] = None
-    no_reduce: Annotated[bool, Option(("--no-reduce",), "Reduce no model (not yet: none is reduced).")] = False
+    no_reduce: Annotated[bool, Option(("--no-reduce",), "Solve the scene in full, as this version always does.")] = False
     least_norm: Annotated[bool, Option(("--least-norm",), "Split what redundant supports leave open.")] = False
     by_cause: Annotated[bool, Option(("--by-cause",), "Split every load by its causes (not yet).")] = False
     strict: Annotated[bool, Option(("--strict",), "Leave with 1 if there are warnings or open reactions.")] = False
@@ -102,7 +102,7 @@ class Check(NamedTuple):
 Request = Run | Validate | Model | Check
 COMMANDS: dict[str, type[Request]] = {"run": Run, "validate": Validate, "model": Model, "check": Check}
 LATER_COMMANDS = ("balance", "chart", "probe", "lagrange", "methods", "schema", "explain", "new", "sweep", "plot")
-LATER_OPTIONS = ("by_cause", "no_reduce", "golden", "update", "junit")
+LATER_OPTIONS = ("by_cause", "golden", "update", "junit")
 
 
 class Row(NamedTuple):
