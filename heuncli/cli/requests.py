@@ -56,7 +56,7 @@ class Run(NamedTuple):
     tolerance: Annotated[
         float | None, Option(("--tolerance",), "Error of the motion, relative to the scene.", "NUMBER")
     ] = None
-    no_reduce: Annotated[bool, Option(("--no-reduce",), "Solve the scene in full, as this version always does.")] = False
+    no_reduce: Annotated[bool, Option(("--no-reduce",), "Solve the scene in full, as every run does yet.")] = False
     least_norm: Annotated[bool, Option(("--least-norm",), "Split what redundant supports leave open.")] = False
     by_cause: Annotated[bool, Option(("--by-cause",), "Split every load by its causes (not yet).")] = False
     strict: Annotated[bool, Option(("--strict",), "Leave with 1 if there are warnings or open reactions.")] = False
