@@ -4,8 +4,8 @@ from heuncli.kernel.algebra cimport (
     Vec3, add, add_cross, add_scaled, centripetal, cross, dot, norm, rotate, rotate_back, scaled, solve, sub,
 )
 from heuncli.kernel.expressions cimport Jet, jet
-from heuncli.kernel.scene cimport Body, Closure, Counter, DOT, Freedom, GUIDE, Scene
-from heuncli.kernel.tree cimport direction_of, load_along, push
+from heuncli.kernel.scene cimport Body, Closure, Counter, DOT, GUIDE, Scene
+from heuncli.kernel.tree cimport answered, direction_of, push
 from libc.math cimport sqrt
 
 cdef struct Carried:
@@ -25,7 +25,6 @@ cdef void put_unit_load(Scene *scene, Closure *row, int body, double sign) noexc
 cdef void clear_path(Scene *scene, Closure *row) noexcept nogil
 cdef void build_column(Scene *scene, Closure *row) noexcept nogil
 cdef void sweep_column(Scene *scene, Closure *row) noexcept nogil
-cdef double give_way(Body *body, Freedom *freedom) noexcept nogil
 cdef void spread_column(Scene *scene, Closure *row) noexcept nogil
 cdef void clear_column(Scene *scene, Closure *row) noexcept nogil
 cdef double column_product(Scene *scene, Closure *row) noexcept nogil

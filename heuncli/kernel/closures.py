@@ -31,10 +31,10 @@ if not cython.compiled:
         sub,
     )
     from heuncli.kernel.expressions import jet
-    from heuncli.kernel.scene import DOT, GUIDE, Body, Closure, Counter, Freedom, Scene
+    from heuncli.kernel.scene import DOT, GUIDE, Body, Closure, Counter, Scene
     from heuncli.kernel.shadow import cython
     from heuncli.kernel.structs import Carried, Jet
-    from heuncli.kernel.tree import direction_of, load_along, push
+    from heuncli.kernel.tree import answered, direction_of, push
 
 
 def carried(scene: cython.pointer[Scene], body: cython.int, x: Vec3) -> Carried:
@@ -138,11 +138,11 @@ def acceleration_of(body: cython.pointer[Body], row: cython.pointer[Closure]) ->
 def put_unit_load(
     scene: cython.pointer[Scene], row: cython.pointer[Closure], body: cython.int, sign: cython.double
 ) -> cython.void:
-    """The row's load for lambda = sign on one of its bodies, as M_column and f_column about the joint point."""
+    """The row's load for lambda = sign on one of its bodies, as M_branch and f_branch about the joint point."""
     if body >= 0:
         on: cython.pointer[Body] = cython.address(scene.bodies[body])
-        on.M_column = add_scaled(on.M_column, -sign, add_cross(row.m, sub(row.Q, on.r), row.f))
-        on.f_column = add_scaled(on.f_column, -sign, row.f)
+        on.M_branch = add_scaled(on.M_branch, -sign, add_cross(row.m, sub(row.Q, on.r), row.f))
+        on.f_branch = add_scaled(on.f_branch, -sign, row.f)
 
 
 def clear_path(scene: cython.pointer[Scene], row: cython.pointer[Closure]) -> cython.void:
@@ -151,8 +151,8 @@ def clear_path(scene: cython.pointer[Scene], row: cython.pointer[Closure]) -> cy
     zero: Vec3 = Vec3(0.0, 0.0, 0.0)
     for n in range(row.path, row.path + row.path_count):
         body: cython.pointer[Body] = cython.address(scene.bodies[scene.indices[n]])
-        body.M_column = zero
-        body.f_column = zero
+        body.M_branch = zero
+        body.f_branch = zero
 
 
 def build_column(scene: cython.pointer[Scene], row: cython.pointer[Closure]) -> cython.void:
@@ -164,36 +164,26 @@ def build_column(scene: cython.pointer[Scene], row: cython.pointer[Closure]) -> 
 
 
 def sweep_column(scene: cython.pointer[Scene], row: cython.pointer[Closure]) -> cython.void:
-    """One upward pass of what stands in M_column and f_column along the row's paths, tips first."""
+    """One upward pass of what stands in M_branch and f_branch along the row's paths, tips first."""
     n: cython.Py_ssize_t
     k: cython.Py_ssize_t
     at: cython.Py_ssize_t = row.column
     for n in range(row.path, row.path + row.path_count):
         body: cython.pointer[Body] = cython.address(scene.bodies[scene.indices[n]])
         if body.ball:
-            scene.columns[at] = -body.M_column.x
-            scene.columns[at + 1] = -body.M_column.y
-            scene.columns[at + 2] = -body.M_column.z
+            scene.columns[at] = -body.M_branch.x
+            scene.columns[at + 1] = -body.M_branch.y
+            scene.columns[at + 2] = -body.M_branch.z
             at += 3
-            body.f_column = sub(body.f_column, rotate_back(body.G, body.M_column))
-            body.M_column = Vec3(0.0, 0.0, 0.0)
+            body.f_branch = sub(body.f_branch, rotate_back(body.G, body.M_branch))
+            body.M_branch = Vec3(0.0, 0.0, 0.0)
         for k in range(body.first_freedom, body.end_freedom):
-            scene.columns[at] = give_way(body, cython.address(scene.freedoms[k]))
+            scene.columns[at] = answered(body, cython.address(scene.freedoms[k]))
             at += 1
         if body.parent >= 0:
             parent: cython.pointer[Body] = cython.address(scene.bodies[body.parent])
-            parent.M_column = add(parent.M_column, add_cross(body.M_column, body.arm, body.f_column))
-            parent.f_column = add(parent.f_column, body.f_column)
-
-
-def give_way(body: cython.pointer[Body], freedom: cython.pointer[Freedom]) -> cython.double:
-    """The load e = -s . (M or f) of the column that a freedom answers; M += U e / D, f likewise."""
-    if freedom.driven:
-        return 0.0
-    e: cython.double = -load_along(freedom, body.M_column, body.f_column)
-    body.M_column = add_scaled(body.M_column, e * freedom.D, freedom.U_turn)
-    body.f_column = add_scaled(body.f_column, e * freedom.D, freedom.U_shift)
-    return e
+            parent.M_branch = add(parent.M_branch, add_cross(body.M_branch, body.arm, body.f_branch))
+            parent.f_branch = add(parent.f_branch, body.f_branch)
 
 
 def spread_column(scene: cython.pointer[Scene], row: cython.pointer[Closure]) -> cython.void:

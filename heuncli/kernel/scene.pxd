@@ -49,8 +49,6 @@ cdef struct Body:
     Vec3 a
     Vec3 M_joint
     Vec3 f_joint
-    Vec3 M_column
-    Vec3 f_column
 
 cdef struct Freedom:
     int kind

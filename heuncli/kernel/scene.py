@@ -65,14 +65,12 @@ class Body(Record):
     K: Sym3
     turning: Ldl3  # of a ball: factors of A
     G: Mat3  # of a ball: A^-1 C
-    M_branch: Vec3
+    M_branch: Vec3  # what the branch asks of its joint; of all loads, or of one closure row's unit load
     f_branch: Vec3
     alpha: Vec3
     a: Vec3
     M_joint: Vec3  # load of the joint on the body, by Newton's and Euler's laws
     f_joint: Vec3
-    M_column: Vec3  # M_branch and f_branch of one closure row's unit load
-    f_column: Vec3
 
 
 class Freedom(Record):

@@ -200,18 +200,18 @@ def jacobian_row(scene: cython.pointer[Scene], row: cython.pointer[Closure], out
     for n in range(row.path, row.path + row.path_count):
         body: cython.pointer[Body] = cython.address(scene.bodies[scene.indices[n]])
         if body.ball:
-            at = put(out, at, body.M_column)
+            at = put(out, at, body.M_branch)
         for k in range(body.first_freedom, body.end_freedom):
             freedom: cython.pointer[Freedom] = cython.address(scene.freedoms[k])
             out[at] = 0.0
             if not freedom.driven:
-                out[at] = load_along(freedom, body.M_column, body.f_column)
+                out[at] = load_along(freedom, body.M_branch, body.f_branch)
             at += 1
         if body.parent >= 0:
             parent: cython.pointer[Body] = cython.address(scene.bodies[body.parent])
-            moment: Vec3 = add_cross(body.M_column, body.arm, body.f_column)
-            parent.M_column = add(parent.M_column, moment)
-            parent.f_column = add(parent.f_column, body.f_column)
+            moment: Vec3 = add_cross(body.M_branch, body.arm, body.f_branch)
+            parent.M_branch = add(parent.M_branch, moment)
+            parent.f_branch = add(parent.f_branch, body.f_branch)
 
 
 class Workspace:
