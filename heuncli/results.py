@@ -35,10 +35,14 @@ class CertainSum(TypedDict):
 
 
 class Estimate(TypedDict, total=False):
-    """Estimated errors, relative to the scene's size and to the largest reaction."""
+    """Estimated errors over the whole run, by kind: of the scene's size, and of the largest of each kind; 0: none."""
 
     motion: float
     reactions: float
+    drives: float
+    foundation: float
+    sections: float
+    energy: float
 
 
 class Accuracy(TypedDict, total=False):

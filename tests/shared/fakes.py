@@ -19,7 +19,14 @@ ACCURATE: Block = {
     "constraint_gap": 1e-16,
     "balance_residual": 3e-15,
     "horizon": None,
-    "estimate": {"motion": 4e-11, "reactions": 5e-10},
+    "estimate": {
+        "motion": 4e-11,
+        "reactions": 5e-10,
+        "drives": 0.0,
+        "foundation": 5e-10,
+        "sections": 5e-10,
+        "energy": 4e-11,
+    },
 }
 WORK: Block = {
     "kernel": "compiled",
