@@ -2,6 +2,7 @@
 
 Parts: motion, chart, chain, process, export, sections; each line: what, how far it was from the truth, how long.
 figures: the few that matter in one table, with --against beside those of another checkout (tests/bench/figures.py).
+honesty: no times, but true error over estimate of each kind of number, over random scenes (tests/bench/honesty.py).
 """
 
 from __future__ import annotations
@@ -33,6 +34,7 @@ from heuncli.tree.prepare import PreparedScene
 from tests.bench.chart import chart
 from tests.bench.figures import figures
 from tests.bench.generated import chain
+from tests.bench.honesty import honesty
 
 SCENES = Path(__file__).parent / "scenes"
 REFERENCE = json.loads((SCENES / "reference.json").read_text())
@@ -186,8 +188,13 @@ PARTS = {
 
 if __name__ == "__main__":
     parser = argparse.ArgumentParser(prog="python -m tests.bench", description="Speed, printed.")
-    parser.add_argument("parts", nargs="*", choices=[*PARTS, "figures", []], metavar="PART", help=", ".join(PARTS))
+    parts = [*PARTS, "figures", "honesty"]
+    parser.add_argument("parts", nargs="*", choices=[*parts, []], metavar="PART", help=", ".join(parts))
     parser.add_argument("--against", type=Path, metavar="PATH", help="another checkout, whose figures stand beside")
+    parser.add_argument("--scenes", type=int, default=1000, metavar="N", help="honesty: how many")
+    parser.add_argument("--seed", type=int, default=0, metavar="S", help="honesty: the first one's seed")
+    parser.add_argument("--jobs", type=int, default=os.cpu_count() or 1, metavar="J", help="honesty: processes")
+    parser.add_argument("--keep", type=Path, metavar="DIR", help="honesty: write the specs of scenes above 1 there")
     asked = parser.parse_args()
     print(f"kernel: {KERNEL}", flush=True)
     for part in asked.parts or (PARTS if asked.against is None else ()):
@@ -195,3 +202,5 @@ if __name__ == "__main__":
             PARTS[part]()
     if "figures" in asked.parts or asked.against is not None:
         figures(asked.against)
+    if "honesty" in asked.parts:
+        honesty(asked.scenes, asked.seed, asked.jobs, asked.keep)
