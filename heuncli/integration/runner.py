@@ -67,8 +67,9 @@ class Trajectory:
     method: Method
     seconds: float
     segments: tuple[tuple[float, float], ...] = ()  # first and last instant of each segment without discontinuities
-    kept: tuple[tuple[int, Array], ...] = ()  # of the first and some other steps: number, state at the beginning
+    kept: tuple[tuple[int, Array], ...] = ()  # of the first and some other steps: number, record of where it starts
     pivots: Array = np.zeros(0)  # least pivot of the closures in each step
+    settled: Array = np.zeros(0)  # of each step whether its stages were settled on the closures
     stopped: str | None = None  # the rope that would have to push just after the last instant
 
 
@@ -101,17 +102,17 @@ class Integration:
     def __init__(self, layout: Layout, workspace: Workspace, method: Method, times: Array, **given: Any) -> None:
         n = self.n = layout.n_state
         most = given.pop("most")
-        self.ends = np.zeros(most)
-        self.passed = np.zeros(most * (n + 1))
+        self.width = integration.record_width(workspace, n)
+        self.output = {name: np.zeros(most) for name in ("ends", "settled", "pivots")}
+        self.passed = np.zeros(0 if given["following"] else most * self.width)
         self.samples = np.zeros(len(times) * n)
         start = {"groups": layout.tables["groups"], "energy_group": layout.energy_group, "weights": layout.weights}
-        output = {"times": times, "samples": self.samples, "ends": self.ends, "passed": self.passed}
+        output = self.output | {"times": times, "samples": self.samples, "passed": self.passed}
         self.loop = integration.Integration(workspace, method.arrays, start | given, output)
 
-    def reached(self) -> Array:
-        """The states at the ends of the steps just done, and in the last column their least pivots, (count, n + 1)."""
-        count = self.loop.done
-        return self.passed[: count * (self.n + 1)].reshape(count, self.n + 1).copy()
+    def records(self, every: int, offset: int) -> Array:
+        """What the steps after those just done start from: of every so many, (count, width); a copy."""
+        return self.passed[: self.loop.done * self.width].reshape(-1, self.width)[offset::every].copy()
 
     def states(self) -> Array:
         """The states at the asked instants, (n_t, n)."""
@@ -120,23 +121,34 @@ class Integration:
 
 
 class Steps:
-    """The steps done: the instants of their ends, their least pivots, and some of the states for replays."""
+    """The steps done: of each its end, its least pivot, whether its stages were settled; for replays some records."""
 
-    def __init__(self, start: Array) -> None:
-        self.ends: list[float] = []
-        self.pivots: list[Array] = []
-        self.kept: list[tuple[int, Array]] = [(0, start)]  # number of a step, the state at its beginning
-        self.every, self.room = 1, max(2, KEPT // max(len(start), 1))
+    def __init__(self, start: Array, width: int) -> None:
+        self.rows: dict[str, list[Array]] = {"ends": [np.zeros(0)], "settled": [np.zeros(0)], "pivots": [np.zeros(0)]}
+        self.count = 0
+        # number of a step, and what it starts from; the first is a segment's, of which the state alone counts
+        self.kept: list[tuple[int, Array]] = [(0, np.concatenate([start, np.zeros(width - len(start))]))]
+        self.every, self.room = 1, max(2, KEPT // max(width, 1))
 
     def add(self, run: Integration) -> None:
-        """Add the steps of the last call; while there are too many states, every second of them is dropped."""
-        reached, before = run.reached(), len(self.ends)
-        self.ends += run.ends[: len(reached)].tolist()
-        self.pivots.append(reached[:, run.n])
-        self.kept += [(k, row[: run.n]) for k, row in enumerate(reached, before + 1) if k % self.every == 0]
+        """Add the steps of the last call; while there are too many records, every second of them is dropped."""
+        for name, arrays in self.rows.items():
+            arrays.append(run.output[name][: run.loop.done].copy())
+        first = self.count // self.every * self.every + self.every  # the next number of which one is kept
+        self.kept += enumerate_by(first, self.every, run.records(self.every, first - self.count - 1))
+        self.count += run.loop.done
         while len(self.kept) > self.room:
             self.every *= 2
-            self.kept = [(k, state) for k, state in self.kept if k % self.every == 0]
+            self.kept = [(k, record.copy()) for k, record in self.kept if k % self.every == 0]
+
+    def column(self, name: str) -> Array:
+        """Ends, least pivots, or which were settled, (n_steps,)."""
+        return np.concatenate(self.rows[name])
+
+
+def enumerate_by(first: int, step: int, rows: Array) -> list[tuple[int, Array]]:
+    """Rows numbered from the first on."""
+    return [(first + step * k, row) for k, row in enumerate(rows)]
 
 
 def smooth_segments(last: float, jumps: Sequence[float]) -> list[tuple[float, float]]:
@@ -189,7 +201,7 @@ class Runner:
             layout, self.workspace, method, ts,
             most=most, state=layout.y0, tolerance=tolerance, rate=rate, following=0,
         )  # fmt: skip
-        steps = Steps(layout.y0)
+        steps = Steps(layout.y0, run.width)
         roped = any(j.tension_only for j in layout.mechanism.joints)
         check_deadline(deadline, f"before the run of {last:.6g} s began")
         segments = smooth_segments(last, discontinuities)
@@ -211,10 +223,10 @@ class Runner:
                 raise self._failed(code, run.loop.t, np.array(run.loop.state()), last)
         ts, states = (ts, run.states()) if code == REACHED else cut_short(ts, run)
         return Trajectory(
-            times=ts, states=states, ends=np.array(steps.ends), steps=run.loop.steps,
+            times=ts, states=states, ends=steps.column("ends"), steps=run.loop.steps,
             evaluations=run.loop.evaluations, gap=run.loop.gap, tolerance=tolerance, method=method,
             seconds=time.perf_counter() - begun, segments=tuple(segments), kept=tuple(steps.kept),
-            pivots=np.concatenate(steps.pivots) if steps.pivots else np.zeros(0),
+            pivots=steps.column("pivots"), settled=steps.column("settled"),
             stopped=None if code == REACHED else layout.mechanism.joints[layout.rows[run.loop.rope]].name,
         )  # fmt: skip
 
@@ -232,49 +244,58 @@ class Runner:
         return SolveError(Problem(name, f"at t = {t:.9g} s: {message}", hint=hint))
 
     def resample(self, run: Trajectory, times: Array) -> Array:
-        """States (n_t, n) of a run at other instants (ascending, none after its end), by replaying its own steps.
+        """States (n_t, n) of a run at other instants (ascending, within it), by replaying its own steps.
 
-        It takes no other steps than the run, so it costs at most as much and succeeds wherever the run did.
+        To the last bit what the run would have given, had these instants been among those it was asked for; and what it
+        gave, where they were. It takes no other steps than the run, so it costs at most as much and succeeds wherever
+        the run did.
         """
-        n = self.layout.n_state
         times = np.ascontiguousarray(times, dtype=float)
-        out = np.empty((len(times), n))
-        asked = np.minimum(np.searchsorted(run.ends, times), len(run.ends) - 1)  # the step in which an instant lies
-        if not len(run.ends):
-            out[:] = run.kept[0][1]
-            return out
+        out = np.empty((len(times), self.layout.n_state))
+        own = np.minimum(np.searchsorted(run.times, times), len(run.times) - 1)
+        is_own = run.times[own] == times
+        out[is_own] = run.states[own[is_own]]
+        others = np.flatnonzero(~is_own)
+        asked = np.searchsorted(run.ends, times[others])  # the step in which an instant lies
         starts = np.array([k for k, _ in run.kept])
         base = np.searchsorted(starts, asked, side="right") - 1
         # consecutive steps are replayed together
         breaks = np.flatnonzero((np.diff(asked) > 1) & (np.diff(base) > 0)) + 1
-        for group in np.split(np.arange(len(times)), breaks):
+        for group in np.split(np.arange(len(others)), breaks):
             if len(group):
-                first, state = run.kept[base[group[0]]]
-                out[group] = self.replay(run, first, int(asked[group[-1]]), state, times[group])
+                first, record = run.kept[base[group[0]]]
+                to = others[group]
+                out[to] = self.replay(run, first, int(asked[group[-1]]), record, times[to])
         return out
 
-    def replay(self, run: Trajectory, first: int, last: int, state: Array, times: Array) -> Array:
+    def replay(self, run: Trajectory, first: int, last: int, record: Array, times: Array) -> Array:
+        """States at instants within the steps from `first`, which starts from a kept record, to `last`."""
         replayed = Integration(
             self.layout, self.workspace, run.method, times,
-            most=last - first + 1, state=state, tolerance=math.inf, rate=0.0, following=1,
+            most=last - first + 1, state=self.layout.y0, tolerance=math.inf, rate=0.0, following=1,
         )  # fmt: skip
         loop = replayed.loop
-        t = run.ends[first - 1] if first else 0.0
+        loop.stand(record)
+        t = float(run.ends[first - 1]) if first else 0.0
         while first <= last:
             begin, before_end = run.segments[bisect_right(run.segments, t, key=lambda segment: segment[1])]
             end = just_after(before_end)
             to = min(last, int(np.searchsorted(run.ends, end)))  # a segment ends with a step
-            loop.follow(run.ends[first : to + 1])
-            loop.begin(max(t, begin), before_end, end)
+            loop.follow(run.ends[first : to + 1], run.settled[first : to + 1])
+            if t <= begin:
+                loop.begin(begin, before_end, end)
+            else:
+                loop.resume(t, before_end, end)
             loop.advance(to + 1 - first, False)
             t = loop.t
             first = to + 1
         return replayed.states()
 
-    def recovered(self, times: Array, states: Array, *, choose: bool = False) -> Recovered:
+    def recovered(self, times: Array, states: Array, *, hold_rows: bool = False) -> Recovered:
         """Accelerations and loads at the given states, which are projected onto the closures first.
 
-        choose: select the independent closure rows anew at every instant, for poses that do not follow one another.
+        Each state by itself, whatever others are asked with it: its independent closure rows are chosen anew.
+        hold_rows: those of the first serve the others too, as long as they can, for pivots that are comparable.
         """
         layout, n_t = self.layout, len(times)
         sizes = [
@@ -288,7 +309,7 @@ class Runner:
         at = np.ascontiguousarray(times, dtype=float)
         settled = np.array(states, dtype=float).reshape(n_t, layout.n_state)
         flat, out = settled.ravel(), np.zeros(n_t * width)
-        self.workspace.recover(at, flat, out, width, choose)
+        self.workspace.recover(at, flat, out, width, not hold_rows)
         bodies, freedoms, loads, rows, whole = parts(out.reshape(n_t, width), sizes)
         return Recovered(
             times=at, states=flat.reshape(settled.shape), bodies=bodies, freedoms=freedoms, loads=loads, rows=rows,
@@ -308,4 +329,4 @@ class Recovered:
     rows: Table
     gap: Array
     idle: Array
-    pivot: Array  # least pivot of the closure rows selected at the first instant; 1: far from singular
+    pivot: Array  # least pivot of the closure rows, chosen at each instant or held from the first; 1: far from singular

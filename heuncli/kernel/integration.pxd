@@ -1,8 +1,10 @@
 """The door to steps.py, for C."""
 
+from heuncli.kernel.chosen cimport chosen_width
 from heuncli.kernel.memory cimport Memory
+from heuncli.kernel.response cimport evaluate
 from heuncli.kernel.scene cimport Group, Scene
-from heuncli.kernel.steps cimport Method, Run, run_steps
+from heuncli.kernel.steps cimport Method, Run, clipped, run_steps, take_record
 from heuncli.kernel.workspace cimport Workspace
 
 cdef class Integration:

@@ -13,12 +13,19 @@ except ImportError:
     from heuncli.kernel.shadow import cython
 
 if not cython.compiled:
+    from heuncli.kernel.chosen import chosen_width
     from heuncli.kernel.memory import Memory
+    from heuncli.kernel.response import evaluate
     from heuncli.kernel.scene import Group, Scene
     from heuncli.kernel.shadow import cython
-    from heuncli.kernel.steps import run_steps
+    from heuncli.kernel.steps import clipped, run_steps, take_record
     from heuncli.kernel.structs import Method, Run
     from heuncli.kernel.workspace import Workspace
+
+
+def record_width(workspace: Workspace, n: cython.int) -> int:
+    """How many numbers a step of a state of n numbers starts from."""
+    return 2 * n + chosen_width(cython.address(workspace.scene))
 
 
 class Integration:
@@ -28,7 +35,8 @@ class Integration:
         self, workspace: Workspace, method: dict[str, Any], start: dict[str, Any], output: dict[str, Any]
     ) -> None:
         """method: numbers and arrays by name (integration/methods.py); start: groups (a table), energy_group, weights,
-        state, tolerance, rate, following; output: times, samples, ends, passed, which are written into: flat arrays.
+        state, tolerance, rate, following; output: times, samples, and of the steps ends, settled, pivots, passed, which
+        are written into: flat arrays. following: ends and settled are given.
         """
         if not cython.compiled:
             self.run, self.method = Run(), Method()
@@ -88,17 +96,31 @@ class Integration:
         run.times = self.memory.doubles(output["times"])
         run.samples = self.memory.over(output["samples"], run.sample_count, run.n)
         run.ends = self.memory.over(output["ends"], 1, run.most)[0]
-        run.passed = self.memory.over(output["passed"], run.most, run.n + 1)
+        run.settled = self.memory.over(output["settled"], 1, run.most)[0]
+        run.pivots = self.memory.over(output["pivots"], 1, run.most)[0]
+        run.passed = self.memory.over(output["passed"], 0 if run.following else run.most, self.record_width)
 
     def begin(self, t: cython.double, before_end: cython.double, end: cython.double) -> None:
         """A piece from t to its end, of which `before_end` is the last instant."""
         self.run.t, self.run.before_end, self.run.end, self.run.fresh = t, before_end, end, 1
 
-    def follow(self, ends: Any) -> None:
-        """The ends of the steps to be done again."""
+    def stand(self, record: Any) -> None:
+        """Take a record of `passed` for the state reached; `begin` starts a piece from it, `resume` a step."""
+        take_record(cython.address(self.workspace.scene), cython.address(self.run), self.memory.doubles(record))
+
+    def resume(self, t: cython.double, before_end: cython.double, end: cython.double) -> None:
+        """Go on at t within a piece, with the bits of the run whose record this stands on."""
+        scene: cython.pointer[Scene] = cython.address(self.workspace.scene)
+        run: cython.pointer[Run] = cython.address(self.run)
+        run.t, run.before_end, run.end, run.fresh = t, before_end, end, 0
+        evaluate(scene, clipped(run, t), run.y, run.K[0])
+
+    def follow(self, ends: Any, settled: Any) -> None:
+        """The ends of the steps to be done again, and which of them settled their stages."""
         i: cython.Py_ssize_t
         for i in range(len(ends)):
             self.run.ends[i] = float(ends[i])
+            self.run.settled[i] = float(settled[i])
 
     def advance(self, most: cython.int, roped: cython.bint) -> int:
         """Up to `most` steps; REACHED, MORE to do, or why not. roped: stop where a rope would push."""
@@ -110,10 +132,12 @@ class Integration:
         scene.roped = roped
         with cython.nogil:
             code = run_steps(scene, method, run)
-        if not cython.compiled:
-            self.output["ends"][: run.done] = run.ends[: run.done]
+        if not cython.compiled and not run.following:
+            for name in ("ends", "settled", "pivots"):
+                self.output[name][: run.done] = getattr(run, name)[: run.done]
+            width = self.record_width
             for k in range(run.done):
-                self.output["passed"][k * (run.n + 1) : (k + 1) * (run.n + 1)] = run.passed[k]
+                self.output["passed"][k * width : (k + 1) * width] = run.passed[k]
         return code
 
     def fetch(self) -> None:
@@ -126,6 +150,11 @@ class Integration:
     def state(self) -> list[float]:
         """The state reached."""
         return [self.run.y[i] for i in range(self.run.n)]
+
+    @property
+    def record_width(self) -> int:
+        """Numbers of a record."""
+        return record_width(self.workspace, self.run.n)
 
     @property
     def t(self) -> float:

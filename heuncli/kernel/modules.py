@@ -7,6 +7,7 @@ MODULES = (
     "loads",
     "closures",
     "selection",
+    "chosen",
     "response",
     "workspace",
     "steps",

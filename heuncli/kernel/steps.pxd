@@ -1,6 +1,7 @@
 """Structs and signatures of steps.py for C."""
 
 from heuncli.kernel.algebra cimport Vec3, norm
+from heuncli.kernel.chosen cimport choose_afresh, put_chosen, take_chosen
 from heuncli.kernel.closures cimport slack
 from heuncli.kernel.response cimport evaluate, must_choose_anew, settle
 from heuncli.kernel.scene cimport Body, Group, Scene
@@ -26,7 +27,7 @@ cdef struct Run:
     int n                     # length of the state
     int group_count
     int energy_group          # the group of the drives' work; -1: none
-    int following             # 1: the steps are given by `ends`, none is judged
+    int following             # 1: the steps are given by `ends` and `settled`, none is judged
     int fresh                 # 1: a piece begins
     int last                  # 1: this step reaches the end of the piece
     int near                  # 1: the stages are settled, too
@@ -43,7 +44,7 @@ cdef struct Run:
     double t
     double h                  # of the step under way
     double proposed
-    double stop               # where the step ends if it is the last one of the piece
+    double stop               # where the step under way ends
     double before_end         # the last instant at which the piece's expressions hold
     double end
     double tolerance
@@ -67,8 +68,10 @@ cdef struct Run:
     double *stage             # a state under way
     double *times
     double **samples
-    double *ends
-    double **passed           # states at the ends, each with the least pivot of the closures within the step
+    double *ends              # of the steps done, or of those to be followed
+    double *settled           # of each whether it was near
+    double *pivots            # of each the least pivot of the closures
+    double **passed           # at each end what the next step starts from: put_record
 
 cdef void combine(Method *method, int row, double **K, int n, double *out) noexcept nogil
 cdef double clipped(Run *run, double t) noexcept nogil
@@ -79,8 +82,11 @@ cdef double first_step(Scene *scene, Method *method, Run *run) noexcept nogil
 cdef double manhattan(Vec3 a) noexcept nogil
 cdef double load_rate(Scene *scene, Run *run) noexcept nogil
 cdef int begin_piece(Scene *scene, Method *method, Run *run) noexcept nogil
+cdef void put_record(Scene *scene, Run *run, double *out) noexcept nogil
+cdef void take_record(Scene *scene, Run *run, double *record) noexcept nogil
 cdef void propose(Run *run) noexcept nogil
 cdef int blocked(Scene *scene, Run *run) noexcept nogil
+cdef bint near_singular(Scene *scene, Run *run) noexcept nogil
 cdef int attempt(Scene *scene, Method *method, Run *run) noexcept nogil
 cdef int rope_slack(Scene *scene, Run *run) noexcept nogil
 cdef int judge(Scene *scene, Method *method, Run *run, int trouble) noexcept nogil
@@ -89,8 +95,8 @@ cdef double singular_noise(Scene *scene, Run *run) noexcept nogil
 cdef void interpolant(Scene *scene, Method *method, Run *run) noexcept nogil
 cdef void interpolate(Run *run, int rows, double x, double *out) noexcept nogil
 cdef void sample(Scene *scene, Method *method, Run *run) noexcept nogil
+cdef void sample_reached(Run *run) noexcept nogil
 cdef double growth(Method *method, Run *run) noexcept nogil
 cdef int accept(Scene *scene, Method *method, Run *run) noexcept nogil
 cdef int land(Scene *scene, Run *run) noexcept nogil
-cdef void sample_start(Run *run) noexcept nogil
 cdef int run_steps(Scene *scene, Method *method, Run *run) noexcept nogil

@@ -16,6 +16,7 @@ if not cython.compiled:
     from math import fabs, pow, sqrt
 
     from heuncli.kernel.algebra import Vec3, norm
+    from heuncli.kernel.chosen import choose_afresh, put_chosen, take_chosen
     from heuncli.kernel.closures import slack
     from heuncli.kernel.response import evaluate, must_choose_anew, settle
     from heuncli.kernel.scene import Body, Group, Scene
@@ -121,11 +122,9 @@ def begin_piece(scene: cython.pointer[Scene], method: cython.pointer[Method], ru
     """The derivative at the start of a piece and a first step from it; ROPE_SLACK where a rope would push at once."""
     i: cython.Py_ssize_t
     h: cython.double
-    scene.pivot_of_step = (
-        0.0 if run.following else 1.0
-    )  # how near to a singular pose a step followed comes is not known
+    scene.pivot_of_step = 1.0
     if scene.closure_count:
-        select_independent_rows(scene, run.t, run.y, True)
+        choose_afresh(scene, run.t, run.y)
         settle(scene, run.t, run.y)
     evaluate(scene, run.t, run.y, run.K[0])
     run.evaluations += 1
@@ -133,9 +132,10 @@ def begin_piece(scene: cython.pointer[Scene], method: cython.pointer[Method], ru
         run.rope = slack(scene)
         if run.rope:
             return ROPE_SLACK
-    h = first_step(scene, method, run)
-    if run.proposed <= 0.0 or h < run.proposed:
-        run.proposed = h
+    if not run.following:
+        h = first_step(scene, method, run)
+        if run.proposed <= 0.0 or h < run.proposed:
+            run.proposed = h
     run.fresh = 0
     run.rejected_before = 0
     for i in range(run.n):
@@ -195,20 +195,42 @@ def manhattan(a: Vec3) -> cython.double:
     return fabs(a.x) + fabs(a.y) + fabs(a.z)
 
 
+def put_record(scene: cython.pointer[Scene], run: cython.pointer[Run], out: cython.p_double) -> cython.void:
+    """What the next step starts from: the state, the small parts that its digits do not hold, the chosen rows.
+
+    All else follows: the derivative at the start is evaluated anew, and a step's length is the way to its end.
+    """
+    i: cython.Py_ssize_t
+    for i in range(run.n):
+        out[i] = run.y[i]
+        out[run.n + i] = run.carry[i]
+    put_chosen(scene, out, 2 * run.n)
+
+
+def take_record(scene: cython.pointer[Scene], run: cython.pointer[Run], record: cython.p_double) -> cython.void:
+    """Stand where a record was made."""
+    i: cython.Py_ssize_t
+    for i in range(run.n):
+        run.y[i] = record[i]
+        run.carry[i] = record[run.n + i]
+    take_chosen(scene, record, 2 * run.n)
+
+
 def propose(run: cython.pointer[Run]) -> cython.void:
-    """Length of the next step; the last of a piece ends it, the one before is halved with it."""
-    run.last = 0
-    run.h = run.proposed
-    run.stop = run.end
+    """Where the next step ends; the last of a piece ends it, the one before is halved with it.
+
+    Its length is the way to that end, rounded as the end is: so the ends alone tell the steps.
+    """
+    run.stop = run.t + run.proposed
+    run.last = run.t + 1.01 * run.proposed >= run.end
     if run.following:
         run.stop = run.ends[run.done]
-        run.h = run.stop - run.t
-        run.last = 1
-    elif run.t + 1.01 * run.h >= run.end:
-        run.h = run.end - run.t
-        run.last = 1
-    elif run.t + 2.0 * run.h > run.end:
-        run.h = 0.5 * (run.end - run.t)
+        run.last = run.stop >= run.end
+    elif run.last:
+        run.stop = run.end
+    elif run.t + 2.0 * run.proposed > run.end:
+        run.stop = run.t + 0.5 * (run.end - run.t)
+    run.h = run.stop - run.t
 
 
 def blocked(scene: cython.pointer[Scene], run: cython.pointer[Run]) -> cython.int:
@@ -220,6 +242,15 @@ def blocked(scene: cython.pointer[Scene], run: cython.pointer[Run]) -> cython.in
     if run.h <= scene.limits.least_step * fabs(run.end) or run.h < 1e-300:
         return COLLAPSED
     return REACHED
+
+
+def near_singular(scene: cython.pointer[Scene], run: cython.pointer[Run]) -> cython.bint:
+    """Whether the step before, the last attempt at this one or its start came near to a singular pose."""
+    if run.following:
+        return run.settled[run.done] > 0.0
+    if scene.closure_count == 0:
+        return False
+    return scene.pivot_of_step < scene.limits.near_singular or run.pivot_at_start < scene.limits.near_singular
 
 
 def attempt(scene: cython.pointer[Scene], method: cython.pointer[Method], run: cython.pointer[Run]) -> cython.int:
@@ -245,7 +276,7 @@ def attempt(scene: cython.pointer[Scene], method: cython.pointer[Method], run: c
         run.z[i] = run.y[i] + change
         run.z_carry[i] = change - (run.z[i] - run.y[i])
     run.evaluations += method.stages
-    return evaluate(scene, clipped(run, run.t + run.h), run.z, run.K[method.stages])
+    return evaluate(scene, clipped(run, run.stop), run.z, run.K[method.stages])
 
 
 def rope_slack(scene: cython.pointer[Scene], run: cython.pointer[Run]) -> cython.int:
@@ -373,26 +404,25 @@ def interpolate(run: cython.pointer[Run], rows: cython.int, x: cython.double, ou
 
 
 def sample(scene: cython.pointer[Scene], method: cython.pointer[Method], run: cython.pointer[Run]) -> cython.void:
-    """The asked instants within the step y -> z, those at its end only where the piece ends."""
-    i: cython.Py_ssize_t
-    t: cython.double
+    """The asked instants within the step y -> z, before its end; which are asked changes nothing of the steps."""
     x: cython.double
-    have: cython.bint = False
-    until: cython.double = run.stop if run.last else run.t
-    while run.next_sample < run.sample_count:
-        t = run.times[run.next_sample]
-        if not (t < run.t + run.h or t <= until):
-            break
-        at: cython.p_double = run.samples[run.next_sample]
-        x = (t - run.t) / run.h
-        if x >= 1.0:
-            for i in range(run.n):
-                at[i] = run.z[i]
-        else:
-            if not have:
-                interpolant(scene, method, run)
-                have = True
-            interpolate(run, 3 + method.dense_rows, x, at)
+    pivot: cython.double = scene.pivot_of_step
+    if run.next_sample >= run.sample_count or run.times[run.next_sample] >= run.stop:
+        return
+    interpolant(scene, method, run)
+    scene.pivot_of_step = pivot
+    while run.next_sample < run.sample_count and run.times[run.next_sample] < run.stop:
+        x = (run.times[run.next_sample] - run.t) / run.h
+        interpolate(run, 3 + method.dense_rows, x, run.samples[run.next_sample])
+        run.next_sample += 1
+
+
+def sample_reached(run: cython.pointer[Run]) -> cython.void:
+    """The asked instants up to the one reached: its state, on the closures."""
+    i: cython.Py_ssize_t
+    while run.next_sample < run.sample_count and run.times[run.next_sample] <= run.t:
+        for i in range(run.n):
+            run.samples[run.next_sample][i] = run.y[i]
         run.next_sample += 1
 
 
@@ -426,13 +456,12 @@ def accept(scene: cython.pointer[Scene], method: cython.pointer[Method], run: cy
             run.groups[b].rate = run.groups[b].trial
             if run.groups[b].rate > run.rate and b != run.energy_group:
                 run.rate = run.groups[b].rate
-    run.t = run.stop if run.last else run.t + run.h
+    run.t = run.stop
     if not run.last or run.proposed < run.h * factor:
         # a step cut short by the end of the piece says nothing against a longer one after it
         run.proposed = run.h * factor
     run.rejected_before = 0
     run.steps += 1
-    run.ends[run.done] = run.t
     pivot: cython.double = scene.pivot_of_step
     if scene.closure_count:
         code = land(scene, run)
@@ -441,10 +470,12 @@ def accept(scene: cython.pointer[Scene], method: cython.pointer[Method], run: cy
         for i in range(run.n):
             run.K[0][i] = run.K[method.stages][i]
     if code == REACHED:
+        sample_reached(run)
         if not run.following:
-            for i in range(run.n):
-                run.passed[run.done][i] = run.y[i]
-            run.passed[run.done][run.n] = pivot
+            run.ends[run.done] = run.t
+            run.pivots[run.done] = pivot
+            run.settled[run.done] = run.near
+            put_record(scene, run, run.passed[run.done])
         run.done += 1
     return code
 
@@ -468,7 +499,7 @@ def land(scene: cython.pointer[Scene], run: cython.pointer[Run]) -> cython.int:
 def run_steps(scene: cython.pointer[Scene], method: cython.pointer[Method], run: cython.pointer[Run]) -> cython.int:
     """Up to `most` accepted steps towards the end of the piece: REACHED, MORE to do, or why it cannot be continued.
 
-    Following, `ends` gives the steps, none is judged, and the first one's stages are settled.
+    Following, `ends` and `settled` give the steps, and none is judged.
     """
     code: cython.int
     trouble: cython.int
@@ -476,7 +507,7 @@ def run_steps(scene: cython.pointer[Scene], method: cython.pointer[Method], run:
     run.dodges = 0
     if run.fresh and begin_piece(scene, method, run) == ROPE_SLACK:
         return ROPE_SLACK
-    sample_start(run)
+    sample_reached(run)
     run.pivot_at_start = scene.pivot
     while run.t < run.end:
         if run.done >= run.most:
@@ -485,9 +516,7 @@ def run_steps(scene: cython.pointer[Scene], method: cython.pointer[Method], run:
         code = blocked(scene, run)
         if code != REACHED:
             return code
-        run.near = scene.closure_count > 0 and (
-            scene.pivot_of_step < scene.limits.near_singular or run.pivot_at_start < scene.limits.near_singular
-        )
+        run.near = near_singular(scene, run)
         scene.pivot_of_step = 1.0
         trouble = attempt(scene, method, run)
         code = rope_slack(scene, run) if scene.roped and not run.following else ACCEPTED
@@ -500,12 +529,3 @@ def run_steps(scene: cython.pointer[Scene], method: cython.pointer[Method], run:
         elif code != AGAIN:
             return code
     return REACHED
-
-
-def sample_start(run: cython.pointer[Run]) -> cython.void:
-    """Asked instants up to the start of the first step."""
-    i: cython.Py_ssize_t
-    while run.next_sample < run.sample_count and run.times[run.next_sample] <= run.t:
-        for i in range(run.n):
-            run.samples[run.next_sample][i] = run.y[i]
-        run.next_sample += 1

@@ -172,4 +172,6 @@ class Run(metaclass=Fields):
     times: list[float]
     samples: list[list[float]]
     ends: list[float]
+    settled: list[float]
+    pivots: list[float]
     passed: list[list[float]]

@@ -1,6 +1,7 @@
 """Signatures of workspace.py for C."""
 
 from heuncli.kernel.algebra cimport Mat3, Vec3, add, add_cross
+from heuncli.kernel.chosen cimport choose_afresh
 from heuncli.kernel.closures cimport clear_path, measure_rows, push_closures, put_unit_load
 from heuncli.kernel.expressions cimport Expressions
 from heuncli.kernel.memory cimport Memory

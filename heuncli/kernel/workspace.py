@@ -19,6 +19,7 @@ except ImportError:
 
 if not cython.compiled:
     from heuncli.kernel.algebra import Mat3, Vec3, add, add_cross
+    from heuncli.kernel.chosen import choose_afresh
     from heuncli.kernel.closures import clear_path, measure_rows, push_closures, put_unit_load
     from heuncli.kernel.expressions import Expressions
     from heuncli.kernel.memory import Memory
@@ -109,7 +110,7 @@ def recover_state(
     scene.pivot_recovered = 1.0
     if scene.closure_count:
         if afresh:
-            select_independent_rows(scene, t, y, True)
+            choose_afresh(scene, t, y)
         scene.gap = settle(scene, t, y)
         scene.pivot_recovered = scene.pivot
         if must_choose_anew(scene, scene.gap):
@@ -123,7 +124,7 @@ def recover_state(
 
 
 def recover_states(scene: cython.pointer[Scene], instants: cython.pointer[Instants]) -> cython.void:
-    """Recover one state after the other; the rows chosen at one are the next one's, too, unless afresh."""
+    """Recover one state after the other, each by itself; unless afresh, the rows chosen at one are the next one's."""
     j: cython.Py_ssize_t
     i: cython.Py_ssize_t
     at: cython.Py_ssize_t
@@ -409,12 +410,12 @@ class Workspace:
         if cython.compiled:
             y: cython.double[::1] = array("d", state)
             if scene.closure_count:
-                select_independent_rows(scene, t, cython.address(y[0]), True)
+                choose_afresh(scene, t, cython.address(y[0]))
             kinematics(scene, t, cython.address(y[0]))
             return configure(scene, t)
         plain = list(state)
         if scene.closure_count:
-            select_independent_rows(scene, t, plain, True)
+            choose_afresh(scene, t, plain)
         kinematics(scene, t, plain)
         return configure(scene, t)
 

@@ -33,7 +33,7 @@ def neighbours(runner: Runner, t: float, state: Array, by: Sequence[float]) -> R
         return None
     steps = [(k, sign * step / largest[k]) for k in np.flatnonzero(moving) for step in by for sign in (1.0, -1.0)]
     moved = [displaced(layout, admissible[k], step) for k, step in steps]
-    found = runner.recovered(np.full(len(steps), t), np.array(moved), choose=True)
+    found = runner.recovered(np.full(len(steps), t), np.array(moved))
     closed = found.gap <= tolerances.OPEN_GAP * layout.size
     if not closed.any():
         return None

@@ -23,7 +23,7 @@ def recovered(kind: str, seed: int) -> tuple[Study, Recovered]:
     """A random scene in motion: its last instant."""
     study = (tree if kind == "tree" else loop)(seed).study
     history = study.history.recovered
-    return study, study.setup.runner.recovered(history.times[-1:], history.states[-1:], choose=True)
+    return study, study.setup.runner.recovered(history.times[-1:], history.states[-1:])
 
 
 def load_columns(study: Study, found: Recovered) -> Array:

@@ -76,3 +76,32 @@ def test_same_bits_of_the_one_linear_map(scene: str) -> None:
         told[kernel] = json.loads(done.stdout)
     assert told["compiled"] == told["pure"]
     assert all(np.any(told["pure"][name]) for name in ("jacobian", "carried"))
+
+
+WITHIN = """
+import json, sys
+import numpy as np
+from heuncli.spec.load import load
+from heuncli.study.setup import set_up
+setup = set_up(load(sys.argv[1]))
+run = setup.runner.trajectory(np.linspace(0.0, 0.8, 3), 1e-6, method=setup.method)
+times = np.unique(np.concatenate([np.linspace(0.0, 0.8, 17), run.ends, np.nextafter(run.ends[:-1], 1.0)]))
+states = setup.runner.resample(run, times)
+found = setup.runner.recovered(times, states)
+print(json.dumps([run.ends.tolist(), run.settled.tolist(), states.tolist(), found.bodies.tolist(), found.rows.tolist()],
+                 default=list))
+"""
+
+
+@pytest.mark.skipif(KERNEL == "pure", reason="there is no compiled kernel to compare with")
+@pytest.mark.parametrize("scene", ["double", "flat_four_bar", "four_bar", "bricard"])
+def test_same_bits_between_the_samples(scene: str) -> None:
+    """The steps done again, through a flat pose, too."""
+    told = {}
+    for kernel in ("compiled", "pure"):
+        command = [sys.executable, "-c", WITHIN, str(SPECS / f"{scene}.yaml")]
+        environment = {**os.environ, "HEUN_KERNEL": kernel, "PYTHONPATH": str(SPECS.parent)}
+        done = subprocess.run(command, capture_output=True, text=True, env=environment, check=True)
+        told[kernel] = json.loads(done.stdout)
+    assert told["compiled"] == told["pure"]
+    assert any(told["pure"][1]) == (scene == "flat_four_bar")
