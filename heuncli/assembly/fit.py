@@ -1,5 +1,7 @@
 """The fit of an island: poses that close its loops, as near as possible to where they started.
 
+    (0) drawn nearly closed: (2) from the poses as drawn, then least Σθ² + Σ(d/L)² from there; then (3), unless that
+        leads much farther than the nearest. Else, from the poses as walked:
     (1) with `near`: what near says is fixed, the others meet it as well as they can; then it is let go
     (2) close: least |e − C y|² + μ (Σθ² + 0.01 Σd²/L²) step by step (Levenberg-Marquardt), turns at most 0.3 rad;
         where that stalls with a gap (links in line have no slope), again with small fixed pseudo-random turns
@@ -71,6 +73,10 @@ class Fit:
     def gap(self, rows: dict[int, Rows]) -> float:
         """Root of the sum of squares of all gaps, lengths by L."""
         return math.sqrt(sum(float(r.hold @ r.hold) / self.size**2 + float(r.turn @ r.turn) for r in rows.values()))
+
+    def widest(self, rows: dict[int, Rows]) -> float:
+        """The largest gap of a joint, lengths by L."""
+        return max(max(_norm(r.hold) / self.size, _norm(r.turn)) for r in rows.values())
 
     def saved(self) -> tuple[Array, Array]:
         """The members' poses, to be put back."""
@@ -163,20 +169,41 @@ class Fit:
         self.settle(limit, KICKS[:1])
         self.poses = p
 
-    def polish(self, start: tuple[Array, Array], limit: float) -> None:
-        """Step (3): start are the poses before (2)."""
+    def near_drawing(self, drawn: tuple[Array, Array], limit: float) -> tuple[bool, int]:
+        """Step (0): whether it closed near the drawing, and which kick it took. If not, the poses are anyhow.
+
+        The walk moves the last body of a loop by all that the drawing lacks; where that is little, each gives a bit.
+        """
+        self.restore(drawn)
+        if self.widest(self.rows()) > tolerances.NEAR_DRAWING:
+            return False, 0
+        closed, kick = self.settle(limit)
+        if not closed:
+            return False, 0
+        self.polish(drawn, limit, together=True)
+        nearest, way = self.saved(), self._moved(drawn)
+        if float(np.max(np.abs(way))) > tolerances.NEAR_DRAWING:
+            return False, 0
+        self.polish(drawn, limit)
+        if _norm(self._moved(drawn)) > tolerances.FARTHER * _norm(way):
+            self.restore(nearest)
+        return True, kick
+
+    def polish(self, start: tuple[Array, Array], limit: float, together: bool = False) -> None:
+        """Step (3): start are the poses before (2). together: turns and shifts count alike, as in (0)."""
         last, factor, length = np.zeros(0), 1.0, math.inf
         for _ in range(POLISH):
-            z = least(self.reduced(self.rows()), self._moved(start))[0]
+            z = least(self.reduced(self.rows()), self._moved(start), together)[0]
             if _norm(z) < tolerances.POLISHED or (_norm(z) < tolerances.SUMS_BLIND and _norm(z) > 0.5 * length):
                 return
             if last.size:  # the bend of the closed poses makes steps too long or too short, by what the last one tells
                 factor = min(max(factor / max(1.0 - float(z @ last) / float(last @ last), 0.2), 1e-3), 4.0)
-            before, sums = self.saved(), self._sums(start)
+            before, sums = self.saved(), self._sums(start, together)
             last, length = z, _norm(z)
+            blind = length < tolerances.SUMS_BLIND
             for _ in range(10):
                 self.apply(_limited(factor * z))
-                if self.close(limit) and (_norm(z) < tolerances.SUMS_BLIND or _lower(self._sums(start), sums)):
+                if self.close(limit) and (blind or _lower(self._sums(start, together), sums)):
                     break
                 self.restore(before)
                 factor *= 0.5
@@ -195,10 +222,10 @@ class Fit:
                 z[i, 1] = (p.x[body] - start[0][i] + turned @ p.pivot[body]) / self.size
         return z.ravel()
 
-    def _sums(self, start: tuple[Array, Array]) -> tuple[float, float]:
-        """Σθ² and Σ(d/L)²."""
-        sums = np.sum(np.square(self._moved(start).reshape(-1, 2, 3)), axis=(0, 2))
-        return float(sums[0]), float(sums[1])
+    def _sums(self, start: tuple[Array, Array], together: bool) -> tuple[float, float]:
+        """Σθ² and Σ(d/L)²; together: their sum, and nothing after it."""
+        turns, shifts = np.sum(np.square(self._moved(start).reshape(-1, 2, 3)), axis=(0, 2)).tolist()
+        return (turns + shifts, 0.0) if together else (turns, shifts)
 
 
 def _lower(new: tuple[float, float], old: tuple[float, float]) -> bool:

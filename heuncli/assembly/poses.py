@@ -67,12 +67,11 @@ class Placing:
             raise too_many(self.mechanism, island, "poses")
         fit = Fit(self.poses, island, self.found, self.tree.depth, self.size, self.mechanism.planar)
         before = fit.saved()
-        bodies = [self.mechanism.bodies[i] for i in island.members]
-        fit.meet([(b.near_rotation is not None, b.near_position is not None) for b in bodies], self.limit)
-        begun = fit.saved()
-        closed, kick = fit.settle(self.limit)
+        closed, kick = fit.near_drawing((self.drawn.x[island.members], self.drawn.R[island.members]), self.limit)
+        if not closed:
+            fit.restore(before)
+            closed, kick = self._from_walk(fit)
         if closed:
-            fit.polish(begun, self.limit)
             self.fitted.update(island.members)
             if kick:
                 self.folded.append(self.mechanism.joints[(island.closures or island.via)[0]].name)
@@ -81,6 +80,16 @@ class Placing:
         else:
             fit.restore(before)
             self.islands.widened(island.closures[0])  # what it hangs on may have to turn, too
+
+    def _from_walk(self, fit: Fit) -> tuple[bool, int]:
+        """Whether an island closes from the poses as walked, and which kick it took."""
+        bodies = [self.mechanism.bodies[i] for i in fit.island.members]
+        fit.meet([(b.near_rotation is not None, b.near_position is not None) for b in bodies], self.limit)
+        begun = fit.saved()
+        closed, kick = fit.settle(self.limit)
+        if closed:
+            fit.polish(begun, self.limit)
+        return closed, kick
 
     def _refusal(self, joints: Sequence[int]) -> Exception:
         distance, angle = self._gaps(self.poses.x, self.poses.R)

@@ -132,15 +132,15 @@ def _root(may: tuple[bool, bool]) -> Step:
     return Step(np.zeros(6), np.zeros((6, 6)), N, -1, np.zeros((0, 6)), np.zeros(0))
 
 
-def least(r: Reduced, moved: Array) -> tuple[Array, Array]:
+def least(r: Reduced, moved: Array, together: bool = False) -> tuple[Array, Array]:
     """z (6m,) with C y = e and least Σ(turns)², then least Σ(shifts)², of z + moved; and what C y = e lacks.
 
-    Only what may turn, or shift, counts.
+    together: least Σ(turns)² + Σ(shifts)². Only what may turn, or shift, counts.
     """
     y, N, lack = solve(r.C, r.e)
-    may = np.repeat(np.array(r.free, dtype=bool).reshape(-1, 2), 3, axis=1)
+    may = np.repeat(np.array(r.free, dtype=bool).reshape(-1, 2), 3, axis=1).ravel()
     turns = np.arange(may.size) % 6 < 3
-    for counted in (may.ravel() & turns, may.ravel() & ~turns):
+    for counted in (may,) if together else (may & turns, may & ~turns):
         step, null, _ = solve(r.B[counted] @ N, -((r.t + moved)[counted] + r.B[counted] @ y))
         y = y + N @ step
         N = N @ null

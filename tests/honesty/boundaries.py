@@ -482,6 +482,8 @@ ROWS = (
 # Those that decide no verdict: on either side the same numbers, to their digits.
 EXEMPT = {
     "EPS": "the rounding of one operation; others are told by it",
+    "NEAR_DRAWING": "which start a search takes first; tests/laws/test_nearest.py looks at what comes of it",
+    "FARTHER": "which of two poses that both close; tests/laws/test_nearest.py holds how far it may be",
     "CLOSED": "ends a search: the verdict is OPEN_GAP's",
     "NO_SLOPE": "ends a search, which then starts again from elsewhere: the verdict is OPEN_GAP's",
     "REPEATED_ROW": "rows a step of the search does without: the verdict is OPEN_GAP's",
