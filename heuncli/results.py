@@ -113,3 +113,15 @@ class Extremes(NamedTuple):
             self.low[groups], self.low_at[groups], self.low_column[groups],
             self.high[groups], self.high_at[groups], self.high_column[groups], self.searched,
         )  # fmt: skip
+
+
+class Magnitudes(NamedTuple):
+    """The largest over a run, by unit, of what its numbers are summed from; size and reach [m] of the scene.
+
+    rate: of the fastest motion [1/s]. A number far below its unit's is rounding of the sum, or of a difference.
+    """
+
+    by_unit: Mapping[str, float]
+    size: float
+    reach: float
+    rate: float

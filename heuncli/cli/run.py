@@ -106,7 +106,7 @@ def _report(request: Run, form: str, study: Study, labels: Labels, wanted: froze
         from heuncli.report.export import to_csv, to_json  # tables do without
 
         return to_json(shown) if form == "json" else to_csv(shown, labels)
-    page = page_of(study.results, labels)
+    page = page_of(study.results, labels, study.magnitudes)
     if request.all or at is not None or len(study.results.time) == 1:
         tables = page.instants(shown, every_cut=request.all)
     else:

@@ -1,7 +1,8 @@
 """The residual of d'Alembert's principle, recomputed for every body from the reported loads and motion.
 
     r = Σ k + m g − m ẍ,   R = Σ [(x − x_s) × k + couples] − (I σ̇ + σ × I σ)     about the centre of mass
-k: applied forces, joints and drives on the body. The residual is relative to the body's largest load.
+k: applied forces, joints and drives on the body. The residual is relative to the body's largest load, the inertia loads
+of its pieces among them: a rotor that spins about its centre has no others.
 """
 
 from __future__ import annotations
@@ -13,6 +14,7 @@ import numpy as np
 from heuncli.kinetostatics.actions import Action
 from heuncli.kinetostatics.bodies import BodyStates
 from heuncli.kinetostatics.foundation import inertia_loads
+from heuncli.kinetostatics.magnitudes import inertia_scale
 from heuncli.kinetostatics.reactions import in_plane
 from heuncli.mechanism.model import GROUND, Mechanism
 
@@ -24,7 +26,7 @@ def balance_residual(mechanism: Mechanism, states: BodyStates, actions: Sequence
     ma, spin = inertia_loads(mechanism, states)
     weight = np.array([b.mass for b in mechanism.bodies])[:, None] * mechanism.gravity
     force, moment = weight - ma, -spin
-    largest = np.maximum(np.abs(ma).max(axis=2, initial=0.0), np.abs(weight).max(axis=1, initial=0.0))
+    largest = inertia_scale(mechanism, states)
 
     acting = [(end, F, M) for action in actions for end, F, M in action.on_bodies() if end.body != GROUND]
     many = max(1, AT_ONCE // max(len(states.x), 1))

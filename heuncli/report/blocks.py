@@ -11,7 +11,7 @@ from typing import NamedTuple
 import numpy as np
 
 from heuncli.report.labels import Labels
-from heuncli.report.numbers import OPEN, OPEN_NOTE, Certainty, Style, largest, style, write
+from heuncli.report.numbers import OPEN, OPEN_NOTE, Certainty, Style, kind_of, largest, write
 from heuncli.report.plans import FOUNDATION, MASS_EFFECT, Plan
 from heuncli.report.quantities import Series
 from heuncli.results import Array, Results
@@ -44,18 +44,20 @@ SPOKEN_UNITS = {"Pa": ("MPa", 1e-6)}  # units of the tables that are not SI: the
 
 
 class Row(NamedTuple):
-    """One number over the instants, (n_t,). Rows of one `family` share their decimals.
+    """One number over the instants, (n_t,). Rows of one `family` share their decimals; `kind`: of their error.
 
     An `even` one is a magnitude: never negative, with a kink at zero that its square does not have. Components and
-    magnitude of one vector have its symbol as `vector`.
+    magnitude of one vector have its symbol as `vector`. beside: the largest number that it is a sum of.
     """
 
     label: str
     unit: str
     family: str
+    kind: str
     values: Array
     even: bool = False
     vector: str = ""
+    beside: float = 0.0
 
 
 class Group(NamedTuple):
@@ -86,21 +88,32 @@ class Block(NamedTuple):
     missing: tuple[str, str] = (OPEN, OPEN_NOTE)
 
 
-def family_styles(rows: Sequence[Row], certain: Certainty) -> dict[tuple[str, str], Style]:
-    """The style of each family of rows, by family and unit."""
-    scales: dict[tuple[str, str], float] = {}
+def family_styles(rows: Sequence[Row], numbers: Array, certain: Certainty) -> list[Style]:
+    """The style of each row, that of its family, by all that is shown of it: its values and `numbers`, (n, n_rows)."""
+    scales: dict[tuple[str, ...], float] = {}
+    for row, shown in zip(rows, numbers.T, strict=True):
+        scale = max(largest(row.values), largest(shown))
+        scales[_family(row)] = max(scales.get(_family(row), 0.0), scale)
+    styles = []
     for row in rows:
-        key = (row.family, row.unit)
-        scales[key] = max(scales.get(key, 0.0), largest(row.values))
-    return {key: style(scale, certain.error(key[1])) for key, scale in scales.items()}
+        how = certain.style(row.kind, row.unit, scales[_family(row)])
+        # a sum whose terms cancel to less than their errors is nothing beside them
+        styles.append(how if how.known else certain.style(row.kind, row.unit, max(scales[_family(row)], row.beside)))
+    return styles
+
+
+def _family(row: Row) -> tuple[str, ...]:
+    return row.family, row.kind, row.unit
 
 
 def texts_of(group: Group, numbers: Array, certain: Certainty) -> list[list[str]]:
     """The numbers of each row as text, (n, n_rows) -> n_rows lists of n; the rows of a family share their decimals."""
     texts: list[list[str]] = [[] for _ in group.rows]
-    for key, how in family_styles(group.rows, certain).items():
-        members = [i for i, row in enumerate(group.rows) if (row.family, row.unit) == key]
-        flat = write(numbers[:, members].ravel().tolist(), how)
+    styles = family_styles(group.rows, numbers, certain)
+    families = [_family(row) for row in group.rows]
+    for family in dict.fromkeys(families):
+        members = [i for i, own in enumerate(families) if own == family]
+        flat = write(numbers[:, members].ravel().tolist(), styles[members[0]])
         for column, member in enumerate(members):
             texts[member] = flat[column :: len(members)]
     return texts
@@ -139,16 +152,16 @@ def build(plan: Plan, results: Results, labels: Labels, series: Iterable[Series]
 def rows_of(series: Series) -> list[Row]:
     """The rows of one quantity: itself, or its components and the magnitude of a free vector."""
     quantity, (unit, size) = series.quantity, SPOKEN_UNITS.get(series.unit, (series.unit, 1.0))
-    spoken, family = quantity.replace("_", " "), FAMILIES.get(quantity, quantity)
+    spoken, family, kind = quantity.replace("_", " "), FAMILIES.get(quantity, quantity), kind_of(series)
     if len(series.components) == 1:
-        return [Row(spoken, unit, family, size * series.values[:, 0], even=quantity in EVEN)]
+        return [Row(spoken, unit, family, kind, size * series.values[:, 0], even=quantity in EVEN)]
     symbol = SYMBOLS.get(quantity, f"{spoken} ")
     vector = "" if quantity in POSITIONS else symbol.strip()
     columns = zip(series.components, series.values.T, strict=True)
-    rows = [Row(f"{symbol}{component}", unit, family, column, vector=vector) for component, column in columns]
+    rows = [Row(f"{symbol}{component}", unit, family, kind, column, vector=vector) for component, column in columns]
     if series.components == XYZ and vector:
         squares = np.einsum("ij,ij->i", series.values, series.values)
-        rows.append(Row(f"|{vector}|", unit, family, np.sqrt(squares), even=True, vector=vector))
+        rows.append(Row(f"|{vector}|", unit, family, kind, np.sqrt(squares), even=True, vector=vector))
     return rows
 
 
@@ -191,4 +204,6 @@ def _with_sum(group: Group) -> Group:
     if not {"kinetic", "potential", "work"} <= part.keys():
         return group
     total = part["kinetic"] + part["potential"] - part["work"]
-    return Group(group.name, group.note, (*group.rows, Row("sum", "J", "sum", total)), whole=True)
+    terms = max(largest(values) for values in part.values())
+    rows = (*group.rows, Row("sum", "J", "sum", "energy", total, beside=terms))
+    return Group(group.name, group.note, rows, whole=True)

@@ -4,17 +4,36 @@ from __future__ import annotations
 
 from collections import Counter
 from collections.abc import Sequence
+from itertools import pairwise
+from typing import NamedTuple
 
 import numpy as np
 
 from heuncli.report.blocks import Block, Group, family_styles, texts_of
-from heuncli.report.numbers import OPEN, OPEN_NOTE, ZERO_NOTE, Certainty, write_times
+from heuncli.report.numbers import (
+    OPEN,
+    OPEN_NOTE,
+    UNKNOWN,
+    UNKNOWN_NOTE,
+    ZERO_NOTE,
+    Certainty,
+    beyond_horizon,
+    write_times,
+)
 from heuncli.report.table import INDENT, Column, Table
 from heuncli.results import Array, Extremes
 
 MANY = 40  # groups beyond which each gets one line
 PARTLY_OPEN_NOTE = "* open at some instants; the extremes are those of the others"
-NOTES = (ZERO_NOTE, OPEN_NOTE, PARTLY_OPEN_NOTE)
+NOTES = (ZERO_NOTE, OPEN_NOTE, PARTLY_OPEN_NOTE, UNKNOWN_NOTE)
+
+
+class Part(NamedTuple):
+    """A group with the extremes of its rows, and where the run ends beyond its horizon their last values."""
+
+    group: Group
+    extremes: Extremes
+    beyond: Array | None = None
 
 
 def abridged(block: Block) -> Block:
@@ -28,46 +47,50 @@ def abridged(block: Block) -> Block:
     return block._replace(groups=tuple(groups))
 
 
-def extremes_table(block: Block, times: Array, extremes: Extremes, certain: Certainty) -> list[Table]:
-    """First and last value, lowest and highest with their instants; one line a group where there are many."""
+def extremes_table(
+    block: Block, times: Array, extremes: Extremes, certain: Certainty, beyond: Array | None = None
+) -> list[Table]:
+    """First and last value, lowest and highest with their instants; one line a group where there are many.
+
+    beyond: the last value of each row, where the run ends beyond its horizon.
+    """
     counts = np.cumsum([0, *(len(group.rows) for group in block.groups)])
-    pairs = [(group, extremes.part(slice(a, b))) for group, a, b in zip(block.groups, counts, counts[1:], strict=False)]
-    if len(pairs) <= MANY:
-        return [_full(block, pairs, times, certain)]
-    whole = [pair for pair in pairs if pair[0].whole]
+    own = [slice(a, b) for a, b in pairwise(counts)]
+    last = [None if beyond is None else beyond[rows] for rows in own]
+    parts = [Part(group, extremes.part(rows), x) for group, rows, x in zip(block.groups, own, last, strict=True)]
+    if len(parts) <= MANY:
+        return [_full(block, parts, times, certain)]
+    whole = [part for part in parts if part.group.whole]
     tables = [_full(block, whole, times, certain)] if whole else []
-    single = [pair for pair in pairs if not pair[0].whole]
+    single = [part for part in parts if not part.group.whole]
     return [*tables, _one_line_each(block, single, times, certain, heading="" if whole else block.heading)]
 
 
-def _full(block: Block, pairs: Sequence[tuple[Group, Extremes]], times: Array, certain: Certainty) -> Table:
+def _full(block: Block, parts: Sequence[Part], times: Array, certain: Certainty) -> Table:
     """A line a row, under a title a group."""
     rows: list[tuple[str, ...] | str] = []
     notes: set[str] = set()
     span = float(np.ptp(times))
-    for group, extremes in pairs:
-        lines, needed = _lines(group, extremes, span, certain)
-        rows += [group.title, *lines] if group.name else lines
+    for part in parts:
+        lines, needed = _lines(part, span, certain)
+        rows += [part.group.title, *lines] if part.group.name else lines
         notes |= needed
     heads = ("first", "last", "min", "at [s]", "max", "at [s]")
     columns = (Column("", "left"), Column("", "left"), *(Column(head) for head in heads))
     return Table(block.heading, columns, tuple(rows), (*block.notes, *(note for note in NOTES if note in notes)))
 
 
-def _lines(
-    group: Group, extremes: Extremes, span: float, certain: Certainty
-) -> tuple[list[tuple[str, ...] | str], set[str]]:
+def _lines(part: Part, span: float, certain: Certainty) -> tuple[list[tuple[str, ...] | str], set[str]]:
     """The lines of a group, and the notes they need: rows that are 0 or open throughout take no line."""
-    ends = [[row.values[i] for row in group.rows] for i in (0, -1)]
-    numbers = np.stack([*ends, extremes.low, extremes.high])
+    group, extremes = part.group, part.extremes
     instants = np.stack([extremes.low_at, extremes.high_at])
     notes: set[str] = set()
-    texts = texts_of(group, numbers, certain)
+    texts = _texts(part, certain)
     lines: list[tuple[str, ...] | str] = []
-    unknown = [row.label for row, own in zip(group.rows, texts, strict=True) if set(own) == {OPEN}]
+    is_open = [row.label for row, own in zip(group.rows, texts, strict=True) if set(own) == {OPEN}]
     seen = Counter(row.vector for row, own in zip(group.rows, texts, strict=True) if set(own) != {"0"} and not row.even)
     for i, (row, (first, last, low, high)) in enumerate(zip(group.rows, texts, strict=True)):
-        if row.label in unknown:
+        if row.label in is_open:
             continue
         if {first, last, low, high} == {"0"}:
             notes.add(ZERO_NOTE)
@@ -76,30 +99,40 @@ def _lines(
             continue  # the magnitude of a vector along one axis says nothing new
         partly = bool(np.isnan(row.values).any())
         notes |= {PARTLY_OPEN_NOTE} if partly else set()
+        notes |= {UNKNOWN_NOTE} if UNKNOWN in (first, last, low, high) else set()
         low_at, high_at = ["", ""] if low == high else write_times(instants[:, i].tolist(), span)
         unit = row.unit if row.unit != "1" else ""
         lines.append((row.label + "*" * partly, unit, first, last, low, low_at, high, high_at))
-    if unknown:
+    if is_open:
         notes.add(OPEN_NOTE)
-        lines.append(f"{INDENT}{OPEN}: {', '.join(unknown)}")
+        lines.append(f"{INDENT}{OPEN}: {', '.join(is_open)}")
     return lines or [f"{INDENT}0 throughout"], notes
 
 
-def _one_line_each(
-    block: Block, pairs: Sequence[tuple[Group, Extremes]], times: Array, certain: Certainty, heading: str
-) -> Table:
+def _texts(part: Part, certain: Certainty) -> list[list[str]]:
+    """First, last, lowest and highest value of each row."""
+    rows, beyond = part.group.rows, part.beyond
+    first, last = (np.array([row.values[i] for row in rows]) for i in (0, -1))
+    texts = texts_of(part.group, np.stack([first, last, part.extremes.low, part.extremes.high]), certain)
+    if beyond is not None:
+        for row, value, own in zip(rows, beyond, texts, strict=True):
+            own[1] = beyond_horizon(value, row.unit, certain, own[1])
+    return texts
+
+
+def _one_line_each(block: Block, parts: Sequence[Part], times: Array, certain: Certainty, heading: str) -> Table:
     """A line a group: of each row but the components of vectors the value farthest from zero, and when."""
     span = float(np.ptp(times))
     heads: dict[str, None] = {}
     cells: list[dict[str, tuple[str, str]]] = []
-    for group, extremes in pairs:
+    for group, extremes, _ in parts:
         lower = np.abs(extremes.low) > np.abs(extremes.high)
         farthest = np.where(lower, extremes.low, extremes.high)
-        styles = family_styles(group.rows, certain)
-        texts = [styles[row.family, row.unit].write(value) for row, value in zip(group.rows, farthest, strict=True)]
+        styles = family_styles(group.rows, farthest[None, :], certain)
+        texts = [how.write(value) for how, value in zip(styles, farthest, strict=True)]
         clock = write_times(np.where(lower, extremes.low_at, extremes.high_at).tolist(), span)
         own = {
-            f"{row.label} [{row.unit}]": (text, "" if text in ("0", OPEN) else at)
+            f"{row.label} [{row.unit}]": (text, "" if text in ("0", OPEN, UNKNOWN) else at)
             for row, text, at in zip(group.rows, texts, clock, strict=True)
         }
         heads |= dict.fromkeys(head for head, (text, _) in own.items() if text != "0")
@@ -108,10 +141,11 @@ def _one_line_each(
     for head in heads:
         columns += [Column(head), Column("at [s]")]
     rows = tuple(
-        (group.name, *(text for head in heads for text in own.get(head, ("", ""))))
-        for (group, _), own in zip(pairs, cells, strict=True)
+        (part.group.name, *(text for head in heads for text in own.get(head, ("", ""))))
+        for part, own in zip(parts, cells, strict=True)
     )
-    what = f"{len(pairs)} {block.what or 'group'}s, a line each: the value farthest from zero"
+    what = f"{len(parts)} {block.what or 'group'}s, a line each: the value farthest from zero"
     notes = (*block.notes, f"{what}; components: --at, or --format csv")
-    notes += (OPEN_NOTE,) if any(OPEN in row for row in rows) else ()
+    shown = {text for row in rows for text in row}
+    notes += tuple(note for word, note in ((OPEN, OPEN_NOTE), (UNKNOWN, UNKNOWN_NOTE)) if word in shown)
     return Table(heading, tuple(columns), rows, notes)

@@ -7,7 +7,7 @@ from collections.abc import Sequence
 import numpy as np
 
 from heuncli.report.blocks import Block, Group, texts_of
-from heuncli.report.numbers import BEYOND, OPEN, ZERO_NOTE, Certainty, write_times
+from heuncli.report.numbers import OPEN, UNKNOWN, UNKNOWN_NOTE, ZERO_NOTE, Certainty, beyond_horizon, write_times
 from heuncli.report.table import Column, Table
 from heuncli.results import Array
 
@@ -31,8 +31,8 @@ def instants_tables(block: Block, times: Array, horizon: float | None, certain: 
         columns = [Column(f"{label} [{units[label]}]" if units[label] != "1" else label) for label in labels]
         lead, rows = lay(block, groups, labels, cells, times)
         tables += [Table("" if tables else block.heading, (*lead, *columns), tuple(rows))] if labels else []
-    if any(word in row for table in tables for row in table.rows if not isinstance(row, str)):
-        notes.append(note)
+    shown = {text for table in tables for row in table.rows if not isinstance(row, str) for text in row}
+    notes += [note for word, note in (block.missing, (UNKNOWN, UNKNOWN_NOTE)) if word in shown]
     if not tables:
         return [Table(block.heading, notes=("0 throughout",))]
     return [*tables[:-1], tables[-1]._replace(notes=tuple(dict.fromkeys(notes)))]
@@ -82,18 +82,22 @@ def _group_texts(
 ) -> dict[str, list[str]]:
     """The cells of a group by label, one an instant."""
     numbers = np.stack([row.values for row in group.rows], axis=1)
-    beyond = [horizon is not None and t >= horizon for t in times.tolist()]
+    known = [horizon is None or t < horizon for t in times.tolist()]
     word = {OPEN: block.missing[0]}
-    return {
-        row.label: [BEYOND if far else word.get(text, text) for text, far in zip(own, beyond, strict=True)]
-        for row, own in zip(group.rows, texts_of(group, numbers, certain), strict=True)
-    }
+    cells = {}
+    for row, texts in zip(group.rows, texts_of(group, numbers, certain), strict=True):
+        own = [
+            text if sure else beyond_horizon(value, row.unit, certain, text)
+            for value, text, sure in zip(row.values.tolist(), texts, known, strict=True)
+        ]
+        cells[row.label] = [word.get(text, text) for text in own]
+    return cells
 
 
 def _not_zero(groups: Sequence[Group], cells: Cells) -> list[str]:
     """The labels of what is not 0 throughout, vectors whole, in their order."""
     whole = {row.label: row.vector or row.label for group in groups for row in group.rows}
-    shown = {whole[label] for own in cells.values() for label, texts in own.items() if set(texts) - {BEYOND} != {"0"}}
+    shown = {whole[label] for own in cells.values() for label, texts in own.items() if set(texts) != {"0"}}
     return [label for label in _in_order(groups) if whole[label] in shown]
 
 

@@ -6,7 +6,6 @@ From the kinds follow the units that the results alone do not determine: a pin's
 from __future__ import annotations
 
 from collections.abc import Mapping
-from itertools import chain
 from types import MappingProxyType
 from typing import Any, NamedTuple
 
@@ -15,7 +14,7 @@ import numpy as np
 from heuncli import tolerances
 from heuncli.joint_kinds import TYPES, Kind
 from heuncli.records import record
-from heuncli.spec.models import Body, End, Force, Friction, Section, Spec, Vec
+from heuncli.spec.models import End, Force, Friction, Section, Spec, Vec
 
 PUSHING_FORCES = frozenset({"force", "actuator", "spring"})
 AXES = ("x", "y", "z")
@@ -51,16 +50,12 @@ NONE: Mapping[str, Any] = MappingProxyType({})
 
 @record
 class Labels:
-    """The kinds of everything named in the results; `about` is the ground point where M_s is taken, if one is there.
-
-    size: how far a body's points and shapes reach from its origin at most [m].
-    """
+    """The kinds of everything named in the results; `about` is the ground point where M_s is taken, if one is there."""
 
     joints: Mapping[str, JointInfo] = NONE
     forces: Mapping[str, ForceInfo] = NONE
     sections: Mapping[str, SectionInfo] = NONE
     about: str | None = None
-    size: float = 0.0
 
     def turns(self, block: str, name: str) -> bool:
         """Whether it turns, not slides: which of the two units of a quantity of `block` holds for `name`."""
@@ -89,16 +84,7 @@ def labels_of(spec: Spec) -> Labels:
     sections = {name: _section(section) for name, section in spec.sections.items()}
     about = spec.foundation.about or (0.0, 0.0, 0.0)
     named = next((name for name, point in spec.ground.points.items() if tuple(point) == tuple(about)), None)
-    return Labels(joints, forces, sections, named, max(map(_reach, spec.bodies.values()), default=0.0))
-
-
-def _reach(body: Body) -> float:
-    """The largest coordinate of the body's points and shapes [m]."""
-    positions = [*body.points.values(), body.center]
-    for shape in body.shapes or ():
-        positions += [shape.from_, shape.to, shape.at, shape.center, shape.size]
-    radii = [shape.radius or 0.0 for shape in body.shapes or ()]
-    return max((abs(x) for x in chain(radii, *filter(None, positions))), default=0.0)
+    return Labels(joints, forces, sections, named)
 
 
 def _force(force: Force) -> ForceInfo:

@@ -1,8 +1,12 @@
-"""How many digits a number is shown with: no more than its error estimate supports, and never more than six.
+"""How many digits a number is shown with: no more than its error supports, and never more than six.
 
-The error of a run is known by kind: that of the motion relative to the size of the scene, that of the reactions
-relative to the largest reaction. So every unit has an absolute error, and below it nothing is printed. Numbers of one
-family (the components of one vector) share their decimals, so that a component that is noise beside the others reads 0.
+The error of a run is known by kind (`accuracy.estimate`): that of the motion relative to the size of the scene, that of
+each kind of loads relative to its own largest. Beside it stands the rounding of what a number is summed from
+(`Magnitudes`): the force on the ground may be 1e-12 N where 30 N cancel.
+
+Numbers of one family (the components of one vector) share their decimals. What is below the last of them is `0`: it is
+known to be nothing beside the others. A family whose largest number is rounding is `0`, too. A family whose largest
+number is not above the error is `?`: nothing is known of it, not even its sign.
 """
 
 from __future__ import annotations
@@ -15,40 +19,42 @@ import numpy as np
 
 from heuncli import tolerances
 from heuncli.report.labels import Labels
-from heuncli.report.quantities import walk
-from heuncli.results import Array, Estimate, Results
+from heuncli.report.quantities import Series, walk
+from heuncli.results import Array, Estimate, Magnitudes, Results
 
 DIGITS = 6
-LOAD_UNITS = frozenset({"N", "N·m", "N·s", "N·m·s", "Pa"})
 LARGE, SMALL = 1e7, 1e-4  # families beyond these are written with an exponent
 OPEN = "open"
 OPEN_NOTE = "open: the laws of rigid bodies do not give this number (redundant supports)"
 ZERO_NOTE = "what is 0 throughout is left out"
-BEYOND = "?"
-
-
-class Certainty(NamedTuple):
-    """The absolute error of numbers by unit."""
-
-    errors: Mapping[str, float]
-
-    def error(self, unit: str) -> float:
-        """The absolute error of numbers in this unit; 0 where nothing is known of it."""
-        return self.errors.get(unit, 0.0)
+UNKNOWN = "?"
+UNKNOWN_NOTE = "?: the estimated error is as large as the number, or the instant is beyond the horizon"
+KINDS = {"foundation": "foundation", "joints": "reactions", "sections": "sections", "energy": "energy"}
+LOADS = ("reactions", "drives", "foundation", "sections")
+APPLIED = ("motion", "reactions", "energy")  # loads follow places and rates, friction the reactions
 
 
 class Style(NamedTuple):
-    """How the numbers of one family are written: fixed decimals, or an exponent where the family is far from 1."""
+    """How the numbers of one family are written: fixed decimals, or an exponent where the family is far from 1.
+
+    rounding: what is not above it is 0; known: whether any digit of the family's largest number is certain.
+    """
 
     decimals: int
     exponent: bool = False
+    rounding: float = 0.0
+    known: bool = True
 
     def write(self, value: float) -> str:
-        """The number as text: `open` for nan, `0` for what is below the certain digits."""
+        """The number as text: `open` for nan, `0` for what is below the certain digits, `?` for what is not known."""
         if math.isnan(value):
             return OPEN
         if math.isinf(value):
             return "unbounded"
+        if abs(value) <= self.rounding:
+            return "0"
+        if not self.known:
+            return UNKNOWN
         if abs(value) < 0.5 * 10.0**-self.decimals:
             return "0"
         if self.exponent:
@@ -57,26 +63,97 @@ class Style(NamedTuple):
         return f"{value:.{max(self.decimals, 0)}f}"
 
 
-def certainty(results: Results, labels: Labels) -> Certainty:
-    """The absolute errors of a run, from its own estimates and the largest number of each unit."""
-    estimate = results.accuracy.get("estimate", Estimate())
-    motion = _relative(estimate.get("motion"))
-    loads = max(_relative(estimate.get("reactions")), _relative(results.accuracy.get("balance_residual")))
-    if results.accuracy.get("horizon") is not None:
-        motion, loads = min(motion, tolerances.CLAIMED), min(loads, tolerances.CLAIMED)
-    scales: dict[str, float] = {}
+class Certainty(NamedTuple):
+    """The absolute errors of numbers by kind and unit, and their rounding by unit; 0 where none is known."""
+
+    errors: Mapping[tuple[str, str], float]
+    rounding: Mapping[str, float]
+
+    def error(self, kind: str, unit: str) -> float:
+        """The estimated error of numbers of this kind and unit, not below their rounding."""
+        return max(self.errors.get((kind, unit), 0.0), self.lost(unit))
+
+    def lost(self, unit: str) -> float:
+        """What numbers of this unit lose by rounding."""
+        return self.rounding.get(unit, 0.0)
+
+    def style(self, kind: str, unit: str, scale: float) -> Style:
+        """The style of a family of this kind and unit whose largest magnitude is `scale`."""
+        return style(scale, self.error(kind, unit), self.lost(unit))
+
+
+def certainty(results: Results, labels: Labels, of: Magnitudes) -> Certainty:
+    """The absolute errors of a run, from its own estimates and the largest number of each kind and unit."""
+    scales: dict[tuple[str, str], float] = {}
     for series in walk(results, labels):
-        scales[series.unit] = max(scales.get(series.unit, 0.0), largest(series.values))
-    if "N·m" in scales:  # a moment is at least as uncertain as the largest force times its arm
-        scales["N·m"] = max(scales["N·m"], scales.get("N", 0.0) * max(_reach(results), labels.size))
-    for turning, moving in (
-        ("rad/s", "m/s"),
-        ("rad/s²", "m/s²"),
-    ):  # a velocity at least as the angular one times the body's extent
-        if moving in scales:
-            scales[moving] = max(scales[moving], scales.get(turning, 0.0) * labels.size)
-    errors = {unit: scale * (loads if unit in LOAD_UNITS else motion) for unit, scale in scales.items()}
-    return Certainty(errors | {"MPa": 1e-6 * errors.get("Pa", 0.0)})
+        key = (kind_of(series), series.unit)
+        scales[key] = max(scales.get(key, 0.0), largest(series.values))
+    errors = {key: tolerances.WRITTEN * scale for key, scale in scales.items()} | _of_motion(results, of)
+    for kind in LOADS:
+        errors |= _of_loads(kind, _relative(results, kind), scales, of.size)
+    errors["energy", "J"] = _relative(results, "energy") * scales.get(("energy", "J"), 0.0)
+    applied = max(_relative(results, kind) for kind in APPLIED)
+    errors |= {("forces", unit): applied * scales.get(("forces", unit), 0.0) for unit in ("N", "N·m", "W")}
+    horizon = results.accuracy.get("horizon")
+    if horizon is not None and results.time[0] >= horizon:
+        errors = dict.fromkeys(errors, math.inf)
+    return Certainty(errors, _rounding(of) | _rounding_of_stresses(scales, of))
+
+
+def kind_of(series: Series) -> str:
+    """Of which estimate the error of a quantity is."""
+    if series.kind == "joints" and series.quantity == "drive":
+        return "drives"
+    if series.kind == "foundation" and series.name.startswith("supports."):
+        return "reactions"
+    if series.kind == "forces":
+        return "motion" if series.quantity in ("length", "rate") else "forces"
+    return KINDS.get(series.kind, "motion")
+
+
+def _of_motion(results: Results, of: Magnitudes) -> dict[tuple[str, str], float]:
+    """Errors of places, and of their derivatives as if they changed as fast as the motion does.
+
+    A step of the integrator is about as long as the fastest motion takes for one radian.
+    """
+    error, span, steps = _relative(results, "motion"), float(np.ptp(results.time)), results.work.get("steps", 0)
+    rate = min(of.rate, steps / span) if steps and span > 0.0 else of.rate
+    families = (("m", "m/s", "m/s²"), of.size), (("rad", "rad/s", "rad/s²"), 1.0)
+    return {("motion", unit): error * size * rate**k for units, size in families for k, unit in enumerate(units)}
+
+
+def _of_loads(
+    kind: str, relative: float, scales: Mapping[tuple[str, str], float], size: float
+) -> dict[tuple[str, str], float]:
+    """Errors of one kind of loads, a force on the scene's size as lever against a moment; stresses as their loads."""
+    own = max(scales.get((kind, "N"), 0.0), scales.get((kind, "N·m"), 0.0) / size)
+    errors = {(kind, "N"): relative * own, (kind, "N·m"): relative * own * size}
+    errors |= {(kind, unit): relative * scales.get((kind, unit), 0.0) for unit in ("Pa", "m", "1")}
+    return errors | {(kind, "MPa"): 1e-6 * errors[kind, "Pa"]}
+
+
+def _rounding(of: Magnitudes) -> dict[str, float]:
+    """What is lost by rounding, by unit; far from the origin places, and so levers, have fewer digits."""
+    lost = {unit: tolerances.WRITTEN * scale for unit, scale in of.by_unit.items()}
+    far = tolerances.GAP_ROUNDING * of.reach
+    return lost | {"m": max(lost["m"], far), "N·m": max(lost["N·m"], far * of.by_unit["N"])}
+
+
+def _rounding_of_stresses(scales: Mapping[tuple[str, str], float], of: Magnitudes) -> dict[str, float]:
+    """What stresses lose: in proportion to the loads that make them."""
+    loads = max(scales.get(("sections", "N"), 0.0), scales.get(("sections", "N·m"), 0.0) / of.size)
+    lost = tolerances.WRITTEN * of.by_unit["N"] / loads * scales.get(("sections", "Pa"), 0.0) if loads else 0.0
+    return {"Pa": lost, "MPa": 1e-6 * lost}
+
+
+def _relative(results: Results, kind: str) -> float:
+    """The estimated error of a kind, relative to its own largest, up to the horizon; not below that of rounding."""
+    error = results.accuracy.get("estimate", Estimate()).get(kind)
+    if not isinstance(error, float) or not math.isfinite(error):
+        return tolerances.WRITTEN
+    if results.accuracy.get("horizon") is not None:
+        error = min(error, tolerances.CLAIMED)
+    return max(error, tolerances.WRITTEN)
 
 
 def largest(values: Array) -> float:
@@ -85,16 +162,19 @@ def largest(values: Array) -> float:
     return float(finite.max()) if finite.size else 0.0
 
 
-def style(scale: float, error: float) -> Style:
+def style(scale: float, error: float, rounding: float = 0.0) -> Style:
     """The style of a family whose largest magnitude is `scale` and whose numbers are certain to `error`."""
-    if scale <= error or scale == 0.0:
-        return Style(0 if error <= 0.0 else math.floor(-math.log10(max(error, 1e-300))) - 1)
+    if scale <= rounding or scale == 0.0:
+        return Style(0, rounding=scale)
+    if not error < scale:
+        return Style(0, rounding=rounding, known=False)
     decimals = DIGITS - 1 - math.floor(math.log10(scale))
     if scale < LARGE:
         decimals = max(decimals, 0)  # forces of a few million newtons are written without an exponent
     if error > 0.0:
         decimals = min(decimals, math.floor(-math.log10(error)))
-    return Style(decimals, exponent=not SMALL <= scale < LARGE or decimals < 0)
+    known = scale >= 0.5 * 10.0**-decimals
+    return Style(decimals, not SMALL <= scale < LARGE or decimals < 0, rounding, known)
 
 
 def write(values: Iterable[float], how: Style) -> list[str]:
@@ -110,6 +190,13 @@ def trim(texts: Sequence[str]) -> list[str]:
     return [text[: len(text) - cut] if cut and "." in text and "e" not in text else text for text in texts]
 
 
+def beyond_horizon(value: float, unit: str, certain: Certainty, text: str) -> str:
+    """What stands for a number beyond the horizon: `?`, unless it is open or nothing but rounding."""
+    if text == OPEN:
+        return OPEN
+    return "0" if abs(value) <= certain.lost(unit) else UNKNOWN
+
+
 def write_times(times: Sequence[float], span: float) -> list[str]:
     """Instants as text, to a hundred-thousandth of the run."""
     how = Style(max(0, 5 - math.ceil(math.log10(span))) if span > 0.0 else DIGITS)
@@ -119,16 +206,3 @@ def write_times(times: Sequence[float], span: float) -> list[str]:
 def rough(value: float) -> str:
     """An error to one digit: `3e-11`, `0`."""
     return f"{value:.0e}".replace("e-0", "e-").replace("e+0", "e") if value else "0"
-
-
-def _relative(error: float | None) -> float:
-    return max(error, tolerances.WRITTEN) if error is not None and math.isfinite(error) else tolerances.WRITTEN
-
-
-def _reach(results: Results) -> float:
-    """Half the extent of the joints' points over the run [m]."""
-    points = [joint["point"].reshape(-1, 3) for joint in results.joints.values() if "point" in joint]
-    if not points:
-        return 0.0
-    cloud = np.concatenate(points)
-    return 0.5 * float(np.linalg.norm(np.nanmax(cloud, axis=0) - np.nanmin(cloud, axis=0)))

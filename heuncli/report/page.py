@@ -20,7 +20,7 @@ from heuncli.report.plans import PLANS
 from heuncli.report.quantities import Series, walk, walk_impulse
 from heuncli.report.sums import sums_table
 from heuncli.report.table import Table
-from heuncli.results import Array, CertainSum, Extremes, Results
+from heuncli.results import Array, CertainSum, Extremes, Magnitudes, Results
 from heuncli.results_schema import REPORT_OF, REPORTS, quantity
 
 TABLE_DEFAULT = frozenset(REPORTS) - {"motion", "points"}
@@ -28,11 +28,15 @@ EXPORT_DEFAULT = frozenset(REPORTS) - {"points"}
 
 
 class Page(NamedTuple):
-    """The tables of a run: blocks and runs of cuts up to the horizon, before they are laid out."""
+    """The tables of a run: blocks and runs of cuts up to the horizon, before they are laid out.
+
+    beyond: the last instant alone, where the run ends beyond its horizon.
+    """
 
     results: Results
     labels: Labels
     certain: Certainty
+    beyond: Results | None = None
 
     def columns(self, results: Results) -> Array:
         """What is searched, (n_t, n): all rows of all blocks (magnitudes squared), then the cuts of runs."""
@@ -59,14 +63,15 @@ class Page(NamedTuple):
         """The tables with extremes, from those searched for each of `groups`."""
         tables: list[Table] = []
         start = 0
-        times = self.results.time
+        times, last = self.results.time, self._last_values()
         for block in self._lasting(self.results):
             rows = [row for group in block.groups for row in group.rows]
             own = slice(start, start + len(rows))
             even = np.array([row.even for row in rows], dtype=bool)
             part = searched.part(own)
             low, high = (np.where(even, np.sqrt(np.abs(bound)), bound) for bound in (part.low, part.high))
-            tables += extremes.extremes_table(block, times, part._replace(low=low, high=high), self.certain)
+            beyond = last[own] if last is not None else None
+            tables += extremes.extremes_table(block, times, part._replace(low=low, high=high), self.certain, beyond)
             start += len(rows)
         column = start
         for run in runs.runs_of(self.results, self.labels):
@@ -88,11 +93,18 @@ class Page(NamedTuple):
             tables += runs.instants_tables(run, results.time, horizon, self.certain, every=every_cut)
         return [*tables, *self._ending()]
 
+    def _last_values(self) -> Array | None:
+        """The values of all rows at the last instant, where that is beyond the horizon."""
+        if self.beyond is None:
+            return None
+        blocks = self._lasting(self.beyond)
+        return np.array([row.values[-1] for block in blocks for group in block.groups for row in group.rows])
+
     def _lasting(self, results: Results) -> list[Block]:
         return _blocks(results, self.labels, lasting=True)
 
     def _ending(self) -> list[Table]:
-        sums = sums_table(self.results, self.certain)
+        sums = sums_table(self.results, self.certain, self.beyond)
         return [*self._impulses(), *([sums] if sums else [])]
 
     def _impulses(self) -> list[Table]:
@@ -104,45 +116,41 @@ class Page(NamedTuple):
                 if block is not None:
                     heading = f"IMPULSE at t = {float(impulse['time']):.6g} s  {block.heading}"
                     named = block._replace(heading=heading, notes=())
-                    tables += instants.instants_tables(named, np.array([float(impulse["time"])]), None, self.certain)
+                    time, horizon = np.array([float(impulse["time"])]), self.results.accuracy.get("horizon")
+                    tables += instants.instants_tables(named, time, horizon, self.certain)
         return tables
 
 
-def page_of(results: Results, labels: Labels) -> Page:
-    """The page of a run, ending before its horizon."""
+def page_of(results: Results, labels: Labels, of: Magnitudes) -> Page:
+    """The page of a run, ending before its horizon; `of`: what its numbers are summed from."""
     horizon = results.accuracy.get("horizon")
-    certain = certainty(results, labels)
-    if horizon is not None:
-        results = until(results, float(horizon))
-    return Page(results, labels, certain)
+    certain = certainty(results, labels, of)
+    if horizon is None or results.time[-1] < horizon:
+        return Page(results, labels, certain)
+    known = max(1, int(np.searchsorted(results.time, horizon)))
+    return Page(some_instants(results, slice(known)), labels, certain, some_instants(results, slice(-1, None)))
 
 
-def until(results: Results, horizon: float) -> Results:
-    """The results at the instants before the horizon; at least the first."""
-    count = max(1, int(np.searchsorted(results.time, horizon)))
-    return first_instants(results, count) if count < len(results.time) else results
+def some_instants(results: Results, which: slice) -> Results:
+    """The results at some of their instants."""
 
-
-def first_instants(results: Results, count: int) -> Results:
-    """The results at the first of their instants."""
-
-    def first(keys: tuple[str, ...], value: Any) -> Any:
+    def those(keys: tuple[str, ...], value: Any) -> Any:
         if isinstance(value, dict):
-            return {key: first((*keys, key), member) for key, member in value.items()}
+            return {key: those((*keys, key), member) for key, member in value.items()}
         row = quantity(keys)
-        return value[:count] if row is not None and row.timed else value
+        return value[which] if row is not None and row.timed else value
 
-    blocks = {block: first((block,), getattr(results, block)) for block in REPORT_OF}
-    sums = [_first_of_sum(block, count) for block in results.certain_sums]
-    return replace(results, time=results.time[:count], certain_sums=sums, **blocks)
+    blocks = {block: those((block,), getattr(results, block)) for block in REPORT_OF}
+    sums = [_some_of_sum(block, which) for block in results.certain_sums]
+    return replace(results, time=results.time[which], certain_sums=sums, **blocks)
 
 
-def _first_of_sum(block: CertainSum, count: int) -> CertainSum:
-    """A certain sum at the first instants; a factor that turns with the pose is an array over them."""
+def _some_of_sum(block: CertainSum, which: slice) -> CertainSum:
+    """A certain sum at some instants; a factor that turns with the pose is an array over them."""
     factors = {
-        path: factor[:count] if isinstance(factor, np.ndarray) else factor for path, factor in block["terms"].items()
+        path: factor[which] if isinstance(factor, np.ndarray) else factor for path, factor in block["terms"].items()
     }
-    return {"terms": factors, "value": block["value"][:count]}
+    return {"terms": factors, "value": block["value"][which]}
 
 
 def _blocks(results: Results, labels: Labels, *, lasting: bool = False) -> list[Block]:

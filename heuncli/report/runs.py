@@ -8,7 +8,19 @@ from typing import NamedTuple
 import numpy as np
 
 from heuncli.report.labels import Labels
-from heuncli.report.numbers import BEYOND, OPEN, OPEN_NOTE, Certainty, Style, largest, style, write, write_times
+from heuncli.report.numbers import (
+    OPEN,
+    OPEN_NOTE,
+    UNKNOWN,
+    UNKNOWN_NOTE,
+    Certainty,
+    Style,
+    beyond_horizon,
+    largest,
+    style,
+    write,
+    write_times,
+)
 from heuncli.report.table import Column, Table
 from heuncli.results import Array, Extremes, Indices, Results
 from heuncli.results_schema import row_of
@@ -53,7 +65,7 @@ def columns(run: Run) -> Array:
 
 def extremes_tables(run: Run, times: Array, extremes: Extremes, certain: Certainty) -> list[Table]:
     """Extremes over position and time, (6,) each with the cut as column; at each cut the value farthest from zero."""
-    styles = _styles(run, certain)
+    styles = _styles(run, certain, extremes)
     span = float(np.ptp(times))
     rows = []
     for i, (label, unit) in enumerate(RESULTANTS):
@@ -89,14 +101,13 @@ def instants_tables(
     clock = write_times(times.tolist(), float(np.ptp(times)))
     rows: list[tuple[str, ...] | str] = []
     table = Table("")
+    notes: tuple[str, ...] = ()
     for i, t in enumerate(times):
-        table = _diagram(run, run.values[:, i, :], kept, styles, [_rest(run, kept).lstrip("; ")])
-        beyond = horizon is not None and t >= horizon
-        rows.append(f"t = {clock[i]} s")
-        lines = [row for row in table.rows if not isinstance(row, str)]
-        lead = len(table.columns) - len(RESULTANTS)
-        rows += [(*row[:lead], *(BEYOND for _ in RESULTANTS)) if beyond else row for row in lines]
-    return [Table(run.heading, table.columns, tuple(rows), table.notes)]
+        lost = certain if horizon is not None and t >= horizon else None
+        table = _diagram(run, run.values[:, i, :], kept, styles, [_rest(run, kept).lstrip("; ")], lost)
+        rows += [f"t = {clock[i]} s", *table.rows]
+        notes += table.notes
+    return [Table(run.heading, table.columns, tuple(rows), tuple(dict.fromkeys(notes)))]
 
 
 def thinned(run: Run) -> Indices:
@@ -111,25 +122,42 @@ def thinned(run: Run) -> Indices:
     return np.array(sorted(chosen))
 
 
-def _diagram(run: Run, values: Array, kept: Indices, styles: dict[str, Style], notes: Sequence[str]) -> Table:
-    """A line a cut; `values` is (6, n_cuts)."""
+def _diagram(
+    run: Run,
+    values: Array,
+    kept: Indices,
+    styles: dict[str, Style],
+    notes: Sequence[str],
+    beyond: Certainty | None = None,
+) -> Table:
+    """A line a cut; `values` is (6, n_cuts). beyond: given where the instant is beyond the horizon."""
     positions = _positions(run.s)
-    texts = [write(values[i, kept].tolist(), styles[unit]) for i, (_, unit) in enumerate(RESULTANTS)]
+    texts = []
+    for (_, unit), row in zip(RESULTANTS, values[:, kept].tolist(), strict=True):
+        own = write(row, styles[unit])
+        if beyond is not None:
+            own = [beyond_horizon(value, unit, beyond, text) for value, text in zip(row, own, strict=True)]
+        texts.append(own)
     sides = any(side is not None for side in run.side)
     rows = tuple(
         (positions[cut], *([run.side[cut] or ""] if sides else []), *(column[j] for column in texts))
         for j, cut in enumerate(kept)
     )
     heads = [Column("s [m]"), *([Column("side", "left")] if sides else [])]
-    below = [note for note in notes if note] + ([OPEN_NOTE] if any(OPEN in column for column in texts) else [])
+    shown = {text for column in texts for text in column}
+    below = [note for note in notes if note]
+    below += [note for word, note in ((OPEN, OPEN_NOTE), (UNKNOWN, UNKNOWN_NOTE)) if word in shown]
     return Table("", (*heads, *(Column(f"{label} [{unit}]") for label, unit in RESULTANTS)), rows, tuple(below))
 
 
-def _styles(run: Run, certain: Certainty) -> dict[str, Style]:
+def _styles(run: Run, certain: Certainty, extremes: Extremes | None = None) -> dict[str, Style]:
+    """The style of forces and that of moments, by all that is shown of them."""
+    bounds = np.zeros((2, len(RESULTANTS))) if extremes is None else np.stack([extremes.low, extremes.high])
     styles = {}
     for unit in ("N", "N·m"):
-        scale = max(largest(run.values[i]) for i, (_, own) in enumerate(RESULTANTS) if own == unit)
-        styles[unit] = style(scale, certain.error(unit))
+        own = [i for i, (_, other) in enumerate(RESULTANTS) if other == unit]
+        scale = max(largest(run.values[own]), largest(bounds[:, own]))
+        styles[unit] = certain.style("sections", unit, scale)
     return styles
 
 

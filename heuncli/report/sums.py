@@ -7,7 +7,7 @@ from collections.abc import Mapping
 import numpy as np
 
 from heuncli.report.blocks import short
-from heuncli.report.numbers import Certainty, largest, style, write
+from heuncli.report.numbers import Certainty, beyond_horizon, largest, write
 from heuncli.report.table import Table
 from heuncli.results import Array, CertainSum, Results
 from heuncli.results_schema import XYZ
@@ -17,24 +17,32 @@ TURNS = "(t): a factor that turns with the pose, as at the first instant; --form
 FORCES = frozenset({"force", "axial", "radial", "tension", "N", "Q1", "Q2"})
 
 
-def sums_table(results: Results, certain: Certainty) -> Table | None:
-    """The sums that are certain although their terms are open; None where there are none."""
+def sums_table(results: Results, certain: Certainty, beyond: Results | None = None) -> Table | None:
+    """The sums that are certain although their terms are open; None where there are none.
+
+    beyond: the last instant, where the run ends beyond its horizon.
+    """
     if not results.certain_sums:
         return None
-    lines = [line for block in results.certain_sums if (line := _line(block, certain)) is not None]
+    ends = [None] * len(results.certain_sums) if beyond is None else beyond.certain_sums
+    told = [_line(block, certain, end) for block, end in zip(results.certain_sums, ends, strict=True)]
+    lines = [line for line in told if line is not None]
     left = len(results.certain_sums) - len(lines)
     rest = f"{left} more in --format json (moments, or more than {MOST_TERMS} terms)" if left else ""
     notes = [*lines, *([TURNS] if any("(t)·" in line for line in lines) else []), *([rest] if rest else [])]
     return Table("CERTAIN SUMS  of components that redundancy leaves open", notes=tuple(notes))
 
 
-def _line(block: CertainSum, certain: Certainty) -> str | None:
+def _line(block: CertainSum, certain: Certainty, beyond: CertainSum | None) -> str | None:
     terms = {path: np.atleast_1d(np.asarray(factor, dtype=np.float64)) for path, factor in block["terms"].items()}
     if len(terms) > MOST_TERMS or not all(_is_force(path) for path in terms):
         return None
     values = np.asarray(block["value"], dtype=np.float64)
     scale = largest(values)
-    texts = write([values[0], values[-1], np.nanmin(values), np.nanmax(values)], style(scale, certain.error("N")))
+    numbers = [values[0], values[-1], np.nanmin(values), np.nanmax(values)]
+    texts = write(numbers, certain.style("reactions", "N", scale))
+    if beyond is not None:
+        texts[1] = beyond_horizon(beyond["value"][-1], "N", certain, texts[1])
     if texts == ["0"] * 4 and _opposite(terms):
         return " = ".join(map(label, terms)) + "; the size is open"
     left = _sum(terms)

@@ -19,10 +19,11 @@ from heuncli.kinetostatics.bodies import BodyStates, body_states
 from heuncli.kinetostatics.coordinates import coordinates, points
 from heuncli.kinetostatics.energy import energy, energy_drift, system_vector
 from heuncli.kinetostatics.foundation import foundation
+from heuncli.kinetostatics.magnitudes import magnitudes
 from heuncli.kinetostatics.reactions import JointLoads, joint_loads
 from heuncli.mechanism.model import JointLoad, PairLoad
 from heuncli.records import record
-from heuncli.results import Accuracy, Array, Block, CertainSum
+from heuncli.results import Accuracy, Array, Block, CertainSum, Magnitudes
 from heuncli.study.setup import Setup
 
 if TYPE_CHECKING:  # loaded where a scene has closed chains, or sections
@@ -71,10 +72,21 @@ class Recovery:
         """The actions of the applied loads."""
         return [load.action for load in self.loads]
 
+    @property
+    def actions(self) -> list[Action]:
+        """Everything that acts on the bodies but their weight; of a joint constraint and drive together."""
+        return [*self.applied, *whole_joint_actions(self.joints)]
+
     @cached_property
     def energy(self) -> Block:
         """Kinetic and potential energy, and work."""
         return energy(self.setup.scene.layout, self.recovered, self.states, self.loads)
+
+    @cached_property
+    def magnitudes(self) -> Magnitudes:
+        """What the numbers are summed from."""
+        scene = self.setup.scene
+        return magnitudes(scene.mechanism, self.states, self.actions, self.energy, scene.layout.size)
 
     @property
     def indeterminate(self) -> SelfStress | None:
@@ -132,12 +144,11 @@ def accuracy(recovery: Recovery) -> Accuracy:
     """How well the instants balance: energy, closures, d'Alembert's principle."""
     scene, recovered, power = recovery.setup.scene, recovery.recovered, recovery.energy
     mechanism, size = scene.mechanism, scene.layout.size
-    actions = [*recovery.applied, *whole_joint_actions(recovery.joints)]
     lift = sum(body.mass for body in mechanism.bodies) * float(np.abs(mechanism.gravity).max()) * size
     return {
         "energy_drift": energy_drift(power["kinetic"], power["potential"], power["work"], lift),
         "constraint_gap": float(recovered.gap.max(initial=0.0)),
-        "balance_residual": balance_residual(mechanism, recovery.states, actions, size),
+        "balance_residual": balance_residual(mechanism, recovery.states, recovery.actions, size),
     }
 
 

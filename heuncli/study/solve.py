@@ -15,7 +15,7 @@ from heuncli.errors import Problem, SpecError
 from heuncli.integration.methods import METHODS
 from heuncli.kernel.choose import KERNEL
 from heuncli.records import record
-from heuncli.results import Array, Block, Estimate, Extremes, Results
+from heuncli.results import Array, Block, Estimate, Extremes, Magnitudes, Results
 from heuncli.results_schema import REPORTS
 from heuncli.spec.models import Spec
 from heuncli.study import extremes
@@ -49,10 +49,11 @@ def solve(spec: Spec, options: Options | None = None) -> Study:
     built = time.perf_counter()
     history = integrate(setup, spec.analysis.tolerance if options.tolerance is None else options.tolerance, deadline)
     moved = time.perf_counter()
-    results = compose(setup, history, recover(setup, history.recovered, options.least_norm), options.wanted)
+    recovery = recover(setup, history.recovered, options.least_norm)
+    results = compose(setup, history, recovery, options.wanted)
     seconds = {"load": options.load_seconds, "build": built - begun, **history.seconds}
     results.work["seconds"] = seconds | {"recover": time.perf_counter() - moved}
-    return Study(spec, options, setup, history, results)
+    return Study(spec, options, setup, history, recovery, results)
 
 
 def describe(spec: Spec) -> Block:
@@ -119,7 +120,13 @@ class Study:
     options: Options
     setup: Setup
     history: History
+    recovery: Recovery
     results: Results
+
+    @property
+    def magnitudes(self) -> Magnitudes:
+        """What the numbers at the asked instants are summed from."""
+        return self.recovery.magnitudes
 
     @cached_property
     def search_times(self) -> Array:

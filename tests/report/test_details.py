@@ -7,25 +7,23 @@ from pathlib import Path
 from typing import Any
 
 import numpy as np
-import pytest
 
 from heuncli import records
 from heuncli.report.heading import write_heading
-from heuncli.report.labels import JointInfo, Labels, labels_of
+from heuncli.report.labels import JointInfo, Labels
 from heuncli.report.page import page_of
 from heuncli.report.table import plain
-from heuncli.results import Results
-from heuncli.spec.load import load
+from heuncli.results import Magnitudes, Results
 from heuncli.study import extremes as peaks
-from tests.shared.fakes import LABELS, FakeStudy, pendulum, restrict
+from tests.shared.fakes import LABELS, MAGNITUDES, FakeStudy, pendulum, restrict
 
 ONE = np.array([0.5])
 SPECS = Path(__file__).parents[2] / "specs"
 
 
-def at_one(wanted: str, labels: Labels = LABELS, **changes: Any) -> list[str]:
+def at_one(wanted: str, labels: Labels = LABELS, of: Magnitudes = MAGNITUDES, **changes: Any) -> list[str]:
     results = restrict(pendulum(ONE, **changes), {wanted})
-    return [plain(table) for table in page_of(results, labels).instants(results)]
+    return [plain(table) for table in page_of(results, labels, of).instants(results)]
 
 
 def test_without_a_force_there_is_no_axis_and_that_is_not_called_open() -> None:
@@ -67,7 +65,7 @@ def test_a_steady_cut_has_no_instant() -> None:
             return pendulum(np.asarray(times), sections={"along": {"s": np.array([0.0, 0.5, 1.0]), **along}})
 
     study = Steady(np.linspace(0.0, 1.0, 11))
-    page = page_of(restrict(study.results, {"sections"}), LABELS)
+    page = page_of(restrict(study.results, {"sections"}), LABELS, MAGNITUDES)
     found = peaks.search(
         lambda t: page.columns(restrict(study.resample(t), {"sections"})), study.search_times, page.groups()
     )
@@ -78,13 +76,9 @@ def test_a_steady_cut_has_no_instant() -> None:
 
 def test_a_moment_that_is_noise_beside_the_force_on_its_arm_reads_0() -> None:
     section = {"N": np.array([1.2e6]), "Q1": np.array([-694064.0]), "M1": np.array([1.6e-11]), "open": []}
-    (text,) = at_one("sections", records.replace(LABELS, size=0.3), sections={"cut": section})
+    of = MAGNITUDES._replace(by_unit={**MAGNITUDES.by_unit, "N": 1.2e6, "N·m": 0.3 * 1.2e6})
+    (text,) = at_one("sections", LABELS, of, sections={"cut": section})
     assert text.splitlines()[1:3] == ["section    N [N]   Q1 [N]", "cut      1200000  -694064"]
-
-
-def test_the_scene_knows_how_far_its_bodies_reach() -> None:
-    assert labels_of(load(str(SPECS / "flywheel.yaml"))).size == pytest.approx(0.3)
-    assert labels_of(load(str(SPECS / "chimney.yaml"))).size == 30.0
 
 
 def test_what_is_driven_is_told_beside_the_freedoms() -> None:
@@ -112,7 +106,7 @@ def test_a_run_that_stopped_says_so_once() -> None:
 def test_a_slide_that_is_noise_beside_what_turns_reads_0() -> None:
     turning = {"angle": ONE, "rate": 157.0 * ONE, "acceleration": 24e3 * ONE}
     sliding = {"travel": ONE, "speed": 6e-25 * ONE, "acceleration": 4e-12 * ONE}
-    scene = Labels(joints={"shaft": JointInfo("pin", "", ""), "splines": JointInfo("slide", "", "")}, size=0.6)
+    scene = Labels(joints={"shaft": JointInfo("pin", "", ""), "splines": JointInfo("slide", "", "")})
     *_, text = at_one("motion", scene, bodies={}, coordinates={"shaft": turning, "splines": sliding})
     assert "travel [m]" in text
     assert "speed" not in text

@@ -8,7 +8,7 @@ import numpy as np
 import pytest
 
 from heuncli.report.numbers import certainty, rough, style, trim, write, write_times
-from tests.shared.fakes import ACCURATE, LABELS, pendulum
+from tests.shared.fakes import ACCURATE, LABELS, MAGNITUDES, WORK, pendulum
 
 T = np.linspace(0.0, 2.0, 11)
 
@@ -21,6 +21,9 @@ def test_what_is_printed_is_right_to_one_unit_of_the_last_place_and_certain(seed
     values = scale * random.uniform(-1.0, 1.0, 5)
     how = style(float(np.abs(values).max()), error)
     for value, text in zip(values, write(values.tolist(), how), strict=True):
+        if text == "?":
+            assert np.abs(values).max() < 5.0 * error
+            continue
         mantissa, _, exponent = text.partition("e")
         digits = mantissa.replace("-", "").replace(".", "").lstrip("0")
         last = 10.0 ** (int(exponent or 0) - len(mantissa.partition(".")[2]))
@@ -40,7 +43,21 @@ def test_engineers_numbers() -> None:
 
 
 def test_an_error_as_large_as_the_number_leaves_nothing() -> None:
-    assert write([3.0, -2.0], style(3.0, 5.0)) == ["0", "0"]
+    assert write([3.0, -2.0], style(3.0, 5.0)) == ["?", "?"]
+    assert write([3.0, -2.0, 0.0], style(3.0, 3.0)) == ["?", "?", "0"]
+    assert write([math.nan, math.inf], style(3.0, 5.0)) == ["open", "unbounded"]
+
+
+def test_a_number_is_never_0_where_its_family_has_no_certain_digit() -> None:
+    """49 certain to 30 would round to no hundreds."""
+    assert write([49.0, 3.0], style(49.0, 30.0)) == ["?", "?"]
+    assert write([490.0, 3.0], style(490.0, 30.0)) == ["5e+02", "0"]
+
+
+def test_what_is_rounding_of_its_sum_is_0_and_not_unknown() -> None:
+    assert write([6.4e-16, 0.0, -1e-17], style(6.4e-16, 1e-12, 1e-12)) == ["0", "0", "0"]
+    assert write([2e-12, 1e-13], style(2e-12, 1e-9, 1e-12)) == ["?", "0"]
+    assert write([2e-12, 1e-13], style(2e-12, 1e-12, 1e-12)) == ["2e-12", "0"]
 
 
 def test_common_zeros_go_but_one_decimal_stays() -> None:
@@ -55,22 +72,45 @@ def test_instants_are_told_to_a_hundred_thousandth_of_the_run() -> None:
     assert write_times([0.25], 0.0) == ["0.25"]
 
 
-def test_the_error_of_loads_is_relative_to_the_largest_of_them() -> None:
-    errors = certainty(pendulum(T), LABELS)
-    assert errors.error("N") == pytest.approx(5e-10 * pendulum(T).joints["pivot"]["force"].max(), rel=0.01)
-    assert errors.error("rad") == pytest.approx(4e-11 * 1.0, rel=0.1)
-    assert errors.error("furlong") == 0.0
+def test_the_error_of_loads_is_relative_to_the_largest_of_their_kind() -> None:
+    results = pendulum(T)
+    errors = certainty(results, LABELS, MAGNITUDES)
+    largest = results.joints["pivot"]["force"].max()
+    assert errors.error("reactions", "N") == pytest.approx(ACCURATE["estimate"]["reactions"] * largest, rel=0.01)
+    assert errors.error("motion", "rad") == pytest.approx(ACCURATE["estimate"]["motion"], rel=0.01)
+    assert errors.error("motion", "furlong") == 0.0
+
+
+def test_each_kind_of_loads_has_its_own_error() -> None:
+    kinds = {"reactions": 1e-3, "foundation": 1e-4, "sections": 1e-5, "drives": 1e-6}
+    errors = certainty(pendulum(T, accuracy={**ACCURATE, "estimate": kinds}), LABELS, MAGNITUDES)
+    certain = [errors.error(kind, "N") for kind in ("reactions", "foundation", "sections")]
+    assert certain[0] > 5.0 * certain[1] > 25.0 * certain[2] > 0.0
 
 
 def test_a_moment_is_no_more_certain_than_a_force_on_its_arm() -> None:
-    results = pendulum(T)
-    reach = 0.5 * np.linalg.norm(np.ptp(results.joints["elbow"]["point"], axis=0))
-    assert certainty(results, LABELS).error("N·m") >= 0.99 * reach * certainty(results, LABELS).error("N")
+    errors = certainty(pendulum(T), LABELS, MAGNITUDES)
+    assert errors.error("reactions", "N·m") >= MAGNITUDES.size * errors.error("reactions", "N")
+
+
+def test_a_derivative_is_certain_as_far_as_the_motion_is_fast() -> None:
+    errors = certainty(pendulum(T), LABELS, MAGNITUDES._replace(rate=100.0))
+    place, speed, acceleration = (errors.error("motion", unit) for unit in ("m", "m/s", "m/s²"))
+    steps = WORK["steps"] / np.ptp(T)  # no motion is faster than the integrator's steps follow
+    assert speed == pytest.approx(steps * place)
+    assert acceleration == pytest.approx(steps * speed)
 
 
 def test_before_the_horizon_the_error_is_that_at_the_horizon() -> None:
     lost = {**ACCURATE, "horizon": 1.0, "estimate": {"motion": 0.3, "reactions": 5.0}}
-    assert certainty(pendulum(T, accuracy=lost), LABELS).error("rad") == pytest.approx(1e-3, rel=0.1)
+    errors = certainty(pendulum(T, accuracy=lost), LABELS, MAGNITUDES)
+    assert errors.error("motion", "rad") == pytest.approx(1e-3, rel=0.1)
+
+
+def test_beyond_the_horizon_nothing_is_certain() -> None:
+    lost = {**ACCURATE, "horizon": 1.0, "estimate": {"motion": 0.3, "reactions": 5.0}}
+    errors = certainty(pendulum(T + 1.0, accuracy=lost), LABELS, MAGNITUDES)
+    assert errors.style("reactions", "N", 49.0).write(49.0) == "?"
 
 
 def test_errors_are_spoken_of_in_one_digit() -> None:

@@ -15,7 +15,7 @@ from heuncli.report.page import Page, page_of
 from heuncli.report.table import plain
 from heuncli.results import Array, Extremes, Results
 from heuncli.study import extremes as peaks
-from tests.shared.fakes import ACCURATE, LABELS, FakeStudy, pendulum, restrict, vectors
+from tests.shared.fakes import ACCURATE, LABELS, MAGNITUDES, FakeStudy, pendulum, restrict, vectors
 
 T = np.linspace(0.0, 2.0, 21)
 
@@ -23,7 +23,7 @@ T = np.linspace(0.0, 2.0, 21)
 def extremes_page(
     study: FakeStudy, wanted: frozenset[str] = frozenset({"foundation", "joints", "energy", "sections"})
 ) -> str:
-    page = page_of(restrict(study.results, wanted), LABELS)
+    page = page_of(restrict(study.results, wanted), LABELS, MAGNITUDES)
     found = peaks.search(lambda t: page.columns(restrict(study.resample(t), wanted)), study.search_times, page.groups())
     return "\n".join(plain(table) for table in page.extremes(found))
 
@@ -67,7 +67,7 @@ def test_what_is_0_throughout_takes_no_line_but_is_told() -> None:
     assert [line.split()[0] for line in pivot.splitlines()[1:]] == ["Fx", "Fz", "|F|"]
     assert "what is 0 throughout is left out" in text
     nothing = FakeStudy(T, {"joints": {"idle": {"force": np.zeros((len(T), 3)), "point": np.zeros((len(T), 3))}}})
-    alone = page_of(restrict(nothing.results, {"joints"}), LABELS)
+    alone = page_of(restrict(nothing.results, {"joints"}), LABELS, MAGNITUDES)
     zero = np.zeros(4)
     (table,) = alone.extremes(Extremes(zero, zero, zero.astype(int), zero, zero, zero.astype(int), searched=True))
     assert "idle\n  0 throughout\n" in plain(table)
@@ -121,7 +121,7 @@ def test_open_components_are_named_together_and_partly_open_ones_are_marked() ->
 
 def test_open_components_read_open_at_an_instant() -> None:
     study = Changed(T, change=opened)
-    page = page_of(restrict(study.results, {"joints"}), LABELS)
+    page = page_of(restrict(study.results, {"joints"}), LABELS, MAGNITUDES)
     (table,) = page.instants(restrict(study.resample(np.array([0.5])), {"joints"}))
     assert table.rows[0][2:6] == ("2.52441", "0", "open", "open")
 
@@ -139,13 +139,36 @@ def test_a_chosen_split_is_labelled() -> None:
 
 def test_beyond_the_horizon_nothing_is_claimed() -> None:
     study = FakeStudy(T, {"accuracy": {**ACCURATE, "horizon": 1.2, "estimate": {"motion": 0.02, "reactions": 0.1}}})
-    page = page_of(restrict(study.results, frozenset({"joints"})), LABELS)
+    page = page_of(restrict(study.results, frozenset({"joints"})), LABELS, MAGNITUDES)
     assert page.results.time[-1] == pytest.approx(1.1)
     shown = restrict(study.resample(np.array([0.5, 1.5])), frozenset({"joints"}))
     lines = [line.split() for line in plain(page.instants(shown)[0]).splitlines()]
-    assert next(line for line in lines if line[0] == "1.5")[1:5] == ["?"] * 4
+    assert next(line for line in lines if line[0] == "1.5")[1:5] == ["?", "0", "?", "?"]  # Fy is 0.0 in all bits
     assert next(line for line in lines if line[0] == "0.5")[1] == "2.5"
     assert "from t = 1.2 s on nothing is claimed" in write_heading(study.results)
+
+
+def test_a_run_that_ends_beyond_its_horizon_has_no_last_value() -> None:
+    text = extremes_page(FakeStudy(T, {"accuracy": {**ACCURATE, "horizon": 1.2}}))
+    assert line_of(text, "pivot", "Fx")[2:4] == ["0", "?"]
+    assert line_of(text, "pivot", "Fz")[3] == "?"
+    assert "Fy" not in text  # 0.0 in all bits, to the end
+
+
+def test_a_run_that_begins_beyond_its_horizon_has_no_value_at_all() -> None:
+    text = extremes_page(FakeStudy(T + 1.0, {"accuracy": {**ACCURATE, "horizon": 0.5}}))
+    assert line_of(text, "pivot", "Fx")[2:] == ["?"] * 4
+    assert {text for line in text.splitlines() if "Fz" in line for text in line.split()[2:6]} == {"?"}
+
+
+def test_a_peak_between_the_samples_makes_the_scale() -> None:
+    """At the samples there is rounding only: the peak between them is shown, with the digits it has."""
+    noise = pendulum(T[[0, -1]], joints={"a": {"force": np.full((2, 3), 1e-17), "point": np.zeros((2, 3))}})
+    page = page_of(restrict(noise, {"joints"}), LABELS, MAGNITUDES)
+    found = peaks.search(lambda _: page.columns(page.results), T[[0, -1]], page.groups(), rounds=0)
+    found = found._replace(high=np.array([0.4, 0.0, 0.0, 0.16]))
+    (table,) = page.extremes(found)
+    assert [row[:3] + row[6:7] for row in table.rows[1:]] == [("Fx", "N", "0", "0.4")]
 
 
 def test_fewer_certain_digits_show_fewer_digits() -> None:
@@ -158,7 +181,7 @@ def test_fewer_certain_digits_show_fewer_digits() -> None:
 
 def instants_page(times: list[float], wanted: set[str], **options: Any) -> list[str]:
     study = FakeStudy(T)
-    page = page_of(restrict(study.results, wanted), LABELS)
+    page = page_of(restrict(study.results, wanted), LABELS, MAGNITUDES)
     shown = restrict(study.resample(np.array(times)), wanted)
     return [plain(table) for table in page.instants(shown, **options)]
 
@@ -227,7 +250,7 @@ def test_a_run_of_cuts_shows_extremes_over_place_and_time() -> None:
 @pytest.mark.parametrize(("n_cuts", "most"), [(3, 3), (25, 25), (200, 25)])
 def test_a_diagram_can_be_read_for_few_cuts_and_for_many(n_cuts: int, most: int) -> None:
     study = Changed(T, change=long_run(n_cuts))
-    page = page_of(restrict(study.results, {"sections"}), LABELS)
+    page = page_of(restrict(study.results, {"sections"}), LABELS, MAGNITUDES)
     shown = restrict(study.resample(np.array([0.5])), {"sections"})
     (table,) = page.instants(shown)
     assert len(table.rows) <= most
@@ -240,7 +263,7 @@ def test_a_thinned_diagram_keeps_both_rows_of_a_jump() -> None:
     side: list[str | None] = [None] * 100
     side[41], side[42] = "before", "beyond"
     study = Changed(T, change=long_run(100, side))
-    page = page_of(restrict(study.results, {"sections"}), LABELS)
+    page = page_of(restrict(study.results, {"sections"}), LABELS, MAGNITUDES)
     (table,) = page.instants(restrict(study.resample(np.array([0.5])), {"sections"}))
     assert [row[1] for row in table.rows if row[1]] == ["before", "beyond"]
 
@@ -280,7 +303,7 @@ def test_a_planar_scene_says_what_there_is_not() -> None:
 
 
 def test_nothing_asked_for_leaves_nothing_to_search() -> None:
-    page = page_of(restrict(pendulum(T), frozenset()), LABELS)
+    page = page_of(restrict(pendulum(T), frozenset()), LABELS, MAGNITUDES)
     assert isinstance(page, Page)
     assert page.columns(page.results).shape == (len(T), 0)
     assert page.groups() == []

@@ -13,7 +13,7 @@ from heuncli.cli import measure
 from heuncli.errors import HeunError, SpecError
 from heuncli.expressions.units import parse_unit
 from heuncli.report.export import to_csv
-from heuncli.report.page import until
+from heuncli.report.page import some_instants
 from heuncli.results import Results
 from heuncli.results_paths import find
 from heuncli.results_schema import NOT_YET, REPORTS, ROWS, SPACE, TREE, Node, Quantity, quantity
@@ -76,7 +76,7 @@ def test_what_stands_for_all_instants_is_not_cut_with_them() -> None:
     whole = pendulum(t, sections={"run": run_of(3, t)}, certain_sums=[
         {"terms": {"joints.a.force.x": np.ones(3), "joints.b.force.x": 1.0}, "value": t},
     ])  # fmt: skip
-    short = until(whole, t[1])
+    short = some_instants(whole, slice(1))
     assert short.time.shape == (1,)
     assert short.sections["run"]["s"].shape == (3,)
     assert short.sections["run"]["M2"].shape == (1, 3)

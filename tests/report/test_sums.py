@@ -14,7 +14,7 @@ T = np.linspace(0.0, 2.0, 5)
 
 
 def told(*sums: dict[str, Any]) -> tuple[str, ...]:
-    table = sums_table(pendulum(T, certain_sums=list(sums)), Certainty({"N": 1e-9}))
+    table = sums_table(pendulum(T, certain_sums=list(sums)), Certainty({("reactions", "N"): 1e-9}, {}))
     assert table is not None
     return table.notes
 
@@ -56,4 +56,4 @@ def test_moments_and_long_sums_are_left_to_json() -> None:
 
 
 def test_none() -> None:
-    assert sums_table(pendulum(T), Certainty({})) is None
+    assert sums_table(pendulum(T), Certainty({}, {})) is None

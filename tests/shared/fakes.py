@@ -10,7 +10,7 @@ from typing import Any
 import numpy as np
 
 from heuncli.report.labels import ForceInfo, JointInfo, Labels, SectionInfo
-from heuncli.results import Array, Block, Results
+from heuncli.results import Array, Block, Magnitudes, Results
 from heuncli.results_schema import REPORT_OF
 from heuncli.study.solve import Study
 
@@ -40,6 +40,8 @@ LABELS = Labels(
     sections={"middle": SectionInfo("lower"), "along": SectionInfo("lower")},
     about="O",
 )
+UNITS = ("m", "m/s", "m/s²", "rad", "rad/s", "rad/s²", "N", "N·m", "J", "W")
+MAGNITUDES = Magnitudes(dict.fromkeys(UNITS, 10.0), size=2.0, reach=1.0, rate=2.0)  # of `pendulum`
 
 
 def vectors(t: Array, x: Any, y: Any, z: Any) -> Array:
@@ -140,6 +142,7 @@ class FakeStudy:
         return restrict(self.resample(times), wanted)
 
     extremes = Study.extremes
+    magnitudes = MAGNITUDES
 
 
 def spec_like(**changes: Any) -> Any:

@@ -1,0 +1,78 @@
+"""How large that is what the numbers of a run are summed from: their rounding is relative to it.
+
+The inertia loads of a body's pieces may be large where their resultant vanishes, as in a rotor that spins about its
+centre. Over the mass points m at r from the centre of mass, by Cauchy and Schwarz,
+
+    Σ m |σ × (σ × r)| ≤ |σ| √(m σ·I σ),   Σ m |σ̇ × r| ≤ √(m σ̇·I σ̇)
+
+Their moments are at most so much times the radius of gyration.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+
+import numpy as np
+
+from heuncli import tolerances
+from heuncli.kinetostatics.actions import Action
+from heuncli.kinetostatics.bodies import BodyStates
+from heuncli.mechanism.model import GROUND, Mechanism
+from heuncli.results import Array, Block, Magnitudes
+
+
+def inertia_scale(mechanism: Mechanism, states: BodyStates) -> Array:
+    """Largest inertia load or weight of each body, its pieces' included, (n_t, n) [N]."""
+    m = np.array([body.mass for body in mechanism.bodies])
+    w, u = (np.einsum("tnji,tnj->tni", states.R, x) for x in (states.omega, states.alpha))
+    spinning, turning = (_energy_like(mechanism, x) for x in (w, u))
+    speed = np.sqrt(np.sum(w * w, axis=2))
+    pieces = np.sqrt(m) * (speed * spinning + turning)
+    whole = m * np.sqrt(np.sum(states.a_centre**2, axis=2))
+    weight = m * float(np.sqrt(np.sum(np.square(mechanism.gravity))))
+    return np.asarray(np.maximum(np.maximum(pieces, whole), weight))
+
+
+def _energy_like(mechanism: Mechanism, x: Array) -> Array:
+    """√(x·I x) of every body, x in body axes."""
+    inertia = np.array([body.inertia for body in mechanism.bodies])
+    return np.asarray(np.sqrt(np.maximum(np.einsum("tni,nij,tnj->tn", x, inertia, x), 0.0)))
+
+
+def magnitudes(
+    mechanism: Mechanism, states: BodyStates, actions: Sequence[Action], energy: Block, size: float
+) -> Magnitudes:
+    """The magnitudes at these instants; actions: of applied loads and of joints with their drives."""
+    g = float(np.sqrt(np.sum(np.square(mechanism.gravity))))
+    mass = [body.mass for body in mechanism.bodies]
+    force = _largest(inertia_scale(mechanism, states))
+    pushed = 0.0  # acceleration that an applied load alone would give
+    for action in actions:
+        acting = max(_largest(action.force), _largest(action.moment) / size)
+        force = max(force, acting)
+        if action.kind == "load":
+            pushed = max(
+                pushed, *(acting / mass[end.body] for end, *_ in action.on_bodies() if end.body != GROUND), 0.0
+            )
+    spin, v = _largest(states.omega), max(_largest(states.v_centre), size * _largest(states.omega))
+    a = max(_largest(states.a_centre), size * spin**2, size * _largest(states.alpha))
+    acceleration = max(g, pushed, a)
+    turning = acceleration / _least_gyration(mechanism, size)
+    speed = max(v, float(np.sqrt(size * acceleration)))
+    by_unit = {
+        "m": size, "m/s": speed, "m/s²": acceleration,
+        "rad": 1.0, "rad/s": max(spin, float(np.sqrt(turning))), "rad/s²": turning,
+        "N": force, "N·m": force * size, "W": force * speed,
+        "J": max(sum(mass) * g * size, *(_largest(energy[key]) for key in ("kinetic", "potential", "work"))),
+    }  # fmt: skip
+    return Magnitudes(by_unit, size, _largest(states.x), max(v / size, a / v if v > 0.0 else 0.0))
+
+
+def _least_gyration(mechanism: Mechanism, size: float) -> float:
+    """The smallest radius of gyration of a body that is no point mass; the scene's size where there is none [m]."""
+    squares = [float(np.trace(body.inertia)) / (2.0 * body.mass) for body in mechanism.bodies]
+    return min((x**0.5 for x in squares if x > tolerances.POINT_MASS * size**2), default=size)
+
+
+def _largest(values: Array) -> float:
+    return float(np.nanmax(np.abs(values), initial=0.0))
