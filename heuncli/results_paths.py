@@ -21,11 +21,15 @@ MOST_NAMES = 12  # of the known names an error lists
 
 
 class Numbers(NamedTuple):
-    """What a path leads to: `values` with the instants first if `timed`, and the other axes as the schema has them."""
+    """What a path leads to: `values` with the instants first if `timed`, and the other axes as the schema has them.
+
+    instant: the number of the instant that the path names.
+    """
 
     values: Array
     timed: bool
     axes: Shape
+    instant: int | None = None
 
     @property
     def of_vectors(self) -> bool:
@@ -43,8 +47,9 @@ def find(results: Results, path: str) -> Numbers:
     axes = _axes(results, keys, row, values.ndim, timed)
     if len(rest) > len(axes):
         raise _unknown(path, keys, rest[len(axes)], [])
+    instant = None
     if timed and len(rest) == len(axes):
-        timed = False  # the instant is named, too
+        timed, instant = False, _index(path, keys, rest[0], axes[0], len(values))
     elif timed:
         for word in rest:
             values = values[:, _index(path, keys, word, axes[1], values.shape[1])]
@@ -53,7 +58,7 @@ def find(results: Results, path: str) -> Numbers:
     for word in rest:
         values = np.asarray(values[_index(path, keys, word, axes[0], len(values))])
         axes = axes[1:]
-    return Numbers(values, False, axes)
+    return Numbers(values, False, axes, instant)
 
 
 def _walk(results: Results, path: str) -> tuple[list[str], Any, list[str]]:

@@ -7,8 +7,8 @@ import math
 from heuncli.cli.entry import UsageError
 from heuncli.errors import Problem
 from heuncli.report.export import dump
-from heuncli.report.numbers import OPEN
-from heuncli.study.measure import Measure, NotOneNumber, value
+from heuncli.report.numbers import OPEN, UNKNOWN
+from heuncli.study.measure import NOT_CLAIMED, Measure, NotOneNumber, lost_from, value
 from heuncli.study.solve import Study
 
 FORMS = "expected [max | min | max abs | first | final | at T] PATH"
@@ -31,14 +31,24 @@ def parse(text: str) -> Measure:
 
 
 def write(asked: Measure, study: Study, form: str) -> str:
-    """The number as text, all its digits; as JSON with its instant."""
+    """The number as text, all its digits; as JSON with its instant. What is not known beyond the horizon is `?`."""
     try:
         number, at = value(asked, study)
+        horizon = lost_from(asked, study)
     except NotOneNumber as error:
         raise UsageError(Problem("bad-option", f"--measure: {error.problems[0].message}", hint=HINT)) from None
     if form == "json":
-        return dump({"measure": f"{asked.how} {asked.path}".strip(), "value": number, "at": at})
+        block = {"measure": f"{asked.how} {asked.path}".strip(), "value": number, "at": at}
+        return dump(block if horizon is None else block | {"value": None, "at": None, "horizon": horizon})
+    if horizon is not None:
+        return f"{UNKNOWN}\n"
     return f"{OPEN if math.isnan(number) else repr(number)}\n"
+
+
+def warning(asked: Measure, study: Study) -> list[str]:
+    """Why there is `?` in place of the number."""
+    horizon = lost_from(asked, study)
+    return [] if horizon is None else [f"{asked.path} is not known: {NOT_CLAIMED.format(horizon)}"]
 
 
 def _is_number(word: str) -> bool:

@@ -58,6 +58,12 @@ def main(request: Run) -> int:
         text = _report(request, form, study, labels_of(spec), wanted or frozenset(REPORTS))
     emit(text, request.output)
     warnings = warn(spec, study.results, request.quiet)
+    if asked:
+        beyond = measure.warning(asked, study)
+        warnings += beyond
+        if not request.quiet:
+            for sentence in beyond:
+                say(f"warning: heun: {sentence}")
     if request.verbose:
         say(f"heun: {timings(study.results.work)}")
     return _strict(study.results, warnings) if request.strict else 0

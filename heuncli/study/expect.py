@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Sequence
-from typing import Any
+from typing import Any, Literal
 
 import numpy as np
 
@@ -13,7 +13,7 @@ from heuncli.records import record
 from heuncli.results import Array, Results
 from heuncli.results_paths import find
 from heuncli.spec.models import Expect
-from heuncli.study.measure import peak, report_of
+from heuncli.study.measure import NOT_CLAIMED, Measure, lost_from, peak, report_of
 from heuncli.study.solve import Study
 
 # Where the spec gives neither rel nor abs.
@@ -51,8 +51,11 @@ def compare(study: Study, item: Expect) -> Case:
     tolerance = _tolerance(expected, item.rel, item.abs)
     try:
         found = _found(study, item)
+        horizon = _lost_from(study, item)
     except HeunError as error:
         return Case(item.location, item.of, when, expected, None, tolerance, error.problems[0].message)
+    if horizon is not None:
+        return Case(item.location, item.of, when, expected, None, tolerance, NOT_CLAIMED.format(horizon))
     return Case(item.location, item.of, when, expected, found, tolerance, _failure(expected, found, tolerance))
 
 
@@ -66,6 +69,12 @@ def _found(study: Study, item: Expect) -> Array:
     if item.at is not None:
         return np.asarray(found.values[_instant(results.time, item.at)])
     return found.values[0] if len(results.time) == 1 else found.values
+
+
+def _lost_from(study: Study, item: Expect) -> float | None:
+    """The horizon, where what is expected lies beyond it: nothing is told there, and no expectation met by luck."""
+    how: Literal["abs", "at", ""] = "abs" if item.peak else "at" if item.at is not None else ""
+    return lost_from(Measure(how, item.of, item.at), study)
 
 
 def _instant(times: Array, at: float) -> int:

@@ -13,6 +13,8 @@ from heuncli.results_paths import find
 from heuncli.results_schema import REPORT_OF
 from heuncli.study.solve import Study
 
+NOT_CLAIMED = "from t = {:.4g} s on nothing is claimed"
+
 
 class NotOneNumber(HeunError):
     """What is to be measured is no single number of this run."""
@@ -64,8 +66,22 @@ def value(asked: Measure, study: Study) -> tuple[float, float | None]:
     raise NotOneNumber(f"{path} runs over {len(results.time)} instants: say max, min, max abs, first, final or at T")
 
 
+def lost_from(asked: Measure, study: Study) -> float | None:
+    """The horizon, where the number that is asked for lies beyond it, or may: that of a run that goes on beyond it."""
+    results = study.results
+    horizon, there = results.accuracy.get("horizon"), find(results, asked.path)
+    if horizon is None or asked.path.split(".")[0] == "time" or not (there.timed or there.instant is not None):
+        return None
+    last = results.time[0 if asked.how == "first" else -1]
+    if there.instant is not None:
+        last = results.time[there.instant]
+    elif asked.how == "at":
+        last = instant_of(asked, results.time)
+    return float(horizon) if last >= horizon else None
+
+
 def peak(study: Study, path: str, how: str) -> tuple[float, float]:
-    """Highest (`max`), lowest (`min`) or largest (`abs`) value over the run, searched between the samples, and when.
+    """Highest (`max`), lowest (`min`) or largest (`abs`) value up to the horizon, between the samples too, and when.
 
     A vector counts by its magnitude, a run of cuts over all its cuts.
     """

@@ -10,7 +10,7 @@ import pytest
 
 from heuncli.errors import SourceLocation
 from heuncli.study.expect import compare, wanted
-from tests.shared.fakes import FakeStudy, pendulum
+from tests.shared.fakes import ACCURATE, FakeStudy, pendulum
 
 STUDY = FakeStudy(np.linspace(0.0, 2.0, 21))
 PLACE = SourceLocation("fake.yaml", 7, 3)
@@ -61,6 +61,33 @@ def test_what_does_not_hold_says_why(item: Any, why: str) -> None:
     case = compare(STUDY, item)
     assert not case.passed
     assert why in (case.failure or "")
+
+
+LOST = FakeStudy(STUDY.times, {"accuracy": {**ACCURATE, "horizon": 1.25}})
+SERIES = tuple((3.0 * np.sin(2.0 * STUDY.times)).tolist())
+
+
+@pytest.mark.parametrize(
+    "item",
+    [
+        expectation(FX, 3.0 * np.sin(3.0), at=1.5),
+        expectation(FX, 3.0, peak="max", rel=1e-12),
+        expectation(FX, SERIES),
+        expectation("joints.pivot.force.15.x", 3.0 * np.sin(3.0)),
+        expectation(FX, None, at=1.5),
+    ],
+)
+def test_beyond_the_horizon_nothing_holds_by_luck(item: Any) -> None:
+    """The number is there, and in the JSON, and is not what can be relied on."""
+    case = compare(LOST, item)
+    assert case.failure == "from t = 1.25 s on nothing is claimed"
+    assert case.found is None
+
+
+def test_before_the_horizon_expectations_hold() -> None:
+    assert compare(LOST, expectation(FX, FX_AT_1, at=1.0)).passed
+    assert compare(LOST, expectation("joints.pivot.force.10.x", FX_AT_1)).passed
+    assert compare(LOST, expectation("model.freedoms", 4.0)).passed
 
 
 def test_open_is_expected_as_null() -> None:

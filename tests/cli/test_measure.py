@@ -9,7 +9,7 @@ import pytest
 
 from heuncli.cli import measure
 from heuncli.errors import HeunError
-from tests.shared.fakes import FakeStudy
+from tests.shared.fakes import ACCURATE, FakeStudy
 
 STUDY = FakeStudy(np.linspace(0.0, 2.0, 21))
 
@@ -60,6 +60,45 @@ def test_json_tells_the_instant_too() -> None:
 def test_what_is_open_reads_open() -> None:
     study = FakeStudy(STUDY.times, {"energy": {"kinetic": np.full(1, np.nan)}})
     assert measure.write(measure.parse("final energy.kinetic"), study, "table") == "open\n"
+
+
+LOST = FakeStudy(STUDY.times, {"accuracy": {**ACCURATE, "horizon": 1.25}})
+
+
+@pytest.mark.parametrize(
+    "words",
+    [
+        "max joints.pivot.force.x",
+        "min joints.pivot.force.x",
+        "abs joints.pivot.force.x",
+        "final joints.pivot.force.x",
+        "at 1.25 joints.pivot.force.x",
+        "at 1.7 joints.pivot.force",
+        "joints.pivot.force.13.x",
+    ],
+)
+def test_beyond_the_horizon_nothing_is_told(words: str) -> None:
+    """Of a run that goes on beyond its horizon the largest is not known, for it may lie there."""
+    assert measure.write(measure.parse(words), LOST, "table") == "?\n"
+    block = json.loads(measure.write(measure.parse(words), LOST, "json"))
+    assert (block["value"], block["at"], block["horizon"]) == (None, None, 1.25)
+    assert measure.warning(measure.parse(words), LOST)[0].endswith("from t = 1.25 s on nothing is claimed")
+
+
+@pytest.mark.parametrize(
+    "words",
+    [
+        "first joints.pivot.force.x",
+        "at 1.2 joints.pivot.force.x",
+        "joints.pivot.force.12.x",
+        "model.freedoms",
+        "final time",
+    ],
+)
+def test_before_the_horizon_all_is_told(words: str) -> None:
+    text = measure.write(measure.parse(words), LOST, "table")
+    assert text == measure.write(measure.parse(words), STUDY, "table")
+    assert measure.warning(measure.parse(words), LOST) == []
 
 
 @pytest.mark.parametrize(
