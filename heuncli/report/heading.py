@@ -6,7 +6,8 @@ import math
 
 import numpy as np
 
-from heuncli.report.numbers import rough
+from heuncli import tolerances
+from heuncli.report.numbers import LOADS, rough
 from heuncli.report.words import count
 from heuncli.results import Estimate, Results
 
@@ -80,11 +81,13 @@ def _run(results: Results) -> str:
 
 
 def _errors(results: Results) -> str:
-    if not results.work.get("steps"):
+    estimate, parts = results.accuracy.get("estimate", Estimate()), []
+    loads = max(estimate.get(kind) or 0.0 for kind in LOADS)
+    if results.work.get("steps"):
+        parts = _sentence("motion within {} of the scene's size", estimate.get("motion"))
+    elif loads <= tolerances.WRITTEN:
         return "exact but for rounding"
-    estimate = results.accuracy.get("estimate", Estimate())
-    parts = _sentence("motion within {} of the scene's size", estimate.get("motion"))
-    parts += _sentence("loads within {} of the largest", estimate.get("reactions"))
+    parts += _sentence("loads within {} of the largest", loads or None)
     return ", ".join(parts) if parts else "not estimated"
 
 

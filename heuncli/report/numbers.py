@@ -13,7 +13,7 @@ from __future__ import annotations
 
 import math
 from collections.abc import Iterable, Mapping, Sequence
-from typing import NamedTuple
+from typing import Literal, NamedTuple
 
 import numpy as np
 
@@ -30,7 +30,9 @@ ZERO_NOTE = "what is 0 throughout is left out"
 UNKNOWN = "?"
 UNKNOWN_NOTE = "?: the estimated error is as large as the number, or the instant is beyond the horizon"
 KINDS = {"foundation": "foundation", "joints": "reactions", "sections": "sections", "energy": "energy"}
-LOADS = ("reactions", "drives", "foundation", "sections")
+LOADS: tuple[Literal["reactions", "drives", "foundation", "sections"], ...] = (
+    "reactions", "drives", "foundation", "sections",
+)  # fmt: skip
 APPLIED = ("motion", "reactions", "energy")  # loads follow places and rates, friction the reactions
 
 

@@ -19,6 +19,8 @@ from heuncli.kinetostatics.foundation import central_axis
 from heuncli.redundancy.certain_sums import relations, tidy
 from heuncli.redundancy.self_stress import _null_of
 from heuncli.redundancy.turning_sums import factors
+from heuncli.report.labels import labels_of
+from heuncli.report.page import page_of
 from heuncli.results import Results
 from heuncli.spec.load import load
 from heuncli.spec.turns import of_matrix
@@ -411,6 +413,23 @@ def whole(x: float) -> str:
     return "whole" if tidy({"a": 1.0, "b": 2.0 + x})["b"] == 2.0 else "as found"
 
 
+def left_of(x: float) -> str:
+    """The table's word for the force in a weld that is left of 1 N by 1 - x N."""
+    run = study(f"""
+heun: 1
+ground: {{points: {{O: [0, 0, 0]}}}}
+bodies: {{b: {{mass: 1, center: [0, 0, 0], inertia: [1, 1, 1], points: {{o: [0, 0, 0]}}}}}}
+joints: {{w: {{type: weld, from: ground.O, to: b.o}}}}
+forces:
+  one: {{type: force, on: b.o, vector: [1, 0, 0]}}
+  other: {{type: force, on: b.o, vector: [{x - 1.0!r}, 0, 0]}}
+""", wanted=frozenset({"joints"}))
+    near(run.results.joints["w"]["force"], [[-x, 0.0, 0.0]], 1.0, 1e-15)
+    (table,) = page_of(run.results, labels_of(run.spec), run.magnitudes).instants(run.results)
+    return "0" if table.notes == ("0 throughout",) else "a number"
+
+
+
 def axis_of(x: float) -> str:
     found: Any = central_axis(np.array([[x, 0, 0]]), np.array([[0, 0, x]]), np.zeros(3), 1.0)
     return "no axis" if np.isnan(found["pitch"][0]) else "an axis"
@@ -473,6 +492,7 @@ ROWS = (
     Row("ABSENT_FACTOR", present, "absent", "present"),
     Row("WHOLE_FACTOR", whole, "whole", "as found"),
     # loads
+    Row("WRITTEN", left_of, "0", "a number"),
     Row("NO_FORCE", axis_of, "no axis", "an axis"),
     Row("NO_LOAD", carried_by_nothing, "none", "judged"),
     Row("NO_ENERGY", drift, "at rest", "a drift"),
@@ -496,7 +516,6 @@ EXEMPT = {
     "OFF_AXIS": "two formulas for the same piece of a body of revolution",
     "QUADRATURE": "ends a quadrature",
     "CONSTANT": "whether a peak of a thirteenth digit is looked for",
-    "WRITTEN": "the digits that a table writes",
     "ZERO_COMPONENT": "the digits of a direction that is proposed",
     "PLACE_ROUNDING": "a summand of the estimate",
     "LENT_REACH": "an inertia lent to a spin on which nothing depends",

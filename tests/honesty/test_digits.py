@@ -1,0 +1,185 @@
+"""What a table prints is what is known: no rounding with digits, no 0 for a load, `?` for what is not known."""
+
+from __future__ import annotations
+
+import math
+from typing import Any
+
+import numpy as np
+import pytest
+
+from heuncli.cli import measure
+from heuncli.report.labels import labels_of
+from heuncli.report.page import page_of
+from heuncli.report.table import plain
+from heuncli.study.expect import compare
+from heuncli.study.solve import Study
+from tests.shared.scenes import near, study
+
+
+def tables(run: Study) -> str:
+    """The tables of a run: of one instant, or of extremes."""
+    page = page_of(run.results, labels_of(run.spec), run.magnitudes)
+    if len(run.results.time) == 1:
+        return "\n".join(map(plain, page.instants(run.results)))
+    extremes = run.extremes(page.columns, page.groups(), None)
+    return "\n".join(map(plain, page.extremes(extremes)))
+
+
+def row(text: str, title: str, label: str) -> list[str]:
+    """The cells of the first row with this label after a line that begins so."""
+    lines = text.splitlines()
+    start = next(i for i, line in enumerate(lines) if line.startswith(title))
+    return next(line.split() for line in lines[start + 1 :] if line.split()[:1] == [label])
+
+
+MASS, LENGTH, SPIN = 2.0, 1.0, 10.0
+
+
+def pull(x: float) -> float:
+    """N of a rod that spins at SPIN about its centre, at x from there: the pieces beyond pull, the whole does not."""
+    return MASS * SPIN**2 * (LENGTH**2 / 4.0 - x**2) / (2.0 * LENGTH)
+
+
+def rod(more: str, analysis: str = "duration: 1, samples: 5") -> str:
+    """A rod along x that spins about z, with cuts at and near its middle."""
+    return f"""
+heun: 1
+{more}
+bodies:
+  rod:
+    shapes: [{{type: rod, from: [-0.5, 0, 0], to: [0.5, 0, 0], mass: {MASS}}}]
+    points: {{a: [-0.5, 0, 0], b: [0.5, 0, 0], c: [0, 0, 0]}}
+    angular_velocity: [0, 0, {SPIN}]
+sections:
+  middle: {{body: rod, at: [0.05, 0, 0], normal: [1, 0, 0]}}
+  beside: {{body: rod, at: [0.1, 0, 0], normal: [1, 0, 0]}}
+  along: {{body: rod, from: a, to: b, count: 5}}
+analysis: {{{analysis}}}
+"""
+
+
+ON_A_PIN = """
+ground: {points: {O: [0, 0, 0]}}
+joints: {p: {type: pin, from: ground.O, to: rod.c, axis: [0, 0, 1]}}
+"""
+FREE = ["", "gravity: [0, 0, -9.81]", "gravity: [3, -7, 2]"]
+
+
+@pytest.mark.parametrize("more", [ON_A_PIN, *FREE])
+@pytest.mark.parametrize("analysis", ["duration: 1, samples: 5", "duration: 1, samples: 2", "type: state"])
+def test_a_rotor_about_its_centre_shows_what_its_pieces_pull(more: str, analysis: str) -> None:
+    run = study(rod(more, analysis))
+    text = tables(run)
+    for name, x in (("middle", 0.05), ("beside", 0.1)):
+        near(run.results.sections[name]["N"], pull(x), pull(0.0), 1e-9)
+        told = [float(word) for word in row(text, "SECTION", name)[-1:]] if analysis == "type: state" else None
+        told = told or [float(word) for word in row(text, name, "N")[2:6]]
+        assert told == pytest.approx([pull(x)] * len(told), rel=1e-12), text
+    assert "?" not in text
+    assert run.results.accuracy["balance_residual"] < 1e-14
+
+
+def test_the_balance_of_a_rotor_is_relative_to_what_its_pieces_pull() -> None:
+    """Nothing acts on it, and its centre is at rest: what is left of the sums is rounding of m w^2 r."""
+    for axis in np.random.default_rng(3).normal(size=(20, 3)).tolist():
+        run = study(rod("", "type: state").replace(f"[0, 0, {SPIN}]", f"{[1e3 * x for x in axis]}"))
+        assert run.results.accuracy["balance_residual"] < 1e-14
+
+
+def turning(seed: int) -> str:
+    """A block on a pin through its centre, about any axis, driven evenly; a second one bolted to the ground."""
+    random = np.random.default_rng(seed)
+    axis, size = random.normal(size=3).tolist(), random.uniform(0.1, 2.0, 3).tolist()
+    rate, mass = 10.0 ** random.uniform(-1.0, 3.0), 10.0 ** random.uniform(-3.0, 3.0)
+    place = (10.0 ** random.uniform(-1.0, 3.0) * random.normal(size=3)).tolist()
+    return f"""
+heun: 1
+gravity: [0, 0, -9.81]
+ground: {{points: {{O: {place}}}}}
+bodies:
+  block:
+    shapes: [{{type: box, center: [0, 0, 0], size: {size}, mass: {mass}}}]
+    points: {{c: [0, 0, 0]}}
+  still:
+    shapes: [{{type: box, center: [0, 0, 0], size: {size}, mass: {mass}}}]
+    points: {{c: [0, 0, 0]}}
+joints:
+  p: {{type: pin, from: ground.O, to: block.c, axis: {axis}}}
+  w: {{type: weld, from: ground.O, to: still.c}}
+drives: {{motor: {{joint: p, angle: "{rate}*t"}}}}
+analysis: {{ANALYSIS}}
+"""
+
+
+@pytest.mark.parametrize("seed", range(12))
+@pytest.mark.parametrize("analysis", ["type: state", "duration: 0.5, samples: 3"])
+def test_what_is_nought_but_for_rounding_is_not_printed(seed: int, analysis: str) -> None:
+    """Turning evenly about its centre the block has no acceleration, and the foundation no inertia loads."""
+    text = tables(study(turning(seed).replace("ANALYSIS", analysis)))
+    words = {word for line in text.splitlines() for word in line.split()}
+    moving = {f"{symbol}{end}" for symbol in ("v", "a", "α") for end in "xyz"} | {"|v|", "|a|", "|α|", "acceleration"}
+    assert not words & moving, text
+    effect = text[text.index("MASS EFFECT") :].splitlines()[1:4]
+    assert not any("F" in line.split()[0] for line in effect if line.strip()), text
+
+
+def test_a_peak_between_the_samples_is_shown() -> None:
+    """The force is nought at all three samples."""
+    run = study("""
+heun: 1
+ground: {points: {O: [0, 0, 0]}}
+bodies: {a: {mass: 1, center: [0, 0, 0], inertia: [0.1, 0.1, 0.1], points: {p: [0, 0, 0]}}}
+joints: {w: {type: weld, from: ground.O, to: a.p}}
+forces: {f: {type: force, on: a.p, vector: ["0.4*sin(2*pi*t)", 0, 0]}}
+analysis: {duration: 1, samples: 3}
+""")
+    text = tables(run)
+    assert row(text, "w  weld", "Fx") == ["Fx", "N", "0", "0", "-0.4", "0.25", "0.4", "0.75"]
+    assert row(text, "FORCES", "value")[2:7] == ["0", "0", "0", "0", "0.4"]
+
+
+def pendulum(samples: str, expect: str = "[]") -> str:
+    """theory.md's double pendulum of uniform rods, 2.5 rad and 2.5 rad from rest: horizon about 14.6 s."""
+    bar = """{mass: 1, center: [0, -0.5, 0], inertia: [0.08333333333333333, 0, 0.08333333333333333],
+      points: {top: [0, 0, 0], end: [0, -1, 0]}, orientation: {axis: [0, 0, 1], angle: 2.5}}"""
+    return f"""
+heun: 1
+gravity: [0, -9.81, 0]
+ground: {{points: {{O: [0, 0, 0]}}}}
+bodies: {{upper: {bar}, lower: {bar}}}
+joints:
+  p: {{type: pin, from: ground.O, to: upper.top, axis: [0, 0, 1]}}
+  q: {{type: pin, from: upper.end, to: lower.top, axis: [0, 0, 1]}}
+analysis: {{{samples}}}
+expect: {expect}
+"""
+
+
+EXPECTED = """
+  - {of: joints.p.force.x, at: 20, is: 0, abs: 1e9}
+  - {of: joints.p.force, peak: abs, is: 0, abs: 1e9}
+  - {of: joints.q.force.y, is: null, at: 20}
+  - {of: joints.p.force.x, at: 1, is: 0, abs: 1e9}
+"""
+
+
+def test_beyond_the_horizon_of_a_pendulum_nothing_is_told() -> None:
+    run = study(pendulum("duration: 20, samples: 41", EXPECTED))
+    horizon: Any = run.results.accuracy["horizon"]
+    assert 13.0 < horizon < 16.0
+
+    def told(words: str) -> str:
+        return measure.write(measure.parse(words), run, "table").strip()
+
+    for words in ("max", "min", "max abs", "final", "at 19.99", f"at {horizon!r}"):
+        assert told(f"{words} joints.p.force.x") == told(f"{words} energy.kinetic") == "?"
+    assert float(told("at 5 coordinates.p.angle")) == pytest.approx(-0.439854790363542, abs=1e-6)
+    assert [compare(run, item).passed for item in run.spec.expect] == [False, False, False, True]
+    text = tables(run)
+    cells = row(text, "p  pin", "Fx")
+    assert cells[3] == "?"
+    assert all(math.isfinite(float(cell)) for cell in (cells[2], *cells[4:]))
+    assert max(float(cells[5]), float(cells[7])) < horizon
+    assert row(text, "ENERGY", "kinetic")[3] == "?"
+    assert np.isfinite(run.results.joints["p"]["force"]).all()  # what JSON and CSV carry
