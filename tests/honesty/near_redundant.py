@@ -246,3 +246,79 @@ def near_scene(seed: int) -> tuple[str, float, NearScene]:
     family = FAMILIES[seed % len(FAMILIES)]
     near = float(10.0 ** rng.uniform(-12, -3))
     return family.__name__, near, family(rng, near)
+
+
+# ---- held twice but for `near`: what the ideal drawing does, and what is written
+class Hinged(NamedTuple):
+    """A machine whose pins would agree in one axis but for `near`: as written nothing moves.
+
+    ideal: the same with the axes in one; rates: as given to its bodies about z.
+    """
+
+    scene: dict[str, Any]
+    ideal: dict[str, Any]
+    rates: dict[str, float]
+
+
+def door(rng: Rng, near: float) -> Hinged:
+    """A door on two pins: the second one's axis stands `near` beside the first one's, or leans by it."""
+    height, width, rate = float(rng.uniform(0.5, 3)), float(rng.uniform(0.3, 2)), float(rng.uniform(0.5, 2))
+    beside, lean = (near * height * flat(1, rng.uniform(0, 6)), np.zeros(3))
+    if rng.random() < 0.3:
+        beside, lean = lean, beside / height
+    lower, upper = np.zeros(3), np.array([0.0, 0.0, height])
+    moving, couple = bool(rng.random() < 0.6), [0.0, 0.0, float(rng.uniform(1, 5))]
+
+    def made(beside: Array, lean: Array) -> dict[str, Any]:
+        points = {"l": lower, "u": upper + beside}
+        leaf = body(10.0, np.array([width / 2, 0, height / 2]), width, points)
+        axis = [float(lean[0]), float(lean[1]), 1.0]
+        joints = {
+            "lower": {"type": "pin", "from": "ground.L", "to": "leaf.l", "axis": [0.0, 0.0, 1.0]},
+            "upper": {"type": "pin", "from": "ground.U", "to": "leaf.u", "axis": axis},
+        }
+        more: dict[str, Any] = {"gravity": [0.0, 0.0, -9.81]}
+        if moving:
+            leaf["angular_velocity"] = [0.0, 0.0, rate]
+            more["analysis"] = {"duration": 0.5, "samples": 3}
+        else:
+            more["forces"] = {"turn": {"type": "couple", "on": "leaf", "vector": couple}}
+        return scene_of({"leaf": leaf}, joints, {"L": lower, "U": upper + beside}, False, **more)
+
+    return Hinged(made(beside, lean), made(np.zeros(3), np.zeros(3)), {"leaf": rate} if moving else {})
+
+
+def four_hinges(rng: Rng, near: float) -> Hinged:
+    """A four-bar in space on four pins that lean by `near`, each its own way: what lies across the plane is open."""
+    A, D = np.zeros(3), np.array([1.7, 0.0, 0.0])
+    B, C = flat(0.6, rng.uniform(0.5, 2.5)), D + flat(1.1, rng.uniform(0.7, 2.4))
+    leans, rate = rng.uniform(-1, 1, (4, 2)), float(rng.uniform(0.5, 2))
+    moving = bool(rng.random() < 0.5)
+
+    def made(near: float) -> dict[str, Any]:
+        bodies = {
+            "left": body(1.0, 0.5 * (A + B), 1.0, {"a": A, "b": B}),
+            "coupler": body(2.0, 0.5 * (B + C), 1.0, {"b": B, "c": C}),
+            "right": body(1.0, 0.5 * (C + D), 1.0, {"c": C, "d": D}),
+        }
+        if moving:
+            bodies["left"]["angular_velocity"] = [0.0, 0.0, rate]
+        ends = (("ground.A", "left.a"), ("left.b", "coupler.b"), ("coupler.c", "right.c"), ("ground.D", "right.d"))
+        joints = {
+            name: {"type": "pin", "from": a, "to": b, "axis": [near * float(x), near * float(y), 1.0]}
+            for name, (a, b), (x, y) in zip("ABCD", ends, leans, strict=True)
+        }
+        return scene_of(bodies, joints, {"A": A, "D": D}, False, gravity=[0.0, -9.81, 0.0])
+
+    return Hinged(made(near), made(0.0), {"left": rate} if moving else {})
+
+
+HINGED: tuple[Callable[[Rng, float], Hinged], ...] = (door, four_hinges)
+
+
+def hinged_scene(seed: int) -> tuple[str, float, Hinged]:
+    """The family's name, how near, and the scene."""
+    rng = np.random.default_rng([21, seed])
+    family = HINGED[seed % len(HINGED)]
+    near = float(10.0 ** rng.uniform(-12, -3))
+    return family.__name__, near, family(rng, near)

@@ -2,9 +2,8 @@
 
     M a − Jᵀ λ = f − σ × I σ,  J a = −γ,    and of the rates  J V = 0 with the held ones as given
 
-Bodies as drawn (axes of the world, origin in its origin), at rest or turning about z; as many independent rows as the
-joints have, so that what is solved has one answer. Elimination by `decimal`: sixty digits outlast any condition that
-sixteen digits can write down.
+Bodies as drawn (axes of the world, origin in its origin), at rest or turning about z. Elimination by `decimal`: sixty
+digits outlast any condition that sixteen digits can write down.
 """
 
 from __future__ import annotations
@@ -14,7 +13,8 @@ from decimal import Context, Decimal, localcontext
 from typing import Any, NamedTuple
 
 DIGITS = 60
-SAME = Decimal("1e-40")  # of the largest pivot: less is nought, and the scene has no one answer
+SAME = Decimal("1e-40")  # of the largest pivot, or of a null vector: less is nought
+CONTRADICTS = Decimal("1e-30")  # of unit rows: what is left on the right of rows that say nothing new
 ZERO, ONE = Decimal(0), Decimal(1)
 
 Vector = tuple[Decimal, ...]
@@ -22,7 +22,10 @@ Rows = list[list[Decimal]]
 
 
 class Exact(NamedTuple):
-    """What joints exert on `to`, force and moment about the `to` point; accelerations of centres, and angular ones."""
+    """What joints exert on `to`, force and moment about the `to` point; accelerations of centres, and angular ones.
+
+    nan: open.
+    """
 
     force: dict[str, Vector]
     moment: dict[str, Vector]
@@ -38,11 +41,11 @@ class Row(NamedTuple):
     point: Vector
     n: Vector
     turns: bool
-    square: tuple[Vector, Vector] | None = None  # of a rod: the arm between its points, over its length
+    rod: tuple[Vector, Decimal] | None = None  # its `from` point and its length
 
 
-class NotOne(Exception):
-    """The joints hold something twice, or a mass is missing: there is no one answer."""
+class NoAnswer(Exception):
+    """The rates given do not fit the joints."""
 
 
 def vector(x: Iterable[Any]) -> Vector:
@@ -119,11 +122,17 @@ def rows_of(scene: Mapping[str, Any], name: str, planar: bool) -> list[Row]:
     if kind == "rod":
         arm = minus(q, p)
         L = dot(arm, arm).sqrt()
-        return [Row(name, ends, q, unit(arm), False, (p, times(ONE / L, (ONE, ONE, ONE))))]
+        return [Row(name, ends, q, unit(arm), False, (p, L))]
     if kind == "plane":
         return [Row(name, ends, q, unit(vector(spec["normal"])), False)]
     if kind == "line":
         return [Row(name, ends, q, e, False) for e in across(unit(vector(spec["axis"])))]
+    if kind == "slide":
+        u, v = across(unit(vector(spec["axis"])))
+        if planar:
+            u, v = cross(AXES[2], unit(vector(spec["axis"]))), AXES[2]
+            return [Row(name, ends, q, u, False), Row(name, ends, q, v, True)]
+        return [Row(name, ends, q, e, turns) for e, turns in ((u, False), (v, False), *((e, True) for e in AXES))]
     assert kind in ("ball", "pin"), kind
     held = [Row(name, ends, q, e, False) for e in in_space]
     if kind == "pin" and not planar:
@@ -163,7 +172,8 @@ def velocities(
         row = [ZERO] * (len(names) * n)
         row[names.index(name) * n + list(free).index(5)] = ONE
         held.append(row)
-    x = solved([*J, *held], [ZERO] * len(J) + [Decimal(float(v)) for v in given.values()])
+    x, null = solved([*J, *held], [ZERO] * len(J) + [Decimal(float(v)) for v in given.values()])
+    assert not null, "rates that are not all given"
     found = {}
     for k, name in enumerate(names):
         full = dict(zip(free, x[k * n : (k + 1) * n], strict=True))
@@ -183,13 +193,12 @@ def gamma(row: Row, centers: Mapping[str, Vector], V: Mapping[str, tuple[Vector,
         arm = minus(p, centers[end])
         return plus(v, cross(spin, arm)), cross(spin, cross(spin, arm))
 
-    far = row.square[0] if row.square else row.point
+    far = row.rod[0] if row.rod else row.point
     (va, aa), (vb, ab) = moved(row.ends[0], far), moved(row.ends[1], row.point)
     found = dot(row.n, minus(ab, aa))
-    if row.square:
+    if row.rod:
         v = minus(vb, va)
-        along = dot(row.n, v)
-        found += (dot(v, v) - along * along) * row.square[1][0]
+        found += (dot(v, v) - dot(row.n, v) ** 2) / row.rod[1]
     return found
 
 
@@ -228,52 +237,75 @@ def loads(scene: Mapping[str, Any], name: str, center: Vector, free: Sequence[in
     return [(*F, *N)[c] for c in free]
 
 
-def solved(A: Rows, b: list[Decimal]) -> list[Decimal]:
-    """A x = b by elimination with rows of unit size; A may have rows to spare, which then must agree."""
+class Answer(NamedTuple):
+    """x, and the vectors that may be added to it at will."""
+
+    x: list[Decimal]
+    null: Rows
+
+
+def solved(A: Rows, b: list[Decimal]) -> Answer:
+    """A x = b by elimination with complete pivoting, rows of unit size; refuses what has no answer."""
     n = len(A[0])
     rows = []
     for row, right in zip(A, b, strict=True):
         size = max(abs(x) for x in row)
-        if size == ZERO:
-            raise NotOne
         rows.append([*(x / size for x in row), right / size])
-    if len(rows) != n:
-        raise NotOne
-    largest = ZERO
-    for k in range(n):
-        best = max(range(k, n), key=lambda i: abs(rows[i][k]))
-        rows[k], rows[best] = rows[best], rows[k]
-        pivot = rows[k]
-        largest = max(largest, abs(pivot[k]))
-        if abs(pivot[k]) <= SAME * largest:
-            raise NotOne
-        for i in range(k + 1, n):
-            if rows[i][k]:
-                factor = rows[i][k] / pivot[k]
-                rows[i] = [
-                    *rows[i][:k],
-                    ZERO,
-                    *(x - factor * y for x, y in zip(rows[i][k + 1 :], pivot[k + 1 :], strict=True)),
-                ]
+    order, rank, first = list(range(n)), 0, ZERO
+    for k in range(min(n, len(rows))):
+        best = max(
+            ((i, j) for i in range(k, len(rows)) for j in range(k, n)), key=lambda p: abs(rows[p[0]][order[p[1]]])
+        )
+        rows[k], rows[best[0]] = rows[best[0]], rows[k]
+        order[k], order[best[1]] = order[best[1]], order[k]
+        pivot, c = rows[k], order[k]
+        first = max(first, abs(pivot[c]))
+        if abs(pivot[c]) <= SAME * first:
+            break
+        rank += 1
+        rows[k] = pivot = [x / pivot[c] for x in pivot]
+        for i, row in enumerate(rows):
+            if i != k and row[c]:
+                factor = row[c]
+                rows[i] = [x - factor * y for x, y in zip(row, pivot, strict=True)]
+    if any(abs(row[n]) > CONTRADICTS for row in rows[rank:]):
+        raise NoAnswer
     x = [ZERO] * n
-    for k in reversed(range(n)):
-        x[k] = (rows[k][n] - dot(rows[k][k + 1 : n], x[k + 1 :])) / rows[k][k]
-    return x
+    for k, c in enumerate(order[:rank]):
+        x[c] = rows[k][n]
+    null = []
+    for free in order[rank:]:
+        v = [ZERO] * n
+        v[free] = ONE
+        for k, c in enumerate(order[:rank]):
+            v[c] = -rows[k][free]
+        null.append(v)
+    return Answer(x, null)
 
 
-def answers(
-    scene: Mapping[str, Any], names: list[str], free: Sequence[int], rows: list[Row], x: list[Decimal]
-) -> Exact:
-    """Multipliers as forces and moments on `to`, about its point."""
+def answers(scene: Mapping[str, Any], names: list[str], free: Sequence[int], rows: list[Row], found: Answer) -> Exact:
+    """Multipliers as forces and moments on `to`, about its point; nan where a null vector has a share."""
     n = len(free)
-    force = dict.fromkeys(scene["joints"], NOWHERE)
-    moment = dict.fromkeys(scene["joints"], NOWHERE)
-    for row, value in zip(rows, x[n * len(names) :], strict=True):
-        of = moment if row.turns else force
-        of[row.joint] = plus(of[row.joint], times(value, row.n))
+    wrenches = [wrenches_of(scene, rows, x[n * len(names) :]) for x in (found.x, *found.null)]
+    for own, *shares in zip(*(w.values() for w in wrenches), strict=True):
+        for part in range(2):
+            for c in range(3):
+                if any(abs(share[part][c]) > SAME for share in shares):
+                    own[part][c] = Decimal("nan")
+    force = {name: tuple(w[0]) for name, w in wrenches[0].items()}
+    moment = {name: tuple(w[1]) for name, w in wrenches[0].items()}
     center, angular = {}, {}
     for k, name in enumerate(names):
-        full = dict(zip(free, x[k * n : (k + 1) * n], strict=True))
+        full = dict(zip(free, found.x[k * n : (k + 1) * n], strict=True))
         center[name] = tuple(full.get(c, ZERO) for c in range(3))
         angular[name] = tuple(full.get(c, ZERO) for c in range(3, 6))
     return Exact(force, moment, center, angular)
+
+
+def wrenches_of(scene: Mapping[str, Any], rows: list[Row], values: list[Decimal]) -> dict[str, Rows]:
+    """Force and moment of every joint."""
+    found = {name: [[ZERO] * 3, [ZERO] * 3] for name in scene["joints"]}
+    for row, value in zip(rows, values, strict=True):
+        of = found[row.joint]
+        of[row.turns] = list(plus(tuple(of[row.turns]), times(value, row.n)))
+    return found
