@@ -107,6 +107,9 @@ KERNEL: dict[str, float] = {
     "dodges": 10,  # lengths tried; .87**10 spans a factor of 4, more than the width of what a singular pose spoils
     # -- inertia
     "no_inertia": 1e-14,  # of the trace: some dozen roundings of the sums that make an articulated inertia
+    # square of NEARLY_SINGULAR: where the loops hold a freedom without inertia by a lever of s, s^2 of the others' is
+    # what it moves, and accelerations are known to rounding / s^2
+    "own_share": 1e-12,
     # -- rank
     "moves_nothing": 1e-24,  # squares of loads: 1e-12 of the largest load the row could exert, its rounding
     "across": 0.01,  # a row's answer across its arms counts to a tenth of the arm, in any pose

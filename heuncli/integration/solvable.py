@@ -7,7 +7,7 @@ import numpy as np
 from heuncli import tolerances
 from heuncli.errors import Problem, SolveError
 from heuncli.integration.runner import Recovered
-from heuncli.tree.idle_spins import without_inertia
+from heuncli.results import Array
 from heuncli.tree.prepare import PreparedScene
 
 
@@ -17,9 +17,7 @@ def require_solvable(scene: PreparedScene, recovered: Recovered) -> None:
     if not finite.all():
         raise SolveError(*not_finite(scene, recovered, int(np.flatnonzero(~finite)[0])))
     if (recovered.idle > 0).any():
-        raise SolveError(
-            freedom_without_inertia(scene, float(recovered.times[int(np.flatnonzero(recovered.idle > 0)[0])]))
-        )
+        raise SolveError(freedom_without_inertia(scene, recovered, int(np.flatnonzero(recovered.idle > 0)[0])))
     layout, gravity = scene.layout, scene.mechanism.gravity
     for spin in scene.idle:
         rows = recovered.bodies[:, layout.place[spin.body]]
@@ -52,17 +50,25 @@ def not_finite(scene: PreparedScene, recovered: Recovered, instant: int) -> list
     return problems or [Problem("not-a-number", message, hint="look at points that coincide, and at very large values")]
 
 
-def freedom_without_inertia(scene: PreparedScene, t: float) -> Problem:
-    """The problem of a freedom that moves no mass: which bodies have no inertia about some axis."""
+def freedom_without_inertia(scene: PreparedScene, recovered: Recovered, instant: int) -> Problem:
+    """The problem of a freedom that moves no mass: which bodies turn in it, about which axes."""
+    from heuncli.integration.inertialess import loose_axes
+
+    layout = scene.layout
     lacking = []
-    for body in scene.mechanism.bodies:
-        axes, _ = without_inertia(body, scene.layout.size)
-        if len(axes):
-            # the sign of an eigenvector is arbitrary, and for a point mass every axis is one
-            n = axes[0] * np.sign(axes[0][np.argmax(np.abs(axes[0]))]) + 0.0
-            axis_text = f"its axis ({', '.join(f'{x:.4g}' for x in n)})" if len(axes) == 1 else "its axis (any)"
-            lacking.append(f"bodies.{body.name} has no inertia about {axis_text}")
-    message = ": ".join(
-        [f"at t = {t:.6g} s a freedom has no inertia behind it", *(["; ".join(lacking)] if lacking else [])]
-    )
+    for place, axes in loose_axes(scene, recovered.bodies[instant], recovered.rows[instant]).items():
+        body = layout.mechanism.bodies[layout.spanning.hangs[place].body]
+        lacking.append(f"bodies.{body.name} has no inertia about {in_words(axes)}")
+    message = f"at t = {float(recovered.times[instant]):.6g} s a freedom has no inertia behind it"
+    message = ": ".join([message, *(["; ".join(lacking)] if lacking else [])])
     return Problem("no-inertia", message, hint="give those bodies their moments of inertia, or hold the turn")
+
+
+def in_words(axes: Array) -> str:
+    """Axes (k, 3) of a body in its own components: one, those across one, or any."""
+    if len(axes) == 3:
+        return "any axis"
+    n = axes[0] if len(axes) == 1 else np.cross(axes[0], axes[1])
+    n = n * np.sign(n[np.argmax(np.abs(n))])  # the sign of a singular vector is arbitrary
+    listed = ", ".join(f"{x:.4g}" for x in np.where(np.abs(n) < tolerances.DUST, 0.0, n))
+    return f"its axis ({listed})" if len(axes) == 1 else f"its axes across ({listed})"

@@ -1,16 +1,23 @@
 """Signatures of response.py for C."""
 
-from heuncli.kernel.algebra cimport Quaternion, slightly_turned
+from heuncli.kernel.algebra cimport Quaternion, Vec3, dot, slightly_turned
 from heuncli.kernel.closures cimport (
     acceleration_along, count_turns, factor_closures, measure_rows, push_closures, solve_closures,
 )
 from heuncli.kernel.loads cimport apply_loads
-from heuncli.kernel.scene cimport Body, Closure, Freedom, Scene
-from heuncli.kernel.tree cimport balance, derivative, downward, factor_tree, kinematics, upward
+from heuncli.kernel.scene cimport Body, Closure, Freedom, Lent, Scene
+from heuncli.kernel.tree cimport (
+    balance, climb, derivative, downward, factor_tree, kinematics, push_lent, upward,
+)
 from libc.math cimport fabs, sqrt
 
 cdef int configure(Scene *scene, double t) noexcept nogil
 cdef void respond(Scene *scene, bint inertial) noexcept nogil
+cdef void answer(Scene *scene, bint inertial) noexcept nogil
+cdef int weigh_lent(Scene *scene) noexcept nogil
+cdef double taken(Scene *scene, Lent *lent) noexcept nogil
+cdef double eliminate_lent(Scene *scene, Py_ssize_t j) noexcept nogil
+cdef void find_taken(Scene *scene) noexcept nogil
 cdef int evaluate(Scene *scene, double t, double *y, double *dy) noexcept nogil
 cdef double driving_power(Scene *scene) noexcept nogil
 cdef double settle(Scene *scene, double t, double *y) noexcept nogil

@@ -16,7 +16,7 @@ except ImportError:
 if not cython.compiled:
     from math import fabs, sqrt
 
-    from heuncli.kernel.algebra import Quaternion, slightly_turned
+    from heuncli.kernel.algebra import Quaternion, Vec3, dot, slightly_turned
     from heuncli.kernel.closures import (
         acceleration_along,
         count_turns,
@@ -26,13 +26,16 @@ if not cython.compiled:
         solve_closures,
     )
     from heuncli.kernel.loads import apply_loads
-    from heuncli.kernel.scene import Body, Closure, Freedom, Scene
+    from heuncli.kernel.scene import Body, Closure, Freedom, Lent, Scene
     from heuncli.kernel.shadow import cython
-    from heuncli.kernel.tree import balance, derivative, downward, factor_tree, kinematics, upward
+    from heuncli.kernel.tree import balance, climb, derivative, downward, factor_tree, kinematics, push_lent, upward
 
 
 def configure(scene: cython.pointer[Scene], t: cython.double) -> cython.int:
-    """Factors of the tree and of the closures; how many freedoms have no inertia behind them, -1 for lost closures."""
+    """Factors of the tree, the closures, and of what is lent; how many freedoms have no inertia behind them.
+
+    -1 for lost closures.
+    """
     idle: cython.int = factor_tree(scene)
     if scene.selected_count:
         measure_rows(scene, t)
@@ -41,13 +44,27 @@ def configure(scene: cython.pointer[Scene], t: cython.double) -> cython.int:
             scene.pivot_of_step = scene.pivot
         if scene.pivot < 0.0:
             return -1
+    if scene.lent_count:
+        idle += weigh_lent(scene)
     return idle
 
 
 def respond(scene: cython.pointer[Scene], inertial: cython.bint) -> cython.void:
-    """Accelerations and multipliers that answer the loads on the bodies."""
-    r: cython.Py_ssize_t
+    """Accelerations and multipliers that answer the loads on the bodies; what is lent takes nothing of them."""
+    i: cython.Py_ssize_t
+    for i in range(scene.lent_count):
+        scene.lents[i].z = 0.0
     upward(scene, inertial)
+    answer(scene, inertial)
+    if scene.lent_count:
+        find_taken(scene)
+        upward(scene, inertial)
+        answer(scene, inertial)
+
+
+def answer(scene: cython.pointer[Scene], inertial: cython.bint) -> cython.void:
+    """Accelerations and multipliers that answer e."""
+    r: cython.Py_ssize_t
     downward(scene, inertial)
     if scene.selected_count:
         for r in range(scene.closure_count):
@@ -57,6 +74,79 @@ def respond(scene: cython.pointer[Scene], inertial: cython.bint) -> cython.void:
                 row.demand = row.gamma + row.demand
         solve_closures(scene)
         downward(scene, inertial)
+
+
+def weigh_lent(scene: cython.pointer[Scene]) -> cython.int:
+    """1 - T, T_ij = n_i . alpha of the answer to n_j alone, and its Cholesky factor; how many motions nothing holds.
+
+    Lent inertia takes z = n . alpha of the loads. Returned as loads of their own they make z = z_0 + T z, with z_0 what
+    the loads alone would give: so the answer is that of the bodies as they are, for any inertia lent. The eigenvalues
+    of 1 - T are the shares that the bodies' own inertia has in what moves; where nothing can move they are 1.
+    """
+    i: cython.Py_ssize_t
+    j: cython.Py_ssize_t
+    n: cython.Py_ssize_t = scene.lent_count
+    zero: Vec3 = Vec3(0.0, 0.0, 0.0)
+    loose: cython.int = 0
+    x: cython.double
+    scene.own_share = 1.0
+    for j in range(n):
+        for i in range(scene.body_count):
+            scene.bodies[i].M_branch = zero
+            scene.bodies[i].f_branch = zero
+        scene.lents[j].z = 1.0
+        push_lent(scene, cython.address(scene.lents[j]))
+        climb(scene, False)
+        answer(scene, False)
+        for i in range(j, n):
+            scene.own[n * i + j] = (1.0 if i == j else 0.0) - taken(scene, cython.address(scene.lents[i]))
+    for j in range(n):
+        x = eliminate_lent(scene, j)
+        if x < scene.own_share:
+            scene.own_share = x
+        loose += x <= scene.limits.own_share
+    return loose
+
+
+def taken(scene: cython.pointer[Scene], lent: cython.pointer[Lent]) -> cython.double:
+    """n . alpha at the accelerations found."""
+    return dot(lent.n, scene.bodies[lent.body].alpha)
+
+
+def eliminate_lent(scene: cython.pointer[Scene], j: cython.Py_ssize_t) -> cython.double:
+    """Column j of the Cholesky factor of 1 - T (diagonal inverted, zero where next to nothing is left); its pivot."""
+    i: cython.Py_ssize_t
+    k: cython.Py_ssize_t
+    n: cython.Py_ssize_t = scene.lent_count
+    x: cython.double
+    pivot: cython.double = scene.own[n * j + j]
+    for k in range(j):
+        pivot -= scene.own[n * j + k] * scene.own[n * j + k]
+    scene.own[n * j + j] = 1.0 / sqrt(pivot) if pivot > scene.limits.own_share else 0.0
+    for i in range(j + 1, n):
+        x = scene.own[n * i + j]
+        for k in range(j):
+            x -= scene.own[n * i + k] * scene.own[n * j + k]
+        scene.own[n * i + j] = x * scene.own[n * j + j]
+    return pivot
+
+
+def find_taken(scene: cython.pointer[Scene]) -> cython.void:
+    """z = (1 - T)^-1 z_0 from the accelerations that the loads alone give."""
+    i: cython.Py_ssize_t
+    k: cython.Py_ssize_t
+    n: cython.Py_ssize_t = scene.lent_count
+    z: cython.double
+    for i in range(n):
+        z = taken(scene, cython.address(scene.lents[i]))
+        for k in range(i):
+            z -= scene.own[n * i + k] * scene.lents[k].z
+        scene.lents[i].z = z * scene.own[n * i + i]
+    for i in range(n - 1, -1, -1):
+        z = scene.lents[i].z
+        for k in range(i + 1, n):
+            z -= scene.own[n * k + i] * scene.lents[k].z
+        scene.lents[i].z = z * scene.own[n * i + i]
 
 
 def evaluate(scene: cython.pointer[Scene], t: cython.double, y: cython.p_double, dy: cython.p_double) -> cython.int:

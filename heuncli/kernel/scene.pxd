@@ -138,6 +138,14 @@ cdef struct Variable:
     int freedom
     int is_rate
 
+cdef struct Lent:
+    int body
+    int unused
+    double root
+    Vec3 axis
+    Vec3 n
+    double z
+
 cdef struct Group:
     int coordinates
     int rates
@@ -150,6 +158,7 @@ cdef struct Limits:
     int dodges
     int unused
     double no_inertia
+    double own_share
     double moves_nothing
     double across
     double independent
@@ -175,6 +184,7 @@ cdef struct Scene:
     int closure_count
     int counter_count
     int variable_count
+    int lent_count
     int answer_count          # freedoms, a ball's three turns among them
     int selected_count        # independent closure rows
     int driven                # something is driven: the work of drives counts
@@ -187,6 +197,7 @@ cdef struct Scene:
     double pivot              # now
     double pivot_of_step      # least since the step began
     double gap                # of the state recovered last, over all rows [m]
+    double own_share          # least pivot of 1 - T: of the inertia in a motion, how much is not lent
     double pivot_recovered    # least pivot of the closures there
     Body *bodies
     Freedom *freedoms
@@ -194,6 +205,7 @@ cdef struct Scene:
     Closure *closures
     Counter *counters
     Variable *variables
+    Lent *lents
     Programs *programs
     int *indices              # paths, answers and couplings of the closure rows
     int *selected             # independent rows, ascending
@@ -201,4 +213,5 @@ cdef struct Scene:
     double *e                 # load that each freedom answers
     double *spread            # one row's D^-1 e_r, spread over all freedoms
     double *columns           # e_r of all rows, one after the other
+    double *own               # 1 - T of the lent inertias, and its Cholesky factor
     double *A                 # J M^-1 J' over the independent rows, and its Cholesky factor

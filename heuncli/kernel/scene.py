@@ -182,6 +182,18 @@ class Variable(Record):
     is_rate: int
 
 
+class Lent(Record):
+    """Inertia lent to a body about an axis, so that the tree can be factored, and given back (kernel/response.py)."""
+
+    body: int
+    unused: int
+    root: float  # of the inertia
+    axis: Vec3  # unit vector, body axes
+
+    n: Vec3  # root times the axis, world
+    z: float  # n . alpha: the load z n on the body is what the lent inertia takes
+
+
 class Group(Record):
     """Components of the state whose errors are measured together, one body's: its coordinates, then its rates."""
 
@@ -200,6 +212,7 @@ class Limits(Record):
     dodges: int  # lengths tried for a step whose stages come near to a singular pose
     unused: int
     no_inertia: float  # of all directions' inertia: what has less moves nothing
+    own_share: float  # of a motion's inertia, lent and its own: with less of its own nothing holds it
     moves_nothing: float  # of what a row's freedoms could answer: a row that answers less is none
     across: float  # part of what a row could answer across its arms that counts as its scale in any pose
     independent: float  # least scaled pivot of a row that is chosen
@@ -228,6 +241,7 @@ class Scene(metaclass=Fields):
     closure_count: int
     counter_count: int
     variable_count: int
+    lent_count: int
     answer_count: int
     selected_count: int
     driven: int
@@ -240,6 +254,7 @@ class Scene(metaclass=Fields):
     pivot: float
     pivot_of_step: float
     gap: float
+    own_share: float
     pivot_recovered: float
     bodies: list[Body]
     freedoms: list[Freedom]
@@ -247,6 +262,7 @@ class Scene(metaclass=Fields):
     closures: list[Closure]
     counters: list[Counter]
     variables: list[Variable]
+    lents: list[Lent]
     programs: Programs
     indices: list[int]
     selected: list[int]
@@ -254,4 +270,5 @@ class Scene(metaclass=Fields):
     e: list[float]
     spread: list[float]
     columns: list[float]
+    own: list[float]
     A: list[float]

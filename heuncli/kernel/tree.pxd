@@ -7,7 +7,7 @@ from heuncli.kernel.algebra cimport (
     trace, transform, turned, unit_matrix,
 )
 from heuncli.kernel.expressions cimport Jet, jet
-from heuncli.kernel.scene cimport Body, Freedom, SHIFT, Scene, TURN_IN_BODY, TURN_IN_PARENT, Variable
+from heuncli.kernel.scene cimport Body, Freedom, Lent, SHIFT, Scene, TURN_IN_BODY, TURN_IN_PARENT, Variable
 
 cdef struct PointMotion:
     Vec3 x
@@ -23,11 +23,14 @@ cdef Vec3 direction_of(Scene *scene, int body, Vec3 a) noexcept nogil
 cdef PointMotion point_of(Scene *scene, int body, Vec3 q) noexcept nogil
 cdef void push(Scene *scene, int body, Vec3 at, Vec3 force, Vec3 moment) noexcept nogil
 cdef int factor_tree(Scene *scene) noexcept nogil
+cdef void lend(Scene *scene, Lent *lent) noexcept nogil
 cdef int eliminate_ball(Body *body, double least) noexcept nogil
 cdef int eliminate(Body *body, Freedom *freedom, double least) noexcept nogil
 cdef double load_along(Freedom *freedom, Vec3 M, Vec3 f) noexcept nogil
 cdef void add_branch(Body *parent, Body *body) noexcept nogil
 cdef void upward(Scene *scene, bint inertial) noexcept nogil
+cdef void push_lent(Scene *scene, Lent *lent) noexcept nogil
+cdef void climb(Scene *scene, bint inertial) noexcept nogil
 cdef double answered(Body *body, Freedom *freedom) noexcept nogil
 cdef void pass_up(Body *parent, Body *body, bint inertial) noexcept nogil
 cdef void downward(Scene *scene, bint inertial) noexcept nogil

@@ -57,7 +57,7 @@ if not cython.compiled:
         unit_matrix,
     )
     from heuncli.kernel.expressions import jet
-    from heuncli.kernel.scene import SHIFT, TURN_IN_BODY, TURN_IN_PARENT, Body, Freedom, Scene, Variable
+    from heuncli.kernel.scene import SHIFT, TURN_IN_BODY, TURN_IN_PARENT, Body, Freedom, Lent, Scene, Variable
     from heuncli.kernel.shadow import cython
     from heuncli.kernel.structs import Jet, PointMotion
 
@@ -204,6 +204,8 @@ def factor_tree(scene: cython.pointer[Scene]) -> cython.int:
     for i in range(scene.body_count):
         scene.bodies[i].C = skew(scene.bodies[i].mc)
         scene.bodies[i].K = multiple_of_unit(scene.bodies[i].mass)
+    for i in range(scene.lent_count):
+        lend(scene, cython.address(scene.lents[i]))
     for i in range(scene.body_count - 1, -1, -1):
         body: cython.pointer[Body] = cython.address(scene.bodies[i])
         # a freedom's inertia is nothing beside that before any freedom was taken out: what is left of it is rounding
@@ -220,6 +222,13 @@ def factor_tree(scene: cython.pointer[Scene]) -> cython.int:
         if body.parent >= 0:
             add_branch(cython.address(scene.bodies[body.parent]), body)
     return idle
+
+
+def lend(scene: cython.pointer[Scene], lent: cython.pointer[Lent]) -> cython.void:
+    """Add a lent inertia n n' to its body's own."""
+    body: cython.pointer[Body] = cython.address(scene.bodies[lent.body])
+    lent.n = scaled(lent.root, rotate(body.R, lent.axis))
+    body.A = sub_square(body.A, lent.n, scaled(-1.0, lent.n))
 
 
 def eliminate_ball(body: cython.pointer[Body], least: cython.double) -> cython.int:
@@ -272,14 +281,28 @@ def add_branch(parent: cython.pointer[Body], body: cython.pointer[Body]) -> cyth
 
 
 def upward(scene: cython.pointer[Scene], inertial: cython.bint) -> cython.void:
-    """From loads and velocity terms to e, the load that each freedom has to answer, tips to roots."""
+    """From loads and velocity terms, and what lent inertias take, to e, the load that each freedom has to answer."""
     i: cython.Py_ssize_t
-    k: cython.Py_ssize_t
     zero: Vec3 = Vec3(0.0, 0.0, 0.0)
     for i in range(scene.body_count):
         one: cython.pointer[Body] = cython.address(scene.bodies[i])
         one.M_branch = sub(one.gyroscopic if inertial else zero, one.M_applied)
         one.f_branch = sub(one.centrifugal if inertial else zero, one.f_applied)
+    for i in range(scene.lent_count):
+        push_lent(scene, cython.address(scene.lents[i]))
+    climb(scene, inertial)
+
+
+def push_lent(scene: cython.pointer[Scene], lent: cython.pointer[Lent]) -> cython.void:
+    """Put what a lent inertia takes, z n, on its body."""
+    body: cython.pointer[Body] = cython.address(scene.bodies[lent.body])
+    body.M_branch = add_scaled(body.M_branch, -lent.z, lent.n)
+
+
+def climb(scene: cython.pointer[Scene], inertial: cython.bint) -> cython.void:
+    """From what stands in M_branch and f_branch to e, tips to roots."""
+    i: cython.Py_ssize_t
+    k: cython.Py_ssize_t
     for i in range(scene.body_count - 1, -1, -1):
         body: cython.pointer[Body] = cython.address(scene.bodies[i])
         if body.ball:

@@ -6,7 +6,7 @@ from heuncli.kernel.closures cimport clear_path, measure_rows, push_closures, pu
 from heuncli.kernel.expressions cimport Expressions
 from heuncli.kernel.memory cimport Memory
 from heuncli.kernel.response cimport configure, evaluate, must_choose_anew, respond, settle
-from heuncli.kernel.scene cimport Body, Closure, Counter, Freedom, Limits, Load, Scene, Variable
+from heuncli.kernel.scene cimport Body, Closure, Counter, Freedom, Lent, Limits, Load, Scene, Variable
 from heuncli.kernel.selection cimport select_independent_rows
 from heuncli.kernel.tree cimport balance, kinematics, load_along
 

@@ -24,7 +24,7 @@ if not cython.compiled:
     from heuncli.kernel.expressions import Expressions
     from heuncli.kernel.memory import Memory
     from heuncli.kernel.response import configure, evaluate, must_choose_anew, respond, settle
-    from heuncli.kernel.scene import Body, Closure, Counter, Freedom, Limits, Load, Scene, Variable
+    from heuncli.kernel.scene import Body, Closure, Counter, Freedom, Lent, Limits, Load, Scene, Variable
     from heuncli.kernel.selection import select_independent_rows
     from heuncli.kernel.shadow import cython
     from heuncli.kernel.structs import Instants
@@ -238,6 +238,7 @@ class Workspace:
         scene.pivot_chosen = 1.0
         scene.pivot = 1.0
         scene.pivot_of_step = 1.0
+        scene.own_share = 1.0
         scene.programs = cython.address(expressions.programs)
         scene.body_count = len(tables["bodies"])
         scene.freedom_count = len(tables["freedoms"])
@@ -245,6 +246,7 @@ class Workspace:
         scene.closure_count = len(tables["closures"])
         scene.counter_count = len(tables["counters"])
         scene.variable_count = len(tables["variables"])
+        scene.lent_count = len(tables["lents"])
         self.take_tables(tables)
         self.take_arrays(indices, numbers["column_count"])
 
@@ -266,6 +268,7 @@ class Workspace:
             scene.variables = cython.cast(
                 cython.pointer[Variable], self.memory.rows(tables["variables"], cython.sizeof(Variable))
             )
+            scene.lents = cython.cast(cython.pointer[Lent], self.memory.rows(tables["lents"], cython.sizeof(Lent)))
             limits: cython.pointer[Limits] = cython.cast(
                 cython.pointer[Limits], self.memory.rows(tables["limits"], cython.sizeof(Limits))
             )
@@ -277,6 +280,7 @@ class Workspace:
             scene.closures = [Closure(row) for row in tables["closures"].tolist()]
             scene.counters = [Counter(row) for row in tables["counters"].tolist()]
             scene.variables = [Variable(row) for row in tables["variables"].tolist()]
+            scene.lents = [Lent(row) for row in tables["lents"].tolist()]
             scene.limits = Limits(tables["limits"].tolist()[0])
 
     def take_arrays(self, indices: array[int], column_count: cython.Py_ssize_t) -> None:
@@ -290,6 +294,7 @@ class Workspace:
         scene.e = self.memory.zeros(answers)
         scene.spread = self.memory.zeros(answers)
         scene.columns = self.memory.zeros(column_count)
+        scene.own = self.memory.zeros(scene.lent_count * scene.lent_count)
         scene.A = self.memory.zeros(rows * rows)
 
     def recover(self, times: Any, states: Any, out: Any, width: cython.Py_ssize_t, afresh: cython.bint) -> None:
@@ -352,6 +357,11 @@ class Workspace:
                 answer_column(scene, loads[height * c : height * c + height].tolist(), answer, inertial[c])
                 out[width * c : width * c + width] = answer
         return idle
+
+    @property
+    def own_share(self) -> float:
+        """How much of the inertia is not lent, in the motion in which that is least, where it was configured last."""
+        return self.scene.own_share
 
     @property
     def column_width(self) -> int:

@@ -12,6 +12,7 @@ from itertools import combinations, product
 import numpy as np
 
 from heuncli import tolerances
+from heuncli.integration.inertialess import ready
 from heuncli.integration.runner import Runner
 from heuncli.joint_kinds import ABOUT_Z, JOINTS, POINT
 from heuncli.kinetostatics.bodies import body_states
@@ -101,8 +102,8 @@ def open_directions(scene: PreparedScene) -> list[Array | None]:
 def _left(scene: PreparedScene, changed: Mapping[int, Joint], model: Block) -> int | None:
     """What is left redundant with these joints; None where they free something, or leave a spin to nobody."""
     joints = tuple(changed.get(k, j) for k, j in enumerate(scene.mechanism.joints))
-    other = arranged(replace(scene.mechanism, joints=joints), scene.start)
-    found = redundancy(other, Runner(other.layout))
+    other, runner = ready(arranged(replace(scene.mechanism, joints=joints), scene.start))
+    found = redundancy(other, runner)
     freedoms = freedoms_of_tree(other.layout) - (len(other.layout.rows) - found.dependent)
     return found.generic if freedoms == model["freedoms"] and len(other.idle) <= len(scene.idle) else None
 

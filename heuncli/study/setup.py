@@ -4,6 +4,7 @@ from __future__ import annotations
 
 from typing import TYPE_CHECKING
 
+from heuncli.integration.inertialess import ready
 from heuncli.integration.methods import METHODS, Method
 from heuncli.integration.runner import Runner
 from heuncli.mechanism.build import build, forms_of
@@ -36,8 +37,7 @@ def set_up(spec: Spec, method: str | None = None) -> Setup:
     Raises SpecError for a section that cannot be cut, SolveError where the scene does not close.
     """
     mechanism, cuts = draw(spec)
-    scene = prepare(mechanism, spec.analysis.times[0] if spec.analysis.type == "state" else 0.0)
-    runner = Runner(scene.layout)
+    scene, runner = ready(prepare(mechanism, spec.analysis.times[0] if spec.analysis.type == "state" else 0.0))
     chosen = METHODS[method or spec.analysis.method] if spec.analysis.type == "motion" else None
     return Setup(spec, scene, cuts, runner, chosen, model_note(scene, runner, chosen.name if chosen else "none"))
 

@@ -1,5 +1,6 @@
 """Spins that no law determines: thin rods and point masses held and loaded on their own axis only.
 
+Balls hold no spin, other joints none about an axis of theirs, but where they tell its angle it has to be determined.
 Such a spin is harmless: accelerations and reactions do not depend on it (theory.md section 3). For the motion the body
 is given some inertia about that axis and no spin; a moment about it would have no answer and is looked for afterwards.
 """
@@ -14,6 +15,8 @@ from heuncli.mechanism.model import Body, Mechanism, PointLoad
 from heuncli.records import record
 from heuncli.results import Array
 
+Z = np.array([0.0, 0.0, 1.0])
+
 
 @record
 class IdleSpin:
@@ -26,27 +29,14 @@ class IdleSpin:
 
 def idle_spins(mechanism: Mechanism, size: float) -> list[IdleSpin]:
     """The bodies with an undetermined spin."""
-    points: dict[int, list[Array]] = {i: [] for i in range(len(mechanism.bodies))}
-    held = set()
-    for joint in mechanism.joints:
-        for end, point in ((joint.a, joint.p), (joint.b, joint.q)):
-            if end >= 0:
-                points[end].append(point)
-                kind = JOINTS[joint.kind]
-                if not kind.ball or (kind.wanders and end == joint.a):
-                    held.add(end)
-    for load in mechanism.loads:
-        if isinstance(load, PointLoad) and load.kind == "couple":
-            continue
-        for end, point in load.points:
-            if end >= 0:
-                points[end].append(point)
+    points, free = attachments(mechanism)
     found = []
     for i, body in enumerate(mechanism.bodies):
-        if i in held:
-            continue
         null, largest = without_inertia(body, size)
-        if not len(null):
+        for axis in free.get(i, ()):
+            along = len(null) and float(np.sum(np.square(null @ axis))) >= tolerances.ALONG_SQUARED
+            null = axis[None, :] if along else null[:0]
+        if i not in free or not len(null):
             continue
         arms = [p - body.center for p in points[i]]
         far = max(arms, key=lambda d: float(d @ d), default=np.zeros(3))
@@ -60,6 +50,34 @@ def idle_spins(mechanism: Mechanism, size: float) -> list[IdleSpin]:
         lent = max(largest, body.mass * max(reach, tolerances.LENT_REACH * size) ** 2)
         found.append(IdleSpin(i, null, lent * null.T @ null))
     return found
+
+
+def attachments(mechanism: Mechanism) -> tuple[dict[int, list[Array]], dict[int, list[Array]]]:
+    """Of each body the points where joints and forces act, and the only axes about which its joints let it turn.
+
+    A body that a joint holds altogether has no entry among the axes, one on balls alone an empty one. Body axes.
+    """
+    points: dict[int, list[Array]] = {i: [] for i in range(len(mechanism.bodies))}
+    free: dict[int, list[Array]] = {i: [] for i in range(len(mechanism.bodies))}
+    for joint in mechanism.joints:
+        kind = JOINTS[joint.kind]
+        for end, point, axis in ((joint.a, joint.p, joint.axis), (joint.b, joint.q, joint.to_axis)):
+            if end < 0:
+                continue
+            points[end].append(point)
+            if kind.wanders and end == joint.a:
+                free.pop(end, None)
+            elif kind.turns and "angle" not in kind.coordinates and end in free:
+                free[end].append(Z if kind.turns == ("z",) else axis)
+            elif not kind.ball:
+                free.pop(end, None)
+    for load in mechanism.loads:
+        if isinstance(load, PointLoad) and load.kind == "couple":
+            continue
+        for end, point in load.points:
+            if end >= 0:
+                points[end].append(point)
+    return points, free
 
 
 def without_inertia(body: Body, size: float) -> tuple[Array, float]:

@@ -361,6 +361,7 @@ class _Builder:
             "counters": table(kernel.Counter, self._counter_rows()),
             "variables": table(kernel.Variable, self._variable_rows()),
             "groups": table(kernel.Group, self.groups),
+            "lents": table(kernel.Lent, []),
             "limits": limits(tolerances.KERNEL),
         }
         return Layout(

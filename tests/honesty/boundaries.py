@@ -228,15 +228,44 @@ def couple_about_a_wire(x: float) -> str:
     return verdict(bar(tail=couple, inertia="[0.1, 0.1, 0]"), carries_the_weight)
 
 
-def turns_hardly(inertia: float) -> str:
-    """A couple about a pin along the bar, about which it has that much inertia; the trace at the pin is 0.7 kg m^2."""
+def turns_hardly(x: float) -> str:
+    """A couple about a pin along a bar with inertia x of the trace, most of which a heavy weight on the axis makes."""
+    heavy = 1e9
+    inertia = 2 * x * heavy
 
     def right(found: Results) -> None:
         near(found.bodies["bar"]["angular_acceleration"][0], [0, 0, 1e-3 / inertia], 1e-3 / inertia)
 
-    couple = "forces: {c: {type: couple, on: bar, vector: [0, 0, 0.001]}}"
-    text = bar(tail=couple, kind="pin, axis: [0, 0, 1]", inertia=f"[0.1, 0.1, {inertia!r}]")
-    return verdict(text, right)
+    tail = "forces: {c: {type: couple, on: bar, vector: [0, 0, 0.001]}}"
+    text = bar(kind="pin, axis: [0, 0, 1]", inertia=f"[{inertia!r}, {inertia!r}, {inertia!r}]", tail=tail)
+    weight = f"  w: {{mass: {heavy!r}, center: [0, 0, -1], inertia: [0, 0, 0], points: {{c: [0, 0, -1]}}}}\njoints:\n"
+    return verdict(text.replace("joints:\n", f"{weight}  weld: {{type: weld, from: bar.end, to: w.c}}\n"), right)
+
+
+def moved_by_a_lever(x: float) -> str:
+    """An arm without inertia, whose end moves a block by a slope of sqrt(x): x is the block's share in the inertia.
+
+    The arm of 1 m is lent the inertia of its 1 kg at its end, and pushed there; the block has 1 kg, too.
+    """
+    slope = math.sqrt(x / (1 - x))
+
+    def right(found: Results) -> None:
+        near(found.bodies["block"]["center_acceleration"][0], [1 / slope, 0, 0], 1 / slope, 1e-15 / math.sqrt(x))
+        near(found.joints["guide"]["force"][0, :2], [-1 / slope, -1], 1 / slope, 1e-15 / math.sqrt(x))
+
+    return verdict(f"""
+heun: 1
+space: planar
+ground: {{points: {{A: [0, 0, 0], B: [1, 0, 0]}}}}
+bodies:
+  arm: {{mass: 1, center: [0, 0, 0], inertia: 0, points: {{a: [0, 0, 0], b: [1, 0, 0]}}}}
+  block: {{mass: 1, center: [1, 0, 0], inertia: 1, points: {{b: [1, 0, 0]}}}}
+joints:
+  A: {{type: pin, from: ground.A, to: arm.a}}
+  guide: {{type: line, axis: [{slope!r}, -1, 0], from: block.b, to: arm.b}}
+  B: {{type: slide, axis: [1, 0, 0], from: ground.B, to: block.b}}
+forces: {{f: {{type: force, on: arm.b, vector: [0, 1, 0]}}}}
+""", right)
 
 
 def needs_side(x: float) -> str:
@@ -479,7 +508,8 @@ ROWS = (
     Row("POINT_MASS", point_mass, "refused: no-inertia", "fine"),
     Row("ON_AXIS", pushed_off_axis, "fine", "refused: no-inertia"),
     Row("NO_MOMENT", couple_about_a_wire, "fine", "refused: no-inertia"),
-    Row("KERNEL.no_inertia", lambda x: turns_hardly(0.7 * x), "refused: no-inertia", "fine"),
+    Row("KERNEL.no_inertia", turns_hardly, "refused: no-inertia", "fine"),
+    Row("KERNEL.own_share", moved_by_a_lever, "refused: no-inertia", "fine"),
     # rank, open
     Row("RANK", lambda x: parallelogram(x / math.sqrt(2)), "warned: singular pose", "warned: nearly singular pose"),
     Row("NEARLY_SINGULAR", lambda x: parallelogram(x / math.sqrt(2)), "warned: nearly singular pose", "fine"),

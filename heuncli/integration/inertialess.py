@@ -1,0 +1,248 @@
+"""Freedoms without inertia: motions of the tree that turn bodies about axes without inertia and move no mass.
+
+Some inertia is lent to those bodies, so that the tree can be factored, and what it takes of the loads is given back
+(kernel/response.py, weigh_lent), which leaves the bodies as they are. Where the closed loops hold them that has an
+answer; where nothing holds them no acceleration exists, and it is said which bodies turn about which axes.
+"""
+
+from __future__ import annotations
+
+import math
+from collections.abc import Mapping
+from typing import Any
+
+import numpy as np
+
+from heuncli import tolerances
+from heuncli.integration.runner import Runner
+from heuncli.kernel.choose import scene as kernel
+from heuncli.mechanism.model import GROUND
+from heuncli.records import record, replace
+from heuncli.response import columns
+from heuncli.results import Array
+from heuncli.tree.idle_spins import without_inertia
+from heuncli.tree.layout import Layout
+from heuncli.tree.prepare import PreparedScene
+from heuncli.tree.tables import Table, table, vectors
+
+POSES = 3  # at which axes are looked for beside the start: those of one pose may be an accident
+SLENDER = 1e-6  # of the cube of the trace: of a rod of 200 times its diameter the determinant is so small
+MUCH_LENT = 0.1  # share of the bodies' own inertia below which less is lent: a digit
+SEED = 1901  # fixed: the same scene is solved in the same way
+
+
+@record
+class Poses:
+    """Where the bodies are, tree order: attitudes R (n, 3, 3), joint points r (n, 3)."""
+
+    R: Array
+    r: Array
+
+
+@record
+class Massless:
+    """Motions of the tree, k of them, independent, that move no mass: all bodies that are not listed rest.
+
+    bodies (n): their places in the tree; omega, v (n, 3, k): angular velocity, velocity of the joint point over the
+    scene's size.
+    """
+
+    bodies: list[int]
+    omega: Array
+    v: Array
+
+    @property
+    def count(self) -> int:
+        """How many there are."""
+        return int(self.omega.shape[2])
+
+    def among(self, N: Array) -> Massless:
+        """Combinations of them, N (k, other)."""
+        return Massless(self.bodies, self.omega @ N, self.v @ N)
+
+    def axes(self, at: Poses) -> dict[int, Array]:
+        """Of each body that turns its angular velocities, body axes (k, 3)."""
+        turning = np.einsum("nji,njk->nki", at.R[self.bodies], self.omega)
+        largest = np.abs(turning).max(axis=(1, 2), initial=0.0)
+        least = tolerances.RANK * largest.max(initial=0.0)
+        return {b: turning[n] for n, b in enumerate(self.bodies) if largest[n] > least}
+
+
+def ready(scene: PreparedScene) -> tuple[PreparedScene, Runner]:
+    """A scene to be run: inertia is lent to what motions of the tree turn that move no mass."""
+    lacking = null_axes(scene)
+    if not lacking or not massless(scene, lacking, start_of(scene)).count:
+        return scene, Runner(scene.layout)
+    axes = axes_to_lend(scene, lacking)
+    natural = with_lent(scene, axes, 1.0)
+    runner = Runner(natural.layout)
+    columns(runner.workspace, 0.0, natural.layout.y0, np.zeros((0, len(natural.layout.place), 6)), np.zeros(0))
+    share = runner.workspace.own_share
+    if not tolerances.KERNEL["own_share"] < share < MUCH_LENT:
+        return natural, runner
+    # digits go with the share, and in the closures with what less is lent
+    scene = with_lent(scene, axes, math.sqrt(share))
+    return scene, Runner(scene.layout)
+
+
+def with_lent(scene: PreparedScene, axes: Mapping[int, Array], part: float) -> PreparedScene:
+    """The scene with inertia lent about axes of bodies (k, 3), `part` of what their mass might well have."""
+    rows = [row for body, own in axes.items() for row in lent(scene, body, own, part)]
+    return replace(scene, layout=replace(scene.layout, tables=scene.layout.tables | {"lents": table(kernel.Lent, rows)}))
+
+
+def loose_axes(scene: PreparedScene, bodies: Table, rows: Table) -> dict[int, Array]:
+    """The bodies that turn without inertia where nothing holds them, and their axes, body axes (k, 3), unit vectors.
+
+    By recovered bodies and closure rows, of one instant.
+    """
+    at = Poses(bodies["R"], bodies["r"])
+    still = massless(scene, null_axes(scene), at)
+    return {i: span(turning) for i, turning in loose(scene.layout, still, at, rows).axes(at).items()}
+
+
+def null_axes(scene: PreparedScene) -> dict[int, Array]:
+    """The axes about which a body has no inertia and was lent none, body axes (k, 3), by its place in the tree.
+
+    In a planar scene those of bodies that have none about z.
+    """
+    mechanism = scene.mechanism
+    order = [h.body for h in scene.layout.spanning.hangs]
+    inertia = np.array([body.inertia for body in mechanism.bodies])
+    for spin in scene.idle:
+        inertia[spin.body] += spin.lent
+    inertia = inertia[order]
+    # most have all of it, which their determinants tell sooner than their moments
+    volume = np.einsum("ni,ni->n", inertia[:, 0], np.cross(inertia[:, 1], inertia[:, 2]))
+    found = {}
+    for i in np.flatnonzero(volume <= SLENDER * np.trace(inertia, axis1=1, axis2=2) ** 3).tolist():
+        axes, _ = without_inertia(replace(mechanism.bodies[order[i]], inertia=inertia[i]), scene.layout.size)
+        if len(axes) and not (mechanism.planar and np.sum(axes[:, 2] ** 2) < tolerances.ALONG_SQUARED):
+            found[i] = axes
+    return found
+
+
+def start_of(scene: PreparedScene) -> Poses:
+    """Where the bodies are at the start."""
+    layout, start = scene.layout, scene.start
+    order = [h.body for h in layout.spanning.hangs]
+    R = start.rotation[order]
+    return Poses(R, start.position[order] + np.einsum("nij,nj->ni", R, layout.reference))
+
+
+def massless(scene: PreparedScene, lacking: Mapping[int, Array], at: Poses) -> Massless:
+    """The motions of the tree that move no mass; lacking: the bodies that lack inertia, and their axes without it.
+
+    A body with all its inertia rests in them as the ground does; its freedoms may make up for what its parent does.
+    """
+    layout = scene.layout
+    parents = layout.bodies["parent"].tolist()
+    bodies = [i for i, parent in enumerate(parents) if i in lacking or parent in lacking]
+    columns = [freedoms_of(layout, i, at) for i in bodies]
+    ends = np.cumsum([len(own) for own in columns]).tolist()
+    number = {body: n for n, body in enumerate(bodies) if body in lacking}
+    omega, v = np.zeros((2, len(bodies), 3, ends[-1]))
+    inert = []
+    for n, i in enumerate(bodies):
+        own = slice(ends[n] - len(columns[n]), ends[n])
+        if parents[i] in number:
+            p = number[parents[i]]
+            v[n] = v[p] + np.cross(omega[p], (at.r[i] - at.r[parents[i]]) / layout.size, axis=0)
+            if not layout.bodies["ball"][i]:  # a ball's turns are those of the body itself
+                omega[n] = omega[p]
+        omega[n][:, own] += columns[n][:, :3].T
+        v[n][:, own] += columns[n][:, 3:].T
+        centre = layout.mechanism.bodies[layout.spanning.hangs[i].body].center - layout.reference[i]
+        inert.append(v[n] + np.cross(omega[n], at.R[i] @ centre / layout.size, axis=0))
+        inert.append((at.R[i] @ complement(lacking.get(i))).T @ omega[n])
+    return Massless(bodies, omega, v).among(null_space(np.concatenate(inert), tolerances.RANK))
+
+
+def freedoms_of(layout: Layout, i: int, at: Poses) -> Array:
+    """What each freedom of a body that is not driven does to it: turn and shift, world axes (n, 6)."""
+    row = layout.bodies[i]
+    of_parent = at.R[row["parent"]] if row["parent"] >= 0 else np.eye(3)
+    found = [np.eye(3, 6)] if row["ball"] else []
+    for freedom in layout.tables["freedoms"][row["first_freedom"] : row["end_freedom"]]:
+        if not freedom["driven"]:
+            s = (at.R[i] if freedom["kind"] == kernel.TURN_IN_BODY else of_parent) @ vectors(freedom["direction"])
+            found.append(np.concatenate([np.zeros(3), s] if freedom["kind"] == kernel.SHIFT else [s, np.zeros(3)])[None])
+    return np.concatenate(found) if found else np.zeros((0, 6))
+
+
+def loose(layout: Layout, still: Massless, at: Poses, rows: Table) -> Massless:
+    """Those massless motions that the closure rows do not resist, or none by more than NEARLY_SINGULAR; one at least.
+
+    Rows as redundancy/self_stress.py scales them.
+    """
+    number = {body: n for n, body in enumerate(still.bodies)}
+    closures = layout.tables["closures"]
+    measure = layout.size / lever(layout)
+    resisted = np.zeros((len(closures), still.count))
+    for k, closure in enumerate(closures):
+        f, m, b = rows["f"][k], rows["m"][k], int(closure["b"])
+        Q = vectors(closure["q"]) if b < 0 else at.r[b] + at.R[b] @ vectors(closure["q"])
+        for body, sign in ((b, 1.0), (int(closure["a"]), -1.0)):
+            if body in number:
+                n = number[body]
+                v = still.v[n] + np.cross(still.omega[n], (Q - at.r[body]) / layout.size, axis=0)
+                resisted[k] += sign * (measure * f @ v + m @ still.omega[n])
+    free = null_space(resisted, tolerances.NEARLY_SINGULAR)
+    return still.among(free if free.shape[1] else np.linalg.svd(resisted)[2][-1:].T)
+
+
+def lever(layout: Layout) -> float:
+    """Mean distance of the cut joints' points from the centres of their bodies [m]; without any, the scene's size."""
+    bodies = layout.mechanism.bodies
+    cut = [layout.mechanism.joints[k] for k in layout.spanning.cut]
+    arms = [p - bodies[i].center for j in cut for i, p in ((j.a, j.p), (j.b, j.q)) if i != GROUND]
+    mean = float(np.mean([np.sqrt(a @ a) for a in arms])) if arms else 0.0
+    return mean or layout.size
+
+
+def axes_to_lend(scene: PreparedScene, lacking: Mapping[int, Array]) -> dict[int, Array]:
+    """The bodies that massless motions turn, and their axes in any pose of the tree, body axes (k, 3), unit vectors."""
+    layout = scene.layout
+    alone = replace(layout, rows=(), tables=layout.tables | {"closures": layout.tables["closures"][:0]})
+    shift = np.zeros((POSES + 1, layout.n_state))
+    rng = np.random.default_rng(SEED)
+    for group in layout.tables["groups"]:
+        own = slice(group["coordinates"], group["rates"])
+        shift[1:, own] = rng.uniform(-1.0, 1.0, shift[1:, own].shape)
+    shift /= np.where(layout.weights > 0.0, layout.weights, 1.0)
+    poses = Runner(alone).recovered(np.zeros(POSES + 1), layout.y0 + shift).bodies
+    found: dict[int, list[Array]] = {}
+    for one in poses:
+        at = Poses(one["R"], one["r"])
+        for body, turning in massless(scene, lacking, at).axes(at).items():
+            found.setdefault(body, []).append(turning)
+    return {body: span(np.concatenate(turning)) for body, turning in found.items()}
+
+
+def lent(scene: PreparedScene, place: int, axes: Array, part: float) -> list[dict[str, Any]]:
+    """The inertia lent to a body about some axes, a row of the kernel's table each."""
+    mechanism, i = scene.mechanism, scene.layout.spanning.hangs[place].body
+    body = mechanism.bodies[i]
+    arms = [p - body.center for j in mechanism.joints for of, p in ((j.a, j.p), (j.b, j.q)) if of == i]
+    reach = max([tolerances.LENT_REACH * scene.layout.size, *(float(np.sqrt(a @ a)) for a in arms)])
+    inertia = max(body.mass * reach**2, without_inertia(body, scene.layout.size)[1])
+    return [{"body": place, "root": math.sqrt(part * inertia), "axis": axis} for axis in axes]
+
+
+def null_space(A: Array, least: float) -> Array:
+    """What A maps to nothing, orthonormal columns; `least`: of its largest singular value, or of 1."""
+    _, S, Vt = np.linalg.svd(A, full_matrices=True)
+    rank = int(np.sum(S > least * max(1.0, float(S.max(initial=0.0)))))
+    return Vt[rank:].T
+
+
+def span(rows: Array) -> Array:
+    """Unit vectors that span the rows, (k, 3); an axis alone points the way of its largest component."""
+    _, S, Vt = np.linalg.svd(rows, full_matrices=False)
+    found = Vt[S > tolerances.RANK * float(S[0])]
+    return found if len(found) > 1 else found * np.sign(found[0, np.argmax(np.abs(found[0]))]) + 0.0
+
+
+def complement(axes: Array | None) -> Array:
+    """Unit vectors across the axes (k, 3), as columns."""
+    return np.eye(3) if axes is None else np.linalg.svd(axes, full_matrices=True)[2][len(axes) :].T
