@@ -41,6 +41,8 @@ ON_AXIS = 1e-9  # of the size: points typed with ten digits; what is nearer to t
 ALONG = 1.0 - 1e-9  # cosine of an axis with that of the missing inertia: 4.5e-5 rad, for the spin it frees is idle
 ALONG_SQUARED = 1.0 - 1e-9  # square of the same cosine, as found from the points on the axis: 3e-5 rad
 LENT_REACH = 1e-3  # of the size: the least radius of gyration of an inertia lent to an idle spin (it cancels)
+SLENDER = 1e-6  # determinant over the cube of the trace: above, no moment is NO_INERTIA of it; a rod 200 diameters long
+MUCH_LENT = 0.1  # of what moves, what is not lent: below, less is lent, so that no more than a digit goes
 NO_MOMENT = 1e-9  # of the loads at a body: a smaller moment about its thin axis is what ON_AXIS lets pass
 
 # -- gaps of poses and rates that are assembled

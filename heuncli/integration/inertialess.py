@@ -18,16 +18,14 @@ from heuncli.integration.runner import Runner
 from heuncli.kernel.choose import scene as kernel
 from heuncli.mechanism.model import GROUND
 from heuncli.records import record, replace
-from heuncli.response import columns
+from heuncli.response import columns, workspace_of
 from heuncli.results import Array
 from heuncli.tree.idle_spins import without_inertia
 from heuncli.tree.layout import Layout
-from heuncli.tree.prepare import PreparedScene
+from heuncli.tree.prepare import PreparedScene, lacking_inertia
 from heuncli.tree.tables import Table, table, vectors
 
 POSES = 3  # at which axes are looked for beside the start: those of one pose may be an accident
-SLENDER = 1e-6  # of the cube of the trace: of a rod of 200 times its diameter the determinant is so small
-MUCH_LENT = 0.1  # share of the bodies' own inertia below which less is lent: a digit
 SEED = 1901  # fixed: the same scene is solved in the same way
 
 
@@ -68,27 +66,25 @@ class Massless:
         return {b: turning[n] for n, b in enumerate(self.bodies) if largest[n] > least}
 
 
-def ready(scene: PreparedScene) -> tuple[PreparedScene, Runner]:
-    """A scene to be run: inertia is lent to what motions of the tree turn that move no mass."""
-    lacking = null_axes(scene)
-    if not lacking or not massless(scene, lacking, start_of(scene)).count:
-        return scene, Runner(scene.layout)
+def lend(scene: PreparedScene, lacking: Mapping[int, Array]) -> PreparedScene:
+    """The scene with inertia lent to what motions of its tree turn that move no mass, among bodies that lack some."""
+    if not massless(scene, lacking, start_of(scene)).count:
+        return scene
     axes = axes_to_lend(scene, lacking)
     natural = with_lent(scene, axes, 1.0)
-    runner = Runner(natural.layout)
-    columns(runner.workspace, 0.0, natural.layout.y0, np.zeros((0, len(natural.layout.place), 6)), np.zeros(0))
-    share = runner.workspace.own_share
-    if not tolerances.KERNEL["own_share"] < share < MUCH_LENT:
-        return natural, runner
+    workspace, layout = workspace_of(natural.layout), natural.layout
+    columns(workspace, 0.0, layout.y0, np.zeros((0, len(layout.place), 6)), np.zeros(0))
+    if not tolerances.KERNEL["own_share"] < workspace.own_share < tolerances.MUCH_LENT:
+        return natural
     # digits go with the share, and in the closures with what less is lent
-    scene = with_lent(scene, axes, math.sqrt(share))
-    return scene, Runner(scene.layout)
+    return with_lent(scene, axes, math.sqrt(workspace.own_share))
 
 
 def with_lent(scene: PreparedScene, axes: Mapping[int, Array], part: float) -> PreparedScene:
     """The scene with inertia lent about axes of bodies (k, 3), `part` of what their mass might well have."""
     rows = [row for body, own in axes.items() for row in lent(scene, body, own, part)]
-    return replace(scene, layout=replace(scene.layout, tables=scene.layout.tables | {"lents": table(kernel.Lent, rows)}))
+    layout = scene.layout
+    return replace(scene, layout=replace(layout, tables=layout.tables | {"lents": table(kernel.Lent, rows)}))
 
 
 def loose_axes(scene: PreparedScene, bodies: Table, rows: Table) -> dict[int, Array]:
@@ -97,29 +93,8 @@ def loose_axes(scene: PreparedScene, bodies: Table, rows: Table) -> dict[int, Ar
     By recovered bodies and closure rows, of one instant.
     """
     at = Poses(bodies["R"], bodies["r"])
-    still = massless(scene, null_axes(scene), at)
+    still = massless(scene, lacking_inertia(scene), at)
     return {i: span(turning) for i, turning in loose(scene.layout, still, at, rows).axes(at).items()}
-
-
-def null_axes(scene: PreparedScene) -> dict[int, Array]:
-    """The axes about which a body has no inertia and was lent none, body axes (k, 3), by its place in the tree.
-
-    In a planar scene those of bodies that have none about z.
-    """
-    mechanism = scene.mechanism
-    order = [h.body for h in scene.layout.spanning.hangs]
-    inertia = np.array([body.inertia for body in mechanism.bodies])
-    for spin in scene.idle:
-        inertia[spin.body] += spin.lent
-    inertia = inertia[order]
-    # most have all of it, which their determinants tell sooner than their moments
-    volume = np.einsum("ni,ni->n", inertia[:, 0], np.cross(inertia[:, 1], inertia[:, 2]))
-    found = {}
-    for i in np.flatnonzero(volume <= SLENDER * np.trace(inertia, axis1=1, axis2=2) ** 3).tolist():
-        axes, _ = without_inertia(replace(mechanism.bodies[order[i]], inertia=inertia[i]), scene.layout.size)
-        if len(axes) and not (mechanism.planar and np.sum(axes[:, 2] ** 2) < tolerances.ALONG_SQUARED):
-            found[i] = axes
-    return found
 
 
 def start_of(scene: PreparedScene) -> Poses:
@@ -166,8 +141,9 @@ def freedoms_of(layout: Layout, i: int, at: Poses) -> Array:
     for freedom in layout.tables["freedoms"][row["first_freedom"] : row["end_freedom"]]:
         if not freedom["driven"]:
             s = (at.R[i] if freedom["kind"] == kernel.TURN_IN_BODY else of_parent) @ vectors(freedom["direction"])
-            found.append(np.concatenate([np.zeros(3), s] if freedom["kind"] == kernel.SHIFT else [s, np.zeros(3)])[None])
-    return np.concatenate(found) if found else np.zeros((0, 6))
+            shifts = freedom["kind"] == kernel.SHIFT
+            found.append(np.concatenate([0.0 * s, s] if shifts else [s, 0.0 * s])[None])
+    return np.concatenate([np.zeros((0, 6)), *found])
 
 
 def loose(layout: Layout, still: Massless, at: Poses, rows: Table) -> Massless:

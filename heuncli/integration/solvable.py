@@ -6,9 +6,19 @@ import numpy as np
 
 from heuncli import tolerances
 from heuncli.errors import Problem, SolveError
-from heuncli.integration.runner import Recovered
+from heuncli.integration.runner import Recovered, Runner
 from heuncli.results import Array
-from heuncli.tree.prepare import PreparedScene
+from heuncli.tree.prepare import PreparedScene, lacking_inertia
+
+
+def ready(scene: PreparedScene) -> tuple[PreparedScene, Runner]:
+    """A scene to be run and its work arrays: inertia is lent where motions of its tree move no mass."""
+    lacking = lacking_inertia(scene)
+    if lacking:
+        from heuncli.integration.inertialess import lend  # few scenes need it
+
+        scene = lend(scene, lacking)
+    return scene, Runner(scene.layout)
 
 
 def require_solvable(scene: PreparedScene, recovered: Recovered) -> None:

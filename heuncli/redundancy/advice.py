@@ -12,8 +12,8 @@ from itertools import combinations, product
 import numpy as np
 
 from heuncli import tolerances
-from heuncli.integration.inertialess import ready
 from heuncli.integration.runner import Runner
+from heuncli.integration.solvable import ready
 from heuncli.joint_kinds import ABOUT_Z, JOINTS, POINT
 from heuncli.kinetostatics.bodies import body_states
 from heuncli.mechanism.model import GROUND, Joint, JointLoad

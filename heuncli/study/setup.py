@@ -4,9 +4,9 @@ from __future__ import annotations
 
 from typing import TYPE_CHECKING
 
-from heuncli.integration.inertialess import ready
 from heuncli.integration.methods import METHODS, Method
 from heuncli.integration.runner import Runner
+from heuncli.integration.solvable import ready
 from heuncli.mechanism.build import build, forms_of
 from heuncli.mechanism.model import Mechanism
 from heuncli.records import record

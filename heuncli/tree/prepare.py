@@ -4,11 +4,13 @@ from __future__ import annotations
 
 import numpy as np
 
+from heuncli import tolerances
 from heuncli.assembly.assemble import assemble
 from heuncli.mechanism.model import Assembly, Mechanism, PairLoad
 from heuncli.mechanism.size import size_of_scene
 from heuncli.records import record, replace
-from heuncli.tree.idle_spins import IdleSpin, idle_spins
+from heuncli.results import Array
+from heuncli.tree.idle_spins import IdleSpin, idle_spins, without_inertia
 from heuncli.tree.layout import Layout
 from heuncli.tree.pack import lay_out
 
@@ -42,3 +44,24 @@ def arranged(mechanism: Mechanism, start: Assembly) -> PreparedScene:
     works = any(not isinstance(f, PairLoad) or f.value is not None or f.damping != 0.0 for f in mechanism.loads)
     driven = any(j.drive is not None for j in mechanism.joints)
     return PreparedScene(mechanism, start, idle, lay_out(mechanism, start, inertias, size, work=works or driven))
+
+
+def lacking_inertia(scene: PreparedScene) -> dict[int, Array]:
+    """The axes about which a body has no inertia and was lent none, body axes (k, 3), by its place in the tree.
+
+    In a planar scene those of bodies that have none about z.
+    """
+    mechanism = scene.mechanism
+    order = [h.body for h in scene.layout.spanning.hangs]
+    inertia = np.array([body.inertia for body in mechanism.bodies])
+    for spin in scene.idle:
+        inertia[spin.body] += spin.lent
+    inertia = inertia[order]
+    # most have all of it, which their determinants tell sooner than their moments
+    volume = np.einsum("ni,ni->n", inertia[:, 0], np.cross(inertia[:, 1], inertia[:, 2]))
+    found = {}
+    for i in np.flatnonzero(volume <= tolerances.SLENDER * np.trace(inertia, axis1=1, axis2=2) ** 3).tolist():
+        axes, _ = without_inertia(replace(mechanism.bodies[order[i]], inertia=inertia[i]), scene.layout.size)
+        if len(axes) and not (mechanism.planar and np.sum(axes[:, 2] ** 2) < tolerances.ALONG_SQUARED):
+            found[i] = axes
+    return found

@@ -265,7 +265,7 @@ joints:
   guide: {{type: line, axis: [{slope!r}, -1, 0], from: block.b, to: arm.b}}
   B: {{type: slide, axis: [1, 0, 0], from: ground.B, to: block.b}}
 forces: {{f: {{type: force, on: arm.b, vector: [0, 1, 0]}}}}
-""", right)
+""", right)  # fmt: skip
 
 
 def needs_side(x: float) -> str:
@@ -548,6 +548,8 @@ EXEMPT = {
     "CONSTANT": "whether a peak of a thirteenth digit is looked for",
     "ZERO_COMPONENT": "the digits of a direction that is proposed",
     "PLACE_ROUNDING": "a summand of the estimate",
+    "SLENDER": "which bodies' moments are looked at at all: those of the others are far above NO_INERTIA",
+    "MUCH_LENT": "how much inertia is lent: what it takes is given back",
     "LENT_REACH": "an inertia lent to a spin on which nothing depends",
     "LEAST_RATE": "what steps are judged by where nothing moves: the estimate says what they are worth",
     "LEAST_TOLERANCE": "where finer runs are not tried: the estimate says what was reached",

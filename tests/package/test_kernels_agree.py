@@ -21,6 +21,7 @@ SCENES = {
     "four_bar": ("analysis.duration=0.1", "analysis.samples=4"),
     "engine": ("analysis.duration=0.002", "analysis.samples=4"),
     "cardan": ("analysis.duration=0.05", "analysis.samples=4"),
+    "lift": ("analysis.duration=0.1", "analysis.samples=4"),
 }
 
 
@@ -66,7 +67,7 @@ print(json.dumps({
 
 
 @pytest.mark.skipif(KERNEL == "pure", reason="there is no compiled kernel to compare with")
-@pytest.mark.parametrize("scene", ["crane", "four_bar", "engine", "cardan", "bricard"])
+@pytest.mark.parametrize("scene", ["crane", "four_bar", "engine", "cardan", "bricard", "lift"])
 def test_same_bits_of_the_one_linear_map(scene: str) -> None:
     told = {}
     for kernel in ("compiled", "pure"):
