@@ -62,6 +62,8 @@ REPEATED_ROW = 1e-14  # of the largest eigenvalue: some dozen roundings, the row
 POLISHED = 1e-12  # turns [rad] and shifts (by the size): nothing is left to polish
 SUMS_BLIND = 1e-5  # the same: squares of steps below 1e-5 are 1e-10 and drown in what closing leaves in the sums
 SAME_SUM = 1e-13  # of a sum of squares: hundreds of roundings
+DRAWN_IN_PLACE = 0.1  # a joint's gap (by L) or angle: a slip of the drawing is less, bodies drawn apart miss by a link
+MOVED = 1e-2  # of the scene's size: a body that had to leave its place by more is mentioned above the tables
 UNMOVED = 1e-12  # of the size, or rad: a smaller change of the start is rounding, and no choice to mention
 DUST = 1e-9  # of the size: components that a chosen value is printed without
 

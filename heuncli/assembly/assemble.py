@@ -7,9 +7,11 @@ import numpy as np
 from heuncli.assembly.chosen import chosen, pose_choices, rate_choices
 from heuncli.assembly.conditions import conditions_of
 from heuncli.assembly.gaps import size_of
+from heuncli.assembly.moved import moved
 from heuncli.assembly.poses import Placing
 from heuncli.assembly.rates import Moving
 from heuncli.mechanism.model import Assembly, Mechanism
+from heuncli.records import replace
 
 
 def assemble(mechanism: Mechanism, t0: float = 0.0) -> Assembly:
@@ -27,14 +29,19 @@ def assemble(mechanism: Mechanism, t0: float = 0.0) -> Assembly:
 
     n = len(mechanism.bodies)
     x, r = placing.poses.x, moving.rates
-    folds = [f"the loop at joint {name} started in line: folded in a fixed way" for name in placing.folded]
-    choices = pose_choices(mechanism, placing.drawn, placing.poses, placing.tree, placing.fitted, size)
-    choices += rate_choices(mechanism, r, moving.tree, moving.fitted, size)
-    return Assembly(
+    start = Assembly(
         position=x[:n],
         rotation=placing.poses.R[:n],
         velocity=r.v[:n] + np.cross(r.w[:n], x[:n] - r.s[:n]),
         angular_velocity=r.w[:n],
-        chosen=(*folds, *chosen(choices)),
+        chosen=(),
         gap=placing.gap,
+    )
+    folds = [f"the loop at joint {name} started in line: folded in a fixed way" for name in placing.folded]
+    choices = pose_choices(mechanism, placing.drawn, placing.poses, placing.tree, placing.fitted, size)
+    choices += rate_choices(mechanism, r, moving.tree, moving.fitted, size)
+    return replace(
+        start,
+        chosen=(*folds, *chosen(choices)),
+        moved=moved(mechanism, found, placing.drawn, start, size),
     )

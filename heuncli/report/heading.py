@@ -19,6 +19,7 @@ def heading(results: Results) -> list[tuple[str, str]]:
     lines = [
         ("heun", f"{results.version}  {results.title}"),
         ("model", _model(results)),
+        *(("start", sentence) for sentence in results.model.get("moved", ())),
         ("run", _run(results)),
         ("accuracy", _errors(results)),
         ("", _residuals(results)),

@@ -14,6 +14,7 @@ MOST_NAMES = 12
 LISTS = (
     ("reasons", "Why this model"),
     ("chosen", "Start values chosen for you"),
+    ("moved", "Moved from the drawing"),
     ("notes", "Worth knowing"),
 )
 

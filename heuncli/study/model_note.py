@@ -31,6 +31,8 @@ def model_note(scene: PreparedScene, runner: Runner, method: str) -> Block:
         "method": method, "reasons": [], "joints": len(mechanism.joints), "grubler": grubler(mechanism),
         "chosen": list(scene.start.chosen), "notes": [],
     }  # fmt: skip
+    if scene.start.moved:
+        block["moved"] = list(scene.start.moved)
     block["reasons"] = reasons(scene, block)
     if count.at_start > count.generic:
         more = _count(count.at_start - count.generic, "condition depends", "conditions depend")

@@ -147,6 +147,28 @@ def carries_the_weight(found: Results) -> None:
     near(found.joints["pivot"]["force"][0], [0, 0, WEIGHT], WEIGHT, 1e-9)
 
 
+def moved(text: str) -> str:
+    """Whether bodies are said to have left their place in the drawing."""
+    return "moved" if study(text).results.model.get("moved") else "quiet"
+
+
+def misplaced(x: float) -> str:
+    """The hanging bar, drawn x of the scene's size too far to the right."""
+    return moved(bar(f", near: {{position: [{x * BAR_SIZE!r}, 0, 0]}}"))
+
+
+def half_in_place(x: float) -> str:
+    """Five posts of 2 m beside each other: one drawn 0.2 m off its foot, two off theirs by x of the lever, 1 m."""
+    off = (0.2, x, x, 0.0, 0.0)
+    feet = ", ".join(f"P{i}: [{2 * i}, 0, 0]" for i in range(5))
+    posts = "\n".join(
+        f"  b{i}: {{mass: 1, center: [{2 * i}, 0, {1 + o!r}], inertia: [1, 1, 1], points: {{p: [{2 * i}, 0, {o!r}]}}}}"
+        for i, o in enumerate(off)
+    )
+    joints = "\n".join(f"  j{i}: {{type: ball, from: ground.P{i}, to: b{i}.p}}" for i in range(5))
+    return moved(f"heun: 1\nground: {{points: {{{feet}}}}}\nbodies:\n{posts}\njoints:\n{joints}\n")
+
+
 def too_far(gap: float, at: float = 0.0) -> str:
     """A bar of 1 m between two balls 1 m + gap apart."""
 
@@ -497,6 +519,8 @@ ROWS = (
     Row("ONE_PLACE", one_place, "1 m", "its extent"),
     # gaps
     Row("OPEN_GAP", too_far, "fine", "refused: does-not-fit"),
+    Row("MOVED", misplaced, "quiet", "moved"),
+    Row("DRAWN_IN_PLACE", half_in_place, "moved", "quiet"),
     Row("GAP_ROUNDING", lambda x: too_far(x * 1e5, 1e5), "fine", "refused: does-not-fit", (1 / 3, 3.0, 100.0)),
     Row("NO_LENGTH", no_length, "refused: no-length", "fine"),
     Row("OPEN_RATE", lambda x: rates(x * BAR_SIZE * 2.0, 2.0), "fine", "refused: rates-do-not-fit"),

@@ -15,6 +15,7 @@ MODEL = {
     "method": "DOP853",
     "reasons": ["a tree of two bodies"],
     "chosen": ["lower starts as drawn " * 12],
+    "moved": ["lower was moved by up to 0.02 m"],
     "notes": [],
 }
 
@@ -28,6 +29,7 @@ def test_a_note_tells_the_counts_and_the_sentences() -> None:
         "no closed loops",
         "Why this model\n  - a tree of two bodies\n",
         "Start values chosen for you\n  - lower starts as drawn",
+        "Moved from the drawing\n  - lower was moved by up to 0.02 m\n",
     ):
         assert part in text
     assert "Worth knowing" not in text

@@ -1,0 +1,80 @@
+"""Which bodies had to leave the place in which they are drawn for the joints to close, and how far.
+
+A body has such a place where `near` gives one, or where the scene is drawn in world coordinates: most joints close as
+it is drawn, and none asks for another pose by a held or driven coordinate. Other bodies are placed, not moved.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+
+import numpy as np
+
+from heuncli import tolerances
+from heuncli.assembly.conditions import Condition
+from heuncli.assembly.gaps import Closure
+from heuncli.assembly.walk import Poses
+from heuncli.joint_kinds import JOINTS
+from heuncli.mechanism.model import Assembly, Body, Mechanism
+from heuncli.mechanism.size import marks, size_of_scene
+from heuncli.results import Array
+from heuncli.shapes.rotations import to_vector
+
+LEAST_ANGLE = 0.01  # [deg] that is mentioned
+NAMED = 5  # bodies named beside the one that moved most
+
+
+def moved(
+    mechanism: Mechanism, found: Sequence[Condition], drawn: Poses, start: Assembly, lever: float
+) -> tuple[str, ...]:
+    """One sentence on all bodies that were moved by more than a hundredth of the scene's size, or none.
+
+    lever: the size of the joints' levers, by which gaps are judged [m].
+    """
+    in_place = drawn_in_place(mechanism, found, drawn, lever)
+    ways = []
+    for i, body in enumerate(mechanism.bodies):
+        counts = in_place or body.near_position is not None, in_place or body.near_rotation is not None
+        if any(counts) and (way := _way(body, drawn, start, i, counts)) > tolerances.UNMOVED * lever:
+            ways.append((way, i))
+    size = size_of_scene(mechanism, start) if ways else 1.0
+    ways = [(way, i) for way, i in ways if way > tolerances.MOVED * size]
+    if not ways:
+        return ()
+    ways.sort(key=lambda w: (-w[0], w[1]))
+    way, first = ways[0]
+    angle = float(np.degrees(np.linalg.norm(to_vector(start.rotation[first] @ drawn.R[first].T))))
+    names = [mechanism.bodies[i].name for _, i in ways[1:]]
+    others = f"; {', '.join(names[:NAMED])}" if names else ""
+    others += f" and {len(names) - NAMED:,} more" if len(names) > NAMED else ""
+    return (
+        f"to close the joints {mechanism.bodies[first].name} was moved from where it is drawn, "
+        f"by up to {way:.2g} m ({100.0 * way / size:.3g} % of the scene's size)"
+        + (f" and {angle:.2g} deg" if angle >= LEAST_ANGLE else "")
+        + (f"{others} by less" if names else ""),
+    )
+
+
+def drawn_in_place(mechanism: Mechanism, found: Sequence[Condition], drawn: Poses, lever: float) -> bool:
+    """Whether the scene is drawn in world coordinates, so that a body's place in the drawing is meant.
+
+    Bodies drawn each about its own origin fit at a joint or two by chance; in a scene drawn as it stands, but for a
+    slip, most joints do.
+    """
+    asking = [d for d in found if d.pose.hold != "none"]
+    if not asking:
+        return False
+    distance, angle = Closure(asking, [d.pose for d in asking])(drawn.x, drawn.R)
+    is_open = np.maximum(distance / lever, angle) > tolerances.DRAWN_IN_PLACE
+    kinds = [JOINTS[mechanism.joints[d.joint].kind] for d in asking]
+    set_apart = [d.pose != (kind.hold.asks, kind.turn.asks) for d, kind in zip(asking, kinds, strict=True)]
+    return not bool(np.any(is_open & np.array(set_apart))) and 2 * int(np.sum(is_open)) < len(asking)
+
+
+def _way(body: Body, drawn: Poses, start: Assembly, i: int, counts: tuple[bool, bool]) -> float:
+    """How far the point of a body that moved most is from where it is drawn [m]; counts: its shift, and its turn."""
+    turned: Array = start.rotation[i] - drawn.R[i]
+    shift = start.position[i] - drawn.x[i] + turned @ body.center if counts[0] else np.zeros(3)
+    if counts[1]:
+        shift = shift + (np.array(marks(body)) - body.center) @ turned.T
+    return float(np.sqrt(np.max(np.sum(np.square(np.atleast_2d(shift)), axis=1))))

@@ -1,0 +1,67 @@
+"""What a run says of bodies that had to leave their place in the drawing for the joints to close."""
+
+from __future__ import annotations
+
+import pytest
+
+from heuncli.report.heading import write_heading
+from tests.shared.scenes import study
+
+
+def four_bar(slip: float = 0.0, crank: str = "", pin: str = "") -> str:
+    """Drawn in world coordinates: crank 1, coupler 3, rocker 2; the coupler drawn too far to the right by a slip."""
+    return f"""
+heun: 1
+ground: {{points: {{A: [0, 0, 0], D: [3, -1, 0]}}}}
+bodies:
+  crank: {{mass: 1, center: [0, 0.5, 0], inertia: [1, 1, 1], points: {{A: [0, 0, 0], B: [0, 1, 0]}}{crank}}}
+  coupler: {{mass: 1, center: [1.5, 1, 0], inertia: [1, 1, 1],
+            points: {{B: [{slip}, 1, 0], C: [{3 + slip}, 1, 0]}}}}
+  rocker: {{mass: 1, center: [3, 0, 0], inertia: [1, 1, 1], points: {{C: [3, 1, 0], D: [3, -1, 0]}}}}
+joints:
+  A: {{type: pin, from: ground.A, to: crank.A, axis: [0, 0, 1]{pin}}}
+  B: {{type: pin, from: crank.B, to: coupler.B, axis: [0, 0, 1]}}
+  C: {{type: pin, from: coupler.C, to: rocker.C, axis: [0, 0, 1]}}
+  D: {{type: pin, from: ground.D, to: rocker.D, axis: [0, 0, 1]}}
+"""
+
+
+SIZE = 3.3  # of the four-bar [m], nearly
+
+
+@pytest.mark.parametrize(("slip", "said"), [(0.0, False), (0.005, False), (0.1, True)])
+def test_a_slip_of_the_drawing_is_said_in_one_line(slip: float, said: bool) -> None:
+    done = study(four_bar(slip))
+    lines = [line for line in write_heading(done.results).splitlines() if line.startswith("start")]
+    assert len(lines) == int(said)
+    assert not done.results.warnings
+    if said:
+        assert "to close the joints coupler was moved from where it is drawn, by up to 0.1 m" in lines[0]
+
+
+def test_what_the_spec_asks_for_is_not_a_slip() -> None:
+    """A held angle turns the loop away from its drawing."""
+    assert "moved" not in study(four_bar(pin=", initial: {angle: 20 deg}")).results.model
+
+
+def test_bodies_drawn_about_their_own_origins_are_placed() -> None:
+    text = """
+heun: 1
+ground: {points: {O: [0, 0, 0]}}
+bodies:
+  crank: {mass: 1, center: [0.5, 0, 0], inertia: [1, 1, 1], points: {a: [0, 0, 0], b: [1, 0, 0]}}
+  rod: {mass: 1, center: [1.5, 0, 0], inertia: [1, 1, 1], points: {a: [0, 0, 0], b: [3, 0, 0]}}
+  piston: {mass: 1, center: [0, 0, 0], inertia: [1, 1, 1], points: {a: [0, 0, 0]}}
+joints:
+  main: {type: pin, from: ground.O, to: crank.a, axis: [0, 0, 1]}
+  big: {type: pin, from: crank.b, to: rod.a, axis: [0, 0, 1]}
+  wrist: {type: pin, from: rod.b, to: piston.a, axis: [0, 0, 1]}
+  guide: {type: slide, from: ground.O, to: piston.a, axis: [1, 0, 0]}
+"""
+    assert "moved" not in study(text).results.model
+
+
+def test_near_is_a_place() -> None:
+    """The crank's own pin lies 0.2 m beside where near puts it."""
+    (said,) = study(four_bar(crank=", near: {position: [0.2, 0, 0]}")).results.model["moved"]
+    assert said.startswith("to close the joints crank was moved")
