@@ -58,7 +58,6 @@ NEAR_DRAWING = 0.5  # a joint's gap (by L) or angle, a body's shift or turn: a d
 FARTHER = 1.2  # times the nearest pose's way: least turns may lead so far; then no body goes twice as far as known ones
 CLOSED = 1e-15  # of the size: as closed as rounding allows
 NO_SLOPE = 1e-7  # of |C| |e|: square root of some dozen roundings, below which a sum of squares has no slope
-REPEATED_ROW = 1e-14  # of the largest eigenvalue: some dozen roundings, the row repeats others
 POLISHED = 1e-12  # turns [rad] and shifts (by the size): nothing is left to polish
 SUMS_BLIND = 1e-5  # the same: squares of steps below 1e-5 are 1e-10 and drown in what closing leaves in the sums
 SAME_SUM = 1e-13  # of a sum of squares: hundreds of roundings

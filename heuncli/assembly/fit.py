@@ -19,7 +19,7 @@ import numpy as np
 from heuncli import tolerances
 from heuncli.assembly.conditions import Condition
 from heuncli.assembly.islands import Island
-from heuncli.assembly.reduced import Reduced, least
+from heuncli.assembly.reduced import Reduced, least, rank_of
 from heuncli.assembly.rows import Rows, pose_rows
 from heuncli.assembly.walk import Poses, place
 from heuncli.results import Array
@@ -238,13 +238,12 @@ def _lower(new: tuple[float, float], old: tuple[float, float]) -> bool:
 
 def _damped(r: Reduced, mu: float) -> Array:
     """z of least |e − C y|² + μ (Σθ² + SHIFT Σ(d/L)²), (6m,)."""
-    weight = np.tile([1.0, 1.0, 1.0, SHIFT, SHIFT, SHIFT], len(r.t) // 6)[:, None]
-    solved = np.linalg.solve(r.B.T @ (weight * r.B), np.column_stack([-(r.B.T @ (weight[:, 0] * r.t)), r.C.T]))
-    y, K = solved[:, 0], solved[:, 1:]
-    s, Q = np.linalg.eigh(r.C @ K)
-    kept = s > tolerances.REPEATED_ROW * float(np.max(s, initial=0.0))
-    y = y + K @ (Q[:, kept] @ ((Q[:, kept].T @ (r.e - r.C @ y)) / (s[kept] + mu)))
-    z: Array = r.t + r.B @ y
+    Q, A = r.measured(math.sqrt(SHIFT))
+    v = -(Q.T @ (r.t * np.tile([1.0, 1.0, 1.0, SHIFT, SHIFT, SHIFT], len(r.t) // 6)))
+    U, S, V = np.linalg.svd(A, full_matrices=False)
+    U, S, V = U[:, : (rank := rank_of(S))], S[:rank], V[:rank]
+    v = v + V.T @ (S / (S * S + mu) * (U.T @ (r.e - A @ v)))
+    z: Array = r.t + Q @ v
     return z
 
 

@@ -182,7 +182,7 @@ class Moving:
                 continue
             reduced = Reduced(island, self.found, rows, [(True, True)] * len(island.members), self.size)
             rounding = tolerances.NO_ACCELERATION * r.scale(self.size) ** 2 / self.size
-            if self.size * _norm(solve(reduced.C, reduced.e)[2]) > tolerances.SOLVABLE * asked + rounding:
+            if self.size * _norm(solve(reduced.measured()[1], reduced.e)[2]) > tolerances.SOLVABLE * asked + rounding:
                 raise singular_pose(self.mechanism, island.closures[0], joints)
 
 

@@ -2,6 +2,7 @@
 
     z = t + B y        turn and shift (by the scene's size L) of all members, from the freedoms y
     C y = e            what is left of the rows: closures, and tree joints a held body cannot follow
+    z = t + Q v, A v = e   the same in as many v, |v| the length of Q v: what a row asks of motions tells its rank
 Tree joints are solved outward body by body, so that dense algebra meets only the freedoms and the closures.
 """
 
@@ -102,6 +103,12 @@ class Reduced:
                 t[6 * i : 6 * i + 6] += step.follow @ t[6 * step.before : 6 * step.before + 6]
         return t
 
+    def measured(self, shift: float = 1.0) -> tuple[Array, Array]:
+        """Q (6m, n) and A (h, n); a shift counts `shift` times a turn."""
+        weight = np.tile([1.0, 1.0, 1.0, shift, shift, shift], len(self.steps))[:, None]
+        Q, R = np.linalg.qr(weight * self.B)
+        return Q / weight, np.linalg.solve(R.T, self.C.T).T
+
 
 def _blocks(d: Condition, row: Rows, size: float) -> tuple[Array, Array, Array]:
     """Rows on (turn, shift/L) of `from` and of `to`, (h+k, 6) each, and the right side, lengths by L."""
@@ -119,7 +126,7 @@ def _step(body: int, d: Condition, row: Rows, place: Mapping[int, int], may: tup
     J, J_before, before = (J_b, J_a, d.a) if body == d.b else (J_a, J_b, d.b)
     E = _root(may).N
     U, S, V = np.linalg.svd(J @ E)
-    rank = int(np.sum(S > tolerances.RANK * max(1.0, S[0]))) if len(S) else 0
+    rank = rank_of(S)
     inverse = E @ ((V[:rank].T / S[:rank]) @ U[:, :rank].T)
     rest = U[:, rank:].T
     return Step(
@@ -137,14 +144,20 @@ def least(r: Reduced, moved: Array, together: bool = False) -> tuple[Array, Arra
 
     together: least Σ(turns)² + Σ(shifts)². Only what may turn, or shift, counts.
     """
-    y, N, lack = solve(r.C, r.e)
+    Q, A = r.measured()
+    v, N, lack = solve(A, r.e)
     may = np.repeat(np.array(r.free, dtype=bool).reshape(-1, 2), 3, axis=1).ravel()
     turns = np.arange(may.size) % 6 < 3
     for counted in (may,) if together else (may & turns, may & ~turns):
-        step, null, _ = solve(r.B[counted] @ N, -((r.t + moved)[counted] + r.B[counted] @ y))
-        y = y + N @ step
+        step, null, _ = solve(Q[counted] @ N, -((r.t + moved)[counted] + Q[counted] @ v))
+        v = v + N @ step
         N = N @ null
-    return r.t + r.B @ y, lack
+    return r.t + Q @ v, lack
+
+
+def rank_of(S: Array) -> int:
+    """How many rows stand for themselves, by their singular values, the largest first; rows are of length 1 or so."""
+    return int(np.sum(S > tolerances.RANK * max(1.0, S[0]))) if len(S) else 0
 
 
 def solve(A: Array, b: Array) -> tuple[Array, Array, Array]:
@@ -152,6 +165,6 @@ def solve(A: Array, b: Array) -> tuple[Array, Array, Array]:
     if not A.size:
         return np.zeros(A.shape[1]), np.eye(A.shape[1]), b
     U, S, V = np.linalg.svd(A, full_matrices=A.shape[0] < A.shape[1])
-    rank = int(np.sum(S > tolerances.RANK * max(1.0, S[0])))
+    rank = rank_of(S)
     x = V[:rank].T @ ((U[:, :rank].T @ b) / S[:rank])
     return x, V[rank:].T, b - A @ x
