@@ -93,6 +93,7 @@ COARSEST_RETRY = 1e-6  # local tolerance beyond which a run that collapsed is no
 PLACE_ROUNDING = 4e-16  # of the size: rounding of one evaluation of a place, 2 EPS; no estimate is below
 WRITTEN = 1e-12  # of the largest: digits of what was solved exactly, all that some thousand roundings leave
 LEAST_RATE = 1e-5  # of a radian, or of the size, in the time asked for: slower ones are judged as if that fast
+UNSEEN = 1e-4  # of a load's largest: what it does beyond what the stages of a step saw, before that step is redone
 BOUNDLESS = 1e3  # a value that grows so many times over within 2**-20 of the run is on its way to infinity
 QUADRATURE = 1e-14  # of the scale: whole against halves; planes that graze thin walls then err by as much
 

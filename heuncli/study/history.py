@@ -15,6 +15,7 @@ from heuncli.integration.checked import Checked, checked_run, recovered_at
 from heuncli.integration.runner import Recovered, Runner, check_deadline, discontinuities_of
 from heuncli.integration.singular import singular_poses
 from heuncli.integration.solvable import require_solvable
+from heuncli.integration.unseen import unseen
 from heuncli.records import record
 from heuncli.results import Array
 from heuncli.study.extremes import distinct
@@ -22,14 +23,16 @@ from heuncli.study.setup import Setup
 
 SEARCH_PER_STEP = 4  # instants looked at in each step of the integrator when extremes are searched
 MOST_SEARCHED = 20_000
+LOOKS = 8  # runs made again for what loads in time did unseen: each finds the next of a narrow pulse's flanks
 
 
 @record
 class History:
     """The kernel's answers at the instants asked for; of a motion the checked run behind them.
 
-    tolerance: what the motion was to keep; jumps: instants at which a load or drive jumps or bends; singular: those of
-    singular poses that the run came through; seconds: what took how long.
+    tolerance: what the motion was to keep; jumps: instants at which a load or drive jumps or bends, or what it
+    does had not been seen; singular: those of singular poses that the run came through; missed: what is still unseen;
+    seconds: what took how long.
     """
 
     recovered: Recovered
@@ -37,6 +40,7 @@ class History:
     checked: Checked | None = None
     jumps: tuple[float, ...] = ()
     singular: tuple[float, ...] = ()
+    missed: tuple[float, ...] = ()
     seconds: Mapping[str, float] = MappingProxyType({})
 
     @property
@@ -58,11 +62,17 @@ def integrate(setup: Setup, tolerance: float, deadline: float | None) -> History
     require_solvable(setup.scene, runner.recovered(np.zeros(1), start))  # before a long run, not after it
     jumps = tuple(discontinuities_of(setup.scene.mechanism, 0.0, float(times[-1])))
     checked = checked_run(runner, times, tolerance, jumps, deadline, setup.method)
+    looks = 0
+    while (stops := unseen(setup.scene.mechanism, checked.run)) and looks < LOOKS:
+        jumps = tuple(sorted({*jumps, *stops}))
+        checked = checked_run(runner, times, tolerance, jumps, deadline, setup.method)
+        looks += 1
     seconds = {"integrate": checked.run.seconds, "check": checked.check_seconds}
     if checked.lost_seconds:
         seconds["lost"] = checked.lost_seconds
     check_deadline(deadline, "before the loads were computed")
-    return History(checked.recovered, tolerance, checked, jumps, tuple(singular_poses(runner, checked.run)), seconds)
+    singular = tuple(singular_poses(runner, checked.run))
+    return History(checked.recovered, tolerance, checked, jumps, singular, tuple(stops), seconds)
 
 
 def resample(runner: Runner, history: History, times: Array) -> Recovered:
