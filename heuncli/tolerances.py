@@ -42,7 +42,6 @@ ALONG = 1.0 - 1e-9  # cosine of an axis with that of the missing inertia: 4.5e-5
 ALONG_SQUARED = 1.0 - 1e-9  # square of the same cosine, as found from the points on the axis: 3e-5 rad
 LENT_REACH = 1e-3  # of the size: the least radius of gyration of an inertia lent to an idle spin (it cancels)
 SLENDER = 1e-6  # determinant over the cube of the trace: above, no moment is NO_INERTIA of it; a rod 200 diameters long
-MUCH_LENT = 0.1  # of what moves, what is not lent: below, less is lent, so that no more than a digit goes
 NO_MOMENT = 1e-9  # of the loads at a body: a smaller moment about its thin axis is what ON_AXIS lets pass
 
 # -- gaps of poses and rates that are assembled
@@ -114,6 +113,7 @@ KERNEL: dict[str, float] = {
     # square of NEARLY_SINGULAR: where the loops hold a freedom without inertia by a lever of s, s^2 of the others' is
     # what it moves, and accelerations are known to rounding / s^2
     "own_share": 1e-12,
+    "much_lent": 1e-3,  # three digits lost
     # -- rank
     "moves_nothing": 1e-24,  # squares of loads: 1e-12 of the largest load the row could exert, its rounding
     "across": 0.01,  # a row's answer across its arms counts to a tenth of the arm, in any pose

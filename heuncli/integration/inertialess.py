@@ -18,7 +18,6 @@ from heuncli.integration.runner import Runner
 from heuncli.kernel.choose import scene as kernel
 from heuncli.mechanism.model import GROUND
 from heuncli.records import record, replace
-from heuncli.response import columns, workspace_of
 from heuncli.results import Array
 from heuncli.tree.idle_spins import without_inertia
 from heuncli.tree.layout import Layout
@@ -68,22 +67,10 @@ class Massless:
 
 def lend(scene: PreparedScene, lacking: Mapping[int, Array]) -> PreparedScene:
     """The scene with inertia lent to what motions of its tree turn that move no mass, among bodies that lack some."""
+    layout = scene.layout
     if not massless(scene, lacking, start_of(scene)).count:
         return scene
-    axes = axes_to_lend(scene, lacking)
-    natural = with_lent(scene, axes, 1.0)
-    workspace, layout = workspace_of(natural.layout), natural.layout
-    columns(workspace, 0.0, layout.y0, np.zeros((0, len(layout.place), 6)), np.zeros(0))
-    if not tolerances.KERNEL["own_share"] < workspace.own_share < tolerances.MUCH_LENT:
-        return natural
-    # digits go with the share, and in the closures with what less is lent
-    return with_lent(scene, axes, math.sqrt(workspace.own_share))
-
-
-def with_lent(scene: PreparedScene, axes: Mapping[int, Array], part: float) -> PreparedScene:
-    """The scene with inertia lent about axes of bodies (k, 3), `part` of what their mass might well have."""
-    rows = [row for body, own in axes.items() for row in lent(scene, body, own, part)]
-    layout = scene.layout
+    rows = [row for body, axes in axes_to_lend(scene, lacking).items() for row in lent(scene, body, axes)]
     return replace(scene, layout=replace(layout, tables=layout.tables | {"lents": table(kernel.Lent, rows)}))
 
 
@@ -195,14 +182,14 @@ def axes_to_lend(scene: PreparedScene, lacking: Mapping[int, Array]) -> dict[int
     return {body: span(np.concatenate(turning)) for body, turning in found.items()}
 
 
-def lent(scene: PreparedScene, place: int, axes: Array, part: float) -> list[dict[str, Any]]:
-    """The inertia lent to a body about some axes, a row of the kernel's table each."""
+def lent(scene: PreparedScene, place: int, axes: Array) -> list[dict[str, Any]]:
+    """The inertia lent to a body about some axes, such as its mass might have; a row of the kernel's table each."""
     mechanism, i = scene.mechanism, scene.layout.spanning.hangs[place].body
     body = mechanism.bodies[i]
     arms = [p - body.center for j in mechanism.joints for of, p in ((j.a, j.p), (j.b, j.q)) if of == i]
     reach = max([tolerances.LENT_REACH * scene.layout.size, *(float(np.sqrt(a @ a)) for a in arms)])
     inertia = max(body.mass * reach**2, without_inertia(body, scene.layout.size)[1])
-    return [{"body": place, "root": math.sqrt(part * inertia), "axis": axis} for axis in axes]
+    return [{"body": place, "root": math.sqrt(inertia), "axis": axis} for axis in axes]
 
 
 def null_space(A: Array, least: float) -> Array:

@@ -1,6 +1,6 @@
 """Signatures of response.py for C."""
 
-from heuncli.kernel.algebra cimport Quaternion, Vec3, dot, slightly_turned
+from heuncli.kernel.algebra cimport Quaternion, Vec3, dot, slightly_turned, turned
 from heuncli.kernel.closures cimport (
     acceleration_along, count_turns, factor_closures, measure_rows, push_closures, solve_closures,
 )
@@ -15,6 +15,7 @@ cdef int configure(Scene *scene, double t) noexcept nogil
 cdef void respond(Scene *scene, bint inertial) noexcept nogil
 cdef void answer(Scene *scene, bint inertial) noexcept nogil
 cdef int weigh_lent(Scene *scene) noexcept nogil
+cdef void lend_less(Scene *scene) noexcept nogil
 cdef double taken(Scene *scene, Lent *lent) noexcept nogil
 cdef double eliminate_lent(Scene *scene, Py_ssize_t j) noexcept nogil
 cdef void find_taken(Scene *scene) noexcept nogil

@@ -16,7 +16,7 @@ except ImportError:
 if not cython.compiled:
     from math import fabs, sqrt
 
-    from heuncli.kernel.algebra import Quaternion, Vec3, dot, slightly_turned
+    from heuncli.kernel.algebra import Quaternion, Vec3, dot, slightly_turned, turned
     from heuncli.kernel.closures import (
         acceleration_along,
         count_turns,
@@ -46,6 +46,8 @@ def configure(scene: cython.pointer[Scene], t: cython.double) -> cython.int:
             return -1
     if scene.lent_count:
         idle += weigh_lent(scene)
+        if scene.limits.own_share < scene.own_share < scene.limits.much_lent:
+            lend_less(scene)
     return idle
 
 
@@ -106,6 +108,24 @@ def weigh_lent(scene: cython.pointer[Scene]) -> cython.int:
             scene.own_share = x
         loose += x <= scene.limits.own_share
     return loose
+
+
+def lend_less(scene: cython.pointer[Scene]) -> cython.void:
+    """Factors anew with as much less lent as halves the digits that 1 - T loses; the share and the pivot stay."""
+    i: cython.Py_ssize_t
+    share: cython.double = scene.own_share
+    pivot: cython.double = scene.pivot
+    for i in range(scene.body_count):
+        body: cython.pointer[Body] = cython.address(scene.bodies[i])
+        body.A = turned(body.R, body.inertia)
+    scene.lent_part = sqrt(sqrt(share))
+    factor_tree(scene)
+    if scene.selected_count:
+        factor_closures(scene)
+    weigh_lent(scene)
+    scene.lent_part = 1.0
+    scene.own_share = share
+    scene.pivot = pivot
 
 
 def taken(scene: cython.pointer[Scene], lent: cython.pointer[Lent]) -> cython.double:

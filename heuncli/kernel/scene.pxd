@@ -159,6 +159,7 @@ cdef struct Limits:
     int unused
     double no_inertia
     double own_share
+    double much_lent
     double moves_nothing
     double across
     double independent
@@ -197,6 +198,7 @@ cdef struct Scene:
     double pivot              # now
     double pivot_of_step      # least since the step began
     double gap                # of the state recovered last, over all rows [m]
+    double lent_part          # root of the part of the inertias in `lents` that is lent
     double own_share          # least pivot of 1 - T: of the inertia in a motion, how much is not lent
     double pivot_recovered    # least pivot of the closures there
     Body *bodies

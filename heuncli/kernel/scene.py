@@ -213,6 +213,7 @@ class Limits(Record):
     unused: int
     no_inertia: float  # of all directions' inertia: what has less moves nothing
     own_share: float  # of a motion's inertia, lent and its own: with less of its own nothing holds it
+    much_lent: float  # with less, but more than that, less is lent
     moves_nothing: float  # of what a row's freedoms could answer: a row that answers less is none
     across: float  # part of what a row could answer across its arms that counts as its scale in any pose
     independent: float  # least scaled pivot of a row that is chosen
@@ -254,6 +255,7 @@ class Scene(metaclass=Fields):
     pivot: float
     pivot_of_step: float
     gap: float
+    lent_part: float
     own_share: float
     pivot_recovered: float
     bodies: list[Body]

@@ -227,7 +227,7 @@ def factor_tree(scene: cython.pointer[Scene]) -> cython.int:
 def lend(scene: cython.pointer[Scene], lent: cython.pointer[Lent]) -> cython.void:
     """Add a lent inertia n n' to its body's own."""
     body: cython.pointer[Body] = cython.address(scene.bodies[lent.body])
-    lent.n = scaled(lent.root, rotate(body.R, lent.axis))
+    lent.n = scaled(scene.lent_part * lent.root, rotate(body.R, lent.axis))
     body.A = sub_square(body.A, lent.n, scaled(-1.0, lent.n))
 
 

@@ -239,6 +239,7 @@ class Workspace:
         scene.pivot = 1.0
         scene.pivot_of_step = 1.0
         scene.own_share = 1.0
+        scene.lent_part = 1.0
         scene.programs = cython.address(expressions.programs)
         scene.body_count = len(tables["bodies"])
         scene.freedom_count = len(tables["freedoms"])
@@ -357,11 +358,6 @@ class Workspace:
                 answer_column(scene, loads[height * c : height * c + height].tolist(), answer, inertial[c])
                 out[width * c : width * c + width] = answer
         return idle
-
-    @property
-    def own_share(self) -> float:
-        """How much of the inertia is not lent, in the motion in which that is least, where it was configured last."""
-        return self.scene.own_share
 
     @property
     def column_width(self) -> int:

@@ -572,7 +572,7 @@ EXEMPT = {
     "ZERO_COMPONENT": "the digits of a direction that is proposed",
     "PLACE_ROUNDING": "a summand of the estimate",
     "SLENDER": "which bodies' moments are looked at at all: those of the others are far above NO_INERTIA",
-    "MUCH_LENT": "how much inertia is lent: what it takes is given back",
+    "KERNEL.much_lent": "how much inertia is lent: what it takes is given back",
     "LENT_REACH": "an inertia lent to a spin on which nothing depends",
     "LEAST_RATE": "what steps are judged by where nothing moves: the estimate says what they are worth",
     "LEAST_TOLERANCE": "where finer runs are not tried: the estimate says what was reached",
