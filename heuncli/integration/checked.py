@@ -1,13 +1,19 @@
-"""Error estimate of a motion by a second run.
+"""Error estimate of a motion by further runs.
 
-The estimate is 2 |A - B|, B a second run at 1/30 of A's local tolerance, over all points and asked instants.
+The estimate is 2 |A - B|: A is the run that is told, B a check run at 1/30 of A's local tolerance from a start moved by
+rounding, both seen at the same instants (integration/pairs.py). Tried on free, open and closed chains, |A - B| is 0.9
+to 1.1 of the true error; a coarser check run would give 3 to 100 times it.
+
+At small tolerances the error of A may be no larger than what the moved start has grown to in B, and cancel it. There a
+third run M goes from the moved start as A goes from its own: |A - M| is what rounding grows to, and the larger counts.
 """
 
 from __future__ import annotations
 
 import contextlib
 import time
-from collections.abc import Sequence
+from collections.abc import Iterator, Sequence
+from typing import Protocol
 
 import numpy as np
 
@@ -15,102 +21,210 @@ from heuncli import tolerances
 from heuncli.errors import LimitError, SolveError
 from heuncli.expressions.programs import one_sided_limits
 from heuncli.integration.methods import DOP853, Method
+from heuncli.integration.pairs import instants_of, interleaved, moved_start, passed_between
 from heuncli.integration.runner import MOST_STEPS, Recovered, Runner, Trajectory
-from heuncli.mechanism.size import marks
 from heuncli.records import record, replace
-from heuncli.results import Array
+from heuncli.results import Array, Estimate, Mask
 from heuncli.tree.layout import Layout
 from heuncli.tree.tables import Table
 
 RATIO = 30.0  # local tolerance of A over that of B
 FIRST = 1.0  # local tolerance of the first run over the tolerance asked
+LEAST_RATIO = 4.0  # the same at least: errors are as the tolerances, 2 |A - B| is still 1.5 times that of A
 RERUNS = 2
 COLLAPSED = ("step-collapsed", "closure-lost")  # how a run may end near a singular pose because of rounding
 FUTILE = 20  # a finer run that takes more than so many times the steps of the coarser one is dominated by rounding
 CHUNK = 2_000_000  # numbers compared at a time
 
 
+class Loads(Protocol):
+    """What collects the differences of loads and energy between the two runs, kind by kind (study/kinds.py)."""
+
+    def add(self, several: Recovered, asked: Mask) -> None:
+        """More instants, and which are asked ones; at each the answers of A and then those of the other runs."""
+
+    def estimate(self) -> Estimate:
+        """The estimated error of each kind, relative to its own largest."""
+
+
 @record
 class Checked:
     """A run that was checked.
 
-    recovered: accelerations and loads at the run's instants; motion (n_t,): estimated error of any point, relative to
-    the size; reactions: see `compare`.
+    recovered: accelerations and loads at the run's instants; motion: largest estimated error of any point over the
+    whole run, relative to the size; loads: those of the other kinds; horizon: where the motion's passes CLAIMED.
     """
 
     run: Trajectory
     recovered: Recovered
-    motion: Array
-    reactions: float
+    motion: float
+    loads: Estimate
     horizon: float | None
     check_seconds: float
     lost_seconds: float  # of runs that missed the tolerance
 
 
-def checked_run(
-    runner: Runner,
-    times: Array,
-    tolerance: float,
-    jumps: Sequence[float],
-    deadline: float | None,
-    method: Method = DOP853,
-) -> Checked:
-    """Integrate until the motion's estimated error is below `tolerance`, with at most two reruns; else the best run."""
+class Runs:
+    """Runs of one motion, at several tolerances."""
 
-    def run(local: float, most_steps: int = MOST_STEPS) -> Trajectory:
-        return runner.trajectory(
-            times, local, discontinuities=jumps, deadline=deadline, most_steps=most_steps, method=method
-        )
+    def __init__(
+        self, runner: Runner, times: Array, jumps: Sequence[float], deadline: float | None, method: Method = DOP853
+    ) -> None:
+        self.runner, self.times, self.jumps = runner, times, jumps
+        self.deadline, self.method = deadline, method
+        self.moved, self.marks = moved_start(runner.layout), Marks(runner.layout)
 
-    def finer(local: float, than: Trajectory) -> Trajectory | None:
-        """A run at a smaller tolerance; None where rounding (near a singular pose, say) makes it collapse."""
-        try:
-            return run(local, FUTILE * than.steps + 1000)
-        except SolveError:
-            return None
-        except LimitError:
-            if deadline is not None and time.monotonic() > deadline:
-                raise
-            return None
+    def run(
+        self, local: float, at: Array | None = None, start: Array | None = None, most_steps: int = MOST_STEPS
+    ) -> Trajectory:
+        """A run from the start, or from one beside it, seen at the asked instants or at others."""
+        return self.runner.trajectory(
+            self.times if at is None else at, local, discontinuities=self.jumps, deadline=self.deadline,
+            most_steps=most_steps, method=self.method, start=start,
+        )  # fmt: skip
 
-    def first(local: float) -> Trajectory:
+    def first(self, local: float) -> Trajectory:
         """The run asked for; where it collapses at a singular pose, a coarser one that passes it."""
         try:
-            return run(local)
+            return self.run(local)
         except SolveError as error:
-            collapsed = runner.layout.rows and error.problems[0].code in COLLAPSED
+            collapsed = self.runner.layout.rows and error.problems[0].code in COLLAPSED
             coarser = [local * RATIO**k for k in (1, 2, 3)] if collapsed else []
             for other in (x for x in coarser if x <= tolerances.COARSEST_RETRY):
                 with contextlib.suppress(SolveError):
-                    return run(other)
+                    return self.run(other)
             raise
 
-    a = first(max(tolerance * FIRST, tolerances.LEAST_TOLERANCE))
-    lost, best = 0.0, None
+    def attempt(self, local: float, than: Trajectory, at: Array | None, start: Array | None) -> Trajectory | None:
+        """A run of not many more steps than another; None where rounding lets it collapse, near a singular pose say."""
+        try:
+            return self.run(local, at, start, FUTILE * than.steps + 1000)
+        except SolveError:
+            return None
+        except LimitError:
+            if self.deadline is not None and time.monotonic() > self.deadline:
+                raise
+            return None
+
+    def finer(self, a: Trajectory, by: float) -> Trajectory | None:
+        """A run at a tolerance smaller by a factor; by that of check runs at least, and where it collapses."""
+        for ratio in (by, RATIO) if by > RATIO else (RATIO,):
+            run = self.attempt(max(a.tolerance / ratio, tolerances.LEAST_TOLERANCE), a, None, None)
+            if run is not None:
+                return run
+        return None
+
+    def check(self, a: Trajectory, at: Array) -> Trajectory:
+        """The check run of A.
+
+        Where rounding stands against a finer run, one that is less so serves; without any a coarser one: the estimate
+        is larger, never too small. A start moved by rounding may set what A holds exactly at rest trembling so fast
+        that no run can follow: then the start stays.
+        """
+        coarser = a.tolerance * RATIO
+        tried = [(a.tolerance / ratio, self.moved) for ratio in (RATIO, LEAST_RATIO, 1.0 / RATIO)]
+        for local, start in (*tried, (a.tolerance / RATIO, None)):
+            run = self.attempt(local, a, at, start)
+            if run is not None:
+                return run
+        return self.run(coarser, at)
+
+    def beside(self, a: Trajectory, at: Array) -> Trajectory | None:
+        """A run like A from the moved start, where rounding may matter; else None."""
+        return self.attempt(a.tolerance, a, at, self.moved) if a.tolerance < tolerances.ROUNDING_MATTERS else None
+
+
+@record
+class Compared:
+    """Runs seen at the same instants: A, and beside it B and, where it was made, M.
+
+    states: of each run; error (n,): of A's motion there; horizon: where that passes CLAIMED.
+    """
+
+    runs: tuple[Trajectory, ...]
+    times: Array
+    states: tuple[Array, ...]
+    asked: Mask
+    error: Array
+    horizon: float | None
+    seconds: float
+
+    @property
+    def motion(self) -> float:
+        """The largest error."""
+        return float(self.error.max(initial=0.0))
+
+    def better(self, than: Compared) -> bool:
+        """Whether A is claimed for longer than another run, or else to a smaller error."""
+        mine, its = (np.inf if x.horizon is None else x.horizon for x in (self, than))
+        return bool(mine > its or (mine == its and self.motion < than.motion))
+
+
+def checked_run(runs: Runs, tolerance: float, loads: Loads) -> Checked:
+    """Integrate until the motion's estimated error is below `tolerance`, with at most two reruns; else the best run."""
+    a = runs.first(max(tolerance * FIRST, tolerances.LEAST_TOLERANCE))
+    best, lost = None, 0.0
     for attempt in range(RERUNS + 1):
-        b = finer(a.tolerance / RATIO, a)
-        # without a finer run a coarser one serves for the comparison: the estimate is larger, never too small
-        check = b if b is not None else run(a.tolerance * RATIO)
-        recovered = recovered_at(runner, a.times, a.states, jumps)
-        motion, reactions = compare(runner, a, recovered, check, jumps)
-        seconds = check.seconds
-        if best is not None and motion.max(initial=0.0) >= best.motion.max(initial=0.0):
-            return replace(best, lost_seconds=best.lost_seconds + a.seconds + seconds)
-        late = np.flatnonzero(motion > tolerances.CLAIMED)
-        best = Checked(a, recovered, motion, reactions, float(a.times[late[0]]) if len(late) else None, seconds, lost)
-        miss = float(motion.max(initial=0.0)) / tolerance
-        if miss <= 1.0 or attempt == RERUNS or a.tolerance <= tolerances.LEAST_TOLERANCE or b is None:
+        found = compared(runs, a)
+        best, worse = (best, found) if best is not None and not found.better(best) else (found, best)
+        lost += worse.runs[0].seconds + worse.seconds if worse is not None else 0.0
+        miss = found.motion / tolerance
+        no_finer = a.tolerance <= tolerances.LEAST_TOLERANCE or found.runs[1].tolerance > a.tolerance
+        if miss <= 1.0 or attempt == RERUNS or no_finer:
             break
-        lost += a.seconds
-        if miss > RATIO / 2.0:
-            lost += seconds
-            other = finer(max(a.tolerance / (2.0 * miss), tolerances.LEAST_TOLERANCE), a)
-            if other is None:
-                break
-            b = other
-        a = b
+        finer = runs.finer(a, 2.0 * miss)
+        if finer is None:
+            break
+        a = finer
     assert best is not None
-    return best
+    begun = time.perf_counter()
+    for part, several in recovered_together(runs, best.times, best.states):
+        loads.add(several, best.asked[part])
+    a = best.runs[0]
+    recovered = recovered_at(runs.runner, a.times, a.states, runs.jumps)
+    seconds = best.seconds + time.perf_counter() - begun
+    return Checked(a, recovered, best.motion, loads.estimate(), best.horizon, seconds, lost)
+
+
+def compared(runs: Runs, a: Trajectory) -> Compared:
+    """A with its check run, and the run beside it."""
+    begun = time.perf_counter()
+    at = instants_of(runs.runner, a)
+    b, m = runs.check(a, at.times), runs.beside(a, at.times)
+    others = [b] if m is None else [b, m]
+    n = len(at.times)
+    if any(run.stopped for run in (a, *others)):
+        # the runs end at instants of their own; the last of A is judged by the one before it
+        n = min(int(np.sum(at.times[: len(x.times)] == x.times[: len(at.times)])) for x in others)
+    times, states = at.times[:n], (at.states[:n], *(x.states[:n] for x in others))
+    error = errors(runs, times, states)
+    late = np.flatnonzero(error > tolerances.CLAIMED)
+    horizon = None
+    if len(late):
+        horizon = float(times[late[0]])
+        ends, between = passed_between(runs.runner, (a, *others), float(times[max(late[0] - 1, 0)]), horizon)
+        sooner = ends[errors(runs, ends, between) > tolerances.CLAIMED]
+        horizon = float(sooner[0]) if len(sooner) else horizon
+    return Compared((a, *others), times, states, at.asked[:n], error, horizon, time.perf_counter() - begun)
+
+
+def errors(runs: Runs, times: Array, states: Sequence[Array]) -> Array:
+    """Estimated errors of the motion at the instants, (n,); states: of A and of the other runs."""
+    layout = runs.runner.layout
+    places, angles, largest = np.zeros(len(times)), np.zeros(len(times)), 1.0
+    for part, several in recovered_together(runs, times, states):
+        places[part] = motion_error(runs.marks, several, len(states), layout.size)
+        angles[part], turned = angle_error(layout, several, len(states))
+        largest = max(largest, turned)
+    return np.maximum(places, angles / largest)
+
+
+def recovered_together(runs: Runs, times: Array, states: Sequence[Array]) -> Iterator[tuple[slice, Recovered]]:
+    """The answers at the instants, at each those of all runs, in parts that fit the memory."""
+    many = max(1, CHUNK // (30 * len(states) * len(runs.runner.layout.place) + 1))
+    for i in range(0, len(times), many):
+        part = slice(i, i + many)
+        yield part, recovered_at(runs.runner, *interleaved(times[part], [x[part] for x in states]), runs.jumps)
 
 
 def recovered_at(runner: Runner, times: Array, states: Array, jumps: Sequence[float]) -> Recovered:
@@ -121,46 +235,56 @@ def recovered_at(runner: Runner, times: Array, states: Array, jumps: Sequence[fl
     return replace(runner.recovered(later, states), times=times)
 
 
-def compare(
-    runner: Runner, a: Trajectory, recovered: Recovered, b: Trajectory, jumps: Sequence[float]
-) -> tuple[Array, float]:
-    """2 |A - B|: of any point, (n_t,), relative to the scene's size; of joint loads, relative to the largest."""
-    layout = runner.layout
-    step = max(1, CHUNK // (30 * len(layout.place) + 1))
-    n = len(a.times)
-    if a.stopped or b.stopped:
-        # the two runs end at instants of their own; the last of A is judged by the one before it
-        n = int(np.sum(a.times[: len(b.times)] == b.times[: len(a.times)]))
-    motion, worst, largest, inertia = np.zeros(len(a.times)), 0.0, 0.0, 0.0
-    masses = np.array([layout.mechanism.bodies[h.body].mass for h in layout.spanning.hangs])[:, None]
-    for i in range(0, n, step):
-        chunk = slice(i, min(i + step, n))
-        B = recovered_at(runner, a.times[chunk], b.states[chunk], jumps)
-        bodies, rows = recovered.bodies[chunk], recovered.rows[chunk]
-        motion[chunk] = distance(layout, bodies, B.bodies) / layout.size
-        for x, y, arm in (
-            (bodies["joint_force"], B.bodies["joint_force"], 1.0),
-            (bodies["joint_moment"], B.bodies["joint_moment"], layout.size),
-            (rows["multiplier"], B.rows["multiplier"], 1.0),
-        ):
-            worst = max(worst, float(np.abs(x - y).max(initial=0.0)) / arm)
-            largest = max(largest, float(np.abs(x).max(initial=0.0)) / arm)
-        inertia = max(inertia, float(np.abs(bodies["a"] * masses).max(initial=0.0)))
-    motion[n:] = motion[n - 1] if n else 0.0
-    # a free body has no reactions: what the sweep leaves at its six freedoms is rounding
-    some = largest > tolerances.NO_LOAD * inertia
-    reactions = (2.0 * worst + tolerances.PLACE_ROUNDING * largest) / largest if some else 0.0
-    return 2.0 * motion + tolerances.PLACE_ROUNDING, reactions
+def motion_error(marks: Marks, several: Recovered, count: int, size: float) -> Array:
+    """Estimated error of any point, relative to the size, (n,); the answers are those of so many runs."""
+    bodies = several.bodies
+    own = bodies[0::count]
+    apart = np.max([marks.apart(own, bodies[k::count]) for k in range(1, count)], axis=0) / size
+    far = np.abs(own["r"]).max(axis=(1, 2)) / size
+    return known(2.0 * apart + tolerances.PLACE_ROUNDING * np.maximum(far, 1.0))
 
 
-def distance(layout: Layout, a: Table, b: Table) -> Array:
-    """Largest distance of any named point or centre of mass between two sets of `Recovered.bodies`, (n_t,) [m]."""
-    dR, dr = b["R"] - a["R"], b["r"] - a["r"]
-    owner, arms = [], []
-    for i, body in enumerate(layout.mechanism.bodies):
-        k = layout.place[i]
-        for p in marks(body):
-            owner.append(k)
-            arms.append(p - layout.reference[k])
-    d = dr[:, owner] + np.einsum("tnij,nj->tni", dR[:, owner], np.array(arms))
-    return np.asarray(np.sqrt(np.max(np.sum(d * d, axis=2), axis=1)))
+def angle_error(layout: Layout, several: Recovered, count: int) -> tuple[Array, float]:
+    """Estimated error of the angles that are counted over many turns [rad], (n,), and the largest of them, at least 1.
+
+    A small wheel's angle may err by far more than its points do.
+    """
+    turning = [n for n, freedom in enumerate(layout.freedoms) if freedom.quantity == "angle"]
+    angles = np.hstack([several.freedoms["q"][:, turning], several.states[:, list(layout.counters.values())]])
+    own = angles[0::count]
+    largest = np.abs(own).max(axis=1, initial=1.0)
+    apart = np.max([np.abs(own - angles[k::count]).max(axis=1, initial=0.0) for k in range(1, count)], axis=0)
+    return known(2.0 * apart + tolerances.PLACE_ROUNDING * largest), float(largest.max(initial=1.0))
+
+
+def known(error: Array) -> Array:
+    """The errors; what is no number is unknown."""
+    return np.where(np.isfinite(error), error, tolerances.UNKNOWN)
+
+
+class Marks:
+    """Points by which the motion of the bodies is judged, tree order: named ones, centres, origins, and their extent.
+
+    The extent is that of the body's ellipsoid of inertia: a turn about a line through the other points is seen, too, by
+    as much as it moves the body's mass.
+    """
+
+    def __init__(self, layout: Layout) -> None:
+        bodies = layout.mechanism.bodies
+        mass, inertia = np.array([b.mass for b in bodies]), np.array([b.inertia for b in bodies])
+        # second moments about the centre by the mass: squares of the semi-axes, and their directions as columns
+        moments = 0.5 * np.trace(inertia, axis1=1, axis2=2)[:, None, None] * np.eye(3) - inertia
+        squares, axes = np.linalg.eigh(moments / mass[:, None, None])
+        reach = axes * np.sqrt(np.maximum(squares, 0.0))[:, None, :]
+        owner, arms = [], []
+        for i, body in enumerate(bodies):
+            points = [body.center, np.zeros(3), *body.points.values(), *(body.center + reach[i].T)]
+            owner += [layout.place[i]] * len(points)
+            arms += [p - layout.reference[layout.place[i]] for p in points]
+        self.owner, self.arms = np.array(owner), np.array(arms)
+
+    def apart(self, a: Table, b: Table) -> Array:
+        """Largest distance of any of the points between two sets of `Recovered.bodies`, (n_t,) [m]."""
+        dR, dr = b["R"] - a["R"], b["r"] - a["r"]
+        d = dr[:, self.owner] + (dR[:, self.owner] @ self.arms[:, :, None])[..., 0]
+        return np.asarray(np.sqrt(np.max(np.sum(d * d, axis=2), axis=1)))

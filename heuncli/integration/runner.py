@@ -183,8 +183,11 @@ class Runner:
         deadline: float | None = None,
         most_steps: int = MOST_STEPS,
         method: Method = DOP853,
+        start: Array | None = None,
     ) -> Trajectory:
         """Integrate from the start at t = 0 over the asked instants (ascending); `tolerance` is the local one.
+
+        start: a state to start from instead of the scene's own.
 
         Where a rope would have to push the run ends: the instants up to there, and that one.
 
@@ -197,11 +200,12 @@ class Runner:
         # at rest under a load like t**4 all rates and accelerations vanish at first: this rate then sets the scale
         rate = tolerances.LEAST_RATE / last if last > 0.0 else 0.0
         most = max(1, CHUNK // max(len(layout.mechanism.bodies), 1))
+        start = layout.y0 if start is None else start
         run = Integration(
             layout, self.workspace, method, ts,
-            most=most, state=layout.y0, tolerance=tolerance, rate=rate, following=0,
+            most=most, state=start, tolerance=tolerance, rate=rate, following=0,
         )  # fmt: skip
-        steps = Steps(layout.y0, run.width)
+        steps = Steps(start, run.width)
         roped = any(j.tension_only for j in layout.mechanism.joints)
         check_deadline(deadline, f"before the run of {last:.6g} s began")
         segments = smooth_segments(last, discontinuities)

@@ -29,28 +29,38 @@ def inertia_loads(mechanism: Mechanism, states: BodyStates) -> tuple[Array, Arra
     return in_plane(*loads) if mechanism.planar else loads
 
 
+def total(
+    states: BodyStates, forces: Array, spin: Array, actions: Sequence[Action], about: Array
+) -> tuple[Array, Array]:
+    """s and M_s, (n_t, 3); forces: weight less m x_s.. of every body, spin: I sigma. + sigma x I sigma, (n_t, n, 3)."""
+    force = np.sum(forces, axis=1)
+    moment = np.sum(np.cross(states.centre - about, forces) - spin, axis=1)
+    for action in actions:
+        if action.from_ is None:
+            force = force + action.force
+            moment = moment + np.cross(action.to.position - about, action.force) + action.moment
+    return force, moment
+
+
 def foundation(mechanism: Mechanism, states: BodyStates, actions: Sequence[Action], about: Array) -> Block:
     """The foundation's block of the results; `about` (3,) is where moments are taken."""
     ma, spin = inertia_loads(mechanism, states)
-    arm = states.centre - about
     weight = np.array([b.mass for b in mechanism.bodies])[:, None] * mechanism.gravity
-    force = np.sum(weight - ma, axis=1)
-    moment = np.sum(np.cross(arm, weight - ma) - spin, axis=1)
+    force, moment = total(states, weight - ma, spin, actions, about)
     supports: Block = {}
     elements: Block = {}
     for action in actions:
         on_ground = action.on_ground()
         if action.from_ is None:
-            force = force + action.force
-            moment = moment + np.cross(action.to.position - about, action.force) + action.moment
-        elif on_ground is not None and action.kind == "joint":
+            continue
+        if on_ground is not None and action.kind == "joint":
             supports[action.name] = {"force": on_ground[0], "moment": on_ground[1]}
         elif on_ground is not None:
             name = action.name
             if action.kind == "drive" and name in elements:  # a force may have the same name
                 name = f"drives.{name}"
             elements[name] = {"force": on_ground[0], "moment": on_ground[1], "point": on_ground[2].copy()}
-    orbital = np.cross(arm, ma).sum(axis=1)
+    orbital = np.cross(states.centre - about, ma).sum(axis=1)
     if mechanism.planar:
         force, moment = in_plane(force, moment)
         _, orbital = in_plane(force, orbital)

@@ -11,7 +11,7 @@ from types import MappingProxyType
 import numpy as np
 
 from heuncli.expressions.programs import one_sided_limits
-from heuncli.integration.checked import Checked, checked_run, recovered_at
+from heuncli.integration.checked import Checked, Runs, checked_run, recovered_at
 from heuncli.integration.runner import Recovered, Runner, check_deadline, discontinuities_of
 from heuncli.integration.singular import singular_poses
 from heuncli.integration.solvable import require_solvable
@@ -19,6 +19,7 @@ from heuncli.integration.unseen import unseen
 from heuncli.records import record
 from heuncli.results import Array
 from heuncli.study.extremes import distinct
+from heuncli.study.kinds import Kinds
 from heuncli.study.setup import Setup
 
 SEARCH_PER_STEP = 4  # instants looked at in each step of the integrator when extremes are searched
@@ -61,11 +62,13 @@ def integrate(setup: Setup, tolerance: float, deadline: float | None) -> History
         return History(runner.recovered(times[:1], start), tolerance, seconds={"integrate": 0.0, "check": 0.0})
     require_solvable(setup.scene, runner.recovered(np.zeros(1), start))  # before a long run, not after it
     jumps = tuple(discontinuities_of(setup.scene.mechanism, 0.0, float(times[-1])))
-    checked = checked_run(runner, times, tolerance, jumps, deadline, setup.method)
+    runs = Runs(runner, times, jumps, deadline, setup.method)
+    checked = checked_run(runs, tolerance, Kinds(setup))
     looks = 0
     while (stops := unseen(setup.scene.mechanism, checked.run)) and looks < LOOKS:
         jumps = tuple(sorted({*jumps, *stops}))
-        checked = checked_run(runner, times, tolerance, jumps, deadline, setup.method)
+        runs = Runs(runner, times, jumps, deadline, setup.method)
+        checked = checked_run(runs, tolerance, Kinds(setup))
         looks += 1
     seconds = {"integrate": checked.run.seconds, "check": checked.check_seconds}
     if checked.lost_seconds:

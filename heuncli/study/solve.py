@@ -82,11 +82,7 @@ def compose(setup: Setup, history: History, recovery: Recovery, wanted: frozense
     gap = checked.run.gap if checked is not None else setup.scene.start.gap
     estimate = Estimate(motion=0.0, reactions=0.0, drives=0.0, foundation=0.0, sections=0.0, energy=0.0)
     if checked is not None:
-        # each kind will be compared on its own; until then the joints speak for the other loads
-        motion, loads = float(checked.motion.max(initial=0.0)), checked.reactions
-        estimate = Estimate(
-            motion=motion, reactions=loads, drives=loads, foundation=loads, sections=loads, energy=motion
-        )
+        estimate = Estimate(motion=checked.motion, **checked.loads)
     return Results(
         title=setup.spec.title,
         spec={"path": setup.spec.path, "sha256": setup.spec.sha256},

@@ -46,7 +46,7 @@ def of_the_motion(history: History) -> list[str]:
     assert history.checked is not None
     checked, tolerance = history.checked, history.tolerance
     lines = []
-    if (worst := float(checked.motion.max(initial=0.0))) > tolerance:
+    if (worst := checked.motion) > tolerance:
         missed = f"the tolerance {tolerance:.3g} was not reached"
         lines.append(f"{missed}: the motion is estimated to {worst:.2g} of the scene's size")
     if history.singular:

@@ -1,7 +1,7 @@
 """accuracy.estimate.motion against the true error, tolerances 1e-4 to 1e-13: never below it, near twice it.
 
-The true error is that against a run at a local tolerance of 1e-15, itself held against closed forms and end states in
-quadruple precision; how far it is sure is seen from a second such run.
+Both at the asked instants and at many between them. The true error is that against a run at a local tolerance of 1e-15,
+itself held against closed forms and end states in quadruple precision; how far it is sure is seen from further runs.
 """
 
 from __future__ import annotations
@@ -45,16 +45,22 @@ END_STATES = json.loads((Path(__file__).parents[1] / "references" / "end_states.
 
 
 class Exact(NamedTuple):
-    """Places of all centres and named points at all asked instants, (n_t, n, 3), and how far they are sure [m]."""
+    """Places of all centres and named points at the instants, (n_t, n, 3), and how far they are sure [m]."""
 
     places: Array
     sure: float
 
 
+def instants(study: Study) -> Array:
+    """The asked ones, and many between them."""
+    times = study.history.times
+    return np.unique(np.concatenate([times, np.linspace(times[0], times[-1], 301)]))
+
+
 def places(study: Study, local: float) -> Array:
     """The same by one run at a local tolerance."""
     runner = study.setup.runner
-    run = runner.trajectory(study.history.times, local)
+    run = runner.trajectory(instants(study), local)
     found = blocks(recover(study.setup, runner.recovered(run.times, run.states), False), {"motion", "points"})
     return read_places(found["bodies"], found["points"])
 
@@ -80,9 +86,9 @@ def distance(a: Array, b: Array) -> float:
 def measured(name: str, tolerance: float) -> tuple[float, float, float]:
     """Estimate, true error, and how far that is sure, all relative to the scene's size."""
     study = solve(load("scene.yaml", SCENES[name]), Options(tolerance=tolerance))
-    found, size, wanted = study.results, study.setup.scene.layout.size, exact(name)
+    found, size, wanted = study.only(instants(study), {"motion", "points"}), study.setup.scene.layout.size, exact(name)
     error = distance(read_places(found.bodies, found.points), wanted.places)
-    return found.accuracy["estimate"]["motion"], error / size, wanted.sure / size
+    return study.results.accuracy["estimate"]["motion"], error / size, wanted.sure / size
 
 
 @pytest.mark.heavy
@@ -109,7 +115,7 @@ def test_the_tolerance_is_kept(name: str) -> None:
         if estimate <= tolerance:
             assert error <= tolerance + sure
         else:
-            assert tolerance < 3e-12
+            assert tolerance < max(3e-12, 20.0 * sure)  # `sure` is what rounding alone makes of four runs
             (warning,) = solve(load("scene.yaml", SCENES[name]), Options(tolerance=tolerance)).results.warnings
             assert f"the tolerance {tolerance:.3g} was not reached" in warning
 

@@ -1,0 +1,106 @@
+"""The instants at which a run is compared with its check run, and the start from which that one sets out.
+
+An estimate must hold for every instant of the run, asked or not. So the runs are compared at the asked instants, at the
+ends of the steps, and within steps: what the interpolation between the ends of a step errs by is largest in its middle
+and near its end, up to fifty times what the ends themselves err by.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+
+import numpy as np
+
+from heuncli import tolerances
+from heuncli.integration.runner import Runner, Trajectory
+from heuncli.records import record
+from heuncli.results import Array, Indices, Mask
+from heuncli.tree.layout import Layout
+
+WITHIN = (0.5, 0.85)  # of a step: where interpolation errs most, measured on open and closed chains
+ENDS = 5_000  # ends of steps that are compared, in even numbers over a longer run; the horizon is then looked for again
+INSIDE = 2_000  # bodies times steps up to which all steps are looked into
+ENOUGH = 64  # steps in which asked instants lie, anywhere, show what interpolation errs by
+BLOCKS, BLOCK = 8, 16  # else so many stretches of so many steps, spread over the run
+
+
+@record
+class Instants:
+    """Instants (n,) of a run, ascending, and its states there (n, n_state); asked (n,): whether they are told."""
+
+    times: Array
+    states: Array
+    asked: Mask
+
+
+def instants_of(runner: Runner, run: Trajectory) -> Instants:
+    """All instants at which a run is compared: asked ones, ends of steps, and some within the steps."""
+    bounds = np.concatenate([[0.0], run.ends])
+    seen = np.diff(np.searchsorted(run.times, bounds)) if len(run.ends) else np.zeros(0, dtype=np.intp)
+    ends, states = ends_of(run, seen)
+    inner = within(bounds, seen, len(runner.layout.place))
+    times = np.concatenate([run.times, ends, inner])
+    states = np.concatenate([run.states, states, runner.resample(run, inner)])
+    order = np.argsort(times, kind="stable")  # of equal instants the asked one comes first
+    times = times[order]
+    new = np.concatenate([[True], times[1:] != times[:-1]]) & (times <= run.times[-1])
+    return Instants(times[new], states[order][new], (order < len(run.times))[new])
+
+
+def ends_of(run: Trajectory, seen: Indices) -> tuple[Array, Array]:
+    """Ends of steps with fewer than two asked instants (seen: how many), as far as their states were kept."""
+    n = run.states.shape[1]  # a record begins with the state
+    kept = [(k, record[:n]) for k, record in run.kept if k == 0 or seen[k - 1] < 2]
+    kept = kept[:: -(-len(kept) // ENDS)]
+    times = np.array([run.ends[k - 1] if k else 0.0 for k, _ in kept])
+    return times, np.array([state for _, state in kept])
+
+
+def within(bounds: Array, seen: Indices, bodies: int) -> Array:
+    """Instants within steps: none where those asked for lie in enough of them, (n,) ascending."""
+    count = len(seen)
+    if np.count_nonzero(seen) >= ENOUGH:
+        return np.zeros(0)
+    steps = np.arange(count)
+    if count * bodies > INSIDE and count > BLOCKS * BLOCK:
+        first = np.linspace(0, count - BLOCK, BLOCKS).astype(int)
+        steps = (first[:, None] + np.arange(BLOCK)).ravel()
+    inner: Array = bounds[steps, None] + np.diff(bounds)[steps, None] * np.array(WITHIN)
+    return inner.ravel()
+
+
+def passed_between(runner: Runner, runs: Sequence[Trajectory], begin: float, end: float) -> tuple[Array, list[Array]]:
+    """The ends of the first run's steps between two instants, and the states of all runs there."""
+    last = min(run.ends[-1] for run in runs)
+    ends = runs[0].ends[(runs[0].ends > begin) & (runs[0].ends < end) & (runs[0].ends <= last)]
+    ends = ends[:: max(1, -(-len(ends) // ENDS))]
+    return ends, [runner.resample(run, ends) for run in runs]
+
+
+def interleaved(times: Array, states: Sequence[Array]) -> tuple[Array, Array]:
+    """The instants as often as there are runs, with the states of all runs (n, n_state) there, one after the other.
+
+    So all are answered with the same choice of closure rows, which goes from one state to the next: what redundant
+    joints leave open would else differ by more than an error.
+    """
+    return np.repeat(times, len(states)), np.stack(states, axis=1).reshape(len(states) * len(times), -1)
+
+
+def moved_start(layout: Layout) -> Array:
+    """A start beside the given one by the rounding of its numbers; the closures are closed again by the run.
+
+    What an unstable start makes of rounding is then seen: upright at 180 degrees, A stays there for ever. Rates move by
+    the rounding of the body's largest, so that what rests stays at rest. The directions are those of no symmetry: an
+    even spread of fractions of the golden section.
+    """
+    y = layout.y0.copy()
+    share = np.modf(0.6180339887498949 * np.arange(1, len(y) + 1))[0]
+    direction = np.where(share < 0.5, -1.0, 1.0) * (0.5 + np.modf(2.0 * share)[0] / 2.0)
+    for group in layout.tables["groups"]:
+        coordinates, rates, end = group["coordinates"], group["rates"], group["end"]
+        unit = 1.0 / layout.weights[coordinates:end]
+        size = np.maximum(np.abs(y[coordinates:rates]), unit[: rates - coordinates])
+        largest = (np.abs(y[rates:end]) / unit[rates - coordinates :]).max(initial=0.0)
+        scale = np.concatenate([size, largest * unit[rates - coordinates :]])
+        y[coordinates:end] += tolerances.START_ROUNDING * direction[coordinates:end] * scale
+    return y

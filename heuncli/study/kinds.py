@@ -1,0 +1,265 @@
+"""Estimated errors of loads and energy, by kind: twice the difference between runs, and the rounding of sums.
+
+Errors are the largest over the whole run, asked instants or not; each is relative to the largest that is told of its
+kind at the asked instants. A kind's forces are seen against its largest force, or largest moment by its longest arm;
+its moments against the largest moment, or largest force times the size of the scene. An arm is as long as the scene, of
+the foundation as far as the scene reaches from the point that its moment is taken about.
+Drives: torques and thrusts each against their own largest. Energy: against the largest kinetic, or what potential and
+work have exchanged, for these have no zero of their own.
+Where a kind is nothing but what larger terms leave when they cancel it is none: 0.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Iterable, Sequence
+
+import numpy as np
+
+from heuncli import tolerances
+from heuncli.integration.runner import Recovered
+from heuncli.kinetostatics.actions import Action, AppliedLoad, applied_loads, joint_actions, whole_joint_actions
+from heuncli.kinetostatics.bodies import BodyStates, body_states
+from heuncli.kinetostatics.energy import energy
+from heuncli.kinetostatics.foundation import inertia_loads, total
+from heuncli.kinetostatics.reactions import JointLoads, in_plane, joint_loads
+from heuncli.records import fields, replace
+from heuncli.results import Array, Estimate, Mask
+from heuncli.study.recover import about
+from heuncli.study.setup import Setup
+
+
+class Extent:
+    """Of one quantity over the instants so far: largest error, rounding and terms; largest value and range as told."""
+
+    def __init__(self) -> None:
+        self.difference = self.rounding = self.terms = 0.0
+        self.largest = self.told = 0.0
+        self.low, self.high = np.inf, -np.inf
+
+    def add(self, values: Array, rounding: Array, terms: Array, asked: Mask, more: Array | None = None) -> None:
+        """values (c n, ...): of c runs, at each instant one after the other; more (n,): difference beside.
+
+        rounding, terms (c n,); asked (n,): which instants are.
+        """
+        if not values.size:
+            return
+        count = len(values) // len(asked)
+        own = values[0::count]
+        size = lengths(own)
+        difference = np.max([lengths(own - values[k::count]) for k in range(1, count)], axis=0)
+        self.difference = _larger(self.difference, difference if more is None else difference + more)
+        self.rounding = _larger(self.rounding, rounding)
+        self.terms = _larger(self.terms, terms)
+        self.largest, self.told = _larger(self.largest, size), _larger(self.told, size[asked])
+        self.low, self.high = min(self.low, float(own.min())), max(self.high, float(own.max()))
+
+    @property
+    def error(self) -> float:
+        """The estimated error."""
+        return 2.0 * self.difference + self.rounding
+
+    @property
+    def exchanged(self) -> float:
+        """What lies between the lowest and the highest value, if less than the largest."""
+        return max(min(self.high - self.low, self.largest), 0.0)
+
+
+def lengths(values: Array) -> Array:
+    """The largest length of the vectors (n, ..., 3), or magnitude of the numbers (n,), at each instant."""
+    if values.ndim == 1:
+        return np.abs(values)
+    squares = np.sum(values * values, axis=-1).reshape(len(values), -1)
+    return np.asarray(np.sqrt(squares.max(axis=1)))
+
+
+def _larger(so_far: float, values: Array) -> float:
+    """The largest; what is no number is unboundedly large."""
+    largest = float(values.max(initial=0.0))
+    return max(so_far, largest) if np.isfinite(largest) else np.inf
+
+
+def relative(error: float, terms: float, *scales: float) -> float:
+    """An error against the first of the scales that is more than rounding of its terms; 0 where none is."""
+    scale = next((x for x in scales if x > tolerances.NO_LOAD * terms), 0.0)
+    if scale == 0.0:
+        return 0.0
+    found = error / scale if np.isfinite(scale) else np.inf
+    return min(found, tolerances.UNKNOWN)
+
+
+def rounding_of_loads(recovered: Recovered) -> Array:
+    """What rounding makes of the loads at each instant, relative to the largest terms of their balance, (n_t,).
+
+    Sums of some dozen terms, amplified by the closures: a pivot is the square of a singular value.
+    """
+    amplified = 1.0 / np.sqrt(np.maximum(recovered.pivot, tolerances.EPS**2))
+    found: Array = tolerances.SUM_ROUNDING * amplified
+    return found
+
+
+class Terms:
+    """The terms of the balances: inertia loads (c n, b, 3), weights, and the largest of all at each instant (c n,).
+
+    force [N]; moment [N m], those of forces over the reach of the scene among them; rounding: of the loads, relative.
+    """
+
+    def __init__(self, setup: Setup, several: Recovered, states: BodyStates, loads: Sequence[AppliedLoad]) -> None:
+        mechanism, size = setup.scene.mechanism, setup.scene.layout.size
+        self.ma, self.spin = inertia_loads(mechanism, states)
+        self.weight = np.array([b.mass for b in mechanism.bodies])[:, None] * mechanism.gravity
+        of_rows = several.rows["multiplier"][..., None] * several.rows["f"]
+        applied = [load.action for load in loads]
+        forces = [self.ma, several.bodies["joint_force"], of_rows, *(action.force for action in applied)]
+        moments = [self.spin, several.bodies["joint_moment"], *(action.moment for action in applied)]
+        self.force = np.maximum(_at_each(forces), np.abs(self.weight).max(initial=0.0))
+        self.moment = np.maximum(_at_each(moments), size * self.force)
+        self.rounding = rounding_of_loads(several)
+
+
+def _at_each(values: Iterable[Array]) -> Array:
+    """The largest of all values at each instant, (c n,); each (c n, ...)."""
+    largest = [np.abs(x.reshape(len(x), -1)).max(axis=1, initial=0.0) for x in values]
+    return np.asarray(np.max(largest, axis=0))
+
+
+class Kinds:
+    """Collects the differences of a motion's loads and energy between two runs."""
+
+    def __init__(self, setup: Setup) -> None:
+        self.setup = setup
+        self.extents: dict[tuple[str, str], Extent] = {}
+        self.reach = 0.0  # farthest centre of mass from the point that the foundation's moment is about
+        self.asked = np.zeros(0, dtype=bool)
+
+    def extent(self, kind: str, quantity: str) -> Extent:
+        """That of a quantity."""
+        return self.extents.setdefault((kind, quantity), Extent())
+
+    def take(
+        self, name: tuple[str, str], values: Array, rounding: Array, terms: Array, more: Array | None = None
+    ) -> None:
+        """More instants of a quantity: see `Extent.add`."""
+        self.extent(*name).add(values, rounding, terms, self.asked, more)
+
+    def add(self, several: Recovered, asked: Mask) -> None:
+        """More instants, and which are asked ones; at each the answers of A and then those of the other runs."""
+        count = len(several.times) // max(len(asked), 1)
+        same = same_rows(several, count)
+        if not same.any():
+            return
+        if not same.all():
+            kept = {name: values[np.repeat(same, count)] for name, values in fields(several).items()}
+            several, asked = replace(several, **kept), asked[same]
+        self.asked = asked
+        layout, mechanism = self.setup.scene.layout, self.setup.scene.mechanism
+        states = body_states(layout, several)
+        joints = joint_loads(layout, several, states)
+        loads = applied_loads(mechanism, several)
+        terms = Terms(self.setup, several, states, loads)
+        self.add_joints(joints, terms)
+        self.add_foundation(states, [*(load.action for load in loads), *joint_actions(joints)], terms)
+        if self.setup.cuts:
+            self.add_sections(states, [*whole_joint_actions(joints), *(load.action for load in loads)], terms)
+        self.add_energy(several, states, loads)
+
+    def add_joints(self, joints: Sequence[JointLoads], terms: Terms) -> None:
+        """Reactions and drives."""
+        F, M = terms.rounding * terms.force, terms.rounding * terms.moment
+        for load in joints:
+            self.take(("reactions", "force"), load.force, F, terms.force)
+            self.take(("reactions", "moment"), load.moment, M, terms.moment)
+            if load.drive is not None and load.joint.drive is not None:
+                turns = load.joint.drive.quantity == "angle"
+                rounding, of = (M, terms.moment) if turns else (F, terms.force)
+                self.take(("drives", "torque" if turns else "thrust"), load.drive, rounding, of)
+
+    def add_foundation(self, states: BodyStates, actions: Sequence[Action], terms: Terms) -> None:
+        """Total of the foundation, its elements and the mass effects."""
+        mechanism, origin = self.setup.scene.mechanism, about(self.setup)
+        arm = states.centre - origin
+        far = np.abs(arm).max(axis=(1, 2))
+        self.reach = max(self.reach, float(far.max()))
+        moments = terms.moment + far * terms.force
+        inner = [action for action in actions if action.kind != "joint" and action.from_ is not None]
+        elements = [on for action in inner if (on := action.on_ground()) is not None]
+        wrenches = [
+            ("foundation", *total(states, terms.weight - terms.ma, terms.spin, actions, origin)),
+            ("effects", terms.ma.sum(axis=1), np.sum(np.cross(arm, terms.ma) + terms.spin, axis=1)),
+            *(("elements", force, moment) for force, moment, _ in elements),
+        ]
+        for kind, force, moment in wrenches:
+            F, M = in_plane(force, moment) if mechanism.planar else (force, moment)
+            self.take((kind, "force"), F, terms.rounding * terms.force, terms.force)
+            self.take((kind, "moment"), M, terms.rounding * moments, moments)
+
+    def add_sections(self, states: BodyStates, actions: Sequence[Action], terms: Terms) -> None:
+        """The cuts' loads in body axes, and how far the bodies themselves have turned between the two runs."""
+        from heuncli.kinetostatics.sections import acceleration_matrix, attachments, piece_loads  # as in recover
+
+        gravity = self.setup.scene.mechanism.gravity
+        for cuts in self.setup.cuts:
+            on = attachments(cuts.body, states, actions)
+            force, moment = piece_loads(cuts, acceleration_matrix(cuts.body, states, gravity), on)
+            R = states.R[:, cuts.body]
+            count = len(R) // len(self.asked)
+            own = R[0::count]
+            turned = np.max([np.sqrt(np.sum((own - R[k::count]) ** 2, axis=(1, 2))) for k in range(1, count)], axis=0)
+            for quantity, values, of in (("force", force, terms.force), ("moment", moment, terms.moment)):
+                both = values.transpose(1, 2, 0)
+                turn = turned * lengths(both[0::count])
+                self.take(("sections", quantity), both, terms.rounding * of, of, turn)
+
+    def add_energy(self, several: Recovered, states: BodyStates, loads: Sequence[AppliedLoad]) -> None:
+        """Kinetic and potential energy, and work."""
+        block = energy(self.setup.scene.layout, several, states, loads)
+        m = np.array([b.mass for b in self.setup.scene.mechanism.bodies])
+        speed = np.abs(states.v_centre).max(axis=(1, 2))
+        lift = np.abs(states.centre @ self.setup.scene.mechanism.gravity) @ m
+        rounding = tolerances.SUM_ROUNDING * (block["kinetic"] + m.sum() * speed**2)
+        none = np.zeros(len(several.times))
+        self.take(("energy", "kinetic"), block["kinetic"], rounding, none)
+        self.take(("energy", "potential"), block["potential"], tolerances.SUM_ROUNDING * lift, none)
+        self.take(("energy", "work"), block["work"], none, none)
+
+    def estimate(self) -> Estimate:
+        """The estimated error of each kind, relative to the largest told of it."""
+        size = self.setup.scene.layout.size
+        return Estimate(
+            reactions=self.wrench(size, "reactions"),
+            drives=max(self.wrench(1.0, "drives", "thrust", ""), self.wrench(1.0, "drives", "", "torque")),
+            foundation=self.wrench(size + self.reach, "foundation", also=("effects", "elements")),
+            sections=self.wrench(size, "sections"),
+            energy=self.energies(),
+        )
+
+    def wrench(
+        self, arm: float, kind: str, force: str = "force", moment: str = "moment", also: Sequence[str] = ()
+    ) -> float:
+        """Error of forces and of moments, and of those of other kinds; arm: the longest of a moment."""
+        size = self.setup.scene.layout.size
+        F, M = self.extent(kind, force), self.extent(kind, moment)
+        parts = [(F, M), *((self.extent(other, force), self.extent(other, moment)) for other in also)]
+        terms_F, terms_M = max(f.terms for f, _ in parts), max(m.terms for _, m in parts)
+        forces = [max(F.told, M.told / arm), *(max(f.largest, m.largest / arm) for f, m in parts)]
+        moments = [max(M.told, F.told * size), *(max(m.largest, f.largest * size) for f, m in parts)]
+        return max(
+            relative(max(f.error for f, _ in parts), max(terms_F, terms_M / arm), *forces),
+            relative(max(m.error for _, m in parts), max(terms_M, terms_F * size), *moments),
+        )
+
+    def energies(self) -> float:
+        """Error of the energies."""
+        mechanism, size = self.setup.scene.mechanism, self.setup.scene.layout.size
+        kinetic, potential, work = (self.extent("energy", name) for name in ("kinetic", "potential", "work"))
+        lift = sum(b.mass for b in mechanism.bodies) * float(np.abs(mechanism.gravity).max()) * size
+        if kinetic.largest <= tolerances.NO_ENERGY * lift:
+            return 0.0
+        error = max(x.error for x in (kinetic, potential, work))
+        return relative(error, 0.0, max(kinetic.told, potential.exchanged, work.exchanged), kinetic.largest)
+
+
+def same_rows(several: Recovered, count: int) -> Mask:
+    """Where all of so many runs are answered with the same closure rows, (n,): the others have no multiplier."""
+    chosen = several.rows["multiplier"] != 0.0
+    same: Mask = np.all([chosen[0::count] == chosen[k::count] for k in range(1, count)], axis=(0, 2))
+    return same
