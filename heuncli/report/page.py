@@ -86,9 +86,10 @@ class Page(NamedTuple):
     def instants(self, results: Results, *, every_cut: bool = False) -> list[Table]:
         """The tables at the instants of `results`, which is the same run at any instants."""
         horizon = self.results.accuracy.get("horizon")
+        certain = self.certain._replace(beside=frozenset(results.accuracy.get("unknown", ())))
         tables: list[Table] = []
         for block in _blocks(results, self.labels):
-            tables += instants.instants_tables(block, results.time, horizon, self.certain)
+            tables += instants.instants_tables(block, results.time, horizon, certain)
         for run in runs.runs_of(results, self.labels):
             tables += runs.instants_tables(run, results.time, horizon, self.certain, every=every_cut)
         return [*tables, *self._ending()]
