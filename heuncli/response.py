@@ -27,8 +27,12 @@ def workspace_of(layout: Layout) -> workspace.Workspace:
         "work_at": layout.work_at,
         "answer_count": layout.answer_count,
         "column_count": layout.column_count,
+        "measure": layout.measure,
+        "island_room": max((len(i.rows) * len(i.freedoms) for i in layout.islands), default=0),
     }
-    return workspace.Workspace(layout.tables, layout.indices, layout.pack.expressions, numbers)
+    made = workspace.Workspace(layout.tables, layout.indices, layout.pack.expressions, numbers)
+    made.start(0.0, layout.y0)
+    return made
 
 
 @record
@@ -79,14 +83,15 @@ class Jacobian:
 
 def jacobian(at: workspace.Workspace, layout: Layout, times: Array, states: Array) -> Jacobian:
     """J of all closure rows at settled states."""
-    out = np.zeros(len(times) * layout.column_count)
+    width = int(layout.tables["closures"]["answer_count"].sum())
+    out = np.zeros(len(times) * width)
     at.jacobians(times, np.ascontiguousarray(states, dtype=float).ravel(), out)
     indices, closures = np.array(layout.indices), layout.tables["closures"]
     paths = [indices[row["answers"] : row["answers"] + row["answer_count"]] for row in closures]
     freedom = np.concatenate([np.zeros(0, dtype=int), *paths])
     row: Array = np.repeat(np.arange(len(closures)), closures["answer_count"])
     shape = (len(closures), layout.answer_count)
-    return Jacobian(out.reshape(len(times), layout.column_count), row, freedom, shape)
+    return Jacobian(out.reshape(len(times), width), row, freedom, shape)
 
 
 def carried(at: workspace.Workspace, times: Array, states: Array, multipliers: Array, n_b: int) -> Array:

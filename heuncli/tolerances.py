@@ -122,9 +122,11 @@ KERNEL: dict[str, float] = {
     "own_share": 1e-12,
     "much_lent": 1e-3,  # three digits lost
     # -- rank
-    "moves_nothing": 1e-24,  # squares of loads: 1e-12 of the largest load the row could exert, its rounding
     "across": 0.01,  # a row's answer across its arms counts to a tenth of the arm, in any pose
-    "independent": 1e-11,  # a pivot is a square: rows whose independent part is 3e-6 of them still count
+    "independent": RANK,  # what the verdicts judge by, too
+    "passing": 3e-6,  # square root of `reopened`: through a singular pose a row with s left of it opens by s**2
+    "passing_of_start": 1e-3,  # of what the start's rows have left: no machine is kept from its own start's rank
+    "rounding": 8.0 * EPS,  # of some ten terms: a row's demand, a freedom's load
     "preference": 1.01,  # 1 %: rows alike but for rounding are taken in their order, which keeps the choice steady
     "pivot_drop": 1e-3,  # of a pivot: 5 digits of the multipliers lost, time to look for better rows
     "near_singular": 0.2,  # a pivot below which the stages of a step are settled, too: their gaps grow by 1 / pivot
@@ -135,6 +137,9 @@ KERNEL: dict[str, float] = {
     "nearly_closed": 1e-14,
     "reopened": 1e-11,
     "lost": 1e-8,
+    # -- rates that the closures change at the end of a step, of the largest
+    "jump": 1e-2,  # coarse runs err by 1e-3, a blow changes rates by their own size
+    "jump_of_error": 100.0,  # an accepted step errs by the tolerance, the rows' rates by some of it, over their pivot
     # -- steps
     "least_step": 1e-14,  # of the time: fewer than 50 roundings of t
     "rope_step": 1e-12,  # of the time: how near a run comes to where a rope would push

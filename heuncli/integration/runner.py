@@ -318,6 +318,7 @@ class Runner:
         return Recovered(
             times=at, states=flat.reshape(settled.shape), bodies=bodies, freedoms=freedoms, loads=loads, rows=rows,
             gap=whole["gap"][:, 0], idle=whole["idle"][:, 0], pivot=whole["pivot"][:, 0],
+            residual=whole["residual"][:, 0],
         )  # fmt: skip
 
 
@@ -333,4 +334,5 @@ class Recovered:
     rows: Table
     gap: Array
     idle: Array
-    pivot: Array  # least pivot of the closure rows, chosen at each instant or held from the first; 1: far from singular
+    pivot: Array  # square of the least pivot of the independent closure rows; 1: far from singular
+    residual: Array  # of all rows, J Vdot + gamma at the accelerations found, of the terms it is the sum of

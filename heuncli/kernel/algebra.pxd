@@ -256,6 +256,18 @@ cdef inline double inverse_form(Ldl3 F, Vec3 b) noexcept nogil:  # b' A^-1 b.
     cdef double z = b.z - (F.zx * b.x + F.zy * y)
     return b.x * b.x * F.xx + y * y * F.yy + z * z * F.zz
 
+cdef inline Vec3 roots(Ldl3 F) noexcept nogil:  # D^(-1/2).
+    return Vec3(sqrt(F.xx), sqrt(F.yy), sqrt(F.zz))
+
+cdef inline Vec3 half_solve(Ldl3 F, Vec3 r, Vec3 b) noexcept nogil:  # D^(-1/2) L^-1 b, r = D^(-1/2): its square is b' A^-1 b.
+    cdef double y = b.y - F.yx * b.x
+    return Vec3(r.x * b.x, r.y * y, r.z * (b.z - F.zx * b.x - F.zy * y))
+
+cdef inline Vec3 from_half(Ldl3 F, Vec3 r, Vec3 x) noexcept nogil:  # L D^(1/2) x: back from half_solve.
+    cdef double a = x.x / r.x
+    cdef double b = x.y / r.y
+    return Vec3(a, F.yx * a + b, F.zx * a + F.zy * b + x.z / r.z)
+
 # --- attitudes as quaternions
 
 cdef inline Mat3 attitude(Quaternion q) noexcept nogil:  # The rotation matrix of a quaternion of any length but zero, body to world.

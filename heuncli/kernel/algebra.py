@@ -418,6 +418,24 @@ def inverse_form(F: Ldl3, b: Vec3) -> float:
     return b.x * b.x * F.xx + y * y * F.yy + z * z * F.zz
 
 
+def roots(F: Ldl3) -> Vec3:
+    """D^(-1/2)."""
+    return Vec3(sqrt(F.xx), sqrt(F.yy), sqrt(F.zz))
+
+
+def half_solve(F: Ldl3, r: Vec3, b: Vec3) -> Vec3:
+    """D^(-1/2) L^-1 b, r = D^(-1/2): its square is b' A^-1 b."""
+    y: float = b.y - F.yx * b.x
+    return Vec3(r.x * b.x, r.y * y, r.z * (b.z - F.zx * b.x - F.zy * y))
+
+
+def from_half(F: Ldl3, r: Vec3, x: Vec3) -> Vec3:
+    """L D^(1/2) x: back from half_solve."""
+    a: float = x.x / r.x
+    b: float = x.y / r.y
+    return Vec3(a, F.yx * a + b, F.zx * a + F.zy * b + x.z / r.z)
+
+
 # --- attitudes as quaternions
 
 

@@ -1,12 +1,12 @@
 """Signatures of closures.py for C."""
 
 from heuncli.kernel.algebra cimport (
-    Vec3, add, add_cross, add_scaled, centripetal, cross, dot, norm, rotate, rotate_back, scaled, solve, sub,
+    Vec3, add, add_cross, add_scaled, centripetal, cross, dot, norm, rotate, rotate_back, scaled, sub,
 )
 from heuncli.kernel.expressions cimport Jet, jet
 from heuncli.kernel.scene cimport Body, Closure, Counter, DOT, GUIDE, Scene
 from heuncli.kernel.tree cimport answered, direction_of, push
-from libc.math cimport sqrt
+from libc.math cimport fabs
 
 cdef struct Carried:
     Vec3 v
@@ -19,19 +19,16 @@ cdef void measure_rows(Scene *scene, double t) noexcept nogil
 cdef void guide_row(Scene *scene, Closure *row) noexcept nogil
 cdef void dot_row(Scene *scene, Closure *row) noexcept nogil
 cdef void rod_row(Scene *scene, Closure *row) noexcept nogil
-cdef double acceleration_along(Scene *scene, Closure *row, bint inertial) noexcept nogil
-cdef double acceleration_of(Body *body, Closure *row) noexcept nogil
+cdef double demanded(Scene *scene, Closure *row) noexcept nogil
+cdef double along_row(Closure *row, Vec3 r, Vec3 a, Vec3 alpha) noexcept nogil
+cdef double residual_of(Scene *scene, Closure *row) noexcept nogil
+cdef double size_of_demand(Scene *scene, Closure *row) noexcept nogil
+cdef double size_of_answer(Scene *scene, Closure *row) noexcept nogil
+cdef double size_of_terms(Body *body, Closure *row, Vec3 a, Vec3 alpha) noexcept nogil
 cdef void put_unit_load(Scene *scene, Closure *row, int body, double sign) noexcept nogil
 cdef void clear_path(Scene *scene, Closure *row) noexcept nogil
 cdef void build_column(Scene *scene, Closure *row) noexcept nogil
 cdef void sweep_column(Scene *scene, Closure *row) noexcept nogil
-cdef void spread_column(Scene *scene, Closure *row) noexcept nogil
-cdef void clear_column(Scene *scene, Closure *row) noexcept nogil
-cdef double column_product(Scene *scene, Closure *row) noexcept nogil
-cdef double factor_closures(Scene *scene) noexcept nogil
-cdef int first_coupled(Scene *scene, int i) noexcept nogil
-cdef double eliminate_row(Scene *scene, int i) noexcept nogil
-cdef void solve_closures(Scene *scene) noexcept nogil
 cdef void push_closures(Scene *scene) noexcept nogil
 cdef void count_turns(Scene *scene, double *dy) noexcept nogil
 cdef int slack(Scene *scene) noexcept nogil

@@ -1,8 +1,8 @@
-"""Closed chains on top of the sweep: closure rows, and their multipliers.
+"""Closed chains on top of the sweep: the rows that the closures ask of the motion, and their unit loads.
 
-    J Vdot + gamma = 0,   A = J M^-1 J' = sum over freedoms e_r D^-1 e_s,   A lambda = -(J Vdot_free + gamma)
+    J Vdot + gamma = 0
 Row r puts the force f at the point Q and the couple m on body b for lambda = 1, and the opposite at the same place on
-a; its column e_r comes from one upward pass along the two paths to the ground.
+a; its column e_r, what the freedoms answer to that, comes from one upward pass along the two paths to the ground.
 """
 
 from __future__ import annotations
@@ -13,7 +13,7 @@ except ImportError:
     from heuncli.kernel.shadow import cython
 
 if not cython.compiled:
-    from math import sqrt
+    from math import fabs
 
     from heuncli.kernel.algebra import (
         Vec3,
@@ -27,7 +27,6 @@ if not cython.compiled:
         rotate,
         rotate_back,
         scaled,
-        solve,
         sub,
     )
     from heuncli.kernel.expressions import jet
@@ -119,20 +118,61 @@ def rod_row(scene: cython.pointer[Scene], row: cython.pointer[Closure]) -> cytho
         row.gamma += (dot(v, v) - row.rate * row.rate) / span
 
 
-def acceleration_along(
-    scene: cython.pointer[Scene], row: cython.pointer[Closure], inertial: cython.bint
-) -> cython.double:
-    """J Vdot of a row at the accelerations found; the ground at rest is accelerated by -g."""
-    found: cython.double = 0.0
-    ground: cython.double = -dot(row.f, scene.gravity) if inertial else 0.0
-    found += acceleration_of(cython.address(scene.bodies[row.b]), row) if row.b >= 0 else ground
-    found -= acceleration_of(cython.address(scene.bodies[row.a]), row) if row.a >= 0 else ground
+def demanded(scene: cython.pointer[Scene], row: cython.pointer[Closure]) -> cython.double:
+    """gamma + J Vdot of a row if no freedom accelerated: what the freedoms have to answer."""
+    found: cython.double = row.gamma
+    if row.b >= 0:
+        found += along_row(row, scene.bodies[row.b].r, scene.bodies[row.b].a_zero, scene.bodies[row.b].alpha_zero)
+    if row.a >= 0:
+        found -= along_row(row, scene.bodies[row.a].r, scene.bodies[row.a].a_zero, scene.bodies[row.a].alpha_zero)
     return found
 
 
-def acceleration_of(body: cython.pointer[Body], row: cython.pointer[Closure]) -> cython.double:
+def along_row(row: cython.pointer[Closure], r: Vec3, a: Vec3, alpha: Vec3) -> cython.double:
     """f . (a + alpha x (Q - r)) + m . alpha."""
-    return dot(row.f, add_cross(body.a, body.alpha, sub(row.Q, body.r))) + dot(row.m, body.alpha)
+    return dot(row.f, add_cross(a, alpha, sub(row.Q, r))) + dot(row.m, alpha)
+
+
+def residual_of(scene: cython.pointer[Scene], row: cython.pointer[Closure]) -> cython.double:
+    """|J Vdot + gamma| of a row at the accelerations found, which are less that of gravity, the ground's too."""
+    ground: cython.double = -dot(row.f, scene.gravity)
+    b: cython.double = ground
+    a: cython.double = ground
+    if row.b >= 0:
+        b = along_row(row, scene.bodies[row.b].r, scene.bodies[row.b].a, scene.bodies[row.b].alpha)
+    if row.a >= 0:
+        a = along_row(row, scene.bodies[row.a].r, scene.bodies[row.a].a, scene.bodies[row.a].alpha)
+    return fabs(row.gamma + b - a)
+
+
+def size_of_demand(scene: cython.pointer[Scene], row: cython.pointer[Closure]) -> cython.double:
+    """Size of the terms of `demanded`."""
+    found: cython.double = fabs(row.gamma)
+    if row.b >= 0:
+        b: cython.pointer[Body] = cython.address(scene.bodies[row.b])
+        found += size_of_terms(b, row, b.a_zero, b.alpha_zero)
+    if row.a >= 0:
+        a: cython.pointer[Body] = cython.address(scene.bodies[row.a])
+        found += size_of_terms(a, row, a.a_zero, a.alpha_zero)
+    return found
+
+
+def size_of_answer(scene: cython.pointer[Scene], row: cython.pointer[Closure]) -> cython.double:
+    """Size of the terms of `residual_of`."""
+    found: cython.double = fabs(row.gamma)
+    if row.b >= 0:
+        b: cython.pointer[Body] = cython.address(scene.bodies[row.b])
+        found += size_of_terms(b, row, b.a, b.alpha)
+    if row.a >= 0:
+        a: cython.pointer[Body] = cython.address(scene.bodies[row.a])
+        found += size_of_terms(a, row, a.a, a.alpha)
+    return found
+
+
+def size_of_terms(body: cython.pointer[Body], row: cython.pointer[Closure], a: Vec3, alpha: Vec3) -> cython.double:
+    """|f| (|a| + (|alpha| + omega^2) |Q - r|) + |m| (|alpha| + omega^2)."""
+    turn: cython.double = norm(alpha) + dot(body.omega, body.omega)
+    return norm(row.f) * (norm(a) + turn * norm(sub(row.Q, body.r))) + norm(row.m) * turn
 
 
 def put_unit_load(
@@ -184,133 +224,6 @@ def sweep_column(scene: cython.pointer[Scene], row: cython.pointer[Closure]) -> 
             parent: cython.pointer[Body] = cython.address(scene.bodies[body.parent])
             parent.M_branch = add(parent.M_branch, add_cross(body.M_branch, body.arm, body.f_branch))
             parent.f_branch = add(parent.f_branch, body.f_branch)
-
-
-def spread_column(scene: cython.pointer[Scene], row: cython.pointer[Closure]) -> cython.void:
-    """D^-1 e_r, spread over all freedoms."""
-    n: cython.Py_ssize_t
-    k: cython.Py_ssize_t
-    at: cython.Py_ssize_t = row.column
-    to: cython.Py_ssize_t
-    for n in range(row.path, row.path + row.path_count):
-        body: cython.pointer[Body] = cython.address(scene.bodies[scene.indices[n]])
-        to = body.answer_at
-        if body.ball:
-            turns: Vec3 = solve(body.turning, Vec3(scene.columns[at], scene.columns[at + 1], scene.columns[at + 2]))
-            scene.spread[to] = turns.x
-            scene.spread[to + 1] = turns.y
-            scene.spread[to + 2] = turns.z
-            at += 3
-            to += 3
-        for k in range(body.first_freedom, body.end_freedom):
-            scene.spread[to] = scene.freedoms[k].D * scene.columns[at]
-            at += 1
-            to += 1
-
-
-def clear_column(scene: cython.pointer[Scene], row: cython.pointer[Closure]) -> cython.void:
-    """Take back what spread_column put down."""
-    k: cython.Py_ssize_t
-    for k in range(row.answers, row.answers + row.answer_count):
-        scene.spread[scene.indices[k]] = 0.0
-
-
-def column_product(scene: cython.pointer[Scene], row: cython.pointer[Closure]) -> cython.double:
-    """e_r . (what is spread)."""
-    k: cython.Py_ssize_t
-    found: cython.double = 0.0
-    for k in range(row.answer_count):
-        found += scene.columns[row.column + k] * scene.spread[scene.indices[row.answers + k]]
-    return found
-
-
-def factor_closures(scene: cython.pointer[Scene]) -> cython.double:
-    """Columns and Cholesky factor of A over the independent rows, within each row's envelope; the least pivot.
-
-    Pivots are relative to what the row could answer when the rows were chosen: a row that vanishes counts.
-    """
-    i: cython.int
-    pivot: cython.double
-    least: cython.double = 1.0
-    for i in range(scene.selected_count):
-        build_column(scene, cython.address(scene.closures[scene.selected[i]]))
-    for i in range(scene.selected_count):
-        scene.envelope[i] = first_coupled(scene, i)
-        pivot = eliminate_row(scene, i)
-        if pivot < least:
-            least = pivot
-    return least
-
-
-def first_coupled(scene: cython.pointer[Scene], i: cython.int) -> cython.int:
-    """The first independent row whose paths meet those of the i-th."""
-    k: cython.Py_ssize_t
-    rank: cython.int
-    first: cython.int = i
-    row: cython.pointer[Closure] = cython.address(scene.closures[scene.selected[i]])
-    for k in range(row.couplings, row.couplings + row.coupling_count):
-        rank = scene.closures[scene.indices[k]].rank
-        if rank >= 0 and rank < first:
-            first = rank
-    return first
-
-
-def eliminate_row(scene: cython.pointer[Scene], i: cython.int) -> cython.double:
-    """Row i of A and of its Cholesky factor (diagonal inverted); its pivot, scaled, or -1 where none is left."""
-    m: cython.Py_ssize_t = scene.selected_count
-    at: cython.Py_ssize_t = m * i
-    of: cython.Py_ssize_t
-    j: cython.Py_ssize_t
-    k: cython.Py_ssize_t
-    begin: cython.Py_ssize_t
-    x: cython.double
-    first: cython.Py_ssize_t = scene.envelope[i]
-    row: cython.pointer[Closure] = cython.address(scene.closures[scene.selected[i]])
-    A: cython.p_double = scene.A
-    spread_column(scene, row)
-    for j in range(first, i + 1):
-        A[at + j] = column_product(scene, cython.address(scene.closures[scene.selected[j]]))
-    clear_column(scene, row)
-    for j in range(first, i):
-        of = m * j
-        begin = scene.envelope[j] if scene.envelope[j] > first else first
-        x = A[at + j]
-        for k in range(begin, j):
-            x -= A[at + k] * A[of + k]
-        A[at + j] = x * A[of + j]
-    x = A[at + i]
-    for k in range(first, i):
-        x -= A[at + k] * A[at + k]
-    if x <= 0.0:
-        A[at + i] = 1.0
-        return -1.0
-    A[at + i] = 1.0 / sqrt(x)
-    return x * row.pose_scale * row.pose_scale
-
-
-def solve_closures(scene: cython.pointer[Scene]) -> cython.void:
-    """lambda = -A^-1 demand; adds sum lambda e_r to e."""
-    m: cython.Py_ssize_t = scene.selected_count
-    i: cython.Py_ssize_t
-    j: cython.Py_ssize_t
-    x: cython.double
-    A: cython.p_double = scene.A
-    for i in range(scene.closure_count):
-        scene.closures[i].multiplier = 0.0
-    for i in range(m):
-        x = -scene.closures[scene.selected[i]].demand
-        for j in range(scene.envelope[i], i):
-            x -= A[m * i + j] * scene.closures[scene.selected[j]].multiplier
-        scene.closures[scene.selected[i]].multiplier = x * A[m * i + i]
-    for i in range(m - 1, -1, -1):
-        x = scene.closures[scene.selected[i]].multiplier * A[m * i + i]
-        scene.closures[scene.selected[i]].multiplier = x
-        for j in range(scene.envelope[i], i):
-            scene.closures[scene.selected[j]].multiplier -= A[m * i + j] * x
-    for i in range(m):
-        row: cython.pointer[Closure] = cython.address(scene.closures[scene.selected[i]])
-        for j in range(row.answer_count):
-            scene.e[scene.indices[row.answers + j]] += row.multiplier * scene.columns[row.column + j]
 
 
 def push_closures(scene: cython.pointer[Scene]) -> cython.void:

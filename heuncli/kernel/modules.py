@@ -6,6 +6,7 @@ MODULES = (
     "tree",
     "loads",
     "closures",
+    "orthogonal",
     "selection",
     "chosen",
     "response",

@@ -1,18 +1,18 @@
 """Signatures of response.py for C."""
 
 from heuncli.kernel.algebra cimport Quaternion, Vec3, dot, slightly_turned, turned
-from heuncli.kernel.closures cimport (
-    acceleration_along, count_turns, factor_closures, measure_rows, push_closures, solve_closures,
-)
+from heuncli.kernel.closures cimport count_turns, demanded, measure_rows, push_closures
 from heuncli.kernel.loads cimport apply_loads
+from heuncli.kernel.orthogonal cimport factor_closures, solve_closures
 from heuncli.kernel.scene cimport Body, Closure, Freedom, Lent, Scene
 from heuncli.kernel.tree cimport (
-    balance, climb, derivative, downward, factor_tree, kinematics, push_lent, upward,
+    add_zeros, balance, derivative, downward, factor_tree, kinematics, push_lent, put_all_loads, put_loads, upward,
 )
 from libc.math cimport fabs, sqrt
 
 cdef int configure(Scene *scene, double t) noexcept nogil
 cdef void respond(Scene *scene, bint inertial) noexcept nogil
+cdef void answer_loads(Scene *scene, bint inertial, bint apart) noexcept nogil
 cdef void answer(Scene *scene, bint inertial) noexcept nogil
 cdef int weigh_lent(Scene *scene) noexcept nogil
 cdef void lend_less(Scene *scene) noexcept nogil

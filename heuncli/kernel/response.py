@@ -3,7 +3,7 @@
     configure   factors of tree and closures at the present kinematics: no loads
     respond     loads on the bodies -> accelerations and multipliers; inertial: with velocity terms, drives and gravity
 Accelerations (49), velocity jumps (48), projection onto the closures and single columns of loads (heuncli/response.py)
-are all answers of this map: M V + ... = loads + J' lambda, with J M^-1 J' lambda = -(J V_free + gamma).
+are all answers of this map: M V + ... = loads + J' lambda, J V + gamma = 0.
 """
 
 from __future__ import annotations
@@ -17,18 +17,23 @@ if not cython.compiled:
     from math import fabs, sqrt
 
     from heuncli.kernel.algebra import Quaternion, Vec3, dot, slightly_turned, turned
-    from heuncli.kernel.closures import (
-        acceleration_along,
-        count_turns,
-        factor_closures,
-        measure_rows,
-        push_closures,
-        solve_closures,
-    )
+    from heuncli.kernel.closures import count_turns, demanded, measure_rows, push_closures
     from heuncli.kernel.loads import apply_loads
+    from heuncli.kernel.orthogonal import factor_closures, solve_closures
     from heuncli.kernel.scene import Body, Closure, Freedom, Lent, Scene
     from heuncli.kernel.shadow import cython
-    from heuncli.kernel.tree import balance, climb, derivative, downward, factor_tree, kinematics, push_lent, upward
+    from heuncli.kernel.tree import (
+        add_zeros,
+        balance,
+        derivative,
+        downward,
+        factor_tree,
+        kinematics,
+        push_lent,
+        put_all_loads,
+        put_loads,
+        upward,
+    )
 
 
 def configure(scene: cython.pointer[Scene], t: cython.double) -> cython.int:
@@ -52,30 +57,43 @@ def configure(scene: cython.pointer[Scene], t: cython.double) -> cython.int:
 
 
 def respond(scene: cython.pointer[Scene], inertial: cython.bint) -> cython.void:
-    """Accelerations and multipliers that answer the loads on the bodies; what is lent takes nothing of them."""
+    """Accelerations and multipliers that answer the loads on the bodies; what is lent takes nothing of them.
+
+    With closures, loads and what the rows demand of the kinematics are kept apart: the answer to loads is then as exact
+    as the geometry (orthogonal.py).
+    """
     i: cython.Py_ssize_t
+    apart: cython.bint = inertial and scene.selected_count > 0
     for i in range(scene.lent_count):
         scene.lents[i].z = 0.0
-    upward(scene, inertial)
-    answer(scene, inertial)
+    answer_loads(scene, inertial, apart)
     if scene.lent_count:
         find_taken(scene)
-        upward(scene, inertial)
-        answer(scene, inertial)
+        answer_loads(scene, inertial, apart)
+    if apart:
+        add_zeros(scene)
+
+
+def answer_loads(scene: cython.pointer[Scene], inertial: cython.bint, apart: cython.bint) -> cython.void:
+    """The same for given loads of what is lent; apart: without the accelerations if no freedom accelerated."""
+    r: cython.Py_ssize_t
+    if apart:
+        put_all_loads(scene)
+    else:
+        put_loads(scene, inertial)
+    for r in range(scene.closure_count):
+        row: cython.pointer[Closure] = cython.address(scene.closures[r])
+        row.demand = demanded(scene, row) if apart else 0.0
+    answer(scene, inertial and not apart)
 
 
 def answer(scene: cython.pointer[Scene], inertial: cython.bint) -> cython.void:
-    """Accelerations and multipliers that answer e."""
-    r: cython.Py_ssize_t
-    downward(scene, inertial)
+    """Accelerations and multipliers that answer what stands in M_branch and f_branch, and what the rows demand."""
+    upward(scene, inertial)
+    scene.load_size = 0.0
     if scene.selected_count:
-        for r in range(scene.closure_count):
-            row: cython.pointer[Closure] = cython.address(scene.closures[r])
-            row.demand = acceleration_along(scene, row, inertial)
-            if inertial:
-                row.demand = row.gamma + row.demand
         solve_closures(scene)
-        downward(scene, inertial)
+    downward(scene, inertial)
 
 
 def weigh_lent(scene: cython.pointer[Scene]) -> cython.int:
@@ -92,13 +110,14 @@ def weigh_lent(scene: cython.pointer[Scene]) -> cython.int:
     loose: cython.int = 0
     x: cython.double
     scene.own_share = 1.0
+    for i in range(scene.closure_count):
+        scene.closures[i].demand = 0.0
     for j in range(n):
         for i in range(scene.body_count):
             scene.bodies[i].M_branch = zero
             scene.bodies[i].f_branch = zero
         scene.lents[j].z = 1.0
         push_lent(scene, cython.address(scene.lents[j]))
-        climb(scene, False)
         answer(scene, False)
         for i in range(j, n):
             scene.own[n * i + j] = (1.0 if i == j else 0.0) - taken(scene, cython.address(scene.lents[i]))

@@ -33,6 +33,8 @@ cdef struct Body:
     Vec3 arm
     Vec3 alpha_bias
     Vec3 a_bias
+    Vec3 alpha_zero
+    Vec3 a_zero
     Vec3 mc
     Vec3 gyroscopic
     Vec3 centrifugal
@@ -105,6 +107,7 @@ cdef struct Closure:
     int column
     int answers
     int answer_count
+    int filled_count
     int couplings
     int coupling_count
     int rank
@@ -114,6 +117,7 @@ cdef struct Closure:
     Vec3 q
     double length
     double weight
+    double measure
     Vec3 f
     Vec3 m
     Vec3 Q
@@ -123,8 +127,10 @@ cdef struct Closure:
     double multiplier
     double demand
     double prescribed_rate
-    double pivot
-    double scale
+    double doubt
+    int pivot_at
+    int chosen
+    double reflector
     double pose_scale
 
 cdef struct Counter:
@@ -154,15 +160,23 @@ cdef struct Group:
     double rate
     double trial
 
+cdef struct Island:
+    int rows
+    int row_count
+    int freedoms
+    int freedom_count
+
 cdef struct Limits:
     int dodges
     int unused
     double no_inertia
     double own_share
     double much_lent
-    double moves_nothing
     double across
     double independent
+    double passing
+    double passing_of_start
+    double rounding
     double preference
     double pivot_drop
     double near_singular
@@ -172,6 +186,8 @@ cdef struct Limits:
     double nearly_closed
     double reopened
     double lost
+    double jump
+    double jump_of_error
     double least_step
     double rope_step
     double dodge
@@ -186,6 +202,7 @@ cdef struct Scene:
     int counter_count
     int variable_count
     int lent_count
+    int island_count
     int answer_count          # freedoms, a ball's three turns among them
     int selected_count        # independent closure rows
     int driven                # something is driven: the work of drives counts
@@ -194,13 +211,16 @@ cdef struct Scene:
     Vec3 gravity
     double size
     Limits limits
+    double least_row          # what has to be left of a row for it to be chosen
     double pivot_chosen       # least pivot of the closures when their rows were chosen
     double pivot              # now
     double pivot_of_step      # least since the step began
     double gap                # of the state recovered last, over all rows [m]
     double lent_part          # root of the part of the inertias in `lents` that is lent
     double own_share          # least pivot of 1 - T: of the inertia in a motion, how much is not lent
-    double pivot_recovered    # least pivot of the closures there
+    double pivot_recovered    # least of the independent rows there, as they were selected: geometry alone, squared
+    double load_size          # |D^(-1/2) e|: what the freedoms would answer without closures, in the measure of M
+    double residual           # largest J Vdot + gamma of all rows there, of the terms it is the sum of
     Body *bodies
     Freedom *freedoms
     Load *loads
@@ -208,12 +228,18 @@ cdef struct Scene:
     Counter *counters
     Variable *variables
     Lent *lents
+    Island *islands
     Programs *programs
     int *indices              # paths, answers and couplings of the closure rows
     int *selected             # independent rows, ascending
     int *envelope             # first coupled row of each of them
+    int *taken                # which answers are pivots of reflectors already
+    double *measure           # of each answer in an island: 1 of a shift, 1 / length of a turn; 0: in none, or driven
     double *e                 # load that each freedom answers
-    double *spread            # one row's D^-1 e_r, spread over all freedoms
-    double *columns           # e_r of all rows, one after the other
+    double *root              # D^(-1/2) of each answer
+    double *spread            # one vector over all answers
+    double *columns           # e_r of all rows, one after the other; then the reflectors that make R of them
+    double *R                 # R' over the independent rows, the diagonal inverted
+    double *J                 # one island's rows of J on its freedoms, scaled
+    double *y                 # a number an independent row
     double *own               # 1 - T of the lent inertias, and its Cholesky factor
-    double *A                 # J M^-1 J' over the independent rows, and its Cholesky factor

@@ -55,6 +55,8 @@ class Body(Record):
     arm: Vec3  # from the parent's joint point to this one
     alpha_bias: Vec3  # of alpha against the parent's: what hangs on velocities and prescribed accelerations
     a_bias: Vec3
+    alpha_zero: Vec3  # alpha and a (gravity left out) if no freedom accelerated
+    a_zero: Vec3
     mc: Vec3  # R (m c)
     gyroscopic: Vec3  # omega x J omega
     centrifugal: Vec3  # omega x (omega x m c)
@@ -138,10 +140,11 @@ class Closure(Record):
     program: Program  # of the length, where it is driven
     path: int  # first of the bodies between its two ends and the ground, tips first, in `indices`
     path_count: int
-    column: int  # its first answer in `columns`
-    answers: int  # which answers of the freedoms these are, in `indices`
-    answer_count: int
-    couplings: int  # earlier rows whose paths meet its own, in `indices`
+    column: int  # its first number in `columns`
+    answers: int  # which answers of the freedoms these are, in `indices`: first those of its path, then what fills in
+    answer_count: int  # of its path
+    filled_count: int  # with those that fill in when earlier rows are taken out of it
+    couplings: int  # earlier rows that fill in, in `indices`
     coupling_count: int
     rank: int  # its place among the independent rows; -1: left out
     e: Vec3
@@ -150,6 +153,7 @@ class Closure(Record):
     q: Vec3  # point of b
     length: float
     weight: float  # of the gap [m per unit]
+    measure: float  # of its unit load: 1 of a force, the island's length of a couple
 
     f: Vec3
     m: Vec3
@@ -158,11 +162,13 @@ class Closure(Record):
     rate: float
     gamma: float  # J Vdot + gamma = 0
     multiplier: float
-    demand: float  # right-hand side of A lambda = -demand
+    demand: float  # what it asks of the answer: J V = -demand
     prescribed_rate: float
-    pivot: float  # what is left of its own answer by the rows chosen before it, scaled
-    scale: float  # 1 / sqrt of what its two sides answer, each alone; zero: it moves nothing
-    pose_scale: float  # the same, and not less than a part of what it could answer across its arms
+    doubt: float  # what rounding may make of its multiplier
+    pivot_at: int  # the answer that its reflector leaves something of
+    chosen: int  # while rows are selected: its place in the order of pivots; -1: not yet
+    reflector: float  # 2 / |v|^2 of its reflector 1 - 2 v v' / |v|^2
+    pose_scale: float  # 1 / sqrt of a part of what it could answer across its arms, and of what it does
 
 
 class Counter(Record):
@@ -206,6 +212,15 @@ class Group(Record):
     trial: float  # of the step under way
 
 
+class Island(Record):
+    """Closure rows of loops that share bodies, and the freedoms of those, which `indices` lists."""
+
+    rows: int
+    row_count: int
+    freedoms: int
+    freedom_count: int
+
+
 class Limits(Record):
     """Thresholds of the kernel: heuncli/tolerances.py derives each."""
 
@@ -214,9 +229,11 @@ class Limits(Record):
     no_inertia: float  # of all directions' inertia: what has less moves nothing
     own_share: float  # of a motion's inertia, lent and its own: with less of its own nothing holds it
     much_lent: float  # with less, but more than that, less is lent
-    moves_nothing: float  # of what a row's freedoms could answer: a row that answers less is none
     across: float  # part of what a row could answer across its arms that counts as its scale in any pose
-    independent: float  # least scaled pivot of a row that is chosen
+    independent: float  # least length of what is left of a row, by the rows chosen before it, for it to be chosen
+    passing: float  # the same on the way through a singular pose
+    passing_of_start: float  # and no more than this of what the rows of the start have left
+    rounding: float  # of a sum, relative to its terms
     preference: float  # a later row must have so many times the pivot of an earlier one
     pivot_drop: float  # of the pivot when the rows were chosen: below it they are chosen anew
     near_singular: float  # pivot below which the stages of a step are settled, too
@@ -226,6 +243,8 @@ class Limits(Record):
     nearly_closed: float  # rounding after a correction
     reopened: float  # a row that was left out opens
     lost: float  # the closures cannot be held
+    jump: float  # of the largest rate: a larger change of rates by the closures is no rounding of the step
+    jump_of_error: float  # the same of the local tolerance, by the root of the pivot
     least_step: float  # of the time: rounding
     rope_step: float  # of the time: how near a run comes to where a rope would push
     dodge: float  # ratio of the lengths tried
@@ -243,6 +262,7 @@ class Scene(metaclass=Fields):
     counter_count: int
     variable_count: int
     lent_count: int
+    island_count: int
     answer_count: int
     selected_count: int
     driven: int
@@ -251,6 +271,7 @@ class Scene(metaclass=Fields):
     gravity: Vec3
     size: float
     limits: Limits
+    least_row: float
     pivot_chosen: float
     pivot: float
     pivot_of_step: float
@@ -258,6 +279,8 @@ class Scene(metaclass=Fields):
     lent_part: float
     own_share: float
     pivot_recovered: float
+    load_size: float
+    residual: float
     bodies: list[Body]
     freedoms: list[Freedom]
     loads: list[Load]
@@ -265,12 +288,18 @@ class Scene(metaclass=Fields):
     counters: list[Counter]
     variables: list[Variable]
     lents: list[Lent]
+    islands: list[Island]
     programs: Programs
     indices: list[int]
     selected: list[int]
     envelope: list[int]
+    taken: list[int]
+    measure: list[float]
     e: list[float]
+    root: list[float]
     spread: list[float]
     columns: list[float]
+    R: list[float]
+    J: list[float]
+    y: list[float]
     own: list[float]
-    A: list[float]

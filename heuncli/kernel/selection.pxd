@@ -1,21 +1,21 @@
 """Signatures of selection.py for C."""
 
-from heuncli.kernel.algebra cimport Vec3, cross, dot, inverse_form, sub
-from heuncli.kernel.closures cimport (
-    build_column, clear_column, clear_path, column_product, factor_closures, measure_rows, put_unit_load,
-    spread_column, sweep_column,
-)
-from heuncli.kernel.scene cimport Body, Closure, Freedom, SHIFT, Scene
-from heuncli.kernel.tree cimport factor_tree, kinematics
-from libc.math cimport sqrt
+from heuncli.kernel.algebra cimport Vec3, add, add_cross, cross, dot, inverse_form, sub
+from heuncli.kernel.closures cimport clear_path, measure_rows, put_unit_load
+from heuncli.kernel.orthogonal cimport answer_of_side, factor_closures, take_roots
+from heuncli.kernel.scene cimport Body, Closure, Freedom, Island, SHIFT, Scene
+from heuncli.kernel.tree cimport factor_tree, kinematics, load_along
+from libc.math cimport fabs, sqrt
 
 cdef int select_independent_rows(Scene *scene, double t, double *y, bint afresh) noexcept nogil
-cdef void scale_row(Scene *scene, Closure *row, bint afresh) noexcept nogil
-cdef double answer_of_one_side(Scene *scene, Closure *row, int body, double sign) noexcept nogil
-cdef double own_answer(Scene *scene, Closure *row) noexcept nogil
-cdef double largest_answer(Scene *scene, Closure *row) noexcept nogil
+cdef void judge_start(Scene *scene, double t, double *y) noexcept nogil
+cdef double order_all(Scene *scene, double least) noexcept nogil
+cdef double order_rows(Scene *scene, Island *island, double least) noexcept nogil
+cdef void scaled_row(Scene *scene, Island *island, Py_ssize_t k) noexcept nogil
+cdef void jacobian_row(Scene *scene, Closure *row) noexcept nogil
+cdef double square_left(Scene *scene, Island *island, Py_ssize_t k, Py_ssize_t n) noexcept nogil
+cdef int next_pivot(Scene *scene, Island *island, Py_ssize_t n, double least) noexcept nogil
+cdef void take_out(Scene *scene, Island *island, Py_ssize_t best, Py_ssize_t n) noexcept nogil
+cdef void scale_pose(Scene *scene, Closure *row, bint afresh) noexcept nogil
 cdef double row_bound(Scene *scene, Closure *row) noexcept nogil
 cdef double turn_bound(Body *body, Closure *row, double force2) noexcept nogil
-cdef int next_pivot(Scene *scene) noexcept nogil
-cdef void eliminate_pivot(Scene *scene, int best, int rank) noexcept nogil
-cdef int rank_by_order(Scene *scene) noexcept nogil

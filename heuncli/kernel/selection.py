@@ -1,7 +1,8 @@
-"""Which closure rows carry the motion: an independent set, by pivoted Cholesky of A over all rows, scaled.
+"""Which closure rows carry the motion: an independent set, by an orthogonal factorisation of J with pivoting.
 
-A row's scale is what its two sides answer, each alone, which no cancelling between the two can make small. How near the
-chosen ones come to depending on each other is measured against what a row could answer, not what it does in this pose.
+The rank of the closures is a matter of geometry: neither masses nor squares have a say in it. J on the tree's freedoms,
+island by island; turns and couples by the island's length, which makes rows of the order of 1, and those with longer
+levers are shortened to that. The verdicts judge the same matrix (redundancy/self_stress.py).
 """
 
 from __future__ import annotations
@@ -12,104 +13,208 @@ except ImportError:
     from heuncli.kernel.shadow import cython
 
 if not cython.compiled:
-    from math import sqrt
+    from math import fabs, sqrt
 
-    from heuncli.kernel.algebra import Vec3, cross, dot, inverse_form, sub
-    from heuncli.kernel.closures import (
-        build_column,
-        clear_column,
-        clear_path,
-        column_product,
-        factor_closures,
-        measure_rows,
-        put_unit_load,
-        spread_column,
-        sweep_column,
-    )
-    from heuncli.kernel.scene import SHIFT, Body, Closure, Freedom, Scene
+    from heuncli.kernel.algebra import Vec3, add, add_cross, cross, dot, inverse_form, sub
+    from heuncli.kernel.closures import clear_path, measure_rows, put_unit_load
+    from heuncli.kernel.orthogonal import answer_of_side, factor_closures, take_roots
+    from heuncli.kernel.scene import SHIFT, Body, Closure, Freedom, Island, Scene
     from heuncli.kernel.shadow import cython
-    from heuncli.kernel.tree import factor_tree, kinematics
+    from heuncli.kernel.tree import factor_tree, kinematics, load_along
 
 
 def select_independent_rows(
     scene: cython.pointer[Scene], t: cython.double, y: cython.p_double, afresh: cython.bint
 ) -> cython.int:
-    """Choose an independent set of rows at y, and factor A over it; how many. afresh: nearness starts anew, too."""
+    """Choose an independent set of rows at y, and factor over it; how many. afresh: nearness starts anew, too."""
     i: cython.Py_ssize_t
-    rank: cython.int = 0
     kinematics(scene, t, y)
     measure_rows(scene, t)
     factor_tree(scene)
+    take_roots(scene)
     for i in range(scene.closure_count):
-        scale_row(scene, cython.address(scene.closures[i]), afresh)
-    while rank < scene.closure_count:
-        best: cython.int = next_pivot(scene)
-        if best < 0:
-            break
-        eliminate_pivot(scene, best, rank)
-        rank += 1
-    scene.selected_count = rank_by_order(scene)
+        row: cython.pointer[Closure] = cython.address(scene.closures[i])
+        row.rank = 0
+        scale_pose(scene, row, afresh)
+    order_all(scene, scene.least_row)
+    scene.selected_count = 0
+    for i in range(scene.closure_count):
+        one: cython.pointer[Closure] = cython.address(scene.closures[i])
+        one.rank = -1
+        if one.chosen >= 0:
+            one.rank = scene.selected_count
+            scene.selected[scene.selected_count] = i
+            scene.selected_count += 1
     if scene.selected_count:
         scene.pivot_chosen = factor_closures(scene)
         scene.pivot = scene.pivot_chosen
     return scene.selected_count
 
 
-def scale_row(scene: cython.pointer[Scene], row: cython.pointer[Closure], afresh: cython.bint) -> cython.void:
-    """The row's own answer, scaled, and its two scales; its column stays built."""
-    sides: cython.double = answer_of_one_side(scene, row, row.b, 1.0) + answer_of_one_side(scene, row, row.a, -1.0)
-    build_column(scene, row)
-    row.pivot = own_answer(scene, row)
-    row.rank = -1
-    # what hardly answers at all (across the only axis its pins have, say) is rounding, and no row
-    if sides > scene.limits.moves_nothing * largest_answer(scene, row):
-        row.scale = 1.0 / sqrt(sides)
-        row.pivot /= sides
-    else:
-        row.scale = 0.0
-        row.pivot = 0.0
+def judge_start(scene: cython.pointer[Scene], t: cython.double, y: cython.p_double) -> cython.void:
+    """What has to be left of a row for it to be chosen, by the rows of the start.
+
+    On the way through a singular pose a row is left out where rounding would tell more of it than the pose; a scene
+    that is as near to one from its beginning keeps its rows.
+    """
+    scene.least_row = scene.limits.independent
+    select_independent_rows(scene, t, y, True)
+    least: cython.double = scene.limits.passing_of_start * order_all(scene, 0.0)
+    if least > scene.limits.passing:
+        least = scene.limits.passing
+    if least > scene.least_row:
+        scene.least_row = least
+
+
+def order_all(scene: cython.pointer[Scene], least: cython.double) -> cython.double:
+    """Put the rows in the order of their pivots, those with a rank and more than `least` left; the least pivot."""
+    i: cython.Py_ssize_t
+    found: cython.double = 1.0
+    for i in range(scene.island_count):
+        pivot: cython.double = order_rows(scene, cython.address(scene.islands[i]), least)
+        if pivot < found:
+            found = pivot
+    return found
+
+
+def order_rows(scene: cython.pointer[Scene], island: cython.pointer[Island], least: cython.double) -> cython.double:
+    """The same in one island."""
+    k: cython.Py_ssize_t
+    n: cython.int = 0
+    found: cython.double = 1.0
+    for k in range(island.row_count):
+        scaled_row(scene, island, k)
+    while n < island.row_count and n < island.freedom_count:
+        best: cython.int = next_pivot(scene, island, n, least)
+        if best < 0:
+            break
+        row: cython.pointer[Closure] = cython.address(scene.closures[scene.indices[island.rows + best]])
+        left: cython.double = sqrt(square_left(scene, island, best, n))
+        if left < found:
+            found = left
+        row.chosen = n
+        take_out(scene, island, best, n)
+        n += 1
+    return found
+
+
+def scaled_row(scene: cython.pointer[Scene], island: cython.pointer[Island], k: cython.Py_ssize_t) -> cython.void:
+    """Row k of the island's J: turns and couples by its length, the row shortened to 1 if it is longer."""
+    i: cython.Py_ssize_t
+    n: cython.Py_ssize_t = island.freedom_count
+    answer: cython.int
+    square: cython.double = 0.0
+    J: cython.p_double = scene.J
+    row: cython.pointer[Closure] = cython.address(scene.closures[scene.indices[island.rows + k]])
+    row.chosen = -1
+    for i in range(n):
+        scene.spread[scene.indices[island.freedoms + i]] = 0.0
+    jacobian_row(scene, row)
+    for i in range(n):
+        answer = scene.indices[island.freedoms + i]
+        J[n * k + i] = scene.spread[answer] * scene.measure[answer] * row.measure if scene.root[answer] > 0.0 else 0.0
+        square += J[n * k + i] * J[n * k + i]
+    if square > 1.0:
+        square = 1.0 / sqrt(square)
+        for i in range(n):
+            J[n * k + i] *= square
+
+
+def jacobian_row(scene: cython.pointer[Scene], row: cython.pointer[Closure]) -> cython.void:
+    """J of one row, spread over the freedoms of its path (a ball's turns about the world's axes).
+
+    The rate of the row's gap for each freedom: the unit load's moment about its axis, or force along it; what is driven
+    or moves nothing gives nothing.
+    """
+    n: cython.Py_ssize_t
+    k: cython.Py_ssize_t
+    at: cython.Py_ssize_t
+    x: cython.p_double = scene.spread
+    clear_path(scene, row)
+    put_unit_load(scene, row, row.b, -1.0)
+    put_unit_load(scene, row, row.a, 1.0)
+    for n in range(row.path, row.path + row.path_count):
+        body: cython.pointer[Body] = cython.address(scene.bodies[scene.indices[n]])
+        at = body.answer_at
+        if body.ball:
+            x[at] = body.M_branch.x
+            x[at + 1] = body.M_branch.y
+            x[at + 2] = body.M_branch.z
+            at += 3
+        for k in range(body.first_freedom, body.end_freedom):
+            freedom: cython.pointer[Freedom] = cython.address(scene.freedoms[k])
+            x[at] = 0.0 if freedom.driven else load_along(freedom, body.M_branch, body.f_branch)
+            at += 1
+        if body.parent >= 0:
+            parent: cython.pointer[Body] = cython.address(scene.bodies[body.parent])
+            parent.M_branch = add(parent.M_branch, add_cross(body.M_branch, body.arm, body.f_branch))
+            parent.f_branch = add(parent.f_branch, body.f_branch)
+
+
+def square_left(
+    scene: cython.pointer[Scene], island: cython.pointer[Island], k: cython.Py_ssize_t, n: cython.Py_ssize_t
+) -> cython.double:
+    """Square of what the n rows chosen before have left of row k."""
+    i: cython.Py_ssize_t
+    found: cython.double = 0.0
+    width: cython.Py_ssize_t = island.freedom_count
+    for i in range(n, width):
+        found += scene.J[width * k + i] * scene.J[width * k + i]
+    return found
+
+
+def next_pivot(
+    scene: cython.pointer[Scene], island: cython.pointer[Island], n: cython.Py_ssize_t, least: cython.double
+) -> cython.int:
+    """The row with most left of it; an earlier one is preferred a little, which keeps the choice steady. -1: none."""
+    k: cython.Py_ssize_t
+    left: cython.double
+    best: cython.int = -1
+    most: cython.double = least * least / scene.limits.preference
+    for k in range(island.row_count):
+        row: cython.pointer[Closure] = cython.address(scene.closures[scene.indices[island.rows + k]])
+        if row.chosen < 0 and row.rank >= 0:
+            left = square_left(scene, island, k, n)
+            if left > most * scene.limits.preference:
+                most = left
+                best = k
+    return best
+
+
+def take_out(
+    scene: cython.pointer[Scene], island: cython.pointer[Island], best: cython.Py_ssize_t, n: cython.Py_ssize_t
+) -> cython.void:
+    """Reflect what is left of the pivot row onto the n-th direction, and all rows not yet chosen with it."""
+    i: cython.Py_ssize_t
+    k: cython.Py_ssize_t
+    width: cython.Py_ssize_t = island.freedom_count
+    J: cython.p_double = scene.J
+    v: cython.Py_ssize_t = width * best
+    x: cython.double
+    square: cython.double = square_left(scene, island, best, n)
+    left: cython.double = sqrt(square)
+    reflector: cython.double = 1.0 / (square + left * fabs(J[v + n]))
+    J[v + n] += left if J[v + n] > 0.0 else -left
+    for k in range(island.row_count):
+        if scene.closures[scene.indices[island.rows + k]].chosen < 0:
+            x = 0.0
+            for i in range(n, width):
+                x += J[v + i] * J[width * k + i]
+            x *= reflector
+            for i in range(n, width):
+                J[width * k + i] -= x * J[v + i]
+
+
+def scale_pose(scene: cython.pointer[Scene], row: cython.pointer[Closure], afresh: cython.bint) -> cython.void:
+    """The row's scale in the motion: what its two sides answer, each alone, which no cancelling between them can make
+    small, and at least a part of what it could answer across its arms."""
     bound: cython.double = scene.limits.across * row_bound(scene, row)
+    sides: cython.double = answer_of_side(scene, row, row.b, 1.0) + answer_of_side(scene, row, row.a, -1.0)
     if sides > bound:
         bound = sides
     near: cython.double = 1.0 / sqrt(bound) if bound > 0.0 else 0.0
     if afresh or near < row.pose_scale:
         row.pose_scale = near
-
-
-def answer_of_one_side(
-    scene: cython.pointer[Scene], row: cython.pointer[Closure], body: cython.int, sign: cython.double
-) -> cython.double:
-    """e_r . D^-1 e_r of the row's load on one of its two bodies alone."""
-    clear_path(scene, row)
-    put_unit_load(scene, row, body, sign)
-    sweep_column(scene, row)
-    return own_answer(scene, row)
-
-
-def own_answer(scene: cython.pointer[Scene], row: cython.pointer[Closure]) -> cython.double:
-    """e_r . D^-1 e_r of the column as it is built."""
-    spread_column(scene, row)
-    found: cython.double = column_product(scene, row)
-    clear_column(scene, row)
-    return found
-
-
-def largest_answer(scene: cython.pointer[Scene], row: cython.pointer[Closure]) -> cython.double:
-    """What the freedoms of the row's paths would answer if its force, a size of the scene away, met all of them."""
-    n: cython.Py_ssize_t
-    k: cython.Py_ssize_t
-    found: cython.double = 0.0
-    shift: cython.double = dot(row.f, row.f)
-    turn: cython.double = shift * scene.size * scene.size + dot(row.m, row.m)
-    for n in range(row.path, row.path + row.path_count):
-        body: cython.pointer[Body] = cython.address(scene.bodies[scene.indices[n]])
-        if body.ball:
-            found += turn * (body.turning.xx + body.turning.yy + body.turning.zz)
-        for k in range(body.first_freedom, body.end_freedom):
-            freedom: cython.pointer[Freedom] = cython.address(scene.freedoms[k])
-            if not freedom.driven:
-                found += (shift if freedom.kind == SHIFT else turn) * freedom.D
-    return found
 
 
 def row_bound(scene: cython.pointer[Scene], row: cython.pointer[Closure]) -> cython.double:
@@ -142,53 +247,3 @@ def turn_bound(body: cython.pointer[Body], row: cython.pointer[Closure], force: 
     y: cython.double = inverse_form(body.turning, Vec3(-arm.z, 0.0, arm.x))
     z: cython.double = inverse_form(body.turning, Vec3(arm.y, -arm.x, 0.0))
     return force * (x + y + z) + inverse_form(body.turning, row.m)
-
-
-def next_pivot(scene: cython.pointer[Scene]) -> cython.int:
-    """The row with most left of it; an earlier one is preferred a little, which keeps the choice steady. -1: none."""
-    i: cython.int
-    best: cython.int = -1
-    most: cython.double = scene.limits.independent
-    for i in range(scene.closure_count):
-        row: cython.pointer[Closure] = cython.address(scene.closures[i])
-        if row.rank < 0 and row.pivot > most * scene.limits.preference:
-            most = row.pivot
-            best = i
-    return best
-
-
-def eliminate_pivot(scene: cython.pointer[Scene], best: cython.int, rank: cython.int) -> cython.void:
-    """Row `rank` of the scaled factor, L(rank, row), from the pivot; what it leaves of the rows not yet chosen."""
-    i: cython.Py_ssize_t
-    k: cython.Py_ssize_t
-    n: cython.Py_ssize_t = scene.closure_count
-    x: cython.double
-    L: cython.p_double = scene.A
-    pivot: cython.pointer[Closure] = cython.address(scene.closures[best])
-    inverse: cython.double = 1.0 / sqrt(pivot.pivot)
-    spread_column(scene, pivot)
-    for i in range(n):
-        row: cython.pointer[Closure] = cython.address(scene.closures[i])
-        if row.rank < 0:
-            x = column_product(scene, row) * row.scale * pivot.scale
-            for k in range(rank):
-                x -= L[n * k + i] * L[n * k + best]
-            L[n * rank + i] = x * inverse
-    clear_column(scene, pivot)
-    pivot.rank = rank
-    for i in range(n):
-        other: cython.pointer[Closure] = cython.address(scene.closures[i])
-        if other.rank < 0:
-            other.pivot -= L[n * rank + i] * L[n * rank + i]
-
-
-def rank_by_order(scene: cython.pointer[Scene]) -> cython.int:
-    """The chosen rows in the order of the scene; how many."""
-    i: cython.int
-    count: cython.int = 0
-    for i in range(scene.closure_count):
-        if scene.closures[i].rank >= 0:
-            scene.closures[i].rank = count
-            scene.selected[count] = i
-            count += 1
-    return count

@@ -99,4 +99,5 @@ cdef void sample_reached(Run *run) noexcept nogil
 cdef double growth(Method *method, Run *run) noexcept nogil
 cdef int accept(Scene *scene, Method *method, Run *run) noexcept nogil
 cdef int land(Scene *scene, Run *run) noexcept nogil
+cdef bint jumped(Scene *scene, Run *run) noexcept nogil
 cdef int run_steps(Scene *scene, Method *method, Run *run) noexcept nogil

@@ -489,11 +489,34 @@ def land(scene: cython.pointer[Scene], run: cython.pointer[Run]) -> cython.int:
         gap = settle(scene, t, run.y)
     if gap > run.gap or gap != gap:
         run.gap = gap
-    if not gap <= scene.limits.lost * scene.size:
+    if not gap <= scene.limits.lost * scene.size or jumped(scene, run):
         return CLOSURES_LOST
     evaluate(scene, t, run.y, run.K[0])
     run.evaluations += 2
     return REACHED
+
+
+def jumped(scene: cython.pointer[Scene], run: cython.pointer[Run]) -> cython.bint:
+    """Whether the closures changed the rates of the step's end z by more than its error explains.
+
+    That is a blow, or another branch, and no motion that goes on.
+    """
+    b: cython.int
+    i: cython.Py_ssize_t
+    change: cython.double
+    explained: cython.double = scene.limits.jump
+    if scene.pivot > 0.0:
+        explained += scene.limits.jump_of_error * run.tolerance / sqrt(scene.pivot)
+    if run.following:
+        return False
+    for b in range(run.group_count):
+        group: cython.pointer[Group] = cython.address(run.groups[b])
+        for i in range(group.rates, group.end):
+            run.stage[i] = run.y[i] - run.z[i]
+        change = norm_of(run, run.stage, group.rates, group.end)
+        if change > explained * run.rate:
+            return True
+    return False
 
 
 def run_steps(scene: cython.pointer[Scene], method: cython.pointer[Method], run: cython.pointer[Run]) -> cython.int:

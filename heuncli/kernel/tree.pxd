@@ -28,9 +28,11 @@ cdef int eliminate_ball(Body *body, double least) noexcept nogil
 cdef int eliminate(Body *body, Freedom *freedom, double least) noexcept nogil
 cdef double load_along(Freedom *freedom, Vec3 M, Vec3 f) noexcept nogil
 cdef void add_branch(Body *parent, Body *body) noexcept nogil
+cdef void put_loads(Scene *scene, bint inertial) noexcept nogil
+cdef void put_all_loads(Scene *scene) noexcept nogil
+cdef void add_zeros(Scene *scene) noexcept nogil
 cdef void upward(Scene *scene, bint inertial) noexcept nogil
 cdef void push_lent(Scene *scene, Lent *lent) noexcept nogil
-cdef void climb(Scene *scene, bint inertial) noexcept nogil
 cdef double answered(Body *body, Freedom *freedom) noexcept nogil
 cdef void pass_up(Body *parent, Body *body, bint inertial) noexcept nogil
 cdef void downward(Scene *scene, bint inertial) noexcept nogil

@@ -280,17 +280,52 @@ def add_branch(parent: cython.pointer[Body], body: cython.pointer[Body]) -> cyth
     parent.C = add_matrix(parent.C, lK)
 
 
-def upward(scene: cython.pointer[Scene], inertial: cython.bint) -> cython.void:
-    """From loads and velocity terms, and what lent inertias take, to e, the load that each freedom has to answer."""
+def put_loads(scene: cython.pointer[Scene], inertial: cython.bint) -> cython.void:
+    """What each body asks of its joint: its velocity terms less the applied loads and what is lent to it takes."""
     i: cython.Py_ssize_t
     zero: Vec3 = Vec3(0.0, 0.0, 0.0)
     for i in range(scene.body_count):
-        one: cython.pointer[Body] = cython.address(scene.bodies[i])
-        one.M_branch = sub(one.gyroscopic if inertial else zero, one.M_applied)
-        one.f_branch = sub(one.centrifugal if inertial else zero, one.f_applied)
+        body: cython.pointer[Body] = cython.address(scene.bodies[i])
+        body.M_branch = sub(body.gyroscopic if inertial else zero, body.M_applied)
+        body.f_branch = sub(body.centrifugal if inertial else zero, body.f_applied)
     for i in range(scene.lent_count):
         push_lent(scene, cython.address(scene.lents[i]))
-    climb(scene, inertial)
+
+
+def put_all_loads(scene: cython.pointer[Scene]) -> cython.void:
+    """The same with all that the bodies resist if no freedom accelerates, gravity among it; alpha_zero and a_zero.
+
+    What the freedoms then answer is an answer to loads alone.
+    """
+    i: cython.Py_ssize_t
+    zero: Vec3 = Vec3(0.0, 0.0, 0.0)
+    for i in range(scene.body_count):
+        body: cython.pointer[Body] = cython.address(scene.bodies[i])
+        body.alpha_zero = zero
+        body.a_zero = body.a_bias
+        if body.parent >= 0:
+            parent: cython.pointer[Body] = cython.address(scene.bodies[body.parent])
+            body.a_zero = add(add_cross(parent.a_zero, parent.alpha_zero, body.arm), body.a_bias)
+            if not body.ball:
+                body.alpha_zero = parent.alpha_zero
+        if not body.ball:
+            body.alpha_zero = add(body.alpha_zero, body.alpha_bias)
+        body.alpha = body.alpha_zero
+        body.a = sub(body.a_zero, scene.gravity)
+        newton_euler(body, True)
+        body.M_branch = body.M_joint
+        body.f_branch = body.f_joint
+    for i in range(scene.lent_count):
+        push_lent(scene, cython.address(scene.lents[i]))
+
+
+def add_zeros(scene: cython.pointer[Scene]) -> cython.void:
+    """The accelerations that answer all loads, and those if no freedom accelerated, gravity taken off."""
+    i: cython.Py_ssize_t
+    for i in range(scene.body_count):
+        body: cython.pointer[Body] = cython.address(scene.bodies[i])
+        body.alpha = add(body.alpha, body.alpha_zero)
+        body.a = add(body.a, sub(body.a_zero, scene.gravity))
 
 
 def push_lent(scene: cython.pointer[Scene], lent: cython.pointer[Lent]) -> cython.void:
@@ -299,8 +334,8 @@ def push_lent(scene: cython.pointer[Scene], lent: cython.pointer[Lent]) -> cytho
     body.M_branch = add_scaled(body.M_branch, -lent.z, lent.n)
 
 
-def climb(scene: cython.pointer[Scene], inertial: cython.bint) -> cython.void:
-    """From what stands in M_branch and f_branch to e, tips to roots."""
+def upward(scene: cython.pointer[Scene], inertial: cython.bint) -> cython.void:
+    """From what stands in M_branch and f_branch, and velocity terms, to e, which the freedoms answer; tips to roots."""
     i: cython.Py_ssize_t
     k: cython.Py_ssize_t
     for i in range(scene.body_count - 1, -1, -1):

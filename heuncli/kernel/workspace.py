@@ -18,17 +18,20 @@ except ImportError:
     from heuncli.kernel.shadow import cython
 
 if not cython.compiled:
-    from heuncli.kernel.algebra import Mat3, Vec3, add, add_cross
+    from math import sqrt
+
+    from heuncli.kernel.algebra import Mat3, Vec3
     from heuncli.kernel.chosen import choose_afresh
-    from heuncli.kernel.closures import clear_path, measure_rows, push_closures, put_unit_load
+    from heuncli.kernel.closures import measure_rows, push_closures, residual_of, size_of_answer
     from heuncli.kernel.expressions import Expressions
     from heuncli.kernel.memory import Memory
+    from heuncli.kernel.orthogonal import answer_of_row, doubt_multipliers
     from heuncli.kernel.response import configure, evaluate, must_choose_anew, respond, settle
-    from heuncli.kernel.scene import Body, Closure, Counter, Freedom, Lent, Limits, Load, Scene, Variable
-    from heuncli.kernel.selection import select_independent_rows
+    from heuncli.kernel.scene import Body, Closure, Counter, Freedom, Island, Lent, Limits, Load, Scene, Variable
+    from heuncli.kernel.selection import jacobian_row, judge_start, order_all, select_independent_rows
     from heuncli.kernel.shadow import cython
     from heuncli.kernel.structs import Instants
-    from heuncli.kernel.tree import balance, kinematics, load_along
+    from heuncli.kernel.tree import balance, kinematics
 
 
 def put(out: cython.p_double, at: cython.Py_ssize_t, a: Vec3) -> cython.Py_ssize_t:
@@ -72,12 +75,13 @@ def put_load(out: cython.p_double, at: cython.Py_ssize_t, load: cython.pointer[L
 
 
 def put_row(out: cython.p_double, at: cython.Py_ssize_t, row: cython.pointer[Closure]) -> cython.Py_ssize_t:
-    """A closure row's unit load, multiplier and gap, as tables.CLOSURE_ANSWER."""
+    """A closure row's unit load, multiplier, its doubt, and gap, as tables.CLOSURE_ANSWER."""
     at = put(out, at, row.f)
     at = put(out, at, row.m)
     out[at] = row.multiplier
-    out[at + 1] = row.gap
-    return at + 2
+    out[at + 1] = row.doubt
+    out[at + 2] = row.gap
+    return at + 3
 
 
 def put_answers(scene: cython.pointer[Scene], out: cython.p_double, at: cython.Py_ssize_t) -> cython.Py_ssize_t:
@@ -104,7 +108,7 @@ def recover_state(
 ) -> cython.int:
     """Settle y on the closures and find accelerations, multipliers and joint loads there; as `evaluate` gives.
 
-    Leaves the gap over all rows in scene.gap and the least pivot in scene.pivot_recovered.
+    Leaves the gap over all rows in scene.gap; what `judge_closures` finds.
     """
     scene.gap = 0.0
     scene.pivot_recovered = 1.0
@@ -112,7 +116,6 @@ def recover_state(
         if afresh:
             choose_afresh(scene, t, y)
         scene.gap = settle(scene, t, y)
-        scene.pivot_recovered = scene.pivot
         if must_choose_anew(scene, scene.gap):
             select_independent_rows(scene, t, y, False)
             scene.gap = settle(scene, t, y)
@@ -120,7 +123,25 @@ def recover_state(
     if not scene.driven:
         push_closures(scene)
         balance(scene, True)
+    judge_closures(scene)
     return idle
+
+
+def judge_closures(scene: cython.pointer[Scene]) -> cython.void:
+    """How well the answer found meets all rows, those left out too; how independent the others are, and their doubt."""
+    r: cython.Py_ssize_t
+    residual: cython.double
+    scene.residual = 0.0
+    if scene.selected_count:
+        doubt_multipliers(scene)
+        scene.pivot_recovered = order_all(scene, 0.0)
+        scene.pivot_recovered *= scene.pivot_recovered
+    for r in range(scene.closure_count):
+        row: cython.pointer[Closure] = cython.address(scene.closures[r])
+        size: cython.double = size_of_answer(scene, row) + sqrt(answer_of_row(scene, row)) * scene.load_size
+        residual = residual_of(scene, row)
+        if not residual <= scene.residual * size:
+            scene.residual = residual / size
 
 
 def recover_states(scene: cython.pointer[Scene], instants: cython.pointer[Instants]) -> cython.void:
@@ -140,6 +161,7 @@ def recover_states(scene: cython.pointer[Scene], instants: cython.pointer[Instan
         instants.out[at] = scene.gap
         instants.out[at + 1] = idle
         instants.out[at + 2] = scene.pivot_recovered
+        instants.out[at + 3] = scene.residual
 
 
 def answer_column(
@@ -186,33 +208,17 @@ def carry(scene: cython.pointer[Scene], multipliers: cython.p_double, out: cytho
         scene.closures[i].multiplier = 0.0  # where no row is independent none is solved for, and they stay as they are
 
 
-def jacobian_row(scene: cython.pointer[Scene], row: cython.pointer[Closure], out: cython.p_double) -> cython.void:
-    """J of one row on the freedoms of its path, as its column stands (a ball's turns about the world's axes).
-
-    The rate of the row's gap for each freedom: the unit load's moment about its axis, or force along it; a driven one
-    gives nothing.
-    """
-    n: cython.Py_ssize_t
+def put_jacobian(scene: cython.pointer[Scene], out: cython.p_double) -> cython.void:
+    """J of all rows, each on the freedoms of its path, one after the other."""
+    r: cython.Py_ssize_t
     k: cython.Py_ssize_t
-    at: cython.Py_ssize_t = row.column
-    clear_path(scene, row)
-    put_unit_load(scene, row, row.b, -1.0)
-    put_unit_load(scene, row, row.a, 1.0)
-    for n in range(row.path, row.path + row.path_count):
-        body: cython.pointer[Body] = cython.address(scene.bodies[scene.indices[n]])
-        if body.ball:
-            at = put(out, at, body.M_branch)
-        for k in range(body.first_freedom, body.end_freedom):
-            freedom: cython.pointer[Freedom] = cython.address(scene.freedoms[k])
-            out[at] = 0.0
-            if not freedom.driven:
-                out[at] = load_along(freedom, body.M_branch, body.f_branch)
+    at: cython.Py_ssize_t = 0
+    for r in range(scene.closure_count):
+        row: cython.pointer[Closure] = cython.address(scene.closures[r])
+        jacobian_row(scene, row)
+        for k in range(row.answer_count):
+            out[at] = scene.spread[scene.indices[row.answers + k]]
             at += 1
-        if body.parent >= 0:
-            parent: cython.pointer[Body] = cython.address(scene.bodies[body.parent])
-            moment: Vec3 = add_cross(body.M_branch, body.arm, body.f_branch)
-            parent.M_branch = add(parent.M_branch, moment)
-            parent.f_branch = add(parent.f_branch, body.f_branch)
 
 
 class Workspace:
@@ -248,8 +254,21 @@ class Workspace:
         scene.counter_count = len(tables["counters"])
         scene.variable_count = len(tables["variables"])
         scene.lent_count = len(tables["lents"])
+        scene.island_count = len(tables["islands"])
         self.take_tables(tables)
-        self.take_arrays(indices, numbers["column_count"])
+        self.take_arrays(indices, numbers)
+        scene.least_row = scene.limits.independent
+
+    def start(self, t: cython.double, state: Any) -> None:
+        """Judge the rank of the closures by a start, which is not changed."""
+        scene: cython.pointer[Scene] = cython.address(self.scene)
+        if scene.closure_count == 0:
+            return
+        if cython.compiled:
+            y: cython.double[::1] = array("d", state)
+            judge_start(scene, t, cython.address(y[0]))
+        else:
+            judge_start(scene, t, list(state))
 
     def take_tables(self, tables: dict[str, Any]) -> None:
         """Copy the tables: their rows are the structs, or become the objects."""
@@ -270,6 +289,9 @@ class Workspace:
                 cython.pointer[Variable], self.memory.rows(tables["variables"], cython.sizeof(Variable))
             )
             scene.lents = cython.cast(cython.pointer[Lent], self.memory.rows(tables["lents"], cython.sizeof(Lent)))
+            scene.islands = cython.cast(
+                cython.pointer[Island], self.memory.rows(tables["islands"], cython.sizeof(Island))
+            )
             limits: cython.pointer[Limits] = cython.cast(
                 cython.pointer[Limits], self.memory.rows(tables["limits"], cython.sizeof(Limits))
             )
@@ -282,27 +304,34 @@ class Workspace:
             scene.counters = [Counter(row) for row in tables["counters"].tolist()]
             scene.variables = [Variable(row) for row in tables["variables"].tolist()]
             scene.lents = [Lent(row) for row in tables["lents"].tolist()]
+            scene.islands = [Island(row) for row in tables["islands"].tolist()]
             scene.limits = Limits(tables["limits"].tolist()[0])
 
-    def take_arrays(self, indices: array[int], column_count: cython.Py_ssize_t) -> None:
-        """Copy the indices, make room for the work."""
+    def take_arrays(self, indices: array[int], numbers: dict[str, Any]) -> None:
+        """Copy the indices and the measures of the answers, make room for the work."""
         scene: cython.pointer[Scene] = cython.address(self.scene)
         answers: cython.Py_ssize_t = scene.answer_count
         rows: cython.Py_ssize_t = scene.closure_count
         scene.indices = self.memory.ints(indices)
         scene.selected = self.memory.ints(bytes(4 * rows))
         scene.envelope = self.memory.ints(bytes(4 * rows))
+        scene.taken = self.memory.ints(bytes(4 * answers))
+        scene.measure = self.memory.doubles(numbers["measure"])
         scene.e = self.memory.zeros(answers)
+        scene.root = self.memory.zeros(answers)
         scene.spread = self.memory.zeros(answers)
-        scene.columns = self.memory.zeros(column_count)
+        scene.columns = self.memory.zeros(numbers["column_count"])
+        scene.R = self.memory.zeros(rows * rows)
+        scene.J = self.memory.zeros(numbers["island_room"])
+        scene.y = self.memory.zeros(rows)
         scene.own = self.memory.zeros(scene.lent_count * scene.lent_count)
-        scene.A = self.memory.zeros(rows * rows)
 
     def recover(self, times: Any, states: Any, out: Any, width: cython.Py_ssize_t, afresh: cython.bint) -> None:
         """Everything the sweep knows at given states, which are settled in place; flat, `width` numbers an instant.
 
-        After the answers of an instant: the gap over all rows, how many freedoms had no inertia behind them, and the
-        least pivot of the closures. afresh: choose the closure rows at every instant anew.
+        After the answers of an instant: the gap over all rows, how many freedoms had no inertia behind them, the least
+        pivot of the closures, and what of all rows the accelerations do not meet. afresh: choose the closure rows at
+        every instant anew.
         """
         scene: cython.pointer[Scene] = cython.address(self.scene)
         count: cython.Py_ssize_t = len(times)
@@ -367,9 +396,7 @@ class Workspace:
     def jacobians(self, times: Any, states: Any, out: Any) -> None:
         """J of all closure rows at settled states, flat: an instant after the other, each row on its own path."""
         j: cython.Py_ssize_t
-        r: cython.Py_ssize_t
         scene: cython.pointer[Scene] = cython.address(self.scene)
-        rows: cython.Py_ssize_t = scene.closure_count
         instants: cython.Py_ssize_t = len(times)
         n: cython.Py_ssize_t = len(states) // max(instants, 1)
         width: cython.Py_ssize_t = len(out) // max(instants, 1)
@@ -377,12 +404,10 @@ class Workspace:
             self.measure_at(times[j], states[n * j : n * j + n])
             if cython.compiled:
                 to: cython.double[::1] = out
-                for r in range(rows):
-                    jacobian_row(scene, cython.address(scene.closures[r]), cython.address(to[width * j]))
+                put_jacobian(scene, cython.address(to[width * j]))
             else:
                 answer = [0.0] * width
-                for r in range(rows):
-                    jacobian_row(scene, scene.closures[r], answer)
+                put_jacobian(scene, answer)
                 out[width * j : width * j + width] = answer
 
     def carried(self, times: Any, states: Any, multipliers: Any, out: Any) -> None:

@@ -16,9 +16,10 @@ from heuncli import tolerances
 from heuncli.integration.runner import Recovered, Runner
 from heuncli.kinetostatics.bodies import BodyStates
 from heuncli.records import record
-from heuncli.redundancy.islands import Island, islands, mean_lever
 from heuncli.response import carried, jacobian
 from heuncli.results import Array, Mask
+from heuncli.tree.islands import mean_lever
+from heuncli.tree.layout import Island
 
 
 @record
@@ -54,7 +55,7 @@ def self_stress(runner: Runner, recovered: Recovered, states: BodyStates) -> Sel
     columns: list[Array] = []
     counts = np.zeros(n_t, dtype=int)
     least = np.ones(n_t)
-    for island in islands(layout):
+    for island in layout.islands:
         null, count, smallest = _null_space(J.block(island.rows, island.freedoms), island, recovered.gap)
         counts += count
         least = np.minimum(least, smallest)

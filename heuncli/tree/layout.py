@@ -4,10 +4,12 @@ from __future__ import annotations
 
 from array import array
 
+import numpy as np
+
 from heuncli.expressions.programs import Pack
 from heuncli.mechanism.model import Mechanism
 from heuncli.records import record
-from heuncli.results import Array
+from heuncli.results import Array, Mask
 from heuncli.tree.spanning import Spanning
 from heuncli.tree.starts import JointStart
 from heuncli.tree.tables import Table
@@ -24,13 +26,29 @@ class Freedom:
 
 
 @record
+class Island:
+    """Closure rows of loops that share bodies; freedoms: of those bodies, a ball's three turns and no driven ones.
+
+    couples (rows,): which rows carry a couple and no force; turns (freedoms,): which freedoms are turns.
+    length [m]: mean distance of the cut joints' points from the centres of their bodies.
+    """
+
+    rows: Array
+    freedoms: Array
+    couples: Mask
+    turns: Mask
+    length: float
+
+
+@record
 class Layout:
     """A scene laid out for the kernel, with what is needed to read its answers.
 
     place: body -> its place in the tree (spanning.hangs is in that order); reference (n, 3): each body's joint point in
     its own axes, tree order; rows: joint of each closure row; starts: where the joints stand at the start; y0: the
     state there. tables: the kernel's structs by name (kernel/scene.py); indices: what the closure rows point into.
-    energy_group: which of the groups of components is the drives' work (-1: none).
+    energy_group: which of the groups of components is the drives' work (-1: none). measure (answers,): of each freedom
+    in its island's J, 1 of a shift, 1 / length of a turn, 0 of one that is in none.
     """
 
     mechanism: Mechanism
@@ -51,6 +69,8 @@ class Layout:
     column_count: int
     pack: Pack
     work_at: int  # where the work stands in the state; -1: it is not asked for
+    islands: tuple[Island, ...] = ()
+    measure: Array = np.zeros(0)
 
     @property
     def bodies(self) -> Table:

@@ -15,6 +15,7 @@ from heuncli.kernel.choose import scene as kernel
 from heuncli.mechanism.model import GROUND, Assembly, Joint, JointLoad, Mechanism, PairLoad, PointLoad
 from heuncli.results import Array
 from heuncli.shapes.rotations import to_quaternion
+from heuncli.tree.islands import with_islands
 from heuncli.tree.layout import Freedom, Layout
 from heuncli.tree.spanning import Hang, Spanning, span
 from heuncli.tree.starts import JointStart, Z, joint_frame, joint_start, pose, to_direction
@@ -364,7 +365,7 @@ class _Builder:
             "lents": table(kernel.Lent, []),
             "limits": limits(tolerances.KERNEL),
         }
-        return Layout(
+        layout = Layout(
             mechanism=self.mechanism,
             spanning=self.spanning,
             place=self.place,
@@ -384,30 +385,34 @@ class _Builder:
             pack=self.pack,
             work_at=work_at,
         )
+        return with_islands(layout)
 
     def _index_rows(self) -> tuple[array[int], int]:
         """Paths, answers and couplings of the closure rows, which rows of one path share; the columns' length."""
         indices = array("i")
         shared: dict[tuple[int, ...], dict[str, int]] = {}
         column = 0
+        coupled, filled = fill_in(self.paths)
 
         def put(data: list[int]) -> int:
             indices.extend(data)
             return len(indices) - len(data)
 
-        for row, path, coupled in zip(self.closure_rows, self.paths, couplings(self.paths), strict=True):
-            key = tuple(path)
+        for r, (row, path) in enumerate(zip(self.closure_rows, self.paths, strict=True)):
+            key = (*path, -1, *filled[r])
             if key not in shared:
                 answers = [n for i in path for n in self._answers(i)]
+                more = [n for i in filled[r] for n in self._answers(i)]
                 shared[key] = {
                     "path": put(path),
                     "path_count": len(path),
-                    "answers": put(answers),
+                    "answers": put(answers + more),
                     "answer_count": len(answers),
+                    "filled_count": len(answers) + len(more),
                 }
             row |= shared[key] | {"column": column, "rank": -1}
-            row |= {"couplings": put(coupled), "coupling_count": len(coupled)}
-            column += row["answer_count"]
+            row |= {"couplings": put(coupled[r]), "coupling_count": len(coupled[r])}
+            column += row["filled_count"]
         return indices, column
 
     def _answers(self, i: int) -> range:
@@ -433,15 +438,29 @@ class _Builder:
         return rows
 
 
-def couplings(paths: list[list[int]]) -> list[list[int]]:
-    """For each row the earlier rows (and itself) whose paths share a body with its own."""
-    through: dict[int, list[int]] = {}
-    found: list[list[int]] = []
+def fill_in(paths: list[list[int]]) -> tuple[list[list[int]], list[list[int]]]:
+    """For each row the earlier rows (and itself) that may fill it when they are taken out of it, and what they fill.
+
+    A row meets the earlier ones whose bodies are on its path, or on what those have filled. Filled are the bodies that
+    are not on its own path, tips first.
+    """
+    group: dict[int, int] = {}  # body -> the group of rows that reaches it
+    rows: dict[int, list[int]] = {}
+    bodies: dict[int, set[int]] = {}
+    coupled: list[list[int]] = []
+    filled: list[list[int]] = []
     for r, path in enumerate(paths):
-        seen: set[int] = {r}
-        for i in path:
-            rows = through.setdefault(i, [])
-            seen.update(rows)
-            rows.append(r)
-        found.append(sorted(seen))
-    return found
+        met = sorted({group[i] for i in path if i in group})
+        into = met[0] if met else r
+        rows.setdefault(into, [])
+        bodies.setdefault(into, set())
+        for other in met[1:]:
+            rows[into] += rows.pop(other)
+            bodies[into] |= bodies.pop(other)
+        rows[into].append(r)
+        bodies[into] |= set(path)
+        for i in bodies[into]:
+            group[i] = into
+        coupled.append(sorted(rows[into]))
+        filled.append(sorted(bodies[into] - set(path), reverse=True))
+    return coupled, filled

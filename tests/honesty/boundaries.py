@@ -597,6 +597,7 @@ EXEMPT = {
     "KERNEL.dodges": "lengths of steps that are tried: the estimate says what was reached",
     "KERNEL.dodge": "lengths of steps that are tried: the estimate says what was reached",
     "KERNEL.pivot_rounding": "lengths of steps that are tried: the estimate says what was reached",
+    "KERNEL.rounding": "the doubt of the multipliers, in steps of one rounding",
     "KERNEL.pivot_noise": "lengths of steps that are tried: the estimate says what was reached",
 }
 # Those that decide one, and have no scene at their boundary yet.
@@ -616,9 +617,12 @@ WANTED = {
     "TOUCHING": "whether two outlines without extent are one",
     "CLAIMED": "the horizon",
     "BOUNDLESS": "the words on a run that fails",
-    "KERNEL.moves_nothing": "whether a row is one",
     "KERNEL.across": "what a pivot is measured by",
     "KERNEL.independent": "which rows carry the motion; one left out must not read as no reaction",
+    "KERNEL.passing": "which rows are left out on the way through a singular pose",
+    "KERNEL.passing_of_start": "the same in a scene that begins beside one",
+    "KERNEL.jump": "whether rates that the closures change are a blow",
+    "KERNEL.jump_of_error": "the same at a coarse tolerance",
     "KERNEL.locked": "whether a step that collapsed is a lock",
     "KERNEL.locked_step": "whether a step that collapsed is a lock",
     "KERNEL.reopened": "when a row that was left out is taken in again",

@@ -43,7 +43,8 @@ def test_folded_it_goes_on_as_well_as_it_can() -> None:
     found = solved(text.replace("MOVES", "angular_velocity: [0, 0, 3]"))
     near(found.bodies["slider"]["center"], 0.0, 1.0, 1e-7)
     assert any(w.startswith("the tolerance 1e-12 was not reached") for w in found.warnings)
-    assert 1e-12 < found.accuracy["estimate"]["motion"] < 1e-5
+    # a step that ends beside the dead centre leaves some of `passing`, 3e-6, of the rates to chance
+    assert 1e-12 < found.accuracy["estimate"]["motion"] < 1e-4
 
 
 def test_a_lock_is_still_a_lock() -> None:
@@ -78,16 +79,16 @@ def test_which_branch_is_followed_may_be_rounding(longer: float) -> None:
         assert "rounding decides which is followed" in told and horizon >= dead - 0.05
 
 
-def test_at_rest_no_energy_drifts() -> None:
-    """Two bars in line between fixed pins: they do not move, so nothing is relative to their motion."""
+def two_bars_in_line(gravity: str) -> str:
+    """Two bars in line between fixed pins: what pulls across them needs boundless reactions."""
     bars = "".join(
         f"  {name}: {{shapes: [{{type: rod, from: [0, 0, 0], to: [1, 0, 0], mass: 1}}], "
         "points: {x: [0, 0, 0], y: [1, 0, 0]}}\n"
         for name in "ab"
     )
-    found = solved(f"""
+    return f"""
 heun: 1
-gravity: [0, -9.81, 0]
+gravity: {gravity}
 ground: {{points: {{A: [0, 0, 0], B: [2, 0, 0]}}}}
 bodies:
 {bars}joints:
@@ -95,10 +96,20 @@ bodies:
   M: {{type: pin, from: a.y, to: b.x, axis: [0, 0, 1]}}
   B: {{type: pin, from: b.y, to: ground.B, axis: [0, 0, 1]}}
 analysis: {{duration: 1, samples: 5}}
-""")
+"""
+
+
+def test_at_rest_no_energy_drifts() -> None:
+    """Pulled along themselves they do not move, so nothing is relative to their motion."""
+    found = solved(two_bars_in_line("[-9.81, 0, 0]"))
     assert np.abs(found.points["a.y"]["position"] - [1, 0, 0]).max() < 1e-7
     assert found.accuracy["energy_drift"] == 0.0
-    assert any("reactions grow there without bound" in w for w in found.warnings)
+
+
+def test_what_cannot_stay_in_line_is_refused() -> None:
+    """Pulled across, they would have to stop as soon as they move: rates are not deleted untold."""
+    with pytest.raises(SolveError, match="cannot be held together"):
+        solved(two_bars_in_line("[0, -9.81, 0]"))
 
 
 def test_loads_that_do_not_balance_are_told() -> None:

@@ -11,24 +11,26 @@ import numpy as np
 
 from heuncli.kernel.choose import scene as kernel
 from heuncli.mechanism.model import GROUND
-from heuncli.records import record
-from heuncli.results import Array, Mask
-from heuncli.tree.layout import Layout
+from heuncli.records import replace
+from heuncli.results import Array
+from heuncli.tree.layout import Island, Layout
+from heuncli.tree.tables import table
 
 
-@record
-class Island:
-    """Closure rows of loops that share bodies; freedoms: of those bodies, a ball's three turns and no driven ones.
-
-    couples (rows,): which rows carry a couple and no force; turns (freedoms,): which freedoms are turns.
-    length [m]: mean distance of the cut joints' points from the centres of their bodies.
-    """
-
-    rows: Array
-    freedoms: Array
-    couples: Mask
-    turns: Mask
-    length: float
+def with_islands(layout: Layout) -> Layout:
+    """The layout with its islands, for the kernel, too, which measures rows and freedoms by them."""
+    found = islands(layout)
+    measure = np.zeros(layout.answer_count)
+    rows = []
+    for island in found:
+        measure[island.freedoms] = np.where(island.turns, 1.0 / island.length, 1.0)
+        layout.tables["closures"]["measure"][island.rows] = np.where(island.couples, island.length, 1.0)
+        at = len(layout.indices)
+        layout.indices.extend(island.rows.tolist() + island.freedoms.tolist())
+        n = len(island.rows)
+        rows.append({"rows": at, "row_count": n, "freedoms": at + n, "freedom_count": len(island.freedoms)})
+    tables = layout.tables | {"islands": table(kernel.Island, rows)}
+    return replace(layout, islands=tuple(found), measure=measure, tables=tables)
 
 
 def islands(layout: Layout) -> list[Island]:
