@@ -46,17 +46,13 @@ class Estimate(TypedDict, total=False):
 
 
 class Accuracy(TypedDict, total=False):
-    """How well the equations are solved; horizon: None where there is none.
-
-    unknown: instants beside singular poses at which rounding reaches some numbers, which are nan there.
-    """
+    """How well the equations are solved; horizon: None where there is none."""
 
     energy_drift: float
     constraint_gap: float
     balance_residual: float
     horizon: float | None
     estimate: Estimate
-    unknown: list[float]
 
 
 class Work(TypedDict, total=False):
@@ -122,10 +118,11 @@ class Extremes(NamedTuple):
 class Magnitudes(NamedTuple):
     """The largest over a run, by unit, of what its numbers are summed from; size and reach [m] of the scene.
 
-    rate: of the fastest motion [1/s]. A number far below its unit's is rounding of the sum, or of a difference.
+    A number far below its unit's is rounding of the sum, or of a difference. errors: estimated by a check run, by kind
+    (of `accuracy.estimate`) and unit.
     """
 
     by_unit: Mapping[str, float]
     size: float
     reach: float
-    rate: float
+    errors: Mapping[tuple[str, str], float]

@@ -12,7 +12,7 @@ from __future__ import annotations
 
 import contextlib
 import time
-from collections.abc import Iterator, Sequence
+from collections.abc import Iterator, Mapping, Sequence
 from typing import Protocol
 
 import numpy as np
@@ -40,11 +40,14 @@ CHUNK = 2_000_000  # numbers compared at a time
 class Loads(Protocol):
     """What collects the differences of loads and energy between the two runs, kind by kind (study/kinds.py)."""
 
-    def add(self, several: Recovered, asked: Mask) -> None:
-        """More instants, and which are asked ones; at each the answers of A and then those of the other runs."""
+    def add(self, several: Recovered, asked: Mask, before: Mask) -> None:
+        """More instants, which are asked and which before the horizon; at each the answers of A, then of the others."""
 
     def estimate(self) -> Estimate:
         """The estimated error of each kind, relative to its own largest."""
+
+    def errors(self) -> Mapping[tuple[str, str], float]:
+        """The estimated errors by kind and unit, at instants before the horizon."""
 
 
 @record
@@ -52,13 +55,15 @@ class Checked:
     """A run that was checked.
 
     recovered: accelerations and loads at the run's instants; motion: largest estimated error of any point over the
-    whole run, relative to the size; loads: those of the other kinds; horizon: where the motion's passes CLAIMED.
+    whole run, relative to the size; loads: those of the other kinds; errors: all by kind and unit, before the horizon;
+    horizon: where the motion's passes CLAIMED.
     """
 
     run: Trajectory
     recovered: Recovered
     motion: float
     loads: Estimate
+    errors: Mapping[tuple[str, str], float]
     horizon: float | None
     check_seconds: float
     lost_seconds: float  # of runs that missed the tolerance
@@ -179,11 +184,12 @@ def checked_run(runs: Runs, tolerance: float, loads: Loads) -> Checked:
     assert best is not None
     begun = time.perf_counter()
     for part, several in recovered_together(runs, best.times, best.states):
-        loads.add(several, best.asked[part])
+        before = best.times[part] < (np.inf if best.horizon is None else best.horizon)
+        loads.add(several, best.asked[part], before)
     a = best.runs[0]
     recovered = recovered_at(runs.runner, a.times, a.states, runs.jumps)
     seconds = best.seconds + time.perf_counter() - begun
-    return Checked(a, recovered, best.motion, loads.estimate(), best.horizon, seconds, lost)
+    return Checked(a, recovered, best.motion, loads.estimate(), loads.errors(), best.horizon, seconds, lost)
 
 
 def compared(runs: Runs, a: Trajectory) -> Compared:

@@ -65,7 +65,7 @@ def magnitudes(
         "N": force, "N·m": force * size, "W": force * speed,
         "J": max(sum(mass) * g * size, *(_largest(energy[key]) for key in ("kinetic", "potential", "work"))),
     }  # fmt: skip
-    return Magnitudes(by_unit, size, _largest(states.x), max(v / size, a / v if v > 0.0 else 0.0))
+    return Magnitudes(by_unit, size, _largest(states.x), {})
 
 
 def _least_gyration(mechanism: Mechanism, size: float) -> float:

@@ -96,9 +96,9 @@ def family_styles(rows: Sequence[Row], numbers: Array, certain: Certainty) -> li
         scales[_family(row)] = max(scales.get(_family(row), 0.0), scale)
     styles = []
     for row in rows:
-        how = certain.style(row.kind, row.unit, scales[_family(row)])
-        # a sum whose terms cancel to less than their errors is nothing beside them
-        styles.append(how if how.known else certain.style(row.kind, row.unit, max(scales[_family(row)], row.beside)))
+        own, whole = (certain.style(row.kind, row.unit, scale) for scale in (scales[_family(row)], row.beside))
+        # a sum whose terms cancel, to the digits that are shown of them, is nothing beside them
+        styles.append(whole if row.beside and whole.write(scales[_family(row)]) == "0" else own)
     return styles
 
 

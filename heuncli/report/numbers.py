@@ -28,12 +28,17 @@ OPEN = "open"
 OPEN_NOTE = "open: the laws of rigid bodies do not give this number (redundant supports)"
 ZERO_NOTE = "what is 0 throughout is left out"
 UNKNOWN = "?"
-UNKNOWN_NOTE = "?: the estimated error is as large as the number, as beyond the horizon or beside a singular pose"
+UNKNOWN_NOTE = "?: the estimated error is as large as the number, or the instant is beyond the horizon"
 KINDS = {"foundation": "foundation", "joints": "reactions", "sections": "sections", "energy": "energy"}
 LOADS: tuple[Literal["reactions", "drives", "foundation", "sections"], ...] = (
     "reactions", "drives", "foundation", "sections",
 )  # fmt: skip
-APPLIED = ("motion", "reactions", "energy")  # loads follow places and rates, friction the reactions
+KIND_OF = {
+    "forces": "reactions",
+    "axis": "foundation",
+}  # of which estimate those errors are that have none of their own
+
+Scales = Mapping[tuple[str, str], float]  # by kind and unit
 
 
 class Style(NamedTuple):
@@ -66,14 +71,10 @@ class Style(NamedTuple):
 
 
 class Certainty(NamedTuple):
-    """The absolute errors of numbers by kind and unit, and their rounding by unit; 0 where none is known.
-
-    beside: instants beside singular poses, at which what is nan is not known.
-    """
+    """The absolute errors of numbers by kind and unit, and their rounding by unit; 0 where none is known."""
 
     errors: Mapping[tuple[str, str], float]
     rounding: Mapping[str, float]
-    beside: frozenset[float] = frozenset()
 
     def error(self, kind: str, unit: str) -> float:
         """The estimated error of numbers of this kind and unit, not below their rounding."""
@@ -89,21 +90,30 @@ class Certainty(NamedTuple):
 
 
 def certainty(results: Results, labels: Labels, of: Magnitudes) -> Certainty:
-    """The absolute errors of a run, from its own estimates and the largest number of each kind and unit."""
+    """The errors of a run: as its check run found them, else from its estimates and the largest of each kind."""
     scales: dict[tuple[str, str], float] = {}
     for series in walk(results, labels):
         key = (kind_of(series), series.unit)
         scales[key] = max(scales.get(key, 0.0), largest(series.values))
-    errors = {key: tolerances.WRITTEN * scale for key, scale in scales.items()} | _of_motion(results, of)
+    errors = {key: _relative(results, KIND_OF.get(key[0], key[0])) * scale for key, scale in scales.items()}
     for kind in LOADS:
-        errors |= _of_loads(kind, _relative(results, kind), scales, of.size)
-    errors["energy", "J"] = _relative(results, "energy") * scales.get(("energy", "J"), 0.0)
-    applied = max(_relative(results, kind) for kind in APPLIED)
-    errors |= {("forces", unit): applied * scales.get(("forces", unit), 0.0) for unit in ("N", "N·m", "W")}
+        errors |= _of_wrench(kind, _relative(results, kind), scales, of.size)
+    errors |= of.errors
+    motion = _relative(results, "motion")
+    errors["motion", "m"] = motion * of.size
+    errors["motion", "rad"] = motion * max(scales.get(("motion", "rad"), 0.0), 1.0)
+    lost = _rounding(of)
+    load = max(scales.get(("sections", "N"), 0.0), scales.get(("sections", "N·m"), 0.0) / of.size)
+    if load > 0.0:  # stresses are in proportion to what makes them
+        stress = scales.get(("sections", "Pa"), 0.0) / load
+        error = max(errors["sections", "N"], errors["sections", "N·m"] / of.size)
+        errors["sections", "Pa"], errors["sections", "MPa"] = stress * error, 1e-6 * stress * error
+        errors["sections", "1"] = scales.get(("sections", "1"), 0.0) / load * error
+        lost |= {"Pa": stress * lost["N"], "MPa": 1e-6 * stress * lost["N"]}
     horizon = results.accuracy.get("horizon")
     if horizon is not None and results.time[0] >= horizon:
         errors = dict.fromkeys(errors, math.inf)
-    return Certainty(errors, _rounding(of) | _rounding_of_stresses(scales, of))
+    return Certainty(errors, lost)
 
 
 def kind_of(series: Series) -> str:
@@ -112,30 +122,31 @@ def kind_of(series: Series) -> str:
         return "drives"
     if series.kind == "foundation" and series.name.startswith("supports."):
         return "reactions"
+    if series.kind == "foundation" and series.name == "axis":
+        return "axis"
     if series.kind == "forces":
         return "motion" if series.quantity in ("length", "rate") else "forces"
     return KINDS.get(series.kind, "motion")
 
 
-def _of_motion(results: Results, of: Magnitudes) -> dict[tuple[str, str], float]:
-    """Errors of places, and of their derivatives as if they changed as fast as the motion does.
-
-    A step of the integrator is about as long as the fastest motion takes for one radian.
-    """
-    error, span, steps = _relative(results, "motion"), float(np.ptp(results.time)), results.work.get("steps", 0)
-    rate = min(of.rate, steps / span) if steps and span > 0.0 else of.rate
-    families = (("m", "m/s", "m/s²"), of.size), (("rad", "rad/s", "rad/s²"), 1.0)
-    return {("motion", unit): error * size * rate**k for units, size in families for k, unit in enumerate(units)}
-
-
-def _of_loads(
-    kind: str, relative: float, scales: Mapping[tuple[str, str], float], size: float
-) -> dict[tuple[str, str], float]:
-    """Errors of one kind of loads, a force on the scene's size as lever against a moment; stresses as their loads."""
+def _of_wrench(kind: str, relative: float, scales: Scales, size: float) -> dict[tuple[str, str], float]:
+    """Errors of one kind of loads; against a moment stands a force on the scene's size as lever."""
     own = max(scales.get((kind, "N"), 0.0), scales.get((kind, "N·m"), 0.0) / size)
-    errors = {(kind, "N"): relative * own, (kind, "N·m"): relative * own * size}
-    errors |= {(kind, unit): relative * scales.get((kind, unit), 0.0) for unit in ("Pa", "m", "1")}
-    return errors | {(kind, "MPa"): 1e-6 * errors[kind, "Pa"]}
+    return {(kind, "N"): relative * own, (kind, "N·m"): relative * own * size}
+
+
+def with_axis(certain: Certainty, results: Results, of: Magnitudes) -> Certainty:
+    """The same, with the errors of the central axis at the instants that are shown: no better than its force's.
+
+    direction s/|s|, point s × M / s², pitch s·M / s²: an error of M is one of s on a lever.
+    """
+    if "axis" not in results.foundation:
+        return certain
+    axis = results.foundation["axis"]
+    force = np.sqrt(np.sum(results.foundation["force"] ** 2, axis=1))[np.isfinite(axis["pitch"])]
+    relative = certain.error("foundation", "N") / float(force.min()) if force.size else 0.0
+    lever = of.size + largest(axis["point"]) + largest(axis["pitch"])
+    return certain._replace(errors={**certain.errors, ("axis", "1"): relative, ("axis", "m"): relative * lever})
 
 
 def _rounding(of: Magnitudes) -> dict[str, float]:
@@ -143,13 +154,6 @@ def _rounding(of: Magnitudes) -> dict[str, float]:
     lost = {unit: tolerances.WRITTEN * scale for unit, scale in of.by_unit.items()}
     far = tolerances.GAP_ROUNDING * of.reach
     return lost | {"m": max(lost["m"], far), "N·m": max(lost["N·m"], far * of.by_unit["N"])}
-
-
-def _rounding_of_stresses(scales: Mapping[tuple[str, str], float], of: Magnitudes) -> dict[str, float]:
-    """What stresses lose: in proportion to the loads that make them."""
-    loads = max(scales.get(("sections", "N"), 0.0), scales.get(("sections", "N·m"), 0.0) / of.size)
-    lost = tolerances.WRITTEN * of.by_unit["N"] / loads * scales.get(("sections", "Pa"), 0.0) if loads else 0.0
-    return {"Pa": lost, "MPa": 1e-6 * lost}
 
 
 def _relative(results: Results, kind: str) -> float:

@@ -15,7 +15,7 @@ import numpy as np
 from heuncli.report import extremes, instants, runs
 from heuncli.report.blocks import Block, build
 from heuncli.report.labels import Labels
-from heuncli.report.numbers import Certainty, certainty
+from heuncli.report.numbers import Certainty, certainty, with_axis
 from heuncli.report.plans import PLANS
 from heuncli.report.quantities import Series, walk, walk_impulse
 from heuncli.report.sums import sums_table
@@ -30,12 +30,13 @@ EXPORT_DEFAULT = frozenset(REPORTS) - {"points"}
 class Page(NamedTuple):
     """The tables of a run: blocks and runs of cuts up to the horizon, before they are laid out.
 
-    beyond: the last instant alone, where the run ends beyond its horizon.
+    of: what its numbers are summed from; beyond: the last instant alone, where the run ends beyond its horizon.
     """
 
     results: Results
     labels: Labels
     certain: Certainty
+    of: Magnitudes
     beyond: Results | None = None
 
     def columns(self, results: Results) -> Array:
@@ -86,7 +87,7 @@ class Page(NamedTuple):
     def instants(self, results: Results, *, every_cut: bool = False) -> list[Table]:
         """The tables at the instants of `results`, which is the same run at any instants."""
         horizon = self.results.accuracy.get("horizon")
-        certain = self.certain._replace(beside=frozenset(results.accuracy.get("unknown", ())))
+        certain = with_axis(self.certain, results, self.of)
         tables: list[Table] = []
         for block in _blocks(results, self.labels):
             tables += instants.instants_tables(block, results.time, horizon, certain)
@@ -127,9 +128,9 @@ def page_of(results: Results, labels: Labels, of: Magnitudes) -> Page:
     horizon = results.accuracy.get("horizon")
     certain = certainty(results, labels, of)
     if horizon is None or results.time[-1] < horizon:
-        return Page(results, labels, certain)
+        return Page(results, labels, certain, of)
     known = max(1, int(np.searchsorted(results.time, horizon)))
-    return Page(some_instants(results, slice(known)), labels, certain, some_instants(results, slice(-1, None)))
+    return Page(some_instants(results, slice(known)), labels, certain, of, some_instants(results, slice(-1, None)))
 
 
 def some_instants(results: Results, which: slice) -> Results:

@@ -12,6 +12,7 @@ Where a kind is nothing but what larger terms leave when they cancel it is none:
 from __future__ import annotations
 
 from collections.abc import Iterable, Sequence
+from functools import cached_property
 
 import numpy as np
 
@@ -22,6 +23,7 @@ from heuncli.kinetostatics.bodies import BodyStates, body_states
 from heuncli.kinetostatics.energy import energy
 from heuncli.kinetostatics.foundation import inertia_loads, total
 from heuncli.kinetostatics.reactions import JointLoads, in_plane, joint_loads
+from heuncli.mechanism.size import marks
 from heuncli.records import fields, replace
 from heuncli.results import Array, Estimate, Mask
 from heuncli.study.recover import about
@@ -29,29 +31,39 @@ from heuncli.study.setup import Setup
 
 
 class Extent:
-    """Of one quantity over the instants so far: largest error, rounding and terms; largest value and range as told."""
+    """Of one quantity over the instants so far: largest error, rounding and terms; largest value and range as told.
+
+    claimed: the largest difference before the horizon.
+    """
 
     def __init__(self) -> None:
-        self.difference = self.rounding = self.terms = 0.0
+        self.difference = self.claimed = self.rounding = self.terms = 0.0
         self.largest = self.told = 0.0
         self.low, self.high = np.inf, -np.inf
 
-    def add(self, values: Array, rounding: Array, terms: Array, asked: Mask, more: Array | None = None) -> None:
+    def add(
+        self, values: Array, rounding: Array, terms: Array, which: tuple[Mask, Mask], more: Array | None = None
+    ) -> None:
         """values (c n, ...): of c runs, at each instant one after the other; more (n,): difference beside.
 
-        rounding, terms (c n,); asked (n,): which instants are.
+        rounding, terms (c n,); which: the instants that are asked ones, and those before the horizon, (n,).
         """
+        asked, before = which
         if not values.size:
             return
         count = len(values) // len(asked)
         own = values[0::count]
         size = lengths(own)
         difference = np.max([lengths(own - values[k::count]) for k in range(1, count)], axis=0)
-        self.difference = _larger(self.difference, difference if more is None else difference + more)
+        self.differ(difference if more is None else difference + more, before)
         self.rounding = _larger(self.rounding, rounding)
         self.terms = _larger(self.terms, terms)
         self.largest, self.told = _larger(self.largest, size), _larger(self.told, size[asked])
         self.low, self.high = min(self.low, float(own.min())), max(self.high, float(own.max()))
+
+    def differ(self, difference: Array, before: Mask) -> None:
+        """More differences, and which are before the horizon, (n,)."""
+        self.difference, self.claimed = _larger(self.difference, difference), _larger(self.claimed, difference[before])
 
     @property
     def error(self) -> float:
@@ -59,9 +71,18 @@ class Extent:
         return 2.0 * self.difference + self.rounding
 
     @property
+    def claimed_error(self) -> float:
+        """The same before the horizon."""
+        return 2.0 * self.claimed + self.rounding
+
+    @property
     def exchanged(self) -> float:
         """What lies between the lowest and the highest value, if less than the largest."""
         return max(min(self.high - self.low, self.largest), 0.0)
+
+
+def _norms(vectors: Array) -> Array:
+    return np.asarray(np.sqrt(np.einsum("tni,tni->tn", vectors, vectors)))
 
 
 def lengths(values: Array) -> Array:
@@ -129,7 +150,7 @@ class Kinds:
         self.setup = setup
         self.extents: dict[tuple[str, str], Extent] = {}
         self.reach = 0.0  # farthest centre of mass from the point that the foundation's moment is about
-        self.asked = np.zeros(0, dtype=bool)
+        self.asked = self.before = np.zeros(0, dtype=bool)
 
     def extent(self, kind: str, quantity: str) -> Extent:
         """That of a quantity."""
@@ -139,18 +160,18 @@ class Kinds:
         self, name: tuple[str, str], values: Array, rounding: Array, terms: Array, more: Array | None = None
     ) -> None:
         """More instants of a quantity: see `Extent.add`."""
-        self.extent(*name).add(values, rounding, terms, self.asked, more)
+        self.extent(*name).add(values, rounding, terms, (self.asked, self.before), more)
 
-    def add(self, several: Recovered, asked: Mask) -> None:
-        """More instants, and which are asked ones; at each the answers of A and then those of the other runs."""
+    def add(self, several: Recovered, asked: Mask, before: Mask) -> None:
+        """More instants, which are asked and which before the horizon; at each the answers of A, then of the others."""
         count = len(several.times) // max(len(asked), 1)
         same = same_rows(several, count)
         if not same.any():
             return
         if not same.all():
             kept = {name: values[np.repeat(same, count)] for name, values in fields(several).items()}
-            several, asked = replace(several, **kept), asked[same]
-        self.asked = asked
+            several, asked, before = replace(several, **kept), asked[same], before[same]
+        self.asked, self.before = asked, before
         layout, mechanism = self.setup.scene.layout, self.setup.scene.mechanism
         states = body_states(layout, several)
         joints = joint_loads(layout, several, states)
@@ -161,6 +182,37 @@ class Kinds:
         if self.setup.cuts:
             self.add_sections(states, [*whole_joint_actions(joints), *(load.action for load in loads)], terms)
         self.add_energy(several, states, loads)
+        self.add_motion(states)
+        for load in loads:
+            F, M = terms.rounding * terms.force, terms.rounding * terms.moment
+            self.take(("forces", "N"), load.action.force, F, terms.force)
+            self.take(("forces", "N·m"), load.action.moment, M, terms.moment)
+            self.take(("forces", "W"), load.power, np.zeros(len(F)), terms.force)
+
+    def add_motion(self, states: BodyStates) -> None:
+        """Velocities and accelerations: of the bodies, and of points as far from their centres as they reach."""
+        count = len(states.omega) // len(self.asked)
+
+        def apart(values: Array) -> Array:
+            own = values[0::count]
+            return np.asarray(np.max([_norms(own - values[k::count]) for k in range(1, count)], axis=0))
+
+        turn, turning = apart(states.omega), apart(states.alpha)
+        centripetal = 2.0 * _norms(states.omega[0::count]) * turn
+        for unit, difference in (
+            ("rad/s", turn),
+            ("rad/s²", turning),
+            ("m/s", apart(states.v_centre) + turn * self.reaches),
+            ("m/s²", apart(states.a_centre) + (turning + centripetal) * self.reaches),
+        ):
+            self.extent("motion", unit).differ(difference.max(axis=1), self.before)
+
+    @cached_property
+    def reaches(self) -> Array:
+        """How far each body's marks are from its centre of mass at most, (b,) [m]."""
+        bodies = self.setup.scene.mechanism.bodies
+        far = [max(float(np.sum(np.square(p - body.center))) for p in marks(body)) for body in bodies]
+        return np.asarray(np.sqrt(far))
 
     def add_joints(self, joints: Sequence[JointLoads], terms: Terms) -> None:
         """Reactions and drives."""
@@ -231,6 +283,18 @@ class Kinds:
             sections=self.wrench(size, "sections"),
             energy=self.energies(),
         )
+
+    def errors(self) -> dict[tuple[str, str], float]:
+        """The estimated errors by kind and unit, before the horizon."""
+        of = {name: extent.claimed_error for name, extent in self.extents.items()}
+        found = {name: error for name, error in of.items() if name[0] in ("motion", "forces")}
+        whole = ("foundation", "effects", "elements")
+        for kind, parts in (("reactions", ("reactions",)), ("sections", ("sections",)), ("foundation", whole)):
+            for quantity, unit in (("force", "N"), ("moment", "N·m")):
+                found[kind, unit] = max(of.get((part, quantity), 0.0) for part in parts)
+        found["drives", "N"], found["drives", "N·m"] = (of.get(("drives", x), 0.0) for x in ("thrust", "torque"))
+        found["energy", "J"] = max(of.get(("energy", name), 0.0) for name in ("kinetic", "potential", "work"))
+        return found
 
     def wrench(
         self, arm: float, kind: str, force: str = "force", moment: str = "moment", also: Sequence[str] = ()

@@ -30,12 +30,7 @@ NAMES = [
     pytest.param(path.stem, marks=[pytest.mark.heavy] if path.stem in HEAVY else [])
     for path in sorted(FOLDER.glob("*.yaml"))
 ]
-WARNED = {
-    "flat_four_bar": [
-        "passes through a singular pose",
-        "extremes are searched without what rounding reaches beside singular poses",
-    ]
-}
+WARNED = {"flat_four_bar": ["passes through a singular pose"]}
 EVERYTHING = frozenset({"motion", "points", "foundation", "joints", "sections", "forces", "energy"})
 each = pytest.mark.parametrize("name", NAMES)
 

@@ -3,7 +3,8 @@
 from __future__ import annotations
 
 import math
-from typing import Any
+from pathlib import Path
+from typing import Any, NamedTuple
 
 import numpy as np
 import pytest
@@ -15,6 +16,8 @@ from heuncli.report.table import plain
 from heuncli.study.expect import compare
 from heuncli.study.solve import Study
 from tests.shared.scenes import near, study
+
+SPECS = Path(__file__).parents[2] / "specs"
 
 
 def tables(run: Study) -> str:
@@ -85,6 +88,36 @@ def test_the_balance_of_a_rotor_is_relative_to_what_its_pieces_pull() -> None:
     for axis in np.random.default_rng(3).normal(size=(20, 3)).tolist():
         run = study(rod("", "type: state").replace(f"[0, 0, {SPIN}]", f"{[1e3 * x for x in axis]}"))
         assert run.results.accuracy["balance_residual"] < 1e-14
+
+
+def test_a_body_thrown_free_shows_its_section_loads() -> None:
+    """Nothing acts but its weight, no joint has a load: by Euler's equations of a free body, at hand."""
+    run = study("""
+heun: 1
+gravity: [0, 0, -9.81]
+bodies:
+  box:
+    shapes: [{type: box, center: [0, 0, 0], size: [1, 0.2, 0.1], mass: 3}]
+    points: {c: [0, 0, 0]}
+    velocity: [3, 0, 5]
+    angular_velocity: [1, 2, 3]
+sections: {cut: {body: box, at: [0.1, 0, 0], normal: [1, 0, 0]}}
+analysis: {duration: 1, samples: 5}
+""")
+    sides = np.array([1.0, 0.2, 0.1])
+    inertia = 3.0 / 12.0 * (np.sum(sides**2) - sides**2)
+    w = np.einsum("tji,tj->ti", run.results.bodies["box"]["rotation"], run.results.bodies["box"]["angular_velocity"])
+    turning = -np.cross(w, inertia * w) / inertia
+    arm = np.array([0.3, 0.0, 0.0])  # of the piece's centre
+    force = -1.2 * (np.cross(turning, arm) + np.cross(w, np.cross(w, arm)))
+    text = tables(run)
+    for name, exact in zip(("N", "Q1", "Q2"), force.T, strict=True):
+        near(run.results.sections["cut"][name], exact, np.abs(force).max(), 1e-9)
+        cells = row(text, "cut", name)
+        assert [float(cell) for cell in cells[2:4]] == pytest.approx([exact[0], exact[-1]], abs=6e-6)
+        assert len(cells[2].lstrip("-0.")) >= 4
+    assert "?" not in text
+    assert run.results.accuracy["estimate"]["sections"] < 1e-8
 
 
 def turning(seed: int) -> str:
@@ -183,3 +216,66 @@ def test_beyond_the_horizon_of_a_pendulum_nothing_is_told() -> None:
     assert max(float(cells[5]), float(cells[7])) < horizon
     assert row(text, "ENERGY", "kinetic")[3] == "?"
     assert np.isfinite(run.results.joints["p"]["force"]).all()  # what JSON and CSV carry
+
+
+class Cell(NamedTuple):
+    """A cell of a table, and what one unit of the last decimal is worth at most, in its table and unit of measure."""
+
+    text: str
+    unit: float
+
+
+def numbers(run: Study, at: list[float]) -> dict[tuple[str, str, int], Cell]:
+    """The cells of the tables at some instants, by heading, column and line."""
+    page = page_of(run.results, labels_of(run.spec), run.magnitudes)
+    cells: dict[tuple[str, str, int], Cell] = {}
+    for k, table in enumerate(page.instants(run.resample(np.array(at)))):
+        units = [column.head.partition("[")[2] for column in table.columns]
+        lines = [line for line in table.rows if not isinstance(line, str)]
+        for n, column in enumerate(table.columns):
+            alike = [line[m] for line in lines for m, unit in enumerate(units) if unit == units[n]]
+            last = max(map(last_place, alike))
+            for i, line in enumerate(lines):
+                cells[f"{k} {table.heading[:20]}", column.head, i] = Cell(line[n], last)
+    return cells
+
+
+def last_place(text: str) -> float:
+    """What one unit of a number's last digit is worth; 0 for words and for nought."""
+    mantissa, _, exponent = text.partition("e")
+    is_number = text != "0" and mantissa.lstrip("-")[:1].isdigit()
+    return 10.0 ** (int(exponent or 0) - len(mantissa.partition(".")[2])) if is_number else 0.0
+
+
+STIFF = """
+heun: 1
+gravity: [0, 0, -9.81]
+ground: {points: {O: [0, 0, 0]}}
+bodies:
+  arm:
+    shapes: [{type: rod, from: [0, 0, 0], to: [1, 0, 0], mass: 5}]
+    points: {o: [0, 0, 0], m: [0.5, 0, 0], e: [1, 0, 0]}
+  light: {mass: 0.01, center: [0.05, 0, 0], inertia: [1e-5, 1e-5, 1e-5], points: {p: [0, 0, 0]}}
+joints:
+  hinge: {type: pin, from: ground.O, to: arm.o, axis: [0, 1, 0], initial: {rate: 1}}
+  guide: {type: ball, from: arm.m, to: light.p}
+forces:
+  strut: {type: spring, from: arm.e, to: {body: ground, at: [1, 0, -1]}, stiffness: 8e5, length: 0.99, damping: 400}
+analysis: {duration: 1, samples: 11}
+"""
+
+
+@pytest.mark.parametrize("name", ["double", "top", "lamp", "wingnut", "four_bar", "slider_crank", "cardan", "stiff"])
+def test_every_digit_of_a_table_is_right(name: str) -> None:
+    """Against a run at 1e-13, at instants of no meaning: to one unit of the last place of either."""
+    text = STIFF if name == "stiff" else (SPECS / f"{name}.yaml").read_text()
+    run, fine = study(text), study(text, tolerance=1e-13)
+    at = np.sort(np.random.default_rng(5).uniform(0.0, run.results.time[-1], 4)).tolist()
+    cells, exact = numbers(run, at), numbers(fine, at)
+    compared = [key for key, cell in cells.items() if key in exact and "?" not in (cell.text, exact[key].text)]
+    assert len(compared) > 0.8 * len(cells)
+    for key in compared:
+        cell, right = cells[key], exact[key]
+        if cell.text != right.text and cell.text[-1:].isdigit():
+            allowed = 1.01 * (cell.unit + right.unit)
+            assert abs(float(cell.text) - float(right.text)) <= allowed, (key, cell, right)

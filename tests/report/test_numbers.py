@@ -8,7 +8,7 @@ import numpy as np
 import pytest
 
 from heuncli.report.numbers import certainty, rough, style, trim, write, write_times
-from tests.shared.fakes import ACCURATE, LABELS, MAGNITUDES, WORK, pendulum
+from tests.shared.fakes import ACCURATE, LABELS, MAGNITUDES, pendulum
 
 T = np.linspace(0.0, 2.0, 11)
 
@@ -93,12 +93,20 @@ def test_a_moment_is_no_more_certain_than_a_force_on_its_arm() -> None:
     assert errors.error("reactions", "N·m") >= MAGNITUDES.size * errors.error("reactions", "N")
 
 
-def test_a_derivative_is_certain_as_far_as_the_motion_is_fast() -> None:
-    errors = certainty(pendulum(T), LABELS, MAGNITUDES._replace(rate=100.0))
-    place, speed, acceleration = (errors.error("motion", unit) for unit in ("m", "m/s", "m/s²"))
-    steps = WORK["steps"] / np.ptp(T)  # no motion is faster than the integrator's steps follow
-    assert speed == pytest.approx(steps * place)
-    assert acceleration == pytest.approx(steps * speed)
+def test_errors_that_a_check_run_found_go_first() -> None:
+    found = {("reactions", "N"): 0.25, ("motion", "m/s²"): 0.5}
+    errors = certainty(pendulum(T), LABELS, MAGNITUDES._replace(errors=found))
+    assert errors.error("reactions", "N") == 0.25
+    assert errors.error("motion", "m/s²") == 0.5
+    assert errors.error("motion", "m") == pytest.approx(ACCURATE["estimate"]["motion"] * MAGNITUDES.size)
+
+
+def test_a_stress_is_as_uncertain_as_the_loads_that_make_it() -> None:
+    cut = {"N": 100.0 + T, "M2": 3.0 * T, "stress": {"normal_max": 5e6 + T}, "open": []}
+    found = {("sections", "N"): 0.0, ("sections", "N·m"): 0.25}
+    errors = certainty(pendulum(T, sections={"a": cut}), LABELS, MAGNITUDES._replace(errors=found))
+    assert errors.error("sections", "Pa") == pytest.approx(5e6 / 102.0 * 0.25 / MAGNITUDES.size, rel=1e-3)
+    assert errors.error("sections", "MPa") == pytest.approx(1e-6 * errors.error("sections", "Pa"))
 
 
 def test_before_the_horizon_the_error_is_that_at_the_horizon() -> None:

@@ -41,7 +41,7 @@ LABELS = Labels(
     about="O",
 )
 UNITS = ("m", "m/s", "m/s²", "rad", "rad/s", "rad/s²", "N", "N·m", "J", "W")
-MAGNITUDES = Magnitudes(dict.fromkeys(UNITS, 10.0), size=2.0, reach=1.0, rate=2.0)  # of `pendulum`
+MAGNITUDES = Magnitudes(dict.fromkeys(UNITS, 10.0), size=2.0, reach=1.0, errors={})  # of `pendulum`
 
 
 def vectors(t: Array, x: Any, y: Any, z: Any) -> Array:
@@ -122,8 +122,6 @@ class FakeStudy:
 
     times: Array
     changes: Mapping[str, Any] = field(default_factory=dict)
-    later: dict[str, None] = field(default_factory=dict)
-    unknown: set[float] = field(default_factory=set)
 
     @property
     def results(self) -> Results:
