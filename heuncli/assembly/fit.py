@@ -1,12 +1,13 @@
 """The fit of an island: poses that close its loops, as near as possible to where they started.
 
-    (0) drawn nearly closed: (2) from the poses as drawn, then least Σθ² + Σ(d/L)² from there; then (3), unless that
+    (0) drawn nearly closed: (2) from the poses as drawn, then least Σθ² + Σ(d/l)² from there; then (3), unless that
         leads much farther than the nearest. Else, from the poses as walked:
     (1) with `near`: what near says is fixed, the others meet it as well as they can; then it is let go
     (2) close: least |e − C y|² + μ (Σθ² + 0.01 Σd²/L²) step by step (Levenberg-Marquardt), turns at most 0.3 rad;
         where that stalls with a gap (links in line have no slope), again with small fixed pseudo-random turns
     (3) polish: least Σθ² from the start of (2), then least Σd², among the poses that are closed
-θ turns of left-out attitudes, d shifts of left-out pivots, L the scene's size; y, C, e as in reduced.py.
+θ turns of left-out attitudes, d shifts of left-out pivots, L the scene's size, l the island's own; y, C, e as in
+reduced.py.
 """
 
 from __future__ import annotations
@@ -74,9 +75,22 @@ class Fit:
         """Root of the sum of squares of all gaps, lengths by L."""
         return math.sqrt(sum(float(r.hold @ r.hold) / self.size**2 + float(r.turn @ r.turn) for r in rows.values()))
 
-    def widest(self, rows: dict[int, Rows]) -> float:
-        """The largest gap of a joint, lengths by L."""
-        return max(max(_norm(r.hold) / self.size, _norm(r.turn)) for r in rows.values())
+    def near(self, drawn: tuple[Array, Array], lever: float) -> bool:
+        """Whether no joint is open by much, and no body far from its drawing; lengths by the lever."""
+        rows = self.rows().values()
+        gap = max(max(_norm(r.hold) / lever, _norm(r.turn)) for r in rows)
+        way = float(np.max(np.abs(self._moved(drawn) * _counted(len(self.island.members), self.size / lever))))
+        return max(gap, way) <= tolerances.NEAR_DRAWING
+
+    def lever(self) -> float:
+        """Mean distance of its joints' points from the pivots they turn about [m]; the scene's size where all meet."""
+        ends = [
+            (i, at)
+            for k in self.joints
+            for i, at in ((self.found[k].a, self.found[k].p), (self.found[k].b, self.found[k].q))
+        ]
+        arms = [_norm(at - self.poses.pivot[i]) for i, at in ends if i in self.island.members]
+        return float(np.mean(arms)) or self.size
 
     def saved(self) -> tuple[Array, Array]:
         """The members' poses, to be put back."""
@@ -174,23 +188,25 @@ class Fit:
 
         The walk moves the last body of a loop by all that the drawing lacks; where that is little, each gives a bit.
         """
+        lever = self.lever()
+        together = self.size / lever
         self.restore(drawn)
-        if self.widest(self.rows()) > tolerances.NEAR_DRAWING:
+        if not self.near(drawn, lever):
             return False, 0
         closed, kick = self.settle(limit)
         if not closed:
             return False, 0
-        self.polish(drawn, limit, together=True)
-        nearest, way = self.saved(), self._moved(drawn)
-        if float(np.max(np.abs(way))) > tolerances.NEAR_DRAWING:
+        self.polish(drawn, limit, together)
+        nearest, way = self.saved(), self._sums(drawn, together)[0]
+        if not self.near(drawn, lever):
             return False, 0
         self.polish(drawn, limit)
-        if _norm(self._moved(drawn)) > tolerances.FARTHER * _norm(way):
+        if self._sums(drawn, together)[0] > tolerances.FARTHER**2 * way:
             self.restore(nearest)
         return True, kick
 
-    def polish(self, start: tuple[Array, Array], limit: float, together: bool = False) -> None:
-        """Step (3): start are the poses before (2). together: turns and shifts count alike, as in (0)."""
+    def polish(self, start: tuple[Array, Array], limit: float, together: float = 0.0) -> None:
+        """Step (3): start are the poses before (2). together: as in (0), a shift by L counts so many times a turn."""
         last, factor, length = np.zeros(0), 1.0, math.inf
         for _ in range(POLISH):
             z = least(self.reduced(self.rows()), self._moved(start), together)[0]
@@ -222,10 +238,10 @@ class Fit:
                 z[i, 1] = (p.x[body] - start[0][i] + turned @ p.pivot[body]) / self.size
         return z.ravel()
 
-    def _sums(self, start: tuple[Array, Array], together: bool) -> tuple[float, float]:
+    def _sums(self, start: tuple[Array, Array], together: float) -> tuple[float, float]:
         """Σθ² and Σ(d/L)²; together: their sum, and nothing after it."""
         turns, shifts = np.sum(np.square(self._moved(start).reshape(-1, 2, 3)), axis=(0, 2)).tolist()
-        return (turns + shifts, 0.0) if together else (turns, shifts)
+        return (turns + together**2 * shifts, 0.0) if together else (turns, shifts)
 
 
 def _lower(new: tuple[float, float], old: tuple[float, float]) -> bool:
@@ -236,10 +252,15 @@ def _lower(new: tuple[float, float], old: tuple[float, float]) -> bool:
     return new[0] <= old[0] * (1.0 + slack) + slack**2 and new[1] <= old[1] * (1.0 + slack) + slack**2
 
 
+def _counted(members: int, shift: float) -> Array:
+    """Weights of turns, 1, and shifts of some members, (6m,)."""
+    return np.tile([1.0, 1.0, 1.0, shift, shift, shift], members)
+
+
 def _damped(r: Reduced, mu: float) -> Array:
     """z of least |e − C y|² + μ (Σθ² + SHIFT Σ(d/L)²), (6m,)."""
     Q, A = r.measured(math.sqrt(SHIFT))
-    v = -(Q.T @ (r.t * np.tile([1.0, 1.0, 1.0, SHIFT, SHIFT, SHIFT], len(r.t) // 6)))
+    v = -(Q.T @ (r.t * _counted(len(r.steps), SHIFT)))
     U, S, V = np.linalg.svd(A, full_matrices=False)
     U, S, V = U[:, : (rank := rank_of(S))], S[:rank], V[:rank]
     v = v + V.T @ (S / (S * S + mu) * (U.T @ (r.e - A @ v)))

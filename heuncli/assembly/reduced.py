@@ -139,17 +139,20 @@ def _root(may: tuple[bool, bool]) -> Step:
     return Step(np.zeros(6), np.zeros((6, 6)), N, -1, np.zeros((0, 6)), np.zeros(0))
 
 
-def least(r: Reduced, moved: Array, together: bool = False) -> tuple[Array, Array]:
+def least(r: Reduced, moved: Array, together: float = 0.0) -> tuple[Array, Array]:
     """z (6m,) with C y = e and least Σ(turns)², then least Σ(shifts)², of z + moved; and what C y = e lacks.
 
-    together: least Σ(turns)² + Σ(shifts)². Only what may turn, or shift, counts.
+    together: least of both in one sum, in which a shift counts so many times a turn. Only what may turn, or shift,
+    counts.
     """
     Q, A = r.measured()
     v, N, lack = solve(A, r.e)
     may = np.repeat(np.array(r.free, dtype=bool).reshape(-1, 2), 3, axis=1).ravel()
     turns = np.arange(may.size) % 6 < 3
+    weight = np.where(turns, 1.0, together or 1.0)
     for counted in (may,) if together else (may & turns, may & ~turns):
-        step, null, _ = solve(Q[counted] @ N, -((r.t + moved)[counted] + Q[counted] @ v))
+        W = weight[counted, None] * Q[counted]
+        step, null, _ = solve(W @ N, -(weight * (r.t + moved))[counted] - W @ v)
         v = v + N @ step
         N = N @ null
     return r.t + Q @ v, lack

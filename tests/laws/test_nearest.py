@@ -7,7 +7,8 @@ import pytest
 
 from heuncli.assembly.assemble import assemble
 from heuncli.mechanism.model import Assembly
-from tests.shared.drafts import largest_gap
+from heuncli.records import replace
+from tests.shared.drafts import body, joint, largest_gap, scene
 from tests.shared.misdrawn import MODES, drawn, known
 
 CHUNK = 25
@@ -37,3 +38,20 @@ def test_how_a_body_is_drawn_does_not_matter(seed: int) -> None:
         c = np.array([b.center for b in d.scene.bodies])
         ends.append(np.hstack([a.position + np.einsum("nij,nj->ni", a.rotation, c), d.ways(a.position, a.rotation)]))
     assert np.array(ends) == pytest.approx(np.broadcast_to(ends[0], (len(MODES), *ends[0].shape)), abs=1e-6)
+
+
+@pytest.mark.parametrize("seed", range(1, 40, 3))
+def test_a_small_loop_in_a_large_scene_is_fitted_as_it_is_alone(seed: int) -> None:
+    """A thousandth of its size, beside a boom of a hundred metres that it has nothing to do with."""
+    d = drawn(known(seed), 0.03, "world")
+    s, small = d.scene, 1e-3
+    boom = scene(
+        [body("boom", center=(50, 0, 0), mass=1e3)],
+        [joint("foot", "ball", "ground", (0, 0, 9), "boom", (0, 0, 0))],
+    )
+    bodies = [replace(b, center=small * b.center) for b in s.bodies]
+    joints = [replace(j, p=small * j.p, q=small * j.q, length=j.length and small * j.length) for j in s.joints]
+    joints.append(replace(boom.joints[0], b=len(bodies)))
+    a, b = assemble(s), assemble(replace(s, bodies=(*bodies, *boom.bodies), joints=tuple(joints)))
+    ways = d.ways(a.position, a.rotation), d.ways(b.position[:-1] / small, b.rotation[:-1])
+    assert ways[1] == pytest.approx(ways[0], abs=3e-4)
