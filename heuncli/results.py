@@ -46,13 +46,17 @@ class Estimate(TypedDict, total=False):
 
 
 class Accuracy(TypedDict, total=False):
-    """How well the equations are solved; horizon: None where there is none."""
+    """How well the equations are solved; horizon: None where there is none.
+
+    unknown: instants beside singular poses at which rounding reaches some numbers, which are nan there.
+    """
 
     energy_drift: float
     constraint_gap: float
     balance_residual: float
     horizon: float | None
     estimate: Estimate
+    unknown: list[float]
 
 
 class Work(TypedDict, total=False):

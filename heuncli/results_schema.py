@@ -161,6 +161,7 @@ ROWS: tuple[Quantity, ...] = (
     *at("accuracy", "drift, gap and residual; nothing is claimed after the horizon (null: none)",
         scalar("energy_drift", "1", timed=False), scalar("constraint_gap", "m", timed=False),
         scalar("balance_residual", "1", timed=False), scalar("horizon", "s", timed=False)),
+    *at("accuracy", "instants beside singular poses: numbers that rounding reaches are null there", words("unknown")),
     *at("accuracy.estimate", "error of any point at any instant, of the scene's size",
         scalar("motion", "1", timed=False)),
     *at("accuracy.estimate", "the same of each kind, of its own largest; 0 where there is none",

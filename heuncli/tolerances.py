@@ -18,6 +18,9 @@ NEIGHBOUR = 1e-3  # [rad] or of the size: an accident of the start is left by 1e
 MOVES = 1e-6  # of rates drawn between -1 and 1: less, after projection on the closures, is rounding
 SUSPECT_PIVOT = 0.05  # a step of an ordinary loop stays above; below, a singular pose is looked for within it
 SINGULAR_MET = 4.0  # times the width left of the search over its first: the value falls to zero at most so steeply
+NEAR_PIVOT = 1e-2  # relative singular value 0.1, a tenth of it in another measure: rounding over its 4th power, 2e-8
+UNSEEN_GAP = 16.0 * EPS  # of the size: what the sums of a closure may not see, and more than settling leaves
+TOLD_BESIDE = 1e-6  # of the largest of its kind: six digits, a table's; what rounding reaches farther is not known
 NEARLY_SINGULAR = 1e-6  # relative singular value: reactions err by gap / value, 1e-10 / 1e-6, and keep four digits
 
 # -- open: which components no law of rigid bodies decides, and the sums that are certain

@@ -77,8 +77,9 @@ def _check(path: str, quiet: bool) -> Checked:
     try:
         spec = load(path)
         study = solve(spec, Options(wanted=wanted(spec.expect) if spec.expect else None))
-        warn(spec, study.results, quiet, f"heun: {path}")
-        return Checked(path, tuple(compare(study, item) for item in spec.expect))
+        cases = tuple(compare(study, item) for item in spec.expect)
+        warn(spec, study.results, quiet, f"heun: {path}", study.later)
+        return Checked(path, cases)
     except HeunError as error:
         report_problems(error.problems, label="" if _placed(error) else f"{path}: ")
         return Checked(path, (), error)

@@ -42,7 +42,9 @@ def write(asked: Measure, study: Study, form: str) -> str:
         return dump(block if horizon is None else block | {"value": None, "at": None, "horizon": horizon})
     if horizon is not None:
         return f"{UNKNOWN}\n"
-    return f"{OPEN if math.isnan(number) else repr(number)}\n"
+    if math.isnan(number):
+        return f"{UNKNOWN if at in study.unknown else OPEN}\n"
+    return f"{number!r}\n"
 
 
 def warning(asked: Measure, study: Study) -> list[str]:

@@ -57,13 +57,8 @@ def main(request: Run) -> int:
     else:
         text = _report(request, form, study, labels_of(spec), wanted or frozenset(REPORTS))
     emit(text, request.output)
-    warnings = warn(spec, study.results, request.quiet)
-    if asked:
-        beyond = measure.warning(asked, study)
-        warnings += beyond
-        if not request.quiet:
-            for sentence in beyond:
-                say(f"warning: heun: {sentence}")
+    later = [*study.later, *(measure.warning(asked, study) if asked else ())]
+    warnings = warn(spec, study.results, request.quiet, later=later)
     if request.verbose:
         say(f"heun: {timings(study.results.work)}")
     return _strict(study.results, warnings) if request.strict else 0

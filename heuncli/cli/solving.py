@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 import math
-from collections.abc import Mapping, Sequence
+from collections.abc import Iterable, Mapping, Sequence
 from typing import Any
 
 import numpy as np
@@ -57,11 +57,14 @@ def instants(words: str, times: Array) -> Array:
     return within
 
 
-def warn(spec: Spec, results: Results | None, quiet: bool, place: str = "heun") -> list[str]:
-    """Tell the warnings of reading and of solving (of which `place`), once each; returns them."""
+def warn(
+    spec: Spec, results: Results | None, quiet: bool, place: str = "heun", later: Iterable[str] = ()
+) -> list[str]:
+    """Tell the warnings of reading, of solving (of which `place`) and of what came later, once each; returns them."""
     read = [str(problem) for problem in spec.warnings]
     known = {problem.message for problem in spec.warnings}
     solved = [text for text in results.warnings if text not in known] if results else []
+    solved += later
     if not quiet:
         for text in read + [f"{place}: {text}" for text in solved]:
             say(f"warning: {text}")

@@ -83,14 +83,14 @@ def _group_texts(
     """The cells of a group by label, one an instant."""
     numbers = np.stack([row.values for row in group.rows], axis=1)
     known = [horizon is None or t < horizon for t in times.tolist()]
-    word = {OPEN: block.missing[0]}
+    words = [{OPEN: UNKNOWN if t in certain.beside else block.missing[0]} for t in times.tolist()]
     cells = {}
     for row, texts in zip(group.rows, texts_of(group, numbers, certain), strict=True):
         own = [
             text if sure else beyond_horizon(value, row.unit, certain, text)
             for value, text, sure in zip(row.values.tolist(), texts, known, strict=True)
         ]
-        cells[row.label] = [word.get(text, text) for text in own]
+        cells[row.label] = [word.get(text, text) for word, text in zip(words, own, strict=True)]
     return cells
 
 

@@ -28,7 +28,7 @@ OPEN = "open"
 OPEN_NOTE = "open: the laws of rigid bodies do not give this number (redundant supports)"
 ZERO_NOTE = "what is 0 throughout is left out"
 UNKNOWN = "?"
-UNKNOWN_NOTE = "?: the estimated error is as large as the number, or the instant is beyond the horizon"
+UNKNOWN_NOTE = "?: the estimated error is as large as the number, as beyond the horizon or beside a singular pose"
 KINDS = {"foundation": "foundation", "joints": "reactions", "sections": "sections", "energy": "energy"}
 LOADS: tuple[Literal["reactions", "drives", "foundation", "sections"], ...] = (
     "reactions", "drives", "foundation", "sections",
@@ -71,10 +71,14 @@ class Style(NamedTuple):
 
 
 class Certainty(NamedTuple):
-    """The absolute errors of numbers by kind and unit, and their rounding by unit; 0 where none is known."""
+    """The absolute errors of numbers by kind and unit, and their rounding by unit; 0 where none is known.
+
+    beside: instants beside singular poses, at which what is nan is not known.
+    """
 
     errors: Mapping[tuple[str, str], float]
     rounding: Mapping[str, float]
+    beside: frozenset[float] = frozenset()
 
     def error(self, kind: str, unit: str) -> float:
         """The estimated error of numbers of this kind and unit, not below their rounding."""

@@ -87,7 +87,8 @@ class Page(NamedTuple):
     def instants(self, results: Results, *, every_cut: bool = False) -> list[Table]:
         """The tables at the instants of `results`, which is the same run at any instants."""
         horizon = self.results.accuracy.get("horizon")
-        certain = with_axis(self.certain, results, self.of)
+        unknown = frozenset(results.accuracy.get("unknown", ()))
+        certain = with_axis(self.certain._replace(beside=unknown), results, self.of)
         tables: list[Table] = []
         for block in _blocks(results, self.labels):
             tables += instants.instants_tables(block, results.time, horizon, certain)

@@ -8,6 +8,7 @@ from __future__ import annotations
 import time
 from collections.abc import Callable, Sequence
 from functools import cached_property
+from typing import Any
 
 import numpy as np
 
@@ -15,14 +16,14 @@ from heuncli.errors import Problem, SpecError
 from heuncli.integration.methods import METHODS
 from heuncli.kernel.choose import KERNEL
 from heuncli.records import record
-from heuncli.results import Array, Block, Estimate, Extremes, Magnitudes, Results
+from heuncli.results import Accuracy, Array, Block, Estimate, Extremes, Magnitudes, Results
 from heuncli.results_schema import REPORTS
 from heuncli.spec.models import Spec
 from heuncli.study import extremes
 from heuncli.study.history import History, integrate, resample, search_times
 from heuncli.study.recover import Recovery, accuracy, blocks, certain_sums, recover
 from heuncli.study.setup import Setup, set_up
-from heuncli.study.warnings import status, warnings
+from heuncli.study.warnings import beside_singular_poses, left_out, status, warnings
 from heuncli.version import VERSION
 
 MOST_SEARCHED = 1_000_000  # numbers to look at for extremes between the samples
@@ -75,7 +76,7 @@ def known_method(name: str | None) -> str | None:
 def compose(setup: Setup, history: History, recovery: Recovery, wanted: frozenset[str] | None) -> Results:
     """The results at the instants of `recovery`, which are the history's own or others within it."""
     wanted = frozenset(REPORTS) if wanted is None else wanted
-    shown = blocks(recovery, wanted)
+    shown, unknown = blocks_of(history, recovery, wanted)
     split = recovery.decided.words if recovery.decided is not None else ()
     balance = accuracy(recovery)
     checked = history.checked
@@ -97,20 +98,36 @@ def compose(setup: Setup, history: History, recovery: Recovery, wanted: frozense
             "constraint_gap": max(balance["constraint_gap"], gap),
             "horizon": checked.horizon if checked is not None else None,
             "estimate": estimate,
-        },
+        }
+        | ({"unknown": unknown.tolist()} if len(unknown) else {}),
         work={
             "kernel": KERNEL,
             "steps": checked.run.steps if checked is not None else 0,
             "evaluations": checked.run.evaluations if checked is not None else 0,
             "seconds": {},
         },
-        warnings=warnings(setup, history, recovery, shown.get("joints", {}), balance["balance_residual"]),
+        warnings=(
+            *warnings(setup, history, recovery, shown.get("joints", {}), balance["balance_residual"]),
+            *beside_singular_poses(unknown),
+        ),
     )
+
+
+def blocks_of(history: History, recovery: Recovery, wanted: frozenset[str]) -> tuple[dict[str, Any], Array]:
+    """The blocks of the reports that are wanted, and the instants of a motion at which some of it is not known: nan."""
+    if history.checked is None or not recovery.setup.scene.layout.rows:
+        return blocks(recovery, wanted), np.zeros(0)
+    from heuncli.study.beside import known_blocks  # only closed chains have singular poses
+
+    return known_blocks(recovery, wanted, history.jumps)
 
 
 @record
 class Study:
-    """A solved scene: `results` at the asked instants, `resample` for any others of the same run."""
+    """A solved scene: `results` at the asked instants, `resample` for any others of the same run.
+
+    Impure: keeps what its answers at other instants are warned of.
+    """
 
     spec: Spec
     options: Options
@@ -134,16 +151,34 @@ class Study:
         """The same run at other instants within it (ascending)."""
         if self.history.checked is None:
             return self.results
-        results = compose(self.setup, self.history, self._recovery(times), self.options.wanted)
-        results.work["seconds"] = dict(self.results.work["seconds"])
+        results = self._composed(times)
+        self.unknown.update(results.accuracy.get("unknown", ()))
+        self.later.update(dict.fromkeys(w for w in results.warnings if w not in self.results.warnings))
         return results
+
+    @cached_property
+    def later(self) -> dict[str, None]:
+        """What was warned of since the run, at other instants and in searches: sentences, in their order."""
+        return {}
+
+    @cached_property
+    def unknown(self) -> set[float]:
+        """The instants looked at since the run at which rounding beside a singular pose reaches some numbers."""
+        return set(self.results.accuracy.get("unknown", ()))
 
     def only(self, times: Array, wanted: frozenset[str]) -> Results:
         """Some reports' blocks at other instants of the same run, and nothing beside them."""
         recovery = self._recovery(times)
         own = self.results
-        shown = blocks(recovery, wanted)
-        return Results(own.title, own.spec, own.version, own.model, own.status, recovery.recovered.times, **shown)
+        shown, unknown = blocks_of(self.history, recovery, wanted)
+        accuracy: Accuracy = {"unknown": unknown.tolist()} if len(unknown) else {}
+        times = recovery.recovered.times
+        return Results(own.title, own.spec, own.version, own.model, own.status, times, accuracy=accuracy, **shown)
+
+    def _composed(self, times: Array) -> Results:
+        results = compose(self.setup, self.history, self._recovery(times), self.options.wanted)
+        results.work["seconds"] = dict(self.results.work["seconds"])
+        return results
 
     def _recovery(self, times: Array) -> Recovery:
         recovered = resample(self.setup.runner, self.history, times)
@@ -168,9 +203,16 @@ class Study:
         if horizon is not None:
             times = times[times < horizon] if times[0] < horizon else times[:1]
 
+        unknown: list[float] = []
+
         def sample(at: Array) -> Array:
             if np.array_equal(at, self.results.time):
-                return columns(self.results)
-            return columns(self.resample(at) if wanted is None else self.only(at, wanted))
+                results = self.results
+            else:
+                results = self._composed(at) if wanted is None else self.only(at, wanted)
+            unknown.extend(results.accuracy.get("unknown", []))
+            return columns(results)
 
-        return extremes.search(sample, times, groups, rounds)
+        found = extremes.search(sample, times, groups, rounds)
+        self.later.update(dict.fromkeys(left_out(unknown)))
+        return found

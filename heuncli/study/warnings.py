@@ -2,8 +2,10 @@
 
 from __future__ import annotations
 
+from collections.abc import Sequence
+
 from heuncli import tolerances
-from heuncli.results import Block, Status
+from heuncli.results import Array, Block, Status
 from heuncli.study.history import History
 from heuncli.study.recover import Recovery
 from heuncli.study.setup import Setup
@@ -33,6 +35,23 @@ def warnings(setup: Setup, history: History, recovery: Recovery, joints: Block, 
         *(of_the_motion(history) if history.checked is not None else of_ropes(setup, joints)),
         *singular,
     )
+
+
+def beside_singular_poses(unknown: Array) -> list[str]:
+    """A sentence where rounding reaches numbers at some instants."""
+    if not len(unknown):
+        return []
+    at = ", ".join(f"{t:.6g}" for t in unknown[:MOST_TIMES]) + (" ..." if len(unknown) > MOST_TIMES else "")
+    return [f"beside a singular pose at t = {at} s: rounding reaches some numbers there, which are not told"]
+
+
+def left_out(unknown: Sequence[float]) -> list[str]:
+    """A sentence where a search for extremes came upon such instants."""
+    if not unknown:
+        return []
+    low, high = min(unknown), max(unknown)
+    to = f" to {high:.6g}" if f"{low:.6g}" != f"{high:.6g}" else ""
+    return [f"extremes are searched without what rounding reaches beside singular poses at t = {low:.6g}{to} s"]
 
 
 def unbalanced(residual: float) -> list[str]:

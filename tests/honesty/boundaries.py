@@ -24,6 +24,7 @@ from heuncli.report.page import page_of
 from heuncli.results import Results
 from heuncli.spec.load import load
 from heuncli.spec.turns import of_matrix
+from heuncli.study.beside import AMPLE, reached
 from heuncli.study.expect import compare
 from heuncli.study.warnings import unbalanced
 from tests.shared.scenes import near, solved, study
@@ -52,6 +53,12 @@ def read(text: str) -> str:
     except HeunError as error:
         return f"refused: {error.problems[0].code}"
     return f"warned: {spec.warnings[0].code}" if spec.warnings else "fine"
+
+
+def moved_by(x: float) -> str:
+    """A load whose largest companion is 2 N, where its state is moved by rounding."""
+    moved = np.array([3.0, 3.0 - 2.0 * x / AMPLE, 3.0])
+    return "not known" if reached(np.array([3.0]), moved, np.array([2.0])).any() else "told"
 
 
 def bar(more: str = "", tail: str = "", inertia: str = "[0.08, 0.08, 0.001]", kind: str = "ball") -> str:
@@ -550,6 +557,7 @@ ROWS = (
     Row("NO_FORCE", axis_of, "no axis", "an axis"),
     Row("NO_LOAD", carried_by_nothing, "none", "judged"),
     Row("NO_ENERGY", drift, "at rest", "a drift"),
+    Row("TOLD_BESIDE", moved_by, "told", "not known"),
     Row("UNBALANCED", lambda x: "warned" if unbalanced(x) else "fine", "fine", "warned"),
 )
 
@@ -597,6 +605,8 @@ WANTED = {
     "NEIGHBOUR": "which rank is the generic one, where a machine can hardly leave its singular start",
     "MOVES": "whether a displaced pose counts",
     "SUM_POSES": "which sums of one pose are accidents",
+    "UNSEEN_GAP": "how far states beside a singular pose are moved; TOLD_BESIDE decides what is told",
+    "NEAR_PIVOT": "whether a state is recovered again, moved by its rounding; TOLD_BESIDE decides what is told",
     "SUSPECT_PIVOT": "whether a singular pose is looked for in a step",
     "NO_SELF_STRESS": "whether a null vector is a self-stress",
     "STILL_OPEN": "what a split leaves open",

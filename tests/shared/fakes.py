@@ -122,6 +122,8 @@ class FakeStudy:
 
     times: Array
     changes: Mapping[str, Any] = field(default_factory=dict)
+    later: dict[str, None] = field(default_factory=dict)
+    unknown: set[float] = field(default_factory=set)
 
     @property
     def results(self) -> Results:

@@ -1,0 +1,106 @@
+"""Beside a singular pose: what is told is right, and what rounding reaches is not told.
+
+All bars of a parallelogram turn alike, theta'' = 1.2 g sin(theta), omega^2 = omega_0^2 + 2.4 g (1 - cos(theta)); each
+of the coupler's pins carries half of m (a + g), a the acceleration of a top.
+"""
+
+from __future__ import annotations
+
+from functools import cache
+from pathlib import Path
+
+import numpy as np
+import pytest
+
+from heuncli import tolerances
+from heuncli.cli.entry import enter
+from heuncli.results import Array, Results
+from heuncli.study.measure import Measure, value
+from heuncli.study.solve import Study
+from tests.shared.parallelogram import parallelogram
+from tests.shared.scenes import near, study
+
+G = 9.81
+FLAT_FOUR_BAR = str(Path(__file__).parents[2] / "specs/flat_four_bar.yaml")
+RATES = [1.0, *np.random.default_rng(71).uniform(0.05, 4.0, 5).tolist()]
+WANTED = frozenset({"joints", "points", "motion", "foundation", "energy"})
+
+
+@cache
+def swung(rate: float) -> Study:
+    return study(parallelogram(rate, 2.0, 5), wanted=WANTED)
+
+
+def accelerations(results: Results) -> Array:
+    """Of the tops, (n, 2), from the closed form at the angle and rate reached; nan where the rate is not known."""
+    x, y = results.points["left.top"]["position"][:, :2].T
+    square = results.bodies["left"]["angular_velocity"][:, 2] ** 2
+    return np.stack([1.2 * G * x * y - square * x, -1.2 * G * x * x - square * y], axis=1)
+
+
+@pytest.mark.parametrize("rate", RATES)
+def test_what_is_told_is_right(rate: float) -> None:
+    """From a tenth of a second off the flat poses to a billionth: told to six digits of the largest, or not told."""
+    s = swung(rate)
+    assert s.history.checked is not None
+    rng = np.random.default_rng(3)
+    apart = 10.0 ** rng.uniform(-9.0, -1.0, 60) * rng.choice([-1.0, 1.0], 60)
+    times = np.unique(np.concatenate([np.array(s.history.singular)[:, None] + apart]).ravel())
+    times = times[(times > 0.0) & (times < 2.0)]
+    found = s.resample(times)
+    a = accelerations(found)
+    load = 0.5 * (a + np.array([0.0, G]))
+    scale = max(np.nanmax(np.linalg.norm(load, axis=1)), G)
+    told = ~np.isnan(found.joints["C"]["radial"])
+    for part, wanted in (("force", load), ("radial", np.linalg.norm(load, axis=1))):
+        shown = found.joints["C"][part][:, :2] if part == "force" else found.joints["C"][part]
+        known = ~np.isnan(shown + wanted)
+        near(shown[known], wanted[known], scale, 2.0 * tolerances.TOLD_BESIDE)
+    moving = found.bodies["left"]["center_acceleration"][:, :2]
+    known = ~np.isnan(moving + a)
+    near(moving[known], 0.5 * a[known], scale, 2.0 * tolerances.TOLD_BESIDE)
+    off = np.abs(times[:, None] - np.array(s.history.singular)).min(axis=1)
+    speed = np.sqrt(rate**2 + 2.4 * G)  # at the first flat pose
+    assert told[off * speed > 1e-2].all()
+    assert not told[off * speed < 1e-5].any()
+    assert set(found.accuracy["unknown"]) >= set(times[~told].tolist())
+    assert any(w.startswith("beside a singular pose at t = ") for w in s.later)
+
+
+@pytest.mark.parametrize("rate", RATES)
+def test_extremes_are_those_of_what_is_known(rate: float) -> None:
+    """The largest load is at the bottom, not the noise of a flat pose."""
+    s = swung(rate)
+    bottom = 0.5 * (rate**2 + 4.8 * G + G)
+    if s.results.points["left.top"]["position"][:, 1].min() > 0.0 or len(s.history.singular) < 2:
+        pytest.skip("it does not come to the bottom in two seconds")
+    found, at = value(Measure("abs", "joints.C.radial"), s)
+    assert at is not None
+    near(found, bottom, bottom, 1e-8)
+    near(value(Measure("max", "energy.kinetic"), s)[0], 5.0 / 6.0 * (rate**2 + 4.8 * G), bottom, 1e-8)
+
+
+def test_the_example(capsys: pytest.CaptureFixture[str]) -> None:
+    assert enter(["run", FLAT_FOUR_BAR, "--measure", "max abs joints.C.radial"]) == 0
+    near(float(capsys.readouterr().out), 28.949, 28.949, 1e-6)
+    assert enter(["run", FLAT_FOUR_BAR]) == 0
+    assert "extremes are searched without what rounding reaches beside singular poses" in capsys.readouterr().err
+    assert enter(["run", FLAT_FOUR_BAR, "--measure", "at 0.70845 joints.C.radial"]) == 0
+    told = capsys.readouterr()
+    assert told.out == "?\n"
+    assert "beside a singular pose at t = 0.70845 s: rounding reaches some numbers there" in told.err
+    assert enter(["run", FLAT_FOUR_BAR, "--at", "0.70845", "--only", "energy,joints"]) == 0
+    shown = capsys.readouterr().out
+    assert "?: the estimated error is as large as the number" in shown
+    assert "redundant supports" not in shown
+    assert enter(["run", FLAT_FOUR_BAR, "--measure", "at 0.7 joints.C.radial"]) == 0
+    assert 0.0 < float(capsys.readouterr().out) < 28.949
+
+
+def test_far_from_a_singular_pose_everything_is_told() -> None:
+    """A coupler a little too long keeps the chain from lying flat; its loads are large there, and told."""
+    s = study(parallelogram(0.2, 2.0, 201, coupler=1.01), wanted=WANTED)
+    found = s.resample(s.search_times)
+    assert "unknown" not in found.accuracy
+    assert not np.isnan(found.joints["C"]["radial"]).any()
+    assert not s.later
