@@ -67,8 +67,12 @@ class Massless:
 
 def lend(scene: PreparedScene, lacking: Mapping[int, Array]) -> PreparedScene:
     """The scene with inertia lent to what motions of its tree turn that move no mass, among bodies that lack some."""
-    layout = scene.layout
-    if not massless(scene, lacking, start_of(scene)).count:
+    layout, at = scene.layout, start_of(scene)
+    # the first body that turns hangs on one that rests: mostly it resists by itself
+    alone = (at_rest(layout, i, axes, at) @ freedoms_of(layout, i, at).T for i, axes in lacking.items())
+    if not any(null_space(resisted, tolerances.RANK).size for resisted in alone):
+        return scene
+    if not massless(scene, lacking, at).count:
         return scene
     rows = [row for body, axes in axes_to_lend(scene, lacking).items() for row in lent(scene, body, axes)]
     return replace(scene, layout=replace(layout, tables=layout.tables | {"lents": table(kernel.Lent, rows)}))
@@ -96,28 +100,59 @@ def massless(scene: PreparedScene, lacking: Mapping[int, Array], at: Poses) -> M
     """The motions of the tree that move no mass; lacking: the bodies that lack inertia, and their axes without it.
 
     A body with all its inertia rests in them as the ground does; its freedoms may make up for what its parent does.
+    Tips to roots: A (turn, shift) = 0 of a body where neither it nor what it carries resists; what its own freedoms S
+    cannot make up for is a condition on its parent. Roots to tips: what the freedoms then do.
     """
     layout = scene.layout
     parents = layout.bodies["parent"].tolist()
     bodies = [i for i, parent in enumerate(parents) if i in lacking or parent in lacking]
-    columns = [freedoms_of(layout, i, at) for i in bodies]
-    ends = np.cumsum([len(own) for own in columns]).tolist()
+    conditions = {i: [at_rest(layout, i, lacking.get(i), at)] for i in bodies}
+    own, inverse = {}, {}
+    for i in reversed(bodies):
+        A, S = np.concatenate(conditions[i]), freedoms_of(layout, i, at).T
+        U, sigma, Vt = np.linalg.svd(A @ S, full_matrices=True)
+        rank = rank_of(sigma, tolerances.RANK)
+        own[i] = S @ Vt[rank:].T
+        inverse[i] = S @ (Vt[:rank].T / sigma[:rank]) @ U[:, :rank].T @ A
+        if parents[i] in lacking:
+            conditions[parents[i]].append(independent(U[:, rank:].T @ A @ carried_along(layout, i, at)))
+    motion = np.zeros((len(bodies), 6, sum(free.shape[1] for free in own.values())))
+    first = 0
     number = {body: n for n, body in enumerate(bodies) if body in lacking}
-    omega, v = np.zeros((2, len(bodies), 3, ends[-1]))
-    inert = []
     for n, i in enumerate(bodies):
-        own = slice(ends[n] - len(columns[n]), ends[n])
         if parents[i] in number:
-            p = number[parents[i]]
-            v[n] = v[p] + np.cross(omega[p], (at.r[i] - at.r[parents[i]]) / layout.size, axis=0)
-            if not layout.bodies["ball"][i]:  # a ball's turns are those of the body itself
-                omega[n] = omega[p]
-        omega[n][:, own] += columns[n][:, :3].T
-        v[n][:, own] += columns[n][:, 3:].T
-        centre = layout.mechanism.bodies[layout.spanning.hangs[i].body].center - layout.reference[i]
-        inert.append(v[n] + np.cross(omega[n], at.R[i] @ centre / layout.size, axis=0))
-        inert.append((at.R[i] @ complement(lacking.get(i))).T @ omega[n])
-    return Massless(bodies, omega, v).among(null_space(np.concatenate(inert), tolerances.RANK))
+            along = carried_along(layout, i, at) @ motion[number[parents[i]]]
+            motion[n] = along - inverse[i] @ along
+        end = first + own[i].shape[1]
+        motion[n, :, first:end] += own[i]
+        first = end
+    _, sigma, Vt = np.linalg.svd(motion.reshape(6 * len(bodies), first), full_matrices=False)
+    return Massless(bodies, motion[:, :3], motion[:, 3:]).among(Vt.T / sigma)
+
+
+def at_rest(layout: Layout, i: int, axes: Array | None, at: Poses) -> Array:
+    """Conditions on turn and shift of a body, (n, 6): its centre rests, it turns about `axes` without inertia alone."""
+    R, c = at.R[i], layout.mechanism.bodies[layout.spanning.hangs[i].body].center - layout.reference[i]
+    across = np.eye(3) if axes is None else np.linalg.svd(axes, full_matrices=True)[2][len(axes) :]
+    found = np.zeros((3 + len(across), 6))
+    found[:3, :3], found[:3, 3:], found[3:, :3] = turned_by(R @ c / layout.size), np.eye(3), across @ R.T
+    return found
+
+
+def turned_by(arm: Array) -> Array:
+    """The matrix of omega x arm."""
+    x, y, z = arm
+    return np.array([[0.0, z, -y], [-z, 0.0, x], [y, -x, 0.0]])
+
+
+def carried_along(layout: Layout, i: int, at: Poses) -> Array:
+    """What the parent's turn and shift do to a body whose joint is fixed, (6, 6); a ball's turns are its own."""
+    found = np.eye(6)
+    arm = (at.r[i] - at.r[layout.bodies["parent"][i]]) / layout.size
+    found[3:, :3] = turned_by(arm)
+    if layout.bodies["ball"][i]:
+        found[:3] = 0.0
+    return found
 
 
 def freedoms_of(layout: Layout, i: int, at: Poses) -> Array:
@@ -192,11 +227,22 @@ def lent(scene: PreparedScene, place: int, axes: Array) -> list[dict[str, Any]]:
     return [{"body": place, "root": math.sqrt(inertia), "axis": axis} for axis in axes]
 
 
+def rank_of(sigma: Array, least: float) -> int:
+    """How many singular values count; `least`: of the largest, or of 1."""
+    return int(np.sum(sigma > least * max(1.0, float(sigma.max(initial=0.0)))))
+
+
 def null_space(A: Array, least: float) -> Array:
-    """What A maps to nothing, orthonormal columns; `least`: of its largest singular value, or of 1."""
-    _, S, Vt = np.linalg.svd(A, full_matrices=True)
-    rank = int(np.sum(S > least * max(1.0, float(S.max(initial=0.0)))))
-    return Vt[rank:].T
+    """What A maps to nothing, orthonormal columns."""
+    _, sigma, Vt = np.linalg.svd(A, full_matrices=True)
+    return Vt[rank_of(sigma, least) :].T
+
+
+def independent(rows: Array) -> Array:
+    """As many rows as are independent, with the same null space."""
+    _, sigma, Vt = np.linalg.svd(rows, full_matrices=False)
+    rank = rank_of(sigma, tolerances.RANK)
+    return np.asarray(sigma[:rank, None] * Vt[:rank])
 
 
 def span(rows: Array) -> Array:
@@ -204,8 +250,3 @@ def span(rows: Array) -> Array:
     _, S, Vt = np.linalg.svd(rows, full_matrices=False)
     found = Vt[S > tolerances.RANK * float(S[0])]
     return found if len(found) > 1 else found * np.sign(found[0, np.argmax(np.abs(found[0]))]) + 0.0
-
-
-def complement(axes: Array | None) -> Array:
-    """Unit vectors across the axes (k, 3), as columns."""
-    return np.eye(3) if axes is None else np.linalg.svd(axes, full_matrices=True)[2][len(axes) :].T

@@ -109,6 +109,30 @@ def test_beam_on_ball_line_and_plane(inertia: list[float], order: str) -> None:
     assert found.model["freedoms"] == 0
 
 
+def test_a_spin_that_is_idle_beside_turns_that_are_held() -> None:
+    """A point mass on a ball, its lever on another joint, lifted: all weight on the ball, none on the lever."""
+    found = solved("""
+heun: 1
+gravity: [0, 0, -9.81]
+ground: {points: {A: [0, 0, 0], B: [2, 0, 0]}}
+bodies:
+  m: {mass: 3, center: [0, 0, 0], inertia: [0, 0, 0], points: {a: [0, 0, 0], b: [2, 0, 0]}}
+  jack: {mass: 1, center: [2, 0, 0], inertia: [0.1, 0.1, 0.1], points: {top: [2, 0, 0]}}
+joints:
+  A: {type: ball, from: ground.A, to: m.a}
+  B: {type: line, axis: [1, 0, 0], from: jack.top, to: m.b}
+  g: {type: slide, axis: [0, 0, 1], from: ground.B, to: jack.top}
+drives: {s: {joint: g, travel: "0.1*sin(5*t)"}}
+analysis: {duration: 1, samples: 5}
+""")
+    t = found.time
+    near(found.joints["A"]["force"], np.tile([0, 0, 3 * G], (5, 1)), 3 * G, 1e-14)
+    near(found.joints["B"]["force"], 0.0, 3 * G, 1e-14)
+    near(found.joints["g"]["drive"], G - 2.5 * np.sin(5 * t), 3 * G, 1e-14)
+    near(found.bodies["m"]["rotation"][:, 2, 0], 0.05 * np.sin(5 * t), 1.0, 1e-13)  # its end at the jack's height
+    assert any("m: the spin about its own axis" in note for note in found.model["reasons"])
+
+
 BEAD = """
 heun: 1
 gravity: [0, -9.81, 0]
