@@ -245,6 +245,10 @@ class Runner:
             problems = without_value(self.layout.mechanism, t, last, coordinates)
             if problems:
                 return SolveError(*problems)
+        hangs, bodies = self.layout.spanning.hangs, self.layout.mechanism.bodies
+        light = sorted({f"bodies.{bodies[hangs[i].body].name}" for i in self.layout.tables["lents"]["body"]})
+        if light and name == "step-collapsed":
+            hint += f", as where closed loops cease to hold the turn of what has no inertia: {', '.join(light)}"
         return SolveError(Problem(name, f"at t = {t:.9g} s: {message}", hint=hint))
 
     def resample(self, run: Trajectory, times: Array) -> Array:

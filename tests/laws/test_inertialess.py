@@ -252,6 +252,15 @@ def test_what_nothing_holds_is_named(name: str) -> None:
     assert problem.message == f"at t = 0 s a freedom has no inertia behind it: {wanted}"
 
 
+def test_where_the_loops_cease_to_hold_the_run_ends() -> None:
+    """Towards the dead centre the slider's mass is behind the crank by the square of a slope that vanishes there."""
+    with pytest.raises(SolveError) as refusal:
+        solved(dead_centre(1.0).replace("vector: [0, 0, 1]", "vector: [0, 0, -1]") + "analysis: {times: [0, 3]}")
+    (problem,) = refusal.value.problems
+    assert problem.code == "step-collapsed"
+    assert problem.hint.endswith("cease to hold the turn of what has no inertia: bodies.crank")
+
+
 def dead_centre(angle: float) -> str:
     """A crank without inertia and a heavy slider, the crank turned by an angle from where it lies along the rod."""
     c, s = math.cos(angle), math.sin(angle)
