@@ -108,9 +108,9 @@ def chaotic_scene(seed: int) -> tuple[str, Scene]:
     family = FAMILIES[seed % len(FAMILIES)]
     scene = family(rng)
     analysis = {
-        "duration": float(rng.uniform(6, 14)),
+        "duration": float(rng.uniform(5, 10)),
         "samples": int(rng.integers(2, 6)),
-        "tolerance": float(10.0 ** rng.uniform(-7, -4)),
+        "tolerance": float(10.0 ** rng.uniform(-5, -3)),
     }
     return family.__name__, scene | {"analysis": analysis}
 

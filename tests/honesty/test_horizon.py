@@ -1,0 +1,54 @@
+"""200 chaotic scenes asked for at two to five instants: what is told before the horizon is right, and it is told.
+
+The truth is a run whose steps err less than its rounding, and another such run, of other steps, tells how well it is
+known: what rounding itself makes of the motion is the same start's, and grows as the error that is judged.
+"""
+
+from __future__ import annotations
+
+import numpy as np
+import pytest
+
+from heuncli import tolerances
+from heuncli.results import Array, Results
+from heuncli.study.solve import Study
+from tests.honesty.chaotic import SEEDS, chaotic_scene, grid, run_of
+
+TRUTH, SECOND = 3e-15, 1e-14  # local tolerances; the run judged has 3e-14 at best
+KNOWN = 0.3  # of what is stated: how well the truth must be known to judge by it
+
+
+def off(run: Study, shown: Results, times: Array, tolerance: float) -> Array:
+    """How far the motion is from a run at a local tolerance, up to each instant, of the scene's size."""
+    runner, layout = run.setup.runner, run.setup.scene.layout
+    fine = runner.recovered(times, runner.trajectory(times, tolerance).states).bodies
+    worst = np.zeros(len(times))
+    for i, one in enumerate(layout.mechanism.bodies):
+        k = layout.place[i]
+        for p, found in (
+            (one.center, shown.bodies[one.name]["center"]),
+            *((p, shown.points[f"{one.name}.{name}"]["position"]) for name, p in one.points.items()),
+        ):
+            where = fine["r"][:, k] + np.einsum("tij,j->ti", fine["R"][:, k], p - layout.reference[k])
+            worst = np.maximum(worst, np.sqrt(np.sum((where - found) ** 2, axis=1)))
+    return np.asarray(np.maximum.accumulate(worst) / layout.size)
+
+
+@pytest.mark.parametrize("seed", SEEDS)
+def test_right_before_the_horizon_and_told_where_it_is(seed: int) -> None:
+    run = run_of(seed)
+    times = grid(run)
+    shown, horizon = run.resample(times), run.results.accuracy["horizon"]
+    before = times < (np.inf if horizon is None else horizon)
+    worst, other = (float(off(run, shown, times, t)[before].max(initial=0.0)) for t in (TRUTH, SECOND))
+    stated = run.results.accuracy["estimate"]["motion"] if horizon is None else tolerances.CLAIMED
+    if abs(worst - other) > KNOWN * stated:
+        pytest.skip("the truth is not known so well")
+    assert worst <= stated, f"{chaotic_scene(seed)[0]}: {worst:.1e} before the horizon {horizon}, {stated:.1e} stated"
+
+
+@pytest.mark.heavy
+def test_the_scenes_are_chaotic() -> None:
+    """Some of them have a horizon even so."""
+    told = [run_of(seed).results.accuracy["horizon"] for seed in range(200)]
+    assert sum(h is not None for h in told) >= 3, told
