@@ -445,6 +445,23 @@ def stiff(x: float) -> str:
     return "shared"
 
 
+def unseen_pulse(x: float) -> str:
+    """A block pushed with 1 N and, for a moment, x more: whether the run is made again for it."""
+    run = study(f"""
+heun: 1
+ground: {{points: {{O: [0, 0, 0]}}}}
+bodies:
+  block: {{mass: 1, center: [0, 0, 0], inertia: [1, 1, 1], points: {{o: [0, 0, 0]}}}}
+joints:
+  guide: {{type: slide, from: ground.O, to: block.o, axis: [1, 0, 0]}}
+forces:
+  push: {{type: torque, joint: guide, value: "1 + {x!r}*exp(-((t - 5.3)/1e-3)**2)"}}
+analysis: {{duration: 10, samples: 3}}
+""")
+    near(run.results.coordinates["guide"]["speed"][-1], 10.0, 10.0, 2e-4 * x + 1e-9)
+    return "made again" if run.history.jumps else "as seen"
+
+
 # ---- the smallest calls
 def null_of(smallest: float, gap: float) -> str:
     J = np.array([[[1.0, 0.0], [0.0, smallest]]])
@@ -558,6 +575,7 @@ ROWS = (
     Row("NO_LOAD", carried_by_nothing, "none", "judged"),
     Row("NO_ENERGY", drift, "at rest", "a drift"),
     Row("TOLD_BESIDE", moved_by, "told", "not known"),
+    Row("UNSEEN", unseen_pulse, "as seen", "made again"),
     Row("UNBALANCED", lambda x: "warned" if unbalanced(x) else "fine", "fine", "warned"),
 )
 
