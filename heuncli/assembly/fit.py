@@ -1,7 +1,8 @@
 """The fit of an island: poses that close its loops, as near as possible to where they started.
 
     (0) drawn nearly closed: (2) from the poses as drawn, then least Σθ² + Σ(d/l)² from there; then (3), unless that
-        leads much farther than the nearest. Else, from the poses as walked:
+        leads much farther than the nearest; or drawn so but for held coordinates: followed to these from the drawing.
+        Else, from the poses as walked:
     (1) with `near`: what near says is fixed, the others meet it as well as they can; then it is let go
     (2) close: least |e − C y|² + μ (Σθ² + 0.01 Σd²/L²) step by step (Levenberg-Marquardt), turns at most 0.3 rad;
         where that stalls with a gap (links in line have no slope), again with small fixed pseudo-random turns
@@ -13,12 +14,13 @@ reduced.py.
 from __future__ import annotations
 
 import math
-from collections.abc import Sequence
+from collections.abc import Mapping, Sequence
 
 import numpy as np
 
 from heuncli import tolerances
 from heuncli.assembly.conditions import Condition
+from heuncli.assembly.following import stages
 from heuncli.assembly.islands import Island
 from heuncli.assembly.reduced import Reduced, least, rank_of
 from heuncli.assembly.rows import Rows, pose_rows
@@ -204,6 +206,21 @@ class Fit:
         if self._sums(drawn, together)[0] > tolerances.FARTHER**2 * way:
             self.restore(nearest)
         return True, kick
+
+    def follow(self, drawn: tuple[Array, Array], asked: Mapping[int, tuple[bool, bool]], limit: float) -> bool:
+        """Whether it closes as drawn but for the coordinates asked for, and all the way to these (following.py)."""
+        self.restore(drawn)
+        last, lever, here = self.found, self.lever(), {k: asked[k] for k in self.joints if k in asked}
+        followed = False
+        for i, step in enumerate(stages(last, here, self.poses, lever)):
+            self.found = step
+            followed = (i > 0 or self.near(drawn, lever)) and self.close(limit)
+            if not followed:
+                break
+        self.found = last
+        if followed:
+            self.polish(drawn, limit)
+        return followed
 
     def polish(self, start: tuple[Array, Array], limit: float, together: float = 0.0) -> None:
         """Step (3): start are the poses before (2). together: as in (0), a shift by L counts so many times a turn."""

@@ -10,6 +10,7 @@ from heuncli import tolerances
 from heuncli.assembly.conditions import Condition
 from heuncli.assembly.errors import does_not_fit, no_length, too_many
 from heuncli.assembly.fit import Fit
+from heuncli.assembly.following import given
 from heuncli.assembly.gaps import Closure
 from heuncli.assembly.islands import TOGETHER, Island, Islands, settle
 from heuncli.assembly.walk import Poses, Tree, place, spanning, start, walk
@@ -34,6 +35,7 @@ class Placing:
         self.folded: list[str] = []
         self.gap = 0.0
         self.limit = tolerances.OPEN_GAP
+        self._given = given(mechanism, found)
         self._gaps = Closure(found, [d.pose for d in found])
 
     def fit(self) -> None:
@@ -67,7 +69,10 @@ class Placing:
             raise too_many(self.mechanism, island, "poses")
         fit = Fit(self.poses, island, self.found, self.tree.depth, self.size, self.mechanism.planar)
         before = fit.saved()
-        closed, kick = fit.near_drawing((self.drawn.x[island.members], self.drawn.R[island.members]), self.limit)
+        drawn = self.drawn.x[island.members], self.drawn.R[island.members]
+        closed, kick = fit.near_drawing(drawn, self.limit)
+        if not closed:
+            closed = fit.follow(drawn, self._given, self.limit)
         if not closed:
             fit.restore(before)
             closed, kick = self._from_walk(fit)

@@ -2,13 +2,15 @@
 
 from __future__ import annotations
 
+from typing import Any
+
 import numpy as np
 import pytest
 
 from heuncli.assembly.assemble import assemble
 from heuncli.mechanism.model import Assembly
 from heuncli.records import replace
-from tests.shared.drafts import body, joint, largest_gap, scene
+from tests.shared.drafts import body, in_time, joint, largest_gap, scene
 from tests.shared.misdrawn import MODES, drawn, known
 
 CHUNK = 25
@@ -55,3 +57,49 @@ def test_a_small_loop_in_a_large_scene_is_fitted_as_it_is_alone(seed: int) -> No
     a, b = assemble(s), assemble(replace(s, bodies=(*bodies, *boom.bodies), joints=tuple(joints)))
     ways = d.ways(a.position, a.rotation), d.ways(b.position[:-1] / small, b.rotation[:-1])
     assert ways[1] == pytest.approx(ways[0], abs=3e-4)
+
+
+def crank_rockers(count: int) -> list[Any]:
+    """Joints A, B, C, D of crank-rockers at random, (4, 2) each: cranks that turn right round, either way closed."""
+    rng = np.random.default_rng(3)
+    found: list[Any] = []
+    while len(found) < count:
+        crank, coupler, rocker, frame = lengths = rng.uniform(0.3, 3, 4)
+        if crank > min(lengths) or crank + max(lengths) > 0.97 * (sum(lengths) - crank - max(lengths)):
+            continue
+        phi, side = rng.uniform(0, 2 * np.pi), rng.choice([-1, 1])
+        B, D = crank * np.array([np.cos(phi), np.sin(phi)]), np.array([frame, 0.0])
+        far = np.linalg.norm(D - B)
+        u = (D - B) / far
+        along = (coupler**2 - rocker**2 + far**2) / (2 * far)
+        across = side * np.sqrt(coupler**2 - along**2)
+        found.append(np.array([np.zeros(2), B, B + along * u + across * np.array([-u[1], u[0]]), D]))
+    return found
+
+
+def side_of(B: Any, C: Any, D: Any) -> float:
+    """On which side the coupler and the rocker are bent: it stays while the crank turns."""
+    return float(np.sign(np.cross([*(C - B), 0.0], [*(D - C), 0.0])[2]))
+
+
+# Where least turns, or the fit from the bodies as walked, led to the other side of the dead centre.
+OTHERWISE = [(1, -135), (1, -120), (14, 60), (14, 90), (31, -105), (31, -90), (50, 180)]
+
+
+@pytest.mark.parametrize(("which", "degrees"), OTHERWISE)
+@pytest.mark.parametrize("driven", [False, True])
+def test_a_crank_turned_away_from_the_drawing_keeps_the_way_to_close(which: int, degrees: float, driven: bool) -> None:
+    A, B, C, D = joints = crank_rockers(which + 1)[which]
+    points, names = [(*p, 0.0) for p in joints], ["ground", "crank", "coupler", "rocker", "ground"]
+    angle = np.radians(degrees)
+    held: Any = {"drive": ("angle", in_time(f"{angle} + t"))} if driven else {"angle": angle}
+    s = scene(
+        [body(n, center=(*(0.5 * (p + q)), 0.0)) for n, p, q in zip(names[1:4], (A, B, C), (B, C, D), strict=True)],
+        [joint(f"j{k}", "pin", names[k], points[k], names[k + 1], points[k], **({} if k else held)) for k in range(4)],
+    )
+    a = assemble(s)
+    B1, C1 = ((a.position[1] + a.rotation[1] @ points[k])[:2] for k in (1, 2))
+    assert np.array(B1) == pytest.approx(
+        np.array([[np.cos(angle), -np.sin(angle)], [np.sin(angle), np.cos(angle)]]) @ B
+    )
+    assert side_of(B1, C1, D) == side_of(B, C, D)
