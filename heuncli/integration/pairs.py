@@ -18,7 +18,7 @@ from heuncli.results import Array, Indices, Mask
 from heuncli.tree.layout import Layout
 
 WITHIN = (0.5, 0.85)  # of a step: where interpolation errs most, measured on open and closed chains
-ENDS = 5_000  # ends of steps that are compared, in even numbers over a longer run; the horizon is then looked for again
+ENDS = 2_000  # ends of steps that are compared, in even numbers over a longer run; the horizon is then looked for again
 INSIDE = 2_000  # bodies times steps up to which all steps are looked into
 ENOUGH = 64  # steps in which asked instants lie, anywhere, show what interpolation errs by
 BLOCKS, BLOCK = 8, 16  # else so many stretches of so many steps, spread over the run

@@ -12,12 +12,13 @@ import numpy as np
 
 from heuncli.expressions.programs import one_sided_limits
 from heuncli.integration.checked import Checked, Runs, checked_run, recovered_at
+from heuncli.integration.pairs import interleaved, moved_start
 from heuncli.integration.runner import Recovered, Runner, check_deadline, discontinuities_of
 from heuncli.integration.singular import singular_poses
 from heuncli.integration.solvable import require_solvable
 from heuncli.integration.unseen import unseen
 from heuncli.records import record
-from heuncli.results import Array
+from heuncli.results import Array, Estimate
 from heuncli.study.extremes import distinct
 from heuncli.study.kinds import Kinds
 from heuncli.study.setup import Setup
@@ -31,13 +32,14 @@ LOOKS = 8  # runs made again for what loads in time did unseen: each finds the n
 class History:
     """The kernel's answers at the instants asked for; of a motion the checked run behind them.
 
-    tolerance: what the motion was to keep; jumps: instants at which a load or drive jumps or bends, or what it
+    tolerance: what the motion was to keep; estimate: of the errors, by kind; jumps: instants at which a load or drive jumps or bends, or what it
     does had not been seen; singular: those of singular poses that the run came through; missed: what is still unseen;
     seconds: what took how long.
     """
 
     recovered: Recovered
     tolerance: float
+    estimate: Estimate
     checked: Checked | None = None
     jumps: tuple[float, ...] = ()
     singular: tuple[float, ...] = ()
@@ -59,7 +61,10 @@ def integrate(setup: Setup, tolerance: float, deadline: float | None) -> History
     start = setup.scene.layout.y0[None, :]
     if setup.method is None:
         check_deadline(deadline, "before the loads were computed")
-        return History(runner.recovered(times[:1], start), tolerance, seconds={"integrate": 0.0, "check": 0.0})
+        state = runner.recovered(times[:1], start)
+        beside = runner.recovered(*interleaved(times[:1], [start, moved_start(setup.scene.layout)[None, :]]))
+        seconds = {"integrate": 0.0, "check": 0.0}
+        return History(state, tolerance, estimate=of_state(setup, beside), seconds=seconds)
     require_solvable(setup.scene, runner.recovered(np.zeros(1), start))  # before a long run, not after it
     jumps = tuple(discontinuities_of(setup.scene.mechanism, 0.0, float(times[-1])))
     runs = Runs(runner, times, jumps, deadline, setup.method)
@@ -75,7 +80,15 @@ def integrate(setup: Setup, tolerance: float, deadline: float | None) -> History
         seconds["lost"] = checked.lost_seconds
     check_deadline(deadline, "before the loads were computed")
     singular = tuple(singular_poses(runner, checked.run))
-    return History(checked.recovered, tolerance, checked, jumps, singular, tuple(stops), seconds)
+    estimate = Estimate(motion=checked.motion, **checked.loads)
+    return History(checked.recovered, tolerance, estimate, checked, jumps, singular, tuple(stops), seconds)
+
+
+def of_state(setup: Setup, beside: Recovered) -> Estimate:
+    """The errors of one instant: what rounding of its state makes of the loads; beside: the state, and that moved."""
+    kinds = Kinds(setup)
+    kinds.add(beside, np.ones(1, dtype=bool))
+    return Estimate(motion=0.0, **kinds.estimate())
 
 
 def resample(runner: Runner, history: History, times: Array) -> Recovered:

@@ -29,6 +29,8 @@ from heuncli.results import Array, Estimate, Mask
 from heuncli.study.recover import about
 from heuncli.study.setup import Setup
 
+CHOSEN_ANEW = 1e-6  # of the largest multiplier: what redundant joints leave open changes by more when rows are chosen
+
 
 class Extent:
     """Of one quantity over the instants so far: largest error, rounding and terms; largest value and range as told.
@@ -130,8 +132,14 @@ class Terms:
         self.weight = np.array([b.mass for b in mechanism.bodies])[:, None] * mechanism.gravity
         of_rows = several.rows["multiplier"][..., None] * several.rows["f"]
         applied = [load.action for load in loads]
-        forces = [self.ma, several.bodies["joint_force"], of_rows, *(action.force for action in applied)]
-        moments = [self.spin, several.bodies["joint_moment"], *(action.moment for action in applied)]
+        # what spins freely is a balance of terms, too: m x_s.. and I sigma. + sigma x I sigma vanish there
+        layout, bodies = setup.scene.layout, mechanism.bodies
+        turning = np.abs(states.alpha).max(axis=2) + np.sum(states.omega**2, axis=2)
+        arms = [b.center - layout.reference[layout.place[i]] for i, b in enumerate(bodies)]
+        offset = [b.mass * float(np.abs(arm).max()) for b, arm in zip(bodies, arms, strict=True)]
+        gyration = [float(np.trace(b.inertia)) for b in bodies]
+        forces = [self.ma, turning * offset, several.bodies["joint_force"], of_rows, *(x.force for x in applied)]
+        moments = [self.spin, turning * gyration, several.bodies["joint_moment"], *(x.moment for x in applied)]
         self.force = np.maximum(_at_each(forces), np.abs(self.weight).max(initial=0.0))
         self.moment = np.maximum(_at_each(moments), size * self.force)
         self.rounding = rounding_of_loads(several)
@@ -165,10 +173,8 @@ class Kinds:
     def add(self, several: Recovered, asked: Mask, before: Mask) -> None:
         """More instants, which are asked and which before the horizon; at each the answers of A, then of the others."""
         count = len(several.times) // max(len(asked), 1)
-        same = same_rows(several, count)
-        if not same.any():
-            return
-        if not same.all():
+        same = same_rows(several, count) if self.setup.model["redundant"] else np.ones(len(asked), dtype=bool)
+        if same.any() and not same.all():
             kept = {name: values[np.repeat(same, count)] for name, values in fields(several).items()}
             several, asked, before = replace(several, **kept), asked[same], before[same]
         self.asked, self.before = asked, before
@@ -323,7 +329,16 @@ class Kinds:
 
 
 def same_rows(several: Recovered, count: int) -> Mask:
-    """Where all of so many runs are answered with the same closure rows, (n,): the others have no multiplier."""
-    chosen = several.rows["multiplier"] != 0.0
-    same: Mask = np.all([chosen[0::count] == chosen[k::count] for k in range(1, count)], axis=(0, 2))
+    """Where all of so many runs are answered with the same closure rows, (n,): the others have no multiplier.
+
+    One that is nought in one run and next to nothing in another is chosen in both.
+    """
+    size = np.abs(several.rows["multiplier"])
+    none, own = size == 0.0, slice(0, None, count)
+    same = np.ones(len(several.times) // count, dtype=bool)
+    for k in range(1, count):
+        other = slice(k, None, count)
+        larger = np.maximum(size[own], size[other])
+        much = larger > CHOSEN_ANEW * larger.max(axis=1, initial=0.0)[:, None]
+        same &= ~((none[own] != none[other]) & much).any(axis=1)
     return same

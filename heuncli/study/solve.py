@@ -16,7 +16,7 @@ from heuncli.errors import Problem, SpecError
 from heuncli.integration.methods import METHODS
 from heuncli.kernel.choose import KERNEL
 from heuncli.records import record
-from heuncli.results import Accuracy, Array, Block, Estimate, Extremes, Magnitudes, Results
+from heuncli.results import Accuracy, Array, Block, Extremes, Magnitudes, Results
 from heuncli.results_schema import REPORTS
 from heuncli.spec.models import Spec
 from heuncli.study import extremes
@@ -81,9 +81,6 @@ def compose(setup: Setup, history: History, recovery: Recovery, wanted: frozense
     balance = accuracy(recovery)
     checked = history.checked
     gap = checked.run.gap if checked is not None else setup.scene.start.gap
-    estimate = Estimate(motion=0.0, reactions=0.0, drives=0.0, foundation=0.0, sections=0.0, energy=0.0)
-    if checked is not None:
-        estimate = Estimate(motion=checked.motion, **checked.loads)
     return Results(
         title=setup.spec.title,
         spec={"path": setup.spec.path, "sha256": setup.spec.sha256},
@@ -97,7 +94,7 @@ def compose(setup: Setup, history: History, recovery: Recovery, wanted: frozense
         | {
             "constraint_gap": max(balance["constraint_gap"], gap),
             "horizon": checked.horizon if checked is not None else None,
-            "estimate": estimate,
+            "estimate": history.estimate,
         }
         | ({"unknown": unknown.tolist()} if len(unknown) else {}),
         work={
