@@ -184,7 +184,8 @@ class Kinds:
         loads = applied_loads(mechanism, several)
         terms = Terms(self.setup, several, states, loads)
         self.add_joints(joints, terms)
-        self.add_foundation(states, [*(load.action for load in loads), *joint_actions(joints)], terms)
+        driven = [load for load in joints if load.drive is not None]
+        self.add_foundation(states, [*(load.action for load in loads), *joint_actions(driven)], terms)
         if self.setup.cuts:
             self.add_sections(states, [*whole_joint_actions(joints), *(load.action for load in loads)], terms)
         self.add_energy(several, states, loads)
@@ -223,9 +224,10 @@ class Kinds:
     def add_joints(self, joints: Sequence[JointLoads], terms: Terms) -> None:
         """Reactions and drives."""
         F, M = terms.rounding * terms.force, terms.rounding * terms.moment
+        if joints:
+            self.take(("reactions", "force"), np.stack([x.force for x in joints], axis=1), F, terms.force)
+            self.take(("reactions", "moment"), np.stack([x.moment for x in joints], axis=1), M, terms.moment)
         for load in joints:
-            self.take(("reactions", "force"), load.force, F, terms.force)
-            self.take(("reactions", "moment"), load.moment, M, terms.moment)
             if load.drive is not None and load.joint.drive is not None:
                 turns = load.joint.drive.quantity == "angle"
                 rounding, of = (M, terms.moment) if turns else (F, terms.force)
