@@ -32,9 +32,9 @@ LOOKS = 8  # runs made again for what loads in time did unseen: each finds the n
 class History:
     """The kernel's answers at the instants asked for; of a motion the checked run behind them.
 
-    tolerance: what the motion was to keep; estimate: of the errors, by kind; jumps: instants at which a load or drive jumps or bends, or what it
-    does had not been seen; singular: those of singular poses that the run came through; missed: what is still unseen;
-    seconds: what took how long.
+    tolerance: what the motion was to keep; estimate: of the errors, by kind; jumps: instants at which a load or drive
+    jumps or bends, or what it does had not been seen; singular: those of singular poses that the run came through;
+    missed: what is still unseen; seconds: what took how long.
     """
 
     recovered: Recovered
@@ -87,7 +87,7 @@ def integrate(setup: Setup, tolerance: float, deadline: float | None) -> History
 def of_state(setup: Setup, beside: Recovered) -> Estimate:
     """The errors of one instant: what rounding of its state makes of the loads; beside: the state, and that moved."""
     kinds = Kinds(setup)
-    kinds.add(beside, np.ones(1, dtype=bool))
+    kinds.add(beside, np.ones(1, dtype=bool), np.ones(1, dtype=bool))
     return Estimate(motion=0.0, **kinds.estimate())
 
 

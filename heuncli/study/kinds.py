@@ -110,14 +110,17 @@ def relative(error: float, terms: float, *scales: float) -> float:
     return min(found, tolerances.UNKNOWN)
 
 
-def rounding_of_loads(recovered: Recovered) -> Array:
-    """What rounding makes of the loads at each instant, relative to the largest terms of their balance, (n_t,).
+def rounding_of_loads(several: Recovered, force: Array, moment: Array, size: float) -> tuple[Array, Array]:
+    """What rounding makes of forces [N] and moments [N m] at each instant, (c n,); force, moment: their largest terms.
 
-    Sums of some dozen terms, amplified by the closures: a pivot is the square of a singular value.
+    That of sums of some dozen terms, and beside it what the kernel finds that rounding may make of each multiplier:
+    near a singular pose the closures amplify it (kernel/orthogonal.py).
     """
-    amplified = 1.0 / np.sqrt(np.maximum(recovered.pivot, tolerances.EPS**2))
-    found: Array = tolerances.SUM_ROUNDING * amplified
-    return found
+    rows = several.rows
+    by_force = (rows["doubt"] * np.abs(rows["f"]).max(axis=2)).max(axis=1, initial=0.0)
+    by_moment = (rows["doubt"] * np.abs(rows["m"]).max(axis=2)).max(axis=1, initial=0.0)
+    F = tolerances.SUM_ROUNDING * force + by_force + by_moment / size
+    return F, tolerances.SUM_ROUNDING * moment + by_moment + size * by_force
 
 
 class Terms:
@@ -142,7 +145,7 @@ class Terms:
         moments = [self.spin, turning * gyration, several.bodies["joint_moment"], *(x.moment for x in applied)]
         self.force = np.maximum(_at_each(forces), np.abs(self.weight).max(initial=0.0))
         self.moment = np.maximum(_at_each(moments), size * self.force)
-        self.rounding = rounding_of_loads(several)
+        self.rounding = rounding_of_loads(several, self.force, self.moment, size)
 
 
 def _at_each(values: Iterable[Array]) -> Array:
@@ -191,7 +194,7 @@ class Kinds:
         self.add_energy(several, states, loads)
         self.add_motion(states)
         for load in loads:
-            F, M = terms.rounding * terms.force, terms.rounding * terms.moment
+            F, M = terms.rounding
             self.take(("forces", "N"), load.action.force, F, terms.force)
             self.take(("forces", "N·m"), load.action.moment, M, terms.moment)
             self.take(("forces", "W"), load.power, np.zeros(len(F)), terms.force)
@@ -223,7 +226,7 @@ class Kinds:
 
     def add_joints(self, joints: Sequence[JointLoads], terms: Terms) -> None:
         """Reactions and drives."""
-        F, M = terms.rounding * terms.force, terms.rounding * terms.moment
+        F, M = terms.rounding
         if joints:
             self.take(("reactions", "force"), np.stack([x.force for x in joints], axis=1), F, terms.force)
             self.take(("reactions", "moment"), np.stack([x.moment for x in joints], axis=1), M, terms.moment)
@@ -240,6 +243,7 @@ class Kinds:
         far = np.abs(arm).max(axis=(1, 2))
         self.reach = max(self.reach, float(far.max()))
         moments = terms.moment + far * terms.force
+        forces_rounding, moments_rounding = terms.rounding
         inner = [action for action in actions if action.kind != "joint" and action.from_ is not None]
         elements = [on for action in inner if (on := action.on_ground()) is not None]
         wrenches = [
@@ -249,8 +253,8 @@ class Kinds:
         ]
         for kind, force, moment in wrenches:
             F, M = in_plane(force, moment) if mechanism.planar else (force, moment)
-            self.take((kind, "force"), F, terms.rounding * terms.force, terms.force)
-            self.take((kind, "moment"), M, terms.rounding * moments, moments)
+            self.take((kind, "force"), F, forces_rounding, terms.force)
+            self.take((kind, "moment"), M, moments_rounding + far * forces_rounding, moments)
 
     def add_sections(self, states: BodyStates, actions: Sequence[Action], terms: Terms) -> None:
         """The cuts' loads in body axes, and how far the bodies themselves have turned between the two runs."""
@@ -264,10 +268,13 @@ class Kinds:
             count = len(R) // len(self.asked)
             own = R[0::count]
             turned = np.max([np.sqrt(np.sum((own - R[k::count]) ** 2, axis=(1, 2))) for k in range(1, count)], axis=0)
-            for quantity, values, of in (("force", force, terms.force), ("moment", moment, terms.moment)):
+            F, M = terms.rounding
+            for quantity, values, rounding, of in (
+                ("force", force, F, terms.force), ("moment", moment, M, terms.moment),
+            ):  # fmt: skip
                 both = values.transpose(1, 2, 0)
                 turn = turned * lengths(both[0::count])
-                self.take(("sections", quantity), both, terms.rounding * of, of, turn)
+                self.take(("sections", quantity), both, rounding, of, turn)
 
     def add_energy(self, several: Recovered, states: BodyStates, loads: Sequence[AppliedLoad]) -> None:
         """Kinetic and potential energy, and work."""
