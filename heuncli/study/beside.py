@@ -10,7 +10,7 @@ where that is more than a table's digits of the largest of its kind.
 from __future__ import annotations
 
 from collections.abc import Iterator, Mapping, Sequence, Set
-from typing import Any
+from typing import Any, NamedTuple
 
 import numpy as np
 
@@ -25,7 +25,15 @@ from heuncli.tree.layout import Layout
 AMPLE = 10.0  # times the change: errors were 0.2 of it in the median of 4,711 instants, 3.4 at the most
 DIRECTIONS = 3  # in which a state is moved: that none of them meets the weak one is a matter of 1e-3
 HUNG_ON_RANK = frozenset({"joints", "foundation", "sections"})  # reports that ask for the rank of the closures
-Leaf = tuple[tuple[str, ...], dict[str, Any]]  # the keys that lead to an array, and the block it stands in
+Kind = tuple[str, str]  # numbers of one kind: the path of the schema, and the unit
+
+
+class Leaf(NamedTuple):
+    """An array over the instants: the block it stands in, its name there, and of which kind it is."""
+
+    block: dict[str, Any]
+    name: str
+    kind: Kind
 
 
 def known_blocks(recovery: Recovery, wanted: Set[str], jumps: Sequence[float]) -> tuple[dict[str, Any], Array]:
@@ -37,13 +45,17 @@ def known_blocks(recovery: Recovery, wanted: Set[str], jumps: Sequence[float]) -
     moved = moved_states(recovery, near, jumps)
     other = blocks(Recovery(recovery.setup, moved, recovery.least_norm), wanted)
     unknown = np.zeros(len(near), dtype=bool)
-    scales = largest_of_kind(shown, near, least_by_unit(recovery, near))
-    for (keys, block), (_, elsewhere) in zip(leaves(shown), leaves(other), strict=True):
-        name = keys[-1]
-        lost = reached(block[name][near], elsewhere[name], scales[kind(keys)])
+    known = [
+        (leaf, leaf.block[leaf.name][near], error(leaf.block[leaf.name][near], elsewhere.block[leaf.name]))
+        for leaf, elsewhere in zip(leaves(shown), leaves(other), strict=True)
+    ]
+    scales = largest_of_kind(known, least_by_unit(recovery, near))
+    for leaf, values, off in known:
+        lost = reached(off, scales[leaf.kind])
         if lost.any():
-            block[name] = block[name].copy()
-            block[name][near] = np.where(lost, np.nan, block[name][near])
+            block = leaf.block
+            block[leaf.name] = block[leaf.name].copy()
+            block[leaf.name][near] = np.where(lost, np.nan, values)
             unknown |= lost.reshape(len(near), -1).any(axis=1)
     return shown, recovery.recovered.times[near[unknown]]
 
@@ -52,7 +64,9 @@ def nearly_singular(recovery: Recovery, wanted: Set[str]) -> Indices:
     """The instants so near to a singular pose that rounding may reach what is told of them, or just at one."""
     near = recovery.recovered.pivot < tolerances.NEAR_PIVOT
     if wanted & HUNG_ON_RANK and recovery.decided is not None and recovery.decided.searched is not None:
-        near |= recovery.decided.searched.count > recovery.setup.model["redundant"]
+        # the kernel may have left out a row that is nearly dependent, and its pivot with it
+        found = recovery.decided.searched
+        near |= (found.count > recovery.setup.model["redundant"]) | (found.least < 0.1 * tolerances.NEAR_PIVOT**0.5)
     return np.flatnonzero(near)
 
 
@@ -79,32 +93,22 @@ def directions(layout: Layout) -> Array:
 
 
 def leaves(shown: dict[str, Any], keys: tuple[str, ...] = ()) -> Iterator[Leaf]:
-    """The arrays over the instants in the blocks, with what leads to them."""
+    """The arrays over the instants in the blocks."""
     for name, part in shown.items():
         if isinstance(part, dict):
             yield from leaves(part, (*keys, name))
         elif isinstance(part, np.ndarray):
             row = quantity((*keys, name))
             if row is not None and row.timed:
-                yield (*keys, name), shown
+                yield Leaf(shown, name, (row.path, row.units[-1]))
 
 
-def kind(keys: tuple[str, ...]) -> tuple[str, ...]:
-    """Numbers that are of one kind: of one block, in one unit."""
-    row = quantity(keys)
-    return (keys[0], *(row.units if row is not None else ()))
-
-
-def largest_of_kind(
-    shown: dict[str, Any], near: Indices, least: Mapping[str, Array]
-) -> dict[tuple[str, ...], Array]:
-    """The largest number of each kind at each of some instants, not below what its unit comes to in this motion."""
-    found: dict[tuple[str, ...], Array] = {}
-    for keys, block in leaves(shown):
-        values = np.abs(block[keys[-1]][near]).reshape(len(near), -1)
-        most = np.where(np.isfinite(values), values, 0.0).max(axis=1, initial=0.0)
-        floor = found.get(kind(keys), least.get(kind(keys)[-1], np.zeros(len(near))))
-        found[kind(keys)] = np.maximum(floor, most)
+def largest_of_kind(known: Sequence[tuple[Leaf, Array, Array]], least: Mapping[str, Array]) -> dict[Kind, Array]:
+    """The largest number of each kind at each instant, less its error; not below what its unit comes to (least)."""
+    found: dict[Kind, Array] = {}
+    for leaf, values, off in known:
+        most = largest(np.maximum(np.abs(values) - off, 0.0))
+        found[leaf.kind] = np.maximum(found.get(leaf.kind, least.get(leaf.kind[1], 0.0)), most)
     return found
 
 
@@ -126,15 +130,20 @@ def least_by_unit(recovery: Recovery, near: Indices) -> dict[str, Array]:
 
 
 def largest(values: Array) -> Array:
-    """The largest magnitude at each instant, (n,)."""
-    return np.asarray(np.abs(values).reshape(len(values), -1).max(axis=1, initial=0.0))
+    """The largest magnitude at each instant, (n,); nan is none."""
+    found = np.abs(values).reshape(len(values), -1)
+    return np.asarray(np.where(np.isfinite(found), found, 0.0).max(axis=1, initial=0.0))
 
 
-def reached(values: Array, moved: Array, largest: Array) -> Mask:
-    """Which numbers (n, ...) change too much for the largest of their kind (n,) where their states are moved.
+def error(values: Array, moved: Array) -> Array:
+    """The error of numbers (n, ...), by what they change where their states are moved (n * DIRECTIONS, ...).
 
-    moved (n * DIRECTIONS, ...). What is open anyway, or open where the state is moved, says nothing.
+    What is open anyway, or open where the state is moved, says nothing.
     """
     change = np.abs(moved.reshape(len(values), DIRECTIONS, *values.shape[1:]) - values[:, None])
-    most = np.where(np.isnan(change), 0.0, change).max(axis=1)
-    return np.asarray(AMPLE * most > tolerances.TOLD_BESIDE * largest.reshape(-1, *[1] * (most.ndim - 1)))
+    return np.asarray(AMPLE * np.where(np.isnan(change), 0.0, change).max(axis=1))
+
+
+def reached(off: Array, scale: Array) -> Mask:
+    """Which numbers of these errors (n, ...) are not known, beside the largest of their kind (n,)."""
+    return np.asarray(off > tolerances.TOLD_BESIDE * scale.reshape(-1, *[1] * (off.ndim - 1)))

@@ -24,7 +24,7 @@ from heuncli.report.page import page_of
 from heuncli.results import Results
 from heuncli.spec.load import load
 from heuncli.spec.turns import of_matrix
-from heuncli.study.beside import AMPLE, reached
+from heuncli.study.beside import AMPLE, error, reached
 from heuncli.study.expect import compare
 from heuncli.study.warnings import unbalanced
 from tests.shared.scenes import near, solved, study
@@ -57,8 +57,8 @@ def read(text: str) -> str:
 
 def moved_by(x: float) -> str:
     """A load whose largest companion is 2 N, where its state is moved by rounding."""
-    moved = np.array([3.0, 3.0 - 2.0 * x / AMPLE, 3.0])
-    return "not known" if reached(np.array([3.0]), moved, np.array([2.0])).any() else "told"
+    off = error(np.array([3.0]), np.array([3.0, 3.0 - 2.0 * x / AMPLE, 3.0]))
+    return "not known" if reached(off, np.array([2.0])).any() else "told"
 
 
 def bar(more: str = "", tail: str = "", inertia: str = "[0.08, 0.08, 0.001]", kind: str = "ball") -> str:
