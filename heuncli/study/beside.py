@@ -25,6 +25,7 @@ from heuncli.tree.layout import Layout
 AMPLE = 10.0  # times the change: errors were 0.2 of it in the median of 4,711 instants, 3.4 at the most
 DIRECTIONS = 3  # in which a state is moved: that none of them meets the weak one is a matter of 1e-3
 HUNG_ON_RANK = frozenset({"joints", "foundation", "sections"})  # reports that ask for the rank of the closures
+OF_ACCELERATIONS = frozenset({"m/s²", "rad/s²", "N", "N·m", "Pa", "W", "N·m/s"})  # units of what hangs on them
 Kind = tuple[str, str]  # numbers of one kind: the path of the schema, and the unit
 
 
@@ -50,8 +51,11 @@ def known_blocks(recovery: Recovery, wanted: Set[str], jumps: Sequence[float]) -
         for leaf, elsewhere in zip(leaves(shown), leaves(other), strict=True)
     ]
     scales = largest_of_kind(known, least_by_unit(recovery, near))
+    left_out = rows_left_out(recovery, near) if wanted & HUNG_ON_RANK else np.zeros(len(near), dtype=bool)
     for leaf, values, off in known:
         lost = reached(off, scales[leaf.kind])
+        if leaf.kind[1] in OF_ACCELERATIONS and not leaf.kind[0].startswith("forces."):
+            lost = lost | left_out.reshape(-1, *[1] * (lost.ndim - 1))
         if lost.any():
             block = leaf.block
             block[leaf.name] = block[leaf.name].copy()
@@ -68,6 +72,20 @@ def nearly_singular(recovery: Recovery, wanted: Set[str]) -> Indices:
         found = recovery.decided.searched
         near |= (found.count > recovery.setup.model["redundant"]) | (found.least < 0.1 * tolerances.NEAR_PIVOT**0.5)
     return np.flatnonzero(near)
+
+
+def rows_left_out(recovery: Recovery, near: Indices) -> Mask:
+    """At which instants the kernel left out rows that are independent, as it does on the way through a flat pose.
+
+    Their multipliers are missing from the loads, and what they hold accelerates a little.
+    """
+    found = recovery.decided.searched if recovery.decided is not None else None
+    if found is None:
+        return np.zeros(len(near), dtype=bool)
+    rows = recovery.recovered.rows
+    chosen = np.sum(rows["doubt"][near] > 0.0, axis=1)
+    slight = found.least[near] < 10.0 * tolerances.KERNEL["passing"]
+    return np.asarray(slight & (chosen < rows.shape[1] - found.dependent[near]))
 
 
 def moved_states(recovery: Recovery, near: Indices, jumps: Sequence[float]) -> Recovered:
