@@ -70,6 +70,7 @@ class Integration:
         run.rate = start["rate"]
         run.following = start["following"]
         run.next_sample = run.rope = run.steps = run.evaluations = run.rejected = run.done = run.dodges = 0
+        run.rejected_before = 0
         run.proposed = run.energy_scale = run.gap = 0.0
         run.weights = self.memory.doubles(start["weights"])
         run.y = self.memory.doubles(start["state"])
