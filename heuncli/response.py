@@ -9,6 +9,7 @@ from __future__ import annotations
 
 import numpy as np
 
+from heuncli import tolerances
 from heuncli.kernel.choose import workspace
 from heuncli.records import record
 from heuncli.results import Array
@@ -23,6 +24,7 @@ def workspace_of(layout: Layout) -> workspace.Workspace:
     numbers = {
         "gravity": layout.mechanism.gravity.tolist(),
         "size": layout.size,
+        "rank_of_gap": tolerances.RANK_OF_GAP / min((i.length for i in layout.islands), default=layout.size),
         "driven": int(layout.driven),
         "work_at": layout.work_at,
         "answer_count": layout.answer_count,

@@ -12,7 +12,8 @@ from __future__ import annotations
 EPS = 2.0**-52
 
 # -- rank: which conditions of the joints hold what others hold already
-RANK = 1e-9  # of the largest singular value, or of 1 (rows are scaled to it): nine digits, what a closed pose gives
+RANK = 1e-9  # of a row scaled to 1, what is left of it by the others: nine digits, what a closed pose gives
+NOT_QUITE = 1e-12  # the same: what is less is rounding of coordinates; between this and RANK dependence is told
 RANK_OF_GAP = 100.0  # times the gap: a pose is known to its gap only, and singular values amplify it by some tens
 NEIGHBOUR = 1e-3  # [rad] or of the size: an accident of the start is left by 1e-3, far above RANK, the machine hardly
 MOVES = 1e-6  # of rates drawn between -1 and 1: less, after projection on the closures, is rounding
@@ -21,6 +22,8 @@ SINGULAR_MET = 4.0  # times the width left of the search over its first: the val
 NEAR_PIVOT = 1e-2  # relative singular value 0.1, a tenth of it in another measure: rounding over its 4th power, 2e-8
 UNSEEN_GAP = 16.0 * EPS  # of the size: what the sums of a closure may not see, and more than settling leaves
 TOLD_BESIDE = 1e-6  # of the largest of its kind: six digits, a table's; what rounding reaches farther is not known
+UNMET = 10.0  # times what has to be left of a row: rows left out are met to less, and all others to rounding
+SINGULAR_FALL = 0.5  # of the largest value in the search: on the way through a singular pose it falls to nothing
 NEARLY_SINGULAR = 1e-6  # relative singular value: reactions err by gap / value, 1e-10 / 1e-6, and keep four digits
 
 # -- open: which components no law of rigid bodies decides, and the sums that are certain

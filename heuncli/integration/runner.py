@@ -299,6 +299,11 @@ class Runner:
             first = to + 1
         return replayed.states()
 
+    def may_stay(self, gap: Array) -> Array:
+        """What accelerations may leave unmet of rows that depend on others, at gaps (n_t,), of the rows' terms."""
+        length = min((island.length for island in self.layout.islands), default=self.size)
+        return tolerances.UNMET * (self.workspace.least_row + tolerances.RANK_OF_GAP * gap / length)
+
     def recovered(self, times: Array, states: Array, *, hold_rows: bool = False) -> Recovered:
         """Accelerations and loads at the given states, which are projected onto the closures first.
 
@@ -322,7 +327,7 @@ class Runner:
         return Recovered(
             times=at, states=flat.reshape(settled.shape), bodies=bodies, freedoms=freedoms, loads=loads, rows=rows,
             gap=whole["gap"][:, 0], idle=whole["idle"][:, 0], pivot=whole["pivot"][:, 0],
-            residual=whole["residual"][:, 0],
+            residual=whole["residual"][:, 0], may_stay=self.may_stay(whole["gap"][:, 0]),
         )  # fmt: skip
 
 
@@ -340,3 +345,4 @@ class Recovered:
     idle: Array
     pivot: Array  # square of the least pivot of the independent closure rows; 1: far from singular
     residual: Array  # of all rows, J Vdot + gamma at the accelerations found, of the terms it is the sum of
+    may_stay: Array  # what of it rows may keep that were left out as dependent

@@ -48,13 +48,15 @@ def minima_brackets(runner: Runner, run: Trajectory, times: Array) -> list[tuple
 def singular_instant(runner: Runner, run: Trajectory, a: float, b: float) -> float | None:
     """The instant of the singular pose in [a, b], or None where the loops only come close to one."""
     span = b - a
-    low, t = np.inf, a
+    low, high, t = np.inf, 0.0, a
     for _ in range(ROUNDS):
         times = np.linspace(a, b, PROBES)
         g = least_singular_values(runner, run, times)
         k = int(np.argmin(g))
-        low, t = float(g[k]), float(times[k])
+        low, high, t = float(g[k]), max(high, float(g.max())), float(times[k])
         a, b = float(times[max(k - 1, 0)]), float(times[min(k + 1, PROBES - 1)])
         if low == 0.0:
             break
-    return t if low <= tolerances.SINGULAR_MET * (b - a) / span else None
+    # a scene that is everywhere as near to a singular pose passes through none
+    falls = low <= tolerances.SINGULAR_FALL * high
+    return t if falls and low <= tolerances.SINGULAR_MET * (b - a) / span else None

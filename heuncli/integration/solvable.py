@@ -28,6 +28,9 @@ def require_solvable(scene: PreparedScene, recovered: Recovered) -> None:
         raise SolveError(*not_finite(scene, recovered, int(np.flatnonzero(~finite)[0])))
     if (recovered.idle > 0).any():
         raise SolveError(freedom_without_inertia(scene, recovered, int(np.flatnonzero(recovered.idle > 0)[0])))
+    unmet = recovered.residual > recovered.may_stay
+    if unmet.any():
+        raise SolveError(unmet_rows(recovered, int(np.flatnonzero(unmet)[0])))
     layout, gravity = scene.layout, scene.mechanism.gravity
     for spin in scene.idle:
         rows = recovered.bodies[:, layout.place[spin.body]]
@@ -48,6 +51,13 @@ def require_solvable(scene: PreparedScene, recovered: Recovered) -> None:
             )
             hint = "give the body its moment of inertia about that axis, or let the load act on the axis"
             raise SolveError(Problem("no-inertia", message, hint=hint))
+
+
+def unmet_rows(recovered: Recovered, instant: int) -> Problem:
+    """The problem of closed chains that no acceleration found holds together."""
+    t, residual = float(recovered.times[instant]), float(recovered.residual[instant])
+    message = f"at t = {t:.9g} s the accelerations leave {residual:.1g} of what the closed chains ask of them unmet"
+    return Problem("closure-lost", message, hint="a singular pose, or joints that contradict each other by a little")
 
 
 def not_finite(scene: PreparedScene, recovered: Recovered, instant: int) -> list[Problem]:

@@ -11,8 +11,9 @@ except ImportError:
     from heuncli.kernel.shadow import cython
 
 if not cython.compiled:
+    from heuncli.kernel.response import settle
     from heuncli.kernel.scene import Closure, Scene
-    from heuncli.kernel.selection import select_independent_rows
+    from heuncli.kernel.selection import order_all, select_independent_rows
     from heuncli.kernel.shadow import cython
 
 
@@ -21,6 +22,25 @@ def choose_afresh(scene: cython.pointer[Scene], t: cython.double, y: cython.p_do
     scene.pivot = 1.0
     scene.pivot_chosen = 1.0
     select_independent_rows(scene, t, y, True)
+
+
+def judge_start(scene: cython.pointer[Scene], t: cython.double, y: cython.p_double) -> cython.void:
+    """What has to be left of a row for it to be chosen, by the gap and the rows of the start.
+
+    On the way through a singular pose a row is left out where rounding would tell more of it than the pose; a scene
+    that is as near to one from its beginning keeps its rows.
+    """
+    scene.least_row = scene.limits.independent
+    select_independent_rows(scene, t, y, True)
+    gap: cython.double = scene.rank_of_gap * settle(scene, t, y)
+    if gap > scene.least_row:
+        scene.least_row = gap
+        select_independent_rows(scene, t, y, True)
+    least: cython.double = scene.limits.passing_of_start * order_all(scene, 0.0)
+    if least > scene.limits.passing:
+        least = scene.limits.passing
+    if least > scene.least_row:
+        scene.least_row = least
 
 
 def chosen_width(scene: cython.pointer[Scene]) -> cython.int:

@@ -211,6 +211,7 @@ cdef struct Scene:
     Vec3 gravity
     double size
     Limits limits
+    double rank_of_gap        # what of a row the gap of a pose may feign [1/m]
     double least_row          # what has to be left of a row for it to be chosen
     double pivot_chosen       # least pivot of the closures when their rows were chosen
     double pivot              # now

@@ -271,6 +271,7 @@ class Scene(metaclass=Fields):
     gravity: Vec3
     size: float
     limits: Limits
+    rank_of_gap: float
     least_row: float
     pivot_chosen: float
     pivot: float

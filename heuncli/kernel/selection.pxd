@@ -8,7 +8,6 @@ from heuncli.kernel.tree cimport factor_tree, kinematics, load_along
 from libc.math cimport fabs, sqrt
 
 cdef int select_independent_rows(Scene *scene, double t, double *y, bint afresh) noexcept nogil
-cdef void judge_start(Scene *scene, double t, double *y) noexcept nogil
 cdef double order_all(Scene *scene, double least) noexcept nogil
 cdef double order_rows(Scene *scene, Island *island, double least) noexcept nogil
 cdef void scaled_row(Scene *scene, Island *island, Py_ssize_t k) noexcept nogil

@@ -51,21 +51,6 @@ def select_independent_rows(
     return scene.selected_count
 
 
-def judge_start(scene: cython.pointer[Scene], t: cython.double, y: cython.p_double) -> cython.void:
-    """What has to be left of a row for it to be chosen, by the rows of the start.
-
-    On the way through a singular pose a row is left out where rounding would tell more of it than the pose; a scene
-    that is as near to one from its beginning keeps its rows.
-    """
-    scene.least_row = scene.limits.independent
-    select_independent_rows(scene, t, y, True)
-    least: cython.double = scene.limits.passing_of_start * order_all(scene, 0.0)
-    if least > scene.limits.passing:
-        least = scene.limits.passing
-    if least > scene.least_row:
-        scene.least_row = least
-
-
 def order_all(scene: cython.pointer[Scene], least: cython.double) -> cython.double:
     """Put the rows in the order of their pivots, those with a rank and more than `least` left; the least pivot."""
     i: cython.Py_ssize_t

@@ -1,14 +1,14 @@
 """Signatures of workspace.py for C."""
 
 from heuncli.kernel.algebra cimport Mat3, Vec3
-from heuncli.kernel.chosen cimport choose_afresh
+from heuncli.kernel.chosen cimport choose_afresh, judge_start
 from heuncli.kernel.closures cimport measure_rows, push_closures, residual_of, size_of_answer
 from heuncli.kernel.expressions cimport Expressions
 from heuncli.kernel.memory cimport Memory
 from heuncli.kernel.orthogonal cimport answer_of_row, doubt_multipliers
 from heuncli.kernel.response cimport configure, evaluate, must_choose_anew, respond, settle
 from heuncli.kernel.scene cimport Body, Closure, Counter, Freedom, Island, Lent, Limits, Load, Scene, Variable
-from heuncli.kernel.selection cimport jacobian_row, judge_start, order_all, select_independent_rows
+from heuncli.kernel.selection cimport jacobian_row, order_all, select_independent_rows
 from heuncli.kernel.tree cimport balance, kinematics
 from libc.math cimport sqrt
 

@@ -21,14 +21,14 @@ if not cython.compiled:
     from math import sqrt
 
     from heuncli.kernel.algebra import Mat3, Vec3
-    from heuncli.kernel.chosen import choose_afresh
+    from heuncli.kernel.chosen import choose_afresh, judge_start
     from heuncli.kernel.closures import measure_rows, push_closures, residual_of, size_of_answer
     from heuncli.kernel.expressions import Expressions
     from heuncli.kernel.memory import Memory
     from heuncli.kernel.orthogonal import answer_of_row, doubt_multipliers
     from heuncli.kernel.response import configure, evaluate, must_choose_anew, respond, settle
     from heuncli.kernel.scene import Body, Closure, Counter, Freedom, Island, Lent, Limits, Load, Scene, Variable
-    from heuncli.kernel.selection import jacobian_row, judge_start, order_all, select_independent_rows
+    from heuncli.kernel.selection import jacobian_row, order_all, select_independent_rows
     from heuncli.kernel.shadow import cython
     from heuncli.kernel.structs import Instants
     from heuncli.kernel.tree import balance, kinematics
@@ -75,13 +75,14 @@ def put_load(out: cython.p_double, at: cython.Py_ssize_t, load: cython.pointer[L
 
 
 def put_row(out: cython.p_double, at: cython.Py_ssize_t, row: cython.pointer[Closure]) -> cython.Py_ssize_t:
-    """A closure row's unit load, multiplier, its doubt, and gap, as tables.CLOSURE_ANSWER."""
+    """A closure row's unit load, multiplier, its doubt, gap, and whether it is one of the independent ones."""
     at = put(out, at, row.f)
     at = put(out, at, row.m)
     out[at] = row.multiplier
     out[at + 1] = row.doubt
     out[at + 2] = row.gap
-    return at + 3
+    out[at + 3] = row.rank >= 0
+    return at + 4
 
 
 def put_answers(scene: cython.pointer[Scene], out: cython.p_double, at: cython.Py_ssize_t) -> cython.Py_ssize_t:
@@ -236,6 +237,7 @@ class Workspace:
         self.memory = Memory()
         scene.gravity = Vec3(x, y, z)
         scene.size = numbers["size"]
+        scene.rank_of_gap = numbers["rank_of_gap"]
         scene.driven = numbers["driven"]
         scene.work_at = numbers["work_at"]
         scene.answer_count = numbers["answer_count"]
@@ -387,6 +389,11 @@ class Workspace:
                 answer_column(scene, loads[height * c : height * c + height].tolist(), answer, inertial[c])
                 out[width * c : width * c + width] = answer
         return idle
+
+    @property
+    def least_row(self) -> float:
+        """What has to be left of a row for it to be one of the independent ones."""
+        return self.scene.least_row
 
     @property
     def column_width(self) -> int:

@@ -66,6 +66,12 @@ def singular_poses(stress: SelfStress, times: Array, redundant: int) -> list[str
         at = ", ".join(f"{t:.6g}" for t in times[more[:5]]) + (" ..." if len(more) > 5 else "")
         when = "this instant" if len(more) == 1 else "these instants"
         sentences.append(f"singular pose at t = {at} s: some components are indeterminate at {when} only")
+    hardly = np.where(stress.count <= redundant, stress.left, 0.0)
+    if hardly.max(initial=0.0) > tolerances.NOT_QUITE:
+        sentences.append(
+            f"some conditions of the joints depend on others within {hardly.max():.1e} only: they are taken as "
+            "redundant; exactly as drawn, they would hold one freedom more"
+        )
     near = np.flatnonzero((stress.least < tolerances.NEARLY_SINGULAR) & (stress.count <= redundant))
     if len(near):
         k = near[int(np.argmin(stress.least[near]))]

@@ -10,6 +10,8 @@ design: closure Jacobian on tree coordinates, SVD, one statics sweep a null vect
 
 from __future__ import annotations
 
+from typing import NamedTuple
+
 import numpy as np
 
 from heuncli import tolerances
@@ -17,7 +19,7 @@ from heuncli.integration.runner import Recovered, Runner
 from heuncli.kinetostatics.bodies import BodyStates
 from heuncli.records import record
 from heuncli.response import carried, jacobian
-from heuncli.results import Array, Mask
+from heuncli.results import Array, Indices, Mask
 from heuncli.tree.islands import mean_lever
 from heuncli.tree.layout import Island
 
@@ -28,8 +30,8 @@ class SelfStress:
 
     shares (n_j, n_t, 6, k): of each joint, force and moment ON `to` about the `to` point, world axes; largest (n_t, k):
     each one's largest share, moments by `length`; count (n_t,): how many there are; dependent (n_t,): how many rows
-    depend on others, in a planar scene also those across the plane; length [m]; least (n_t,): the smallest singular
-    value that was kept, relative.
+    depend on others, in a planar scene also those across the plane; length [m]; least, left (n_t,): the smallest
+    singular value that was kept, relative, and the largest that was not, beyond what the gap may feign.
     """
 
     shares: Array
@@ -37,6 +39,7 @@ class SelfStress:
     count: Array
     length: float
     least: Array
+    left: Array
     dependent: Array
 
     def reaches(self, shares: Array, length: float = 1.0) -> Mask:
@@ -54,11 +57,14 @@ def self_stress(runner: Runner, recovered: Recovered, states: BodyStates) -> Sel
     J = jacobian(runner.workspace, layout, recovered.times, recovered.states)
     columns: list[Array] = []
     counts = np.zeros(n_t, dtype=int)
-    least = np.ones(n_t)
+    least, left = np.ones(n_t), np.zeros(n_t)
     for island in layout.islands:
-        null, count, smallest = _null_space(J.block(island.rows, island.freedoms), island, recovered.gap)
-        counts += count
-        least = np.minimum(least, smallest)
+        chosen = recovered.rows["chosen"][:, island.rows]
+        null, values = _null_space(J.block(island.rows, island.freedoms), island, chosen)
+        counts += len(island.rows) - chosen.sum(axis=1).astype(int)
+        least = np.minimum(least, values.kept)
+        feigned = tolerances.RANK_OF_GAP * recovered.gap / island.length
+        left = np.maximum(left, np.where(values.left > feigned, values.left, 0.0))
         Z = np.zeros((n_t, len(layout.rows), null.shape[2]))
         Z[:, island.rows] = null
         columns.append(Z)
@@ -74,47 +80,52 @@ def self_stress(runner: Runner, recovered: Recovered, states: BodyStates) -> Sel
             counts = np.linalg.matrix_rank(np.concatenate(list(shares / size), axis=1), tol=tolerances.OPEN_SHARE)
     largest = (np.abs(shares).max(axis=0, initial=0.0) / size).max(axis=1)
     largest = np.where(largest > tolerances.NO_SELF_STRESS, largest, 0.0)
-    return SelfStress(shares, largest, counts, length, least, dependent)
+    return SelfStress(shares, largest, counts, length, least, left, dependent)
 
 
-def _null_space(J: Array, island: Island, gap: Array) -> tuple[Array, Array, Array]:
-    """Null vectors of J' on the island's rows (n_t, m, k_max), how many (n_t,), smallest kept singular value (n_t,)."""
+class Values(NamedTuple):
+    """Of the singular values of an island's J, relative, the least that is kept and the largest that is not, (n_t,)."""
+
+    kept: Array
+    left: Array
+
+
+def _null_space(J: Array, island: Island, chosen: Array) -> tuple[Array, Values]:
+    """Null vectors of J' on the island's rows (n_t, m, k_max), where `chosen` (n_t, m) is 1 of as many as its rank."""
     L = island.length
     measure = np.where(island.couples, L, 1.0)[:, None]
     J = J * measure / np.where(island.turns, L, 1.0)
     unit = np.maximum(np.sqrt(np.sum(J * J, axis=2)), 1.0)[:, :, None]
     J = J / unit
     # rows that never touch a free direction (across a flat mechanism, say) are self-stresses by themselves
-    idle = np.abs(J).max(axis=(0, 2), initial=0.0) <= tolerances.RANK
-    Z_rest, open_rest, kept = _null_of(J[:, ~idle], gap / L)
+    idle = np.abs(J).max(axis=(0, 2), initial=0.0) <= tolerances.NOT_QUITE
+    idle &= ~chosen.any(axis=0)
+    Z_rest, values = _null_of(J[:, ~idle], chosen.sum(axis=1).astype(int))
     k, alone = Z_rest.shape[2], int(idle.sum())
     Z = np.zeros((len(J), len(idle), k + alone))
     Z[:, ~idle, :k] = Z_rest
     Z[:, np.flatnonzero(idle), k + np.arange(alone)] = 1.0
-    return Z / unit * measure, open_rest + alone, kept
+    return Z / unit * measure, values
 
 
-def _null_of(J: Array, gap: Array) -> tuple[Array, Array, Array]:
-    """Null vectors of J' (n_t, m, k_max) for J (n_t, m, n), rows up to 1; how many; least kept singular value."""
+def _null_of(J: Array, rank: Indices) -> tuple[Array, Values]:
+    """Null vectors of J' (n_t, m, k_max) for J (n_t, m, n), rows up to 1, of given rank (n_t,)."""
     n_t, m = J.shape[:2]
     if m == 0:
-        return np.zeros((n_t, 0, 0)), np.zeros(n_t, dtype=int), np.ones(n_t)
+        return np.zeros((n_t, 0, 0)), Values(np.ones(n_t), np.zeros(n_t))
     S = np.linalg.svd(J, compute_uv=False)
-    if S.shape[1] < m:
-        S = np.concatenate([S, np.zeros((n_t, m - S.shape[1]))], axis=1)
     top = np.maximum(S.max(axis=1, initial=0.0), 1.0)
-    limit = np.maximum(tolerances.RANK, tolerances.RANK_OF_GAP * gap) * top
-    rank = np.sum(S > limit[:, None], axis=1)
+    S = np.concatenate([np.ones((n_t, 1)), S / top[:, None], np.zeros((n_t, m))], axis=1)
+    kept, left = (np.take_along_axis(S, rank[:, None] + i, axis=1)[:, 0] for i in (0, 1))
+    values = Values(np.asarray(kept), np.asarray(left))
     k_max = int((m - rank).max(initial=0))
-    last = np.take_along_axis(S, np.maximum(rank - 1, 0)[:, None], axis=1)[:, 0]
-    kept = np.where(rank > 0, last / top, 1.0)
     if k_max == 0:  # the vectors cost several times the values
-        return np.zeros((n_t, m, 0)), m - rank, kept
+        return np.zeros((n_t, m, 0)), values
     U, _, _ = np.linalg.svd(J, full_matrices=True)
     Z = U[:, :, m - k_max :].copy()
     for t in np.flatnonzero(m - rank < k_max):
         Z[t, :, : k_max - (m - rank[t])] = 0.0
-    return Z, m - rank, kept
+    return Z, values
 
 
 def _shares(runner: Runner, recovered: Recovered, states: BodyStates, Z: Array) -> Array:

@@ -67,7 +67,7 @@ FREEDOM_ANSWER = _answer("", "q u udot drive")
 # f, m: ON b for a multiplier of 1, about the `to` point.
 # force, moment: ON b, at the point `at` of b; `from_at`: its counterpart on a.
 LOAD_ANSWER = _answer("force moment at from_at", "value span rate power")
-CLOSURE_ANSWER = _answer("f m", "multiplier doubt gap")
+CLOSURE_ANSWER = _answer("f m", "multiplier doubt gap chosen")
 STATE_ANSWER = _answer("", "gap idle pivot residual")
 COLUMN_ANSWER = _answer("alpha a joint_moment joint_force")
 

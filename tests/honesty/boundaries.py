@@ -17,7 +17,6 @@ from heuncli.kinetostatics.cuts import first_axis
 from heuncli.kinetostatics.energy import energy_drift
 from heuncli.kinetostatics.foundation import central_axis
 from heuncli.redundancy.certain_sums import relations, tidy
-from heuncli.redundancy.self_stress import _null_of
 from heuncli.redundancy.turning_sums import factors
 from heuncli.report.labels import labels_of
 from heuncli.report.page import page_of
@@ -384,6 +383,11 @@ def beside_flat(x: float) -> str:
     return verdict(four_bar(p, q, ", angular_velocity: [0, 0, 4]", tail), right).split(" singular")[0]
 
 
+def flat_by(x: float) -> str:
+    """A parallelogram whose row has x left of it."""
+    return parallelogram(x / math.sqrt(2))
+
+
 def rates_at_flat(more: float) -> str:
     """Flat bars of 1 m, the right one told to turn faster: no accelerations would keep the coupler's length.
 
@@ -463,11 +467,6 @@ analysis: {{duration: 10, samples: 3}}
 
 
 # ---- the smallest calls
-def null_of(smallest: float, gap: float) -> str:
-    J = np.array([[[1.0, 0.0], [0.0, smallest]]])
-    return "dependent" if _null_of(J, np.array([gap]))[1][0] else "independent"
-
-
 def proportional(x: float) -> str:
     found, _ = relations({"a": np.array([1.0, 0.0]), "b": np.array([1.0, x])})
     return "a sum" if found else "none"
@@ -559,10 +558,9 @@ ROWS = (
     Row("KERNEL.no_inertia", turns_hardly, "refused: no-inertia", "fine"),
     Row("KERNEL.own_share", moved_by_a_lever, "refused: no-inertia", "fine"),
     # rank, open
-    Row("RANK", lambda x: parallelogram(x / math.sqrt(2)), "warned: singular pose", "warned: nearly singular pose"),
+    Row("KERNEL.independent", flat_by, "warned: singular pose", "warned: nearly singular pose"),
     Row("NEARLY_SINGULAR", lambda x: parallelogram(x / math.sqrt(2)), "warned: nearly singular pose", "fine"),
     Row("SINGULAR_MET", beside_flat, "warned: passes through a", "fine", (1 / 3, 3.0)),
-    Row("RANK_OF_GAP", lambda x: null_of(1e-6 * x, 1e-6), "dependent", "independent"),
     Row("OPEN_SHARE", inclined, "a number", "open"),
     Row("STRAINED", stiff, "open", "shared"),
     Row("DEPENDENT_SHARES", proportional, "a sum", "none"),
@@ -636,7 +634,11 @@ WANTED = {
     "CLAIMED": "the horizon",
     "BOUNDLESS": "the words on a run that fails",
     "KERNEL.across": "what a pivot is measured by",
-    "KERNEL.independent": "which rows carry the motion; one left out must not read as no reaction",
+    "RANK": "which motions of bodies without inertia, and of the assembly, are none; the kernel has its own of it",
+    "RANK_OF_GAP": "which rows a gap feigns: what is near to a singular pose closes its gaps by a move",
+    "SINGULAR_FALL": "whether a pose is passed through that is everywhere as near to a singular one",
+    "NOT_QUITE": "whether a dependence is told as not quite one",
+    "UNMET": "whether accelerations that leave rows unmet are refused",
     "KERNEL.passing": "which rows are left out on the way through a singular pose",
     "KERNEL.passing_of_start": "the same in a scene that begins beside one",
     "KERNEL.jump": "whether rates that the closures change are a blow",
