@@ -68,24 +68,19 @@ def nearly_singular(recovery: Recovery, wanted: Set[str]) -> Indices:
     """The instants so near to a singular pose that rounding may reach what is told of them, or just at one."""
     near = recovery.recovered.pivot < tolerances.NEAR_PIVOT
     if wanted & HUNG_ON_RANK and recovery.decided is not None and recovery.decided.searched is not None:
-        # the kernel may have left out a row that is nearly dependent, and its pivot with it
-        found = recovery.decided.searched
-        near |= (found.count > recovery.setup.model["redundant"]) | (found.least < 0.1 * tolerances.NEAR_PIVOT**0.5)
+        near |= recovery.decided.searched.count > recovery.setup.model["redundant"]
     return np.flatnonzero(near)
 
 
 def rows_left_out(recovery: Recovery, near: Indices) -> Mask:
-    """At which instants the kernel left out rows that are independent, as it does on the way through a flat pose.
+    """At which instants the kernel left out rows that are independent elsewhere, as on the way through a flat pose.
 
-    Their multipliers are missing from the loads, and what they hold accelerates a little.
+    Their multipliers are missing from the loads, and what they hold accelerates as if nothing did.
     """
     found = recovery.decided.searched if recovery.decided is not None else None
     if found is None:
         return np.zeros(len(near), dtype=bool)
-    rows = recovery.recovered.rows
-    chosen = np.sum(rows["doubt"][near] > 0.0, axis=1)
-    slight = found.least[near] < 10.0 * tolerances.KERNEL["passing"]
-    return np.asarray(slight & (chosen < rows.shape[1] - found.dependent[near]))
+    return np.asarray(found.count[near] > recovery.setup.model["redundant"])
 
 
 def moved_states(recovery: Recovery, near: Indices, jumps: Sequence[float]) -> Recovered:
