@@ -57,20 +57,24 @@ def measure_rows(scene: cython.pointer[Scene], t: cython.double) -> cython.void:
     """Unit load, gap, rate and gamma of every row at the present kinematics."""
     r: cython.Py_ssize_t
     for r in range(scene.closure_count):
-        row: cython.pointer[Closure] = cython.address(scene.closures[r])
-        row.Q = place_of(scene, row.b, row.q)
-        if row.kind == GUIDE:
-            guide_row(scene, row)
-        elif row.kind == DOT:
-            dot_row(scene, row)
-        else:
-            rod_row(scene, row)
-        if row.program.count:
-            given: Jet = jet(scene.programs, row.program, t)
-            row.gap -= given.value
-            row.rate -= given.rate
-            row.gamma -= given.second
-            row.prescribed_rate = given.rate
+        measure_row(scene, cython.address(scene.closures[r]), t)
+
+
+def measure_row(scene: cython.pointer[Scene], row: cython.pointer[Closure], t: cython.double) -> cython.void:
+    """The same of one row."""
+    row.Q = place_of(scene, row.b, row.q)
+    if row.kind == GUIDE:
+        guide_row(scene, row)
+    elif row.kind == DOT:
+        dot_row(scene, row)
+    else:
+        rod_row(scene, row)
+    if row.program.count:
+        given: Jet = jet(scene.programs, row.program, t)
+        row.gap -= given.value
+        row.rate -= given.rate
+        row.gamma -= given.second
+        row.prescribed_rate = given.rate
 
 
 def guide_row(scene: cython.pointer[Scene], row: cython.pointer[Closure]) -> cython.void:

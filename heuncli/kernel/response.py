@@ -17,7 +17,7 @@ if not cython.compiled:
     from math import fabs, sqrt
 
     from heuncli.kernel.algebra import Quaternion, Vec3, dot, slightly_turned, turned
-    from heuncli.kernel.closures import count_turns, demanded, measure_rows, push_closures
+    from heuncli.kernel.closures import count_turns, demanded, measure_row, measure_rows, push_closures
     from heuncli.kernel.loads import apply_loads
     from heuncli.kernel.orthogonal import factor_closures, solve_closures
     from heuncli.kernel.scene import Body, Closure, Freedom, Lent, Scene
@@ -41,9 +41,11 @@ def configure(scene: cython.pointer[Scene], t: cython.double) -> cython.int:
 
     -1 for lost closures.
     """
+    i: cython.Py_ssize_t
     idle: cython.int = factor_tree(scene)
     if scene.selected_count:
-        measure_rows(scene, t)
+        for i in range(scene.selected_count):
+            measure_row(scene, cython.address(scene.closures[scene.selected[i]]), t)
         scene.pivot = factor_closures(scene)
         if scene.pivot < scene.pivot_of_step:
             scene.pivot_of_step = scene.pivot
@@ -76,13 +78,13 @@ def respond(scene: cython.pointer[Scene], inertial: cython.bint) -> cython.void:
 
 def answer_loads(scene: cython.pointer[Scene], inertial: cython.bint, apart: cython.bint) -> cython.void:
     """The same for given loads of what is lent; apart: without the accelerations if no freedom accelerated."""
-    r: cython.Py_ssize_t
+    i: cython.Py_ssize_t
     if apart:
         put_all_loads(scene)
     else:
         put_loads(scene, inertial)
-    for r in range(scene.closure_count):
-        row: cython.pointer[Closure] = cython.address(scene.closures[r])
+    for i in range(scene.selected_count):
+        row: cython.pointer[Closure] = cython.address(scene.closures[scene.selected[i]])
         row.demand = demanded(scene, row) if apart else 0.0
     answer(scene, inertial and not apart)
 

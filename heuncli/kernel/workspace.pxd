@@ -30,7 +30,7 @@ cdef Py_ssize_t put_load(double *out, Py_ssize_t at, Load *load) noexcept nogil
 cdef Py_ssize_t put_row(double *out, Py_ssize_t at, Closure *row) noexcept nogil
 cdef Py_ssize_t put_answers(Scene *scene, double *out, Py_ssize_t at) noexcept nogil
 cdef int recover_state(Scene *scene, double t, double *y, double *dy, bint afresh) noexcept nogil
-cdef void judge_closures(Scene *scene) noexcept nogil
+cdef void judge_closures(Scene *scene, double t) noexcept nogil
 cdef void recover_states(Scene *scene, Instants *instants) noexcept nogil
 cdef void answer_column(Scene *scene, double *load, double *out, bint inertial) noexcept nogil
 cdef void carry(Scene *scene, double *multipliers, double *out) noexcept nogil

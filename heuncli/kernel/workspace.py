@@ -124,15 +124,16 @@ def recover_state(
     if not scene.driven:
         push_closures(scene)
         balance(scene, True)
-    judge_closures(scene)
+    judge_closures(scene, t)
     return idle
 
 
-def judge_closures(scene: cython.pointer[Scene]) -> cython.void:
+def judge_closures(scene: cython.pointer[Scene], t: cython.double) -> cython.void:
     """How well the answer found meets all rows, those left out too; how independent the others are, and their doubt."""
     r: cython.Py_ssize_t
     residual: cython.double
     scene.residual = 0.0
+    measure_rows(scene, t)
     if scene.selected_count:
         doubt_multipliers(scene)
         scene.pivot_recovered = order_all(scene, 0.0)
