@@ -20,6 +20,8 @@ from heuncli.study.solve import Study
 from tests.shared.parallelogram import parallelogram
 from tests.shared.scenes import near, study
 
+pytestmark = pytest.mark.heavy  # a family at random: with the compiled kernel, which has the same bits
+
 G = 9.81
 FLAT_FOUR_BAR = str(Path(__file__).parents[2] / "specs/flat_four_bar.yaml")
 RATES = [1.0, *np.random.default_rng(71).uniform(0.05, 4.0, 5).tolist()]

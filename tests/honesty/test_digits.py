@@ -17,6 +17,8 @@ from heuncli.study.expect import compare
 from heuncli.study.solve import Study
 from tests.shared.scenes import near, study
 
+pytestmark = pytest.mark.heavy  # a family at random: with the compiled kernel, which has the same bits
+
 SPECS = Path(__file__).parents[2] / "specs"
 
 

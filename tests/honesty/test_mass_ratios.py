@@ -13,6 +13,8 @@ from tests.shared.exact import solution
 from tests.shared.scenes import near, solved, study
 from tests.shared.seeds import spared
 
+pytestmark = pytest.mark.heavy  # a family at random: with the compiled kernel, which has the same bits
+
 SEEDS = 120
 
 

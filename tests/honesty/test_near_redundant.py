@@ -17,6 +17,8 @@ from tests.shared.exact import solution
 from tests.shared.scenes import study
 from tests.shared.seeds import spared
 
+pytestmark = pytest.mark.heavy  # a family at random: with the compiled kernel, which has the same bits
+
 SCENES, HINGES = 240, 60
 IDEAL = 3e-9  # below, hinges may count as in line: RANK, and what a length in the scene may be beside its size
 

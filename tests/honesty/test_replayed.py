@@ -7,6 +7,8 @@ import pytest
 
 from tests.honesty.chaotic import SEEDS, grid, run_of
 
+pytestmark = pytest.mark.heavy  # a family at random: with the compiled kernel, which has the same bits
+
 SOME = [3, 17, 31]
 
 

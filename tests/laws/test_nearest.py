@@ -13,6 +13,8 @@ from heuncli.records import replace
 from tests.shared.drafts import body, in_time, joint, largest_gap, scene
 from tests.shared.misdrawn import MODES, drawn, known
 
+pytestmark = pytest.mark.heavy  # a family at random: with the compiled kernel, which has the same bits
+
 CHUNK = 25
 
 
