@@ -26,6 +26,7 @@ from heuncli.spec.turns import of_matrix
 from heuncli.study.beside import AMPLE, error, reached
 from heuncli.study.expect import compare
 from heuncli.study.warnings import unbalanced
+from tests.convergence.test_pulses import slide
 from tests.shared.scenes import near, solved, study
 
 FACTORS = (0.01, 1 / 3, 3.0, 100.0)
@@ -451,17 +452,7 @@ def stiff(x: float) -> str:
 
 def unseen_pulse(x: float) -> str:
     """A block pushed with 1 N and, for a moment, x more: whether the run is made again for it."""
-    run = study(f"""
-heun: 1
-ground: {{points: {{O: [0, 0, 0]}}}}
-bodies:
-  block: {{mass: 1, center: [0, 0, 0], inertia: [1, 1, 1], points: {{o: [0, 0, 0]}}}}
-joints:
-  guide: {{type: slide, from: ground.O, to: block.o, axis: [1, 0, 0]}}
-forces:
-  push: {{type: torque, joint: guide, value: "1 + {x!r}*exp(-((t - 5.3)/1e-3)**2)"}}
-analysis: {{duration: 10, samples: 3}}
-""")
+    run = study(slide(f"1 + {x!r}*exp(-((t - 5.3)/1e-3)**2)"))
     near(run.results.coordinates["guide"]["speed"][-1], 10.0, 10.0, 2e-4 * x + 1e-9)
     return "made again" if run.history.jumps else "as seen"
 
