@@ -105,19 +105,21 @@ class Integration:
         self.width = integration.record_width(workspace, n)
         self.output = {name: np.zeros(most) for name in ("ends", "settled", "pivots")}
         self.passed = np.zeros(0 if given["following"] else most * self.width)
-        self.samples = np.zeros(len(times) * n)
+        self.count = len(times)
+        self.samples = np.zeros(self.count * n)
         start = {"groups": layout.tables["groups"], "energy_group": layout.energy_group, "weights": layout.weights}
         output = self.output | {"times": times, "samples": self.samples, "passed": self.passed}
         self.loop = integration.Integration(workspace, method.arrays, start | given, output)
 
     def records(self, every: int, offset: int) -> Array:
         """What the steps after those just done start from: of every so many, (count, width); a copy."""
-        return self.passed[: self.loop.done * self.width].reshape(-1, self.width)[offset::every].copy()
+        done = self.loop.done
+        return self.passed[: done * self.width].reshape(done, self.width)[offset::every].copy()
 
     def states(self) -> Array:
         """The states at the asked instants, (n_t, n)."""
         self.loop.fetch()
-        return self.samples.reshape(-1, self.n)
+        return self.samples.reshape(self.count, self.n)
 
 
 class Steps:
