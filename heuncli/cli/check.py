@@ -11,7 +11,8 @@ import numpy as np
 from heuncli.cli.entry import UsageError, report_problems, worst
 from heuncli.cli.output import emit
 from heuncli.cli.requests import Check
-from heuncli.cli.solving import choice, warn
+from heuncli.cli.solving import warn
+from heuncli.cli.target import format_of, keep
 from heuncli.errors import HeunError, Problem
 from heuncli.records import record
 from heuncli.report.export import dump
@@ -24,7 +25,8 @@ from heuncli.study.expect import Case, compare, wanted
 from heuncli.study.solve import Options, solve
 
 FORMATS = ("table", "json")
-ENDINGS = frozenset({".yaml", ".yml"})
+ENDINGS = {".json": "json", ".txt": "table", "": "table"}
+SPECS = frozenset({".yaml", ".yml"})
 SKIPPED = "broken"  # folders of specs that are wrong on purpose
 FAILED = 1
 
@@ -36,6 +38,7 @@ class Checked:
     path: str
     cases: tuple[Case, ...]
     error: HeunError | None = None
+    tables: tuple[str, ...] = ()  # the files of its tables
 
     @property
     def exit_code(self) -> int:
@@ -47,12 +50,16 @@ class Checked:
 
 def main(request: Check) -> int:
     """Run the command; returns the exit code."""
-    form = choice("--format", request.format or "table", FORMATS)
     skipped: list[str] = []
     paths = [path for argument in request.paths for path in _files(argument, skipped)]
     if not paths:
         raise UsageError(Problem("nothing-to-check", f"no *.yaml in {', '.join(request.paths)}"))
+    for path in paths:
+        keep(request.output, [path])
+    form = format_of(request.format, request.output, ENDINGS, FORMATS)
     checked = [_check(path, request.quiet) for path in paths]
+    for one in checked:
+        keep(request.output, [one.path, *one.tables])
     if any(one.error is None for one in checked):  # with errors alone there is no result
         emit(_json(checked) if form == "json" else _table(checked, skipped), request.output)
     return worst([one.exit_code for one in checked])
@@ -69,7 +76,7 @@ def _files(argument: str, skipped: list[str]) -> Iterator[str]:
                 skipped.append(str(entry))
             elif not entry.name.startswith("."):
                 yield from _files(str(entry), skipped)
-        elif entry.suffix in ENDINGS:
+        elif entry.suffix in SPECS:
             yield str(entry)
 
 
@@ -79,7 +86,7 @@ def _check(path: str, quiet: bool) -> Checked:
         study = solve(spec, Options(wanted=wanted(spec.expect) if spec.expect else None))
         cases = tuple(compare(study, item) for item in spec.expect)
         warn(spec, study.results, quiet, f"heun: {path}", study.later)
-        return Checked(path, cases)
+        return Checked(path, cases, tables=spec.files)
     except HeunError as error:
         report_problems(error.problems, label="" if _placed(error) else f"{path}: ")
         return Checked(path, (), error)

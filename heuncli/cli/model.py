@@ -7,19 +7,23 @@ from typing import Any
 
 from heuncli.cli.output import emit
 from heuncli.cli.requests import Model
-from heuncli.cli.solving import choice, overrides, warn
+from heuncli.cli.solving import overrides, warn
+from heuncli.cli.target import format_of, keep
 from heuncli.report.export import dump
 from heuncli.report.note import note
 from heuncli.spec.load import load
 from heuncli.study.solve import describe
 
 FORMATS = ("text", "json")
+ENDINGS = {".json": "json", ".txt": "text", "": "text"}
 
 
 def main(request: Model) -> int:
     """Run the command; returns the exit code."""
-    form = choice("--format", request.format or "text", FORMATS)
+    keep(request.output, [request.spec])
+    form = format_of(request.format, request.output, ENDINGS, FORMATS)
     spec = load(request.spec, overrides=overrides(request.set), checking=False)
+    keep(request.output, [request.spec, *spec.files])
     model: Mapping[str, Any] = describe(spec)
     emit(dump(dict(model)) if form == "json" else note(spec.title, model), request.output)
     warn(spec, None, request.quiet)

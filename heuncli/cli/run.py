@@ -4,7 +4,6 @@ from __future__ import annotations
 
 import time
 from collections.abc import Callable, Sequence
-from pathlib import Path
 from typing import Any
 
 import numpy as np
@@ -13,6 +12,7 @@ from heuncli.cli.entry import UsageError
 from heuncli.cli.output import emit, say
 from heuncli.cli.requests import FORMATS, Run
 from heuncli.cli.solving import choice, instants, overrides, positive, timings, warn
+from heuncli.cli.target import format_of, keep
 from heuncli.errors import Problem
 from heuncli.integration.methods import METHODS
 from heuncli.records import replace
@@ -25,7 +25,7 @@ from heuncli.results_schema import REPORTS
 from heuncli.spec.load import load
 from heuncli.study.solve import Options, Study, solve
 
-ENDINGS = {".json": "json", ".csv": "csv", ".md": "markdown"}
+ENDINGS = {".json": "json", ".csv": "csv", ".md": "markdown", ".txt": "table", "": "table"}
 NOT_SEARCHED = "extremes among the samples only: too many quantities to search between them"
 ROUNDS = 2  # of the search for extremes: a table shows six digits
 TABLES = ("table", "markdown")
@@ -33,14 +33,14 @@ TABLES = ("table", "markdown")
 
 def main(request: Run) -> int:
     """Run the command; returns the exit code."""
-    form = _format(request)
+    keep(request.output, [request.spec])
+    form = format_of(request.format, request.output, ENDINGS, FORMATS)
     asked = None
     if request.measure is not None:
         from heuncli.cli import measure  # with paths and JSON 2 ms that tables do not need
 
         asked = measure.parse(request.measure)
     only = _only(request.only)
-    _keep_spec(request)
     options = Options(
         tolerance=positive("--tolerance", request.tolerance),
         method=_method(request.method),
@@ -49,6 +49,7 @@ def main(request: Run) -> int:
     )
     begun = time.perf_counter()
     spec = load(request.spec, overrides=overrides(request.set), checking=False)
+    keep(request.output, [request.spec, *spec.files])
     options = replace(options, load_seconds=time.perf_counter() - begun)
     wanted = asked.wanted if asked else _wanted(only, spec.report, form)
     study = solve(spec, replace(options, wanted=wanted))
@@ -62,12 +63,6 @@ def main(request: Run) -> int:
     if request.verbose:
         say(f"heun: {timings(study.results.work)}")
     return _strict(study.results, warnings) if request.strict else 0
-
-
-def _format(request: Run) -> str:
-    if request.format is not None:
-        return choice("--format", request.format, FORMATS)
-    return ENDINGS.get(Path(request.output).suffix.lower(), "table") if request.output else "table"
 
 
 def _method(name: str | None) -> str | None:
@@ -84,12 +79,6 @@ def _only(words: str | None) -> frozenset[str] | None:
     if "shares" in names:
         raise UsageError(Problem("not-yet", "--only shares: not in this version yet"))
     return frozenset(choice("--only", name, REPORTS) for name in names)
-
-
-def _keep_spec(request: Run) -> None:
-    """The output must not take the place of the spec."""
-    if request.output and request.spec != "-" and Path(request.output).resolve() == Path(request.spec).resolve():
-        raise UsageError(Problem("bad-option", f"-o {request.output}: that is the spec itself"))
 
 
 def _wanted(only: frozenset[str] | None, report: Sequence[str] | None, form: str) -> frozenset[str]:

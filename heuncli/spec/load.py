@@ -47,6 +47,7 @@ class Loading:
         self.problems = list(source.problems)
         self.warnings: list[Problem] = []
         self.unread: set[str] = set()
+        self.files: list[str] = []
         if type(source.data) is not dict:
             message = f"a spec is a mapping, this is {kind_of(source.data)}"
             raise SpecError(
@@ -91,7 +92,8 @@ class Loading:
         values = {name: value for name, value in parameters.items() if value is not None}
         built = {name: table for name, table in tables.items() if table is not None}
         warnings = tuple(in_order(self.warnings))
-        meaning = Meaning(self.source.file, self.source.sha256, values, built, warnings, self.locations())
+        source, files = self.source, tuple(self.files)
+        meaning = Meaning(source.file, source.sha256, values, built, warnings, self.locations(), files)
         return resolve(draft.document, meaning)
 
     def parameters(self) -> dict[str, float | None]:
@@ -114,6 +116,8 @@ class Loading:
         for name, data in entries.items():
             path = ("tables", name)
             entry = reader.model(path, data, f.Table)
+            if entry is not None and entry.file is not None:
+                self.files.append(str(folder / entry.file))
             tables[name], wrong = build_table(name, entry, scope, folder) if entry is not None else (None, [])
             for item in wrong:
                 finding = item.finding

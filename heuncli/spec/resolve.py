@@ -31,6 +31,7 @@ class Meaning:
     tables: Mapping[str, Table]
     warnings: tuple[Problem, ...]
     locations: Mapping[str, SourceLocation]
+    files: tuple[str, ...]  # of the tables
 
 
 def resolve(document: f.Document, meaning: Meaning) -> m.Spec:
@@ -63,6 +64,7 @@ def resolve(document: f.Document, meaning: Meaning) -> m.Spec:
         expect=tuple(r.expect(i, item) for i, item in document.expect.items()),
         warnings=meaning.warnings,
         locations=meaning.locations,
+        files=meaning.files,
     )  # fmt: skip
 
 

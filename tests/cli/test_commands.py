@@ -52,6 +52,51 @@ def test_output_files_are_named_for_what_they_hold(heun: Heun, folder: Path) -> 
     assert (folder / "out.csv").read_text().startswith("## A bar hangs at rest")
 
 
+@pytest.mark.parametrize(("name", "form"), [
+    ("out.JSON", "json"), ("out.md", "markdown"), ("out.csv", "csv"), ("out.txt", "table"), ("out", "table"),
+    (".json", "json"), ("a.b.json", "json"),
+])  # fmt: skip
+def test_the_ending_names_the_format(heun: Heun, folder: Path, name: str, form: str) -> None:
+    assert heun("run", "hanging.yaml", "-o", name, "--only", "joints").returncode == 0
+    written = (folder / name).read_text()
+    starts = {"json": "{", "markdown": "## ", "csv": "time,kind", "table": "heun "}
+    assert written.startswith(starts[form])
+
+
+@pytest.mark.parametrize("name", ["r.xlsx", "r.yaml", "r.csv.gz", "r.", "r.v2"])
+@pytest.mark.parametrize("command", ["run", "model", "check"])
+def test_an_ending_that_names_no_format_is_refused(heun: Heun, folder: Path, command: str, name: str) -> None:
+    done = heun(command, "hanging.yaml", "-o", name)
+    assert (done.returncode, done.stdout, (folder / name).exists()) == (2, "", False)
+    assert f"-o {name}: no format is known by the ending .{name.rpartition('.')[2]} [bad-option]" in done.stderr
+    assert ".json (json)" in done.stderr and "with --format" in done.stderr
+    assert heun(command, "hanging.yaml", "-o", name, "--format", "json").returncode == 0
+    json.loads((folder / name).read_text())
+
+
+@pytest.mark.parametrize(("name", "told"), [
+    ("", "expected the name of a file"), (".", "this is a folder"), ("no/r.json", "there is no folder no"),
+])  # fmt: skip
+def test_no_room_is_told_before_the_work(heun: Heun, name: str, told: str) -> None:
+    done = heun("run", "long.yaml", "-o", name)
+    assert (done.returncode, done.stdout) == (5 if name else 2, "")
+    assert told in done.stderr
+
+
+def test_what_the_results_are_made_from_stays(heun: Heun, folder: Path) -> None:
+    """The spec of any command, and the table beside it that bears its name."""
+    table = "tables: {g: {file: hanging.csv, x: 1, y: 2}}\n"
+    (folder / "hanging.yaml").write_text(HANGING + table)
+    (folder / "hanging.csv").write_text("x,y\n0,0\n1,1\n")
+    for command in ("run", "model", "check"):
+        for name, words in (("hanging.yaml", "the spec itself"), ("hanging.csv", "a table of the spec")):
+            done = heun(command, "hanging.yaml", "-o", name, "--format", "json")
+            assert (done.returncode, done.stdout) == (2, "")
+            assert words in done.stderr
+    assert (folder / "hanging.csv").read_text().startswith("x,y")
+    assert (folder / "hanging.yaml").read_text().startswith("heun")
+
+
 def test_no_model_is_reduced_yet(heun: Heun) -> None:
     """--no-reduce asks for what every run does."""
     full, plain = (heun("run", "swinging.yaml", *words) for words in (("--no-reduce",), ()))

@@ -1,0 +1,55 @@
+"""`-o FILE`: the format its name asks for, and the files it must not take the place of. Impure: looks at the files."""
+
+from __future__ import annotations
+
+from collections.abc import Mapping, Sequence
+from pathlib import Path
+
+from heuncli.cli.entry import UsageError
+from heuncli.cli.solving import choice
+from heuncli.errors import OutputError, Problem
+
+STDOUT = "-"
+
+
+def format_of(asked: str | None, output: str | None, endings: Mapping[str, str], formats: Sequence[str]) -> str:
+    """The format asked for, else what the file's name ends in, else the first; endings: formats by ending.
+
+    An ending that means none of them is refused: a table in a file that is named a spreadsheet helps nobody.
+    """
+    if output is not None and output != STDOUT:
+        require_room(output)
+    if asked is not None:
+        return choice("--format", asked, formats)
+    if output is None or output == STDOUT:
+        return formats[0]
+    name = Path(output).name
+    ending = name[name.rfind(".") :].lower() if "." in name else ""
+    if ending not in endings:
+        known = ", ".join(f"{end} ({form})" for end, form in endings.items() if end)
+        hint = f"known endings: {known}; with --format {'|'.join(formats)} any name will do"
+        raise UsageError(Problem("bad-option", f"-o {output}: no format is known by the ending {ending}", hint=hint))
+    return endings[ending]
+
+
+def require_room(output: str) -> None:
+    """Say before the work what would keep a file from being written after it."""
+    if not output:
+        raise UsageError(Problem("bad-option", "-o: expected the name of a file", hint="such as -o results.json"))
+    path = Path(output)
+    if path.is_dir():
+        hint = "name a file in it"
+        raise OutputError(Problem("output-failed", f"{output}: this is a folder", hint=hint))
+    if not path.parent.is_dir():
+        hint = "make it first, or name another place"
+        raise OutputError(Problem("output-failed", f"{output}: there is no folder {path.parent}", hint=hint))
+
+
+def keep(output: str | None, read: Sequence[str]) -> None:
+    """The output must not take the place of what the results are made from: the spec, and the files of its tables."""
+    if output is None or output == STDOUT:
+        return
+    for number, file in enumerate(read):
+        if file != STDOUT and Path(output).resolve() == Path(file).resolve():
+            what = "a table of the spec" if number else "the spec itself"
+            raise UsageError(Problem("bad-option", f"-o {output}: that is {what}", hint="name another file"))
