@@ -137,13 +137,11 @@ def parse(file: str, text: str, sha256: str) -> Source:
         for event in event_stream(text):
             builder.take(event)
     except yaml.MarkedYAMLError as error:
-        mark = error.problem_mark or error.context_mark
-        line, column = (mark.line + 1, mark.column + 1) if mark else (1, 1)
-        what = error.problem or str(error)
-        opened = error.context_mark if "flow" in (error.context or "") else None
-        hint = f"look at the bracket opened in line {opened.line + 1}" if opened else yaml_hint(text, line, what)
-        problem = Problem("not-yaml", f"not YAML: {what}", SourceLocation(file, line, column), hint)
-        raise SpecError(*builder.problems, problem) from None
+        problems = not_yaml(file, text, error)
+        first = min(p.location.line for p in problems if p.location)
+        # in that line words are taken for keys that are none
+        before = [p for p in builder.problems if p.location and p.location.line < first]
+        raise SpecError(*before, *problems) from None
     if builder.documents == 0 or builder.root is None:
         hint = f"write the scene into it; the smallest is: {SMALLEST}"
         raise SpecError(*builder.problems, Problem("empty", "the file is empty", SourceLocation(file, 1, 1), hint))
@@ -163,6 +161,21 @@ def event_stream(text: str) -> Iterator[Any]:
         loader.dispose()
 
 
+def not_yaml(file: str, text: str, error: yaml.MarkedYAMLError) -> list[Problem]:
+    """What keeps a text from being YAML: brackets and quotes without their match, else what the parser says."""
+    from heuncli.spec.brackets import mismatches  # only on the way to an error
+
+    mark = error.problem_mark or error.context_mark
+    line, column = (mark.line + 1, mark.column + 1) if mark else (1, 1)
+    # what is opened after the place where the parser stopped was not its reason
+    stopped = sum(len(shown) + 1 for shown in text.split("\n")[: line - 1]) + column - 1
+    if found := mismatches(text, stopped):
+        at = [SourceLocation(file, *position(text, one.at)) for one in found]
+        return [Problem("not-yaml", f"not YAML: {one.message}", at[k], one.hint) for k, one in enumerate(found)]
+    what = error.problem or str(error)
+    return [Problem("not-yaml", f"not YAML: {what}", SourceLocation(file, line, column), yaml_hint(text, line, what))]
+
+
 def yaml_hint(text: str, line: int, what: str) -> str | None:
     """What probably went wrong, for the usual accidents."""
     lines = text.split("\n")
@@ -173,6 +186,16 @@ def yaml_hint(text: str, line: int, what: str) -> str | None:
         return "write a text that contains ': ' in quotes, or look at the indentation"
     if "could not find expected ':'" in what:
         return "a key needs a colon and a space after it"
+    if "cannot start any token" in what:
+        return "a text that starts with % or @ or a backquote is written in quotes"
+    if "unknown escape" in what:
+        return "a backslash within double quotes is written twice, or the text stands in single quotes"
+    if "did not find expected key" in what:
+        return "look at the indentation: the keys of one mapping begin in one column"
+    if "expected ',' or" in what:
+        return "look for a comma that is missing before this place"
+    if "expected node content" in what:
+        return "look for a comma or a colon too many before this place"
     if "alphabetic or numeric" in what or "alias" in what or "anchor" in what:
         return "a text that starts with * or & is written in quotes"
     return None

@@ -74,11 +74,11 @@ def test_everything_has_its_place() -> None:
     ("{a: 1, *x, *x : 2}\n", [("alias", 1, 8), ("alias", 1, 12)]),
     ("a: 1\n---\na: 2\n", [("several-documents", 2, 1)]),
     ("? {a: 1}\n: 2\n", [("not-yaml", 1, 3)]),
-    ("a: [1, 2\nb: 3\n", [("not-yaml", 2, 2)]),
+    ("a: [1, 2\nb: 3\n", [("not-yaml", 1, 4)]),
     ("\ta: 1\n", [("not-yaml", 1, 1)]),
     ("a: b: c\n", [("not-yaml", 1, 5)]),
     ("a: 1\nb\nc: 2\n", [("not-yaml", 3, 1)]),
-    ("a: 'open\n", [("not-yaml", 2, 1)]),
+    ("a: 'open\n", [("not-yaml", 1, 4)]),
     ("a: @x\n", [("not-yaml", 1, 4)]),
     ("a: \x00\n", [("bad-character", 1, 4)]),
     ("ab: \u2028\n", [("bad-character", 1, 5)]),
@@ -88,7 +88,7 @@ def test_everything_has_its_place() -> None:
     ("a: 1\nb: \ud800\n", [("bad-character", 2, 4)]),
     ("[" * 100_000, [("too-deep", 1, 65)]),
     ("{a: " * 100_000, [("too-deep", 1, 257)]),
-    ("a: &x 1\nb: [", [("alias", 1, 4), ("not-yaml", 3, 1)]),
+    ("a: &x 1\nb: [", [("alias", 1, 4), ("not-yaml", 2, 4)]),
 ])  # fmt: skip
 def test_accidents(text: str, expected: list[tuple[str, int, int]]) -> None:
     assert codes(text) == expected
@@ -108,7 +108,10 @@ def test_hints_for_usual_accidents() -> None:
 
     assert "spaces" in hint("a:\n\tb: 1\n")
     assert "quotes" in hint("title: a: b\n")
-    assert "line 1" in hint("a: [1, 2\nb: 3\n")
+    assert "close it with ']'" in hint("a: [1, 2\nb: 3\n")
+    assert "comma" in hint("a: {b: 1 c: 2}\n") and "comma" in hint("a: [1, , 2]\n")
+    assert "quotes" in hint("a: @b\n") and "backslash" in hint('a: "\\*"\n')
+    assert "indentation" in hint("a:\n  b: 1\n c: 1\n")
     assert "colon" in hint("a: 1\nb\nc: 2\n")
 
 
