@@ -1,8 +1,8 @@
 """Stresses in a section of given properties, from its loads about the centroid.
 
-    sigma = N/A + (M1/I1) y2 - (M2/I2) y1,   tau_T = T/W_T,   tau_Q = |Q|/A
-    mises = sqrt(sigma^2 + 3 (tau_T + tau_Q)^2)
-linear over the section, principal axes e1, e2; tau_Q is the mean shear, added to the torsional one as the safe side.
+    sigma = N/A + (M1/I1) y2 - (M2/I2) y1,   tau_T = T/W_T,   tau_Q = k |Q|/A,   mises^2 = sigma^2 + 3 tau^2
+linear over the section, principal axes e1, e2; k by the section's own shape: tau_Q is the largest that Jourawski's
+Q S/(I b) gives, for a ring across its middle. Where they meet, and what is largest there: section_fields.py.
 """
 
 from __future__ import annotations
@@ -12,15 +12,21 @@ from collections.abc import Callable, Mapping
 
 import numpy as np
 
+from heuncli.kinetostatics import section_fields as fields
 from heuncli.records import record
 from heuncli.results import Array, Block
+
+# Wide-flange beams sheared along the web reach 5.1 (HE 260 A), tubes 2, a diamond 9/8: sections that are given by
+# their moments are beams mostly. A thinner web has more.
+UNKNOWN_SHEAR = 5.5
 
 
 @record
 class SectionModuli:
     """Area [m2], second moments about e1 and e2 [m4], half extents c1 along e1 and c2 along e2 [m], W_T [m3].
 
-    round: whether bending about any axis meets the same extent (circle, tube), else the corners count.
+    shear: the largest shear stress over the mean one; round: whether bending about any axis meets the same extent
+    (circle, tube), else the corners count; largest: of the whole section.
     """
 
     area: float
@@ -29,25 +35,33 @@ class SectionModuli:
     c1: float
     c2: float
     W_T: float
+    shear: float
     round: bool
+    largest: fields.Largest
 
 
 def circle(v: Mapping[str, float]) -> SectionModuli:
     """Solid circle."""
-    return tube({"radius": v["radius"], "inner_radius": 0.0})
+    return ring(v["radius"], 0.0, fields.circle)
 
 
 def tube(v: Mapping[str, float]) -> SectionModuli:
     """Circular ring."""
-    R, r = v["radius"], v["inner_radius"]
+    return ring(v["radius"], v["inner_radius"], fields.tube)
+
+
+def ring(R: float, r: float, largest: fields.Largest) -> SectionModuli:
+    """From a solid circle to a thin tube."""
     I = 0.25 * math.pi * (R**4 - r**4)
-    return SectionModuli(math.pi * (R * R - r * r), I, I, R, R, 2.0 * I / R, True)
+    shear = 4.0 / 3.0 * (R * R + R * r + r * r) / (R * R + r * r)
+    return SectionModuli(math.pi * (R * R - r * r), I, I, R, R, 2.0 * I / R, shear, True, largest)
 
 
 def rectangle(v: Mapping[str, float]) -> SectionModuli:
     """Solid rectangle, width along e1, height along e2; W_T by Saint-Venant's series."""
     b, h = v["width"], v["height"]
-    return SectionModuli(b * h, b * h**3 / 12.0, h * b**3 / 12.0, 0.5 * b, 0.5 * h, torsion_modulus(b, h), False)
+    I1, I2, W_T = b * h**3 / 12.0, h * b**3 / 12.0, torsion_modulus(b, h)
+    return SectionModuli(b * h, I1, I2, 0.5 * b, 0.5 * h, W_T, 1.5, False, fields.rectangle(b, h))
 
 
 FIFTH = 1.0045237627951382  # sum of 1/n^5 over odd n, 31/32 zeta(5): the rest of the series converges exponentially
@@ -67,8 +81,16 @@ def torsion_modulus(b: float, h: float) -> float:
 
 
 def general(v: Mapping[str, float]) -> SectionModuli:
-    """Properties as given; the torsional stress at the farther of the two extents."""
-    return SectionModuli(v["area"], v["I1"], v["I2"], v["c1"], v["c2"], v["J"] / max(v["c1"], v["c2"]), False)
+    """Properties as given; the torsional stress as the thickest shape has it that fits.
+
+    A convex section's is at most 2 rho T/J, rho the radius of the largest circle in it (Payne's bound of the stress
+    function's slope), which is at most min(c1, c2); an open profile's is t T/J with walls of t < 2 min(c1, c2).
+    """
+    reach = max(v["c1"], v["c2"], 2.0 * min(v["c1"], v["c2"]))
+    shear = v.get("shear_factor", UNKNOWN_SHEAR)
+    return SectionModuli(
+        v["area"], v["I1"], v["I2"], v["c1"], v["c2"], v["J"] / reach, shear, False, fields.unknown
+    )  # fmt: skip
 
 
 MODULI: dict[str, Callable[[Mapping[str, float]], SectionModuli]] = {
@@ -77,22 +99,23 @@ MODULI: dict[str, Callable[[Mapping[str, float]], SectionModuli]] = {
 
 
 def stresses(moduli: SectionModuli, loads: Mapping[str, Array], strength: float | None) -> Block:
-    """Extreme normal, torsional and mean shear stress, von Mises and utilisation, [Pa], shapes as the loads'.
+    """Extreme normal stresses, largest and mean shear, von Mises and utilisation, [Pa], shapes as the loads'.
 
     loads: N, Q1, Q2, T, M1, M2 about the centroid.
     """
-    axial = loads["N"] / moduli.area
-    if moduli.round:
-        bending = np.hypot(loads["M1"], loads["M2"]) * moduli.c1 / moduli.I1
-    else:
-        bending = np.abs(loads["M1"]) * moduli.c2 / moduli.I1 + np.abs(loads["M2"]) * moduli.c1 / moduli.I2
-    torsion = np.abs(loads["T"]) / moduli.W_T
-    shear = np.hypot(loads["Q1"], loads["Q2"]) / moduli.area
-    largest = np.abs(axial) + bending
+    m = moduli
+    at = fields.Fields(
+        loads["N"] / m.area,
+        (-loads["M2"] * (m.c1 / m.I2), loads["M1"] * (m.c2 / m.I1)),
+        (m.shear * loads["Q1"] / m.area, m.shear * loads["Q2"] / m.area),
+        loads["T"] / m.W_T,
+    )
+    bending = np.hypot(*at.bend) if m.round else np.abs(at.bend[0]) + np.abs(at.bend[1])
+    shear, mises = m.largest(at)
     block: Block = {
-        "normal_max": axial + bending, "normal_min": axial - bending, "shear_torsion": torsion, "shear_mean": shear,
-        "mises": np.sqrt(largest**2 + 3.0 * (torsion + shear) ** 2),
+        "normal_max": at.axial + bending, "normal_min": at.axial - bending, "shear_torsion": np.abs(at.torsion),
+        "shear_mean": np.hypot(loads["Q1"], loads["Q2"]) / m.area, "shear_max": shear, "mises": mises,
     }  # fmt: skip
     if strength is not None:
-        block["utilisation"] = block["mises"] / strength
+        block["utilisation"] = mises / strength
     return block

@@ -14,7 +14,7 @@ from heuncli.report.labels import Labels
 from heuncli.report.numbers import OPEN, OPEN_NOTE
 from heuncli.results import Results
 
-STRESSES = ("normal_max", "normal_min", "shear_torsion", "shear_mean", "mises", "utilisation")
+STRESSES = ("normal_max", "normal_min", "shear_torsion", "shear_mean", "shear_max", "mises", "utilisation")
 POINTS = ("the origin", "the point")
 NO_AXIS = ("none", "none: there is no force, so no axis")
 

@@ -388,6 +388,7 @@ class Properties(Model):
     J: AreaMoment | None = None
     c1: Length | None = None
     c2: Length | None = None
+    shear_factor: Number | None = None
 
 
 class Section(Model):

@@ -45,22 +45,29 @@ sections:
     return {name: float(value[0]) for name, value in cut["stress"].items()}
 
 
-def expected(block: Block, axial: float, bending: float, torsion: float, area: float) -> None:
-    """All parts of the block, with mean shear |Q|/A, and von Mises of the largest normal with both shears added."""
+def expected(block: Block, axial: float, bending: float, torsion: float, area: float, factor: float) -> None:
+    """The parts of the block, by W's and areas; the shear force's largest stress is `factor` times the mean.
+
+    von Mises is no less than any point's that is plain: the extreme fibre's, and where shear and torsion meet.
+    """
     shear = math.hypot(F[1], F[2]) / area
     near(block["normal_max"], axial + bending, abs(axial) + bending, 1e-13)
     near(block["normal_min"], axial - bending, abs(axial) + bending, 1e-13)
     near(block["shear_torsion"], torsion, torsion, 1e-13)
     near(block["shear_mean"], shear, shear, 1e-13)
-    mises = math.sqrt((abs(axial) + bending) ** 2 + 3 * (torsion + shear) ** 2)
-    near(block["mises"], mises, mises, 1e-13)
+    assert torsion < block["shear_max"] <= torsion + factor * shear * (1 + 1e-13)
+    most = math.sqrt((abs(axial) + bending) ** 2 + 3 * block["shear_max"] ** 2)
+    least = max(abs(axial) + bending, math.sqrt(3) * block["shear_max"])
+    assert least * 0.999 < block["mises"] <= most * (1 + 1e-13)
 
 
 def test_circle() -> None:
     """W = π R³/4 in bending, π R³/2 in torsion, whatever the direction of bending."""
     R = 0.02
     bending, torsion = math.hypot(M[1], M[2]) / (math.pi * R**3 / 4), abs(M[0]) / (math.pi * R**3 / 2)
-    expected(stress("{circle: {radius: 0.02}}"), F[0] / AREA["circle"], bending, torsion, AREA["circle"])
+    found = stress("{circle: {radius: 0.02}}")
+    expected(found, F[0] / AREA["circle"], bending, torsion, AREA["circle"], 4 / 3)
+    near(found["shear_max"], torsion + 4 / 3 * found["shear_mean"], torsion, 1e-13)
 
 
 def test_tube() -> None:
@@ -68,7 +75,9 @@ def test_tube() -> None:
     R, r = 0.02, 0.015
     W = math.pi * (R**4 - r**4) / (4 * R)
     found = stress("{tube: {radius: 0.02, inner_radius: 0.015}}")
-    expected(found, F[0] / AREA["tube"], math.hypot(M[1], M[2]) / W, abs(M[0]) / (2 * W), AREA["tube"])
+    expected(found, F[0] / AREA["tube"], math.hypot(M[1], M[2]) / W, abs(M[0]) / (2 * W), AREA["tube"], 2.0)
+    thick = 4 / 3 * (R * R + R * r + r * r) / (R * R + r * r)  # Q S/(I b) across the middle
+    near(found["shear_max"], abs(M[0]) / (2 * W) + thick * found["shear_mean"], found["shear_max"], 1e-13)
 
 
 # Largest shear stress T/(k a² b) of a rectangle b ≥ a (Timoshenko & Goodier, Theory of Elasticity, table of § 109)
@@ -101,16 +110,74 @@ def test_rectangle() -> None:
     b, h = 0.03, 0.06
     found = stress("{rectangle: {width: 30 mm, height: 60 mm}}")
     bending = abs(M[1]) / (b * h**2 / 6) + abs(M[2]) / (h * b**2 / 6)
-    expected(found, F[0] / (b * h), bending, found["shear_torsion"], b * h)
+    expected(found, F[0] / (b * h), bending, found["shear_torsion"], b * h, 1.5)
     assert found["shear_torsion"] == pytest.approx(abs(M[0]) / (0.246 * b**2 * h), rel=3e-3)
 
 
 def test_given_moments() -> None:
-    """Any section by its area, moments, torsion constant and extents."""
+    """Any section by its area, moments, torsion constant and extents: as if all met in one place."""
     text = "{area: 2e-3, I1: 4e-7, I2: 3e-7, J: 1e-7, c1: 0.02, c2: 0.05}"
-    found = stress(text)
     bending = abs(M[1]) * 0.05 / 4e-7 + abs(M[2]) * 0.02 / 3e-7
-    expected(found, F[0] / 2e-3, bending, abs(M[0]) * 0.05 / 1e-7, 2e-3)
+    torsion = abs(M[0]) * 0.05 / 1e-7
+    for properties, factor in ((text, 5.5), (text.replace("}", ", shear_factor: 1.6}"), 1.6)):
+        found = stress(properties)
+        expected(found, F[0] / 2e-3, bending, torsion, 2e-3, factor)
+        shear = torsion + factor * found["shear_mean"]
+        near(found["shear_max"], shear, shear, 1e-13)
+        mises = math.hypot(F[0] / 2e-3 + bending, math.sqrt(3) * shear)
+        near(found["mises"], mises, mises, 1e-13)
+
+
+def as_numbers(area: float, I1: float, I2: float, J: float, c1: float, c2: float) -> str:
+    return f"{{area: {area}, I1: {I1}, I2: {I2}, J: {J}, c1: {c1}, c2: {c2}}}"
+
+
+def test_given_moments_are_no_less_than_the_shape_that_has_them() -> None:
+    """A square's torsion is 1.35 T c/J, a thin rectangle's T b/J; a circle's, a tube's shear 4/3 and 2."""
+    b, a, R, r = 0.02, 0.2, 0.02, 0.0199
+    ring, thin = math.pi * (R**4 - r**4) / 4, b**3 * a / 3 * (1 - 0.63 * b / a)
+    shapes = {
+        "{rectangle: {width: 0.02, height: 0.02}}": as_numbers(
+            b * b, b**4 / 12, b**4 / 12, 0.1406 * b**4, b / 2, b / 2
+        ),
+        "{rectangle: {width: 0.2, height: 0.02}}": as_numbers(a * b, a * b**3 / 12, b * a**3 / 12, thin, a / 2, b / 2),
+        "{tube: {radius: 0.02, inner_radius: 0.0199}}": as_numbers(
+            math.pi * (R * R - r * r), ring, ring, 2 * ring, R, R
+        ),
+    }
+    for shape, numbers in shapes.items():
+        known, given = stress(shape), stress(numbers)
+        for name in ("normal_max", "shear_torsion", "shear_max", "mises"):
+            assert given[name] > known[name] * (1 - 1e-3), (shape, name)
+
+
+# shear force alone, across a bar's middle; tension and torsion away: textbooks' tau_max, and sqrt(3) of it
+SHEAR_ALONE = {
+    "{circle: {radius: 0.02}}": 4 / 3 / (math.pi * 0.02**2),
+    "{tube: {radius: 0.02, inner_radius: 0.01999}}": 2 / (math.pi * (0.02**2 - 0.01999**2)),
+    "{rectangle: {width: 0.03, height: 0.06}}": 1.5 / (0.03 * 0.06),
+}
+
+
+@pytest.mark.parametrize("shape", SHEAR_ALONE)
+def test_shear_alone(shape: str) -> None:
+    """The couple at the tip takes the bending away in the cut."""
+    force = np.array([0.0, 3000.0, 4000.0])
+    found = stress(shape, force, -np.cross([LEVER, 0.0, 0.0], force))
+    tau = 5000.0 * SHEAR_ALONE[shape]
+    near(found["shear_max"], tau, tau, 1e-6)
+    near(found["mises"], math.sqrt(3) * tau, tau, 1e-6)
+    near(found["normal_max"], 0.0, tau, 1e-9)
+
+
+def test_bending_by_a_shear_force() -> None:
+    """Of a circle under Q and M = Q l: the extreme fibre's, or the middle's where the lever is short."""
+    for lever in (0.001, 0.01, 0.0115, 0.012, 0.1):  # 4/3 sqrt(3) Q/A = 4 Q l/(A R): l = R/sqrt(3) = 11.547 mm
+        force = np.array([0.0, 0.0, 1000.0])
+        found = stress("{circle: {radius: 0.02}}", force, np.cross([lever - LEVER, 0.0, 0.0], force))
+        mean = 1000.0 / AREA["circle"]
+        exact = mean * max(4 / 3 * math.sqrt(3), 4 * lever / 0.02)
+        near(found["mises"], exact, exact, 1e-12)
 
 
 def test_push_and_pull() -> None:

@@ -122,9 +122,22 @@ def properties_form(draft: DraftDocument) -> Iterator[Violation]:
         elif numbers and len(numbers) < len(GENERAL):
             missing = ", ".join(key for key in GENERAL if key not in numbers)
             yield Violation((*path, "properties"), f"properties without {missing}", f"all of {', '.join(GENERAL)}")
+        yield from shear_factor(properties, (*path, "properties", "shear_factor"))
         tube = properties.tube
         if tube is not None and tube.inner_radius >= tube.radius:
             yield Violation(
                 (*path, "properties", "tube"),
                 f"inner_radius {tube.inner_radius:g} is not less than radius {tube.radius:g}",
             )
+
+
+def shear_factor(properties: f.Properties, path: tuple[str, ...]) -> Iterator[Violation]:
+    """The largest shear stress over the mean: of a section given by numbers, and no less than 1."""
+    factor = properties.shear_factor
+    if factor is None:
+        return
+    if properties.area is None:
+        hint = f"it goes with {', '.join(GENERAL)}"
+        yield Violation(path, "the shape itself says how its shear stresses are spread", hint, key=True)
+    elif factor < 1.0:
+        yield Violation(path, f"the largest shear stress over the mean is 1 at least, not {factor:g}")
