@@ -17,15 +17,21 @@ OP = expressions.OPERATIONS
 MOST_NODES = 500
 BEYOND = "no division by 0, no root or logarithm of what is negative, nothing beyond 1e308"
 COMPARISONS = {"<": "lt", "<=": "le", ">": "gt", ">=": "ge", "==": "eq", "!=": "ne"}
+TRUTHS = frozenset({*COMPARISONS.values(), "step"})
+BRANCHING = frozenset({*TRUTHS, "sign", "abs", "min", "max", "atan2"})
 
 
 @record
 class Part:
-    """The code of a part of an expression, the variables it uses, and its value where it is constant."""
+    """The code of a part of an expression, the variables it uses, and its value where it is constant.
+
+    is_truth: it is 1 or 0, and where it changes a branch changes in its own code.
+    """
 
     code: Code
     uses: frozenset[int]
     constant: float | None = None
+    is_truth: bool = False
 
 
 class Codegen:
@@ -37,6 +43,7 @@ class Codegen:
         self.variables: dict[tuple[str, str], int] = {}
         self.tables: list[Table] = []
         self.switches: list[Switch] = []
+        self.held: list[str] = []
         self.out_of_range: Finding | None = None  # a table at a constant outside its range: an error ...
         self.branches = False  # ... unless it may stand in a branch that is not chosen
 
@@ -50,7 +57,7 @@ class Codegen:
         return Expression(
             source=text, constant=part.constant, uses=tuple(self.variables), time_dependent=0 in part.uses,
             code=part.code, constants=tuple(self.constants), tables=tuple(self.tables),
-            switches=tuple(self.switches),
+            switches=tuple(self.switches), held=tuple(self.held),
         )  # fmt: skip
 
     def time(self) -> Part:
@@ -62,11 +69,19 @@ class Codegen:
         number = self.variables.setdefault((joint, quantity), len(self.variables) + 1)
         return self.counted(Part((OP["var"], number), frozenset({number})))
 
-    def look_up(self, table: Table, argument: Part) -> Part:
+    def held_branch(self, text: str, uses: frozenset[int]) -> Code:
+        """What stands before an operation that branches: its branch is held where it hangs on coordinates."""
+        if uses <= {0}:
+            return ()
+        self.held.append(text)
+        return (OP["hold"], len(self.held) - 1)
+
+    def look_up(self, table: Table, argument: Part, text: str) -> Part:
         """A table's value at the argument."""
         if table not in self.tables:
             self.tables.append(table)
-        code = (*argument.code, OP["table"], self.tables.index(table), table.pieces, table.kind)
+        looked_up = (OP["table"], self.tables.index(table), table.pieces, table.kind)
+        code = (*argument.code, *self.held_branch(text, argument.uses), *looked_up)
         if argument.constant is not None:
             value = self.run(code, table)
             if math.isnan(value) and math.isfinite(argument.constant):
@@ -77,19 +92,20 @@ class Codegen:
             self.switches.append(Switch((*argument.code, OP["knot"], *code[-3:]), None))
         return self.counted(Part(code, argument.uses))
 
-    def chain(self, first: Part, links: list[tuple[str, Part, Part]]) -> Part:
-        """a < b < c as one condition, in which each part is run once; links: comparison, left, right."""
-        if all(part.constant is not None for _, left, right in links for part in (left, right)):
+    def chain(self, first: Part, links: list[tuple[str, Part, Part, str]]) -> Part:
+        """a < b < c as one condition, in which each part is run once; links: comparison, left, right, text."""
+        if all(part.constant is not None for _, left, right, _ in links for part in (left, right)):
             truth = self.number(1.0)
-            for name, left, right in links:
+            for name, left, right, _ in links:
                 truth = self.apply("mul", truth, self.apply(name, left, right))
             return truth
         code, uses = first.code, first.uses
-        for n, (name, left, right) in enumerate(links):
+        for n, (name, left, right, text) in enumerate(links):
             self.switch_of_comparison(name, left, right)
-            code = (*code, *right.code, OP[name], 0 if n == len(links) - 1 else 1)  # 1: the right one is needed again
+            again = 0 if n == len(links) - 1 else 1  # 1: the right one is needed again
+            code = (*code, *right.code, *self.held_branch(text, left.uses | right.uses), OP[name], again)
             uses |= right.uses
-        return self.counted(Part(code + (OP["mul"], 0) * (len(links) - 1), uses))
+        return self.counted(Part(code + (OP["mul"], 0) * (len(links) - 1), uses, is_truth=True))
 
     def number(self, value: float) -> Part:
         self.constants.append(value)
@@ -110,35 +126,41 @@ class Codegen:
         programs = expressions.Expressions(array("i", code), numbers, 0, expressions.stack_depth(code))
         return float(programs.evaluate(0, len(code) // 2, ()))
 
-    def apply(self, name: str, *parts: Part, argument: int = 0) -> Part:
-        """An operation on its operands; carried out at once on numbers."""
+    def apply(self, name: str, *parts: Part, argument: int = 0, text: str = "") -> Part:
+        """An operation on its operands; carried out at once on numbers. text: of one that has branches of its own."""
         code: Code = ()
         uses: frozenset[int] = frozenset()
         for part in parts:
             code += part.code
             uses |= part.uses
-        whole = (*code, OP[name], argument)
         if not uses:
-            return self.number(self.run(whole))
+            return self.number(self.run((*code, OP[name], argument)))
         if uses <= {0}:
             self.switch(name, parts)
-        return self.counted(Part(whole, uses))
+        held = self.held_branch(text, uses) if text and name in BRANCHING else ()
+        return self.counted(Part((*code, *held, OP[name], argument), uses, is_truth=name in TRUTHS))
 
-    def choose(self, condition: Part, then: Part, otherwise: Part) -> Part:
-        """then where the condition is not 0, else otherwise; only the chosen one is run."""
+    def choose(self, condition: Part, then: Part, otherwise: Part, text: str = "") -> Part:
+        """then where the condition is not 0, else otherwise; only the chosen one is run. text: of the condition."""
         self.branches = True
         if condition.constant is not None:
             if math.isnan(condition.constant):
                 return condition
             return then if condition.constant != 0.0 else otherwise
+        chosen = condition.code
+        if not condition.is_truth and not condition.uses <= {0}:
+            self.constants.append(0.0)
+            chosen += (OP["const"], len(self.constants) - 1, *self.held_branch(text, condition.uses), OP["ne"], 0)
         code = (
-            *condition.code, OP["unless"], len(then.code) // 2 + 1, *then.code,
+            *chosen, OP["unless"], len(then.code) // 2 + 1, *then.code,
             OP["jump"], len(otherwise.code) // 2, *otherwise.code,
         )  # fmt: skip
-        return self.counted(Part(code, condition.uses | then.uses | otherwise.uses))
+        is_truth = all(part.is_truth or part.constant in (0.0, 1.0) for part in (then, otherwise))
+        return self.counted(Part(code, condition.uses | then.uses | otherwise.uses, is_truth=is_truth))
 
-    def truth(self, part: Part) -> Part:
-        return self.apply("ne", part, self.number(0.0))
+    def truth(self, part: Part, text: str, name: str = "ne") -> Part:
+        """1 where a part is not 0, else 0; or, with "eq", the other way round."""
+        return self.apply(name, part, self.number(0.0), text="" if part.is_truth else text)
 
     def switch(self, name: str, parts: tuple[Part, ...]) -> None:
         a = parts[0].code

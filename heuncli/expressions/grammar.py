@@ -184,6 +184,11 @@ class _Parser:
             return None
         return f"a decimal is written with a point: {whole}.{part}"
 
+    def written(self, begin: int) -> str:
+        """The text from token number `begin` to the last one taken."""
+        first = self.tokens[begin]
+        return self.text[first[2] - len(first[1]) : self.tokens[self.at - 1][2]]
+
     # the grammar
 
     def expression(self) -> Part:
@@ -193,45 +198,63 @@ class _Parser:
             raise Finding("expression-limit", f"an expression nested more than {DEEPEST} deep")
         part = self.disjunction()
         if self.take("if"):
+            begin = self.at
             condition = self.disjunction()
+            text = self.written(begin)
             self.expect("else", "after 'if'")
-            part = self.codegen.choose(condition, part, self.expression())
+            part = self.codegen.choose(condition, part, self.expression(), text)
         self.nested -= 1
         return part
 
     def disjunction(self) -> Part:
+        begin = self.at
         part = self.conjunction()
+        text = self.written(begin)
         while self.take("or"):
-            part = self.codegen.choose(part, self.codegen.number(1.0), self.codegen.truth(self.conjunction()))
+            one, begin = self.codegen.number(1.0), self.at
+            other = self.conjunction()
+            part = self.codegen.choose(part, one, self.codegen.truth(other, self.written(begin)), text)
         return part
 
     def conjunction(self) -> Part:
+        begin = self.at
         part = self.negation()
+        text = self.written(begin)
         while self.take("and"):
-            part = self.codegen.choose(part, self.codegen.truth(self.negation()), self.codegen.number(0.0))
+            begin = self.at
+            other = self.negation()
+            truth = self.codegen.truth(other, self.written(begin))
+            part = self.codegen.choose(part, truth, self.codegen.number(0.0), text)
         return part
 
     def negation(self) -> Part:
         turns = 0
         while self.take("not"):
             turns += 1
+        begin = self.at
         part = self.comparison()
+        text = self.written(begin)
         for _ in range(min(turns, 2 + turns % 2)):
-            part = self.codegen.apply("eq", part, self.codegen.number(0.0))
+            part = self.codegen.truth(part, text, "eq")
         return part
 
     def comparison(self) -> Part:
         """a, a < b, or a chain a < b < c, in which b is run once."""
+        next_begin = self.at
         first = self.binary(1)
         if self.token not in COMPARISONS:
             return first
-        right, parts = first, []
+        right, links = first, []
         while self.token in COMPARISONS:
-            name = COMPARISONS[self.token]
+            name, begin = COMPARISONS[self.token], next_begin
             self.at += 1
+            next_begin = self.at
             left, right = right, self.binary(1)
-            parts.append((name, left, right))
-        return self.codegen.apply(*parts[0]) if len(parts) == 1 else self.codegen.chain(first, parts)
+            links.append((name, left, right, self.written(begin)))
+        if len(links) > 1:
+            return self.codegen.chain(first, links)
+        name, left, right, text = links[0]
+        return self.codegen.apply(name, left, right, text=text)
 
     def binary(self, level: int) -> Part:
         part = self.unary()
@@ -289,6 +312,7 @@ class _Parser:
         raise self.unexpected()
 
     def call(self, name: str) -> Part:
+        begin = self.at - 2
         if name not in ARITY:
             raise self.unknown(name, ARITY, "function")
         if name == "table":
@@ -306,14 +330,15 @@ class _Parser:
             message = f"{name}() takes {count} argument{'s' if count != '1' else ''}, not {len(parts)}"
             hint = "log is the natural logarithm; to the base b: log(x)/log(b)" if name == "log" else decimal
             raise Finding("function-arguments", message, hint)
-        part = self.codegen.apply(name, *parts[:2])
+        text = self.written(begin)
+        part = self.codegen.apply(name, *parts[:2], text=text)
         for other in parts[2:]:
-            part = self.codegen.apply(name, part, other)
+            part = self.codegen.apply(name, part, other, text=text)
         return part
 
     def table(self) -> Part:
         """table(name, x), the name of an entry of `tables:`."""
-        name = self.token if self.kind == "name" else ""
+        begin, name = self.at - 2, self.token if self.kind == "name" else ""
         self.at += 1
         if not name or not self.take(","):
             raise Finding("function-arguments", "table() takes a table's name and a value: table(gas, shaft.angle)")
@@ -327,7 +352,7 @@ class _Parser:
         table = self.scope.tables[name]
         if table is None:
             raise Follows
-        return self.codegen.look_up(table, argument)
+        return self.codegen.look_up(table, argument, self.written(begin))
 
     def coordinate(self, joint: str) -> Part:
         """joint.quantity, of a joint of one freedom."""

@@ -16,7 +16,7 @@ from heuncli.kernel.choose import expressions
 from heuncli.records import record, replace
 
 OPS = expressions.OPERATIONS
-CONST, VAR, TABLE, KNOT = OPS["const"], OPS["var"], OPS["table"], OPS["knot"]
+CONST, VAR, TABLE, KNOT, HOLD = OPS["const"], OPS["var"], OPS["table"], OPS["knot"], OPS["hold"]
 
 TIME = "t"
 Variable = str | tuple[str, str]  # the time, or (joint, quantity)
@@ -66,6 +66,7 @@ class Expression:
 
     constant is its value when it depends on neither. uses lists the coordinates, as (joint, quantity) with quantity one
     of angle, rate, travel, speed. code refers to constants, tables, and to variables: 0 is t, 1 + i is uses[i].
+    held says for each branch in coordinates, by the number of its HOLD instruction, what it is a branch of.
     """
 
     source: str
@@ -77,6 +78,7 @@ class Expression:
     constants: tuple[float, ...] = ()
     tables: tuple[Table, ...] = ()
     switches: tuple[Switch, ...] = ()
+    held: tuple[str, ...] = ()
     dimension: tuple[int, int, int] | None = None  # where it was written with a unit
 
     @classmethod
@@ -118,7 +120,8 @@ class Expression:
 class Pack:
     """Programs side by side: code (int pairs), constants and tables, variables, and the depth of the deepest.
 
-    `variables[0]` is "t", the others are (joint, quantity) in the order in which the kernel takes them.
+    `variables[0]` is "t", the others are (joint, quantity) in the order in which the kernel takes them. `branches` are
+    the branches in coordinates, in the order in which the kernel holds them: of which expression, and which of its own.
     """
 
     def __init__(self) -> None:
@@ -126,6 +129,7 @@ class Pack:
         self.constants = array("d", [0.0])  # never empty, so that the kernel may take its address
         self.depth = 1
         self.variables: list[Variable] = [TIME]
+        self.branches: list[tuple[Expression, int]] = []
         self._places: dict[Variable, int] = {TIME: 0}
         self._tables: dict[int, tuple[int, Table]] = {}
         self._expressions: expressions.Expressions | None = None
@@ -134,8 +138,15 @@ class Pack:
     def expressions(self) -> expressions.Expressions:
         """The programs as the kernel runs them; made anew only where programs were added since."""
         if self._expressions is None:
-            self._expressions = expressions.Expressions(self.code, self.constants, len(self.variables), self.depth)
+            self._expressions = expressions.Expressions(
+                self.code, self.constants, len(self.variables), self.depth, self.held
+            )
         return self._expressions
+
+    @property
+    def held(self) -> int:
+        """How many branches in coordinates there are."""
+        return len(self.branches)
 
     def add(self, expression: Expression) -> tuple[int, int]:
         """Append a program; gives its first pair and its number of pairs."""
@@ -147,6 +158,8 @@ class Pack:
         self.constants.extend(expression.constants)
         tables = [self._table(table) for table in expression.tables]
         variables = [0, *(self._variable(use) for use in expression.uses)]
+        held = self.held
+        self.branches.extend((expression, k) for k in range(len(expression.held)))
         start = len(self.code) // 2
         self._expressions = None
         is_data = False
@@ -159,6 +172,8 @@ class Pack:
                 argument = variables[argument]
             elif op in (TABLE, KNOT):
                 argument, is_data = tables[argument], True
+            elif op == HOLD:
+                argument += held
             self.code.extend((op, argument))
         self.depth = max(self.depth, expressions.stack_depth(code))
         return start, len(code) // 2

@@ -8,9 +8,13 @@ cdef enum:
     SINH, COSH, TANH, EXP, LOG, SQRT
     TABLE, KNOT, JUMP, UNLESS
     LT, LE, GT, GE, EQ, NE
+    HOLD
 
 cdef enum:
-    REFUSED, HELD, PERIODIC
+    FREE, HELD, TAKEN
+
+cdef enum:
+    REFUSED, EXTENDED, PERIODIC
 
 cdef struct Instruction:
     int op
@@ -38,6 +42,8 @@ cdef struct Programs:
     double *variables
     double *stack
     Jet *jets
+    double *held
+    int holding
 
 cdef double value(Programs *programs, Program program) noexcept nogil
 cdef Jet jet(Programs *programs, Program program, double t) noexcept nogil
@@ -47,3 +53,4 @@ cdef class Expressions:
     cdef tuple memory
     cdef Py_ssize_t instructions
     cdef Py_ssize_t variables
+    cdef Py_ssize_t held

@@ -11,6 +11,20 @@ An instruction takes its operands from the top of a stack and leaves its result 
     JUMP k, UNLESS k   skip k instructions, UNLESS only where the number it takes off the stack is 0: only one of the
                        two branches of a condition is run, so the other may be NaN
     LT ... NE          1 or 0; with the argument 1 the right operand stays above the result, for 0 < t < 1
+    HOLD k             the operation that follows has branches and hangs on coordinates: held[k] is its branch
+
+A branch that changes within a step of the integrator would be a jump or kink in what should be smooth. So it can be
+held: `holding` says what HOLD means.
+
+    FREE     nothing: branches are as the operands say
+    HELD     the operation takes the branch held[k], whatever its operands say, and goes on smoothly beyond its end
+    TAKEN    branches are as the operands say, and are written into held
+
+    branch   LT ... NE: 1, 0;  SIGN: -1, 0, 1;  STEP: 1, 0;  ABS: 1, -1;  MIN, MAX: 1 for the second operand, else 0;
+             ATAN2: 1 for y >= 0, 0 for y < 0 and -0.0;  TABLE: the number of the piece, as KNOT has it
+
+An operand that is no number gives none, held or not. Where a held program has no value, as sqrt(x) if x > 0 else 0
+beyond x = 0, it has that of the branches as they are.
 
 A table is a piecewise cubic, c0 + c1 h + c2 h² + c3 h³ with h from the knot at which the piece begins.
 
@@ -66,8 +80,10 @@ else:
     SINH, COSH, TANH, EXP, LOG, SQRT = range(22, 28)
     TABLE, KNOT, JUMP, UNLESS = range(28, 32)
     LT, LE, GT, GE, EQ, NE = range(32, 38)
+    HOLD = 38
 
-    REFUSED, HELD, PERIODIC = range(3)  # what a table says beyond its ends
+    FREE, HELD, TAKEN = range(3)  # what HOLD means
+    REFUSED, EXTENDED, PERIODIC = range(3)  # what a table says beyond its ends
 
     # C's functions answer everywhere where Python's raise.
     def exp(x: float) -> float:
@@ -111,8 +127,9 @@ OPERATIONS = {
     "hypot": HYPOT, "min": MIN, "max": MAX, "lt": LT, "le": LE, "gt": GT, "ge": GE, "eq": EQ, "ne": NE, "neg": NEG,
     "power": POWER, "abs": ABS, "sign": SIGN, "step": STEP, "sin": SIN, "cos": COS, "tan": TAN, "asin": ASIN,
     "acos": ACOS, "atan": ATAN, "sinh": SINH, "cosh": COSH, "tanh": TANH, "exp": EXP, "log": LOG, "sqrt": SQRT,
-    "table": TABLE, "knot": KNOT, "jump": JUMP, "unless": UNLESS,
+    "table": TABLE, "knot": KNOT, "jump": JUMP, "unless": UNLESS, "hold": HOLD,
 }  # fmt: skip
+HOLDING = {"free": FREE, "held": HELD, "taken": TAKEN}
 
 COMPILED = cython.compiled
 
@@ -152,15 +169,27 @@ def value(programs: cython.pointer[Programs], program: Program) -> cython.double
             if x == 0.0:
                 at += k
             elif x != x:
-                return NAN
+                break
             height -= 1
             x = stack[height]
-        elif k == 1:
-            stack[height - 1] = compare(op, stack[height - 1], x)
-        else:
-            height -= 1
-            x = compare(op, stack[height], x)
-    return x if x - x == 0.0 else NAN
+        elif op <= NE:
+            if k == 1:
+                stack[height - 1] = compare(op, stack[height - 1], x)
+            else:
+                height -= 1
+                x = compare(op, stack[height], x)
+        elif programs.holding == TAKEN:
+            take_branch(programs, k, at, stack[height - 1], x)
+        elif programs.holding == HELD:
+            op = programs.code[at].op
+            held: cython.double = on_branch(programs, at, programs.held[k], stack[height - 1], x)
+            if LT <= op and programs.code[at].argument == 1:
+                stack[height - 1] = held
+            else:
+                height -= takes_two(op)
+                x = held
+            at += 2 if op == TABLE or op == KNOT else 1
+    return x if x - x == 0.0 else without_branches(programs, program)
 
 
 @cython.cfunc
@@ -327,6 +356,103 @@ def length(a: cython.double, b: cython.double) -> cython.double:
     return larger * sqrt(1.0 + ratio * ratio)
 
 
+# Branches
+
+
+@cython.cfunc
+@cython.nogil
+@cython.exceptval(check=False)
+def without_branches(programs: cython.pointer[Programs], program: Program) -> cython.double:
+    """What a program is that has no value as it was run: where branches were held, its value without that."""
+    f: cython.double = NAN
+    if programs.holding == HELD:
+        programs.holding = FREE
+        f = value(programs, program)
+        programs.holding = HELD
+    return f
+
+
+@cython.cfunc
+@cython.inline
+@cython.nogil
+@cython.exceptval(check=False)
+def takes_two(op: cython.int) -> cython.int:
+    """1 for an operation on two numbers, else 0."""
+    return 1 if op <= MAX or op >= LT else 0
+
+
+@cython.cfunc
+@cython.nogil
+@cython.exceptval(check=False)
+def take_branch(
+    programs: cython.pointer[Programs], k: cython.int, at: cython.Py_ssize_t, a: cython.double, b: cython.double
+) -> cython.void:
+    """The branch on which the operation at `at` finds its operands (b alone, if it takes one) becomes held[k]."""
+    op: cython.int = programs.code[at].op
+    met: cython.double
+    if b != b or (takes_two(op) and a != a):
+        return
+    if op >= LT:
+        met = compare(op, a, b)
+    elif op == MIN:
+        met = 1.0 if b < a else 0.0
+    elif op == MAX:
+        met = 1.0 if b > a else 0.0
+    elif op == ATAN2:
+        met = side_of_cut(a)
+    elif op == ABS:
+        met = 1.0 if b >= 0.0 else -1.0
+    elif op == TABLE or op == KNOT:
+        met = piece_counted(programs.constants, table_at(programs, at + 1, programs.code[at].argument), b)
+    else:
+        met = piecewise(op, b, 0)
+    programs.held[k] = met
+
+
+@cython.cfunc
+@cython.nogil
+@cython.exceptval(check=False)
+def on_branch(
+    programs: cython.pointer[Programs], at: cython.Py_ssize_t, branch: cython.double, a: cython.double, b: cython.double
+) -> cython.double:
+    """The operation at `at` on a branch, whether its operands (b alone, if it takes one) are there or beyond."""
+    op: cython.int = programs.code[at].op
+    if b != b or (takes_two(op) and a != a):
+        return NAN
+    if op == ABS:
+        return b if branch > 0.0 else -b
+    elif op == MIN or op == MAX:
+        return b if branch == 1.0 else a
+    elif op == ATAN2:
+        return angle_on(branch, a, b)
+    elif op == TABLE:
+        return of_piece(programs.constants, table_at(programs, at + 1, programs.code[at].argument), branch, b)
+    return branch
+
+
+@cython.cfunc
+@cython.inline
+@cython.nogil
+@cython.exceptval(check=False)
+def angle_on(branch: cython.double, y: cython.double, x: cython.double) -> cython.double:
+    """atan2(y, x), by a turn more or less where the negative x axis was crossed from the side of the branch."""
+    turn: cython.double = 6.283185307179586
+    f: cython.double = atan2(y, x)
+    side: cython.double = side_of_cut(y)
+    if x < 0.0 and side != branch:
+        return f + turn if side == 0.0 else f - turn
+    return f
+
+
+@cython.cfunc
+@cython.inline
+@cython.nogil
+@cython.exceptval(check=False)
+def side_of_cut(y: cython.double) -> cython.double:
+    """1 above the negative x axis and on it, 0 below; -0.0 is below."""
+    return 1.0 if atan2(y, -1.0) > 0.0 else 0.0
+
+
 # Tables
 
 
@@ -375,9 +501,9 @@ def in_range(c: cython.p_double, table: Table, x: cython.double) -> cython.doubl
             x = first if x - last < table.period else NAN
         return x
     if x < first:
-        return first if table.outside == HELD else NAN
+        return first if table.outside == EXTENDED else NAN
     if x > last:
-        return last if table.outside == HELD else NAN
+        return last if table.outside == EXTENDED else NAN
     return x
 
 
@@ -409,12 +535,36 @@ def piece_counted(c: cython.p_double, table: Table, x: cython.double) -> cython.
     n: cython.int = table.pieces
     first: cython.double = c[table.knots]
     if table.outside == PERIODIC:
-        return piece(c, table, in_range(c, table, x)) + n * floor((x - first) / table.period)
+        turns: cython.double = floor((x - first) / table.period)
+        if x - table.period * turns >= c[table.knots + n]:  # by rounding: it is the first point of the next turn
+            turns = turns + 1.0
+        return piece(c, table, in_range(c, table, x)) + n * turns
     if x < first:
         return -1.0
     if x > c[table.knots + n]:
         return float(n)
     return float(piece(c, table, x))
+
+
+@cython.cfunc
+@cython.inline
+@cython.nogil
+@cython.exceptval(check=False)
+def of_piece(c: cython.p_double, table: Table, counted: cython.double, x: cython.double) -> cython.double:
+    """The cubic of a piece, by its counted number, at any x; beyond the ends the value there, or none."""
+    n: cython.int = table.pieces
+    turns: cython.double = floor(counted / n) if table.outside == PERIODIC else 0.0
+    number: cython.double = counted - n * turns
+    if not (-1.0 <= number and number <= n):
+        return NAN
+    if number < 0.0:
+        return of_table(TABLE, c, table, c[table.knots]) if table.outside == EXTENDED else NAN
+    if number >= n:
+        return of_table(TABLE, c, table, c[table.knots + n]) if table.outside == EXTENDED else NAN
+    k: cython.Py_ssize_t = int(number)
+    h: cython.double = x - table.period * turns - c[table.knots + k]
+    i: cython.Py_ssize_t = table.coefficients + 4 * k
+    return ((c[i + 3] * h + c[i + 2]) * h + c[i + 1]) * h + c[i]
 
 
 # Values with their derivatives in time
@@ -455,6 +605,8 @@ def jet(programs: cython.pointer[Programs], program: Program, t: cython.double) 
                 return Jet(NAN, NAN, NAN)
             height -= 1
             x = jets[height]
+        elif op == HOLD:  # what hangs on coordinates has no derivatives here
+            pass
         elif k == 1:
             jets[height - 1] = constant(compare(op, jets[height - 1].value, x.value))
         else:
@@ -697,7 +849,7 @@ def jet_of_table(op: cython.int, c: cython.p_double, table: Table, u: Jet) -> Je
     h: cython.double = inside - c[table.knots + number]
     i: cython.Py_ssize_t = table.coefficients + 4 * number
     f: cython.double = ((c[i + 3] * h + c[i + 2]) * h + c[i + 1]) * h + c[i]
-    if table.outside == HELD and inside != u.value:
+    if table.outside == EXTENDED and inside != u.value:
         return constant(f)
     return chain(u, f, (3.0 * c[i + 3] * h + 2.0 * c[i + 2]) * h + c[i + 1], 6.0 * c[i + 3] * h + 2.0 * c[i + 2])
 
@@ -714,7 +866,7 @@ def stack_depth(code: Sequence[int]) -> int:
             is_data = False
         elif op <= VAR:
             height += 1
-        elif op <= MAX or (op >= LT and argument == 0):
+        elif op <= MAX or (LT <= op <= NE and argument == 0):
             height -= 1
         elif op in (TABLE, KNOT):
             is_data = True
@@ -729,12 +881,13 @@ class Expressions:
     """Programs side by side, with the memory they run in: the door from Python, and what the kernel's scene holds.
 
     code: pairs (operation, argument); constants: what CONST and TABLE point into; variables: their number, t included;
-    depth: the greatest stack_depth of the programs. What is given is copied.
+    depth: the greatest stack_depth of the programs; held: how many branches they hold. What is given is copied.
     """
 
-    def __init__(self, code: array[int], constants: array[float], variables: int, depth: int) -> None:
+    def __init__(self, code: array[int], constants: array[float], variables: int, depth: int, held: int = 0) -> None:
         self.instructions = len(code) // 2
         self.variables = variables
+        self.held = held
         if not cython.compiled:
             self.programs = Programs()
             self.programs.code = [Instruction(*pair) for pair in zip(code[::2], code[1::2], strict=True)]
@@ -742,6 +895,7 @@ class Expressions:
             self.programs.variables = [0.0] * max(variables, 1)
             self.programs.stack = [0.0] * (depth + 8)
             self.programs.jets = [Jet(0.0, 0.0, 0.0)] * (depth + 4)
+            self.programs.held = [0.0] * held
         else:
             self.memory = (
                 array("i", code),
@@ -749,12 +903,15 @@ class Expressions:
                 array("d", bytes(8 * max(variables, 1))),
                 array("d", bytes(8 * (depth + 8))),
                 array("d", bytes(24 * (depth + 4))),
+                array("d", bytes(8 * max(held, 1))),
             )
             self.programs.code = cython.cast(cython.pointer[Instruction], where(self.memory[0]))
             self.programs.constants = cython.cast(cython.p_double, where(self.memory[1]))
             self.programs.variables = cython.cast(cython.p_double, where(self.memory[2]))
             self.programs.stack = cython.cast(cython.p_double, where(self.memory[3]))
             self.programs.jets = cython.cast(cython.pointer[Jet], where(self.memory[4]))
+            self.programs.held = cython.cast(cython.p_double, where(self.memory[5]))
+        self.programs.holding = FREE
 
     def evaluate(self, start: cython.int, count: cython.int, x: Sequence[float]) -> float:
         """Value of one program at the variables x; NaN when not computable."""
@@ -765,6 +922,22 @@ class Expressions:
         for i in range(self.variables):
             self.programs.variables[i] = x[i]
         return value(cython.address(self.programs), Program(start, count))
+
+    def hold(self, holding: cython.int) -> None:
+        """What becomes of branches in coordinates from now on: one of HOLDING."""
+        self.programs.holding = holding
+
+    def branches(self) -> list[float]:
+        """The branches held, by the programs' HOLD instructions."""
+        return [self.programs.held[k] for k in range(self.held)]
+
+    def hold_branches(self, branches: Sequence[float]) -> None:
+        """Other branches to hold, one an HOLD instruction."""
+        k: cython.Py_ssize_t
+        if len(branches) != self.held:
+            raise ValueError(f"{self.held} branches are held, not {len(branches)}")
+        for k in range(self.held):
+            self.programs.held[k] = branches[k]
 
     def derivatives(self, start: cython.int, count: cython.int, t: cython.double) -> tuple[float, float, float]:
         """Value, first and second time derivative of one program in time alone."""

@@ -60,15 +60,17 @@ class Table:
 
 
 class Programs:
-    """Programs side by side, what they point into, and the stacks they run on."""
+    """Programs side by side, what they point into, the stacks they run on, and the branches they hold."""
 
-    __slots__ = ("code", "constants", "jets", "stack", "variables")
+    __slots__ = ("code", "constants", "held", "holding", "jets", "stack", "variables")
 
     code: list[Instruction]
     constants: list[float]
     variables: list[float]
     stack: list[float]
     jets: list[Jet]
+    held: list[float]
+    holding: int
 
 
 class PointMotion:

@@ -237,7 +237,7 @@ def test_any_program_gives_the_same_bits_compiled_and_plain(plain: ModuleType) -
         assert found[0] == found[1], program
         have_value += found[0][0] != "nan"
         seen |= {op for op, _ in program.code if isinstance(op, str)}
-    assert seen == set(expressions.OPERATIONS)
+    assert seen == set(expressions.OPERATIONS) - {"hold"}  # test_held.py
     assert 1500 < have_value < 2900
 
 
