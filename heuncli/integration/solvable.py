@@ -7,6 +7,8 @@ import numpy as np
 from heuncli import tolerances
 from heuncli.errors import Problem, SolveError
 from heuncli.integration.runner import Recovered, Runner
+from heuncli.joint_kinds import JOINTS
+from heuncli.mechanism.model import JointLoad, PairLoad
 from heuncli.results import Array
 from heuncli.tree.prepare import PreparedScene, lacking_inertia
 
@@ -51,6 +53,28 @@ def require_solvable(scene: PreparedScene, recovered: Recovered) -> None:
             )
             hint = "give the body its moment of inertia about that axis, or let the load act on the axis"
             raise SolveError(Problem("no-inertia", message, hint=hint))
+
+
+def require_start(scene: PreparedScene, start: Recovered) -> None:
+    """Raise SolveError where there are no accelerations at the start, or forces along lines that have no length there.
+
+    A spring that is relaxed without length needs no direction: it is as strong there as it is long.
+    """
+    require_solvable(scene, start)
+    problems, at = [], 0
+    for load in scene.mechanism.loads:
+        row = start.loads[0, at]
+        joint = scene.mechanism.joints[load.joint] if isinstance(load, JointLoad) else None
+        at += len(JOINTS[joint.kind].motions) if joint is not None else 1
+        if not isinstance(load, PairLoad) or row["span"] > tolerances.NO_LENGTH * scene.layout.size:
+            continue
+        if load.stiffness * load.length != 0.0 if load.value is None else load.value.constant != 0.0:
+            t = float(start.times[0])
+            message = f"at t = {t:.6g} s the points of forces.{load.name} coincide: its force has no direction"
+            hint = "in a pin or slide use type: torque; else let its points be apart from the start"
+            problems.append(Problem("no-direction", message, hint=hint))
+    if problems:
+        raise SolveError(*problems)
 
 
 def unmet_rows(recovered: Recovered, instant: int) -> Problem:

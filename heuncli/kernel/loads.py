@@ -81,8 +81,10 @@ def outer_load(scene: cython.pointer[Scene], load: cython.pointer[Load], given: 
 def pair_load(scene: cython.pointer[Scene], load: cython.pointer[Load], given: Vec3, v: Vec3) -> cython.double:
     """A spring F = -k (l - l0) - c ldot, or an actuator, along the line between two points; positive pushes apart.
 
-    Gives the power of what has no potential: the actuator's, or the spring's damping.
+    Within one body its length stays and its ends cancel: it moves nothing, but cuts between its points feel it. Gives
+    the power of what has no potential: the actuator's, or the spring's damping.
     """
+    inside: cython.bint = load.a == load.b
     here: PointMotion = point_of(scene, load.a, load.p)
     span: Vec3 = sub(load.at, here.x)
     load.from_at = here.x
@@ -90,6 +92,8 @@ def pair_load(scene: cython.pointer[Scene], load: cython.pointer[Load], given: V
     load.rate = dot(span, sub(v, here.v))
     if load.span > 0.0:
         load.rate = load.rate / load.span
+    if inside:
+        load.rate = 0.0
     lost: cython.double
     if load.kind == SPRING:
         load.value = -load.stiffness * (load.span - load.length) - load.coefficient * load.rate
@@ -101,8 +105,9 @@ def pair_load(scene: cython.pointer[Scene], load: cython.pointer[Load], given: V
     if load.span > 0.0:
         F: cython.double = load.value
         load.force = Vec3(F * span.x / load.span, F * span.y / load.span, F * span.z / load.span)
-    push(scene, load.b, load.at, load.force, load.moment)
-    push(scene, load.a, load.from_at, scaled(-1.0, load.force), load.moment)
+    if not inside:
+        push(scene, load.b, load.at, load.force, load.moment)
+        push(scene, load.a, load.from_at, scaled(-1.0, load.force), load.moment)
     return lost
 
 

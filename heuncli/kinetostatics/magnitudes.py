@@ -50,7 +50,7 @@ def magnitudes(
     for action in actions:
         acting = max(_largest(action.force), _largest(action.moment) / size)
         force = max(force, acting)
-        if action.kind == "load":
+        if action.kind == "load" and (action.from_ is None or action.from_.body != action.to.body):
             pushed = max(
                 pushed, *(acting / mass[end.body] for end, *_ in action.on_bodies() if end.body != GROUND), 0.0
             )

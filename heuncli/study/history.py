@@ -15,7 +15,7 @@ from heuncli.integration.checked import Checked, Runs, checked_run, recovered_at
 from heuncli.integration.pairs import interleaved, moved_start
 from heuncli.integration.runner import Recovered, Runner, check_deadline, discontinuities_of
 from heuncli.integration.singular import singular_poses
-from heuncli.integration.solvable import require_solvable
+from heuncli.integration.solvable import require_start
 from heuncli.integration.unseen import unseen
 from heuncli.records import record
 from heuncli.results import Array, Estimate
@@ -62,10 +62,11 @@ def integrate(setup: Setup, tolerance: float, deadline: float | None) -> History
     if setup.method is None:
         check_deadline(deadline, "before the loads were computed")
         state = runner.recovered(times[:1], start)
+        require_start(setup.scene, state)
         beside = runner.recovered(*interleaved(times[:1], [start, moved_start(setup.scene.layout)[None, :]]))
         seconds = {"integrate": 0.0, "check": 0.0}
         return History(state, tolerance, estimate=of_state(setup, beside), seconds=seconds)
-    require_solvable(setup.scene, runner.recovered(np.zeros(1), start))  # before a long run, not after it
+    require_start(setup.scene, runner.recovered(np.zeros(1), start))  # before a long run, not after it
     jumps = tuple(discontinuities_of(setup.scene.mechanism, 0.0, float(times[-1])))
     runs = Runs(runner, times, jumps, deadline, setup.method)
     checked = checked_run(runs, tolerance, Kinds(setup))

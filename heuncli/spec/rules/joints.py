@@ -11,7 +11,7 @@ from heuncli.joint_kinds import RATES, TYPES, named
 from heuncli.spec import format as f
 from heuncli.spec.fields import End
 from heuncli.spec.rules.registry import DraftDocument, Path_, Violation, rule
-from heuncli.spec.semantics import drive_of, span_of
+from heuncli.spec.semantics import drive_of, point_in, span_of
 
 LOOKED_AT = 1000  # equal parts of the run, at whose ends a driven length is evaluated
 DRIVEN = ("angle", "travel", "length")
@@ -40,18 +40,27 @@ def zero_direction(draft: DraftDocument) -> Iterator[Violation]:
 
 @rule("same-body")
 def same_body(draft: DraftDocument) -> Iterator[Violation]:
-    """A joint, spring or actuator stands between two bodies."""
-    pairs = [("joints", name, joint.from_, joint.to) for name, joint in draft.document.joints.items()]
-    pairs += [
-        ("forces", name, load.from_, load.to)
-        for name, load in draft.document.forces.items()
-        if isinstance(load, f.Actuator | f.Spring)
-    ]
-    for block, name, start, end in pairs:
-        if start.body == end.body:
-            yield Violation(
-                (block, name, "to"), f"from and to are both on {start.body}", "what stands inside one body does nothing"
-            )
+    """A joint stands between two bodies."""
+    for name, joint in draft.document.joints.items():
+        if joint.from_.body == joint.to.body:
+            message, hint = f"from and to are both on {joint.to.body}", "what moves as one needs no joint within it"
+            yield Violation(("joints", name, "to"), message, hint)
+
+
+@rule("same-point")
+def same_point(draft: DraftDocument) -> Iterator[Violation]:
+    """A spring or actuator stands between two points, and not within the ground.
+
+    Within one body it moves nothing, but the cuts between its points carry it.
+    """
+    for name, load in draft.document.forces.items():
+        if not isinstance(load, f.Actuator | f.Spring) or load.from_.body != load.to.body:
+            continue
+        path, body = ("forces", name, "to"), draft.document.bodies.get(load.to.body)
+        if load.to.body == "ground":
+            yield Violation(path, "from and to are both on ground", "what stands within the ground moves nothing")
+        elif body is not None and (at := point_in(body, load.to.at)) and at == point_in(body, load.from_.at):
+            yield Violation(path, "from and to are the same point", "its force has no direction")
 
 
 def end_key(end: End) -> tuple[str, object]:
