@@ -103,7 +103,9 @@ UNKNOWN = 1e6  # an error relative to what it is an error of, where that is with
 WRITTEN = 1e-12  # of the largest: digits of what was solved exactly, all that some thousand roundings leave
 LEAST_RATE = 1e-5  # of a radian, or of the size, in the time asked for: slower ones are judged as if that fast
 UNSEEN = 1e-4  # of a load's largest: what it does beyond what the stages of a step saw, before that step is redone
-BOUNDLESS = 1e3  # a value that grows so many times over within 2**-20 of the run is on its way to infinity
+BOUNDLESS = 1e3  # a value that grows so many times over within 2**-20 of the run is on its way to infinity; where steps
+# become too many, one that has grown so in the last three quarters of the time is what they follow
+HOPELESS = 1.0  # times the most steps, over the root of their part done: what may be left of the steps projected
 QUADRATURE = 1e-14  # of the scale: whole against halves; planes that graze thin walls then err by as much
 
 # -- what is typed in a spec

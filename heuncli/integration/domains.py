@@ -59,6 +59,18 @@ def without_value(mechanism: Mechanism, t: float, length: float, coordinates: Mo
     ]
 
 
+def grown(mechanism: Mechanism, now: tuple[float, Moving], before: tuple[float, Moving]) -> list[Problem]:
+    """The expressions that have grown out of all proportion; now, before: instants, and the coordinates there."""
+    problems = []
+    for expression, _ in _in_time(mechanism):
+        values = _values(expression, 0.0, now[1])
+        size = abs(expression.value(now[0], values))
+        if size > tolerances.BOUNDLESS * abs(expression.value(before[0], _values(expression, 0.0, before[1]))) > 0.0:
+            problem = _problem(expression, now[0], values, "")
+            problems.append(problem._replace(message=f"{problem.message}, where it is {size:.3g}"))
+    return problems
+
+
 def _in_time(mechanism: Mechanism) -> Iterator[tuple[Expression, bool]]:
     """Every expression that is not constant, and whether it drives a joint."""
     driven = {id(joint.drive.value) for joint in mechanism.joints if joint.drive is not None}

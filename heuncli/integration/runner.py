@@ -17,6 +17,7 @@ from heuncli import tolerances
 from heuncli.errors import LimitError, Problem, SolveError
 from heuncli.expressions.programs import discontinuities, one_sided_limits
 from heuncli.integration.methods import DOP853, Method
+from heuncli.integration.pace import FIRST_LOOK, hopeless
 from heuncli.kernel.choose import integration
 from heuncli.kernel.choose import steps as kernel
 from heuncli.mechanism.model import Mechanism
@@ -131,6 +132,7 @@ class Steps:
         # number of a step, and what it starts from; the first is a segment's, of which the state alone counts
         self.kept: list[tuple[int, Array]] = [(0, np.concatenate([start, np.zeros(width - len(start))]))]
         self.every, self.room = 1, max(2, KEPT // max(width, 1))
+        self.look = FIRST_LOOK
 
     def add(self, run: Integration) -> None:
         """Add the steps of the last call; while there are too many records, every second of them is dropped."""
@@ -142,6 +144,18 @@ class Steps:
         while len(self.kept) > self.room:
             self.every *= 2
             self.kept = [(k, record.copy()) for k, record in self.kept if k % self.every == 0]
+
+    def doubled(self) -> bool:
+        """Whether there are twice as many as when this was last so."""
+        if self.count < self.look:
+            return False
+        self.look = 2 * self.count
+        return True
+
+    def passed(self, n: int) -> list[tuple[float, Array]]:
+        """Instants and states (n,) of which records were kept, ascending."""
+        ends = self.column("ends")
+        return [(float(ends[k - 1]) if k else 0.0, record[:n]) for k, record in self.kept]
 
     def column(self, name: str) -> Array:
         """Ends, least pivots, or which were settled, (n_steps,)."""
@@ -220,13 +234,12 @@ class Runner:
                 steps.add(run)
                 if code in (REACHED, MORE):
                     check_deadline(deadline, f"at t = {run.loop.t:.6g} s of {last:.6g} s")
-                if code == MORE and run.loop.steps > most_steps:
-                    message = f"{most_steps} steps were done at t = {run.loop.t:.6g} s of {last:.6g} s"
-                    raise LimitError(Problem("step-limit", message))
+                if code == MORE:
+                    self._require_progress(run, steps, last, most_steps)
             if code == ROPE_SLACK:
                 break
             if code != REACHED:
-                raise self._failed(code, run.loop.t, np.array(run.loop.state()), last)
+                raise self._failed(code, run, steps, last)
         ts, states = (ts, run.states()) if code == REACHED else cut_short(ts, run)
         return Trajectory(
             times=ts, states=states, ends=steps.column("ends"), steps=run.loop.steps,
@@ -236,17 +249,35 @@ class Runner:
             stopped=None if code == REACHED else layout.mechanism.joints[layout.rows[run.loop.rope]].name,
         )  # fmt: skip
 
-    def _failed(self, code: int, t: float, state: Array, last: float) -> SolveError:
-        """Why a run to `last` ends at t: an expression without a value there, else the meaning of the kernel's code."""
+    def _require_progress(self, run: Integration, steps: Steps, last: float, most_steps: int) -> None:
+        """Raise LimitError beyond the most steps, and where they become so short that the run cannot come to its end.
+
+        Raises SolveError if that is because a value grows without bound.
+        """
+        done = f"steps were done at t = {run.loop.t:.6g} s of {last:.6g} s"
+        if steps.count > most_steps:
+            raise LimitError(Problem("step-limit", f"{most_steps} {done}"))
+        projected = hopeless(steps.column("ends"), last, MOST_STEPS) if steps.doubled() else None
+        if projected is not None:
+            from heuncli.integration.growth import growing, stalled  # only on the way to an error
+
+            problems = growing(self, run.loop.t, run.loop.state(), steps.passed(run.n))
+            raise stalled(problems, f"{steps.count} {done}", projected)
+
+    def _failed(self, code: int, run: Integration, steps: Steps, last: float) -> SolveError:
+        """Why a run to `last` ends: an expression without a value there, else the meaning of the kernel's code."""
+        t, state = run.loop.t, np.array(run.loop.state())
         name, message, hint = TROUBLE[code]
         if name != "closure-lost":
             from heuncli.integration.domains import joint_coordinates, without_value  # only on the way to an error
+            from heuncli.integration.growth import growing, largest_load
 
-            recovered = self.recovered(np.array([t]), state[None, :])
-            coordinates = joint_coordinates(self.layout, recovered.freedoms[0])
-            problems = without_value(self.layout.mechanism, t, last, coordinates)
+            mechanism, recovered = self.layout.mechanism, self.recovered(np.array([t]), state[None, :])
+            problems = without_value(mechanism, t, last, joint_coordinates(self.layout, recovered.freedoms[0]))
+            problems = problems or growing(self, t, run.loop.state(), steps.passed(run.n))
             if problems:
                 return SolveError(*problems)
+            hint = "; ".join(filter(None, [hint, largest_load(mechanism, recovered)]))
         hangs, bodies = self.layout.spanning.hangs, self.layout.mechanism.bodies
         light = sorted({f"bodies.{bodies[hangs[i].body].name}" for i in self.layout.tables["lents"]["body"]})
         if light and name == "step-collapsed":

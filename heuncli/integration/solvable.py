@@ -7,8 +7,7 @@ import numpy as np
 from heuncli import tolerances
 from heuncli.errors import Problem, SolveError
 from heuncli.integration.runner import Recovered, Runner
-from heuncli.joint_kinds import JOINTS
-from heuncli.mechanism.model import JointLoad, PairLoad
+from heuncli.mechanism.model import PairLoad
 from heuncli.results import Array
 from heuncli.tree.prepare import PreparedScene, lacking_inertia
 
@@ -61,12 +60,9 @@ def require_start(scene: PreparedScene, start: Recovered) -> None:
     A spring that is relaxed without length needs no direction: it is as strong there as it is long.
     """
     require_solvable(scene, start)
-    problems, at = [], 0
-    for load in scene.mechanism.loads:
-        row = start.loads[0, at]
-        joint = scene.mechanism.joints[load.joint] if isinstance(load, JointLoad) else None
-        at += len(JOINTS[joint.kind].motions) if joint is not None else 1
-        if not isinstance(load, PairLoad) or row["span"] > tolerances.NO_LENGTH * scene.layout.size:
+    problems = []
+    for load, rows in scene.mechanism.load_rows():
+        if not isinstance(load, PairLoad) or start.loads[0, rows]["span"][0] > tolerances.NO_LENGTH * scene.layout.size:
             continue
         if load.stiffness * load.length != 0.0 if load.value is None else load.value.constant != 0.0:
             t = float(start.times[0])

@@ -76,12 +76,9 @@ class AppliedLoad:
 def applied_loads(mechanism: Mechanism, recovered: Recovered) -> list[AppliedLoad]:
     """The applied loads in the order of the spec; of a joint's load the parts of its several motions together."""
     loads: list[AppliedLoad] = []
-    at = 0
-    for load in mechanism.loads:
+    for load, own in mechanism.load_rows():
         joint = mechanism.joints[load.joint] if isinstance(load, JointLoad) else None
-        count = len(JOINTS[joint.kind].motions) if joint is not None else 1
-        rows = recovered.loads[:, at : at + count]
-        at += count
+        rows = recovered.loads[:, own]
         force, moment = rows["force"].sum(axis=1), rows["moment"].sum(axis=1)
         to, from_ = _ends(mechanism, load, joint, rows["at"][:, 0], rows["from_at"][:, 0])
         action = Action("load", load.name, to, from_, force, moment)

@@ -9,6 +9,7 @@ from collections.abc import Iterator
 from typing import Literal
 
 from heuncli.expressions.programs import Expression
+from heuncli.joint_kinds import JOINTS
 from heuncli.records import record
 from heuncli.results import Array
 
@@ -164,6 +165,14 @@ class Mechanism:
     bodies: tuple[Body, ...]
     joints: tuple[Joint, ...]
     loads: tuple[Load, ...]
+
+    def load_rows(self) -> Iterator[tuple[Load, slice]]:
+        """The loads, each with its rows in the kernel's table of loads: of a load in a joint one a motion."""
+        at = 0
+        for load in self.loads:
+            count = len(JOINTS[self.joints[load.joint].kind].motions) if isinstance(load, JointLoad) else 1
+            yield load, slice(at, at + count)
+            at += count
 
     def expressions(self) -> Iterator[Expression]:
         """The values in time of the loads, then those of the drives."""

@@ -13,6 +13,7 @@ from typing import Any, NamedTuple
 import numpy as np
 
 from heuncli.errors import HeunError
+from heuncli.integration.pace import hopeless
 from heuncli.kinetostatics.cuts import first_axis
 from heuncli.kinetostatics.energy import energy_drift
 from heuncli.kinetostatics.foundation import central_axis
@@ -53,6 +54,11 @@ def read(text: str) -> str:
     except HeunError as error:
         return f"refused: {error.problems[0].code}"
     return f"warned: {spec.warnings[0].code}" if spec.warnings else "fine"
+
+
+def steady_pace(x: float) -> str:
+    """A run of which a hundred steps were done, at a pace that would take x times what may be left: 1e6 of 10,000."""
+    return "told" if hopeless(np.arange(1.0, 101.0), x * 1e5, 10_000) else "goes on"
 
 
 def moved_by(x: float) -> str:
@@ -564,6 +570,7 @@ ROWS = (
     Row("NO_LOAD", carried_by_nothing, "none", "judged"),
     Row("NO_ENERGY", drift, "at rest", "a drift"),
     Row("TOLD_BESIDE", moved_by, "told", "not known"),
+    Row("HOPELESS", steady_pace, "goes on", "told"),
     Row("UNSEEN", unseen_pulse, "as seen", "made again"),
     Row("UNBALANCED", lambda x: "warned" if unbalanced(x) else "fine", "fine", "warned"),
 )

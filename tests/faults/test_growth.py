@@ -1,0 +1,97 @@
+"""What grows without bound, and motions too fast to follow: told soon, with the instant and the name."""
+
+from __future__ import annotations
+
+import math
+import re
+
+import numpy as np
+import pytest
+
+from heuncli.errors import HeunError, LimitError, Problem, SolveError
+from heuncli.integration.pace import FIRST_LOOK, projected_steps
+from heuncli.integration.runner import MOST_STEPS
+from tests.shared.scenes import solved
+
+SCENE = """\
+heun: 1
+gravity: [0, 0, -9.81]
+ground: {points: {O: [0, 0, 0]}}
+bodies:
+  bar: {mass: 1, center: [0.5, 0, 0], inertia: [0.1, 0.1, 0.1], points: {a: [0, 0, 0]}}
+joints: {w: {type: JOINT, from: ground.O, to: bar.a, axis: [0, 1, 0]}}
+LOAD
+analysis: {duration: 2, samples: 5}
+"""
+TORQUE = 'forces: {f: {type: torque, joint: w, value: "VALUE"}}'
+DRIVE = 'drives: {d: {joint: w, angle: "VALUE"}}'
+
+
+def told(joint: str, load: str) -> tuple[HeunError, Problem]:
+    with pytest.raises(HeunError) as raised:
+        solved(SCENE.replace("JOINT", joint).replace("LOAD", load))
+    (problem,) = raised.value.problems
+    return raised.value, problem
+
+
+def at(problem: Problem) -> float:
+    found = re.search(r"at t = ([\d.e+-]+) s", problem.message)
+    assert found is not None
+    return float(found[1])
+
+
+@pytest.mark.heavy
+@pytest.mark.parametrize(("joint", "load", "value"), [
+    ("pin", TORQUE, "exp(1000*t)"),
+    ("slide", TORQUE, "exp(1000*t)"),
+    ("pin", TORQUE, "exp(20*t)"),
+    ("pin", DRIVE, "exp(1000*t)"),
+    ("slide", TORQUE, "1000*w.travel + 1"),
+    ("pin", TORQUE, "1000*w.rate + 1"),
+    ("pin", TORQUE, "w.rate**2 + 1"),
+])  # fmt: skip
+def test_what_grows_is_named(joint: str, load: str, value: str) -> None:
+    """It has grown a thousandfold since a quarter of the time, and the run has not gone on much beyond that."""
+    error, problem = told(joint, load.replace("VALUE", value))
+    assert isinstance(error, SolveError)
+    assert problem.code == "no-value"
+    assert problem.message.startswith(f"'{value}' grows without bound at t = ")
+    assert problem.location is not None and problem.location.line == 7
+    assert 0.0 < at(problem) < 2.0
+    assert problem.hint
+
+
+@pytest.mark.heavy
+@pytest.mark.parametrize("loads", [
+    "f: {type: friction, joint: w, force: 10, speed: 1e-12}, g: {type: torque, joint: w, value: 3}",
+    "f: {type: damper, joint: w, coefficient: 1e12}, g: {type: torque, joint: w, value: 3}",
+])  # fmt: skip
+def test_what_is_too_fast_is_a_limit_at_once(loads: str) -> None:
+    """Nothing grows: what would be needed is told after some thousands of the twenty million steps."""
+    error, problem = told("slide", f"forces: {{{loads}}}")
+    assert isinstance(error, LimitError)
+    assert problem.code == "step-limit"
+    found = re.match(r"(\d+) steps were done at t = .* for all of it about (\S+) would be needed", problem.message)
+    assert found is not None
+    assert int(found[1]) <= 16 * FIRST_LOOK and float(found[2]) > MOST_STEPS
+
+
+def test_a_load_beyond_all_measure_is_named() -> None:
+    error, problem = told("pin", TORQUE.replace("VALUE", "1e300"))
+    assert isinstance(error, SolveError)
+    assert problem.code == "step-collapsed"
+    assert "the largest load is forces.f, 1e+300" in (problem.hint or "")
+
+
+@pytest.mark.parametrize(("instants", "last", "steps"), [
+    (lambda n: n, 1e6, 1e6),  # a steady pace
+    (np.sqrt, 1e3, 1e6),  # a rate in proportion to the time
+    (lambda n: 5.0 + np.sqrt(n), 1005.0, 1e6),  # the same, begun later
+    (np.log2, 20.0, 2.0**20),  # an exponential growth
+    (lambda n: 1.0 - 1.0 / n, 1.0 - 1e-6, 1e6),  # a pole that lies beyond the end
+    (lambda n: 1.0 - 1.0 / n, 2.0, math.inf),  # and one before it
+])  # fmt: skip
+def test_the_steps_projected(instants, last: float, steps: float) -> None:  # type: ignore[no-untyped-def]
+    """Paces in closed form, told from their first 2,000 steps."""
+    ends = instants(np.arange(1.0, FIRST_LOOK + 1.0))
+    assert projected_steps(ends, last) == pytest.approx(steps, rel=1e-6)
