@@ -12,7 +12,7 @@ from collections.abc import Callable, Sequence
 from functools import cached_property
 
 from heuncli.errors import LimitError, Problem, SourceLocation
-from heuncli.kernel.choose import expressions
+from heuncli.kernel.choose import enclosure, expressions
 from heuncli.records import record, replace
 
 OPS = expressions.OPERATIONS
@@ -111,6 +111,10 @@ class Expression:
         """Values at instants, for an expression of time alone."""
         return self.pack.sample(0, self.count, times)
 
+    def bounds(self, begins: Sequence[float], ends: Sequence[float]) -> tuple[array[float], array[float]]:
+        """Least and largest values over stretches of time, seen or not, for an expression of time alone."""
+        return self.pack.bounds(0, self.count, begins, ends)
+
     @property
     def count(self) -> int:
         """Length of the program in pairs."""
@@ -204,6 +208,14 @@ class Pack:
         out = array("d", bytes(8 * len(times)))
         self.expressions.sample(start, count, array("d", times), out)
         return out
+
+    def bounds(
+        self, start: int, count: int, begins: Sequence[float], ends: Sequence[float]
+    ) -> tuple[array[float], array[float]]:
+        """Least and largest values of one program in time alone over stretches of time; NaN where it has none."""
+        least, largest = (array("d", bytes(8 * len(begins))) for _ in range(2))
+        enclosure.bounds_over(self.expressions, start, count, array("d", begins), array("d", ends), least, largest)
+        return least, largest
 
 
 def discontinuities(expression: Expression, t0: float, t1: float) -> list[float]:

@@ -1,7 +1,7 @@
 """What a load or drive does in time between the instants at which a run has looked at it.
 
 A step of the integrator judges itself by its stages. A pulse between two of them leaves no trace there, however high it
-is. So the steps that were done are looked at again: bounds over parts of each (expressions/enclosure.py) that stay near
+is. So the steps that were done are looked at again: bounds over parts of each (kernel/enclosure.py) that stay near
 what the stages saw settle it; where they do not, the part is halved, until the bounds come down or an instant is found
 whose value no stage has seen. The ends of that part become instants to stop at, and the run is made again.
 """
@@ -13,7 +13,6 @@ from collections.abc import Sequence
 import numpy as np
 
 from heuncli import tolerances
-from heuncli.expressions.enclosure import bounds
 from heuncli.expressions.programs import Expression
 from heuncli.integration.runner import Trajectory
 from heuncli.mechanism.model import Mechanism
@@ -43,7 +42,7 @@ def missed(expression: Expression, begins: Array, ends: Array, nodes: Sequence[f
     a, b = cuts[:, :-1].ravel(), cuts[:, 1:].ravel()
     found: list[float] = []
     for _ in range(HALVINGS):
-        lowest, highest = bounds(expression, a, b)
+        lowest, highest = map(np.array, expression.bounds(a.tolist(), b.tolist()))
         finite = np.abs(np.concatenate([lowest, highest]))
         scale = float(finite[np.isfinite(finite)].max(initial=0.0))
         room = (high - low + tolerances.UNSEEN * scale)[step]

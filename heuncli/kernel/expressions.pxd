@@ -36,6 +36,15 @@ cdef struct Table:
     Py_ssize_t knots
     Py_ssize_t coefficients
 
+cdef struct Bounds:
+    double low
+    double high
+
+cdef struct Span:
+    Bounds value
+    Bounds rate
+    Bounds second
+
 cdef struct Programs:
     Instruction *code
     double *constants
@@ -44,8 +53,19 @@ cdef struct Programs:
     Jet *jets
     double *held
     int holding
+    int *doubt
+    Span *ranges
+    Span *middles
+    Span *spans
 
 cdef double value(Programs *programs, Program program) noexcept nogil
+cdef double length(double a, double b) noexcept nogil
+cdef int takes_two(int op) noexcept nogil
+cdef double angle_on(double branch, double y, double x) noexcept nogil
+cdef double side_of_cut(double y) noexcept nogil
+cdef Table table_at(Programs *programs, Py_ssize_t at, Py_ssize_t k) noexcept nogil
+cdef int piece(double *c, Table table, double x) noexcept nogil
+cdef double piece_counted(double *c, Table table, double x) noexcept nogil
 cdef Jet jet(Programs *programs, Program program, double t) noexcept nogil
 
 cdef class Expressions:

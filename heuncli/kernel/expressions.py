@@ -42,7 +42,7 @@ if not cython.compiled:  # also where it is installed: its own stand-in knows no
     from heuncli.kernel.shadow import cython
 
 from array import array
-from collections.abc import Callable, Sequence
+from collections.abc import Sequence
 
 if cython.compiled:
     from cython.cimports.libc.math import (
@@ -65,12 +65,12 @@ if cython.compiled:
         tanh,
     )
 else:
-    import math
-    from math import acos, asin, atan, atan2, fabs, log, sqrt, tanh
+    from math import acos, asin, atan, atan2, fabs, log, nan, sqrt, tanh
 
-    from heuncli.kernel.structs import Instruction, Jet, Program, Programs, Table
+    from heuncli.kernel.libm import cos, cosh, exp, floor, pow, sin, sinh, tan
+    from heuncli.kernel.structs import Bounds, Instruction, Jet, Program, Programs, Span, Table
 
-    NAN = math.nan
+    NAN = nan
 
     # What stands for C in expressions.pxd, in the same order.
     CONST, VAR = range(2)
@@ -84,42 +84,6 @@ else:
 
     FREE, HELD, TAKEN = range(3)  # what HOLD means
     REFUSED, EXTENDED, PERIODIC = range(3)  # what a table says beyond its ends
-
-    # C's functions answer everywhere where Python's raise.
-    def exp(x: float) -> float:
-        return math.exp(x) if x < 709.8 else _or_infinite(math.exp, x)
-
-    def _or_infinite(f: Callable[[float], float], x: float) -> float:
-        try:
-            return f(x)
-        except OverflowError:
-            return math.inf
-
-    def sinh(x: float) -> float:
-        return math.sinh(x) if -710.0 < x < 710.0 else math.copysign(_or_infinite(math.sinh, abs(x)), x)
-
-    def cosh(x: float) -> float:
-        return math.cosh(x) if -710.0 < x < 710.0 else _or_infinite(math.cosh, x)
-
-    def sin(x: float) -> float:
-        return math.sin(x) if x - x == 0.0 else NAN
-
-    def cos(x: float) -> float:
-        return math.cos(x) if x - x == 0.0 else NAN
-
-    def tan(x: float) -> float:
-        return math.tan(x) if x - x == 0.0 else NAN
-
-    def floor(x: float) -> float:
-        return x if x == 0.0 or x - x != 0.0 else float(math.floor(x))
-
-    def pow(x: float, y: float) -> float:
-        try:
-            return math.pow(x, y)
-        except ValueError:  # 0 to a negative power is shut out before
-            return math.nan
-        except OverflowError:
-            return -math.inf if x < 0.0 and math.fmod(y, 2.0) != 0.0 else math.inf
 
 
 OPERATIONS = {
@@ -335,7 +299,7 @@ def power(x: cython.double, n: cython.int) -> cython.double:
 @cython.exceptval(check=False)
 def real_power(x: cython.double, y: cython.double) -> cython.double:
     """x**y; NaN for a negative base with a broken exponent and for 0 to a negative power."""
-    if x == 0.0 and y < 0.0:
+    if (x == 0.0 and y < 0.0) or x != x or y != y:  # 1**y and x**0 are 1 for C, whatever x and y are
         return NAN
     return pow(x, y)
 
@@ -534,6 +498,8 @@ def piece_counted(c: cython.p_double, table: Table, x: cython.double) -> cython.
     """Number of the piece that holds x, counted on over the periods; -1 before a table that ends, n beyond it."""
     n: cython.int = table.pieces
     first: cython.double = c[table.knots]
+    if x != x:
+        return NAN
     if table.outside == PERIODIC:
         turns: cython.double = floor((x - first) / table.period)
         if x - table.period * turns >= c[table.knots + n]:  # by rounding: it is the first point of the next turn
@@ -896,6 +862,11 @@ class Expressions:
             self.programs.stack = [0.0] * (depth + 8)
             self.programs.jets = [Jet(0.0, 0.0, 0.0)] * (depth + 4)
             self.programs.held = [0.0] * held
+            self.programs.doubt = [0] * held
+            nothing = Bounds(NAN, NAN)
+            self.programs.ranges = [Span(nothing, nothing, nothing)] * max(variables, 1)
+            self.programs.middles = list(self.programs.ranges)
+            self.programs.spans = [self.programs.ranges[0]] * (depth + 4)
         else:
             self.memory = (
                 array("i", code),
@@ -904,6 +875,10 @@ class Expressions:
                 array("d", bytes(8 * (depth + 8))),
                 array("d", bytes(24 * (depth + 4))),
                 array("d", bytes(8 * max(held, 1))),
+                array("i", bytes(4 * max(held, 1))),
+                array("d", bytes(48 * max(variables, 1))),
+                array("d", bytes(48 * max(variables, 1))),
+                array("d", bytes(48 * (depth + 4))),
             )
             self.programs.code = cython.cast(cython.pointer[Instruction], where(self.memory[0]))
             self.programs.constants = cython.cast(cython.p_double, where(self.memory[1]))
@@ -911,6 +886,10 @@ class Expressions:
             self.programs.stack = cython.cast(cython.p_double, where(self.memory[3]))
             self.programs.jets = cython.cast(cython.pointer[Jet], where(self.memory[4]))
             self.programs.held = cython.cast(cython.p_double, where(self.memory[5]))
+            self.programs.doubt = cython.cast(cython.p_int, where(self.memory[6]))
+            self.programs.ranges = cython.cast(cython.pointer[Span], where(self.memory[7]))
+            self.programs.middles = cython.cast(cython.pointer[Span], where(self.memory[8]))
+            self.programs.spans = cython.cast(cython.pointer[Span], where(self.memory[9]))
         self.programs.holding = FREE
 
     def evaluate(self, start: cython.int, count: cython.int, x: Sequence[float]) -> float:
@@ -938,6 +917,14 @@ class Expressions:
             raise ValueError(f"{self.held} branches are held, not {len(branches)}")
         for k in range(self.held):
             self.programs.held[k] = branches[k]
+
+    def take_doubts(self) -> list[int]:
+        """Numbers of the branches that enclosures (enclosure.py) found in doubt since this was asked last."""
+        k: cython.Py_ssize_t
+        doubts: list[int] = [k for k in range(self.held) if self.programs.doubt[k]]
+        for k in range(self.held):
+            self.programs.doubt[k] = 0
+        return doubts
 
     def derivatives(self, start: cython.int, count: cython.int, t: cython.double) -> tuple[float, float, float]:
         """Value, first and second time derivative of one program in time alone."""

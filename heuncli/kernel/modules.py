@@ -3,6 +3,8 @@
 MODULES = (
     "memory",
     "expressions",
+    "intervals",
+    "enclosure",
     "tree",
     "loads",
     "closures",

@@ -46,6 +46,27 @@ class Jet:
         self.second = second
 
 
+class Bounds:
+    """The least and the largest that a number may be; never changed in place."""
+
+    __slots__ = ("high", "low")
+
+    def __init__(self, low: float, high: float) -> None:
+        self.low = low
+        self.high = high
+
+
+class Span:
+    """Bounds of a value, its rate and its second derivative over a stretch of time; never changed in place."""
+
+    __slots__ = ("rate", "second", "value")
+
+    def __init__(self, value: Bounds, rate: Bounds, second: Bounds) -> None:
+        self.value = value
+        self.rate = rate
+        self.second = second
+
+
 class Table:
     """A table among the constants: its knots and coefficients begin at these places."""
 
@@ -60,9 +81,15 @@ class Table:
 
 
 class Programs:
-    """Programs side by side, what they point into, the stacks they run on, and the branches they hold."""
+    """Programs side by side, what they point into, the stacks they run on, and the branches they hold.
 
-    __slots__ = ("code", "constants", "held", "holding", "jets", "stack", "variables")
+    ranges, middles: of the variables over a stretch of time, and at an instant of it; doubt: whether each branch held
+    may change there.
+    """
+
+    __slots__ = (
+        "code", "constants", "doubt", "held", "holding", "jets", "middles", "ranges", "spans", "stack", "variables",
+    )  # fmt: skip
 
     code: list[Instruction]
     constants: list[float]
@@ -71,6 +98,10 @@ class Programs:
     jets: list[Jet]
     held: list[float]
     holding: int
+    doubt: list[int]
+    ranges: list[Span]
+    middles: list[Span]
+    spans: list[Span]
 
 
 class PointMotion:

@@ -13,6 +13,7 @@ ONE = (
 )  # fmt: skip
 TWO = ("add", "sub", "mul", "div", "pow", "atan2", "hypot", "min", "max")
 COMPARISONS = ("lt", "le", "gt", "ge", "eq", "ne")
+BRANCHING = {*COMPARISONS, "sign", "step", "abs", "min", "max", "atan2", "table", "knot"}
 NUMBERS = (
     0.0, -0.0, 1.0, -1.0, 0.5, -0.5, 2.0, 3.0, -7.0, 0.1, 1e-3, 1e8, 709.9, -745.3, 1e308, -1e308, 1e-308, 5e-324,
     math.inf, -math.inf, math.nan,
@@ -30,6 +31,23 @@ class Program:
     def numbered(self, operations: dict[str, int]) -> array[int]:
         """The code as an evaluator with these numbers of operations takes it."""
         return array("i", [x for op, k in self.code for x in (operations[op] if isinstance(op, str) else op, k)])
+
+    def in_time(self) -> Program:
+        """The same with the time in place of all other variables."""
+        return Program([(op, 0 if op == "var" else k) for op, k in self.code], self.constants)
+
+    def holding(self) -> tuple[Program, list[str]]:
+        """The same with all its branches held, and what these are branches of. Jumps go as far as before."""
+        is_data = [i > 0 and self.code[i - 1][0] in ("table", "knot") for i in range(len(self.code))]
+        branches = [op in BRANCHING and not data for (op, _), data in zip(self.code, is_data, strict=True)]
+        code: list[tuple[str | int, int]] = []
+        held: list[str] = []
+        for i, (op, k) in enumerate(self.code):
+            if branches[i]:
+                code.append(("hold", len(held)))
+                held.append(str(op))
+            code.append((op, k + sum(branches[i + 1 : i + 1 + k]) if op in ("jump", "unless") else k))
+        return Program(code, self.constants), held
 
 
 def random_program(random: Random) -> Program:
