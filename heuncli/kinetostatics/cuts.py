@@ -120,7 +120,8 @@ def _lay(mechanism: Mechanism, spec: Any, name: str, section: Any, index: dict[s
     else:
         take, side = _sides_of_run(jumps)
         points, s, d = points[take], s[take], d[take]
-    pieces, centroids, warnings = _cut_pieces(location, name, section, form, n, d, side, s is not None)
+    reach = (float(heights.min(initial=np.inf)) - near, float(heights.max(initial=-np.inf)) + near)
+    pieces, centroids, warnings = _cut_pieces(location, name, section, form, n, points, side, reach)
     about: str | tuple[int, Array] = "at"
     if section.reduce_to == "centroid":
         about = "centroid"
@@ -178,8 +179,10 @@ def _sides_of_run(jumps: NDArray[np.bool_]) -> tuple[list[int], Array]:
 
 
 def _cut_pieces(
-    location: Any, name: str, section: Any, form: Form | None, n: Array, d: Array, side: Array, run: bool
-) -> tuple[Array, Array | None, tuple[str, ...]]:
+    location: Any, name: str, section: Any, form: Form | None, n: Array, points: Array, side: Array,
+    reach: tuple[float, float],
+) -> tuple[Array, Array | None, tuple[str, ...]]:  # fmt: skip
+    """Pieces, centroids and warnings of the cuts; reach: from the least to the largest n.x of joints and loads."""
     if form is None:
         if section.piece is None:
             raise SpecError(Problem(
@@ -188,18 +191,20 @@ def _cut_pieces(
             ))  # fmt: skip
         piece = section.piece
         return pseudo_inertia(piece.mass, np.array(piece.center), np.array(piece.inertia))[None], None, ()
+    d, run = points @ n, section.at is None
     # the ends of a run may lie in end faces: there the limits from inside are taken
     inside = side.copy()
     if run:
         inside[0], inside[-1] = BEYOND, BEFORE
     cross_sections = form.cross_sections(n, d, inside)
-    if (cross_sections.regions == 0).any():
-        at = "a cut of the run" if run else "the plane"
-        low, high = form.extent(n)
-        lies = float(d[cross_sections.regions == 0][0])
-        hint = f"along the normal the body reaches from {low:.6g} to {high:.6g} m, the plane lies at {lies:.6g} m"
-        raise SpecError(Problem("misses-body", f"{at} does not meet the body {section.body}", location, hint))
+    bare = cross_sections.regions == 0
+    _require_body(location, section, form, n, d[bare], reach)
     warnings = []
+    if bare.any():
+        meets = f"{int(bare.sum())} of {len(d)} cuts meet" if run else "the plane meets"
+        where = "" if section.properties is None else ", and stresses are about the cut's point"
+        what = f"{meets} no material of the body {section.body}; the loads are those of what lies beyond{where}"
+        warnings.append(f"sections.{name}: {what}")
     if (cross_sections.regions > 1).any():
         most = int(cross_sections.regions.max())
         what = f"meets the body {section.body} in {most} separate places; the loads are their sum"
@@ -207,4 +212,25 @@ def _cut_pieces(
     if form.rods_in_plane(n, d).any():
         what = f"runs along a rod of the body {section.body}; the rod's mass lies on the side chosen"
         warnings.append(f"sections.{name}: the plane {what}")
-    return form.pieces(n, d, side), cross_sections.centroid, tuple(warnings)
+    centroids = np.where(bare[:, None], points, cross_sections.centroid)
+    return form.pieces(n, d, side), centroids, tuple(warnings)
+
+
+def _require_body(location: Any, section: Any, form: Form, n: Array, d: Array, reach: tuple[float, float]) -> None:
+    """Raise SpecError unless cuts at d, which meet no material, have something of the body on both sides of them.
+
+    What is drawn apart is one body all the same: what the piece exerts on the remainder is as certain there as in a
+    bar without mass. It has no centroid.
+    """
+    what = "a cut of the run" if section.at is None else "the plane"
+    low, high = form.extent(n)
+    off = d[(d < min(low, reach[0])) | (d > max(high, reach[1]))]
+    if len(off):
+        lies = float(off[0])
+        hint = f"along the normal the body reaches from {low:.6g} to {high:.6g} m, the plane lies at {lies:.6g} m"
+        raise SpecError(Problem("misses-body", f"{what} does not meet the body {section.body}", location, hint))
+    if len(d) and section.reduce_to == "centroid":
+        message = f"{what} meets no material of the body {section.body}, and so has no centroid"
+        raise SpecError(
+            Problem("misses-body", message, location, hint="take moments about the cut's point: reduce_to: at")
+        )

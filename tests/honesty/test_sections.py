@@ -53,6 +53,64 @@ def test_a_plane_that_misses_is_refused() -> None:
     assert refused("at: [-0.1, 0, 0], normal: [1, 0, 0]") == "misses-body"
 
 
+BEADS = """
+heun: 1
+gravity: [0, 0, -10]
+ground: {points: {O: [0, 0, 0]}}
+bodies:
+  beads:
+    shapes:
+      - {type: cylinder, from: [1, 0, 0], to: [2, 0, 0], radius: 0.02, mass: 1}
+      - {type: box, center: [3.5, 0, 0], size: [1, 0.1, 0.1], mass: 2}
+      - {type: point, at: [5, 0, 0], mass: 3}
+    points: {root: [0, 0, 0], end: [5, 0, 0]}
+joints: {wall: {type: weld, from: ground.O, to: beads.root}}
+"""
+
+
+def beads(section: str) -> Results:
+    return solved(f"{BEADS}sections: {{cut: {{body: beads, {section}}}}}\n")
+
+
+@pytest.mark.parametrize(("x", "shear", "bending"), [(0.5, -60.0, 10 * 1.0 + 20 * 3.0 + 30 * 4.5),
+                                                     (2.5, -50.0, 20 * 1.0 + 30 * 2.5),
+                                                     (4.5, -30.0, 30 * 0.5)])  # fmt: skip
+@pytest.mark.parametrize("turned", [False, True])
+def test_between_shapes_the_loads_are_those_of_what_lies_beyond(
+    x: float, shear: float, bending: float, turned: bool
+) -> None:
+    """As if a bar without mass held them: before the first of them, between two, before the last; from either side."""
+    found = beads(f"at: [{x}, 0, 0], normal: [{-1 if turned else 1}, 0, 0]")
+    (warning,) = found.warnings
+    assert "no material" in warning and "beads" in warning
+    sign = -1.0 if turned else 1.0
+    near(found.sections["cut"]["force"][0, 2], sign * shear, 60.0, 1e-14)
+    near(found.sections["cut"]["moment"][0, 1], sign * bending, 200.0, 1e-14)
+
+
+def test_a_run_passes_what_lies_between_shapes() -> None:
+    """The shear force falls where there is mass, and rests between."""
+    found = beads("from: root, to: end, count: 11")
+    cut = found.sections["cut"]
+    near(cut["s"], np.arange(11) / 2.0, 5.0, 1e-15)
+    near(cut["Q2"][0], [-60, -60, -60, -55, -50, -50, -50, -40, -30, -30, -30], 60.0, 1e-14)
+    (warning,) = found.warnings
+    assert "5 of 11 cuts meet no material" in warning
+
+
+def test_between_shapes_there_is_no_centroid() -> None:
+    """Moments about it are refused; stresses of given properties are those about the cut's own point."""
+    between = "at: [2.5, 0.1, 0], normal: [1, 0, 0]"
+    with pytest.raises(SpecError, match="no centroid"):
+        beads(f"{between}, reduce_to: centroid")
+    found = beads(f"{between}, properties: {{circle: {{radius: 0.02}}}}")
+    cut = found.sections["cut"]
+    near(cut["stress"]["shear_torsion"][0], abs(cut["T"][0]) / (np.pi * 0.02**3 / 2), 1e6, 1e-13)
+    assert cut["T"][0] != 0.0 and "stresses are about the cut's point" in found.warnings[0]
+    with pytest.raises(SpecError, match="does not meet the body"):
+        beads("at: [5.1, 0, 0], normal: [1, 0, 0]")
+
+
 def test_a_joint_in_the_plane_needs_a_side() -> None:
     assert refused("at: root, normal: [0, 1, 0]") == "needs-side"
     left, right = (fork(f"at: root, normal: [0, 1, 0], side: {side}") for side in ("before", "beyond"))
