@@ -24,6 +24,7 @@ UNSEEN_GAP = 16.0 * EPS  # of the size: what the sums of a closure may not see, 
 TOLD_BESIDE = 1e-6  # of the largest of its kind: six digits, a table's; what rounding reaches farther is not known
 UNMET = 10.0  # times what has to be left of a row: rows left out are met to less, and all others to rounding
 SINGULAR_FALL = 0.5  # of the largest value in the search: on the way through a singular pose it falls to nothing
+PUSHED = 1e-8  # of the loads: what of them acts along a motion of a pose known to RANK, a digit above
 NEARLY_SINGULAR = 1e-6  # relative singular value: reactions err by gap / value, 1e-10 / 1e-6, and keep four digits
 
 # -- open: which components no law of rigid bodies decides, and the sums that are certain

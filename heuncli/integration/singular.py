@@ -58,5 +58,5 @@ def singular_instant(runner: Runner, run: Trajectory, a: float, b: float) -> flo
         if low == 0.0:
             break
     # a scene that is everywhere as near to a singular pose passes through none
-    falls = low <= tolerances.SINGULAR_FALL * high
+    falls = low < tolerances.SINGULAR_FALL * high
     return t if falls and low <= tolerances.SINGULAR_MET * (b - a) / span else None

@@ -19,6 +19,7 @@ from heuncli.integration.solvable import require_start
 from heuncli.integration.unseen import unseen
 from heuncli.records import record
 from heuncli.results import Array, Estimate
+from heuncli.study.at_rest import require_motion
 from heuncli.study.extremes import distinct
 from heuncli.study.kinds import Kinds
 from heuncli.study.setup import Setup
@@ -63,10 +64,13 @@ def integrate(setup: Setup, tolerance: float, deadline: float | None) -> History
         check_deadline(deadline, "before the loads were computed")
         state = runner.recovered(times[:1], start)
         require_start(setup.scene, state)
+        require_motion(setup.scene.layout, state)
         beside = runner.recovered(*interleaved(times[:1], [start, moved_start(setup.scene.layout)[None, :]]))
         seconds = {"integrate": 0.0, "check": 0.0}
         return History(state, tolerance, estimate=of_state(setup, beside), seconds=seconds)
-    require_start(setup.scene, runner.recovered(np.zeros(1), start))  # before a long run, not after it
+    first = runner.recovered(np.zeros(1), start)  # before a long run, not after it
+    require_start(setup.scene, first)
+    require_motion(setup.scene.layout, first)
     jumps = tuple(discontinuities_of(setup.scene.mechanism, 0.0, float(times[-1])))
     runs = Runs(runner, times, jumps, deadline, setup.method)
     checked = checked_run(runs, tolerance, Kinds(setup))

@@ -27,6 +27,7 @@ from heuncli.spec.turns import of_matrix
 from heuncli.study.beside import AMPLE, error, reached
 from heuncli.study.expect import compare
 from heuncli.study.warnings import unbalanced
+from tests.closed_forms.test_stretched_chain import chain
 from tests.convergence.test_pulses import slide
 from tests.shared.scenes import near, solved, study
 
@@ -275,6 +276,11 @@ def turns_hardly(x: float) -> str:
     text = bar(kind="pin, axis: [0, 0, 1]", inertia=f"[{inertia!r}, {inertia!r}, {inertia!r}]", tail=tail)
     weight = f"  w: {{mass: {heavy!r}, center: [0, 0, -1], inertia: [0, 0, 0], points: {{c: [0, 0, -1]}}}}\njoints:\n"
     return verdict(text.replace("joints:\n", f"{weight}  weld: {{type: weld, from: bar.end, to: w.c}}\n"), right)
+
+
+def across(x: float) -> str:
+    """A straight chain pulled by 1 N along it, and x across, over what counts as arms: half a link and both of them."""
+    return verdict(chain(0.0, f"[1, 0, {2.5 * x!r}]"))
 
 
 def moved_by_a_lever(x: float) -> str:
@@ -556,6 +562,7 @@ ROWS = (
     Row("KERNEL.own_share", moved_by_a_lever, "refused: no-inertia", "fine"),
     # rank, open
     Row("KERNEL.independent", flat_by, "warned: singular pose", "warned: nearly singular pose"),
+    Row("PUSHED", across, "warned: singular pose", "refused: singular-pose"),
     Row("NEARLY_SINGULAR", lambda x: parallelogram(x / math.sqrt(2)), "warned: nearly singular pose", "fine"),
     Row("SINGULAR_MET", beside_flat, "warned: passes through a", "fine", (1 / 3, 3.0)),
     Row("OPEN_SHARE", inclined, "a number", "open"),

@@ -1,0 +1,109 @@
+"""Whether the accelerations at a start at rest belong to a motion: in a singular pose those of first order need not.
+
+A chain stretched straight between two supports gives way across itself to the first order: where it lies J has one
+independent row less. Pushed across, it would have to move by a t^2/2, and to be longer by the square of that, which no
+t^4 of any other coordinate makes up for. It does not move, and no finite force holds it. With x = a t^2/2 + b t^4/24
+the closures ask for J b + 3 gamma(a) = 0: what they ask of b is what they ask of accelerations where rates are a.
+"""
+
+from __future__ import annotations
+
+import numpy as np
+
+from heuncli import tolerances
+from heuncli.errors import Problem, SolveError
+from heuncli.integration.runner import Recovered, Runner
+from heuncli.kinetostatics.bodies import BodyStates, body_states
+from heuncli.records import replace
+from heuncli.results import Array
+from heuncli.tree.layout import Island, Layout
+
+
+def require_motion(layout: Layout, recovered: Recovered) -> None:
+    """Raise SolveError where loads push what rests in a singular pose along a motion that does not go on.
+
+    recovered: of one instant. Where drives accelerate, or where bodies move already, nothing is said.
+    """
+    dependent = [i for i in layout.islands if (recovered.rows["chosen"][0, i.rows] == 0.0).any()]
+    if not dependent:
+        return
+    y, accelerations = recovered.states[0], rates_of(layout, recovered)
+    bare = Runner(without_loads(layout))
+    for island in dependent:
+        own = own_rates(layout, island)
+        scale = float(np.abs(accelerations[own] * layout.weights[own]).max(initial=0.0))
+        if scale == 0.0 or float(np.abs(y[own] * layout.weights[own]).max()) > tolerances.AT_REST:
+            continue
+        moved = y.copy()
+        moved[all_rates(layout)] = 0.0
+        moved[own] = accelerations[own] / scale
+        along = bare.recovered(recovered.times, moved[None, :])
+        kept = np.abs((along.states[0] - moved)[own] * layout.weights[own]).max() <= tolerances.MOVES
+        if kept and along.residual[0] > along.may_stay[0] and pushed(layout, recovered, along):
+            raise SolveError(goes_nowhere(layout, float(recovered.times[0]), island))
+
+
+def without_loads(layout: Layout) -> Layout:
+    """The scene without weight and loads: what its closures ask for is then all there is."""
+    mechanism = replace(layout.mechanism, gravity=np.zeros(3))
+    return replace(layout, mechanism=mechanism, tables=layout.tables | {"loads": layout.tables["loads"][:0]})
+
+
+def rates_of(layout: Layout, recovered: Recovered) -> Array:
+    """The derivatives of the state's rates, each where the rate stands, 0 elsewhere; of one instant."""
+    found = np.zeros(layout.n_state)
+    for k, body in enumerate(layout.bodies):
+        if body["ball"]:
+            found[body["rate_at"] : body["rate_at"] + 3] = recovered.bodies["alpha"][0, k]
+    for k, freedom in enumerate(layout.tables["freedoms"]):
+        if not freedom["driven"]:
+            found[freedom["u_at"]] = recovered.freedoms["udot"][0, k]
+    return found
+
+
+def all_rates(layout: Layout) -> Array:
+    """Places of all rates in the state."""
+    groups = layout.tables["groups"]
+    return np.concatenate([np.arange(g["rates"], g["end"]) for g in groups] or [np.zeros(0, dtype=int)])
+
+
+def own_rates(layout: Layout, island: Island) -> Array:
+    """Places in the state of the rates of an island's freedoms."""
+    wanted = set(island.freedoms.tolist())
+    found: list[int] = []
+    for body in layout.bodies:
+        if body["ball"] and int(body["answer_at"]) in wanted:
+            found += range(body["rate_at"], body["rate_at"] + 3)
+    for freedom in layout.tables["freedoms"]:
+        if not freedom["driven"] and int(freedom["answer_at"]) in wanted:
+            found.append(int(freedom["u_at"]))
+    return np.array(found, dtype=int)
+
+
+def pushed(layout: Layout, recovered: Recovered, along: Recovered) -> bool:
+    """Whether the loads act along a motion by more than the pose is known: power of the inertia loads over loads."""
+    bodies = layout.mechanism.bodies
+    at: BodyStates = body_states(layout, recovered)
+    moving = body_states(layout, along)
+    mass = np.array([b.mass for b in bodies])
+    speed = float(np.abs(moving.v_centre[0]).max())
+    turn = float(np.abs(moving.omega[0]).max())
+    power = float(np.sum(mass[:, None] * at.a_centre[0] * moving.v_centre[0]))
+    for i, body in enumerate(bodies):
+        R = at.R[0, i]
+        power += float(moving.omega[0, i] @ R @ body.inertia @ R.T @ at.alpha[0, i])
+    force = float(mass.sum() * np.abs(layout.mechanism.gravity).max() + np.abs(recovered.loads["force"]).sum())
+    moment = float(np.abs(recovered.loads["moment"]).sum()) + force * layout.size
+    return power > tolerances.PUSHED * (force * speed + moment * turn)
+
+
+def goes_nowhere(layout: Layout, t: float, island: Island) -> Problem:
+    """The problem of a chain that is pushed where it cannot go."""
+    names = dict.fromkeys(layout.mechanism.joints[layout.rows[r]].name for r in island.rows.tolist())
+    through = " and ".join(f"joints.{name}" for name in names)
+    message = (
+        f"at t = {t:.9g} s the loads push the closed chain through {through} in a singular pose (stretched, folded or "
+        "flat) along a motion that closes to the first order only: no acceleration exists, and no finite force holds it"
+    )
+    hint = "draw it off that pose (with some sag, say: forces grow as its inverse), or give the rate of one more joint"
+    return Problem("singular-pose", message, hint=hint)
