@@ -9,7 +9,6 @@ from heuncli.errors import SolveError
 from heuncli.tolerances import EPS
 from tests.shared.scenes import near, solved
 
-
 COUPLE = "{type: couple, on: disc, vector: [0, 0, 1]}"
 
 
