@@ -14,9 +14,9 @@ from typing import Any
 import numpy as np
 
 from heuncli import tolerances
-from heuncli.integration.runner import Runner
+from heuncli.integration.runner import Recovered, Runner
 from heuncli.kernel.choose import scene as kernel
-from heuncli.mechanism.model import GROUND
+from heuncli.mechanism.model import GROUND, PointLoad
 from heuncli.records import record, replace
 from heuncli.results import Array
 from heuncli.tree.idle_spins import without_inertia
@@ -57,6 +57,14 @@ class Massless:
         """Combinations of them, N (k, other)."""
         return Massless(self.bodies, self.omega @ N, self.v @ N)
 
+    def of(self, body: int, point: Array | None, at: Poses, size: float) -> tuple[Array, Array]:
+        """Of a body (-1: the ground) its angular velocities, and velocities over the size of its point, (3, k)."""
+        if body not in self.bodies:
+            return np.zeros((3, self.count)), np.zeros((3, self.count))
+        n = self.bodies.index(body)
+        arm = np.zeros(3) if point is None else (point - at.r[body]) / size
+        return self.omega[n], self.v[n] + np.cross(self.omega[n], arm, axis=0)
+
     def axes(self, at: Poses) -> dict[int, Array]:
         """Of each body that turns its angular velocities, body axes (k, 3)."""
         turning = np.einsum("nji,njk->nki", at.R[self.bodies], self.omega)
@@ -86,6 +94,52 @@ def loose_axes(scene: PreparedScene, bodies: Table, rows: Table) -> dict[int, Ar
     at = Poses(bodies["R"], bodies["r"])
     still = massless(scene, lacking_inertia(scene), at)
     return {i: span(turning) for i, turning in loose(scene.layout, still, at, rows).axes(at).items()}
+
+
+INDIFFERENT = ("ball", "universal", "rod", "weld")  # to spins of a body about the points that they hold
+
+
+def is_idle(scene: PreparedScene, recovered: Recovered, k: int) -> bool:
+    """Whether what nothing holds at an instant are spins about all points at which bodies are held, and unloaded.
+
+    Such as those of two thin rods on a universal: accelerations and reactions do not depend on them, for what the
+    universal holds of one spin the other one gives way to.
+    """
+    layout, bodies = scene.layout, recovered.bodies[k]
+    at = Poses(bodies["R"], bodies["r"])
+    free = loose(layout, massless(scene, lacking_inertia(scene), at), at, recovered.rows[k])
+    if free.count != recovered.idle[k] or not holds_still(scene, free, at):
+        return False
+    power, scale = np.zeros(free.count), 0.0
+    for load, row, answer in zip(scene.mechanism.loads, layout.tables["loads"], recovered.loads[k], strict=True):
+        F, M = answer["force"], answer["moment"]
+        ends = [(row["b"], answer["at"], 1.0), (row["a"], answer["from_at"], -1.0)]
+        for body, point, sign in ends[:1] if isinstance(load, PointLoad) else ends:
+            omega, v = free.of(int(body), point, at, layout.size)
+            power += sign * (F @ v * layout.size + M @ omega)
+        scale += float(np.sqrt(F @ F)) * layout.size + float(np.sqrt(M @ M))
+    return bool(np.all(np.abs(power) <= tolerances.NO_MOMENT * scale))
+
+
+def holds_still(scene: PreparedScene, free: Massless, at: Poses) -> bool:
+    """Whether motions leave the points of all joints where they are, and turn no direction that guides another body.
+
+    Nor an angle that is told: a pin's, a cylinder's.
+    """
+    layout = scene.layout
+    for joint in scene.mechanism.joints:
+        for end, point in ((joint.a, joint.p), (joint.b, joint.q)):
+            body = layout.place.get(end, -1)
+            if body < 0:
+                continue
+            held = at.r[body] + at.R[body] @ (point - layout.reference[body])
+            omega, v = free.of(body, held, at, layout.size)
+            guided = joint.kind in ("line", "plane") and end == joint.b
+            if np.abs(v).max(initial=0.0) > tolerances.ON_AXIS:
+                return False
+            if np.abs(omega).max(initial=0.0) > tolerances.RANK and joint.kind not in INDIFFERENT and not guided:
+                return False
+    return True
 
 
 def start_of(scene: PreparedScene) -> Poses:

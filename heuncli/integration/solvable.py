@@ -27,8 +27,11 @@ def require_solvable(scene: PreparedScene, recovered: Recovered) -> None:
     finite = np.isfinite(recovered.bodies.view(np.float64)).all(axis=1)
     if not finite.all():
         raise SolveError(*not_finite(scene, recovered, int(np.flatnonzero(~finite)[0])))
-    if (recovered.idle > 0).any():
-        raise SolveError(freedom_without_inertia(scene, recovered, int(np.flatnonzero(recovered.idle > 0)[0])))
+    for k in np.flatnonzero(recovered.idle > 0).tolist():
+        from heuncli.integration.inertialess import is_idle
+
+        if not is_idle(scene, recovered, k):
+            raise SolveError(freedom_without_inertia(scene, recovered, k))
     unmet = recovered.residual > recovered.may_stay
     if unmet.any():
         raise SolveError(unmet_rows(recovered, int(np.flatnonzero(unmet)[0])))

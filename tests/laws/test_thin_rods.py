@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import re
 from typing import Any
 
 import numpy as np
@@ -185,3 +186,84 @@ def test_a_point_mass_held_aside_is_refused(at: list[float], normal: list[float]
     """
     with pytest.raises(SolveError, match=r"no inertia behind it: bodies\.b has no inertia about its axis"):
         solved(ASIDE.format(at=at, normal=normal) + more)
+
+
+def two_rods(joint: str, seed: int, more: str = "", along: float = 0.0, top: str = "ball") -> str:
+    """Two rods of 1 m in a row, near to random attitudes; along: inertia about their axes."""
+    rng = np.random.default_rng(seed)
+    bodies = []
+    for name in ("up", "lo"):
+        n, x = rng.standard_normal((2, 3))
+        z = n / np.linalg.norm(n)
+        x = np.cross(z, x)
+        x /= np.linalg.norm(x)
+        R = np.stack([x, np.cross(z, x), z], axis=1).tolist()
+        bodies.append(f"""
+  {name}:
+    mass: {rng.uniform(0.5, 2.0)!r}
+    center: [0, 0, -0.5]
+    inertia: [0.08, 0.08, {along!r}]
+    points: {{a: [0, 0, 0], b: [0, 0, -1]}}
+    near: {{orientation: {{matrix: {R}}}}}""")
+    return f"""
+heun: 1
+gravity: [0, 0, -9.81]
+ground: {{points: {{O: [0, 0, 0]}}}}
+bodies:{"".join(bodies)}
+joints:
+  p: {{type: {top}, from: ground.O, to: up.a}}
+  q: {{type: {joint}, from: up.b, to: lo.a}}
+{more}
+"""
+
+
+UNIVERSAL = "universal, axis: [1, 0, 0], to_axis: [0, 1, 0]"
+AWAY = "universal, axis: [1, 0, 0], to_axis: [0, 0.6, 0.8]"
+PUSH = "forces: {f: {type: force, on: lo.b, vector: [3, -1, 2]}}"
+
+
+@pytest.mark.parametrize("joint", [UNIVERSAL, AWAY], ids=["crossed", "slanting"])
+@pytest.mark.parametrize("seed", range(6))
+def test_a_universal_between_thin_rods_is_a_ball(joint: str, seed: int) -> None:
+    """What it holds of one spin the other one gives way to: it carries no couple, and the rods move as on a ball."""
+    run = f"{PUSH}\nanalysis: {{duration: 0.5, samples: 5}}"
+    near(np.nan_to_num(solved(two_rods(joint, seed, PUSH)).joints["q"]["moment"]), 0.0, 1.0, 1e-12)
+    found = solved(two_rods(joint, seed, run))
+    text = two_rods("ball", seed, run)
+    for body in found.bodies.values():  # the assembly has turned them until the universal's axes are square
+        start = f"orientation: {{matrix: {body['rotation'][0].tolist()}}}"
+        text = re.sub(r"near: \{orientation: .*\}", start, text, count=1)
+    ball = solved(text)
+    for name in ("up", "lo"):
+        near(found.bodies[name]["center"], ball.bodies[name]["center"], 1.0, 1e-8)
+    for name in ("p", "q"):
+        near(found.joints[name]["force"], ball.joints[name]["force"], 30.0, 1e-7)
+    near(found.joints["q"]["moment"], 0.0, 30.0, 1e-9)
+
+
+def test_it_is_the_limit_of_rods_with_some_inertia() -> None:
+    """The less inertia about their axes, in proportion the nearer."""
+    run = f"{PUSH}\nanalysis: {{duration: 0.3, samples: 3}}"
+    thin = solved(two_rods(UNIVERSAL, 1, run)).bodies["lo"]["center"]
+    off = [
+        float(np.abs(solved(two_rods(UNIVERSAL, 1, run, along)).bodies["lo"]["center"] - thin).max())
+        for along in (1e-4, 1e-6)
+    ]
+    assert off[0] < 1e-2 and off[1] < 0.02 * off[0] + 1e-8
+
+
+@pytest.mark.parametrize("load", [
+    "{type: couple, on: lo, vector: [0, 0, 0.3], frame: body}",
+    "{type: couple, on: up, vector: [0, 0, 0.3], frame: body}",
+    "{type: force, on: {body: lo, at: [0.1, 0, -0.5]}, vector: [0, 1, 0], frame: body}",
+])  # fmt: skip
+def test_what_turns_both_spins_is_refused(load: str) -> None:
+    """Nothing answers it."""
+    with pytest.raises(SolveError, match=r"bodies\.up has no inertia about its axis"):
+        solved(two_rods(UNIVERSAL, 1, f"forces: {{c: {load}}}"))
+
+
+def test_a_spin_that_is_told_has_to_be_known() -> None:
+    """A pin along the rod in place of the ball: its angle is a number that nothing determines."""
+    with pytest.raises(SolveError, match="no inertia behind it"):
+        solved(two_rods(UNIVERSAL, 1, top="pin, axis: [0, 0, 1]"))
