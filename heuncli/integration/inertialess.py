@@ -111,13 +111,14 @@ def is_idle(scene: PreparedScene, recovered: Recovered, k: int) -> bool:
     if free.count != recovered.idle[k] or not holds_still(scene, free, at):
         return False
     power, scale = np.zeros(free.count), 0.0
-    for load, row, answer in zip(scene.mechanism.loads, layout.tables["loads"], recovered.loads[k], strict=True):
-        F, M = answer["force"], answer["moment"]
-        ends = [(row["b"], answer["at"], 1.0), (row["a"], answer["from_at"], -1.0)]
-        for body, point, sign in ends[:1] if isinstance(load, PointLoad) else ends:
-            omega, v = free.of(int(body), point, at, layout.size)
-            power += sign * (F @ v * layout.size + M @ omega)
-        scale += float(np.sqrt(F @ F)) * layout.size + float(np.sqrt(M @ M))
+    for load, rows in scene.mechanism.load_rows():
+        for row, answer in zip(layout.tables["loads"][rows], recovered.loads[k, rows], strict=True):
+            F, M = answer["force"], answer["moment"]
+            ends = [(row["b"], answer["at"], 1.0), (row["a"], answer["from_at"], -1.0)]
+            for body, point, sign in ends[:1] if isinstance(load, PointLoad) else ends:
+                omega, v = free.of(int(body), point, at, layout.size)
+                power += sign * (F @ v * layout.size + M @ omega)
+            scale += float(np.sqrt(F @ F)) * layout.size + float(np.sqrt(M @ M))
     return bool(np.all(np.abs(power) <= tolerances.NO_MOMENT * scale))
 
 
