@@ -97,10 +97,19 @@ class Results:
     warnings: tuple[str, ...] = ()
 
 
+class Place(NamedTuple):
+    """A place in a run of cuts: distance s [m], side of what acts there, and which of the asked cuts it is, if any."""
+
+    s: float
+    side: str | None
+    cut: int | None
+
+
 class Extremes(NamedTuple):
     """Lowest and highest value of each of n groups of columns over a run, (n,), with the instant and the column.
 
-    `searched`: whether the instants between the samples were looked at. A group that is nan throughout stays nan.
+    `searched`: whether the instants between the samples were looked at, `complete`: all that promised more. A group
+    that is nan throughout stays nan. places: of the lowest and highest of each run of cuts, the last groups.
     """
 
     low: Array
@@ -110,12 +119,14 @@ class Extremes(NamedTuple):
     high_at: Array
     high_column: Indices
     searched: bool
+    complete: bool = True
+    places: tuple[tuple[Place, Place], ...] = ()
 
     def part(self, groups: slice) -> Extremes:
         """Those of some of the groups."""
         return Extremes(
             self.low[groups], self.low_at[groups], self.low_column[groups],
-            self.high[groups], self.high_at[groups], self.high_column[groups], self.searched,
+            self.high[groups], self.high_at[groups], self.high_column[groups], self.searched, self.complete,
         )  # fmt: skip
 
 

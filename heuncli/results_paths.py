@@ -23,13 +23,14 @@ MOST_NAMES = 12  # of the known names an error lists
 class Numbers(NamedTuple):
     """What a path leads to: `values` with the instants first if `timed`, and the other axes as the schema has them.
 
-    instant: the number of the instant that the path names.
+    instant: the number of the instant that the path names; keys: the words of the path that name the quantity.
     """
 
     values: Array
     timed: bool
     axes: Shape
     instant: int | None = None
+    keys: tuple[str, ...] = ()
 
     @property
     def of_vectors(self) -> bool:
@@ -54,11 +55,11 @@ def find(results: Results, path: str) -> Numbers:
         for word in rest:
             values = values[:, _index(path, keys, word, axes[1], values.shape[1])]
             axes = (axes[0], *axes[2:])
-        return Numbers(values, True, axes[1:])
+        return Numbers(values, True, axes[1:], keys=tuple(keys))
     for word in rest:
         values = np.asarray(values[_index(path, keys, word, axes[0], len(values))])
         axes = axes[1:]
-    return Numbers(values, False, axes, instant)
+    return Numbers(values, False, axes, instant, tuple(keys))
 
 
 def _walk(results: Results, path: str) -> tuple[list[str], Any, list[str]]:

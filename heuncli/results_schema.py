@@ -186,7 +186,10 @@ REPORT_OF = {
     "system_vector": "motion",
 }
 REPORTS = tuple(dict.fromkeys(REPORT_OF.values()))
+# Magnitudes: never negative, with a kink at zero that their squares do not have.
+MAGNITUDES = frozenset({"radial", "tilting", "shear_torsion", "shear_mean", "shear_max", "mises", "utilisation"})
 AFTER_THE_RUN = frozenset({"impulses", "certain_sums", "accuracy"})  # of numbers that no spec foretells
+ESTIMATES = {"foundation": "foundation", "joints": "reactions", "sections": "sections", "energy": "energy"}
 NAMES = ("BODY", "POINT", "JOINT", "ELEMENT", "SECTION", "FORCE", "NUMBER")
 AT_A_BLOW = {"N": "N·s", "N·m": "N·m·s"}  # units of the loads in `impulses`
 STRUCK = ("foundation", "joints", "sections")  # what a blow has besides its own quantities, as at one instant
@@ -234,6 +237,19 @@ def quantity(keys: Iterable[str]) -> Quantity | None:
             return None
         node = below(node, key)
     return node if isinstance(node, Quantity) else None
+
+
+def kind_of_error(kind: str, name: str, number: str) -> str:
+    """Of which estimate (of `accuracy.estimate`) the error of a quantity is, by the words of its path."""
+    if kind == "joints" and number == "drive":
+        return "drives"
+    if kind == "foundation" and name.startswith("supports."):
+        return "reactions"
+    if kind == "foundation" and name == "axis":
+        return "axis"
+    if kind == "forces":
+        return "motion" if number in ("length", "rate") else "forces"
+    return ESTIMATES.get(kind, "motion")
 
 
 def leading_key(known: Collection[str], path: Sequence[str]) -> tuple[str | None, list[str]]:

@@ -74,6 +74,7 @@ DUST = 1e-9  # of the size: components that a chosen value is printed without
 
 # -- same instant, same place, same direction
 SAME_INSTANT = 1e-9  # of the run's length: instants typed with ten digits
+SIDE_BY_SIDE = 1e-12  # of the run's length: thousands of roundings of an instant; what jumps between has two sides
 ONE_PLACE = 1e-12  # of the largest coordinate: a scene of less extent is one place, whose size is taken as 1 m
 IN_PLANE = 1e-12  # of the body's size, or of coordinates along the normal: nearer to a cutting plane counts as in it
 LEAST_EXTENT = 1e-9  # [m] what IN_PLANE is measured by where all lies in the origin

@@ -33,13 +33,17 @@ def parse(text: str) -> Measure:
 def write(asked: Measure, study: Study, form: str) -> str:
     """The number as text, all its digits; as JSON with its instant. What is not known beyond the horizon is `?`."""
     try:
-        number, at = value(asked, study)
+        number, at, place = value(asked, study)
         horizon = lost_from(asked, study)
     except NotOneNumber as error:
         raise UsageError(Problem("bad-option", f"--measure: {error.problems[0].message}", hint=HINT)) from None
     if form == "json":
         block = {"measure": f"{asked.how} {asked.path}".strip(), "value": number, "at": at}
-        return dump(block if horizon is None else block | {"value": None, "at": None, "horizon": horizon})
+        if horizon is not None:
+            block |= {"value": None, "at": None, "horizon": horizon}
+        elif place is not None and not math.isnan(number):
+            block |= place._asdict()
+        return dump(block)
     if horizon is not None:
         return f"{UNKNOWN}\n"
     if math.isnan(number):

@@ -23,11 +23,11 @@ from heuncli.report.table import Table, markdown, plain
 from heuncli.results import Results
 from heuncli.results_schema import REPORTS
 from heuncli.spec.load import load
+from heuncli.study.extremes import Searched
 from heuncli.study.solve import Options, Study, solve
 
 ENDINGS = {".json": "json", ".csv": "csv", ".md": "markdown", ".txt": "table", "": "table"}
 NOT_SEARCHED = "extremes among the samples only: too many quantities to search between them"
-ROUNDS = 2  # of the search for extremes: a table shows six digits
 TABLES = ("table", "markdown")
 
 
@@ -97,10 +97,15 @@ def _report(request: Run, form: str, study: Study, labels: Labels, wanted: froze
 
         return to_json(shown) if form == "json" else to_csv(shown, labels)
     page = page_of(study.results, labels, study.magnitudes)
-    if request.all or at is not None or len(study.results.time) == 1:
-        tables = page.instants(shown, every_cut=request.all)
+    one = len(study.results.time) == 1
+    extremes = None
+    if not (request.all or at is not None or (one and not page.has_runs)):
+        along = page.along if page.has_runs else None
+        searched = Searched(page.columns, page.groups(), page.errors(), page.even(), along)
+        extremes = study.extremes(searched, wanted, whole=True)
+    if extremes is None or one:
+        tables = page.instants(shown, every_cut=request.all, searched=extremes)
     else:
-        extremes = study.extremes(page.columns, page.groups(), wanted, ROUNDS)
         tables = page.extremes(extremes)
         if not extremes.searched:
             tables.append(Table("", notes=(NOT_SEARCHED,)))

@@ -33,7 +33,9 @@ class Cuts:
     for a single cut; side (k,): +1 just before what lies in the plane, -1 just beyond, 0 nothing there; near: what
     counts as in it; pieces (k, 4, 4): pseudo-inertias about the body's origin; centroids (k, 3) of the cross-sections,
     None without shapes; about: where moments are taken: "at", "centroid", or (body, point);
-    properties, strength [Pa]: for stresses, None where not given.
+    properties, strength [Pa]: for stresses, None where not given; form: the shapes that are cut.
+
+    Where cuts move along a body from instant to instant, points, pieces and centroids have an axis of instants first.
     """
 
     name: str
@@ -52,6 +54,11 @@ class Cuts:
     properties: Any
     strength: float | None
     warnings: tuple[str, ...]
+    form: Form | None = None
+
+    def laid_for(self, on: Sequence[object]) -> Cuts:
+        """Themselves, whatever acts on the body."""
+        return self
 
 
 def attached(mechanism: Mechanism, body: int) -> list[tuple[str, Array]]:
@@ -131,7 +138,7 @@ def _lay(mechanism: Mechanism, spec: Any, name: str, section: Any, index: dict[s
     return Cuts(
         name=name, body=body, n=n, e1=e1, e2=np.cross(n, e1), points=points, s=s, side=side, near=near, pieces=pieces,
         centroids=centroids, about=about, line=section.reduce_to == "line", properties=section.properties,
-        strength=section.strength, warnings=warnings,
+        strength=section.strength, warnings=warnings, form=form,
     )  # fmt: skip
 
 

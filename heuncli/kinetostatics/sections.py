@@ -94,6 +94,8 @@ def piece_loads(cuts: Cuts, A: Array, on: Sequence[Attachment]) -> tuple[Array, 
     levers from the cut's point are in the second factor. A load whose point moves over the body may change pieces and
     is added by itself.
     """
+    if cuts.points.ndim == 3:
+        return moving_piece_loads(cuts, A, on)
     P, p = cuts.pieces.transpose(1, 2, 0), cuts.points.T
     fixed = [a for a in on if a.at.ndim == 1]
     at = np.array([a.at for a in fixed]).reshape(-1, 3, 1)
@@ -121,6 +123,21 @@ def piece_loads(cuts: Cuts, A: Array, on: Sequence[Attachment]) -> tuple[Array, 
                 moment[i] += (
                     a.moment[:, i, None] + lever_j * a.force[:, k, None] - lever_k * a.force[:, j, None]
                 ) * there
+    return force, moment
+
+
+def moving_piece_loads(cuts: Cuts, A: Array, on: Sequence[Attachment]) -> tuple[Array, Array]:
+    """The same for cuts that move along the body: pieces (n_t, k, 4, 4), points (n_t, k, 3)."""
+    p = cuts.points.transpose(2, 0, 1)
+    inertia = -np.einsum("itj,tkjl->iltk", A, cuts.pieces)
+    force = inertia[:, 3].copy()
+    moment = np.stack([inertia[2, 1] - inertia[1, 2], inertia[0, 2] - inertia[2, 0], inertia[1, 0] - inertia[0, 1]])
+    moment -= crossed(p, force)
+    for a in on:
+        F = a.force.T[:, :, None] * on_piece(cuts, a.at)
+        force += F
+        moment += crossed(np.moveaxis(np.atleast_2d(a.at), 1, 0)[:, :, None] - p, F)
+        moment += a.moment.T[:, :, None] * on_piece(cuts, a.at)
     return force, moment
 
 
@@ -194,9 +211,14 @@ def along(axis: Array, v: Array, out: Array | None = None) -> Array:
 def planes(cuts: Cuts, states: BodyStates) -> Planes:
     """Points of the cuts, of their moments and their centroids at the asked instants."""
     R, x = states.R[:, cuts.body], states.x[:, cuts.body]
-    shape = (3, len(R), len(cuts.points))
-    at = np.broadcast_to(cuts.points.T[:, None], shape)
-    centre = at if cuts.centroids is None else np.broadcast_to(cuts.centroids.T[:, None], shape)
+    shape = (3, len(R), cuts.points.shape[-2])
+
+    def over_instants(points: Array) -> Array:
+        moves = points.ndim == 3
+        return np.broadcast_to(points.transpose(2, 0, 1) if moves else points.T[:, None], shape)
+
+    at = over_instants(cuts.points)
+    centre = at if cuts.centroids is None else over_instants(cuts.centroids)
     about = centre if cuts.about == "centroid" else at
     if not isinstance(cuts.about, str):
         owner, point = cuts.about
@@ -270,8 +292,9 @@ def reduction_line(where: Planes, force: Array, moment: Array) -> Block:
     n = cuts.n[:, None, None]
     N, T = along(cuts.n, force), along(cuts.n, moment)
     Q, M_t = force - n * N, moment - n * T
-    reach = float(np.abs(cuts.points - cuts.points.mean(axis=0)).max())
-    reach = reach or float(np.sqrt(np.abs(cuts.pieces[:, :3, :3]).max() / cuts.pieces[:, 3, 3].max()))
+    points = cuts.points.reshape(-1, 3)
+    reach = float(np.abs(points - points.mean(axis=0)).max())
+    reach = reach or float(np.sqrt(np.abs(cuts.pieces[..., :3, :3]).max() / cuts.pieces[..., 3, 3].max()))
     size = np.sqrt(np.sum(force**2, axis=0)) + np.sqrt(np.sum(moment**2, axis=0)) / reach
     q = np.sqrt(np.sum(Q**2, axis=0))
     no_N, no_Q = np.abs(N) <= tolerances.NO_FORCE * size, q <= tolerances.NO_FORCE * size

@@ -15,7 +15,7 @@ from heuncli.report.numbers import OPEN, OPEN_NOTE, Certainty, Style, kind_of, l
 from heuncli.report.plans import FOUNDATION, MASS_EFFECT, Plan
 from heuncli.report.quantities import Series
 from heuncli.results import Array, Results
-from heuncli.results_schema import XYZ
+from heuncli.results_schema import MAGNITUDES, XYZ
 
 # Vector -> the short name its components begin with. What is not listed is called by its own name.
 SYMBOLS = {
@@ -38,7 +38,6 @@ FAMILIES = {
     **dict.fromkeys(("tilting", "T", "M1", "M2", "moment_orbital", "moment_spin"), "moment"),
 }
 POSITIONS = frozenset({"position", "center", "point", "direction"})  # vectors whose length means nothing
-EVEN = frozenset({"radial", "tilting"})
 FREE = "nothing stands on the ground: the scene is free"
 SPOKEN_UNITS = {"Pa": ("MPa", 1e-6)}  # units of the tables that are not SI: the unit shown and the factor
 
@@ -154,7 +153,7 @@ def rows_of(series: Series) -> list[Row]:
     quantity, (unit, size) = series.quantity, SPOKEN_UNITS.get(series.unit, (series.unit, 1.0))
     spoken, family, kind = quantity.replace("_", " "), FAMILIES.get(quantity, quantity), kind_of(series)
     if len(series.components) == 1:
-        return [Row(spoken, unit, family, kind, size * series.values[:, 0], even=quantity in EVEN)]
+        return [Row(spoken, unit, family, kind, size * series.values[:, 0], even=quantity in MAGNITUDES)]
     symbol = SYMBOLS.get(quantity, f"{spoken} ")
     vector = "" if quantity in POSITIONS else symbol.strip()
     columns = zip(series.components, series.values.T, strict=True)

@@ -21,6 +21,7 @@ from heuncli import tolerances
 from heuncli.report.labels import Labels
 from heuncli.report.quantities import Series, walk
 from heuncli.results import Array, Estimate, Magnitudes, Results
+from heuncli.results_schema import kind_of_error
 
 DIGITS = 6
 LARGE, SMALL = 1e7, 1e-4  # families beyond these are written with an exponent
@@ -29,7 +30,6 @@ OPEN_NOTE = "open: the laws of rigid bodies do not give this number (redundant s
 ZERO_NOTE = "what is 0 throughout is left out"
 UNKNOWN = "?"
 UNKNOWN_NOTE = "?: the estimated error is as large as the number, as beyond the horizon or beside a singular pose"
-KINDS = {"foundation": "foundation", "joints": "reactions", "sections": "sections", "energy": "energy"}
 LOADS: tuple[Literal["reactions", "drives", "foundation", "sections"], ...] = (
     "reactions", "drives", "foundation", "sections",
 )  # fmt: skip
@@ -122,15 +122,7 @@ def certainty(results: Results, labels: Labels, of: Magnitudes) -> Certainty:
 
 def kind_of(series: Series) -> str:
     """Of which estimate the error of a quantity is."""
-    if series.kind == "joints" and series.quantity == "drive":
-        return "drives"
-    if series.kind == "foundation" and series.name.startswith("supports."):
-        return "reactions"
-    if series.kind == "foundation" and series.name == "axis":
-        return "axis"
-    if series.kind == "forces":
-        return "motion" if series.quantity in ("length", "rate") else "forces"
-    return KINDS.get(series.kind, "motion")
+    return kind_of_error(series.kind, series.name, series.quantity)
 
 
 def _of_wrench(kind: str, relative: float, scales: Scales, size: float) -> dict[tuple[str, str], float]:

@@ -13,14 +13,14 @@ from typing import Any, NamedTuple
 import numpy as np
 
 from heuncli.report import extremes, instants, runs
-from heuncli.report.blocks import Block, build
+from heuncli.report.blocks import Block, Row, build
 from heuncli.report.labels import Labels
 from heuncli.report.numbers import Certainty, certainty, with_axis
 from heuncli.report.plans import PLANS
 from heuncli.report.quantities import Series, walk, walk_impulse
 from heuncli.report.sums import sums_table
 from heuncli.report.table import Table
-from heuncli.results import Array, CertainSum, Extremes, Magnitudes, Results
+from heuncli.results import Array, CertainSum, Extremes, Magnitudes, Mask, Place, Results
 from heuncli.results_schema import REPORT_OF, REPORTS, quantity
 
 TABLE_DEFAULT = frozenset(REPORTS) - {"motion", "points"}
@@ -40,25 +40,36 @@ class Page(NamedTuple):
     beyond: Results | None = None
 
     def columns(self, results: Results) -> Array:
-        """What is searched, (n_t, n): all rows of all blocks (magnitudes squared), then the cuts of runs."""
-        columns = [
-            (row.values**2 if row.even else row.values)[:, None]
-            for block in self._lasting(results)
-            for group in block.groups
-            for row in group.rows
-        ]
-        columns += [runs.columns(run) for run in runs.runs_of(results, self.labels)]
-        return np.concatenate(columns, axis=1) if columns else np.zeros((len(results.time), 0))
+        """What is searched, (n_t, n): all rows of all blocks, magnitudes squared."""
+        rows = [row.values**2 if row.even else row.values for row in self._rows(results)]
+        return np.stack(rows, axis=1) if rows else np.zeros((len(results.time), 0))
+
+    def along(self, results: Results) -> list[tuple[str, Array]]:
+        """The resultants of the runs of cuts, each (n_t, n_cuts), with the names of their runs."""
+        made = runs.runs_of(results, self.labels)
+        return [(run.name, values) for run in made for values in run.values]
+
+    @property
+    def has_runs(self) -> bool:
+        """Whether there are runs of cuts."""
+        return any("s" in section for section in self.results.sections.values())
 
     def groups(self) -> list[list[int]]:
-        """Which columns are compared with each other: a row alone, a resultant over all cuts of its run."""
-        n = sum(len(group.rows) for block in self._lasting(self.results) for group in block.groups)
-        groups = [[column] for column in range(n)]
-        for run in runs.runs_of(self.results, self.labels):
-            for _ in runs.RESULTANTS:
-                groups.append(list(range(n, n + len(run.s))))
-                n += len(run.s)
-        return groups
+        """Which columns are compared with each other: each is on its own."""
+        return [[column] for column in range(len(self._rows(self.results)))]
+
+    def errors(self) -> Array:
+        """How well the numbers are known, of all rows and of the resultants of runs, (n,)."""
+        errors = [self.certain.error(row.kind, row.unit) for row in self._rows(self.results)]
+        for _ in runs.runs_of(self.results, self.labels):
+            errors += [self.certain.error("sections", unit) for _, unit in runs.RESULTANTS]
+        return np.array(errors)
+
+    def even(self) -> Mask:
+        """Which of them are squares, (n,)."""
+        rows = [row.even for row in self._rows(self.results)]
+        more = len(runs.RESULTANTS) * len(runs.runs_of(self.results, self.labels))
+        return np.array(rows + [False] * more, dtype=bool)
 
     def extremes(self, searched: Extremes) -> list[Table]:
         """The tables with extremes, from those searched for each of `groups`."""
@@ -74,27 +85,32 @@ class Page(NamedTuple):
             beyond = last[own] if last is not None else None
             tables += extremes.extremes_table(block, times, part._replace(low=low, high=high), self.certain, beyond)
             start += len(rows)
-        column = start
-        for run in runs.runs_of(self.results, self.labels):
-            own = slice(start, start + len(runs.RESULTANTS))
-            first = column + len(run.s) * np.arange(len(runs.RESULTANTS))
-            part = searched.part(own)
-            cuts = part._replace(low_column=part.low_column - first, high_column=part.high_column - first)
-            tables += runs.extremes_tables(run, times, cuts, self.certain)
-            start, column = own.stop, column + len(run.s) * len(runs.RESULTANTS)
+        for k, run in enumerate(runs.runs_of(self.results, self.labels)):
+            tables += runs.extremes_tables(run, times, *self._of_run(searched, k), self.certain)
         return [*tables, *self._ending()]
 
-    def instants(self, results: Results, *, every_cut: bool = False) -> list[Table]:
-        """The tables at the instants of `results`, which is the same run at any instants."""
+    def instants(
+        self, results: Results, *, every_cut: bool = False, searched: Extremes | None = None
+    ) -> list[Table]:
+        """The tables at the instants of `results`, which is the same run at any instants; searched: where it is one."""
         horizon = self.results.accuracy.get("horizon")
         unknown = frozenset(results.accuracy.get("unknown", ()))
         certain = with_axis(self.certain._replace(beside=unknown), results, self.of)
         tables: list[Table] = []
         for block in _blocks(results, self.labels):
             tables += instants.instants_tables(block, results.time, horizon, certain)
-        for run in runs.runs_of(results, self.labels):
-            tables += runs.instants_tables(run, results.time, horizon, self.certain, every=every_cut)
+        for k, run in enumerate(runs.runs_of(results, self.labels)):
+            if searched is not None:
+                tables.append(runs.extremes_table(run, results.time, *self._of_run(searched, k), self.certain))
+            made = runs.instants_tables(run, results.time, horizon, self.certain, every=every_cut)
+            tables += [made[0]._replace(heading=""), *made[1:]] if searched is not None else made
         return [*tables, *self._ending()]
+
+    def _of_run(self, searched: Extremes, k: int) -> tuple[Extremes, tuple[tuple[Place, Place], ...]]:
+        """The extremes of the resultants of a run, and their places."""
+        n = len(runs.RESULTANTS)
+        first = len(searched.low) - len(searched.places) + n * k
+        return searched.part(slice(first, first + n)), searched.places[n * k : n * (k + 1)]
 
     def _last_values(self) -> Array | None:
         """The values of all rows at the last instant, where that is beyond the horizon."""
@@ -102,6 +118,9 @@ class Page(NamedTuple):
             return None
         blocks = self._lasting(self.beyond)
         return np.array([row.values[-1] for block in blocks for group in block.groups for row in group.rows])
+
+    def _rows(self, results: Results) -> list[Row]:
+        return [row for block in self._lasting(results) for group in block.groups for row in group.rows]
 
     def _lasting(self, results: Results) -> list[Block]:
         return _blocks(results, self.labels, lasting=True)

@@ -22,10 +22,11 @@ from heuncli.report.numbers import (
     write_times,
 )
 from heuncli.report.table import Column, Table
-from heuncli.results import Array, Extremes, Indices, Results
+from heuncli.results import Array, Extremes, Indices, Place, Results
 from heuncli.results_schema import row_of
 
 RESULTANTS = tuple((name, row_of(f"sections.SECTION.{name}").unit()) for name in ("N", "Q1", "Q2", "T", "M1", "M2"))
+STRETCH_NOTE = "extremes of the whole stretch, between the cuts and at its corners, too"
 MOST_CUTS = 25  # of a diagram: evenly spaced cuts, with all jumps and extremes
 
 
@@ -57,36 +58,43 @@ def runs_of(results: Results, labels: Labels) -> list[Run]:
     return runs
 
 
-def columns(run: Run) -> Array:
-    """The resultants as columns for the search, (n_t, 6·n_cuts), one resultant after the other."""
-    n_t, n_cuts = run.values.shape[1:]
-    return run.values.transpose(1, 0, 2).reshape(n_t, len(RESULTANTS) * n_cuts)
+def extremes_tables(
+    run: Run, times: Array, extremes: Extremes, places: Sequence[tuple[Place, Place]], certain: Certainty
+) -> list[Table]:
+    """Extremes over the whole stretch and time, (6,) each with their places; at each cut the value farthest from 0."""
+    styles = _styles(run, certain, extremes)
+    envelope = np.take_along_axis(run.values, _farthest(run.values)[:, None, :], axis=1)[:, 0, :]
+    kept = thinned(run)
+    notes = [f"envelope: at each cut the value farthest from zero in {run.values.shape[1]} samples" + _rest(run, kept)]
+    table = extremes_table(run, times, extremes, places, certain)
+    return [table, _diagram(run, envelope, kept, styles, notes)]
 
 
-def extremes_tables(run: Run, times: Array, extremes: Extremes, certain: Certainty) -> list[Table]:
-    """Extremes over position and time, (6,) each with the cut as column; at each cut the value farthest from zero."""
+def extremes_table(
+    run: Run, times: Array, extremes: Extremes, places: Sequence[tuple[Place, Place]], certain: Certainty
+) -> Table:
+    """The lowest and the highest of each resultant over the whole stretch and time, with where and when."""
     styles = _styles(run, certain, extremes)
     span = float(np.ptp(times))
-    rows = []
+    rows: list[tuple[str, ...]] = []
     for i, (label, unit) in enumerate(RESULTANTS):
         low, high = write([float(extremes.low[i]), float(extremes.high[i])], styles[unit])
         if low == high:
             rows.append((label, unit, low, "", "", high, "", ""))
             continue
-        cuts = int(extremes.low_column[i]), int(extremes.high_column[i])
         clock = write_times([float(extremes.low_at[i]), float(extremes.high_at[i])], span)
         low_at, high_at = (
-            "" if _steady(run.values[i, :, cut], styles[unit]) else t for cut, t in zip(cuts, clock, strict=True)
+            "" if _steady(run.values[i][:, _nearest(run, place)], styles[unit]) else t
+            for place, t in zip(places[i], clock, strict=True)
         )
-        positions = _positions(run.s)
-        rows.append((label, unit, low, positions[cuts[0]], low_at, high, positions[cuts[1]], high_at))
+        where = [_position(place, run.s) for place in places[i]]
+        rows.append((label, unit, low, where[0], low_at, high, where[1], high_at))
     heads = ("min", "at s [m]", "t [s]", "max", "at s [m]", "t [s]")
-    lead = (Column("", "left"), Column("", "left"))
-    table = Table(run.heading, (*lead, *(Column(head) for head in heads)), tuple(rows))
-    envelope = np.take_along_axis(run.values, _farthest(run.values)[:, None, :], axis=1)[:, 0, :]
-    kept = thinned(run)
-    notes = [f"envelope: at each cut the value farthest from zero in {run.values.shape[1]} samples" + _rest(run, kept)]
-    return [table, _diagram(run, envelope, kept, styles, notes)]
+    columns = (Column("", "left"), Column("", "left"), *(Column(head) for head in heads))
+    if len(times) == 1:
+        columns, rows = columns[:4] + columns[5:7], [(*row[:4], *row[5:7]) for row in rows]
+    is_open = any(OPEN in row for row in rows)
+    return Table(run.heading, columns, tuple(rows), (STRETCH_NOTE, *((OPEN_NOTE,) if is_open else ())))
 
 
 def instants_tables(
@@ -170,6 +178,17 @@ def _farthest(values: Array) -> Indices:
 def _steady(values: Array, how: Style) -> bool:
     """Whether the values of one cut are equal at all instants to the digits shown: then an extreme has no instant."""
     return how.write(float(np.min(values))) == how.write(float(np.max(values)))
+
+
+def _nearest(run: Run, place: Place) -> int:
+    """The asked cut at a place, or the nearest to it."""
+    return int(np.argmin(np.abs(run.s - place.s))) if place.cut is None else place.cut
+
+
+def _position(place: Place, s: Array) -> str:
+    """A place in words: the distance, and between the ends the side of what acts there."""
+    side = [place.side] if place.side and 0.0 < place.s < s[-1] else []
+    return " ".join([*write([place.s], style(largest(s), 0.0)), *side])
 
 
 def _positions(s: Array) -> list[str]:

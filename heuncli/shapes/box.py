@@ -94,6 +94,9 @@ class Box(Thick):
         middle, reach = float(n @ self.center), float(np.abs(self.axes.T @ n) @ self.half)
         return middle - reach, middle + reach
 
+    def corners(self, n: Array) -> Array:
+        return np.asarray(n @ self.center + CORNERS @ (self.half * (self.axes.T @ n)))
+
     def area(self, n: Array, d: Array) -> tuple[Array, Array]:
         at = self.columns(n, d)
         i, j, k = at.order

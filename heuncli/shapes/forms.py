@@ -120,6 +120,10 @@ class Form:
         low, high = zip(*(part.extent(n) for part in self.parts), strict=True)
         return min(low), max(high)
 
+    def corners(self, n: Array) -> Array:
+        """Where along n the cross-sections change their form [m]."""
+        return np.concatenate([part.corners(n) for part in self.parts])
+
     def masses_in_plane(self, n: Array, d: Array) -> NDArray[np.bool_]:
         """Whether a point mass lies in the plane, (k,): such a cut needs a side."""
         return self.in_plane(Point, n, d)

@@ -163,6 +163,12 @@ class Frustum(Thick):
         reach = line.s * np.array(self.outer)
         return float((middle - reach).min()), float((middle + reach).max())
 
+    def corners(self, n: Array) -> Array:
+        line = self.lines(n, np.zeros(1))
+        middle = n @ self.start + line.c * np.array([0.0, self.length])
+        rims = line.s * np.array([self.outer, self.inner])
+        return np.concatenate([(middle - rims).ravel(), (middle + rims).ravel()])
+
     def along(self, line: Lines, radii: tuple[float, float]) -> tuple[Array, Array, Flags]:
         """From where to where (k,) the cut's middle line, x = d s + c p, z = d c - s p, is within these radii and ends.
 

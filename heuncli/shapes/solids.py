@@ -31,6 +31,9 @@ class Solid(Protocol):
     def extent(self, n: Array) -> tuple[float, float]:
         """Least and largest n.x."""
 
+    def corners(self, n: Array) -> Array:
+        """Where along n the cross-sections change their form: between these all is smooth in n.x."""
+
     def area(self, n: Array, d: Array) -> tuple[Array, Array]:
         """Area of the cross-sections (k,) [m2] and area times centroid (k, 3) [m3]."""
 
@@ -46,6 +49,11 @@ class Thick:
 
     def lies_in(self, n: Array, d: Array, near: float) -> NDArray[np.bool_]:
         return np.zeros(len(d), dtype=bool)
+
+
+def ends(solid: Solid, n: Array) -> Array:
+    """The corners of what is smooth from one end to the other."""
+    return np.array(solid.extent(n))
 
 
 @record
@@ -66,6 +74,9 @@ class Point:
     def extent(self, n: Array) -> tuple[float, float]:
         h = float(n @ self.at)
         return h, h
+
+    def corners(self, n: Array) -> Array:
+        return ends(self, n)
 
     def area(self, n: Array, d: Array) -> tuple[Array, Array]:
         return np.zeros(len(d)), np.zeros((len(d), 3))
@@ -113,6 +124,9 @@ class Rod:
     def extent(self, n: Array) -> tuple[float, float]:
         a, b = float(n @ self.start), float(n @ self.end)
         return min(a, b), max(a, b)
+
+    def corners(self, n: Array) -> Array:
+        return ends(self, n)
 
     def area(self, n: Array, d: Array) -> tuple[Array, Array]:
         return np.zeros(len(d)), np.zeros((len(d), 3))
@@ -163,6 +177,9 @@ class Ball(Thick):
         """Centres (k, 3) and squared radii (k,), 0 where the plane misses the ball."""
         h = d - n @ self.center
         return self.center + h[:, None] * n, np.maximum((self.radius - h) * (self.radius + h), 0.0)
+
+    def corners(self, n: Array) -> Array:
+        return ends(self, n)
 
     def area(self, n: Array, d: Array) -> tuple[Array, Array]:
         centers, squares = self.circle(n, d)

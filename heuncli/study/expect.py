@@ -62,7 +62,7 @@ def compare(study: Study, item: Expect) -> Case:
 def _found(study: Study, item: Expect) -> Array:
     results: Results = study.results
     if item.peak:
-        return np.asarray(peak(study, item.of, item.peak)[0])
+        return np.asarray(peak(study, item.of, item.peak).value)
     found = find(results, item.of)
     if not found.timed:
         return found.values

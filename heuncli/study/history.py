@@ -17,6 +17,7 @@ from heuncli.integration.runner import Recovered, Runner, check_deadline, discon
 from heuncli.integration.singular import singular_poses
 from heuncli.integration.solvable import require_start
 from heuncli.integration.unseen import unseen
+from heuncli.mechanism.model import Mechanism
 from heuncli.records import record
 from heuncli.results import Array, Estimate
 from heuncli.study.at_rest import require_motion
@@ -24,8 +25,10 @@ from heuncli.study.extremes import distinct
 from heuncli.study.kinds import Kinds
 from heuncli.study.setup import Setup
 
-SEARCH_PER_STEP = 4  # instants looked at in each step of the integrator when extremes are searched
-MOST_SEARCHED = 20_000
+WITHIN_STEP = (0.0, 0.23, 0.52, 0.77)  # of each step of the integrator: where it is looked at for extremes first
+TURNED = np.pi / 8.0  # rad: so far a body may turn between two of these instants, an eighth period of what goes twice
+FINER = 4  # times as closely the expressions in time are looked at
+MOST_SEARCHED = 100_000
 LOOKS = 8  # runs made again for what loads in time did unseen: each finds the next of a narrow pulse's flanks
 
 
@@ -104,15 +107,48 @@ def resample(runner: Runner, history: History, times: Array) -> Recovered:
     return recovered_at(runner, times, runner.resample(history.checked.run, times), history.jumps)
 
 
-def search_times(history: History) -> Array:
-    """Instants close enough to bracket every extreme: the asked ones and some within each step, (n,) ascending."""
+def search_times(setup: Setup, history: History) -> tuple[Array, bool]:
+    """Instants close enough to bracket every extreme, (n,) ascending; and whether there are enough of them.
+
+    The asked ones; some within each step, at uneven distances, so that nothing that repeats itself looks at rest; both
+    sides of all jumps; where loads and drives in time have their own extremes; and so many that no body turns far
+    between two of them: a rotor that is driven, or spins on, needs no steps, but its loads turn.
+    """
     times = history.times
     if history.checked is None:
-        return times
+        return times, True
     marks = np.concatenate([[0.0], history.checked.run.ends])
-    per_step = max(1, min(SEARCH_PER_STEP, MOST_SEARCHED // max(len(marks), 1)))
-    inner = (marks[:-1, None] + np.diff(marks)[:, None] * (np.arange(per_step) / per_step)).ravel()
+    per_step = max(1, min(len(WITHIN_STEP), MOST_SEARCHED // max(len(marks), 1)))
+    inner = (marks[:-1, None] + np.diff(marks)[:, None] * np.array(WITHIN_STEP[:per_step])).ravel()
     # a jump has a value on either side of it
     grid = np.concatenate([inner, [t for pair in one_sided_limits(history.jumps) if pair[0] > 0.0 for t in pair]])
-    grid = grid[(grid > times[0]) & (grid < times[-1])]
-    return distinct(np.concatenate([times, grid]))
+    grid = distinct(np.concatenate([times, grid[(grid > times[0]) & (grid < times[-1])]]))
+    grid = distinct(np.concatenate([grid, *own_extremes(setup.scene.mechanism, grid)]))
+    parts = np.maximum(1, np.ceil(turned_between(setup, history, grid) / TURNED)).astype(int)
+    enough = per_step == len(WITHIN_STEP) and int(parts.sum()) <= MOST_SEARCHED
+    parts = np.minimum(parts, max(1, MOST_SEARCHED // len(grid))) if not enough else parts
+    first = np.repeat(np.arange(len(parts)), parts)
+    share = (np.arange(len(first)) - np.repeat(np.cumsum(parts) - parts, parts)) / parts[first]
+    return np.append(grid[first] + share * np.diff(grid)[first], grid[-1:]), enough
+
+
+def own_extremes(mechanism: Mechanism, grid: Array) -> list[Array]:
+    """Where loads and drives in time alone are highest and lowest, as a finer grid shows them."""
+    in_time = {e for e in mechanism.expressions() if e.time_dependent and not e.uses}
+    if not in_time or len(grid) < 2:
+        return []
+    fine = (grid[:-1, None] + np.diff(grid)[:, None] * (np.arange(FINER) / FINER)).ravel()
+    found = []
+    for expression in in_time:
+        change = np.diff(np.array(expression.sample(fine.tolist())))
+        found.append(fine[1:-1][change[:-1] * change[1:] < 0.0])
+    return found
+
+
+def turned_between(setup: Setup, history: History, grid: Array) -> Array:
+    """The largest angle [rad] by which any body turns between neighbouring instants, (n - 1,)."""
+    driven = any(joint.drive is not None for joint in setup.scene.mechanism.joints)
+    known = resample(setup.runner, history, grid) if driven else history.recovered
+    omega = np.sqrt(np.nan_to_num(np.sum(known.bodies["omega"] ** 2, axis=2)).max(axis=1, initial=0.0))
+    omega = np.interp(grid, known.times, omega)
+    return np.asarray(np.maximum(omega[1:], omega[:-1]) * np.diff(grid))

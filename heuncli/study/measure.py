@@ -2,15 +2,17 @@
 
 from __future__ import annotations
 
+from collections.abc import Sequence
 from typing import Literal, NamedTuple
 
 import numpy as np
 
 from heuncli import tolerances
 from heuncli.errors import HeunError, Problem
-from heuncli.results import Array, Results
+from heuncli.results import Array, Place, Results
 from heuncli.results_paths import find
-from heuncli.results_schema import REPORT_OF
+from heuncli.results_schema import CUT, MAGNITUDES, REPORT_OF, kind_of_error, quantity
+from heuncli.study.extremes import Searched
 from heuncli.study.solve import Study
 
 NOT_CLAIMED = "from t = {:.4g} s on nothing is claimed"
@@ -44,8 +46,8 @@ def report_of(path: str) -> frozenset[str] | None:
     return frozenset({report}) if report else None
 
 
-def value(asked: Measure, study: Study) -> tuple[float, float | None]:
-    """The number, and its instant if it has one; nan is open. Raises NotOneNumber."""
+def value(asked: Measure, study: Study) -> Peak:
+    """The number, its instant and place if it has them; nan is open. Raises NotOneNumber."""
     results, path = study.results, asked.path
     there = find(results, path)
     if not there.timed:
@@ -53,16 +55,16 @@ def value(asked: Measure, study: Study) -> tuple[float, float | None]:
             raise NotOneNumber(f"{path} has no instants: give the path alone")
         if there.values.size != 1:
             raise NotOneNumber(f"{path} is {there.values.size} numbers: say which, as .x or .0")
-        return float(there.values.reshape(())), None
+        return Peak(float(there.values.reshape(())), None)
     if asked.how in ("max", "min", "abs"):
         return peak(study, path, asked.how)
     if asked.how == "at":
         at = instant_of(asked, results.time)
         there = find(study.resample(np.array([at])), path)
-        return one_number(path, there.values[0], there.of_vectors), at
+        return Peak(one_number(path, there.values[0], there.of_vectors), at)
     if asked.how or len(results.time) == 1:
         k = -1 if asked.how == "final" else 0
-        return one_number(path, there.values[k], there.of_vectors), float(results.time[k])
+        return Peak(one_number(path, there.values[k], there.of_vectors), float(results.time[k]))
     raise NotOneNumber(f"{path} runs over {len(results.time)} instants: say max, min, max abs, first, final or at T")
 
 
@@ -80,27 +82,57 @@ def lost_from(asked: Measure, study: Study) -> float | None:
     return float(horizon) if last >= horizon else None
 
 
-def peak(study: Study, path: str, how: str) -> tuple[float, float]:
-    """Highest (`max`), lowest (`min`) or largest (`abs`) value up to the horizon, between the samples too, and when.
+class Peak(NamedTuple):
+    """An extreme with its instant, and in a run of cuts its place."""
 
-    A vector counts by its magnitude, a run of cuts over all its cuts.
+    value: float
+    at: float | None
+    place: Place | None = None
+
+
+def peak(study: Study, path: str, how: str) -> Peak:
+    """Highest (`max`), lowest (`min`) or largest (`abs`) value up to the horizon, between the samples too; where, when.
+
+    A vector counts by its magnitude, a run of cuts over its whole stretch.
     """
     asked = find(study.results, path)
-    shape, vector = asked.values.shape[1:], asked.of_vectors
+    even = asked.of_vectors or asked.keys[-1] in MAGNITUDES
 
     def columns(results: Results) -> Array:
         values = find(results, path).values
-        flat = values.reshape(len(values), -1)
-        # The square of a magnitude is smooth where the magnitude is zero.
-        return np.einsum("ijk,ijk->ij", *2 * [flat.reshape(len(values), -1, 3)]) if vector else flat
+        # the square of a magnitude is smooth where the magnitude is zero
+        if asked.of_vectors:
+            values = np.einsum("...k,...k->...", values, values)
+        elif even:
+            values = values * values
+        return values.reshape(len(values), -1)
 
-    n = int(np.prod(shape, dtype=int)) // (3 if vector else 1)
-    bounds = study.extremes(columns, [list(range(n))], report_of(path))
+    def none(results: Results) -> Array:
+        return np.zeros((len(results.time), 0))
+
+    error = np.array([stated_error(study, asked.keys)])
+    n = columns(study.results).shape[1]
+    searched = Searched(columns, [list(range(n))], error, np.array([even]))
+    if CUT in asked.axes:
+        name, bent = asked.keys[1], asked.keys[2] in ("stress", "line")
+        searched = Searched(none, [], error, np.array([even]), lambda results: [(name, columns(results))], bent)
+    bounds = study.extremes(searched, report_of(path))
     low, high = float(bounds.low[0]), float(bounds.high[0])
     if how == "abs" and abs(low) > abs(high):
         how, low = "min", abs(low)
-    result, at = (low, bounds.low_at) if how == "min" else (high, bounds.high_at)
-    return float(np.sqrt(result)) if vector else result, float(at[0])
+    result, at = (low + 0.0, bounds.low_at) if how == "min" else (high + 0.0, bounds.high_at)
+    place = bounds.places[0][0 if how == "min" else 1] if bounds.places else None
+    return Peak(float(np.sqrt(np.abs(result))) if even else result, float(at[0]), place)
+
+
+def stated_error(study: Study, keys: Sequence[str]) -> float:
+    """The error of the quantity under some keys, as the tables state it; nan where they state none."""
+    row, of = quantity(keys), study.magnitudes
+    if row is None:
+        return np.nan
+    kind = kind_of_error(keys[0], ".".join(keys[1:-1]), keys[-1])
+    known = [(of.errors.get((kind, unit), 0.0), tolerances.WRITTEN * of.by_unit.get(unit, 0.0)) for unit in row.units]
+    return min(map(max, known)) or np.nan
 
 
 def one_number(path: str, values: Array, of_vectors: bool) -> float:

@@ -193,8 +193,9 @@ def sections(recovery: Recovery) -> Block:
     from heuncli.kinetostatics.sections import attachments, section
 
     actions = [*whole_joint_actions(recovery.joints), *recovery.applied]
-    for cuts in recovery.setup.cuts:
-        on = attachments(cuts.body, states, actions)
+    for asked in recovery.setup.cuts:
+        on = attachments(asked.body, states, actions)
+        cuts = asked.laid_for(on)
         if stress is None:
             block[cuts.name] = section(cuts, states, scene.mechanism.gravity, on, {}, scene.mechanism.planar)
             continue

@@ -21,7 +21,10 @@ if TYPE_CHECKING:  # loaded where a scene has sections
 
 @record
 class Setup:
-    """All that is known of a scene before anything moves; method is None where nothing is integrated."""
+    """All that is known of a scene before anything moves; method is None where nothing is integrated.
+
+    cuts: of the sections, as asked; in a search runs of cuts as whole stretches stand for them.
+    """
 
     spec: Spec
     scene: PreparedScene

@@ -6,7 +6,6 @@ Impure: looks at the clock.
 from __future__ import annotations
 
 import time
-from collections.abc import Callable, Sequence
 from functools import cached_property
 from typing import Any
 
@@ -15,18 +14,24 @@ import numpy as np
 from heuncli.errors import Problem, SpecError
 from heuncli.integration.methods import METHODS
 from heuncli.kernel.choose import KERNEL
-from heuncli.records import record
+from heuncli.records import record, replace
 from heuncli.results import Accuracy, Array, Block, Extremes, Magnitudes, Results
 from heuncli.results_schema import REPORTS
 from heuncli.spec.models import Spec
 from heuncli.study import extremes
+from heuncli.study.extremes import Searched
 from heuncli.study.history import History, integrate, resample, search_times
 from heuncli.study.recover import Recovery, accuracy, blocks, certain_sums, recover
+from heuncli.study.sampled import Sampled
 from heuncli.study.setup import Setup, set_up
 from heuncli.study.warnings import beside_singular_poses, left_out, status, warnings
 from heuncli.version import VERSION
 
-MOST_SEARCHED = 1_000_000  # numbers to look at for extremes between the samples
+MOST_SEARCHED = 1_000_000  # numbers to look at for the extremes of a whole report; one measure has no such bound
+HALVED = 2  # pieces of a stretch along which stresses are looked at: they bend where loads change their sign
+CHUNK = 200_000  # body-instants whose answers are kept at a time
+TOO_FEW = "extremes are searched from {} instants: too few to see every turn and step of this motion"
+CUT_SHORT = "the search for extremes was ended before all was looked at that may lie higher"
 
 
 @record
@@ -142,13 +147,21 @@ class Study:
     @cached_property
     def search_times(self) -> Array:
         """Instants close enough to bracket every extreme, (n,) ascending."""
-        return search_times(self.history)
+        times, enough = search_times(self.setup, self.history)
+        if not enough:
+            self.later[TOO_FEW.format(len(times))] = None
+        if self.setup.cuts and len(times) > 1:
+            from heuncli.study.passages import may_pass, passages  # where there are sections
+
+            if may_pass(self.setup):
+                times = extremes.distinct(np.concatenate([times, passages(self._recovery, times)]))
+        return extremes.filled(times)
 
     def resample(self, times: Array) -> Results:
         """The same run at other instants within it (ascending)."""
         if self.history.checked is None:
             return self.results
-        results = self._composed(times)
+        results = self.composed(times)
         self.unknown.update(results.accuracy.get("unknown", ()))
         self.later.update(dict.fromkeys(w for w in results.warnings if w not in self.results.warnings))
         return results
@@ -163,16 +176,18 @@ class Study:
         """The instants looked at since the run at which rounding beside a singular pose reaches some numbers."""
         return set(self.results.accuracy.get("unknown", ()))
 
-    def only(self, times: Array, wanted: frozenset[str]) -> Results:
-        """Some reports' blocks at other instants of the same run, and nothing beside them."""
+    def only(self, times: Array, wanted: frozenset[str], setup: Setup | None = None) -> Results:
+        """Some reports' blocks at other instants of the same run, and nothing beside them; setup: with other cuts."""
         recovery = self._recovery(times)
+        recovery = recovery if setup is None else replace(recovery, setup=setup)
         own = self.results
         shown, unknown = blocks_of(self.history, recovery, wanted)
         accuracy: Accuracy = {"unknown": unknown.tolist()} if len(unknown) else {}
         times = recovery.recovered.times
         return Results(own.title, own.spec, own.version, own.model, own.status, times, accuracy=accuracy, **shown)
 
-    def _composed(self, times: Array) -> Results:
+    def composed(self, times: Array) -> Results:
+        """The usual reports at other instants of the same run."""
         results = compose(self.setup, self.history, self._recovery(times), self.options.wanted)
         results.work["seconds"] = dict(self.results.work["seconds"])
         return results
@@ -181,35 +196,36 @@ class Study:
         recovered = resample(self.setup.runner, self.history, times)
         return recover(self.setup, recovered, self.options.least_norm)
 
-    def extremes(
-        self,
-        columns: Callable[[Results], Array],
-        groups: Sequence[Sequence[int]],
-        wanted: frozenset[str] | None,
-        rounds: int = extremes.ROUNDS,
-    ) -> Extremes:
+    @property
+    def at_once(self) -> int:
+        """At how many instants results are made at a time."""
+        return max(50, CHUNK // max(1, len(self.setup.scene.mechanism.bodies)))
+
+    def stretched(self, bent: bool) -> Setup:
+        """The scene with its runs of cuts as whole stretches; bent: for what is no polynomial of the loads."""
+        from heuncli.study.stretches import stretched  # only runs of cuts are worth it
+
+        return stretched(self.setup, HALVED if bent else 0)
+
+    def extremes(self, searched: Searched, wanted: frozenset[str] | None, *, whole: bool = False) -> Extremes:
         """The extremes over the run, before its horizon, of the columns made of its results.
 
-        wanted: the reports that the columns are made of, None where that is not known. Where there are so many columns
-        that a search would outweigh the run, the extremes are those of the asked instants.
+        wanted: the reports that the columns are made of, None where that is not known. whole: of a whole report, where
+        there may be so many columns that a search would outweigh the run: then they are those of the asked instants.
         """
         times = self.search_times
-        if sum(map(len, groups)) * len(times) > MOST_SEARCHED:
-            times, rounds = self.results.time, 0
+        between = not (whole and len(searched.errors) * len(times) > MOST_SEARCHED)
+        times = times if between else self.results.time
         horizon = self.results.accuracy.get("horizon")
         if horizon is not None:
             times = times[times < horizon] if times[0] < horizon else times[:1]
-
-        unknown: list[float] = []
-
-        def sample(at: Array) -> Array:
-            if np.array_equal(at, self.results.time):
-                results = self.results
-            else:
-                results = self._composed(at) if wanted is None else self.only(at, wanted)
-            unknown.extend(results.accuracy.get("unknown", []))
-            return columns(results)
-
-        found = extremes.search(sample, times, groups, rounds)
-        self.later.update(dict.fromkeys(left_out(unknown)))
+        sampled = Sampled(self, searched, wanted, self.stretched(searched.bent) if searched.along else None)
+        found = extremes.search(
+            sampled.columns, times, sampled.groups, errors=searched.errors, even=searched.even, between=between,
+            most=extremes.MOST_COLUMNS if whole else None,
+        )  # fmt: skip
+        found = sampled.placed(found)
+        self.later.update(dict.fromkeys(left_out(sampled.unknown)))
+        if not found.complete:
+            self.later[CUT_SHORT] = None
         return found

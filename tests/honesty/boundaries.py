@@ -597,6 +597,7 @@ EXEMPT = {
     "LEAST_EXTENT": "what IN_PLANE is measured by where all lies in the origin",
     "OFF_AXIS": "two formulas for the same piece of a body of revolution",
     "QUADRATURE": "ends a quadrature",
+    "SIDE_BY_SIDE": "ends a search at a jump that nobody told of",
     "CONSTANT": "whether a peak of a thirteenth digit is looked for",
     "ZERO_COMPONENT": "the digits of a direction that is proposed",
     "PLACE_ROUNDING": "a summand of the estimate",

@@ -14,8 +14,7 @@ from heuncli.report.labels import JointInfo, Labels
 from heuncli.report.page import page_of
 from heuncli.report.table import plain
 from heuncli.results import Magnitudes, Results
-from heuncli.study import extremes as peaks
-from tests.shared.fakes import LABELS, MAGNITUDES, FakeStudy, pendulum, restrict
+from tests.shared.fakes import LABELS, MAGNITUDES, FakeStudy, found_extremes, pendulum, restrict
 
 ONE = np.array([0.5])
 SPECS = Path(__file__).parents[2] / "specs"
@@ -66,9 +65,7 @@ def test_a_steady_cut_has_no_instant() -> None:
 
     study = Steady(np.linspace(0.0, 1.0, 11))
     page = page_of(restrict(study.results, {"sections"}), LABELS, MAGNITUDES)
-    found = peaks.search(
-        lambda t: page.columns(restrict(study.resample(t), {"sections"})), study.search_times, page.groups()
-    )
+    found = found_extremes(study, page, {"sections"})
     lines = plain(page.extremes(found)[0]).splitlines()
     assert next(line.split() for line in lines if line.startswith("N ")) == ["N", "N", "0", "1.0", "3.0", "0"]
     assert next(line.split() for line in lines if line.startswith("M2"))[-3:] == ["2.52441", "0", "1.0"]

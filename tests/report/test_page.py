@@ -15,7 +15,7 @@ from heuncli.report.page import Page, page_of
 from heuncli.report.table import plain
 from heuncli.results import Array, Extremes, Results
 from heuncli.study import extremes as peaks
-from tests.shared.fakes import ACCURATE, LABELS, MAGNITUDES, FakeStudy, pendulum, restrict, vectors
+from tests.shared.fakes import ACCURATE, LABELS, MAGNITUDES, FakeStudy, found_extremes, pendulum, restrict, vectors
 
 T = np.linspace(0.0, 2.0, 21)
 
@@ -24,7 +24,7 @@ def extremes_page(
     study: FakeStudy, wanted: frozenset[str] = frozenset({"foundation", "joints", "energy", "sections"})
 ) -> str:
     page = page_of(restrict(study.results, wanted), LABELS, MAGNITUDES)
-    found = peaks.search(lambda t: page.columns(restrict(study.resample(t), wanted)), study.search_times, page.groups())
+    found = found_extremes(study, page, wanted)
     return "\n".join(plain(table) for table in page.extremes(found))
 
 
@@ -165,7 +165,7 @@ def test_a_peak_between_the_samples_makes_the_scale() -> None:
     """At the samples there is rounding only: the peak between them is shown, with the digits it has."""
     noise = pendulum(T[[0, -1]], joints={"a": {"force": np.full((2, 3), 1e-17), "point": np.zeros((2, 3))}})
     page = page_of(restrict(noise, {"joints"}), LABELS, MAGNITUDES)
-    found = peaks.search(lambda _: page.columns(page.results), T[[0, -1]], page.groups(), rounds=0)
+    found = peaks.search(lambda _: page.columns(page.results), T[[0, -1]], page.groups(), between=False)
     found = found._replace(high=np.array([0.4, 0.0, 0.0, 0.16]))
     (table,) = page.extremes(found)
     assert [row[:3] + row[6:7] for row in table.rows[1:]] == [("Fx", "N", "0", "0.4")]
@@ -244,7 +244,7 @@ def long_run(n_cuts: int, side: list[str | None] | None = None) -> Callable[[Res
 def test_a_run_of_cuts_shows_extremes_over_place_and_time() -> None:
     text = extremes_page(Changed(T, change=long_run(201)), frozenset({"sections"}))
     row = next(line.split() for line in text.splitlines() if line.startswith("M2"))
-    assert row[-3:] == ["5.0", "0.500", "1.5708"]
+    assert row[-3:] == ["5.0", "0.5", "1.5708"]
 
 
 @pytest.mark.parametrize(("n_cuts", "most"), [(3, 3), (25, 25), (200, 25)])

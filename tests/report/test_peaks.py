@@ -84,14 +84,78 @@ def test_few_batches_and_none_beyond_the_cap() -> None:
 
     def counted(t: Array) -> Array:
         calls.append(len(t))
-        return np.sin(np.outer(t, np.arange(1.0, MOST_COLUMNS + 2.0)))
+        return np.sin(np.outer(t, 5.0 + 7.0 * np.linspace(0.0, 1.0, MOST_COLUMNS + 1)))
 
-    search(lambda t: counted(t)[:, :50], GRID)
-    assert len(calls) == 4
-    assert max(calls) <= 50 * 16
+    search(lambda t: counted(t)[:, :50], GRID, errors=np.full(50, 1e-9))
+    assert len(calls) <= 7
+    assert sum(calls[1:]) <= 50 * 2 * 8
     calls.clear()
-    assert not search(counted, GRID).searched
+    assert not search(counted, GRID, most=MOST_COLUMNS).searched
     assert calls == [len(GRID)]
+
+
+def test_one_of_many_equal_summits_is_told_apart() -> None:
+    """108 summits in 54 turns, of which one is higher by a millionth: each is looked at, and few instants more."""
+    grid, calls = np.linspace(0.0, 54.0, 54 * 16 + 1), []
+
+    def nearly(t: Array) -> Array:
+        calls.append(len(t))
+        return (np.cos(4.0 * np.pi * t + 0.7) * (1.0 + 1e-6 * np.exp(-(((t - 31.2) / 0.3) ** 2))))[:, None]
+
+    found = search(nearly, grid, errors=np.array([1e-10]))
+    dense = nearly(np.linspace(30.5, 32.0, 300_001)).max()
+    assert found.high[0] >= dense
+    assert found.high_at[0] == pytest.approx(31.2, abs=0.3)
+    assert sum(calls[1:-1]) <= 16 * 2 * 108
+
+
+@pytest.mark.parametrize("seed", range(40))
+def test_no_summit_of_waves_is_missed(seed: int) -> None:
+    """Waves of up to half a radian between two instants: as fast as the grid lets anything turn."""
+    random = np.random.default_rng(seed)
+    rates, phases, sizes = (
+        random.uniform(1.0, 14.0, (3, 8)),
+        random.uniform(0.0, 6.0, (3, 8)),
+        random.uniform(-1, 1, (3, 8)),
+    )
+
+    def waves(t: Array) -> Array:
+        return np.sum(sizes * np.sin(t[:, None, None] * rates + phases), axis=1)
+
+    found = search(waves, GRID, errors=np.full(8, 1e-11))
+    dense = waves(np.linspace(0.0, 2.0, 20_001))
+    assert (found.high >= dense.max(axis=0) - 1e-11).all()
+    assert (found.low <= dense.min(axis=0) + 1e-11).all()
+
+
+def test_kinks_and_jumps_are_met() -> None:
+    def broken(t: Array) -> Array:
+        return np.stack([-np.abs(t - 0.7123), np.where(t > 0.7123, t - 3.0, t), -np.abs(np.sin(4.0 * t - 3.0))], axis=1)
+
+    found = search(broken, GRID)
+    assert found.high == pytest.approx([0.0, 0.7123, 0.0], abs=1e-11)
+
+
+def test_squares_are_met_to_the_digits_of_their_roots() -> None:
+    found = search(
+        lambda t: np.stack([np.sin(t - 0.9) ** 2], axis=1), GRID, errors=np.array([1e-11]), even=np.array([True])
+    )
+    assert np.sqrt(found.low[0]) <= 1e-11
+    assert found.high[0] == pytest.approx(np.sin(1.1) ** 2, rel=1e-12)
+
+
+def test_the_two_sides_of_a_jump_are_not_searched_between() -> None:
+    """A saw: its value before the jump is its highest, and the instants on either side are given."""
+    at = 0.7123
+    grid, calls = np.unique([*GRID, np.nextafter(at, 0.0), at]), []
+
+    def saw(t: Array) -> Array:
+        calls.append(len(t))
+        return (t - 3.0 * (t >= at))[:, None]
+
+    found = search(saw, grid)
+    assert (found.high_at[0], found.low_at[0]) == (np.nextafter(at, 0.0), at)
+    assert len(calls) <= 3
 
 
 def test_nothing_is_searched_for_nothing() -> None:

@@ -9,9 +9,13 @@ from typing import Any
 
 import numpy as np
 
+from heuncli.kinetostatics.cuts import BEFORE, BEYOND, Cuts
+from heuncli.kinetostatics.stretch import NODES, Stretch
 from heuncli.report.labels import ForceInfo, JointInfo, Labels, SectionInfo
-from heuncli.results import Array, Block, Magnitudes, Results
+from heuncli.report.page import Page
+from heuncli.results import Array, Block, Extremes, Magnitudes, Results
 from heuncli.results_schema import REPORT_OF
+from heuncli.study.extremes import Searched
 from heuncli.study.solve import Study
 
 ACCURATE: Block = {
@@ -139,12 +143,52 @@ class FakeStudy:
         """At any instants."""
         return pendulum(np.asarray(times), **self.changes)
 
-    def only(self, times: Array, wanted: Set[str]) -> Results:
-        """Some reports at any instants."""
-        return restrict(self.resample(times), wanted)
+    def only(self, times: Array, wanted: Set[str], setup: Any = None) -> Results:
+        """Some reports at any instants; in a search runs have nodes between their cuts, where they are linear."""
+        found = restrict(self.resample(times), wanted)
+        return (
+            found
+            if setup is None
+            else replace(found, sections=dict(at_nodes(*item) for item in found.sections.items()))
+        )
 
+    def stretched(self, bent: bool) -> Any:
+        """What stands for the scene with its runs of cuts as stretches."""
+        return SimpleNamespace(cuts=[stretch_like(*item) for item in self.results.sections.items() if "s" in item[1]])
+
+    at_once = 1000
     extremes = Study.extremes
     magnitudes = MAGNITUDES
+
+
+def stretch_like(name: str, section: dict[str, Any]) -> Stretch:
+    """A stretch with the cuts of a run as its corners."""
+    s = section["s"]
+    side = np.array([{"before": BEFORE, "beyond": BEYOND, None: 0.0}[x] for x in section.get("side", [None] * len(s))])
+    bare = dict.fromkeys(Cuts.__annotations__) | {"name": name, "n": np.array([0.0, 0.0, 1.0]), "near": 1e-12}
+    points = s[:, None] * bare["n"]
+    return Stretch(Cuts(**bare | {"points": points, "s": s, "side": side}), s, side != 0.0)
+
+
+def at_nodes(name: str, section: dict[str, Any]) -> tuple[str, dict[str, Any]]:
+    """A section, a run of cuts with its values at nine nodes between each two cuts."""
+    if "s" not in section:
+        return name, section
+    s, share = section["s"], 0.5 * (NODES + 1.0)
+    more: dict[str, Any] = {"s": (s[:-1, None] + np.diff(s)[:, None] * share).ravel()}
+    for key, values in section.items():
+        if isinstance(values, np.ndarray) and values.shape[1:2] == s.shape:
+            change = np.diff(values, axis=1)[:, :, None]
+            between = values[:, :-1, None] + change * share.reshape(-1, *[1] * (values.ndim - 2))
+            more[key] = between.reshape(len(values), -1, *values.shape[2:])
+    return name, section | {"side": [None] * len(more["s"])} | more
+
+
+def found_extremes(study: FakeStudy, page: Page, wanted: Set[str]) -> Extremes:
+    """Those of a page, as the command searches them."""
+    along = page.along if page.has_runs else None
+    searched = Searched(page.columns, page.groups(), page.errors(), page.even(), along)
+    return study.extremes(searched, frozenset(wanted), whole=True)
 
 
 def spec_like(**changes: Any) -> Any:

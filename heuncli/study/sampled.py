@@ -1,0 +1,100 @@
+"""A study as columns of numbers over the instants, for a search of their extremes."""
+
+from __future__ import annotations
+
+import math
+from typing import Protocol
+
+import numpy as np
+
+from heuncli.results import Array, Extremes, Place, Results
+from heuncli.study import extremes
+from heuncli.study.extremes import Searched
+from heuncli.study.setup import Setup
+
+
+class Sampleable(Protocol):
+    """What is asked of a study (study/solve.py)."""
+
+    @property
+    def results(self) -> Results:
+        """At the asked instants."""
+
+    @property
+    def at_once(self) -> int:
+        """At how many instants results are made at a time."""
+
+    def only(self, times: Array, wanted: frozenset[str], setup: Setup | None = None) -> Results:
+        """Some reports' blocks at other instants; setup: with other cuts."""
+
+    def composed(self, times: Array) -> Results:
+        """The usual reports at other instants."""
+
+
+class Sampled:
+    """A study as the columns that are searched; keeps the instants at which rounding reached some of them.
+
+    setup: with runs of cuts as whole stretches, of which each quantity is two columns, its lowest and its highest.
+    """
+
+    def __init__(
+        self, study: Sampleable, searched: Searched, wanted: frozenset[str] | None, setup: Setup | None
+    ) -> None:
+        self.study, self.searched, self.wanted, self.setup = study, searched, wanted, setup
+        self.unknown: list[float] = []
+        first = sum(map(len, searched.groups))
+        runs = len(searched.errors) - len(searched.groups)
+        self.groups = [*searched.groups, *([first + 2 * k, first + 2 * k + 1] for k in range(runs))]
+
+    def results(self, at: Array, setup: Setup | None = None) -> Results:
+        """Of the study, at some instants."""
+        study, setup = self.study, setup or self.setup
+        if setup is None and np.array_equal(at, study.results.time):
+            return study.results
+        results = study.composed(at) if self.wanted is None else study.only(at, self.wanted, setup)
+        self.unknown.extend(results.accuracy.get("unknown", []))
+        return results
+
+    def columns(self, at: Array) -> Array:
+        """The columns at some instants."""
+        most = self.study.at_once
+        return np.concatenate([self._part(at[i : i + most]) for i in range(0, len(at), most)])
+
+    def _part(self, at: Array) -> Array:
+        results = self.results(at)
+        if self.searched.along is None:
+            return self.searched.columns(results)
+        from heuncli.study.stretches import envelope
+
+        along = [envelope(values) for _, values in self.searched.along(results)]
+        return np.concatenate([self.searched.columns(results), *along], axis=1)
+
+    def placed(self, found: Extremes) -> Extremes:
+        """With the places of those of runs of cuts; of what is no polynomial they are looked for once more."""
+        if self.searched.along is None:
+            return found
+        low, high, places = found.low.copy(), found.high.copy(), []
+        for k in range(len(self.searched.groups), len(self.searched.errors)):
+            low[k], low_place = self._place(k, -1.0, float(found.low_at[k]), float(found.low[k]))
+            high[k], high_place = self._place(k, 1.0, float(found.high_at[k]), float(found.high[k]))
+            places.append((low_place, high_place))
+        return found._replace(low=low, high=high, places=tuple(places))
+
+    def _place(self, group: int, side: float, at: float, value: float) -> tuple[float, Place]:
+        from heuncli.study.stretches import cut_at, side_of, stretch_named, summit
+
+        k, instant = group - len(self.searched.groups), np.array([at])
+        assert self.searched.along is not None and self.setup is not None
+        results = self.results(instant)
+        name, values = self.searched.along(results)[k]
+        s, end, ends = summit(np.ravel(results.sections[name]["s"]), side * values[0])
+        if self.searched.bent and math.isfinite(value):
+
+            def along(at: Array) -> Array:
+                assert self.searched.along is not None and self.setup is not None
+                return self.searched.along(self.results(instant, cut_at(self.setup, name, at, ends)))[k][1].T
+
+            own = extremes.search(along, np.linspace(*ends, 17))
+            value, s = (float(x[0]) for x in ((own.high, own.high_at) if side > 0.0 else (own.low, own.low_at)))
+            end = float(side_of(np.array(s), ends))
+        return value, stretch_named(self.setup, name).place(s, end)

@@ -1,0 +1,59 @@
+"""Extremes over runs of cuts: of the whole stretch, not of the cuts that were asked for.
+
+For a search the runs of a scene are looked at between their corners instead (kinetostatics/stretch.py). Of each
+quantity the highest and the lowest along the stretch are then two numbers over the instants, smooth but for kinks where
+the place leaps, which no extreme is at.
+"""
+
+from __future__ import annotations
+
+import numpy as np
+
+from heuncli.kinetostatics.cuts import BEFORE, BEYOND, Cuts, attached
+from heuncli.kinetostatics.stretch import DEGREE, Stretch, laid, stretch_of, summits
+from heuncli.records import replace
+from heuncli.results import Array
+from heuncli.study.setup import Setup
+
+
+def stretched(setup: Setup, halved: int) -> Setup:
+    """The same, with its runs of cuts as whole stretches; halved: their pieces, so often at least."""
+    mechanism = setup.scene.mechanism
+
+    def whole(cuts: Cuts) -> Cuts | Stretch:
+        if cuts.s is None or cuts.form is None:
+            return cuts
+        return stretch_of(cuts, [point for _, point in attached(mechanism, cuts.body)], halved=halved)
+
+    return replace(setup, cuts=tuple(map(whole, setup.cuts)))
+
+
+def stretch_named(setup: Setup, name: str) -> Stretch:
+    """One of them."""
+    known: tuple[Cuts | Stretch, ...] = setup.cuts
+    return next(cuts for cuts in known if isinstance(cuts, Stretch) and cuts.name == name)
+
+
+def cut_at(setup: Setup, name: str, s: Array, ends: tuple[float, float]) -> Setup:
+    """The same, with a stretch as cuts at some distances (k,) between the ends of a piece."""
+    return replace(setup, cuts=(laid(stretch_named(setup, name).asked, s, side_of(s, ends)),))
+
+
+def side_of(s: Array, ends: tuple[float, float]) -> Array:
+    """On which side of what acts at the ends of a piece cuts lie there."""
+    return np.where(s <= ends[0], BEYOND, np.where(s >= ends[1], BEFORE, 0.0))
+
+
+def envelope(values: Array) -> Array:
+    """The lowest and the highest along a stretch, (n_t, 2), of what takes these values at its nodes, (n_t, 9 m)."""
+    return np.stack([-summits(-values).height, summits(values).height], axis=1)
+
+
+def summit(s: Array, heights: Array) -> tuple[float, float, tuple[float, float]]:
+    """Where the highest lies of what takes these heights at nodes (9 m,): distance, side, and the ends of its piece."""
+    top = summits(heights[None])
+    k, x = int(top.piece[0]) * (DEGREE + 1), float(top.at[0])
+    a, b = float(s[k]), float(s[k + DEGREE])
+    if x in (-1.0, 1.0):
+        return (b, BEFORE, (a, b)) if x > 0.0 else (a, BEYOND, (a, b))
+    return a + 0.5 * (b - a) * (x + 1.0), 0.0, (a, b)

@@ -1,0 +1,214 @@
+"""Extremes by closed forms: between the samples, through zero, over the whole stretch of a run of cuts."""
+
+from __future__ import annotations
+
+import json
+from typing import Any
+
+import numpy as np
+import pytest
+
+from heuncli.cli import measure
+from heuncli.report.labels import labels_of
+from heuncli.report.page import page_of
+from heuncli.results_schema import REPORTS
+from heuncli.study.extremes import Searched
+from heuncli.study.solve import Study
+from tests.shared.scenes import near, study
+
+G = 9.81
+
+
+def told(run: Study, words: str) -> dict[str, Any]:
+    """What `--measure WORDS --format json` prints."""
+    block: dict[str, Any] = json.loads(measure.write(measure.parse(words), run, "json"))
+    return block
+
+
+def in_table(run: Study, heading: str, label: str) -> list[str]:
+    """The cells of a row of the tables with this heading."""
+    page = page_of(run.results, labels_of(run.spec), run.magnitudes)
+    along = page.along if page.has_runs else None
+    searched = Searched(page.columns, page.groups(), page.errors(), page.even(), along)
+    found = run.extremes(searched, frozenset(REPORTS), whole=True)
+    one = len(run.results.time) == 1
+    tables = page.instants(run.results, searched=found) if one else page.extremes(found)
+    table = next(t for t in tables if t.heading.startswith(heading) and any(row[0] == label for row in t.rows))
+    return list(next(row for row in table.rows if row[0] == label))
+
+
+# ---- in time
+RATES, ARMS, MASSES = (27.0, 41.3, 66.1), (0.05, 0.03, 0.02), (4.0, 3.0, 2.0)
+
+
+def rotors(turns: float = 54.0, samples: int = 21) -> Study:
+    """Three unbalanced rotors on one ground, the fastest of which turns 54 times."""
+    bodies, joints, drives = {}, {}, {}
+    for k, (rate, arm, mass) in enumerate(zip(RATES, ARMS, MASSES, strict=True)):
+        shapes = [{"type": "point", "at": [arm, 0.0, 0.0], "mass": mass}, {"type": "sphere", "center": [0.0, 0.0, 0.0],
+                  "radius": 0.05, "mass": 1.0}]  # fmt: skip
+        bodies[f"b{k}"] = {"shapes": shapes, "points": {"O": [0.0, 0.0, 0.0]}}
+        joints[f"p{k}"] = {"type": "pin", "from": "ground.O", "to": f"b{k}.O", "axis": [0, 0, 1]}
+        drives[f"d{k}"] = {"joint": f"p{k}", "angle": f"{rate}*t"}
+    duration = 2.0 * np.pi * turns / RATES[-1]
+    return study({
+        "gravity": [0, 0, 0], "ground": {"points": {"O": [0.0, 0.0, 0.0]}}, "bodies": bodies,
+        "joints": joints, "drives": drives, "analysis": {"duration": float(duration), "samples": samples},
+    })  # fmt: skip
+
+
+def thrown(t: np.ndarray) -> tuple[np.ndarray, np.ndarray]:
+    """The force of the rotors on the ground, x and y."""
+    waves = [
+        m * a * w * w * np.stack([np.cos(w * t), np.sin(w * t)]) for w, a, m in zip(RATES, ARMS, MASSES, strict=True)
+    ]
+    x, y = np.sum(waves, axis=0)
+    return x, y
+
+
+@pytest.mark.parametrize("samples", [2, 21])
+def test_the_highest_of_many_summits_between_few_samples(samples: int) -> None:
+    """Driven rotors need no steps: their loads turn all the same."""
+    run = rotors(samples=samples)
+    t = np.linspace(0.0, run.results.time[-1], 2_000_001)
+    x, y = thrown(t)
+    size = float(np.hypot(x, y).max())
+    for words, exact in (("max foundation.force", size), ("min foundation.force", np.hypot(x, y).min()),
+                         ("max foundation.force.x", x.max()), ("abs foundation.force.y", np.abs(y).max())):  # fmt: skip
+        # two million samples miss a summit by (66 * 7e-6 / 2)^2 / 2 of its size, and a crossing of zero by more
+        near(told(run, words)["value"], exact, size, 1e-6)
+    assert told(run, "max foundation.force")["value"] >= size * (1.0 - 1e-12)
+    low, high = in_table(run, "FOUNDATION", "|F|")[4:7:2]
+    for text, words in ((low, "min foundation.force"), (high, "max foundation.force")):
+        near(float(text), told(run, words)["value"], size, 2e-6)  # six digits
+
+
+def test_a_magnitude_through_zero() -> None:
+    """A mass on a turning arm, fast enough to weigh nothing at the top: its pin carries 2 m g |cos(φ/2)|."""
+    r, m = 0.4, 3.0
+    rate = float(np.sqrt(G / r))
+    run = study({
+        "gravity": [0, -G, 0], "ground": {"points": {"O": [0, 0, 0]}},
+        "bodies": {"arm": {"shapes": [{"type": "sphere", "center": [r, 0, 0], "radius": 0.05, "mass": m}],
+                           "points": {"O": [0, 0, 0]}}},
+        "joints": {"pin": {"type": "pin", "from": "ground.O", "to": "arm.O", "axis": [0, 0, 1]}},
+        "drives": {"turn": {"joint": "pin", "angle": f"{rate!r}*t - pi/2"}},
+        "analysis": {"duration": float(2.0 * np.pi / rate), "samples": 8},
+    })  # fmt: skip
+    for quantity in ("radial", "force"):
+        near(told(run, f"min joints.pin.{quantity}")["value"], 0.0, m * G, 1e-11)
+        near(told(run, f"max joints.pin.{quantity}")["value"], 2.0 * m * G, m * G, 1e-11)
+        near(told(run, f"min joints.pin.{quantity}")["at"], np.pi / rate, 1.0, 1e-10)
+    assert in_table(run, "JOINTS", "radial")[4] == "0"
+
+
+# ---- along runs of cuts
+RADIUS, DENSITY, AT, END, PUSH = 0.02, 7850.0, 0.37, 0.55, 500.0
+
+
+def shaft(count: int, middle: bool = False, **more: Any) -> Study:
+    """A shaft on bearings at 0 and AT, pushed down at its free end; a third bearing makes it redundant."""
+    points = {"A": [0.0, 0.0, 0.0], "B": [AT, 0.0, 0.0], **({"C": [0.2, 0.0, 0.0]} if middle else {})}
+    joints = {"left": {"type": "ball", "from": "ground.A", "to": "shaft.A"}}
+    for name in sorted(points.keys() - {"A"}):
+        joints[name] = {"type": "line", "from": f"ground.{name}", "to": f"shaft.{name}", "axis": [1, 0, 0]}
+    return study({
+        "gravity": [0, 0, -G], "ground": {"points": points},
+        "bodies": {"shaft": {"shapes": [{"type": "cylinder", "from": [-0.05, 0, 0], "to": [END, 0, 0],
+                                         "radius": RADIUS, "density": DENSITY}],
+                             "points": {**points, "end": [END, 0.0, 0.0]}}},
+        "joints": joints,
+        "forces": {"push": {"type": "force", "on": "shaft.end", "vector": [0, 0, -PUSH]}},
+        "sections": {"shaft": {"body": "shaft", "from": [-0.05, 0, 0], "to": [END, 0, 0], "count": count, **more}},
+        "analysis": {"type": "state"},
+    })  # fmt: skip
+
+
+WEIGHT = np.pi * RADIUS**2 * DENSITY * G
+ARM = END - AT
+
+
+@pytest.mark.parametrize("count", [2, 5, 8, 12, 24])
+def test_the_bearing_moment_whatever_cuts_are_asked(count: int) -> None:
+    """|M| = P a + w a²/2 at the bearing, between all asked cuts; the shear force jumps there."""
+    run = shaft(count)
+    found = told(run, "max abs sections.shaft.M1")
+    near(found["value"], PUSH * ARM + 0.5 * WEIGHT * ARM**2, 100.0, 1e-12)
+    near(found["s"], AT + 0.05, 1.0, 1e-12)
+    shear = told(run, "min sections.shaft.Q2")
+    near(shear["value"], -PUSH - WEIGHT * ARM, 100.0, 1e-12)
+    assert (shear["side"], shear["cut"]) == ("beyond", None)
+    lift = (PUSH * ARM + 0.5 * WEIGHT * (ARM**2 - (AT + 0.05) ** 2) + WEIGHT * 0.05 * AT) / AT
+    assert told(run, "max sections.shaft.Q2")["side"] == "before"
+    assert lift > 0.0
+    assert in_table(run, "SECTION shaft", "M1")[4:] == [f"{found['value']:.4f}", "0.42 beyond"]
+    assert len(run.results.sections["shaft"]["s"]) == count
+
+
+def test_the_largest_moment_between_bearings_under_the_own_weight() -> None:
+    """A bar on its ends: w L²/8 in its middle, which no cut of four meets."""
+    run = study({
+        "gravity": [0, 0, -G], "ground": {"points": {"A": [0, 0, 0], "B": [2.0, 0, 0]}},
+        "bodies": {"bar": {"shapes": [{"type": "rod", "from": [0, 0, 0], "to": [2.0, 0, 0], "line_density": 3.0}],
+                           "points": {"A": [0, 0, 0], "B": [2.0, 0, 0]}}},
+        "joints": {"a": {"type": "ball", "from": "ground.A", "to": "bar.A"},
+                   "b": {"type": "line", "from": "ground.B", "to": "bar.B", "axis": [1, 0, 0]}},
+        "sections": {"bar": {"body": "bar", "from": "A", "to": "B", "count": 4}}, "analysis": {"type": "state"},
+    })  # fmt: skip
+    for words in ("max abs sections.bar.M1", "max sections.bar.moment"):
+        found = told(run, words)
+        near(found["value"], 3.0 * G * 2.0**2 / 8.0, 1.0, 1e-12)
+        near(found["s"], 1.0, 1.0, 1e-7)
+        assert (found["side"], found["cut"]) == (None, None)
+
+
+def test_a_stress_between_the_cuts() -> None:
+    """At the bearing: bending of P a + w a²/2 over W, beside no other normal stress."""
+    run = shaft(5, properties={"circle": {"radius": RADIUS}}, strength=235e6)
+    most = (PUSH * ARM + 0.5 * WEIGHT * ARM**2) / (0.25 * np.pi * RADIUS**3)
+    near(told(run, "max sections.shaft.stress.normal_max")["value"], most, most, 1e-9)
+    assert told(run, "max sections.shaft.stress.utilisation")["value"] * 235e6 >= most * (1.0 - 1e-9)
+
+
+def test_open_in_part_is_open() -> None:
+    """Beyond the last bearing the moment is certain, between the three it is not: nobody knows the largest."""
+    run = shaft(5, middle=True)
+    assert told(run, "max abs sections.shaft.M1")["value"] is None
+    assert measure.write(measure.parse("max sections.shaft.moment"), run, "table") == "open\n"
+    assert in_table(run, "SECTION shaft", "M1")[2] == "open"
+    assert told(run, "max abs sections.shaft.N")["value"] == 0.0
+    assert told(run, "max abs sections.shaft.M1.3")["value"] > 0.0  # of a cut that is certain
+
+
+@pytest.mark.parametrize("count", [2, 7])
+def test_under_a_trolley_that_runs_along_a_beam(count: int) -> None:
+    """Its weight P at x bends the beam by P x (L − x)/L there, its own weight by w x (L − x)/2: most in the middle."""
+    length, own, mass, speed = 3.0, 7.0, 40.0, 0.5
+    ends = {"A": [0, 0, 0], "B": [length, 0, 0]}
+    run = study({
+        "gravity": [0, 0, -G], "ground": {"points": ends},
+        "bodies": {
+            "beam": {"shapes": [{"type": "rod", "from": [0, 0, 0], "to": [length, 0, 0], "line_density": own}],
+                     "points": ends},
+            "trolley": {"shapes": [{"type": "sphere", "center": [0, 0, 0], "radius": 0.05, "mass": mass}],
+                        "points": {"O": [0, 0, 0]}, "position": [0.4, 0, 0]},
+        },
+        "joints": {"a": {"type": "ball", "from": "ground.A", "to": "beam.A"},
+                   "b": {"type": "line", "from": "ground.B", "to": "beam.B", "axis": [1, 0, 0]},
+                   "run": {"type": "slide", "from": "beam.A", "to": "trolley.O", "axis": [1, 0, 0]}},
+        "drives": {"drive": {"joint": "run", "travel": f"0.4 + {speed}*t"}},
+        "sections": {"beam": {"body": "beam", "from": "A", "to": "B", "count": count}},
+        "analysis": {"duration": 4.0, "samples": 5},
+    })  # fmt: skip
+    found = told(run, "max abs sections.beam.M1")
+    most = 0.25 * mass * G * length + 0.125 * own * G * length**2
+    near(found["value"], most, most, 1e-11)
+    near(found["at"], (0.5 * length - 0.4) / speed, 1.0, 1e-5)
+    near(found["s"], 0.5 * length, 1.0, 1e-5)
+    # the shear force is largest at the end that the trolley is nearest to: in the beginning, before it
+    near(
+        told(run, "max abs sections.beam.Q2")["value"],
+        mass * G * (1.0 - 0.4 / length) + 0.5 * own * G * length,
+        most,
+        1e-11,
+    )
