@@ -6,12 +6,11 @@ A Pack joins the programs of many expressions in the arrays the kernel takes.
 
 from __future__ import annotations
 
-import math
 from array import array
-from collections.abc import Callable, Sequence
+from collections.abc import Sequence
 from functools import cached_property
 
-from heuncli.errors import LimitError, Problem, SourceLocation
+from heuncli.errors import SourceLocation
 from heuncli.kernel.choose import enclosure, expressions
 from heuncli.records import record, replace
 
@@ -20,8 +19,6 @@ CONST, VAR, TABLE, KNOT, HOLD = OPS["const"], OPS["var"], OPS["table"], OPS["kno
 
 TIME = "t"
 Variable = str | tuple[str, str]  # the time, or (joint, quantity)
-COARSEST, FINEST = 1 << 12, 1 << 20  # cells of the grids on which branches are looked for
-CELLS_PER_CHANGE = 16  # a grid with fewer is not fine enough to trust
 Code = tuple[int, ...]  # pairs (operation, argument), one after another
 
 
@@ -209,6 +206,12 @@ class Pack:
         self.expressions.sample(start, count, array("d", times), out)
         return out
 
+    def spans(self, start: int, count: int, begins: Sequence[float], ends: Sequence[float]) -> list[array[float]]:
+        """Least and largest value, and least and largest rate, of one program in time alone over stretches of time."""
+        columns = [array("d", bytes(8 * len(begins))) for _ in range(4)]
+        enclosure.spans_over(self.expressions, start, count, array("d", begins), array("d", ends), *columns)
+        return columns
+
     def bounds(
         self, start: int, count: int, begins: Sequence[float], ends: Sequence[float]
     ) -> tuple[array[float], array[float]]:
@@ -216,107 +219,3 @@ class Pack:
         least, largest = (array("d", bytes(8 * len(begins))) for _ in range(2))
         enclosure.bounds_over(self.expressions, start, count, array("d", begins), array("d", ends), least, largest)
         return least, largest
-
-
-def discontinuities(expression: Expression, t0: float, t1: float) -> list[float]:
-    """The instants in (t0, t1) at which a branch of the expression changes with time alone: its jumps and kinks.
-
-    Each is the first double at which the new branch holds; two may be neighbours (sign at its zero): then the segment
-    between them is a single instant, to be stepped over. Branches that depend on coordinates are left out. Raises
-    LimitError where there are too many to tell apart.
-    """
-    return sorted({t for switch in expression.switches for t in _changes(expression, switch, t0, t1)})
-
-
-def one_sided_limits(instants: Sequence[float]) -> list[tuple[float, float]]:
-    """For each of ascending discontinuities the last instant before it and the first after it.
-
-    Neighbouring doubles are one discontinuity: sign(t - 1) is zero at t = 1 alone, and its limits are those of the
-    branches before and after that instant.
-    """
-    limits: list[tuple[float, float]] = []
-    for t in instants:
-        before = math.nextafter(t, -math.inf)
-        if limits and limits[-1][1] >= before:
-            limits[-1] = (limits[-1][0], t)
-        else:
-            limits.append((before, t))
-    return limits
-
-
-def _changes(expression: Expression, switch: Switch, t0: float, t1: float) -> list[float]:
-    """Where one switch changes: seen on a grid, refined until it has many cells for each change it shows."""
-    decide = _at_instants(expression, switch.decision)
-    cells, last = COARSEST, math.nextafter(t1, -math.inf)
-    while True:
-        grid = [t0 + (t1 - t0) * (i / cells) for i in range(cells)]
-        grid.append(last)
-        branches = decide(grid)
-        changed = [i for i in range(cells) if branches[i] != branches[i + 1]]
-        if len(changed) * CELLS_PER_CHANGE <= cells:
-            break
-        if cells >= FINEST:
-            message = f"'{expression.source}' jumps or bends too often between {t0:g} and {t1:g} s"
-            hint = f"at most about {FINEST // CELLS_PER_CHANGE} jumps and kinks can be met exactly"
-            raise LimitError(Problem("too-many-jumps", message, expression.location, hint))
-        cells *= 4
-    spans = [(grid[i], grid[i + 1]) for i in changed]
-    if switch.margin is not None:
-        spans += _near_zeros(_at_instants(expression, switch.margin), grid, branches, decide)
-    return [t for low, high in spans for t in _between(decide, low, high) if t0 < t < t1]
-
-
-def _at_instants(expression: Expression, code: Code) -> Callable[[list[float]], list[float]]:
-    """A program in time alone as a function of instants; inf stands for what is no number, which is a branch, too."""
-    pack = Pack()
-    start, count = pack.add_code(expression, code)
-
-    def values(times: list[float]) -> list[float]:
-        return [v if v == v else math.inf for v in pack.sample(start, count, times)]
-
-    return values
-
-
-def _between(decide: Callable[[list[float]], list[float]], low: float, high: float) -> list[float]:
-    """Changes of branch in (low, high], from left to right, each found to the last bit."""
-    instants: list[float] = []
-    branch, end = decide([low, high])
-    while branch != end:
-        a, b = low, high
-        while a < (middle := a + 0.5 * (b - a)) < b:
-            if decide([middle])[0] == branch:
-                a = middle
-            else:
-                b = middle
-        instants.append(b)
-        low, branch = b, decide([b])[0]
-    return instants
-
-
-def _near_zeros(
-    margin: Callable[[list[float]], list[float]],
-    grid: list[float],
-    branches: list[float],
-    decide: Callable[[list[float]], list[float]],
-) -> list[tuple[float, float]]:
-    """Spans in which the margin passes through zero and back between neighbouring points of the grid."""
-    margins = list(map(abs, margin(grid)))
-    spans: list[tuple[float, float]] = []
-    for i in range(1, len(grid) - 1):
-        left, middle, right = margins[i - 1 : i + 2]
-        bend = left - 2.0 * middle + right
-        is_low = middle <= left and middle <= right and 0.0 < bend < math.inf
-        if not is_low or not branches[i - 1] == branches[i] == branches[i + 1]:
-            continue
-        if middle > (right - left) ** 2 / (8.0 * bend) + bend:  # the parabola through the three stays well away
-            continue
-        a, b = grid[i - 1], grid[i + 1]
-        for _ in range(60):  # the least margin by thirds; 60 of them leave nothing of the span
-            c, d = a + (b - a) / 3.0, b - (b - a) / 3.0
-            other = [t for t, branch in zip((c, d), decide([c, d]), strict=True) if branch != branches[i]]
-            if other:
-                spans += [(grid[i - 1], other[0]), (other[0], grid[i + 1])]
-                break
-            left, right = margin([c, d])
-            a, b = (a, d) if abs(left) <= abs(right) else (c, b)
-    return spans

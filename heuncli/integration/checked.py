@@ -19,7 +19,7 @@ import numpy as np
 
 from heuncli import tolerances
 from heuncli.errors import LimitError, SolveError
-from heuncli.expressions.programs import one_sided_limits
+from heuncli.expressions.discontinuities import one_sided_limits
 from heuncli.integration.methods import DOP853, Method
 from heuncli.integration.pairs import instants_of, interleaved, moved_start, passed_between
 from heuncli.integration.runner import MOST_STEPS, Recovered, Runner, Trajectory

@@ -15,7 +15,7 @@ import numpy as np
 
 from heuncli import tolerances
 from heuncli.errors import LimitError, Problem, SolveError
-from heuncli.expressions.programs import discontinuities, one_sided_limits
+from heuncli.expressions.discontinuities import discontinuities, one_sided_limits
 from heuncli.integration.methods import DOP853, Method
 from heuncli.integration.pace import FIRST_LOOK, hopeless
 from heuncli.kernel.choose import integration

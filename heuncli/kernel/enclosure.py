@@ -767,3 +767,31 @@ def bounds_over(
         found: Span = enclose_closely(programs, Program(start, count))
         least[i] = found.value.low
         largest[i] = found.value.high
+
+
+def spans_over(
+    expressions: Expressions,
+    start: cython.int,
+    count: cython.int,
+    begins: cython.double[::1],
+    ends: cython.double[::1],
+    least: cython.double[::1],
+    largest: cython.double[::1],
+    slowest: cython.double[::1],
+    fastest: cython.double[::1],
+) -> None:
+    """Natural bounds of the value and the rate of one program in time alone over many stretches of time."""
+    i: cython.Py_ssize_t
+    programs: cython.pointer[Programs] = cython.address(expressions.programs)
+    expressions.check(start, count)
+    if not len(begins) == len(ends) == len(least) == len(largest) == len(slowest) == len(fastest):
+        raise ValueError("as many ends and bounds as stretches")
+    for i in range(expressions.variables):
+        programs.ranges[i] = loose(anything())
+    for i in range(len(begins)):
+        programs.ranges[0] = Span(Bounds(begins[i], ends[i]), point(1.0), point(0.0))
+        found: Span = enclose(programs, Program(start, count))
+        least[i] = found.value.low
+        largest[i] = found.value.high
+        slowest[i] = found.rate.low
+        fastest[i] = found.rate.high

@@ -10,7 +10,7 @@ from types import MappingProxyType
 
 import numpy as np
 
-from heuncli.expressions.programs import one_sided_limits
+from heuncli.expressions.discontinuities import one_sided_limits
 from heuncli.integration.checked import Checked, Runs, checked_run, recovered_at
 from heuncli.integration.pairs import interleaved, moved_start
 from heuncli.integration.runner import Recovered, Runner, check_deadline, discontinuities_of

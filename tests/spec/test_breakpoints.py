@@ -3,13 +3,15 @@
 from __future__ import annotations
 
 import math
+from random import Random
 
 import pytest
 
 from heuncli.errors import LimitError
 from heuncli.expressions.curves import fit
+from heuncli.expressions.discontinuities import discontinuities
 from heuncli.expressions.grammar import Scope, compile_expression
-from heuncli.expressions.programs import Expression, Table, discontinuities
+from heuncli.expressions.programs import Expression, Table
 
 TRIANGLE = fit("triangle", [0.0, 0.25, 0.5], [0.0, 1.0, 0.0], "linear", None, 0.5)
 RAMP = fit("ramp", [1.0, 2.0, 4.0], [0.0, 1.0, 5.0], "linear", "hold", None)
@@ -83,3 +85,35 @@ def test_without_end_is_refused() -> None:
     with pytest.raises(LimitError) as caught:
         discontinuities(read("step(sin(1e7*t))"), 0.0, 1.0)
     assert caught.value.problems[0].code == "too-many-jumps"
+
+
+def test_nothing_is_too_narrow_to_be_found() -> None:
+    """Pulses anywhere in long runs, down to two doubles; knots of a table; single instants."""
+    random = Random(31)
+    for _ in range(60):
+        begin = random.uniform(0.0, 100.0)
+        end = max(begin + 10.0 ** random.uniform(-17.0, 0.0), after(after(begin)))
+        assert discontinuities(read(f"1000 if {begin!r} < t < {end!r} else 0"), 0.0, 200.0) == [after(begin), end]
+    assert discontinuities(read("1 if t == 0.7 else 0"), 0.0, 2.0) == [0.7, after(0.7)]
+    assert discontinuities(read("1 if (t - 0.3)**2 > 0 else 0"), 0.0, 2.0) == [0.3, after(0.3)]
+    thin = fit("thin", [0.0, 0.5, 0.5000001, 0.5000002, 3.0], [0.0, 0.0, 1.0, 0.0, 0.0], "linear", None, None)
+    scope = Scope(tables={"thin": thin}, in_time=True)
+    for text, stretch in (("table(thin, t)", 1.0), ("table(thin, t/50)", 50.0)):
+        found = discontinuities(compile_expression(text, scope), 0.0, 2.0 * stretch)
+        assert found == pytest.approx([x * stretch for x in thin.x[1:-1]], rel=1e-15)
+
+
+@pytest.mark.heavy
+def test_crests_between_the_points_of_a_grid_are_found() -> None:
+    """sin² > 0.9999 twice in each half turn: 1910 of them in two seconds."""
+    found = discontinuities(read("1 if sin(3000*t)**2 > 0.9999 else 0"), 0.0, 2.0)
+    aside = math.acos(math.sqrt(0.9999))
+    crests = [(k + 0.5) * math.pi for k in range(1910)]
+    expected = [(crest + side) / 3000.0 for crest in crests for side in (-aside, aside)]
+    assert found == pytest.approx(expected, abs=2e-15)  # 3000 t is rounded by 9e-13, t by 4e-16
+
+
+@pytest.mark.parametrize("text", ["max(t, t)", "abs(sin(t)**2 + cos(t)**2 - 0.5)", "step(t*t - 2*t + 1)"])
+def test_what_cannot_be_decided_is_seen_to_stay(text: str) -> None:
+    """A margin that is zero, or touches it."""
+    assert discontinuities(read(text), 0.0, 2.0) == []

@@ -16,8 +16,9 @@ import pytest
 from hypothesis import given, settings
 from hypothesis import strategies as st
 
+from heuncli.expressions.discontinuities import discontinuities
 from heuncli.expressions.grammar import Scope, compile_expression
-from heuncli.expressions.programs import Expression, Pack, discontinuities
+from heuncli.expressions.programs import Expression, Pack
 from heuncli.kernel.choose import expressions
 from tests.shared.random_programs import VARIABLES, random_program
 

@@ -6,7 +6,8 @@ import math
 from collections.abc import Iterator
 
 from heuncli import tolerances
-from heuncli.expressions.programs import Expression, discontinuities, one_sided_limits
+from heuncli.expressions.discontinuities import discontinuities, one_sided_limits
+from heuncli.expressions.programs import Expression
 from heuncli.joint_kinds import RATES, TYPES, named
 from heuncli.spec import format as f
 from heuncli.spec.fields import End

@@ -1,0 +1,228 @@
+"""Where the branches of an expression change with time alone: its jumps and kinks.
+
+A change is decided, not sampled: an enclosure (kernel/enclosure.py) of what tells the branch shows that nothing changes
+within a stretch of time, or that its margin only rises or falls there, so that the branches at the ends tell all; else
+the stretch is halved, down to neighbouring doubles.
+"""
+
+from __future__ import annotations
+
+import math
+from collections.abc import Callable, Sequence
+
+from heuncli.errors import LimitError, Problem
+from heuncli.expressions.programs import OPS, Code, Expression, Pack, Switch
+from heuncli.records import record
+
+COARSEST, FINEST = 1 << 12, 1 << 20  # cells of the grids on which branches are looked for
+CELLS_PER_CHANGE = 16  # a grid with fewer is not fine enough to trust
+FIRST_CELLS = 256  # of a stretch looked at first
+MOST_OPEN = 1 << 13  # stretches open at once; margins that are zero but for rounding have as many as there are doubles
+RISING = frozenset(OPS[name] for name in ("sign", "step", "lt", "le", "gt", "ge"))  # rise or fall with their margin
+Decide = Callable[[list[float]], list[float]]
+Enclose = Callable[[list[float], list[float]], Sequence[Sequence[float]]]
+
+
+def discontinuities(expression: Expression, t0: float, t1: float) -> list[float]:
+    """The instants in (t0, t1) at which a branch of the expression changes with time alone: its jumps and kinks.
+
+    Each is the first double at which the new branch holds; two may be neighbours (sign at its zero): then the segment
+    between them is a single instant, to be stepped over. Branches that depend on coordinates are left out. Raises
+    LimitError where there are too many to tell apart.
+    """
+    return sorted({t for switch in expression.switches for t in _changes(expression, switch, t0, t1)})
+
+
+def one_sided_limits(instants: Sequence[float]) -> list[tuple[float, float]]:
+    """For each of ascending discontinuities the last instant before it and the first after it.
+
+    Neighbouring doubles are one discontinuity: sign(t - 1) is zero at t = 1 alone, and its limits are those of the
+    branches before and after that instant.
+    """
+    limits: list[tuple[float, float]] = []
+    for t in instants:
+        before = math.nextafter(t, -math.inf)
+        if limits and limits[-1][1] >= before:
+            limits[-1] = (limits[-1][0], t)
+        else:
+            limits.append((before, t))
+    return limits
+
+
+def _changes(expression: Expression, switch: Switch, t0: float, t1: float) -> list[float]:
+    """Where one switch changes, decided; where that has no end, as seen on a grid, too."""
+    found = Search(expression, switch, Grid(t0, t1, COARSEST)).changes()
+    return [t for t in (_seen(expression, switch, t0, t1) if found is None else found) if t0 < t < t1]
+
+
+@record
+class Grid:
+    """The instants t0 + (t1 - t0) i / cells; the last one lies before t1."""
+
+    t0: float
+    t1: float
+    cells: int
+
+    def __getitem__(self, i: int) -> float:
+        if i == self.cells:
+            return math.nextafter(self.t1, -math.inf)
+        return self.t0 + (self.t1 - self.t0) * (i / self.cells)
+
+
+class Search:
+    """The search for the changes of one switch over a run."""
+
+    def __init__(self, expression: Expression, switch: Switch, grid: Grid) -> None:
+        self.grid = grid
+        self.decide = _at_instants(expression, switch.decision)
+        self.decisions = _over_stretches(expression, switch.decision)
+        margin = switch.margin or switch.decision[:-4]  # of a table, the argument
+        rises = switch.margin is None or switch.decision[-2] in RISING
+        self.margins = _over_stretches(expression, margin) if rises else None
+        self.branch: dict[float, float] = {}
+        self.found: list[float] = []
+
+    def changes(self) -> list[float] | None:
+        """The first double of each new branch; None where too many stretches stay open."""
+        cells = self.grid.cells
+        stretches = [
+            (i, i + FIRST_CELLS, self.grid[i], self.grid[i + FIRST_CELLS]) for i in range(0, cells, FIRST_CELLS)
+        ]
+        while stretches:
+            if len(stretches) > MOST_OPEN:
+                return None
+            self.look_at({t for stretch in stretches for t in stretch[2:]})
+            stretches = [half for stretch in self.undecided(stretches) for half in self.halves(*stretch)]
+        return self.found
+
+    def look_at(self, instants: set[float]) -> None:
+        """The branches at instants."""
+        new = sorted(instants - self.branch.keys())
+        self.branch.update(zip(new, self.decide(new), strict=True))
+
+    def undecided(self, stretches: list[tuple[int, int, float, float]]) -> list[tuple[int, int, float, float]]:
+        """The stretches in which there may be changes that are not found yet."""
+        begins, ends = [s[2] for s in stretches], [s[3] for s in stretches]
+        least, largest, *_ = self.decisions(begins, ends)
+        *_, slowest, fastest = self.margins(begins, ends) if self.margins else (least, [math.nan] * len(least))
+        open_still = []
+        for stretch, low, high, slow, fast in zip(stretches, least, largest, slowest, fastest, strict=True):
+            before, after = self.branch[stretch[2]], self.branch[stretch[3]]
+            if before == after and (low == high == before or (low != low and before == math.inf)):
+                continue
+            if (slow > 0.0 or fast < 0.0) and (before != after or before < math.inf):
+                self.found += self.between(*stretch)
+            else:
+                open_still.append(stretch)
+        return open_still
+
+    def halves(self, i: int, j: int, begin: float, end: float) -> list[tuple[int, int, float, float]]:
+        """Both halves of a stretch, first by cells of the grid; none of neighbouring doubles: there it changes."""
+        if j - i > 1:
+            k = (i + j) // 2
+            return [(i, k, begin, self.grid[k]), (k, j, self.grid[k], end)]
+        middle = begin + 0.5 * (end - begin)
+        if begin < middle < end:
+            return [(i, i, begin, middle), (i, i, middle, end)]
+        if self.branch[begin] != self.branch[end]:
+            self.found.append(end)
+        return []
+
+    def between(self, i: int, j: int, begin: float, end: float) -> list[float]:
+        """Changes in a stretch through which the margin rises or falls, cell by cell of the grid."""
+        if j - i <= 1:
+            return _between(self.decide, begin, end)
+        k = (i + j) // 2
+        middle = self.grid[k]
+        self.look_at({middle})
+        return [
+            t
+            for half in ((i, k, begin, middle), (k, j, middle, end))
+            if self.branch[half[2]] != self.branch[half[3]]
+            for t in self.between(*half)
+        ]
+
+
+def _over_stretches(expression: Expression, code: Code) -> Enclose:
+    """A program in time alone as a function of stretches: least and largest value, least and largest rate."""
+    pack = Pack()
+    start, count = pack.add_code(expression, code)
+    return lambda begins, ends: pack.spans(start, count, begins, ends)
+
+
+def _seen(expression: Expression, switch: Switch, t0: float, t1: float) -> list[float]:
+    """Where one switch changes as seen on a grid, refined until it has many cells for each change it shows."""
+    decide = _at_instants(expression, switch.decision)
+    cells, last = COARSEST, math.nextafter(t1, -math.inf)
+    while True:
+        grid = [t0 + (t1 - t0) * (i / cells) for i in range(cells)]
+        grid.append(last)
+        branches = decide(grid)
+        changed = [i for i in range(cells) if branches[i] != branches[i + 1]]
+        if len(changed) * CELLS_PER_CHANGE <= cells:
+            break
+        if cells >= FINEST:
+            message = f"'{expression.source}' jumps or bends too often between {t0:g} and {t1:g} s"
+            hint = f"at most about {FINEST // CELLS_PER_CHANGE} jumps and kinks can be met exactly"
+            raise LimitError(Problem("too-many-jumps", message, expression.location, hint))
+        cells *= 4
+    spans = [(grid[i], grid[i + 1]) for i in changed]
+    if switch.margin is not None:
+        spans += _near_zeros(_at_instants(expression, switch.margin), grid, branches, decide)
+    return [t for low, high in spans for t in _between(decide, low, high)]
+
+
+def _at_instants(expression: Expression, code: Code) -> Decide:
+    """A program in time alone as a function of instants; inf stands for what is no number, which is a branch, too."""
+    pack = Pack()
+    start, count = pack.add_code(expression, code)
+
+    def values(times: list[float]) -> list[float]:
+        return [v if v == v else math.inf for v in pack.sample(start, count, times)]
+
+    return values
+
+
+def _between(decide: Decide, low: float, high: float) -> list[float]:
+    """Changes of branch in (low, high], from left to right, each found to the last bit."""
+    instants: list[float] = []
+    branch, end = decide([low, high])
+    while branch != end:
+        a, b = low, high
+        while a < (middle := a + 0.5 * (b - a)) < b:
+            if decide([middle])[0] == branch:
+                a = middle
+            else:
+                b = middle
+        instants.append(b)
+        low, branch = b, decide([b])[0]
+    return instants
+
+
+def _near_zeros(
+    margin: Decide,
+    grid: list[float],
+    branches: list[float],
+    decide: Decide,
+) -> list[tuple[float, float]]:
+    """Spans in which the margin passes through zero and back between neighbouring points of the grid."""
+    margins = list(map(abs, margin(grid)))
+    spans: list[tuple[float, float]] = []
+    for i in range(1, len(grid) - 1):
+        left, middle, right = margins[i - 1 : i + 2]
+        bend = left - 2.0 * middle + right
+        is_low = middle <= left and middle <= right and 0.0 < bend < math.inf
+        if not is_low or not branches[i - 1] == branches[i] == branches[i + 1]:
+            continue
+        if middle > (right - left) ** 2 / (8.0 * bend) + bend:  # the parabola through the three stays well away
+            continue
+        a, b = grid[i - 1], grid[i + 1]
+        for _ in range(60):  # the least margin by thirds; 60 of them leave nothing of the span
+            c, d = a + (b - a) / 3.0, b - (b - a) / 3.0
+            other = [t for t, branch in zip((c, d), decide([c, d]), strict=True) if branch != branches[i]]
+            if other:
+                spans += [(grid[i - 1], other[0]), (other[0], grid[i + 1])]
+                break
+            left, right = margin([c, d])
+            a, b = (a, d) if abs(left) <= abs(right) else (c, b)
+    return spans
