@@ -8,6 +8,8 @@ the closures ask for J b + 3 gamma(a) = 0: what they ask of b is what they ask o
 
 from __future__ import annotations
 
+from collections.abc import Sequence
+
 import numpy as np
 
 from heuncli import tolerances
@@ -28,19 +30,41 @@ def require_motion(layout: Layout, recovered: Recovered) -> None:
     if not dependent:
         return
     y, accelerations = recovered.states[0], rates_of(layout, recovered)
+    place = places_of_rates(layout)
+    resting: dict[int, tuple[Array, Array]] = {}  # of each island its rates' places, and what they shall be
+    for k, island in enumerate(dependent):
+        own = place[island.freedoms]
+        weights = layout.weights[own]
+        scale = float(np.abs(accelerations[own] * weights).max(initial=0.0))
+        if scale > 0.0 and float(np.abs(y[own] * weights).max()) <= tolerances.AT_REST:
+            resting[k] = own, accelerations[own] / scale
+    if not resting:
+        return
     bare = Runner(without_loads(layout))
-    for island in dependent:
-        own = own_rates(layout, island)
-        scale = float(np.abs(accelerations[own] * layout.weights[own]).max(initial=0.0))
-        if scale == 0.0 or float(np.abs(y[own] * layout.weights[own]).max()) > tolerances.AT_REST:
-            continue
-        moved = y.copy()
-        moved[all_rates(layout)] = 0.0
-        moved[own] = accelerations[own] / scale
-        along = bare.recovered(recovered.times, moved[None, :])
-        kept = np.abs((along.states[0] - moved)[own] * layout.weights[own]).max() <= tolerances.MOVES
+    rates = place[place >= 0]
+    whole, kept = set_moving(bare, recovered, rates, list(resting.values()))
+    if kept and whole.residual[0] <= whole.may_stay[0]:  # mostly so: one look at all islands
+        return
+    for k, motion in resting.items():
+        along, kept = set_moving(bare, recovered, rates, [motion])
         if kept and along.residual[0] > along.may_stay[0] and pushed(layout, recovered, along):
-            raise SolveError(goes_nowhere(layout, float(recovered.times[0]), island))
+            raise SolveError(goes_nowhere(layout, float(recovered.times[0]), dependent[k]))
+
+
+def set_moving(
+    bare: Runner, recovered: Recovered, rates: Array, motions: Sequence[tuple[Array, Array]]
+) -> tuple[Recovered, bool]:
+    """What the scene without loads does where these rates are given and all others are 0; whether closures let them be.
+
+    rates: where all of them stand in the state.
+    """
+    y = recovered.states[0].copy()
+    y[rates] = 0.0
+    for own, values in motions:
+        y[own] = values
+    along = bare.recovered(recovered.times, y[None, :])
+    changed = np.abs((along.states[0] - y)[rates] * bare.layout.weights[rates])
+    return along, bool(changed.max() <= tolerances.MOVES)
 
 
 def without_loads(layout: Layout) -> Layout:
@@ -61,23 +85,19 @@ def rates_of(layout: Layout, recovered: Recovered) -> Array:
     return found
 
 
-def all_rates(layout: Layout) -> Array:
-    """Places of all rates in the state."""
-    groups = layout.tables["groups"]
-    return np.concatenate([np.arange(g["rates"], g["end"]) for g in groups] or [np.zeros(0, dtype=int)])
+def places_of_rates(layout: Layout) -> Array:
+    """Where the rate of each freedom that is not driven stands in the state, a ball's three turns each; by answers.
 
-
-def own_rates(layout: Layout, island: Island) -> Array:
-    """Places in the state of the rates of an island's freedoms."""
-    wanted = set(island.freedoms.tolist())
-    found: list[int] = []
+    -1: driven.
+    """
+    found = np.full(layout.answer_count, -1)
     for body in layout.bodies:
-        if body["ball"] and int(body["answer_at"]) in wanted:
-            found += range(body["rate_at"], body["rate_at"] + 3)
+        if body["ball"]:
+            found[body["answer_at"] : body["answer_at"] + 3] = np.arange(body["rate_at"], body["rate_at"] + 3)
     for freedom in layout.tables["freedoms"]:
-        if not freedom["driven"] and int(freedom["answer_at"]) in wanted:
-            found.append(int(freedom["u_at"]))
-    return np.array(found, dtype=int)
+        if not freedom["driven"]:
+            found[freedom["answer_at"]] = freedom["u_at"]
+    return found
 
 
 def pushed(layout: Layout, recovered: Recovered, along: Recovered) -> bool:
