@@ -1,7 +1,7 @@
 """Signatures of enclosure.py for C."""
 
 from heuncli.kernel.expressions cimport (
-    ABS, ADD, ASIN, ATAN, ATAN2, CONST, COS, COSH, DIV, EQ, EXP, EXTENDED, GE, GT, HELD, HYPOT, JUMP, KNOT, LE,
+    ABS, ADD, ASIN, ATAN, ATAN2, CONST, COS, COSH, DIV, EQ, EXP, EXTENDED, GE, GT, HELD, HOLD, HYPOT, JUMP, KNOT, LE,
     LOG, LT, MAX, MIN, MUL, NE, NEG, PERIODIC, POW, POWER, SIGN, SIN, SINH, SQRT, STEP, SUB, TABLE, TAN, TANH, UNLESS,
     VAR, Bounds, Expressions, Program, Programs, Span, Table, angle_on, piece, piece_counted, side_of_cut, table_at,
     takes_two,
@@ -16,7 +16,7 @@ from libc.math cimport INFINITY, fabs, floor, sqrt
 cdef Span enclose(Programs *programs, Program program) noexcept nogil
 cdef Span enclose_closely(Programs *programs, Program program) noexcept nogil
 cdef Bounds closer(Bounds a, Bounds b) noexcept nogil
-cdef Span run_on(Programs *programs, Span *ranges, Py_ssize_t at, Py_ssize_t end, Py_ssize_t height, Span x) noexcept nogil
+cdef Span run_on(Programs *programs, Span *ranges, Program program, int height, Span x) noexcept nogil
 cdef Span still(Bounds a) noexcept nogil
 cdef Span loose(Bounds a) noexcept nogil
 cdef Span no_span() noexcept nogil

@@ -41,6 +41,7 @@ if not cython.compiled:
         GE,
         GT,
         HELD,
+        HOLD,
         HYPOT,
         JUMP,
         KNOT,
@@ -124,14 +125,13 @@ if not cython.compiled:
 
 def enclose(programs: cython.pointer[Programs], program: Program) -> Span:
     """What a program and its derivatives may be over `ranges`; nothing where it has no value at all."""
-    return run_on(programs, programs.ranges, program.start, program.start + program.count, 0, no_span())
+    return run_on(programs, programs.ranges, program, 0, no_span())
 
 
 def enclose_closely(programs: cython.pointer[Programs], program: Program) -> Span:
     """The same with closer bounds, from those at a point of the stretch, where `middles` are the ranges."""
     whole: Span = enclose(programs, program)
-    end: cython.Py_ssize_t = program.start + program.count
-    there: Span = run_on(programs, programs.middles, program.start, end, 0, no_span())
+    there: Span = run_on(programs, programs.middles, program, 0, no_span())
     if is_nothing(whole.value) or is_nothing(there.value):
         return whole
     away: Bounds = minus(programs.ranges[0].value, programs.middles[0].value)
@@ -151,15 +151,12 @@ def closer(a: Bounds, b: Bounds) -> Bounds:
 
 
 def run_on(
-    programs: cython.pointer[Programs],
-    ranges: cython.pointer[Span],
-    at: cython.Py_ssize_t,
-    end: cython.Py_ssize_t,
-    height: cython.Py_ssize_t,
-    x: Span,
+    programs: cython.pointer[Programs], ranges: cython.pointer[Span], program: Program, height: cython.int, x: Span
 ) -> Span:
-    """Runs the instructions from `at` to `end` on ranges of the variables; x: the topmost span, below it `height`."""
+    """Runs a program, or a branch of it, on ranges of the variables; x: the topmost span, below it `height`."""
     stack: cython.pointer[Span] = programs.spans
+    at: cython.int = program.start
+    end: cython.int = at + program.count
     while at < end:
         op: cython.int = programs.code[at].op
         k: cython.int = programs.code[at].argument
@@ -187,30 +184,28 @@ def run_on(
             if is_zero(condition):
                 at += k
             elif condition.low <= 0.0 and condition.high >= 0.0:
-                otherwise: cython.Py_ssize_t = at + k  # behind the jump over it
-                after: cython.Py_ssize_t = otherwise + programs.code[otherwise - 1].argument
-                then: Span = run_on(programs, ranges, at, otherwise - 1, height, x)
-                other: Span = run_on(programs, ranges, otherwise, after, height, x)
+                then: Span = run_on(programs, ranges, Program(at, k - 1), height, x)
+                at += k  # behind the jump over the other branch
+                k = programs.code[at - 1].argument
+                other: Span = run_on(programs, ranges, Program(at, k), height, x)
+                at += k
                 stack[height] = x
                 height += 1
                 x = either(then, other)
-                at = after
-        elif op <= NE:
-            result: Span = truth(compared(op, stack[height - 1].value, x.value))
-            if k == 1:
+        elif op <= NE or programs.holding == HELD:
+            result: Span
+            if op == HOLD:
+                result = span_on_branch(programs, k, at, stack[height - 1], x)
+                op = programs.code[at].op
+                k = programs.code[at].argument
+                at += 2 if op == TABLE or op == KNOT else 1
+            else:
+                result = truth(compared(op, stack[height - 1].value, x.value))
+            if op >= LT and k == 1:
                 stack[height - 1] = result
             else:
-                height -= 1
-                x = result
-        elif programs.holding == HELD:
-            op = programs.code[at].op
-            held: Span = span_on_branch(programs, k, at, stack[height - 1], x)
-            if LT <= op and programs.code[at].argument == 1:
-                stack[height - 1] = held
-            else:
                 height -= takes_two(op)
-                x = held
-            at += 2 if op == TABLE or op == KNOT else 1
+                x = result
     return x
 
 

@@ -136,23 +136,23 @@ def value(programs: cython.pointer[Programs], program: Program) -> cython.double
                 break
             height -= 1
             x = stack[height]
-        elif op <= NE:
-            if k == 1:
-                stack[height - 1] = compare(op, stack[height - 1], x)
+        elif op == HOLD and programs.holding != HELD:
+            if programs.holding == TAKEN:
+                take_branch(programs, k, at, stack[height - 1], x)
+        else:
+            f: cython.double
+            if op == HOLD:
+                f = on_branch(programs, at, programs.held[k], stack[height - 1], x)
+                op = programs.code[at].op
+                k = programs.code[at].argument
+                at += 2 if op == TABLE or op == KNOT else 1
             else:
-                height -= 1
-                x = compare(op, stack[height], x)
-        elif programs.holding == TAKEN:
-            take_branch(programs, k, at, stack[height - 1], x)
-        elif programs.holding == HELD:
-            op = programs.code[at].op
-            held: cython.double = on_branch(programs, at, programs.held[k], stack[height - 1], x)
-            if LT <= op and programs.code[at].argument == 1:
-                stack[height - 1] = held
+                f = compare(op, stack[height - 1], x)
+            if op >= LT and k == 1:
+                stack[height - 1] = f
             else:
                 height -= takes_two(op)
-                x = held
-            at += 2 if op == TABLE or op == KNOT else 1
+                x = f
     return x if x - x == 0.0 else without_branches(programs, program)
 
 
