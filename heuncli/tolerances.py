@@ -104,7 +104,6 @@ SUM_ROUNDING = 16.0 * EPS  # of the largest term: sums of some dozen terms, and 
 UNKNOWN = 1e6  # an error relative to what it is an error of, where that is without bound or not a number
 WRITTEN = 1e-12  # of the largest: digits of what was solved exactly, all that some thousand roundings leave
 LEAST_RATE = 1e-5  # of a radian, or of the size, in the time asked for: slower ones are judged as if that fast
-UNSEEN = 1e-4  # of a load's largest: what it does beyond what the stages of a step saw, before that step is redone
 BOUNDLESS = 1e3  # a value that grows so many times over within 2**-20 of the run is on its way to infinity; where steps
 # become too many, one that has grown so in the last three quarters of the time is what they follow
 HOPELESS = 1.0  # times the most steps, over the root of their part done: what may be left of the steps projected
@@ -148,9 +147,18 @@ KERNEL: dict[str, float] = {
     "jump": 1e-2,  # coarse runs err by 1e-3, a blow changes rates by their own size
     "jump_of_error": 100.0,  # an accepted step errs by the tolerance, the rows' rates by some of it, over their pivot
     # -- steps
-    "least_step": 1e-14,  # of the time: fewer than 50 roundings of t
-    "rope_step": 1e-12,  # of the time: how near a run comes to where a rope would push
+    "least_step": 1e-14,  # of the time: fewer than 50 roundings of t; what lies nearer together is one instant
     "dodge": 0.87,
     "pivot_rounding": 1e-16,  # a rounding of the closures, amplified by 1 / pivot
+    # -- events
+    "finest": 1e-10,  # of a step: pulses a ten-thousandth of a millionth of it long are met, and its error not
+    "window": 1e-4,  # interpolants err by 50 tolerances, 5e-8 of a step's way; a parabola about its end by a cube
+    "near_kink": 1e-7,  # a load is then off by 1e-7 of what a step changes it, for 1e-7 of the step
+    "no_jump": 1e-9,  # a kink's branches differ by its width in x, 1e-14, times any slope
+    "leaving_first": 1e-13,  # of a step's way: some hundred roundings
+    "leaving_last": 1e-8,  # landings err by less; a motion that has not left by then is driven back
+    "flurry": 1e-9,  # as SAME_INSTANT; a pulse a millionth of the run long has 2 events in 1e-6
+    "least_load": 1e-200,  # N, N m or rad/s^2: bounds of exponentials are no closer than 1e-250
+    "unseen": 1e-4,  # of a load's largest in a step: what it does beyond what the stages saw
     "pivot_noise": 3e-13,  # what ten lengths could not avoid: the gap that settling leaves, amplified likewise
 }

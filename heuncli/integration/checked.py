@@ -49,6 +49,9 @@ class Loads(Protocol):
     def errors(self) -> Mapping[tuple[str, str], float]:
         """The estimated errors by kind and unit, at instants before the horizon."""
 
+    def kinetic(self) -> float:
+        """The largest kinetic energy over the run [J]."""
+
 
 @record
 class Checked:
@@ -56,7 +59,7 @@ class Checked:
 
     recovered: accelerations and loads at the run's instants; motion: largest estimated error of any point over the
     whole run, relative to the size; loads: those of the other kinds; errors: all by kind and unit, before the horizon;
-    horizon: where the motion's passes CLAIMED.
+    horizon: where the motion's passes CLAIMED; kinetic: the largest kinetic energy [J].
     """
 
     run: Trajectory
@@ -65,6 +68,7 @@ class Checked:
     loads: Estimate
     errors: Mapping[tuple[str, str], float]
     horizon: float | None
+    kinetic: float
     check_seconds: float
     lost_seconds: float  # of runs that missed the tolerance
 
@@ -183,13 +187,14 @@ def checked_run(runs: Runs, tolerance: float, loads: Loads) -> Checked:
         a = finer
     assert best is not None
     begun = time.perf_counter()
-    for part, several in recovered_together(runs, best.times, best.states):
+    a = best.runs[0]
+    for part, several in recovered_together(runs, a, best.times, best.states):
         before = best.times[part] < (np.inf if best.horizon is None else best.horizon)
         loads.add(several, best.asked[part], before)
-    a = best.runs[0]
-    recovered = recovered_at(runs.runner, a.times, a.states, runs.jumps)
+    recovered = recovered_at(runs.runner, a, a.times, a.states, runs.jumps)
     seconds = best.seconds + time.perf_counter() - begun
-    return Checked(a, recovered, best.motion, loads.estimate(), loads.errors(), best.horizon, seconds, lost)
+    told = best.motion, loads.estimate(), loads.errors(), best.horizon, loads.kinetic()
+    return Checked(a, recovered, *told, seconds, lost)
 
 
 def compared(runs: Runs, a: Trajectory) -> Compared:
@@ -203,42 +208,49 @@ def compared(runs: Runs, a: Trajectory) -> Compared:
         # the runs end at instants of their own; the last of A is judged by the one before it
         n = min(int(np.sum(at.times[: len(x.times)] == x.times[: len(at.times)])) for x in others)
     times, states = at.times[:n], (at.states[:n], *(x.states[:n] for x in others))
-    error = errors(runs, times, states)
+    error = errors(runs, a, times, states)
     late = np.flatnonzero(error > tolerances.CLAIMED)
     horizon = None
     if len(late):
         horizon = float(times[late[0]])
         ends, between = passed_between(runs.runner, (a, *others), float(times[max(late[0] - 1, 0)]), horizon)
-        sooner = ends[errors(runs, ends, between) > tolerances.CLAIMED]
+        sooner = ends[errors(runs, a, ends, between) > tolerances.CLAIMED]
         horizon = float(sooner[0]) if len(sooner) else horizon
     return Compared((a, *others), times, states, at.asked[:n], error, horizon, time.perf_counter() - begun)
 
 
-def errors(runs: Runs, times: Array, states: Sequence[Array]) -> Array:
+def errors(runs: Runs, a: Trajectory, times: Array, states: Sequence[Array]) -> Array:
     """Estimated errors of the motion at the instants, (n,); states: of A and of the other runs."""
     layout = runs.runner.layout
     places, angles, largest = np.zeros(len(times)), np.zeros(len(times)), 1.0
-    for part, several in recovered_together(runs, times, states):
+    for part, several in recovered_together(runs, a, times, states):
         places[part] = motion_error(runs.marks, several, len(states), layout.size)
         angles[part], turned = angle_error(layout, several, len(states))
         largest = max(largest, turned)
     return np.maximum(places, angles / largest)
 
 
-def recovered_together(runs: Runs, times: Array, states: Sequence[Array]) -> Iterator[tuple[slice, Recovered]]:
-    """The answers at the instants, at each those of all runs, in parts that fit the memory."""
+def recovered_together(
+    runs: Runs, a: Trajectory, times: Array, states: Sequence[Array]
+) -> Iterator[tuple[slice, Recovered]]:
+    """The answers at the instants, at each those of all runs, in parts that fit the memory.
+
+    All hold A's branches: of an event that the runs meet at instants a little apart, either would else show its own
+    side of a jump, and the estimate the jump.
+    """
     many = max(1, CHUNK // (30 * len(states) * len(runs.runner.layout.place) + 1))
     for i in range(0, len(times), many):
         part = slice(i, i + many)
-        yield part, recovered_at(runs.runner, *interleaved(times[part], [x[part] for x in states]), runs.jumps)
+        yield part, recovered_at(runs.runner, a, *interleaved(times[part], [x[part] for x in states]), runs.jumps)
 
 
-def recovered_at(runner: Runner, times: Array, states: Array, jumps: Sequence[float]) -> Recovered:
-    """Accelerations and loads; at a discontinuity the right limits."""
+def recovered_at(runner: Runner, run: Trajectory, times: Array, states: Array, jumps: Sequence[float]) -> Recovered:
+    """Accelerations and loads of states like those of a run; at a discontinuity the right limits."""
     later = times.copy()
     for before, after in one_sided_limits(jumps):
         later[(times > before) & (times < after)] = after
-    return replace(runner.recovered(later, states), times=times)
+    branches = run.branches_at(times) if run.branches.size else None
+    return replace(runner.recovered(later, states, branches=branches), times=times)
 
 
 def motion_error(marks: Marks, several: Recovered, count: int, size: float) -> Array:

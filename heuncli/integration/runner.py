@@ -16,6 +16,7 @@ import numpy as np
 from heuncli import tolerances
 from heuncli.errors import LimitError, Problem, SolveError
 from heuncli.expressions.discontinuities import discontinuities, one_sided_limits
+from heuncli.expressions.programs import Expression
 from heuncli.integration.methods import DOP853, Method
 from heuncli.integration.pace import FIRST_LOOK, hopeless
 from heuncli.kernel.choose import integration
@@ -31,7 +32,9 @@ CHUNK = 2_000  # body-steps between two looks at the clock
 KEPT = 20_000_000  # numbers in the states kept for replays, at the ends of all steps or of every second, fourth, ...
 MOST_STEPS = 20_000_000
 
-REACHED, MORE, ROPE_SLACK = (kernel.CODES[name] for name in ("reached", "more", "rope slack"))
+REACHED, MORE, ROPE_SLACK, CHATTERING = (
+    kernel.CODES[name] for name in ("reached", "more", "rope slack", "chattering")
+)
 TROUBLE = {
     kernel.CODES["collapsed"]: (
         "step-collapsed",
@@ -49,6 +52,7 @@ TROUBLE = {
         "the mechanism locks or reaches the end of its range there",
     ),
 }
+PER_STEP = ("ends", "settled", "pivots", "turned")  # what is put down of each step
 
 
 @record
@@ -56,6 +60,8 @@ class Trajectory:
     """The state at the asked instants.
 
     times (n_t,) [s]; states (n_t, n_state); ends: instants of the accepted steps; gap: largest closure gap left [m].
+    branches (n_steps, n): those of the expressions that a step held; turned: of each step whether they change at its
+    end; undecided: of how many steps bounds could not tell what loads do between the stages.
     """
 
     times: Array
@@ -71,7 +77,20 @@ class Trajectory:
     kept: tuple[tuple[int, Array], ...] = ()  # of the first and some other steps: number, record of where it starts
     pivots: Array = np.zeros(0)  # least pivot of the closures in each step
     settled: Array = np.zeros(0)  # of each step whether its stages were settled on the closures
+    branches: Array = np.zeros((0, 0))
+    turned: Array = np.zeros(0)
+    undecided: int = 0
     stopped: str | None = None  # the rope that would have to push just after the last instant
+
+    @property
+    def events(self) -> tuple[float, ...]:
+        """The instants at which branches change that hang on coordinates."""
+        return tuple(self.ends[self.turned > 0.0].tolist())
+
+    def branches_at(self, times: Array) -> Array:
+        """The branches that hold at instants, (n_t, n); at an event those behind it."""
+        step = np.searchsorted(self.ends, times, side="right")
+        return self.branches[np.minimum(step, max(len(self.branches) - 1, 0))] if self.branches.size else self.branches
 
 
 def discontinuities_of(mechanism: Mechanism, t0: float, t1: float) -> list[float]:
@@ -97,6 +116,16 @@ def check_deadline(deadline: float | None, where: str) -> None:
         raise LimitError(Problem("time-limit", f"the time limit was reached {where}", hint=hint))
 
 
+def chattering(t: float, expression: Expression, branch: int) -> Problem:
+    """The problem of a branch that turns back as soon as it turned: the motion would have to stay between."""
+    message = (
+        f"at t = {t:.9g} s '{expression.held[branch]}' in '{expression.source.strip()}' chatters: "
+        "it changes back as soon as it has changed, for on either side the motion is driven to the other"
+    )
+    hint = "what sticks needs a smooth law: tanh(rate/0.001) in place of sign(rate), or a force of type friction"
+    return Problem("chattering", message, expression.location, hint)
+
+
 class Integration:
     """The kernel's loop over the asked instants, at most `most` steps at a time, with the arrays it writes to."""
 
@@ -104,18 +133,25 @@ class Integration:
         n = self.n = layout.n_state
         most = given.pop("most")
         self.width = integration.record_width(workspace, n)
-        self.output = {name: np.zeros(most) for name in ("ends", "settled", "pivots")}
+        self.output = {name: np.zeros(most) for name in PER_STEP}
+        self.held = layout.pack.held
+        self.branches = np.zeros(most * self.held)
         self.passed = np.zeros(0 if given["following"] else most * self.width)
         self.count = len(times)
         self.samples = np.zeros(self.count * n)
         start = {"groups": layout.tables["groups"], "energy_group": layout.energy_group, "weights": layout.weights}
         output = self.output | {"times": times, "samples": self.samples, "passed": self.passed}
+        output["branches"] = self.branches
         self.loop = integration.Integration(workspace, method.arrays, start | given, output)
 
     def records(self, every: int, offset: int) -> Array:
         """What the steps after those just done start from: of every so many, (count, width); a copy."""
         done = self.loop.done
         return self.passed[: done * self.width].reshape(done, self.width)[offset::every].copy()
+
+    def held_branches(self) -> Array:
+        """The branches that the steps just done held, (count, n); a copy."""
+        return self.branches[: self.loop.done * self.held].reshape(-1, self.held).copy()
 
     def states(self) -> Array:
         """The states at the asked instants, (n_t, n)."""
@@ -127,7 +163,8 @@ class Steps:
     """The steps done: of each its end, its least pivot, whether its stages were settled; for replays some records."""
 
     def __init__(self, start: Array, width: int) -> None:
-        self.rows: dict[str, list[Array]] = {"ends": [np.zeros(0)], "settled": [np.zeros(0)], "pivots": [np.zeros(0)]}
+        self.rows: dict[str, list[Array]] = {name: [np.zeros(0)] for name in PER_STEP}
+        self.branches: list[Array] = []
         self.count = 0
         # number of a step, and what it starts from; the first is a segment's, of which the state alone counts
         self.kept: list[tuple[int, Array]] = [(0, np.concatenate([start, np.zeros(width - len(start))]))]
@@ -138,6 +175,8 @@ class Steps:
         """Add the steps of the last call; while there are too many records, every second of them is dropped."""
         for name, arrays in self.rows.items():
             arrays.append(run.output[name][: run.loop.done].copy())
+        if run.held:
+            self.branches.append(run.held_branches())
         first = self.count // self.every * self.every + self.every  # the next number of which one is kept
         self.kept += enumerate_by(first, self.every, run.records(self.every, first - self.count - 1))
         self.count += run.loop.done
@@ -160,6 +199,10 @@ class Steps:
     def column(self, name: str) -> Array:
         """Ends, least pivots, or which were settled, (n_steps,)."""
         return np.concatenate(self.rows[name])
+
+    def held_branches(self) -> Array:
+        """The branches that the steps held, (n_steps, n)."""
+        return np.concatenate(self.branches) if self.branches else np.zeros((0, 0))
 
 
 def enumerate_by(first: int, step: int, rows: Array) -> list[tuple[int, Array]]:
@@ -245,7 +288,8 @@ class Runner:
             times=ts, states=states, ends=steps.column("ends"), steps=run.loop.steps,
             evaluations=run.loop.evaluations, gap=run.loop.gap, tolerance=tolerance, method=method,
             seconds=time.perf_counter() - begun, segments=tuple(segments), kept=tuple(steps.kept),
-            pivots=steps.column("pivots"), settled=steps.column("settled"),
+            pivots=steps.column("pivots"), settled=steps.column("settled"), branches=steps.held_branches(),
+            turned=steps.column("turned"), undecided=run.loop.undecided,
             stopped=None if code == REACHED else layout.mechanism.joints[layout.rows[run.loop.rope]].name,
         )  # fmt: skip
 
@@ -267,6 +311,8 @@ class Runner:
     def _failed(self, code: int, run: Integration, steps: Steps, last: float) -> SolveError:
         """Why a run to `last` ends: an expression without a value there, else the meaning of the kernel's code."""
         t, state = run.loop.t, np.array(run.loop.state())
+        if code == CHATTERING:
+            return SolveError(chattering(t, *self.layout.pack.branches[run.loop.turning]))
         name, message, hint = TROUBLE[code]
         if name != "closure-lost":
             from heuncli.integration.domains import joint_coordinates, without_value  # only on the way to an error
@@ -322,7 +368,8 @@ class Runner:
             begin, before_end = run.segments[bisect_right(run.segments, t, key=lambda segment: segment[1])]
             end = just_after(before_end)
             to = min(last, int(np.searchsorted(run.ends, end)))  # a segment ends with a step
-            loop.follow(run.ends[first : to + 1], run.settled[first : to + 1])
+            steps = slice(first, to + 1)
+            loop.follow(run.ends[steps], run.settled[steps], run.branches[steps])
             if t <= begin:
                 loop.begin(begin, before_end, end)
             else:
@@ -337,10 +384,13 @@ class Runner:
         length = min((island.length for island in self.layout.islands), default=self.size)
         return tolerances.UNMET * (self.workspace.least_row + tolerances.RANK_OF_GAP * gap / length)
 
-    def recovered(self, times: Array, states: Array, *, hold_rows: bool = False) -> Recovered:
+    def recovered(
+        self, times: Array, states: Array, *, branches: Array | None = None, hold_rows: bool = False
+    ) -> Recovered:
         """Accelerations and loads at the given states, which are projected onto the closures first.
 
         Each state by itself, whatever others are asked with it: its independent closure rows are chosen anew.
+        branches (n_t, n): those that the expressions hold; without them branches are as the states say.
         hold_rows: those of the first serve the others too, as long as they can, for pivots that are comparable.
         """
         layout, n_t = self.layout, len(times)
@@ -355,7 +405,8 @@ class Runner:
         at = np.ascontiguousarray(times, dtype=float)
         settled = np.array(states, dtype=float).reshape(n_t, layout.n_state)
         flat, out = settled.ravel(), np.zeros(n_t * width)
-        self.workspace.recover(at, flat, out, width, not hold_rows)
+        held = np.zeros(0) if branches is None else np.ascontiguousarray(branches, dtype=float).ravel()
+        self.workspace.recover(at, flat, held, out, width, not hold_rows)
         bodies, freedoms, loads, rows, whole = parts(out.reshape(n_t, width), sizes)
         return Recovered(
             times=at, states=flat.reshape(settled.shape), bodies=bodies, freedoms=freedoms, loads=loads, rows=rows,

@@ -1,10 +1,13 @@
 """The door to steps.py, for C."""
 
 from heuncli.kernel.chosen cimport chosen_width
+from heuncli.kernel.dense cimport Method, Run, clipped
+from heuncli.kernel.events cimport Course, PARTS, take_branches
+from heuncli.kernel.expressions cimport FREE, HELD
 from heuncli.kernel.memory cimport Memory
 from heuncli.kernel.response cimport evaluate
 from heuncli.kernel.scene cimport Group, Scene
-from heuncli.kernel.steps cimport Method, Run, clipped, run_steps, take_record
+from heuncli.kernel.steps cimport run_steps, take_record
 from heuncli.kernel.workspace cimport Workspace
 
 cdef class Integration:
@@ -15,4 +18,5 @@ cdef class Integration:
     cdef Memory memory
     cpdef object take_method(self, dict method)
     cpdef object take_start(self, dict start)
+    cpdef object make_room(self)
     cpdef object take_output(self, dict output)

@@ -14,12 +14,15 @@ except ImportError:
 
 if not cython.compiled:
     from heuncli.kernel.chosen import chosen_width
+    from heuncli.kernel.dense import clipped
+    from heuncli.kernel.events import PARTS, take_branches
+    from heuncli.kernel.expressions import FREE, HELD
     from heuncli.kernel.memory import Memory
     from heuncli.kernel.response import evaluate
     from heuncli.kernel.scene import Group, Scene
     from heuncli.kernel.shadow import cython
-    from heuncli.kernel.steps import clipped, run_steps, take_record
-    from heuncli.kernel.structs import Method, Run
+    from heuncli.kernel.steps import run_steps, take_record
+    from heuncli.kernel.structs import Course, Method, Run
     from heuncli.kernel.workspace import Workspace
 
 
@@ -35,16 +38,18 @@ class Integration:
         self, workspace: Workspace, method: dict[str, Any], start: dict[str, Any], output: dict[str, Any]
     ) -> None:
         """method: numbers and arrays by name (integration/methods.py); start: groups (a table), energy_group, weights,
-        state, tolerance, rate, following; output: times, samples, and of the steps ends, settled, pivots, passed, which
-        are written into: flat arrays. following: ends and settled are given.
+        state, tolerance, rate, following; output: times, samples, and of the steps ends, settled, pivots, turned,
+        branches, passed, which are written into: flat arrays. following: ends, settled and branches are given.
         """
         if not cython.compiled:
             self.run, self.method = Run(), Method()
+            self.run.course = Course()
         self.workspace = workspace
         self.output = output
         self.memory = Memory()
         self.take_method(method)
         self.take_start(start)
+        self.make_room()
         self.take_output(output)
 
     def take_method(self, method: dict[str, Any]) -> None:
@@ -70,8 +75,9 @@ class Integration:
         run.rate = start["rate"]
         run.following = start["following"]
         run.next_sample = run.rope = run.steps = run.evaluations = run.rejected = run.done = run.dodges = 0
-        run.rejected_before = 0
-        run.proposed = run.energy_scale = run.gap = 0.0
+        run.rejected_before = run.has_cut = run.landings = run.slack_landings = run.at_once = run.turns = 0
+        run.flurry = run.undecided = run.seeing = 0
+        run.proposed = run.energy_scale = run.gap = run.cut = run.flurry_begin = 0.0
         run.weights = self.memory.doubles(start["weights"])
         run.y = self.memory.doubles(start["state"])
         run.z = self.memory.zeros(n)
@@ -89,6 +95,22 @@ class Integration:
         else:
             run.groups = [Group(row) for row in start["groups"].tolist()]
 
+    def make_room(self) -> None:
+        """Room for the course of the coordinates that expressions hang on."""
+        scene: cython.pointer[Scene] = cython.address(self.workspace.scene)
+        course: cython.pointer[Course] = cython.address(self.run.course)
+        rows: cython.Py_ssize_t = 4 + self.method.dense_rows
+        course.value = self.memory.matrix(scene.variable_count, rows)
+        course.rate = self.memory.matrix(scene.variable_count, rows)
+        course.second = self.memory.matrix(scene.variable_count, rows)
+        course.work = self.memory.zeros(rows)
+        course.begins = self.memory.zeros(PARTS)
+        course.ends = self.memory.zeros(PARTS)  # more than halvings
+        course.promise = self.memory.zeros(PARTS)
+        course.before = self.memory.zeros(scene.held_count)
+        course.turned = self.memory.zeros(scene.held_count)
+        course.slot = 0
+
     def take_output(self, output: dict[str, Any]) -> None:
         """The asked instants, and where states at them and at the ends of the steps go."""
         run: cython.pointer[Run] = cython.address(self.run)
@@ -99,6 +121,9 @@ class Integration:
         run.ends = self.memory.over(output["ends"], 1, run.most)[0]
         run.settled = self.memory.over(output["settled"], 1, run.most)[0]
         run.pivots = self.memory.over(output["pivots"], 1, run.most)[0]
+        run.turned = self.memory.over(output["turned"], 1, run.most)[0]
+        held: cython.int = self.workspace.scene.held_count
+        run.branches = self.memory.over(output["branches"], run.most if held else 0, held)
         run.passed = self.memory.over(output["passed"], 0 if run.following else run.most, self.record_width)
 
     def begin(self, t: cython.double, before_end: cython.double, end: cython.double) -> None:
@@ -114,14 +139,20 @@ class Integration:
         scene: cython.pointer[Scene] = cython.address(self.workspace.scene)
         run: cython.pointer[Run] = cython.address(self.run)
         run.t, run.before_end, run.end, run.fresh = t, before_end, end, 0
+        if scene.held_count:
+            take_branches(scene, run.branches[0])
+        scene.programs.holding = HELD
         evaluate(scene, clipped(run, t), run.y, run.K[0])
 
-    def follow(self, ends: Any, settled: Any) -> None:
-        """The ends of the steps to be done again, and which of them settled their stages."""
+    def follow(self, ends: Any, settled: Any, branches: Any) -> None:
+        """The ends of the steps to be done again, which of them settled their stages, and their branches, (n, held)."""
         i: cython.Py_ssize_t
+        k: cython.Py_ssize_t
         for i in range(len(ends)):
             self.run.ends[i] = float(ends[i])
             self.run.settled[i] = float(settled[i])
+            for k in range(self.workspace.scene.held_count):
+                self.run.branches[i][k] = float(branches[i][k])
 
     def advance(self, most: cython.int, roped: cython.bint) -> int:
         """Up to `most` steps; REACHED, MORE to do, or why not. roped: stop where a rope would push."""
@@ -131,14 +162,19 @@ class Integration:
         method: cython.pointer[Method] = cython.address(self.method)
         run.most = most
         scene.roped = roped
+        scene.programs.holding = HELD
         with cython.nogil:
             code = run_steps(scene, method, run)
+        scene.programs.holding = FREE
         if not cython.compiled and not run.following:
-            for name in ("ends", "settled", "pivots"):
+            for name in ("ends", "settled", "pivots", "turned"):
                 self.output[name][: run.done] = getattr(run, name)[: run.done]
             width = self.record_width
             for k in range(run.done):
                 self.output["passed"][k * width : (k + 1) * width] = run.passed[k]
+            held = self.workspace.scene.held_count
+            for k in range(run.done if held else 0):
+                self.output["branches"][k * held : (k + 1) * held] = run.branches[k]
         return code
 
     def fetch(self) -> None:
@@ -186,6 +222,16 @@ class Integration:
     def rope(self) -> int:
         """The closure row of the rope that would push; -1: none."""
         return self.run.rope - 1
+
+    @property
+    def turning(self) -> int:
+        """The branch that turned last."""
+        return self.run.course.slot
+
+    @property
+    def undecided(self) -> int:
+        """Of how many steps bounds could not decide what they hold."""
+        return self.run.undecided
 
     @property
     def sampled(self) -> int:

@@ -13,6 +13,9 @@ MODULES = (
     "chosen",
     "response",
     "workspace",
+    "dense",
+    "events",
+    "landing",
     "steps",
     "integration",
 )

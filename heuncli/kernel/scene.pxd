@@ -144,6 +144,14 @@ cdef struct Variable:
     int freedom
     int is_rate
 
+cdef struct Watch:
+    Program program
+    int curved
+    int unused
+    double low
+    double high
+    double scale
+
 cdef struct Lent:
     int body
     int unused
@@ -189,9 +197,17 @@ cdef struct Limits:
     double jump
     double jump_of_error
     double least_step
-    double rope_step
     double dodge
     double pivot_rounding
+    double finest
+    double window
+    double near_kink
+    double no_jump
+    double leaving_first
+    double leaving_last
+    double flurry
+    double least_load
+    double unseen
     double pivot_noise
 
 cdef struct Scene:
@@ -203,6 +219,8 @@ cdef struct Scene:
     int variable_count
     int lent_count
     int island_count
+    int watch_count
+    int held_count            # branches of expressions that are held over a step
     int answer_count          # freedoms, a ball's three turns among them
     int selected_count        # independent closure rows
     int driven                # something is driven: the work of drives counts
@@ -230,6 +248,9 @@ cdef struct Scene:
     Variable *variables
     Lent *lents
     Island *islands
+    Watch *watches
+    double *least             # of each variable what the stages of a step saw
+    double *most
     Programs *programs
     int *indices              # paths, answers and couplings of the closure rows
     int *selected             # independent rows, ascending

@@ -188,6 +188,18 @@ class Variable(Record):
     is_rate: int
 
 
+class Watch(Record):
+    """A program that is watched over the steps: a load's, or a drive's."""
+
+    program: Program
+    curved: int  # 1: the acceleration of a drive counts
+    unused: int
+
+    low: float  # what the stages of a step saw of it
+    high: float
+    scale: float  # how large it may be in the step
+
+
 class Lent(Record):
     """Inertia lent to a body about an axis, so that the tree can be factored, and given back (kernel/response.py)."""
 
@@ -246,9 +258,17 @@ class Limits(Record):
     jump: float  # of the largest rate: a larger change of rates by the closures is no rounding of the step
     jump_of_error: float  # the same of the local tolerance, by the root of the pivot
     least_step: float  # of the time: rounding
-    rope_step: float  # of the time: how near a run comes to where a rope would push
     dodge: float  # ratio of the lengths tried
     pivot_rounding: float  # what rounding makes of the closures, times h rate / pivot
+    finest: float  # part of a step down to which events are told apart
+    window: float  # of a step, on either side of its end: an event that the step before found lies there
+    near_kink: float  # of a step: so near to a kink a step may end, for branches go on smoothly beyond it
+    no_jump: float  # of a load's scale: branches that agree so far meet in a kink
+    leaving_first: float  # of a step: how far from its start rounding may tell a branch wrong, at least ...
+    leaving_last: float  # ... and at most
+    flurry: float  # of the time: events that follow each other within it gather at an instant
+    least_load: float  # smaller loads are none, in any unit
+    unseen: float  # of a load's largest: what it does beyond what stages saw, before the step is done again
     pivot_noise: float  # what a step at the least of the lengths tried may be off by, likewise
 
 
@@ -263,6 +283,8 @@ class Scene(metaclass=Fields):
     variable_count: int
     lent_count: int
     island_count: int
+    watch_count: int
+    held_count: int
     answer_count: int
     selected_count: int
     driven: int
@@ -290,6 +312,9 @@ class Scene(metaclass=Fields):
     variables: list[Variable]
     lents: list[Lent]
     islands: list[Island]
+    watches: list[Watch]
+    least: list[float]
+    most: list[float]
     programs: Programs
     indices: list[int]
     selected: list[int]

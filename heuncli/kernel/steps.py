@@ -18,6 +18,10 @@ if not cython.compiled:
     from heuncli.kernel.algebra import Vec3, norm
     from heuncli.kernel.chosen import choose_afresh, put_chosen, take_chosen
     from heuncli.kernel.closures import slack
+    from heuncli.kernel.dense import clipped, combine, interpolant, interpolate
+    from heuncli.kernel.events import take_branches
+    from heuncli.kernel.expressions import HELD, TAKEN
+    from heuncli.kernel.landing import AGAIN_TO, CHATTERS, SLACK, STANDS, begin_to_see, meet, see_stage
     from heuncli.kernel.response import evaluate, must_choose_anew, settle
     from heuncli.kernel.scene import Body, Group, Scene
     from heuncli.kernel.selection import select_independent_rows
@@ -25,7 +29,7 @@ if not cython.compiled:
     from heuncli.kernel.structs import Method, Run
 
     # What `advance` answers; for C these stand in steps.pxd, in the same order.
-    REACHED, MORE, COLLAPSED, NOT_A_NUMBER, CLOSURES_LOST, ROPE_SLACK, ACCEPTED, AGAIN = range(8)
+    REACHED, MORE, COLLAPSED, NOT_A_NUMBER, CLOSURES_LOST, ROPE_SLACK, CHATTERING, ACCEPTED, AGAIN = range(9)
 
 CODES = {
     "reached": REACHED,
@@ -34,32 +38,8 @@ CODES = {
     "not a number": NOT_A_NUMBER,
     "closures lost": CLOSURES_LOST,
     "rope slack": ROPE_SLACK,
+    "chattering": CHATTERING,
 }
-
-
-def combine(
-    method: cython.pointer[Method], row: cython.int, K: cython.pp_double, n: cython.int, out: cython.p_double
-) -> cython.void:
-    """out = sum over stages of the row's coefficients times K, in blocks that stay in the cache."""
-    i: cython.Py_ssize_t
-    j: cython.Py_ssize_t
-    begin: cython.Py_ssize_t = 0
-    end: cython.Py_ssize_t
-    while begin < n:
-        end = begin + 256 if begin + 256 < n else n
-        for i in range(begin, end):
-            out[i] = 0.0
-        for j in range(method.begin[row], method.begin[row + 1]):
-            c: cython.double = method.coefficient[j]
-            k: cython.p_double = K[method.stage[j]]
-            for i in range(begin, end):
-                out[i] += c * k[i]
-        begin = end
-
-
-def clipped(run: cython.pointer[Run], t: cython.double) -> cython.double:
-    """An instant of the piece: beyond its end other branches of the expressions hold."""
-    return run.before_end if t > run.before_end else t
 
 
 def norm_of(run: cython.pointer[Run], x: cython.p_double, begin: cython.int, end: cython.int) -> cython.double:
@@ -126,7 +106,12 @@ def begin_piece(scene: cython.pointer[Scene], method: cython.pointer[Method], ru
     if scene.closure_count:
         choose_afresh(scene, run.t, run.y)
         settle(scene, run.t, run.y)
+    if run.following and scene.held_count:
+        take_branches(scene, run.branches[0])
+    if not run.following:
+        scene.programs.holding = TAKEN
     evaluate(scene, run.t, run.y, run.K[0])
+    scene.programs.holding = HELD
     run.evaluations += 1
     if scene.roped:
         run.rope = slack(scene)
@@ -138,6 +123,7 @@ def begin_piece(scene: cython.pointer[Scene], method: cython.pointer[Method], ru
             run.proposed = h
     run.fresh = 0
     run.rejected_before = 0
+    run.has_cut = run.landings = run.slack_landings = run.at_once = 0
     for i in range(run.n):
         run.carry[i] = 0.0
     return REACHED
@@ -226,6 +212,9 @@ def propose(run: cython.pointer[Run]) -> cython.void:
     if run.following:
         run.stop = run.ends[run.done]
         run.last = run.stop >= run.end
+    elif run.has_cut:
+        run.stop = run.cut
+        run.last = 0
     elif run.last:
         run.stop = run.end
     elif run.t + 2.0 * run.proposed > run.end:
@@ -235,7 +224,7 @@ def propose(run: cython.pointer[Run]) -> cython.void:
 
 def blocked(scene: cython.pointer[Scene], run: cython.pointer[Run]) -> cython.int:
     """Why there is no further step: the closures lock while rates grow, or the step is rounding of the time."""
-    if run.last:
+    if run.last or run.has_cut:
         return REACHED
     if scene.closure_count and scene.pivot < scene.limits.locked and run.h <= scene.limits.locked_step * fabs(run.end):
         return CLOSURES_LOST
@@ -262,6 +251,8 @@ def attempt(scene: cython.pointer[Scene], method: cython.pointer[Method], run: c
     i: cython.Py_ssize_t
     t: cython.double
     change: cython.double
+    if run.seeing:
+        begin_to_see(scene, run)
     for s in range(1, method.stages):
         combine(method, s, run.K, run.n, run.stage)
         for i in range(run.n):
@@ -270,24 +261,18 @@ def attempt(scene: cython.pointer[Scene], method: cython.pointer[Method], run: c
         if run.near:
             settle(scene, t, run.stage)
         evaluate(scene, t, run.stage, run.K[s])
+        if run.seeing:
+            see_stage(scene, run)
     combine(method, method.stages, run.K, run.n, run.z)
     for i in range(run.n):
         change = run.h * run.z[i] + run.carry[i]
         run.z[i] = run.y[i] + change
         run.z_carry[i] = change - (run.z[i] - run.y[i])
     run.evaluations += method.stages
-    return evaluate(scene, clipped(run, run.stop), run.z, run.K[method.stages])
-
-
-def rope_slack(scene: cython.pointer[Scene], run: cython.pointer[Run]) -> cython.int:
-    """Halve the way to where a rope would push; the run ends just before it."""
-    run.rope = slack(scene)
-    if run.rope == 0:
-        return ACCEPTED
-    run.proposed = 0.5 * run.h
-    if run.proposed <= scene.limits.rope_step * (run.end + fabs(run.t)):
-        return ROPE_SLACK
-    return AGAIN
+    trouble: cython.int = evaluate(scene, clipped(run, run.stop), run.z, run.K[method.stages])
+    if run.seeing:
+        see_stage(scene, run)
+    return trouble
 
 
 def judge(
@@ -359,50 +344,6 @@ def singular_noise(scene: cython.pointer[Scene], run: cython.pointer[Run]) -> cy
     return 0.0
 
 
-def interpolant(scene: cython.pointer[Scene], method: cython.pointer[Method], run: cython.pointer[Run]) -> cython.void:
-    """The interpolating polynomial over the step y -> z, in nested form: its rows of coefficients."""
-    s: cython.int
-    i: cython.Py_ssize_t
-    t: cython.double
-    change: cython.double
-    last: cython.p_double = run.K[method.stages]
-    for s in range(method.stages + 1, method.stages + 1 + method.extra):
-        combine(method, s, run.K, run.n, run.stage)
-        for i in range(run.n):
-            run.stage[i] = run.y[i] + run.h * run.stage[i]
-        t = clipped(run, run.t + method.node[s] * run.h)
-        if scene.closure_count and scene.pivot_of_step < scene.limits.near_singular:
-            settle(scene, t, run.stage)
-        evaluate(scene, t, run.stage, run.K[s])
-    run.evaluations += method.extra
-    first: cython.p_double = run.K[0]
-    for i in range(run.n):
-        change = run.z[i] - run.y[i]
-        run.dense[0][i] = change
-        run.dense[1][i] = run.h * first[i] - change
-        run.dense[2][i] = 2.0 * change - run.h * (last[i] + first[i])
-    for s in range(method.dense_rows):
-        combine(method, method.stages + 1 + method.extra + method.estimates + s, run.K, run.n, run.dense[3 + s])
-        for i in range(run.n):
-            run.dense[3 + s][i] *= run.h
-
-
-def interpolate(run: cython.pointer[Run], rows: cython.int, x: cython.double, out: cython.p_double) -> cython.void:
-    """State at the fraction x of the step: y + x (F0 + (1 - x) (F1 + x (F2 + (1 - x) (F3 + ...))))."""
-    i: cython.Py_ssize_t
-    k: cython.int
-    factor: cython.double
-    for i in range(run.n):
-        out[i] = 0.0
-    for k in range(rows - 1, -1, -1):
-        factor = x if k % 2 == 0 else 1.0 - x
-        row: cython.p_double = run.dense[k]
-        for i in range(run.n):
-            out[i] = (out[i] + row[i]) * factor
-    for i in range(run.n):
-        out[i] = run.y[i] + out[i]
-
-
 def sample(scene: cython.pointer[Scene], method: cython.pointer[Method], run: cython.pointer[Run]) -> cython.void:
     """The asked instants within the step y -> z, before its end; which are asked changes nothing of the steps."""
     x: cython.double
@@ -447,6 +388,7 @@ def accept(scene: cython.pointer[Scene], method: cython.pointer[Method], run: cy
     code: cython.int = REACHED
     factor: cython.double = growth(method, run)
     run.dodges = 0
+    cut_short: cython.bint = run.last or run.has_cut
     sample(scene, method, run)
     for i in range(run.n):
         run.y[i] = run.z[i]
@@ -457,15 +399,21 @@ def accept(scene: cython.pointer[Scene], method: cython.pointer[Method], run: cy
             if run.groups[b].rate > run.rate and b != run.energy_group:
                 run.rate = run.groups[b].rate
     run.t = run.stop
-    if not run.last or run.proposed < run.h * factor:
-        # a step cut short by the end of the piece says nothing against a longer one after it
+    if not cut_short or run.proposed < run.h * factor:
+        # a step cut short by an event or the end of the piece says nothing against a longer one after it
         run.proposed = run.h * factor
     run.rejected_before = 0
+    run.has_cut = run.landings = run.slack_landings = 0
+    run.at_once = 0
     run.steps += 1
     pivot: cython.double = scene.pivot_of_step
+    turns: cython.bint = scene.held_count > 0 and turn_branches(scene, run)
     if scene.closure_count:
         code = land(scene, run)
         run.pivot_at_start = scene.pivot
+    elif turns:
+        evaluate(scene, clipped(run, run.t), run.y, run.K[0])
+        run.evaluations += 1
     else:
         for i in range(run.n):
             run.K[0][i] = run.K[method.stages][i]
@@ -478,6 +426,25 @@ def accept(scene: cython.pointer[Scene], method: cython.pointer[Method], run: cy
             put_record(scene, run, run.passed[run.done])
         run.done += 1
     return code
+
+
+def turn_branches(scene: cython.pointer[Scene], run: cython.pointer[Run]) -> cython.bint:
+    """The branches of the next step, where those change at the end of this one; which were held is put down."""
+    i: cython.Py_ssize_t
+    changed: cython.bint = run.turns
+    if run.following:
+        changed = False
+        if run.done + 1 < run.most:
+            for i in range(scene.held_count):
+                changed = changed or run.branches[run.done + 1][i] != scene.programs.held[i]
+            take_branches(scene, run.branches[run.done + 1])
+        return changed
+    for i in range(scene.held_count):
+        run.branches[run.done][i] = scene.programs.held[i]
+    run.turned[run.done] = run.turns
+    if run.turns:
+        take_branches(scene, run.course.turned)
+    return changed
 
 
 def land(scene: cython.pointer[Scene], run: cython.pointer[Run]) -> cython.int:
@@ -526,8 +493,10 @@ def run_steps(scene: cython.pointer[Scene], method: cython.pointer[Method], run:
     """
     code: cython.int
     trouble: cython.int
+    met: cython.int = STANDS
     run.done = 0
     run.dodges = 0
+    run.seeing = not run.following and (scene.watch_count > 0 or scene.roped)
     if run.fresh and begin_piece(scene, method, run) == ROPE_SLACK:
         return ROPE_SLACK
     sample_reached(run)
@@ -542,13 +511,25 @@ def run_steps(scene: cython.pointer[Scene], method: cython.pointer[Method], run:
         run.near = near_singular(scene, run)
         scene.pivot_of_step = 1.0
         trouble = attempt(scene, method, run)
-        code = rope_slack(scene, run) if scene.roped and not run.following else ACCEPTED
-        if code == ACCEPTED:
-            code = judge(scene, method, run, trouble)
+        code = judge(scene, method, run, trouble)
+        met = STANDS
+        if code == AGAIN:
+            run.has_cut = run.landings = run.slack_landings = 0
+        if code == ACCEPTED and run.seeing:
+            met = meet(scene, method, run)
+            run.has_cut = met == AGAIN_TO and run.cut > run.t
+            if met == CHATTERS:
+                return CHATTERING
+            if met == AGAIN_TO:
+                continue
+            if met == SLACK and run.stop <= run.t:
+                return ROPE_SLACK
         if code == ACCEPTED:
             code = accept(scene, method, run)
             if code != REACHED:
                 return code
+            if met == SLACK:
+                return ROPE_SLACK
         elif code != AGAIN:
             return code
     return REACHED

@@ -132,6 +132,8 @@ class Instants(metaclass=Fields):
     n: int
     width: int
     afresh: bool
+    held: bool
+    branches: list[float]
     times: list[float]
     states: list[float]
     out: list[float]
@@ -144,7 +146,7 @@ class Instants(metaclass=Fields):
 
 
 class Method(metaclass=Fields):
-    """A Runge-Kutta method; steps.pxd says what the fields are."""
+    """A Runge-Kutta method; dense.pxd says what the fields are."""
 
     stages: int
     extra: int
@@ -157,8 +159,32 @@ class Method(metaclass=Fields):
     node: list[float]
 
 
+class Course(metaclass=Fields):
+    """The course of the coordinates over a stretch of time; events.pxd says what the fields are."""
+
+    degree: int
+    slot: int
+    undecided: int
+    begin: float
+    length: float
+    latest: float
+    event: float
+    crossed_by: float
+    crossing: float
+    jump: float
+    value: list[list[float]]
+    rate: list[list[float]]
+    second: list[list[float]]
+    work: list[float]
+    begins: list[float]
+    ends: list[float]
+    promise: list[float]
+    before: list[float]
+    turned: list[float]
+
+
 class Run(metaclass=Fields):
-    """The stepping loop's state; steps.pxd says what the fields are."""
+    """The stepping loop's state; dense.pxd says what the fields are."""
 
     n: int
     group_count: int
@@ -170,6 +196,15 @@ class Run(metaclass=Fields):
     rejected_before: int
     dodges: int
     rope: int
+    seeing: int
+    has_cut: int
+    has_interpolant: int
+    landings: int
+    slack_landings: int
+    turns: int
+    at_once: int
+    flurry: int
+    undecided: int
     steps: int
     evaluations: int
     rejected: int
@@ -191,6 +226,11 @@ class Run(metaclass=Fields):
     best: float
     best_h: float
     pivot_at_start: float
+    cut: float
+    flurry_begin: float
+    most_slack: float
+    least_slack: float
+    course: Course
     groups: list[Any]
     weights: list[float]
     y: list[float]
@@ -207,4 +247,6 @@ class Run(metaclass=Fields):
     ends: list[float]
     settled: list[float]
     pivots: list[float]
+    turned: list[float]
+    branches: list[list[float]]
     passed: list[list[float]]

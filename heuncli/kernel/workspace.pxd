@@ -3,11 +3,11 @@
 from heuncli.kernel.algebra cimport Mat3, Vec3
 from heuncli.kernel.chosen cimport choose_afresh, judge_start
 from heuncli.kernel.closures cimport measure_rows, push_closures, residual_of, size_of_answer
-from heuncli.kernel.expressions cimport Expressions
+from heuncli.kernel.expressions cimport FREE, HELD, Expressions
 from heuncli.kernel.memory cimport Memory
 from heuncli.kernel.orthogonal cimport answer_of_row, doubt_multipliers
 from heuncli.kernel.response cimport configure, evaluate, must_choose_anew, respond, settle
-from heuncli.kernel.scene cimport Body, Closure, Counter, Freedom, Island, Lent, Limits, Load, Scene, Variable
+from heuncli.kernel.scene cimport Body, Closure, Counter, Freedom, Island, Lent, Limits, Load, Scene, Variable, Watch
 from heuncli.kernel.selection cimport jacobian_row, order_all, select_independent_rows
 from heuncli.kernel.tree cimport balance, kinematics
 from libc.math cimport sqrt
@@ -17,6 +17,8 @@ cdef struct Instants:         # states to recover, and room for the work
     Py_ssize_t n
     Py_ssize_t width
     bint afresh
+    bint held
+    double *branches
     double *times
     double *states
     double *out

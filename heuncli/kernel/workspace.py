@@ -23,11 +23,11 @@ if not cython.compiled:
     from heuncli.kernel.algebra import Mat3, Vec3
     from heuncli.kernel.chosen import choose_afresh, judge_start
     from heuncli.kernel.closures import measure_rows, push_closures, residual_of, size_of_answer
-    from heuncli.kernel.expressions import Expressions
+    from heuncli.kernel.expressions import FREE, HELD, Expressions
     from heuncli.kernel.memory import Memory
     from heuncli.kernel.orthogonal import answer_of_row, doubt_multipliers
     from heuncli.kernel.response import configure, evaluate, must_choose_anew, respond, settle
-    from heuncli.kernel.scene import Body, Closure, Counter, Freedom, Island, Lent, Limits, Load, Scene, Variable
+    from heuncli.kernel.scene import Body, Closure, Counter, Freedom, Island, Lent, Limits, Load, Scene, Variable, Watch
     from heuncli.kernel.selection import jacobian_row, order_all, select_independent_rows
     from heuncli.kernel.shadow import cython
     from heuncli.kernel.structs import Instants
@@ -156,6 +156,10 @@ def recover_states(scene: cython.pointer[Scene], instants: cython.pointer[Instan
     for j in range(instants.count):
         for i in range(n):
             instants.y[i] = instants.states[j * n + i]
+        if instants.held:
+            scene.programs.holding = HELD
+            for i in range(scene.held_count):
+                scene.programs.held[i] = instants.branches[j * scene.held_count + i]
         idle = recover_state(scene, instants.times[j], instants.y, instants.dy, j == 0 or instants.afresh)
         for i in range(n):
             instants.states[j * n + i] = instants.y[i]
@@ -164,6 +168,7 @@ def recover_states(scene: cython.pointer[Scene], instants: cython.pointer[Instan
         instants.out[at + 1] = idle
         instants.out[at + 2] = scene.pivot_recovered
         instants.out[at + 3] = scene.residual
+    scene.programs.holding = FREE
 
 
 def answer_column(
@@ -258,6 +263,8 @@ class Workspace:
         scene.variable_count = len(tables["variables"])
         scene.lent_count = len(tables["lents"])
         scene.island_count = len(tables["islands"])
+        scene.watch_count = len(tables["watches"])
+        scene.held_count = expressions.held
         self.take_tables(tables)
         self.take_arrays(indices, numbers)
         scene.least_row = scene.limits.independent
@@ -295,6 +302,9 @@ class Workspace:
             scene.islands = cython.cast(
                 cython.pointer[Island], self.memory.rows(tables["islands"], cython.sizeof(Island))
             )
+            scene.watches = cython.cast(
+                cython.pointer[Watch], self.memory.rows(tables["watches"], cython.sizeof(Watch))
+            )
             limits: cython.pointer[Limits] = cython.cast(
                 cython.pointer[Limits], self.memory.rows(tables["limits"], cython.sizeof(Limits))
             )
@@ -308,6 +318,7 @@ class Workspace:
             scene.variables = [Variable(row) for row in tables["variables"].tolist()]
             scene.lents = [Lent(row) for row in tables["lents"].tolist()]
             scene.islands = [Island(row) for row in tables["islands"].tolist()]
+            scene.watches = [Watch(row) for row in tables["watches"].tolist()]
             scene.limits = Limits(tables["limits"].tolist()[0])
 
     def take_arrays(self, indices: array[int], numbers: dict[str, Any]) -> None:
@@ -327,14 +338,19 @@ class Workspace:
         scene.R = self.memory.zeros(rows * rows)
         scene.J = self.memory.zeros(numbers["island_room"])
         scene.y = self.memory.zeros(rows)
+        scene.least = self.memory.zeros(scene.variable_count)
+        scene.most = self.memory.zeros(scene.variable_count)
         scene.own = self.memory.zeros(scene.lent_count * scene.lent_count)
 
-    def recover(self, times: Any, states: Any, out: Any, width: cython.Py_ssize_t, afresh: cython.bint) -> None:
+    def recover(
+        self, times: Any, states: Any, branches: Any, out: Any, width: cython.Py_ssize_t, afresh: cython.bint
+    ) -> None:
         """Everything the sweep knows at given states, which are settled in place; flat, `width` numbers an instant.
 
         After the answers of an instant: the gap over all rows, how many freedoms had no inertia behind them, the least
-        pivot of the closures, and what of all rows the accelerations do not meet. afresh: choose the closure rows at
-        every instant anew.
+        pivot of the closures, and what of all rows the accelerations do not meet. branches: those that the expressions
+        hold, as many numbers an instant; empty: as the states say. afresh: choose the closure rows at every instant
+        anew.
         """
         scene: cython.pointer[Scene] = cython.address(self.scene)
         count: cython.Py_ssize_t = len(times)
@@ -347,11 +363,14 @@ class Workspace:
             Y: cython.double[::1] = states
             to: cython.double[::1] = out
             room: cython.double[::1] = work
+            taken: cython.double[::1] = branches if len(branches) else room
             instants: Instants = Instants(
                 count,
                 n,
                 width,
                 afresh,
+                len(branches) > 0,
+                cython.address(taken[0]),
                 cython.address(at[0]),
                 cython.address(Y[0]),
                 cython.address(to[0]),
@@ -362,7 +381,7 @@ class Workspace:
                 recover_states(scene, cython.address(instants))
         else:
             lists = times.tolist(), states.tolist(), out.tolist()
-            plain = Instants(count, n, width, afresh, *lists, [0.0] * n, [0.0] * n)
+            plain = Instants(count, n, width, afresh, len(branches) > 0, list(branches), *lists, [0.0] * n, [0.0] * n)
             recover_states(scene, plain)
             states[:], out[:] = plain.states, plain.out
 

@@ -45,11 +45,12 @@ def system_vector(mechanism: Mechanism, states: BodyStates) -> Block:
     return {"total": B.sum(axis=1), "bodies": {b.name: B[:, i] for i, b in enumerate(mechanism.bodies)}}
 
 
-def energy_drift(kinetic: Array, potential: Array, work: Array, lift: float) -> float:
+def energy_drift(energy: Block, largest: float, lift: float) -> float:
     """Change of kinetic + potential - work from the start, relative to the largest kinetic energy; 0 at rest.
 
-    lift: the work of the weight over the scene's size [J], by which rest is judged.
+    largest: kinetic energy over the run [J], which instants asked for may not show; lift: the work of the weight over
+    the scene's size [J], by which rest is judged.
     """
-    total = kinetic + potential - work
-    largest = float(kinetic.max(initial=0.0))
+    total = energy["kinetic"] + energy["potential"] - energy["work"]
+    largest = max(largest, float(energy["kinetic"].max(initial=0.0)))
     return float(np.abs(total - total[0]).max(initial=0.0)) / largest if largest > tolerances.NO_ENERGY * lift else 0.0

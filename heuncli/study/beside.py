@@ -16,7 +16,7 @@ import numpy as np
 
 from heuncli import tolerances
 from heuncli.integration.checked import recovered_at
-from heuncli.integration.runner import Recovered
+from heuncli.integration.runner import Recovered, Trajectory
 from heuncli.results import Array, Indices, Mask
 from heuncli.results_schema import quantity
 from heuncli.study.recover import Recovery, blocks
@@ -37,13 +37,15 @@ class Leaf(NamedTuple):
     kind: Kind
 
 
-def known_blocks(recovery: Recovery, wanted: Set[str], jumps: Sequence[float]) -> tuple[dict[str, Any], Array]:
+def known_blocks(
+    recovery: Recovery, wanted: Set[str], run: Trajectory, jumps: Sequence[float]
+) -> tuple[dict[str, Any], Array]:
     """The blocks of a motion, nan where rounding reaches a number beside a singular pose; the instants of such."""
     shown = blocks(recovery, wanted)
     near = nearly_singular(recovery, wanted)
     if not len(near):
         return shown, np.zeros(0)
-    moved = moved_states(recovery, near, jumps)
+    moved = moved_states(recovery, near, run, jumps)
     other = blocks(Recovery(recovery.setup, moved, recovery.least_norm), wanted)
     unknown = np.zeros(len(near), dtype=bool)
     known = [
@@ -83,7 +85,7 @@ def rows_left_out(recovery: Recovery, near: Indices) -> Mask:
     return np.asarray(found.count[near] > recovery.setup.model["redundant"])
 
 
-def moved_states(recovery: Recovery, near: Indices, jumps: Sequence[float]) -> Recovered:
+def moved_states(recovery: Recovery, near: Indices, run: Trajectory, jumps: Sequence[float]) -> Recovered:
     """The states of some instants, each moved in some directions by what its closing leaves open, recovered."""
     layout, recovered = recovery.setup.scene.layout, recovery.recovered
     gap = np.maximum(recovered.gap[near] / layout.size, tolerances.UNSEEN_GAP)
@@ -92,7 +94,7 @@ def moved_states(recovery: Recovery, near: Indices, jumps: Sequence[float]) -> R
     by = (gap / sigma)[:, None, None] * directions(layout)
     states = recovered.states[near][:, None] + by
     times = np.repeat(recovered.times[near], DIRECTIONS)
-    return recovered_at(recovery.setup.runner, times, states.reshape(len(times), -1), jumps)
+    return recovered_at(recovery.setup.runner, run, times, states.reshape(len(times), -1), jumps)
 
 
 def directions(layout: Layout) -> Array:

@@ -16,7 +16,6 @@ from heuncli.integration.pairs import interleaved, moved_start
 from heuncli.integration.runner import Recovered, Runner, check_deadline, discontinuities_of
 from heuncli.integration.singular import singular_poses
 from heuncli.integration.solvable import require_start
-from heuncli.integration.unseen import unseen
 from heuncli.mechanism.model import Mechanism
 from heuncli.records import record
 from heuncli.results import Array, Estimate
@@ -29,7 +28,6 @@ WITHIN_STEP = (0.0, 0.23, 0.52, 0.77)  # of each step of the integrator: where i
 TURNED = np.pi / 8.0  # rad: so far a body may turn between two of these instants, an eighth period of what goes twice
 FINER = 4  # times as closely the expressions in time are looked at
 MOST_SEARCHED = 100_000
-LOOKS = 8  # runs made again for what loads in time did unseen: each finds the next of a narrow pulse's flanks
 
 
 @record
@@ -37,8 +35,8 @@ class History:
     """The kernel's answers at the instants asked for; of a motion the checked run behind them.
 
     tolerance: what the motion was to keep; estimate: of the errors, by kind; jumps: instants at which a load or drive
-    jumps or bends, or what it does had not been seen; singular: those of singular poses that the run came through;
-    missed: what is still unseen; seconds: what took how long.
+    jumps or bends, events among them; singular: those of singular poses that the run came through; seconds: what took
+    how long.
     """
 
     recovered: Recovered
@@ -47,7 +45,6 @@ class History:
     checked: Checked | None = None
     jumps: tuple[float, ...] = ()
     singular: tuple[float, ...] = ()
-    missed: tuple[float, ...] = ()
     seconds: Mapping[str, float] = MappingProxyType({})
 
     @property
@@ -77,19 +74,14 @@ def integrate(setup: Setup, tolerance: float, deadline: float | None) -> History
     jumps = tuple(discontinuities_of(setup.scene.mechanism, 0.0, float(times[-1])))
     runs = Runs(runner, times, jumps, deadline, setup.method)
     checked = checked_run(runs, tolerance, Kinds(setup))
-    looks = 0
-    while (stops := unseen(setup.scene.mechanism, checked.run)) and looks < LOOKS:
-        jumps = tuple(sorted({*jumps, *stops}))
-        runs = Runs(runner, times, jumps, deadline, setup.method)
-        checked = checked_run(runs, tolerance, Kinds(setup))
-        looks += 1
+    jumps = tuple(sorted({*jumps, *checked.run.events}))
     seconds = {"integrate": checked.run.seconds, "check": checked.check_seconds}
     if checked.lost_seconds:
         seconds["lost"] = checked.lost_seconds
     check_deadline(deadline, "before the loads were computed")
     singular = tuple(singular_poses(runner, checked.run))
     estimate = Estimate(motion=checked.motion, **checked.loads)
-    return History(checked.recovered, tolerance, estimate, checked, jumps, singular, tuple(stops), seconds)
+    return History(checked.recovered, tolerance, estimate, checked, jumps, singular, seconds)
 
 
 def of_state(setup: Setup, beside: Recovered) -> Estimate:
@@ -104,7 +96,8 @@ def resample(runner: Runner, history: History, times: Array) -> Recovered:
     if history.checked is None:
         return history.recovered
     times = np.asarray(times, dtype=float)
-    return recovered_at(runner, times, runner.resample(history.checked.run, times), history.jumps)
+    run = history.checked.run
+    return recovered_at(runner, run, times, runner.resample(run, times), history.jumps)
 
 
 def search_times(setup: Setup, history: History) -> tuple[Array, bool]:

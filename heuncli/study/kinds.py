@@ -334,7 +334,12 @@ class Kinds:
         if kinetic.largest <= tolerances.NO_ENERGY * lift:
             return 0.0
         error = max(x.error for x in (kinetic, potential, work))
-        return relative(error, 0.0, max(kinetic.told, potential.exchanged, work.exchanged), kinetic.largest)
+        told = max(kinetic.told, potential.exchanged, work.exchanged)
+        return relative(error, kinetic.largest, told, kinetic.largest)
+
+    def kinetic(self) -> float:
+        """The largest kinetic energy over the run [J]."""
+        return self.extent("energy", "kinetic").largest
 
 
 def same_rows(several: Recovered, count: int) -> Mask:

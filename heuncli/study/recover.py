@@ -140,13 +140,13 @@ def certain_sums(recovery: Recovery) -> list[CertainSum]:
     return recovery.decided.sums(recovery.setup.runner, recovery.recovered)
 
 
-def accuracy(recovery: Recovery) -> Accuracy:
-    """How well the instants balance: energy, closures, d'Alembert's principle."""
-    scene, recovered, power = recovery.setup.scene, recovery.recovered, recovery.energy
+def accuracy(recovery: Recovery, kinetic: float = 0.0) -> Accuracy:
+    """How well the instants balance: energy, closures, d'Alembert's principle; kinetic: the run's largest [J]."""
+    scene, recovered = recovery.setup.scene, recovery.recovered
     mechanism, size = scene.mechanism, scene.layout.size
     lift = sum(body.mass for body in mechanism.bodies) * float(np.abs(mechanism.gravity).max()) * size
     return {
-        "energy_drift": energy_drift(power["kinetic"], power["potential"], power["work"], lift),
+        "energy_drift": energy_drift(recovery.energy, kinetic, lift),
         "constraint_gap": float(recovered.gap.max(initial=0.0)),
         "balance_residual": balance_residual(mechanism, recovery.states, recovery.actions, size),
     }

@@ -83,8 +83,8 @@ def compose(setup: Setup, history: History, recovery: Recovery, wanted: frozense
     wanted = frozenset(REPORTS) if wanted is None else wanted
     shown, unknown = blocks_of(history, recovery, wanted)
     split = recovery.decided.words if recovery.decided is not None else ()
-    balance = accuracy(recovery)
     checked = history.checked
+    balance = accuracy(recovery, checked.kinetic if checked is not None else 0.0)
     gap = checked.run.gap if checked is not None else setup.scene.start.gap
     return Results(
         title=setup.spec.title,
@@ -121,7 +121,7 @@ def blocks_of(history: History, recovery: Recovery, wanted: frozenset[str]) -> t
         return blocks(recovery, wanted), np.zeros(0)
     from heuncli.study.beside import known_blocks  # only closed chains have singular poses
 
-    return known_blocks(recovery, wanted, history.jumps)
+    return known_blocks(recovery, wanted, history.checked.run, history.jumps)
 
 
 @record

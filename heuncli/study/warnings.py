@@ -73,8 +73,8 @@ def of_the_motion(history: History) -> list[str]:
         at += " ..." if len(history.singular) > MOST_TIMES else ""
         goes = "this one goes on smoothly" if checked.horizon is None else "rounding decides which is followed"
         lines.append(f"passes through a singular pose at t = {at} s: another motion branches off there, {goes}")
-    if history.missed:
-        lines.append(f"a load or drive in time does at t = {history.missed[0]:.6g} s what no step has seen")
+    if checked.run.undecided:
+        lines.append(f"of {checked.run.undecided} steps it could not be decided what loads do between their stages")
     if checked.run.stopped is not None:
         lines.append(f"stopped before the end: {status(history)['message']}")
     return lines

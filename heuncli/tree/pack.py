@@ -361,6 +361,7 @@ class _Builder:
             "closures": table(kernel.Closure, self.closure_rows),
             "counters": table(kernel.Counter, self._counter_rows()),
             "variables": table(kernel.Variable, self._variable_rows()),
+            "watches": table(kernel.Watch, self._watch_rows()),
             "groups": table(kernel.Group, self.groups),
             "lents": table(kernel.Lent, []),
             "limits": limits(tolerances.KERNEL),
@@ -425,6 +426,16 @@ class _Builder:
         return [
             {"a": self.in_tree(joints[k].a), "b": self.in_tree(joints[k].b), "at": at, "axis": joints[k].axis}
             for k, at in self.counters.items()
+        ]
+
+    def _watch_rows(self) -> list[dict[str, Any]]:
+        """The programs of loads and drives: what they do between the stages of a step must not be passed over."""
+        driven = {id(j.drive.value): j.drive.value for j in self.mechanism.joints if j.drive is not None}
+        loads = {id(e): e for load in self.mechanism.loads for e in load.values}
+        return [
+            {"program": self.programs[key], "curved": int(key in driven)}
+            for key, e in (loads | driven).items()
+            if e.constant is None
         ]
 
     def _variable_rows(self) -> list[dict[str, Any]]:

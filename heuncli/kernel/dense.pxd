@@ -1,0 +1,88 @@
+"""Structs and signatures of dense.py for C."""
+
+from heuncli.kernel.events cimport Course
+from heuncli.kernel.response cimport evaluate, settle
+from heuncli.kernel.scene cimport Group, Scene
+
+cdef struct Method:
+    int stages                # evaluations a step; the derivative at its end is one more, and the next step's first
+    int extra                 # further stages of the dense output
+    int dense_rows            # rows of the interpolating polynomial beside the three that every method has
+    int estimates             # rows of the error estimate: the finer, and (2) a coarser one to weigh it by
+    double exponent           # 1 / order of the error estimate in h
+    int *begin                # of each row: stages, solution, extra stages, estimates (coarser first), dense
+    int *stage                # which stages a row combines
+    double *coefficient
+    double *node
+
+cdef struct Run:
+    int n                     # length of the state
+    int group_count
+    int energy_group          # the group of the drives' work; -1: none
+    int following             # 1: the steps are given by `ends` and `settled`, none is judged
+    int fresh                 # 1: a piece begins
+    int last                  # 1: this step reaches the end of the piece
+    int near                  # 1: the stages are settled, too
+    int rejected_before       # 1: the last attempt was rejected
+    int dodges                # other lengths tried for this step, to keep its stages off a singular pose
+    int rope                  # 1 + the row of the rope that would push
+    int seeing                # 1: stages are looked at for events
+    int has_cut               # 1: the step under way ends at `cut`
+    int has_interpolant       # 1: the dense output of the step tried is there
+    int landings              # attempts to end this step on an event
+    int slack_landings        # the same where a rope goes slack
+    int turns                 # 1: branches turn at the end of the step under way
+    int at_once               # turns of branches since the time went on
+    int flurry                # events since flurry_begin
+    int undecided             # steps of which bounds could not decide what they hold
+    int steps
+    int evaluations
+    int rejected
+    int most                  # steps of one call
+    int done                  # of them
+    int next_sample
+    int sample_count
+    double t
+    double h                  # of the step under way
+    double proposed
+    double stop               # where the step under way ends
+    double before_end         # the last instant at which the piece's expressions hold
+    double end
+    double tolerance
+    double rate               # the scene's largest
+    double energy_scale       # sum m size^2
+    double error
+    double gap                # the largest that closures were left with [m]
+    double best               # the least trouble of the lengths tried, and its length
+    double best_h
+    double pivot_at_start     # of the closures, where the step starts
+    double cut
+    double flurry_begin
+    double most_slack         # the largest and the least that stages saw of what ropes would push with
+    double least_slack
+    Course course
+    Group *groups
+    double *weights           # of the components: 1, or 1 / size
+    double *y
+    double *z                 # the solution tried
+    double *carry             # small parts of y that its digits do not hold
+    double *z_carry
+    double **K                # derivatives at the stages
+    double *coarse            # error estimates
+    double *fine
+    double **dense            # rows of the interpolating polynomial
+    double *stage             # a state under way
+    double *times
+    double **samples
+    double *ends              # of the steps done, or of those to be followed
+    double *settled           # of each whether it was near
+    double *pivots            # of each the least pivot of the closures
+    double *turned            # of each whether branches turned at its end
+    double **branches         # of each the branches that were held
+    double **passed           # at each end what the next step starts from: put_record
+
+cdef void combine(Method *method, int row, double **K, int n, double *out) noexcept nogil
+cdef double clipped(Run *run, double t) noexcept nogil
+cdef void hermite(Method *method, Run *run) noexcept nogil
+cdef void interpolant(Scene *scene, Method *method, Run *run) noexcept nogil
+cdef void interpolate(Run *run, int rows, double x, double *out) noexcept nogil

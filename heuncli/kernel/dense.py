@@ -1,0 +1,92 @@
+"""A step's stages combined, and its dense output: what happens between its ends.
+
+A method is data (integration/methods.py): rows of (stage, coefficient).
+"""
+
+from __future__ import annotations
+
+try:
+    import cython
+except ImportError:
+    from heuncli.kernel.shadow import cython
+
+if not cython.compiled:
+    from heuncli.kernel.response import evaluate, settle
+    from heuncli.kernel.scene import Scene
+    from heuncli.kernel.shadow import cython
+    from heuncli.kernel.structs import Method, Run
+
+
+def combine(
+    method: cython.pointer[Method], row: cython.int, K: cython.pp_double, n: cython.int, out: cython.p_double
+) -> cython.void:
+    """out = sum over stages of the row's coefficients times K, in blocks that stay in the cache."""
+    i: cython.Py_ssize_t
+    j: cython.Py_ssize_t
+    begin: cython.Py_ssize_t = 0
+    end: cython.Py_ssize_t
+    while begin < n:
+        end = begin + 256 if begin + 256 < n else n
+        for i in range(begin, end):
+            out[i] = 0.0
+        for j in range(method.begin[row], method.begin[row + 1]):
+            c: cython.double = method.coefficient[j]
+            k: cython.p_double = K[method.stage[j]]
+            for i in range(begin, end):
+                out[i] += c * k[i]
+        begin = end
+
+
+def clipped(run: cython.pointer[Run], t: cython.double) -> cython.double:
+    """An instant of the piece: beyond its end other branches of the expressions hold."""
+    return run.before_end if t > run.before_end else t
+
+
+def hermite(method: cython.pointer[Method], run: cython.pointer[Run]) -> cython.void:
+    """The first rows of the interpolating polynomial: the cubic with the values and derivatives at both ends."""
+    i: cython.Py_ssize_t
+    change: cython.double
+    last: cython.p_double = run.K[method.stages]
+    first: cython.p_double = run.K[0]
+    for i in range(run.n):
+        change = run.z[i] - run.y[i]
+        run.dense[0][i] = change
+        run.dense[1][i] = run.h * first[i] - change
+        run.dense[2][i] = 2.0 * change - run.h * (last[i] + first[i])
+
+
+def interpolant(scene: cython.pointer[Scene], method: cython.pointer[Method], run: cython.pointer[Run]) -> cython.void:
+    """The interpolating polynomial over the step y -> z, in nested form: its rows of coefficients."""
+    s: cython.int
+    i: cython.Py_ssize_t
+    t: cython.double
+    for s in range(method.stages + 1, method.stages + 1 + method.extra):
+        combine(method, s, run.K, run.n, run.stage)
+        for i in range(run.n):
+            run.stage[i] = run.y[i] + run.h * run.stage[i]
+        t = clipped(run, run.t + method.node[s] * run.h)
+        if scene.closure_count and scene.pivot_of_step < scene.limits.near_singular:
+            settle(scene, t, run.stage)
+        evaluate(scene, t, run.stage, run.K[s])
+    run.evaluations += method.extra
+    hermite(method, run)
+    for s in range(method.dense_rows):
+        combine(method, method.stages + 1 + method.extra + method.estimates + s, run.K, run.n, run.dense[3 + s])
+        for i in range(run.n):
+            run.dense[3 + s][i] *= run.h
+
+
+def interpolate(run: cython.pointer[Run], rows: cython.int, x: cython.double, out: cython.p_double) -> cython.void:
+    """State at the fraction x of the step: y + x (F0 + (1 - x) (F1 + x (F2 + (1 - x) (F3 + ...))))."""
+    i: cython.Py_ssize_t
+    k: cython.int
+    factor: cython.double
+    for i in range(run.n):
+        out[i] = 0.0
+    for k in range(rows - 1, -1, -1):
+        factor = x if k % 2 == 0 else 1.0 - x
+        row: cython.p_double = run.dense[k]
+        for i in range(run.n):
+            out[i] = (out[i] + row[i]) * factor
+    for i in range(run.n):
+        out[i] = run.y[i] + out[i]

@@ -1,0 +1,496 @@
+"""Events: where within a step a branch of an expression changes, or a load does what no stage has seen.
+
+Within a step the branches of all expressions are held (kernel/expressions.py), so that the step is smooth. Whether one
+of them changes is decided, not sampled: a coordinate's polynomial over the step, in Bernstein's form
+
+    q(x) = sum_k b_k C(n, k) x^k (1 - x)^(n - k),    min b_k <= q(x) <= max b_k  for 0 <= x <= 1,
+
+lies between its coefficients, over any part of the step between those of that part (de Casteljau); interval arithmetic
+takes these bounds through the programs (kernel/enclosure.py). Parts that leave a branch in doubt are halved, from left
+to right, down to the rounding of the time. In the same way a load's bounds are compared with what the stages saw of it.
+Farouki, Rajan, On the numerical condition of polynomials in Bernstein form (1987); Moore, Interval Analysis (1966).
+"""
+
+from __future__ import annotations
+
+try:
+    import cython
+except ImportError:
+    from heuncli.kernel.shadow import cython
+
+if not cython.compiled:
+    from math import fabs
+    from math import inf as INFINITY
+
+    from heuncli.kernel.enclosure import enclose, enclose_closely
+    from heuncli.kernel.expressions import HELD, TAKEN, jet, value
+    from heuncli.kernel.intervals import anything, magnitude
+    from heuncli.kernel.scene import Freedom, Scene, Variable, Watch
+    from heuncli.kernel.shadow import cython
+    from heuncli.kernel.structs import Bounds, Course, Jet, Programs, Span
+
+    # What a stretch of time holds, and what bounds leave open; for C these stand in events.pxd, in the same order.
+    NOTHING, TURNS, UNSEEN, UNDECIDED, CLEAR, BRANCH_IN_DOUBT, VALUE_IN_DOUBT = range(7)
+    # Divisions of a stretch after which a value is taken for seen, a millionth of the step; parts in which a load's
+    # peak is looked for; parts looked at for values that bounds do not settle, and in all.
+    LOOKS, PARTS, MOST_LOOKS, MOST_PARTS = 20, 60, 1000, 4000
+
+
+# What the stages see
+
+
+def forget(scene: cython.pointer[Scene]) -> cython.void:
+    """Nothing is seen yet of a step that begins."""
+    i: cython.Py_ssize_t
+    for i in range(scene.variable_count):
+        scene.least[i] = INFINITY
+        scene.most[i] = -INFINITY
+    for i in range(scene.watch_count):
+        scene.watches[i].low = INFINITY
+        scene.watches[i].high = -INFINITY
+
+
+def see(scene: cython.pointer[Scene]) -> cython.void:
+    """What a stage sees: the variables as they were evaluated last, and the watched programs there."""
+    i: cython.Py_ssize_t
+    x: cython.double
+    for i in range(scene.variable_count):
+        x = scene.programs.variables[i]
+        if x < scene.least[i]:
+            scene.least[i] = x
+        if x > scene.most[i]:
+            scene.most[i] = x
+    for i in range(scene.watch_count):
+        watch: cython.pointer[Watch] = cython.address(scene.watches[i])
+        x = watched(scene, watch)
+        if x < watch.low:
+            watch.low = x
+        if x > watch.high:
+            watch.high = x
+
+
+def watched(scene: cython.pointer[Scene], watch: cython.pointer[Watch]) -> cython.double:
+    """The number that is watched, at the variables as they are: a load, or a drive's acceleration."""
+    if watch.curved:
+        return jet(scene.programs, watch.program, scene.programs.variables[0]).second
+    return value(scene.programs, watch.program)
+
+
+def out_of_sight(
+    scene: cython.pointer[Scene],
+    watch: cython.pointer[Watch],
+    bounds: Bounds,
+    scale: cython.double,
+) -> cython.bint:
+    """Whether a number within bounds may lie beyond what the stages saw, by more than they saw it vary."""
+    room: cython.double = (watch.high - watch.low) + scene.limits.unseen * scale
+    return not (bounds.low >= watch.low - room and bounds.high <= watch.high + room)
+
+
+def quiet(scene: cython.pointer[Scene], begin: cython.double, end: cython.double) -> cython.int:
+    """What may have happened between two instants, by far: the variables are taken to go beyond what was seen by half.
+
+    CLEAR, BRANCH_IN_DOUBT or VALUE_IN_DOUBT.
+    """
+    i: cython.Py_ssize_t
+    width: cython.double
+    scale: cython.double
+    found: cython.int = CLEAR
+    programs: cython.pointer[Programs] = scene.programs
+    for i in range(scene.variable_count):
+        width = 0.5 * (scene.most[i] - scene.least[i])
+        programs.ranges[i] = Span(Bounds(scene.least[i] - width, scene.most[i] + width), anything(), anything())
+    set_time(programs, begin, end)
+    for i in range(scene.held_count):
+        programs.doubt[i] = 0
+    for i in range(scene.watch_count):
+        watch: cython.pointer[Watch] = cython.address(scene.watches[i])
+        scale = fabs(watch.high) if fabs(watch.high) > fabs(watch.low) else fabs(watch.low)
+        if out_of_sight(scene, watch, bounds_of(scene, watch), scale):
+            found = VALUE_IN_DOUBT
+    return BRANCH_IN_DOUBT if any_doubt(scene) else found
+
+
+def bounds_of(scene: cython.pointer[Scene], watch: cython.pointer[Watch]) -> Bounds:
+    """What is watched over the ranges as they are; the branches that these leave in doubt are marked."""
+    span: Span = enclose(scene.programs, watch.program)
+    return span.second if watch.curved else span.value
+
+
+def any_doubt(scene: cython.pointer[Scene]) -> cython.bint:
+    """Whether some branch is in doubt."""
+    i: cython.Py_ssize_t
+    doubts: cython.int = 0
+    for i in range(scene.held_count):
+        doubts += scene.programs.doubt[i]
+    return doubts > 0
+
+
+def set_time(programs: cython.pointer[Programs], begin: cython.double, end: cython.double) -> cython.void:
+    """The time runs from begin to end."""
+    programs.ranges[0] = Span(Bounds(begin, end), Bounds(1.0, 1.0), Bounds(0.0, 0.0))
+
+
+# Polynomials in Bernstein's form
+
+
+def raise_by_x(b: cython.p_double, n: cython.int) -> cython.void:
+    """x times the polynomial of degree n, of degree n + 1."""
+    k: cython.int
+    for k in range(n + 1, 0, -1):
+        b[k] = b[k - 1] * k / (n + 1)
+    b[0] = 0.0
+
+
+def raise_by_rest(b: cython.p_double, n: cython.int) -> cython.void:
+    """1 - x times the polynomial of degree n, of degree n + 1."""
+    k: cython.int
+    for k in range(n + 1):
+        b[k] = b[k] * (n + 1 - k) / (n + 1)
+    b[n + 1] = 0.0
+
+
+def differentiate(
+    value: cython.p_double, rate: cython.p_double, n: cython.int, length: cython.double
+) -> cython.void:
+    """The rate of a polynomial of degree n over a stretch of time of some length."""
+    k: cython.int
+    for k in range(n):
+        rate[k] = n * (value[k + 1] - value[k]) / length
+
+
+def range_of(
+    b: cython.p_double, n: cython.int, x0: cython.double, x1: cython.double, work: cython.p_double
+) -> Bounds:
+    """Bounds of a polynomial of degree n between x0 and x1: its coefficients over that part (de Casteljau)."""
+    i: cython.int
+    k: cython.int
+    x: cython.double
+    bounds: Bounds
+    for k in range(n + 1):
+        work[k] = b[k]
+    for i in range(1, n + 1):  # its right part, from x0
+        for k in range(n + 1 - i):
+            work[k] = work[k] + x0 * (work[k + 1] - work[k])
+    if x1 > x0:
+        x = (x1 - x0) / (1.0 - x0) if x0 < 1.0 else 0.0
+        for i in range(1, n + 1):  # of that the left part
+            for k in range(n, i - 1, -1):
+                work[k] = work[k - 1] + x * (work[k] - work[k - 1])
+    bounds = Bounds(work[0], work[0])
+    if x1 > x0:
+        for k in range(1, n + 1):
+            if work[k] < bounds.low:
+                bounds.low = work[k]
+            if work[k] > bounds.high:
+                bounds.high = work[k]
+    return bounds
+
+
+# Over a stretch of time
+
+
+def instant(course: cython.pointer[Course], x: cython.double) -> cython.double:
+    """The instant at x of the stretch, not beyond the last one that counts."""
+    t: cython.double = course.begin + x * course.length
+    return course.latest if t > course.latest else t
+
+
+def range_over(
+    scene: cython.pointer[Scene],
+    course: cython.pointer[Course],
+    ranges: cython.pointer[Span],
+    x0: cython.double,
+    x1: cython.double,
+) -> cython.void:
+    """Ranges of the time and of all variables between x0 and x1; driven ones by their own programs."""
+    i: cython.Py_ssize_t
+    n: cython.int = course.degree
+    given: Span
+    set_time(scene.programs, instant(course, x0), instant(course, x1))
+    ranges[0] = scene.programs.ranges[0]
+    for i in range(1, scene.variable_count):
+        variable: cython.pointer[Variable] = cython.address(scene.variables[i])
+        of: cython.pointer[Freedom] = cython.address(scene.freedoms[variable.freedom])
+        if of.driven:
+            given = enclose(scene.programs, of.program)
+            if variable.is_rate:
+                ranges[i] = Span(given.rate, given.second, anything())
+            else:
+                shifted: Bounds = Bounds(given.value.low + of.offset, given.value.high + of.offset)
+                ranges[i] = Span(shifted, given.rate, given.second)
+        else:
+            ranges[i] = Span(range_of(course.value[i], n, x0, x1, course.work), anything(), anything())
+
+
+def derivatives_over(
+    scene: cython.pointer[Scene],
+    course: cython.pointer[Course],
+    ranges: cython.pointer[Span],
+    x0: cython.double,
+    x1: cython.double,
+) -> cython.void:
+    """The same for the rates of the variables, and for the rates of those."""
+    i: cython.Py_ssize_t
+    n: cython.int = course.degree
+    for i in range(1, scene.variable_count):
+        variable: cython.pointer[Variable] = cython.address(scene.variables[i])
+        if not scene.freedoms[variable.freedom].driven:
+            ranges[i] = Span(
+                ranges[i].value,
+                range_of(course.rate[i], n - 1, x0, x1, course.work),
+                range_of(course.second[i], n - 2, x0, x1, course.work),
+            )
+
+
+def stand_at(scene: cython.pointer[Scene], course: cython.pointer[Course], x: cython.double) -> cython.void:
+    """The variables at x of the stretch."""
+    i: cython.Py_ssize_t
+    at: cython.double = instant(course, x)
+    scene.programs.variables[0] = at
+    for i in range(1, scene.variable_count):
+        variable: cython.pointer[Variable] = cython.address(scene.variables[i])
+        of: cython.pointer[Freedom] = cython.address(scene.freedoms[variable.freedom])
+        if of.driven:
+            given: Jet = jet(scene.programs, of.program, at)
+            scene.programs.variables[i] = given.rate if variable.is_rate else given.value + of.offset
+        else:
+            there: Bounds = range_of(course.value[i], course.degree, x, x, course.work)
+            scene.programs.variables[i] = there.low
+
+
+def doubt_over(
+    scene: cython.pointer[Scene], course: cython.pointer[Course], x0: cython.double, x1: cython.double
+) -> cython.int:
+    """What may happen between x0 and x1: CLEAR, BRANCH_IN_DOUBT, VALUE_IN_DOUBT, or UNSEEN in the middle."""
+    i: cython.Py_ssize_t
+    found: cython.int = CLEAR
+    bounds: Bounds
+    there: cython.double
+    range_over(scene, course, scene.programs.ranges, x0, x1)
+    for i in range(scene.held_count):
+        scene.programs.doubt[i] = 0
+    stands: cython.bint = False
+    for i in range(scene.watch_count):
+        watch: cython.pointer[Watch] = cython.address(scene.watches[i])
+        bounds = bounds_of(scene, watch)
+        if not out_of_sight(scene, watch, bounds, watch.scale):
+            continue
+        if not stands:
+            stand_at(scene, course, 0.5 * (x0 + x1))
+            stands = True
+        there = watched(scene, watch)
+        if out_of_sight(scene, watch, Bounds(there, there), watch.scale):
+            found = UNSEEN
+        elif found == CLEAR and out_of_sight(scene, watch, closer(scene, course, watch, x0, x1), watch.scale):
+            found = VALUE_IN_DOUBT
+    return BRANCH_IN_DOUBT if any_doubt(scene) else found
+
+
+def closer(
+    scene: cython.pointer[Scene],
+    course: cython.pointer[Course],
+    watch: cython.pointer[Watch],
+    x0: cython.double,
+    x1: cython.double,
+) -> Bounds:
+    """Closer bounds of what is watched between x0 and x1, from what it is in the middle."""
+    span: Span
+    middle: cython.double = 0.5 * (x0 + x1)
+    range_over(scene, course, scene.programs.middles, middle, middle)
+    derivatives_over(scene, course, scene.programs.middles, middle, middle)
+    set_time(scene.programs, instant(course, x0), instant(course, x1))
+    derivatives_over(scene, course, scene.programs.ranges, x0, x1)
+    span = enclose_closely(scene.programs, watch.program)
+    return span.second if watch.curved else span.value
+
+
+def scale_watches(scene: cython.pointer[Scene], course: cython.pointer[Course]) -> cython.void:
+    """How large what is watched becomes over the stretch."""
+    i: cython.Py_ssize_t
+    for i in range(scene.watch_count):
+        watch: cython.pointer[Watch] = cython.address(scene.watches[i])
+        watch.scale = fabs(watch.high) if fabs(watch.high) > fabs(watch.low) else fabs(watch.low)
+        if not watch.scale >= scene.limits.least_load:
+            watch.scale = scene.limits.least_load
+        if out_of_sight(scene, watch, over_part(scene, course, watch, 0.0, 1.0), watch.scale):
+            look_for_peak(scene, course, watch)
+
+
+def over_part(
+    scene: cython.pointer[Scene],
+    course: cython.pointer[Course],
+    watch: cython.pointer[Watch],
+    x0: cython.double,
+    x1: cython.double,
+) -> Bounds:
+    """What is watched between x0 and x1."""
+    range_over(scene, course, scene.programs.ranges, x0, x1)
+    return bounds_of(scene, watch)
+
+
+def look_for_peak(
+    scene: cython.pointer[Scene], course: cython.pointer[Course], watch: cython.pointer[Watch]
+) -> cython.void:
+    """Raise the scale of what is watched by its values in the middle of the parts that promise most.
+
+    Of the parts so far the one with the largest bound is halved; what no part promises any more is not there.
+    """
+    k: cython.int
+    best: cython.int
+    count: cython.int = 1
+    there: cython.double
+    begins: cython.p_double = course.begins
+    ends: cython.p_double = course.ends
+    promise: cython.p_double = course.promise
+    begins[0] = 0.0
+    ends[0] = 1.0
+    promise[0] = INFINITY
+    while count < PARTS:
+        best = 0
+        for k in range(1, count):
+            if promise[k] > promise[best]:
+                best = k
+        if promise[best] <= 2.0 * watch.scale:
+            return
+        middle: cython.double = 0.5 * (begins[best] + ends[best])
+        stand_at(scene, course, middle)
+        there = fabs(watched(scene, watch))
+        if there > watch.scale and there < INFINITY:
+            watch.scale = there
+        begins[count] = middle
+        ends[count] = ends[best]
+        ends[best] = middle
+        promise[best] = magnitude(over_part(scene, course, watch, begins[best], middle)).high
+        promise[count] = magnitude(over_part(scene, course, watch, middle, ends[count])).high
+        count += 1
+
+
+# Events
+
+
+def turned(scene: cython.pointer[Scene], course: cython.pointer[Course], x: cython.double) -> cython.bint:
+    """Whether branches are others at x than those held; they are kept as those to turn to, with the jump they make."""
+    i: cython.Py_ssize_t
+    jump: cython.double
+    changed: cython.bint = False
+    programs: cython.pointer[Programs] = scene.programs
+    stand_at(scene, course, x)
+    for i in range(scene.held_count):
+        course.before[i] = programs.held[i]
+    course.jump = 0.0
+    for i in range(scene.watch_count):
+        watch: cython.pointer[Watch] = cython.address(scene.watches[i])
+        jump = value(programs, watch.program)
+        programs.holding = TAKEN
+        jump = fabs(value(programs, watch.program) - jump)
+        programs.holding = HELD
+        if not jump <= course.jump * watch.scale:
+            course.jump = jump / watch.scale if watch.scale > 0.0 else 1.0
+    for i in range(scene.held_count):
+        course.turned[i] = programs.held[i]
+        if programs.held[i] != course.before[i]:
+            changed = True
+            course.slot = i
+        programs.held[i] = course.before[i]
+    return changed
+
+
+def turns_at_once(scene: cython.pointer[Scene], course: cython.pointer[Course]) -> cython.double:
+    """How far from the start branches are others than those held; 0 where they stay so: they turn at the start.
+
+    At an event the margin is zero but for rounding, of either sign: what counts is where it goes from there.
+    """
+    x: cython.double = scene.limits.leaving_first
+    while x <= scene.limits.leaving_last:
+        if not turned(scene, course, x):
+            return x
+        x = 10.0 * x
+    return 0.0
+
+
+def first_event(scene: cython.pointer[Scene], course: cython.pointer[Course]) -> cython.int:
+    """The first event of a stretch: TURNS just before `event`, UNSEEN at it, UNDECIDED from it on; or NOTHING.
+
+    Parts in doubt are divided; `ends` are those of the parts still to be looked at, the next one on top. Values that
+    remain in doubt, seen in the middle of every part, are counted as undecided.
+    """
+    x: cython.double = 0.0
+    found: cython.int
+    top: cython.int = 0
+    looks: cython.int = 0
+    course.undecided = 0
+    course.crossed_by = -1.0
+    scale_watches(scene, course)
+    if scene.held_count and turned(scene, course, 0.0):
+        x = turns_at_once(scene, course)
+        course.event = 0.0
+        if x == 0.0:
+            return TURNS
+    course.ends[0] = 1.0
+    while top >= 0:
+        looks += 1
+        found = doubt_over(scene, course, x, course.ends[top])
+        smallest: cython.bint = course.ends[top] - x <= scene.limits.finest or top == PARTS - 1
+        if found == UNSEEN and not smallest:
+            course.event = 0.5 * (x + course.ends[top])
+            return UNSEEN
+        if found == BRANCH_IN_DOUBT and smallest and turned(scene, course, course.ends[top]):
+            course.event = course.ends[top]
+            return TURNS
+        if found == VALUE_IN_DOUBT and (top >= LOOKS or looks > MOST_LOOKS):
+            course.undecided = 1
+            found = CLEAR
+        if found == CLEAR or smallest:
+            x = course.ends[top]
+            top -= 1
+        elif looks > MOST_PARTS:
+            course.event = x
+            return UNDECIDED
+        else:
+            top += 1
+            course.ends[top] = division(scene, course, x, course.ends[top - 1], found)
+    return NOTHING
+
+
+def division(
+    scene: cython.pointer[Scene],
+    course: cython.pointer[Course],
+    x0: cython.double,
+    x1: cython.double,
+    found: cython.int,
+) -> cython.double:
+    """Where a part in doubt is divided: in the middle; or just before a crossing within it, up to which all is clear.
+
+    Which crossing is the first one the bounds decide: this only saves looking at many small parts beside it.
+    """
+    low: cython.double = x0
+    high: cython.double = x1
+    middle: cython.double
+    if found != BRANCH_IN_DOUBT:
+        return 0.5 * (x0 + x1)
+    if course.crossed_by != x1:
+        course.crossed_by = x1
+        course.crossing = x1
+        if turned(scene, course, x1):
+            while high - low > 0.25 * scene.limits.finest:
+                middle = 0.5 * (low + high)
+                if middle <= low or middle >= high:
+                    break
+                if turned(scene, course, middle):
+                    high = middle
+                else:
+                    low = middle
+            course.crossing = high
+    if course.crossing >= x1 or course.crossing <= x0:
+        return 0.5 * (x0 + x1)
+    if course.crossing - x0 <= scene.limits.finest:
+        return course.crossing
+    return course.crossing - 1e-3 * (course.crossing - x0)
+
+
+def take_branches(scene: cython.pointer[Scene], branches: cython.p_double) -> cython.void:
+    """Hold other branches."""
+    i: cython.Py_ssize_t
+    for i in range(scene.held_count):
+        scene.programs.held[i] = branches[i]
