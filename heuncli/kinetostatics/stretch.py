@@ -13,6 +13,7 @@ until it is. A joint or load whose point moves over the body is a corner that mo
 from __future__ import annotations
 
 from collections.abc import Sequence
+from functools import cached_property
 from typing import TYPE_CHECKING, NamedTuple
 
 import numpy as np
@@ -30,7 +31,7 @@ NODES = -np.cos(np.pi * np.arange(DEGREE + 1) / DEGREE)
 SIDES = np.array([BEYOND, *[0.0] * (DEGREE - 1), BEFORE])
 FINE = -np.cos(np.pi * np.arange(4 * DEGREE + 1) / (4 * DEGREE))  # where the polynomial is looked at first
 HALVINGS = 4
-NEWTON = 4  # steps towards the summit of a polynomial of degree 8, from a 32nd of its length
+NEWTON = 3  # steps to the summit of a polynomial of degree 8, from a 32nd of its length: 1e-2, 1e-4, 1e-8, rounding
 
 
 def chebyshev(x: Array) -> Array:
@@ -39,6 +40,7 @@ def chebyshev(x: Array) -> Array:
 
 
 TO_COEFFICIENTS = np.linalg.inv(chebyshev(NODES))
+TO_FINE = (chebyshev(FINE) @ TO_COEFFICIENTS).T
 
 
 def _derivative() -> Array:
@@ -88,11 +90,19 @@ class Stretch:
     def laid_for(self, on: Sequence[Attachment]) -> Cuts:
         """The cuts at the nodes of all pieces, which move where a load does: s (k,), or (n_t, k)."""
         moving = [a.at @ self.asked.n for a in on if a.at.ndim == 2]
-        corners = self.corners
-        if moving:
-            heights = np.clip(np.stack(moving, axis=1), corners[0], corners[-1])
-            fixed = np.broadcast_to(corners, (len(heights), len(corners)))
-            corners = np.sort(np.concatenate([fixed, heights], axis=1), axis=1)
+        if not moving:
+            return self.fixed
+        heights = np.clip(np.stack(moving, axis=1), self.corners[0], self.corners[-1])
+        corners = np.broadcast_to(self.corners, (len(heights), len(self.corners)))
+        return self.at_nodes(np.sort(np.concatenate([corners, heights], axis=1), axis=1))
+
+    @cached_property
+    def fixed(self) -> Cuts:
+        """The cuts at the nodes where nothing moves over the body."""
+        return self.at_nodes(self.corners)
+
+    def at_nodes(self, corners: Array) -> Cuts:
+        """The cuts at the nodes between corners, (m,) or (n_t, m)."""
         a, b = corners[..., :-1, None], corners[..., 1:, None]
         heights = np.where(NODES < 0.0, a + 0.5 * (b - a) * (NODES + 1.0), b - 0.5 * (b - a) * (1.0 - NODES))
         heights = heights.reshape(*corners.shape[:-1], -1)
@@ -172,23 +182,32 @@ class Summits(NamedTuple):
     at: Array
 
 
-def summits(heights: Array) -> Summits:
-    """The highest along a stretch of what takes these values at its nodes, (n_t, 9 m); nan where any of them is."""
-    q = heights.reshape(len(heights), -1, DEGREE + 1)
-    fine = q @ (chebyshev(FINE) @ TO_COEFFICIENTS).T
-    top = np.argmax(np.nan_to_num(fine, nan=-np.inf).reshape(len(q), -1), axis=1)
+def summits(values: Array) -> tuple[Summits, Summits]:
+    """The lowest and the highest along a stretch of what takes these values at its nodes, (n_t, 9 m).
+
+    The lowest is told as a height, with its sign turned. Where any of the values is nan, they are.
+    """
+    q = values.reshape(len(values), -1, DEGREE + 1)
+    unknown = np.asarray(np.isnan(values).any(axis=1))
+    q = np.where(unknown[:, None, None], 0.0, q) if unknown.any() else q
+    fine = (q @ TO_FINE).reshape(len(q), -1)
+    found = [highest(side * q, np.argmax(side * fine, axis=1)) for side in (-1.0, 1.0)]
+    low, high = (one._replace(height=np.where(unknown, np.nan, one.height)) for one in found)
+    return low, high
+
+
+def highest(q: Array, top: Indices) -> Summits:
+    """The highest of the polynomials that take the heights q at the nodes of pieces, from their highest of FINE on."""
     piece, place = np.divmod(top, len(FINE))
-    rows = np.arange(len(q))
-    c = q[rows, piece] @ TO_COEFFICIENTS.T
-    x, height = FINE[place], fine[rows, piece, place]
+    c = q[np.arange(len(q)), piece] @ TO_COEFFICIENTS.T
+    first, second = c @ DERIVATIVE.T, c @ (DERIVATIVE @ DERIVATIVE).T
     low, high = FINE[np.maximum(place - 1, 0)], FINE[np.minimum(place + 1, len(FINE) - 1)]
+    start = x = FINE[place]
     for _ in range(NEWTON):
         T = chebyshev(x)
-        slope, bend = np.sum(T * (c @ DERIVATIVE.T), axis=1), np.sum(T * (c @ (DERIVATIVE @ DERIVATIVE).T), axis=1)
+        slope, bend = np.sum(T * first, axis=1), np.sum(T * second, axis=1)
         with np.errstate(invalid="ignore", divide="ignore"):
             x = np.clip(np.where(bend < 0.0, x - slope / bend, x), low, high)
-    there = np.sum(chebyshev(x) * c, axis=1)
-    better = there > height
-    open_ = np.isnan(heights).any(axis=1)
-    found = np.where(open_, np.nan, np.where(better, there, height))
-    return Summits(found, piece, np.where(better, x, FINE[place]))
+    before, after = (np.sum(chebyshev(at) * c, axis=1) for at in (start, x))
+    better = after > before
+    return Summits(np.where(better, after, before), piece, np.where(better, x, start))

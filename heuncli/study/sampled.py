@@ -73,28 +73,37 @@ class Sampled:
         """With the places of those of runs of cuts; of what is no polynomial they are looked for once more."""
         if self.searched.along is None:
             return found
+        first, n = len(self.searched.groups), len(self.searched.errors)
         low, high, places = found.low.copy(), found.high.copy(), []
-        for k in range(len(self.searched.groups), len(self.searched.errors)):
-            low[k], low_place = self._place(k, -1.0, float(found.low_at[k]), float(found.low[k]))
-            high[k], high_place = self._place(k, 1.0, float(found.high_at[k]), float(found.high[k]))
-            places.append((low_place, high_place))
+        at = np.stack([found.low_at, found.high_at])[:, first:]
+        instants = extremes.distinct(at)
+        results = self.results(instants)
+        for k, (name, values) in enumerate(self.searched.along(results)):
+            both = []
+            for side, bounds in ((-1.0, low), (1.0, high)):
+                i = int(np.searchsorted(instants, at[int(side > 0.0), k]))
+                s = np.broadcast_to(results.sections[name]["s"], values.shape)[i]
+                own = name, float(instants[i]), s, values[i]
+                bounds[first + k], place = self._place(k, side, own, float(bounds[first + k]))
+                both.append(place)
+            places.append((both[0], both[1]))
+        assert first + len(places) == n
         return found._replace(low=low, high=high, places=tuple(places))
 
-    def _place(self, group: int, side: float, at: float, value: float) -> tuple[float, Place]:
+    def _place(self, k: int, side: float, own: tuple[str, float, Array, Array], value: float) -> tuple[float, Place]:
+        """The value of an extreme of a run, and where it is; own: its run and instant, the nodes, their values."""
+        assert self.searched.along is not None and self.setup is not None
         from heuncli.study.stretches import cut_at, side_of, stretch_named, summit
 
-        k, instant = group - len(self.searched.groups), np.array([at])
-        assert self.searched.along is not None and self.setup is not None
-        results = self.results(instant)
-        name, values = self.searched.along(results)[k]
-        s, end, ends = summit(np.ravel(results.sections[name]["s"]), side * values[0])
+        name, at, nodes, values = own
+        s, end, ends = summit(nodes, values, side)
         if self.searched.bent and math.isfinite(value):
 
-            def along(at: Array) -> Array:
+            def along(s: Array) -> Array:
                 assert self.searched.along is not None and self.setup is not None
-                return self.searched.along(self.results(instant, cut_at(self.setup, name, at, ends)))[k][1].T
+                return self.searched.along(self.results(np.array([at]), cut_at(self.setup, name, s, ends)))[k][1].T
 
-            own = extremes.search(along, np.linspace(*ends, 17))
-            value, s = (float(x[0]) for x in ((own.high, own.high_at) if side > 0.0 else (own.low, own.low_at)))
+            there = extremes.search(along, np.linspace(*ends, 17))
+            value, s = (float(x[0]) for x in ((there.high, there.high_at) if side > 0.0 else (there.low, there.low_at)))
             end = float(side_of(np.array(s), ends))
         return value, stretch_named(self.setup, name).place(s, end)

@@ -46,12 +46,13 @@ def side_of(s: Array, ends: tuple[float, float]) -> Array:
 
 def envelope(values: Array) -> Array:
     """The lowest and the highest along a stretch, (n_t, 2), of what takes these values at its nodes, (n_t, 9 m)."""
-    return np.stack([-summits(-values).height, summits(values).height], axis=1)
+    low, high = summits(values)
+    return np.stack([-low.height, high.height], axis=1)
 
 
-def summit(s: Array, heights: Array) -> tuple[float, float, tuple[float, float]]:
-    """Where the highest lies of what takes these heights at nodes (9 m,): distance, side, and the ends of its piece."""
-    top = summits(heights[None])
+def summit(s: Array, values: Array, side: float) -> tuple[float, float, tuple[float, float]]:
+    """Where the highest (side 1) or lowest (-1) of values at nodes (9 m,) lies: distance, side, ends of its piece."""
+    top = summits(values[None])[side > 0.0]
     k, x = int(top.piece[0]) * (DEGREE + 1), float(top.at[0])
     a, b = float(s[k]), float(s[k + DEGREE])
     if x in (-1.0, 1.0):
