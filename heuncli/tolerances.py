@@ -62,6 +62,7 @@ SAME_VALUE = 1e-9  # rad, m, or relative beyond 1: a held value and a drive that
 NO_LENGTH = 1e-9  # of the size: a shorter rod's direction has one digit beyond OPEN_GAP
 NEAR_DRAWING = 0.5  # a joint's gap (by L) or angle, a body's shift or turn: a drawing off by less means this very pose
 FARTHER = 1.2  # times the nearest pose's way: least turns may lead so far; then no body goes twice as far as known ones
+SHUT = 1e-12  # of the size, or of what accelerations must meet: beyond some hundred roundings a drive is not followed
 CLOSED = 1e-15  # of the size: as closed as rounding allows
 NO_SLOPE = 1e-7  # of |C| |e|: square root of some dozen roundings, below which a sum of squares has no slope
 POLISHED = 1e-12  # turns [rad] and shifts (by the size): nothing is left to polish

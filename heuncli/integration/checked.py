@@ -22,7 +22,7 @@ from heuncli.errors import LimitError, SolveError
 from heuncli.expressions.discontinuities import one_sided_limits
 from heuncli.integration.methods import DOP853, Method
 from heuncli.integration.pairs import instants_of, interleaved, moved_start, passed_between
-from heuncli.integration.runner import MOST_STEPS, Recovered, Runner, Trajectory
+from heuncli.integration.runner import MOST_STEPS, ClosuresLost, Recovered, Runner, Trajectory
 from heuncli.records import record, replace
 from heuncli.results import Array, Estimate, Mask
 from heuncli.tree.layout import Layout
@@ -102,6 +102,10 @@ class Runs:
             for other in (x for x in coarser if x <= tolerances.COARSEST_RETRY):
                 with contextlib.suppress(SolveError):
                     return self.run(other)
+            if isinstance(error, ClosuresLost):
+                from heuncli.integration.lock import located  # only on the way to an error
+
+                raise located(self.runner, error) from None
             raise
 
     def attempt(self, local: float, than: Trajectory, at: Array | None, start: Array | None) -> Trajectory | None:

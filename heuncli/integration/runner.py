@@ -126,6 +126,14 @@ def chattering(t: float, expression: Expression, branch: int) -> Problem:
     return Problem("chattering", message, expression.location, hint)
 
 
+class ClosuresLost(SolveError):
+    """A run that ended where its closed chains could not be held; passed: instants and states, failed: where, last."""
+
+    def __init__(self, problem: Problem, *, passed: list[tuple[float, Array]], failed: float, last: float) -> None:
+        super().__init__(problem)
+        self.passed, self.failed, self.last = passed, failed, last
+
+
 class Integration:
     """The kernel's loop over the asked instants, at most `most` steps at a time, with the arrays it writes to."""
 
@@ -314,16 +322,18 @@ class Runner:
         if code == CHATTERING:
             return SolveError(chattering(t, *self.layout.pack.branches[run.loop.turning]))
         name, message, hint = TROUBLE[code]
-        if name != "closure-lost":
-            from heuncli.integration.domains import joint_coordinates, without_value  # only on the way to an error
-            from heuncli.integration.growth import growing, largest_load
+        if name == "closure-lost":
+            problem = Problem(name, f"at t = {t:.9g} s: {message}", hint=hint)
+            return ClosuresLost(problem, passed=steps.passed(run.n), failed=t, last=last)
+        from heuncli.integration.domains import joint_coordinates, without_value  # only on the way to an error
+        from heuncli.integration.growth import growing, largest_load
 
-            mechanism, recovered = self.layout.mechanism, self.recovered(np.array([t]), state[None, :])
-            problems = without_value(mechanism, t, last, joint_coordinates(self.layout, recovered.freedoms[0]))
-            problems = problems or growing(self, t, run.loop.state(), steps.passed(run.n))
-            if problems:
-                return SolveError(*problems)
-            hint = "; ".join(filter(None, [hint, largest_load(mechanism, recovered)]))
+        mechanism, recovered = self.layout.mechanism, self.recovered(np.array([t]), state[None, :])
+        problems = without_value(mechanism, t, last, joint_coordinates(self.layout, recovered.freedoms[0]))
+        problems = problems or growing(self, t, run.loop.state(), steps.passed(run.n))
+        if problems:
+            return SolveError(*problems)
+        hint = "; ".join(filter(None, [hint, largest_load(mechanism, recovered)]))
         hangs, bodies = self.layout.spanning.hangs, self.layout.mechanism.bodies
         light = sorted({f"bodies.{bodies[hangs[i].body].name}" for i in self.layout.tables["lents"]["body"]})
         if light and name == "step-collapsed":

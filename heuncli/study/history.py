@@ -10,10 +10,11 @@ from types import MappingProxyType
 
 import numpy as np
 
+from heuncli.errors import SolveError
 from heuncli.expressions.discontinuities import one_sided_limits
 from heuncli.integration.checked import Checked, Runs, checked_run, recovered_at
 from heuncli.integration.pairs import interleaved, moved_start
-from heuncli.integration.runner import Recovered, Runner, check_deadline, discontinuities_of
+from heuncli.integration.runner import Recovered, Runner, Trajectory, check_deadline, discontinuities_of
 from heuncli.integration.singular import singular_poses
 from heuncli.integration.solvable import require_start
 from heuncli.mechanism.model import Mechanism
@@ -75,6 +76,7 @@ def integrate(setup: Setup, tolerance: float, deadline: float | None) -> History
     runs = Runs(runner, times, jumps, deadline, setup.method)
     checked = checked_run(runs, tolerance, Kinds(setup))
     jumps = tuple(sorted({*jumps, *checked.run.events}))
+    require_followed(runner, checked.run)
     seconds = {"integrate": checked.run.seconds, "check": checked.check_seconds}
     if checked.lost_seconds:
         seconds["lost"] = checked.lost_seconds
@@ -82,6 +84,16 @@ def integrate(setup: Setup, tolerance: float, deadline: float | None) -> History
     singular = tuple(singular_poses(runner, checked.run))
     estimate = Estimate(motion=checked.motion, **checked.loads)
     return History(checked.recovered, tolerance, estimate, checked, jumps, singular, seconds)
+
+
+def require_followed(runner: Runner, run: Trajectory) -> None:
+    """Raise SolveError where drives of one loop contradict each other within the run."""
+    if sum(joint.drive is not None for joint in runner.layout.mechanism.joints) > 1 and runner.layout.rows:
+        from heuncli.integration.lock import unfollowed  # few scenes need it
+
+        problem = unfollowed(runner, run)
+        if problem is not None:
+            raise SolveError(problem)
 
 
 def of_state(setup: Setup, beside: Recovered) -> Estimate:

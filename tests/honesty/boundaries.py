@@ -589,6 +589,7 @@ EXEMPT = {
     "FARTHER": "which of two poses that both close; tests/laws/test_nearest.py holds how far it may be",
     "CLOSED": "ends a search: the verdict is OPEN_GAP's",
     "NO_SLOPE": "ends a search, which then starts again from elsewhere: the verdict is OPEN_GAP's",
+    "SHUT": "the instant of an error, to some digits: whether there is one is decided by `lost` and UNMET",
     "POLISHED": "ends a search: the poses are closed on either side",
     "SUMS_BLIND": "what accepts a step of the search, among closed poses",
     "SAME_SUM": "what accepts a step of the search, among closed poses",
