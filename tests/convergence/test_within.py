@@ -17,6 +17,7 @@ from heuncli.spec.load import load
 from heuncli.study.setup import Setup, set_up
 from tests.oracle.published import START, andrews, windows
 from tests.oracle.values import to_yaml
+from tests.shared.one_freedom import One
 from tests.shared.parallelogram import parallelogram
 from tests.shared.scenes import moving, near, study
 
@@ -55,12 +56,20 @@ bodies: {b: {mass: 1, center: [0, 0, 0], inertia: [0.1, 0.1, 0.1], points: {c: [
 joints: {A: {type: rod, from: ground.O, to: b.c, tension_only: true}}
 analysis: {duration: 3, samples: 31}
 """
+EVENTS = One(0.7, {
+    "spring": "-8*sign(shaft.angle)", "brake": "-0.3*shaft.rate if 0.1 < shaft.angle < 0.2 else 0",
+    "cam": "3*max(0, cos(9*shaft.angle))", "blow": "5*exp(-((shaft.angle - 0.05)/1e-4)**2)", "pulse": "step(t - 2.5)",
+}, 0.0, 3.0, "duration: 5, samples: 41", True).text()  # fmt: skip
+BOUNCES = One(2.0, {"spring": "-5e4*guide.travel - 3*guide.speed if guide.travel < 0 else 0"}, 1.0, 0.0,
+              "duration: 4, samples: 31", gravity=9.81).text()  # fmt: skip
 DOUBLE = (FOLDER / "tests/bench/scenes/double.yaml").read_text()
 RNG = np.random.default_rng(40)
 WRITTEN: dict[str, str] = {
     "jumps": JUMPS,
     "folding loop": FOLDING,
     "rope": ROPE,
+    "events": EVENTS,
+    "bounces": BOUNCES,
     "double, 20 s": DOUBLE.replace("duration: 2", "duration: 20"),
     "two windows": to_yaml(moving(windows(2, 0.0, 1.0), np.linspace(0.0, 4.0, 41).tolist(), 1e-9)),
     "squeezer": to_yaml(moving(andrews(START, dict.fromkeys(START, 0.0)), np.linspace(0.0, 0.03, 31).tolist(), 1e-8)),
