@@ -1,7 +1,7 @@
 """Signatures of events.py for C."""
 
 from heuncli.kernel.enclosure cimport enclose, enclose_closely
-from heuncli.kernel.expressions cimport Bounds, HELD, TAKEN, Jet, Program, Programs, Span, jet, value
+from heuncli.kernel.expressions cimport ATAN2, Bounds, HELD, HOLD, TAKEN, Jet, Program, Programs, Span, jet, value
 from heuncli.kernel.intervals cimport anything, magnitude
 from heuncli.kernel.scene cimport Freedom, Scene, Variable, Watch
 from libc.math cimport INFINITY, fabs
@@ -62,4 +62,6 @@ cdef bint turned(Scene *scene, Course *course, double x) noexcept nogil
 cdef double turns_at_once(Scene *scene, Course *course) noexcept nogil
 cdef int first_event(Scene *scene, Course *course) noexcept nogil
 cdef double division(Scene *scene, Course *course, double x0, double x1, int found) noexcept nogil
+cdef void find_angles(Scene *scene) noexcept nogil
+cdef void follow_angles(Scene *scene, Course *course) noexcept nogil
 cdef void take_branches(Scene *scene, double *branches) noexcept nogil

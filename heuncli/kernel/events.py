@@ -23,11 +23,11 @@ if not cython.compiled:
     from math import inf as INFINITY
 
     from heuncli.kernel.enclosure import enclose, enclose_closely
-    from heuncli.kernel.expressions import HELD, TAKEN, jet, value
+    from heuncli.kernel.expressions import ATAN2, HELD, HOLD, TAKEN, jet, value
     from heuncli.kernel.intervals import anything, magnitude
     from heuncli.kernel.scene import Freedom, Scene, Variable, Watch
     from heuncli.kernel.shadow import cython
-    from heuncli.kernel.structs import Bounds, Course, Jet, Programs, Span
+    from heuncli.kernel.structs import Bounds, Course, Jet, Program, Programs, Span
 
     # What a stretch of time holds, and what bounds leave open; for C these stand in events.pxd, in the same order.
     NOTHING, TURNS, UNSEEN, UNDECIDED, CLEAR, BRANCH_IN_DOUBT, VALUE_IN_DOUBT = range(7)
@@ -487,6 +487,36 @@ def division(
     if course.crossing - x0 <= scene.limits.finest:
         return course.crossing
     return course.crossing - 1e-3 * (course.crossing - x0)
+
+
+def find_angles(scene: cython.pointer[Scene]) -> cython.void:
+    """Mark the branches of atan2."""
+    i: cython.Py_ssize_t
+    j: cython.Py_ssize_t
+    scene.angle_count = 0
+    for i in range(scene.watch_count):
+        program: Program = scene.watches[i].program
+        for j in range(program.start, program.start + program.count - 1):
+            if scene.programs.code[j].op == HOLD and scene.programs.code[j + 1].op == ATAN2:
+                scene.is_angle[scene.programs.code[j].argument] = 1
+                scene.angle_count += 1
+
+
+def follow_angles(scene: cython.pointer[Scene], course: cython.pointer[Course]) -> cython.void:
+    """The branches of atan2 at the variables as they are: in front of the axis they change without an event.
+
+    Only behind it the value jumps by a turn, and from there on it must be known from which side y came.
+    """
+    i: cython.Py_ssize_t
+    for i in range(scene.held_count):
+        course.before[i] = scene.programs.held[i]
+    scene.programs.holding = TAKEN
+    for i in range(scene.watch_count):
+        value(scene.programs, scene.watches[i].program)
+    scene.programs.holding = HELD
+    for i in range(scene.held_count):
+        if not scene.is_angle[i]:
+            scene.programs.held[i] = course.before[i]
 
 
 def take_branches(scene: cython.pointer[Scene], branches: cython.p_double) -> cython.void:

@@ -221,6 +221,7 @@ cdef struct Scene:
     int island_count
     int watch_count
     int held_count            # branches of expressions that are held over a step
+    int angle_count           # of them those of atan2
     int answer_count          # freedoms, a ball's three turns among them
     int selected_count        # independent closure rows
     int driven                # something is driven: the work of drives counts
@@ -249,6 +250,7 @@ cdef struct Scene:
     Lent *lents
     Island *islands
     Watch *watches
+    int *is_angle             # which branches are those of atan2
     double *least             # of each variable what the stages of a step saw
     double *most
     Programs *programs

@@ -285,6 +285,7 @@ class Scene(metaclass=Fields):
     island_count: int
     watch_count: int
     held_count: int
+    angle_count: int
     answer_count: int
     selected_count: int
     driven: int
@@ -313,6 +314,7 @@ class Scene(metaclass=Fields):
     lents: list[Lent]
     islands: list[Island]
     watches: list[Watch]
+    is_angle: list[int]
     least: list[float]
     most: list[float]
     programs: Programs

@@ -19,7 +19,7 @@ if not cython.compiled:
     from heuncli.kernel.chosen import choose_afresh, put_chosen, take_chosen
     from heuncli.kernel.closures import slack
     from heuncli.kernel.dense import clipped, combine, interpolant, interpolate
-    from heuncli.kernel.events import take_branches
+    from heuncli.kernel.events import follow_angles, take_branches
     from heuncli.kernel.expressions import HELD, TAKEN
     from heuncli.kernel.landing import AGAIN_TO, CHATTERS, SLACK, STANDS, begin_to_see, meet, see_stage
     from heuncli.kernel.response import evaluate, must_choose_anew, settle
@@ -27,6 +27,7 @@ if not cython.compiled:
     from heuncli.kernel.selection import select_independent_rows
     from heuncli.kernel.shadow import cython
     from heuncli.kernel.structs import Method, Run
+    from heuncli.kernel.tree import coordinates
 
     # What `advance` answers; for C these stand in steps.pxd, in the same order.
     REACHED, MORE, COLLAPSED, NOT_A_NUMBER, CLOSURES_LOST, ROPE_SLACK, CHATTERING, ACCEPTED, AGAIN = range(9)
@@ -444,6 +445,9 @@ def turn_branches(scene: cython.pointer[Scene], run: cython.pointer[Run]) -> cyt
     run.turned[run.done] = run.turns
     if run.turns:
         take_branches(scene, run.course.turned)
+    elif scene.angle_count:
+        coordinates(scene, clipped(run, run.t), run.y)
+        follow_angles(scene, cython.address(run.course))
     return changed
 
 

@@ -3,6 +3,7 @@
 from heuncli.kernel.algebra cimport Mat3, Vec3
 from heuncli.kernel.chosen cimport choose_afresh, judge_start
 from heuncli.kernel.closures cimport measure_rows, push_closures, residual_of, size_of_answer
+from heuncli.kernel.events cimport find_angles
 from heuncli.kernel.expressions cimport FREE, HELD, Expressions
 from heuncli.kernel.memory cimport Memory
 from heuncli.kernel.orthogonal cimport answer_of_row, doubt_multipliers

@@ -23,6 +23,7 @@ if not cython.compiled:
     from heuncli.kernel.algebra import Mat3, Vec3
     from heuncli.kernel.chosen import choose_afresh, judge_start
     from heuncli.kernel.closures import measure_rows, push_closures, residual_of, size_of_answer
+    from heuncli.kernel.events import find_angles
     from heuncli.kernel.expressions import FREE, HELD, Expressions
     from heuncli.kernel.memory import Memory
     from heuncli.kernel.orthogonal import answer_of_row, doubt_multipliers
@@ -338,6 +339,8 @@ class Workspace:
         scene.R = self.memory.zeros(rows * rows)
         scene.J = self.memory.zeros(numbers["island_room"])
         scene.y = self.memory.zeros(rows)
+        scene.is_angle = self.memory.ints(bytes(4 * scene.held_count))
+        find_angles(scene)
         scene.least = self.memory.zeros(scene.variable_count)
         scene.most = self.memory.zeros(scene.variable_count)
         scene.own = self.memory.zeros(scene.lent_count * scene.lent_count)
