@@ -152,12 +152,13 @@ KERNEL: dict[str, float] = {
     "dodge": 0.87,
     "pivot_rounding": 1e-16,  # a rounding of the closures, amplified by 1 / pivot
     # -- events
+    "one_instant": 4.0 * EPS,  # what an event is off by adds up over many: no more than instants are rounded
     "finest": 1e-10,  # of a step: pulses a ten-thousandth of a millionth of it long are met, and its error not
     "window": 1e-4,  # interpolants err by 50 tolerances, 5e-8 of a step's way; a parabola about its end by a cube
     "near_kink": 1e-7,  # a load is then off by 1e-7 of what a step changes it, for 1e-7 of the step
     "no_jump": 1e-9,  # a kink's branches differ by its width in x, 1e-14, times any slope
     "leaving_first": 1e-13,  # of a step's way: some hundred roundings
-    "leaving_last": 1e-8,  # landings err by less; a motion that has not left by then is driven back
+    "leaving_last": 1e-3,  # of steps so short that a coordinate hardly moves by its rounding; what chatters never leaves
     "flurry": 1e-9,  # as SAME_INSTANT; a pulse a millionth of the run long has 2 events in 1e-6
     "least_load": 1e-200,  # N, N m or rad/s^2: bounds of exponentials are no closer than 1e-250
     "unseen": 1e-4,  # of a load's largest in a step: what it does beyond what the stages saw

@@ -226,9 +226,10 @@ def smooth_segments(last: float, jumps: Sequence[float]) -> list[tuple[float, fl
     return [segment for segment in segments if segment[1] > segment[0]] or segments[-1:]
 
 
-def cut_short(times: Array, run: Integration) -> tuple[Array, Array]:
-    """The asked instants before a rope would have to push, that instant itself, and the states at all of them."""
-    ts = np.append(times[: run.loop.sampled], run.loop.t)
+def cut_short(times: Array, run: Integration, last: float) -> tuple[Array, Array]:
+    """The asked instants before the last at which no rope would have to push, that one, and the states at all."""
+    asked = times[: run.loop.sampled]
+    ts = np.append(asked[asked <= last], last)
     states = np.vstack([run.states()[: len(ts) - 1], np.array(run.loop.state())])
     return (ts[:-1], states[:-1]) if len(ts) > 1 and ts[-1] == ts[-2] else (ts, states)
 
@@ -291,7 +292,9 @@ class Runner:
                 break
             if code != REACHED:
                 raise self._failed(code, run, steps, last)
-        ts, states = (ts, run.states()) if code == REACHED else cut_short(ts, run)
+        # slack by a jump: what is told last is what held before it
+        told = just_before(run.loop.t) if run.loop.t == begin > 0.0 else run.loop.t
+        ts, states = (ts, run.states()) if code == REACHED else cut_short(ts, run, told)
         return Trajectory(
             times=ts, states=states, ends=steps.column("ends"), steps=run.loop.steps,
             evaluations=run.loop.evaluations, gap=run.loop.gap, tolerance=tolerance, method=method,

@@ -8,7 +8,10 @@ from libc.math cimport INFINITY, fabs
 
 cdef enum:
     NOTHING, TURNS, UNSEEN, UNDECIDED
-    CLEAR, BRANCH_IN_DOUBT, VALUE_IN_DOUBT
+    CLEAR, BRANCH_IN_DOUBT, VALUE_IN_DOUBT, PASSED
+
+cdef enum:
+    AS_HELD, TURNED, OPEN
 
 cdef enum:
     LOOKS = 20                # divisions after which a value is taken for seen: a millionth of the step
@@ -58,7 +61,11 @@ cdef Bounds closer(Scene *scene, Course *course, Watch *watch, double x0, double
 cdef void scale_watches(Scene *scene, Course *course) noexcept nogil
 cdef Bounds over_part(Scene *scene, Course *course, Watch *watch, double x0, double x1) noexcept nogil
 cdef void look_for_peak(Scene *scene, Course *course, Watch *watch) noexcept nogil
-cdef bint turned(Scene *scene, Course *course, double x) noexcept nogil
+cdef int branches_at(Scene *scene, Course *course, double x) noexcept nogil
+cdef bint changed_at(Scene *scene, Course *course, double x) noexcept nogil
+cdef bint is_open(Scene *scene, Course *course, double x) noexcept nogil
+cdef double beyond_rounding(Scene *scene, Course *course, double x, double end) noexcept nogil
+cdef int look_at_turn(Scene *scene, Course *course, double x0, double x1) noexcept nogil
 cdef double turns_at_once(Scene *scene, Course *course) noexcept nogil
 cdef int first_event(Scene *scene, Course *course) noexcept nogil
 cdef double division(Scene *scene, Course *course, double x0, double x1, int found) noexcept nogil

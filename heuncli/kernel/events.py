@@ -30,7 +30,8 @@ if not cython.compiled:
     from heuncli.kernel.structs import Bounds, Course, Jet, Program, Programs, Span
 
     # What a stretch of time holds, and what bounds leave open; for C these stand in events.pxd, in the same order.
-    NOTHING, TURNS, UNSEEN, UNDECIDED, CLEAR, BRANCH_IN_DOUBT, VALUE_IN_DOUBT = range(7)
+    NOTHING, TURNS, UNSEEN, UNDECIDED, CLEAR, BRANCH_IN_DOUBT, VALUE_IN_DOUBT, PASSED = range(8)
+    AS_HELD, TURNED, OPEN = range(3)  # branches at an instant
     # Divisions of a stretch after which a value is taken for seen, a millionth of the step; parts in which a load's
     # peak is looked for; parts looked at for values that bounds do not settle, and in all.
     LOOKS, PARTS, MOST_LOOKS, MOST_PARTS = 20, 60, 1000, 4000
@@ -369,11 +370,14 @@ def look_for_peak(
 # Events
 
 
-def turned(scene: cython.pointer[Scene], course: cython.pointer[Course], x: cython.double) -> cython.bint:
-    """Whether branches are others at x than those held; they are kept as those to turn to, with the jump they make."""
+def branches_at(scene: cython.pointer[Scene], course: cython.pointer[Course], x: cython.double) -> cython.int:
+    """AS_HELD or TURNED, as branches are at x; OPEN where rounding of a margin tells neither.
+
+    Those met are kept as the ones to turn to, with the jump they make.
+    """
     i: cython.Py_ssize_t
     jump: cython.double
-    changed: cython.bint = False
+    found: cython.int = AS_HELD
     programs: cython.pointer[Programs] = scene.programs
     stand_at(scene, course, x)
     for i in range(scene.held_count):
@@ -390,20 +394,77 @@ def turned(scene: cython.pointer[Scene], course: cython.pointer[Course], x: cyth
     for i in range(scene.held_count):
         course.turned[i] = programs.held[i]
         if programs.held[i] != course.before[i]:
-            changed = True
+            found = TURNED
             course.slot = i
-        programs.held[i] = course.before[i]
+    if is_open(scene, course, x):
+        found = OPEN
+    take_branches(scene, course.before)
+    return found
+
+
+def changed_at(scene: cython.pointer[Scene], course: cython.pointer[Course], x: cython.double) -> cython.bint:
+    """Whether branches are others at x than those held, rounding or not."""
+    i: cython.Py_ssize_t
+    changed: cython.bint = False
+    stand_at(scene, course, x)
+    for i in range(scene.held_count):
+        course.before[i] = scene.programs.held[i]
+    scene.programs.holding = TAKEN
+    for i in range(scene.watch_count):
+        value(scene.programs, scene.watches[i].program)
+    scene.programs.holding = HELD
+    for i in range(scene.held_count):
+        if scene.programs.held[i] != course.before[i]:
+            changed = True
+        scene.programs.held[i] = course.before[i]
     return changed
+
+
+def is_open(scene: cython.pointer[Scene], course: cython.pointer[Course], x: cython.double) -> cython.bint:
+    """Whether bounds at x itself, wider than a point by the rounding of coordinates, leave the branches in doubt."""
+    i: cython.Py_ssize_t
+    wide: cython.double
+    range_over(scene, course, scene.programs.ranges, x, x)
+    for i in range(1, scene.variable_count):
+        there: Bounds = scene.programs.ranges[i].value
+        wide = scene.limits.one_instant * fabs(there.high)
+        scene.programs.ranges[i] = Span(Bounds(there.low - wide, there.high + wide), anything(), anything())
+    for i in range(scene.held_count):
+        scene.programs.doubt[i] = 0
+    for i in range(scene.watch_count):
+        enclose(scene.programs, scene.watches[i].program)
+    return any_doubt(scene)
+
+
+def beyond_rounding(
+    scene: cython.pointer[Scene], course: cython.pointer[Course], x: cython.double, end: cython.double
+) -> cython.double:
+    """The first x from a given one at which branches are not open, to a part of its distance; or the end."""
+    low: cython.double = x
+    high: cython.double = x + scene.limits.finest
+    middle: cython.double
+    while high < end and branches_at(scene, course, high) == OPEN:
+        low = high
+        high = x + 2.0 * (high - x)
+    if high >= end:
+        return end
+    while high - low > 0.01 * (high - x) + scene.limits.finest:
+        middle = 0.5 * (low + high)
+        if branches_at(scene, course, middle) == OPEN:
+            low = middle
+        else:
+            high = middle
+    return high
 
 
 def turns_at_once(scene: cython.pointer[Scene], course: cython.pointer[Course]) -> cython.double:
     """How far from the start branches are others than those held; 0 where they stay so: they turn at the start.
 
-    At an event the margin is zero but for rounding, of either sign: what counts is where it goes from there.
+    At an event the margin is zero but for the coordinates' rounding, of either sign: what counts is where it goes.
     """
     x: cython.double = scene.limits.leaving_first
     while x <= scene.limits.leaving_last:
-        if not turned(scene, course, x):
+        if branches_at(scene, course, x) != TURNED:
             return x
         x = 10.0 * x
     return 0.0
@@ -422,7 +483,7 @@ def first_event(scene: cython.pointer[Scene], course: cython.pointer[Course]) ->
     course.undecided = 0
     course.crossed_by = -1.0
     scale_watches(scene, course)
-    if scene.held_count and turned(scene, course, 0.0):
+    if scene.held_count and branches_at(scene, course, 0.0) == TURNED:
         x = turns_at_once(scene, course)
         course.event = 0.0
         if x == 0.0:
@@ -431,17 +492,24 @@ def first_event(scene: cython.pointer[Scene], course: cython.pointer[Course]) ->
     while top >= 0:
         looks += 1
         found = doubt_over(scene, course, x, course.ends[top])
+        if found == BRANCH_IN_DOUBT:
+            found = look_at_turn(scene, course, x, course.ends[top])
+            if found == TURNS:
+                return TURNS
         smallest: cython.bint = course.ends[top] - x <= scene.limits.finest or top == PARTS - 1
         if found == UNSEEN and not smallest:
             course.event = 0.5 * (x + course.ends[top])
             return UNSEEN
-        if found == BRANCH_IN_DOUBT and smallest and turned(scene, course, course.ends[top]):
-            course.event = course.ends[top]
-            return TURNS
-        if found == VALUE_IN_DOUBT and (top >= LOOKS or looks > MOST_LOOKS):
+        if found == VALUE_IN_DOUBT and top >= LOOKS:
+            found = CLEAR
+        elif found == VALUE_IN_DOUBT and looks > MOST_LOOKS:
             course.undecided = 1
             found = CLEAR
-        if found == CLEAR or smallest:
+        if found == PASSED:
+            x = course.event
+            if x >= course.ends[top]:
+                top -= 1
+        elif found == CLEAR or smallest:
             x = course.ends[top]
             top -= 1
         elif looks > MOST_PARTS:
@@ -451,6 +519,22 @@ def first_event(scene: cython.pointer[Scene], course: cython.pointer[Course]) ->
             top += 1
             course.ends[top] = division(scene, course, x, course.ends[top - 1], found)
     return NOTHING
+
+
+def look_at_turn(
+    scene: cython.pointer[Scene], course: cython.pointer[Course], x0: cython.double, x1: cython.double
+) -> cython.int:
+    """What the start of a part in doubt tells: TURNS where it is the event, PASSED to `event` where rounding opens it.
+
+    Else BRANCH_IN_DOUBT: the part is to be divided.
+    """
+    if x1 - x0 <= scene.limits.finest:
+        course.event = x1
+        return TURNS if branches_at(scene, course, x1) == TURNED else BRANCH_IN_DOUBT
+    if branches_at(scene, course, x0) != OPEN:
+        return BRANCH_IN_DOUBT
+    course.event = beyond_rounding(scene, course, x0, x1)
+    return TURNS if branches_at(scene, course, course.event) == TURNED else PASSED
 
 
 def division(
@@ -472,12 +556,12 @@ def division(
     if course.crossed_by != x1:
         course.crossed_by = x1
         course.crossing = x1
-        if turned(scene, course, x1):
+        if changed_at(scene, course, x1):
             while high - low > 0.25 * scene.limits.finest:
                 middle = 0.5 * (low + high)
                 if middle <= low or middle >= high:
                     break
-                if turned(scene, course, middle):
+                if changed_at(scene, course, middle):
                     high = middle
                 else:
                     low = middle

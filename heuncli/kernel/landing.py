@@ -149,7 +149,8 @@ def land_on(scene: cython.pointer[Scene], run: cython.pointer[Run]) -> cython.in
     course: cython.pointer[Course] = cython.address(run.course)
     at: cython.double = instant(course, course.event)
     off: cython.double = fabs(at - run.stop)
-    if at - run.t <= scene.limits.least_step * fabs(run.end):
+    near: cython.double = one_instant(scene, run)
+    if at - run.t <= near:
         run.at_once += 1
         if run.at_once > 4 + 2 * scene.held_count or gathered(scene, run, run.t):
             return CHATTERS
@@ -159,7 +160,6 @@ def land_on(scene: cython.pointer[Scene], run: cython.pointer[Run]) -> cython.in
         run.landings = 0
         run.cut = run.t  # none
         return AGAIN_TO
-    near: cython.double = scene.limits.least_step * fabs(run.end)
     if course.jump <= scene.limits.no_jump and scene.limits.near_kink * run.h > near:
         near = scene.limits.near_kink * run.h
     if run.landings and (off <= near or run.landings >= MOST_LANDINGS):
@@ -170,6 +170,14 @@ def land_on(scene: cython.pointer[Scene], run: cython.pointer[Run]) -> cython.in
     run.landings += 1
     run.cut = at
     return AGAIN_TO
+
+
+def one_instant(scene: cython.pointer[Scene], run: cython.pointer[Run]) -> cython.double:
+    """What lies so near to the end of the step under way lies there: its rounding, or a hundredth of the run's end's."""
+    t: cython.double = fabs(run.stop)
+    if t < 0.01 * fabs(run.end):
+        t = 0.01 * fabs(run.end)
+    return scene.limits.one_instant * t
 
 
 def gathered(scene: cython.pointer[Scene], run: cython.pointer[Run], t: cython.double) -> cython.bint:

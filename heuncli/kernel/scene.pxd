@@ -199,6 +199,7 @@ cdef struct Limits:
     double least_step
     double dodge
     double pivot_rounding
+    double one_instant
     double finest
     double window
     double near_kink

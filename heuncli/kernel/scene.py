@@ -260,6 +260,7 @@ class Limits(Record):
     least_step: float  # of the time: rounding
     dodge: float  # ratio of the lengths tried
     pivot_rounding: float  # what rounding makes of the closures, times h rate / pivot
+    one_instant: float  # of the time: rounding of an instant
     finest: float  # part of a step down to which events are told apart
     window: float  # of a step, on either side of its end: an event that the step before found lies there
     near_kink: float  # of a step: so near to a kink a step may end, for branches go on smoothly beyond it

@@ -505,8 +505,10 @@ def run_steps(scene: cython.pointer[Scene], method: cython.pointer[Method], run:
         return ROPE_SLACK
     sample_reached(run)
     run.pivot_at_start = scene.pivot
+    attempts: cython.int = 0
     while run.t < run.end:
-        if run.done >= run.most:
+        attempts += 1
+        if run.done >= run.most or attempts > 100 * run.most:  # also where none stands: the clock is looked at
             return MORE
         propose(run)
         code = blocked(scene, run)

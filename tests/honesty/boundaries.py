@@ -621,6 +621,7 @@ EXEMPT = {
     "KERNEL.dodge": "lengths of steps that are tried: the estimate says what was reached",
     "KERNEL.pivot_rounding": "lengths of steps that are tried: the estimate says what was reached",
     "KERNEL.rounding": "the doubt of the multipliers, in steps of one rounding",
+    "KERNEL.one_instant": "to what an event is landed on, in roundings of its instant",
     "KERNEL.window": "where the end of a step is looked at for an event; else all of the step is",
     "KERNEL.near_kink": "how near to a kink a step ends: its error, to the square, is that of the step",
     "KERNEL.no_jump": "which events are landed on to the last digit, which to near_kink",
