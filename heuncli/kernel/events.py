@@ -84,7 +84,7 @@ def out_of_sight(
     scale: cython.double,
 ) -> cython.bint:
     """Whether a number within bounds may lie beyond what the stages saw, by more than they saw it vary."""
-    room: cython.double = (watch.high - watch.low) + scene.limits.unseen * scale
+    room: cython.double = (watch.high - watch.low) + scene.limits.unseen * scale + watch.rounding
     return not (bounds.low >= watch.low - room and bounds.high <= watch.high + room)
 
 
@@ -309,8 +309,13 @@ def closer(
 def scale_watches(scene: cython.pointer[Scene], course: cython.pointer[Course]) -> cython.void:
     """How large what is watched becomes over the stretch."""
     i: cython.Py_ssize_t
+    there: Bounds
     for i in range(scene.watch_count):
         watch: cython.pointer[Watch] = cython.address(scene.watches[i])
+        # bounds at an instant are as wide as the rounding of the terms, which may be that of larger ones
+        there = over_part(scene, course, watch, 0.5, 0.5)
+        if there.high - there.low > watch.rounding and there.high - there.low < INFINITY:
+            watch.rounding = there.high - there.low
         watch.scale = fabs(watch.high) if fabs(watch.high) > fabs(watch.low) else fabs(watch.low)
         if not watch.scale >= scene.limits.least_load:
             watch.scale = scene.limits.least_load

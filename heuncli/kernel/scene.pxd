@@ -151,6 +151,7 @@ cdef struct Watch:
     double low
     double high
     double scale
+    double rounding
 
 cdef struct Lent:
     int body

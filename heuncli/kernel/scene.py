@@ -198,6 +198,7 @@ class Watch(Record):
     low: float  # what the stages of a step saw of it
     high: float
     scale: float  # how large it may be in the step
+    rounding: float  # of its terms
 
 
 class Lent(Record):
