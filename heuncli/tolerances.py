@@ -158,7 +158,7 @@ KERNEL: dict[str, float] = {
     "near_kink": 1e-7,  # a load is then off by 1e-7 of what a step changes it, for 1e-7 of the step
     "no_jump": 1e-9,  # a kink's branches differ by its width in x, 1e-14, times any slope
     "leaving_first": 1e-13,  # of a step's way: some hundred roundings
-    "leaving_last": 1e-3,  # of steps so short that a coordinate hardly moves by its rounding; what chatters never leaves
+    "leaving_last": 1e-3,  # of steps so short that coordinates move by roundings; what chatters never leaves
     "flurry": 1e-9,  # as SAME_INSTANT; a pulse a millionth of the run long has 2 events in 1e-6
     "least_load": 1e-200,  # N, N m or rad/s^2: bounds of exponentials are no closer than 1e-250
     "unseen": 1e-4,  # of a load's largest in a step: what it does beyond what the stages saw

@@ -26,6 +26,7 @@ cdef struct Course:           # of the coordinates over a stretch of time, for t
     double begin              # the instant of x = 0
     double length             # from there to x = 1
     double latest             # the last instant that counts
+    double finest             # part of it down to which events are told apart
     double event              # x of the event
     double crossed_by         # an end of a part by which branches have turned ...
     double crossing           # ... and where, somewhere before it
@@ -68,6 +69,7 @@ cdef double beyond_rounding(Scene *scene, Course *course, double x, double end) 
 cdef int look_at_turn(Scene *scene, Course *course, double x0, double x1) noexcept nogil
 cdef double turns_at_once(Scene *scene, Course *course) noexcept nogil
 cdef int first_event(Scene *scene, Course *course) noexcept nogil
+cdef double crossing_in(Scene *scene, Course *course, double x0, double x1, double width) noexcept nogil
 cdef double division(Scene *scene, Course *course, double x0, double x1, int found) noexcept nogil
 cdef void find_angles(Scene *scene) noexcept nogil
 cdef void follow_angles(Scene *scene, Course *course) noexcept nogil

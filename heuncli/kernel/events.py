@@ -446,14 +446,14 @@ def beyond_rounding(
 ) -> cython.double:
     """The first x from a given one at which branches are not open, to a part of its distance; or the end."""
     low: cython.double = x
-    high: cython.double = x + scene.limits.finest
+    high: cython.double = x + course.finest
     middle: cython.double
     while high < end and branches_at(scene, course, high) == OPEN:
         low = high
         high = x + 2.0 * (high - x)
     if high >= end:
         return end
-    while high - low > 0.01 * (high - x) + scene.limits.finest:
+    while high - low > 0.01 * (high - x) + course.finest:
         middle = 0.5 * (low + high)
         if branches_at(scene, course, middle) == OPEN:
             low = middle
@@ -501,7 +501,7 @@ def first_event(scene: cython.pointer[Scene], course: cython.pointer[Course]) ->
             found = look_at_turn(scene, course, x, course.ends[top])
             if found == TURNS:
                 return TURNS
-        smallest: cython.bint = course.ends[top] - x <= scene.limits.finest or top == PARTS - 1
+        smallest: cython.bint = course.ends[top] - x <= course.finest or top == PARTS - 1
         if found == UNSEEN and not smallest:
             course.event = 0.5 * (x + course.ends[top])
             return UNSEEN
@@ -533,13 +533,37 @@ def look_at_turn(
 
     Else BRANCH_IN_DOUBT: the part is to be divided.
     """
-    if x1 - x0 <= scene.limits.finest:
+    if x1 - x0 <= course.finest:
         course.event = x1
         return TURNS if branches_at(scene, course, x1) == TURNED else BRANCH_IN_DOUBT
     if branches_at(scene, course, x0) != OPEN:
         return BRANCH_IN_DOUBT
     course.event = beyond_rounding(scene, course, x0, x1)
-    return TURNS if branches_at(scene, course, course.event) == TURNED else PASSED
+    if branches_at(scene, course, course.event) != TURNED:
+        return PASSED
+    # not where it is certain, which would be late each time: where the margin itself is zero
+    course.event = crossing_in(scene, course, x0, course.event, 0.0)
+    return TURNS
+
+
+def crossing_in(
+    scene: cython.pointer[Scene],
+    course: cython.pointer[Course],
+    x0: cython.double,
+    x1: cython.double,
+    width: cython.double,
+) -> cython.double:
+    """Where branches change between x0, where they are as held, and x1; to a width, or to the last digit."""
+    low: cython.double = x0
+    high: cython.double = x1
+    middle: cython.double = 0.5 * (low + high)
+    while high - low > width and low < middle and middle < high:
+        if changed_at(scene, course, middle):
+            high = middle
+        else:
+            low = middle
+        middle = 0.5 * (low + high)
+    return high
 
 
 def division(
@@ -553,27 +577,16 @@ def division(
 
     Which crossing is the first one the bounds decide: this only saves looking at many small parts beside it.
     """
-    low: cython.double = x0
-    high: cython.double = x1
-    middle: cython.double
     if found != BRANCH_IN_DOUBT:
         return 0.5 * (x0 + x1)
     if course.crossed_by != x1:
         course.crossed_by = x1
         course.crossing = x1
         if changed_at(scene, course, x1):
-            while high - low > 0.25 * scene.limits.finest:
-                middle = 0.5 * (low + high)
-                if middle <= low or middle >= high:
-                    break
-                if changed_at(scene, course, middle):
-                    high = middle
-                else:
-                    low = middle
-            course.crossing = high
+            course.crossing = crossing_in(scene, course, x0, x1, 0.25 * course.finest)
     if course.crossing >= x1 or course.crossing <= x0:
         return 0.5 * (x0 + x1)
-    if course.crossing - x0 <= scene.limits.finest:
+    if course.crossing - x0 <= course.finest:
         return course.crossing
     return course.crossing - 1e-3 * (course.crossing - x0)
 

@@ -27,6 +27,7 @@ cdef void need_interpolant(Scene *scene, Method *method, Run *run) noexcept nogi
 cdef int shorten(Scene *scene, Run *run, int found) noexcept nogil
 cdef int land_on(Scene *scene, Run *run) noexcept nogil
 cdef double one_instant(Scene *scene, Run *run) noexcept nogil
+cdef bint in_flurry(Scene *scene, Run *run) noexcept nogil
 cdef bint gathered(Scene *scene, Run *run, double t) noexcept nogil
 cdef void lay_course(Scene *scene, Run *run, int rows) noexcept nogil
 cdef void lay_component(Run *run, int c, int rows, double *b) noexcept nogil

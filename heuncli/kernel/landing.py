@@ -173,11 +173,16 @@ def land_on(scene: cython.pointer[Scene], run: cython.pointer[Run]) -> cython.in
 
 
 def one_instant(scene: cython.pointer[Scene], run: cython.pointer[Run]) -> cython.double:
-    """What lies so near to the end of the step under way lies there: its rounding, or a hundredth of the run's end's."""
+    """What is so near to the end of the step under way is there: its rounding, or a hundredth of the run's end's."""
     t: cython.double = fabs(run.stop)
     if t < 0.01 * fabs(run.end):
         t = 0.01 * fabs(run.end)
     return scene.limits.one_instant * t
+
+
+def in_flurry(scene: cython.pointer[Scene], run: cython.pointer[Run]) -> cython.bint:
+    """Whether several events lie just behind."""
+    return run.flurry > 2 and fabs(run.t - run.flurry_begin) <= scene.limits.flurry * fabs(run.end)
 
 
 def gathered(scene: cython.pointer[Scene], run: cython.pointer[Run], t: cython.double) -> cython.bint:
@@ -199,6 +204,7 @@ def lay_course(scene: cython.pointer[Scene], run: cython.pointer[Run], rows: cyt
     course.begin = run.t
     course.length = run.h
     course.latest = clipped(run, run.stop)
+    course.finest = scene.limits.finest
     course.degree = rows
     for i in range(1, scene.variable_count):
         variable: cython.pointer[Variable] = cython.address(scene.variables[i])
@@ -240,6 +246,7 @@ def lay_window(scene: cython.pointer[Scene], method: cython.pointer[Method], run
     course.begin = run.stop - half
     course.length = 2.0 * half
     course.latest = run.before_end
+    course.finest = scene.limits.window * scene.limits.window * scene.limits.window
     course.degree = 2
     for i in range(1, scene.variable_count):
         variable: cython.pointer[Variable] = cython.address(scene.variables[i])

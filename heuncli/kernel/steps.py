@@ -21,7 +21,7 @@ if not cython.compiled:
     from heuncli.kernel.dense import clipped, combine, interpolant, interpolate
     from heuncli.kernel.events import follow_angles, take_branches
     from heuncli.kernel.expressions import HELD, TAKEN
-    from heuncli.kernel.landing import AGAIN_TO, CHATTERS, SLACK, STANDS, begin_to_see, meet, see_stage
+    from heuncli.kernel.landing import AGAIN_TO, CHATTERS, SLACK, STANDS, begin_to_see, in_flurry, meet, see_stage
     from heuncli.kernel.response import evaluate, must_choose_anew, settle
     from heuncli.kernel.scene import Body, Group, Scene
     from heuncli.kernel.selection import select_independent_rows
@@ -230,7 +230,7 @@ def blocked(scene: cython.pointer[Scene], run: cython.pointer[Run]) -> cython.in
     if scene.closure_count and scene.pivot < scene.limits.locked and run.h <= scene.limits.locked_step * fabs(run.end):
         return CLOSURES_LOST
     if run.h <= scene.limits.least_step * fabs(run.end) or run.h < 1e-300:
-        return COLLAPSED
+        return CHATTERING if in_flurry(scene, run) else COLLAPSED
     return REACHED
 
 
@@ -523,10 +523,10 @@ def run_steps(scene: cython.pointer[Scene], method: cython.pointer[Method], run:
             run.has_cut = run.landings = run.slack_landings = 0
         if code == ACCEPTED and run.seeing:
             met = meet(scene, method, run)
-            run.has_cut = met == AGAIN_TO and run.cut > run.t
             if met == CHATTERS:
                 return CHATTERING
             if met == AGAIN_TO:
+                run.has_cut = run.cut > run.t
                 continue
             if met == SLACK and run.stop <= run.t:
                 return ROPE_SLACK

@@ -168,6 +168,7 @@ class Course(metaclass=Fields):
     begin: float
     length: float
     latest: float
+    finest: float
     event: float
     crossed_by: float
     crossing: float
