@@ -130,6 +130,7 @@ def forward(runner: Runner, good: State, t: float) -> State | None:
     piece = Integration(
         runner.layout, runner.workspace, DOP853, np.array([t]),
         most=MOST_STEPS, state=good.y, tolerance=LOCAL, rate=tolerances.LEAST_RATE / (t - good.t), following=0,
+        late=0,
     )  # fmt: skip
     if begin < end:
         piece.loop.begin(begin, end, t)

@@ -268,10 +268,12 @@ class Runner:
         # at rest under a load like t**4 all rates and accelerations vanish at first: this rate then sets the scale
         rate = tolerances.LEAST_RATE / last if last > 0.0 else 0.0
         most = max(1, CHUNK // max(len(layout.mechanism.bodies), 1))
+        # what begins beside the scene's start is to show what rounding makes of a run, that of its events, too
+        late = int(start is not None)
         start = layout.y0 if start is None else start
         run = Integration(
             layout, self.workspace, method, ts,
-            most=most, state=start, tolerance=tolerance, rate=rate, following=0,
+            most=most, state=start, tolerance=tolerance, rate=rate, following=0, late=late,
         )  # fmt: skip
         steps = Steps(start, run.width)
         roped = any(j.tension_only for j in layout.mechanism.joints)
@@ -372,7 +374,7 @@ class Runner:
         """States at instants within the steps from `first`, which starts from a kept record, to `last`."""
         replayed = Integration(
             self.layout, self.workspace, run.method, times,
-            most=last - first + 1, state=self.layout.y0, tolerance=math.inf, rate=0.0, following=1,
+            most=last - first + 1, state=self.layout.y0, tolerance=math.inf, rate=0.0, following=1, late=0,
         )  # fmt: skip
         loop = replayed.loop
         loop.stand(record)

@@ -26,6 +26,7 @@ cdef struct Run:
     int rejected_before       # 1: the last attempt was rejected
     int dodges                # other lengths tried for this step, to keep its stages off a singular pose
     int rope                  # 1 + the row of the rope that would push
+    int late                  # 1: events are met late by the rounding of an instant, to see what that makes
     int seeing                # 1: stages are looked at for events
     int has_cut               # 1: the step under way ends at `cut`
     int has_interpolant       # 1: the dense output of the step tried is there
@@ -60,6 +61,7 @@ cdef struct Run:
     double flurry_begin
     double most_slack         # the largest and the least that stages saw of what ropes would push with
     double least_slack
+    double start_slack        # what they would at the start of the step
     Course course
     Group *groups
     double *weights           # of the components: 1, or 1 / size

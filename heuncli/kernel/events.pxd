@@ -21,6 +21,7 @@ cdef enum:
 
 cdef struct Course:           # of the coordinates over a stretch of time, for the expressions that hang on them
     int degree                # of their polynomials
+    int late                  # 1: events are where they are certain, not where margins are zero
     int slot                  # a branch that turns
     int undecided             # 1: bounds left open whether all values were seen
     double begin              # the instant of x = 0

@@ -83,13 +83,13 @@ def out_of_sight(
     bounds: Bounds,
     scale: cython.double,
 ) -> cython.bint:
-    """Whether a number within bounds may lie beyond what the stages saw, by more than they saw it vary."""
-    room: cython.double = (watch.high - watch.low) + scene.limits.unseen * scale + watch.rounding
+    """Whether a number within bounds may lie beyond what the stages saw, by half of what they saw it vary."""
+    room: cython.double = 0.5 * (watch.high - watch.low) + scene.limits.unseen * scale + watch.rounding
     return not (bounds.low >= watch.low - room and bounds.high <= watch.high + room)
 
 
 def quiet(scene: cython.pointer[Scene], begin: cython.double, end: cython.double) -> cython.int:
-    """What may have happened between two instants, by far: the variables are taken to go beyond what was seen by half.
+    """What may have happened between two instants, by far: the variables are taken to go beyond what was seen by a quarter.
 
     CLEAR, BRANCH_IN_DOUBT or VALUE_IN_DOUBT.
     """
@@ -99,7 +99,7 @@ def quiet(scene: cython.pointer[Scene], begin: cython.double, end: cython.double
     found: cython.int = CLEAR
     programs: cython.pointer[Programs] = scene.programs
     for i in range(scene.variable_count):
-        width = 0.5 * (scene.most[i] - scene.least[i])
+        width = 0.25 * (scene.most[i] - scene.least[i])
         programs.ranges[i] = Span(Bounds(scene.least[i] - width, scene.most[i] + width), anything(), anything())
     set_time(programs, begin, end)
     for i in range(scene.held_count):
@@ -542,7 +542,8 @@ def look_at_turn(
     if branches_at(scene, course, course.event) != TURNED:
         return PASSED
     # not where it is certain, which would be late each time: where the margin itself is zero
-    course.event = crossing_in(scene, course, x0, course.event, 0.0)
+    if not course.late:
+        course.event = crossing_in(scene, course, x0, course.event, 0.0)
     return TURNS
 
 

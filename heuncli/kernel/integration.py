@@ -38,7 +38,7 @@ class Integration:
         self, workspace: Workspace, method: dict[str, Any], start: dict[str, Any], output: dict[str, Any]
     ) -> None:
         """method: numbers and arrays by name (integration/methods.py); start: groups (a table), energy_group, weights,
-        state, tolerance, rate, following; output: times, samples, and of the steps ends, settled, pivots, turned,
+        state, tolerance, rate, following, late; output: times, samples, and of the steps ends, settled, pivots, turned,
         branches, passed, which are written into: flat arrays. following: ends, settled and branches are given.
         """
         if not cython.compiled:
@@ -74,6 +74,7 @@ class Integration:
         run.tolerance = start["tolerance"]
         run.rate = start["rate"]
         run.following = start["following"]
+        run.late = start["late"]
         run.next_sample = run.rope = run.steps = run.evaluations = run.rejected = run.done = run.dodges = 0
         run.rejected_before = run.has_cut = run.landings = run.slack_landings = run.at_once = run.turns = 0
         run.flurry = run.undecided = run.seeing = 0

@@ -55,8 +55,8 @@ def begin_to_see(scene: cython.pointer[Scene], run: cython.pointer[Run]) -> cyth
         coordinates(scene, clipped(run, run.t), run.y)
         see(scene)
     if scene.roped:
-        run.most_slack = -1e300
-        run.least_slack = 1e300
+        run.most_slack = run.start_slack
+        run.least_slack = run.start_slack
 
 
 def see_stage(scene: cython.pointer[Scene], run: cython.pointer[Run]) -> cython.void:
@@ -150,12 +150,16 @@ def land_on(scene: cython.pointer[Scene], run: cython.pointer[Run]) -> cython.in
     at: cython.double = instant(course, course.event)
     off: cython.double = fabs(at - run.stop)
     near: cython.double = one_instant(scene, run)
-    if at - run.t <= near:
+    if run.late:
+        at = at + near
+        off = fabs(at - run.stop)
+    if at - run.t <= 2.0 * near:
         run.at_once += 1
         if run.at_once > 4 + 2 * scene.held_count or gathered(scene, run, run.t):
             return CHATTERS
         take_branches(scene, course.turned)
         evaluate(scene, clipped(run, run.t), run.y, run.K[0])
+        run.start_slack = slackness(scene, run)
         run.evaluations += 1
         run.landings = 0
         run.cut = run.t  # none
@@ -204,6 +208,7 @@ def lay_course(scene: cython.pointer[Scene], run: cython.pointer[Run], rows: cyt
     course.begin = run.t
     course.length = run.h
     course.latest = clipped(run, run.stop)
+    course.late = run.late
     course.finest = scene.limits.finest
     course.degree = rows
     for i in range(1, scene.variable_count):
@@ -246,6 +251,7 @@ def lay_window(scene: cython.pointer[Scene], method: cython.pointer[Method], run
     course.begin = run.stop - half
     course.length = 2.0 * half
     course.latest = run.before_end
+    course.late = run.late
     course.finest = scene.limits.window * scene.limits.window * scene.limits.window
     course.degree = 2
     for i in range(1, scene.variable_count):

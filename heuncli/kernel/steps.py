@@ -21,7 +21,17 @@ if not cython.compiled:
     from heuncli.kernel.dense import clipped, combine, interpolant, interpolate
     from heuncli.kernel.events import follow_angles, take_branches
     from heuncli.kernel.expressions import HELD, TAKEN
-    from heuncli.kernel.landing import AGAIN_TO, CHATTERS, SLACK, STANDS, begin_to_see, in_flurry, meet, see_stage
+    from heuncli.kernel.landing import (
+        AGAIN_TO,
+        CHATTERS,
+        SLACK,
+        STANDS,
+        begin_to_see,
+        in_flurry,
+        meet,
+        see_stage,
+        slackness,
+    )
     from heuncli.kernel.response import evaluate, must_choose_anew, settle
     from heuncli.kernel.scene import Body, Group, Scene
     from heuncli.kernel.selection import select_independent_rows
@@ -115,6 +125,7 @@ def begin_piece(scene: cython.pointer[Scene], method: cython.pointer[Method], ru
     scene.programs.holding = HELD
     run.evaluations += 1
     if scene.roped:
+        run.start_slack = slackness(scene, run)
         run.rope = slack(scene)
         if run.rope:
             return ROPE_SLACK
@@ -463,6 +474,8 @@ def land(scene: cython.pointer[Scene], run: cython.pointer[Run]) -> cython.int:
     if not gap <= scene.limits.lost * scene.size or jumped(scene, run):
         return CLOSURES_LOST
     evaluate(scene, t, run.y, run.K[0])
+    if scene.roped:
+        run.start_slack = slackness(scene, run)
     run.evaluations += 2
     return REACHED
 

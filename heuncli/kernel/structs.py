@@ -163,6 +163,7 @@ class Course(metaclass=Fields):
     """The course of the coordinates over a stretch of time; events.pxd says what the fields are."""
 
     degree: int
+    late: int
     slot: int
     undecided: int
     begin: float
@@ -197,6 +198,7 @@ class Run(metaclass=Fields):
     rejected_before: int
     dodges: int
     rope: int
+    late: int
     seeing: int
     has_cut: int
     has_interpolant: int
@@ -231,6 +233,7 @@ class Run(metaclass=Fields):
     flurry_begin: float
     most_slack: float
     least_slack: float
+    start_slack: float
     course: Course
     groups: list[Any]
     weights: list[float]
