@@ -59,7 +59,7 @@ def test_a_brake_from_wherever(start: float) -> None:
     assert abs(found.x[-1] - x) <= found.error
 
 
-@pytest.mark.parametrize("width", [1.0, 1e-2, 1e-4, 1e-8])
+@pytest.mark.parametrize("width", [1.0, 1e-2, 1e-4, 1e-6, 1e-8])
 def test_a_brake_however_short(width: float) -> None:
     """The same work on less and less track."""
     low, high = 20.0, 20.0 + width
@@ -83,6 +83,8 @@ BENT: list[tuple[str, Law, list[float]]] = [
     ("-400*(1 if sin(pi*guide.travel/2) > 0.5 else (-1 if sin(pi*guide.travel/2) < -0.5 else 0))",
      lambda x: -400 * np.where(np.sin(np.pi * x / 2) > 0.5, 1, np.where(np.sin(np.pi * x / 2) < -0.5, -1, 0)),
      [k + s for k in range(0, 62, 2) for s in (1 / 3, 5 / 3)]),
+    ("-2e5*(max(guide.travel - 20, 0) - 2*max(guide.travel - 20.01, 0) + max(guide.travel - 20.02, 0))",
+     lambda x: -2e5 * np.maximum(0, np.minimum(x - 20, 20.02 - x)), [20, 20.01, 20.02]),
     ("-(9e6 if guide.travel > 10 else 0) + (9e6 if guide.travel > 10.001 else 0) - 500*step(guide.travel - 10.0011)",
      lambda x: np.where(x > 10, -9e6, 0) + np.where(x > 10.001, 9e6, 0) + np.where(x > 10.0011, -500, 0),
      [10, 10.001, 10.0011]),
@@ -142,7 +144,7 @@ WAVE = ([0.0, 60.0, 80.0, 87.0, 88.0, 89.0, 90.0, 91.0, 92.0, 100.0, 120.0, 200.
         [0.0, 0.0, 0.0, 0.0, 0.0, 40.0, 60.0, 20.0, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0])  # fmt: skip
 
 
-@pytest.mark.parametrize("kind", ["linear", "cubic"])
+@pytest.mark.parametrize("kind", ["linear", "pchip", "cubic"])
 @pytest.mark.parametrize("analysis", ["duration: 3, samples: 2", "duration: 3, samples: 77"])
 def test_gas_for_five_degrees_of_a_turn(kind: str, analysis: str) -> None:
     """A flywheel's energy is the gas's work, turn by turn, at every angle."""
@@ -280,8 +282,9 @@ def test_a_fall_onto_a_spring(k: float, c: float, samples: int) -> None:
 
 
 @pytest.mark.parametrize(("load", "periods"), [
-    ("-8*sign(shaft.angle)", 3), ("-8*sign(shaft.angle)", 25),
+    ("-8*sign(shaft.angle)", 3), ("-8*sign(shaft.angle)", 25), ("-8*sign(shaft.angle)", 400),
     ("8 - 16*step(shaft.angle)", 25), ("-8 if shaft.angle > 0 else 8", 25),
+    ("-8*abs(shaft.angle)/(shaft.angle if shaft.angle != 0 else 1)", 25),
 ])  # fmt: skip
 def test_a_spring_of_constant_torque(load: str, periods: int) -> None:
     """-8 sign(angle): parabolas between passages at the rate of the start, for ever."""

@@ -2,6 +2,8 @@
 
 from __future__ import annotations
 
+import math
+
 import numpy as np
 import pytest
 
@@ -27,6 +29,15 @@ def test_a_brake_above_a_rate(brake: str, samples: int) -> None:
     t, at = found.time, 4 / 2.5
     x = np.where(t < at, t + 1.25 * t**2, at + 1.25 * at**2 + 5 * (t - at) + 0.5 * (t - at) ** 2)
     follows(found, x, np.where(t < at, 1 + 2.5 * t, 5 + t - at))
+
+
+@pytest.mark.parametrize("samples", [2, 49])
+def test_a_drag_that_ends_at_its_own_edge(samples: int) -> None:
+    """2 N·m s of drag above 5 rad/s alone: the rate falls to 5 and stays there, hardly below."""
+    found = moved(wheel({"drag": "-2*shaft.rate if shaft.rate > 5 else 0"}, 10.0, samples))
+    t, at = found.time, math.log(2.0)
+    x = np.where(t < at, 10 * -np.expm1(-t), 5 + 5 * (t - at))
+    follows(found, x, np.where(t < at, 10 * np.exp(-t), 5.0))
 
 
 @pytest.mark.parametrize("samples", [2, 49])

@@ -177,6 +177,7 @@ MOST = G / 2  # what may push across: the weight by the ropes' slope
 @pytest.mark.parametrize(("push", "at", "rope"), [
     ("3*t", MOST / 3, "right"),
     ("-3*t", MOST / 3, "left"),
+    ("0 if t < 1.25 else 9", 1.25, "right"),
     (f"{2 * MOST!r}*exp(-((t - 2)/0.01)**2)", 2 - 0.01 * math.sqrt(math.log(2)), "right"),
     (f"{2 * MOST!r}*exp(-((t - 2)/1e-5)**2)", 2 - 1e-5 * math.sqrt(math.log(2)), "right"),
     (f"{-1.000001 * MOST!r}*exp(-((t - 2)/1e-3)**2)", 2 - 1e-3 * math.sqrt(math.log(1.000001)), "left"),
@@ -215,6 +216,7 @@ analysis: {{duration: {duration!r}, samples: {samples}}}
 
 @pytest.mark.parametrize(("force", "at"), [
     ("8*cos(t)", math.pi / 2),
+    ("8 if t < 1.3 else -1e-6", 1.3),
     # from 2 m on at 1 m/s by 2 m/s²: t + t² = 0.5 at the edge
     ("8 if ahead.travel < 2.5 else -1", (math.sqrt(3) - 1) / 2),
     ("8 - 9*step(ahead.travel - 2.5)*step(2.500001 - ahead.travel)", (math.sqrt(3) - 1) / 2),
