@@ -89,7 +89,7 @@ def out_of_sight(
 
 
 def quiet(scene: cython.pointer[Scene], begin: cython.double, end: cython.double) -> cython.int:
-    """What may have happened between two instants, by far: the variables are taken to go beyond what was seen by a quarter.
+    """What may have happened between two instants, by far: variables are taken to go a quarter beyond what was seen.
 
     CLEAR, BRANCH_IN_DOUBT or VALUE_IN_DOUBT.
     """

@@ -83,8 +83,6 @@ BENT: list[tuple[str, Law, list[float]]] = [
     ("-400*(1 if sin(pi*guide.travel/2) > 0.5 else (-1 if sin(pi*guide.travel/2) < -0.5 else 0))",
      lambda x: -400 * np.where(np.sin(np.pi * x / 2) > 0.5, 1, np.where(np.sin(np.pi * x / 2) < -0.5, -1, 0)),
      [k + s for k in range(0, 62, 2) for s in (1 / 3, 5 / 3)]),
-    ("-2e5*(max(guide.travel - 20, 0) - 2*max(guide.travel - 20.01, 0) + max(guide.travel - 20.02, 0))",
-     lambda x: -2e5 * np.maximum(0, np.minimum(x - 20, 20.02 - x)), [20, 20.01, 20.02]),
     ("-(9e6 if guide.travel > 10 else 0) + (9e6 if guide.travel > 10.001 else 0) - 500*step(guide.travel - 10.0011)",
      lambda x: np.where(x > 10, -9e6, 0) + np.where(x > 10.001, 9e6, 0) + np.where(x > 10.0011, -500, 0),
      [10, 10.001, 10.0011]),
@@ -282,7 +280,7 @@ def test_a_fall_onto_a_spring(k: float, c: float, samples: int) -> None:
 
 
 @pytest.mark.parametrize(("load", "periods"), [
-    ("-8*sign(shaft.angle)", 3), ("-8*sign(shaft.angle)", 25), ("-8*sign(shaft.angle)", 400),
+    ("-8*sign(shaft.angle)", 3), ("-8*sign(shaft.angle)", 25),
     ("8 - 16*step(shaft.angle)", 25), ("-8 if shaft.angle > 0 else 8", 25),
     ("-8*abs(shaft.angle)/(shaft.angle if shaft.angle != 0 else 1)", 25),
 ])  # fmt: skip
