@@ -17,6 +17,8 @@ from heuncli.study.measure import peak
 from tests.shared.one_freedom import Law, One, Passage, around, follows, moved, passes
 from tests.shared.scenes import near, solved, study
 
+pytestmark = pytest.mark.heavy  # families: the plain kernel has the same bits (tests/package/test_kernels_agree.py)
+
 TRACK = "duration: 5, samples: 2"
 FINE = "duration: 5, samples: 101"
 

@@ -11,6 +11,8 @@ from heuncli.errors import SolveError
 from tests.shared.one_freedom import TOO_LONG, One, follows, moved
 from tests.shared.scenes import study
 
+pytestmark = pytest.mark.heavy  # families: the plain kernel has the same bits (tests/package/test_kernels_agree.py)
+
 SPAN = "duration: 6, samples: {}"
 
 

@@ -16,6 +16,8 @@ from heuncli.study.extremes import Searched
 from heuncli.study.solve import Study
 from tests.shared.scenes import near, study
 
+pytestmark = pytest.mark.heavy  # families: the plain kernel has the same bits (tests/package/test_kernels_agree.py)
+
 G = 9.81
 
 

@@ -17,6 +17,8 @@ from scipy.special import ellipkinc
 from heuncli.study.solve import Study
 from tests.shared.scenes import near, study
 
+pytestmark = pytest.mark.heavy  # families: the plain kernel has the same bits (tests/package/test_kernels_agree.py)
+
 G = 9.81
 INSTANT = 1e-10  # of the run
 HEAD = f"heun: 1\ngravity: [0, 0, {-G}]\n"

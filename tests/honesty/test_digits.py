@@ -13,7 +13,9 @@ from heuncli.cli import measure
 from heuncli.report.labels import labels_of
 from heuncli.report.page import page_of
 from heuncli.report.table import plain
+from heuncli.results_schema import REPORTS
 from heuncli.study.expect import compare
+from heuncli.study.extremes import Searched
 from heuncli.study.solve import Study
 from tests.shared.scenes import near, study
 
@@ -27,7 +29,9 @@ def tables(run: Study) -> str:
     page = page_of(run.results, labels_of(run.spec), run.magnitudes)
     if len(run.results.time) == 1:
         return "\n".join(map(plain, page.instants(run.results)))
-    extremes = run.extremes(page.columns, page.groups(), None)
+    along = page.along if page.has_runs else None
+    searched = Searched(page.columns, page.groups(), page.errors(), page.even(), along)
+    extremes = run.extremes(searched, frozenset(REPORTS), whole=True)
     return "\n".join(map(plain, page.extremes(extremes)))
 
 

@@ -22,11 +22,39 @@ SCENES = {
     "engine": ("analysis.duration=0.002", "analysis.samples=4"),
     "cardan": ("analysis.duration=0.05", "analysis.samples=4"),
     "lift": ("analysis.duration=0.1", "analysis.samples=4"),
+    "punch": ("analysis.duration=1", "analysis.samples=4"),
+}
+SLIDER = """
+heun: 1
+gravity: [0, 0, 0]
+ground: {points: {O: [0, 0, 0]}}
+bodies: {block: {mass: 1, center: [0, 0, 0], inertia: [1, 1, 1], points: {p: [0, 0, 0]}}}
+joints: {guide: {type: slide, from: ground.O, to: block.p, axis: [1, 0, 0], initial: {travel: 0.2, speed: 1}}}
+forces: {push: {type: torque, joint: guide, value: "%s"}}
+analysis: {duration: 4, samples: 5}
+"""
+EVENTS = {
+    "branches": SLIDER
+    % "-3*abs(guide.speed) if guide.travel > 1 and guide.speed > 0 else (4 if guide.travel < -1 else -1)",
+    "pulses": SLIDER % "100*exp(-((guide.travel - 0.5)/0.0005)**2) + 50*exp(-((t - 2)/0.002)**2)",
+    "angles": SLIDER % "0.3*atan2(sin(9*guide.travel), cos(9*guide.travel)) - max(guide.travel, 2*guide.speed)",
+    "rope": """
+heun: 1
+gravity: [0, 0, -10]
+ground: {points: {O: [0, 0, 0]}}
+bodies: {ball: {mass: 2, center: [0, 0, -1], inertia: [1, 1, 1], velocity: [6, 0, 0]}}
+joints: {rope: {type: rod, from: ground.O, to: {body: ball, at: [0, 0, -1]}, tension_only: true}}
+analysis: {duration: 3, samples: 7}
+""",
 }
 
 
 def found(scene: str, settings: tuple[str, ...], kernel: str) -> dict[str, Any]:
     text, *_ = (SPECS / f"{scene}.yaml").read_text(encoding="utf-8").partition("\nexpect:")  # other instants than these
+    return results_of(text, settings, kernel)
+
+
+def results_of(text: str, settings: tuple[str, ...], kernel: str) -> dict[str, Any]:
     command = [sys.executable, "-m", "heuncli", "run", "-", "--format", "json"]
     command += [word for setting in settings for word in ("--set", setting)]
     environment = {**os.environ, "HEUN_KERNEL": kernel, "PYTHONPATH": str(SPECS.parent)}
@@ -42,6 +70,15 @@ def test_same_bits(scene: str) -> None:
     assert (compiled["work"].pop("kernel"), plain["work"].pop("kernel")) == ("compiled", "pure")
     for results in (compiled, plain):
         del results["work"]["seconds"]
+    assert compiled == plain
+
+
+@pytest.mark.skipif(KERNEL == "pure", reason="there is no compiled kernel to compare with")
+@pytest.mark.parametrize("scene", EVENTS)
+def test_same_bits_with_events(scene: str) -> None:
+    compiled, plain = (results_of(EVENTS[scene], (), kernel) for kernel in ("compiled", "pure"))
+    for results in (compiled, plain):
+        del results["work"]["seconds"], results["work"]["kernel"]
     assert compiled == plain
 
 
