@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import pytest
 
-from tests.oracle.short_loads import FACTOR, judged, scene, tells_chatter
+from tests.honesty.short_loads import FACTOR, judged, scene, tells_chatter
 
 
 @pytest.mark.heavy

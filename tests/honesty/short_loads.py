@@ -1,6 +1,6 @@
 """Scenes at random with short loads: in coordinates, rates and time, from a millionth of their range to all of it.
 
-    python -m tests.oracle.short_loads FIRST COUNT
+    python -m tests.honesty.short_loads FIRST COUNT
 
 prints of so many scenes what each says of its error, and what that is against the motion from edge to edge
 (switched.py).
