@@ -12,6 +12,11 @@ from heuncli.kernel import choose
 from heuncli.kernel.form import FOLDER, KERNEL, MODULES
 
 
+# Folders that judge numbers: the plain kernel gives the same bits (tests/package/test_kernels_agree.py), a hundred times
+# slower.
+SPARED = {"closed_forms", "convergence", "honesty"}
+
+
 def sources(name: str) -> set[Path]:
     """The files a kernel module is compiled from: its own, and the declarations it takes from its neighbours."""
     imports = re.compile(r"^from heuncli\.kernel\.(\w+) cimport", re.MULTILINE)
@@ -42,7 +47,8 @@ def pytest_report_header() -> str:
 def pytest_collection_modifyitems(config: pytest.Config, items: list[pytest.Item]) -> None:
     if KERNEL == "compiled":
         return
-    heavy = [item for item in items if item.get_closest_marker("heavy")]
-    if heavy:
-        config.hook.pytest_deselected(items=heavy)
-        items[:] = [item for item in items if not item.get_closest_marker("heavy")]
+    spared = [item for item in items if item.get_closest_marker("heavy") or item.path.parent.name in SPARED]
+    if spared:
+        config.hook.pytest_deselected(items=spared)
+        left_out = set(spared)
+        items[:] = [item for item in items if item not in left_out]
