@@ -11,7 +11,6 @@ import pytest
 from heuncli.kernel import choose
 from heuncli.kernel.form import FOLDER, KERNEL, MODULES
 
-
 # Folders that judge numbers: the plain kernel gives the same bits (tests/package/test_kernels_agree.py), a hundred times
 # slower.
 SPARED = {"closed_forms", "convergence", "honesty"}
