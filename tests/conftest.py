@@ -11,8 +11,7 @@ import pytest
 from heuncli.kernel import choose
 from heuncli.kernel.form import FOLDER, KERNEL, MODULES
 
-# Folders that judge numbers: the plain kernel gives the same bits (tests/package/test_kernels_agree.py), a hundred times
-# slower.
+# Folders that judge numbers: the plain kernel gives the same bits, a hundred times slower (test_kernels_agree.py).
 SPARED = {"closed_forms", "convergence", "honesty"}
 
 
