@@ -32,4 +32,3 @@ cdef void build_column(Scene *scene, Closure *row) noexcept nogil
 cdef void sweep_column(Scene *scene, Closure *row) noexcept nogil
 cdef void push_closures(Scene *scene) noexcept nogil
 cdef void count_turns(Scene *scene, double *dy) noexcept nogil
-cdef int slack(Scene *scene) noexcept nogil

@@ -250,12 +250,3 @@ def count_turns(scene: cython.pointer[Scene], dy: cython.p_double) -> cython.voi
             dy[counter.at] += dot(n, scene.bodies[counter.b].omega)
         if counter.a >= 0:
             dy[counter.at] -= dot(n, scene.bodies[counter.a].omega)
-
-
-def slack(scene: cython.pointer[Scene]) -> cython.int:
-    """1 + the first rope that would have to push at the multipliers found; 0 if there is none."""
-    r: cython.int
-    for r in range(scene.closure_count):
-        if scene.closures[r].rope and scene.closures[r].multiplier > 0.0:
-            return r + 1
-    return 0

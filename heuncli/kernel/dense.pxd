@@ -1,8 +1,13 @@
 """Structs and signatures of dense.py for C."""
 
-from heuncli.kernel.events cimport Course
 from heuncli.kernel.response cimport evaluate, settle
 from heuncli.kernel.scene cimport Group, Scene
+
+cdef enum:                    # what a step tried comes to
+    STANDS, AGAIN_TO, SLACK, CHATTERS
+
+cdef enum:
+    MOST_LANDINGS = 6         # on one event: each finds its place to the square of the error of the one before
 
 cdef struct Method:
     int stages                # evaluations a step; the derivative at its end is one more, and the next step's first
@@ -14,6 +19,28 @@ cdef struct Method:
     int *stage                # which stages a row combines
     double *coefficient
     double *node
+
+cdef struct Course:           # of the coordinates over a stretch of time, for the expressions that hang on them
+    int degree                # of their polynomials
+    int late                  # 1: events are where they are certain, not where margins are zero
+    int slot                  # a branch that turns
+    int undecided             # 1: bounds left open whether all values were seen
+    double begin              # the instant of x = 0
+    double length             # from there to x = 1
+    double latest             # the last instant that counts
+    double finest             # part of it down to which events are told apart
+    double event              # x of the event
+    double crossed_by         # an end of a part by which branches have turned ...
+    double crossing           # ... and where, somewhere before it
+    double **value            # of each variable its coefficients in Bernstein's form over the stretch
+    double **rate             # and those of its rate, and of the rate of that
+    double **second
+    double *work
+    double *begins            # of the parts to be looked at
+    double *ends
+    double *promise           # and what they may hold
+    double *before            # branches put aside
+    double *turned            # branches behind the event
 
 cdef struct Run:
     int n                     # length of the state
@@ -87,4 +114,5 @@ cdef void combine(Method *method, int row, double **K, int n, double *out) noexc
 cdef double clipped(Run *run, double t) noexcept nogil
 cdef void hermite(Method *method, Run *run) noexcept nogil
 cdef void interpolant(Scene *scene, Method *method, Run *run) noexcept nogil
+cdef void need_interpolant(Scene *scene, Method *method, Run *run) noexcept nogil
 cdef void interpolate(Run *run, int rows, double x, double *out) noexcept nogil

@@ -16,6 +16,10 @@ if not cython.compiled:
     from heuncli.kernel.shadow import cython
     from heuncli.kernel.structs import Method, Run
 
+    # What a step tried comes to; for C these stand in dense.pxd, in the same order.
+    STANDS, AGAIN_TO, SLACK, CHATTERS = range(4)
+    MOST_LANDINGS = 6  # on one event: each finds its place to the square of the error of the one before
+
 
 def combine(
     method: cython.pointer[Method], row: cython.int, K: cython.pp_double, n: cython.int, out: cython.p_double
@@ -74,6 +78,15 @@ def interpolant(scene: cython.pointer[Scene], method: cython.pointer[Method], ru
         combine(method, method.stages + 1 + method.extra + method.estimates + s, run.K, run.n, run.dense[3 + s])
         for i in range(run.n):
             run.dense[3 + s][i] *= run.h
+
+
+def need_interpolant(
+    scene: cython.pointer[Scene], method: cython.pointer[Method], run: cython.pointer[Run]
+) -> cython.void:
+    """The interpolating polynomial of the step tried, made once."""
+    if not run.has_interpolant:
+        interpolant(scene, method, run)
+        run.has_interpolant = 1
 
 
 def interpolate(run: cython.pointer[Run], rows: cython.int, x: cython.double, out: cython.p_double) -> cython.void:

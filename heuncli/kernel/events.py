@@ -1,14 +1,10 @@
 """Events: where within a step a branch of an expression changes, or a load does what no stage has seen.
 
 Within a step the branches of all expressions are held (kernel/expressions.py), so that the step is smooth. Whether one
-of them changes is decided, not sampled: a coordinate's polynomial over the step, in Bernstein's form
-
-    q(x) = sum_k b_k C(n, k) x^k (1 - x)^(n - k),    min b_k <= q(x) <= max b_k  for 0 <= x <= 1,
-
-lies between its coefficients, over any part of the step between those of that part (de Casteljau); interval arithmetic
-takes these bounds through the programs (kernel/enclosure.py). Parts that leave a branch in doubt are halved, from left
-to right, down to the rounding of the time. In the same way a load's bounds are compared with what the stages saw of it.
-Farouki, Rajan, On the numerical condition of polynomials in Bernstein form (1987); Moore, Interval Analysis (1966).
+of them changes is decided, not sampled: interval arithmetic takes the bounds of the coordinates' courses (course.py)
+through the programs (enclosure.py). Parts of the step that leave a branch in doubt are divided, from left to right,
+down to where rounding leaves it open. In the same way a load's bounds are compared with what the stages saw of it.
+Moore, Interval Analysis (1966).
 """
 
 from __future__ import annotations
@@ -22,12 +18,13 @@ if not cython.compiled:
     from math import fabs
     from math import inf as INFINITY
 
+    from heuncli.kernel.course import derivatives_over, instant, range_over, set_time, stand_at
     from heuncli.kernel.enclosure import enclose, enclose_closely
     from heuncli.kernel.expressions import ATAN2, HELD, HOLD, TAKEN, jet, value
     from heuncli.kernel.intervals import anything, magnitude
-    from heuncli.kernel.scene import Freedom, Scene, Variable, Watch
+    from heuncli.kernel.scene import Scene, Watch
     from heuncli.kernel.shadow import cython
-    from heuncli.kernel.structs import Bounds, Course, Jet, Program, Programs, Span
+    from heuncli.kernel.structs import Bounds, Course, Program, Programs, Span
 
     # What a stretch of time holds, and what bounds leave open; for C these stand in events.pxd, in the same order.
     NOTHING, TURNS, UNSEEN, UNDECIDED, CLEAR, BRANCH_IN_DOUBT, VALUE_IN_DOUBT, PASSED = range(8)
@@ -77,11 +74,13 @@ def watched(scene: cython.pointer[Scene], watch: cython.pointer[Watch]) -> cytho
     return value(scene.programs, watch.program)
 
 
+def largest_seen(watch: cython.pointer[Watch]) -> cython.double:
+    """The largest magnitude that the stages saw."""
+    return fabs(watch.high) if fabs(watch.high) > fabs(watch.low) else fabs(watch.low)
+
+
 def out_of_sight(
-    scene: cython.pointer[Scene],
-    watch: cython.pointer[Watch],
-    bounds: Bounds,
-    scale: cython.double,
+    scene: cython.pointer[Scene], watch: cython.pointer[Watch], bounds: Bounds, scale: cython.double
 ) -> cython.bint:
     """Whether a number within bounds may lie beyond what the stages saw, by half of what they saw it vary."""
     room: cython.double = 0.5 * (watch.high - watch.low) + scene.limits.unseen * scale + watch.rounding
@@ -95,19 +94,16 @@ def quiet(scene: cython.pointer[Scene], begin: cython.double, end: cython.double
     """
     i: cython.Py_ssize_t
     width: cython.double
-    scale: cython.double
     found: cython.int = CLEAR
     programs: cython.pointer[Programs] = scene.programs
     for i in range(scene.variable_count):
         width = 0.25 * (scene.most[i] - scene.least[i])
         programs.ranges[i] = Span(Bounds(scene.least[i] - width, scene.most[i] + width), anything(), anything())
     set_time(programs, begin, end)
-    for i in range(scene.held_count):
-        programs.doubt[i] = 0
+    clear_doubts(scene)
     for i in range(scene.watch_count):
         watch: cython.pointer[Watch] = cython.address(scene.watches[i])
-        scale = fabs(watch.high) if fabs(watch.high) > fabs(watch.low) else fabs(watch.low)
-        if out_of_sight(scene, watch, bounds_of(scene, watch), scale):
+        if out_of_sight(scene, watch, bounds_of(scene, watch), largest_seen(watch)):
             found = VALUE_IN_DOUBT
     return BRANCH_IN_DOUBT if any_doubt(scene) else found
 
@@ -116,6 +112,13 @@ def bounds_of(scene: cython.pointer[Scene], watch: cython.pointer[Watch]) -> Bou
     """What is watched over the ranges as they are; the branches that these leave in doubt are marked."""
     span: Span = enclose(scene.programs, watch.program)
     return span.second if watch.curved else span.value
+
+
+def clear_doubts(scene: cython.pointer[Scene]) -> cython.void:
+    """No branch is in doubt yet."""
+    i: cython.Py_ssize_t
+    for i in range(scene.held_count):
+        scene.programs.doubt[i] = 0
 
 
 def any_doubt(scene: cython.pointer[Scene]) -> cython.bint:
@@ -127,139 +130,6 @@ def any_doubt(scene: cython.pointer[Scene]) -> cython.bint:
     return doubts > 0
 
 
-def set_time(programs: cython.pointer[Programs], begin: cython.double, end: cython.double) -> cython.void:
-    """The time runs from begin to end."""
-    programs.ranges[0] = Span(Bounds(begin, end), Bounds(1.0, 1.0), Bounds(0.0, 0.0))
-
-
-# Polynomials in Bernstein's form
-
-
-def raise_by_x(b: cython.p_double, n: cython.int) -> cython.void:
-    """x times the polynomial of degree n, of degree n + 1."""
-    k: cython.int
-    for k in range(n + 1, 0, -1):
-        b[k] = b[k - 1] * k / (n + 1)
-    b[0] = 0.0
-
-
-def raise_by_rest(b: cython.p_double, n: cython.int) -> cython.void:
-    """1 - x times the polynomial of degree n, of degree n + 1."""
-    k: cython.int
-    for k in range(n + 1):
-        b[k] = b[k] * (n + 1 - k) / (n + 1)
-    b[n + 1] = 0.0
-
-
-def differentiate(
-    value: cython.p_double, rate: cython.p_double, n: cython.int, length: cython.double
-) -> cython.void:
-    """The rate of a polynomial of degree n over a stretch of time of some length."""
-    k: cython.int
-    for k in range(n):
-        rate[k] = n * (value[k + 1] - value[k]) / length
-
-
-def range_of(
-    b: cython.p_double, n: cython.int, x0: cython.double, x1: cython.double, work: cython.p_double
-) -> Bounds:
-    """Bounds of a polynomial of degree n between x0 and x1: its coefficients over that part (de Casteljau)."""
-    i: cython.int
-    k: cython.int
-    x: cython.double
-    bounds: Bounds
-    for k in range(n + 1):
-        work[k] = b[k]
-    for i in range(1, n + 1):  # its right part, from x0
-        for k in range(n + 1 - i):
-            work[k] = work[k] + x0 * (work[k + 1] - work[k])
-    if x1 > x0:
-        x = (x1 - x0) / (1.0 - x0) if x0 < 1.0 else 0.0
-        for i in range(1, n + 1):  # of that the left part
-            for k in range(n, i - 1, -1):
-                work[k] = work[k - 1] + x * (work[k] - work[k - 1])
-    bounds = Bounds(work[0], work[0])
-    if x1 > x0:
-        for k in range(1, n + 1):
-            if work[k] < bounds.low:
-                bounds.low = work[k]
-            if work[k] > bounds.high:
-                bounds.high = work[k]
-    return bounds
-
-
-# Over a stretch of time
-
-
-def instant(course: cython.pointer[Course], x: cython.double) -> cython.double:
-    """The instant at x of the stretch, not beyond the last one that counts."""
-    t: cython.double = course.begin + x * course.length
-    return course.latest if t > course.latest else t
-
-
-def range_over(
-    scene: cython.pointer[Scene],
-    course: cython.pointer[Course],
-    ranges: cython.pointer[Span],
-    x0: cython.double,
-    x1: cython.double,
-) -> cython.void:
-    """Ranges of the time and of all variables between x0 and x1; driven ones by their own programs."""
-    i: cython.Py_ssize_t
-    n: cython.int = course.degree
-    given: Span
-    set_time(scene.programs, instant(course, x0), instant(course, x1))
-    ranges[0] = scene.programs.ranges[0]
-    for i in range(1, scene.variable_count):
-        variable: cython.pointer[Variable] = cython.address(scene.variables[i])
-        of: cython.pointer[Freedom] = cython.address(scene.freedoms[variable.freedom])
-        if of.driven:
-            given = enclose(scene.programs, of.program)
-            if variable.is_rate:
-                ranges[i] = Span(given.rate, given.second, anything())
-            else:
-                shifted: Bounds = Bounds(given.value.low + of.offset, given.value.high + of.offset)
-                ranges[i] = Span(shifted, given.rate, given.second)
-        else:
-            ranges[i] = Span(range_of(course.value[i], n, x0, x1, course.work), anything(), anything())
-
-
-def derivatives_over(
-    scene: cython.pointer[Scene],
-    course: cython.pointer[Course],
-    ranges: cython.pointer[Span],
-    x0: cython.double,
-    x1: cython.double,
-) -> cython.void:
-    """The same for the rates of the variables, and for the rates of those."""
-    i: cython.Py_ssize_t
-    n: cython.int = course.degree
-    for i in range(1, scene.variable_count):
-        variable: cython.pointer[Variable] = cython.address(scene.variables[i])
-        if not scene.freedoms[variable.freedom].driven:
-            ranges[i] = Span(
-                ranges[i].value,
-                range_of(course.rate[i], n - 1, x0, x1, course.work),
-                range_of(course.second[i], n - 2, x0, x1, course.work),
-            )
-
-
-def stand_at(scene: cython.pointer[Scene], course: cython.pointer[Course], x: cython.double) -> cython.void:
-    """The variables at x of the stretch."""
-    i: cython.Py_ssize_t
-    at: cython.double = instant(course, x)
-    scene.programs.variables[0] = at
-    for i in range(1, scene.variable_count):
-        variable: cython.pointer[Variable] = cython.address(scene.variables[i])
-        of: cython.pointer[Freedom] = cython.address(scene.freedoms[variable.freedom])
-        if of.driven:
-            given: Jet = jet(scene.programs, of.program, at)
-            scene.programs.variables[i] = given.rate if variable.is_rate else given.value + of.offset
-        else:
-            there: Bounds = range_of(course.value[i], course.degree, x, x, course.work)
-            scene.programs.variables[i] = there.low
-
-
 def doubt_over(
     scene: cython.pointer[Scene], course: cython.pointer[Course], x0: cython.double, x1: cython.double
 ) -> cython.int:
@@ -269,8 +139,7 @@ def doubt_over(
     bounds: Bounds
     there: cython.double
     range_over(scene, course, scene.programs.ranges, x0, x1)
-    for i in range(scene.held_count):
-        scene.programs.doubt[i] = 0
+    clear_doubts(scene)
     stands: cython.bint = False
     for i in range(scene.watch_count):
         watch: cython.pointer[Watch] = cython.address(scene.watches[i])
@@ -316,7 +185,7 @@ def scale_watches(scene: cython.pointer[Scene], course: cython.pointer[Course]) 
         there = over_part(scene, course, watch, 0.5, 0.5)
         if there.high - there.low > watch.rounding and there.high - there.low < INFINITY:
             watch.rounding = there.high - there.low
-        watch.scale = fabs(watch.high) if fabs(watch.high) > fabs(watch.low) else fabs(watch.low)
+        watch.scale = largest_seen(watch)
         if not watch.scale >= scene.limits.least_load:
             watch.scale = scene.limits.least_load
         if out_of_sight(scene, watch, over_part(scene, course, watch, 0.0, 1.0), watch.scale):
@@ -375,30 +244,29 @@ def look_for_peak(
 # Events
 
 
+def take_afresh(scene: cython.pointer[Scene], course: cython.pointer[Course]) -> cython.void:
+    """Hold the branches that the variables as they are ask for; those held so far are put aside in `before`."""
+    i: cython.Py_ssize_t
+    for i in range(scene.held_count):
+        course.before[i] = scene.programs.held[i]
+    scene.programs.holding = TAKEN
+    for i in range(scene.watch_count):
+        value(scene.programs, scene.watches[i].program)
+    scene.programs.holding = HELD
+
+
 def branches_at(scene: cython.pointer[Scene], course: cython.pointer[Course], x: cython.double) -> cython.int:
     """AS_HELD or TURNED, as branches are at x; OPEN where rounding of a margin tells neither.
 
-    Those met are kept as the ones to turn to, with the jump they make.
+    Those met are kept as the ones to turn to.
     """
     i: cython.Py_ssize_t
-    jump: cython.double
     found: cython.int = AS_HELD
-    programs: cython.pointer[Programs] = scene.programs
     stand_at(scene, course, x)
+    take_afresh(scene, course)
     for i in range(scene.held_count):
-        course.before[i] = programs.held[i]
-    course.jump = 0.0
-    for i in range(scene.watch_count):
-        watch: cython.pointer[Watch] = cython.address(scene.watches[i])
-        jump = value(programs, watch.program)
-        programs.holding = TAKEN
-        jump = fabs(value(programs, watch.program) - jump)
-        programs.holding = HELD
-        if not jump <= course.jump * watch.scale:
-            course.jump = jump / watch.scale if watch.scale > 0.0 else 1.0
-    for i in range(scene.held_count):
-        course.turned[i] = programs.held[i]
-        if programs.held[i] != course.before[i]:
+        course.turned[i] = scene.programs.held[i]
+        if course.turned[i] != course.before[i]:
             found = TURNED
             course.slot = i
     if is_open(scene, course, x):
@@ -412,17 +280,30 @@ def changed_at(scene: cython.pointer[Scene], course: cython.pointer[Course], x: 
     i: cython.Py_ssize_t
     changed: cython.bint = False
     stand_at(scene, course, x)
+    take_afresh(scene, course)
+    for i in range(scene.held_count):
+        changed = changed or scene.programs.held[i] != course.before[i]
+    take_branches(scene, course.before)
+    return changed
+
+
+def jump_at(scene: cython.pointer[Scene], course: cython.pointer[Course]) -> cython.double:
+    """By how much what is watched jumps where branches turn at the event, of its scale; a kink's is rounding."""
+    i: cython.Py_ssize_t
+    found: cython.double = 0.0
+    jump: cython.double
+    stand_at(scene, course, course.event)
     for i in range(scene.held_count):
         course.before[i] = scene.programs.held[i]
-    scene.programs.holding = TAKEN
     for i in range(scene.watch_count):
-        value(scene.programs, scene.watches[i].program)
-    scene.programs.holding = HELD
-    for i in range(scene.held_count):
-        if scene.programs.held[i] != course.before[i]:
-            changed = True
-        scene.programs.held[i] = course.before[i]
-    return changed
+        watch: cython.pointer[Watch] = cython.address(scene.watches[i])
+        jump = value(scene.programs, watch.program)
+        take_branches(scene, course.turned)
+        jump = fabs(value(scene.programs, watch.program) - jump)
+        take_branches(scene, course.before)
+        if not jump <= found * watch.scale:
+            found = jump / watch.scale
+    return found
 
 
 def is_open(scene: cython.pointer[Scene], course: cython.pointer[Course], x: cython.double) -> cython.bint:
@@ -434,8 +315,7 @@ def is_open(scene: cython.pointer[Scene], course: cython.pointer[Course], x: cyt
         there: Bounds = scene.programs.ranges[i].value
         wide = scene.limits.one_instant * fabs(there.high)
         scene.programs.ranges[i] = Span(Bounds(there.low - wide, there.high + wide), anything(), anything())
-    for i in range(scene.held_count):
-        scene.programs.doubt[i] = 0
+    clear_doubts(scene)
     for i in range(scene.watch_count):
         enclose(scene.programs, scene.watches[i].program)
     return any_doubt(scene)
@@ -611,12 +491,7 @@ def follow_angles(scene: cython.pointer[Scene], course: cython.pointer[Course]) 
     Only behind it the value jumps by a turn, and from there on it must be known from which side y came.
     """
     i: cython.Py_ssize_t
-    for i in range(scene.held_count):
-        course.before[i] = scene.programs.held[i]
-    scene.programs.holding = TAKEN
-    for i in range(scene.watch_count):
-        value(scene.programs, scene.watches[i].program)
-    scene.programs.holding = HELD
+    take_afresh(scene, course)
     for i in range(scene.held_count):
         if not scene.is_angle[i]:
             scene.programs.held[i] = course.before[i]

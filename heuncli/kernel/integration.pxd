@@ -1,8 +1,8 @@
 """The door to steps.py, for C."""
 
 from heuncli.kernel.chosen cimport chosen_width
-from heuncli.kernel.dense cimport Method, Run, clipped
-from heuncli.kernel.events cimport Course, PARTS, take_branches
+from heuncli.kernel.dense cimport Course, Method, Run, clipped
+from heuncli.kernel.events cimport PARTS, take_branches
 from heuncli.kernel.expressions cimport FREE, HELD
 from heuncli.kernel.memory cimport Memory
 from heuncli.kernel.response cimport evaluate

@@ -2,11 +2,13 @@
 
 from heuncli.kernel.algebra cimport Vec3, norm
 from heuncli.kernel.chosen cimport choose_afresh, put_chosen, take_chosen
-from heuncli.kernel.closures cimport slack
-from heuncli.kernel.dense cimport Method, Run, clipped, combine, interpolant, interpolate
+from heuncli.kernel.dense cimport (
+    AGAIN_TO, CHATTERS, Method, Run, SLACK, STANDS, clipped, combine, interpolate, need_interpolant,
+)
 from heuncli.kernel.events cimport follow_angles, take_branches
 from heuncli.kernel.expressions cimport HELD, TAKEN
-from heuncli.kernel.landing cimport AGAIN_TO, CHATTERS, SLACK, STANDS, begin_to_see, in_flurry, meet, see_stage, slackness
+from heuncli.kernel.landing cimport begin_to_see, in_flurry, meet, see_stage
+from heuncli.kernel.ropes cimport slackness
 from heuncli.kernel.response cimport evaluate, must_choose_anew, settle
 from heuncli.kernel.scene cimport Body, Group, Scene
 from heuncli.kernel.selection cimport select_independent_rows

@@ -17,22 +17,21 @@ if not cython.compiled:
 
     from heuncli.kernel.algebra import Vec3, norm
     from heuncli.kernel.chosen import choose_afresh, put_chosen, take_chosen
-    from heuncli.kernel.closures import slack
-    from heuncli.kernel.dense import clipped, combine, interpolant, interpolate
-    from heuncli.kernel.events import follow_angles, take_branches
-    from heuncli.kernel.expressions import HELD, TAKEN
-    from heuncli.kernel.landing import (
+    from heuncli.kernel.dense import (
         AGAIN_TO,
         CHATTERS,
         SLACK,
         STANDS,
-        begin_to_see,
-        in_flurry,
-        meet,
-        see_stage,
-        slackness,
+        clipped,
+        combine,
+        interpolate,
+        need_interpolant,
     )
+    from heuncli.kernel.events import follow_angles, take_branches
+    from heuncli.kernel.expressions import HELD, TAKEN
+    from heuncli.kernel.landing import begin_to_see, in_flurry, meet, see_stage
     from heuncli.kernel.response import evaluate, must_choose_anew, settle
+    from heuncli.kernel.ropes import slackness
     from heuncli.kernel.scene import Body, Group, Scene
     from heuncli.kernel.selection import select_independent_rows
     from heuncli.kernel.shadow import cython
@@ -126,8 +125,7 @@ def begin_piece(scene: cython.pointer[Scene], method: cython.pointer[Method], ru
     run.evaluations += 1
     if scene.roped:
         run.start_slack = slackness(scene, run)
-        run.rope = slack(scene)
-        if run.rope:
+        if run.start_slack > 0.0:
             return ROPE_SLACK
     if not run.following:
         h = first_step(scene, method, run)
@@ -263,6 +261,7 @@ def attempt(scene: cython.pointer[Scene], method: cython.pointer[Method], run: c
     i: cython.Py_ssize_t
     t: cython.double
     change: cython.double
+    run.has_interpolant = 0
     if run.seeing:
         begin_to_see(scene, run)
     for s in range(1, method.stages):
@@ -362,7 +361,7 @@ def sample(scene: cython.pointer[Scene], method: cython.pointer[Method], run: cy
     pivot: cython.double = scene.pivot_of_step
     if run.next_sample >= run.sample_count or run.times[run.next_sample] >= run.stop:
         return
-    interpolant(scene, method, run)
+    need_interpolant(scene, method, run)
     scene.pivot_of_step = pivot
     while run.next_sample < run.sample_count and run.times[run.next_sample] < run.stop:
         x = (run.times[run.next_sample] - run.t) / run.h

@@ -160,7 +160,7 @@ class Method(metaclass=Fields):
 
 
 class Course(metaclass=Fields):
-    """The course of the coordinates over a stretch of time; events.pxd says what the fields are."""
+    """The course of the coordinates over a stretch of time; dense.pxd says what the fields are."""
 
     degree: int
     late: int
@@ -173,7 +173,6 @@ class Course(metaclass=Fields):
     event: float
     crossed_by: float
     crossing: float
-    jump: float
     value: list[list[float]]
     rate: list[list[float]]
     second: list[list[float]]

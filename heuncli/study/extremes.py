@@ -65,7 +65,6 @@ class Asked(NamedTuple):
         squared = error * error + 2.0 * error * np.sqrt(size)
         return np.asarray(np.where(even, squared, error) + tolerances.SUM_ROUNDING * size)
 
-
     def possible(self, promise: Array, target: Indices) -> Array:
         """Promises of targets, where they are possible: no square is below 0."""
         bounded = np.tile(self.even, 2)[target] & (target < self.n)

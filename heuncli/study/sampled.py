@@ -27,9 +27,6 @@ class Sampleable(Protocol):
     def only(self, times: Array, wanted: frozenset[str], setup: Setup | None = None) -> Results:
         """Some reports' blocks at other instants; setup: with other cuts."""
 
-    def composed(self, times: Array) -> Results:
-        """The usual reports at other instants."""
-
 
 class Sampled:
     """A study as the columns that are searched; keeps the instants at which rounding reached some of them.
@@ -38,7 +35,7 @@ class Sampled:
     """
 
     def __init__(
-        self, study: Sampleable, searched: Searched, wanted: frozenset[str] | None, setup: Setup | None
+        self, study: Sampleable, searched: Searched, wanted: frozenset[str], setup: Setup | None
     ) -> None:
         self.study, self.searched, self.wanted, self.setup = study, searched, wanted, setup
         self.unknown: list[float] = []
@@ -51,7 +48,7 @@ class Sampled:
         study, setup = self.study, setup or self.setup
         if setup is None and np.array_equal(at, study.results.time):
             return study.results
-        results = study.composed(at) if self.wanted is None else study.only(at, self.wanted, setup)
+        results = study.only(at, self.wanted, setup)
         self.unknown.extend(results.accuracy.get("unknown", []))
         return results
 

@@ -161,7 +161,8 @@ class Study:
         """The same run at other instants within it (ascending)."""
         if self.history.checked is None:
             return self.results
-        results = self.composed(times)
+        results = compose(self.setup, self.history, self._recovery(times), self.options.wanted)
+        results.work["seconds"] = dict(self.results.work["seconds"])
         self.unknown.update(results.accuracy.get("unknown", ()))
         self.later.update(dict.fromkeys(w for w in results.warnings if w not in self.results.warnings))
         return results
@@ -186,12 +187,6 @@ class Study:
         times = recovery.recovered.times
         return Results(own.title, own.spec, own.version, own.model, own.status, times, accuracy=accuracy, **shown)
 
-    def composed(self, times: Array) -> Results:
-        """The usual reports at other instants of the same run."""
-        results = compose(self.setup, self.history, self._recovery(times), self.options.wanted)
-        results.work["seconds"] = dict(self.results.work["seconds"])
-        return results
-
     def _recovery(self, times: Array) -> Recovery:
         recovered = resample(self.setup.runner, self.history, times)
         return recover(self.setup, recovered, self.options.least_norm)
@@ -210,7 +205,7 @@ class Study:
     def extremes(self, searched: Searched, wanted: frozenset[str] | None, *, whole: bool = False) -> Extremes:
         """The extremes over the run, before its horizon, of the columns made of its results.
 
-        wanted: the reports that the columns are made of, None where that is not known. whole: of a whole report, where
+        wanted: the reports that the columns are made of, None for any. whole: of a whole report, where
         there may be so many columns that a search would outweigh the run: then they are those of the asked instants.
         """
         times = self.search_times
@@ -219,7 +214,8 @@ class Study:
         horizon = self.results.accuracy.get("horizon")
         if horizon is not None:
             times = times[times < horizon] if times[0] < horizon else times[:1]
-        sampled = Sampled(self, searched, wanted, self.stretched(searched.bent) if searched.along else None)
+        reports = frozenset(REPORTS) if wanted is None else wanted
+        sampled = Sampled(self, searched, reports, self.stretched(searched.bent) if searched.along else None)
         found = extremes.search(
             sampled.columns, times, sampled.groups, errors=searched.errors, even=searched.even, between=between,
             most=extremes.MOST_COLUMNS if whole else None,

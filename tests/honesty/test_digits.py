@@ -13,7 +13,6 @@ from heuncli.cli import measure
 from heuncli.report.labels import labels_of
 from heuncli.report.page import page_of
 from heuncli.report.table import plain
-from heuncli.results_schema import REPORTS
 from heuncli.study.expect import compare
 from heuncli.study.extremes import Searched
 from heuncli.study.solve import Study
@@ -31,7 +30,7 @@ def tables(run: Study) -> str:
         return "\n".join(map(plain, page.instants(run.results)))
     along = page.along if page.has_runs else None
     searched = Searched(page.columns, page.groups(), page.errors(), page.even(), along)
-    extremes = run.extremes(searched, frozenset(REPORTS), whole=True)
+    extremes = run.extremes(searched, None, whole=True)
     return "\n".join(map(plain, page.extremes(extremes)))
 
 
