@@ -137,6 +137,20 @@ def solve(
     loads = pushes(read, state, t)
     size = scene_length(read, state)
     found = accelerations(read, state, t, loads, size)
+    return answer(read, state, found, loads, size, about, stiffness, length)
+
+
+def answer(
+    read: Model,
+    state: State,
+    found: Motion,
+    loads: dict[str, list[Push]],
+    size: float,
+    about: Array | None = None,
+    stiffness: Stiffness | None = None,
+    length: float | None = None,
+) -> Solution:
+    """The reactions and the foundation's load of what moves so under these loads."""
     maps = {j.name: wrench_map(found.rows, j) for j in read.joints}
     lam = chosen(read, state, found, maps, stiffness, size if length is None else length)
     reactions = reactions_of(read, state, found, maps, lam, size)
@@ -154,16 +168,20 @@ def solve(
 
 
 def accelerations(scene: Model, state: State, t: float, loads: Mapping[str, list[Push]], size: float) -> Motion:
-    """V̇ by the free directions of the rows; the multipliers' particular part and freedom."""
+    """V̇ under loads."""
     rows = assemble(scene, state, t)
-    n = len(scene.names)
-    scale = np.tile([1.0, 1, 1, size, size, size], n)  # unknowns: accelerations, and angular ones times the length
     M, b = inertia(scene, state)
-    push = gathered(scene, state, loads) - b
+    return moved(rows, rows.acceleration - rows.gamma, M, gathered(scene, state, loads) - b, size)
+
+
+def moved(rows: Rows, wanted: Array, M: Array, push: Array, size: float) -> Motion:
+    """V̇ of M V̇ = push + Jᵀλ, J V̇ = wanted by J's free directions; the multipliers' particular part and freedom."""
+    n = len(M) // 6
+    scale = np.tile([1.0, 1, 1, size, size, size], n)  # unknowns: accelerations, and angular ones times the length
     M_, push_ = M / scale / scale[:, None], push / scale
     J_ = rows.J / scale
     norms = np.linalg.norm(J_, axis=1)
-    target = (rows.acceleration - rows.gamma) / norms
+    target = wanted / norms
     U, S, Wt = np.linalg.svd(J_ / norms[:, None]) if len(J_) else (np.zeros((0, 0)), np.zeros(0), np.eye(6 * n))
     rank = int(np.sum(RANK * S[0] < S)) if len(S) else 0
     particular = Wt[:rank].T @ ((U[:, :rank].T @ target) / S[:rank])

@@ -100,7 +100,7 @@ def test_supports_and_elements_make_the_foundation(seed: int) -> None:
     force, moment = np.zeros(3), np.zeros(3)
     for name, w in supports(scene, state, found).items():
         force, moment = force + w.force, moment + w.moment + cross(found.reactions[name].point - about, w.force)
-    for w in elements(scene, state, found, T, about).values():
+    for w in elements(scene, state, found, about).values():
         force, moment = force + w.force, moment + w.moment
     close(force, found.foundation_force, size_of(found))
     close(moment, found.foundation_moment, size_of(found))

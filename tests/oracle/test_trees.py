@@ -67,7 +67,7 @@ def test_foundation_with_its_supports_and_elements(seed: int) -> None:
     c = tree(seed)
     found = c.study.results.foundation
     assert np.array_equal(found["about"], ABOUT)
-    for k, t in INSTANTS:
+    for k, _ in INSTANTS:
         o, state, F = c.oracle[k], c.states[k], c.force[k]
         near(found["force"][k], o.foundation_force, F)
         near(found["moment"][k], o.foundation_moment, F * c.length)
@@ -76,7 +76,7 @@ def test_foundation_with_its_supports_and_elements(seed: int) -> None:
         for name, w in held.items():
             near(found["supports"][name]["force"][k], w.force, F)
             near(found["supports"][name]["moment"][k], w.moment, F * c.length)
-        standing = elements(c.plain, state, o, t, ABOUT)
+        standing = elements(c.plain, state, o, ABOUT)
         assert set(standing) == set(found.get("elements", {}))
         for name, w in standing.items():
             own = found["elements"][name]

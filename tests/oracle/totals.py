@@ -6,7 +6,6 @@ from typing import NamedTuple
 
 import numpy as np
 
-from tests.oracle.loads import pushes
 from tests.oracle.masses import Mass
 from tests.oracle.read import GROUND, Model, Placed, Scene, State, end, model, placed
 from tests.oracle.rows import directions
@@ -32,11 +31,11 @@ def supports(scene: Scene, state: State, solution: Solution) -> dict[str, Wrench
     return found
 
 
-def elements(scene: Scene, state: State, solution: Solution, t: float, about: Array) -> dict[str, Wrench]:
+def elements(scene: Scene, state: State, solution: Solution, about: Array) -> dict[str, Wrench]:
     """What all loads but forces and couples, and all drives but rods', put ON the ground, moment about a point."""
     read = model(scene)
     found = {}
-    for name, parts in pushes(read, state, t).items():
+    for name, parts in solution.loads.items():
         own = [p for p in parts if p.body == GROUND]
         if own and read.loads[name]["type"] not in ("force", "couple"):
             found[name] = Wrench(np.sum([p.force for p in own], axis=0), np.sum([p.about(about) for p in own], axis=0))

@@ -89,7 +89,12 @@ def saw(scene: Scene, state: State, body: str, point: str | Sequence[float] | Ar
         if spec.get("on") == body:
             raise ValueError(f"{name}: a couple on a body with a section needs the point")
         forces[name] = {**spec, **{key: own(spec[key]) for key in ("on", "from", "to") if key in spec}}
-    return {**scene, "bodies": bodies, "joints": joints, "forces": forces}
+    blows = {}
+    for name, spec in (scene.get("impulses") or {}).items():
+        if body in (spec.get("on"), spec.get("body")):
+            raise ValueError(f"{name}: a couple on a body with a section needs the point")
+        blows[name] = {**spec, **({"on": own(spec["on"])} if "on" in spec else {})}
+    return {**scene, "bodies": bodies, "joints": joints, "forces": forces, "impulses": blows}
 
 
 def given(mass: Mass) -> dict[str, Any]:

@@ -10,17 +10,16 @@ from tests.oracle.rows import coordinates, directions
 from tests.oracle.totals import elements, supports
 from tests.oracle.turns import cross
 from tests.shared.scenes import near
-from tests.shared.trees import ABOUT, TIMES, Case
+from tests.shared.trees import ABOUT, Case
 
-INSTANTS = list(enumerate(TIMES))
 FREE = 1e-12  # of the largest load: what may be left of a component along a free direction
 FREE_FORCES = {"slide": "along", "cylinder": "along", "line": "along", "plane": "across"}
 FREE_MOMENTS = {"ball": "all", "line": "all", "plane": "all", "rod": "all", "pin": "along", "cylinder": "along"}
 
 
 def same_accelerations(c: Case, tolerance: float = 1e-9) -> None:
-    found = c.study.results.bodies
-    for k, _ in INSTANTS:
+    found = c.found.bodies
+    for k in range(len(c.oracle)):
         o = c.oracle[k]
         both = (*o.acceleration.values(), *o.angular_acceleration.values())
         fastest = max(1.0, *(float(np.abs(a).max()) for a in both))
@@ -32,9 +31,9 @@ def same_accelerations(c: Case, tolerance: float = 1e-9) -> None:
 def same_reactions(c: Case, tolerance: float = 1e-9) -> int:
     """Certain components agree, open ones are nan and listed; how many are open at some instant."""
     count = 0
-    for name, block in c.study.results.joints.items():
+    for name, block in c.found.joints.items():
         missing = set()
-        for k, _ in INSTANTS:
+        for k in range(len(c.oracle)):
             r, F = c.oracle[k].reactions[name], c.force[k]
             near(block["point"][k], r.point, c.length)
             parts = (("force", r.force, r.unique[:3], F), ("moment", r.moment, r.unique[3:6], F * c.length))
@@ -54,8 +53,8 @@ def same_reactions(c: Case, tolerance: float = 1e-9) -> int:
 def same_parts(c: Case) -> None:
     """axial, radial, tilting, tension: certain where every part of the wrench they are made of is."""
     for j in c.read.joints:
-        block = c.study.results.joints[j.name]
-        for k, _ in INSTANTS:
+        block = c.found.joints[j.name]
+        for k in range(len(c.oracle)):
             o, F = c.oracle[k], c.force[k]
             r = o.reactions[j.name]
             if j.kind == "rod":
@@ -87,8 +86,8 @@ def axis_between(j: Joint, state: State) -> Array:
 
 def same_foundation(c: Case, tolerance: float = 1e-9) -> None:
     """Totals are always certain; supports carry the verdicts of their joints."""
-    found = c.study.results.foundation
-    for k, t in INSTANTS:
+    found = c.found.foundation
+    for k in range(len(c.oracle)):
         o, state, F = c.oracle[k], c.states[k], c.force[k]
         near(found["force"][k], o.foundation_force, F, tolerance)
         near(found["moment"][k], o.foundation_moment, F * c.length, tolerance)
@@ -100,7 +99,7 @@ def same_foundation(c: Case, tolerance: float = 1e-9) -> None:
             for part, wanted, certain, size in parts:
                 assert (~np.isnan(own[part][k])).tolist() == certain.tolist()
                 near(np.where(certain, own[part][k], 0.0), np.where(certain, wanted, 0.0), size, tolerance)
-        standing = elements(c.plain, state, o, t, ABOUT)
+        standing = elements(c.plain, state, o, ABOUT)
         assert set(standing) == set(found.get("elements", {}))
         for name, w in standing.items():
             own = found["elements"][name]
@@ -115,8 +114,8 @@ def same_foundation(c: Case, tolerance: float = 1e-9) -> None:
 def same_coordinates(c: Case) -> None:
     """Angles modulo a turn."""
     for j in c.read.joints:
-        block = c.study.results.coordinates.get(j.name, {})
-        for k, _ in INSTANTS if block else []:
+        block = c.found.coordinates.get(j.name, {})
+        for k in range(len(c.oracle)) if block else []:
             for what, value in coordinates(j, c.states[k]).items():
                 apart = np.sin((block[what][k] - value) / 2) if what == "angle" else block[what][k] - value
                 near(apart, 0.0, c.length)
@@ -125,8 +124,8 @@ def same_coordinates(c: Case) -> None:
 def free_directions_carry_nothing(c: Case) -> None:
     """In joint axes the components along what the joint leaves free are zero (where they are not open)."""
     for j in c.read.joints:
-        block = c.study.results.joints[j.name]
-        for k, _ in INSTANTS:
+        block = c.found.joints[j.name]
+        for k in range(len(c.oracle)):
             F = c.force[k]
             for part, which, size in (("force", FREE_FORCES, F), ("moment", FREE_MOMENTS, F * c.length)):
                 v = block[part][k]

@@ -9,6 +9,7 @@ from typing import Any
 
 import numpy as np
 
+from heuncli.results import Results
 from heuncli.study.solve import Study
 from tests.oracle.masses import mass_of
 from tests.oracle.read import Model, Placed, model, state_at
@@ -50,6 +51,11 @@ class Case:
     oracle: list[Solution]
     force: list[float]
     length: float
+
+    @property
+    def found(self) -> Results:
+        """What the run tells."""
+        return self.study.results
 
 
 def tree_scene(seed: int, **more: Any) -> tuple[dict[str, Any], dict[str, Placed]]:
