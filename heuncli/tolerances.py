@@ -115,6 +115,7 @@ UNIT_TYPED = 1e-2  # a unit quaternion or rotation matrix may be this far off: t
 UNIT_EXACT = 1e-14  # some dozen roundings: nearer to a rotation, a matrix is taken as it stands
 INERTIA_REFUSED = 1e-3  # of the largest moment: the contract's bound on a broken triangle rule
 INERTIA_TYPED = 1e-9  # of the largest moment: moments typed with ten digits keep the rule, and symmetry, this well
+AT_LIMIT = 1e-9  # of the size, or rad: a start beyond a limit by less stands at it, by the ten digits that are typed
 TABLE_ENDS = 1e-6  # of the span: a table's period and the values at its ends are printed with seven digits
 EXPECTED_RELATIVE = 1e-6  # of the largest number expected: the contract's default
 EXPECTED_ABSOLUTE = 1e-9  # the contract's default

@@ -9,6 +9,7 @@ import numpy as np
 from heuncli.joint_kinds import TYPES, Kind
 from heuncli.mechanism.model import (
     GROUND,
+    Blow,
     Body,
     Directed,
     Drive,
@@ -18,6 +19,7 @@ from heuncli.mechanism.model import (
     Mechanism,
     PairLoad,
     PointLoad,
+    Stop,
 )
 from heuncli.results import Array
 from heuncli.shapes.inertia import properties
@@ -52,6 +54,10 @@ def build(spec: Any, forms: dict[str, Form]) -> Mechanism:
         bodies=tuple(body(name, b, forms.get(name)) for name, b in spec.bodies.items()),
         joints=tuple(joint(name, j, index, drives.get(name), planar) for name, j in spec.joints.items()),
         loads=tuple(load(name, f, index, joints) for name, f in spec.forces.items()),
+        blows=tuple(blow(name, i, index) for name, i in spec.impulses.items()),
+        stops=tuple(
+            Stop(name, joints[s.joint][0], s.quantity, s.low, s.high, s.restitution) for name, s in spec.stops.items()
+        ),
     )
 
 
@@ -112,6 +118,7 @@ def joint(name: str, j: Any, index: dict[str, int], driven: Any, planar: bool) -
         angle=initial.angle if initial else None, rate=initial.rate if initial else None,
         travel=initial.travel if initial else None, speed=initial.speed if initial else None,
         length=j.length, tension_only=j.tension_only, stiffness=stiffness, drive=drive,  # type: ignore[arg-type]
+        restitution=j.restitution,
     )  # fmt: skip
 
 
@@ -136,3 +143,9 @@ def load(name: str, f: Any, index: dict[str, int], joints: dict[str, tuple[int, 
             return JointLoad(name, "damper", k, None, f.coefficient, sliding, 1.0)
         case _:
             return JointLoad(name, "friction", joints[f.joint][0], None, f.torque or 0.0, f.force or 0.0, f.speed)
+
+
+def blow(name: str, i: Any, index: dict[str, int]) -> Blow:
+    """One impulse or impulsive couple."""
+    point = np.array(i.on.point) if i.on is not None else None
+    return Blow(name, index[i.body], point, np.array(i.vector), i.frame == "body", i.time, i.type)

@@ -79,6 +79,7 @@ class Joint:
     tension_only: bool
     stiffness: tuple[Array, Array] | None  # force (3,) [N/m] and moment (3,) [N m/rad], inf where not given
     drive: Drive | None
+    restitution: float | None = None  # of a rope that goes slack and catches; None: the run ends where it would push
 
 
 @record
@@ -155,6 +156,34 @@ Load = PointLoad | PairLoad | JointLoad
 
 
 @record
+class Blow:
+    """An impulse [N s] at a body's point at one instant, or an impulsive couple [N m s] on it.
+
+    Of a couple point is where it enters, which a cut asks for, or None.
+    """
+
+    name: str
+    body: int
+    point: Array | None
+    vector: Array
+    in_body: bool
+    time: float
+    kind: Literal["impulse", "couple"] = "impulse"
+
+
+@record
+class Stop:
+    """Limits of a joint's coordinate [rad] or [m], None where there is none; restitution: of its strikes, 0 to 1."""
+
+    name: str
+    joint: int
+    quantity: Literal["angle", "travel", "length"]
+    low: float | None
+    high: float | None
+    restitution: float
+
+
+@record
 class Mechanism:
     """A scene, ready to be assembled."""
 
@@ -165,6 +194,8 @@ class Mechanism:
     bodies: tuple[Body, ...]
     joints: tuple[Joint, ...]
     loads: tuple[Load, ...]
+    blows: tuple[Blow, ...] = ()
+    stops: tuple[Stop, ...] = ()
 
     def load_rows(self) -> Iterator[tuple[Load, slice]]:
         """The loads, each with its rows in the kernel's table of loads: of a load in a joint one a motion."""

@@ -193,5 +193,15 @@ def split_body_or_end(value: Any) -> Any:
     return split_end(value)
 
 
+def two_limits(value: Any) -> Any:
+    """[low, high], either of them null."""
+    if type(value) is not list or len(value) != 2:
+        found = f"{len(value)} values" if type(value) is list else kind_of(value)
+        raise Finding("wrong-kind", f"expected [low, high], found {found}", "null is no limit: [null, 0.2]")
+    return value
+
+
 AnEnd = Annotated[End, BeforeValidator(split_end)]
 BodyOrEnd = Annotated[End, BeforeValidator(split_body_or_end)]
+AngleLimits = Annotated[tuple[Angle | None, Angle | None], BeforeValidator(two_limits)]
+LengthLimits = Annotated[tuple[Length | None, Length | None], BeforeValidator(two_limits)]

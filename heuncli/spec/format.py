@@ -16,6 +16,7 @@ from heuncli.spec.fields import (
     AnEnd,
     Angle,
     AngleInTime,
+    AngleLimits,
     AngularImpulse,
     Anything,
     Area,
@@ -36,6 +37,7 @@ from heuncli.spec.fields import (
     InParts,
     Length,
     LengthInTime,
+    LengthLimits,
     LineDensity,
     Mass,
     Matrix,
@@ -278,6 +280,7 @@ class RodJoint(AnyJoint):
     type: Literal["rod"]
     length: Length | None = None
     tension_only: StrictBool = False
+    restitution: Number | None = None
 
 
 Joint = Ball | Pin | Slide | CylinderJoint | Universal | Weld | Line | Plane | RodJoint
@@ -354,12 +357,21 @@ LOADS: dict[str, type[Load]] = {
 
 
 class Blow(Model):
-    on: AnEnd | None = None
+    on: BodyOrEnd | None = None
     vector: tuple[Impulse, Impulse, Impulse] | None = None
     body: str | None = None
     couple: tuple[AngularImpulse, AngularImpulse, AngularImpulse] | None = None
     time: Time = 0.0
     frame: Frame = "world"
+
+
+class Stop(Model):
+    joint: str
+    angle: AngleLimits | None = None
+    travel: LengthLimits | None = None
+    length: LengthLimits | None = None
+    restitution: Number = 0.0
+    friction: Number | None = None
 
 
 class Circle(Model):
@@ -456,7 +468,8 @@ class Head(Model):
 
 
 ENTRIES: dict[str, type[Model] | Mapping[str, type[Model]]] = {  # blocks of named entries: their models, or by type
-    "bodies": Body, "joints": JOINTS, "drives": Drive, "forces": LOADS, "impulses": Blow, "sections": Section,
+    "bodies": Body, "joints": JOINTS, "drives": Drive, "forces": LOADS, "impulses": Blow, "stops": Stop,
+    "sections": Section,
 }  # fmt: skip
 SINGLE: dict[str, type[Model]] = {"ground": Ground, "analysis": Analysis, "foundation": Foundation}
 READ_BEFORE = ("parameters", "tables")  # by themselves: the rest refers to them
@@ -472,6 +485,7 @@ class Document(NamedTuple):
     drives: dict[str, Drive]
     forces: dict[str, Load]
     impulses: dict[str, Blow]
+    stops: dict[str, Stop]
     sections: dict[str, Section]
     analysis: Analysis
     foundation: Foundation

@@ -125,6 +125,7 @@ class Joint(NamedTuple):
     length: float | None = None
     tension_only: bool = False
     stiffness: Stiffness | None = None
+    restitution: float | None = None
 
 
 class Drive(NamedTuple):
@@ -206,13 +207,24 @@ Force = PointForce | Couple | Torque | Actuator | Spring | Damper | Friction
 
 
 class Impulse(NamedTuple):
-    """A blow: an impulse [N s] at a point (on), or an impulsive couple [N m s] on a body (on None)."""
+    """A blow: an impulse [N s] at a point, or an impulsive couple [N m s] on a body (on: where it enters, if named)."""
 
     body: str
     on: End | None
     vector: Vec
     time: float
     frame: Frame = "world"
+    type: Literal["impulse", "couple"] = "impulse"
+
+
+class Stop(NamedTuple):
+    """Limits of a joint's coordinate [rad] or [m], None where there is none, and the restitution of its strikes."""
+
+    joint: str
+    quantity: Literal["angle", "travel", "length"]
+    low: float | None
+    high: float | None
+    restitution: float = 0.0
 
 
 class Properties(NamedTuple):
@@ -292,6 +304,7 @@ class Spec(NamedTuple):
     drives: Mapping[str, Drive]
     forces: Mapping[str, Force]
     impulses: Mapping[str, Impulse]
+    stops: Mapping[str, Stop]
     sections: Mapping[str, Section]
     tables: Mapping[str, Table]
     analysis: Analysis

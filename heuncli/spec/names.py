@@ -10,13 +10,16 @@ from heuncli.spec.fields import Model, keys_of
 from heuncli.spec.format import Body, Ground
 
 GROUND = "ground"
-NAMED = ("parameters", "bodies", "joints", "drives", "forces", "impulses", "sections", "tables")
+NAMED = ("parameters", "bodies", "joints", "drives", "forces", "impulses", "stops", "sections", "tables")
+CAUSES = frozenset({"gravity", "drives", "motion"})  # of shares, beside the entries' own names
 RESERVED_FOR: dict[str, frozenset[str]] = {
     "parameters": RESERVED,
     "joints": RESERVED,
     "tables": RESERVED,
     "bodies": frozenset({GROUND}),
-    "forces": frozenset({"gravity", "drives", "motion"}),
+    "forces": CAUSES,
+    "impulses": CAUSES,
+    "stops": CAUSES,
 }
 
 

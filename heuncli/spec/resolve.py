@@ -15,7 +15,7 @@ from heuncli.spec import format as f
 from heuncli.spec import models as m
 from heuncli.spec.fields import End
 from heuncli.spec.names import GROUND
-from heuncli.spec.semantics import body_axes, drive_of, end_of, instants_of, point_in, tensor, type_of
+from heuncli.spec.semantics import body_axes, drive_of, end_of, instants_of, limits_of, point_in, tensor, type_of
 from heuncli.spec.turns import IDENTITY
 
 DEFAULT_TOLERANCE = 1e-9
@@ -53,6 +53,7 @@ def resolve(document: f.Document, meaning: Meaning) -> m.Spec:
         drives={name: r.drive(name, drive) for name, drive in document.drives.items()},
         forces={name: r.force(name, force) for name, force in document.forces.items()},
         impulses={name: r.impulse(blow) for name, blow in document.impulses.items()},
+        stops={name: stop(given) for name, given in document.stops.items()},
         sections={name: r.section(section) for name, section in document.sections.items()},
         tables=meaning.tables,
         analysis=m.Analysis(
@@ -144,6 +145,7 @@ class Resolver:
             length=getattr(joint, "length", None),
             tension_only=getattr(joint, "tension_only", False),
             stiffness=stiffness(joint.stiffness),
+            restitution=getattr(joint, "restitution", None),
         )
 
     def drive(self, name: str, drive: f.Drive) -> m.Drive:
@@ -172,11 +174,14 @@ class Resolver:
                 return m.Friction(load.joint, load.torque, load.force, constant(load.speed))
 
     def impulse(self, blow: f.Blow) -> m.Impulse:
-        if blow.on is not None and blow.vector is not None:
-            return m.Impulse(blow.on.body, self.end(blow.on), blow.vector, blow.time, blow.frame)
-        assert blow.body is not None
+        body, on = blow.body, None
+        if blow.on is not None:
+            body, on = blow.on.body, self.end(blow.on) if blow.on.at is not None else None
+        assert body is not None
+        if blow.vector is not None:
+            return m.Impulse(body, on, blow.vector, blow.time, blow.frame)
         assert blow.couple is not None
-        return m.Impulse(blow.body, None, blow.couple, blow.time, blow.frame)
+        return m.Impulse(body, on, blow.couple, blow.time, blow.frame, "couple")
 
     def section(self, section: f.Section) -> m.Section:
         body = self.document.bodies[section.body]
@@ -203,6 +208,14 @@ class Resolver:
     def expect(self, i: int, item: f.Expect) -> m.Expect:
         location = self.locations.get(f"expect.{i}", SourceLocation("", 1, 1))
         return m.Expect(item.of, item.at, item.peak, numbers(item.is_), item.rel, numbers(item.abs), location)
+
+
+def stop(given: f.Stop) -> m.Stop:
+    """A stop that limits one coordinate."""
+    found = limits_of(given)
+    assert found is not None
+    quantity, (low, high) = found
+    return m.Stop(given.joint, quantity, low, high, given.restitution)
 
 
 def directed(value: object) -> m.Directed | None:

@@ -15,6 +15,7 @@ from heuncli.spec import turns
 from heuncli.spec.fields import End
 
 DEFAULT_SAMPLES = 201
+Limits = tuple[float | None, float | None]
 ORIENTATIONS: dict[str, tuple[str, ...]] = {
     "axis": ("axis", "angle"),
     "quaternion": ("quaternion",),
@@ -76,6 +77,15 @@ def drive_of(drive: f.Drive) -> tuple[Literal["angle", "travel", "length"], Expr
     if drive.travel is not None:
         return "travel", drive.travel
     return ("length", drive.length) if drive.length is not None else None
+
+
+def limits_of(stop: f.Stop) -> tuple[Literal["angle", "travel", "length"], Limits] | None:
+    """Quantity and limits of a stop that limits one coordinate."""
+    given: list[tuple[Literal["angle", "travel", "length"], Limits | None]] = [
+        ("angle", stop.angle), ("travel", stop.travel), ("length", stop.length)
+    ]  # fmt: skip
+    found = [(quantity, limits) for quantity, limits in given if limits is not None]
+    return found[0] if len(found) == 1 else None
 
 
 def type_of(document: f.Document) -> Literal["motion", "impulse", "state"]:

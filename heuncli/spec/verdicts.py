@@ -13,7 +13,7 @@ from heuncli.nearest import did_you_mean, nearest
 from heuncli.spec.fields import Model
 from heuncli.spec.quantity import Follows, kind_of
 from heuncli.spec.rules.registry import Path_, Violation
-from heuncli.spec.words import KEY_WORDS, LATER, TYPES
+from heuncli.spec.words import ELSEWHERE, KEY_WORDS, LATER, TYPES
 
 KINDS = {  # pydantic's error types for a value of the wrong kind
     "dict_type": "a mapping", "model_type": "a mapping", "model_attributes_type": "a mapping", "list_type": "a list",
@@ -105,8 +105,14 @@ def unknown_key(path: Path_, known: list[str]) -> tuple[str, Violation]:
         comma = "a decimal is written with a point, as 1.5; a comma ends the value"
         return "unknown-key", Violation(path, f"'{key}' is not known here", comma, key=True)
     word = KEY_WORDS.get(key.lower())
-    hint = f"it is called {word} here" if word in known else did_you_mean(key, known, "keys here")
+    hint = f"it is called {word} here" if word in known else elsewhere(key) or did_you_mean(key, known, "keys here")
     return "unknown-key", Violation(path, f"'{key}' is not known here", hint, key=True)
+
+
+def elsewhere(word: str) -> str | None:
+    """Where what a word means is written, if not where it was."""
+    word = word.lower()
+    return ELSEWHERE.get(word) or (ELSEWHERE["stops"] if KEY_WORDS.get(word) == "stops" else None)
 
 
 def unknown_type(entry: Any, block: str, known: list[str]) -> tuple[str, Violation]:
@@ -123,7 +129,7 @@ def unknown_type(entry: Any, block: str, known: list[str]) -> tuple[str, Violati
     if (block, tag) in LATER:
         return "not-yet", Violation(("type",), f"not yet: {what.removeprefix('a ')} {tag}")
     word = words.get(tag.lower().replace("-", "_"))
-    hint = f"{article(tag)} {tag} is type: {word}" if word else did_you_mean(tag, known, "types")
+    hint = f"{article(tag)} {tag} is type: {word}" if word else elsewhere(tag) or did_you_mean(tag, known, "types")
     return code, Violation(("type",), f"'{tag}' is not {what}; known: {listed}", hint)
 
 

@@ -35,9 +35,8 @@ def lay_out(mechanism: Mechanism, start: Assembly, inertias: Array, size: float,
     pack = Pack()
     programs, uses = _programs(mechanism, pack)
     names = {j.name: k for k, j in enumerate(mechanism.joints)}
-    kept = {names[joint] for joint, _ in uses} | {
-        k for k, j in enumerate(mechanism.joints) if j.drive is not None and j.drive.quantity != "length"
-    }
+    kept = {names[joint] for joint, _ in uses} | {s.joint for s in mechanism.stops if s.quantity != "length"}
+    kept |= {k for k, j in enumerate(mechanism.joints) if j.drive is not None and j.drive.quantity != "length"}
     spanning = span(mechanism, kept)
     starts = [joint_start(mechanism, start, joint) for joint in mechanism.joints]
     builder = _Builder(mechanism, start, spanning, starts, inertias, size, pack, programs)

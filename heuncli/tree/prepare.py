@@ -26,8 +26,13 @@ class PreparedScene:
 
 
 def prepare(mechanism: Mechanism, t0: float = 0.0) -> PreparedScene:
-    """Assemble at t0 and lay out. Raises SolveError where the scene does not close."""
-    return arranged(mechanism, assemble(mechanism, t0))
+    """Assemble at t0 and lay out. Raises SolveError where the scene does not close, or starts beyond a stop."""
+    scene = arranged(mechanism, assemble(mechanism, t0))
+    if mechanism.stops:
+        from heuncli.tree.limits import start_within_limits  # where something strikes
+
+        start_within_limits(scene.layout, scene.start)
+    return scene
 
 
 def arranged(mechanism: Mechanism, start: Assembly) -> PreparedScene:

@@ -1,10 +1,10 @@
 """The tree that carries the motion: which joints are kept, which are cut, and in which order bodies come.
 
-Breadth-first from the ground, so that paths stay short. A joint whose coordinate is driven or named in an expression is
-never cut; those that leave a thin body free to turn about the axis without inertia are cut first, for there would be
-nothing behind that freedom; among the others of one layer those that make most conditions are kept. `line` and `plane`
-carry a body only from their `from` side, a rod never does; a body that nothing carries hangs on six freedoms of its
-own.
+Breadth-first from the ground, so that paths stay short. A joint whose coordinate is driven, named in an expression or
+limited by a stop is never cut; those that leave a thin body free to turn about the axis without inertia are cut first,
+for there would be nothing behind that freedom; among the others of one layer those that make most conditions are kept.
+`line` and `plane` carry a body only from their `from` side, a rod never does; a body that nothing carries hangs on six
+freedoms of its own.
 """
 
 from __future__ import annotations
@@ -125,10 +125,12 @@ def _leaves(joint: Joint, to: bool, null: Array) -> bool:
 def _over_driven(mechanism: Mechanism, k: int) -> Problem:
     joint = mechanism.joints[k]
     what = "is driven" if joint.drive else "is named in an expression"
+    if any(stop.joint == k for stop in mechanism.stops):
+        what = "is limited by a stop"
     return Problem(
         "over-driven",
         f"joints.{joint.name} {what}, and so is every other joint of a closed chain through it",
-        hint="leave at least one joint of each closed chain neither driven nor named",
+        hint="leave at least one joint of each closed chain neither driven nor limited nor named",
     )
 
 

@@ -41,13 +41,25 @@ def joint_start(mechanism: Mechanism, start: Assembly, joint: Joint) -> JointSta
     travel, speed = float(D @ n), float((Ra @ n) @ v)
     if "angle" not in kind.coordinates:
         return JointStart(R, 0.0, rate, travel, speed)
-    near = joint.angle if joint.angle is not None else 0.0
+    near = joint.angle
     if joint.drive is not None and joint.drive.quantity == "angle":
         near = joint.drive.value.derivatives(0.0)[0]
-    assembled = joint.to_axis_given or (joint.drive is not None and joint.drive.zero_assembled)
-    if assembled:
+    if joint.to_axis_given or (joint.drive is not None and joint.drive.zero_assembled):
+        near = near or 0.0
         return JointStart(about(n, -near) @ R, near, rate, travel, speed)
+    near = near if near is not None else middle_of_limits(mechanism, joint)
     return JointStart(np.eye(3), unwrapped(axial_angle(R, n), near), rate, travel, speed)
+
+
+def middle_of_limits(mechanism: Mechanism, joint: Joint) -> float:
+    """The angle about which turns are counted where none is given: amid what stops on both sides leave, else 0.
+
+    One limit alone leaves no middle: there a turn more or less would put any start within it.
+    """
+    stops = [s for s in mechanism.stops if s.quantity == "angle" and mechanism.joints[s.joint] is joint]
+    low = max((s.low for s in stops if s.low is not None), default=None)
+    high = min((s.high for s in stops if s.high is not None), default=None)
+    return 0.5 * (low + high) if low is not None and high is not None else 0.0
 
 
 def joint_frame(joint: Joint, direction: Direction) -> Array:

@@ -17,6 +17,9 @@ from heuncli.integration.pace import hopeless
 from heuncli.kinetostatics.cuts import first_axis
 from heuncli.kinetostatics.energy import energy_drift
 from heuncli.kinetostatics.foundation import central_axis
+from heuncli.mechanism.build import build
+from heuncli.mechanism.model import Stop
+from heuncli.records import replace
 from heuncli.redundancy.certain_sums import relations, tidy
 from heuncli.redundancy.turning_sums import factors
 from heuncli.report.labels import labels_of
@@ -27,6 +30,7 @@ from heuncli.spec.turns import of_matrix
 from heuncli.study.beside import AMPLE, error, reached
 from heuncli.study.expect import compare
 from heuncli.study.warnings import unbalanced
+from heuncli.tree.prepare import prepare
 from tests.closed_forms.test_stretched_chain import chain
 from tests.convergence.test_pulses import slide
 from tests.shared.scenes import near, solved, study
@@ -60,6 +64,17 @@ def read(text: str) -> str:
 def steady_pace(x: float) -> str:
     """A run of which a hundred steps were done, at a pace that would take x times what may be left: 1e6 of 10,000."""
     return "told" if hopeless(np.arange(1.0, 101.0), x * 1e5, 10_000) else "goes on"
+
+
+def start_beyond(x: float) -> str:
+    """A pin that starts at the angle 0, above the limit of its stop by x."""
+    mechanism = build(load("scene.yaml", bar(kind="pin, axis: [0, 1, 0]")), {})
+    stopped = replace(mechanism, stops=(Stop("s", 0, "angle", None, -x, 0.0),))
+    try:
+        prepare(stopped)
+    except HeunError as error:
+        return f"refused: {error.problems[0].code}"
+    return "fine"
 
 
 def moved_by(x: float) -> str:
@@ -537,6 +552,7 @@ ROWS = (
     # same instant, place, direction
     Row("SAME_INSTANT", expected_at, "fine", "refused: expect-instants"),
     Row("SAME_VALUE", held_and_driven, "fine", "refused: drive-contradicts"),
+    Row("AT_LIMIT", start_beyond, "fine", "refused: beyond-stop"),
     Row("PARALLEL", along_the_normal, "refused: first-axis", "fine"),
     Row("UPRIGHT", tilted, "fine", "refused: not-planar"),
     Row("EQUAL_COMPONENTS", equal, "x", "z"),

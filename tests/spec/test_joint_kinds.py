@@ -26,7 +26,7 @@ def test_keys(kind: Kind) -> None:
     keys |= {kind.axis_key} if kind.axis_key else set()
     keys |= {"to_axis"} if kind.to_axis != "never" else set()
     keys |= {"initial"} if kind.coordinates else set()
-    keys |= {"length", "tension_only"} if kind.keeps_distance else set()
+    keys |= {"length", "tension_only", "restitution"} if kind.keeps_distance else set()
     assert set(keys_of(f.JOINTS[kind.name])) == keys
 
 

@@ -204,6 +204,7 @@ ENDS = "from: ground.O, to: b.q"
     (f"{{type: plane, {ENDS}, normal: [1, 0, 0]}}", {"normal": (1.0, 0.0, 0.0)}),
     (f"{{type: rod, {ENDS}}}", {}),
     (f"{{type: rod, {ENDS}, length: 2, tension_only: true}}", {"length": 2.0, "tension_only": True}),
+    (f"{{type: rod, {ENDS}, tension_only: true, restitution: 0.3}}", {"tension_only": True, "restitution": 0.3}),
 ])  # fmt: skip
 def test_joints(text: str, expected: dict[str, Any]) -> None:
     found = joint(text)
@@ -250,7 +251,25 @@ def test_drives_and_impulses() -> None:
     found = scene(top + "impulses: {i: {on: b.q, vector: [0, 1 N*s, 0]}, k: {body: b, couple: [0, 0, 1], time: 0.5, "
                   "frame: body}}\nanalysis: {duration: 1}\n").impulses  # fmt: skip
     assert found["i"] == m.Impulse("b", m.End("b", (1.0, 2.0, 3.0), "q"), (0.0, 1.0, 0.0), 0.0, "world")
-    assert found["k"] == m.Impulse("b", None, (0.0, 0.0, 1.0), 0.5, "body")
+    assert found["k"] == m.Impulse("b", None, (0.0, 0.0, 1.0), 0.5, "body", "couple")
+    at_point = scene(top + "impulses: {i: {on: b.q, couple: [0, 0, 1]}, k: {on: b, couple: [0, 0, 1]}}\n").impulses
+    assert at_point["i"] == m.Impulse("b", m.End("b", (1.0, 2.0, 3.0), "q"), (0.0, 0.0, 1.0), 0.0, "world", "couple")
+    assert at_point["k"] == m.Impulse("b", None, (0.0, 0.0, 1.0), 0.0, "world", "couple")
+
+
+def test_stops() -> None:
+    joints = (
+        f"joints: {{j: {{type: cylinder, {ENDS}, axis: [1, 0, 0]}}, r: {{type: rod, from: ground.Q, to: b.q}}}}\n"
+    )
+    top = f"ground: {{points: {{O: [0, 0, 0], Q: [9, 0, 0]}}}}\nbodies: {{b: {POINT}}}\n{joints}"
+    found = scene(top + """stops:
+  near: {joint: j, travel: [-1 mm, null]}
+  turned: {joint: j, angle: [-90 deg, 90 deg], restitution: 0.5}
+  far: {joint: r, length: [null, 1 m], restitution: 1}
+""").stops
+    assert found["near"] == m.Stop("j", "travel", -1e-3, None, 0.0)
+    assert found["turned"] == m.Stop("j", "angle", -math.pi / 2, math.pi / 2, 0.5)
+    assert found["far"] == m.Stop("r", "length", None, 1.0, 1.0)
 
 
 def test_sections() -> None:

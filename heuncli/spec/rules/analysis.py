@@ -53,6 +53,9 @@ def analysis_type(draft: DraftDocument) -> Iterator[Violation]:
             f"type: {analysis.type} is one instant and takes no duration or times",
             "leave the type out for a motion",
         )
+    if analysis.type == "state" and draft.names.entries["impulses"]:
+        hint = "type: impulse for the jump at time 0, a duration for a motion with blows"
+        yield Violation(path, "a state has no blows, but there are impulses", hint)
     if analysis.type == "impulse" and not draft.names.entries["impulses"]:
         yield Violation(path, "type: impulse without impulses", "impulses: {blow: {on: body.point, vector: [1, 0, 0]}}")
 

@@ -2,9 +2,21 @@
 
 from __future__ import annotations
 
-from heuncli.spec.rules import analysis, bodies, expect, joints, loads, naming, not_yet, plane, references, sections
+from heuncli.spec.rules import (
+    analysis,
+    bodies,
+    expect,
+    joints,
+    loads,
+    naming,
+    not_yet,
+    plane,
+    references,
+    sections,
+    stops,
+)
 from heuncli.spec.rules.registry import RULES, DraftDocument, Rule, Violation, violations
 
-MODULES = (naming, references, bodies, joints, plane, loads, sections, analysis, expect, not_yet)
+MODULES = (naming, references, bodies, joints, plane, loads, stops, sections, analysis, expect, not_yet)
 
 __all__ = ["MODULES", "RULES", "DraftDocument", "Rule", "Violation", "violations"]

@@ -80,30 +80,31 @@ def load_dimension(draft: DraftDocument) -> Iterator[Violation]:
 def couple_point(draft: DraftDocument) -> Iterator[Violation]:
     """A couple on a body with sections has a point of application, which decides on which side of a cut it acts."""
     cut = {section.body for section in draft.document.sections.values()}
-    for name, load in draft.document.forces.items():
-        if isinstance(load, f.Couple) and load.on.at is None and load.on.body in cut:
-            message = f"the couple acts on {load.on.body}, which has sections, but not at a point"
-            yield Violation(
-                ("forces", name, "on"),
-                message,
-                f"write {load.on.body}.point: it decides on which side of the cut the couple acts",
-            )
+    on_bodies = [
+        (("forces", name, "on"), load.on.body)
+        for name, load in draft.document.forces.items()
+        if isinstance(load, f.Couple) and load.on.at is None
+    ]
+    for name, blow in draft.document.impulses.items():
+        if blow.couple is not None and blow.on is None and blow.body is not None:
+            on_bodies.append((("impulses", name, "body"), blow.body))
+        elif blow.couple is not None and blow.on is not None and blow.on.at is None:
+            on_bodies.append((("impulses", name, "on"), blow.on.body))
+    for path, body in on_bodies:
+        if body in cut:
+            message = f"the couple acts on {body}, which has sections, but not at a point"
+            hint = f"write on: {body}.point: it decides on which side of the cut the couple acts"
+            yield Violation(path, message, hint)
 
 
 @rule("impulse-form")
 def impulse_form(draft: DraftDocument) -> Iterator[Violation]:
-    """A blow is on a point with a vector, or on a body with a couple."""
+    """A blow is on a point with a vector, or with a couple on a body or on a point of it."""
     for name, blow in draft.document.impulses.items():
-        point, turn = (blow.on, blow.vector), (blow.body, blow.couple)
-        complete = [pair for pair in (point, turn) if None not in pair]
-        stray = [part for pair in (point, turn) for part in pair if part is not None]
-        if len(complete) != 1 or len(stray) != 2:
-            yield Violation(
-                ("impulses", name),
-                "a blow is {on, vector} or {body, couple}",
-                "two blows at once: two entries",
-                key=True,
-            )
+        given = {key for key in ("on", "vector", "body", "couple") if getattr(blow, key) is not None}
+        if given not in ({"on", "vector"}, {"on", "couple"}, {"body", "couple"}):
+            message = "a blow is {on: body.point, vector}, {on: body.point, couple} or {body, couple}"
+            yield Violation(("impulses", name), message, "two blows at once: two entries", key=True)
 
 
 @rule("impulse-time")

@@ -43,8 +43,25 @@ def shares(draft: DraftDocument) -> Iterator[Path_]:
             yield "report", i
 
 
+def catching(draft: DraftDocument) -> Iterator[Path_]:
+    """Ropes that go slack and catch."""
+    for name, joint in draft.document.joints.items():
+        if getattr(joint, "restitution", None) is not None:
+            yield "joints", name, "restitution"
+
+
+def rubbing(draft: DraftDocument) -> Iterator[Path_]:
+    """Stops that rub where they are struck."""
+    for name, stop in draft.document.stops.items():
+        if stop.friction is not None:
+            yield "stops", name, "friction"
+
+
 NOT_YET: tuple[tuple[str, Where], ...] = (
     ("impulses", any_of("impulses")),
+    ("stops", any_of("stops")),
+    ("ropes that catch", catching),
+    ("friction at strikes", rubbing),
     ("a drive whose rate jumps, which is a blow", rate_jumps),
     (f"a method other than {' and '.join(METHODS)}", other_method),
     ("fixed steps", fixed_step),

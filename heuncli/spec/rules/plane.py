@@ -16,6 +16,7 @@ OR_ELSE = "or declare space: spatial"
 # Vectors of bodies and of loads with the components that they cannot have in the plane.
 MOTIONS = {"velocity": ("z",), "angular_velocity": ("x", "y")}
 LOADS = {"force": ("z",), "couple": ("x", "y")}
+BLOWS = {"vector": ("z",), "couple": ("x", "y")}
 
 
 @rule("not-planar")
@@ -43,6 +44,11 @@ def not_planar(draft: DraftDocument) -> Iterator[Violation]:
         if isinstance(load, f.PointForce | f.Couple):
             vector = tuple(x.constant for x in load.vector)
             yield from _out_of_plane(("forces", name, "vector"), vector, LOADS[load.type])
+    for name, blow in draft.document.impulses.items():
+        for key, forbidden in BLOWS.items():
+            given = getattr(blow, key)
+            if given is not None:
+                yield from _out_of_plane(("impulses", name, key), given, forbidden)
 
 
 def _out_of_plane(path: Path_, vector: tuple[float | None, ...], forbidden: tuple[str, ...]) -> Iterator[Violation]:

@@ -94,12 +94,19 @@ def unknown_point(draft: DraftDocument) -> Iterator[Violation]:
     for path, end in ends(draft):
         if isinstance(end.at, str) and end.body in points and end.at not in points[end.body]:
             yield absent(path, end.body, end.at, points[end.body])
-        elif end.at is None and path[0] != "forces" and end.body in points:
+        elif end.at is None and not may_be_whole(draft, path) and end.body in points:
             yield Violation(path, "a point is missing", "write body.point, or {body: name, at: [x, y, z]}")
     for name, section in draft.document.sections.items():
         for key, value in (("at", section.at), ("from", section.from_), ("to", section.to)):
             if isinstance(value, str) and section.body in points and value not in points[section.body]:
                 yield absent(("sections", name, key), section.body, value, points[section.body])
+
+
+def may_be_whole(draft: DraftDocument, path: Path_) -> bool:
+    """Whether an end may be a body without a point: of a couple."""
+    if path[0] == "impulses":
+        return draft.document.impulses[str(path[1])].couple is not None
+    return path[0] == "forces"
 
 
 def absent(path: Path_, body: str, point: str, points: Iterable[str]) -> Violation:
@@ -112,8 +119,10 @@ def absent(path: Path_, body: str, point: str, points: Iterable[str]) -> Violati
 def unknown_joint(draft: DraftDocument) -> Iterator[Violation]:
     """Joints exist."""
     joints = draft.names.entries["joints"]
-    for block, entries in (("drives", draft.document.drives), ("forces", draft.document.forces)):
-        for name, entry in entries.items():
+    document = draft.document
+    naming = {"drives": document.drives, "forces": document.forces, "stops": document.stops}
+    for block, entries in naming.items():
+        for name, entry in entries.items():  # type: ignore[attr-defined]
             joint = getattr(entry, "joint", None)
             if joint is not None and joint not in joints:
                 yield Violation(

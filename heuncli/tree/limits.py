@@ -1,0 +1,51 @@
+"""Where the coordinates that stops limit stand at the start."""
+
+from __future__ import annotations
+
+import math
+
+from heuncli import tolerances
+from heuncli.errors import Problem, SolveError
+from heuncli.mechanism.model import Assembly, Joint, Mechanism, Stop
+from heuncli.tree.layout import Layout
+from heuncli.tree.starts import pose
+
+
+def start_within_limits(layout: Layout, start: Assembly) -> None:
+    """Raise SolveError [beyond-stop] with all stops beyond whose limits the scene starts."""
+    mechanism = layout.mechanism
+    found = []
+    for stop in mechanism.stops:
+        value = coordinate(layout, start, stop)
+        slack = tolerances.AT_LIMIT * (1.0 if stop.quantity == "angle" else layout.size)
+        if stop.low is not None and value < stop.low - slack:
+            found.append(_beyond(mechanism, stop, value, stop.low, "below"))
+        if stop.high is not None and value > stop.high + slack:
+            found.append(_beyond(mechanism, stop, value, stop.high, "above"))
+    if found:
+        raise SolveError(*found)
+
+
+def coordinate(layout: Layout, start: Assembly, stop: Stop) -> float:
+    """The angle [rad], travel [m] or length [m] that a stop limits, at the start."""
+    joint = layout.mechanism.joints[stop.joint]
+    if stop.quantity == "length":
+        return distance(start, joint)
+    at = layout.starts[stop.joint]
+    return at.angle if stop.quantity == "angle" else at.travel
+
+
+def distance(start: Assembly, joint: Joint) -> float:
+    """The distance of a joint's points [m]."""
+    xa, Ra, _, _ = pose(start, joint.a)
+    xb, Rb, _, _ = pose(start, joint.b)
+    D = xb + Rb @ joint.q - xa - Ra @ joint.p
+    return math.sqrt(float(D @ D))
+
+
+def _beyond(mechanism: Mechanism, stop: Stop, value: float, limit: float, side: str) -> Problem:
+    joint = mechanism.joints[stop.joint].name
+    unit = "rad" if stop.quantity == "angle" else "m"
+    starts = f"{joint}.{stop.quantity} starts at {value:.9g} {unit}"
+    message = f"{starts}, {side} the limit {limit:.9g} {unit} of stop {stop.name}"
+    return Problem("beyond-stop", message, hint=f"start the joint {joint} within its limits, or change the limits")
