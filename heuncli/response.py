@@ -12,9 +12,9 @@ import numpy as np
 from heuncli import tolerances
 from heuncli.kernel.choose import workspace
 from heuncli.records import record
-from heuncli.results import Array
+from heuncli.results import Array, Indices, Mask
 from heuncli.tree.layout import Layout
-from heuncli.tree.tables import COLUMN_ANSWER, Table
+from heuncli.tree.tables import COLUMN_BODY, COLUMN_FREEDOM, Table, parts
 
 Workspace = workspace.Workspace
 
@@ -39,10 +39,18 @@ def workspace_of(layout: Layout) -> workspace.Workspace:
 
 @record
 class Columns:
-    """What answers columns of loads: bodies (n_c, n_b), fields of tables.COLUMN_ANSWER; multipliers (n_c, rows)."""
+    """What answers columns of loads: (n_c, n) tables of bodies and freedoms, multipliers (n_c, rows), tree order.
+
+    Of causes at several instants all have an axis of instants first.
+    """
 
     bodies: Table
+    freedoms: Table
     multipliers: Array
+
+    def at(self, which: Mask | Indices) -> Columns:
+        """Some of the first axis."""
+        return Columns(self.bodies[which], self.freedoms[which], self.multipliers[which])
 
 
 def columns(at: workspace.Workspace, t: float, state: Array, loads: Array, inertial: Array) -> Columns:
@@ -50,13 +58,38 @@ def columns(at: workspace.Workspace, t: float, state: Array, loads: Array, inert
 
     inertial (n_c,): whether velocity terms, prescribed accelerations and gravity count in that column.
     """
-    n_c, n_b = loads.shape[:2]
     flags = [int(flag) for flag in inertial]
-    width = at.column_width
-    out = np.zeros(n_c * width)
-    at.columns(t, state, np.ascontiguousarray(loads, dtype=float).ravel(), flags, out)
-    rows = out.reshape(n_c, width)
-    return Columns(np.ascontiguousarray(rows[:, : 12 * n_b]).view(COLUMN_ANSWER), rows[:, 12 * n_b :])
+    out = np.zeros((len(loads), at.column_width))
+    at.columns(t, state, np.ascontiguousarray(loads, dtype=float).ravel(), flags, out.ravel())
+    return columns_of(out, loads.shape[1], at.freedom_count)
+
+
+def columns_of(rows: Array, n_b: int, n_f: int) -> Columns:
+    """Columns from the kernel's numbers, (..., width)."""
+    flat, n = rows.reshape(-1, rows.shape[-1]), rows.shape[:-1]
+    bodies, freedoms = parts(flat, [(COLUMN_BODY, n_b), (COLUMN_FREEDOM, n_f)])
+    first = 12 * n_b + 2 * n_f
+    return Columns(bodies.reshape(*n, n_b), freedoms.reshape(*n, n_f), rows[..., first:])
+
+
+@record
+class Blows:
+    """What answers blows at a settled state: columns of jumps; unmet (n_c,): of J dV = -jumps, of its terms; idle."""
+
+    columns: Columns
+    unmet: Array
+    idle: int
+
+
+def blows(at: workspace.Workspace, t: float, state: Array, loads: Array, jumps: Array) -> Blows:
+    """The jumps of velocities that answer impulses (n_c, n_b, 6), as in `columns`, and jumps of prescribed rates.
+
+    jumps (n_c, n_f + rows): of the rates of the freedoms that are driven, and of the driven lengths of closure rows.
+    """
+    out = np.zeros((len(loads), at.column_width + 1))
+    impulses, rates = (np.append(np.ascontiguousarray(x, dtype=float).ravel(), 0.0) for x in (loads, jumps))
+    idle = at.blow(t, state, impulses, rates, out.ravel())
+    return Blows(columns_of(out[:, :-1], loads.shape[1], at.freedom_count), out[:, -1], idle)
 
 
 @record

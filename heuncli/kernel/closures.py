@@ -75,6 +75,7 @@ def measure_row(scene: cython.pointer[Scene], row: cython.pointer[Closure], t: c
         row.rate -= given.rate
         row.gamma -= given.second
         row.prescribed_rate = given.rate
+        row.prescribed_second = given.second
 
 
 def guide_row(scene: cython.pointer[Scene], row: cython.pointer[Closure]) -> cython.void:

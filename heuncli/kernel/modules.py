@@ -12,6 +12,7 @@ MODULES = (
     "selection",
     "chosen",
     "response",
+    "columns",
     "workspace",
     "dense",
     "course",

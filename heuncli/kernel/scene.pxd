@@ -127,6 +127,8 @@ cdef struct Closure:
     double multiplier
     double demand
     double prescribed_rate
+    double prescribed_second
+    double answer
     double doubt
     int pivot_at
     int chosen

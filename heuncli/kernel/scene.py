@@ -164,6 +164,8 @@ class Closure(Record):
     multiplier: float
     demand: float  # what it asks of the answer: J V = -demand
     prescribed_rate: float
+    prescribed_second: float  # of a driven length; of a blow the jump of its rate
+    answer: float  # of the freedoms to its unit load, in the measure of M
     doubt: float  # what rounding may make of its multiplier
     pivot_at: int  # the answer that its reflector leaves something of
     chosen: int  # while rows are selected: its place in the order of pivots; -1: not yet

@@ -133,6 +133,7 @@ class Instants(metaclass=Fields):
     width: int
     afresh: bool
     held: bool
+    causes: bool
     branches: list[float]
     times: list[float]
     states: list[float]

@@ -2,16 +2,16 @@
 
 from heuncli.kernel.algebra cimport Mat3, Vec3
 from heuncli.kernel.chosen cimport choose_afresh, judge_start
-from heuncli.kernel.closures cimport measure_rows, push_closures, residual_of, size_of_answer
+from heuncli.kernel.closures cimport measure_rows, push_closures
+from heuncli.kernel.columns cimport answer_blow, answer_causes, answer_column, measure_answers, put, unmet
 from heuncli.kernel.events cimport find_angles
 from heuncli.kernel.expressions cimport FREE, HELD, Expressions
 from heuncli.kernel.memory cimport Memory
-from heuncli.kernel.orthogonal cimport answer_of_row, doubt_multipliers
-from heuncli.kernel.response cimport configure, evaluate, must_choose_anew, respond, settle
+from heuncli.kernel.orthogonal cimport doubt_multipliers
+from heuncli.kernel.response cimport configure, evaluate, must_choose_anew, settle
 from heuncli.kernel.scene cimport Body, Closure, Counter, Freedom, Island, Lent, Limits, Load, Scene, Variable, Watch
 from heuncli.kernel.selection cimport jacobian_row, order_all, select_independent_rows
-from heuncli.kernel.tree cimport balance, kinematics
-from libc.math cimport sqrt
+from heuncli.kernel.tree cimport balance, factor_tree, kinematics
 
 cdef struct Instants:         # states to recover, and room for the work
     Py_ssize_t count
@@ -19,6 +19,7 @@ cdef struct Instants:         # states to recover, and room for the work
     Py_ssize_t width
     bint afresh
     bint held
+    bint causes
     double *branches
     double *times
     double *states
@@ -26,7 +27,6 @@ cdef struct Instants:         # states to recover, and room for the work
     double *y
     double *dy
 
-cdef Py_ssize_t put(double *out, Py_ssize_t at, Vec3 a) noexcept nogil
 cdef Py_ssize_t put_matrix(double *out, Py_ssize_t at, Mat3 R) noexcept nogil
 cdef Py_ssize_t put_body(double *out, Py_ssize_t at, Body *body) noexcept nogil
 cdef Py_ssize_t put_load(double *out, Py_ssize_t at, Load *load) noexcept nogil
@@ -35,7 +35,6 @@ cdef Py_ssize_t put_answers(Scene *scene, double *out, Py_ssize_t at) noexcept n
 cdef int recover_state(Scene *scene, double t, double *y, double *dy, bint afresh) noexcept nogil
 cdef void judge_closures(Scene *scene, double t) noexcept nogil
 cdef void recover_states(Scene *scene, Instants *instants) noexcept nogil
-cdef void answer_column(Scene *scene, double *load, double *out, bint inertial) noexcept nogil
 cdef void carry(Scene *scene, double *multipliers, double *out) noexcept nogil
 cdef void put_jacobian(Scene *scene, double *out) noexcept nogil
 

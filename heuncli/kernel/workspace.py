@@ -18,29 +18,20 @@ except ImportError:
     from heuncli.kernel.shadow import cython
 
 if not cython.compiled:
-    from math import sqrt
-
     from heuncli.kernel.algebra import Mat3, Vec3
     from heuncli.kernel.chosen import choose_afresh, judge_start
-    from heuncli.kernel.closures import measure_rows, push_closures, residual_of, size_of_answer
+    from heuncli.kernel.closures import measure_rows, push_closures
+    from heuncli.kernel.columns import answer_blow, answer_causes, answer_column, measure_answers, put, unmet
     from heuncli.kernel.events import find_angles
     from heuncli.kernel.expressions import FREE, HELD, Expressions
     from heuncli.kernel.memory import Memory
-    from heuncli.kernel.orthogonal import answer_of_row, doubt_multipliers
-    from heuncli.kernel.response import configure, evaluate, must_choose_anew, respond, settle
+    from heuncli.kernel.orthogonal import doubt_multipliers
+    from heuncli.kernel.response import configure, evaluate, must_choose_anew, settle
     from heuncli.kernel.scene import Body, Closure, Counter, Freedom, Island, Lent, Limits, Load, Scene, Variable, Watch
     from heuncli.kernel.selection import jacobian_row, order_all, select_independent_rows
     from heuncli.kernel.shadow import cython
     from heuncli.kernel.structs import Instants
-    from heuncli.kernel.tree import balance, kinematics
-
-
-def put(out: cython.p_double, at: cython.Py_ssize_t, a: Vec3) -> cython.Py_ssize_t:
-    """Write a vector; where the next one goes."""
-    out[at] = a.x
-    out[at + 1] = a.y
-    out[at + 2] = a.z
-    return at + 3
+    from heuncli.kernel.tree import balance, factor_tree, kinematics
 
 
 def put_matrix(out: cython.p_double, at: cython.Py_ssize_t, R: Mat3) -> cython.Py_ssize_t:
@@ -131,20 +122,13 @@ def recover_state(
 
 def judge_closures(scene: cython.pointer[Scene], t: cython.double) -> cython.void:
     """How well the answer found meets all rows, those left out too; how independent the others are, and their doubt."""
-    r: cython.Py_ssize_t
-    residual: cython.double
-    scene.residual = 0.0
     measure_rows(scene, t)
     if scene.selected_count:
         doubt_multipliers(scene)
         scene.pivot_recovered = order_all(scene, 0.0)
         scene.pivot_recovered *= scene.pivot_recovered
-    for r in range(scene.closure_count):
-        row: cython.pointer[Closure] = cython.address(scene.closures[r])
-        size: cython.double = size_of_answer(scene, row) + sqrt(answer_of_row(scene, row)) * scene.load_size
-        residual = residual_of(scene, row)
-        if not residual <= scene.residual * size:
-            scene.residual = residual / size
+    measure_answers(scene)
+    scene.residual = unmet(scene)
 
 
 def recover_states(scene: cython.pointer[Scene], instants: cython.pointer[Instants]) -> cython.void:
@@ -169,30 +153,9 @@ def recover_states(scene: cython.pointer[Scene], instants: cython.pointer[Instan
         instants.out[at + 1] = idle
         instants.out[at + 2] = scene.pivot_recovered
         instants.out[at + 3] = scene.residual
+        if instants.causes:
+            answer_causes(scene, instants.times[j], instants.y, instants.out, at + 4)
     scene.programs.holding = FREE
-
-
-def answer_column(
-    scene: cython.pointer[Scene], load: cython.p_double, out: cython.p_double, inertial: cython.bint
-) -> cython.void:
-    """What answers one column of loads (moment about the joint point, force; a body each), as tables.COLUMN_ANSWER."""
-    i: cython.Py_ssize_t
-    at: cython.Py_ssize_t = 0
-    for i in range(scene.body_count):
-        scene.bodies[i].M_applied = Vec3(load[6 * i], load[6 * i + 1], load[6 * i + 2])
-        scene.bodies[i].f_applied = Vec3(load[6 * i + 3], load[6 * i + 4], load[6 * i + 5])
-    respond(scene, inertial)
-    push_closures(scene)
-    balance(scene, inertial)
-    for i in range(scene.body_count):
-        body: cython.pointer[Body] = cython.address(scene.bodies[i])
-        at = put(out, at, body.alpha)
-        at = put(out, at, body.a)
-        at = put(out, at, body.M_joint)
-        at = put(out, at, body.f_joint)
-    for i in range(scene.closure_count):
-        out[at] = scene.closures[i].multiplier
-        at += 1
 
 
 def carry(scene: cython.pointer[Scene], multipliers: cython.p_double, out: cython.p_double) -> cython.void:
@@ -346,14 +309,21 @@ class Workspace:
         scene.own = self.memory.zeros(scene.lent_count * scene.lent_count)
 
     def recover(
-        self, times: Any, states: Any, branches: Any, out: Any, width: cython.Py_ssize_t, afresh: cython.bint
+        self,
+        times: Any,
+        states: Any,
+        branches: Any,
+        out: Any,
+        width: cython.Py_ssize_t,
+        afresh: cython.bint,
+        causes: cython.bint,
     ) -> None:
         """Everything the sweep knows at given states, which are settled in place; flat, `width` numbers an instant.
 
         After the answers of an instant: the gap over all rows, how many freedoms had no inertia behind them, the least
         pivot of the closures, and what of all rows the accelerations do not meet. branches: those that the expressions
         hold, as many numbers an instant; empty: as the states say. afresh: choose the closure rows at every instant
-        anew.
+        anew. causes: after all that a column a cause (columns.py).
         """
         scene: cython.pointer[Scene] = cython.address(self.scene)
         count: cython.Py_ssize_t = len(times)
@@ -373,6 +343,7 @@ class Workspace:
                 width,
                 afresh,
                 len(branches) > 0,
+                causes,
                 cython.address(taken[0]),
                 cython.address(at[0]),
                 cython.address(Y[0]),
@@ -384,12 +355,13 @@ class Workspace:
                 recover_states(scene, cython.address(instants))
         else:
             lists = times.tolist(), states.tolist(), out.tolist()
-            plain = Instants(count, n, width, afresh, len(branches) > 0, list(branches), *lists, [0.0] * n, [0.0] * n)
+            flags = afresh, len(branches) > 0, causes
+            plain = Instants(count, n, width, *flags, list(branches), *lists, [0.0] * n, [0.0] * n)
             recover_states(scene, plain)
             states[:], out[:] = plain.states, plain.out
 
     def columns(self, t: cython.double, state: Any, loads: Any, inertial: Any, out: Any) -> int:
-        """One factorisation at a state, many columns of loads: what answers each, as COLUMN_ANSWER and multipliers.
+        """One factorisation at a state, many columns of loads: what answers each (`put_column`).
 
         loads: moment about the joint point and force, a body each, a column after the other; inertial: of each column,
         whether velocity terms, drives and gravity count. Flat arrays. Gives what `configure` gives.
@@ -413,15 +385,54 @@ class Workspace:
                 out[width * c : width * c + width] = answer
         return idle
 
+    def blow(self, t: cython.double, state: Any, loads: Any, jumps: Any, out: Any) -> int:
+        """The jumps at a settled state, a column a blow: flat, each with what its rows leave unmet as its last number.
+
+        loads: impulses, moment about the joint point and force, a body each; jumps: of the rates of the freedoms, then
+        of the closure rows; a column after the other. Gives what `configure` gives.
+        """
+        c: cython.Py_ssize_t
+        scene: cython.pointer[Scene] = cython.address(self.scene)
+        height: cython.Py_ssize_t = 6 * scene.body_count
+        rates: cython.Py_ssize_t = scene.freedom_count + scene.closure_count
+        width: cython.Py_ssize_t = self.column_width + 1
+        self.measure_at(t, state)
+        factor_tree(scene)
+        measure_answers(scene)
+        idle: cython.int = self.configure_at(t, state)
+        measure_rows(scene, t)
+        for c in range(len(out) // width):
+            if cython.compiled:
+                F: cython.double[::1] = loads
+                u: cython.double[::1] = jumps
+                to: cython.double[::1] = out
+                answer_blow(
+                    scene,
+                    cython.address(F[height * c]),
+                    cython.address(u[rates * c]),
+                    cython.address(to[width * c]),
+                )
+            else:
+                answer = [0.0] * width
+                own = loads[height * c : height * c + height].tolist(), jumps[rates * c : rates * c + rates].tolist()
+                answer_blow(scene, *own, answer)
+                out[width * c : width * c + width] = answer
+        return idle
+
     @property
     def least_row(self) -> float:
         """What has to be left of a row for it to be one of the independent ones."""
         return self.scene.least_row
 
     @property
+    def freedom_count(self) -> int:
+        """Scalar freedoms."""
+        return self.scene.freedom_count
+
+    @property
     def column_width(self) -> int:
         """Numbers that answer one column."""
-        return 12 * self.scene.body_count + self.scene.closure_count
+        return 12 * self.scene.body_count + 2 * self.scene.freedom_count + self.scene.closure_count
 
     def jacobians(self, times: Any, states: Any, out: Any) -> None:
         """J of all closure rows at settled states, flat: an instant after the other, each row on its own path."""

@@ -8,7 +8,6 @@ import numpy as np
 
 from heuncli import tolerances
 from heuncli.integration.runner import Recovered, Runner
-from heuncli.records import fields
 from heuncli.results import Array
 from heuncli.tree.layout import Layout
 
@@ -37,7 +36,7 @@ def neighbours(runner: Runner, t: float, state: Array, by: Sequence[float]) -> R
     closed = found.gap <= tolerances.OPEN_GAP * layout.size
     if not closed.any():
         return None
-    return Recovered(**{name: values[closed] for name, values in fields(found).items()})
+    return found.at(closed)
 
 
 def rate_slots(layout: Layout) -> Array:

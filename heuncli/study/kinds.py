@@ -24,7 +24,6 @@ from heuncli.kinetostatics.energy import energy
 from heuncli.kinetostatics.foundation import inertia_loads, total
 from heuncli.kinetostatics.reactions import JointLoads, in_plane, joint_loads
 from heuncli.mechanism.size import marks
-from heuncli.records import fields, replace
 from heuncli.results import Array, Estimate, Mask
 from heuncli.study.recover import about
 from heuncli.study.setup import Setup
@@ -178,8 +177,7 @@ class Kinds:
         count = len(several.times) // max(len(asked), 1)
         same = same_rows(several, count) if self.setup.model["redundant"] else np.ones(len(asked), dtype=bool)
         if same.any() and not same.all():
-            kept = {name: values[np.repeat(same, count)] for name, values in fields(several).items()}
-            several, asked, before = replace(several, **kept), asked[same], before[same]
+            several, asked, before = several.at(np.repeat(same, count)), asked[same], before[same]
         self.asked, self.before = asked, before
         layout, mechanism = self.setup.scene.layout, self.setup.scene.mechanism
         states = body_states(layout, several)

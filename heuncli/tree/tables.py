@@ -69,7 +69,9 @@ FREEDOM_ANSWER = _answer("", "q u udot drive")
 LOAD_ANSWER = _answer("force moment at from_at", "value span rate power")
 CLOSURE_ANSWER = _answer("f m", "multiplier doubt gap chosen")
 STATE_ANSWER = _answer("", "gap idle pivot residual")
-COLUMN_ANSWER = _answer("alpha a joint_moment joint_force")
+# Of one column: of loads, of a cause, or of a blow (jumps of velocities, impulses of the joints).
+COLUMN_BODY = _answer("alpha a joint_moment joint_force")
+COLUMN_FREEDOM = _answer("", "udot drive")
 
 
 def parts(flat: Array, sizes: Iterable[tuple[np.dtype[np.void], int]]) -> list[Table]:

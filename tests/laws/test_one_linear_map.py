@@ -7,7 +7,7 @@ import pytest
 
 from heuncli.integration.runner import Recovered
 from heuncli.mechanism.model import GROUND
-from heuncli.response import Columns, columns
+from heuncli.response import Columns, blows, columns
 from heuncli.results import Array
 from heuncli.study.solve import Study
 from tests.shared.loops import loop
@@ -91,3 +91,53 @@ def test_columns_meet_the_closures_and_newton(kind: str, seed: int) -> None:
             held[column] += multiplier * row["f"] * ((joint.a == GROUND) * 1.0 - (joint.b == GROUND) * 1.0)
     largest = max(1.0, float(np.abs(rate).max()), float(np.abs(shares.multipliers).max(initial=0.0)))
     near(held + loads[:, :, 3:].sum(axis=1), rate.sum(axis=1), largest, ROUNDING)
+
+
+@pytest.mark.parametrize(("kind", "seed"), CASES)
+def test_causes_add_up(kind: str, seed: int) -> None:
+    """A column a cause: every load, velocities, drives, weight; each load's as alone, together all."""
+    study, found = recovered(kind, seed)
+    at = found.times, found.states
+    found, whole = study.setup.runner.recovered(*at), study.setup.runner.recovered(*at, causes=True)
+    assert whole.causes is not None
+    for name in ANSWERS:
+        np.testing.assert_array_equal(whole.bodies[name], found.bodies[name])  # with causes as without
+        columns_of_all = whole.causes.bodies[name][0]
+        largest = max(float(np.abs(columns_of_all).max()), 1.0)
+        near(columns_of_all.sum(axis=0), found.bodies[name][0], largest, 100 * ROUNDING)
+    for name in ("udot", "drive"):
+        own = whole.causes.freedoms[name][0].sum(axis=0)
+        largest = max(float(np.abs(whole.causes.freedoms[name]).max(initial=0.0)), 1.0)
+        near(own, found.freedoms[name][0], largest, 1e4 * ROUNDING)
+    multipliers = whole.causes.multipliers[0]
+    largest = max(float(np.abs(multipliers).max(initial=0.0)), 1.0)
+    near(multipliers.sum(axis=0), found.rows["multiplier"][0], largest, 1e4 * ROUNDING)
+    loads = load_columns(study, found)
+    alone = answers(study, found, loads, [False] * len(loads))
+    np.testing.assert_allclose(whole.causes.bodies["alpha"][0, : len(loads)], alone.bodies["alpha"], 1e-9, 1e-9)
+
+
+@pytest.mark.parametrize(("kind", "seed"), CASES)
+def test_a_blow_is_what_its_loads_would_accelerate_at_rest(kind: str, seed: int) -> None:
+    """Impulses jump as forces accelerate, without weight and velocities; rates that jump as drives that accelerate."""
+    study, found = recovered(kind, seed)
+    layout, workspace = study.setup.runner.layout, study.setup.runner.workspace
+    loads = np.random.default_rng(seed).uniform(-1.0, 1.0, (2, found.bodies.shape[1], 6))
+    jumps = np.zeros((2, len(layout.freedoms) + len(layout.rows)))
+    at = float(found.times[0]), found.states[0]
+    told = blows(workspace, *at, loads, jumps)
+    alone = columns(workspace, *at, loads, np.array([False, False]))
+    assert told.idle == 0
+    assert told.unmet.max() <= ROUNDING
+    for name in ANSWERS:
+        largest = max(float(np.abs(alone.bodies[name]).max()), 1.0)
+        near(told.columns.bodies[name], alone.bodies[name], largest, 100 * ROUNDING)
+    # the drives' accelerations as jumps, and no impulse: the share of the drives
+    driven = layout.tables["freedoms"]["driven"] > 0
+    whole = study.setup.runner.recovered(found.times, found.states, causes=True).causes
+    assert whole is not None
+    rates = np.concatenate([np.where(driven, found.freedoms["udot"][0], 0.0), np.zeros(len(layout.rows))])[None, :]
+    alone = blows(workspace, *at, np.zeros_like(loads[:1]), rates).columns
+    for name in ANSWERS:
+        largest = max(float(np.abs(whole.bodies[name]).max()), 1.0)
+        near(alone.bodies[name][0], whole.bodies[name][0, -2], largest, 100 * ROUNDING)
