@@ -86,6 +86,7 @@ class Results:
     coordinates: Block = field(default_factory=dict)
     foundation: Block = field(default_factory=dict)
     joints: Block = field(default_factory=dict)
+    stops: Block = field(default_factory=dict)
     sections: Block = field(default_factory=dict)
     forces: Block = field(default_factory=dict)
     energy: Block = field(default_factory=dict)

@@ -128,6 +128,8 @@ ROWS: tuple[Quantity, ...] = (
         scalar("axial", "N"), scalar("radial", "N"), scalar("tilting", "N·m")),
     *at("joints.JOINT", "of a rod, > 0 pulls", scalar("tension", "N")),
     *at("joints.JOINT", NOT_YET, words("shares")),
+    *at("stops.STOP", "of the stop ON `to`, along the coordinate that it limits; 0 where it is free",
+        scalar("force", "N"), scalar("moment", "N·m")),
     *at("sections.SECTION", "about which moments are taken", cut_vector("point", "m")),
     *at("sections.SECTION", "n, into the piece cut off, and e1; e2 = n × e1",
         vector("normal", "1"), vector("first_axis", "1")),
@@ -153,10 +155,12 @@ ROWS: tuple[Quantity, ...] = (
         scalar("kinetic", "J"), scalar("potential", "J"), scalar("work", "J")),
     *at("system_vector", "Heun's B (44)", vector("total", "N·m/s")),
     *at("system_vector.bodies", "each body's part in it", vector("BODY", "N·m/s")),
-    *at("impulses.NUMBER", NOT_YET, scalar("time", "s", timed=False), words("names")),
-    *at("impulses.NUMBER.bodies.BODY", NOT_YET,
+    *at("impulses.NUMBER", "its instant", scalar("time", "s", timed=False)),
+    *at("impulses.NUMBER", "what struck: blows, drives whose rate jumps, ropes that caught, stops", words("names")),
+    *at("impulses.NUMBER.bodies.BODY", "by which the body's velocities jump",
         vector("center_velocity_jump", "m/s"), vector("angular_velocity_jump", "rad/s")),
-    *at("impulses.NUMBER", NOT_YET, scalar("energy_jump", "J")),
+    *at("impulses.NUMBER", "kinetic energy before and after, and what was given to it",
+        scalar("energy_before", "J"), scalar("energy_after", "J"), scalar("energy_jump", "J")),
     *at("certain_sums.NUMBER", "the factor of each open component", words("terms")),
     *at("certain_sums.NUMBER", "of the open components in `terms`, each times its factor", scalar("value", "N | N·m")),
     *at("accuracy", "drift, gap and residual; nothing is claimed after the horizon (null: none)",
@@ -180,19 +184,25 @@ REPORT_OF = {
     "coordinates": "motion",
     "foundation": "foundation",
     "joints": "joints",
+    "stops": "joints",
     "sections": "sections",
     "forces": "forces",
     "energy": "energy",
     "system_vector": "motion",
 }
-REPORTS = tuple(dict.fromkeys(REPORT_OF.values()))
+BLOWS = "impulses"  # the report of what does not run over the instants
+REPORTS = (*dict.fromkeys(REPORT_OF.values()), BLOWS)
 # Magnitudes: never negative, with a kink at zero that their squares do not have.
 MAGNITUDES = frozenset({"radial", "tilting", "shear_torsion", "shear_mean", "shear_max", "mises", "utilisation"})
-AFTER_THE_RUN = frozenset({"impulses", "certain_sums", "accuracy"})  # of numbers that no spec foretells
-ESTIMATES = {"foundation": "foundation", "joints": "reactions", "sections": "sections", "energy": "energy"}
-NAMES = ("BODY", "POINT", "JOINT", "ELEMENT", "SECTION", "FORCE", "NUMBER")
+AFTER_THE_RUN = frozenset({"certain_sums", "accuracy"})  # of numbers that no spec foretells
+ESTIMATES = {
+    "foundation": "foundation", "joints": "reactions", "stops": "reactions", "sections": "sections", "energy": "energy",
+}  # fmt: skip
+NAMES = ("BODY", "POINT", "JOINT", "ELEMENT", "STOP", "SECTION", "FORCE", "NUMBER")
 AT_A_BLOW = {"N": "N·s", "N·m": "N·m·s"}  # units of the loads in `impulses`
-STRUCK = ("foundation", "joints", "sections")  # what a blow has besides its own quantities, as at one instant
+# what a blow has besides its own quantities, as at one instant; stresses are no matter of impulses
+STRUCK = ("foundation", "joints", "stops", "sections", "certain_sums")
+UNSTRUCK = "sections.SECTION.stress."
 
 Node: TypeAlias = "dict[str, Node | Quantity]"
 
@@ -204,7 +214,7 @@ def _tree() -> Node:
         _plant(tree, row.path.split("."), row)
     for row in ROWS:
         first, *_ = row.path.split(".")
-        if first in STRUCK:
+        if first in STRUCK and not row.path.startswith(UNSTRUCK):
             units = tuple(AT_A_BLOW.get(unit, unit) for unit in row.units)
             path = f"impulses.NUMBER.{row.path}"
             _plant(tree, path.split("."), row._replace(path=path, units=units))
@@ -249,7 +259,14 @@ def kind_of_error(kind: str, name: str, number: str) -> str:
         return "axis"
     if kind == "forces":
         return "motion" if number in ("length", "rate") else "forces"
+    if number.startswith("energy_"):
+        return "energy"
     return ESTIMATES.get(kind, "motion")
+
+
+def report_of(block: str) -> str | None:
+    """The report to which a block of the results belongs; None where it always stays."""
+    return block if block == BLOWS else REPORT_OF.get(block)
 
 
 def leading_key(known: Collection[str], path: Sequence[str]) -> tuple[str | None, list[str]]:

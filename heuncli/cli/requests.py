@@ -39,7 +39,11 @@ class Run(NamedTuple):
     output: Annotated[str | None, OUTPUT] = None
     only: Annotated[
         str | None,
-        Option(("--only",), "Only these: motion, points, foundation, joints, sections, forces, energy.", "REPORT,..."),
+        Option(
+            ("--only",),
+            "Only these: motion, points, foundation, joints, sections, forces, energy, impulses.",
+            "REPORT,...",
+        ),
     ] = None
     set: Annotated[tuple[str, ...], SET] = ()
     at: Annotated[str | None, Option(("--at",), "Show these instants instead of the extremes.", "T,...")] = None

@@ -128,7 +128,10 @@ def _writer(request: Run) -> Callable[[list[Table]], list[str]]:
 
 def _strict(results: Results, warnings: list[str]) -> int:
     """1 if there are warnings or open reactions, and why."""
-    loads = (results.joints, results.sections, results.foundation.get("supports", {}))
+    loads = [results.joints, results.sections, results.foundation.get("supports", {})]
+    for struck in results.impulses:
+        supports = struck.get("foundation", {}).get("supports", {})
+        loads += [struck.get("joints", {}), struck.get("sections", {}), supports]
     unsure = [name for block in loads for name, part in block.items() if part.get("open") or _has_open(part)]
     if warnings:
         say(f"heun: --strict: {len(warnings)} warning{'s' * (len(warnings) > 1)}")

@@ -12,7 +12,7 @@ import numpy as np
 
 from heuncli.report.labels import Labels
 from heuncli.report.numbers import OPEN, OPEN_NOTE, Certainty, Style, kind_of, largest, write
-from heuncli.report.plans import FOUNDATION, MASS_EFFECT, Plan
+from heuncli.report.plans import MASS_EFFECT, Plan
 from heuncli.report.quantities import Series
 from heuncli.results import Array, Results
 from heuncli.results_schema import MAGNITUDES, XYZ
@@ -31,6 +31,8 @@ SYMBOLS = {
     "center_acceleration": "a",
     "angular_velocity": "ω",
     "angular_acceleration": "α",
+    "center_velocity_jump": "Δv",
+    "angular_velocity_jump": "Δω",
 }
 # Quantities that share their decimals with another: noise in one shows against the others.
 FAMILIES = {
@@ -128,7 +130,7 @@ def build(plan: Plan, results: Results, labels: Labels, series: Iterable[Series]
     for item in series:
         if item.kind != plan.kind or item.quantity not in plan.quantities or plan.only not in (None, item.name):
             continue
-        if plan is FOUNDATION and item.name == MASS_EFFECT.only:
+        if plan.of_foundation and item.name == MASS_EFFECT.only:
             continue
         if item.name.split(".")[0] not in runs:
             named.setdefault(item.name.removesuffix(".stress"), {})[item.quantity] = item
@@ -138,7 +140,7 @@ def build(plan: Plan, results: Results, labels: Labels, series: Iterable[Series]
         label = _group_name(plan, name)
         groups.append(Group(label, plan.note(label, labels), tuple(rows), whole=not name))
     notes: tuple[str, ...] = ()
-    if plan is FOUNDATION:
+    if plan.of_foundation:
         groups, notes = _supports(groups, results)
     if plan.kind == "joints":
         notes = _chosen(results)
@@ -165,7 +167,7 @@ def rows_of(series: Series) -> list[Row]:
 
 
 def _group_name(plan: Plan, name: str) -> str:
-    if plan is not FOUNDATION:
+    if not plan.of_foundation:
         return "" if plan.only else name
     return name.replace("supports.", "support ", 1).replace("elements.", "element ", 1) or "total"
 

@@ -6,7 +6,7 @@ Numbers go through `repr` or the C encoder of json in whole arrays: well below 1
 from __future__ import annotations
 
 import json
-from collections.abc import Iterable, Iterator
+from collections.abc import Iterable, Iterator, Sequence
 from dataclasses import fields
 from typing import Any
 
@@ -16,7 +16,7 @@ from heuncli.errors import LimitError, Problem
 from heuncli.report.labels import Labels
 from heuncli.report.quantities import Series, walk, walk_impulse
 from heuncli.results import Results
-from heuncli.results_schema import row_of
+from heuncli.results_schema import AT_A_BLOW, BLOWS, row_of
 
 FORMAT = 1
 MOST_NUMBERS = 200_000_000  # about 4 GB of text
@@ -43,13 +43,23 @@ def to_csv(results: Results, labels: Labels) -> str:
     for number, block in enumerate(results.impulses):
         for series in walk_impulse(block, labels):
             name = ".".join(part for part in (str(number), series.kind, series.name) if part)
-            lines += _lines(series, "impulses", name, [repr(float(block["time"]))])
-    for number, certain in enumerate(results.certain_sums):
-        of_moments = not any(".force." in term for term in certain["terms"])
-        unit = CERTAIN_SUM.unit(turning=of_moments)
-        series = Series("certain_sums", str(number), "value", unit, ("",), np.asarray(certain["value"])[:, None])
-        lines += _lines(series, series.kind, series.name, instants)
+            lines += _lines(series, BLOWS, name, [repr(float(block["time"]))])
+        for name, series in _sums(block.get("certain_sums", ())):
+            unit = AT_A_BLOW[series.unit]
+            own = f"{number}.certain_sums.{name}"
+            lines += _lines(series._replace(unit=unit), BLOWS, own, [repr(float(block["time"]))])
+    for name, series in _sums(results.certain_sums):
+        lines += _lines(series, series.kind, name, instants)
     return "".join(lines)
+
+
+def _sums(sums: Sequence[Any]) -> Iterator[tuple[str, Series]]:
+    """The certain sums by their numbers."""
+    for number, certain in enumerate(sums):
+        of_moments = not any(".force." in term for term in certain["terms"])
+        values = np.atleast_1d(np.asarray(certain["value"], dtype=np.float64))[:, None]
+        unit = CERTAIN_SUM.unit(turning=of_moments)
+        yield str(number), Series("certain_sums", str(number), "value", unit, ("",), values)
 
 
 def present(results: Results) -> dict[str, Any]:

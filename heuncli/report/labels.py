@@ -37,6 +37,15 @@ class ForceInfo(NamedTuple):
     turning: bool | None = None
 
 
+class StopInfo(NamedTuple):
+    """The coordinate that a stop limits, as `joint.coordinate`, its limits [rad] or [m], and its restitution."""
+
+    coordinate: str
+    low: float | None
+    high: float | None
+    restitution: float = 0.0
+
+
 class SectionInfo(NamedTuple):
     """The body cut, the first axis and the point of the moments, in words."""
 
@@ -55,6 +64,7 @@ class Labels:
     joints: Mapping[str, JointInfo] = NONE
     forces: Mapping[str, ForceInfo] = NONE
     sections: Mapping[str, SectionInfo] = NONE
+    stops: Mapping[str, StopInfo] = NONE
     about: str | None = None
 
     def turns(self, block: str, name: str) -> bool:
@@ -84,7 +94,11 @@ def labels_of(spec: Spec) -> Labels:
     sections = {name: _section(section) for name, section in spec.sections.items()}
     about = spec.foundation.about or (0.0, 0.0, 0.0)
     named = next((name for name, point in spec.ground.points.items() if tuple(point) == tuple(about)), None)
-    return Labels(joints, forces, sections, named)
+    stops = {
+        name: StopInfo(f"{stop.joint}.{stop.quantity}", stop.low, stop.high, stop.restitution)
+        for name, stop in spec.stops.items()
+    }
+    return Labels(joints, forces, sections, stops, named)
 
 
 def _force(force: Force) -> ForceInfo:

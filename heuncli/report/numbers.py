@@ -13,13 +13,14 @@ from __future__ import annotations
 
 import math
 from collections.abc import Iterable, Mapping, Sequence
+from itertools import chain
 from typing import Literal, NamedTuple
 
 import numpy as np
 
 from heuncli import tolerances
 from heuncli.report.labels import Labels
-from heuncli.report.quantities import Series, walk
+from heuncli.report.quantities import Series, walk, walk_impulse
 from heuncli.results import Array, Estimate, Magnitudes, Results
 from heuncli.results_schema import kind_of_error
 
@@ -96,7 +97,8 @@ class Certainty(NamedTuple):
 def certainty(results: Results, labels: Labels, of: Magnitudes) -> Certainty:
     """The errors of a run: as its check run found them, else from its estimates and the largest of each kind."""
     scales: dict[tuple[str, str], float] = {}
-    for series in walk(results, labels):
+    struck = (series for impulse in results.impulses for series in walk_impulse(impulse, labels))
+    for series in chain(walk(results, labels), struck):
         key = (kind_of(series), series.unit)
         scales[key] = max(scales.get(key, 0.0), largest(series.values))
     errors = {key: _relative(results, KIND_OF.get(key[0], key[0])) * scale for key, scale in scales.items()}
@@ -127,8 +129,11 @@ def kind_of(series: Series) -> str:
 
 def _of_wrench(kind: str, relative: float, scales: Scales, size: float) -> dict[tuple[str, str], float]:
     """Errors of one kind of loads; against a moment stands a force on the scene's size as lever."""
-    own = max(scales.get((kind, "N"), 0.0), scales.get((kind, "N·m"), 0.0) / size)
-    return {(kind, "N"): relative * own, (kind, "N·m"): relative * own * size}
+    errors: dict[tuple[str, str], float] = {}
+    for force, moment in (("N", "N·m"), ("N·s", "N·m·s")):
+        own = max(scales.get((kind, force), 0.0), scales.get((kind, moment), 0.0) / size)
+        errors |= {(kind, force): relative * own, (kind, moment): relative * own * size}
+    return errors
 
 
 def with_axis(certain: Certainty, results: Results, of: Magnitudes) -> Certainty:
@@ -149,7 +154,9 @@ def _rounding(of: Magnitudes) -> dict[str, float]:
     """What is lost by rounding, by unit; far from the origin places, and so levers, have fewer digits."""
     lost = {unit: tolerances.WRITTEN * scale for unit, scale in of.by_unit.items()}
     far = tolerances.GAP_ROUNDING * of.reach
-    return lost | {"m": max(lost["m"], far), "N·m": max(lost["N·m"], far * of.by_unit["N"])}
+    levers = {"N·m": "N", "N·m·s": "N·s"}
+    far_moments = {unit: max(lost[unit], far * of.by_unit[on]) for unit, on in levers.items() if unit in lost}
+    return lost | {"m": max(lost["m"], far)} | far_moments
 
 
 def _relative(results: Results, kind: str) -> float:

@@ -6,7 +6,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Sequence
+from collections.abc import Mapping, Sequence
 from dataclasses import replace
 from typing import Any, NamedTuple
 
@@ -17,7 +17,7 @@ from heuncli.report.blocks import Block, Row, build
 from heuncli.report.labels import Labels
 from heuncli.report.numbers import Certainty, certainty, with_axis
 from heuncli.report.plans import PLANS
-from heuncli.report.quantities import Series, walk, walk_impulse
+from heuncli.report.quantities import Series, walk
 from heuncli.report.sums import sums_table
 from heuncli.report.table import Table
 from heuncli.results import Array, CertainSum, Extremes, Magnitudes, Mask, Place, Results
@@ -30,7 +30,8 @@ EXPORT_DEFAULT = frozenset(REPORTS) - {"points"}
 class Page(NamedTuple):
     """The tables of a run: blocks and runs of cuts up to the horizon, before they are laid out.
 
-    of: what its numbers are summed from; beyond: the last instant alone, where the run ends beyond its horizon.
+    of: what its numbers are summed from; beyond: the last instant alone, where the run ends beyond its horizon; struck:
+    of each blow the extremes along its runs of cuts.
     """
 
     results: Results
@@ -38,6 +39,7 @@ class Page(NamedTuple):
     certain: Certainty
     of: Magnitudes
     beyond: Results | None = None
+    struck: Sequence[Mapping[str, Any]] = ()
 
     def columns(self, results: Results) -> Array:
         """What is searched, (n_t, n): all rows of all blocks, magnitudes squared."""
@@ -104,7 +106,7 @@ class Page(NamedTuple):
                 tables.append(runs.extremes_table(run, results.time, *self._of_run(searched, k), self.certain))
             made = runs.instants_tables(run, results.time, horizon, self.certain, every=every_cut)
             tables += [made[0]._replace(heading=""), *made[1:]] if searched is not None else made
-        return [*tables, *self._ending()]
+        return [*tables, *self._ending(every_cut)]
 
     def _of_run(self, searched: Extremes, k: int) -> tuple[Extremes, tuple[tuple[Place, Place], ...]]:
         """The extremes of the resultants of a run, and their places."""
@@ -125,22 +127,16 @@ class Page(NamedTuple):
     def _lasting(self, results: Results) -> list[Block]:
         return _blocks(results, self.labels, lasting=True)
 
-    def _ending(self) -> list[Table]:
+    def _ending(self, every: bool = False) -> list[Table]:
         sums = sums_table(self.results, self.certain, self.beyond)
-        return [*self._impulses(), *([sums] if sums else [])]
+        return [*([sums] if sums else []), *self._impulses(every)]
 
-    def _impulses(self) -> list[Table]:
-        tables: list[Table] = []
-        for impulse in self.results.impulses:
-            series = list(walk_impulse(impulse, self.labels))
-            for plan in PLANS:
-                block = build(plan, self.results, self.labels, series)
-                if block is not None:
-                    heading = f"IMPULSE at t = {float(impulse['time']):.6g} s  {block.heading}"
-                    named = block._replace(heading=heading, notes=())
-                    time, horizon = np.array([float(impulse["time"])]), self.results.accuracy.get("horizon")
-                    tables += instants.instants_tables(named, time, horizon, self.certain)
-        return tables
+    def _impulses(self, every: bool) -> list[Table]:
+        if not self.results.impulses:
+            return []
+        from heuncli.report.impulses import Blows, impulse_tables  # where something strikes
+
+        return impulse_tables(Blows(self.results, self.labels, self.certain, self.struck), every=every)
 
 
 def page_of(results: Results, labels: Labels, of: Magnitudes) -> Page:

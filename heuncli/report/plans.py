@@ -36,6 +36,11 @@ class Plan(NamedTuple):
     lasting: bool = True
     missing: tuple[str, str] = (OPEN, OPEN_NOTE)
 
+    @property
+    def of_foundation(self) -> bool:
+        """Whether it shows the foundation's total with its supports and elements."""
+        return self.kind == "foundation" and self.only is None
+
 
 def _about(results: Results, labels: Labels) -> str:
     about = np.asarray(results.foundation.get("about", (0.0, 0.0, 0.0))) + 0.0
@@ -53,6 +58,16 @@ def _force_note(name: str, labels: Labels) -> str:
     return (f"{info.type} on {info.joint}" if info.joint else info.type) if info else ""
 
 
+def _stop_note(name: str, labels: Labels) -> str:
+    info = labels.stops.get(name)
+    if info is None:
+        return ""
+    unit = "rad" if info.coordinate.endswith(".angle") else "m"
+    limits = (("from", info.low), ("to", info.high))
+    told = [f"{word} {limit:.6g}" for word, limit in limits if limit is not None]
+    return f"{info.coordinate} {' '.join(told)} {unit}"
+
+
 def _section_note(name: str, labels: Labels) -> str:
     info = labels.sections.get(name)
     return f"{info.body}; e1 = {info.first_axis}; moments about {info.about}" if info else ""
@@ -60,6 +75,8 @@ def _section_note(name: str, labels: Labels) -> str:
 
 def _foundation_note(name: str, labels: Labels) -> str:
     kind, _, own = name.partition(" ")
+    if kind == "element" and own in labels.stops:
+        return f"stop, {_stop_note(own, labels)}"
     notes = {"support": _joint_note, "element": _force_note}
     return notes[kind](own, labels) if kind in notes else ""
 
@@ -131,6 +148,14 @@ PLANS = (
         _joint_note,
     ),
     Plan(
+        "joints",
+        "stops",
+        "stop",
+        ("force", "moment"),
+        lambda results, labels: 'STOPS  force or moment ON "to", along the coordinate that is limited; 0 where free',
+        _stop_note,
+    ),
+    Plan(
         "sections",
         "sections",
         "section",
@@ -152,5 +177,70 @@ PLANS = (
         "",
         ("kinetic", "potential", "work"),
         lambda results, labels: "ENERGY  potential from the world's origin; kinetic + potential − work is constant",
+    ),
+)
+# What a blow does, each table under its instant and what struck.
+IMPULSES = (
+    Plan(
+        "bodies",
+        "bodies",
+        "body",
+        ("center_velocity_jump", "angular_velocity_jump"),
+        lambda results, labels: "BODIES  jumps of the centre's velocity and of the angular velocity, world axes",
+    ),
+    Plan(
+        "foundation",
+        "foundation",
+        "",
+        ("force", "moment"),
+        lambda results, labels: (
+            f"FOUNDATION  impulse and its moment ON the ground, world axes, moment about {_about(results, labels)}"
+        ),
+        _foundation_note,
+    ),
+    Plan(
+        "foundation",
+        "foundation",
+        "",
+        ("point", "direction", "pitch"),
+        lambda results, labels: "CENTRAL AXIS  of the foundation's impulse: its point nearest the moment's, world axes",
+        only="axis",
+        lasting=False,
+        missing=("none", "none: there is no impulse, so no axis"),
+    ),
+    Plan(
+        "joints",
+        "joints",
+        "joint",
+        ("force", "moment", "axial", "radial", "tilting", "tension", "drive"),
+        lambda results, labels: (
+            'JOINTS  impulse that "from" exerts ON "to" (drive apart), world axes, moment about the "to" point'
+        ),
+        _joint_note,
+    ),
+    Plan(
+        "stops",
+        "stops",
+        "stop",
+        ("force", "moment"),
+        lambda results, labels: 'STOPS  impulse ON "to", along the coordinate that is limited',
+        _stop_note,
+    ),
+    Plan(
+        "sections",
+        "sections",
+        "section",
+        ("N", "Q1", "Q2", "T", "M1", "M2"),
+        lambda results, labels: (
+            "SECTIONS  impulse of the piece beyond the cut ON the part before it; N > 0 tension; e2 = n × e1"
+        ),
+        _section_note,
+    ),
+    Plan(
+        "energy",
+        "",
+        "",
+        ("energy_before", "energy_after", "energy_jump"),
+        lambda results, labels: "ENERGY  kinetic, before and after the blow",
     ),
 )

@@ -49,7 +49,7 @@ def walk_impulse(impulse: Block, labels: Labels) -> Iterator[Series]:
     for kind, part in impulse.items():
         if isinstance(part, dict):
             yield from _Walk(kind, labels, at_a_blow=True).block((), _node(node, kind), part)
-        elif kind not in ("time", "names"):
+        elif kind not in ("time", "names", "certain_sums"):
             yield from _Walk("", labels, at_a_blow=True).block((), node, {kind: part})
 
 

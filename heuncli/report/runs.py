@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Sequence
+from collections.abc import Mapping, Sequence
 from typing import NamedTuple
 
 import numpy as np
@@ -31,17 +31,19 @@ MOST_CUTS = 25  # of a diagram: evenly spaced cuts, with all jumps and extremes
 
 
 class Run(NamedTuple):
-    """One run of cuts: positions along the body, sides, and the resultants (6, n_t, n_cuts) as in RESULTANTS."""
+    """One run of cuts: positions along the body, sides, and its resultants (6, n_t, n_cuts), with their units."""
 
     name: str
     heading: str
     s: Array
     side: tuple[str | None, ...]
     values: Array
+    resultants: tuple[tuple[str, str], ...] = RESULTANTS
 
 
-def runs_of(results: Results, labels: Labels) -> list[Run]:
-    """The runs of cuts among the sections."""
+def runs_of(results: Results, labels: Labels, units: Mapping[str, str] | None = None) -> list[Run]:
+    """The runs of cuts among the sections; units: those that stand for others, of what is no force but an impulse."""
+    resultants = tuple((name, (units or {}).get(unit, unit)) for name, unit in RESULTANTS)
     runs = []
     for name, section in results.sections.items():
         if "s" not in section:
@@ -50,11 +52,11 @@ def runs_of(results: Results, labels: Labels) -> list[Run]:
         of = f"{name} {info.body}" if info else name
         axis = f"e1 = {info.first_axis}, e2 = n × e1" if info else "e2 = n × e1"
         about = info.about if info else "the cut's point"
-        whose = "the piece beyond the cut ON the part before it; N > 0 tension"
+        whose = f"{'impulse of ' * bool(units)}the piece beyond the cut ON the part before it; N > 0 tension"
         heading = f"SECTION {of}  {whose}; {axis}; moments about {about}"
         values = np.stack([section[quantity] for quantity, _ in RESULTANTS])
         side = tuple(section.get("side") or [None] * len(section["s"]))
-        runs.append(Run(name, heading, np.asarray(section["s"], dtype=np.float64), side, values))
+        runs.append(Run(name, heading, np.asarray(section["s"], dtype=np.float64), side, values, resultants))
     return runs
 
 
@@ -77,7 +79,7 @@ def extremes_table(
     styles = _styles(run, certain, extremes)
     span = float(np.ptp(times))
     rows: list[tuple[str, ...]] = []
-    for i, (label, unit) in enumerate(RESULTANTS):
+    for i, (label, unit) in enumerate(run.resultants):
         low, high = write([float(extremes.low[i]), float(extremes.high[i])], styles[unit])
         if low == high:
             rows.append((label, unit, low, "", "", high, "", ""))
@@ -141,7 +143,7 @@ def _diagram(
     """A line a cut; `values` is (6, n_cuts). beyond: given where the instant is beyond the horizon."""
     positions = _positions(run.s)
     texts = []
-    for (_, unit), row in zip(RESULTANTS, values[:, kept].tolist(), strict=True):
+    for (_, unit), row in zip(run.resultants, values[:, kept].tolist(), strict=True):
         own = write(row, styles[unit])
         if beyond is not None:
             own = [beyond_horizon(value, unit, beyond, text) for value, text in zip(row, own, strict=True)]
@@ -155,15 +157,15 @@ def _diagram(
     shown = {text for column in texts for text in column}
     below = [note for note in notes if note]
     below += [note for word, note in ((OPEN, OPEN_NOTE), (UNKNOWN, UNKNOWN_NOTE)) if word in shown]
-    return Table("", (*heads, *(Column(f"{label} [{unit}]") for label, unit in RESULTANTS)), rows, tuple(below))
+    return Table("", (*heads, *(Column(f"{label} [{unit}]") for label, unit in run.resultants)), rows, tuple(below))
 
 
 def _styles(run: Run, certain: Certainty, extremes: Extremes | None = None) -> dict[str, Style]:
     """The style of forces and that of moments, by all that is shown of them."""
-    bounds = np.zeros((2, len(RESULTANTS))) if extremes is None else np.stack([extremes.low, extremes.high])
+    bounds = np.zeros((2, len(run.resultants))) if extremes is None else np.stack([extremes.low, extremes.high])
     styles = {}
-    for unit in ("N", "N·m"):
-        own = [i for i, (_, other) in enumerate(RESULTANTS) if other == unit]
+    for unit in dict.fromkeys(unit for _, unit in run.resultants):
+        own = [i for i, (_, other) in enumerate(run.resultants) if other == unit]
         scale = max(largest(run.values[own]), largest(bounds[:, own]))
         styles[unit] = certain.style("sections", unit, scale)
     return styles

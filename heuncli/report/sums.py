@@ -17,15 +17,17 @@ TURNS = "(t): a factor that turns with the pose, as at the first instant; --form
 FORCES = frozenset({"force", "axial", "radial", "tension", "N", "Q1", "Q2"})
 
 
-def sums_table(results: Results, certain: Certainty, beyond: Results | None = None) -> Table | None:
+def sums_table(
+    results: Results, certain: Certainty, beyond: Results | None = None, unit: str = "N"
+) -> Table | None:
     """The sums that are certain although their terms are open; None where there are none.
 
-    beyond: the last instant, where the run ends beyond its horizon.
+    beyond: the last instant, where the run ends beyond its horizon; unit: N·s of impulses.
     """
     if not results.certain_sums:
         return None
     ends = [None] * len(results.certain_sums) if beyond is None else beyond.certain_sums
-    told = [_line(block, certain, end) for block, end in zip(results.certain_sums, ends, strict=True)]
+    told = [_line(block, certain, end, unit) for block, end in zip(results.certain_sums, ends, strict=True)]
     lines = [line for line in told if line is not None]
     left = len(results.certain_sums) - len(lines)
     rest = f"{left} more in --format json (moments, or more than {MOST_TERMS} terms)" if left else ""
@@ -33,24 +35,25 @@ def sums_table(results: Results, certain: Certainty, beyond: Results | None = No
     return Table("CERTAIN SUMS  of components that redundancy leaves open", notes=tuple(notes))
 
 
-def _line(block: CertainSum, certain: Certainty, beyond: CertainSum | None) -> str | None:
+def _line(block: CertainSum, certain: Certainty, beyond: CertainSum | None, unit: str) -> str | None:
     terms = {path: np.atleast_1d(np.asarray(factor, dtype=np.float64)) for path, factor in block["terms"].items()}
     if len(terms) > MOST_TERMS or not all(_is_force(path) for path in terms):
         return None
     values = np.asarray(block["value"], dtype=np.float64)
     scale = largest(values)
     numbers = [values[0], values[-1], np.nanmin(values), np.nanmax(values)]
-    texts = write(numbers, certain.style("reactions", "N", scale))
+    texts = write(numbers, certain.style("reactions", unit, scale))
     if beyond is not None:
-        texts[1] = beyond_horizon(beyond["value"][-1], "N", certain, texts[1])
+        texts[1] = beyond_horizon(beyond["value"][-1], unit, certain, texts[1])
     if texts == ["0"] * 4 and _opposite(terms):
         return " = ".join(map(label, terms)) + "; the size is open"
     left = _sum(terms)
     if len(set(texts)) == 1:
-        value = "0" if texts[0] == "0" else f"{texts[0]} N"
+        value = "0" if texts[0] == "0" else f"{texts[0]} {unit}"
         return f"{left} = {value}; the split is open"
     first, last, low, high = texts
-    return f"{left} = {first} N first, {last} N last, {low} to {high} N in the samples; the split is open"
+    course = f"{first} {unit} first, {last} {unit} last, {low} to {high} {unit} in the samples"
+    return f"{left} = {course}; the split is open"
 
 
 def label(path: str) -> str:

@@ -57,6 +57,7 @@ from heuncli.spec.fields import (
 )
 
 Frame = Literal["world", "body"]
+Report = Literal["motion", "points", "foundation", "joints", "sections", "forces", "energy", "impulses", "shares"]
 Points = dict[str, Position]
 
 
@@ -462,9 +463,7 @@ class Head(Model):
     title: str = ""
     gravity: tuple[Acceleration, Acceleration, Acceleration] = (0.0, 0.0, 0.0)
     space: Literal["auto", "spatial", "planar"] = "auto"
-    report: (
-        list[Literal["motion", "points", "foundation", "joints", "sections", "forces", "energy", "shares"]] | None
-    ) = None
+    report: list[Report] | None = None
 
 
 ENTRIES: dict[str, type[Model] | Mapping[str, type[Model]]] = {  # blocks of named entries: their models, or by type

@@ -7,11 +7,11 @@ from typing import Literal, NamedTuple
 
 import numpy as np
 
-from heuncli import tolerances
+from heuncli import results_schema, tolerances
 from heuncli.errors import HeunError, Problem
 from heuncli.results import Array, Place, Results
-from heuncli.results_paths import find
-from heuncli.results_schema import CUT, MAGNITUDES, REPORT_OF, kind_of_error, quantity
+from heuncli.results_paths import Numbers, find
+from heuncli.results_schema import BLOWS, CUT, MAGNITUDES, kind_of_error, quantity
 from heuncli.study.extremes import Searched
 from heuncli.study.solve import Study
 
@@ -42,7 +42,7 @@ class Measure(NamedTuple):
 
 def report_of(path: str) -> frozenset[str] | None:
     """Which report a path needs; None where its first word does not say."""
-    report = REPORT_OF.get(path.split(".")[0])
+    report = results_schema.report_of(path.split(".")[0])
     return frozenset({report}) if report else None
 
 
@@ -50,6 +50,8 @@ def value(asked: Measure, study: Study) -> Peak:
     """The number, its instant and place if it has them; nan is open. Raises NotOneNumber."""
     results, path = study.results, asked.path
     there = find(results, path)
+    if there.keys[0] == BLOWS:
+        return struck(asked, there, study)
     if not there.timed:
         if asked.how:
             raise NotOneNumber(f"{path} has no instants: give the path alone")
@@ -72,6 +74,8 @@ def lost_from(asked: Measure, study: Study) -> float | None:
     """The horizon, where the number that is asked for lies beyond it, or may: that of a run that goes on beyond it."""
     results = study.results
     horizon, there = results.accuracy.get("horizon"), find(results, asked.path)
+    if horizon is not None and there.keys[0] == BLOWS:
+        return float(horizon) if time_of_blow(results, there) >= horizon else None
     if horizon is None or asked.path.split(".")[0] == "time" or not (there.timed or there.instant is not None):
         return None
     last = results.time[0 if asked.how == "first" else -1]
@@ -80,6 +84,23 @@ def lost_from(asked: Measure, study: Study) -> float | None:
     elif asked.how == "at":
         last = instant_of(asked, results.time)
     return float(horizon) if last >= horizon else None
+
+
+def struck(asked: Measure, there: Numbers, study: Study) -> Peak:
+    """A number of one blow, with its instant; of a run of cuts the largest. A vector counts by its magnitude."""
+    path, at = asked.path, time_of_blow(study.results, there)
+    if asked.how in ("first", "final", "at"):
+        raise NotOneNumber(f"{path} has one instant, that of the blow")
+    values = np.sqrt(np.sum(np.square(there.values), axis=-1)) if there.of_vectors else there.values
+    if values.size > 1 and not asked.how:
+        raise NotOneNumber(f"{path} is {values.size} numbers: say which, as .0, or max, min, max abs")
+    result = float(np.abs(values).max() if asked.how == "abs" else values.min() if asked.how == "min" else values.max())
+    return Peak(result + 0.0, at)
+
+
+def time_of_blow(results: Results, there: Numbers) -> float:
+    """When the blow was whose number it is [s]."""
+    return float(results.impulses[int(there.keys[1])]["time"])
 
 
 class Peak(NamedTuple):

@@ -278,7 +278,7 @@ def test_a_blow_has_tables_of_its_own_in_newton_seconds() -> None:
     }
     study = FakeStudy(T, {"impulses": [blow]})
     text = extremes_page(study)
-    assert "IMPULSE at t = 0.5 s  JOINTS" in text
+    assert "IMPULSE at t = 0.5 s (blow)  JOINTS" in text
     part = text[text.index("IMPULSE at") :]
     assert "[N·s]" in part
     assert "[N]" not in part

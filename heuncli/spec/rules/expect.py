@@ -55,9 +55,10 @@ def expect_form(draft: DraftDocument) -> Iterator[Violation]:
         if RAGGED in lengths_of(item.is_):
             yield Violation((*path, "is"), "lists of different lengths", "[1, 2, 3], or [[1, 0], [0, 1]]")
         if quantity is not None:
-            if item.peak is not None and not quantity.timed:
-                hint = "leave peak out"
-                yield Violation((*path, "peak"), f"{item.of} does not run over the instants", hint, key=True)
+            for key in ("at", "peak") if not quantity.timed else ():
+                if getattr(item, key) is not None:
+                    message = f"{item.of} does not run over the instants"
+                    yield Violation((*path, key), message, f"leave {key} out", key=True)
             yield from dimensions((*path, "is"), item.is_, quantity.dimensions)
             yield from dimensions((*path, "abs"), item.abs, quantity.dimensions)
 

@@ -7,6 +7,7 @@ from typing import NamedTuple
 from heuncli.expressions import units as u
 from heuncli.results_schema import (
     AFTER_THE_RUN,
+    BLOWS,
     INSTANT,
     TREE,
     Node,
@@ -19,6 +20,8 @@ from heuncli.results_schema import (
 from heuncli.spec.names import GROUND, Names
 from heuncli.spec.rules.registry import DraftDocument
 from heuncli.spec.rules.sections import is_run
+
+NUMBER = "NUMBER"
 
 
 class Outcome(NamedTuple):
@@ -49,14 +52,16 @@ def outcome(path: str, draft: DraftDocument) -> Outcome | UnknownWord | None:
     reached = follow(path.split("."), draft.names)
     if not isinstance(reached, Reached):
         return reached
-    run = False
-    if reached.keys[0] == "sections":
-        section = draft.document.sections.get(reached.keys[1])
+    run, at_a_blow = False, reached.keys[0] == BLOWS
+    keys = reached.keys[2:] if at_a_blow else reached.keys
+    if keys[0] == "sections":
+        section = draft.document.sections.get(keys[1])
         if section is None:
             return None
         run = is_run(section)
     dimensions = tuple(u.parse_unit(unit)[1] for unit in reached.quantity.units)
-    return part(Outcome(dimensions, reached.quantity.axes(run), reached.quantity.timed), reached.rest)
+    timed = reached.quantity.timed and not at_a_blow
+    return part(Outcome(dimensions, reached.quantity.axes(run), timed), reached.rest)
 
 
 def follow(path: list[str], names: Names) -> Reached | UnknownWord | None:
@@ -67,9 +72,11 @@ def follow(path: list[str], names: Names) -> Reached | UnknownWord | None:
     while isinstance(node, dict):
         known = keys_in(node, names)
         key, behind = leading_key(known, rest)
+        if NUMBER in node and rest[:1] and rest[0].isdecimal():  # how many there are, only the run tells
+            key, behind = rest[0], rest[1:]
         if key is None:
             return UnknownWord(unknown_key(known, rest) if rest else "", known)
-        if key in AFTER_THE_RUN and not keys:
+        if key in AFTER_THE_RUN:
             return None
         node, rest = below(node, key), behind
         keys.append(key)
@@ -89,13 +96,17 @@ def named(word: str, names: Names) -> list[str]:
             return [f"{body}.{point}" for body, points in names.points.items() if body != GROUND for point in points]
         case "ELEMENT":
             shared = [f"drives.{name}" for name in entries["drives"] if name in entries["forces"]]
-            return [*entries["forces"], *entries["drives"], *shared]
+            return [*entries["forces"], *entries["drives"], *entries["stops"], *shared]
         case "BODY":
             return list(entries["bodies"])
         case "JOINT":
             return list(entries["joints"])
         case "SECTION":
             return list(entries["sections"])
+        case "STOP":
+            return list(entries["stops"])
+        case "NUMBER":
+            return ["0", "1", "2"]
         case "FORCE":
             return list(entries["forces"])
     return [word]

@@ -1,0 +1,129 @@
+"""Blows as tables of their own, in newton seconds: what struck when, and of each the jumps and the impulses it made.
+
+An impulse block has the shape of the time blocks without the axis of instants: with that axis put back, it is laid out
+as one instant. Of many blows all are listed, and those with the largest impulses shown.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Mapping, Sequence
+from dataclasses import replace
+from typing import Any, NamedTuple
+
+import numpy as np
+
+from heuncli.report import instants, runs
+from heuncli.report.blocks import build
+from heuncli.report.labels import Labels
+from heuncli.report.numbers import UNKNOWN, Certainty, largest, write, write_times
+from heuncli.report.plans import IMPULSES
+from heuncli.report.quantities import walk_impulse
+from heuncli.report.sums import sums_table
+from heuncli.report.table import Column, Table
+from heuncli.results import Array, Block, CertainSum, Extremes, Indices, Place, Results
+from heuncli.results_schema import AT_A_BLOW, STRUCK, quantity
+
+MOST_SHOWN = 3  # blows with tables of their own, unless all are asked for
+UNIT = "N·s"
+ENERGIES = ("energy_before", "energy_after", "energy_jump")
+Along = tuple[Extremes, tuple[tuple[Place, Place], ...]]  # of the resultants of a run, with their places
+
+
+class Blows(NamedTuple):
+    """The blows of a run and what is known of its numbers; along: of each the extremes along its runs of cuts."""
+
+    results: Results
+    labels: Labels
+    certain: Certainty
+    along: Sequence[Mapping[str, Along]] = ()
+
+
+def impulse_tables(blows: Blows, *, every: bool = False) -> list[Table]:
+    """A list of all blows where there are several, then the tables of each, or of the largest."""
+    found = blows.results.impulses
+    if not found:
+        return []
+    sizes = np.array([size_of(impulse) for impulse in found])
+    shown = np.arange(len(found)) if every or len(found) <= MOST_SHOWN else _largest(sizes)
+    tables = [listed(blows, sizes, shown)] if len(found) > 1 else []
+    return tables + [table for number in shown.tolist() for table in tables_of(blows, number, every)]
+
+
+def size_of(impulse: Block) -> float:
+    """The largest impulse at its joints and on the ground [N s]."""
+    parts = [*impulse.get("joints", {}).values(), impulse.get("foundation", {})]
+    forces = [largest(np.asarray(part["force"])) for part in parts if "force" in part]
+    return max(forces, default=0.0)
+
+
+def _largest(sizes: Array) -> Indices:
+    """The numbers of the largest blows, in their order; of equal ones the first."""
+    largest_first = np.argsort(-sizes, kind="stable")
+    return np.sort(largest_first[:MOST_SHOWN])
+
+
+def listed(blows: Blows, sizes: Array, shown: Indices) -> Table:
+    """A line a blow: when, by what, with which largest impulse, and what it did to the kinetic energy."""
+    found, certain = blows.results.impulses, blows.certain
+    times = np.array([float(impulse["time"]) for impulse in found])
+    energies = {key: np.array([float(impulse.get(key, np.nan)) for impulse in found]) for key in ENERGIES}
+    whole = [*energies.values()]
+    energy = write(np.concatenate(whole).tolist(), certain.style("energy", "J", max(map(largest, whole))))
+    impulse = write(sizes.tolist(), certain.style("reactions", UNIT, largest(sizes)))
+    clock = write_times(times.tolist(), float(np.ptp(blows.results.time)) or float(np.ptp(times)))
+    horizon = blows.results.accuracy.get("horizon")
+    rows = []
+    for i, block in enumerate(found):
+        cells = [impulse[i], *energy[i :: len(found)]]
+        if horizon is not None and times[i] >= horizon:
+            cells = [UNKNOWN] * len(cells)
+        rows.append((str(i), clock[i], ", ".join(block["names"]), *cells))
+    heads = (f"largest impulse [{UNIT}]", "energy before [J]", "after [J]", "jump [J]")
+    columns = (Column(""), Column("t [s]"), Column("struck by", "left"), *map(Column, heads))
+    numbers = ", ".join(map(str, shown.tolist()))
+    note = f"below: {numbers}, those with the largest impulses; all: --all, or --format csv"
+    notes = (note,) if len(shown) < len(found) else ()
+    return Table("IMPULSES  the blows of the run, in their order; kinetic energy", columns, tuple(rows), notes)
+
+
+def tables_of(blows: Blows, number: int, every: bool = False) -> list[Table]:
+    """The tables of one blow."""
+    impulse = blows.results.impulses[number]
+    at = float(impulse["time"])
+    view, labels = at_one_instant(blows.results, impulse), blows.labels
+    lead = f"IMPULSE at t = {at:.6g} s ({', '.join(impulse['names'])})  "
+    horizon = blows.results.accuracy.get("horizon")
+    series = list(walk_impulse(impulse, labels))
+    tables: list[Table] = []
+    for plan in IMPULSES:
+        block = build(plan, view, labels, series)
+        if block is not None:
+            named = block._replace(heading=lead + block.heading)
+            tables += instants.instants_tables(named, view.time, horizon, blows.certain)
+    along = blows.along[number] if blows.along else {}
+    for run in runs.runs_of(view, labels, AT_A_BLOW):
+        made = runs.instants_tables(run, view.time, horizon, blows.certain, every=every)
+        if run.name in along:
+            extremes = runs.extremes_table(run, view.time, *along[run.name], blows.certain)
+            made = [extremes, made[0]._replace(heading=""), *made[1:]]
+        tables += [made[0]._replace(heading=lead + made[0].heading), *made[1:]]
+    sums = sums_table(view, blows.certain, unit=UNIT)
+    return [*tables, sums._replace(heading=lead + sums.heading)] if sums else tables
+
+
+def at_one_instant(results: Results, impulse: Block) -> Results:
+    """The results of a run with what a blow has in place of its own, as at the one instant of the blow."""
+    parts: dict[str, Any] = {key: with_instant((key,), impulse.get(key, {})) for key in STRUCK if key != "certain_sums"}
+    sums: list[CertainSum] = [
+        {"terms": one["terms"], "value": np.atleast_1d(one["value"])} for one in impulse.get("certain_sums", ())
+    ]
+    time = np.array([float(impulse["time"])])
+    return replace(results, time=time, impulses=[], certain_sums=sums, **parts)
+
+
+def with_instant(keys: tuple[str, ...], value: Any) -> Any:
+    """A block of a blow with the axis of instants that the blocks of time have."""
+    if isinstance(value, dict):
+        return {key: with_instant((*keys, key), member) for key, member in value.items()}
+    row = quantity(keys)
+    return np.asarray(value, dtype=np.float64)[None] if row is not None and row.timed else value
