@@ -48,9 +48,20 @@ class Columns:
     freedoms: Table
     multipliers: Array
 
-    def at(self, which: Mask | Indices) -> Columns:
-        """Some of the first axis."""
+    def at(self, which: Mask | Indices | None) -> Columns:
+        """Some of the first axis; None: a new first axis."""
         return Columns(self.bodies[which], self.freedoms[which], self.multipliers[which])
+
+    def sum(self) -> Columns:
+        """All columns of the first axis together."""
+
+        def added(table: Table) -> Table:
+            whole = np.zeros(table.shape[1:], table.dtype)
+            for name in table.dtype.names or ():
+                whole[name] = table[name].sum(axis=0)
+            return whole
+
+        return Columns(added(self.bodies), added(self.freedoms), self.multipliers.sum(axis=0))
 
 
 def columns(at: workspace.Workspace, t: float, state: Array, loads: Array, inertial: Array) -> Columns:

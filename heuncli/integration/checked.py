@@ -20,9 +20,10 @@ import numpy as np
 from heuncli import tolerances
 from heuncli.errors import LimitError, SolveError
 from heuncli.expressions.discontinuities import one_sided_limits
+from heuncli.integration.evaluator import Recovered
 from heuncli.integration.methods import DOP853, Method
 from heuncli.integration.pairs import instants_of, interleaved, moved_start, passed_between
-from heuncli.integration.runner import MOST_STEPS, ClosuresLost, Recovered, Runner, Trajectory
+from heuncli.integration.runner import MOST_STEPS, ClosuresLost, Runner, Trajectory
 from heuncli.records import record, replace
 from heuncli.results import Array, Estimate, Mask
 from heuncli.tree.layout import Layout

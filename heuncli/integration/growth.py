@@ -9,7 +9,8 @@ import numpy as np
 
 from heuncli.errors import HeunError, LimitError, Problem, SolveError
 from heuncli.integration.domains import grown, joint_coordinates
-from heuncli.integration.runner import MOST_STEPS, Recovered, Runner
+from heuncli.integration.evaluator import Recovered
+from heuncli.integration.runner import MOST_STEPS, Runner
 from heuncli.mechanism.model import Mechanism
 from heuncli.results import Array
 

@@ -14,7 +14,8 @@ from typing import Any
 import numpy as np
 
 from heuncli import tolerances
-from heuncli.integration.runner import Recovered, Runner
+from heuncli.integration.evaluator import Recovered
+from heuncli.integration.runner import Runner
 from heuncli.kernel.choose import scene as kernel
 from heuncli.mechanism.model import GROUND, PointLoad
 from heuncli.records import record, replace

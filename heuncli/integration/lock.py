@@ -17,17 +17,10 @@ import numpy as np
 
 from heuncli import tolerances
 from heuncli.errors import Problem, SolveError
+from heuncli.integration.evaluator import Recovered
+from heuncli.integration.loop import Integration, just_after, just_before
 from heuncli.integration.methods import DOP853
-from heuncli.integration.runner import (
-    REACHED,
-    ClosuresLost,
-    Integration,
-    Recovered,
-    Runner,
-    Trajectory,
-    just_after,
-    just_before,
-)
+from heuncli.integration.runner import REACHED, ClosuresLost, Runner, Trajectory
 from heuncli.records import record
 from heuncli.results import Array
 from heuncli.tree.islands import loop_of

@@ -6,7 +6,8 @@ import numpy as np
 
 from heuncli import tolerances
 from heuncli.errors import Problem, SolveError
-from heuncli.integration.runner import Recovered, Runner
+from heuncli.integration.evaluator import Recovered
+from heuncli.integration.runner import Runner
 from heuncli.mechanism.model import PairLoad
 from heuncli.results import Array
 from heuncli.tree.prepare import PreparedScene, lacking_inertia

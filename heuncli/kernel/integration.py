@@ -131,6 +131,19 @@ class Integration:
         """A piece from t to its end, of which `before_end` is the last instant."""
         self.run.t, self.run.before_end, self.run.end, self.run.fresh = t, before_end, end, 1
 
+    def jump(self, state: Any) -> None:
+        """Go on from another state than the one reached, which is told at the instant reached, too."""
+        i: cython.Py_ssize_t
+        run: cython.pointer[Run] = cython.address(self.run)
+        k: cython.Py_ssize_t = run.next_sample - 1
+        for i in range(run.n):
+            run.y[i] = state[i]
+            run.carry[i] = 0.0
+        while k >= 0 and run.times[k] == run.t:
+            for i in range(run.n):
+                run.samples[k][i] = run.y[i]
+            k -= 1
+
     def stand(self, record: Any) -> None:
         """Take a record of `passed` for the state reached; `begin` starts a piece from it, `resume` a step."""
         take_record(cython.address(self.workspace.scene), cython.address(self.run), self.memory.doubles(record))

@@ -9,7 +9,7 @@ from __future__ import annotations
 from collections.abc import Iterator, Sequence
 from typing import Literal
 
-from heuncli.integration.runner import Recovered
+from heuncli.integration.evaluator import Recovered
 from heuncli.joint_kinds import JOINTS
 from heuncli.kinetostatics.reactions import JointLoads
 from heuncli.mechanism.model import GROUND, Joint, JointLoad, Load, Mechanism, PairLoad, PointLoad

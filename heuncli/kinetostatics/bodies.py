@@ -7,7 +7,7 @@ from __future__ import annotations
 
 import numpy as np
 
-from heuncli.integration.runner import Recovered
+from heuncli.integration.evaluator import Recovered
 from heuncli.mechanism.model import GROUND
 from heuncli.records import record
 from heuncli.results import Array

@@ -7,7 +7,7 @@ from collections.abc import Sequence
 import numpy as np
 
 from heuncli import tolerances
-from heuncli.integration.runner import Recovered
+from heuncli.integration.evaluator import Recovered
 from heuncli.kinetostatics.actions import AppliedLoad
 from heuncli.kinetostatics.bodies import BodyStates
 from heuncli.mechanism.model import Mechanism, PairLoad

@@ -10,7 +10,7 @@ from __future__ import annotations
 
 import numpy as np
 
-from heuncli.integration.runner import Recovered
+from heuncli.integration.evaluator import Recovered
 from heuncli.joint_kinds import JOINTS
 from heuncli.kinetostatics.bodies import BodyStates
 from heuncli.mechanism.model import Joint

@@ -7,7 +7,8 @@ from collections.abc import Sequence
 import numpy as np
 
 from heuncli import tolerances
-from heuncli.integration.runner import Recovered, Runner
+from heuncli.integration.evaluator import Recovered
+from heuncli.integration.runner import Runner
 from heuncli.kinetostatics.bodies import BodyStates, body_states
 from heuncli.kinetostatics.reactions import JointLoads
 from heuncli.records import record

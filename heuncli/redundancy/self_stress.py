@@ -15,7 +15,8 @@ from typing import NamedTuple
 import numpy as np
 
 from heuncli import tolerances
-from heuncli.integration.runner import Recovered, Runner
+from heuncli.integration.evaluator import Recovered
+from heuncli.integration.runner import Runner
 from heuncli.kinetostatics.bodies import BodyStates
 from heuncli.records import record
 from heuncli.response import carried, jacobian

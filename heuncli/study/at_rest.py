@@ -14,7 +14,8 @@ import numpy as np
 
 from heuncli import tolerances
 from heuncli.errors import Problem, SolveError
-from heuncli.integration.runner import Recovered, Runner
+from heuncli.integration.evaluator import Recovered
+from heuncli.integration.runner import Runner
 from heuncli.kinetostatics.bodies import BodyStates, body_states
 from heuncli.records import replace
 from heuncli.results import Array

@@ -16,7 +16,8 @@ import numpy as np
 
 from heuncli import tolerances
 from heuncli.integration.checked import recovered_at
-from heuncli.integration.runner import Recovered, Trajectory
+from heuncli.integration.evaluator import Recovered
+from heuncli.integration.runner import Trajectory
 from heuncli.results import Array, Indices, Mask
 from heuncli.results_schema import quantity
 from heuncli.study.recover import Recovery, blocks

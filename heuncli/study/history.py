@@ -13,8 +13,9 @@ import numpy as np
 from heuncli.errors import SolveError
 from heuncli.expressions.discontinuities import one_sided_limits
 from heuncli.integration.checked import Checked, Runs, checked_run, recovered_at
+from heuncli.integration.evaluator import Recovered
 from heuncli.integration.pairs import interleaved, moved_start
-from heuncli.integration.runner import Recovered, Runner, Trajectory, check_deadline, discontinuities_of
+from heuncli.integration.runner import Runner, Trajectory, check_deadline, discontinuities_of
 from heuncli.integration.singular import singular_poses
 from heuncli.integration.solvable import require_start
 from heuncli.mechanism.model import Mechanism

@@ -17,7 +17,7 @@ from functools import cached_property
 import numpy as np
 
 from heuncli import tolerances
-from heuncli.integration.runner import Recovered
+from heuncli.integration.evaluator import Recovered
 from heuncli.kinetostatics.actions import Action, AppliedLoad, applied_loads, joint_actions, whole_joint_actions
 from heuncli.kinetostatics.bodies import BodyStates, body_states
 from heuncli.kinetostatics.energy import energy

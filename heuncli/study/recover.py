@@ -11,7 +11,7 @@ from typing import TYPE_CHECKING, Any
 
 import numpy as np
 
-from heuncli.integration.runner import Recovered
+from heuncli.integration.evaluator import Recovered
 from heuncli.integration.solvable import require_solvable
 from heuncli.kinetostatics.actions import Action, AppliedLoad, applied_loads, joint_actions, whole_joint_actions
 from heuncli.kinetostatics.balance import balance_residual

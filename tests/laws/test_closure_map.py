@@ -9,7 +9,7 @@ from typing import NamedTuple
 import numpy as np
 import pytest
 
-from heuncli.integration.runner import Recovered
+from heuncli.integration.evaluator import Recovered
 from heuncli.kernel.choose import scene as kernel
 from heuncli.response import carried, columns, jacobian
 from heuncli.shapes.rotations import from_vector

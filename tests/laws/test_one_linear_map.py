@@ -5,7 +5,7 @@ from __future__ import annotations
 import numpy as np
 import pytest
 
-from heuncli.integration.runner import Recovered
+from heuncli.integration.evaluator import Recovered
 from heuncli.mechanism.model import GROUND
 from heuncli.response import Columns, blows, columns
 from heuncli.results import Array

@@ -1,0 +1,93 @@
+"""What the kernel answers at given states: accelerations and loads, each state by itself."""
+
+from __future__ import annotations
+
+import numpy as np
+
+from heuncli import tolerances
+from heuncli.records import fields, record
+from heuncli.response import Columns, columns_of, workspace_of
+from heuncli.results import Array, Indices, Mask
+from heuncli.tree.layout import Layout
+from heuncli.tree.tables import BODY_ANSWER, CLOSURE_ANSWER, FREEDOM_ANSWER, LOAD_ANSWER, STATE_ANSWER, Table, parts
+
+CAUSES = ("motion", "drives", "gravity")  # beside the loads: velocity terms, what is prescribed, weight
+
+
+@record
+class Recovered:
+    """The kernel's answers at the instants, tables (n_t, n) in tree order; their fields: tree/tables.py."""
+
+    times: Array
+    states: Array
+    bodies: Table
+    freedoms: Table
+    loads: Table
+    rows: Table
+    gap: Array
+    idle: Array
+    pivot: Array  # square of the least pivot of the independent closure rows; 1: far from singular
+    residual: Array  # of all rows, J Vdot + gamma at the accelerations found, of the terms it is the sum of
+    may_stay: Array  # what of it rows may keep that were left out as dependent
+    causes: Columns | None = None  # (n_t, n_c): each row of the table of loads alone, then CAUSES; their sum is all
+
+    def at(self, which: Mask | Indices) -> Recovered:
+        """At some of the instants."""
+        own = fields(self)
+        causes = own.pop("causes")
+        return Recovered(**{name: values[which] for name, values in own.items()}, causes=causes and causes.at(which))
+
+
+class Evaluator:
+    """A laid-out scene with the kernel's work arrays; every call starts from what it is given."""
+
+    def __init__(self, layout: Layout) -> None:
+        self.layout = layout
+        self.workspace = workspace_of(layout)
+        self.size = layout.size
+
+    def may_stay(self, gap: Array) -> Array:
+        """What accelerations may leave unmet of rows that depend on others, at gaps (n_t,), of the rows' terms."""
+        length = min((island.length for island in self.layout.islands), default=self.size)
+        return tolerances.UNMET * (self.workspace.least_row + tolerances.RANK_OF_GAP * gap / length)
+
+    def recovered(
+        self,
+        times: Array,
+        states: Array,
+        *,
+        branches: Array | None = None,
+        hold_rows: bool = False,
+        causes: bool = False,
+    ) -> Recovered:
+        """Accelerations and loads at the given states, which are projected onto the closures first.
+
+        Each state by itself, whatever others are asked with it: its independent closure rows are chosen anew.
+        branches (n_t, n): those that the expressions hold; without them branches are as the states say.
+        hold_rows: those of the first serve the others too, as long as they can, for pivots that are comparable.
+        causes: with a column a cause.
+        """
+        layout, n_t = self.layout, len(times)
+        sizes = [
+            (BODY_ANSWER, len(layout.place)),
+            (FREEDOM_ANSWER, len(layout.freedoms)),
+            (LOAD_ANSWER, len(layout.tables["loads"])),
+            (CLOSURE_ANSWER, len(layout.rows)),
+            (STATE_ANSWER, 1),
+        ]
+        own = sum(kind.itemsize // 8 * count for kind, count in sizes)
+        n_c = len(layout.tables["loads"]) + len(CAUSES) if causes else 0
+        width = own + n_c * self.workspace.column_width
+        at = np.ascontiguousarray(times, dtype=float)
+        settled = np.array(states, dtype=float).reshape(n_t, layout.n_state)
+        flat, out = settled.ravel(), np.zeros(n_t * width)
+        held = np.zeros(0) if branches is None else np.ascontiguousarray(branches, dtype=float).ravel()
+        self.workspace.recover(at, flat, held, out, width, not hold_rows, causes)
+        bodies, freedoms, loads, rows, whole = parts(out.reshape(n_t, width), sizes)
+        columns = out.reshape(n_t, width)[:, own:].reshape(n_t, n_c, -1) if causes else None
+        return Recovered(
+            times=at, states=flat.reshape(settled.shape), bodies=bodies, freedoms=freedoms, loads=loads, rows=rows,
+            gap=whole["gap"][:, 0], idle=whole["idle"][:, 0], pivot=whole["pivot"][:, 0],
+            residual=whole["residual"][:, 0], may_stay=self.may_stay(whole["gap"][:, 0]),
+            causes=columns_of(columns, len(layout.place), len(layout.freedoms)) if columns is not None else None,
+        )  # fmt: skip

@@ -1,0 +1,143 @@
+"""The kernel's loop with the arrays it writes to, and what is put down of its steps."""
+
+from __future__ import annotations
+
+import math
+from collections.abc import Sequence
+from typing import Any, NamedTuple
+
+import numpy as np
+
+from heuncli.expressions.discontinuities import one_sided_limits
+from heuncli.integration.methods import Method
+from heuncli.integration.pace import FIRST_LOOK
+from heuncli.kernel.choose import integration
+from heuncli.response import Workspace
+from heuncli.results import Array
+from heuncli.tree.layout import Layout
+
+KEPT = 20_000_000  # numbers in the states kept for replays, at the ends of all steps or of every second, fourth, ...
+PER_STEP = ("ends", "settled", "pivots", "turned")  # what is put down of each step
+
+
+class Integration:
+    """The kernel's loop over the asked instants, at most `most` steps at a time, with the arrays it writes to."""
+
+    def __init__(self, layout: Layout, workspace: Workspace, method: Method, times: Array, **given: Any) -> None:
+        n = self.n = layout.n_state
+        most = given.pop("most")
+        self.width = integration.record_width(workspace, n)
+        self.output = {name: np.zeros(most) for name in PER_STEP}
+        self.held = layout.pack.held
+        self.branches = np.zeros(most * self.held)
+        self.passed = np.zeros(0 if given["following"] else most * self.width)
+        self.count = len(times)
+        self.samples = np.zeros(self.count * n)
+        start = {"groups": layout.tables["groups"], "energy_group": layout.energy_group, "weights": layout.weights}
+        output = self.output | {"times": times, "samples": self.samples, "passed": self.passed}
+        output["branches"] = self.branches
+        self.loop = integration.Integration(workspace, method.arrays, start | given, output)
+
+    def records(self, every: int, offset: int) -> Array:
+        """What the steps after those just done start from: of every so many, (count, width); a copy."""
+        done = self.loop.done
+        return self.passed[: done * self.width].reshape(done, self.width)[offset::every].copy()
+
+    def held_branches(self) -> Array:
+        """The branches that the steps just done held, (count, n); a copy."""
+        return self.branches[: self.loop.done * self.held].reshape(-1, self.held).copy()
+
+    def states(self) -> Array:
+        """The states at the asked instants, (n_t, n)."""
+        self.loop.fetch()
+        return self.samples.reshape(self.count, self.n)
+
+
+class Segment(NamedTuple):
+    """A part of a run without discontinuities: begin, the last instant before its end, and its end."""
+
+    begin: float
+    before_end: float
+    end: float
+
+
+class Steps:
+    """The steps done: of each its end, its least pivot, whether its stages were settled; for replays some records."""
+
+    def __init__(self, start: Array, width: int) -> None:
+        self.rows: dict[str, list[Array]] = {name: [np.zeros(0)] for name in PER_STEP}
+        self.branches: list[Array] = []
+        self.count = 0
+        # number of a step, and what it starts from; the first is a segment's, of which the state alone counts
+        self.kept: list[tuple[int, Array]] = [(0, np.concatenate([start, np.zeros(width - len(start))]))]
+        self.every, self.room = 1, max(2, KEPT // max(width, 1))
+        self.after: dict[int, Array] = {}  # of the steps after blows, which are kept in any case
+        self.look = FIRST_LOOK
+
+    def stand(self, state: Array) -> None:
+        """The next step starts from another state than the last one reached."""
+        self.after[self.count] = np.concatenate([state, np.zeros(len(self.kept[0][1]) - len(state))])
+
+    def records(self) -> tuple[tuple[int, Array], ...]:
+        """Records by their steps, those after blows among them."""
+        return tuple(sorted({**dict(self.kept), **self.after}.items()))
+
+    def add(self, run: Integration) -> None:
+        """Add the steps of the last call; while there are too many records, every second of them is dropped."""
+        for name, arrays in self.rows.items():
+            arrays.append(run.output[name][: run.loop.done].copy())
+        if run.held:
+            self.branches.append(run.held_branches())
+        first = self.count // self.every * self.every + self.every  # the next number of which one is kept
+        self.kept += enumerate_by(first, self.every, run.records(self.every, first - self.count - 1))
+        self.count += run.loop.done
+        while len(self.kept) > self.room:
+            self.every *= 2
+            self.kept = [(k, record.copy()) for k, record in self.kept if k % self.every == 0]
+
+    def doubled(self) -> bool:
+        """Whether there are twice as many as when this was last so."""
+        if self.count < self.look:
+            return False
+        self.look = 2 * self.count
+        return True
+
+    def passed(self, n: int) -> list[tuple[float, Array]]:
+        """Instants and states (n,) of which records were kept, ascending."""
+        ends = self.column("ends")
+        return [(float(ends[k - 1]) if k else 0.0, record[:n]) for k, record in self.kept]
+
+    def column(self, name: str) -> Array:
+        """Ends, least pivots, or which were settled, (n_steps,)."""
+        return np.concatenate(self.rows[name])
+
+    def held_branches(self) -> Array:
+        """The branches that the steps held, (n_steps, n)."""
+        return np.concatenate(self.branches) if self.branches else np.zeros((0, 0))
+
+
+def enumerate_by(first: int, step: int, rows: Array) -> list[tuple[int, Array]]:
+    """Rows numbered from the first on."""
+    return [(first + step * k, row) for k, row in enumerate(rows)]
+
+
+def smooth_segments(last: float, jumps: Sequence[float]) -> list[Segment]:
+    """The segments of (0, last) without discontinuities, which are at `jumps`.
+
+    Each ends with the left limits of what jumps, the next one begins with the right limits.
+    """
+    limits = one_sided_limits([t for t in jumps if 0.0 < t < last])
+    begins, ends = [0.0, *(t for _, t in limits)], [*(t for t, _ in limits), just_before(last)]
+    # a discontinuity at t = 0 makes a first segment without length
+    segments = [Segment(t0, t1, just_after(t1)) for t0, t1 in zip(begins, ends, strict=True)]
+    return [segment for segment in segments if segment.before_end > segment.begin] or segments[-1:]
+
+
+def just_before(t: float) -> float:
+    """The last instant before t: at a jump, the left limit is taken there."""
+    return math.nextafter(t, -math.inf)
+
+
+def just_after(t: float) -> float:
+    """The first instant after t."""
+    return math.nextafter(t, math.inf)
