@@ -52,6 +52,10 @@ class Columns:
         """Some of the first axis; None: a new first axis."""
         return Columns(self.bodies[which], self.freedoms[which], self.multipliers[which])
 
+    def only(self, k: int) -> Columns:
+        """One of the first axis, without that axis."""
+        return Columns(self.bodies[k], self.freedoms[k], self.multipliers[k])
+
     def sum(self) -> Columns:
         """All columns of the first axis together."""
 

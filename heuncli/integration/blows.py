@@ -139,6 +139,11 @@ class Blows:
             self.done.append(jump)
 
 
+def at_once(evaluator: Evaluator, state: Array) -> tuple[Jump, ...]:
+    """The blow at the start of a scene of which nothing else is asked."""
+    return tuple(strike(evaluator, given, state) for given in schedule(evaluator.layout.mechanism, 0.0)[:1])
+
+
 def impulse(layout: Layout, bodies: Table, i: int) -> Impulse:
     """A given impulse in world axes; bodies: where they are."""
     blow = layout.mechanism.blows[i]

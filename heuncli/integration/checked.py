@@ -20,6 +20,7 @@ import numpy as np
 from heuncli import tolerances
 from heuncli.errors import LimitError, SolveError
 from heuncli.expressions.discontinuities import one_sided_limits
+from heuncli.integration.blows import Jump
 from heuncli.integration.evaluator import Recovered
 from heuncli.integration.methods import DOP853, Method
 from heuncli.integration.pairs import instants_of, interleaved, moved_start, passed_between
@@ -60,7 +61,8 @@ class Checked:
 
     recovered: accelerations and loads at the run's instants; motion: largest estimated error of any point over the
     whole run, relative to the size; loads: those of the other kinds; errors: all by kind and unit, before the horizon;
-    horizon: where the motion's passes CLAIMED; kinetic: the largest kinetic energy [J].
+    horizon: where the motion's passes CLAIMED; kinetic: the largest kinetic energy [J]; beside: the blows of the check
+    runs.
     """
 
     run: Trajectory
@@ -70,6 +72,7 @@ class Checked:
     errors: Mapping[tuple[str, str], float]
     horizon: float | None
     kinetic: float
+    beside: tuple[tuple[Jump, ...], ...]
     check_seconds: float
     lost_seconds: float  # of runs that missed the tolerance
 
@@ -199,7 +202,8 @@ def checked_run(runs: Runs, tolerance: float, loads: Loads) -> Checked:
     recovered = recovered_at(runs.runner, a, a.times, a.states, runs.jumps)
     seconds = best.seconds + time.perf_counter() - begun
     told = best.motion, loads.estimate(), loads.errors(), best.horizon, loads.kinetic()
-    return Checked(a, recovered, *told, seconds, lost)
+    beside = tuple(run.blows for run in best.runs[1:])
+    return Checked(a, recovered, *told, beside, seconds, lost)
 
 
 def compared(runs: Runs, a: Trajectory) -> Compared:

@@ -62,7 +62,7 @@ class Cuts:
 
 
 def attached(mechanism: Mechanism, body: int) -> list[tuple[str, Array]]:
-    """Loads and joints (but those whose point of action moves over the body) with their points, in body axes."""
+    """Loads, impulses, joints (but those whose point of action moves over the body) with their points, body axes."""
     points: list[tuple[str, Array]] = []
     for joint in mechanism.joints:
         if joint.b == body:
@@ -71,6 +71,9 @@ def attached(mechanism: Mechanism, body: int) -> list[tuple[str, Array]]:
             points.append((f"joint {joint.name}", joint.p))
     for load in mechanism.loads:
         points += [(f"force {load.name}", point) for owner, point in load.points if owner == body]
+    for blow in mechanism.blows:
+        if blow.body == body and blow.point is not None:
+            points.append((f"impulse {blow.name}", blow.point))
     return points
 
 

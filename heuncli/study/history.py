@@ -12,6 +12,7 @@ import numpy as np
 
 from heuncli.errors import SolveError
 from heuncli.expressions.discontinuities import one_sided_limits
+from heuncli.integration.blows import Jump, at_once
 from heuncli.integration.checked import Checked, Runs, checked_run, recovered_at
 from heuncli.integration.evaluator import Recovered
 from heuncli.integration.pairs import interleaved, moved_start
@@ -37,14 +38,15 @@ class History:
     """The kernel's answers at the instants asked for; of a motion the checked run behind them.
 
     tolerance: what the motion was to keep; estimate: of the errors, by kind; jumps: instants at which a load or drive
-    jumps or bends, events among them; singular: those of singular poses that the run came through; seconds: what took
-    how long.
+    jumps or bends, events and blows among them; singular: those of singular poses that the run came through; seconds:
+    what took how long.
     """
 
     recovered: Recovered
     tolerance: float
     estimate: Estimate
     checked: Checked | None = None
+    blows: tuple[Jump, ...] = ()
     jumps: tuple[float, ...] = ()
     singular: tuple[float, ...] = ()
     seconds: Mapping[str, float] = MappingProxyType({})
@@ -64,19 +66,22 @@ def integrate(setup: Setup, tolerance: float, deadline: float | None) -> History
     start = setup.scene.layout.y0[None, :]
     if setup.method is None:
         check_deadline(deadline, "before the loads were computed")
+        blows = at_once(runner, start[0]) if setup.spec.analysis.type == "impulse" else ()
+        for blow in blows:
+            start = blow.after[None, :]
         state = runner.recovered(times[:1], start)
         require_start(setup.scene, state)
         require_motion(setup.scene.layout, state)
         beside = runner.recovered(*interleaved(times[:1], [start, moved_start(setup.scene.layout)[None, :]]))
         seconds = {"integrate": 0.0, "check": 0.0}
-        return History(state, tolerance, estimate=of_state(setup, beside), seconds=seconds)
+        return History(state, tolerance, of_state(setup, beside), blows=blows, seconds=seconds)
     first = runner.recovered(np.zeros(1), start)  # before a long run, not after it
     require_start(setup.scene, first)
     require_motion(setup.scene.layout, first)
     jumps = tuple(discontinuities_of(setup.scene.mechanism, 0.0, float(times[-1])))
     runs = Runs(runner, times, jumps, deadline, setup.method)
     checked = checked_run(runs, tolerance, Kinds(setup))
-    jumps = tuple(sorted({*jumps, *checked.run.events}))
+    jumps = tuple(sorted({*jumps, *checked.run.jumps}))
     require_followed(runner, checked.run)
     seconds = {"integrate": checked.run.seconds, "check": checked.check_seconds}
     if checked.lost_seconds:
@@ -84,7 +89,7 @@ def integrate(setup: Setup, tolerance: float, deadline: float | None) -> History
     check_deadline(deadline, "before the loads were computed")
     singular = tuple(singular_poses(runner, checked.run))
     estimate = Estimate(motion=checked.motion, **checked.loads)
-    return History(checked.recovered, tolerance, estimate, checked, jumps, singular, seconds)
+    return History(checked.recovered, tolerance, estimate, checked, checked.run.blows, jumps, singular, seconds)
 
 
 def require_followed(runner: Runner, run: Trajectory) -> None:

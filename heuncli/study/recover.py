@@ -33,11 +33,15 @@ if TYPE_CHECKING:  # loaded where a scene has closed chains, or sections
 
 @record
 class Recovery:
-    """What follows from the kernel's answers at some instants; each thing is computed when it is first asked for."""
+    """What follows from the kernel's answers at some instants; each thing is computed when it is first asked for.
+
+    given: actions from outside that are no loads of the mechanism: the impulses of blows.
+    """
 
     setup: Setup
     recovered: Recovered
     least_norm: bool
+    given: tuple[Action, ...] = ()
 
     @cached_property
     def states(self) -> BodyStates:
@@ -69,8 +73,8 @@ class Recovery:
 
     @property
     def applied(self) -> list[Action]:
-        """The actions of the applied loads."""
-        return [load.action for load in self.loads]
+        """The actions of the applied loads, and of what is given beside them."""
+        return [*(load.action for load in self.loads), *self.given]
 
     @property
     def actions(self) -> list[Action]:

@@ -5,9 +5,10 @@ Impure: looks at the clock.
 
 from __future__ import annotations
 
+import dataclasses
 import time
 from functools import cached_property
-from typing import Any
+from typing import TYPE_CHECKING, Any
 
 import numpy as np
 
@@ -26,6 +27,9 @@ from heuncli.study.sampled import Sampled
 from heuncli.study.setup import Setup, set_up
 from heuncli.study.warnings import beside_singular_poses, left_out, status, warnings
 from heuncli.version import VERSION
+
+if TYPE_CHECKING:
+    from heuncli.study.impulses import Impulses
 
 MOST_SEARCHED = 1_000_000  # numbers to look at for the extremes of a whole report; one measure has no such bound
 HALVED = 2  # pieces of a stretch along which stresses are looked at: they bend where loads change their sign
@@ -56,10 +60,31 @@ def solve(spec: Spec, options: Options | None = None) -> Study:
     history = integrate(setup, spec.analysis.tolerance if options.tolerance is None else options.tolerance, deadline)
     moved = time.perf_counter()
     recovery = recover(setup, history.recovered, options.least_norm)
+    struck = blows(setup, history, options.least_norm)
     results = compose(setup, history, recovery, options.wanted)
+    results = with_blows(results, struck, options.wanted)
     seconds = {"load": options.load_seconds, "build": built - begun, **history.seconds}
     results.work["seconds"] = seconds | {"recover": time.perf_counter() - moved}
-    return Study(spec, options, setup, history, recovery, results)
+    return Study(spec, options, setup, history, recovery, results, struck)
+
+
+def blows(setup: Setup, history: History, least_norm: bool) -> Impulses | None:
+    """The blows of the run; None where there was none."""
+    if not history.blows:
+        return None
+    from heuncli.study.impulses import impulses  # where something strikes
+
+    return impulses(setup, history, least_norm)
+
+
+def with_blows(results: Results, struck: Impulses | None, wanted: frozenset[str] | None) -> Results:
+    """The results with the blocks of the blows."""
+    if struck is None:
+        return results
+    wanted = frozenset(REPORTS) if wanted is None else wanted
+    results.accuracy["balance_residual"] = max(results.accuracy["balance_residual"], struck.residual)
+    own = {f.name: getattr(results, f.name) for f in dataclasses.fields(results)}
+    return Results(**own | {"impulses": [struck.block(k, wanted) for k in range(len(struck.jumps))]})
 
 
 def describe(spec: Spec) -> Block:
@@ -137,12 +162,16 @@ class Study:
     history: History
     recovery: Recovery
     results: Results
+    struck: Impulses | None = None
 
     @property
     def magnitudes(self) -> Magnitudes:
-        """What the numbers at the asked instants are summed from, and their errors."""
-        checked = self.history.checked
-        return self.recovery.magnitudes._replace(errors=checked.errors if checked is not None else {})
+        """What the numbers at the asked instants, and those of blows, are summed from, and their errors."""
+        checked, own = self.history.checked, self.recovery.magnitudes
+        errors = dict(checked.errors) if checked is not None else {}
+        if self.struck is None:
+            return own._replace(errors=errors)
+        return own._replace(by_unit={**self.struck.by_unit, **own.by_unit}, errors=errors | self.struck.errors)
 
     @cached_property
     def search_times(self) -> Array:
@@ -163,6 +192,7 @@ class Study:
             return self.results
         results = compose(self.setup, self.history, self._recovery(times), self.options.wanted)
         results.work["seconds"] = dict(self.results.work["seconds"])
+        results.impulses.extend(self.results.impulses)
         self.unknown.update(results.accuracy.get("unknown", ()))
         self.later.update(dict.fromkeys(w for w in results.warnings if w not in self.results.warnings))
         return results

@@ -179,14 +179,3 @@ def drive_length(draft: DraftDocument) -> Iterator[Violation]:
         if gone is not None:
             message = f"the rod {draft.document.drives[name].joint} has no length left at t = {gone:.4g} s"
             yield Violation(("drives", name, "length"), message, "let the run end before, or the length stay above 0")
-
-
-def rate_jumps(draft: DraftDocument) -> Iterator[Path_]:
-    """Drives whose rate jumps within the run, or at its start against rest."""
-    duration = span_of(draft.document.analysis)
-    for name, _, quantity, value in drives(draft):
-        for last, t in changes(value, duration):
-            before, after = value.derivatives(last)[1], value.derivatives(t)[1]
-            if abs(after - before) > tolerances.SAME_VALUE * max(abs(before), abs(after), 1.0):
-                yield ("drives", name, quantity)
-                break

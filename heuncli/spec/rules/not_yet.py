@@ -7,7 +7,6 @@ from __future__ import annotations
 
 from collections.abc import Callable, Iterable, Iterator
 
-from heuncli.spec.rules.joints import rate_jumps
 from heuncli.spec.rules.registry import DraftDocument, Path_, Violation, rule
 
 Where = Callable[[DraftDocument], Iterable[Path_]]
@@ -58,11 +57,9 @@ def rubbing(draft: DraftDocument) -> Iterator[Path_]:
 
 
 NOT_YET: tuple[tuple[str, Where], ...] = (
-    ("impulses", any_of("impulses")),
     ("stops", any_of("stops")),
     ("ropes that catch", catching),
     ("friction at strikes", rubbing),
-    ("a drive whose rate jumps, which is a blow", rate_jumps),
     (f"a method other than {' and '.join(METHODS)}", other_method),
     ("fixed steps", fixed_step),
     ("shares, loads by their causes", shares),

@@ -1,0 +1,191 @@
+"""The blows of a run as blocks of the results: the same sums as of forces, taken of jumps and impulses.
+
+    r = sum h - sum m (x'+ - x'-),   M_r likewise                                         (50), (51), (54)
+A blow is answered as loads are at rest and without weight: jumps of velocities stand for accelerations, impulses for
+forces. So reactions, verdicts, sums, foundation and sections are those of the same modules.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+from functools import cached_property
+from typing import Any
+
+import numpy as np
+
+from heuncli.integration.blows import Jump
+from heuncli.integration.evaluator import Recovered
+from heuncli.integration.solvable import require_solvable
+from heuncli.kinetostatics.actions import Action, End
+from heuncli.kinetostatics.balance import balance_residual
+from heuncli.kinetostatics.magnitudes import magnitudes
+from heuncli.mechanism.model import Mechanism
+from heuncli.records import fields, record, replace
+from heuncli.results import Array, Block, CertainSum
+from heuncli.study.history import History
+from heuncli.study.recover import Recovery, blocks, certain_sums
+from heuncli.study.setup import Setup
+
+UNTIMED = frozenset({"about", "s", "side"})  # of the blocks: the same at all blows
+STRUCK = frozenset({"foundation", "joints", "sections"})
+UNITS = {"N": "N·s", "N·m": "N·m·s"}
+
+
+def at_rest(setup: Setup) -> Setup:
+    """The scene without weight and loads: what a blow meets."""
+    scene = setup.scene
+    mechanism = replace(scene.mechanism, gravity=np.zeros(3), loads=())
+    return replace(setup, scene=replace(scene, mechanism=mechanism, layout=replace(scene.layout, mechanism=mechanism)))
+
+
+def answered(jump: Jump) -> Recovered:
+    """The answers to a blow as answers at rest: jumps of velocities as accelerations, impulses as joint loads."""
+    still, whole = jump.recovered, jump.recovered.causes
+    assert whole is not None
+    column = whole.only(0).sum()
+    bodies, freedoms, rows = still.bodies.copy(), still.freedoms.copy(), still.rows.copy()
+    bodies["omega"], bodies["v"], freedoms["u"] = 0.0, 0.0, 0.0
+    for name in ("alpha", "a", "joint_moment", "joint_force"):
+        bodies[name][0] = column.bodies[name]
+    for name in ("udot", "drive"):
+        freedoms[name][0] = column.freedoms[name]
+    rows["multiplier"][0], rows["doubt"] = column.multipliers, 0.0
+    return replace(still, bodies=bodies, freedoms=freedoms, rows=rows, loads=still.loads[:, :0], causes=None)
+
+
+def together(answers: Sequence[Recovered]) -> Recovered:
+    """Answers at several instants as one."""
+    own: dict[str, Any] = {
+        name: np.concatenate([getattr(one, name) for one in answers])
+        for name, value in fields(answers[0]).items()
+        if value is not None
+    }
+    return Recovered(**own)
+
+
+@record
+class Impulses:
+    """All blows of a run; each thing is computed when it is first asked for."""
+
+    setup: Setup  # at rest
+    jumps: tuple[Jump, ...]
+    recovery: Recovery
+    errors: dict[tuple[str, str], float]  # estimated, by kind and unit
+
+    @cached_property
+    def shown(self) -> dict[str, Any]:
+        """The blocks of foundation, joints and sections, arrays (n, ...) over the blows."""
+        return blocks(self.recovery, STRUCK)
+
+    @cached_property
+    def sums(self) -> list[CertainSum]:
+        """Certain sums of what is open."""
+        return certain_sums(self.recovery)
+
+    @cached_property
+    def by_unit(self) -> dict[str, float]:
+        """What the impulses are summed from, by unit."""
+        recovery = self.recovery
+        mechanism, size = self.setup.scene.mechanism, self.setup.scene.layout.size
+        own = magnitudes(mechanism, recovery.states, recovery.actions, recovery.energy, size).by_unit
+        return {UNITS[unit]: own[unit] for unit in UNITS}
+
+    @property
+    def residual(self) -> float:
+        """What of d'Alembert's principle the impulses leave unmet, of the largest."""
+        mechanism, size = self.setup.scene.mechanism, self.setup.scene.layout.size
+        return balance_residual(mechanism, self.recovery.states, self.recovery.actions, size)
+
+    def block(self, k: int, wanted: frozenset[str]) -> Block:
+        """The block of one blow; wanted: reports."""
+        jump, states = self.jumps[k], self.recovery.states
+        bodies = {
+            body.name: {"center_velocity_jump": states.a_centre[k, i], "angular_velocity_jump": states.alpha[k, i]}
+            for i, body in enumerate(self.setup.scene.mechanism.bodies)
+        }
+        before, after = jump.kinetic
+        block: Block = {"time": jump.time, "names": list(jump.names), "bodies": bodies}
+        block |= {name: part for name, part in of_one(self.shown, k).items() if name in wanted}
+        if "energy" in wanted:
+            block |= {"energy_jump": after - before, "energy_before": before, "energy_after": after}
+        if "joints" in wanted and self.sums:
+            block["certain_sums"] = [of_one(dict(one), k) for one in self.sums]
+        return block
+
+
+def impulses(setup: Setup, history: History, least_norm: bool) -> Impulses:
+    """The blows of a run, of which there is one at least. Raises SolveError for one that nothing answers."""
+    own = of_run(setup, history.blows, least_norm, {})
+    beside = history.checked.beside if history.checked is not None else ()
+    others = [of_run(setup, jumps, least_norm, {}) for jumps in beside if len(jumps) == len(history.blows)]
+    return replace(own, errors=apart(own, others))
+
+
+def of_run(setup: Setup, jumps: tuple[Jump, ...], least_norm: bool, errors: dict[tuple[str, str], float]) -> Impulses:
+    """The blows of one run."""
+    still = at_rest(setup)
+    answers = together([answered(jump) for jump in jumps])
+    require_solvable(still.scene, answers)
+    given = tuple(actions(setup.scene.mechanism, jumps))
+    return Impulses(still, jumps, Recovery(still, answers, least_norm, given), errors)
+
+
+def actions(mechanism: Mechanism, jumps: Sequence[Jump]) -> list[Action]:
+    """The given impulses as actions over the blows, zero at those at which they do not act."""
+    found = []
+    for i, blow in enumerate(mechanism.blows):
+        force, moment, at = np.zeros((3, len(jumps), 3))
+        for k, jump in enumerate(jumps):
+            for given in jump.impulses:
+                if given.blow == i:
+                    force[k], moment[k], at[k] = given.force, given.moment, given.at
+        point = blow.point if blow.point is not None else mechanism.bodies[blow.body].center
+        found.append(Action("load", blow.name, End(blow.body, at, point), None, force, moment))
+    return found
+
+
+def of_one(block: Block, k: int) -> Block:
+    """A block over the blows at one of them; of what is open what is so there."""
+    own: Block = {}
+    for name, value in block.items():
+        if isinstance(value, dict):
+            own[name] = of_one(value, k)
+        elif isinstance(value, np.ndarray) and name not in UNTIMED:
+            own[name] = value[k]
+        else:
+            own[name] = value
+    if "open" in own:
+        own["open"] = [path for path in own["open"] if is_open(own, path)]
+    return own
+
+
+def is_open(block: Block, path: str) -> bool:
+    """Whether a component named by its path within a block is open: nan."""
+    name, _, axis = path.partition(".")
+    value = block[name][..., "xyz".index(axis)] if axis in ("x", "y", "z") and axis else block[name]
+    return bool(np.isnan(value).any())
+
+
+def apart(own: Impulses, others: Sequence[Impulses]) -> dict[tuple[str, str], float]:
+    """Estimated errors of the impulses by kind and unit, from the blows of the check runs."""
+    found: dict[tuple[str, str], float] = {}
+    for kind, block in (("foundation", "foundation"), ("reactions", "joints"), ("sections", "sections")):
+        for unit, names in (("N·s", ("force", "N", "Q1", "Q2")), ("N·m·s", ("moment", "T", "M1", "M2"))):
+            differences = [
+                np.abs(mine - its).max(initial=0.0)
+                for other in others
+                for mine, its in pairs(own.shown.get(block, {}), other.shown.get(block, {}), names)
+            ]
+            found[kind, unit] = 2.0 * float(np.nan_to_num(differences).max(initial=0.0))
+    return found
+
+
+def pairs(a: Block, b: Block, names: Sequence[str]) -> list[tuple[Array, Array]]:
+    """The arrays of these names in two blocks, where both have them."""
+    found = []
+    for name, value in a.items():
+        if isinstance(value, dict):
+            found += pairs(value, b.get(name, {}), names)
+        elif name in names and name in b and np.shape(value) == np.shape(b[name]):
+            found.append((value, b[name]))
+    return found
