@@ -9,7 +9,7 @@ from pathlib import Path
 import numpy as np
 import pytest
 
-from heuncli.integration import runner as motion
+from heuncli.integration import loop
 from heuncli.integration.runner import Trajectory, discontinuities_of
 from heuncli.integration.singular import singular_poses
 from heuncli.results import Array
@@ -120,7 +120,7 @@ def others(setup: Setup, run: Trajectory) -> Array:
 @pytest.mark.parametrize("name", MOVING)
 def test_the_run_itself(name: str, kept: int, monkeypatch: pytest.MonkeyPatch) -> None:
     """States at other instants are those of a run that was asked for them; which are asked changes no step."""
-    monkeypatch.setattr(motion, "KEPT", kept)
+    monkeypatch.setattr(loop, "KEPT", kept)
     setup = scene(name)
     times = asked(setup)
     run, bare = trajectory(setup, times), trajectory(setup, times[[0, -1]])
