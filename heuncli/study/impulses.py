@@ -32,10 +32,12 @@ UNITS = {"N": "N·s", "N·m": "N·m·s"}
 
 
 def at_rest(setup: Setup) -> Setup:
-    """The scene without weight and loads: what a blow meets."""
+    """The scene without weight and loads: what a blow meets; its cuts have no stresses."""
     scene = setup.scene
     mechanism = replace(scene.mechanism, gravity=np.zeros(3), loads=())
-    return replace(setup, scene=replace(scene, mechanism=mechanism, layout=replace(scene.layout, mechanism=mechanism)))
+    cuts = tuple(replace(cuts, properties=None) for cuts in setup.cuts)
+    scene = replace(scene, mechanism=mechanism, layout=replace(scene.layout, mechanism=mechanism))
+    return replace(setup, scene=scene, cuts=cuts)
 
 
 def answered(jump: Jump) -> Recovered:
@@ -96,8 +98,17 @@ class Impulses:
         mechanism, size = self.setup.scene.mechanism, self.setup.scene.layout.size
         return balance_residual(mechanism, self.recovery.states, self.recovery.actions, size)
 
-    def block(self, k: int, wanted: frozenset[str]) -> Block:
-        """The block of one blow; wanted: reports."""
+    def blocks(self) -> list[Block]:
+        """The blocks of all blows."""
+        return [self.block(k) for k in range(len(self.jumps))]
+
+    def cut_by(self, setup: Setup) -> Impulses:
+        """The same with other cuts."""
+        still = at_rest(setup)
+        return replace(self, setup=still, recovery=replace(self.recovery, setup=still))
+
+    def block(self, k: int) -> Block:
+        """The block of one blow."""
         jump, states = self.jumps[k], self.recovery.states
         bodies = {
             body.name: {"center_velocity_jump": states.a_centre[k, i], "angular_velocity_jump": states.alpha[k, i]}
@@ -105,10 +116,9 @@ class Impulses:
         }
         before, after = jump.kinetic
         block: Block = {"time": jump.time, "names": list(jump.names), "bodies": bodies}
-        block |= {name: part for name, part in of_one(self.shown, k).items() if name in wanted}
-        if "energy" in wanted:
-            block |= {"energy_jump": after - before, "energy_before": before, "energy_after": after}
-        if "joints" in wanted and self.sums:
+        block |= of_one(self.shown, k)
+        block |= {"energy_jump": after - before, "energy_before": before, "energy_after": after}
+        if self.sums:
             block["certain_sums"] = [of_one(dict(one), k) for one in self.sums]
         return block
 

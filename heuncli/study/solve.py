@@ -5,7 +5,6 @@ Impure: looks at the clock.
 
 from __future__ import annotations
 
-import dataclasses
 import time
 from functools import cached_property
 from typing import TYPE_CHECKING, Any
@@ -17,7 +16,7 @@ from heuncli.integration.methods import METHODS
 from heuncli.kernel.choose import KERNEL
 from heuncli.records import record, replace
 from heuncli.results import Accuracy, Array, Block, Extremes, Magnitudes, Results
-from heuncli.results_schema import REPORTS
+from heuncli.results_schema import BLOWS, REPORTS
 from heuncli.spec.models import Spec
 from heuncli.study import extremes
 from heuncli.study.extremes import Searched
@@ -61,8 +60,7 @@ def solve(spec: Spec, options: Options | None = None) -> Study:
     moved = time.perf_counter()
     recovery = recover(setup, history.recovered, options.least_norm)
     struck = blows(setup, history, options.least_norm)
-    results = compose(setup, history, recovery, options.wanted)
-    results = with_blows(results, struck, options.wanted)
+    results = compose(setup, history, recovery, options.wanted, struck)
     seconds = {"load": options.load_seconds, "build": built - begun, **history.seconds}
     results.work["seconds"] = seconds | {"recover": time.perf_counter() - moved}
     return Study(spec, options, setup, history, recovery, results, struck)
@@ -75,16 +73,6 @@ def blows(setup: Setup, history: History, least_norm: bool) -> Impulses | None:
     from heuncli.study.impulses import impulses  # where something strikes
 
     return impulses(setup, history, least_norm)
-
-
-def with_blows(results: Results, struck: Impulses | None, wanted: frozenset[str] | None) -> Results:
-    """The results with the blocks of the blows."""
-    if struck is None:
-        return results
-    wanted = frozenset(REPORTS) if wanted is None else wanted
-    results.accuracy["balance_residual"] = max(results.accuracy["balance_residual"], struck.residual)
-    own = {f.name: getattr(results, f.name) for f in dataclasses.fields(results)}
-    return Results(**own | {"impulses": [struck.block(k, wanted) for k in range(len(struck.jumps))]})
 
 
 def describe(spec: Spec) -> Block:
@@ -103,13 +91,17 @@ def known_method(name: str | None) -> str | None:
     return name
 
 
-def compose(setup: Setup, history: History, recovery: Recovery, wanted: frozenset[str] | None) -> Results:
-    """The results at the instants of `recovery`, which are the history's own or others within it."""
+def compose(
+    setup: Setup, history: History, recovery: Recovery, wanted: frozenset[str] | None, struck: Impulses | None
+) -> Results:
+    """The results at the instants of `recovery`, which are the history's own or others within it; and the blows."""
     wanted = frozenset(REPORTS) if wanted is None else wanted
     shown, unknown = blocks_of(history, recovery, wanted)
     split = recovery.decided.words if recovery.decided is not None else ()
     checked = history.checked
     balance = accuracy(recovery, checked.kinetic if checked is not None else 0.0)
+    if struck is not None:
+        balance["balance_residual"] = max(balance["balance_residual"], struck.residual)
     gap = checked.run.gap if checked is not None else setup.scene.start.gap
     return Results(
         title=setup.spec.title,
@@ -119,6 +111,7 @@ def compose(setup: Setup, history: History, recovery: Recovery, wanted: frozense
         status=status(history),
         time=recovery.recovered.times,
         **shown,
+        impulses=struck.blocks() if struck is not None and BLOWS in wanted else [],
         certain_sums=certain_sums(recovery) if "joints" in wanted else [],
         accuracy=balance
         | {
@@ -190,9 +183,8 @@ class Study:
         """The same run at other instants within it (ascending)."""
         if self.history.checked is None:
             return self.results
-        results = compose(self.setup, self.history, self._recovery(times), self.options.wanted)
+        results = compose(self.setup, self.history, self._recovery(times), self.options.wanted, self.struck)
         results.work["seconds"] = dict(self.results.work["seconds"])
-        results.impulses.extend(self.results.impulses)
         self.unknown.update(results.accuracy.get("unknown", ()))
         self.later.update(dict.fromkeys(w for w in results.warnings if w not in self.results.warnings))
         return results
@@ -206,6 +198,12 @@ class Study:
     def unknown(self) -> set[float]:
         """The instants looked at since the run at which rounding beside a singular pose reaches some numbers."""
         return set(self.results.accuracy.get("unknown", ()))
+
+    def impulses(self, setup: Setup | None = None) -> list[Block]:
+        """The blocks of the blows; setup: with other cuts."""
+        if self.struck is None:
+            return []
+        return (self.struck if setup is None else self.struck.cut_by(setup)).blocks()
 
     def only(self, times: Array, wanted: frozenset[str], setup: Setup | None = None) -> Results:
         """Some reports' blocks at other instants of the same run, and nothing beside them; setup: with other cuts."""

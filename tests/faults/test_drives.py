@@ -37,8 +37,6 @@ def bars(drive: str, kind: str = PIN, initial: str = "", held: str = "", more: s
 READING = {  # what is driven and held, the code, words of the refusal
     "jumps": (bars("angle: 0.3*step(t - 0.5)"), "drive-jumps",
               "drives.motor.angle: the drive jumps from 0 to 0.3 at t = 0.5"),
-    "rate jumps": (bars("angle: abs(t - 0.5)"), "not-yet", "a drive whose rate jumps, which is a blow"),
-    "table with a kink": (bars("angle: 'table(kinked, t)'"), "not-yet", "a drive whose rate jumps, which is a blow"),
     "held angle": (bars("angle: 0.3 + t", initial="angle: 0.4"), "drive-contradicts",
                    "angle is held at 0.4, but the drive motor prescribes 0.3 at t = 0"),
     "held rate": (bars("angle: 0.3 + t", initial="rate: 0.4"), "drive-contradicts", "prescribes 1 at t = 0"),

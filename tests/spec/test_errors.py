@@ -484,14 +484,6 @@ def test_points_under_a_misspelt_key_are_points() -> None:
     ]  # fmt: skip
 
 
-def test_what_is_wrong_with_an_impulse_hides_not_that_it_is_not_yet_solved(monkeypatch: pytest.MonkeyPatch) -> None:
-    monkeypatch.undo()
-    for blow in ("{on: a.p, vector: [1, 0]}", "{on: a.p, vector: 5, time: x}", "5"):
-        told = {line.partition(" ")[2] for line in found_in(f"impulses.i: {blow}")}
-        assert "impulses.i not-yet" in told
-        assert len(told) > 1
-
-
 def test_an_unread_key_hides_no_other() -> None:
     """A mapping with a wrong key or value is judged without it; what only follows from that is not told."""
     text = """\
