@@ -97,8 +97,8 @@ def schedule(mechanism: Mechanism, last: float) -> list[Given]:
     ]
 
 
-def strike(evaluator: Evaluator, given: Given, state: Array) -> Jump:
-    """What blows make of a state."""
+def strike(evaluator: Evaluator, given: Given, state: Array, time: float) -> Jump:
+    """What blows make of a state, at an instant."""
     layout, mechanism = evaluator.layout, evaluator.layout.mechanism
     still = evaluator.recovered(np.array([given.before]), state[None, :])
     impulses = tuple(impulse(layout, still.bodies[0], i) for i in given.blows)
@@ -119,7 +119,7 @@ def strike(evaluator: Evaluator, given: Given, state: Array) -> Jump:
         still, causes=found.columns.at(None), residual=np.array([found.unmet.max()]), idle=np.array([float(found.idle)])
     )  # fmt: skip
     kinetic = kinetic_energy(layout, still.bodies[0]), kinetic_energy(layout, behind.bodies[0])
-    return Jump(given.after, given.names(mechanism), still, causes, impulses, behind.states[0], kinetic, work)
+    return Jump(time, given.names(mechanism), still, causes, impulses, behind.states[0], kinetic, work)
 
 
 class Blows:
@@ -130,10 +130,10 @@ class Blows:
         self.due = schedule(evaluator.layout.mechanism, last)
         self.done: list[Jump] = []
 
-    def until(self, t: float) -> None:
-        """Those up to an instant that the run has reached: it goes on from the state behind them."""
+    def until(self, t: float, reached: float) -> None:
+        """Those up to an instant, behind the one that the run has reached: it goes on from the state behind them."""
         while self.due and self.due[0].after <= t:
-            jump = strike(self.evaluator, self.due.pop(0), np.array(self.run.loop.state()))
+            jump = strike(self.evaluator, self.due.pop(0), np.array(self.run.loop.state()), reached)
             self.run.loop.jump(jump.after)
             self.steps.stand(jump.after)
             self.done.append(jump)
@@ -141,7 +141,7 @@ class Blows:
 
 def at_once(evaluator: Evaluator, state: Array) -> tuple[Jump, ...]:
     """The blow at the start of a scene of which nothing else is asked."""
-    return tuple(strike(evaluator, given, state) for given in schedule(evaluator.layout.mechanism, 0.0)[:1])
+    return tuple(strike(evaluator, given, state, 0.0) for given in schedule(evaluator.layout.mechanism, 0.0)[:1])
 
 
 def impulse(layout: Layout, bodies: Table, i: int) -> Impulse:

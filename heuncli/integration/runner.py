@@ -184,8 +184,9 @@ class Runner(Evaluator):
         check_deadline(deadline, f"before the run of {last:.6g} s began")
         segments = smooth_segments(last, discontinuities)
         blows = Blows(self, run, steps, last)
+        reached = 0.0
         for segment in segments:
-            blows.until(segment.begin)
+            blows.until(segment.begin, reached)
             run.loop.begin(*segment)
             code = MORE
             while code == MORE:
@@ -199,8 +200,9 @@ class Runner(Evaluator):
                 break
             if code != REACHED:
                 raise self._failed(code, run, steps, last)
+            reached = segment.end
         if code == REACHED:
-            blows.until(last)
+            blows.until(last, reached)
         # slack by a jump: what is told last is what held before it
         told = just_before(run.loop.t) if run.loop.t == segment.begin > 0.0 else run.loop.t
         ts, states = (ts, run.states()) if code == REACHED else cut_short(ts, run, told)
