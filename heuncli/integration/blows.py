@@ -13,7 +13,7 @@ from heuncli import tolerances
 from heuncli.expressions.discontinuities import discontinuities, one_sided_limits
 from heuncli.expressions.programs import Expression
 from heuncli.integration.evaluator import Evaluator, Recovered
-from heuncli.integration.loop import Integration, Steps
+from heuncli.integration.loop import Integration, Steps, just_before
 from heuncli.mechanism.model import Mechanism
 from heuncli.records import record, replace
 from heuncli.response import Columns, blows
@@ -72,28 +72,30 @@ class Jump:
     work: float
 
 
-def rate_jumps(value: Expression, last: float) -> list[tuple[float, float, float]]:
-    """Where within (0, last) the rate of a drive jumps: the first instant behind, and both rates."""
+def rate_jumps(value: Expression, last: float) -> list[tuple[float, float, float, float]]:
+    """Where within (0, last) the rate of a drive jumps: the instants before and behind, and the rates there."""
     found = []
     instants = discontinuities(value, 0.0, last) if last > 0.0 and value.time_dependent else []
     for before, after in one_sided_limits(instants):
         first, then = value.derivatives(before)[1], value.derivatives(after)[1]
         if before > 0.0 and abs(then - first) > tolerances.SAME_VALUE * max(abs(first), abs(then), 1.0):
-            found.append((after, first, then))
+            found.append((before, after, first, then))
     return found
 
 
 def schedule(mechanism: Mechanism, last: float) -> list[Given]:
     """The blows that are given within [0, last], ascending; those of one instant together."""
     at: dict[float, tuple[list[int], dict[int, tuple[float, float]]]] = {}
+    befores: dict[float, float] = {}
     for k, joint in enumerate(mechanism.joints):
-        for after, first, then in rate_jumps(joint.drive.value, last) if joint.drive is not None else ():
+        for before, after, first, then in rate_jumps(joint.drive.value, last) if joint.drive is not None else ():
+            befores[after] = before
             at.setdefault(after, ([], {}))[1][k] = (first, then)
     for i, blow in enumerate(mechanism.blows):
-        near = next((t for t in at if abs(t - blow.time) <= 2.0 * np.spacing(blow.time)), blow.time)
-        at.setdefault(near, ([], {}))[0].append(i)
+        with_drive = next((t for t, before in befores.items() if before < blow.time <= t), blow.time)
+        at.setdefault(with_drive, ([], {}))[0].append(i)
     return [
-        Given(float(np.nextafter(t, -np.inf)) if t > 0.0 else 0.0, t, tuple(at[t][0]), at[t][1]) for t in sorted(at)
+        Given(befores.get(t, just_before(t) if t > 0.0 else 0.0), t, tuple(at[t][0]), at[t][1]) for t in sorted(at)
     ]
 
 

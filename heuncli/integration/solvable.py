@@ -9,6 +9,7 @@ from heuncli.errors import Problem, SolveError
 from heuncli.integration.evaluator import Recovered
 from heuncli.integration.runner import Runner
 from heuncli.mechanism.model import PairLoad
+from heuncli.records import record
 from heuncli.results import Array
 from heuncli.tree.prepare import PreparedScene, lacking_inertia
 
@@ -23,7 +24,17 @@ def ready(scene: PreparedScene) -> tuple[PreparedScene, Runner]:
     return scene, Runner(scene.layout)
 
 
-def require_solvable(scene: PreparedScene, recovered: Recovered) -> None:
+@record
+class Asked:
+    """What is asked of a scene, in words; given [N m] or [N m s]: the largest moment of what is given beside loads."""
+
+    answers: str = "accelerations"
+    moment: str = "moment"
+    unit: str = "N m"
+    given: float = 0.0
+
+
+def require_solvable(scene: PreparedScene, recovered: Recovered, asked: Asked = Asked()) -> None:  # noqa: B008
     """Raise SolveError for accelerations that are not finite, freedoms without inertia, moments about such axes."""
     finite = np.isfinite(recovered.bodies.view(np.float64)).all(axis=1)
     if not finite.all():
@@ -35,7 +46,7 @@ def require_solvable(scene: PreparedScene, recovered: Recovered) -> None:
             raise SolveError(freedom_without_inertia(scene, recovered, k))
     unmet = recovered.residual > recovered.may_stay
     if unmet.any():
-        raise SolveError(unmet_rows(recovered, int(np.flatnonzero(unmet)[0])))
+        raise SolveError(unmet_rows(recovered, int(np.flatnonzero(unmet)[0]), asked))
     layout, gravity = scene.layout, scene.mechanism.gravity
     for spin in scene.idle:
         rows = recovered.bodies[:, layout.place[spin.body]]
@@ -46,13 +57,14 @@ def require_solvable(scene: PreparedScene, recovered: Recovered) -> None:
         force = np.abs(rows["joint_force"]).max(initial=0.0) + np.abs(recovered.loads["force"]).max(initial=0.0)
         body = scene.mechanism.bodies[spin.body]
         scale = (force + body.mass * float(np.abs(gravity).max())) * layout.size
-        scale += np.abs(recovered.loads["moment"]).max(initial=0.0)
+        scale += np.abs(recovered.loads["moment"]).max(initial=0.0) + asked.given
         scale += float(np.trace(body.inertia)) * float(np.sum(rows["omega"] ** 2, axis=1).max())
         if moment > tolerances.NO_MOMENT * scale:
             axis = ", ".join(f"{x:.4g}" for x in spin.axes[0])
             name = scene.mechanism.bodies[spin.body].name
             message = (
-                f"bodies.{name} has no inertia about its axis ({axis}), and a moment of {moment:.4g} N m acts about it"
+                f"bodies.{name} has no inertia about its axis ({axis}), "
+                f"and a {asked.moment} of {moment:.4g} {asked.unit} acts about it"
             )
             hint = "give the body its moment of inertia about that axis, or let the load act on the axis"
             raise SolveError(Problem("no-inertia", message, hint=hint))
@@ -77,10 +89,10 @@ def require_start(scene: PreparedScene, start: Recovered) -> None:
         raise SolveError(*problems)
 
 
-def unmet_rows(recovered: Recovered, instant: int) -> Problem:
-    """The problem of closed chains that no acceleration found holds together."""
+def unmet_rows(recovered: Recovered, instant: int, asked: Asked) -> Problem:
+    """The problem of closed chains that nothing found holds together."""
     t, residual = float(recovered.times[instant]), float(recovered.residual[instant])
-    message = f"at t = {t:.9g} s the accelerations leave {residual:.1g} of what the closed chains ask of them unmet"
+    message = f"at t = {t:.9g} s the {asked.answers} leave {residual:.1g} of what the closed chains ask of them unmet"
     return Problem("closure-lost", message, hint="a singular pose, or joints that contradict each other by a little")
 
 

@@ -37,9 +37,9 @@ MOST_SEARCHED = 100_000
 class History:
     """The kernel's answers at the instants asked for; of a motion the checked run behind them.
 
-    tolerance: what the motion was to keep; estimate: of the errors, by kind; jumps: instants at which a load or drive
-    jumps or bends, events and blows among them; singular: those of singular poses that the run came through; seconds:
-    what took how long.
+    tolerance: what the motion was to keep; estimate: of the errors, by kind; blows: those that happened; beside: those
+    of the check runs; jumps: instants at which a load or drive jumps or bends, events and blows among them; singular:
+    those of singular poses that the run came through; seconds: what took how long.
     """
 
     recovered: Recovered
@@ -47,6 +47,7 @@ class History:
     estimate: Estimate
     checked: Checked | None = None
     blows: tuple[Jump, ...] = ()
+    beside: tuple[tuple[Jump, ...], ...] = ()
     jumps: tuple[float, ...] = ()
     singular: tuple[float, ...] = ()
     seconds: Mapping[str, float] = MappingProxyType({})
@@ -66,15 +67,7 @@ def integrate(setup: Setup, tolerance: float, deadline: float | None) -> History
     start = setup.scene.layout.y0[None, :]
     if setup.method is None:
         check_deadline(deadline, "before the loads were computed")
-        blows = at_once(runner, start[0]) if setup.spec.analysis.type == "impulse" else ()
-        for blow in blows:
-            start = blow.after[None, :]
-        state = runner.recovered(times[:1], start)
-        require_start(setup.scene, state)
-        require_motion(setup.scene.layout, state)
-        beside = runner.recovered(*interleaved(times[:1], [start, moved_start(setup.scene.layout)[None, :]]))
-        seconds = {"integrate": 0.0, "check": 0.0}
-        return History(state, tolerance, of_state(setup, beside), blows=blows, seconds=seconds)
+        return state(setup, float(times[0]), tolerance)
     first = runner.recovered(np.zeros(1), start)  # before a long run, not after it
     require_start(setup.scene, first)
     require_motion(setup.scene.layout, first)
@@ -88,8 +81,26 @@ def integrate(setup: Setup, tolerance: float, deadline: float | None) -> History
         seconds["lost"] = checked.lost_seconds
     check_deadline(deadline, "before the loads were computed")
     singular = tuple(singular_poses(runner, checked.run))
-    estimate = Estimate(motion=checked.motion, **checked.loads)
-    return History(checked.recovered, tolerance, estimate, checked, checked.run.blows, jumps, singular, seconds)
+    estimate, beside = Estimate(motion=checked.motion, **checked.loads), checked.beside
+    return History(checked.recovered, tolerance, estimate, checked, checked.run.blows, beside, jumps, singular, seconds)
+
+
+def state(setup: Setup, at: float, tolerance: float) -> History:
+    """The history of one instant, behind the blow that is asked for; beside it, from a start moved by rounding."""
+    runner, layout = setup.runner, setup.scene.layout
+    starts = [layout.y0, moved_start(layout)]
+    blows: list[tuple[Jump, ...]] = [(), ()]
+    if setup.spec.analysis.type == "impulse":
+        blows = [at_once(runner, start) for start in starts]
+        starts = [jumps[-1].after if jumps else start for start, jumps in zip(starts, blows, strict=True)]
+    times = np.array([at])
+    answers = runner.recovered(times, starts[0][None, :])
+    require_start(setup.scene, answers)
+    require_motion(layout, answers)
+    both = runner.recovered(*interleaved(times, [start[None, :] for start in starts]))
+    seconds = {"integrate": 0.0, "check": 0.0}
+    estimate = of_state(setup, both)
+    return History(answers, tolerance, estimate, blows=blows[0], beside=tuple(blows[1:]), seconds=seconds)
 
 
 def require_followed(runner: Runner, run: Trajectory) -> None:

@@ -15,7 +15,7 @@ import numpy as np
 
 from heuncli.integration.blows import Jump
 from heuncli.integration.evaluator import Recovered
-from heuncli.integration.solvable import require_solvable
+from heuncli.integration.solvable import Asked, require_solvable
 from heuncli.kinetostatics.actions import Action, End
 from heuncli.kinetostatics.balance import balance_residual
 from heuncli.kinetostatics.magnitudes import magnitudes
@@ -126,8 +126,7 @@ class Impulses:
 def impulses(setup: Setup, history: History, least_norm: bool) -> Impulses:
     """The blows of a run, of which there is one at least. Raises SolveError for one that nothing answers."""
     own = of_run(setup, history.blows, least_norm, {})
-    beside = history.checked.beside if history.checked is not None else ()
-    others = [of_run(setup, jumps, least_norm, {}) for jumps in beside if len(jumps) == len(history.blows)]
+    others = [of_run(setup, jumps, least_norm, {}) for jumps in history.beside if len(jumps) == len(history.blows)]
     return replace(own, errors=apart(own, others))
 
 
@@ -135,8 +134,10 @@ def of_run(setup: Setup, jumps: tuple[Jump, ...], least_norm: bool, errors: dict
     """The blows of one run."""
     still = at_rest(setup)
     answers = together([answered(jump) for jump in jumps])
-    require_solvable(still.scene, answers)
     given = tuple(actions(setup.scene.mechanism, jumps))
+    size = still.scene.layout.size
+    largest = max((float(np.abs(a.force).max() * size + np.abs(a.moment).max()) for a in given), default=0.0)
+    require_solvable(still.scene, answers, Asked("jumps of velocities", "couple", "N m s", largest))
     return Impulses(still, jumps, Recovery(still, answers, least_norm, given), errors)
 
 
