@@ -23,7 +23,7 @@ from heuncli.expressions.discontinuities import one_sided_limits
 from heuncli.integration.blows import Jump
 from heuncli.integration.evaluator import Recovered
 from heuncli.integration.methods import DOP853, Method
-from heuncli.integration.pairs import instants_of, interleaved, moved_start, passed_between
+from heuncli.integration.pairs import between_strikes, instants_of, interleaved, moved_start, passed_between
 from heuncli.integration.runner import MOST_STEPS, ClosuresLost, Runner, Trajectory
 from heuncli.records import record, replace
 from heuncli.results import Array, Estimate, Mask
@@ -196,9 +196,10 @@ def checked_run(runs: Runs, tolerance: float, loads: Loads) -> Checked:
     assert best is not None
     begun = time.perf_counter()
     a = best.runs[0]
-    for part, several in recovered_together(runs, a, best.times, best.states):
-        before = best.times[part] < (np.inf if best.horizon is None else best.horizon)
-        loads.add(several, best.asked[part], before)
+    kept = ~between_strikes(best.runs, best.times)
+    at, states, asked = best.times[kept], [x[kept] for x in best.states], best.asked[kept]
+    for part, several in recovered_together(runs, a, at, states):
+        loads.add(several, asked[part], at[part] < (np.inf if best.horizon is None else best.horizon))
     recovered = recovered_at(runs.runner, a, a.times, a.states, runs.jumps)
     seconds = best.seconds + time.perf_counter() - begun
     told = best.motion, loads.estimate(), loads.errors(), best.horizon, loads.kinetic()

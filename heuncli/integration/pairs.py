@@ -12,6 +12,7 @@ from collections.abc import Sequence
 import numpy as np
 
 from heuncli import tolerances
+from heuncli.integration.blows import Jump
 from heuncli.integration.runner import Runner, Trajectory
 from heuncli.records import record
 from heuncli.results import Array, Indices, Mask
@@ -84,6 +85,33 @@ def interleaved(times: Array, states: Sequence[Array]) -> tuple[Array, Array]:
     joints leave open would else differ by more than an error.
     """
     return np.repeat(times, len(states)), np.stack(states, axis=1).reshape(len(states) * len(times), -1)
+
+
+def matched(own: Sequence[Jump], others: Sequence[Jump]) -> list[tuple[int, int]]:
+    """The blows that two runs of one motion share: of the same names, each the nearest of its kind to the other."""
+
+    def nearest(of: Jump, among: Sequence[Jump]) -> int | None:
+        alike = [k for k, jump in enumerate(among) if jump.names == of.names]
+        return min(alike, key=lambda k: abs(among[k].time - of.time), default=None)
+
+    found = [(i, nearest(jump, others)) for i, jump in enumerate(own)]
+    return [(i, k) for i, k in found if k is not None and nearest(others[k], own) == i]
+
+
+def between_strikes(runs: Sequence[Trajectory], times: Array) -> Mask:
+    """Which instants lie between the first run's strike and another run's same one, (n,): one has jumped by then.
+
+    What strikes at an instant of its own in each run is later in one of them by the error of the motion: there the
+    velocities differ by the jump, which is no error of either.
+    """
+    inside = np.zeros(len(times), dtype=bool)
+    own = runs[0].blows
+    for other in runs[1:]:
+        for i, k in matched(own, other.blows):
+            first, last = sorted((own[i].time, other.blows[k].time))
+            if first < last:
+                inside |= (times >= first) & (times <= last)
+    return inside
 
 
 def moved_start(layout: Layout) -> Array:

@@ -15,6 +15,7 @@ import numpy as np
 
 from heuncli.integration.blows import Jump
 from heuncli.integration.evaluator import Recovered
+from heuncli.integration.pairs import matched
 from heuncli.integration.solvable import Asked, require_solvable
 from heuncli.kinetostatics.actions import Action, End
 from heuncli.kinetostatics.balance import balance_residual
@@ -29,6 +30,13 @@ from heuncli.study.setup import Setup
 UNTIMED = frozenset({"about", "s", "side"})  # of the blocks: the same at all blows
 STRUCK = frozenset({"foundation", "joints", "sections"})
 UNITS = {"N": "N·s", "N·m": "N·m·s"}
+WRENCH = {"N·s": ("force", "N", "Q1", "Q2"), "N·m·s": ("moment", "T", "M1", "M2")}
+KINDS = (  # of estimated errors, the block they are of, and its numbers by unit; a drive's unit is its joint's
+    ("foundation", "foundation", WRENCH),
+    ("reactions", "joints", WRENCH),
+    ("sections", "sections", WRENCH),
+    ("drives", "joints", {"N·s": ("drive",), "N·m·s": ("drive",)}),
+)
 
 
 def at_rest(setup: Setup) -> Setup:
@@ -126,7 +134,7 @@ class Impulses:
 def impulses(setup: Setup, history: History, least_norm: bool) -> Impulses:
     """The blows of a run, of which there is one at least. Raises SolveError for one that nothing answers."""
     own = of_run(setup, history.blows, least_norm, {})
-    others = [of_run(setup, jumps, least_norm, {}) for jumps in history.beside if len(jumps) == len(history.blows)]
+    others = [of_run(setup, jumps, least_norm, {}) for jumps in history.beside if jumps]
     return replace(own, errors=apart(own, others))
 
 
@@ -178,17 +186,25 @@ def is_open(block: Block, path: str) -> bool:
 
 
 def apart(own: Impulses, others: Sequence[Impulses]) -> dict[tuple[str, str], float]:
-    """Estimated errors of the impulses by kind and unit, from the blows of the check runs."""
+    """Estimated errors of the impulses by kind and unit, by the check runs; of a blow those do not have, all of it."""
     found: dict[tuple[str, str], float] = {}
-    for kind, block in (("foundation", "foundation"), ("reactions", "joints"), ("sections", "sections")):
-        for unit, names in (("N·s", ("force", "N", "Q1", "Q2")), ("N·m·s", ("moment", "T", "M1", "M2"))):
+    for kind, block, units in KINDS:
+        for unit, names in units.items():
             differences = [
-                np.abs(mine - its).max(initial=0.0)
+                difference(mine, its, matched(own.jumps, other.jumps))
                 for other in others
                 for mine, its in pairs(own.shown.get(block, {}), other.shown.get(block, {}), names)
             ]
-            found[kind, unit] = 2.0 * float(np.nan_to_num(differences).max(initial=0.0))
+            found[kind, unit] = 2.0 * max(differences, default=0.0)
     return found
+
+
+def difference(mine: Array, its: Array, same: Sequence[tuple[int, int]]) -> float:
+    """The largest difference of numbers over the blows that are the same; of others the number itself."""
+    reference = np.zeros_like(mine)
+    for i, k in same:
+        reference[i] = its[k]
+    return float(np.nan_to_num(np.abs(mine - reference)).max(initial=0.0))
 
 
 def pairs(a: Block, b: Block, names: Sequence[str]) -> list[tuple[Array, Array]]:
@@ -197,6 +213,6 @@ def pairs(a: Block, b: Block, names: Sequence[str]) -> list[tuple[Array, Array]]
     for name, value in a.items():
         if isinstance(value, dict):
             found += pairs(value, b.get(name, {}), names)
-        elif name in names and name in b and np.shape(value) == np.shape(b[name]):
+        elif name in names and name in b and np.shape(value)[1:] == np.shape(b[name])[1:]:
             found.append((value, b[name]))
     return found
