@@ -10,10 +10,11 @@ from __future__ import annotations
 import numpy as np
 
 from heuncli import tolerances
+from heuncli.errors import Problem, SolveError
 from heuncli.expressions.discontinuities import discontinuities, one_sided_limits
 from heuncli.expressions.programs import Expression
 from heuncli.integration.evaluator import Evaluator, Recovered
-from heuncli.integration.loop import Integration, Steps, just_before
+from heuncli.integration.loop import Integration, Steps, just_after, just_before
 from heuncli.mechanism.model import Mechanism
 from heuncli.records import record, replace
 from heuncli.response import Columns, blows
@@ -73,9 +74,9 @@ class Jump:
 
 
 def rate_jumps(value: Expression, last: float) -> list[tuple[float, float, float, float]]:
-    """Where within (0, last) the rate of a drive jumps: the instants before and behind, and the rates there."""
+    """Where within (0, last] the rate of a drive jumps: the instants before and behind, and the rates there."""
     found = []
-    instants = discontinuities(value, 0.0, last) if last > 0.0 and value.time_dependent else []
+    instants = discontinuities(value, 0.0, just_after(last)) if last > 0.0 and value.time_dependent else []
     for before, after in one_sided_limits(instants):
         first, then = value.derivatives(before)[1], value.derivatives(after)[1]
         if before > 0.0 and abs(then - first) > tolerances.SAME_VALUE * max(abs(first), abs(then), 1.0):
@@ -132,18 +133,50 @@ class Blows:
         self.due = schedule(evaluator.layout.mechanism, last)
         self.done: list[Jump] = []
 
-    def until(self, t: float, reached: float) -> None:
-        """Those up to an instant, behind the one that the run has reached: it goes on from the state behind them."""
+    def until(self, t: float, reached: float) -> str | None:
+        """Those up to an instant, behind the one that the run has reached: it goes on from the state behind them.
+
+        A rope that would have to push in one of them: the run ends before it. Raises SolveError if that is the start.
+        """
         while self.due and self.due[0].after <= t:
             jump = strike(self.evaluator, self.due.pop(0), np.array(self.run.loop.state()), reached)
+            rope = pushing(self.evaluator.layout, jump)
+            if rope is not None and reached > 0.0:
+                return rope
+            require_pull(rope)
             self.run.loop.jump(jump.after)
             self.steps.stand(jump.after)
             self.done.append(jump)
+        return None
 
 
 def at_once(evaluator: Evaluator, state: Array) -> tuple[Jump, ...]:
     """The blow at the start of a scene of which nothing else is asked."""
-    return tuple(strike(evaluator, given, state, 0.0) for given in schedule(evaluator.layout.mechanism, 0.0)[:1])
+    jumps = tuple(strike(evaluator, given, state, 0.0) for given in schedule(evaluator.layout.mechanism, 0.0)[:1])
+    for jump in jumps:
+        require_pull(pushing(evaluator.layout, jump))
+    return jumps
+
+
+def pushing(layout: Layout, jump: Jump) -> str | None:
+    """The rope that would have to push in a blow, if there is one that does not go slack."""
+    columns = jump.recovered.causes
+    assert columns is not None
+    impulses = columns.multipliers[0].sum(axis=0)
+    largest = np.abs(columns.multipliers[0]).max(initial=0.0)
+    for r, k in enumerate(layout.rows):
+        joint = layout.mechanism.joints[k]
+        if joint.tension_only and joint.restitution is None and impulses[r] > tolerances.NO_FORCE * largest:
+            return joint.name
+    return None
+
+
+def require_pull(rope: str | None) -> None:
+    """Raise SolveError for a rope that would have to push in a blow at the start."""
+    if rope is not None:
+        message = f"in the blow at t = 0 s the rod {rope} would have to push (tension_only)"
+        hint = "with restitution: 0 (to 1) it goes slack, and catches again"
+        raise SolveError(Problem("rope-pushes", message, hint=hint))
 
 
 def impulse(layout: Layout, bodies: Table, i: int) -> Impulse:

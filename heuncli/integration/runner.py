@@ -184,9 +184,11 @@ class Runner(Evaluator):
         check_deadline(deadline, f"before the run of {last:.6g} s began")
         segments = smooth_segments(last, discontinuities)
         blows = Blows(self, run, steps, last)
-        reached = 0.0
+        reached, stopped = 0.0, None
         for segment in segments:
-            blows.until(segment.begin, reached)
+            stopped = blows.until(segment.begin, reached)
+            if stopped is not None:
+                break
             run.loop.begin(*segment)
             code = MORE
             while code == MORE:
@@ -197,22 +199,23 @@ class Runner(Evaluator):
                 if code == MORE:
                     self._require_progress(run, steps, last, most_steps)
             if code == ROPE_SLACK:
+                stopped = layout.mechanism.joints[layout.rows[run.loop.rope]].name
                 break
             if code != REACHED:
                 raise self._failed(code, run, steps, last)
             reached = segment.end
-        if code == REACHED:
-            blows.until(last, reached)
+        if stopped is None:
+            stopped = blows.until(last, reached)
         # slack by a jump: what is told last is what held before it
-        told = just_before(run.loop.t) if run.loop.t == segment.begin > 0.0 else run.loop.t
-        ts, states = (ts, run.states()) if code == REACHED else cut_short(ts, run, told)
+        told = just_before(run.loop.t) if run.loop.t in (segment.begin, reached) and reached > 0.0 else run.loop.t
+        ts, states = (ts, run.states()) if stopped is None else cut_short(ts, run, told)
         return Trajectory(
             times=ts, states=states, ends=steps.column("ends"), steps=run.loop.steps,
             evaluations=run.loop.evaluations, gap=run.loop.gap, tolerance=tolerance, method=method,
             seconds=time.perf_counter() - begun, segments=tuple(segments), kept=steps.records(),
             pivots=steps.column("pivots"), settled=steps.column("settled"), branches=steps.held_branches(),
             turned=steps.column("turned"), undecided=run.loop.undecided,
-            stopped=None if code == REACHED else layout.mechanism.joints[layout.rows[run.loop.rope]].name,
+            stopped=stopped,
             blows=tuple(blows.done),
         )  # fmt: skip
 

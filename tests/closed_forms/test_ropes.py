@@ -14,6 +14,7 @@ from scipy.integrate import solve_ivp
 from scipy.optimize import brentq
 from scipy.special import ellipkinc
 
+from heuncli.errors import SolveError
 from heuncli.study.solve import Study
 from tests.shared.scenes import near, study
 
@@ -322,3 +323,29 @@ def test_a_ball_on_a_bar(start: tuple[float, float, float, float]) -> None:
         stops(run, at, "rope", 10.0)
 
 
+
+
+STRUCK = """
+heun: 1
+gravity: [0, 0, -9.81]
+ground: {points: {O: [0, 0, 0]}}
+bodies: {b: {mass: 2, center: [0, 0, -1], inertia: [0.1, 0.1, 0.1], points: {c: [0, 0, -1]}}}
+joints: {j: {type: rod, from: ground.O, to: b.c, tension_only: true}}
+"""
+
+
+def test_a_rope_takes_a_blow_that_pulls_it_and_none_that_would_push() -> None:
+    """Struck downwards it holds all of it; struck upwards the run ends before the blow, or does not begin."""
+    down = "impulses: {blow: {on: b.c, vector: [0, 0, -3], time: TIME}}\n"
+    up, run = down.replace("-3", "3"), "analysis: {duration: 0.5, samples: 6}\n"
+    (blow,) = solved(STRUCK + down.replace("TIME", "0.1") + run).impulses
+    near(blow["joints"]["j"]["tension"], 3.0, 3.0, 1e-14)
+    near(blow["bodies"]["b"]["center_velocity_jump"], np.zeros(3), 1.0, 1e-14)
+    found = solved(STRUCK + up.replace("TIME", "0.1") + run)
+    assert found.status["code"] == "stopped"
+    assert found.impulses == []
+    near(found.time[-1], 0.1, 0.1, 1e-15)
+    near(found.joints["j"]["tension"][-1], 2 * 9.81, 9.81, 1e-12)
+    for text in (STRUCK + up.replace("TIME", "0") + run, STRUCK + up.replace("TIME", "0")):
+        with pytest.raises(SolveError, match="the rod j would have to push"):
+            solved(text)
