@@ -18,10 +18,10 @@ TRUTH, SECOND = 3e-15, 1e-14  # local tolerances; the run judged has 3e-14 at be
 KNOWN = 0.3  # of what is stated: how well the truth must be known to judge by it
 
 
-def off(run: Study, shown: Results, times: Array, tolerance: float) -> Array:
+def off(run: Study, shown: Results, times: Array, tolerance: float, blows: tuple[float, ...] = ()) -> Array:
     """How far the motion is from a run at a local tolerance, up to each instant, of the scene's size."""
     runner, layout = run.setup.runner, run.setup.scene.layout
-    fine = runner.recovered(times, runner.trajectory(times, tolerance).states).bodies
+    fine = runner.recovered(times, runner.trajectory(times, tolerance, discontinuities=blows).states).bodies
     worst = np.zeros(len(times))
     for i, one in enumerate(layout.mechanism.bodies):
         k = layout.place[i]

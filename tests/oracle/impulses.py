@@ -34,7 +34,9 @@ def struck(scene: Scene, before: State, t: float = 0.0, about: Array | None = No
     loads, size = pushes(blow, still, t), scene_length(read, before)
     rows = assemble(read, before, t)
     M, _ = inertia(read, still)
-    found = moved(rows, rows.rate - rows.J @ velocities(read, before), M, gathered(blow, still, loads), size)
+    V = velocities(read, before)
+    terms = np.abs(rows.rate) + np.abs(rows.J) @ np.abs(V)
+    found = moved(rows, rows.rate - rows.J @ V, M, gathered(blow, still, loads), size, terms)
     return answer(blow, still, found, loads, size, about, length=length)
 
 

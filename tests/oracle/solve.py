@@ -174,8 +174,11 @@ def accelerations(scene: Model, state: State, t: float, loads: Mapping[str, list
     return moved(rows, rows.acceleration - rows.gamma, M, gathered(scene, state, loads) - b, size)
 
 
-def moved(rows: Rows, wanted: Array, M: Array, push: Array, size: float) -> Motion:
-    """V̇ of M V̇ = push + Jᵀλ, J V̇ = wanted by J's free directions; the multipliers' particular part and freedom."""
+def moved(rows: Rows, wanted: Array, M: Array, push: Array, size: float, terms: Array | None = None) -> Motion:
+    """V̇ of M V̇ = push + Jᵀλ, J V̇ = wanted by J's free directions; the multipliers' particular part and freedom.
+
+    terms: what `wanted` is summed from, if that is larger: its rounding is no residual.
+    """
     n = len(M) // 6
     scale = np.tile([1.0, 1, 1, size, size, size], n)  # unknowns: accelerations, and angular ones times the length
     M_, push_ = M / scale / scale[:, None], push / scale
@@ -193,12 +196,12 @@ def moved(rows: Rows, wanted: Array, M: Array, push: Array, size: float) -> Moti
     needed = M_ @ V_ - push_  # = J_ᵀ λ_, what the reactions must give
     least = U[:, :rank] @ ((Wt[:rank] @ needed) / S[:rank]) / norms
     missing = target - U[:, :rank] @ (U[:, :rank].T @ target)
-    terms = np.linalg.norm(target)
+    asked = float(np.linalg.norm(target if terms is None else np.maximum(np.abs(wanted), terms) / norms))
     loose = N @ vectors[:, ~heavy]
     load = np.linalg.norm(push_) + np.linalg.norm(needed)
     return Motion(
         V_ / scale, rows, rank, U[:, rank:] / norms[:, None], least, loose / scale[:, None],
-        residual=float(np.linalg.norm(missing) / terms) if terms > 0.0 else 0.0,
+        residual=float(np.linalg.norm(missing) / asked) if asked > 0.0 else 0.0,
         unbalanced=float(np.linalg.norm(drive[~heavy]) / load) if load > 0.0 else 0.0,
     )
 

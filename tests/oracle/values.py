@@ -59,6 +59,30 @@ class Harmonic:
         return Harmonic(value - float(at_zero(0.0)), rate - float(at_zero.first(0.0)), h.amplitude, h.omega, h.phase)
 
 
+@dataclass(frozen=True)
+class Kinked:
+    """A smooth value whose rate jumps at an instant; there the rate is that after it."""
+
+    smooth: Harmonic
+    at: float
+    jump: float
+
+    def __call__(self, t: float) -> float:
+        return self.smooth(t) + self.jump * max(t - self.at, 0.0)
+
+    def first(self, t: float) -> float:
+        return self.smooth.first(t) + (self.jump if t >= self.at else 0.0)
+
+    @property
+    def source(self) -> str:
+        """The same as an expression of a spec, digits exact."""
+        return f"{self.smooth.source} + ({self.jump!r})*max(t - ({self.at!r}), 0)"
+
+    def drive(self) -> tuple[Callable[[float], float], Callable[[float], float], Callable[[float], float]]:
+        """Value, first and second derivative, as a drive wants them."""
+        return self, self.first, self.smooth.second
+
+
 def to_yaml(scene: Mapping[str, Any]) -> str:
     """The scene as a spec: block style down to the entries, each entry in flow style, floats by repr."""
     lines = ["heun: 1"]
