@@ -16,7 +16,7 @@ from scipy.special import ellipkinc
 
 from heuncli.errors import SolveError
 from heuncli.study.solve import Study
-from tests.shared.scenes import near, study
+from tests.shared.scenes import near, solved, study
 
 pytestmark = pytest.mark.heavy  # families: the plain kernel has the same bits (tests/package/test_kernels_agree.py)
 
