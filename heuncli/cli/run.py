@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 import time
-from collections.abc import Callable, Sequence
+from collections.abc import Callable
 from typing import Any
 
 import numpy as np
@@ -19,10 +19,12 @@ from heuncli.records import replace
 from heuncli.report.heading import write_heading, write_heading_markdown
 from heuncli.report.labels import Labels, labels_of
 from heuncli.report.page import EXPORT_DEFAULT, TABLE_DEFAULT, page_of
+from heuncli.report.runs import RESULTANTS
 from heuncli.report.table import Table, markdown, plain
 from heuncli.results import Results
-from heuncli.results_schema import REPORTS
+from heuncli.results_schema import BLOWS, REPORTS
 from heuncli.spec.load import load
+from heuncli.spec.models import Spec
 from heuncli.study.extremes import Searched
 from heuncli.study.solve import Options, Study, solve
 
@@ -51,7 +53,7 @@ def main(request: Run) -> int:
     spec = load(request.spec, overrides=overrides(request.set), checking=False)
     keep(request.output, [request.spec, *spec.files])
     options = replace(options, load_seconds=time.perf_counter() - begun)
-    wanted = asked.wanted if asked else _wanted(only, spec.report, form)
+    wanted = asked.wanted if asked else _wanted(only, spec, form)
     study = solve(spec, replace(options, wanted=wanted))
     if asked:
         text = measure.write(asked, study, form)
@@ -81,11 +83,14 @@ def _only(words: str | None) -> frozenset[str] | None:
     return frozenset(choice("--only", name, REPORTS) for name in names)
 
 
-def _wanted(only: frozenset[str] | None, report: Sequence[str] | None, form: str) -> frozenset[str]:
+def _wanted(only: frozenset[str] | None, spec: Spec, form: str) -> frozenset[str]:
+    """The reports that are asked for; who asks for the impulses alone sees them alone."""
     if only is not None:
         return only
-    if report is not None:
-        return frozenset(report)
+    if spec.report is not None:
+        return frozenset(spec.report)
+    if form in TABLES and spec.analysis.type == "impulse":
+        return frozenset({BLOWS})
     return TABLE_DEFAULT if form in TABLES else EXPORT_DEFAULT
 
 
@@ -97,6 +102,8 @@ def _report(request: Run, form: str, study: Study, labels: Labels, wanted: froze
 
         return to_json(shown) if form == "json" else to_csv(shown, labels)
     page = page_of(study.results, labels, study.magnitudes)
+    if study.results.impulses:
+        page = page._replace(struck=study.struck_along([name for name, _ in RESULTANTS]))
     one = len(study.results.time) == 1
     extremes = None
     if not (request.all or at is not None or (one and not page.has_runs)):

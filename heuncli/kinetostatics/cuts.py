@@ -17,7 +17,7 @@ from heuncli import tolerances
 from heuncli.errors import Problem, SpecError
 from heuncli.joint_kinds import JOINTS
 from heuncli.mechanism.model import GROUND, Mechanism
-from heuncli.records import record
+from heuncli.records import record, replace
 from heuncli.results import Array
 from heuncli.shapes.forms import Form
 from heuncli.shapes.inertia import pseudo_inertia
@@ -59,6 +59,11 @@ class Cuts:
     def laid_for(self, on: Sequence[object]) -> Cuts:
         """Themselves, whatever acts on the body."""
         return self
+
+    @property
+    def without_stresses(self) -> Cuts:
+        """The same, where no stresses are asked for."""
+        return replace(self, properties=None)
 
 
 def attached(mechanism: Mechanism, body: int) -> list[tuple[str, Array]]:

@@ -83,6 +83,11 @@ class Stretch:
         """Those of its cuts."""
         return self.asked.warnings
 
+    @property
+    def without_stresses(self) -> Stretch:
+        """The same, where no stresses are asked for."""
+        return replace(self, asked=self.asked.without_stresses)
+
     def height(self, s: Array) -> Array:
         """Along n, from the body's origin."""
         return np.asarray(float(self.asked.points[0] @ self.asked.n) + s)

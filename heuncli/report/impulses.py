@@ -15,18 +15,17 @@ import numpy as np
 from heuncli.report import instants, runs
 from heuncli.report.blocks import build
 from heuncli.report.labels import Labels
-from heuncli.report.numbers import UNKNOWN, Certainty, largest, write, write_times
+from heuncli.report.numbers import UNKNOWN, Certainty, largest, with_axis, write, write_times
 from heuncli.report.plans import IMPULSES
 from heuncli.report.quantities import walk_impulse
 from heuncli.report.sums import sums_table
 from heuncli.report.table import Column, Table
-from heuncli.results import Array, Block, CertainSum, Extremes, Indices, Place, Results
+from heuncli.results import Array, Block, CertainSum, Extremes, Indices, Magnitudes, Results
 from heuncli.results_schema import AT_A_BLOW, STRUCK, quantity
 
 MOST_SHOWN = 3  # blows with tables of their own, unless all are asked for
 UNIT = "N·s"
 ENERGIES = ("energy_before", "energy_after", "energy_jump")
-Along = tuple[Extremes, tuple[tuple[Place, Place], ...]]  # of the resultants of a run, with their places
 
 
 class Blows(NamedTuple):
@@ -35,7 +34,8 @@ class Blows(NamedTuple):
     results: Results
     labels: Labels
     certain: Certainty
-    along: Sequence[Mapping[str, Along]] = ()
+    of: Magnitudes
+    along: Sequence[Mapping[str, Extremes]] = ()
 
 
 def impulse_tables(blows: Blows, *, every: bool = False) -> list[Table]:
@@ -93,21 +93,23 @@ def tables_of(blows: Blows, number: int, every: bool = False) -> list[Table]:
     view, labels = at_one_instant(blows.results, impulse), blows.labels
     lead = f"IMPULSE at t = {at:.6g} s ({', '.join(impulse['names'])})  "
     horizon = blows.results.accuracy.get("horizon")
+    certain = with_axis(blows.certain, view, blows.of, UNIT)
     series = list(walk_impulse(impulse, labels))
     tables: list[Table] = []
     for plan in IMPULSES:
         block = build(plan, view, labels, series)
         if block is not None:
             named = block._replace(heading=lead + block.heading)
-            tables += instants.instants_tables(named, view.time, horizon, blows.certain)
+            tables += instants.instants_tables(named, view.time, horizon, certain)
     along = blows.along[number] if blows.along else {}
     for run in runs.runs_of(view, labels, AT_A_BLOW):
-        made = runs.instants_tables(run, view.time, horizon, blows.certain, every=every)
+        made = runs.instants_tables(run, view.time, horizon, certain, every=every)
         if run.name in along:
-            extremes = runs.extremes_table(run, view.time, *along[run.name], blows.certain)
-            made = [extremes, made[0]._replace(heading=""), *made[1:]]
+            found = along[run.name]
+            table = runs.extremes_table(run, view.time, found, found.places, certain)
+            made = [table, made[0]._replace(heading=""), *made[1:]]
         tables += [made[0]._replace(heading=lead + made[0].heading), *made[1:]]
-    sums = sums_table(view, blows.certain, unit=UNIT)
+    sums = sums_table(view, certain, unit=UNIT)
     return [*tables, sums._replace(heading=lead + sums.heading)] if sums else tables
 
 

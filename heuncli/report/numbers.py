@@ -136,16 +136,16 @@ def _of_wrench(kind: str, relative: float, scales: Scales, size: float) -> dict[
     return errors
 
 
-def with_axis(certain: Certainty, results: Results, of: Magnitudes) -> Certainty:
+def with_axis(certain: Certainty, results: Results, of: Magnitudes, unit: str = "N") -> Certainty:
     """The same, with the errors of the central axis at the instants that are shown: no better than its force's.
 
-    direction s/|s|, point s × M / s², pitch s·M / s²: an error of M is one of s on a lever.
+    direction s/|s|, point s × M / s², pitch s·M / s²: an error of M is one of s on a lever. unit: N·s of impulses.
     """
     if "axis" not in results.foundation:
         return certain
     axis = results.foundation["axis"]
     force = np.sqrt(np.sum(results.foundation["force"] ** 2, axis=1))[np.isfinite(axis["pitch"])]
-    relative = certain.error("foundation", "N") / float(force.min()) if force.size else 0.0
+    relative = certain.error("foundation", unit) / float(force.min()) if force.size else 0.0
     lever = of.size + largest(axis["point"]) + largest(axis["pitch"])
     return certain._replace(errors={**certain.errors, ("axis", "1"): relative, ("axis", "m"): relative * lever})
 

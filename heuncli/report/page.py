@@ -39,7 +39,7 @@ class Page(NamedTuple):
     certain: Certainty
     of: Magnitudes
     beyond: Results | None = None
-    struck: Sequence[Mapping[str, Any]] = ()
+    struck: Sequence[Mapping[str, Extremes]] = ()
 
     def columns(self, results: Results) -> Array:
         """What is searched, (n_t, n): all rows of all blocks, magnitudes squared."""
@@ -136,7 +136,7 @@ class Page(NamedTuple):
             return []
         from heuncli.report.impulses import Blows, impulse_tables  # where something strikes
 
-        return impulse_tables(Blows(self.results, self.labels, self.certain, self.struck), every=every)
+        return impulse_tables(Blows(self.results, self.labels, self.certain, self.of, self.struck), every=every)
 
 
 def page_of(results: Results, labels: Labels, of: Magnitudes) -> Page:

@@ -43,7 +43,7 @@ def at_rest(setup: Setup) -> Setup:
     """The scene without weight and loads: what a blow meets; its cuts have no stresses."""
     scene = setup.scene
     mechanism = replace(scene.mechanism, gravity=np.zeros(3), loads=())
-    cuts = tuple(replace(cuts, properties=None) for cuts in setup.cuts)
+    cuts = tuple(cuts.without_stresses for cuts in setup.cuts)
     scene = replace(scene, mechanism=mechanism, layout=replace(scene.layout, mechanism=mechanism))
     return replace(setup, scene=scene, cuts=cuts)
 
@@ -169,7 +169,7 @@ def of_one(block: Block, k: int) -> Block:
     for name, value in block.items():
         if isinstance(value, dict):
             own[name] = of_one(value, k)
-        elif isinstance(value, np.ndarray) and name not in UNTIMED:
+        elif isinstance(value, np.ndarray) and (name not in UNTIMED or value.ndim > 1):  # nodes may move with a load
             own[name] = value[k]
         else:
             own[name] = value

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Sequence
+from dataclasses import replace
 from typing import Literal, NamedTuple
 
 import numpy as np
@@ -91,11 +92,31 @@ def struck(asked: Measure, there: Numbers, study: Study) -> Peak:
     path, at = asked.path, time_of_blow(study.results, there)
     if asked.how in ("first", "final", "at"):
         raise NotOneNumber(f"{path} has one instant, that of the blow")
+    if CUT in there.axes and asked.how:
+        return struck_along(asked, there, study)
     values = np.sqrt(np.sum(np.square(there.values), axis=-1)) if there.of_vectors else there.values
     if values.size > 1 and not asked.how:
         raise NotOneNumber(f"{path} is {values.size} numbers: say which, as .0, or max, min, max abs")
     result = float(np.abs(values).max() if asked.how == "abs" else values.min() if asked.how == "min" else values.max())
     return Peak(result + 0.0, at)
+
+
+def struck_along(asked: Measure, there: Numbers, study: Study) -> Peak:
+    """The extreme of one blow along a run of cuts, over its whole stretch."""
+    from heuncli.study.stretches import at_one_instant, stretch_named  # where there are runs of cuts
+
+    setup = study.stretched(False)
+    whole = replace(study.results, impulses=study.impulses(setup))
+    name = there.keys[3]
+    values = find(whole, asked.path).values
+    if there.of_vectors:
+        values = np.sum(np.square(values), axis=-1)
+    nodes = find(whole, f"{BLOWS}.{there.keys[1]}.sections.{name}.s").values
+    low, high = at_one_instant(stretch_named(setup, name), nodes, values)
+    lower = asked.how == "min" or (asked.how == "abs" and abs(low.value) > abs(high.value))
+    value, place = low if lower else high
+    value = float(np.sqrt(np.abs(value))) if there.of_vectors else abs(value) if asked.how == "abs" else value
+    return Peak(value, time_of_blow(study.results, there), place)
 
 
 def time_of_blow(results: Results, there: Numbers) -> float:

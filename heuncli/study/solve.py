@@ -6,6 +6,7 @@ Impure: looks at the clock.
 from __future__ import annotations
 
 import time
+from collections.abc import Sequence
 from functools import cached_property
 from typing import TYPE_CHECKING, Any
 
@@ -204,6 +205,15 @@ class Study:
         if self.struck is None:
             return []
         return (self.struck if setup is None else self.struck.cut_by(setup)).blocks()
+
+    def struck_along(self, quantities: Sequence[str]) -> list[dict[str, Extremes]]:
+        """Of each blow the extremes of some quantities along its runs of cuts, of their whole stretches."""
+        if not any(cuts.s is not None for cuts in self.setup.cuts):
+            return []
+        from heuncli.study.stretches import extremes_at_a_blow  # only runs of cuts are worth it
+
+        setup = self.stretched(False)
+        return [extremes_at_a_blow(setup, block, quantities) for block in self.impulses(setup)]
 
     def only(self, times: Array, wanted: frozenset[str], setup: Setup | None = None) -> Results:
         """Some reports' blocks at other instants of the same run, and nothing beside them; setup: with other cuts."""

@@ -7,12 +7,15 @@ the place leaps, which no extreme is at.
 
 from __future__ import annotations
 
+from collections.abc import Sequence
+from typing import NamedTuple
+
 import numpy as np
 
 from heuncli.kinetostatics.cuts import BEFORE, BEYOND, Cuts, attached
 from heuncli.kinetostatics.stretch import DEGREE, Stretch, laid, stretch_of, summits
 from heuncli.records import replace
-from heuncli.results import Array
+from heuncli.results import Array, Block, Extremes, Place
 from heuncli.study.setup import Setup
 
 
@@ -48,6 +51,34 @@ def envelope(values: Array) -> Array:
     """The lowest and the highest along a stretch, (n_t, 2), of what takes these values at its nodes, (n_t, 9 m)."""
     low, high = summits(values)
     return np.stack([-low.height, high.height], axis=1)
+
+
+def extremes_at_a_blow(setup: Setup, blow: Block, quantities: Sequence[str]) -> dict[str, Extremes]:
+    """The lowest and the highest of some quantities along each stretch, at a blow that was met with these cuts."""
+    found: dict[str, Extremes] = {}
+    for cuts in setup.cuts:
+        if isinstance(cuts, Stretch):
+            section = blow["sections"][cuts.name]
+            both = [at_one_instant(cuts, section["s"], section[name]) for name in quantities]
+            low, high = (np.array([one[side].value for one in both]) for side in (0, 1))
+            at, column = np.full(len(both), float(blow["time"])), np.zeros(len(both), dtype=np.intp)
+            places = tuple((low.place, high.place) for low, high in both)
+            found[cuts.name] = Extremes(low, at, column, high, at, column, searched=True, places=places)
+    return found
+
+
+class Summit(NamedTuple):
+    """An extreme along a stretch, and where it is."""
+
+    value: float
+    place: Place
+
+
+def at_one_instant(stretch: Stretch, s: Array, values: Array) -> tuple[Summit, Summit]:
+    """The lowest and the highest along a stretch of what takes the values (9 m,) at its nodes s."""
+    low, high = envelope(values[None])[0].tolist()
+    places = [stretch.place(*summit(s, values, side)[:2]) for side in (-1.0, 1.0)]
+    return Summit(low + 0.0, places[0]), Summit(high + 0.0, places[1])
 
 
 def summit(s: Array, values: Array, side: float) -> tuple[float, float, tuple[float, float]]:

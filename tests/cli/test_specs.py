@@ -36,7 +36,7 @@ WARNED = {
         "extremes are searched without what rounding reaches beside singular poses",
     ]
 }
-EVERYTHING = frozenset({"motion", "points", "foundation", "joints", "sections", "forces", "energy"})
+EVERYTHING = frozenset({"motion", "points", "foundation", "joints", "sections", "forces", "energy", "impulses"})
 each = pytest.mark.parametrize("name", NAMES)
 
 

@@ -152,6 +152,13 @@ class FakeStudy:
             else replace(found, sections=dict(at_nodes(*item) for item in found.sections.items()))
         )
 
+    def impulses(self, setup: Any) -> list[Block]:
+        """Its blows with nodes between the cuts of their runs."""
+        return [
+            blow | {"sections": {name: blow_at_nodes(own) for name, own in blow.get("sections", {}).items()}}
+            for blow in self.results.impulses
+        ]
+
     def stretched(self, bent: bool) -> Any:
         """What stands for the scene with its runs of cuts as stretches."""
         return SimpleNamespace(cuts=[stretch_like(*item) for item in self.results.sections.items() if "s" in item[1]])
@@ -182,6 +189,15 @@ def at_nodes(name: str, section: dict[str, Any]) -> tuple[str, dict[str, Any]]:
             between = values[:, :-1, None] + change * share.reshape(-1, *[1] * (values.ndim - 2))
             more[key] = between.reshape(len(values), -1, *values.shape[2:])
     return name, section | {"side": [None] * len(more["s"])} | more
+
+
+def blow_at_nodes(section: Block) -> Block:
+    """A section of a blow, a run of cuts with its values at nodes."""
+    run = len(section["s"]) if "s" in section else 0
+    timed = {key: value[None] if key != "s" and np.shape(value)[:1] == (run,) and run else value
+             for key, value in section.items() if key != "side"}  # fmt: skip
+    _, found = at_nodes("", timed)
+    return {key: value[0] if key in timed and key != "s" and run else value for key, value in found.items()}
 
 
 def found_extremes(study: FakeStudy, page: Page, wanted: Set[str]) -> Extremes:

@@ -107,6 +107,15 @@ def impulse_form(draft: DraftDocument) -> Iterator[Violation]:
             yield Violation(("impulses", name), message, "two blows at once: two entries", key=True)
 
 
+@rule("zero-impulse", is_warning=True)
+def zero_impulse(draft: DraftDocument) -> Iterator[Violation]:
+    """A blow of nothing changes nothing."""
+    for name, blow in draft.document.impulses.items():
+        for key in ("vector", "couple"):
+            if getattr(blow, key) == (0.0, 0.0, 0.0):
+                yield Violation(("impulses", name, key), f"{key} is [0, 0, 0]: the blow changes nothing")
+
+
 @rule("impulse-time")
 def impulse_time(draft: DraftDocument) -> Iterator[Violation]:
     """A blow falls within the run."""
