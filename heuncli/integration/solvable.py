@@ -70,12 +70,12 @@ def require_solvable(scene: PreparedScene, recovered: Recovered, asked: Asked = 
             raise SolveError(Problem("no-inertia", message, hint=hint))
 
 
-def require_start(scene: PreparedScene, start: Recovered) -> None:
+def require_start(scene: PreparedScene, start: Recovered, asked: Asked = Asked()) -> None:  # noqa: B008
     """Raise SolveError where there are no accelerations at the start, or forces along lines that have no length there.
 
     A spring that is relaxed without length needs no direction: it is as strong there as it is long.
     """
-    require_solvable(scene, start)
+    require_solvable(scene, start, asked)
     problems = []
     for load, rows in scene.mechanism.load_rows():
         if not isinstance(load, PairLoad) or start.loads[0, rows]["span"][0] > tolerances.NO_LENGTH * scene.layout.size:

@@ -18,7 +18,7 @@ from heuncli.integration.evaluator import Recovered
 from heuncli.integration.pairs import interleaved, moved_start
 from heuncli.integration.runner import Runner, Trajectory, check_deadline, discontinuities_of
 from heuncli.integration.singular import singular_poses
-from heuncli.integration.solvable import require_start
+from heuncli.integration.solvable import Asked, require_start
 from heuncli.mechanism.model import Mechanism
 from heuncli.records import record
 from heuncli.results import Array, Estimate
@@ -95,7 +95,7 @@ def state(setup: Setup, at: float, tolerance: float) -> History:
         starts = [jumps[-1].after if jumps else start for start, jumps in zip(starts, blows, strict=True)]
     times = np.array([at])
     answers = runner.recovered(times, starts[0][None, :])
-    require_start(setup.scene, answers)
+    require_start(setup.scene, answers, Asked("accelerations behind the blow") if blows[0] else Asked())
     require_motion(layout, answers)
     both = runner.recovered(*interleaved(times, [start[None, :] for start in starts]))
     seconds = {"integrate": 0.0, "check": 0.0}
