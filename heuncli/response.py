@@ -33,6 +33,7 @@ def workspace_of(layout: Layout) -> workspace.Workspace:
         "island_room": max((len(i.rows) * len(i.freedoms) for i in layout.islands), default=0),
     }
     made = workspace.Workspace(layout.tables, layout.indices, layout.pack.expressions, numbers)
+    made.hold([0.0] * len(layout.contacts))
     made.start(0.0, layout.y0)
     return made
 

@@ -162,6 +162,7 @@ KERNEL: dict[str, float] = {
     "leaving_last": 1e-3,  # of steps so short that coordinates move by roundings; what chatters never leaves
     "flurry": 1e-9,  # as SAME_INSTANT; a pulse a millionth of the run long has 2 events in 1e-6
     "least_load": 1e-200,  # N, N m or rad/s^2: bounds of exponentials are no closer than 1e-250
+    "touching": 1e-14,  # of the size, and of places and limits: what settling leaves of a gap (nearly_closed)
     "unseen": 1e-4,  # of a load's largest in a step: what it does beyond what the stages saw
     "pivot_noise": 3e-13,  # what ten lengths could not avoid: the gap that settling leaves, amplified likewise
 }

@@ -29,6 +29,7 @@ class Recovered:
     pivot: Array  # square of the least pivot of the independent closure rows; 1: far from singular
     residual: Array  # of all rows, J Vdot + gamma at the accelerations found, of the terms it is the sum of
     may_stay: Array  # what of it rows may keep that were left out as dependent
+    holding: Array  # (n_t, contacts): 0 open, 1 closed, 2 closed by others
     causes: Columns | None = None  # (n_t, n_c): each row of the table of loads alone, then CAUSES; their sum is all
 
     def at(self, which: Mask | Indices) -> Recovered:
@@ -59,13 +60,14 @@ class Evaluator:
         branches: Array | None = None,
         hold_rows: bool = False,
         causes: bool = False,
+        holding: Array | None = None,
     ) -> Recovered:
         """Accelerations and loads at the given states, which are projected onto the closures first.
 
         Each state by itself, whatever others are asked with it: its independent closure rows are chosen anew.
         branches (n_t, n): those that the expressions hold; without them branches are as the states say.
         hold_rows: those of the first serve the others too, as long as they can, for pivots that are comparable.
-        causes: with a column a cause.
+        causes: with a column a cause. holding (n_t, n) or (n,): which contacts are closed; by default none.
         """
         layout, n_t = self.layout, len(times)
         sizes = [
@@ -82,12 +84,16 @@ class Evaluator:
         settled = np.array(states, dtype=float).reshape(n_t, layout.n_state)
         flat, out = settled.ravel(), np.zeros(n_t * width)
         held = np.zeros(0) if branches is None else np.ascontiguousarray(branches, dtype=float).ravel()
-        self.workspace.recover(at, flat, held, out, width, not hold_rows, causes)
+        closed = np.zeros((n_t, len(layout.contacts)))
+        if holding is not None:
+            closed[:] = holding
+        self.workspace.recover(at, flat, held, closed.ravel(), out, width, not hold_rows, causes)
         bodies, freedoms, loads, rows, whole = parts(out.reshape(n_t, width), sizes)
         columns = out.reshape(n_t, width)[:, own:].reshape(n_t, n_c, -1) if causes else None
         return Recovered(
             times=at, states=flat.reshape(settled.shape), bodies=bodies, freedoms=freedoms, loads=loads, rows=rows,
             gap=whole["gap"][:, 0], idle=whole["idle"][:, 0], pivot=whole["pivot"][:, 0],
             residual=whole["residual"][:, 0], may_stay=self.may_stay(whole["gap"][:, 0]),
+            holding=closed,
             causes=columns_of(columns, len(layout.place), len(layout.freedoms)) if columns is not None else None,
         )  # fmt: skip

@@ -180,7 +180,6 @@ class Runner(Evaluator):
             most=most, state=start, tolerance=tolerance, rate=rate, following=0, late=late,
         )  # fmt: skip
         steps = Steps(start, run.width)
-        roped = any(j.tension_only for j in layout.mechanism.joints)
         check_deadline(deadline, f"before the run of {last:.6g} s began")
         segments = smooth_segments(last, discontinuities)
         blows = Blows(self, run, steps, last)
@@ -192,14 +191,14 @@ class Runner(Evaluator):
             run.loop.begin(*segment)
             code = MORE
             while code == MORE:
-                code = run.loop.advance(most, roped)
+                code = run.loop.advance(most, True)
                 steps.add(run)
                 if code in (REACHED, MORE):
                     check_deadline(deadline, f"at t = {run.loop.t:.6g} s of {last:.6g} s")
                 if code == MORE:
                     self._require_progress(run, steps, last, most_steps)
             if code == ROPE_SLACK:
-                stopped = layout.mechanism.joints[layout.rows[run.loop.rope]].name
+                stopped = layout.mechanism.joints[layout.rows[run.loop.contact]].name
                 break
             if code != REACHED:
                 raise self._failed(code, run, steps, last)

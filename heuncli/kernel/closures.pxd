@@ -4,7 +4,7 @@ from heuncli.kernel.algebra cimport (
     Vec3, add, add_cross, add_scaled, centripetal, cross, dot, norm, rotate, rotate_back, scaled, sub,
 )
 from heuncli.kernel.expressions cimport Jet, jet
-from heuncli.kernel.scene cimport Body, Closure, Counter, DOT, GUIDE, Scene
+from heuncli.kernel.scene cimport Body, Closure, Counter, DOT, GUIDE, Scene, TURN
 from heuncli.kernel.tree cimport answered, direction_of, push
 from libc.math cimport fabs
 
@@ -19,9 +19,11 @@ cdef void measure_rows(Scene *scene, double t) noexcept nogil
 cdef void measure_row(Scene *scene, Closure *row, double t) noexcept nogil
 cdef void guide_row(Scene *scene, Closure *row) noexcept nogil
 cdef void dot_row(Scene *scene, Closure *row) noexcept nogil
+cdef void turn_row(Scene *scene, Closure *row) noexcept nogil
 cdef void rod_row(Scene *scene, Closure *row) noexcept nogil
 cdef double demanded(Scene *scene, Closure *row) noexcept nogil
 cdef double along_row(Closure *row, Vec3 r, Vec3 a, Vec3 alpha) noexcept nogil
+cdef double acceleration_of(Scene *scene, Closure *row) noexcept nogil
 cdef double residual_of(Scene *scene, Closure *row) noexcept nogil
 cdef double size_of_demand(Scene *scene, Closure *row) noexcept nogil
 cdef double size_of_answer(Scene *scene, Closure *row) noexcept nogil

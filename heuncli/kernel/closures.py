@@ -30,7 +30,7 @@ if not cython.compiled:
         sub,
     )
     from heuncli.kernel.expressions import jet
-    from heuncli.kernel.scene import DOT, GUIDE, Body, Closure, Counter, Scene
+    from heuncli.kernel.scene import DOT, GUIDE, TURN, Body, Closure, Counter, Scene
     from heuncli.kernel.shadow import cython
     from heuncli.kernel.structs import Carried, Jet
     from heuncli.kernel.tree import answered, direction_of, push
@@ -67,6 +67,8 @@ def measure_row(scene: cython.pointer[Scene], row: cython.pointer[Closure], t: c
         guide_row(scene, row)
     elif row.kind == DOT:
         dot_row(scene, row)
+    elif row.kind == TURN:
+        turn_row(scene, row)
     else:
         rod_row(scene, row)
     if row.program.count:
@@ -104,6 +106,18 @@ def dot_row(scene: cython.pointer[Scene], row: cython.pointer[Closure]) -> cytho
     row.gamma = dot(sub(a.omega, b.omega), add(cross(cross(a.omega, e), g), cross(e, cross(b.omega, g))))
 
 
+def turn_row(scene: cython.pointer[Scene], row: cython.pointer[Closure]) -> cython.void:
+    """A pin's angle = length, about e fixed in a: gamma = (omega_a x e) . (omega_b - omega_a)."""
+    b: Carried = carried(scene, row.b, row.Q)
+    a: Carried = carried(scene, row.a, row.Q)
+    turn: Vec3 = sub(b.omega, a.omega)
+    row.f = Vec3(0.0, 0.0, 0.0)
+    row.m = direction_of(scene, row.a, row.e)
+    row.gap = scene.freedoms[row.freedom].q - row.length
+    row.rate = dot(row.m, turn)
+    row.gamma = dot(cross(a.omega, row.m), turn)
+
+
 def rod_row(scene: cython.pointer[Scene], row: cython.pointer[Closure]) -> cython.void:
     """|Q - P| = length along the unit vector n: gamma = n . (cen_b - cen_a) + (v^2 - (n . v)^2) / |Q - P|."""
     P: Vec3 = place_of(scene, row.a, row.p)
@@ -139,7 +153,12 @@ def along_row(row: cython.pointer[Closure], r: Vec3, a: Vec3, alpha: Vec3) -> cy
 
 
 def residual_of(scene: cython.pointer[Scene], row: cython.pointer[Closure]) -> cython.double:
-    """|J Vdot + gamma| of a row at the accelerations found, which are less that of gravity, the ground's too."""
+    """|J Vdot + gamma| of a row at the accelerations found."""
+    return fabs(acceleration_of(scene, row))
+
+
+def acceleration_of(scene: cython.pointer[Scene], row: cython.pointer[Closure]) -> cython.double:
+    """J Vdot + gamma of a row at the accelerations found, which are less that of gravity, the ground's too."""
     ground: cython.double = -dot(row.f, scene.gravity)
     b: cython.double = ground
     a: cython.double = ground
@@ -147,7 +166,7 @@ def residual_of(scene: cython.pointer[Scene], row: cython.pointer[Closure]) -> c
         b = along_row(row, scene.bodies[row.b].r, scene.bodies[row.b].a, scene.bodies[row.b].alpha)
     if row.a >= 0:
         a = along_row(row, scene.bodies[row.a].r, scene.bodies[row.a].a, scene.bodies[row.a].alpha)
-    return fabs(row.gamma + b - a)
+    return row.gamma + b - a
 
 
 def size_of_demand(scene: cython.pointer[Scene], row: cython.pointer[Closure]) -> cython.double:

@@ -4,7 +4,7 @@ from heuncli.kernel.algebra cimport Vec3, add_scaled, scaled
 from heuncli.kernel.closures cimport measure_rows, push_closures, residual_of, size_of_answer
 from heuncli.kernel.orthogonal cimport answer_of_row
 from heuncli.kernel.response cimport configure, respond
-from heuncli.kernel.scene cimport Body, Closure, Freedom, Load, SHIFT, Scene
+from heuncli.kernel.scene cimport APART, Body, Closure, Freedom, Load, SHIFT, Scene
 from heuncli.kernel.tree cimport balance, kinematics, push
 from libc.math cimport sqrt
 

@@ -21,7 +21,7 @@ if not cython.compiled:
     from heuncli.kernel.closures import measure_rows, push_closures, residual_of, size_of_answer
     from heuncli.kernel.orthogonal import answer_of_row
     from heuncli.kernel.response import configure, respond
-    from heuncli.kernel.scene import SHIFT, Body, Closure, Freedom, Load, Scene
+    from heuncli.kernel.scene import APART, SHIFT, Body, Closure, Freedom, Load, Scene
     from heuncli.kernel.shadow import cython
     from heuncli.kernel.tree import balance, kinematics, push
 
@@ -218,14 +218,14 @@ def measure_answers(scene: cython.pointer[Scene]) -> cython.void:
 
 
 def unmet(scene: cython.pointer[Scene]) -> cython.double:
-    """The largest |J V + gamma| of all rows at the answer found, of the terms it is the sum of."""
+    """The largest |J V + gamma| of all closed rows at the answer found, of the terms it is the sum of."""
     r: cython.Py_ssize_t
     found: cython.double = 0.0
     residual: cython.double
     for r in range(scene.closure_count):
         row: cython.pointer[Closure] = cython.address(scene.closures[r])
         size: cython.double = size_of_answer(scene, row) + row.answer * scene.load_size
-        residual = residual_of(scene, row)
+        residual = residual_of(scene, row) if row.mode != APART else 0.0
         if not residual <= found * size:
             found = residual / size
     return found

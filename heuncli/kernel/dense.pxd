@@ -4,7 +4,7 @@ from heuncli.kernel.response cimport evaluate, settle
 from heuncli.kernel.scene cimport Group, Scene
 
 cdef enum:                    # what a step tried comes to
-    STANDS, AGAIN_TO, SLACK, CHATTERS
+    STANDS, AGAIN_TO, TURNS_OVER, CHATTERS
 
 cdef enum:
     MOST_LANDINGS = 6         # on one event: each finds its place to the square of the error of the one before
@@ -52,13 +52,14 @@ cdef struct Run:
     int near                  # 1: the stages are settled, too
     int rejected_before       # 1: the last attempt was rejected
     int dodges                # other lengths tried for this step, to keep its stages off a singular pose
-    int rope                  # 1 + the row of the rope that would push
+    int contact               # 1 + the one-sided row that closes or opens
+    int watching              # 1: contacts are watched
     int late                  # 1: events are met late by the rounding of an instant, to see what that makes
     int seeing                # 1: stages are looked at for events
     int has_cut               # 1: the step under way ends at `cut`
     int has_interpolant       # 1: the dense output of the step tried is there
     int landings              # attempts to end this step on an event
-    int slack_landings        # the same where a rope goes slack
+    int contact_landings      # the same where a contact closes or opens
     int turns                 # 1: branches turn at the end of the step under way
     int at_once               # turns of branches since the time went on
     int flurry                # events since flurry_begin
@@ -86,9 +87,6 @@ cdef struct Run:
     double pivot_at_start     # of the closures, where the step starts
     double cut
     double flurry_begin
-    double most_slack         # the largest and the least that stages saw of what ropes would push with
-    double least_slack
-    double start_slack        # what they would at the start of the step
     Course course
     Group *groups
     double *weights           # of the components: 1, or 1 / size

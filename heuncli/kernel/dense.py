@@ -17,7 +17,7 @@ if not cython.compiled:
     from heuncli.kernel.structs import Method, Run
 
     # What a step tried comes to; for C these stand in dense.pxd, in the same order.
-    STANDS, AGAIN_TO, SLACK, CHATTERS = range(4)
+    STANDS, AGAIN_TO, TURNS_OVER, CHATTERS = range(4)
     MOST_LANDINGS = 6  # on one event: each finds its place to the square of the error of the one before
 
 

@@ -75,8 +75,8 @@ class Integration:
         run.rate = start["rate"]
         run.following = start["following"]
         run.late = start["late"]
-        run.next_sample = run.rope = run.steps = run.evaluations = run.rejected = run.done = run.dodges = 0
-        run.rejected_before = run.has_cut = run.landings = run.slack_landings = run.at_once = run.turns = 0
+        run.next_sample = run.contact = run.steps = run.evaluations = run.rejected = run.done = run.dodges = 0
+        run.rejected_before = run.has_cut = run.landings = run.contact_landings = run.at_once = run.turns = 0
         run.flurry = run.undecided = run.seeing = 0
         run.proposed = run.energy_scale = run.gap = run.cut = run.flurry_begin = 0.0
         run.weights = self.memory.doubles(start["weights"])
@@ -168,14 +168,14 @@ class Integration:
             for k in range(self.workspace.scene.held_count):
                 self.run.branches[i][k] = float(branches[i][k])
 
-    def advance(self, most: cython.int, roped: cython.bint) -> int:
-        """Up to `most` steps; REACHED, MORE to do, or why not. roped: stop where a rope would push."""
+    def advance(self, most: cython.int, watching: cython.bint) -> int:
+        """Up to `most` steps; REACHED, MORE to do, or why not. watching: stop where a contact closes or opens."""
         code: cython.int
         scene: cython.pointer[Scene] = cython.address(self.workspace.scene)
         run: cython.pointer[Run] = cython.address(self.run)
         method: cython.pointer[Method] = cython.address(self.method)
         run.most = most
-        scene.roped = roped
+        run.watching = watching
         scene.programs.holding = HELD
         with cython.nogil:
             code = run_steps(scene, method, run)
@@ -233,9 +233,9 @@ class Integration:
         return self.run.gap
 
     @property
-    def rope(self) -> int:
-        """The closure row of the rope that would push; -1: none."""
-        return self.run.rope - 1
+    def contact(self) -> int:
+        """The closure row of the contact that closed or opened last; -1: none."""
+        return self.run.contact - 1
 
     @property
     def turning(self) -> int:

@@ -1,5 +1,6 @@
 """Signatures of landing.py for C."""
 
+from heuncli.kernel.contacts cimport meet_contacts, see_contacts, see_start, start_contacts
 from heuncli.kernel.course cimport instant, lay_course, lay_window
 from heuncli.kernel.dense cimport (
     AGAIN_TO, CHATTERS, Course, MOST_LANDINGS, Method, Run, STANDS, clipped, hermite, need_interpolant,
@@ -8,7 +9,6 @@ from heuncli.kernel.events cimport (
     BRANCH_IN_DOUBT, CLEAR, NOTHING, TURNS, UNSEEN, first_event, forget, jump_at, quiet, see, take_branches,
 )
 from heuncli.kernel.response cimport evaluate
-from heuncli.kernel.ropes cimport meet_slack, slackness
 from heuncli.kernel.scene cimport Scene
 from heuncli.kernel.tree cimport coordinates
 from libc.math cimport fabs

@@ -1,6 +1,7 @@
 """Steps that end on events: a step tried is looked through, and done again up to the first event within it.
 
-What an event asks for happens at the end of the step that lands there: branches turn, or a rope goes slack (ropes.py).
+What an event asks for happens at the end of the step that lands there: branches turn, or a contact closes or opens
+(contacts.py).
 Where it lies is found on the dense output of the step that went over it, then on the end of the one that should have
 met it, until both agree.
 """
@@ -15,6 +16,7 @@ except ImportError:
 if not cython.compiled:
     from math import fabs
 
+    from heuncli.kernel.contacts import meet_contacts, see_contacts, see_start, start_contacts
     from heuncli.kernel.course import instant, lay_course, lay_window
     from heuncli.kernel.dense import (
         AGAIN_TO,
@@ -39,7 +41,6 @@ if not cython.compiled:
         take_branches,
     )
     from heuncli.kernel.response import evaluate
-    from heuncli.kernel.ropes import meet_slack, slackness
     from heuncli.kernel.scene import Scene
     from heuncli.kernel.shadow import cython
     from heuncli.kernel.structs import Course, Method, Run
@@ -57,28 +58,23 @@ def begin_to_see(scene: cython.pointer[Scene], run: cython.pointer[Run]) -> cyth
         forget(scene)
         coordinates(scene, clipped(run, run.t), run.y)
         see(scene)
-    if scene.roped:
-        run.most_slack = run.start_slack
-        run.least_slack = run.start_slack
+    if run.watching:
+        see_start(scene)
 
 
 def see_stage(scene: cython.pointer[Scene], run: cython.pointer[Run]) -> cython.void:
     """What was evaluated last is seen."""
     if scene.watch_count:
         see(scene)
-    if scene.roped:
-        x: cython.double = slackness(scene, run)
-        if x > run.most_slack:
-            run.most_slack = x
-        if x < run.least_slack:
-            run.least_slack = x
+    if run.watching:
+        see_contacts(scene, run.t)
 
 
 # A step tried
 
 
 def meet(scene: cython.pointer[Scene], method: cython.pointer[Method], run: cython.pointer[Run]) -> cython.int:
-    """STANDS, with `turns` where branches turn at its end; AGAIN_TO `cut`; SLACK at its end; CHATTERS."""
+    """STANDS, with `turns` where branches turn at its end; AGAIN_TO `cut`; TURNS_OVER of a contact; CHATTERS."""
     code: cython.int = STANDS
     pivot: cython.double = scene.pivot
     least: cython.double = scene.pivot_of_step
@@ -87,8 +83,8 @@ def meet(scene: cython.pointer[Scene], method: cython.pointer[Method], run: cyth
         code = meet_branches(scene, method, run)
         if code == STANDS:
             run.landings = 0
-    if scene.roped and code == STANDS:
-        code = meet_slack(scene, method, run)
+    if run.watching and code == STANDS:
+        code = meet_contacts(scene, method, run)
     scene.pivot = pivot
     scene.pivot_of_step = least
     return code
@@ -151,7 +147,7 @@ def land_on(scene: cython.pointer[Scene], run: cython.pointer[Run]) -> cython.in
             return CHATTERS
         take_branches(scene, course.turned)
         evaluate(scene, clipped(run, run.t), run.y, run.K[0])
-        run.start_slack = slackness(scene, run)
+        start_contacts(scene, run.t)
         run.evaluations += 1
         run.landings = 0
         run.cut = run.t  # none

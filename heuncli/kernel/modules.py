@@ -17,7 +17,7 @@ MODULES = (
     "dense",
     "course",
     "events",
-    "ropes",
+    "contacts",
     "landing",
     "steps",
     "integration",

@@ -4,7 +4,7 @@ from heuncli.kernel.algebra cimport Quaternion, Vec3, dot, slightly_turned, turn
 from heuncli.kernel.closures cimport count_turns, demanded, measure_row, measure_rows, push_closures
 from heuncli.kernel.loads cimport apply_loads
 from heuncli.kernel.orthogonal cimport factor_closures, solve_closures
-from heuncli.kernel.scene cimport Body, Closure, Freedom, Lent, Scene
+from heuncli.kernel.scene cimport APART, Body, Closure, Freedom, Lent, Scene
 from heuncli.kernel.tree cimport (
     add_zeros, balance, derivative, downward, factor_tree, kinematics, push_lent, put_all_loads, put_loads, upward,
 )

@@ -20,7 +20,7 @@ if not cython.compiled:
     from heuncli.kernel.closures import count_turns, demanded, measure_row, measure_rows, push_closures
     from heuncli.kernel.loads import apply_loads
     from heuncli.kernel.orthogonal import factor_closures, solve_closures
-    from heuncli.kernel.scene import Body, Closure, Freedom, Lent, Scene
+    from heuncli.kernel.scene import APART, Body, Closure, Freedom, Lent, Scene
     from heuncli.kernel.shadow import cython
     from heuncli.kernel.tree import (
         add_zeros,
@@ -309,13 +309,13 @@ def correct_rates(scene: cython.pointer[Scene], y: cython.p_double) -> cython.vo
 
 
 def largest_gap(scene: cython.pointer[Scene]) -> cython.double:
-    """Largest gap of all rows [m], the turning ones by their weight."""
+    """Largest gap of all closed rows [m], the turning ones by their weight."""
     r: cython.Py_ssize_t
     largest: cython.double = 0.0
     gap: cython.double
     for r in range(scene.closure_count):
         gap = fabs(scene.closures[r].gap) * scene.closures[r].weight
-        if not gap <= largest:
+        if scene.closures[r].mode != APART and not gap <= largest:
             largest = gap
     return largest
 

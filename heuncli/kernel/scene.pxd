@@ -10,7 +10,10 @@ cdef enum:
     FORCE, COUPLE, SPRING, ACTUATOR, TORQUE, THRUST, TURN_DAMPER, SHIFT_DAMPER, TURN_FRICTION, SHIFT_FRICTION
 
 cdef enum:
-    GUIDE, DOT, ROD
+    GUIDE, DOT, ROD, TURN
+
+cdef enum:
+    CARRIES, APART, LEANS
 
 cdef struct Body:
     int parent
@@ -100,7 +103,7 @@ cdef struct Closure:
     int kind
     int a
     int b
-    int rope
+    int freedom
     Program program
     int path
     int path_count
@@ -130,10 +133,30 @@ cdef struct Closure:
     double prescribed_second
     double answer
     double doubt
+    int mode
     int pivot_at
     int chosen
     double reflector
     double pose_scale
+
+cdef struct Contact:
+    int row
+    int sense
+    int opens
+    int unused
+    double start
+    double start_rate
+    double least
+    double most
+    double level
+    double highest
+    double bent
+    double before
+    double first
+    double fastest
+    double rate_bent
+    double rate_before
+    double rate_first
 
 cdef struct Counter:
     int a
@@ -211,6 +234,7 @@ cdef struct Limits:
     double leaving_last
     double flurry
     double least_load
+    double touching
     double unseen
     double pivot_noise
 
@@ -224,13 +248,13 @@ cdef struct Scene:
     int lent_count
     int island_count
     int watch_count
+    int contact_count         # one-sided rows
     int held_count            # branches of expressions that are held over a step
     int angle_count           # of them those of atan2
     int answer_count          # freedoms, a ball's three turns among them
     int selected_count        # independent closure rows
     int driven                # something is driven: the work of drives counts
     int work_at               # where the work stands in the state; -1: it is not asked for
-    int roped                 # ropes are watched
     Vec3 gravity
     double size
     Limits limits
@@ -254,6 +278,7 @@ cdef struct Scene:
     Lent *lents
     Island *islands
     Watch *watches
+    Contact *contacts
     int *is_angle             # which branches are those of atan2
     double *least             # of each variable what the stages of a step saw
     double *most

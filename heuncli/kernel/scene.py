@@ -18,7 +18,8 @@ from heuncli.kernel.structs import Fields, Program, Programs
 # Kinds of freedoms, loads and closure rows; for C they stand in scene.pxd, in the same order.
 TURN_IN_PARENT, TURN_IN_BODY, SHIFT = range(3)
 FORCE, COUPLE, SPRING, ACTUATOR, TORQUE, THRUST, TURN_DAMPER, SHIFT_DAMPER, TURN_FRICTION, SHIFT_FRICTION = range(10)
-GUIDE, DOT, ROD = range(3)
+GUIDE, DOT, ROD, TURN = range(4)
+CARRIES, APART, LEANS = range(3)  # modes of closure rows
 
 VALUES = {"Vec3": Vec3, "Mat3": Mat3, "Sym3": Sym3, "Ldl3": Ldl3, "Program": Program}
 
@@ -131,12 +132,13 @@ class Closure(Record):
     """A closure row J V = 0: multiplier 1 puts the force f at the point Q and the couple m on b, the opposite on a.
 
     GUIDE: e . (Q - P) = length, e fixed in a. DOT: e . g = 0, e fixed in a, g in b. ROD: |Q - P| = length.
+    TURN: a pin's angle = length, about e fixed in a.
     """
 
     kind: int
     a: int
     b: int
-    rope: int  # 1: it may only pull
+    freedom: int  # of a TURN: whose angle
     program: Program  # of the length, where it is driven
     path: int  # first of the bodies between its two ends and the ground, tips first, in `indices`
     path_count: int
@@ -167,10 +169,37 @@ class Closure(Record):
     prescribed_second: float  # of a driven length; of a blow the jump of its rate
     answer: float  # of the freedoms to its unit load, in the measure of M
     doubt: float  # what rounding may make of its multiplier
+    mode: int  # CARRIES; of a contact also APART: it is open; LEANS: closed by what others hold, it carries nothing
     pivot_at: int  # the answer that its reflector leaves something of
     chosen: int  # while rows are selected: its place in the order of pivots; -1: not yet
     reflector: float  # 2 / |v|^2 of its reflector 1 - 2 v v' / |v|^2
     pose_scale: float  # 1 / sqrt of a part of what it could answer across its arms, and of what it does
+
+
+class Contact(Record):
+    """A one-sided closure row: its margin, sense * gap while it is open, sense * multiplier while closed, is not > 0.
+
+    The margin is followed over every step; what is followed of its rate, where it is open, shows that it leaves.
+    """
+
+    row: int
+    sense: int  # 1: an upper limit, a rope; -1: a lower limit
+    opens: int  # 1 + its place among those that open and close; 0: a rope that ends the run where it would push
+    unused: int
+
+    start: float  # the margin at the start of a step, and its rate
+    start_rate: float
+    least: float  # what the stages of a step saw of it
+    most: float
+    level: float  # above it the contact closes, or opens
+    highest: float  # over a part of a step: the largest, the largest second difference, the one before, and before that
+    bent: float
+    before: float
+    first: float
+    fastest: float  # the same of its rate
+    rate_bent: float
+    rate_before: float
+    rate_first: float
 
 
 class Counter(Record):
@@ -272,6 +301,7 @@ class Limits(Record):
     leaving_last: float  # ... and at most
     flurry: float  # of the time: events that follow each other within it gather at an instant
     least_load: float  # smaller loads are none, in any unit
+    touching: float  # of the size, and of its places and limits: a contact's gap is not known better
     unseen: float  # of a load's largest: what it does beyond what stages saw, before the step is done again
     pivot_noise: float  # what a step at the least of the lengths tried may be off by, likewise
 
@@ -288,13 +318,13 @@ class Scene(metaclass=Fields):
     lent_count: int
     island_count: int
     watch_count: int
+    contact_count: int
     held_count: int
     angle_count: int
     answer_count: int
     selected_count: int
     driven: int
     work_at: int
-    roped: int
     gravity: Vec3
     size: float
     limits: Limits
@@ -318,6 +348,7 @@ class Scene(metaclass=Fields):
     lents: list[Lent]
     islands: list[Island]
     watches: list[Watch]
+    contacts: list[Contact]
     is_angle: list[int]
     least: list[float]
     most: list[float]

@@ -18,7 +18,7 @@ if not cython.compiled:
     from heuncli.kernel.algebra import Vec3, add, add_cross, cross, dot, inverse_form, sub
     from heuncli.kernel.closures import clear_path, measure_rows, put_unit_load
     from heuncli.kernel.orthogonal import answer_of_side, factor_closures, take_roots
-    from heuncli.kernel.scene import SHIFT, Body, Closure, Freedom, Island, Scene
+    from heuncli.kernel.scene import CARRIES, SHIFT, Body, Closure, Freedom, Island, Scene
     from heuncli.kernel.shadow import cython
     from heuncli.kernel.tree import factor_tree, kinematics, load_along
 
@@ -34,7 +34,7 @@ def select_independent_rows(
     take_roots(scene)
     for i in range(scene.closure_count):
         row: cython.pointer[Closure] = cython.address(scene.closures[i])
-        row.rank = 0
+        row.rank = 0 if row.mode == CARRIES else -1
         scale_pose(scene, row, afresh)
     order_all(scene, scene.least_row)
     scene.selected_count = 0

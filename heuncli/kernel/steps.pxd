@@ -2,13 +2,13 @@
 
 from heuncli.kernel.algebra cimport Vec3, norm
 from heuncli.kernel.chosen cimport choose_afresh, put_chosen, take_chosen
+from heuncli.kernel.contacts cimport opened_by_others, pushed_at_once, start_contacts, turned_over
 from heuncli.kernel.dense cimport (
-    AGAIN_TO, CHATTERS, Method, Run, SLACK, STANDS, clipped, combine, interpolate, need_interpolant,
+    AGAIN_TO, CHATTERS, Method, Run, STANDS, TURNS_OVER, clipped, combine, interpolate, need_interpolant,
 )
 from heuncli.kernel.events cimport follow_angles, take_branches
 from heuncli.kernel.expressions cimport HELD, TAKEN
 from heuncli.kernel.landing cimport begin_to_see, in_flurry, meet, see_stage
-from heuncli.kernel.ropes cimport slackness
 from heuncli.kernel.response cimport evaluate, must_choose_anew, settle
 from heuncli.kernel.scene cimport Body, Group, Scene
 from heuncli.kernel.selection cimport select_independent_rows
@@ -16,7 +16,7 @@ from heuncli.kernel.tree cimport coordinates
 from libc.math cimport fabs, pow, sqrt
 
 cdef enum:
-    REACHED, MORE, COLLAPSED, NOT_A_NUMBER, CLOSURES_LOST, ROPE_SLACK, CHATTERING
+    REACHED, MORE, COLLAPSED, NOT_A_NUMBER, CLOSURES_LOST, ROPE_SLACK, CHATTERING, STRUCK, LET_GO
     ACCEPTED, AGAIN
 
 cdef double step_error(Method *method, Run *run) noexcept nogil
@@ -42,4 +42,5 @@ cdef int accept(Scene *scene, Method *method, Run *run) noexcept nogil
 cdef bint turn_branches(Scene *scene, Run *run) noexcept nogil
 cdef int land(Scene *scene, Run *run) noexcept nogil
 cdef bint jumped(Scene *scene, Run *run) noexcept nogil
+cdef int verdict(Scene *scene, Run *run) noexcept nogil
 cdef int run_steps(Scene *scene, Method *method, Run *run) noexcept nogil

@@ -17,11 +17,12 @@ if not cython.compiled:
 
     from heuncli.kernel.algebra import Vec3, norm
     from heuncli.kernel.chosen import choose_afresh, put_chosen, take_chosen
+    from heuncli.kernel.contacts import opened_by_others, pushed_at_once, start_contacts, turned_over
     from heuncli.kernel.dense import (
         AGAIN_TO,
         CHATTERS,
-        SLACK,
         STANDS,
+        TURNS_OVER,
         clipped,
         combine,
         interpolate,
@@ -31,7 +32,6 @@ if not cython.compiled:
     from heuncli.kernel.expressions import HELD, TAKEN
     from heuncli.kernel.landing import begin_to_see, in_flurry, meet, see_stage
     from heuncli.kernel.response import evaluate, must_choose_anew, settle
-    from heuncli.kernel.ropes import slackness
     from heuncli.kernel.scene import Body, Group, Scene
     from heuncli.kernel.selection import select_independent_rows
     from heuncli.kernel.shadow import cython
@@ -39,7 +39,8 @@ if not cython.compiled:
     from heuncli.kernel.tree import coordinates
 
     # What `advance` answers; for C these stand in steps.pxd, in the same order.
-    REACHED, MORE, COLLAPSED, NOT_A_NUMBER, CLOSURES_LOST, ROPE_SLACK, CHATTERING, ACCEPTED, AGAIN = range(9)
+    REACHED, MORE, COLLAPSED, NOT_A_NUMBER, CLOSURES_LOST, ROPE_SLACK, CHATTERING = range(7)
+    STRUCK, LET_GO, ACCEPTED, AGAIN = range(7, 11)
 
 CODES = {
     "reached": REACHED,
@@ -49,6 +50,8 @@ CODES = {
     "closures lost": CLOSURES_LOST,
     "rope slack": ROPE_SLACK,
     "chattering": CHATTERING,
+    "struck": STRUCK,
+    "let go": LET_GO,
 }
 
 
@@ -123,17 +126,16 @@ def begin_piece(scene: cython.pointer[Scene], method: cython.pointer[Method], ru
     evaluate(scene, run.t, run.y, run.K[0])
     scene.programs.holding = HELD
     run.evaluations += 1
-    if scene.roped:
-        run.start_slack = slackness(scene, run)
-        if run.start_slack > 0.0:
-            return ROPE_SLACK
+    start_contacts(scene, run.t)
+    if run.watching and pushed_at_once(scene, run):
+        return ROPE_SLACK
     if not run.following:
         h = first_step(scene, method, run)
         if run.proposed <= 0.0 or h < run.proposed:
             run.proposed = h
     run.fresh = 0
     run.rejected_before = 0
-    run.has_cut = run.landings = run.slack_landings = run.at_once = 0
+    run.has_cut = run.landings = run.contact_landings = run.at_once = 0
     for i in range(run.n):
         run.carry[i] = 0.0
     return REACHED
@@ -414,7 +416,7 @@ def accept(scene: cython.pointer[Scene], method: cython.pointer[Method], run: cy
         # a step cut short by an event or the end of the piece says nothing against a longer one after it
         run.proposed = run.h * factor
     run.rejected_before = 0
-    run.has_cut = run.landings = run.slack_landings = 0
+    run.has_cut = run.landings = run.contact_landings = 0
     run.at_once = 0
     run.steps += 1
     pivot: cython.double = scene.pivot_of_step
@@ -473,8 +475,7 @@ def land(scene: cython.pointer[Scene], run: cython.pointer[Run]) -> cython.int:
     if not gap <= scene.limits.lost * scene.size or jumped(scene, run):
         return CLOSURES_LOST
     evaluate(scene, t, run.y, run.K[0])
-    if scene.roped:
-        run.start_slack = slackness(scene, run)
+    start_contacts(scene, t)
     run.evaluations += 2
     return REACHED
 
@@ -502,6 +503,14 @@ def jumped(scene: cython.pointer[Scene], run: cython.pointer[Run]) -> cython.bin
     return False
 
 
+def verdict(scene: cython.pointer[Scene], run: cython.pointer[Run]) -> cython.int:
+    """What the contact found does: STRUCK, LET_GO, or a rope without restitution would push, ROPE_SLACK."""
+    found: cython.int = turned_over(scene, run)
+    if found == 3:
+        return ROPE_SLACK
+    return STRUCK if found == 1 else LET_GO
+
+
 def run_steps(scene: cython.pointer[Scene], method: cython.pointer[Method], run: cython.pointer[Run]) -> cython.int:
     """Up to `most` accepted steps towards the end of the piece: REACHED, MORE to do, or why it cannot be continued.
 
@@ -512,7 +521,8 @@ def run_steps(scene: cython.pointer[Scene], method: cython.pointer[Method], run:
     met: cython.int = STANDS
     run.done = 0
     run.dodges = 0
-    run.seeing = not run.following and (scene.watch_count > 0 or scene.roped)
+    run.watching = run.watching and not run.following and scene.contact_count > 0
+    run.seeing = not run.following and (scene.watch_count > 0 or run.watching)
     if run.fresh and begin_piece(scene, method, run) == ROPE_SLACK:
         return ROPE_SLACK
     sample_reached(run)
@@ -532,7 +542,7 @@ def run_steps(scene: cython.pointer[Scene], method: cython.pointer[Method], run:
         code = judge(scene, method, run, trouble)
         met = STANDS
         if code == AGAIN:
-            run.has_cut = run.landings = run.slack_landings = 0
+            run.has_cut = run.landings = run.contact_landings = 0
         if code == ACCEPTED and run.seeing:
             met = meet(scene, method, run)
             if met == CHATTERS:
@@ -540,14 +550,16 @@ def run_steps(scene: cython.pointer[Scene], method: cython.pointer[Method], run:
             if met == AGAIN_TO:
                 run.has_cut = run.cut > run.t
                 continue
-            if met == SLACK and run.stop <= run.t:
-                return ROPE_SLACK
+            if met == TURNS_OVER and run.stop <= run.t:
+                return verdict(scene, run)
         if code == ACCEPTED:
             code = accept(scene, method, run)
             if code != REACHED:
                 return code
-            if met == SLACK:
-                return ROPE_SLACK
+            if met == TURNS_OVER:
+                return verdict(scene, run)
+            if run.watching and opened_by_others(scene, run):
+                return LET_GO
         elif code != AGAIN:
             return code
     return REACHED

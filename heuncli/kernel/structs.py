@@ -134,7 +134,9 @@ class Instants(metaclass=Fields):
     afresh: bool
     held: bool
     causes: bool
+    opening: int
     branches: list[float]
+    holding: list[float]
     times: list[float]
     states: list[float]
     out: list[float]
@@ -197,13 +199,14 @@ class Run(metaclass=Fields):
     near: int
     rejected_before: int
     dodges: int
-    rope: int
+    contact: int
+    watching: int
     late: int
     seeing: int
     has_cut: int
     has_interpolant: int
     landings: int
-    slack_landings: int
+    contact_landings: int
     turns: int
     at_once: int
     flurry: int
@@ -231,9 +234,6 @@ class Run(metaclass=Fields):
     pivot_at_start: float
     cut: float
     flurry_begin: float
-    most_slack: float
-    least_slack: float
-    start_slack: float
     course: Course
     groups: list[Any]
     weights: list[float]

@@ -2,14 +2,16 @@
 
 from heuncli.kernel.algebra cimport Mat3, Vec3
 from heuncli.kernel.chosen cimport choose_afresh, judge_start
-from heuncli.kernel.closures cimport measure_rows, push_closures
+from heuncli.kernel.closures cimport acceleration_of, measure_rows, push_closures, size_of_answer
 from heuncli.kernel.columns cimport answer_blow, answer_causes, answer_column, measure_answers, put, unmet
 from heuncli.kernel.events cimport find_angles
 from heuncli.kernel.expressions cimport FREE, HELD, Expressions
 from heuncli.kernel.memory cimport Memory
 from heuncli.kernel.orthogonal cimport doubt_multipliers
 from heuncli.kernel.response cimport configure, evaluate, must_choose_anew, settle
-from heuncli.kernel.scene cimport Body, Closure, Counter, Freedom, Island, Lent, Limits, Load, Scene, Variable, Watch
+from heuncli.kernel.scene cimport (
+    APART, Body, CARRIES, Closure, Contact, Counter, Freedom, Island, LEANS, Lent, Limits, Load, Scene, Variable, Watch,
+)
 from heuncli.kernel.selection cimport jacobian_row, order_all, select_independent_rows
 from heuncli.kernel.tree cimport balance, factor_tree, kinematics
 
@@ -20,7 +22,9 @@ cdef struct Instants:         # states to recover, and room for the work
     bint afresh
     bint held
     bint causes
+    int opening               # contacts that open and close; 0: they stay as they are
     double *branches
+    double *holding
     double *times
     double *states
     double *out
@@ -30,10 +34,11 @@ cdef struct Instants:         # states to recover, and room for the work
 cdef Py_ssize_t put_matrix(double *out, Py_ssize_t at, Mat3 R) noexcept nogil
 cdef Py_ssize_t put_body(double *out, Py_ssize_t at, Body *body) noexcept nogil
 cdef Py_ssize_t put_load(double *out, Py_ssize_t at, Load *load) noexcept nogil
-cdef Py_ssize_t put_row(double *out, Py_ssize_t at, Closure *row) noexcept nogil
+cdef Py_ssize_t put_row(Scene *scene, double *out, Py_ssize_t at, Closure *row) noexcept nogil
 cdef Py_ssize_t put_answers(Scene *scene, double *out, Py_ssize_t at) noexcept nogil
 cdef int recover_state(Scene *scene, double t, double *y, double *dy, bint afresh) noexcept nogil
 cdef void judge_closures(Scene *scene, double t) noexcept nogil
+cdef bint take_holding(Scene *scene, double *holding, Py_ssize_t at) noexcept nogil
 cdef void recover_states(Scene *scene, Instants *instants) noexcept nogil
 cdef void carry(Scene *scene, double *multipliers, double *out) noexcept nogil
 cdef void put_jacobian(Scene *scene, double *out) noexcept nogil
@@ -42,5 +47,6 @@ cdef class Workspace:
     cdef Scene scene
     cdef Expressions expressions
     cdef Memory memory
+    cdef int opening
     cpdef object take_tables(self, dict tables)
     cpdef object take_arrays(self, object indices, dict numbers)

@@ -20,14 +20,30 @@ except ImportError:
 if not cython.compiled:
     from heuncli.kernel.algebra import Mat3, Vec3
     from heuncli.kernel.chosen import choose_afresh, judge_start
-    from heuncli.kernel.closures import measure_rows, push_closures
+    from heuncli.kernel.closures import acceleration_of, measure_rows, push_closures, size_of_answer
     from heuncli.kernel.columns import answer_blow, answer_causes, answer_column, measure_answers, put, unmet
     from heuncli.kernel.events import find_angles
     from heuncli.kernel.expressions import FREE, HELD, Expressions
     from heuncli.kernel.memory import Memory
     from heuncli.kernel.orthogonal import doubt_multipliers
     from heuncli.kernel.response import configure, evaluate, must_choose_anew, settle
-    from heuncli.kernel.scene import Body, Closure, Counter, Freedom, Island, Lent, Limits, Load, Scene, Variable, Watch
+    from heuncli.kernel.scene import (
+        APART,
+        CARRIES,
+        LEANS,
+        Body,
+        Closure,
+        Contact,
+        Counter,
+        Freedom,
+        Island,
+        Lent,
+        Limits,
+        Load,
+        Scene,
+        Variable,
+        Watch,
+    )
     from heuncli.kernel.selection import jacobian_row, order_all, select_independent_rows
     from heuncli.kernel.shadow import cython
     from heuncli.kernel.structs import Instants
@@ -66,15 +82,21 @@ def put_load(out: cython.p_double, at: cython.Py_ssize_t, load: cython.pointer[L
     return at + 4
 
 
-def put_row(out: cython.p_double, at: cython.Py_ssize_t, row: cython.pointer[Closure]) -> cython.Py_ssize_t:
-    """A closure row's unit load, multiplier, its doubt, gap, and whether it is one of the independent ones."""
+def put_row(
+    scene: cython.pointer[Scene], out: cython.p_double, at: cython.Py_ssize_t, row: cython.pointer[Closure]
+) -> cython.Py_ssize_t:
+    """A closure row's unit load, multiplier and motion, as tables.CLOSURE_ANSWER."""
     at = put(out, at, row.f)
     at = put(out, at, row.m)
     out[at] = row.multiplier
     out[at + 1] = row.doubt
     out[at + 2] = row.gap
     out[at + 3] = row.rank >= 0
-    return at + 4
+    out[at + 4] = row.mode != APART
+    out[at + 5] = row.rate
+    out[at + 6] = acceleration_of(scene, row)
+    out[at + 7] = size_of_answer(scene, row)
+    return at + 8
 
 
 def put_answers(scene: cython.pointer[Scene], out: cython.p_double, at: cython.Py_ssize_t) -> cython.Py_ssize_t:
@@ -92,7 +114,7 @@ def put_answers(scene: cython.pointer[Scene], out: cython.p_double, at: cython.P
     for i in range(scene.load_count):
         at = put_load(out, at, cython.address(scene.loads[i]))
     for i in range(scene.closure_count):
-        at = put_row(out, at, cython.address(scene.closures[i]))
+        at = put_row(scene, out, at, cython.address(scene.closures[i]))
     return at
 
 
@@ -131,6 +153,30 @@ def judge_closures(scene: cython.pointer[Scene], t: cython.double) -> cython.voi
     scene.residual = unmet(scene)
 
 
+def take_holding(scene: cython.pointer[Scene], holding: cython.p_double, at: cython.Py_ssize_t) -> cython.bint:
+    """Open and close the contacts by the numbers from `at`; whether that is a change.
+
+    Of each contact 0 where it is open, 1 where it is closed, 2 where others close it.
+    """
+    i: cython.Py_ssize_t
+    k: cython.Py_ssize_t
+    mode: cython.int
+    changed: cython.bint = False
+    for i in range(scene.contact_count):
+        contact: cython.pointer[Contact] = cython.address(scene.contacts[i])
+        if contact.opens:
+            k = at + contact.opens - 1
+            mode = APART
+            if holding[k] > 0.0:
+                mode = CARRIES if holding[k] < 1.5 else LEANS
+            changed = changed or scene.closures[contact.row].mode != mode
+            scene.closures[contact.row].mode = mode
+    if changed:  # multipliers are found for the rows that carry; of the others they are 0
+        for i in range(scene.closure_count):
+            scene.closures[i].multiplier = 0.0
+    return changed
+
+
 def recover_states(scene: cython.pointer[Scene], instants: cython.pointer[Instants]) -> cython.void:
     """Recover one state after the other, each by itself; unless afresh, the rows chosen at one are the next one's."""
     j: cython.Py_ssize_t
@@ -138,14 +184,17 @@ def recover_states(scene: cython.pointer[Scene], instants: cython.pointer[Instan
     at: cython.Py_ssize_t
     idle: cython.int
     n: cython.Py_ssize_t = instants.n
+    opened: cython.bint = False
     for j in range(instants.count):
+        if instants.opening:
+            opened = take_holding(scene, instants.holding, j * instants.opening)
         for i in range(n):
             instants.y[i] = instants.states[j * n + i]
         if instants.held:
             scene.programs.holding = HELD
             for i in range(scene.held_count):
                 scene.programs.held[i] = instants.branches[j * scene.held_count + i]
-        idle = recover_state(scene, instants.times[j], instants.y, instants.dy, j == 0 or instants.afresh)
+        idle = recover_state(scene, instants.times[j], instants.y, instants.dy, j == 0 or instants.afresh or opened)
         for i in range(n):
             instants.states[j * n + i] = instants.y[i]
         at = put_answers(scene, instants.out, j * instants.width)
@@ -212,7 +261,6 @@ class Workspace:
         scene.work_at = numbers["work_at"]
         scene.answer_count = numbers["answer_count"]
         scene.selected_count = 0
-        scene.roped = 0
         scene.pivot_chosen = 1.0
         scene.pivot = 1.0
         scene.pivot_of_step = 1.0
@@ -228,6 +276,8 @@ class Workspace:
         scene.lent_count = len(tables["lents"])
         scene.island_count = len(tables["islands"])
         scene.watch_count = len(tables["watches"])
+        scene.contact_count = len(tables["contacts"])
+        self.opening = sum(1 for opens in tables["contacts"]["opens"].tolist() if opens)
         scene.held_count = expressions.held
         self.take_tables(tables)
         self.take_arrays(indices, numbers)
@@ -269,6 +319,9 @@ class Workspace:
             scene.watches = cython.cast(
                 cython.pointer[Watch], self.memory.rows(tables["watches"], cython.sizeof(Watch))
             )
+            scene.contacts = cython.cast(
+                cython.pointer[Contact], self.memory.rows(tables["contacts"], cython.sizeof(Contact))
+            )
             limits: cython.pointer[Limits] = cython.cast(
                 cython.pointer[Limits], self.memory.rows(tables["limits"], cython.sizeof(Limits))
             )
@@ -283,6 +336,7 @@ class Workspace:
             scene.lents = [Lent(row) for row in tables["lents"].tolist()]
             scene.islands = [Island(row) for row in tables["islands"].tolist()]
             scene.watches = [Watch(row) for row in tables["watches"].tolist()]
+            scene.contacts = [Contact(row) for row in tables["contacts"].tolist()]
             scene.limits = Limits(tables["limits"].tolist()[0])
 
     def take_arrays(self, indices: array[int], numbers: dict[str, Any]) -> None:
@@ -308,11 +362,23 @@ class Workspace:
         scene.most = self.memory.zeros(scene.variable_count)
         scene.own = self.memory.zeros(scene.lent_count * scene.lent_count)
 
+    def hold(self, holding: Any) -> None:
+        """Open and close the contacts, until the next call: of each 0 open, 1 closed, 2 closed by others."""
+        scene: cython.pointer[Scene] = cython.address(self.scene)
+        if self.opening == 0:
+            return
+        if cython.compiled:
+            given: cython.double[::1] = array("d", holding)
+            take_holding(scene, cython.address(given[0]), 0)
+        else:
+            take_holding(scene, [float(x) for x in holding], 0)
+
     def recover(
         self,
         times: Any,
         states: Any,
         branches: Any,
+        holding: Any,
         out: Any,
         width: cython.Py_ssize_t,
         afresh: cython.bint,
@@ -322,8 +388,9 @@ class Workspace:
 
         After the answers of an instant: the gap over all rows, how many freedoms had no inertia behind them, the least
         pivot of the closures, and what of all rows the accelerations do not meet. branches: those that the expressions
-        hold, as many numbers an instant; empty: as the states say. afresh: choose the closure rows at every instant
-        anew. causes: after all that a column a cause (columns.py).
+        hold, as many numbers an instant; empty: as the states say; holding: the same of the contacts, which `hold`
+        takes; empty: as they are. afresh: choose the closure rows at every instant anew. causes: after all that a
+        column a cause (columns.py).
         """
         scene: cython.pointer[Scene] = cython.address(self.scene)
         count: cython.Py_ssize_t = len(times)
@@ -337,6 +404,7 @@ class Workspace:
             to: cython.double[::1] = out
             room: cython.double[::1] = work
             taken: cython.double[::1] = branches if len(branches) else room
+            open_: cython.double[::1] = holding if len(holding) else room
             instants: Instants = Instants(
                 count,
                 n,
@@ -344,7 +412,9 @@ class Workspace:
                 afresh,
                 len(branches) > 0,
                 causes,
+                self.opening if len(holding) else 0,
                 cython.address(taken[0]),
+                cython.address(open_[0]),
                 cython.address(at[0]),
                 cython.address(Y[0]),
                 cython.address(to[0]),
@@ -355,8 +425,9 @@ class Workspace:
                 recover_states(scene, cython.address(instants))
         else:
             lists = times.tolist(), states.tolist(), out.tolist()
-            flags = afresh, len(branches) > 0, causes
-            plain = Instants(count, n, width, *flags, list(branches), *lists, [0.0] * n, [0.0] * n)
+            flags = afresh, len(branches) > 0, causes, self.opening if len(holding) else 0
+            given = list(branches), list(holding)
+            plain = Instants(count, n, width, *flags, *given, *lists, [0.0] * n, [0.0] * n)
             recover_states(scene, plain)
             states[:], out[:] = plain.states, plain.out
 

@@ -104,7 +104,7 @@ def _left(scene: PreparedScene, changed: Mapping[int, Joint], model: Block) -> i
     joints = tuple(changed.get(k, j) for k, j in enumerate(scene.mechanism.joints))
     other, runner = ready(arranged(replace(scene.mechanism, joints=joints), scene.start))
     found = redundancy(other, runner)
-    freedoms = freedoms_of_tree(other.layout) - (len(other.layout.rows) - found.dependent)
+    freedoms = freedoms_of_tree(other.layout) - (found.closed - found.dependent)
     return found.generic if freedoms == model["freedoms"] and len(other.idle) <= len(scene.idle) else None
 
 

@@ -23,6 +23,7 @@ from heuncli.response import carried, jacobian
 from heuncli.results import Array, Indices, Mask
 from heuncli.tree.islands import mean_lever
 from heuncli.tree.layout import Island
+from heuncli.tree.tables import Table
 
 
 @record
@@ -60,9 +61,9 @@ def self_stress(runner: Runner, recovered: Recovered, states: BodyStates) -> Sel
     counts = np.zeros(n_t, dtype=int)
     least, left = np.ones(n_t), np.zeros(n_t)
     for island in layout.islands:
-        chosen = recovered.rows["chosen"][:, island.rows]
-        null, values = _null_space(J.block(island.rows, island.freedoms), island, chosen)
-        counts += len(island.rows) - chosen.sum(axis=1).astype(int)
+        rows = recovered.rows[:, island.rows]
+        null, values = _null_space(J.block(island.rows, island.freedoms), island, rows)
+        counts += (rows["closed"] - rows["chosen"]).sum(axis=1).astype(int)
         least = np.minimum(least, values.kept)
         feigned = tolerances.RANK_OF_GAP * recovered.gap / island.length
         left = np.maximum(left, np.where(values.left > feigned, values.left, 0.0))
@@ -91,13 +92,20 @@ class Values(NamedTuple):
     left: Array
 
 
-def _null_space(J: Array, island: Island, chosen: Array) -> tuple[Array, Values]:
-    """Null vectors of J' on the island's rows (n_t, m, k_max), where `chosen` (n_t, m) is 1 of as many as its rank."""
+def _null_space(J: Array, island: Island, rows: Table) -> tuple[Array, Values]:
+    """Null vectors of J' on the island's rows (n_t, m, k_max), of which as many are `chosen` (n_t, m) as its rank.
+
+    A contact that is open carries nothing: it gives way along a direction of its own, and no self-stress loads it.
+    """
     L = island.length
     measure = np.where(island.couples, L, 1.0)[:, None]
     J = J * measure / np.where(island.turns, L, 1.0)
     unit = np.maximum(np.sqrt(np.sum(J * J, axis=2)), 1.0)[:, :, None]
-    J = J / unit
+    J, chosen = J / unit, rows["chosen"]
+    apart = rows["closed"] == 0.0
+    if apart.any():
+        J = np.concatenate([np.where(apart[:, :, None], 0.0, J), np.eye(len(island.rows)) * apart[:, None, :]], axis=2)
+        chosen = chosen + apart
     # rows that never touch a free direction (across a flat mechanism, say) are self-stresses by themselves
     idle = np.abs(J).max(axis=(0, 2), initial=0.0) <= tolerances.NOT_QUITE
     idle &= ~chosen.any(axis=0)

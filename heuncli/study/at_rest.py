@@ -27,7 +27,8 @@ def require_motion(layout: Layout, recovered: Recovered) -> None:
 
     recovered: of one instant. Where drives accelerate, or where bodies move already, nothing is said.
     """
-    dependent = [i for i in layout.islands if (recovered.rows["chosen"][0, i.rows] == 0.0).any()]
+    rows = recovered.rows[0]
+    dependent = [i for i in layout.islands if (rows["chosen"] < rows["closed"])[i.rows].any()]
     if not dependent:
         return
     y, accelerations = recovered.states[0], rates_of(layout, recovered)

@@ -25,7 +25,7 @@ def model_note(scene: PreparedScene, runner: Runner, method: str) -> Block:
     count = redundancy(scene, runner)
     block: Block = {
         "space": "planar" if mechanism.planar else "spatial",
-        "freedoms": freedoms_of_tree(layout) - (len(layout.rows) - count.dependent),
+        "freedoms": freedoms_of_tree(layout) - (count.closed - count.dependent),
         "driven": sum(1 for j in mechanism.joints if j.drive is not None),
         "bodies": len(mechanism.bodies), "loops": len(layout.spanning.cut), "redundant": count.generic,
         "method": method, "reasons": [], "joints": len(mechanism.joints), "grubler": grubler(mechanism),

@@ -35,7 +35,7 @@ def with_islands(layout: Layout) -> Layout:
 
 def islands(layout: Layout) -> list[Island]:
     """All islands, in the order of their first rows."""
-    loops = {k: loop_of(layout, k) for k in layout.spanning.cut}
+    loops = {k: loop_of(layout, k) for k in dict.fromkeys((*layout.spanning.cut, *layout.rows))}
     group = {k: k for k in loops}
 
     def root(k: int) -> int:
@@ -73,7 +73,7 @@ def _island(layout: Layout, rows: Array, bodies: list[int]) -> Island:
         own = own[own["driven"] == 0]
         freedoms += own["answer_at"].tolist()
         turns += (own["kind"] != kernel.SHIFT).tolist()
-    couples = layout.tables["closures"]["kind"][rows] == kernel.DOT
+    couples = np.isin(layout.tables["closures"]["kind"][rows], (kernel.DOT, kernel.TURN))
     length = mean_lever(layout, {layout.rows[r] for r in rows.tolist()})
     return Island(rows, np.array(freedoms, dtype=int), couples, np.array(turns, dtype=bool), length)
 

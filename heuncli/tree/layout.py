@@ -41,6 +41,21 @@ class Island:
 
 
 @record
+class Contact:
+    """A one-sided closure row that opens and closes: a rope that catches, or one limit of a stop.
+
+    sense: 1 an upper limit, whose gap and multiplier are not positive, -1 a lower one; joint: whose coordinate this is.
+    """
+
+    name: str  # of the rope (a joint) or the stop
+    is_rope: bool
+    joint: int
+    row: int
+    sense: int
+    restitution: float
+
+
+@record
 class Layout:
     """A scene laid out for the kernel, with what is needed to read its answers.
 
@@ -48,7 +63,7 @@ class Layout:
     its own axes, tree order; rows: joint of each closure row; starts: where the joints stand at the start; y0: the
     state there. tables: the kernel's structs by name (kernel/scene.py); indices: what the closure rows point into.
     energy_group: which of the groups of components is the drives' work (-1: none). measure (answers,): of each freedom
-    in its island's J, 1 of a shift, 1 / length of a turn, 0 of one that is in none.
+    in its island's J, 1 of a shift, 1 / length of a turn, 0 of one that is in none. contacts: what opens and closes.
     """
 
     mechanism: Mechanism
@@ -70,6 +85,7 @@ class Layout:
     pack: Pack
     work_at: int  # where the work stands in the state; -1: it is not asked for
     islands: tuple[Island, ...] = ()
+    contacts: tuple[Contact, ...] = ()
     measure: Array = np.zeros(0)
 
     @property

@@ -12,11 +12,11 @@ from heuncli import tolerances
 from heuncli.expressions.programs import Expression, Pack
 from heuncli.joint_kinds import JOINTS, Direction
 from heuncli.kernel.choose import scene as kernel
-from heuncli.mechanism.model import GROUND, Assembly, Joint, JointLoad, Mechanism, PairLoad, PointLoad
+from heuncli.mechanism.model import GROUND, Assembly, Joint, JointLoad, Mechanism, PairLoad, PointLoad, Stop
 from heuncli.results import Array
 from heuncli.shapes.rotations import to_quaternion
 from heuncli.tree.islands import with_islands
-from heuncli.tree.layout import Freedom, Layout
+from heuncli.tree.layout import Contact, Freedom, Layout
 from heuncli.tree.spanning import Hang, Spanning, span
 from heuncli.tree.starts import JointStart, Z, joint_frame, joint_start, pose, to_direction
 from heuncli.tree.tables import limits, symmetric, table
@@ -227,19 +227,24 @@ class _Builder:
         return float(f @ (Q - xa - Ra @ joint.p)), float(f @ v)
 
     def rows(self) -> None:
-        """Closure rows of the cut joints, their paths, freedoms and couplings, and counted angles."""
+        """Closure rows of the cut joints and of stops, their paths, freedoms and couplings, and counted angles."""
         self.row_joint: list[int] = []
         self.closure_rows: list[dict[str, Any]] = []
         self.paths: list[list[int]] = []
         self.counters: dict[int, int] = {}
+        self.contacts: list[Contact] = []
+        self.one_sided: list[dict[str, int]] = []
+        loose = {stop.joint for stop in self.mechanism.stops if stop.quantity == "length"}
         for k in self.spanning.cut:
             joint, s = self.mechanism.joints[k], self.starts[k]
             kind = JOINTS[joint.kind]
             common = self._ends_of(joint)
-            if kind.keeps_distance:
+            if kind.keeps_distance and k not in loose:
                 drive = self.programs[id(joint.drive.value)] if joint.drive is not None else NO_PROGRAM
                 length = 0.0 if drive[1] else joint.length if joint.length is not None else self._distance(joint)
-                row = {"kind": kernel.ROD, "rope": int(joint.tension_only), "program": drive, "length": length}
+                row = {"kind": kernel.ROD, "program": drive, "length": length}
+                if joint.tension_only:
+                    self._rope(k)
                 self._row(k, common | row | {"weight": 1.0})
             for d in kind.guides:
                 self._row(k, common | {"kind": kernel.GUIDE, "e": joint_frame(joint, d), "weight": 1.0})
@@ -248,6 +253,33 @@ class _Builder:
                 self._row(k, common | {"kind": kernel.DOT, "e": joint_frame(joint, d), "g": f, "weight": self.size})
             if "angle" in kind.coordinates:
                 self.counters[k] = -1
+        for stop in self.mechanism.stops:
+            for limit, sense in ((stop.low, -1), (stop.high, 1)):
+                if limit is not None:
+                    self._limit(stop, limit, sense)
+
+    def _rope(self, k: int) -> None:
+        """The row that comes next is that of a rope."""
+        joint = self.mechanism.joints[k]
+        row = len(self.row_joint)
+        if joint.restitution is not None:
+            self.contacts.append(Contact(joint.name, True, k, row, 1, joint.restitution))
+        opens = len(self.contacts) if joint.restitution is not None else 0
+        self.one_sided.append({"row": row, "sense": 1, "opens": opens})
+
+    def _limit(self, stop: Stop, limit: float, sense: int) -> None:
+        """The row of one limit of a stop."""
+        joint, row = self.mechanism.joints[stop.joint], len(self.row_joint)
+        self.contacts.append(Contact(stop.name, False, stop.joint, row, sense, stop.restitution))
+        self.one_sided.append({"row": row, "sense": sense, "opens": len(self.contacts)})
+        common = self._ends_of(joint) | {"length": limit, "weight": 1.0}
+        if stop.quantity == "length":
+            self._row(stop.joint, common | {"kind": kernel.ROD})
+        elif stop.quantity == "travel":
+            self._row(stop.joint, common | {"kind": kernel.GUIDE, "e": joint.axis})
+        else:
+            turn = next(i for i, f in enumerate(self.freedoms) if (f.joint, f.quantity) == (stop.joint, "angle"))
+            self._row(stop.joint, common | {"kind": kernel.TURN, "e": joint.axis, "freedom": turn, "weight": self.size})
 
     def _ends_of(self, joint: Joint) -> dict[str, Any]:
         """Bodies and points of a closure row."""
@@ -361,6 +393,7 @@ class _Builder:
             "counters": table(kernel.Counter, self._counter_rows()),
             "variables": table(kernel.Variable, self._variable_rows()),
             "watches": table(kernel.Watch, self._watch_rows()),
+            "contacts": table(kernel.Contact, self.one_sided),
             "groups": table(kernel.Group, self.groups),
             "lents": table(kernel.Lent, []),
             "limits": limits(tolerances.KERNEL),
@@ -384,6 +417,7 @@ class _Builder:
             column_count=column_count,
             pack=self.pack,
             work_at=work_at,
+            contacts=tuple(self.contacts),
         )
         return with_islands(layout)
 

@@ -1,0 +1,31 @@
+"""Signatures of contacts.py for C."""
+
+from heuncli.kernel.algebra cimport norm
+from heuncli.kernel.closures cimport measure_row
+from heuncli.kernel.dense cimport (
+    AGAIN_TO, MOST_LANDINGS, Method, Run, STANDS, TURNS_OVER, clipped, interpolate, need_interpolant,
+)
+from heuncli.kernel.response cimport evaluate, settle
+from heuncli.kernel.scene cimport APART, CARRIES, Closure, Contact, LEANS, Scene
+from heuncli.kernel.tree cimport kinematics
+from libc.math cimport fabs
+
+cdef enum:
+    HALVINGS = 46             # of a step, down to the rounding of its instants
+    POINTS = 8                # into which a part is divided to be looked at
+
+cdef double margin(Scene *scene, Contact *contact) noexcept nogil
+cdef void measure_open(Scene *scene, double t) noexcept nogil
+cdef void start_contacts(Scene *scene, double t) noexcept nogil
+cdef void see_start(Scene *scene) noexcept nogil
+cdef void see_contacts(Scene *scene, double t) noexcept nogil
+cdef bint pushed_at_once(Scene *scene, Run *run) noexcept nogil
+cdef bint opened_by_others(Scene *scene, Run *run) noexcept nogil
+cdef int turned_over(Scene *scene, Run *run) noexcept nogil
+cdef int set_levels(Scene *scene, Run *run) noexcept nogil
+cdef void stand_within(Scene *scene, Method *method, Run *run, double x, int doubt) noexcept nogil
+cdef int meet_contacts(Scene *scene, Method *method, Run *run) noexcept nogil
+cdef double first_contact(Scene *scene, Method *method, Run *run, int doubt) noexcept nogil
+cdef bint is_above(Scene *scene, Run *run) noexcept nogil
+cdef bint is_clear(Scene *scene, Method *method, Run *run, double x0, double x1, int doubt) noexcept nogil
+cdef void follow(Scene *scene, Contact *contact, int i) noexcept nogil
