@@ -163,7 +163,10 @@ def pushing(layout: Layout, jump: Jump) -> str | None:
     columns = jump.recovered.causes
     assert columns is not None
     impulses = columns.multipliers[0].sum(axis=0)
-    largest = np.abs(columns.multipliers[0]).max(initial=0.0)
+    largest = max(
+        np.abs(columns.multipliers[0]).max(initial=0.0), np.abs(columns.bodies["joint_force"]).max(initial=0.0),
+        *(np.abs(given.force).max() + np.abs(given.moment).max() / layout.size for given in jump.impulses),
+    )  # fmt: skip
     for r, k in enumerate(layout.rows):
         joint = layout.mechanism.joints[k]
         if joint.tension_only and joint.restitution is None and impulses[r] > tolerances.NO_FORCE * largest:
