@@ -102,7 +102,7 @@ def _is_run(results: Results, keys: Sequence[str]) -> bool:
 def _index(path: str, keys: Sequence[str], word: str, axis: Axis, size: int) -> int:
     index = axis.index_of(word, size)
     if index is None:
-        known = [*axis.letters] or [f"0 ... {size - 1}"] if size else []
+        known = [*axis.letters] or ["0" if size == 1 else f"0 ... {size - 1}"] if size else []
         raise _unknown(path, keys, word, known)
     return index
 

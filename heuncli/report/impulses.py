@@ -25,6 +25,7 @@ from heuncli.results_schema import AT_A_BLOW, STRUCK, quantity
 
 MOST_SHOWN = 3  # blows with tables of their own, unless all are asked for
 UNIT = "N·s"
+HEADING = "the blows of the run: largest impulse and moment of a joint or on the ground, kinetic energy"
 ENERGIES = ("energy_before", "energy_after", "energy_jump")
 
 
@@ -43,17 +44,22 @@ def impulse_tables(blows: Blows, *, every: bool = False) -> list[Table]:
     found = blows.results.impulses
     if not found:
         return []
-    sizes = np.array([size_of(impulse) for impulse in found])
-    shown = np.arange(len(found)) if every or len(found) <= MOST_SHOWN else _largest(sizes)
+    sizes = np.array([sizes_of(impulse, blows.labels) for impulse in found])
+    shown = np.arange(len(found)) if every or len(found) <= MOST_SHOWN else _largest(sizes @ [1.0, 1.0 / blows.of.size])
     tables = [listed(blows, sizes, shown)] if len(found) > 1 else []
     return tables + [table for number in shown.tolist() for table in tables_of(blows, number, every)]
 
 
-def size_of(impulse: Block) -> float:
-    """The largest impulse at its joints and on the ground [N s]."""
-    parts = [*impulse.get("joints", {}).values(), impulse.get("foundation", {})]
-    forces = [largest(np.asarray(part["force"])) for part in parts if "force" in part]
-    return max(forces, default=0.0)
+def sizes_of(impulse: Block, labels: Labels) -> tuple[float, float]:
+    """The largest impulse of its joints, on the ground and of the bodies together [N s], and moment of a joint [N m s]."""
+    joints, ground = impulse.get("joints", {}), impulse.get("foundation", {})
+    forces = [part["force"] for part in (*joints.values(), ground, ground.get("mass_effect", {})) if "force" in part]
+    moments = [joint["moment"] for joint in joints.values() if "moment" in joint]
+    for name, joint in joints.items():
+        if "drive" in joint:
+            (moments if labels.turns("joints", name) else forces).append(joint["drive"])
+    biggest = [max((largest(np.atleast_1d(np.linalg.norm(part))) for part in parts), default=0.0) for parts in (forces, moments)]
+    return biggest[0], biggest[1]
 
 
 def _largest(sizes: Array) -> Indices:
@@ -69,21 +75,24 @@ def listed(blows: Blows, sizes: Array, shown: Indices) -> Table:
     energies = {key: np.array([float(impulse.get(key, np.nan)) for impulse in found]) for key in ENERGIES}
     whole = [*energies.values()]
     energy = write(np.concatenate(whole).tolist(), certain.style("energy", "J", max(map(largest, whole))))
-    impulse = write(sizes.tolist(), certain.style("reactions", UNIT, largest(sizes)))
+    impulse, moment = (
+        write(own.tolist(), certain.style("reactions", unit, largest(own)))
+        for own, unit in zip(sizes.T, (UNIT, AT_A_BLOW["N·m"]), strict=True)
+    )
     clock = write_times(times.tolist(), float(np.ptp(blows.results.time)) or float(np.ptp(times)))
     horizon = blows.results.accuracy.get("horizon")
     rows = []
     for i, block in enumerate(found):
-        cells = [impulse[i], *energy[i :: len(found)]]
+        cells = [impulse[i], moment[i], *energy[i :: len(found)]]
         if horizon is not None and times[i] >= horizon:
             cells = [UNKNOWN] * len(cells)
         rows.append((str(i), clock[i], ", ".join(block["names"]), *cells))
-    heads = (f"largest impulse [{UNIT}]", "energy before [J]", "after [J]", "jump [J]")
+    heads = (f"largest [{UNIT}]", f"largest [{AT_A_BLOW['N·m']}]", "energy before [J]", "after [J]", "jump [J]")
     columns = (Column(""), Column("t [s]"), Column("struck by", "left"), *map(Column, heads))
     numbers = ", ".join(map(str, shown.tolist()))
-    note = f"below: {numbers}, those with the largest impulses; all: --all, or --format csv"
+    note = f"below: {numbers}, the largest; all: --all, or --format csv"
     notes = (note,) if len(shown) < len(found) else ()
-    return Table("IMPULSES  the blows of the run, in their order; kinetic energy", columns, tuple(rows), notes)
+    return Table(f"IMPULSES  {HEADING}", columns, tuple(rows), notes)
 
 
 def tables_of(blows: Blows, number: int, every: bool = False) -> list[Table]:

@@ -95,7 +95,8 @@ def expect_instants(draft: DraftDocument) -> Iterator[Violation]:
 
 def output_instants(draft: DraftDocument, asked: int) -> int | None:
     """How many instants the output will have; None where a rope may end the run before."""
-    may_stop = any(isinstance(joint, f.RodJoint) and joint.tension_only for joint in draft.document.joints.values())
+    rods = [joint for joint in draft.document.joints.values() if isinstance(joint, f.RodJoint)]
+    may_stop = any(rod.tension_only and rod.restitution is None for rod in rods)
     return None if may_stop and asked > 1 else asked
 
 
