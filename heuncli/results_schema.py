@@ -93,6 +93,14 @@ def words(name: str) -> Quantity:
     return Quantity(name, (), (), "", timed=False)
 
 
+def shares(place: str, *quantities: Quantity) -> tuple[Quantity, ...]:
+    """The shares of the causes in the wrench that stands in a place, which they add up to."""
+    wrench = vector("force", "N"), vector("moment", "N·m")
+    meaning = "what CAUSE does of it: `gravity`, a force by its name, `drives` or `motion`"
+    return at(f"{place}.shares.CAUSE", meaning, *(quantities or wrench))
+
+
+DIRECT = "of it the load itself, where it stands on the piece; of the foundation, where it is applied from outside"
 OPEN = "the components that are open at some instant, and those that a chosen split gives"
 NOT_YET = "not yet"
 ROWS: tuple[Quantity, ...] = (
@@ -119,7 +127,10 @@ ROWS: tuple[Quantity, ...] = (
         vector("force", "N"), vector("moment", "N·m")),
     *at("foundation.elements.ELEMENT", "of a force or drive ON the ground, moment about `point`",
         vector("force", "N"), vector("moment", "N·m"), vector("point", "m")),
-    *at("foundation", NOT_YET, words("shares")),
+    *shares("foundation"),
+    *at("foundation.shares.CAUSE", DIRECT, vector("direct_force", "N"), vector("direct_moment", "N·m")),
+    *shares("foundation.supports.JOINT"),
+    *shares("foundation.elements.ELEMENT"),
     *at("joints.JOINT", "of the constraint alone, `from` ON `to`, moment about `point`: where `to` is now",
         vector("point", "m"), vector("force", "N"), vector("moment", "N·m")),
     *at("joints.JOINT", OPEN, words("open"), words("chosen")),
@@ -127,7 +138,8 @@ ROWS: tuple[Quantity, ...] = (
     *at("joints.JOINT", "of the force along and across the axis, of the moment across it",
         scalar("axial", "N"), scalar("radial", "N"), scalar("tilting", "N·m")),
     *at("joints.JOINT", "of a rod, > 0 pulls", scalar("tension", "N")),
-    *at("joints.JOINT", NOT_YET, words("shares")),
+    *shares("joints.JOINT", vector("force", "N"), vector("moment", "N·m"), scalar("drive", "N | N·m"),
+        scalar("tension", "N")),
     *at("stops.STOP", "of the stop ON `to`, along the coordinate that it limits; 0 where it is free",
         scalar("force", "N"), scalar("moment", "N·m")),
     *at("sections.SECTION", "about which moments are taken", cut_vector("point", "m")),
@@ -148,7 +160,10 @@ ROWS: tuple[Quantity, ...] = (
         cut_scalar("utilisation", "1")),
     *at("sections.SECTION", "of a run: from its first point to each cut", scalar("s", "m", (CUT,), timed=False)),
     *at("sections.SECTION", "of a run: before or beyond what acts in the plane of the cut", words("side")),
-    *at("sections.SECTION", NOT_YET, words("shares")),
+    *shares("sections.SECTION", cut_vector("force", "N"), cut_vector("moment", "N·m"),
+        cut_scalar("N", "N"), cut_scalar("Q1", "N"), cut_scalar("Q2", "N"),
+        cut_scalar("T", "N·m"), cut_scalar("M1", "N·m"), cut_scalar("M2", "N·m")),
+    *at("sections.SECTION.shares.CAUSE", DIRECT, cut_vector("direct_force", "N"), cut_vector("direct_moment", "N·m")),
     *at("forces.FORCE", "as in the spec; of its line; of that, or in its joint; put into the bodies",
         scalar("value", "N | N·m"), scalar("length", "m"), scalar("rate", "m/s | rad/s"), scalar("power", "W")),
     *at("energy", "kinetic + potential − work is constant",
@@ -192,13 +207,16 @@ REPORT_OF = {
 }
 BLOWS = "impulses"  # the report of what does not run over the instants
 REPORTS = (*dict.fromkeys(REPORT_OF.values()), BLOWS)
+SHARES = "shares"  # no block of its own, but beside every wrench of these:
+SHARED = frozenset({"foundation", "joints", "sections"})
 # Magnitudes: never negative, with a kink at zero that their squares do not have.
 MAGNITUDES = frozenset({"radial", "tilting", "shear_torsion", "shear_mean", "shear_max", "mises", "utilisation"})
 AFTER_THE_RUN = frozenset({"certain_sums", "accuracy"})  # of numbers that no spec foretells
 ESTIMATES = {
     "foundation": "foundation", "joints": "reactions", "stops": "reactions", "sections": "sections", "energy": "energy",
 }  # fmt: skip
-NAMES = ("BODY", "POINT", "JOINT", "ELEMENT", "STOP", "SECTION", "FORCE", "NUMBER")
+NAMES = ("BODY", "POINT", "JOINT", "ELEMENT", "STOP", "SECTION", "FORCE", "CAUSE", "NUMBER")
+BY_CAUSE = "by cause"  # of kinds of errors
 AT_A_BLOW = {"N": "N·s", "N·m": "N·m·s"}  # units of the loads in `impulses`
 # what a blow has besides its own quantities, as at one instant; stresses are no matter of impulses
 STRUCK = ("foundation", "joints", "stops", "sections", "certain_sums")
@@ -249,8 +267,24 @@ def quantity(keys: Iterable[str]) -> Quantity | None:
     return node if isinstance(node, Quantity) else None
 
 
+def with_shared(wanted: frozenset[str]) -> frozenset[str]:
+    """The reports that are wanted; of shares alone, those that they stand in."""
+    return wanted | SHARED if SHARES in wanted and not wanted & (SHARED | {BLOWS}) else wanted
+
+
+def is_share(row: Quantity) -> bool:
+    """Whether it is what a cause does of something else."""
+    return f".{SHARES}.CAUSE." in row.path
+
+
 def kind_of_error(kind: str, name: str, number: str) -> str:
-    """Of which estimate (of `accuracy.estimate`) the error of a quantity is, by the words of its path."""
+    """Of which estimate (of `accuracy.estimate`) the error of a quantity is, by the words of its path.
+
+    Shares by cause have their own: they may be larger than what they add up to, and err by more.
+    """
+    whole, by_cause, _ = f".{name}".rpartition(f".{SHARES}.")
+    if by_cause and kind in SHARED:
+        return f"{kind_of_error(kind, whole.removeprefix('.'), number.removeprefix('direct_'))} {BY_CAUSE}"
     if kind == "joints" and number == "drive":
         return "drives"
     if kind == "foundation" and name.startswith("supports."):

@@ -41,7 +41,7 @@ class Run(NamedTuple):
         str | None,
         Option(
             ("--only",),
-            "Only these: motion, points, foundation, joints, sections, forces, energy, impulses.",
+            "Only these: motion, points, foundation, joints, sections, forces, energy, impulses, shares.",
             "REPORT,...",
         ),
     ] = None
@@ -62,7 +62,9 @@ class Run(NamedTuple):
     ] = None
     no_reduce: Annotated[bool, Option(("--no-reduce",), "Solve the scene in full, as every run does yet.")] = False
     least_norm: Annotated[bool, Option(("--least-norm",), "Split what redundant supports leave open.")] = False
-    by_cause: Annotated[bool, Option(("--by-cause",), "Split every load by its causes (not yet).")] = False
+    by_cause: Annotated[
+        bool, Option(("--by-cause",), "Split every load by its causes: gravity, each force, drives, motion.")
+    ] = False
     strict: Annotated[bool, Option(("--strict",), "Leave with 1 if there are warnings or open reactions.")] = False
     time_limit: Annotated[float | None, Option(("--time-limit",), "Give up after that long.", "SECONDS")] = None
     quiet: Annotated[bool, QUIET] = False
@@ -106,7 +108,7 @@ class Check(NamedTuple):
 Request = Run | Validate | Model | Check
 COMMANDS: dict[str, type[Request]] = {"run": Run, "validate": Validate, "model": Model, "check": Check}
 LATER_COMMANDS = ("balance", "chart", "probe", "lagrange", "methods", "schema", "explain", "new", "sweep", "plot")
-LATER_OPTIONS = ("by_cause", "golden", "update", "junit")
+LATER_OPTIONS = ("golden", "update", "junit")
 
 
 class Row(NamedTuple):

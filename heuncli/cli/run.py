@@ -22,7 +22,7 @@ from heuncli.report.page import EXPORT_DEFAULT, TABLE_DEFAULT, page_of
 from heuncli.report.runs import RESULTANTS
 from heuncli.report.table import Table, markdown, plain
 from heuncli.results import Results
-from heuncli.results_schema import BLOWS, REPORTS
+from heuncli.results_schema import BLOWS, REPORTS, SHARES, with_shared
 from heuncli.spec.load import load
 from heuncli.spec.models import Spec
 from heuncli.study.extremes import Searched
@@ -53,7 +53,7 @@ def main(request: Run) -> int:
     spec = load(request.spec, overrides=overrides(request.set), checking=False)
     keep(request.output, [request.spec, *spec.files])
     options = replace(options, load_seconds=time.perf_counter() - begun)
-    wanted = asked.wanted if asked else _wanted(only, spec, form)
+    wanted = asked.wanted if asked else _wanted(request, only, spec, form)
     study = solve(spec, replace(options, wanted=wanted))
     if asked:
         text = measure.write(asked, study, form)
@@ -78,20 +78,18 @@ def _only(words: str | None) -> frozenset[str] | None:
     if words is None:
         return None
     names = [word.strip() for word in words.split(",")]
-    if "shares" in names:
-        raise UsageError(Problem("not-yet", "--only shares: not in this version yet"))
-    return frozenset(choice("--only", name, REPORTS) for name in names)
+    return frozenset(choice("--only", name, (*REPORTS, SHARES)) for name in names)
 
 
-def _wanted(only: frozenset[str] | None, spec: Spec, form: str) -> frozenset[str]:
+def _wanted(request: Run, only: frozenset[str] | None, spec: Spec, form: str) -> frozenset[str]:
     """The reports that are asked for; who asks for the impulses alone sees them alone."""
-    if only is not None:
-        return only
-    if spec.report is not None:
-        return frozenset(spec.report)
+    wanted = TABLE_DEFAULT if form in TABLES else EXPORT_DEFAULT
     if form in TABLES and spec.analysis.type == "impulse":
-        return frozenset({BLOWS})
-    return TABLE_DEFAULT if form in TABLES else EXPORT_DEFAULT
+        wanted = frozenset({BLOWS})
+    if spec.report is not None:
+        wanted = frozenset(spec.report)
+    wanted = wanted if only is None else only
+    return with_shared(wanted | {SHARES} if request.by_cause else wanted)
 
 
 def _report(request: Run, form: str, study: Study, labels: Labels, wanted: frozenset[str]) -> str:

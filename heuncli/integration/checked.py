@@ -54,6 +54,10 @@ class Loads(Protocol):
     def kinetic(self) -> float:
         """The largest kinetic energy over the run [J]."""
 
+    @property
+    def by_cause(self) -> bool:
+        """Whether loads are told by their causes."""
+
 
 @record
 class Checked:
@@ -198,9 +202,9 @@ def checked_run(runs: Runs, tolerance: float, loads: Loads) -> Checked:
     a = best.runs[0]
     kept = ~between_strikes(best.runs, best.times)
     at, states, asked = best.times[kept], [x[kept] for x in best.states], best.asked[kept]
-    for part, several in recovered_together(runs, a, at, states):
+    for part, several in recovered_together(runs, a, at, states, causes=loads.by_cause):
         loads.add(several, asked[part], at[part] < (np.inf if best.horizon is None else best.horizon))
-    recovered = recovered_at(runs.runner, a, a.times, a.states, runs.jumps)
+    recovered = recovered_at(runs.runner, a, a.times, a.states, runs.jumps, causes=loads.by_cause)
     seconds = best.seconds + time.perf_counter() - begun
     told = best.motion, loads.estimate(), loads.errors(), best.horizon, loads.kinetic()
     beside = tuple(run.blows for run in best.runs[1:])
@@ -241,26 +245,31 @@ def errors(runs: Runs, a: Trajectory, times: Array, states: Sequence[Array]) -> 
 
 
 def recovered_together(
-    runs: Runs, a: Trajectory, times: Array, states: Sequence[Array]
+    runs: Runs, a: Trajectory, times: Array, states: Sequence[Array], *, causes: bool = False
 ) -> Iterator[tuple[slice, Recovered]]:
     """The answers at the instants, at each those of all runs, in parts that fit the memory.
 
     All hold A's branches: of an event that the runs meet at instants a little apart, either would else show its own
     side of a jump, and the estimate the jump.
     """
-    many = max(1, CHUNK // (30 * len(states) * len(runs.runner.layout.place) + 1))
+    layout = runs.runner.layout
+    numbers = (30 + 12 * (len(layout.mechanism.loads) + 3) * causes) * len(layout.place)
+    many = max(1, CHUNK // (numbers * len(states) + 1))
     for i in range(0, len(times), many):
         part = slice(i, i + many)
-        yield part, recovered_at(runs.runner, a, *interleaved(times[part], [x[part] for x in states]), runs.jumps)
+        both = interleaved(times[part], [x[part] for x in states])
+        yield part, recovered_at(runs.runner, a, *both, runs.jumps, causes=causes)
 
 
-def recovered_at(runner: Runner, run: Trajectory, times: Array, states: Array, jumps: Sequence[float]) -> Recovered:
+def recovered_at(
+    runner: Runner, run: Trajectory, times: Array, states: Array, jumps: Sequence[float], *, causes: bool = False
+) -> Recovered:
     """Accelerations and loads of states like those of a run; at a discontinuity the right limits."""
     later = times.copy()
     for before, after in one_sided_limits(jumps):
         later[(times > before) & (times < after)] = after
     branches = run.branches_at(times) if run.branches.size else None
-    return replace(runner.recovered(later, states, branches=branches), times=times)
+    return replace(runner.recovered(later, states, branches=branches, causes=causes), times=times)
 
 
 def motion_error(marks: Marks, several: Recovered, count: int, size: float) -> Array:

@@ -7,6 +7,7 @@ s and M_s act ON the foundation; k is what is applied from outside: weight, forc
 from __future__ import annotations
 
 from collections.abc import Sequence
+from typing import NamedTuple
 
 import numpy as np
 
@@ -47,19 +48,10 @@ def foundation(mechanism: Mechanism, states: BodyStates, actions: Sequence[Actio
     ma, spin = inertia_loads(mechanism, states)
     weight = np.array([b.mass for b in mechanism.bodies])[:, None] * mechanism.gravity
     force, moment = total(states, weight - ma, spin, actions, about)
-    supports: Block = {}
-    elements: Block = {}
-    for action in actions:
-        on_ground = action.on_ground()
-        if action.from_ is None:
-            continue
-        if on_ground is not None and action.kind == "joint":
-            supports[action.name] = {"force": on_ground[0], "moment": on_ground[1]}
-        elif on_ground is not None:
-            name = action.name
-            if action.kind == "drive" and name in elements:  # a force may have the same name
-                name = f"drives.{name}"
-            elements[name] = {"force": on_ground[0], "moment": on_ground[1], "point": on_ground[2].copy()}
+    standing: Block = {"supports": {}, "elements": {}}
+    for (kind, name), on in on_ground(actions).items():
+        where = {"point": on.about.copy()} if kind == "elements" else {}
+        standing[kind][name] = {"force": on.force, "moment": on.moment} | where
     orbital = np.cross(states.centre - about, ma).sum(axis=1)
     if mechanism.planar:
         force, moment = in_plane(force, moment)
@@ -72,11 +64,29 @@ def foundation(mechanism: Mechanism, states: BodyStates, actions: Sequence[Actio
             "force": ma.sum(axis=1), "moment_orbital": orbital, "moment_spin": spin.sum(axis=1),
         },
     }  # fmt: skip
-    if supports:
-        block["supports"] = supports
-    if elements:
-        block["elements"] = elements
-    return block
+    return block | {kind: own for kind, own in standing.items() if own}
+
+
+class OnGround(NamedTuple):
+    """A force and a moment ON the ground, and where the moment is taken."""
+
+    force: Array
+    moment: Array
+    about: Array
+
+
+def on_ground(actions: Sequence[Action]) -> dict[tuple[str, str], OnGround]:
+    """What stands on the ground, loads before joints: ("supports", joint), or ("elements", force or drive)."""
+    found: dict[tuple[str, str], OnGround] = {}
+    for action in actions:
+        on = action.on_ground()
+        if on is None or action.from_ is None:
+            continue
+        key = ("supports" if action.kind == "joint" else "elements", action.name)
+        if action.kind == "drive" and key in found:  # a force may have the same name
+            key = ("elements", f"drives.{action.name}")
+        found[key] = OnGround(*on)
+    return found
 
 
 def central_axis(s: Array, M: Array, about: Array, scale: float) -> Block:

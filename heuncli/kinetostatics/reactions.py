@@ -4,13 +4,17 @@ For a joint of the tree they follow from the balance of the branch beyond it; fo
 sum of lambda (f, m).
 Components along free directions are zero by definition of the joint. The rounding that the sweep leaves there is not
 hidden: it enters the balance residual of the bodies.
+
+Loads by their causes are found by the same sums: their arrays have an axis of causes before that of the instants,
+(n_c, n_t, 3), while places and directions are those of the instants, (n_t, 3).
 """
 
 from __future__ import annotations
 
+from typing import Any, Protocol
+
 import numpy as np
 
-from heuncli.integration.evaluator import Recovered
 from heuncli.joint_kinds import JOINTS
 from heuncli.kinetostatics.bodies import BodyStates
 from heuncli.mechanism.model import Joint
@@ -18,7 +22,12 @@ from heuncli.records import record
 from heuncli.results import Array
 from heuncli.tree.layout import Layout
 from heuncli.tree.starts import joint_frame
-from heuncli.tree.tables import Table
+
+
+class Named(Protocol):
+    """Arrays by the names of fields: a table, or a mapping."""
+
+    def __getitem__(self, name: str, /) -> Any: ...
 
 
 @record
@@ -41,13 +50,13 @@ class JointLoads:
     def drive_force(self) -> Array:
         """The drive's force ON `to` beside `force`, (n_t, 3)."""
         along = self.drive is not None and self.joint.drive is not None and self.joint.drive.quantity == "travel"
-        return self.drive[:, None] * self.axis if along else np.zeros_like(self.force)  # type: ignore[index,operator]
+        return self.drive[..., None] * self.axis if along else np.zeros_like(self.force)  # type: ignore[index,operator]
 
     @property
     def drive_moment(self) -> Array:
         """The drive's couple ON `to` beside `moment`, (n_t, 3)."""
         about = self.drive is not None and self.joint.drive is not None and self.joint.drive.quantity == "angle"
-        return self.drive[:, None] * self.axis if about else np.zeros_like(self.moment)  # type: ignore[index,operator]
+        return self.drive[..., None] * self.axis if about else np.zeros_like(self.moment)  # type: ignore[index,operator]
 
     @property
     def whole(self) -> tuple[Array, Array]:
@@ -57,7 +66,23 @@ class JointLoads:
         return self.force + self.drive_force, self.moment + self.drive_moment
 
 
-def joint_loads(layout: Layout, recovered: Recovered, states: BodyStates) -> list[JointLoads]:
+class Answers(Protocol):
+    """The kernel's answers, or some causes' shares in them: fields of tables by name."""
+
+    @property
+    def bodies(self) -> Named:
+        """joint_moment, joint_force (..., n_t, n_b, 3), tree order."""
+
+    @property
+    def freedoms(self) -> Named:
+        """drive (..., n_t, n_f)."""
+
+    @property
+    def rows(self) -> Named:
+        """multiplier (..., n_t, rows); f, m (n_t, rows, 3)."""
+
+
+def joint_loads(layout: Layout, recovered: Answers, states: BodyStates) -> list[JointLoads]:
     """Reactions of all joints, in the order of the spec."""
     hang_of = {h.joint: (i, h) for i, h in enumerate(layout.spanning.hangs) if h.joint >= 0}
     loads = []
@@ -68,17 +93,17 @@ def joint_loads(layout: Layout, recovered: Recovered, states: BodyStates) -> lis
         drive = tension = None
         if k in hang_of:
             i, h = hang_of[k]
-            force, moment = recovered.bodies["joint_force"][:, i], recovered.bodies["joint_moment"][:, i]
+            force, moment = (recovered.bodies[name][..., i, :] for name in ("joint_force", "joint_moment"))
             if h.reverse:
                 arm = states.point_position(joint.a, joint.p) - point
                 force, moment = -force, -moment - np.cross(arm, force)
             for n, freedom in enumerate(layout.freedoms):
                 if freedom.joint == k and freedom.q < 0:
-                    drive = recovered.freedoms["drive"][:, n]
+                    drive = recovered.freedoms["drive"][..., n]
         else:
             force, moment = (_of_joint(layout, k, recovered.rows, of) for of in ("f", "m"))
             if kind.keeps_distance:
-                push = recovered.rows["multiplier"][:, layout.rows.index(k)]
+                push = recovered.rows["multiplier"][..., layout.rows.index(k)]
                 drive, tension = (push if joint.drive is not None else None), -push
         force, moment = constrained_part(joint, states, force, moment)
         if layout.mechanism.planar:
@@ -87,12 +112,12 @@ def joint_loads(layout: Layout, recovered: Recovered, states: BodyStates) -> lis
     return loads
 
 
-def _of_joint(layout: Layout, joint: int, rows: Table, of: str) -> Array:
+def _of_joint(layout: Layout, joint: int, rows: Named, of: str) -> Array:
     """The sum over the closure rows of a cut joint, of their forces "f" or of their moments "m"."""
-    total = np.zeros_like(rows[of][:, 0])
+    total = np.zeros((*rows["multiplier"].shape[:-1], 3))
     for r, owner in enumerate(layout.rows):
         if owner == joint:
-            total = total + rows["multiplier"][:, r, None] * rows[of][:, r]
+            total = total + rows["multiplier"][..., r, None] * rows[of][..., r, :]
     return total
 
 
@@ -109,11 +134,11 @@ def constrained_part(joint: Joint, states: BodyStates, force: Array, moment: Arr
     elif len(kind.turns) == 2:
         n = np.cross(states.direction(joint.a, joint.axis), states.direction(joint.b, joint.to_axis))
         n = n / np.sqrt(np.sum(n * n, axis=1))[:, None]
-        moment = np.sum(moment * n, axis=1)[:, None] * n
+        moment = np.sum(moment * n, axis=-1)[..., None] * n
     elif kind.turns:
         n = states.direction(joint.a, joint_frame(joint, kind.turns[0]))
-        moment = moment - np.sum(moment * n, axis=1)[:, None] * n
+        moment = moment - np.sum(moment * n, axis=-1)[..., None] * n
     for d in kind.shifts:
         n = states.direction(joint.a, joint_frame(joint, d))
-        force = force - np.sum(force * n, axis=1)[:, None] * n
+        force = force - np.sum(force * n, axis=-1)[..., None] * n
     return force, moment

@@ -10,6 +10,7 @@ column the force, the skew part of the rest the moment about the body's origin. 
 
 from __future__ import annotations
 
+import math
 from collections.abc import Mapping, Sequence
 
 import numpy as np
@@ -25,7 +26,10 @@ from heuncli.results import Array, Block, Mask
 
 @record
 class Attachment:
-    """Force and couple ON a body, body axes, (n_t, 3); at: their point (3,), or (n_t, 3) if it moves over the body."""
+    """Force and couple ON a body, body axes, (n_t, 3); at: their point (3,), or (n_t, 3) if it moves over the body.
+
+    By causes: (n_c, n_t, 3).
+    """
 
     at: Array
     force: Array
@@ -51,17 +55,17 @@ def attachments(body: int, states: BodyStates, actions: Sequence[Action]) -> lis
 
 
 def in_body_axes(R: Array, v: Array) -> Array:
-    components: Array = (R.transpose(0, 2, 1) @ v[:, :, None])[:, :, 0]
+    components: Array = (R.transpose(0, 2, 1) @ v[..., None])[..., 0]
     return components
 
 
 HUGE = 1 << 19  # doubles from which NumPy asks for huge pages: first touch of fresh pages costs more than the products
 
 
-def scratch(count: int, n_t: int, k: int) -> Array:
-    """Uninitialised memory for `count` arrays of (n_t, k) side by side, flat."""
-    size = count * n_t * k
-    return np.empty(max(size, HUGE) if size > HUGE // 8 else size)[:size]
+def scratch(*shape: int) -> Array:
+    """Uninitialised memory for arrays side by side."""
+    size = math.prod(shape)
+    return np.empty(max(size, HUGE) if size > HUGE // 8 else size)[:size].reshape(shape)
 
 
 def on_piece(cuts: Cuts, at: Array) -> Array:
@@ -75,22 +79,27 @@ def acceleration_matrix(body: int, states: BodyStates, gravity: Array) -> Array:
     """Acc = [hat(sigma.) + hat(sigma)^2, x_o.. - g] in body axes, rows first: (3, n_t, 4)."""
     R = states.R[:, body]
     w, u = in_body_axes(R, states.omega[:, body]), in_body_axes(R, states.alpha[:, body])
-    A = np.empty((3, len(R), 4))
-    square = np.sum(w * w, axis=1)
+    return accelerations_as_matrix(w, u, in_body_axes(R, states.a[:, body] - gravity))
+
+
+def accelerations_as_matrix(w: Array, u: Array, a: Array) -> Array:
+    """The same of an angular velocity, its rate and the acceleration of the body's origin, body axes (..., n_t, 3)."""
+    A = np.empty((3, *u.shape[:-1], 4))
+    square = np.sum(w * w, axis=-1)
     for i in range(3):
         for j in range(3):
-            A[i, :, j] = w[:, i] * w[:, j]
-        A[i, :, i] -= square
-        A[i, :, (i + 1) % 3] -= u[:, (i + 2) % 3]
-        A[i, :, (i + 2) % 3] += u[:, (i + 1) % 3]
-    A[:, :, 3] = in_body_axes(R, states.a[:, body] - gravity).T
+            A[i, ..., j] = w[..., i] * w[..., j]
+        A[i, ..., i] -= square
+        A[i, ..., (i + 1) % 3] -= u[..., (i + 2) % 3]
+        A[i, ..., (i + 2) % 3] += u[..., (i + 1) % 3]
+    A[..., 3] = np.moveaxis(a, -1, 0)
     return A
 
 
 def piece_loads(cuts: Cuts, A: Array, on: Sequence[Attachment]) -> tuple[Array, Array]:
     """s' and M' about the cuts' own points, body axes, (3, n_t, k) each; A (3, n_t, 4): see acceleration_matrix.
 
-    Inertia and the loads at fixed points are one product of instants and cuts a component, (n_t, 4 + m) (4 + m, k); the
+    By causes: (3, n_c, n_t, k), of A (3, n_c, n_t, 4). Inertia and the loads at fixed points are one product of instants and cuts a component, (n_t, 4 + m) (4 + m, k); the
     levers from the cut's point are in the second factor. A load whose point moves over the body may change pieces and
     is added by itself.
     """
@@ -100,13 +109,13 @@ def piece_loads(cuts: Cuts, A: Array, on: Sequence[Attachment]) -> tuple[Array, 
     fixed = [a for a in on if a.at.ndim == 1]
     at = np.array([a.at for a in fixed]).reshape(-1, 3, 1)
     mask = np.array([on_piece(cuts, a.at) for a in fixed]).reshape(-1, len(cuts.points))
-    B = [np.concatenate([A[i], *(a.force[:, i : i + 1] for a in fixed)], axis=1) for i in range(3)]
+    B = [np.concatenate([A[i], *(a.force[..., i : i + 1] for a in fixed)], axis=-1) for i in range(3)]
     C = np.concatenate([-P[:, 3], mask])
-    force, moment = scratch(6, A.shape[1], len(cuts.points)).reshape(2, 3, A.shape[1], -1)
+    force, moment = scratch(2, 3, *A.shape[1:-1], len(cuts.points))
     for i in range(3):
         j, k = (i + 1) % 3, (i + 2) % 3
         np.matmul(B[i], C, out=force[i])
-        left = np.concatenate([B[j], B[k], *(a.moment[:, i : i + 1] for a in fixed)], axis=1)
+        left = np.concatenate([B[j], B[k], *(a.moment[..., i : i + 1] for a in fixed)], axis=-1)
         right = (
             np.concatenate([P[:, k], -mask * at[:, k]]) + p[k] * C,
             np.concatenate([-P[:, j], mask * at[:, j]]) - p[j] * C,
@@ -119,9 +128,9 @@ def piece_loads(cuts: Cuts, A: Array, on: Sequence[Attachment]) -> tuple[Array, 
             for i in range(3):
                 j, k = (i + 1) % 3, (i + 2) % 3
                 lever_j, lever_k = a.at[:, j, None] - p[j], a.at[:, k, None] - p[k]
-                force[i] += a.force[:, i, None] * there
+                force[i] += a.force[..., i, None] * there
                 moment[i] += (
-                    a.moment[:, i, None] + lever_j * a.force[:, k, None] - lever_k * a.force[:, j, None]
+                    a.moment[..., i, None] + lever_j * a.force[..., k, None] - lever_k * a.force[..., j, None]
                 ) * there
     return force, moment
 
@@ -129,15 +138,15 @@ def piece_loads(cuts: Cuts, A: Array, on: Sequence[Attachment]) -> tuple[Array, 
 def moving_piece_loads(cuts: Cuts, A: Array, on: Sequence[Attachment]) -> tuple[Array, Array]:
     """The same for cuts that move along the body: pieces (n_t, k, 4, 4), points (n_t, k, 3)."""
     p = cuts.points.transpose(2, 0, 1)
-    inertia = -np.einsum("itj,tkjl->iltk", A, cuts.pieces)
+    inertia = -np.einsum("i...tj,tkjl->il...tk", A, cuts.pieces)
     force = inertia[:, 3].copy()
     moment = np.stack([inertia[2, 1] - inertia[1, 2], inertia[0, 2] - inertia[2, 0], inertia[1, 0] - inertia[0, 1]])
     moment -= crossed(p, force)
     for a in on:
-        F = a.force.T[:, :, None] * on_piece(cuts, a.at)
+        F, M = (np.moveaxis(x, -1, 0)[..., None] * on_piece(cuts, a.at) for x in (a.force, a.moment))
         force += F
         moment += crossed(np.moveaxis(np.atleast_2d(a.at), 1, 0)[:, :, None] - p, F)
-        moment += a.moment.T[:, :, None] * on_piece(cuts, a.at)
+        moment += M
     return force, moment
 
 
@@ -165,20 +174,19 @@ class Planes:
     def in_world_axes(self, v: Array, out: Array | None = None, is_position: bool = False) -> Array:
         """World components (n_t, k, 3) of a vector (3, n_t, k) in body axes, or of a position from the origin."""
         world = np.empty(v.shape) if out is None else out
-        if v.strides[1] == 0:  # the same at all instants: one product
+        if v.ndim == 3 and v.strides[1] == 0:  # the same at all instants: one product
             np.matmul(self.R.transpose(1, 0, 2), v[:, 0], out=world)
         else:
-            np.matmul(self.R, v.transpose(1, 0, 2), out=world.transpose(1, 0, 2))
+            np.matmul(self.R, np.moveaxis(v, 0, -2), out=np.moveaxis(world, 0, -2))
         if is_position:
             world += self.origin.T[:, :, None]
-        return world.transpose(1, 2, 0)
+        return np.moveaxis(world, 0, -1)
 
     def components(self, force: Array, moment: Array) -> Block:
         """All components of loads given about the cuts' points; T0, M10, M20 about the centroid, for stresses."""
         about = moment if self.about is self.at else shifted(force, moment, self.about - self.at)
         c = self.cuts
-        _, n_t, k = force.shape
-        space = scratch(15, n_t, k).reshape(15, n_t, k)
+        space = scratch(15, *force.shape[1:])
         block: Block = {
             "force": self.in_world_axes(force, space[9:12]),
             "moment": self.in_world_axes(about, space[12:15]),

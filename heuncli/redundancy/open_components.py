@@ -69,16 +69,17 @@ def open_joint(block: Block, load: JointLoads, share: Array, stress: SelfStress)
                 parts["force"], parts["axial"] = stress.reaches(across), np.zeros_like(parts["axial"])
     if load.tension is not None:
         parts["tension"] = np.asarray(force.any(axis=1))
-    for name, is_open in parts.items():
-        if name in block:
-            block[name] = opened(block[name], is_open)
+    for own in (block, *block.get("shares", {}).values()):
+        for name in parts.keys() & own.keys():
+            own[name] = opened(own[name], parts[name])
     block["open"] = names_of({name: is_open for name, is_open in parts.items() if name in block})
 
 
 def open_support(block: Block, share: Array, stress: SelfStress) -> None:
     """Open components of a support's force and moment ON the ground, in place."""
     force, moment = wrench_open(stress, share)
-    block["force"], block["moment"] = opened(block["force"], force), opened(block["moment"], moment)
+    for own in (block, *block.get("shares", {}).values()):
+        own["force"], own["moment"] = opened(own["force"], force), opened(own["moment"], moment)
 
 
 def open_in_section(

@@ -16,7 +16,7 @@ from heuncli.redundancy.certain_sums import certain_sums
 from heuncli.redundancy.neighbours import neighbours
 from heuncli.redundancy.open_components import names_of, open_joint, open_support, wrench_open
 from heuncli.redundancy.self_stress import SelfStress, self_stress
-from heuncli.redundancy.split import split
+from heuncli.redundancy.split import Choice, split
 from heuncli.results import Array, Block, CertainSum, Indices
 
 SUMS_FROM = 9  # instants whose self-stresses certain sums are read from
@@ -30,7 +30,14 @@ class Resolution:
     words: tuple[str, ...] = ()
     stress: SelfStress | None = None
     left: SelfStress | None = None
+    choices: tuple[Choice, ...] = ()
     searched: SelfStress | None = None  # the search for them, also where there are none
+
+    def chosen(self, joints: list[JointLoads], states: BodyStates) -> list[JointLoads]:
+        """Other loads of the joints, as their shares by cause, after the same split."""
+        for choice in self.choices:
+            joints = choice.added(joints, states)
+        return joints
 
     def singular(self, times: Array, redundant: int) -> list[str]:
         """Sentences on instants with more self-stresses than `redundant`, or nearly so."""
@@ -56,7 +63,7 @@ def resolve(
     if stress is None or not stress.count.any():
         return Resolution(joints, searched=stress)
     chosen = split(joints, states, stress, least_norm)
-    return Resolution(chosen.joints, chosen.words, stress, chosen.stress, stress)
+    return Resolution(chosen.joints, chosen.words, stress, chosen.stress, chosen.choices, stress)
 
 
 def singular_poses(stress: SelfStress, times: Array, redundant: int) -> list[str]:

@@ -20,26 +20,52 @@ from heuncli.results import Array
 
 
 @record
+class Choice:
+    """Which self-stresses are added to joint loads: linear in these, so a load's shares by cause are split likewise.
+
+    shares (n_j, n_t, 6, k): of the self-stresses in the joints; answers (n_t, k, 6 n_j): how much of each is added for
+    a unit of every component of the joints' wrenches.
+    """
+
+    shares: Array
+    answers: Array
+
+    def added(self, joints: Sequence[JointLoads], states: BodyStates) -> list[JointLoads]:
+        """The joint loads with the self-stresses."""
+        W = np.concatenate([_wrench(j) for j in joints], axis=-1)
+        c = np.einsum("tkj,...tj->...tk", self.answers, W)
+        return [
+            _added(j, states, np.einsum("tik,...tk->...ti", s, c)) for j, s in zip(joints, self.shares, strict=True)
+        ]
+
+
+@record
 class Split:
-    """Joint loads after a choice, the self-stresses it left (None: none), and how it was made, in words."""
+    """Joint loads after some choices, the self-stresses these left (None: none), and how they were made, in words."""
 
     joints: list[JointLoads]
     stress: SelfStress | None
+    choices: tuple[Choice, ...]
     words: tuple[str, ...]
 
 
 def split(joints: list[JointLoads], states: BodyStates, stress: SelfStress, least_norm: bool) -> Split:
     """Apply the joints' stiffness where it is given, then the least norm if asked for."""
     words: list[str] = []
+    choices: list[Choice] = []
     left: SelfStress | None = stress
     if any(j.joint.stiffness is not None for j in joints):
-        joints, left = with_least_strain(joints, states, stress, [stiffness_map(j, states) for j in joints])
+        choice, left = with_least_strain(stress, [stiffness_map(j, states) for j in joints])
+        choices.append(choice)
         words.append("chosen by stiffness")
     if least_norm and left is not None:
         maps = [np.broadcast_to(np.diag([1.0] * 3 + [1.0 / stress.length] * 3), (len(states.x), 6, 6)) for _ in joints]
-        joints, left = with_least_strain(joints, states, left, maps)
+        choice, left = with_least_strain(left, maps)
+        choices.append(choice)
         words.append(f"chosen by least norm, moments divided by {stress.length:.4g} m")
-    return Split(joints, left, tuple(words))
+    for choice in choices:
+        joints = choice.added(joints, states)
+    return Split(joints, left, tuple(choices), tuple(words))
 
 
 def stiffness_map(load: JointLoads, states: BodyStates) -> Array:
@@ -54,22 +80,20 @@ def stiffness_map(load: JointLoads, states: BodyStates) -> Array:
     return strains
 
 
-def with_least_strain(
-    joints: Sequence[JointLoads], states: BodyStates, stress: SelfStress, maps: Sequence[Array]
-) -> tuple[list[JointLoads], SelfStress | None]:
-    """Add the self-stresses that make the sum of squares of the mapped wrenches least; those without effect stay."""
+def with_least_strain(stress: SelfStress, maps: Sequence[Array]) -> tuple[Choice, SelfStress | None]:
+    """The self-stresses that make the sum of squares of the mapped wrenches least; those without effect stay."""
     S = np.concatenate([np.einsum("tij,tjk->tik", m, s) for m, s in zip(maps, stress.shares, strict=True)], axis=1)
-    W = np.concatenate([np.einsum("tij,tj->ti", m, _wrench(j)) for m, j in zip(maps, joints, strict=True)], axis=1)
     size = np.where(stress.largest > 0.0, stress.largest, 1.0)
     U, sigma, V = np.linalg.svd(S / size[:, None, :], full_matrices=False)
     strained = sigma > tolerances.STRAINED * np.maximum(sigma.max(axis=1, initial=0.0), 1e-300)[:, None]
     inverse = np.where(strained, 1.0 / np.where(strained, sigma, 1.0), 0.0)
-    c = -np.einsum("tki,tk,tjk,tj->ti", V, inverse, U, W) / size
-    shared = [_added(j, states, np.einsum("tik,tk->ti", s, c)) for j, s in zip(joints, stress.shares, strict=True)]
+    answers = -(V.transpose(0, 2, 1) * inverse[:, None, :]) @ U.transpose(0, 2, 1) / size[:, :, None]
+    answers = np.concatenate([answers[:, :, 6 * n : 6 * n + 6] @ m for n, m in enumerate(maps)], axis=2)
+    choice = Choice(stress.shares, answers)
     alive = stress.largest > 0.0
     rest_count = alive.sum(axis=1) - strained.sum(axis=1)
     if not (rest_count > 0).any():
-        return shared, None
+        return choice, None
     # what strains nothing: the self-stresses' part outside the rows of V that strain something
     rest = np.eye(S.shape[2]) - np.einsum("tki,tk,tkj->tij", V, strained.astype(float), V)
     unstrained = np.einsum("tij,tj->tij", rest, alive.astype(float)) / size[:, :, None]
@@ -77,25 +101,26 @@ def with_least_strain(
     parts = [np.maximum(np.abs(s[:, :3]).max(axis=1), np.abs(s[:, 3:]).max(axis=1) / stress.length) for s in shares]
     largest = np.max(parts, axis=0)
     largest = np.where(largest > tolerances.STILL_OPEN, largest, 0.0)
-    return shared, replace(stress, shares=shares, largest=largest, count=rest_count)
+    return choice, replace(stress, shares=shares, largest=largest, count=rest_count)
 
 
 def _wrench(load: JointLoads) -> Array:
     F, M = load.whole
-    return np.concatenate([F, M], axis=1)
+    return np.concatenate([F, M], axis=-1)
 
 
 def _added(load: JointLoads, states: BodyStates, more: Array) -> JointLoads:
     F, M = load.whole
-    F, M = F + more[:, :3], M + more[:, 3:]
+    F, M = F + more[..., :3], M + more[..., 3:]
     force, moment = constrained_part(load.joint, states, F, M)
     drive = load.drive
     if drive is not None and load.axis is not None and load.joint.drive is not None:
         whole = M if load.joint.drive.quantity == "angle" else F
-        drive = np.sum(whole * load.axis, axis=1)
+        drive = np.sum(whole * load.axis, axis=-1)
     tension = load.tension
     if tension is not None:
-        along = np.sum(load.force * more[:, :3], axis=1)
-        size = np.sqrt(np.sum(load.force**2, axis=1))
-        tension = tension + np.where(size > 0.0, along / np.where(size > 0.0, size, 1.0) * np.sign(tension), 0.0)
+        line = states.point_position(load.joint.b, load.joint.q) - states.point_position(load.joint.a, load.joint.p)
+        along = np.sum(more[..., :3] * line, axis=-1) / np.sqrt(np.sum(line * line, axis=-1))
+        tension = tension - along
+        drive = -tension if load.joint.drive is not None else None
     return replace(load, force=force, moment=moment, drive=drive, tension=tension)

@@ -22,7 +22,7 @@ FORMAT = 1
 MOST_NUMBERS = 200_000_000  # about 4 GB of text
 ALWAYS = frozenset({"title", "spec", "version", "model", "status", "time"})
 CERTAIN_SUM = row_of("certain_sums.NUMBER.value")
-CSV_HEADER = "time,kind,name,quantity,component,unit,value\n"
+CSV_COLUMNS = ("time", "kind", "name", "quantity", "component", "unit", "value")  # and cause, where shares are told
 
 
 def to_json(results: Results) -> str:
@@ -36,20 +36,23 @@ def to_json(results: Results) -> str:
 def to_csv(results: Results, labels: Labels) -> str:
     """The results in long form, a line a number; an empty value is open, an empty time holds for all instants."""
     _limit(results)
-    lines = [CSV_HEADER]
     instants = [repr(t) for t in results.time.tolist()]
+    rows: list[tuple[Series, str, str, list[str]]] = []  # series, kind, name, and the instants it holds at
     for series in walk(results, labels):
-        lines += _lines(series, series.kind, series.name, [""] if series.static else instants)
+        rows.append((series, series.kind, series.name, [""] if series.static else instants))
     for number, block in enumerate(results.impulses):
         for series in walk_impulse(block, labels):
             name = ".".join(part for part in (str(number), series.kind, series.name) if part)
-            lines += _lines(series, BLOWS, name, [repr(float(block["time"]))])
+            rows.append((series, BLOWS, name, [repr(float(block["time"]))]))
         for name, series in _sums(block.get("certain_sums", ())):
-            unit = AT_A_BLOW[series.unit]
             own = f"{number}.certain_sums.{name}"
-            lines += _lines(series._replace(unit=unit), BLOWS, own, [repr(float(block["time"]))])
-    for name, series in _sums(results.certain_sums):
-        lines += _lines(series, series.kind, name, instants)
+            series = series._replace(unit=AT_A_BLOW[series.unit])
+            rows.append((series, BLOWS, own, [repr(float(block["time"]))]))
+    rows += [(series, series.kind, name, instants) for name, series in _sums(results.certain_sums)]
+    by_cause = any(series.cause for series, *_ in rows)
+    lines = [",".join([*CSV_COLUMNS, *["cause"] * by_cause]) + "\n"]
+    for series, kind, name, times in rows:
+        lines += _lines(series, kind, name, times, f",{series.cause}" * by_cause)
     return "".join(lines)
 
 
@@ -114,12 +117,13 @@ def _plain(values: Any) -> Any:
     )
 
 
-def _lines(series: Series, kind: str, name: str, instants: list[str]) -> Iterator[str]:
+def _lines(series: Series, kind: str, name: str, instants: list[str], end: str) -> Iterator[str]:
+    """A line an instant and component."""
     for component, column in zip(series.components, series.values.T, strict=True):
         middle = f",{kind},{name},{series.quantity},{component},{series.unit},"
         known = np.isfinite(column).tolist()
         numbers = [repr(number) if sure else "" for number, sure in zip((column + 0.0).tolist(), known, strict=True)]
-        yield from [f"{t}{middle}{number}\n" for t, number in zip(instants, numbers, strict=True)]
+        yield from [f"{t}{middle}{number}{end}\n" for t, number in zip(instants, numbers, strict=True)]
 
 
 def _limit(results: Results) -> None:

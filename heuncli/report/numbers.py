@@ -22,7 +22,7 @@ from heuncli import tolerances
 from heuncli.report.labels import Labels
 from heuncli.report.quantities import Series, walk, walk_impulse
 from heuncli.results import Array, Estimate, Magnitudes, Results
-from heuncli.results_schema import kind_of_error
+from heuncli.results_schema import BY_CAUSE, SHARES, kind_of_error
 
 DIGITS = 6
 LARGE, SMALL = 1e7, 1e-4  # families beyond these are written with an exponent
@@ -103,7 +103,8 @@ def certainty(results: Results, labels: Labels, of: Magnitudes) -> Certainty:
         scales[key] = max(scales.get(key, 0.0), largest(series.values))
     errors = {key: _relative(results, KIND_OF.get(key[0], key[0])) * scale for key, scale in scales.items()}
     for kind in LOADS:
-        errors |= _of_wrench(kind, _relative(results, kind), scales, of.size)
+        for own in (kind, f"{kind} {BY_CAUSE}"):
+            errors |= _of_wrench(own, _relative(results, kind), scales, of.size)
     errors |= of.errors
     motion = _relative(results, "motion")
     errors["motion", "m"] = motion * of.size
@@ -124,7 +125,8 @@ def certainty(results: Results, labels: Labels, of: Magnitudes) -> Certainty:
 
 def kind_of(series: Series) -> str:
     """Of which estimate the error of a quantity is."""
-    return kind_of_error(series.kind, series.name, series.quantity)
+    name = f"{series.name}.{SHARES}.{series.cause}" if series.cause else series.name
+    return kind_of_error(series.kind, name, series.quantity)
 
 
 def _of_wrench(kind: str, relative: float, scales: Scales, size: float) -> dict[tuple[str, str], float]:

@@ -15,13 +15,16 @@ import numpy as np
 
 from heuncli.report.labels import Labels
 from heuncli.results import Array, Block, Results
-from heuncli.results_schema import CUT, REPORT_OF, TREE, Node, Quantity, Shape, below
+from heuncli.results_schema import CUT, REPORT_OF, SHARES, TREE, Node, Quantity, Shape, below, is_share
 
 SIDES = {None: np.nan, "before": -1.0, "beyond": 1.0}  # as numbers, in CSV
 
 
 class Series(NamedTuple):
-    """One quantity over the instants: `values` is (n_t, n_components), or (1, n_components) where `static`."""
+    """One quantity over the instants: `values` is (n_t, n_components), or (1, n_components) where `static`.
+
+    cause: of whose share it is, in the quantity of the same name; empty for the whole.
+    """
 
     kind: str
     name: str
@@ -30,11 +33,13 @@ class Series(NamedTuple):
     components: tuple[str, ...]
     values: Array
     static: bool = False
+    cause: str = ""
 
     @property
     def path(self) -> str:
         """The quantity's path in the JSON, without component."""
-        return ".".join(part for part in (self.kind, self.name, self.quantity) if part)
+        share = f"{SHARES}.{self.cause}" if self.cause else ""
+        return ".".join(part for part in (self.kind, self.name, share, self.quantity) if part)
 
 
 def walk(results: Results, labels: Labels) -> Iterator[Series]:
@@ -90,10 +95,11 @@ class _Walk(NamedTuple):
         values = np.asarray(value, dtype=np.float64)
         if self.at_a_blow:
             values = values[None]
-        name = ".".join(keys)
+        cause = keys[-1] if is_share(row) else ""
+        name = ".".join(keys[:-2] if cause else keys)
         unit = row.unit(len(row.units) > 1 and self.labels.turns(self.kind, name))
         components = component_names(row.axes(run), values.shape[1:])
-        return Series(self.kind, name, key, unit, components, values.reshape(len(values), -1))
+        return Series(self.kind, name, key, unit, components, values.reshape(len(values), -1), cause=cause)
 
     def along_cuts(self, keys: tuple[str, ...], key: str, unit: str, values: Array) -> Series:
         """The series of one number a cut that is the same at all instants."""

@@ -95,7 +95,8 @@ def moved_states(recovery: Recovery, near: Indices, run: Trajectory, jumps: Sequ
     by = (gap / sigma)[:, None, None] * directions(layout)
     states = recovered.states[near][:, None] + by
     times = np.repeat(recovered.times[near], DIRECTIONS)
-    return recovered_at(recovery.setup.runner, run, times, states.reshape(len(times), -1), jumps)
+    causes = recovered.causes is not None
+    return recovered_at(recovery.setup.runner, run, times, states.reshape(len(times), -1), jumps, causes=causes)
 
 
 def directions(layout: Layout) -> Array:

@@ -39,7 +39,8 @@ class History:
 
     tolerance: what the motion was to keep; estimate: of the errors, by kind; blows: those that happened; beside: those
     of the check runs; jumps: instants at which a load or drive jumps or bends, events and blows among them; singular:
-    those of singular poses that the run came through; seconds: what took how long.
+    those of singular poses that the run came through; seconds: what took how long;
+    errors: by kind and unit, of one instant those of shares by cause.
     """
 
     recovered: Recovered
@@ -51,6 +52,7 @@ class History:
     jumps: tuple[float, ...] = ()
     singular: tuple[float, ...] = ()
     seconds: Mapping[str, float] = MappingProxyType({})
+    errors: Mapping[tuple[str, str], float] = MappingProxyType({})
 
     @property
     def times(self) -> Array:
@@ -58,8 +60,8 @@ class History:
         return self.recovered.times
 
 
-def integrate(setup: Setup, tolerance: float, deadline: float | None) -> History:
-    """The history that the analysis asks for; nothing moves in a state.
+def integrate(setup: Setup, tolerance: float, deadline: float | None, *, by_cause: bool = False) -> History:
+    """The history that the analysis asks for, with a column a cause where asked; nothing moves in a state.
 
     Raises SolveError where no acceleration exists or the motion cannot be continued, LimitError past the deadline.
     """
@@ -67,13 +69,13 @@ def integrate(setup: Setup, tolerance: float, deadline: float | None) -> History
     start = setup.scene.layout.y0[None, :]
     if setup.method is None:
         check_deadline(deadline, "before the loads were computed")
-        return state(setup, float(times[0]), tolerance)
+        return state(setup, float(times[0]), tolerance, by_cause)
     first = runner.recovered(np.zeros(1), start)  # before a long run, not after it
     require_start(setup.scene, first)
     require_motion(setup.scene.layout, first)
     jumps = tuple(discontinuities_of(setup.scene.mechanism, 0.0, float(times[-1])))
     runs = Runs(runner, times, jumps, deadline, setup.method)
-    checked = checked_run(runs, tolerance, Kinds(setup))
+    checked = checked_run(runs, tolerance, Kinds(setup, by_cause))
     jumps = tuple(sorted({*jumps, *checked.run.jumps}))
     require_followed(runner, checked.run)
     seconds = {"integrate": checked.run.seconds, "check": checked.check_seconds}
@@ -82,10 +84,13 @@ def integrate(setup: Setup, tolerance: float, deadline: float | None) -> History
     check_deadline(deadline, "before the loads were computed")
     singular = tuple(singular_poses(runner, checked.run))
     estimate, beside = Estimate(motion=checked.motion, **checked.loads), checked.beside
-    return History(checked.recovered, tolerance, estimate, checked, checked.run.blows, beside, jumps, singular, seconds)
+    return History(
+        checked.recovered, tolerance, estimate, checked, checked.run.blows, beside, jumps, singular, seconds,
+        checked.errors,
+    )  # fmt: skip
 
 
-def state(setup: Setup, at: float, tolerance: float) -> History:
+def state(setup: Setup, at: float, tolerance: float, by_cause: bool = False) -> History:
     """The history of one instant, behind the blow that is asked for; beside it, from a start moved by rounding."""
     runner, layout = setup.runner, setup.scene.layout
     starts = [layout.y0, moved_start(layout)]
@@ -94,13 +99,18 @@ def state(setup: Setup, at: float, tolerance: float) -> History:
         blows = [at_once(runner, start) for start in starts]
         starts = [jumps[-1].after if jumps else start for start, jumps in zip(starts, blows, strict=True)]
     times = np.array([at])
-    answers = runner.recovered(times, starts[0][None, :])
+    answers = runner.recovered(times, starts[0][None, :], causes=by_cause)
     require_start(setup.scene, answers, Asked("accelerations behind the blow") if blows[0] else Asked())
     require_motion(layout, answers)
-    both = runner.recovered(*interleaved(times, [start[None, :] for start in starts]))
-    seconds = {"integrate": 0.0, "check": 0.0}
-    estimate = of_state(setup, both)
-    return History(answers, tolerance, estimate, blows=blows[0], beside=tuple(blows[1:]), seconds=seconds)
+    both = runner.recovered(*interleaved(times, [start[None, :] for start in starts]), causes=by_cause)
+    kinds = Kinds(setup, by_cause)
+    kinds.add(both, *np.ones((2, 1), dtype=bool))
+    # of one instant: what rounding of its state makes of the loads
+    estimate, seconds = Estimate(motion=0.0, **kinds.estimate()), {"integrate": 0.0, "check": 0.0}
+    return History(
+        answers, tolerance, estimate, blows=blows[0], beside=tuple(blows[1:]), seconds=seconds,
+        errors=kinds.errors_by_cause(),
+    )  # fmt: skip
 
 
 def require_followed(runner: Runner, run: Trajectory) -> None:
@@ -113,20 +123,13 @@ def require_followed(runner: Runner, run: Trajectory) -> None:
             raise SolveError(problem)
 
 
-def of_state(setup: Setup, beside: Recovered) -> Estimate:
-    """The errors of one instant: what rounding of its state makes of the loads; beside: the state, and that moved."""
-    kinds = Kinds(setup)
-    kinds.add(beside, np.ones(1, dtype=bool), np.ones(1, dtype=bool))
-    return Estimate(motion=0.0, **kinds.estimate())
-
-
-def resample(runner: Runner, history: History, times: Array) -> Recovered:
+def resample(runner: Runner, history: History, times: Array, *, by_cause: bool = False) -> Recovered:
     """The kernel's answers at other instants within the run, (n,) ascending; in a state there is one instant only."""
     if history.checked is None:
         return history.recovered
     times = np.asarray(times, dtype=float)
     run = history.checked.run
-    return recovered_at(runner, run, times, runner.resample(run, times), history.jumps)
+    return recovered_at(runner, run, times, runner.resample(run, times), history.jumps, causes=by_cause)
 
 
 def search_times(setup: Setup, history: History) -> tuple[Array, bool]:

@@ -25,6 +25,7 @@ from heuncli.kinetostatics.foundation import inertia_loads, total
 from heuncli.kinetostatics.reactions import JointLoads, in_plane, joint_loads
 from heuncli.mechanism.size import marks
 from heuncli.results import Array, Estimate, Mask
+from heuncli.results_schema import BY_CAUSE
 from heuncli.study.recover import about
 from heuncli.study.setup import Setup
 
@@ -156,8 +157,8 @@ def _at_each(values: Iterable[Array]) -> Array:
 class Kinds:
     """Collects the differences of a motion's loads and energy between two runs."""
 
-    def __init__(self, setup: Setup) -> None:
-        self.setup = setup
+    def __init__(self, setup: Setup, by_cause: bool = False) -> None:
+        self.setup, self.by_cause = setup, by_cause
         self.extents: dict[tuple[str, str], Extent] = {}
         self.reach = 0.0  # farthest centre of mass from the point that the foundation's moment is about
         self.asked = self.before = np.zeros(0, dtype=bool)
@@ -196,6 +197,10 @@ class Kinds:
             self.take(("forces", "N"), load.action.force, F, terms.force)
             self.take(("forces", "N·m"), load.action.moment, M, terms.moment)
             self.take(("forces", "W"), load.power, np.zeros(len(F)), terms.force)
+        if self.by_cause:
+            from heuncli.study.shares import compare_shares  # few runs ask for them
+
+            compare_shares(self, several, states, loads, about(self.setup), terms)
 
     def add_motion(self, states: BodyStates) -> None:
         """Velocities and accelerations: of the bodies, and of points as far from their centres as they reach."""
@@ -307,7 +312,13 @@ class Kinds:
                 found[kind, unit] = max(of.get((part, quantity), 0.0) for part in parts)
         found["drives", "N"], found["drives", "N·m"] = (of.get(("drives", x), 0.0) for x in ("thrust", "torque"))
         found["energy", "J"] = max(of.get(("energy", name), 0.0) for name in ("kinetic", "potential", "work"))
-        return found
+        return found | self.errors_by_cause()
+
+    def errors_by_cause(self) -> dict[tuple[str, str], float]:
+        """The estimated errors of shares by cause, by kind and unit, before the horizon."""
+        units = {"force": "N", "moment": "N·m"}
+        known = {name: extent for name, extent in self.extents.items() if name[0].endswith(BY_CAUSE)}
+        return {(kind, units[name]): extent.claimed_error for (kind, name), extent in known.items()}
 
     def wrench(
         self, arm: float, kind: str, force: str = "force", moment: str = "moment", also: Sequence[str] = ()

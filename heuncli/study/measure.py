@@ -12,7 +12,7 @@ from heuncli import results_schema, tolerances
 from heuncli.errors import HeunError, Problem
 from heuncli.results import Array, Place, Results
 from heuncli.results_paths import Numbers, find
-from heuncli.results_schema import BLOWS, CUT, MAGNITUDES, kind_of_error, quantity
+from heuncli.results_schema import BLOWS, CUT, MAGNITUDES, SHARES, kind_of_error, quantity
 from heuncli.study.extremes import Searched
 from heuncli.study.solve import Study
 
@@ -43,8 +43,9 @@ class Measure(NamedTuple):
 
 def report_of(path: str) -> frozenset[str] | None:
     """Which report a path needs; None where its first word does not say."""
-    report = results_schema.report_of(path.split(".")[0])
-    return frozenset({report}) if report else None
+    first, *rest = path.split(".")
+    report = results_schema.report_of(first)
+    return frozenset({report, *({SHARES} & set(rest))}) if report else None
 
 
 def value(asked: Measure, study: Study) -> Peak:

@@ -5,7 +5,7 @@ Reads as the list of what is computed; each thing has its own module. Raises Sol
 
 from __future__ import annotations
 
-from collections.abc import Sequence, Set
+from collections.abc import Mapping, Sequence, Set
 from functools import cached_property
 from typing import TYPE_CHECKING, Any
 
@@ -22,11 +22,13 @@ from heuncli.kinetostatics.foundation import foundation
 from heuncli.kinetostatics.magnitudes import magnitudes
 from heuncli.kinetostatics.reactions import JointLoads, joint_loads
 from heuncli.mechanism.model import JointLoad, PairLoad
-from heuncli.records import record
-from heuncli.results import Accuracy, Array, Block, CertainSum, Magnitudes
+from heuncli.records import record, replace
+from heuncli.results import Accuracy, Array, Block, CertainSum, Magnitudes, Mask
+from heuncli.results_schema import SHARES
 from heuncli.study.setup import Setup
 
-if TYPE_CHECKING:  # loaded where a scene has closed chains, or sections
+if TYPE_CHECKING:  # loaded where a scene has closed chains, or sections, or loads are told by cause
+    from heuncli.kinetostatics.shares import Shares
     from heuncli.redundancy.resolve import Resolution
     from heuncli.redundancy.self_stress import SelfStress
 
@@ -71,6 +73,16 @@ class Recovery:
         """The applied loads."""
         return applied_loads(self.setup.scene.mechanism, self.recovered)
 
+    @cached_property
+    def shares(self) -> Shares:
+        """The joints' loads by their causes, after the same split; of instants that were recovered with causes."""
+        from heuncli.kinetostatics.shares import shares_of  # few runs ask for them
+
+        found = shares_of(self.setup.scene.layout, self.recovered, self.states, self.loads)
+        if self.decided is None:
+            return found
+        return replace(found, joints=self.decided.chosen(found.joints, self.states))
+
     @property
     def applied(self) -> list[Action]:
         """The actions of the applied loads, and of what is given beside them."""
@@ -114,6 +126,10 @@ def blocks(recovery: Recovery, wanted: Set[str]) -> dict[str, Any]:
         shown["foundation"] = foundation(mechanism, states, actions, about(recovery.setup))
     if "joints" in wanted:
         shown["joints"] = {j.joint.name: joint_block(j) for j in recovery.joints}
+    if SHARES in wanted:
+        from heuncli.study.shares import put_shares  # few runs ask for them
+
+        put_shares(recovery, about(recovery.setup), shown)
     if shown and recovery.decided is not None:
         recovery.decided.show(shown.get("foundation"), shown.get("joints"))
     if "energy" in wanted:
@@ -125,7 +141,7 @@ def blocks(recovery: Recovery, wanted: Set[str]) -> dict[str, Any]:
     if "points" in wanted:
         shown["points"] = points(mechanism, states)
     if "sections" in wanted:
-        shown["sections"] = sections(recovery)
+        shown["sections"] = sections(recovery, SHARES in wanted)
     if "forces" in wanted:
         shown["forces"] = forces(recovery.loads)
     return shown
@@ -187,8 +203,8 @@ def joint_block(load: JointLoads) -> Block:
     return block
 
 
-def sections(recovery: Recovery) -> Block:
-    """The blocks of all sections."""
+def sections(recovery: Recovery, by_cause: bool = False) -> Block:
+    """The blocks of all sections; by_cause: with their shares."""
     scene, states, stress = recovery.setup.scene, recovery.states, recovery.indeterminate
     block: Block = {}
     if not recovery.setup.cuts:
@@ -200,14 +216,17 @@ def sections(recovery: Recovery) -> Block:
     for asked in recovery.setup.cuts:
         on = attachments(asked.body, states, actions)
         cuts = asked.laid_for(on)
-        if stress is None:
-            block[cuts.name] = section(cuts, states, scene.mechanism.gravity, on, {}, scene.mechanism.planar)
-            continue
-        from heuncli.redundancy.open_components import names_in_section, open_in_section
+        is_open: Mapping[str, Mask] = {}
+        if stress is not None:
+            from heuncli.redundancy.open_components import names_in_section, open_in_section
 
-        is_open = open_in_section(cuts, states, recovery.joints, stress)
+            is_open = open_in_section(cuts, states, recovery.joints, stress)
         own = section(cuts, states, scene.mechanism.gravity, on, is_open, scene.mechanism.planar)
-        block[cuts.name] = own | {"open": names_in_section(is_open)}
+        block[cuts.name] = own | ({"open": names_in_section(is_open)} if is_open else {})
+        if by_cause:
+            from heuncli.kinetostatics.section_shares import section_shares
+
+            block[cuts.name]["shares"] = section_shares(cuts, scene.layout, states, recovery.shares, is_open)
     return block
 
 

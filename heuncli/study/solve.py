@@ -17,7 +17,7 @@ from heuncli.integration.methods import METHODS
 from heuncli.kernel.choose import KERNEL
 from heuncli.records import record, replace
 from heuncli.results import Accuracy, Array, Block, Extremes, Magnitudes, Results
-from heuncli.results_schema import BLOWS, REPORTS
+from heuncli.results_schema import BLOWS, REPORTS, SHARES, with_shared
 from heuncli.spec.models import Spec
 from heuncli.study import extremes
 from heuncli.study.extremes import Searched
@@ -33,6 +33,7 @@ if TYPE_CHECKING:
 
 MOST_SEARCHED = 1_000_000  # numbers to look at for the extremes of a whole report; one measure has no such bound
 HALVED = 2  # pieces of a stretch along which stresses are looked at: they bend where loads change their sign
+NONE: frozenset[str] = frozenset()
 CHUNK = 200_000  # body-instants whose answers are kept at a time
 TOO_FEW = "extremes are searched from {} instants: too few to see every turn and step of this motion"
 CUT_SHORT = "the search for extremes was ended before all was looked at that may lie higher"
@@ -49,6 +50,11 @@ class Options:
     least_norm: bool = False
     load_seconds: float = 0.0  # what reading the spec took, for the block `work`
 
+    @property
+    def reports(self) -> frozenset[str]:
+        """The reports that are asked for."""
+        return frozenset(REPORTS) if self.wanted is None else with_shared(self.wanted)
+
 
 def solve(spec: Spec, options: Options | None = None) -> Study:
     """Solve a spec. Raises SpecError, SolveError, LimitError."""
@@ -57,11 +63,12 @@ def solve(spec: Spec, options: Options | None = None) -> Study:
     begun = time.perf_counter()
     setup = set_up(spec, known_method(options.method))
     built = time.perf_counter()
-    history = integrate(setup, spec.analysis.tolerance if options.tolerance is None else options.tolerance, deadline)
+    tolerance = spec.analysis.tolerance if options.tolerance is None else options.tolerance
+    history = integrate(setup, tolerance, deadline, by_cause=SHARES in options.reports)
     moved = time.perf_counter()
     recovery = recover(setup, history.recovered, options.least_norm)
     struck = blows(setup, history, options.least_norm)
-    results = compose(setup, history, recovery, options.wanted, struck)
+    results = compose(setup, history, recovery, options.reports, struck)
     seconds = {"load": options.load_seconds, "build": built - begun, **history.seconds}
     results.work["seconds"] = seconds | {"recover": time.perf_counter() - moved}
     return Study(spec, options, setup, history, recovery, results, struck)
@@ -93,10 +100,9 @@ def known_method(name: str | None) -> str | None:
 
 
 def compose(
-    setup: Setup, history: History, recovery: Recovery, wanted: frozenset[str] | None, struck: Impulses | None
+    setup: Setup, history: History, recovery: Recovery, wanted: frozenset[str], struck: Impulses | None
 ) -> Results:
     """The results at the instants of `recovery`, which are the history's own or others within it; and the blows."""
-    wanted = frozenset(REPORTS) if wanted is None else wanted
     shown, unknown = blocks_of(history, recovery, wanted)
     split = recovery.decided.words if recovery.decided is not None else ()
     checked = history.checked
@@ -161,8 +167,7 @@ class Study:
     @property
     def magnitudes(self) -> Magnitudes:
         """What the numbers at the asked instants, and those of blows, are summed from, and their errors."""
-        checked, own = self.history.checked, self.recovery.magnitudes
-        errors = dict(checked.errors) if checked is not None else {}
+        own, errors = self.recovery.magnitudes, dict(self.history.errors)
         if self.struck is None:
             return own._replace(errors=errors)
         return own._replace(by_unit={**self.struck.by_unit, **own.by_unit}, errors=errors | self.struck.errors)
@@ -177,14 +182,15 @@ class Study:
             from heuncli.study.passages import may_pass, passages  # where there are sections
 
             if may_pass(self.setup):
-                times = extremes.distinct(np.concatenate([times, passages(self._recovery, times)]))
+                times = extremes.distinct(np.concatenate([times, passages(lambda at: self._recovery(at, NONE), times)]))
         return extremes.filled(times)
 
     def resample(self, times: Array) -> Results:
         """The same run at other instants within it (ascending)."""
         if self.history.checked is None:
             return self.results
-        results = compose(self.setup, self.history, self._recovery(times), self.options.wanted, self.struck)
+        wanted = self.options.reports
+        results = compose(self.setup, self.history, self._recovery(times, wanted), wanted, self.struck)
         results.work["seconds"] = dict(self.results.work["seconds"])
         self.unknown.update(results.accuracy.get("unknown", ()))
         self.later.update(dict.fromkeys(w for w in results.warnings if w not in self.results.warnings))
@@ -217,7 +223,7 @@ class Study:
 
     def only(self, times: Array, wanted: frozenset[str], setup: Setup | None = None) -> Results:
         """Some reports' blocks at other instants of the same run, and nothing beside them; setup: with other cuts."""
-        recovery = self._recovery(times)
+        recovery = self._recovery(times, wanted)
         recovery = recovery if setup is None else replace(recovery, setup=setup)
         own = self.results
         shown, unknown = blocks_of(self.history, recovery, wanted)
@@ -225,14 +231,16 @@ class Study:
         times = recovery.recovered.times
         return Results(own.title, own.spec, own.version, own.model, own.status, times, accuracy=accuracy, **shown)
 
-    def _recovery(self, times: Array) -> Recovery:
-        recovered = resample(self.setup.runner, self.history, times)
+    def _recovery(self, times: Array, wanted: frozenset[str]) -> Recovery:
+        recovered = resample(self.setup.runner, self.history, times, by_cause=SHARES in wanted)
         return recover(self.setup, recovered, self.options.least_norm)
 
     @property
     def at_once(self) -> int:
         """At how many instants results are made at a time."""
-        return max(50, CHUNK // max(1, len(self.setup.scene.mechanism.bodies)))
+        mechanism = self.setup.scene.mechanism
+        causes = len(mechanism.loads) + 3 if SHARES in self.options.reports else 0
+        return max(50, CHUNK // max(1, len(mechanism.bodies) * (1 + causes)))
 
     def stretched(self, bent: bool) -> Setup:
         """The scene with its runs of cuts as whole stretches; bent: for what is no polynomial of the loads."""
@@ -252,7 +260,7 @@ class Study:
         horizon = self.results.accuracy.get("horizon")
         if horizon is not None:
             times = times[times < horizon] if times[0] < horizon else times[:1]
-        reports = frozenset(REPORTS) if wanted is None else wanted
+        reports = frozenset(REPORTS) if wanted is None else with_shared(wanted)
         sampled = Sampled(self, searched, reports, self.stretched(searched.bent) if searched.along else None)
         found = extremes.search(
             sampled.columns, times, sampled.groups, errors=searched.errors, even=searched.even, between=between,

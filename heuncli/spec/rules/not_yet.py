@@ -35,13 +35,6 @@ def fixed_step(draft: DraftDocument) -> Iterator[Path_]:
         yield "analysis", "step"
 
 
-def shares(draft: DraftDocument) -> Iterator[Path_]:
-    """Loads by their causes."""
-    for i, name in enumerate(draft.document.head.report or ()):
-        if name == "shares":
-            yield "report", i
-
-
 def catching(draft: DraftDocument) -> Iterator[Path_]:
     """Ropes that go slack and catch."""
     for name, joint in draft.document.joints.items():
@@ -62,7 +55,6 @@ NOT_YET: tuple[tuple[str, Where], ...] = (
     ("friction at strikes", rubbing),
     (f"a method other than {' and '.join(METHODS)}", other_method),
     ("fixed steps", fixed_step),
-    ("shares, loads by their causes", shares),
 )
 
 

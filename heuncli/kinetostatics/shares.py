@@ -1,0 +1,139 @@
+"""Loads by their causes: every wrench as the sum of what gravity, each applied load, the drives and the motion do.
+
+    M V. + ... = loads + J' lambda,   J V. + gamma = 0
+At a configuration accelerations, multipliers and joint loads are affine in what is applied, in gravity, in the
+prescribed accelerations and in the velocity terms. So they are the sum of one column a cause: each load alone on the
+scene at rest; weight alone; the second derivatives of the drives alone; the velocity terms alone, which are quadratic
+in the speed. The kernel answers all with the same factors (kernel/columns.py); here the same sums as of the whole are
+taken of them, in arrays with an axis of causes before that of the instants, (n_c, n_t, ...).
+
+What a force does to a piece has two parts: k', the force itself where it stands on the piece, and -m' x.., the inertia
+of the piece against the acceleration that it causes, wherever it stands: k' and m'u of (59), both in P of (61); the
+velocity terms are m'w, and Q of (61). The first is told apart as `direct_*`. theory.md 2f.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+
+import numpy as np
+
+from heuncli.integration.evaluator import CAUSES, Recovered
+from heuncli.kinetostatics.actions import Action, AppliedLoad, joint_actions
+from heuncli.kinetostatics.bodies import BodyStates
+from heuncli.kinetostatics.foundation import on_ground
+from heuncli.kinetostatics.reactions import JointLoads, in_plane, joint_loads
+from heuncli.mechanism.model import Mechanism
+from heuncli.records import record, replace
+from heuncli.results import Array, Block
+from heuncli.tree.layout import Layout
+
+GRAVITY, DRIVES, MOTION = "gravity", "drives", "motion"
+
+
+@record
+class Column:
+    """What answers the causes, fields of tables by name: (n_c, n_t, n, ...), tree order; see reactions.Answers."""
+
+    bodies: dict[str, Array]
+    freedoms: dict[str, Array]
+    rows: dict[str, Array]
+
+
+@record
+class Shares:
+    """The causes in their order, what answers each, and the joints' loads by them, (n_c, n_t, 3)."""
+
+    causes: tuple[str, ...]
+    column: Column
+    joints: list[JointLoads]
+    loads: list[AppliedLoad]
+
+    def place(self, cause: str) -> int:
+        """Of a cause, on the axis of causes."""
+        return self.causes.index(cause)
+
+
+def shares_of(layout: Layout, recovered: Recovered, states: BodyStates, loads: list[AppliedLoad]) -> Shares:
+    """The shares of the causes in the joints' loads, at instants that were recovered with their causes."""
+    column = column_of(layout.mechanism, recovered)
+    return Shares(causes_of(layout.mechanism), column, joint_loads(layout, column, states), loads)
+
+
+def causes_of(mechanism: Mechanism) -> tuple[str, ...]:
+    """All causes by name, in the order of the results."""
+    return (GRAVITY, *(load.name for load in mechanism.loads), DRIVES, MOTION)
+
+
+def column_of(mechanism: Mechanism, recovered: Recovered) -> Column:
+    """The kernel's columns summed by cause: a load in a joint has one a motion of it."""
+    assert recovered.causes is not None, "recovered without causes"
+    columns, n = recovered.causes, len(recovered.loads[0]) if len(recovered.loads) else 0
+    beside = {name: [n + k] for k, name in enumerate(CAUSES)}
+    of_loads = [list(range(own.start, own.stop)) for _, own in mechanism.load_rows()]
+    members = [beside[GRAVITY], *of_loads, beside[DRIVES], beside[MOTION]]
+
+    def by_cause(values: Array) -> Array:
+        return np.stack([values[:, own[0]] if len(own) == 1 else values[:, own].sum(axis=1) for own in members])
+
+    bodies = {name: by_cause(columns.bodies[name]) for name in ("alpha", "a", "joint_moment", "joint_force")}
+    rows = {"f": recovered.rows["f"], "m": recovered.rows["m"], "multiplier": by_cause(columns.multipliers)}
+    return Column(bodies, {"drive": by_cause(columns.freedoms["drive"])}, rows)
+
+
+def joint_shares(shares: Shares, load: JointLoads) -> Block:
+    """The shares in one joint's load, cause by cause."""
+    parts = {"force": load.force, "moment": load.moment, "drive": load.drive, "tension": load.tension}
+    return by_name(shares.causes, {name: values for name, values in parts.items() if values is not None})
+
+
+def by_name(causes: Sequence[str], parts: dict[str, Array]) -> Block:
+    """Blocks by the causes' names, of arrays over the causes."""
+    return {cause: {name: values[c] for name, values in parts.items()} for c, cause in enumerate(causes)}
+
+
+def foundation_shares(
+    mechanism: Mechanism, states: BodyStates, shares: Shares, about: Array
+) -> dict[tuple[str, ...], Block]:
+    """The shares in what stands on the ground: of the total, of each support and element, by its keys in the block.
+
+    The total is the sum of supports and elements, moments shifted to `about`. direct_*: what is applied from outside,
+    k of (55).
+    """
+    n_c, n_t = len(shares.causes), len(states.x)
+    force, moment = np.zeros((2, n_c, n_t, 3))
+    parts: dict[tuple[str, ...], Block] = {}
+    inner = [load.action for load in shares.loads if load.action.from_ is not None]
+    for keys, on in on_ground([*(alone(shares, action) for action in inner), *joint_actions(shares.joints)]).items():
+        force, moment = force + on.force, moment + np.cross(on.about - about, on.force) + on.moment
+        parts[keys] = by_name(shares.causes, {"force": on.force, "moment": on.moment})
+    if mechanism.planar:
+        force, moment = in_plane(force, moment)
+    whole = by_name(shares.causes, {"force": force, "moment": moment})
+    applied = [load.action for load in shares.loads]
+    for cause, (F, M) in zip(shares.causes, from_outside(mechanism, states, applied, about), strict=False):
+        F, M = in_plane(F, M) if mechanism.planar else (F, M)
+        whole[cause] |= {"direct_force": F, "direct_moment": M}
+    return {(): whole, **parts}
+
+
+def alone(shares: Shares, action: Action) -> Action:
+    """A load's action by cause: it is all its own."""
+    force, moment = np.zeros((2, len(shares.causes), *action.force.shape))
+    own = shares.place(action.name)
+    force[own], moment[own] = action.force, action.moment
+    return replace(action, force=force, moment=moment)
+
+
+def from_outside(
+    mechanism: Mechanism, states: BodyStates, applied: Sequence[Action], about: Array
+) -> list[tuple[Array, Array]]:
+    """Force and moment about a point of the whole weight, and of each applied load: nothing of what acts inside."""
+    weight = np.array([b.mass for b in mechanism.bodies])[:, None] * mechanism.gravity
+    levers = np.sum(np.cross(states.centre - about, weight), axis=1)
+    found = [(np.broadcast_to(weight.sum(axis=0), levers.shape), levers)]
+    for action in applied:
+        inside = action.from_ is not None
+        M = action.moment + np.cross(action.to.position - about, action.force)
+        found.append((np.zeros_like(M), np.zeros_like(M)) if inside else (action.force, M))
+    return found
