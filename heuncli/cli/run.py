@@ -107,11 +107,12 @@ def _report(request: Run, form: str, study: Study, labels: Labels, wanted: froze
     if not (request.all or at is not None or (one and not page.has_runs)):
         along = page.along if page.has_runs else None
         searched = Searched(page.columns, page.groups(), page.errors(), page.even(), along)
-        extremes = study.extremes(searched, wanted, whole=True)
+        extremes = study.extremes(searched, wanted - {SHARES}, whole=True)
+    shares = study if SHARES in wanted else None
     if extremes is None or one:
-        tables = page.instants(shown, every_cut=request.all, searched=extremes)
+        tables = page.instants(shown, every_cut=request.all, searched=extremes, shares=shares)
     else:
-        tables = page.extremes(extremes)
+        tables = page.extremes(extremes, shares)
         if not extremes.searched:
             tables.append(Table("", notes=(NOT_SEARCHED,)))
     if not tables:

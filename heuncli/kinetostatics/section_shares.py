@@ -6,7 +6,7 @@ k'_c is the load itself, the weight of the piece with gravity: `direct_*`.
 
 from __future__ import annotations
 
-from collections.abc import Mapping, Sequence
+from collections.abc import Mapping
 
 import numpy as np
 
@@ -15,8 +15,6 @@ from heuncli.kinetostatics.bodies import BodyStates
 from heuncli.kinetostatics.cuts import Cuts
 from heuncli.kinetostatics.sections import (
     ABOUT_CENTROID,
-    Attachment,
-    Planes,
     accelerations_as_matrix,
     attachments,
     in_body_axes,
@@ -81,7 +79,8 @@ def direct_loads(cuts: Cuts, gravity: Array, states: BodyStates, shares: Shares)
     found = [piece_loads(cuts, weight, [])]
     for load in shares.loads:
         on = attachments(cuts.body, states, [load.action])
-        found.append(piece_loads(cuts, np.zeros_like(weight), on) if on else (np.zeros_like(x) for x in found[0]))
+        none_there = np.zeros_like(found[0][0]), np.zeros_like(found[0][1])
+        found.append(piece_loads(cuts, np.zeros_like(weight), on) if on else none_there)
     forces, moments = zip(*found, strict=True)
     return np.stack(forces, axis=1), np.stack(moments, axis=1)
 

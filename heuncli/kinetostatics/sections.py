@@ -99,9 +99,9 @@ def accelerations_as_matrix(w: Array, u: Array, a: Array) -> Array:
 def piece_loads(cuts: Cuts, A: Array, on: Sequence[Attachment]) -> tuple[Array, Array]:
     """s' and M' about the cuts' own points, body axes, (3, n_t, k) each; A (3, n_t, 4): see acceleration_matrix.
 
-    By causes: (3, n_c, n_t, k), of A (3, n_c, n_t, 4). Inertia and the loads at fixed points are one product of instants and cuts a component, (n_t, 4 + m) (4 + m, k); the
+    Inertia and the loads at fixed points are one product of instants and cuts a component, (n_t, 4 + m) (4 + m, k); the
     levers from the cut's point are in the second factor. A load whose point moves over the body may change pieces and
-    is added by itself.
+    is added by itself. By causes: (3, n_c, n_t, k), of A (3, n_c, n_t, 4).
     """
     if cuts.points.ndim == 3:
         return moving_piece_loads(cuts, A, on)

@@ -128,7 +128,9 @@ def build(plan: Plan, results: Results, labels: Labels, series: Iterable[Series]
     runs = {name for name, section in results.sections.items() if "s" in section} if plan.kind == "sections" else set()
     named: dict[str, dict[str, Series]] = {}
     for item in series:
-        if item.cause or item.kind != plan.kind or item.quantity not in plan.quantities or plan.only not in (None, item.name):
+        if item.cause or item.kind != plan.kind or item.quantity not in plan.quantities:
+            continue
+        if plan.only not in (None, item.name):
             continue
         if plan.of_foundation and item.name == MASS_EFFECT.only:
             continue

@@ -8,7 +8,7 @@ from __future__ import annotations
 
 from collections.abc import Mapping, Sequence
 from dataclasses import replace
-from typing import Any, NamedTuple
+from typing import Any, NamedTuple, Protocol
 
 import numpy as np
 
@@ -25,6 +25,16 @@ from heuncli.results_schema import REPORT_OF, REPORTS, quantity
 
 TABLE_DEFAULT = frozenset(REPORTS) - {"motion", "points"}
 EXPORT_DEFAULT = frozenset(REPORTS) - {"points"}
+
+
+class SharesAt(Protocol):
+    """A run's loads by cause wherever they are asked for."""
+
+    def at(self, times: Array) -> Results:
+        """At instants (n,), ascending."""
+
+    def along(self, name: str, times: Array, places: Sequence[Place]) -> Results:
+        """Of a run of cuts, at places along it."""
 
 
 class Page(NamedTuple):
@@ -73,26 +83,63 @@ class Page(NamedTuple):
         more = len(runs.RESULTANTS) * len(runs.runs_of(self.results, self.labels))
         return np.array(rows + [False] * more, dtype=bool)
 
-    def extremes(self, searched: Extremes) -> list[Table]:
-        """The tables with extremes, from those searched for each of `groups`."""
+    def extremes(self, searched: Extremes, shares: SharesAt | None = None) -> list[Table]:
+        """The tables with extremes, from those searched for each of `groups`; shares: by cause, at any instants."""
         tables: list[Table] = []
         start = 0
         times, last = self.results.time, self._last_values()
         for block in self._lasting(self.results):
             rows = [row for group in block.groups for row in group.rows]
             own = slice(start, start + len(rows))
-            even = np.array([row.even for row in rows], dtype=bool)
-            part = searched.part(own)
-            low, high = (np.where(even, np.sqrt(np.abs(bound)), bound) for bound in (part.low, part.high))
+            part = self._roots(block, searched.part(own))
             beyond = last[own] if last is not None else None
-            tables += extremes.extremes_table(block, times, part._replace(low=low, high=high), self.certain, beyond)
+            tables += extremes.extremes_table(block, times, part, self.certain, beyond)
             start += len(rows)
         for k, run in enumerate(runs.runs_of(self.results, self.labels)):
             tables += runs.extremes_tables(run, times, *self._of_run(searched, k), self.certain)
-        return [*tables, *self._ending()]
+        more = self._by_cause(searched, shares) if shares is not None else []
+        return [*tables, *more, *self._ending()]
+
+    def _by_cause(self, searched: Extremes, shares: SharesAt) -> list[Table]:
+        """What each cause does of the extremes."""
+        from heuncli.report import causes  # few runs ask for them
+
+        n = len(searched.low) - len(searched.places)
+        instants = np.unique(np.concatenate([searched.low_at[:n], searched.high_at[:n]]))
+        shared = causes.shared_rows(shares.at(instants), self.labels) if n else {}
+        span, tables, start = float(np.ptp(self.results.time)), list[Table](), 0
+        for block in self._lasting(self.results):
+            count = sum(len(group.rows) for group in block.groups)
+            own = self._roots(block, searched.part(slice(start, start + count)))
+            tables += causes.extremes_table(block, shared, instants, own, self.certain, span)
+            start += count
+        for k, run in enumerate(runs.runs_of(self.results, self.labels)):
+            tables += self._run_by_cause(run, searched, k, shares)
+        return tables
+
+    def _run_by_cause(self, run: runs.Run, searched: Extremes, k: int, shares: SharesAt) -> list[Table]:
+        """What each cause does of the extremes along a run."""
+        from heuncli.report import causes
+
+        found, places = self._of_run(searched, k)
+        at = np.unique(np.concatenate([found.low_at, found.high_at]))
+        results = shares.along(run.name, at, [place for both in places for place in both])
+        return causes.run_extremes_table(run, results, found, places, self.certain)
+
+    @staticmethod
+    def _roots(block: Block, part: Extremes) -> Extremes:
+        """The extremes of a block's rows, magnitudes themselves and not their squares."""
+        even = np.array([row.even for group in block.groups for row in group.rows], dtype=bool)
+        low, high = (np.where(even, np.sqrt(np.abs(bound)), bound) for bound in (part.low, part.high))
+        return part._replace(low=low, high=high)
 
     def instants(
-        self, results: Results, *, every_cut: bool = False, searched: Extremes | None = None
+        self,
+        results: Results,
+        *,
+        every_cut: bool = False,
+        searched: Extremes | None = None,
+        shares: SharesAt | None = None,
     ) -> list[Table]:
         """The tables at the instants of `results`, which is the same run at any instants; searched: where it is one."""
         horizon = self.results.accuracy.get("horizon")
@@ -106,7 +153,26 @@ class Page(NamedTuple):
                 tables.append(runs.extremes_table(run, results.time, *self._of_run(searched, k), self.certain))
             made = runs.instants_tables(run, results.time, horizon, self.certain, every=every_cut)
             tables += [made[0]._replace(heading=""), *made[1:]] if searched is not None else made
+        if shares is not None:
+            tables += self._instants_by_cause(results, certain, searched, shares)
         return [*tables, *self._ending(every_cut)]
+
+    def _instants_by_cause(
+        self, results: Results, certain: Certainty, searched: Extremes | None, shares: SharesAt
+    ) -> list[Table]:
+        """What each cause does at some instants."""
+        from heuncli.report import causes  # few runs ask for them
+
+        horizon = self.results.accuracy.get("horizon")
+        shared, tables = causes.shared_rows(results, self.labels), list[Table]()
+        for block in _blocks(results, self.labels):
+            tables += causes.instants_table(block, shared, results.time, horizon, certain)
+        for k, run in enumerate(runs.runs_of(results, self.labels)):
+            if searched is not None:
+                tables += self._run_by_cause(run, searched, k, shares)
+            else:
+                tables += causes.run_instants_table(run, results, horizon, certain)
+        return tables
 
     def _of_run(self, searched: Extremes, k: int) -> tuple[Extremes, tuple[tuple[Place, Place], ...]]:
         """The extremes of the resultants of a run, and their places."""

@@ -89,7 +89,7 @@ def extremes_table(
             "" if _steady(run.values[i][:, _nearest(run, place)], styles[unit]) else t
             for place, t in zip(places[i], clock, strict=True)
         )
-        where = [_position(place, run.s) for place in places[i]]
+        where = [position(place, run.s) for place in places[i]]
         rows.append((label, unit, low, where[0], low_at, high, where[1], high_at))
     heads = ("min", "at s [m]", "t [s]", "max", "at s [m]", "t [s]")
     columns = (Column("", "left"), Column("", "left"), *(Column(head) for head in heads))
@@ -187,7 +187,7 @@ def _nearest(run: Run, place: Place) -> int:
     return int(np.argmin(np.abs(run.s - place.s))) if place.cut is None else place.cut
 
 
-def _position(place: Place, s: Array) -> str:
+def position(place: Place, s: Array) -> str:
     """A place in words: the distance, and between the ends the side of what acts there."""
     side = [place.side] if place.side and 0.0 < place.s < s[-1] else []
     return " ".join([*write([place.s], style(largest(s), 0.0)), *side])

@@ -16,8 +16,8 @@ from heuncli.errors import Problem, SpecError
 from heuncli.integration.methods import METHODS
 from heuncli.kernel.choose import KERNEL
 from heuncli.records import record, replace
-from heuncli.results import Accuracy, Array, Block, Extremes, Magnitudes, Results
-from heuncli.results_schema import BLOWS, REPORTS, SHARES, with_shared
+from heuncli.results import Accuracy, Array, Block, Extremes, Magnitudes, Place, Results
+from heuncli.results_schema import BLOWS, REPORTS, SHARED, SHARES, with_shared
 from heuncli.spec.models import Spec
 from heuncli.study import extremes
 from heuncli.study.extremes import Searched
@@ -230,6 +230,16 @@ class Study:
         accuracy: Accuracy = {"unknown": unknown.tolist()} if len(unknown) else {}
         times = recovery.recovered.times
         return Results(own.title, own.spec, own.version, own.model, own.status, times, accuracy=accuracy, **shown)
+
+    def at(self, times: Array) -> Results:
+        """Loads by cause at other instants of the same run."""
+        return self.only(times, self.options.reports & (SHARED | {SHARES}))
+
+    def along(self, name: str, times: Array, places: Sequence[Place]) -> Results:
+        """The same of a run of cuts, at places along it."""
+        from heuncli.study.stretches import at_places
+
+        return self.only(times, frozenset({"sections", SHARES}), at_places(self.setup, name, places))
 
     def _recovery(self, times: Array, wanted: frozenset[str]) -> Recovery:
         recovered = resample(self.setup.runner, self.history, times, by_cause=SHARES in wanted)

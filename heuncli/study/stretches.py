@@ -42,6 +42,13 @@ def cut_at(setup: Setup, name: str, s: Array, ends: tuple[float, float]) -> Setu
     return replace(setup, cuts=(laid(stretch_named(setup, name).asked, s, side_of(s, ends)),))
 
 
+def at_places(setup: Setup, name: str, places: Sequence[Place]) -> Setup:
+    """The same, with a run of cuts at some places along it."""
+    asked = next(cuts for cuts in setup.cuts if cuts.name == name)
+    side = np.array([{"before": BEFORE, "beyond": BEYOND}.get(place.side or "", 0.0) for place in places])
+    return replace(setup, cuts=(laid(asked, np.array([place.s for place in places]), side),))
+
+
 def side_of(s: Array, ends: tuple[float, float]) -> Array:
     """On which side of what acts at the ends of a piece cuts lie there."""
     return np.where(s <= ends[0], BEYOND, np.where(s >= ends[1], BEFORE, 0.0))
