@@ -1,0 +1,264 @@
+"""Laws of loads by their causes: they add up, stand for runs with one cause each, and scale as their causes do."""
+
+from __future__ import annotations
+
+from collections.abc import Iterator, Mapping
+from functools import cache
+from typing import Any
+
+import numpy as np
+import pytest
+
+from heuncli.results import Results
+from tests.oracle.read import state_at
+from tests.oracle.turns import Array
+from tests.oracle.values import Harmonic
+from tests.shared.loops import loop_scene
+from tests.shared.scenes import near, solved
+from tests.shared.trees import cut_through, tree_scene
+
+WANTED = frozenset({"motion", "foundation", "joints", "sections", "forces", "shares"})
+ROUNDING = 1e-12  # of the largest share
+SEEDS = [*(("tree", n) for n in range(3, 11)), *(("loop", n) for n in [*range(3, 8), *range(1000, 1006)])]
+CASES = [("tree", 1), ("loop", 2), *(pytest.param(*case, marks=pytest.mark.heavy) for case in SEEDS)]
+
+
+@cache
+def scene_of(kind: str, seed: int) -> dict[str, Any]:
+    """A random scene at one instant, cut through every body that has shapes."""
+    made, _ = loop_scene(seed) if kind == "loop" else tree_scene(seed, masses="shapes")
+    rng = np.random.default_rng(seed)
+    cuts = {f"cut_{name}": cut_through(body, rng) for name, body in made["bodies"].items()}
+    sections = {f"cut_{name}": {"body": name, **cuts[f"cut_{name}"]} for name in made["bodies"] if cuts[f"cut_{name}"]}
+    return {**made, "sections": sections, "analysis": {"type": "state"}}
+
+
+@cache
+def run(kind: str, seed: int) -> Results:
+    """Its results by cause."""
+    return solved(scene_of(kind, seed), wanted=WANTED)
+
+
+Wrenches = Mapping[tuple[str, ...], Mapping[str, Any]]
+
+
+def blocks(found: Results) -> Iterator[tuple[str, dict[str, Any]]]:
+    """Every block that has shares."""
+    yield "foundation", found.foundation
+    for kind in ("supports", "elements"):
+        yield from ((f"{kind} {name}", block) for name, block in found.foundation.get(kind, {}).items())
+    yield from ((f"joint {name}", block) for name, block in found.joints.items())
+    yield from ((f"section {name}", block) for name, block in found.sections.items())
+
+
+def size_of(found: Results) -> tuple[float, float]:
+    """The largest force and the largest moment of any share."""
+    sizes = [1.0, 1.0]
+    for _, block in blocks(found):
+        for share in block["shares"].values():
+            for i, name in enumerate(("force", "moment")):
+                sizes[i] = max(sizes[i], float(np.nan_to_num(np.abs(share[name])).max(initial=0.0)))
+    return sizes[0], max(sizes)
+
+
+@pytest.mark.parametrize(("kind", "seed"), CASES)
+def test_shares_add_up(kind: str, seed: int) -> None:
+    """All that is told of a wrench by cause, its resultants, drives and tensions too; what is open is open in each."""
+    found = run(kind, seed)
+    F, M = size_of(found)
+    causes = ["gravity", *scene_of(kind, seed).get("forces", {}), "drives", "motion"]
+    for name, block in blocks(found):
+        assert list(block["shares"]) == causes
+        for quantity in block["shares"]["motion"]:
+            total = sum(share[quantity] for share in block["shares"].values())
+            assert np.array_equal(np.isnan(total), np.isnan(block[quantity])), (name, quantity)
+            near(np.nan_to_num(total), np.nan_to_num(block[quantity]), max(F, M), ROUNDING)
+
+
+def still(scene: dict[str, Any]) -> dict[str, Any]:
+    """The scene at rest, without weight and loads, its drives held."""
+    moving = ("velocity", "angular_velocity")
+    bodies = {name: {k: v for k, v in body.items() if k not in moving} for name, body in scene["bodies"].items()}
+    drives = {
+        name: {k: entry_of(v, 0.0, 0.0) if isinstance(v, tuple) else v for k, v in drive.items()}
+        for name, drive in scene.get("drives", {}).items()
+    }
+    return {k: v for k, v in {**scene, "bodies": bodies, "drives": drives, "gravity": [0.0, 0.0, 0.0],
+                              "forces": {}}.items() if v != {} or k == "bodies"}  # fmt: skip
+
+
+def entry_of(drive: tuple[Any, ...], rate: float, second: float) -> tuple[Any, ...]:
+    """A drive with the same value at the start, and some share of its rate and of its acceleration."""
+    value, u, udot = (f(0.0) for f in drive)
+    # a sin whose curvature at its top is the acceleration
+    return Harmonic(value + second * udot, rate * u, -second * udot, 1.0, np.pi / 2).drive()
+
+
+def alone(scene: dict[str, Any], found: Results, cause: str) -> dict[str, Any] | None:
+    """The scene with this cause alone, as a spec of its own; None for a load that no scene at rest can have."""
+    if cause == "gravity":
+        return {**still(scene), "gravity": scene["gravity"]}
+    if cause in ("drives", "motion"):
+        second, rate = float(cause == "drives"), float(cause == "motion")
+        own = scene if cause == "motion" else still(scene)
+        drives = {
+            name: {k: entry_of(v, rate, second) if isinstance(v, tuple) else v for k, v in drive.items()}
+            for name, drive in scene.get("drives", {}).items()
+        }
+        bare = {k: v for k, v in own.items() if k not in ("forces", "drives")}
+        return {**bare, "gravity": [0.0, 0.0, 0.0], **({"drives": drives} if drives else {})}
+    spec, value = scene["forces"][cause], float(found.forces[cause]["value"][0])
+    if spec["type"] == "spring":
+        spec = {"type": "actuator", "from": spec["from"], "to": spec["to"], "value": value}
+    if spec["type"] in ("damper", "friction"):
+        if scene["joints"][spec["joint"]]["type"] not in ("pin", "slide"):
+            return None
+        spec = {"type": "torque", "joint": spec["joint"], "value": value}
+    return {**still(scene), "forces": {cause: spec}}
+
+
+@pytest.mark.parametrize(("kind", "seed"), CASES)
+def test_a_share_is_what_its_cause_does_alone(kind: str, seed: int) -> None:
+    """Another run, of a scene at rest without weight and with this load only, and so on."""
+    scene, found = scene_of(kind, seed), run(kind, seed)
+    F, M = size_of(found)
+    for cause in ["gravity", *scene.get("forces", {}), "drives", "motion"]:
+        own = alone(scene, found, cause)
+        if own is None:
+            continue
+        only = dict(blocks(solved(own, wanted=WANTED)))
+        for name, block in blocks(found):
+            for quantity in ("force", "moment"):
+                share = np.nan_to_num(block["shares"][cause][quantity])
+                told = np.nan_to_num(only[name][quantity]) if name in only else 0.0 * share
+                near(share, told, max(F, M), ROUNDING)
+
+
+@pytest.mark.parametrize(("kind", "seed"), CASES)
+def test_the_share_of_motion_grows_with_the_square_of_the_speed(kind: str, seed: int) -> None:
+    scene, found = scene_of(kind, seed), run(kind, seed)
+    state = state_at(found.bodies, 0)
+    bodies = {
+        name: {**body, "velocity": (3.0 * state[name].velocity).tolist(),
+               "angular_velocity": (3.0 * state[name].angular_velocity).tolist()}
+        for name, body in scene["bodies"].items()
+    }  # fmt: skip
+    drives = {
+        name: {k: entry_of(v, 3.0, 1.0) if isinstance(v, tuple) else v for k, v in drive.items()}
+        for name, drive in scene.get("drives", {}).items()
+    }
+    faster = solved({**scene, "bodies": bodies, **({"drives": drives} if drives else {})}, wanted=WANTED)
+    F, M = size_of(faster)
+    for (_, block), (_, other) in zip(blocks(found), blocks(faster), strict=True):
+        for quantity in ("force", "moment"):
+            for cause, factor in (("motion", 9.0), ("gravity", 1.0), ("drives", 1.0)):
+                own, its = (np.nan_to_num(b["shares"][cause][quantity]) for b in (block, other))
+                near(factor * own, its, max(F, M), ROUNDING)
+
+
+def test_a_force_off_the_piece_acts_through_the_acceleration_it_causes() -> None:
+    """-m' x.., of a free body: the piece itself feels nothing of it."""
+    rng = np.random.default_rng(5)
+    body = {
+        "shapes": [{"type": "box", "center": [0.1, 0.2, -0.1], "size": [2.0, 1.0, 0.6], "density": 1.0}],
+        "points": {"far": [-0.8, 0.3, 0.1], "near": [0.9, 0.1, -0.2]},
+        "angular_velocity": rng.standard_normal(3).tolist(),
+    }
+    forces = {name: {"type": "force", "on": f"box.{name}", "vector": rng.standard_normal(3).tolist()}
+              for name in ("far", "near")}  # fmt: skip
+    scene = {"gravity": [0.3, -2.0, 1.0], "ground": {"points": {"O": [0, 0, 0]}}, "bodies": {"box": body},
+             "forces": forces,
+             "sections": {"cut": {"body": "box", "at": [0.5, 0, 0], "normal": [1, 0, 0]}}}  # fmt: skip
+    found = solved(scene, wanted=WANTED)
+    m, A = 1.2, np.diag([1.0 + 0.36, 4.0 + 0.36, 4.0 + 1.0]) * 1.2 / 12
+    piece, centre, middle = 0.6 * 1.0 * 0.6, np.array([0.8, 0.2, -0.1]), np.array([0.1, 0.2, -0.1])
+    for name, told in forces.items():
+        force = np.array(told["vector"])
+        alpha = np.linalg.solve(A, np.cross(np.array(body["points"][name]) - middle, force))
+        inertia = -piece * (force / m + np.cross(alpha, centre - middle))
+        share = found.sections["cut"]["shares"][name]
+        near(share["direct_force"][0], force if name == "near" else 0.0 * force, 1.0, ROUNDING)
+        near(share["force"][0], share["direct_force"][0] + inertia, 1.0, ROUNDING)
+    weight = found.sections["cut"]["shares"]["gravity"]
+    near(weight["direct_force"][0], piece * np.array(scene["gravity"]), 1.0, ROUNDING)
+    near(weight["force"][0], 0.0, 1.0, ROUNDING)  # the piece falls with the body
+    near(weight["moment"][0], 0.0, 1.0, ROUNDING)
+
+
+def fixed_point(seed: int) -> tuple[Results, dict[str, Array]]:
+    """A box about a fixed point with two forces, and its data in body axes, which are the world's at this instant."""
+    rng = np.random.default_rng(seed)
+    sigma, g, on, off = rng.standard_normal((4, 3))
+    scene = {
+        "gravity": g.tolist(), "ground": {"points": {"O": [0, 0, 0]}},
+        "bodies": {"box": {
+            "shapes": [{"type": "box", "center": [1.0, 0.1, -0.05], "size": [2.0, 1.0, 0.6], "density": 1.0}],
+            "points": {"face": [0, 0, 0], "on": [1.5, 0.2, 0.1], "off": [0.3, -0.3, 0.1]},
+            "angular_velocity": sigma.tolist(),
+        }},
+        "joints": {"pivot": {"type": "ball", "from": "ground.O", "to": "box.face"}},
+        "forces": {name: {"type": "force", "on": f"box.{name}", "vector": f.tolist()}
+                   for name, f in (("on", on), ("off", off))},
+        "sections": {"cut": {"body": "box", "at": [0.7, 0, 0], "normal": [1, 0, 0], "reduce_to": "ground.O"}},
+    }  # fmt: skip
+    return solved(scene, wanted=WANTED), {"sigma": sigma, "g": g, "on": on, "off": off}
+
+
+def about_origin(low: Array, high: Array) -> tuple[float, Array, Array]:
+    """Mass, centre, and inertia about the origin of a box of density 1 between two corners."""
+    size, centre = high - low, 0.5 * (low + high)
+    m = float(np.prod(size))
+    T = np.diag(m * size**2 / 12) + m * np.outer(centre, centre)
+    return m, centre, np.trace(T) * np.eye(3) - T
+
+
+@pytest.mark.parametrize("seed", range(4))
+def test_u_w_of_59_and_P_Q_of_61(seed: int) -> None:
+    """Heun's explicit shares of a body about a fixed point: theory.md (59), (61), any axes.
+
+    s' = k' + m'u + m'w, u = a* x J^-1 M_k, w = -[sigma._w x a* + sigma x (sigma x a*)];
+    M' = P + Q, P = M'_k - J' J^-1 M_k, Q = J' J^-1 (sigma x J sigma) - sigma x J' sigma, about the fixed point.
+    """
+    found, data = fixed_point(seed)
+    low, high = np.array([0.0, -0.4, -0.35]), np.array([2.0, 0.6, 0.25])
+    m, centre, J = about_origin(low, high)
+    m_piece, a, J_piece = about_origin(np.array([0.7, *low[1:]]), high)
+    sigma = data["sigma"]
+    shares = found.sections["cut"]["shares"]
+    points = {"on": np.array([1.5, 0.2, 0.1]), "off": np.array([0.3, -0.3, 0.1])}
+    loads = {"gravity": (m * data["g"], np.cross(centre, m * data["g"]), m_piece * data["g"],
+                         np.cross(a, m_piece * data["g"]))}  # fmt: skip
+    for name, x in points.items():
+        F, M = data[name], np.cross(x, data[name])
+        loads[name] = (F, M, F if name == "on" else 0.0 * F, M if name == "on" else 0.0 * M)
+    for name, (_, M_k, k_piece, M_k_piece) in loads.items():
+        u = np.cross(a, np.linalg.solve(J, M_k))
+        near(shares[name]["force"][0], k_piece + m_piece * u, 10.0, ROUNDING)
+        near(shares[name]["direct_force"][0], k_piece, 10.0, ROUNDING)
+        P = M_k_piece - J_piece @ np.linalg.solve(J, M_k)
+        near(shares[name]["moment"][0], P, 10.0, ROUNDING)
+        near(shares[name]["direct_moment"][0], M_k_piece, 10.0, ROUNDING)
+    turning = -np.linalg.solve(J, np.cross(sigma, J @ sigma))
+    w = -(np.cross(turning, a) + np.cross(sigma, np.cross(sigma, a)))
+    near(shares["motion"]["force"][0], m_piece * w, 10.0, ROUNDING)
+    Q = -J_piece @ turning - np.cross(sigma, J_piece @ sigma)
+    near(shares["motion"]["moment"][0], Q, 10.0, ROUNDING)
+    assert not shares["drives"]["force"].any()
+
+
+def test_the_door_is_open_along_its_hinges_in_every_share() -> None:
+    """Its weight turns it against the hinges, its motion pulls at them; how they share the weight is open."""
+    from tests.closed_forms.test_redundant import door
+
+    found = solved(door(), wanted=WANTED)
+    for name, sign in (("top", -1.0), ("bottom", 1.0)):
+        shares = found.joints[name]["shares"]
+        assert np.isnan(shares["gravity"]["force"][0, 2]) and np.isnan(shares["motion"]["force"][0, 2])
+        near(shares["gravity"]["force"][0, 0], sign * 5 * 9.81 * 0.4 / 1.6, 10.0, ROUNDING)
+    near(found.foundation["shares"]["gravity"]["force"][0], (0.0, 0.0, -5 * 9.81), 10.0, ROUNDING)
+    near(found.foundation["shares"]["motion"]["force"][0], (5 * 0.4 * 2.3**2, 0.0, 0.0), 10.0, ROUNDING)
+    scene = door()
+    scene["joints"]["top"]["stiffness"], scene["joints"]["bottom"]["stiffness"] = 3e8, 1e8
+    split = solved(scene, wanted=WANTED)
+    near(split.joints["top"]["shares"]["gravity"]["force"][0, 2], 0.75 * 49.05, 10.0, ROUNDING)
+    near(split.joints["top"]["shares"]["motion"]["force"][0, 2], 0.0, 10.0, ROUNDING)
