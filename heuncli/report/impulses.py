@@ -51,17 +51,15 @@ def impulse_tables(blows: Blows, *, every: bool = False) -> list[Table]:
 
 
 def sizes_of(impulse: Block, labels: Labels) -> tuple[float, float]:
-    """The largest impulse of a joint, on the ground and of all bodies [N s], and the largest moment of a joint [N m s]."""
+    """The largest impulse of a joint, on the ground or of all bodies [N s], and moment of a joint [N m s]."""
     joints, ground = impulse.get("joints", {}), impulse.get("foundation", {})
     forces = [part["force"] for part in (*joints.values(), ground, ground.get("mass_effect", {})) if "force" in part]
     moments = [joint["moment"] for joint in joints.values() if "moment" in joint]
     for name, joint in joints.items():
         if "drive" in joint:
             (moments if labels.turns("joints", name) else forces).append(joint["drive"])
-    force, moment = (
-        max((largest(np.atleast_1d(np.linalg.norm(part))) for part in parts), default=0.0) for parts in (forces, moments)
-    )
-    return force, moment
+    force, moment = (np.array([np.linalg.norm(part) for part in parts]) for parts in (forces, moments))
+    return largest(force), largest(moment)
 
 
 def _largest(sizes: Array) -> Indices:
