@@ -343,6 +343,60 @@ def test_a_crank_set_going(told: str) -> None:
     near(hit["joints"]["shaft"]["drive"] * 150.0, hit["energy_jump"], 500.0, 1e-9)
 
 
+def test_a_rate_that_jumps_as_the_run_ends() -> None:
+    """The last instant is told as after the blow, too."""
+    found = solved(wheel("5*max(t - 0.4, 0)") + "analysis: {times: [0, 0.2, 0.4]}\n")
+    (hit,) = found.impulses
+    near(hit["joints"]["shaft"]["drive"], 10.15, 10.0, EXACT)
+    near(found.coordinates["shaft"]["rate"], (0, 0, 5), 5.0, EXACT)
+    near(found.energy["kinetic"] - found.energy["work"], np.zeros(3), 25.0, EXACT)
+
+
+# ---- ropes that only pull
+def hung(at: np.ndarray, blow: np.ndarray, analysis: str = "type: impulse") -> str:
+    """2 kg on a rope from the origin, struck."""
+    small = "center: [0, 0, 0], inertia: [0.1, 0.1, 0.1], points: {c: [0, 0, 0]}"
+    return HEAD + f"""
+gravity: [0, 0, -9.81]
+bodies: {{b: {{mass: 2, {small}, position: {at.tolist()}}}}}
+joints: {{rope: {{type: rod, from: ground.O, to: b.c, tension_only: true}}}}
+impulses: {{hit: {{on: b.c, vector: {blow.tolist()}, time: {0.05 if "times" in analysis else 0}}}}}
+analysis: {{{analysis}}}
+"""
+
+
+def test_a_rope_pulls_in_a_blow() -> None:
+    """Struck away from its end it takes that part of the blow and no other."""
+    at, h = np.array([0.6, 0, -0.8]), np.array([3.0, 1, -1])
+    found = blow(hung(at, h))
+    near(found["joints"]["rope"]["tension"], h @ at, 3.0, EXACT)
+    near(found["bodies"]["b"]["center_velocity_jump"], (h - (h @ at) * at) / 2, 2.0, EXACT)
+
+
+def test_a_rope_does_not_push_in_a_blow() -> None:
+    """Struck towards its end: refused, or a run ends just before it."""
+    at = np.array([0.0, 0, -1])
+    with pytest.raises(SolveError) as refusal:
+        solved(hung(at, -at))
+    assert refusal.value.problems[0].code == "rope-pushes"
+    run = solved(hung(at, -at, "times: [0, 0.1]"))
+    assert run.status["code"] == "stopped" and " rope " in run.status["message"] and not run.impulses
+    assert run.time[-1] == pytest.approx(0.05)
+
+
+@pytest.mark.heavy
+@pytest.mark.parametrize("seed", range(20))
+def test_struck_across_a_rope_neither_pulls_nor_pushes(seed: int) -> None:
+    """But for rounding, which ends nothing."""
+    rng = np.random.default_rng(seed)
+    at = rng.standard_normal(3) * rng.uniform(0.2, 3)
+    at[2] = -abs(at[2])
+    h = np.cross(at, rng.standard_normal(3))
+    found = blow(hung(at, h))
+    near(found["bodies"]["b"]["center_velocity_jump"], h / 2, float(np.linalg.norm(h)), EXACT)
+    near(found["joints"]["rope"]["tension"], 0.0, float(np.linalg.norm(h)), EXACT)
+
+
 # ---- what redundant supports leave open
 DOOR = HEAD + """
 bodies:

@@ -237,3 +237,36 @@ def test_a_blow_behind_the_horizon_is_not_told_as_a_number() -> None:
     horizon = run.results.accuracy["horizon"]
     assert horizon is not None and horizon < 38.0
     assert measure.write(measure.parse("impulses.0.energy_jump"), run, "table").strip() == "?"
+
+
+# ---- the errors of impulses
+KINDS = {"foundation": "foundation", "reactions": "joints", "sections": "sections"}
+
+
+def numbers(block: dict[str, Any], names: tuple[str, ...]) -> Array:
+    """All numbers of these names below a block."""
+    found = []
+    for name, value in block.items():
+        if isinstance(value, dict):
+            found.append(numbers(value, names))
+        elif name in names:
+            found.append(np.ravel(np.asarray(value, dtype=float)))
+    return np.concatenate(found) if found else np.zeros(0)
+
+
+@pytest.mark.parametrize("tolerance", [1e-4, 1e-6, 1e-8])
+@pytest.mark.parametrize("name", MAKERS)
+def test_impulses_are_as_exact_as_is_said(name: str, tolerance: float) -> None:
+    """The errors that decide the digits of the tables, by kind and unit, against a run at 1e-13."""
+    run, fine = run_of(name, tolerance), run_of(name, 1e-13)
+    (block,), (exact,) = run.results.impulses, fine.results.impulses
+    errors = run.magnitudes.errors
+    for kind, part in KINDS.items():
+        for unit, names in (("N·s", ("force",)), ("N·m·s", ("moment",))):
+            off = np.abs(numbers(block.get(part, {}), names) - numbers(exact.get(part, {}), names))
+            if len(off):
+                worst, size = float(np.nan_to_num(off).max()), float(np.nanmax(np.abs(numbers(exact[part], names))))
+                assert worst <= errors[kind, unit] + 1e-11 * max(1.0, size), (kind, unit, worst, errors[kind, unit])
+    for what in ("energy_before", "energy_after", "energy_jump"):
+        worst = abs(float(block[what]) - float(exact[what]))
+        assert worst <= errors["energy", "J"] + 1e-11 * max(1.0, float(exact["energy_after"])), (what, worst)
