@@ -21,68 +21,55 @@ from heuncli.kinetostatics.sections import (
     piece_loads,
     planes,
 )
-from heuncli.kinetostatics.shares import GRAVITY, MOTION, Shares
-from heuncli.records import record
+from heuncli.kinetostatics.shares import GRAVITY, MOTION, Shares, by_name
 from heuncli.results import Array, Block, Mask
 from heuncli.tree.layout import Layout
-
-
-@record
-class Loads:
-    """s' and M' about the cuts' own points, body axes, (3, n_c, n_t, k); direct: of what stands on the pieces."""
-
-    force: Array
-    moment: Array
-    direct_force: Array
-    direct_moment: Array
 
 
 def section_shares(
     cuts: Cuts, layout: Layout, states: BodyStates, shares: Shares, is_open: Mapping[str, Mask]
 ) -> Block:
     """The shares in the loads of one section, cause by cause; nan where the section's load is open."""
-    loads = loads_by_cause(cuts, layout, states, shares)
+    direct = direct_loads(cuts, layout.mechanism.gravity, states, shares)
+    force, moment = loads_by_cause(cuts, layout, states, shares)
+    for cause, (F, M) in direct.items():
+        force[:, shares.place(cause)] += F
+        moment[:, shares.place(cause)] += M
     if layout.mechanism.planar:
-        for force, moment in ((loads.force, loads.moment), (loads.direct_force, loads.direct_moment)):
-            force[2], moment[:2] = 0.0, 0.0
+        for F, M in ((force, moment), *direct.values()):
+            F[2], M[:2] = 0.0, 0.0
     where = planes(cuts, states)
     whole = {
         name: np.where(is_open[name], np.nan, values) if name in is_open else values
-        for name, values in where.components(loads.force, loads.moment).items()
+        for name, values in where.components(force, moment).items()
         if name not in ABOUT_CENTROID
     }
-    direct = where.components(loads.direct_force, loads.direct_moment)
-    block: Block = {}
-    for c, cause in enumerate(shares.causes):
-        block[cause] = {name: values[c] for name, values in whole.items()}
-        if c < direct["force"].shape[0]:
-            block[cause] |= {f"direct_{name}": direct[name][c] for name in ("force", "moment")}
+    block = by_name(shares.causes, whole)
+    for cause, (F, M) in direct.items():
+        own = where.components(F, M)
+        block[cause] |= {f"direct_{name}": own[name] for name in ("force", "moment")}
     if cuts.s is None:
         return {cause: {name: values[:, 0] for name, values in own.items()} for cause, own in block.items()}
     return block
 
 
-def loads_by_cause(cuts: Cuts, layout: Layout, states: BodyStates, shares: Shares) -> Loads:
-    """Of every cause what the loads themselves, the piece's inertia and the joints on it make."""
+def loads_by_cause(cuts: Cuts, layout: Layout, states: BodyStates, shares: Shares) -> tuple[Array, Array]:
+    """What the piece's inertia and the joints on it make of every cause, (3, n_c, n_t, k)."""
     joints = attachments(cuts.body, states, whole_joint_actions(shares.joints))
-    force, moment = piece_loads(cuts, acceleration_matrix_by_cause(cuts.body, layout, states, shares), joints)
-    F, M = direct_loads(cuts, layout.mechanism.gravity, states, shares)
-    force[:, : F.shape[1]] += F
-    moment[:, : M.shape[1]] += M
-    return Loads(force, moment, F, M)
+    return piece_loads(cuts, acceleration_matrix_by_cause(cuts.body, layout, states, shares), joints)
 
 
-def direct_loads(cuts: Cuts, gravity: Array, states: BodyStates, shares: Shares) -> tuple[Array, Array]:
-    """The weight of the pieces and each load where it stands on them, (3, 1 + n loads, n_t, k)."""
+def direct_loads(
+    cuts: Cuts, gravity: Array, states: BodyStates, shares: Shares
+) -> dict[str, tuple[Array, Array]]:
+    """By cause the weight of the pieces and each load where it stands on them, (3, n_t, k)."""
     none = np.zeros((len(states.x), 3))
     weight = accelerations_as_matrix(none, none, in_body_axes(states.R[:, cuts.body], none - gravity))
-    found = [piece_loads(cuts, weight, [])]
-    for load in shares.loads:
-        on = attachments(cuts.body, states, [load.action])
-        none_there = np.zeros_like(found[0][0]), np.zeros_like(found[0][1])
-        found.append(piece_loads(cuts, np.zeros_like(weight), on) if on else none_there)
-    forces, moments = zip(*found, strict=True)
-    return np.stack(forces, axis=1), np.stack(moments, axis=1)
+    found = {GRAVITY: piece_loads(cuts, weight, [])} if GRAVITY in shares.causes else {}
+    for action in shares.applied:
+        on = attachments(cuts.body, states, [action])
+        found[action.name] = piece_loads(cuts, np.zeros_like(weight), on)
+    return found
 
 
 def acceleration_matrix_by_cause(body: int, layout: Layout, states: BodyStates, shares: Shares) -> Array:
@@ -92,7 +79,9 @@ def acceleration_matrix_by_cause(body: int, layout: Layout, states: BodyStates, 
     arm = -R @ layout.reference[i]
     a = a + np.cross(alpha, arm)
     omega = np.zeros_like(alpha)
-    omega[shares.place(MOTION)] = w = states.omega[:, body]
-    a[shares.place(MOTION)] += np.cross(w, np.cross(w, arm))
-    a[shares.place(GRAVITY)] += layout.mechanism.gravity  # the kernel's is less g
+    if MOTION in shares.causes:
+        omega[shares.place(MOTION)] = w = states.omega[:, body]
+        a[shares.place(MOTION)] += np.cross(w, np.cross(w, arm))
+    if GRAVITY in shares.causes:
+        a[shares.place(GRAVITY)] += layout.mechanism.gravity  # the kernel's is less g
     return accelerations_as_matrix(*(in_body_axes(R, x) for x in (omega, alpha, a)))

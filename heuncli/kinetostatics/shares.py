@@ -14,12 +14,12 @@ velocity terms are m'w, and Q of (61). The first is told apart as `direct_*`. th
 
 from __future__ import annotations
 
-from collections.abc import Sequence
+from collections.abc import Mapping, Sequence
 
 import numpy as np
 
 from heuncli.integration.evaluator import CAUSES, Recovered
-from heuncli.kinetostatics.actions import Action, AppliedLoad, joint_actions
+from heuncli.kinetostatics.actions import Action, joint_actions
 from heuncli.kinetostatics.bodies import BodyStates
 from heuncli.kinetostatics.foundation import on_ground
 from heuncli.kinetostatics.reactions import JointLoads, in_plane, joint_loads
@@ -42,39 +42,46 @@ class Column:
 
 @record
 class Shares:
-    """The causes in their order, what answers each, and the joints' loads by them, (n_c, n_t, 3)."""
+    """The causes in their order, what answers each, and the joints' loads by them, (n_c, n_t, 3); what is applied."""
 
     causes: tuple[str, ...]
     column: Column
     joints: list[JointLoads]
-    loads: list[AppliedLoad]
+    applied: list[Action]
 
     def place(self, cause: str) -> int:
         """Of a cause, on the axis of causes."""
         return self.causes.index(cause)
 
 
-def shares_of(layout: Layout, recovered: Recovered, states: BodyStates, loads: list[AppliedLoad]) -> Shares:
-    """The shares of the causes in the joints' loads, at instants that were recovered with their causes."""
-    column = column_of(layout.mechanism, recovered)
-    return Shares(causes_of(layout.mechanism), column, joint_loads(layout, column, states), loads)
+Members = Mapping[str, Sequence[int]]  # of a cause: which of the kernel's columns are its own
 
 
-def causes_of(mechanism: Mechanism) -> tuple[str, ...]:
-    """All causes by name, in the order of the results."""
-    return (GRAVITY, *(load.name for load in mechanism.loads), DRIVES, MOTION)
-
-
-def column_of(mechanism: Mechanism, recovered: Recovered) -> Column:
-    """The kernel's columns summed by cause: a load in a joint has one a motion of it."""
-    assert recovered.causes is not None, "recovered without causes"
-    columns, n = recovered.causes, len(recovered.loads[0]) if len(recovered.loads) else 0
+def members_of(mechanism: Mechanism) -> Members:
+    """Of all causes of forces, in the order of the results: a load in a joint has a column a motion of it."""
+    rows = {load.name: range(own.start, own.stop) for load, own in mechanism.load_rows()}
+    n = max((own.stop for own in rows.values()), default=0)
     beside = {name: [n + k] for k, name in enumerate(CAUSES)}
-    of_loads = [list(range(own.start, own.stop)) for _, own in mechanism.load_rows()]
-    members = [beside[GRAVITY], *of_loads, beside[DRIVES], beside[MOTION]]
+    return {GRAVITY: beside[GRAVITY], **rows, DRIVES: beside[DRIVES], MOTION: beside[MOTION]}
+
+
+def shares_of(
+    layout: Layout, recovered: Recovered, states: BodyStates, applied: Sequence[Action], members: Members
+) -> Shares:
+    """The shares of the causes in the joints' loads, at instants that were recovered with their causes."""
+    column = column_of(recovered, members)
+    own = [action for action in applied if action.name in members]
+    return Shares(tuple(members), column, joint_loads(layout, column, states), own)
+
+
+def column_of(recovered: Recovered, members: Members) -> Column:
+    """The kernel's columns summed by cause."""
+    columns = recovered.causes
+    assert columns is not None, "recovered without causes"
 
     def by_cause(values: Array) -> Array:
-        return np.stack([values[:, own[0]] if len(own) == 1 else values[:, own].sum(axis=1) for own in members])
+        own = [list(places) for places in members.values()]
+        return np.stack([values[:, some[0]] if len(some) == 1 else values[:, some].sum(axis=1) for some in own])
 
     bodies = {name: by_cause(columns.bodies[name]) for name in ("alpha", "a", "joint_moment", "joint_force")}
     rows = {"f": recovered.rows["f"], "m": recovered.rows["m"], "multiplier": by_cause(columns.multipliers)}
@@ -103,15 +110,14 @@ def foundation_shares(
     n_c, n_t = len(shares.causes), len(states.x)
     force, moment = np.zeros((2, n_c, n_t, 3))
     parts: dict[tuple[str, ...], Block] = {}
-    inner = [load.action for load in shares.loads if load.action.from_ is not None]
+    inner = [action for action in shares.applied if action.from_ is not None]
     for keys, on in on_ground([*(alone(shares, action) for action in inner), *joint_actions(shares.joints)]).items():
         force, moment = force + on.force, moment + np.cross(on.about - about, on.force) + on.moment
         parts[keys] = by_name(shares.causes, {"force": on.force, "moment": on.moment})
     if mechanism.planar:
         force, moment = in_plane(force, moment)
     whole = by_name(shares.causes, {"force": force, "moment": moment})
-    applied = [load.action for load in shares.loads]
-    for cause, (F, M) in zip(shares.causes, from_outside(mechanism, states, applied, about), strict=False):
+    for cause, (F, M) in from_outside(mechanism, states, shares, about).items():
         F, M = in_plane(F, M) if mechanism.planar else (F, M)
         whole[cause] |= {"direct_force": F, "direct_moment": M}
     return {(): whole, **parts}
@@ -126,14 +132,16 @@ def alone(shares: Shares, action: Action) -> Action:
 
 
 def from_outside(
-    mechanism: Mechanism, states: BodyStates, applied: Sequence[Action], about: Array
-) -> list[tuple[Array, Array]]:
+    mechanism: Mechanism, states: BodyStates, shares: Shares, about: Array
+) -> dict[str, tuple[Array, Array]]:
     """Force and moment about a point of the whole weight, and of each applied load: nothing of what acts inside."""
-    weight = np.array([b.mass for b in mechanism.bodies])[:, None] * mechanism.gravity
-    levers = np.sum(np.cross(states.centre - about, weight), axis=1)
-    found = [(np.broadcast_to(weight.sum(axis=0), levers.shape), levers)]
-    for action in applied:
-        inside = action.from_ is not None
+    found = {}
+    if GRAVITY in shares.causes:
+        weight = np.array([b.mass for b in mechanism.bodies])[:, None] * mechanism.gravity
+        levers = np.sum(np.cross(states.centre - about, weight), axis=1)
+        found[GRAVITY] = np.broadcast_to(weight.sum(axis=0), levers.shape), levers
+    for action in shares.applied:
         M = action.moment + np.cross(action.to.position - about, action.force)
-        found.append((np.zeros_like(M), np.zeros_like(M)) if inside else (action.force, M))
+        inside = action.from_ is not None
+        found[action.name] = (np.zeros_like(M), np.zeros_like(M)) if inside else (action.force, M)
     return found

@@ -12,7 +12,6 @@ from typing import NamedTuple
 import numpy as np
 
 from heuncli.report.blocks import Block, Group, Row, rows_of
-from heuncli.report.labels import Labels
 from heuncli.report.numbers import (
     OPEN,
     OPEN_NOTE,
@@ -26,16 +25,16 @@ from heuncli.report.numbers import (
     write_times,
 )
 from heuncli.report.plans import MASS_EFFECT
-from heuncli.report.quantities import Series, walk
-from heuncli.report.runs import RESULTANTS, Run, position
-from heuncli.report.table import INDENT, Column, Table
+from heuncli.report.quantities import Series
+from heuncli.report.runs import Run, position
+from heuncli.report.table import Column, Table
 from heuncli.results import Array, Extremes, Place, Results
 from heuncli.results_schema import BY_CAUSE, SHARES
 
 MOST_CAUSES = 9  # that have a column; the smallest of more are told together
 ALONG_NOTE = "of |F| and |M| the share along the whole vector"
 CAUSES_NOTE = "motion: the part quadratic in the velocities; drives: that of prescribed accelerations"
-DIRECT_NOTE = "direct: of the line above, the load itself where it stands; the rest acts through the motion it causes"
+DIRECT_NOTE = "direct: the load itself, where it stands; the rest of its share acts through the motion it causes"
 AXES = {"N": ("force", 0), "Q1": ("force", 1), "Q2": ("force", 2), "T": ("moment", 0), "M1": ("moment", 1),
         "M2": ("moment", 2)}  # fmt: skip
 Key = tuple[str, str, str]  # of a number: kind, name, label
@@ -64,12 +63,12 @@ class Line(NamedTuple):
 Groups = Sequence[tuple[str, Sequence[Line]]]  # titles and lines
 
 
-def shared_rows(results: Results, labels: Labels) -> dict[Key, Shared]:
-    """The numbers that have shares, but those of runs of cuts."""
+def shared_rows(results: Results, series: Iterable[Series]) -> dict[Key, Shared]:
+    """The numbers that have shares, but those of runs of cuts; series: those walked of the results."""
     runs = {name for name, section in results.sections.items() if "s" in section}
     own: dict[tuple[str, str, str], dict[str, Series]] = {}
     whole: list[Series] = []
-    for item in walk(results, labels):
+    for item in series:
         if item.kind == "sections" and item.name.split(".")[0] in runs:
             continue
         if item.cause:
@@ -134,7 +133,7 @@ def instants_table(
                 lines.append(Line(row.label, clock[k], one.row, shares, float(one.row.values[k]), lost, beside))
                 direct = {cause: float(values[k]) for cause, values in one.direct.items()}
                 if direct:
-                    lines.append(Line(f"{INDENT}direct", "", one.row, direct, None, lost, beside))
+                    lines.append(Line(f"{row.label} direct", "", one.row, direct, None, lost, beside))
         groups.append((group.title, lines))
     return [table_of(heading_of(block), groups, certain)] if any(lines for _, lines in groups) else []
 
@@ -263,7 +262,7 @@ def told(value: float, text: str, line: Line, certain: Certainty) -> str:
 
 def notes_of(lines: Sequence[Line], shown: set[str], words: set[str]) -> list[str]:
     """What has to be said of the lines of a table, its columns and words."""
-    notes = [CAUSES_NOTE] if shown & {"motion", "drives"} else []
+    notes = [CAUSES_NOTE] if "motion" in shown else []
     notes += [ALONG_NOTE] if any(line.label.startswith("|") for line in lines) else []
     notes += [DIRECT_NOTE] if any(line.total is None for line in lines) else []
     notes += [OPEN_NOTE] if OPEN in words else []
@@ -282,7 +281,7 @@ def run_extremes_table(
     """
     lines: list[Line] = []
     span = float(np.ptp(np.concatenate([extremes.low_at, extremes.high_at])))
-    for i, (label, unit) in enumerate(RESULTANTS):
+    for i, (label, unit) in enumerate(run.resultants):
         ends = (("min", extremes.low, extremes.low_at), ("max", extremes.high, extremes.high_at))
         for j, (word, value, at) in enumerate(ends):
             k = int(np.searchsorted(results.time, at[i]))
@@ -299,7 +298,7 @@ def run_instants_table(run: Run, results: Results, horizon: float | None, certai
     clock = [] if len(times) == 1 else [f", {text} s" for text in write_times(times, float(np.ptp(results.time)))]
     lines: list[Line] = []
     for k, t in enumerate(times):
-        for i, (label, unit) in enumerate(RESULTANTS):
+        for i, (label, unit) in enumerate(run.resultants):
             values = np.nan_to_num(run.values[i, k])
             for word, cut in (("min", int(np.argmin(values))), ("max", int(np.argmax(values)))):
                 where = f"s = {write([float(run.s[cut])], style(float(run.s[-1]), 0.0))[0]} m"
@@ -316,7 +315,7 @@ def line_of_run(
     quantity, unit = resultant
     section = results.sections[name]
     shares = {cause: float(own[quantity][at]) for cause, own in section.get(SHARES, {}).items()}
-    row = Row(quantity, unit, "force" if unit == "N" else "moment", "sections", np.zeros(0))
+    row = Row(quantity, unit, AXES[quantity][0], "sections", np.zeros(0))
     return Line(label, where, row, shares, float(section[quantity][at]))
 
 

@@ -13,15 +13,16 @@ from typing import Any, NamedTuple
 import numpy as np
 
 from heuncli.report import instants, runs
+from heuncli.report.blocks import Block as Laid
 from heuncli.report.blocks import build
 from heuncli.report.labels import Labels
 from heuncli.report.numbers import UNKNOWN, Certainty, largest, with_axis, write, write_times
 from heuncli.report.plans import IMPULSES
-from heuncli.report.quantities import walk_impulse
+from heuncli.report.quantities import Series, walk_impulse
 from heuncli.report.sums import sums_table
 from heuncli.report.table import Column, Table
 from heuncli.results import Array, Block, CertainSum, Extremes, Indices, Magnitudes, Results
-from heuncli.results_schema import AT_A_BLOW, STRUCK, quantity
+from heuncli.results_schema import AT_A_BLOW, SHARES, STRUCK, quantity
 
 MOST_SHOWN = 3  # blows with tables of their own, unless all are asked for
 UNIT = "N·s"
@@ -104,12 +105,14 @@ def tables_of(blows: Blows, number: int, every: bool = False) -> list[Table]:
     horizon = blows.results.accuracy.get("horizon")
     certain = with_axis(blows.certain, view, blows.of, UNIT)
     series = list(walk_impulse(impulse, labels))
-    tables: list[Table] = []
+    by_cause = any(item.cause for item in series)
+    tables, more = list[Table](), list[Table]()
     for plan in IMPULSES:
         block = build(plan, view, labels, series)
         if block is not None:
             named = block._replace(heading=lead + block.heading)
             tables += instants.instants_tables(named, view.time, horizon, certain)
+            more += shares_of(named, view, series, certain, horizon) if by_cause else []
     along = blows.along[number] if blows.along else {}
     for run in runs.runs_of(view, labels, AT_A_BLOW):
         made = runs.instants_tables(run, view.time, horizon, certain, every=every)
@@ -118,8 +121,29 @@ def tables_of(blows: Blows, number: int, every: bool = False) -> list[Table]:
             table = runs.extremes_table(run, view.time, found, found.places, certain)
             made = [table, made[0]._replace(heading=""), *made[1:]]
         tables += [made[0]._replace(heading=lead + made[0].heading), *made[1:]]
+        more += [own._replace(heading=lead + own.heading) for own in shares_along(run, view, certain, horizon)]
+    tables += more
     sums = sums_table(view, certain, unit=UNIT)
     return [*tables, sums._replace(heading=lead + sums.heading)] if sums else tables
+
+
+def shares_of(
+    block: Laid, view: Results, series: Sequence[Series], certain: Certainty, horizon: float | None
+) -> list[Table]:
+    """What each that struck does of a block's impulses."""
+    from heuncli.report import causes  # few runs ask for them
+
+    shared = causes.shared_rows(view, series)
+    return causes.instants_table(block, shared, view.time, horizon, certain)
+
+
+def shares_along(run: runs.Run, view: Results, certain: Certainty, horizon: float | None) -> list[Table]:
+    """The same along a run of cuts, if there are shares."""
+    if SHARES not in view.sections[run.name]:
+        return []
+    from heuncli.report import causes
+
+    return causes.run_instants_table(run, view, horizon, certain)
 
 
 def at_one_instant(results: Results, impulse: Block) -> Results:

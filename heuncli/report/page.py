@@ -8,7 +8,7 @@ from __future__ import annotations
 
 from collections.abc import Mapping, Sequence
 from dataclasses import replace
-from typing import Any, NamedTuple, Protocol
+from typing import TYPE_CHECKING, Any, NamedTuple, Protocol
 
 import numpy as np
 
@@ -25,6 +25,10 @@ from heuncli.results_schema import REPORT_OF, REPORTS, quantity
 
 TABLE_DEFAULT = frozenset(REPORTS) - {"motion", "points"}
 EXPORT_DEFAULT = frozenset(REPORTS) - {"points"}
+
+
+if TYPE_CHECKING:
+    from heuncli.report import causes
 
 
 class SharesAt(Protocol):
@@ -106,7 +110,7 @@ class Page(NamedTuple):
 
         n = len(searched.low) - len(searched.places)
         instants = np.unique(np.concatenate([searched.low_at[:n], searched.high_at[:n]]))
-        shared = causes.shared_rows(shares.at(instants), self.labels) if n else {}
+        shared = self._shared(shares.at(instants)) if n else {}
         span, tables, start = float(np.ptp(self.results.time)), list[Table](), 0
         for block in self._lasting(self.results):
             count = sum(len(group.rows) for group in block.groups)
@@ -116,6 +120,11 @@ class Page(NamedTuple):
         for k, run in enumerate(runs.runs_of(self.results, self.labels)):
             tables += self._run_by_cause(run, searched, k, shares)
         return tables
+
+    def _shared(self, results: Results) -> dict[causes.Key, causes.Shared]:
+        from heuncli.report import causes
+
+        return causes.shared_rows(results, walk(results, self.labels))
 
     def _run_by_cause(self, run: runs.Run, searched: Extremes, k: int, shares: SharesAt) -> list[Table]:
         """What each cause does of the extremes along a run."""
@@ -164,7 +173,7 @@ class Page(NamedTuple):
         from heuncli.report import causes  # few runs ask for them
 
         horizon = self.results.accuracy.get("horizon")
-        shared, tables = causes.shared_rows(results, self.labels), list[Table]()
+        shared, tables = self._shared(results), list[Table]()
         for block in _blocks(results, self.labels):
             tables += causes.instants_table(block, shared, results.time, horizon, certain)
         for k, run in enumerate(runs.runs_of(results, self.labels)):

@@ -13,7 +13,7 @@ from typing import Any
 
 import numpy as np
 
-from heuncli.integration.blows import Jump
+from heuncli.integration.blows import DRIVES, Jump
 from heuncli.integration.evaluator import Recovered
 from heuncli.integration.pairs import matched
 from heuncli.integration.solvable import Asked, require_solvable
@@ -22,7 +22,9 @@ from heuncli.kinetostatics.balance import balance_residual
 from heuncli.kinetostatics.magnitudes import magnitudes
 from heuncli.mechanism.model import Mechanism
 from heuncli.records import fields, record, replace
+from heuncli.response import Columns
 from heuncli.results import Array, Block, CertainSum
+from heuncli.results_schema import BY_CAUSE, SHARES
 from heuncli.study.history import History
 from heuncli.study.recover import Recovery, blocks, certain_sums
 from heuncli.study.setup import Setup
@@ -63,6 +65,23 @@ def answered(jump: Jump) -> Recovered:
     return replace(still, bodies=bodies, freedoms=freedoms, rows=rows, loads=still.loads[:, :0], causes=None)
 
 
+def columns_of(jumps: Sequence[Jump]) -> tuple[tuple[str, ...], Columns]:
+    """All that strikes at some blow, the drives last, and the columns of jumps that it makes at each, (n, n_c)."""
+    names = sorted(dict.fromkeys(name for jump in jumps for name in jump.causes), key=lambda name: name == DRIVES)
+    found = []
+    for jump in jumps:
+        own = jump.recovered.causes
+        assert own is not None
+        columns = own.only(0)
+        none = columns.at(np.zeros(0, dtype=int)).sum()
+        found.append([columns.only(jump.causes.index(name)) if name in jump.causes else none for name in names])
+
+    def stacked(of: str) -> Any:
+        return np.stack([np.stack([getattr(column, of) for column in row]) for row in found])
+
+    return tuple(names), Columns(stacked("bodies"), stacked("freedoms"), stacked("multipliers"))
+
+
 def together(answers: Sequence[Recovered]) -> Recovered:
     """Answers at several instants as one."""
     own: dict[str, Any] = {
@@ -85,7 +104,7 @@ class Impulses:
     @cached_property
     def shown(self) -> dict[str, Any]:
         """The blocks of foundation, joints and sections, arrays (n, ...) over the blows."""
-        return blocks(self.recovery, STRUCK)
+        return blocks(self.recovery, STRUCK | {SHARES} if self.recovery.causes is not None else STRUCK)
 
     @cached_property
     def sums(self) -> list[CertainSum]:
@@ -124,21 +143,24 @@ class Impulses:
         }
         before, after = jump.kinetic
         block: Block = {"time": jump.time, "names": list(jump.names), "bodies": bodies}
-        block |= of_one(self.shown, k)
+        block |= only_of(of_one(self.shown, k), jump.causes)
         block |= {"energy_jump": after - before, "energy_before": before, "energy_after": after}
         if self.sums:
             block["certain_sums"] = [of_one(dict(one), k) for one in self.sums]
         return block
 
 
-def impulses(setup: Setup, history: History, least_norm: bool) -> Impulses:
-    """The blows of a run, of which there is one at least. Raises SolveError for one that nothing answers."""
-    own = of_run(setup, history.blows, least_norm, {})
-    others = [of_run(setup, jumps, least_norm, {}) for jumps in history.beside if jumps]
+def impulses(setup: Setup, history: History, least_norm: bool, by_cause: bool = False) -> Impulses:
+    """The blows of a run, of which there is one at least. Raises SolveError for one that nothing answers.
+
+    by_cause: with the shares of each that strikes.
+    """
+    own = of_run(setup, history.blows, least_norm, by_cause)
+    others = [of_run(setup, jumps, least_norm, by_cause) for jumps in history.beside if jumps]
     return replace(own, errors=apart(own, others))
 
 
-def of_run(setup: Setup, jumps: tuple[Jump, ...], least_norm: bool, errors: dict[tuple[str, str], float]) -> Impulses:
+def of_run(setup: Setup, jumps: tuple[Jump, ...], least_norm: bool, by_cause: bool) -> Impulses:
     """The blows of one run."""
     still = at_rest(setup)
     answers = together([answered(jump) for jump in jumps])
@@ -146,7 +168,8 @@ def of_run(setup: Setup, jumps: tuple[Jump, ...], least_norm: bool, errors: dict
     size = still.scene.layout.size
     largest = max((float(np.abs(a.force).max() * size + np.abs(a.moment).max()) for a in given), default=0.0)
     require_solvable(still.scene, answers, Asked("jumps of velocities", "couple", "N m s", largest))
-    return Impulses(still, jumps, Recovery(still, answers, least_norm, given), errors)
+    names, columns = columns_of(jumps) if by_cause else (None, None)
+    return Impulses(still, jumps, Recovery(still, replace(answers, causes=columns), least_norm, given, names), {})
 
 
 def actions(mechanism: Mechanism, jumps: Sequence[Jump]) -> list[Action]:
@@ -178,6 +201,15 @@ def of_one(block: Block, k: int) -> Block:
     return own
 
 
+def only_of(block: Block, causes: Sequence[str]) -> Block:
+    """A block with the shares of some causes alone: of all that strikes at some blow those of this one."""
+    return {
+        name: {cause: value[cause] for cause in causes} if name == SHARES
+        else only_of(value, causes) if isinstance(value, dict) else value
+        for name, value in block.items()
+    }  # fmt: skip
+
+
 def is_open(block: Block, path: str) -> bool:
     """Whether a component named by its path within a block is open: nan."""
     name, _, axis = path.partition(".")
@@ -188,15 +220,27 @@ def is_open(block: Block, path: str) -> bool:
 def apart(own: Impulses, others: Sequence[Impulses]) -> dict[tuple[str, str], float]:
     """Estimated errors of the impulses by kind and unit, by the check runs; of a blow those do not have, all of it."""
     found: dict[tuple[str, str], float] = {}
-    for kind, block, units in KINDS:
-        for unit, names in units.items():
-            differences = [
-                difference(mine, its, matched(own.jumps, other.jumps))
-                for other in others
-                for mine, its in pairs(own.shown.get(block, {}), other.shown.get(block, {}), names)
-            ]
-            found[kind, unit] = 2.0 * max(differences, default=0.0)
+    parts = {"": whole_of, f" {BY_CAUSE}": shares_of} if own.recovery.causes is not None else {"": whole_of}
+    for end, part in parts.items():
+        for kind, block, units in KINDS:
+            for unit, names in units.items():
+                differences = [
+                    difference(mine, its, matched(own.jumps, other.jumps))
+                    for other in others
+                    for mine, its in pairs(part(own.shown.get(block, {})), part(other.shown.get(block, {})), names)
+                ]
+                found[f"{kind}{end}", unit] = 2.0 * max(differences, default=0.0)
     return found
+
+
+def whole_of(block: Block) -> Block:
+    """A block without its shares by cause."""
+    return {k: whole_of(v) if isinstance(v, dict) else v for k, v in block.items() if k != SHARES}
+
+
+def shares_of(block: Block) -> Block:
+    """The shares of a block, and of those in it."""
+    return {k: v if k == SHARES else shares_of(v) for k, v in block.items() if isinstance(v, dict)}
 
 
 def difference(mine: Array, its: Array, same: Sequence[tuple[int, int]]) -> float:

@@ -200,7 +200,7 @@ class Kinds:
         if self.by_cause:
             from heuncli.study.shares import compare_shares  # few runs ask for them
 
-            compare_shares(self, several, states, loads, about(self.setup), terms)
+            compare_shares(self, several, states, [load.action for load in loads], about(self.setup), terms)
 
     def add_motion(self, states: BodyStates) -> None:
         """Velocities and accelerations: of the bodies, and of points as far from their centres as they reach."""

@@ -37,13 +37,15 @@ if TYPE_CHECKING:  # loaded where a scene has closed chains, or sections, or loa
 class Recovery:
     """What follows from the kernel's answers at some instants; each thing is computed when it is first asked for.
 
-    given: actions from outside that are no loads of the mechanism: the impulses of blows.
+    given: actions from outside that are no loads of the mechanism: the impulses of blows. causes: the names of the
+    kernel's columns, where these are not those of the mechanism.
     """
 
     setup: Setup
     recovered: Recovered
     least_norm: bool
     given: tuple[Action, ...] = ()
+    causes: tuple[str, ...] | None = None
 
     @cached_property
     def states(self) -> BodyStates:
@@ -76,9 +78,12 @@ class Recovery:
     @cached_property
     def shares(self) -> Shares:
         """The joints' loads by their causes, after the same split; of instants that were recovered with causes."""
-        from heuncli.kinetostatics.shares import shares_of  # few runs ask for them
+        from heuncli.kinetostatics.shares import members_of, shares_of  # few runs ask for them
 
-        found = shares_of(self.setup.scene.layout, self.recovered, self.states, self.loads)
+        layout = self.setup.scene.layout
+        own = None if self.causes is None else {name: [k] for k, name in enumerate(self.causes)}
+        members = members_of(layout.mechanism) if own is None else own
+        found = shares_of(layout, self.recovered, self.states, self.applied, members)
         if self.decided is None:
             return found
         return replace(found, joints=self.decided.chosen(found.joints, self.states))

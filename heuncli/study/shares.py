@@ -6,14 +6,15 @@ check run compares the shares themselves, kind by kind, as it does the loads.
 
 from __future__ import annotations
 
+from collections.abc import Sequence
 from typing import TYPE_CHECKING, Any
 
 import numpy as np
 
 from heuncli.integration.evaluator import Recovered
-from heuncli.kinetostatics.actions import AppliedLoad
+from heuncli.kinetostatics.actions import Action
 from heuncli.kinetostatics.bodies import BodyStates
-from heuncli.kinetostatics.shares import Column, Shares, foundation_shares, joint_shares, shares_of
+from heuncli.kinetostatics.shares import Column, Shares, foundation_shares, joint_shares, members_of, shares_of
 from heuncli.results import Array, Block
 from heuncli.results_schema import BY_CAUSE
 from heuncli.study.setup import Setup
@@ -43,12 +44,12 @@ def at(block: Block, keys: tuple[str, ...]) -> Block:
 
 
 def compare_shares(
-    kinds: Kinds, several: Recovered, states: BodyStates, loads: list[AppliedLoad], about: Array, terms: Terms
+    kinds: Kinds, several: Recovered, states: BodyStates, applied: Sequence[Action], about: Array, terms: Terms
 ) -> None:
     """More instants of what a check run compares: see study/kinds.py."""
     setup = kinds.setup
     layout = setup.scene.layout
-    shares = shares_of(layout, several, states, loads)
+    shares = shares_of(layout, several, states, applied, members_of(layout.mechanism))
     more = larger(shares.column, terms)
     F, M = (x * more for x in terms.rounding)
     force, moment = terms.force * more, terms.moment * more

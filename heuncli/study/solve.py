@@ -67,20 +67,20 @@ def solve(spec: Spec, options: Options | None = None) -> Study:
     history = integrate(setup, tolerance, deadline, by_cause=SHARES in options.reports)
     moved = time.perf_counter()
     recovery = recover(setup, history.recovered, options.least_norm)
-    struck = blows(setup, history, options.least_norm)
+    struck = blows(setup, history, options.least_norm, SHARES in options.reports)
     results = compose(setup, history, recovery, options.reports, struck)
     seconds = {"load": options.load_seconds, "build": built - begun, **history.seconds}
     results.work["seconds"] = seconds | {"recover": time.perf_counter() - moved}
     return Study(spec, options, setup, history, recovery, results, struck)
 
 
-def blows(setup: Setup, history: History, least_norm: bool) -> Impulses | None:
-    """The blows of the run; None where there was none."""
+def blows(setup: Setup, history: History, least_norm: bool, by_cause: bool) -> Impulses | None:
+    """The blows of the run, by_cause: with their shares; None where there was none."""
     if not history.blows:
         return None
     from heuncli.study.impulses import impulses  # where something strikes
 
-    return impulses(setup, history, least_norm)
+    return impulses(setup, history, least_norm, by_cause)
 
 
 def describe(spec: Spec) -> Block:

@@ -262,3 +262,81 @@ def test_the_door_is_open_along_its_hinges_in_every_share() -> None:
     split = solved(scene, wanted=WANTED)
     near(split.joints["top"]["shares"]["gravity"]["force"][0, 2], 0.75 * 49.05, 10.0, ROUNDING)
     near(split.joints["top"]["shares"]["motion"]["force"][0, 2], 0.0, 10.0, ROUNDING)
+
+
+# Impulses
+
+STRUCK = frozenset({"impulses", "shares"})
+
+
+@cache
+def struck(kind: str, seed: int) -> dict[str, Any]:
+    """A random scene, cut, of which several blows are asked at once."""
+    scene = {k: v for k, v in scene_of(kind, seed).items() if k != "forces"}
+    rng = np.random.default_rng(seed)
+    blows = {
+        f"blow{n}": {"on": {"body": str(rng.choice(list(scene["bodies"]))), "at": rng.uniform(-1, 1, 3).tolist()},
+                     "vector": rng.standard_normal(3).tolist(), "frame": ("world", "body")[n % 2]}
+        for n in range(3)
+    }  # fmt: skip
+    return {**scene, "impulses": blows, "analysis": {"type": "impulse"}}
+
+
+def blocks_of_blow(block: dict[str, Any]) -> Iterator[tuple[str, dict[str, Any]]]:
+    """Every wrench of a blow that has shares."""
+    yield "foundation", block["foundation"]
+    for kind, parts in (("support", block["foundation"].get("supports", {})), ("joint", block["joints"]),
+                        ("section", block.get("sections", {}))):  # fmt: skip
+        yield from ((f"{kind} {name}", part) for name, part in parts.items())
+
+
+@pytest.mark.parametrize(("kind", "seed"), CASES)
+def test_a_blow_s_share_is_what_it_does_alone(kind: str, seed: int) -> None:
+    """Of several at one instant; together they are the whole."""
+    scene = struck(kind, seed)
+    (whole,) = solved(scene, wanted=STRUCK).impulses
+    apart = {
+        name: solved({**scene, "impulses": {name: blow}}, wanted=STRUCK).impulses[0]
+        for name, blow in scene["impulses"].items()
+    }
+    own = {name: dict(blocks_of_blow(block)) for name, block in apart.items()}
+    for name, block in blocks_of_blow(whole):
+        assert list(block["shares"]) == list(scene["impulses"])
+        size = max(1.0, *(float(np.nan_to_num(np.abs(s[q])).max()) for s in block["shares"].values()
+                          for q in ("force", "moment")))  # fmt: skip
+        for quantity in ("force", "moment"):
+            total = sum(share[quantity] for share in block["shares"].values())
+            assert np.array_equal(np.isnan(total), np.isnan(block[quantity]))
+            near(np.nan_to_num(total), np.nan_to_num(block[quantity]), size, ROUNDING)
+            for blow, share in block["shares"].items():
+                near(np.nan_to_num(share[quantity]), np.nan_to_num(own[blow][name][quantity]), size, ROUNDING)
+        for blow, told in scene["impulses"].items():
+            if name == "foundation" and told["frame"] == "world":
+                near(block["shares"][blow]["direct_force"], told["vector"], 1.0, ROUNDING)
+
+
+def test_a_drive_whose_rate_jumps_is_a_cause_of_its_own() -> None:
+    """A rod of mass m and length L about its end: the drive's kink gives m L/2 times its jump, the blow its rest.
+
+    Against the driven rod a blow does nothing but push the pin and the drive: all of it is direct.
+    """
+    m, L, jump, hit = 3.0, 0.8, 2.0, 0.5
+    scene = {
+        "ground": {"points": {"O": [0, 0, 0]}},
+        "bodies": {"rod": {"shapes": [{"type": "rod", "from": [0, 0, 0], "to": [L, 0, 0], "mass": m}],
+                           "points": {"end": [0, 0, 0], "at": [L / 3, 0, 0]}}},
+        "joints": {"pin": {"type": "pin", "from": "ground.O", "to": "rod.end", "axis": [0, 0, 1]}},
+        "drives": {"motor": {"joint": "pin", "angle": f"{jump}*max(t - 0.1, 0)"}},
+        "impulses": {"blow": {"on": "rod.at", "vector": [0, hit, 0], "time": 0.1}},
+        "analysis": {"duration": 0.2, "samples": 3},
+    }  # fmt: skip
+    (block,) = solved(scene, wanted=STRUCK).impulses
+    shares = block["joints"]["pin"]["shares"]
+    assert list(shares) == ["blow", "drives"]
+    near(shares["drives"]["force"], (0.0, m * L / 2 * jump, 0.0), 1.0, ROUNDING)
+    near(shares["drives"]["drive"], m * L**2 / 3 * jump, 1.0, ROUNDING)
+    near(shares["blow"]["force"], (0.0, -hit, 0.0), 1.0, ROUNDING)
+    near(shares["blow"]["drive"], -hit * L / 3, 1.0, ROUNDING)
+    ground = block["foundation"]["shares"]
+    near(ground["blow"]["force"], ground["blow"]["direct_force"], 1.0, ROUNDING)
+    assert "direct_force" not in ground["drives"]
