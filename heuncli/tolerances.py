@@ -73,6 +73,13 @@ MOVED = 1e-2  # of the scene's size: a body that had to leave its place by more 
 UNMOVED = 1e-12  # of the size, or rad: a smaller change of the start is rounding, and no choice to mention
 DUST = 1e-9  # of the size: components that a chosen value is printed without
 
+# -- contacts
+CONTACT_RATE = 1e-12  # of the terms of a rate of opening: thousands of roundings, which settling and a blow leave
+CONTACT_ACCELERATION = 1e-11  # the same of accelerations, which loads and factors leave a digit more of
+CONTACT_DEPENDS = 1e-12  # of a contact's own answer: what others leave of it if less; squares, so 1e-6 of a lever
+NO_ANSWER = 1e-13  # of what free bodies would answer: what all other joints hold already, to hundreds of roundings
+SHORTEST_FLIGHT = 1e-12  # of the run's length: a hundred times what its instants are told apart by (least_step)
+
 # -- same instant, same place, same direction
 SAME_INSTANT = 1e-9  # of the run's length: instants typed with ten digits
 SIDE_BY_SIDE = 1e-12  # of the run's length: thousands of roundings of an instant; what jumps between has two sides

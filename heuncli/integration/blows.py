@@ -7,6 +7,8 @@ the one linear map a cause: each given impulse, the drives together. Positions s
 
 from __future__ import annotations
 
+from typing import TYPE_CHECKING
+
 import numpy as np
 
 from heuncli import tolerances
@@ -14,13 +16,17 @@ from heuncli.errors import Problem, SolveError
 from heuncli.expressions.discontinuities import discontinuities, one_sided_limits
 from heuncli.expressions.programs import Expression
 from heuncli.integration.evaluator import Evaluator, Recovered
-from heuncli.integration.loop import Integration, Steps, just_after, just_before
+from heuncli.integration.loop import Integration, Segment, Steps, just_after, just_before
 from heuncli.mechanism.model import Mechanism
 from heuncli.records import record, replace
+from heuncli.response import Blows as Answered
 from heuncli.response import Columns, blows
 from heuncli.results import Array
 from heuncli.tree.layout import Layout
 from heuncli.tree.tables import Table
+
+if TYPE_CHECKING:  # loaded where something opens and closes
+    from heuncli.integration.meetings import Contacts
 
 DRIVES = "drives"  # the cause beside the given impulses
 
@@ -60,7 +66,7 @@ class Jump:
 
     recovered: the kernel's answers at the state before it, with `causes` the columns of jumps, (1, n_c); causes: their
     names; impulses: the given ones; after: the state behind, settled; kinetic: energy before and behind [J]; work: of
-    all impulses [J].
+    all impulses [J]; holding (contacts,): which are closed behind it.
     """
 
     time: float
@@ -71,6 +77,7 @@ class Jump:
     after: Array
     kinetic: tuple[float, float]
     work: float
+    holding: Array = np.zeros(0)
 
 
 def rate_jumps(value: Expression, last: float) -> list[tuple[float, float, float, float]]:
@@ -100,38 +107,86 @@ def schedule(mechanism: Mechanism, last: float) -> list[Given]:
     ]
 
 
-def strike(evaluator: Evaluator, given: Given, state: Array, time: float) -> Jump:
-    """What blows make of a state, at an instant."""
+@record
+class Asked:
+    """What is given at a state: the answers there, impulses, and the columns of loads and of prescribed jumps."""
+
+    still: Recovered
+    impulses: tuple[Impulse, ...]
+    loads: list[Array]
+    jumps: list[Array]
+    causes: tuple[str, ...]
+
+
+def asked_of(evaluator: Evaluator, given: Given, state: Array) -> Asked:
+    """What is given, in world axes; the contacts are open, so that they are columns themselves."""
     layout, mechanism = evaluator.layout, evaluator.layout.mechanism
-    still = evaluator.recovered(np.array([given.before]), state[None, :])
+    still = evaluator.recovered(np.array([given.before]), state[None, :], holding=np.zeros(len(layout.contacts)))
     impulses = tuple(impulse(layout, still.bodies[0], i) for i in given.blows)
     n_b, n_u = len(layout.place), len(layout.freedoms) + len(layout.rows)
     loads, jumps = [column(layout, still.bodies[0], one) for one in impulses], [np.zeros(n_u)] * len(impulses)
     if given.drives:
         loads.append(np.zeros((n_b, 6)))
         jumps.append(prescribed(layout, given))
-    found = blows(evaluator.workspace, given.before, still.states[0], np.array(loads), np.array(jumps))
     causes = tuple(mechanism.blows[i].name for i in given.blows) + ((DRIVES,) if given.drives else ())
-    whole = found.columns.sum()
-    after = jumped(layout, still.states[0], whole)
-    work = work_of_impulses(layout, still.bodies[0], whole, impulses) + work_of_drives(layout, given, whole)
+    return Asked(still, impulses, loads, jumps, causes)
+
+
+def strike(evaluator: Evaluator, given: Given, state: Array, time: float) -> Jump:
+    """What blows make of a state, at an instant."""
+    asked = asked_of(evaluator, given, state)
+    found = blows(
+        evaluator.workspace, given.before, asked.still.states[0], np.array(asked.loads), np.array(asked.jumps)
+    )
+    after, work = behind(evaluator.layout, given, asked, found.columns)
+    return told(evaluator, given, asked, Told(time, found, asked.causes, after, work, np.zeros(0)))
+
+
+def behind(layout: Layout, given: Given, asked: Asked, columns: Columns) -> tuple[Array, float]:
+    """The state behind columns of jumps, and the work of what is given [J]."""
+    whole = columns.sum()
+    work = work_of_impulses(layout, asked.still.bodies[0], whole, asked.impulses) + work_of_drives(layout, given, whole)
+    return jumped(layout, asked.still.states[0], whole), work
+
+
+@record
+class Told:
+    """What a blow came to: its columns by cause, the state behind it, the work of all, the contacts closed there."""
+
+    time: float
+    found: Answered
+    causes: tuple[str, ...]
+    after: Array
+    work: float
+    holding: Array
+
+
+def told(evaluator: Evaluator, given: Given, asked: Asked, blow: Told) -> Jump:
+    """The blow with its energies."""
+    layout, found, after = evaluator.layout, blow.found, blow.after.copy()
     if layout.work_at >= 0:
-        after[layout.work_at] += work
-    behind = evaluator.recovered(np.array([given.after]), after[None, :])
+        after[layout.work_at] += blow.work
+    then = evaluator.recovered(np.array([given.after]), after[None, :], holding=blow.holding)
     still = replace(
-        still, causes=found.columns.at(None), residual=np.array([found.unmet.max()]), idle=np.array([float(found.idle)])
+        asked.still, causes=found.columns.at(None), residual=np.array([found.unmet.max()]),
+        idle=np.array([float(found.idle)]),
     )  # fmt: skip
-    kinetic = kinetic_energy(layout, still.bodies[0]), kinetic_energy(layout, behind.bodies[0])
-    return Jump(time, given.names(mechanism), still, causes, impulses, behind.states[0], kinetic, work)
+    kinetic = kinetic_energy(layout, still.bodies[0]), kinetic_energy(layout, then.bodies[0])
+    given_names = given.names(layout.mechanism)
+    names = (*given_names, *dict.fromkeys(c for c in blow.causes[len(asked.causes) :] if c not in given_names))
+    return Jump(
+        blow.time, names, still, blow.causes, asked.impulses, then.states[0], kinetic, blow.work, blow.holding
+    )  # fmt: skip
 
 
 class Blows:
-    """The given blows of a run, each done where the run comes to its instant. Changes the run."""
+    """The blows of a run, each done where the run comes to its instant, and its contacts. Changes the run."""
 
     def __init__(self, evaluator: Evaluator, run: Integration, steps: Steps, last: float) -> None:
-        self.evaluator, self.run, self.steps = evaluator, run, steps
+        self.evaluator, self.run, self.steps, self.last = evaluator, run, steps, last
         self.due = schedule(evaluator.layout.mechanism, last)
         self.done: list[Jump] = []
+        self.contacts = contacts_of(evaluator, last)
 
     def until(self, t: float, reached: float) -> str | None:
         """Those up to an instant, behind the one that the run has reached: it goes on from the state behind them.
@@ -139,23 +194,73 @@ class Blows:
         A rope that would have to push in one of them: the run ends before it. Raises SolveError if that is the start.
         """
         while self.due and self.due[0].after <= t:
-            jump = strike(self.evaluator, self.due.pop(0), np.array(self.run.loop.state()), reached)
+            jump = self.meet(self.due.pop(0), reached)
+            if jump is None:
+                continue
             rope = pushing(self.evaluator.layout, jump)
             if rope is not None and reached > 0.0:
                 return rope
             require_pull(rope)
-            self.run.loop.jump(jump.after)
-            self.steps.stand(jump.after)
-            self.done.append(jump)
+            self.take(jump)
         return None
 
+    def meet(self, given: Given, time: float, row: int | None = None) -> Jump | None:
+        """The blow that is given at the state reached, and that of its contacts; row: of the one that closed."""
+        state = np.array(self.run.loop.state())
+        if self.contacts is None:
+            return strike(self.evaluator, given, state, time)
+        return self.contacts.meet(given, state, time, row)
 
-def at_once(evaluator: Evaluator, state: Array) -> tuple[Jump, ...]:
-    """The blow at the start of a scene of which nothing else is asked."""
-    jumps = tuple(strike(evaluator, given, state, 0.0) for given in schedule(evaluator.layout.mechanism, 0.0)[:1])
-    for jump in jumps:
-        require_pull(pushing(evaluator.layout, jump))
-    return jumps
+    def settle(self, t: float, row: int | None = None) -> None:
+        """What its contacts do at an instant that the run has reached; row: of the one that closed or opened there."""
+        if self.contacts is None:
+            return
+        if row is not None:
+            self.contacts.count(t)
+        jump = self.meet(Given(t, t, (), {}), t, row)
+        if jump is not None:
+            self.take(jump)
+
+    def begin(self, segment: Segment) -> None:
+        """The run goes on from the state reached, with the contacts that are closed there."""
+        if self.contacts is not None:
+            self.evaluator.workspace.hold(self.contacts.holding)
+            self.steps.hold(self.contacts.holding)
+        self.run.loop.begin(*segment)
+
+    def take(self, jump: Jump) -> None:
+        """Go on from behind a blow."""
+        self.run.loop.jump(jump.after)
+        self.steps.stand(jump.after)
+        self.done.append(jump)
+
+    @property
+    def notes(self) -> tuple[str, ...]:
+        """What is to be told of the contacts."""
+        return tuple(self.contacts.notes) if self.contacts is not None else ()
+
+
+def contacts_of(evaluator: Evaluator, last: float) -> Contacts | None:
+    """The contacts of a run, where there are any."""
+    if not evaluator.layout.contacts:
+        return None
+    from heuncli.integration.meetings import Contacts  # few scenes have them
+
+    return Contacts(evaluator, last)
+
+
+def at_once(evaluator: Evaluator, state: Array, t: float) -> tuple[Jump, ...]:
+    """The blow at the only instant of a scene: the one that is given, and that of its contacts."""
+    contacts = contacts_of(evaluator, t)
+    given = [one for one in schedule(evaluator.layout.mechanism, 0.0) if t == 0.0][:1]
+    if not given and contacts is not None:
+        given = [Given(t, t, (), {})]
+    for one in given:
+        jump = contacts.meet(one, state, t, None) if contacts is not None else strike(evaluator, one, state, t)
+        if jump is not None:
+            require_pull(pushing(evaluator.layout, jump))
+            return (jump,)
+    return ()
 
 
 def pushing(layout: Layout, jump: Jump) -> str | None:

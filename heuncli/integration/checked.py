@@ -269,7 +269,8 @@ def recovered_at(
     for before, after in one_sided_limits(jumps):
         later[(times > before) & (times < after)] = after
     branches = run.branches_at(times) if run.branches.size else None
-    return replace(runner.recovered(later, states, branches=branches, causes=causes), times=times)
+    found = runner.recovered(later, states, branches=branches, causes=causes, holding=run.holding_at(times))
+    return replace(found, times=times)
 
 
 def motion_error(marks: Marks, several: Recovered, count: int, size: float) -> Array:

@@ -2,6 +2,8 @@
 
 from __future__ import annotations
 
+from functools import cached_property
+
 import numpy as np
 
 from heuncli import tolerances
@@ -47,6 +49,15 @@ class Evaluator:
         self.workspace = workspace_of(layout)
         self.size = layout.size
 
+    @cached_property
+    def start_holding(self) -> Array:
+        """The contacts that are closed at the start, (contacts,)."""
+        if not self.layout.contacts:
+            return np.zeros(0)
+        from heuncli.integration.meetings import held_at  # few scenes have them
+
+        return held_at(self, 0.0, self.layout.y0)
+
     def may_stay(self, gap: Array) -> Array:
         """What accelerations may leave unmet of rows that depend on others, at gaps (n_t,), of the rows' terms."""
         length = min((island.length for island in self.layout.islands), default=self.size)
@@ -67,7 +78,8 @@ class Evaluator:
         Each state by itself, whatever others are asked with it: its independent closure rows are chosen anew.
         branches (n_t, n): those that the expressions hold; without them branches are as the states say.
         hold_rows: those of the first serve the others too, as long as they can, for pivots that are comparable.
-        causes: with a column a cause. holding (n_t, n) or (n,): which contacts are closed; by default none.
+        causes: with a column a cause. holding (n_t, n) or (n,): which contacts are closed; by default as at the
+        start.
         """
         layout, n_t = self.layout, len(times)
         sizes = [
@@ -85,8 +97,7 @@ class Evaluator:
         flat, out = settled.ravel(), np.zeros(n_t * width)
         held = np.zeros(0) if branches is None else np.ascontiguousarray(branches, dtype=float).ravel()
         closed = np.zeros((n_t, len(layout.contacts)))
-        if holding is not None:
-            closed[:] = holding
+        closed[:] = self.start_holding if holding is None else holding
         self.workspace.recover(at, flat, held, closed.ravel(), out, width, not hold_rows, causes)
         bodies, freedoms, loads, rows, whole = parts(out.reshape(n_t, width), sizes)
         columns = out.reshape(n_t, width)[:, own:].reshape(n_t, n_c, -1) if causes else None

@@ -257,7 +257,8 @@ def lever(layout: Layout) -> float:
 def axes_to_lend(scene: PreparedScene, lacking: Mapping[int, Array]) -> dict[int, Array]:
     """The bodies that massless motions turn, and their axes in any pose of the tree, body axes (k, 3), unit vectors."""
     layout = scene.layout
-    alone = replace(layout, rows=(), tables=layout.tables | {"closures": layout.tables["closures"][:0]})
+    none = {name: layout.tables[name][:0] for name in ("closures", "contacts")}
+    alone = replace(layout, rows=(), contacts=(), tables=layout.tables | none)
     shift = np.zeros((POSES + 1, layout.n_state))
     rng = np.random.default_rng(SEED)
     for group in layout.tables["groups"]:

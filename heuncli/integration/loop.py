@@ -73,6 +73,18 @@ class Steps:
         self.every, self.room = 1, max(2, KEPT // max(width, 1))
         self.after: dict[int, Array] = {}  # of the steps after blows, which are kept in any case
         self.look = FIRST_LOOK
+        self.holdings: list[tuple[int, Array]] = []  # from which step on which contacts are closed
+
+    def hold(self, holding: Array) -> None:
+        """From the next step on other contacts are closed."""
+        self.holdings.append((self.count, holding.copy()))
+
+    def holding(self, contacts: int) -> Array:
+        """The contacts closed in each step, and behind the last one, (n_steps + 1, contacts)."""
+        found = np.zeros((self.count + 1, contacts))
+        for first, holding in self.holdings:
+            found[first:] = holding
+        return found
 
     def stand(self, state: Array) -> None:
         """The next step starts from another state than the last one reached."""

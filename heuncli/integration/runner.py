@@ -29,9 +29,10 @@ from heuncli.results import Array
 CHUNK = 2_000  # body-steps between two looks at the clock
 MOST_STEPS = 20_000_000
 
-REACHED, MORE, ROPE_SLACK, CHATTERING = (
-    kernel.CODES[name] for name in ("reached", "more", "rope slack", "chattering")
+REACHED, MORE, ROPE_SLACK, CHATTERING, STRUCK, LET_GO = (
+    kernel.CODES[name] for name in ("reached", "more", "rope slack", "chattering", "struck", "let go")
 )
+GOES_ON = (MORE, STRUCK, LET_GO)
 TROUBLE = {
     kernel.CODES["collapsed"]: (
         "step-collapsed",
@@ -80,6 +81,8 @@ class Trajectory:
     undecided: int = 0
     stopped: str | None = None  # the rope that would have to push just after the last instant
     blows: tuple[Jump, ...] = ()
+    holding: Array = np.zeros((1, 0))  # (n_steps + 1, contacts): closed in each step, and behind the last one
+    notes: tuple[str, ...] = ()  # what is told of contacts
 
     @property
     def events(self) -> tuple[float, ...]:
@@ -96,6 +99,10 @@ class Trajectory:
     def jumps(self) -> tuple[float, ...]:
         """The instants of events and of blows."""
         return tuple(sorted({*self.events, *(blow.time for blow in self.blows)}))
+
+    def holding_at(self, times: Array) -> Array:
+        """The contacts that are closed at instants, (n_t, contacts); at an event those behind it."""
+        return np.asarray(self.holding[np.searchsorted(self.ends, times, side="right")])
 
     def branches_at(self, times: Array) -> Array:
         """The branches that hold at instants, (n_t, n); at an event those behind it."""
@@ -183,20 +190,28 @@ class Runner(Evaluator):
         check_deadline(deadline, f"before the run of {last:.6g} s began")
         segments = smooth_segments(last, discontinuities)
         blows = Blows(self, run, steps, last)
-        reached, stopped = 0.0, None
+        reached, stopped, pieces = 0.0, None, list[Segment]()
         for segment in segments:
             stopped = blows.until(segment.begin, reached)
             if stopped is not None:
                 break
-            run.loop.begin(*segment)
+            blows.settle(segment.begin)
+            blows.begin(segment)
             code = MORE
-            while code == MORE:
+            while code in GOES_ON:
                 code = run.loop.advance(most, True)
                 steps.add(run)
-                if code in (REACHED, MORE):
+                if code == REACHED or code in GOES_ON:
                     check_deadline(deadline, f"at t = {run.loop.t:.6g} s of {last:.6g} s")
-                if code == MORE:
+                if code in GOES_ON:
                     self._require_progress(run, steps, last, most_steps)
+                if code in (STRUCK, LET_GO):
+                    t = run.loop.t
+                    pieces += [Segment(segment.begin, segment.before_end, t)] if t > segment.begin else []
+                    segment = Segment(t, segment.before_end, segment.end)
+                    blows.settle(t, run.loop.contact)
+                    blows.begin(segment)
+            pieces.append(segment)
             if code == ROPE_SLACK:
                 stopped = layout.mechanism.joints[layout.rows[run.loop.contact]].name
                 break
@@ -211,11 +226,10 @@ class Runner(Evaluator):
         return Trajectory(
             times=ts, states=states, ends=steps.column("ends"), steps=run.loop.steps,
             evaluations=run.loop.evaluations, gap=run.loop.gap, tolerance=tolerance, method=method,
-            seconds=time.perf_counter() - begun, segments=tuple(segments), kept=steps.records(),
+            seconds=time.perf_counter() - begun, segments=tuple(pieces), kept=steps.records(),
             pivots=steps.column("pivots"), settled=steps.column("settled"), branches=steps.held_branches(),
             turned=steps.column("turned"), undecided=run.loop.undecided,
-            stopped=stopped,
-            blows=tuple(blows.done),
+            stopped=stopped, blows=tuple(blows.done), holding=steps.holding(len(layout.contacts)), notes=blows.notes,
         )  # fmt: skip
 
     def _require_progress(self, run: Integration, steps: Steps, last: float, most_steps: int) -> None:
@@ -300,6 +314,7 @@ class Runner(Evaluator):
             loop.follow(run.ends[steps], run.settled[steps], run.branches[steps])
             if first in after:
                 loop.stand(after[first])
+            self.workspace.hold(run.holding[first])
             if t <= begin:
                 loop.begin(begin, before_end, end)
             else:

@@ -16,24 +16,26 @@ DIRECTIONS = 3
 SEED = 1901  # fixed: the same scene gives the same verdicts
 
 
-def neighbours(runner: Runner, t: float, state: Array, by: Sequence[float]) -> Recovered | None:
+def neighbours(
+    runner: Runner, t: float, state: Array, by: Sequence[float], holding: Array | None = None
+) -> Recovered | None:
     """Poses displaced by each of `by` (rad, or of the size) along fixed pseudo-random admissible rates, both ways.
 
-    None if nothing moves.
+    None if nothing moves. holding: the contacts that are closed, by default as at the start.
     """
     layout = runner.layout
     rng = np.random.default_rng(SEED)
     start = np.repeat(state[None, :], DIRECTIONS, axis=0)
     slots = rate_slots(layout)
     start[:, slots] = rng.uniform(-1.0, 1.0, (DIRECTIONS, len(slots))) / layout.weights[slots]
-    admissible = runner.recovered(np.full(DIRECTIONS, t), start).states
+    admissible = runner.recovered(np.full(DIRECTIONS, t), start, holding=holding).states
     largest = np.abs(admissible[:, slots] * layout.weights[slots]).max(axis=1, initial=0.0)
     moving = largest > tolerances.MOVES
     if not moving.any():
         return None
     steps = [(k, sign * step / largest[k]) for k in np.flatnonzero(moving) for step in by for sign in (1.0, -1.0)]
     moved = [displaced(layout, admissible[k], step) for k, step in steps]
-    found = runner.recovered(np.full(len(steps), t), np.array(moved))
+    found = runner.recovered(np.full(len(steps), t), np.array(moved), holding=holding)
     closed = found.gap <= tolerances.OPEN_GAP * layout.size
     if not closed.any():
         return None

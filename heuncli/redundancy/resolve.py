@@ -114,7 +114,9 @@ def sums_of(
 ) -> list[CertainSum]:
     """Certain sums of the joints' open components, true at the asked instants and in neighbouring poses."""
     pick = np.unique(np.linspace(0, len(recovered.times) - 1, SUMS_FROM).astype(int))
-    near = neighbours(runner, float(recovered.times[0]), recovered.states[0], tolerances.SUM_POSES)
+    near = neighbours(
+        runner, float(recovered.times[0]), recovered.states[0], tolerances.SUM_POSES, recovered.holding[0]
+    )
     beside = self_stress(runner, near, body_states(runner.layout, near)) if near is not None else None
     if any(j.joint.stiffness is not None for j in joints):
         beside = None  # what a stiffness leaves indeterminate is known at the asked instants only

@@ -64,7 +64,7 @@ def set_moving(
     y[rates] = 0.0
     for own, values in motions:
         y[own] = values
-    along = bare.recovered(recovered.times, y[None, :])
+    along = bare.recovered(recovered.times, y[None, :], holding=recovered.holding)
     changed = np.abs((along.states[0] - y)[rates] * bare.layout.weights[rates])
     return along, bool(changed.max() <= tolerances.MOVES)
 

@@ -95,14 +95,16 @@ def state(setup: Setup, at: float, tolerance: float, by_cause: bool = False) -> 
     runner, layout = setup.runner, setup.scene.layout
     starts = [layout.y0, moved_start(layout)]
     blows: list[tuple[Jump, ...]] = [(), ()]
-    if setup.spec.analysis.type == "impulse":
-        blows = [at_once(runner, start) for start in starts]
+    if setup.spec.analysis.type == "impulse" or layout.contacts:
+        blows = [at_once(runner, start, at) for start in starts]
         starts = [jumps[-1].after if jumps else start for start, jumps in zip(starts, blows, strict=True)]
     times = np.array([at])
-    answers = runner.recovered(times, starts[0][None, :], causes=by_cause)
+    holding = blows[0][-1].holding if blows[0] else held(runner, at, starts[0])
+    answers = runner.recovered(times, starts[0][None, :], causes=by_cause, holding=holding)
     require_start(setup.scene, answers, Asked("accelerations behind the blow") if blows[0] else Asked())
     require_motion(layout, answers)
-    both = runner.recovered(*interleaved(times, [start[None, :] for start in starts]), causes=by_cause)
+    beside = interleaved(times, [start[None, :] for start in starts])
+    both = runner.recovered(*beside, causes=by_cause, holding=holding)
     kinds = Kinds(setup, by_cause)
     kinds.add(both, *np.ones((2, 1), dtype=bool))
     # of one instant: what rounding of its state makes of the loads
@@ -111,6 +113,15 @@ def state(setup: Setup, at: float, tolerance: float, by_cause: bool = False) -> 
         answers, tolerance, estimate, blows=blows[0], beside=tuple(blows[1:]), seconds=seconds,
         errors=kinds.errors_by_cause(),
     )  # fmt: skip
+
+
+def held(runner: Runner, t: float, state: Array) -> Array:
+    """The contacts that are closed at a state, (contacts,)."""
+    if not runner.layout.contacts:
+        return np.zeros(0)
+    from heuncli.integration.meetings import held_at  # few scenes have them
+
+    return held_at(runner, t, state)
 
 
 def require_followed(runner: Runner, run: Trajectory) -> None:

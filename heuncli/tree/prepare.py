@@ -48,7 +48,8 @@ def arranged(mechanism: Mechanism, start: Assembly) -> PreparedScene:
     start = replace(start, angular_velocity=omega)
     works = any(not isinstance(f, PairLoad) or f.value is not None or f.damping != 0.0 for f in mechanism.loads)
     driven = any(j.drive is not None for j in mechanism.joints)
-    works = works or driven or bool(mechanism.blows)
+    works = works or driven or bool(mechanism.blows or mechanism.stops)
+    works = works or any(j.restitution is not None for j in mechanism.joints)
     return PreparedScene(mechanism, start, idle, lay_out(mechanism, start, inertias, size, work=works))
 
 

@@ -35,13 +35,6 @@ def fixed_step(draft: DraftDocument) -> Iterator[Path_]:
         yield "analysis", "step"
 
 
-def catching(draft: DraftDocument) -> Iterator[Path_]:
-    """Ropes that go slack and catch."""
-    for name, joint in draft.document.joints.items():
-        if getattr(joint, "restitution", None) is not None:
-            yield "joints", name, "restitution"
-
-
 def rubbing(draft: DraftDocument) -> Iterator[Path_]:
     """Stops that rub where they are struck."""
     for name, stop in draft.document.stops.items():
@@ -50,8 +43,6 @@ def rubbing(draft: DraftDocument) -> Iterator[Path_]:
 
 
 NOT_YET: tuple[tuple[str, Where], ...] = (
-    ("stops", any_of("stops")),
-    ("ropes that catch", catching),
     ("friction at strikes", rubbing),
     (f"a method other than {' and '.join(METHODS)}", other_method),
     ("fixed steps", fixed_step),

@@ -1,0 +1,82 @@
+"""Linear complementarity with a symmetric A that is not negative, by principal pivots.
+
+    w = q + A z,   z >= 0,   w >= 0,   z . w = 0
+One index after the other is driven until its w is zero or its z bears; on the way those done before keep their side, or
+change it where they come to zero (Dantzig; Cottle, Pang, Stone, The Linear Complementarity Problem (1992), 4.2; Baraff
+1994). Every w is measured by what its own z does to it, so that contacts of any mass and unit are alike.
+"""
+
+from __future__ import annotations
+
+import numpy as np
+
+from heuncli import tolerances
+from heuncli.errors import Problem, SolveError
+from heuncli.records import record
+from heuncli.results import Array, Mask
+
+
+@record
+class Pivots:
+    """z (n,); bears (n,): where it is positive; depends (n,): where w is zero only because of those that bear."""
+
+    z: Array
+    bears: Mask
+    depends: Mask
+
+
+def complementary(A: Array, q: Array, noise: Array) -> Pivots:
+    """The solution z; noise (n,): what rounding makes of w, which is zero within it. The diagonal of A is positive."""
+    n = len(q)
+    unit = 1.0 / np.sqrt(np.diag(A)) if n else np.zeros(0)
+    A, q, noise = A * unit[:, None] * unit, q * unit, noise * unit
+    z, bears, done = np.zeros(n), np.zeros(n, dtype=bool), np.zeros(n, dtype=bool)
+    for _ in range(20 * n + 20):
+        w = np.where(bears, 0.0, q + A @ z)
+        waiting = np.flatnonzero(~done & (w < -noise))
+        if not len(waiting):
+            break
+        drive(A, q, z, bears, done, int(waiting[np.argmin(w[waiting])]))
+    else:
+        raise SolveError(Problem("contacts-undecided", "which of the contacts that touch bear is not decided"))
+    w = q + A @ z
+    small = z <= noise  # A's diagonal is 1: what bears less than rounding bears nothing
+    z[small], bears = 0.0, bears & ~small
+    closed = ~bears & (np.abs(w) <= np.maximum(noise, tolerances.CONTACT_DEPENDS * np.abs(A) @ z))
+    depends = np.array([closed[i] and leaves(A, bears, i) <= tolerances.CONTACT_DEPENDS for i in range(n)], dtype=bool)
+    return Pivots(z * unit, bears, depends)
+
+
+def leaves(A: Array, bears: Mask, i: int) -> float:
+    """What those that bear leave of A_ii: 0 where its rate depends on theirs."""
+    own = np.flatnonzero(bears)
+    return float(A[i, i] - A[i, own] @ np.linalg.solve(A[np.ix_(own, own)], A[own, i])) if len(own) else 1.0
+
+
+def drive(A: Array, q: Array, z: Array, bears: Mask, done: Mask, i: int) -> None:
+    """Let z_i grow until w_i is zero; those that are done keep z w = 0. In place."""
+    for _ in range(20 * len(q) + 20):
+        own = np.flatnonzero(bears)
+        dz = np.zeros(len(q))
+        dz[i] = 1.0
+        if len(own):
+            dz[own] = -np.linalg.solve(A[np.ix_(own, own)], A[own, i])
+        w, dw = q + A @ z, A @ dz
+        limits = [(-w[i] / dw[i], 1, i)] if dw[i] > tolerances.CONTACT_DEPENDS else []
+        limits += [(-z[j] / dz[j], 2, int(j)) for j in own if dz[j] < 0.0]
+        limits += [
+            (max(w[j], 0.0) / -dw[j], 3, int(j))
+            for j in np.flatnonzero(done & ~bears)
+            if j != i and dw[j] < -tolerances.CONTACT_DEPENDS
+        ]
+        if not limits:
+            raise SolveError(Problem("contacts-undecided", "no impulse or force of the contacts holds them apart"))
+        step, what, j = min(limits)
+        z += step * dz
+        if what == 1:
+            bears[i] = done[i] = True
+            return
+        bears[j] = what == 3
+        if what == 2:
+            z[j] = 0.0
+    raise SolveError(Problem("contacts-undecided", "which of the contacts that touch bear is not decided"))
