@@ -35,10 +35,11 @@ class End:
 class Action:
     """Force [N] and moment [N m] ON the body of `to`, (n_t, 3); the opposite ON that of `from_`, None: from outside.
 
-    name: of the load, of the joint (its constraint alone, unless the drive is included on purpose), or of the drive.
+    name: of the load, of the joint (its constraint alone, unless drive and stops are included on purpose), of the drive
+    or of the stop.
     """
 
-    kind: Literal["load", "joint", "drive"]
+    kind: Literal["load", "joint", "drive", "stop"]
     name: str
     to: End
     from_: End | None
@@ -107,7 +108,7 @@ def _joint_ends(joint: Joint, position: Array) -> tuple[End, End]:
 
 
 def joint_actions(joints: Sequence[JointLoads]) -> list[Action]:
-    """What the joints' constraints exert, each followed by its drive; a rod's force is its drive's, and one action."""
+    """What the joints' constraints exert, each followed by its drive (a rod's force is its drive's) and its stops."""
     actions: list[Action] = []
     for load in joints:
         actions.append(joint_action(load, load.force, load.moment))
@@ -115,11 +116,13 @@ def joint_actions(joints: Sequence[JointLoads]) -> list[Action]:
         if drive is not None and not JOINTS[load.joint.kind].keeps_distance:
             ends = _joint_ends(load.joint, load.point)
             actions.append(Action("drive", drive.name, *ends, load.drive_force, load.drive_moment))
+        for own in load.stops:
+            actions.append(Action("stop", own.stop.name, *_joint_ends(load.joint, load.point), own.force, own.moment))
     return actions
 
 
 def whole_joint_actions(joints: Sequence[JointLoads]) -> list[Action]:
-    """What the joints exert with their drives, one action a joint."""
+    """What the joints exert with their drives and stops, one action a joint."""
     return [joint_action(load, *load.whole) for load in joints]
 
 

@@ -17,7 +17,7 @@ import numpy as np
 
 from heuncli.joint_kinds import JOINTS
 from heuncli.kinetostatics.bodies import BodyStates
-from heuncli.mechanism.model import Joint
+from heuncli.mechanism.model import Joint, Stop
 from heuncli.records import record
 from heuncli.results import Array
 from heuncli.tree.layout import Layout
@@ -31,11 +31,21 @@ class Named(Protocol):
 
 
 @record
+class StopLoad:
+    """What a stop exerts ON `to`: value (n_t,) along its coordinate, as force and moment about the `to` point."""
+
+    stop: Stop
+    value: Array
+    force: Array
+    moment: Array
+
+
+@record
 class JointLoads:
     """Of one joint: ON `to`, world axes, moment about the `to` point `point`; (n_t, 3) [N], [N m].
 
     drive (n_t,): the driving torque or force ON `to` about or along `axis` (n_t, 3), not contained in force and moment
-    but for a rod, whose force is the drive's. None where there is no drive or no axis.
+    but for a rod, whose force is the drive's. None where there is no drive or no axis. stops: beside force and moment.
     """
 
     joint: Joint
@@ -44,7 +54,8 @@ class JointLoads:
     moment: Array
     axis: Array | None
     drive: Array | None
-    tension: Array | None  # of a rod, (n_t,)
+    tension: Array | None  # of a rod, (n_t,); None between the limits of a stop, which carry all there is
+    stops: tuple[StopLoad, ...] = ()
 
     @property
     def drive_force(self) -> Array:
@@ -60,10 +71,23 @@ class JointLoads:
 
     @property
     def whole(self) -> tuple[Array, Array]:
-        """Force and moment ON `to` about its point, the drive's included."""
+        """Force and moment ON `to` about its point, those of the drive and of stops included."""
+        force, moment = self.force, self.moment
+        if not JOINTS[self.joint.kind].keeps_distance:
+            force, moment = force + self.drive_force, moment + self.drive_moment
+        for own in self.stops:
+            force, moment = force + own.force, moment + own.moment
+        return force, moment
+
+    def parts(self, states: BodyStates, wrenches: Array) -> tuple[Array, Array]:
+        """Of wrenches (n_t, 6, k) in the joint what its constraint carries, and what is left to its drive and stops."""
         if JOINTS[self.joint.kind].keeps_distance:
-            return self.force, self.moment
-        return self.force + self.drive_force, self.moment + self.drive_moment
+            none = np.zeros_like(wrenches)
+            return (none, wrenches) if self.stops else (wrenches, none)
+        force, moment = np.moveaxis(wrenches[:, :3], 2, 0), np.moveaxis(wrenches[:, 3:], 2, 0)
+        own = np.concatenate(constrained_part(self.joint, states, force, moment), axis=2)
+        constraint = np.moveaxis(own, 0, 2)
+        return constraint, wrenches - constraint
 
 
 class Answers(Protocol):
@@ -102,22 +126,42 @@ def joint_loads(layout: Layout, recovered: Answers, states: BodyStates) -> list[
                     drive = recovered.freedoms["drive"][..., n]
         else:
             force, moment = (_of_joint(layout, k, recovered.rows, of) for of in ("f", "m"))
-            if kind.keeps_distance:
-                push = recovered.rows["multiplier"][..., layout.rows.index(k)]
+            own = rows_of(layout, k)
+            if kind.keeps_distance and own:
+                push = recovered.rows["multiplier"][..., own[0]]
                 drive, tension = (push if joint.drive is not None else None), -push
         force, moment = constrained_part(joint, states, force, moment)
         if layout.mechanism.planar:
             force, moment = in_plane(force, moment)
-        loads.append(JointLoads(joint, point, force, moment, axis, drive, tension))
+        stops = stop_loads(layout, k, recovered.rows)
+        loads.append(JointLoads(joint, point, force, moment, axis, drive, tension, stops))
     return loads
+
+
+def rows_of(layout: Layout, joint: int) -> list[int]:
+    """The closure rows of a cut joint's own constraint, not of stops."""
+    stops = {contact.row for contact in layout.contacts if not contact.is_rope}
+    return [r for r, owner in enumerate(layout.rows) if owner == joint and r not in stops]
+
+
+def stop_loads(layout: Layout, joint: int, rows: Named) -> tuple[StopLoad, ...]:
+    """What the stops of a joint exert; of the two limits of one at most one is touched."""
+    found = []
+    for stop in layout.mechanism.stops:
+        if stop.joint != joint:
+            continue
+        own = [contact.row for contact in layout.contacts if contact.name == stop.name and not contact.is_rope]
+        push = rows["multiplier"][..., own]
+        force, moment = (np.sum(push[..., None] * rows[of][..., own, :], axis=-2) for of in ("f", "m"))
+        found.append(StopLoad(stop, push.sum(axis=-1), force, moment))
+    return tuple(found)
 
 
 def _of_joint(layout: Layout, joint: int, rows: Named, of: str) -> Array:
     """The sum over the closure rows of a cut joint, of their forces "f" or of their moments "m"."""
     total = np.zeros((*rows["multiplier"].shape[:-1], 3))
-    for r, owner in enumerate(layout.rows):
-        if owner == joint:
-            total = total + rows["multiplier"][..., r, None] * rows[of][..., r, :]
+    for r in rows_of(layout, joint):
+        total = total + rows["multiplier"][..., r, None] * rows[of][..., r, :]
     return total
 
 

@@ -45,8 +45,8 @@ def names_of(parts: Mapping[str, Mask]) -> list[str]:
     return found
 
 
-def open_joint(block: Block, load: JointLoads, share: Array, stress: SelfStress) -> None:
-    """Open components of a joint's block, in place."""
+def open_joint(block: Block, load: JointLoads, share: Array, free: Array, stress: SelfStress) -> None:
+    """Open components of a joint's block, in place; shares (n_t, 6, k) of its constraint, and of its drive."""
     force, moment = wrench_open(stress, share)
     parts: dict[str, Mask] = {"force": force, "moment": moment}
     if load.axis is not None:
@@ -59,24 +59,30 @@ def open_joint(block: Block, load: JointLoads, share: Array, stress: SelfStress)
         parts["radial"] = np.asarray(stress.reaches(across).any(axis=1))
         tilting = stress.reaches(M - n[:, :, None] * about, stress.length)
         parts["tilting"] = np.asarray(tilting.any(axis=1))
-        if load.drive is not None:
-            # what acts along the driven freedom is the drive's, and no part of the constraint's load
-            turns = load.joint.drive is not None and load.joint.drive.quantity == "angle"
-            parts["drive"] = stress.reaches(about, stress.length)[:, 0] if turns else parts["axial"]
-            if turns:
-                parts["moment"] = tilting
-            else:
-                parts["force"], parts["axial"] = stress.reaches(across), np.zeros_like(parts["axial"])
+        if load.drive is not None and load.joint.drive is not None:
+            parts["drive"] = open_along(load, load.joint.drive.quantity, free, stress)
     if load.tension is not None:
-        parts["tension"] = np.asarray(force.any(axis=1))
+        parts["drive"] = parts["tension"] = np.asarray(force.any(axis=1))
     for own in (block, *block.get("shares", {}).values()):
         for name in parts.keys() & own.keys():
             own[name] = opened(own[name], parts[name])
     block["open"] = names_of({name: is_open for name, is_open in parts.items() if name in block})
 
 
+def open_along(load: JointLoads, quantity: str, free: Array, stress: SelfStress) -> Mask:
+    """Whether what a drive or a stop exerts along a coordinate is open, (n_t,); its share is free of the constraint."""
+    part, scale = (free[:, 3:], stress.length) if quantity == "angle" else (free[:, :3], 1.0)
+    return np.asarray(stress.reaches(part, scale).any(axis=1))
+
+
+def of_quantity(free: Array, quantity: str) -> Array:
+    """What of a joint's shares beside its constraint acts along one of its coordinates."""
+    turns = np.arange(6) >= 3
+    return free * (turns if quantity == "angle" else ~turns)[:, None]
+
+
 def open_support(block: Block, share: Array, stress: SelfStress) -> None:
-    """Open components of a support's force and moment ON the ground, in place."""
+    """Open components of what stands ON the ground, a support or an element, in place."""
     force, moment = wrench_open(stress, share)
     for own in (block, *block.get("shares", {}).values()):
         own["force"], own["moment"] = opened(own["force"], force), opened(own["moment"], moment)

@@ -11,10 +11,18 @@ from heuncli.integration.evaluator import Recovered
 from heuncli.integration.runner import Runner
 from heuncli.kinetostatics.bodies import BodyStates, body_states
 from heuncli.kinetostatics.reactions import JointLoads
-from heuncli.records import record
+from heuncli.records import record, replace
 from heuncli.redundancy.certain_sums import certain_sums
 from heuncli.redundancy.neighbours import neighbours
-from heuncli.redundancy.open_components import names_of, open_joint, open_support, wrench_open
+from heuncli.redundancy.open_components import (
+    names_of,
+    of_quantity,
+    open_along,
+    open_joint,
+    open_support,
+    opened,
+    wrench_open,
+)
 from heuncli.redundancy.self_stress import SelfStress, self_stress
 from heuncli.redundancy.split import Choice, split
 from heuncli.results import Array, Block, CertainSum, Indices
@@ -43,12 +51,13 @@ class Resolution:
         """Sentences on instants with more self-stresses than `redundant`, or nearly so."""
         return singular_poses(self.searched, times, redundant) if self.searched is not None else []
 
-    def show(self, base: Block | None, reactions: Block | None) -> None:
-        """Mark what is open, or was until a split was chosen, in the blocks of foundation and joints, in place."""
+    def show(self, states: BodyStates, shown: Block) -> None:
+        """Mark what is open, or was until a split was chosen, in the blocks of foundation, joints, stops, in place."""
+        reactions = shown.get("joints")
         if self.left is not None:
-            put_verdicts(self.left, self.joints, base, reactions)
+            put_verdicts(self.left, self.joints, states, shown)
         if self.words and self.stress is not None and reactions is not None:
-            mark_chosen(self.stress, self.joints, reactions)
+            mark_chosen(self.stress, self.joints, states, reactions)
 
     def sums(self, runner: Runner, recovered: Recovered) -> list[CertainSum]:
         """Certain sums of what is open."""
@@ -90,20 +99,34 @@ def singular_poses(stress: SelfStress, times: Array, redundant: int) -> list[str
     return sentences
 
 
-def put_verdicts(stress: SelfStress, joints: Sequence[JointLoads], base: Block | None, reactions: Block | None) -> None:
-    """Make the open components of joints and supports visible, in place."""
-    supports = base.get("supports", {}) if base is not None else {}
-    for load, share in zip(joints, stress.shares, strict=True):
-        if reactions is not None:
-            open_joint(reactions[load.joint.name], load, share, stress)
+def put_verdicts(stress: SelfStress, joints: Sequence[JointLoads], states: BodyStates, shown: Block) -> None:
+    """Make the open components of joints, stops and what stands on the ground visible, in place."""
+    base = shown.get("foundation", {})
+    supports, elements = base.get("supports", {}), base.get("elements", {})
+    for load, whole in zip(joints, stress.shares, strict=True):
+        share, free = load.parts(states, whole)
+        if "joints" in shown:
+            open_joint(shown["joints"][load.joint.name], load, share, free, stress)
         if load.joint.name in supports:
             open_support(supports[load.joint.name], share, stress)
+        drive = load.joint.drive
+        for stop in (own.stop for own in load.stops):
+            if stop.name in elements:
+                open_support(elements[stop.name], of_quantity(free, stop.quantity), stress)
+            if stop.name in shown.get("stops", {}):
+                block = shown["stops"][stop.name]
+                is_open = open_along(load, stop.quantity, free, stress)
+                block |= {name: opened(value, is_open) for name, value in block.items()}
+        if drive is not None and load.drive is not None and load.axis is not None:
+            key = f"drives.{drive.name}" if f"drives.{drive.name}" in elements else drive.name
+            if key in elements:
+                open_support(elements[key], of_quantity(free, drive.quantity), stress)
 
 
-def mark_chosen(stress: SelfStress, joints: Sequence[JointLoads], reactions: Block) -> None:
+def mark_chosen(stress: SelfStress, joints: Sequence[JointLoads], states: BodyStates, reactions: Block) -> None:
     """Name the components that were open before a split was chosen, in place."""
-    for load, share in zip(joints, stress.shares, strict=True):
-        force, moment = wrench_open(stress, share)
+    for load, whole in zip(joints, stress.shares, strict=True):
+        force, moment = wrench_open(stress, load.parts(states, whole)[0])
         names = names_of({"force": force, "moment": moment})
         if names:
             reactions[load.joint.name]["chosen"] = names
@@ -117,9 +140,13 @@ def sums_of(
     near = neighbours(
         runner, float(recovered.times[0]), recovered.states[0], tolerances.SUM_POSES, recovered.holding[0]
     )
-    beside = self_stress(runner, near, body_states(runner.layout, near)) if near is not None else None
-    if any(j.joint.stiffness is not None for j in joints):
-        beside = None  # what a stiffness leaves indeterminate is known at the asked instants only
+    stress = of_constraints(stress, joints, body_states(runner.layout, recovered))
+    beside = None
+    if near is not None and all(j.joint.stiffness is None for j in joints):
+        # what a stiffness leaves indeterminate is known at the asked instants only
+        there = body_states(runner.layout, near)
+        found = self_stress(runner, near, there)
+        beside = of_constraints(found, joints, there) if found is not None else None
     reached = [np.concatenate(wrench_open(stress, share), axis=1).any(axis=0) for share in stress.shares]
     of, component = np.nonzero(reached)  # joint, component: of each that is open
     at_instants = relative_shares(stress, of, component)
@@ -133,6 +160,13 @@ def sums_of(
         poses[name], asked[name] = in_poses[n], at_instants[n]
         values[name] = (load.force if i < 3 else load.moment)[:, i % 3]
     return certain_sums(poses, asked, values, stress.length)
+
+
+def of_constraints(stress: SelfStress, joints: Sequence[JointLoads], states: BodyStates) -> SelfStress:
+    """The same with the shares of the joints' constraints alone, without those of drives and stops."""
+    shares = [load.parts(states, whole)[0] for load, whole in zip(joints, stress.shares, strict=True)]
+    alone: SelfStress = replace(stress, shares=np.array(shares))
+    return alone
 
 
 def relative_shares(stress: SelfStress, joints: Indices, components: Indices) -> Array:

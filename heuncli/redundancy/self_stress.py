@@ -138,9 +138,9 @@ def _null_of(J: Array, rank: Indices) -> tuple[Array, Values]:
 
 
 def _shares(runner: Runner, recovered: Recovered, states: BodyStates, Z: Array) -> Array:
-    """Shares of multipliers Z (n_t, rows, k) in every joint, (n_j, n_t, 6, k).
+    """Shares of multipliers Z (n_t, rows, k) in every joint with its drive and its stops, (n_j, n_t, 6, k).
 
-    A joint of the tree balances what hangs on it; a cut one carries its rows.
+    A joint of the tree balances what hangs on it; a cut one carries its rows; stops carry theirs beside it.
     """
     layout = runner.layout
     joints, hangs = layout.mechanism.joints, layout.spanning.hangs
@@ -160,7 +160,7 @@ def _shares(runner: Runner, recovered: Recovered, states: BodyStates, Z: Array) 
             shares[h.joint] *= -1.0
     rows = np.array(layout.rows)
     unit = np.concatenate([recovered.rows["f"], recovered.rows["m"]], axis=2).transpose(0, 2, 1)
-    for cut in layout.spanning.cut:
-        own = np.flatnonzero(rows == cut)
-        shares[cut] = unit[:, :, own] @ Z[:, own]
+    for k in dict.fromkeys(layout.rows):
+        own = np.flatnonzero(rows == k)
+        shares[k] += unit[:, :, own] @ Z[:, own]
     return shares

@@ -13,7 +13,7 @@ import numpy as np
 
 from heuncli import tolerances
 from heuncli.kinetostatics.bodies import BodyStates
-from heuncli.kinetostatics.reactions import JointLoads, constrained_part
+from heuncli.kinetostatics.reactions import JointLoads, StopLoad, constrained_part
 from heuncli.records import record, replace
 from heuncli.redundancy.self_stress import SelfStress
 from heuncli.results import Array
@@ -113,6 +113,9 @@ def _added(load: JointLoads, states: BodyStates, more: Array) -> JointLoads:
     F, M = load.whole
     F, M = F + more[..., :3], M + more[..., 3:]
     force, moment = constrained_part(load.joint, states, F, M)
+    stops = tuple(_stop(own, more) for own in load.stops)
+    if stops and load.axis is None:  # a rod between limits carries nothing but at them
+        force, moment = load.force, load.moment
     drive = load.drive
     if drive is not None and load.axis is not None and load.joint.drive is not None:
         whole = M if load.joint.drive.quantity == "angle" else F
@@ -123,4 +126,14 @@ def _added(load: JointLoads, states: BodyStates, more: Array) -> JointLoads:
         along = np.sum(more[..., :3] * line, axis=-1) / np.sqrt(np.sum(line * line, axis=-1))
         tension = tension - along
         drive = -tension if load.joint.drive is not None else None
-    return replace(load, force=force, moment=moment, drive=drive, tension=tension)
+    return replace(load, force=force, moment=moment, drive=drive, tension=tension, stops=stops)
+
+
+def _stop(own: StopLoad, more: Array) -> StopLoad:
+    """A stop with its part of what is added to its joint, along its coordinate, where it is touched."""
+    touched = own.value != 0.0
+    size = np.where(touched, own.value, 1.0)[..., None]
+    unit = np.where(touched[..., None], np.concatenate([own.force, own.moment], axis=-1) / size, 0.0)
+    along = np.sum(more * unit, axis=-1)
+    force, moment = own.force + along[..., None] * unit[..., :3], own.moment + along[..., None] * unit[..., 3:]
+    return replace(own, value=own.value + along, force=force, moment=moment)

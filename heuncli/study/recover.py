@@ -131,12 +131,13 @@ def blocks(recovery: Recovery, wanted: Set[str]) -> dict[str, Any]:
         shown["foundation"] = foundation(mechanism, states, actions, about(recovery.setup))
     if "joints" in wanted:
         shown["joints"] = {j.joint.name: joint_block(j) for j in recovery.joints}
+        shown["stops"] = stops(recovery.joints)
     if SHARES in wanted:
         from heuncli.study.shares import put_shares  # few runs ask for them
 
         put_shares(recovery, about(recovery.setup), shown)
     if shown and recovery.decided is not None:
-        recovery.decided.show(shown.get("foundation"), shown.get("joints"))
+        recovery.decided.show(states, shown)
     if "energy" in wanted:
         shown["energy"] = recovery.energy
     if "motion" in wanted:
@@ -206,6 +207,15 @@ def joint_block(load: JointLoads) -> Block:
     if load.tension is not None:
         block["tension"] = load.tension
     return block
+
+
+def stops(joints: Sequence[JointLoads]) -> Block:
+    """What each stop exerts ON `to` along its coordinate."""
+    return {
+        own.stop.name: {"moment" if own.stop.quantity == "angle" else "force": own.value}
+        for load in joints
+        for own in load.stops
+    }
 
 
 def sections(recovery: Recovery, by_cause: bool = False) -> Block:

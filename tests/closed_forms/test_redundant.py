@@ -297,3 +297,41 @@ def test_five_bearings_rigid_against_tilting() -> None:
         assert open_forces(found, name) == set()
         assert {"moment.x", "moment.y"} <= set(found.joints[name]["open"])
     assert told_by_sums(found, {f"joints.m{n}.moment.x": 1.0 for n in range(5)})
+
+
+TWO_MOTORS = """
+heun: 1
+space: planar
+gravity: [0, -9.81, 0]
+ground: {points: {A: [0, 0, 0], D: [0.8, 0, 0]}}
+bodies:
+  left: {shapes: [{type: rod, from: [0, 0, 0], to: [0.3, 0, 0], mass: 1}], points: {a: [0, 0, 0], b: [0.3, 0, 0]}}
+  right:
+    shapes: [{type: rod, from: [0, 0, 0], to: [0.3, 0, 0], mass: 1}]
+    points: {a: [0, 0, 0], b: [0.3, 0, 0]}
+    near: {orientation: {axis: [0, 0, 1], angle: 60 deg}}
+  coupler: {shapes: [{type: rod, from: [0, 0, 0], to: [0.8, 0, 0], mass: 2}], points: {l: [0, 0, 0], r: [0.8, 0, 0]}}
+joints:
+  A: {type: pin, from: ground.A, to: left.a}
+  B: {type: pin, from: left.b, to: coupler.l}
+  C: {type: pin, from: right.b, to: coupler.r}
+  D: {type: pin, from: ground.D, to: right.a}
+drives:
+  one: {joint: A, angle: "60*deg + t"}
+  two: {joint: D, angle: "60*deg + t"}
+"""
+
+
+def test_what_two_motors_share_is_open_on_the_ground_too() -> None:
+    """Both cranks of a parallelogram are driven: the motors' torques are open, as drives and as elements; no pin's."""
+    found = solved(TWO_MOTORS)
+    elements = found.foundation["elements"]
+    for joint, drive in (("A", "one"), ("D", "two")):
+        assert np.isnan(found.joints[joint]["drive"]).all()
+        assert np.isnan(elements[drive]["moment"][:, 2]).all()
+        assert (elements[drive]["force"] == 0.0).all()
+        assert (found.foundation["supports"][joint]["moment"] == 0.0).all()
+        assert np.isnan(found.foundation["supports"][joint]["force"][:, 0]).all()
+    weight, spinning = -9.81 * (0.075 + 0.875 + 2.0 * 0.55), 0.36 * np.sqrt(0.75)
+    near(found.foundation["moment"][0, 2], weight + spinning, 20.0, 1e-12)
+    assert not [term for one in found.certain_sums for term in one["terms"] if ".moment." in term]
