@@ -73,7 +73,7 @@ class JointLoads:
     def whole(self) -> tuple[Array, Array]:
         """Force and moment ON `to` about its point, those of the drive and of stops included."""
         force, moment = self.force, self.moment
-        if not JOINTS[self.joint.kind].keeps_distance:
+        if self.drive is not None and not JOINTS[self.joint.kind].keeps_distance:
             force, moment = force + self.drive_force, moment + self.drive_moment
         for own in self.stops:
             force, moment = force + own.force, moment + own.moment

@@ -21,7 +21,7 @@ from heuncli.kinetostatics.sections import (
     piece_loads,
     planes,
 )
-from heuncli.kinetostatics.shares import GRAVITY, MOTION, Shares, by_name
+from heuncli.kinetostatics.shares import GRAVITY, MOTION, Shares
 from heuncli.results import Array, Block, Mask
 from heuncli.tree.layout import Layout
 
@@ -44,10 +44,11 @@ def section_shares(
         for name, values in where.components(force, moment).items()
         if name not in ABOUT_CENTROID
     }
-    block = by_name(shares.causes, whole)
-    for cause, (F, M) in direct.items():
-        own = where.components(F, M)
-        block[cause] |= {f"direct_{name}": own[name] for name in ("force", "moment")}
+    block = shares.by_name(whole)
+    none = np.zeros_like(whole["force"][0])
+    for cause in [*({GRAVITY} & set(shares.all)), *(action.name for action in shares.applied)]:
+        F, M = (where.in_world_axes(x) for x in where.wrench(*direct[cause])) if cause in direct else (none, none)
+        block[cause] |= {"direct_force": F, "direct_moment": M}
     if cuts.s is None:
         return {cause: {name: values[:, 0] for name, values in own.items()} for cause, own in block.items()}
     return block
@@ -62,13 +63,13 @@ def loads_by_cause(cuts: Cuts, layout: Layout, states: BodyStates, shares: Share
 def direct_loads(
     cuts: Cuts, gravity: Array, states: BodyStates, shares: Shares
 ) -> dict[str, tuple[Array, Array]]:
-    """By cause the weight of the pieces and each load where it stands on them, (3, n_t, k)."""
+    """By cause the weight of the pieces, and each load that stands on the body where it stands on them, (3, n_t, k)."""
     none = np.zeros((len(states.x), 3))
     weight = accelerations_as_matrix(none, none, in_body_axes(states.R[:, cuts.body], none - gravity))
     found = {GRAVITY: piece_loads(cuts, weight, [])} if GRAVITY in shares.causes else {}
     for action in shares.applied:
-        on = attachments(cuts.body, states, [action])
-        found[action.name] = piece_loads(cuts, np.zeros_like(weight), on)
+        if on := attachments(cuts.body, states, [action]):
+            found[action.name] = piece_loads(cuts, np.zeros_like(weight), on)
     return found
 
 

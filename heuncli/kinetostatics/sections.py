@@ -55,7 +55,9 @@ def attachments(body: int, states: BodyStates, actions: Sequence[Action]) -> lis
 
 
 def in_body_axes(R: Array, v: Array) -> Array:
-    components: Array = (R.transpose(0, 2, 1) @ v[..., None])[..., 0]
+    components = np.empty(v.shape)
+    for i in range(3):
+        components[..., i] = R[:, 0, i] * v[..., 0] + R[:, 1, i] * v[..., 1] + R[:, 2, i] * v[..., 2]
     return components
 
 
@@ -182,9 +184,13 @@ class Planes:
             world += self.origin.T[:, :, None]
         return np.moveaxis(world, 0, -1)
 
+    def wrench(self, force: Array, moment: Array) -> tuple[Array, Array]:
+        """Loads given about the cuts' points, with moments where they are asked for, body axes."""
+        return force, moment if self.about is self.at else shifted(force, moment, self.about - self.at)
+
     def components(self, force: Array, moment: Array) -> Block:
         """All components of loads given about the cuts' points; T0, M10, M20 about the centroid, for stresses."""
-        about = moment if self.about is self.at else shifted(force, moment, self.about - self.at)
+        _, about = self.wrench(force, moment)
         c = self.cuts
         space = scratch(15, *force.shape[1:])
         block: Block = {

@@ -25,7 +25,8 @@ from heuncli.kinetostatics.foundation import on_ground
 from heuncli.kinetostatics.reactions import JointLoads, in_plane, joint_loads
 from heuncli.mechanism.model import Mechanism
 from heuncli.records import record, replace
-from heuncli.results import Array, Block
+from heuncli.response import Columns
+from heuncli.results import Array, Block, Mask
 from heuncli.tree.layout import Layout
 
 GRAVITY, DRIVES, MOTION = "gravity", "drives", "motion"
@@ -42,8 +43,12 @@ class Column:
 
 @record
 class Shares:
-    """The causes in their order, what answers each, and the joints' loads by them, (n_c, n_t, 3); what is applied."""
+    """The causes that do anything, what answers each, and the joints' loads by them, (n_c, n_t, 3); what is applied.
 
+    all: the causes in the order of the results, idle ones among them, as drives are where there are none.
+    """
+
+    all: tuple[str, ...]
     causes: tuple[str, ...]
     column: Column
     joints: list[JointLoads]
@@ -52,6 +57,14 @@ class Shares:
     def place(self, cause: str) -> int:
         """Of a cause, on the axis of causes."""
         return self.causes.index(cause)
+
+    def by_name(self, parts: Mapping[str, Array]) -> Block:
+        """Blocks by the causes' names, of arrays over the causes; of idle ones zeros."""
+        none = {name: np.zeros(values.shape[1:]) for name, values in parts.items()}
+        block: Block = {cause: dict(none) for cause in self.all}
+        for c, cause in enumerate(self.causes):
+            block[cause] = {name: values[c] for name, values in parts.items()}
+        return block
 
 
 Members = Mapping[str, Sequence[int]]  # of a cause: which of the kernel's columns are its own
@@ -69,15 +82,27 @@ def shares_of(
     layout: Layout, recovered: Recovered, states: BodyStates, applied: Sequence[Action], members: Members
 ) -> Shares:
     """The shares of the causes in the joints' loads, at instants that were recovered with their causes."""
-    column = column_of(recovered, members)
+    assert recovered.causes is not None, "recovered without causes"
     own = [action for action in applied if action.name in members]
-    return Shares(tuple(members), column, joint_loads(layout, column, states), own)
+    # what moves nothing, or falls freely, is felt by cuts all the same
+    acting = {action.name for action in own if action.force.any() or action.moment.any()}
+    acting |= {GRAVITY} if layout.mechanism.gravity.any() else set()
+    busy = not_zero(recovered.causes)
+    live = {name: places for name, places in members.items() if name in acting or busy[list(places)].any()}
+    live = live or dict([*members.items()][-1:])
+    column = column_of(recovered, recovered.causes, live)
+    return Shares(tuple(members), tuple(live), column, joint_loads(layout, column, states), own)
 
 
-def column_of(recovered: Recovered, members: Members) -> Column:
+def not_zero(columns: Columns) -> Mask:
+    """Which columns answer anything at some instant, (n_c,)."""
+    bodies = [columns.bodies[name].any(axis=(0, 2, 3)) for name in ("alpha", "a", "joint_moment", "joint_force")]
+    rest = [x.any(axis=(0, 2)) for x in (columns.freedoms["drive"], columns.multipliers)]
+    return np.asarray(np.any([*bodies, *rest], axis=0))
+
+
+def column_of(recovered: Recovered, columns: Columns, members: Members) -> Column:
     """The kernel's columns summed by cause."""
-    columns = recovered.causes
-    assert columns is not None, "recovered without causes"
 
     def by_cause(values: Array) -> Array:
         own = [list(places) for places in members.values()]
@@ -91,12 +116,7 @@ def column_of(recovered: Recovered, members: Members) -> Column:
 def joint_shares(shares: Shares, load: JointLoads) -> Block:
     """The shares in one joint's load, cause by cause."""
     parts = {"force": load.force, "moment": load.moment, "drive": load.drive, "tension": load.tension}
-    return by_name(shares.causes, {name: values for name, values in parts.items() if values is not None})
-
-
-def by_name(causes: Sequence[str], parts: dict[str, Array]) -> Block:
-    """Blocks by the causes' names, of arrays over the causes."""
-    return {cause: {name: values[c] for name, values in parts.items()} for c, cause in enumerate(causes)}
+    return shares.by_name({name: values for name, values in parts.items() if values is not None})
 
 
 def foundation_shares(
@@ -113,10 +133,10 @@ def foundation_shares(
     inner = [action for action in shares.applied if action.from_ is not None]
     for keys, on in on_ground([*(alone(shares, action) for action in inner), *joint_actions(shares.joints)]).items():
         force, moment = force + on.force, moment + np.cross(on.about - about, on.force) + on.moment
-        parts[keys] = by_name(shares.causes, {"force": on.force, "moment": on.moment})
+        parts[keys] = shares.by_name({"force": on.force, "moment": on.moment})
     if mechanism.planar:
         force, moment = in_plane(force, moment)
-    whole = by_name(shares.causes, {"force": force, "moment": moment})
+    whole = shares.by_name({"force": force, "moment": moment})
     for cause, (F, M) in from_outside(mechanism, states, shares, about).items():
         F, M = in_plane(F, M) if mechanism.planar else (F, M)
         whole[cause] |= {"direct_force": F, "direct_moment": M}
@@ -126,8 +146,9 @@ def foundation_shares(
 def alone(shares: Shares, action: Action) -> Action:
     """A load's action by cause: it is all its own."""
     force, moment = np.zeros((2, len(shares.causes), *action.force.shape))
-    own = shares.place(action.name)
-    force[own], moment[own] = action.force, action.moment
+    if action.name in shares.causes:
+        own = shares.place(action.name)
+        force[own], moment[own] = action.force, action.moment
     return replace(action, force=force, moment=moment)
 
 
@@ -136,7 +157,7 @@ def from_outside(
 ) -> dict[str, tuple[Array, Array]]:
     """Force and moment about a point of the whole weight, and of each applied load: nothing of what acts inside."""
     found = {}
-    if GRAVITY in shares.causes:
+    if GRAVITY in shares.all:
         weight = np.array([b.mass for b in mechanism.bodies])[:, None] * mechanism.gravity
         levers = np.sum(np.cross(states.centre - about, weight), axis=1)
         found[GRAVITY] = np.broadcast_to(weight.sum(axis=0), levers.shape), levers
