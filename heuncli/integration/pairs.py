@@ -90,12 +90,30 @@ def interleaved(times: Array, states: Sequence[Array]) -> tuple[Array, Array]:
 def matched(own: Sequence[Jump], others: Sequence[Jump]) -> list[tuple[int, int]]:
     """The blows that two runs of one motion share: of the same names, each the nearest of its kind to the other."""
 
-    def nearest(of: Jump, among: Sequence[Jump]) -> int | None:
-        alike = [k for k, jump in enumerate(among) if jump.names == of.names]
-        return min(alike, key=lambda k: abs(among[k].time - of.time), default=None)
+    mine, its = by_names(own), by_names(others)
+    found: list[tuple[int, int]] = []
+    for names, (places, times) in mine.items():
+        if names in its:
+            theirs, at = its[names]
+            there = nearest(times, at)
+            back = nearest(at, times)
+            found += [(places[i], theirs[k]) for i, k in enumerate(there) if back[k] == i]
+    return sorted(found)
 
-    found = [(i, nearest(jump, others)) for i, jump in enumerate(own)]
-    return [(i, k) for i, k in found if k is not None and nearest(others[k], own) == i]
+
+def by_names(jumps: Sequence[Jump]) -> dict[tuple[str, ...], tuple[list[int], Array]]:
+    """Blows of the same names: their places, and their instants, ascending."""
+    places: dict[tuple[str, ...], list[int]] = {}
+    for k, jump in enumerate(jumps):
+        places.setdefault(jump.names, []).append(k)
+    return {names: (own, np.array([jumps[k].time for k in own])) for names, own in places.items()}
+
+
+def nearest(times: Array, among: Array) -> Indices:
+    """Of each instant the place of the nearest among others, ascending."""
+    behind = np.clip(np.searchsorted(among, times), 1, max(len(among) - 1, 1))
+    before = np.abs(times - among[behind - 1]) <= np.abs(among[np.minimum(behind, len(among) - 1)] - times)
+    return np.where(before, behind - 1, np.minimum(behind, len(among) - 1))
 
 
 def between_strikes(runs: Sequence[Trajectory], times: Array) -> Mask:

@@ -5,6 +5,9 @@ All but body_axes take any document that could be read, also one in which a rule
 
 from __future__ import annotations
 
+import math
+from collections.abc import Iterator
+from decimal import Decimal
 from typing import Any, Literal
 
 from heuncli.errors import Finding
@@ -106,9 +109,19 @@ def instants_of(document: f.Document) -> tuple[float, ...]:
     if analysis.times is not None:
         return tuple(analysis.times)
     count = analysis.samples if analysis.samples is not None else DEFAULT_SAMPLES
-    if analysis.duration is None or not 2 <= count <= 10_000_000:
+    if analysis.duration is None or not math.isfinite(analysis.duration) or not 2 <= count <= 10_000_000:
         return ()
-    return (*tuple(analysis.duration * i / (count - 1) for i in range(count - 1)), analysis.duration)
+    return (*evenly(analysis.duration, count), analysis.duration)
+
+
+def evenly(duration: float, count: int) -> Iterator[float]:
+    """So many evenly spaced instants but the last, of the duration as it is written.
+
+    Each is the double nearest to its fraction, so the second of 0, 0.1, 0.2, 0.3 is that of a blow at 0.1: 0.3 * 1 / 3
+    is the double before it.
+    """
+    numerator, denominator = Decimal(repr(duration)).as_integer_ratio()
+    return (numerator * i / (denominator * (count - 1)) for i in range(count - 1))
 
 
 def span_of(analysis: f.Analysis) -> float:

@@ -270,3 +270,17 @@ def test_impulses_are_as_exact_as_is_said(name: str, tolerance: float) -> None:
     for what in ("energy_before", "energy_after", "energy_jump"):
         worst = abs(float(block[what]) - float(exact[what]))
         assert worst <= errors["energy", "J"] + 1e-11 * max(1.0, float(exact["energy_after"])), (what, worst)
+
+
+def test_a_sample_of_an_even_row_is_the_instant_that_is_written() -> None:
+    """Of 0, 0.1, 0.2, 0.3 the second is the instant of a blow at 0.1, told behind it; 0.3 * 1 / 3 would lie before."""
+    text = """
+heun: 1
+ground: {points: {O: [0, 0, 0]}}
+bodies: {b: {mass: 2, center: [0, 0, 0], inertia: [1, 1, 1], points: {c: [0, 0, 0]}}}
+impulses: {blow: {on: b.c, vector: [2, 0, 0], time: 0.1}}
+analysis: {duration: 0.3, samples: 4}
+"""
+    found = solved(text)
+    assert found.time.tolist() == [0.0, 0.1, 0.2, 0.3]
+    assert found.bodies["b"]["velocity"][:, 0].tolist() == [0.0, 1.0, 1.0, 1.0]
