@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import math
+from collections.abc import Sequence
 
 import numpy as np
 
@@ -11,6 +12,7 @@ from heuncli.report.numbers import LOADS, rough
 from heuncli.report.words import count
 from heuncli.results import Estimate, Results
 
+MOST_TOLD = 5
 PLANAR = "; what points out of the xy plane does not exist and reads 0"
 
 
@@ -23,6 +25,7 @@ def heading(results: Results) -> list[tuple[str, str]]:
         ("run", _run(results)),
         ("accuracy", _errors(results)),
         ("", _residuals(results)),
+        *_contacts(results.model.get("contacts", ())),
     ]
     if results.model.get("split"):
         lines.append(("split", f"{results.model['split']}; other splits do as well"))
@@ -49,6 +52,14 @@ def write_heading_markdown(results: Results) -> str:
     lines = heading(results)
     body = "".join(f"- {label + ': ' if label else ''}{text}\n" for label, text in lines[1:])
     return f"## {results.title}\n\n- heun: {results.version}\n{body}\n"
+
+
+def _contacts(sentences: Sequence[str]) -> list[tuple[str, str]]:
+    """What is told of contacts, the first of it."""
+    shown = list(sentences[:MOST_TOLD])
+    if len(sentences) > MOST_TOLD:
+        shown.append(f"{len(sentences) - MOST_TOLD} more in --format json, model.contacts")
+    return [("contacts" * (not i), sentence) for i, sentence in enumerate(shown)]
 
 
 def _model(results: Results) -> str:

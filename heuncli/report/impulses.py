@@ -24,7 +24,7 @@ from heuncli.report.table import Column, Table
 from heuncli.results import Array, Block, CertainSum, Extremes, Indices, Magnitudes, Results
 from heuncli.results_schema import AT_A_BLOW, SHARES, STRUCK, quantity
 
-MOST_SHOWN = 3  # blows with tables of their own, unless all are asked for
+MOST_SHOWN, MOST_LISTED = 3, 20  # blows with tables of their own, and those in the list, unless all are asked for
 UNIT = "N·s"
 HEADING = "the blows of the run: largest impulse and moment of a joint or on the ground, kinetic energy"
 ENERGIES = ("energy_before", "energy_after", "energy_jump")
@@ -47,7 +47,7 @@ def impulse_tables(blows: Blows, *, every: bool = False) -> list[Table]:
         return []
     sizes = np.array([sizes_of(impulse, blows.labels) for impulse in found])
     shown = np.arange(len(found)) if every or len(found) <= MOST_SHOWN else _largest(sizes @ [1.0, 1.0 / blows.of.size])
-    tables = [listed(blows, sizes, shown)] if len(found) > 1 else []
+    tables = [listing(blows, sizes, shown, every)] if len(found) > 1 else []
     return tables + [table for number in shown.tolist() for table in tables_of(blows, number, every)]
 
 
@@ -69,7 +69,7 @@ def _largest(sizes: Array) -> Indices:
     return np.sort(largest_first[:MOST_SHOWN])
 
 
-def listed(blows: Blows, sizes: Array, shown: Indices) -> Table:
+def listing(blows: Blows, sizes: Array, shown: Indices, every: bool) -> Table:
     """A line a blow: when, by what, with which largest impulse, and what it did to the kinetic energy."""
     found, certain = blows.results.impulses, blows.certain
     times = np.array([float(impulse["time"]) for impulse in found])
@@ -83,7 +83,8 @@ def listed(blows: Blows, sizes: Array, shown: Indices) -> Table:
     clock = write_times(times.tolist(), float(np.ptp(blows.results.time)) or float(np.ptp(times)))
     horizon = blows.results.accuracy.get("horizon")
     rows = []
-    for i, block in enumerate(found):
+    listed = found if every else found[:MOST_LISTED]
+    for i, block in enumerate(listed):
         cells = [impulse[i], moment[i], *energy[i :: len(found)]]
         if horizon is not None and times[i] >= horizon:
             cells = [UNKNOWN] * len(cells)
@@ -92,7 +93,8 @@ def listed(blows: Blows, sizes: Array, shown: Indices) -> Table:
     columns = (Column(""), Column("t [s]"), Column("struck by", "left"), *map(Column, heads))
     numbers = ", ".join(map(str, shown.tolist()))
     note = f"below: {numbers}, the largest; all: --all, or --format csv"
-    notes = (note,) if len(shown) < len(found) else ()
+    left = f"{len(found) - len(listed)} more, the last at t = {clock[-1]} s"
+    notes = (left,) * (len(listed) < len(found)) + (note,) * (len(shown) < len(found))
     return Table(f"IMPULSES  {HEADING}", columns, tuple(rows), notes)
 
 

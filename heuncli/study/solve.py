@@ -114,7 +114,7 @@ def compose(
         title=setup.spec.title,
         spec={"path": setup.spec.path, "sha256": setup.spec.sha256},
         version=VERSION,
-        model=setup.model | ({"split": "; ".join(split)} if split else {}),
+        model=setup.model | ({"split": "; ".join(split)} if split else {}) | contacts_of(history),
         status=status(history),
         time=recovery.recovered.times,
         **shown,
@@ -138,6 +138,12 @@ def compose(
             *beside_singular_poses(unknown),
         ),
     )
+
+
+def contacts_of(history: History) -> Block:
+    """What is told of contacts: who was struck at once, who came to rest after how many strikes."""
+    notes = history.checked.run.notes if history.checked is not None else ()
+    return {"contacts": list(notes)} if notes else {}
 
 
 def blocks_of(history: History, recovery: Recovery, wanted: frozenset[str]) -> tuple[dict[str, Any], Array]:

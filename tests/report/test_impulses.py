@@ -15,6 +15,7 @@ from heuncli.cli.entry import UsageError
 from heuncli.cli.run import _strict
 from heuncli.errors import SpecError
 from heuncli.report.export import to_csv, to_json
+from heuncli.report.heading import write_heading
 from heuncli.report.labels import StopInfo
 from heuncli.report.page import page_of
 from heuncli.report.table import markdown, plain
@@ -122,6 +123,25 @@ def test_of_many_blows_all_are_listed_and_the_largest_shown() -> None:
     assert [k for k in range(1, 6) if f"IMPULSE at t = 0.{k} s (b{k})" in every] == [1, 2, 3, 4, 5]
     both = of_blow(text(struck(blow(0.5, 1.0, "hammer", "buffer"), blow(1.0))))
     assert "hammer, buffer" in both
+
+
+def test_a_long_list_of_blows_is_cut() -> None:
+    blows = [blow(0.01 * k, 1.0 / k, f"b{k}") for k in range(1, 31)]
+    found = of_blow(text(struck(*blows)))
+    listed = found.partition("IMPULSE at")[0]
+    assert "b20" in listed
+    assert "b21" not in listed
+    assert "10 more, the last at t = 0.3 s" in listed
+    assert "b30" in of_blow(text(struck(*blows), every=True)).partition("IMPULSE at")[0]
+
+
+def test_the_heading_tells_of_contacts() -> None:
+    told = [f"contact {k} rests" for k in range(8)]
+    written = write_heading(replace(pendulum(T), model={**pendulum(T).model, "contacts": told}))
+    assert "contacts  contact 0 rests" in written
+    assert "contact 4 rests" in written
+    assert "contact 5" not in written
+    assert "3 more in --format json, model.contacts" in written
 
 
 def test_beyond_the_horizon_nothing_is_told_of_a_blow() -> None:
