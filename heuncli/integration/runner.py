@@ -142,6 +142,18 @@ class ClosuresLost(SolveError):
         self.passed, self.failed, self.last = passed, failed, last
 
 
+@record
+class Going:
+    """A run under way: the kernel's loop, what is put down of it, its blows, its end; its limits."""
+
+    run: Integration
+    steps: Steps
+    blows: Blows
+    last: float
+    deadline: float | None
+    most_steps: int
+
+
 def cut_short(times: Array, run: Integration, last: float) -> tuple[Array, Array]:
     """The asked instants before the last at which no rope would have to push, that one, and the states at all."""
     asked = times[: run.loop.sampled]
@@ -188,58 +200,70 @@ class Runner(Evaluator):
         )  # fmt: skip
         steps = Steps(start, run.width)
         check_deadline(deadline, f"before the run of {last:.6g} s began")
-        segments = smooth_segments(last, discontinuities)
-        blows = Blows(self, run, steps, last)
-        reached, stopped, pieces = 0.0, None, list[Segment]()
-        for segment in segments:
-            stopped = blows.until(segment.begin, reached)
-            if stopped is not None:
-                break
-            blows.settle(segment.begin)
-            blows.begin(segment)
-            code = MORE
-            while code in GOES_ON:
-                code = run.loop.advance(most, True)
-                steps.add(run)
-                if code == REACHED or code in GOES_ON:
-                    check_deadline(deadline, f"at t = {run.loop.t:.6g} s of {last:.6g} s")
-                if code in GOES_ON:
-                    self._require_progress(run, steps, last, most_steps)
-                if code in (STRUCK, LET_GO):
-                    t = run.loop.t
-                    pieces += [Segment(segment.begin, segment.before_end, t)] if t > segment.begin else []
-                    segment = Segment(t, segment.before_end, segment.end)
-                    blows.settle(t, run.loop.contact)
-                    blows.begin(segment)
-            pieces.append(segment)
-            if code == ROPE_SLACK:
-                stopped = layout.mechanism.joints[layout.rows[run.loop.contact]].name
-                break
-            if code != REACHED:
-                raise self._failed(code, run, steps, last)
-            reached = segment.end
-        if stopped is None:
-            stopped = blows.until(last, reached)
-        # slack by a jump: what is told last is what held before it
-        told = just_before(run.loop.t) if run.loop.t in (segment.begin, reached) and reached > 0.0 else run.loop.t
+        going = Going(run, steps, Blows(self, run, steps, last), last, deadline, most_steps)
+        pieces, stopped, told = self._pass(going, smooth_segments(last, discontinuities))
         ts, states = (ts, run.states()) if stopped is None else cut_short(ts, run, told)
         return Trajectory(
             times=ts, states=states, ends=steps.column("ends"), steps=run.loop.steps,
             evaluations=run.loop.evaluations, gap=run.loop.gap, tolerance=tolerance, method=method,
             seconds=time.perf_counter() - begun, segments=tuple(pieces), kept=steps.records(),
             pivots=steps.column("pivots"), settled=steps.column("settled"), branches=steps.held_branches(),
-            turned=steps.column("turned"), undecided=run.loop.undecided,
-            stopped=stopped, blows=tuple(blows.done), holding=steps.holding(len(layout.contacts)), notes=blows.notes,
+            turned=steps.column("turned"), undecided=run.loop.undecided, stopped=stopped,
+            blows=tuple(going.blows.done), holding=steps.holding(len(layout.contacts)), notes=going.blows.notes,
         )  # fmt: skip
 
-    def _require_progress(self, run: Integration, steps: Steps, last: float, most_steps: int) -> None:
+    def _pass(self, going: Going, segments: Sequence[Segment]) -> tuple[list[Segment], str | None, float]:
+        """One segment after the other, blows between them: its pieces; the rope at which it stops, if one would push.
+
+        And the last instant that is told: where a rope is slack by a jump or a blow, what held before it.
+        """
+        pieces: list[Segment] = []
+        reached = 0.0
+        for segment in segments:
+            stopped = going.blows.until(segment.begin, reached)
+            if stopped is not None:
+                return pieces, stopped, just_before(reached)
+            going.blows.settle(segment.begin)
+            if not self._piece(going, segment, pieces):
+                t = going.run.loop.t
+                rope = self.layout.mechanism.joints[self.layout.rows[going.run.loop.contact]].name
+                return pieces, rope, just_before(t) if t == pieces[-1].begin > 0.0 else t
+            reached = segment.end
+        stopped = going.blows.until(going.last, reached)
+        return pieces, stopped, just_before(reached)
+
+    def _piece(self, going: Going, segment: Segment, pieces: list[Segment]) -> bool:
+        """Steps to the end of a segment, from one event of contacts to the next; not so where a rope would push."""
+        run, most = going.run, len(going.run.output["ends"])
+        code, begin = MORE, segment.begin
+        going.blows.begin(segment)
+        while code in GOES_ON:
+            code = run.loop.advance(most, True)
+            going.steps.add(run)
+            if code == REACHED or code in GOES_ON:
+                check_deadline(going.deadline, f"at t = {run.loop.t:.6g} s of {going.last:.6g} s")
+            if code in GOES_ON:
+                self._require_progress(going)
+            if code in (STRUCK, LET_GO):
+                t = run.loop.t
+                pieces += [Segment(begin, segment.before_end, t)] if t > begin else []
+                begin = t
+                going.blows.settle(t, run.loop.contact)
+                going.blows.begin(Segment(t, segment.before_end, segment.end))
+        pieces.append(Segment(begin, segment.before_end, segment.end))
+        if code not in (REACHED, ROPE_SLACK):
+            raise self._failed(code, going)
+        return code == REACHED
+
+    def _require_progress(self, going: Going) -> None:
         """Raise LimitError beyond the most steps, and where they become so short that the run cannot come to its end.
 
         Raises SolveError if that is because a value grows without bound.
         """
+        run, steps, last = going.run, going.steps, going.last
         done = f"steps were done at t = {run.loop.t:.6g} s of {last:.6g} s"
-        if steps.count > most_steps:
-            raise LimitError(Problem("step-limit", f"{most_steps} {done}"))
+        if steps.count > going.most_steps:
+            raise LimitError(Problem("step-limit", f"{going.most_steps} {done}"))
         projected = hopeless(steps.column("ends"), last, MOST_STEPS) if steps.doubled() else None
         if projected is not None:
             from heuncli.integration.growth import growing, stalled  # only on the way to an error
@@ -247,8 +271,9 @@ class Runner(Evaluator):
             problems = growing(self, run.loop.t, run.loop.state(), steps.passed(run.n))
             raise stalled(problems, f"{steps.count} {done}", projected)
 
-    def _failed(self, code: int, run: Integration, steps: Steps, last: float) -> SolveError:
+    def _failed(self, code: int, going: Going) -> SolveError:
         """Why a run to `last` ends: an expression without a value there, else the meaning of the kernel's code."""
+        run, steps, last = going.run, going.steps, going.last
         t, state = run.loop.t, np.array(run.loop.state())
         if code == CHATTERING:
             return SolveError(chattering(t, *self.layout.pack.branches[run.loop.turning]))
