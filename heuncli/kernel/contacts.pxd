@@ -13,6 +13,7 @@ from libc.math cimport fabs
 cdef enum:
     HALVINGS = 46             # of a step, down to the rounding of its instants
     POINTS = 8                # into which a part is divided to be looked at
+    MOST_LOOKS = 400          # parts looked at, before rounding alone is what is in doubt
 
 cdef double margin(Scene *scene, Contact *contact) noexcept nogil
 cdef void measure_open(Scene *scene, double t) noexcept nogil
@@ -25,6 +26,7 @@ cdef int turned_over(Scene *scene, Run *run) noexcept nogil
 cdef int set_levels(Scene *scene, Run *run) noexcept nogil
 cdef void stand_within(Scene *scene, Method *method, Run *run, double x, int doubt) noexcept nogil
 cdef int meet_contacts(Scene *scene, Method *method, Run *run) noexcept nogil
+cdef double where_closed(Scene *scene, Method *method, Run *run, double x) noexcept nogil
 cdef double first_contact(Scene *scene, Method *method, Run *run, int doubt) noexcept nogil
 cdef bint is_above(Scene *scene, Run *run) noexcept nogil
 cdef bint is_clear(Scene *scene, Method *method, Run *run, double x0, double x1, int doubt) noexcept nogil

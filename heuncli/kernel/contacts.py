@@ -32,8 +32,9 @@ if not cython.compiled:
     from heuncli.kernel.structs import Method, Run
     from heuncli.kernel.tree import kinematics
 
-    # Halvings of a step, down to the rounding of its instants; into how many a part is divided to be looked at.
-    HALVINGS, POINTS = 46, 8
+    # Halvings of a step, down to the rounding of its instants; into how many a part is divided to be looked at; parts
+    # looked at, before rounding alone is what is in doubt.
+    HALVINGS, POINTS, MOST_LOOKS = 46, 8, 400
 
 
 # Margins
@@ -127,12 +128,12 @@ def turned_over(scene: cython.pointer[Scene], run: cython.pointer[Run]) -> cytho
 def set_levels(scene: cython.pointer[Scene], run: cython.pointer[Run]) -> cython.int:
     """Above what margins contacts close or open, by their rounding; 0: none is in doubt, 1: open ones, 2: closed ones.
 
-    A gap that is open, or leaves with a rate, closes where it is zero again; one that touches at rest is known to its
-    rounding.
+    A gap that is open, or leaves with a rate, closes where it is zero again, to the rounding of its sum; one that
+    touches at rest is known to what settling leaves.
     """
     i: cython.Py_ssize_t
     found: cython.int = 0
-    reach: cython.double
+    size: cython.double
     least: cython.double = 0.0
     for i in range(scene.contact_count):
         if scene.closures[scene.contacts[i].row].mode == CARRIES and scene.contacts[i].least < least:
@@ -149,10 +150,12 @@ def set_levels(scene: cython.pointer[Scene], run: cython.pointer[Run]) -> cython
             contact.level = scene.limits.rounding * fabs(least)
             found = 2
         else:
-            reach = scene.limits.touching * ((scene.size + norm(row.Q)) / row.weight + fabs(row.length))
-            contact.level = reach
-            if contact.start < -reach or contact.start_rate * run.h < -reach:
-                contact.level = contact.start if contact.start > 0.0 else 0.0
+            size = (scene.size + norm(row.Q)) / row.weight + fabs(row.length)
+            contact.level = scene.limits.touching * size
+            if contact.start < -contact.level or contact.start_rate * run.h < -contact.level:
+                contact.level = scene.limits.rounding * size
+            if contact.start > 0.0:
+                contact.level += contact.start
             if found == 0:
                 found = 1
     return found
@@ -192,7 +195,7 @@ def meet_contacts(
     if x > 1.0:
         run.contact_landings = 0
         return STANDS
-    at = run.t + x * run.h
+    at = run.t + where_closed(scene, method, run, x) * run.h
     if at - run.t <= near:
         run.stop = run.t
         return TURNS_OVER
@@ -203,6 +206,24 @@ def meet_contacts(
     return AGAIN_TO
 
 
+def where_closed(
+    scene: cython.pointer[Scene], method: cython.pointer[Method], run: cython.pointer[Run], x: cython.double
+) -> cython.double:
+    """Where the gap of the contact found is zero, just before x, where it is no more than its level; x of others."""
+    i: cython.Py_ssize_t
+    rate: cython.double
+    back: cython.double
+    for i in range(scene.contact_count):
+        contact: cython.pointer[Contact] = cython.address(scene.contacts[i])
+        if contact.row + 1 == run.contact and scene.closures[contact.row].mode == APART:
+            stand_within(scene, method, run, x, 1)
+            rate = contact.sense * scene.closures[contact.row].rate * run.h
+            if rate > 0.0 and margin(scene, contact) > 0.0:
+                back = margin(scene, contact) / rate
+                return x - back if back < x else 0.0
+    return x
+
+
 def first_contact(
     scene: cython.pointer[Scene], method: cython.pointer[Method], run: cython.pointer[Run], doubt: cython.int
 ) -> cython.double:
@@ -210,11 +231,13 @@ def first_contact(
     x: cython.double = 0.0
     middle: cython.double
     top: cython.int = 0
+    looks: cython.int = 0
     ends: cython.p_double = run.course.ends
     ends[0] = 1.0
     while top >= 0:
+        looks += 1
         middle = 0.5 * (x + ends[top])
-        if top == HALVINGS or middle <= x or middle >= ends[top]:
+        if top == HALVINGS or looks > MOST_LOOKS or middle <= x or middle >= ends[top]:
             stand_within(scene, method, run, ends[top], doubt)
             if is_above(scene, run):
                 return x
