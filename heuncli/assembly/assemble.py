@@ -5,7 +5,7 @@ from __future__ import annotations
 import numpy as np
 
 from heuncli.assembly.chosen import chosen, pose_choices, rate_choices
-from heuncli.assembly.conditions import conditions_of
+from heuncli.assembly.conditions import Condition, conditions_of
 from heuncli.assembly.gaps import size_of
 from heuncli.assembly.moved import moved
 from heuncli.assembly.poses import Placing
@@ -19,8 +19,15 @@ def assemble(mechanism: Mechanism, t0: float = 0.0) -> Assembly:
 
     Raises SolveError: does-not-fit, held-conflict, rates-do-not-fit, singular-pose.
     """
-    found = conditions_of(mechanism, t0)
-    size = size_of(mechanism)
+    found, size = conditions_of(mechanism, t0), size_of(mechanism)
+    if mechanism.stops or any(joint.restitution is not None for joint in mechanism.joints):
+        from heuncli.assembly.one_sided import assembled  # few scenes have them
+
+        return assembled(mechanism, found, size, lambda asking: _assembled(mechanism, asking, size))
+    return _assembled(mechanism, found, size)
+
+
+def _assembled(mechanism: Mechanism, found: list[Condition], size: float) -> Assembly:
     placing = Placing(mechanism, found, size)
     placing.fit()
     moving = Moving(mechanism, found, placing.poses, size)

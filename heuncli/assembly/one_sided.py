@@ -1,0 +1,69 @@
+"""Ropes that go slack, and rods free between limits, at the start: what they ask of poses and rates.
+
+A rope shorter than the distance of its points as assembled without it is a rod; one that is longer is slack and asks
+for nothing; one that just reaches, or whose length is not given, is taut: its rate is kept where the velocities that
+are held let it. Where they do not, it is struck at once, or goes slack.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Callable, Sequence
+
+import numpy as np
+
+from heuncli import tolerances
+from heuncli.assembly.conditions import Ask, Condition
+from heuncli.errors import SolveError
+from heuncli.mechanism.model import GROUND, Assembly, Mechanism
+from heuncli.records import replace
+
+NOTHING = Ask("none", "free")
+Assemble = Callable[[list[Condition]], Assembly]
+
+
+def one_sided(mechanism: Mechanism) -> tuple[list[int], list[int]]:
+    """The ropes that go slack, and the rods whose length a stop limits: joints."""
+    free = sorted({stop.joint for stop in mechanism.stops if stop.quantity == "length"})
+    ropes = [k for k, joint in enumerate(mechanism.joints) if joint.restitution is not None and k not in free]
+    return ropes, free
+
+
+def assembled(mechanism: Mechanism, found: Sequence[Condition], size: float, assemble: Assemble) -> Assembly:
+    """The start, with ropes as taut as it finds them. Raises SolveError as `assemble` does."""
+    ropes, free = one_sided(mechanism)
+    asking = list(found)
+    for k in (*ropes, *free):
+        asking[k] = replace(found[k], pose=NOTHING, rate=NOTHING)
+    start = assemble(asking)
+    near = tolerances.OPEN_GAP * size
+    short: set[int] = set()
+    while more := {k for k in set(ropes) - short if beyond(mechanism, start, k) > near}:
+        short |= more
+        for k in more:
+            asking[k] = replace(found[k], rate=NOTHING)
+        start = assemble(asking)
+    taut = [k for k in ropes if abs(beyond(mechanism, start, k)) <= near]
+    if not taut:
+        return start
+    kept = list(asking)
+    for k in taut:
+        kept[k] = replace(asking[k], rate=found[k].rate)
+    try:
+        return assemble(kept)
+    except SolveError as error:
+        if error.problems[0].code != "rates-do-not-fit":
+            raise
+        return start
+
+
+def beyond(mechanism: Mechanism, start: Assembly, k: int) -> float:
+    """How far the points of a rope are farther apart than it is long [m]; 0 of one that is as long as they are."""
+    joint = mechanism.joints[k]
+    if joint.length is None:
+        return 0.0
+    places = [
+        point if body == GROUND else start.position[body] + start.rotation[body] @ point
+        for body, point in ((joint.a, joint.p), (joint.b, joint.q))
+    ]
+    D = places[1] - places[0]
+    return float(np.sqrt(D @ D)) - joint.length
