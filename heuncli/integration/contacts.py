@@ -56,8 +56,11 @@ class Struck:
     rounds: int
 
 
-def touching(layout: Layout, at: Recovered, closed: Mask, event: int | None) -> Touching:
-    """The contacts that touch at a state: closed ones, the row of the event, and those with no gap beyond rounding."""
+def touching(layout: Layout, at: Recovered, closed: Mask, event: int | None, last: float) -> Touching:
+    """The contacts that touch at a state: closed ones, the row of the event, and those with no gap beyond rounding.
+
+    What was closed until then opens with no rate; nor does what would stay within its reach over the run, up to `last`.
+    """
     rows, bodies = at.rows[0], at.bodies[0]
     found = []
     for i, contact in enumerate(layout.contacts):
@@ -67,12 +70,14 @@ def touching(layout: Layout, at: Recovered, closed: Mask, event: int | None) -> 
     own = [layout.contacts[i] for i in found]
     loads = np.array([unit_load(layout, bodies, rows, contact) for contact in own]).reshape(len(own), len(bodies), 6)
     motion = np.concatenate([bodies["omega"], bodies["v"]], axis=1)
+    reaches = np.array([reach(layout, bodies, contact) for contact in own])
+    noise = tolerances.CONTACT_RATE * np.einsum("kbi,bi->k", np.abs(loads), np.abs(motion))
     return Touching(
         which=np.array(found, dtype=int),
         loads=loads,
-        rate=np.einsum("kbi,bi->k", loads, motion),
-        noise=tolerances.CONTACT_RATE * np.einsum("kbi,bi->k", np.abs(loads), np.abs(motion)),
-        reach=np.array([reach(layout, bodies, contact) for contact in own]),
+        rate=np.where(closed[found], 0.0, np.einsum("kbi,bi->k", loads, motion)),
+        noise=np.maximum(noise, reaches / (last or 1.0)),
+        reach=reaches,
         restitution=np.array([contact.restitution for contact in own]),
     )
 

@@ -81,7 +81,7 @@ class Contacts:
     def meet(self, given: Given, state: Array, time: float, row: int | None) -> Jump | None:
         """The blow at an instant, where there is one; row: of the contact that closed or opened there."""
         asked = asked_of(self.evaluator, given, state)
-        touch = touching(self.layout, asked.still, self.holding > 0.0, row)
+        touch = touching(self.layout, asked.still, self.holding > 0.0, row, self.last)
         found, pressed = self.pose(given, asked, touch)
         outcome = self.solve(given, asked, found.columns, pressed)
         self.holding = np.zeros(len(self.layout.contacts))
