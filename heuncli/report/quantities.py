@@ -85,7 +85,7 @@ class _Walk(NamedTuple):
             assert isinstance(row, Quantity), f"{self.kind}.{'.'.join((*keys, key))} has no row in the schema"
             if row.timed:
                 yield self.over_instants(keys, key, row, value, run)
-            elif row.shape == (CUT,):
+            elif row.shape == (CUT,) and np.ndim(value) == 1:  # in a search nodes may move with a load
                 yield self.along_cuts(keys, key, row.unit(), np.asarray(value, dtype=np.float64))
             elif key == "side" and any(value):
                 yield self.along_cuts(keys, key, "1", np.array([SIDES[side] for side in value]))
