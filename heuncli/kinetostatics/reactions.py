@@ -32,12 +32,24 @@ class Named(Protocol):
 
 @record
 class StopLoad:
-    """What a stop exerts ON `to`: value (n_t,) along its coordinate, as force and moment about the `to` point."""
+    """What a stop exerts ON `to`: value (n_t,) along its coordinate, as force and moment about the `to` point.
+
+    unit (n_t, 6): force and moment of 1 N or 1 N m, nothing where it is not touched.
+    """
 
     stop: Stop
     value: Array
-    force: Array
-    moment: Array
+    unit: Array
+
+    @property
+    def force(self) -> Array:
+        """(n_t, 3) [N]."""
+        return self.value[..., None] * self.unit[..., :3]
+
+    @property
+    def moment(self) -> Array:
+        """(n_t, 3) [N m]."""
+        return self.value[..., None] * self.unit[..., 3:]
 
 
 @record
@@ -103,7 +115,7 @@ class Answers(Protocol):
 
     @property
     def rows(self) -> Named:
-        """multiplier (..., n_t, rows); f, m (n_t, rows, 3)."""
+        """multiplier (..., n_t, rows); f, m (n_t, rows, 3), closed (n_t, rows)."""
 
 
 def joint_loads(layout: Layout, recovered: Answers, states: BodyStates) -> list[JointLoads]:
@@ -151,9 +163,9 @@ def stop_loads(layout: Layout, joint: int, rows: Named) -> tuple[StopLoad, ...]:
         if stop.joint != joint:
             continue
         own = [contact.row for contact in layout.contacts if contact.name == stop.name and not contact.is_rope]
-        push = rows["multiplier"][..., own]
-        force, moment = (np.sum(push[..., None] * rows[of][..., own, :], axis=-2) for of in ("f", "m"))
-        found.append(StopLoad(stop, push.sum(axis=-1), force, moment))
+        units = np.concatenate([rows["f"][..., own, :], rows["m"][..., own, :]], axis=-1)
+        unit = np.max(rows["closed"][..., own, None], axis=-2) * units[..., 0, :]  # of both limits it is the same
+        found.append(StopLoad(stop, rows["multiplier"][..., own].sum(axis=-1), unit))
     return tuple(found)
 
 

@@ -109,7 +109,7 @@ def column_of(recovered: Recovered, columns: Columns, members: Members) -> Colum
         return np.stack([values[:, some[0]] if len(some) == 1 else values[:, some].sum(axis=1) for some in own])
 
     bodies = {name: by_cause(columns.bodies[name]) for name in ("alpha", "a", "joint_moment", "joint_force")}
-    rows = {"f": recovered.rows["f"], "m": recovered.rows["m"], "multiplier": by_cause(columns.multipliers)}
+    rows = {name: recovered.rows[name] for name in ("f", "m", "closed")} | {"multiplier": by_cause(columns.multipliers)}
     return Column(bodies, {"drive": by_cause(columns.freedoms["drive"])}, rows)
 
 

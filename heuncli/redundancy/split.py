@@ -131,13 +131,4 @@ def _added(load: JointLoads, states: BodyStates, more: Array) -> JointLoads:
 
 def _stop(own: StopLoad, more: Array) -> StopLoad:
     """A stop with its part of what is added to its joint, along its coordinate, where it is touched."""
-    value, wrench = own.value, np.concatenate([own.force, own.moment], axis=-1)
-    if value.ndim > 1:  # by causes: it is touched if any makes it press, and all do along the same line
-        most = np.argmax(np.abs(value), axis=0), np.arange(value.shape[1])
-        value, wrench = value[most], wrench[most]
-    touched = value != 0.0
-    size = np.where(touched, value, 1.0)[..., None]
-    unit = np.where(touched[..., None], wrench / size, 0.0)
-    along = np.sum(more * unit, axis=-1)
-    force, moment = own.force + along[..., None] * unit[..., :3], own.moment + along[..., None] * unit[..., 3:]
-    return replace(own, value=own.value + along, force=force, moment=moment)
+    return replace(own, value=own.value + np.sum(more * own.unit, axis=-1))
