@@ -26,7 +26,7 @@ from heuncli.results_schema import AT_A_BLOW, SHARES, STRUCK, quantity
 
 MOST_SHOWN, MOST_LISTED = 3, 20  # blows with tables of their own, and those in the list, unless all are asked for
 UNIT = "N·s"
-HEADING = "the blows of the run: largest impulse and moment of a joint or on the ground, kinetic energy"
+HEADING = "the blows of the run: largest impulse and moment of a joint, a stop or on the ground; kinetic energy"
 ENERGIES = ("energy_before", "energy_after", "energy_jump")
 
 
@@ -52,13 +52,15 @@ def impulse_tables(blows: Blows, *, every: bool = False) -> list[Table]:
 
 
 def sizes_of(impulse: Block, labels: Labels) -> tuple[float, float]:
-    """The largest impulse of a joint, on the ground or of all bodies [N s], and moment of a joint [N m s]."""
+    """The largest impulse of a joint or stop, on the ground or of all bodies [N s], and moment of one [N m s]."""
     joints, ground = impulse.get("joints", {}), impulse.get("foundation", {})
     forces = [part["force"] for part in (*joints.values(), ground, ground.get("mass_effect", {})) if "force" in part]
     moments = [joint["moment"] for joint in joints.values() if "moment" in joint]
     for name, joint in joints.items():
         if "drive" in joint:
             (moments if labels.turns("joints", name) else forces).append(joint["drive"])
+    forces += [stop["force"] for stop in impulse.get("stops", {}).values() if "force" in stop]
+    moments += [stop["moment"] for stop in impulse.get("stops", {}).values() if "moment" in stop]
     force, moment = (np.array([np.linalg.norm(part) for part in parts]) for parts in (forces, moments))
     return largest(force), largest(moment)
 
