@@ -88,25 +88,16 @@ def interleaved(times: Array, states: Sequence[Array]) -> tuple[Array, Array]:
 
 
 def matched(own: Sequence[Jump], others: Sequence[Jump]) -> list[tuple[int, int]]:
-    """The blows that two runs of one motion share: of the same names, each the nearest of its kind to the other."""
+    """The blows that two runs of one motion share: each the other's nearest, with a name in common.
 
-    mine, its = by_names(own), by_names(others)
-    found: list[tuple[int, int]] = []
-    for names, (places, times) in mine.items():
-        if names in its:
-            theirs, at = its[names]
-            there = nearest(times, at)
-            back = nearest(at, times)
-            found += [(places[i], theirs[k]) for i, k in enumerate(there) if back[k] == i]
-    return sorted(found)
-
-
-def by_names(jumps: Sequence[Jump]) -> dict[tuple[str, ...], tuple[list[int], Array]]:
-    """Blows of the same names: their places, and their instants, ascending."""
-    places: dict[tuple[str, ...], list[int]] = {}
-    for k, jump in enumerate(jumps):
-        places.setdefault(jump.names, []).append(k)
-    return {names: (own, np.array([jumps[k].time for k in own])) for names, own in places.items()}
+    What rounding adds to a blow, a rope that hardly takes part, does not make it another one.
+    """
+    if not own or not others:
+        return []
+    times, among = (np.array([jump.time for jump in jumps]) for jumps in (own, others))
+    there, back = nearest(times, among), nearest(among, times)
+    pairs = [(i, int(k)) for i, k in enumerate(there) if back[k] == i]
+    return [(i, k) for i, k in pairs if set(own[i].names) & set(others[k].names)]
 
 
 def nearest(times: Array, among: Array) -> Indices:
