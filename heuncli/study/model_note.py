@@ -11,7 +11,7 @@ from heuncli.integration.runner import Runner
 from heuncli.joint_kinds import JOINTS
 from heuncli.mechanism.model import Mechanism
 from heuncli.redundancy.count import freedoms_of_tree, redundancy
-from heuncli.results import Block
+from heuncli.results import Block, Mask
 from heuncli.tree.layout import Layout
 from heuncli.tree.prepare import PreparedScene
 
@@ -34,6 +34,8 @@ def model_note(scene: PreparedScene, runner: Runner, method: str) -> Block:
     if scene.start.moved:
         block["moved"] = list(scene.start.moved)
     block["reasons"] = reasons(scene, block)
+    if layout.contacts:
+        block["reasons"].append(one_sided(layout, runner.start_holding > 0.0))
     if count.at_start > count.generic:
         more = _count(count.at_start - count.generic, "condition depends", "conditions depend")
         block["notes"].append(f"the start is a singular pose: {more} on the others just there")
@@ -75,6 +77,14 @@ def reasons(scene: PreparedScene, model: Block) -> list[str]:
         name = mechanism.bodies[spin.body].name
         sentences.append(f"{name}: the spin about its own axis is undetermined and harmless; taken as zero")
     return sentences
+
+
+def one_sided(layout: Layout, closed: Mask) -> str:
+    """What opens and closes, and what of it is closed at the start, in a sentence."""
+    contacts = layout.contacts
+    names = list(dict.fromkeys(contact.name for contact in contacts))
+    shut = list(dict.fromkeys(contact.name for contact, held in zip(contacts, closed, strict=True) if held))
+    return f"opens and closes: {_some(names)}; closed at the start: {_some(shut) if shut else 'none'}"
 
 
 def held_twice(layout: Layout, stress: SelfStress) -> list[str]:
