@@ -195,6 +195,8 @@ def table_of(heading: str, groups: Groups, certain: Certainty) -> Table:
         rows += [(line.label, line.row.unit, line.at, *own) for line, own in kept]
         kept_lines += [line for line, _ in kept]
         numbers += [own for _, own in kept]
+    if not rows:
+        return Table(heading, notes=("0 throughout",))
     empty = [i for i in range(len(heads) - 2) if all(own[i] in ("0", "") for own in numbers)]
     shown = [i for i in range(len(heads)) if i not in empty]
     lead = 3 if any(line.at for line in everything) else 2

@@ -72,9 +72,8 @@ def columns_of(jumps: Sequence[Jump]) -> tuple[tuple[str, ...], Columns]:
     for jump in jumps:
         own = jump.recovered.causes
         assert own is not None
-        columns = own.only(0)
-        none = columns.at(np.zeros(0, dtype=int)).sum()
-        found.append([columns.only(jump.causes.index(name)) if name in jump.causes else none for name in names])
+        columns, causes = own.only(0), np.array(jump.causes)
+        found.append([columns.at(np.flatnonzero(causes == name)).sum() for name in names])
 
     def stacked(of: str) -> Any:
         return np.stack([np.stack([getattr(column, of) for column in row]) for row in found])

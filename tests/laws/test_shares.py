@@ -340,3 +340,46 @@ def test_a_drive_whose_rate_jumps_is_a_cause_of_its_own() -> None:
     ground = block["foundation"]["shares"]
     near(ground["blow"]["force"], ground["blow"]["direct_force"], 1.0, ROUNDING)
     assert "direct_force" not in ground["drives"]
+
+
+# Stops
+
+
+def resting(analysis: dict[str, Any]) -> Results:
+    """A rod on a stop, level, held up a little by a force; from its end hangs a bob that swings, wL against the rod."""
+    scene = {
+        "gravity": [0, 0, -9.81], "ground": {"points": {"O": [0, 0, 0]}},
+        "bodies": {
+            "rod": {"shapes": [{"type": "rod", "from": [0, 0, 0], "to": [1, 0, 0], "mass": 2.5}],
+                    "points": {"p": [0, 0, 0], "q": [1, 0, 0], "m": [0.3, 0, 0]}},
+            "bob": {"shapes": [{"type": "sphere", "center": [0, 0, -0.5], "radius": 0.05, "mass": 1.5}],
+                    "points": {"p": [0, 0, 0]}, "position": [1, 0, 0], "angular_velocity": [0, 3, 0]},
+        },
+        "joints": {"A": {"type": "pin", "from": "ground.O", "to": "rod.p", "axis": [0, 1, 0]},
+                   "B": {"type": "pin", "from": "rod.q", "to": "bob.p", "axis": [0, 1, 0]}},
+        "stops": {"rest": {"joint": "A", "angle": [None, 0]}},
+        "forces": {"push": {"type": "force", "on": "rod.m", "vector": [0, 0, 5]}},
+        "sections": {"cut": {"body": "rod", "at": [0.5, 0, 0], "normal": [1, 0, 0]}},
+        "analysis": analysis,
+    }  # fmt: skip
+    return solved(scene, wanted=WANTED)
+
+
+def test_what_rests_on_a_stop_is_held_by_it_in_every_share() -> None:
+    """The stop carries the moment of the weights, less the force's, and the bob's m w^2 L on its lever."""
+    found = resting({"type": "state"})
+    shares = found.foundation["elements"]["rest"]["shares"]
+    for cause, moment in (("gravity", 9.81 * (2.5 * 0.5 + 1.5)), ("push", -5 * 0.3), ("motion", 1.5 * 9 * 0.5)):
+        near(shares[cause]["moment"][0], (0.0, moment, 0.0), 10.0, ROUNDING)
+    pull = {"gravity": 9.81 * (2.5 * 0.5 + 1.5), "push": 0.0, "motion": 1.5 * 9 * 0.5}
+    for cause, force in pull.items():  # the rod does not move: half of it and the bob hang on the cut
+        near(found.sections["cut"]["shares"][cause]["force"][0], (0.0, 0.0, -force), 10.0, ROUNDING)
+
+
+def test_shares_add_up_while_a_stop_holds_and_lets_go() -> None:
+    found = resting({"duration": 1.0, "samples": 21})
+    F, M = size_of(found)
+    for _, block in blocks(found):
+        for quantity in ("force", "moment"):
+            total = sum(share[quantity] for share in block["shares"].values())
+            near(total, block[quantity], max(F, M), ROUNDING)
