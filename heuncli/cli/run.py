@@ -22,7 +22,7 @@ from heuncli.report.page import EXPORT_DEFAULT, TABLE_DEFAULT, page_of
 from heuncli.report.runs import RESULTANTS
 from heuncli.report.table import Table, markdown, plain
 from heuncli.results import Results
-from heuncli.results_schema import BLOWS, REPORTS, SHARES, with_shared
+from heuncli.results_schema import BLOWS, REPORT_OF, REPORTS, SHARES, with_shared
 from heuncli.spec.load import load
 from heuncli.spec.models import Spec
 from heuncli.study.extremes import Searched
@@ -78,7 +78,7 @@ def _only(words: str | None) -> frozenset[str] | None:
     if words is None:
         return None
     names = [word.strip() for word in words.split(",")]
-    return frozenset(choice("--only", name, (*REPORTS, SHARES)) for name in names)
+    return frozenset(choice("--only", REPORT_OF.get(name, name), (*REPORTS, SHARES)) for name in names)
 
 
 def _wanted(request: Run, only: frozenset[str] | None, spec: Spec, form: str) -> frozenset[str]:

@@ -67,7 +67,10 @@ class Cuts:
 
 
 def attached(mechanism: Mechanism, body: int) -> list[tuple[str, Array]]:
-    """Loads, impulses, joints (but those whose point of action moves over the body) with their points, body axes."""
+    """Loads, impulses, joints, stops with their points, body axes.
+
+    A joint whose point of action moves over the body is none of them, but where it comes to a stop.
+    """
     points: list[tuple[str, Array]] = []
     for joint in mechanism.joints:
         if joint.b == body:
@@ -79,6 +82,11 @@ def attached(mechanism: Mechanism, body: int) -> list[tuple[str, Array]]:
     for blow in mechanism.blows:
         if blow.body == body and blow.point is not None:
             points.append((f"impulse {blow.name}", blow.point))
+    for stop in mechanism.stops:
+        joint = mechanism.joints[stop.joint]
+        if joint.a == body and stop.quantity == "travel":
+            limits = [limit for limit in (stop.low, stop.high) if limit is not None]
+            points += [(f"stop {stop.name}", joint.p + limit * joint.axis) for limit in limits]
     return points
 
 

@@ -7,6 +7,7 @@ import math
 import numpy as np
 import pytest
 
+from heuncli.errors import SpecError
 from heuncli.results import Results
 from tests.shared.scenes import near, solved
 
@@ -152,3 +153,48 @@ def test_the_model_tells_what_opens_and_closes() -> None:
     hanging = STRAP.format(ends="from: ground.O, to: weight.c", limits="[0.5, 1]", z=-0.8)
     assert "opens and closes: end; closed at the start: none" in solved(hanging).model["reasons"]
     assert solved(hanging).model["freedoms"] == 6
+
+
+BEAD = """
+heun: 1
+parameters: {w: 5, M: 2, m: 0.3}
+ground: {points: {O: [0, 0, 0]}}
+bodies:
+  rod: {shapes: [{type: rod, from: [0, 0, 0], to: [1.2, 0, 0], mass: M}], points: {a: [0, 0, 0], b: [1.2, 0, 0]}}
+  bead: {mass: m, center: [0, 0, 0], inertia: [1e-5, 1e-5, 1e-5], points: {c: [0, 0, 0]}, position: [0.25, 0, 0]}
+joints:
+  hub: {type: pin, from: ground.O, to: rod.a, axis: [0, 0, 1]}
+  bore: {type: slide, from: rod.a, to: bead.c, axis: [1, 0, 0], initial: {travel: 0.25, speed: 0}}
+drives: {motor: {joint: hub, angle: w*t}}
+stops: {end: {joint: bore, travel: [null, 1]}}
+sections:
+  rod: {body: rod, from: a, to: b, count: 7}
+  one: {body: rod, at: [1, 0, 0], normal: [1, 0, 0]SIDE}
+analysis: {times: [0, 0.2, 1]}
+"""
+
+
+def test_a_bead_flies_out_to_the_end_of_its_bore() -> None:
+    """On a rod that turns evenly it runs as cosh w t, strikes, and pulls at the stop with m w^2 from then on."""
+    w, M, m = 5.0, 2.0, 0.3
+    found = solved(BEAD.replace("SIDE", ", side: before"))
+    (blow,) = found.impulses
+    near(blow["time"], math.acosh(4.0) / w, 1.0, 1e-9)
+    speed = w * math.sqrt(1.0 - 0.25**2)
+    near(blow["stops"]["end"]["force"], -m * speed, m * speed, 1e-9)
+    run = found.sections["rod"]
+    assert [(round(s, 9), side) for s, side in zip(run["s"], run["side"], strict=True)][5:7] == [
+        (1.0, "before"), (1.0, "beyond"),
+    ]  # fmt: skip
+    beyond = np.array([0.0, 0.2, 0.4, 0.6, 0.8, 1.0, 1.0, 1.2])
+    own = M * w**2 * (1.2**2 - beyond**2) / 2.4
+    bears = np.array([1.0] * 6 + [0.0] * 2)
+    near(run["N"][-1], own + m * w**2 * bears, 40.0, 1e-9)
+    near(blow["sections"]["rod"]["N"], m * speed * bears, m * speed, 1e-9)
+    near(found.sections["one"]["N"][-1], own[5] + m * w**2, 40.0, 1e-9)
+    near(found.stops["end"]["force"][-1], -m * w**2, 10.0, 1e-9)
+
+
+def test_a_cut_where_something_comes_to_its_stop_needs_a_side() -> None:
+    with pytest.raises(SpecError, match="stop end lies in the plane of the cut"):
+        solved(BEAD.replace("SIDE", ""))
