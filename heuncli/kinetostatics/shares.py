@@ -95,10 +95,18 @@ def shares_of(
 
 
 def not_zero(columns: Columns) -> Mask:
-    """Which columns answer anything at some instant, (n_c,)."""
-    bodies = [columns.bodies[name].any(axis=(0, 2, 3)) for name in ("alpha", "a", "joint_moment", "joint_force")]
-    rest = [x.any(axis=(0, 2)) for x in (columns.freedoms["drive"], columns.multipliers)]
-    return np.asarray(np.any([*bodies, *rest], axis=0))
+    """Which columns answer anything at some instant, (n_c,); most do at the first."""
+
+    def some(part: Columns) -> Mask:
+        bodies = [part.bodies[name].any(axis=(0, 2, 3)) for name in ("alpha", "a", "joint_moment", "joint_force")]
+        rest = [x.any(axis=(0, 2)) for x in (part.freedoms["drive"], part.multipliers)]
+        return np.asarray(np.any([*bodies, *rest], axis=0))
+
+    found = some(columns.at(np.arange(1)))
+    left = np.flatnonzero(~found)
+    if len(left):
+        found[left] = some(Columns(columns.bodies[:, left], columns.freedoms[:, left], columns.multipliers[:, left]))
+    return found
 
 
 def column_of(recovered: Recovered, columns: Columns, members: Members) -> Column:

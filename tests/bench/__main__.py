@@ -1,6 +1,6 @@
 """Speed, printed: `python -m tests.bench [PART ...] [--against PATH]`. Nothing here asserts a time.
 
-Parts: motion, chart, chain, process, export, sections; each line: what, how far it was from the truth, how long.
+Parts: motion, chart, chain, process, export, sections, causes; each line: what, how far from the truth, how long.
 figures: the few that matter in one table, with --against beside those of another checkout (tests/bench/figures.py).
 honesty: no times, but true error over estimate of each kind of number, over random scenes (tests/bench/honesty.py).
 """
@@ -31,6 +31,7 @@ from heuncli.spec.load import load
 from heuncli.study.setup import set_up
 from heuncli.study.solve import solve
 from heuncli.tree.prepare import PreparedScene
+from tests.bench.causes import by_cause
 from tests.bench.chart import chart
 from tests.bench.figures import figures
 from tests.bench.generated import chain
@@ -184,6 +185,7 @@ def sections() -> None:
 
 PARTS = {
     "motion": motion, "chart": charted, "chain": chains, "process": process, "export": export, "sections": sections,
+    "causes": by_cause,
 }  # fmt: skip
 
 if __name__ == "__main__":
