@@ -27,7 +27,7 @@ from heuncli.report.numbers import (
 from heuncli.report.plans import MASS_EFFECT
 from heuncli.report.quantities import Series
 from heuncli.report.runs import Run, position
-from heuncli.report.table import Column, Table
+from heuncli.report.table import INDENT, Column, Table
 from heuncli.results import Array, Extremes, Place, Results
 from heuncli.results_schema import BY_CAUSE, SHARES
 
@@ -187,25 +187,39 @@ def table_of(heading: str, groups: Groups, certain: Certainty) -> Table:
     heads = [*few, *[f"{len(rest)} others"] * bool(rest), "sum", "total"]
     rows: list[tuple[str, ...] | str] = []
     kept_lines: list[Line] = []
+    words, left_out = set[str](), False
     numbers: list[list[str]] = []
     for title, lines in groups:
         texts = texts_of(lines, heads[:-2], rest, certain)
         kept = [(line, own) for line, own in zip(lines, texts, strict=True) if set(own) - {"0", ""}]
-        rows += [title] if title and kept else []
+        left_out = left_out or len(kept) < len(lines)
+        opened = open_throughout(lines)
+        kept = [(line, own) for line, own in kept if line.row.label not in opened]
+        words |= {OPEN} if opened else set()
+        rows += [title] if title and (kept or opened) else []
         rows += [(line.label, line.row.unit, line.at, *own) for line, own in kept]
+        rows += [f"{INDENT}{OPEN}: {', '.join(opened)}"] if opened else []
         kept_lines += [line for line, _ in kept]
         numbers += [own for _, own in kept]
-    if not rows:
-        return Table(heading, notes=("0 throughout",))
+    if not numbers:
+        return Table(heading, notes=(*map(str.strip, map(str, rows)), OPEN_NOTE) if rows else ("0 throughout",))
     empty = [i for i in range(len(heads) - 2) if all(own[i] in ("0", "") for own in numbers)]
     shown = [i for i in range(len(heads)) if i not in empty]
     lead = 3 if any(line.at for line in everything) else 2
     cells = [row if isinstance(row, str) else (*row[:lead], *(row[3 + i] for i in shown)) for row in rows]
     columns = [*(Column(head, "left") for head in ("", "", "at")[:lead]), *(Column(heads[i]) for i in shown)]
-    notes = [f"0 throughout: {', '.join(heads[i] for i in empty)}"] if empty else []
-    notes += notes_of(kept_lines, {heads[i] for i in shown}, {text for own in numbers for text in own})
-    notes += [ZERO_NOTE] if len(numbers) < len(everything) else []
+    where = "in all that is not open" if words else "throughout"
+    notes = [f"0 {where}: {', '.join(heads[i] for i in empty)}"] if empty else []
+    notes += notes_of(kept_lines, {heads[i] for i in shown}, words.union(*numbers))
+    notes += [ZERO_NOTE] if left_out else []
     return Table(heading, tuple(columns), tuple(cells), tuple(notes))
+
+
+def open_throughout(lines: Sequence[Line]) -> list[str]:
+    """The labels of what is open in all its lines."""
+    told = dict.fromkeys(line.row.label for line in lines if line.total is not None)
+    known = {line.row.label for line in lines if line.total is not None and (line.beside or np.isfinite(line.total))}
+    return [label for label in told if label not in known]
 
 
 def chosen_causes(causes: Sequence[str], lines: Sequence[Line]) -> tuple[list[str], list[str]]:

@@ -203,7 +203,7 @@ def of_one(block: Block, k: int) -> Block:
 def only_of(block: Block, causes: Sequence[str]) -> Block:
     """A block with the shares of some causes alone: of all that strikes at some blow those of this one."""
     return {
-        name: {cause: value[cause] for cause in causes} if name == SHARES
+        name: {cause: value[cause] for cause in causes} if are_shares(name, value)
         else only_of(value, causes) if isinstance(value, dict) else value
         for name, value in block.items()
     }  # fmt: skip
@@ -234,12 +234,17 @@ def apart(own: Impulses, others: Sequence[Impulses]) -> dict[tuple[str, str], fl
 
 def whole_of(block: Block) -> Block:
     """A block without its shares by cause."""
-    return {k: whole_of(v) if isinstance(v, dict) else v for k, v in block.items() if k != SHARES}
+    return {k: whole_of(v) if isinstance(v, dict) else v for k, v in block.items() if not are_shares(k, v)}
 
 
 def shares_of(block: Block) -> Block:
     """The shares of a block, and of those in it."""
-    return {k: v if k == SHARES else shares_of(v) for k, v in block.items() if isinstance(v, dict)}
+    return {k: v if are_shares(k, v) else shares_of(v) for k, v in block.items() if isinstance(v, dict)}
+
+
+def are_shares(name: str, value: Any) -> bool:
+    """Whether these are blocks by cause, and no joint of that name."""
+    return name == SHARES and isinstance(value, dict) and all(isinstance(own, dict) for own in value.values())
 
 
 def difference(mine: Array, its: Array, same: Sequence[tuple[int, int]]) -> float:
