@@ -165,7 +165,8 @@ def of_run(setup: Setup, jumps: tuple[Jump, ...], least_norm: bool, by_cause: bo
     answers = together([answered(jump) for jump in jumps])
     given = tuple(actions(setup.scene.mechanism, jumps))
     size = still.scene.layout.size
-    largest = max((float(np.abs(a.force).max() * size + np.abs(a.moment).max()) for a in given), default=0.0)
+    impulses = [*(float(np.abs(a.force).max() * size + np.abs(a.moment).max()) for a in given), 0.0]
+    largest = max(impulses) + float(np.abs(answers.rows["multiplier"]).max(initial=0.0)) * size
     require_solvable(still.scene, answers, Asked("jumps of velocities", "couple", "N m s", largest))
     names, columns = columns_of(jumps) if by_cause else (None, None)
     return Impulses(still, jumps, Recovery(still, replace(answers, causes=columns), least_norm, given, names), {})
