@@ -383,3 +383,28 @@ def test_shares_add_up_while_a_stop_holds_and_lets_go() -> None:
         for quantity in ("force", "moment"):
             total = sum(share[quantity] for share in block["shares"].values())
             near(total, block[quantity], max(F, M), ROUNDING)
+
+
+def test_what_bears_in_a_blow_is_a_cause_by_its_name() -> None:
+    """A rod held by the stop of its pin is struck at x: nothing moves, the pin gets H, the stop the moment H x.
+
+    Without the stop the blow alone would turn it: the pin would get H (1 - 3 x/(2 L)). The rest is the stop's doing.
+    """
+    L, x, H = 1.0, 0.25, 2.0
+    scene = {
+        "ground": {"points": {"O": [0, 0, 0]}},
+        "bodies": {"rod": {"shapes": [{"type": "rod", "from": [0, 0, 0], "to": [L, 0, 0], "mass": 2.0}],
+                           "points": {"p": [0, 0, 0], "x": [x, 0, 0]}}},
+        "joints": {"A": {"type": "pin", "from": "ground.O", "to": "rod.p", "axis": [0, 1, 0]}},
+        "stops": {"rest": {"joint": "A", "angle": [None, 0]}},
+        "impulses": {"down": {"on": "rod.x", "vector": [0, 0, -H]}},
+        "analysis": {"type": "impulse"},
+    }  # fmt: skip
+    (block,) = solved(scene, wanted=STRUCK).impulses
+    assert list(block["joints"]["A"]["shares"]) == ["down", "rest"]
+    near(block["joints"]["A"]["force"], (0.0, 0.0, H), 1.0, ROUNDING)  # nothing moves: the stop's is a moment
+    near(block["joints"]["A"]["shares"]["down"]["force"], (0.0, 0.0, H * (1.0 - 1.5 * x / L)), 1.0, ROUNDING)
+    near(block["joints"]["A"]["shares"]["rest"]["force"], (0.0, 0.0, H * 1.5 * x / L), 1.0, ROUNDING)
+    ground = block["foundation"]["elements"]["rest"]["shares"]
+    near(ground["rest"]["moment"], (0.0, H * x, 0.0), 1.0, ROUNDING)
+    near(ground["down"]["moment"], 0.0, 1.0, ROUNDING)
