@@ -136,7 +136,8 @@ def strikes(touch: Touching, A: Array, moves: Mask, pressed: Array, plastic: Mas
     noise, equal, rounds = touch.noise + tolerances.CONTACT_RATE * np.abs(pressed), False, 0
     while rounds < 2 * MOST_ROUNDS:
         struck = v < -noise
-        if not (struck.any() or (rounds == 0 and (v + pressed < -noise).any())):
+        if not (struck.any() or (v + pressed < -noise).any()):
+            v = v + pressed  # blows that lift what rests, say
             break
         e = np.where(plastic | (rounds >= MOST_ROUNDS), 0.0, touch.restitution)
         own = np.flatnonzero((v <= noise) & moves)
@@ -184,7 +185,7 @@ def rests(touch: Touching, A: Array, moves: Mask, rate: Array, at: Recovered, la
     contacts = [layout.contacts[i] for i in touch.which.tolist()]
     rows = at.rows[0]
     q = np.array([-c.sense * float(rows["acceleration"][c.row]) for c in contacts])
-    noise = tolerances.CONTACT_ACCELERATION * np.array([float(rows["terms"][c.row]) for c in contacts])
+    noise = tolerances.CONTACT_ACCELERATION * acceleration_terms(layout, touch, A, at)
     still = rate == 0.0
     own = np.flatnonzero(still & moves)
     found = complementary(A[np.ix_(own, own)], q[own], noise[own])
@@ -193,6 +194,18 @@ def rests(touch: Touching, A: Array, moves: Mask, rate: Array, at: Recovered, la
     holding[own[found.depends]] = LEANS
     holding[still & ~moves] = LEANS
     return holding, q + A @ spread(found.z, own, len(contacts))
+
+
+def acceleration_terms(layout: Layout, touch: Touching, A: Array, at: Recovered) -> Array:
+    """Sizes of the terms that accelerations of opening are sums of (k,): of motion, and of all loads and weights.
+
+    Where a contact lets go these cancel: what bears nothing is known to the rounding of what it bore.
+    """
+    rows = [layout.contacts[i].row for i in touch.which.tolist()]
+    weights = float(layout.bodies["mass"].sum() * np.abs(layout.mechanism.gravity).sum())
+    load = weights + float(np.abs(at.loads["force"][0]).sum() + np.abs(at.loads["moment"][0]).sum() / layout.size)
+    weight = layout.tables["closures"]["weight"][rows]
+    return np.asarray(at.rows["terms"][0, rows] + np.diag(A) * weight * load)
 
 
 def short_flights(touch: Touching, rate: Array, acceleration: Array, instant: float) -> Mask:
