@@ -44,7 +44,7 @@ class Touching:
 
 @record
 class Struck:
-    """Impulses of touching contacts (k,), not negative, the rates of opening behind them, and what is worth telling.
+    """Impulses of touching contacts (k,), the rates of opening behind them, and what is worth telling.
 
     depends (k,): those that others hold, so that how they share is not known.
     """
@@ -127,8 +127,8 @@ def answerable(layout: Layout, touch: Touching, A: Array) -> Mask:
 def strikes(touch: Touching, A: Array, moves: Mask, pressed: Array, plastic: Mask) -> Struck:
     """The impulses of contacts that are struck, or pressed by given blows (pressed: rates these add).
 
-    What moves apart at the instant takes part only if it is struck in a later round. plastic: contacts without
-    restitution, whatever is given.
+    What moves apart at the instant takes part only if it is struck in a later round. plastic: contacts that rest behind
+    the blow, whatever their restitution, and though they would open by less than is seen.
     """
     v = touch.rate.copy()
     total = np.zeros(len(v))
@@ -155,7 +155,12 @@ def strikes(touch: Touching, A: Array, moves: Mask, pressed: Array, plastic: Mas
         total += z
         rounds += 1
         noise = np.maximum(noise, tolerances.CONTACT_RATE * (np.abs(A) @ total))
-    return Struck(total, np.where(np.abs(v) <= noise, 0.0, v), depends & (total == 0.0), equal, rounds)
+    v = np.where(np.abs(v) <= noise, 0.0, v)
+    if (plastic & (v > 0.0)).any():
+        own = np.flatnonzero(moves & (v == 0.0) & (total > 0.0) | plastic & (v > 0.0))
+        total[own] -= np.linalg.lstsq(A[np.ix_(own, own)], v[own], rcond=tolerances.CONTACT_DEPENDS)[0]
+        v[own] = 0.0
+    return Struck(total, v, depends & (total == 0.0), equal, rounds)
 
 
 def one_round(A: Array, v: Array, pressed: Array, own: Indices, e: Array, noise: Array) -> Pivots:

@@ -87,7 +87,7 @@ class Contacts:
         self.holding = np.zeros(len(self.layout.contacts))
         self.holding[touch.which] = outcome.holding
         self.tell(time, touch, outcome)
-        bears, n = np.flatnonzero(outcome.struck.impulses > 0.0), len(asked.loads)
+        bears, n = np.flatnonzero(outcome.struck.impulses), len(asked.loads)
         if not len(bears) and not n:
             return None
         causes = (*asked.causes, *(self.layout.contacts[i].name for i in touch.which[bears]))
@@ -118,7 +118,7 @@ class Contacts:
             then = self.evaluator.recovered(np.array([given.after]), after[None, :], holding=open_)
             holding, acceleration = rests(touch, pressed.A, pressed.moves, struck.rate, then, self.layout)
             instant = tolerances.SHORTEST_FLIGHT * self.last
-            short = short_flights(touch, struck.rate, acceleration, instant) & ~at_rest & (struck.impulses > 0.0)
+            short = short_flights(touch, struck.rate, acceleration, instant) & ~at_rest & pressed.moves
             if not short.any():
                 break
             at_rest = at_rest | short
@@ -147,8 +147,8 @@ class Contacts:
         rows = still.rows.copy()
         for k, i in enumerate(touch.which.tolist()):
             row = self.layout.contacts[i].row
-            rows["chosen"][0, row] = float(struck.impulses[k] > 0.0)
-            rows["closed"][0, row] = float(struck.impulses[k] > 0.0 or struck.depends[k])
+            rows["chosen"][0, row] = float(struck.impulses[k] != 0.0)
+            rows["closed"][0, row] = float(struck.impulses[k] != 0.0 or struck.depends[k])
         return replace(still, rows=rows)
 
     def tell(self, t: float, touch: Touching, outcome: Outcome) -> None:
@@ -168,4 +168,6 @@ class Contacts:
         for k in np.flatnonzero(outcome.at_rest):
             name = own[k].name
             count = self.strikes.get(name, 0)
+            if not count:
+                continue
             self.notes[f"{name} rests {at}, after {count} strikes: further ones are too small to be seen"] = None
