@@ -7,6 +7,7 @@ import math
 from heuncli import tolerances
 from heuncli.errors import Problem, SolveError
 from heuncli.mechanism.model import Assembly, Joint, Mechanism, Stop
+from heuncli.records import replace
 from heuncli.tree.layout import Layout
 from heuncli.tree.starts import pose
 
@@ -33,6 +34,25 @@ def coordinate(layout: Layout, start: Assembly, stop: Stop) -> float:
         return distance(start, joint)
     at = layout.starts[stop.joint]
     return at.angle if stop.quantity == "angle" else at.travel
+
+
+def at_rest_on_stops(mechanism: Mechanism, layout: Layout, start: Assembly) -> Mechanism | None:
+    """The mechanism with rates of zero where the ones that were chosen drive what stands at a stop into it.
+
+    None where there are none such. Rates that are given, or follow from given ones, strike.
+    """
+    joints, found = list(mechanism.joints), False
+    for stop in mechanism.stops:
+        joint, at = mechanism.joints[stop.joint], layout.starts[stop.joint]
+        near = tolerances.AT_LIMIT * (1.0 if stop.quantity == "angle" else layout.size)
+        rate, held = (at.rate, joint.rate) if stop.quantity == "angle" else (at.speed, joint.speed)
+        value = coordinate(layout, start, stop)
+        low = stop.low is not None and value <= stop.low + near and rate < 0.0
+        high = stop.high is not None and value >= stop.high - near and rate > 0.0
+        if stop.quantity != "length" and held is None and (low or high):
+            found = True
+            joints[stop.joint] = replace(joint, **{"rate" if stop.quantity == "angle" else "speed": 0.0})
+    return replace(mechanism, joints=tuple(joints)) if found else None
 
 
 def distance(start: Assembly, joint: Joint) -> float:

@@ -2,10 +2,13 @@
 
 from __future__ import annotations
 
+from contextlib import suppress
+
 import numpy as np
 
 from heuncli import tolerances
 from heuncli.assembly.assemble import assemble
+from heuncli.errors import SolveError
 from heuncli.mechanism.model import Assembly, Mechanism, PairLoad
 from heuncli.mechanism.size import size_of_scene
 from heuncli.records import record, replace
@@ -29,9 +32,13 @@ def prepare(mechanism: Mechanism, t0: float = 0.0) -> PreparedScene:
     """Assemble at t0 and lay out. Raises SolveError where the scene does not close, or starts beyond a stop."""
     scene = arranged(mechanism, assemble(mechanism, t0))
     if mechanism.stops:
-        from heuncli.tree.limits import start_within_limits  # where something strikes
+        from heuncli.tree.limits import at_rest_on_stops, start_within_limits  # where something strikes
 
         start_within_limits(scene.layout, scene.start)
+        resting = at_rest_on_stops(mechanism, scene.layout, scene.start)
+        if resting is not None:
+            with suppress(SolveError):  # what is held makes it strike
+                scene = arranged(mechanism, assemble(resting, t0))
     return scene
 
 
