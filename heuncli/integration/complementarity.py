@@ -8,6 +8,8 @@ change it where they come to zero (Dantzig; Cottle, Pang, Stone, The Linear Comp
 
 from __future__ import annotations
 
+import math
+
 import numpy as np
 
 from heuncli import tolerances
@@ -18,7 +20,7 @@ from heuncli.results import Array, Mask
 
 @record
 class Pivots:
-    """z (n,); bears (n,): where it is positive; depends (n,): where w is zero only because of those that bear."""
+    """z (n,); bears (n,): where it is positive; depends (n,): where w is zero, too, and a self-stress could load it."""
 
     z: Array
     bears: Mask
@@ -43,14 +45,17 @@ def complementary(A: Array, q: Array, noise: Array) -> Pivots:
     small = z <= noise  # A's diagonal is 1: what bears less than rounding bears nothing
     z[small], bears = 0.0, bears & ~small
     closed = ~bears & (np.abs(w) <= np.maximum(noise, tolerances.CONTACT_DEPENDS * np.abs(A) @ z))
-    depends = np.array([closed[i] and leaves(A, bears, i) <= tolerances.CONTACT_DEPENDS for i in range(n)], dtype=bool)
-    return Pivots(z * unit, bears, depends)
+    return Pivots(z * unit, bears, closed & shared(A, bears | closed))
 
 
-def leaves(A: Array, bears: Mask, i: int) -> float:
-    """What those that bear leave of A_ii: 0 where its rate depends on theirs."""
-    own = np.flatnonzero(bears)
-    return float(A[i, i] - A[i, own] @ np.linalg.solve(A[np.ix_(own, own)], A[own, i])) if len(own) else 1.0
+def shared(A: Array, closed: Mask) -> Mask:
+    """Which of the contacts that are closed a self-stress of them all loads: how those share is not known."""
+    own, found = np.flatnonzero(closed), np.zeros(len(closed), dtype=bool)
+    if len(own) > 1:
+        values, vectors = np.linalg.eigh(A[np.ix_(own, own)])
+        null = np.abs(vectors[:, values <= tolerances.CONTACT_DEPENDS]).max(axis=1, initial=0.0)
+        found[own] = null > math.sqrt(tolerances.CONTACT_DEPENDS)
+    return found
 
 
 def drive(A: Array, q: Array, z: Array, bears: Mask, done: Mask, i: int) -> None:

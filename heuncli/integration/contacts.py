@@ -71,7 +71,9 @@ def touching(layout: Layout, at: Recovered, closed: Mask, event: int | None, las
     loads = np.array([unit_load(layout, bodies, rows, contact) for contact in own]).reshape(len(own), len(bodies), 6)
     motion = np.concatenate([bodies["omega"], bodies["v"]], axis=1)
     reaches = np.array([reach(layout, bodies, contact) for contact in own])
-    noise = tolerances.CONTACT_RATE * np.einsum("kbi,bi->k", np.abs(loads), np.abs(motion))
+    turned, shifted = np.linalg.norm(loads[:, :, :3], axis=2), np.linalg.norm(loads[:, :, 3:], axis=2)
+    terms = turned @ np.linalg.norm(bodies["omega"], axis=1) + shifted @ np.linalg.norm(bodies["v"], axis=1)
+    noise = tolerances.CONTACT_RATE * terms
     return Touching(
         which=np.array(found, dtype=int),
         loads=loads,

@@ -97,7 +97,8 @@ class Evaluator:
         flat, out = settled.ravel(), np.zeros(n_t * width)
         held = np.zeros(0) if branches is None else np.ascontiguousarray(branches, dtype=float).ravel()
         closed = np.zeros((n_t, len(layout.contacts)))
-        closed[:] = self.start_holding if holding is None else holding
+        # what others close is closed as much: which of all carry is a matter of rank here, and of verdicts
+        closed[:] = (self.start_holding if holding is None else holding) > 0.0
         self.workspace.recover(at, flat, held, closed.ravel(), out, width, not hold_rows, causes)
         bodies, freedoms, loads, rows, whole = parts(out.reshape(n_t, width), sizes)
         columns = out.reshape(n_t, width)[:, own:].reshape(n_t, n_c, -1) if causes else None

@@ -144,11 +144,13 @@ class Contacts:
 
     def shown(self, still: Recovered, touch: Touching, struck: Struck) -> Recovered:
         """The answers before the blow, with the contacts that take part in it: what they leave open is then seen."""
-        rows = still.rows.copy()
-        for k, i in enumerate(touch.which.tolist()):
-            row = self.layout.contacts[i].row
-            rows["chosen"][0, row] = float(struck.impulses[k] != 0.0)
-            rows["closed"][0, row] = float(struck.impulses[k] != 0.0 or struck.depends[k])
+        rows, closed = still.rows.copy(), np.zeros(len(self.layout.contacts))
+        closed[touch.which] = (struck.impulses != 0.0) | struck.depends
+        if not closed.any():
+            return still
+        chosen = self.evaluator.recovered(still.times, still.states, holding=closed).rows
+        for name in ("chosen", "closed"):
+            rows[name] = chosen[name]
         return replace(still, rows=rows)
 
     def tell(self, t: float, touch: Touching, outcome: Outcome) -> None:
