@@ -198,3 +198,18 @@ def test_a_bead_flies_out_to_the_end_of_its_bore() -> None:
 def test_a_cut_where_something_comes_to_its_stop_needs_a_side() -> None:
     with pytest.raises(SpecError, match="stop end lies in the plane of the cut"):
         solved(BEAD.replace("SIDE", ""))
+
+
+@pytest.mark.parametrize(("up", "spin", "stopped"), [(-1.0, 0.0, 1.0), (1.0, 1.5, 0.0)])
+def test_a_blow_presses_a_lid_on_its_stop_or_lifts_it(up: float, spin: float, stopped: float) -> None:
+    """Downward all of it goes to stop and hinge; upward the lid turns with 3 H/m L and leaves the stop alone."""
+    scene = LID.format(ends="from: ground.O, to: lid.a", limits="[0, 90 deg]")
+    found = solved(scene + f"impulses: {{blow: {{on: lid.b, vector: [0, 0, {up}]}}}}\n")
+    (blow,) = found.impulses
+    near(blow["bodies"]["lid"]["angular_velocity_jump"], [0.0, -spin, 0.0], 1.5, 1e-13)
+    near(blow["stops"]["rest"]["moment"], stopped, 1.0, 1e-13)
+    near(blow["foundation"]["force"][2], -1.0 if up < 0.0 else -0.5, 1.0, 1e-13)
+    near(blow["foundation"]["moment"], [0.0, stopped, 0.0], 1.0, 1e-13)
+    near(blow["energy_after"], 0.5 * spin, 1.0, 1e-13)
+    near(found.coordinates["hinge"]["rate"], spin, 1.5, 1e-13)
+    assert blow["names"] == ["blow", "rest"][: 1 + (up < 0.0)]
