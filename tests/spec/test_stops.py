@@ -181,3 +181,49 @@ joints:
     name = "ABCD"[cut]
     with_stop = text + f"stops: {{s: {{joint: {name}, angle: [-1, 1]}}}}\n"
     assert prepare(build(load("x.yaml", text=with_stop), {})).layout.spanning.cut != plain
+
+
+# ---- blows
+SECTION = """\
+sections:
+  s: {body: bar, at: [0.7, 0, 0], normal: [1, 0, 0], piece: {mass: 0.2, center: [0.8, 0, 0], inertia: [0, 0.01, 0.01]}}
+"""
+
+
+@pytest.mark.parametrize(("text", "codes"), [
+    (PIN + "impulses: {hit: {on: bar.b, vector: [0, 1, 2]}}\n", ["not-planar"]),
+    (PIN + "impulses: {hit: {on: bar.b, couple: [1, 0, 2]}}\n", ["not-planar"]),
+    (PIN + "impulses: {hit: {on: bar.b, vector: [0, 1, 0], frame: body}}\n", []),
+])  # fmt: skip
+def test_blows_of_a_planar_scene_lie_in_it(text: str, codes: list[str]) -> None:
+    flat = TOP.replace("heun: 1\n", "heun: 1\nspace: planar\n") + text
+    assert codes_of(flat) == codes
+
+
+@pytest.mark.parametrize(("blow", "codes"), [
+    ("{body: bar, couple: [0, 0, 1]}", ["couple-point"]), ("{on: bar, couple: [0, 0, 1]}", ["couple-point"]),
+    ("{on: bar.b, couple: [0, 0, 1]}", []), ("{on: bar.b, vector: [0, 0, 1]}", []),
+])  # fmt: skip
+def test_an_impulsive_couple_on_a_body_that_is_cut_has_a_point(blow: str, codes: list[str]) -> None:
+    assert codes_of(TOP + PIN + SECTION + f"impulses: {{hit: {blow}}}\n") == codes
+
+
+def test_a_state_has_no_blows() -> None:
+    text = TOP + PIN + "impulses: {hit: {on: bar.b, vector: [0, 1, 0]}}\nanalysis: {type: state}\n"
+    assert codes_of(text) == ["analysis-type"]
+
+
+@pytest.mark.parametrize(("rest", "codes"), [
+    ("drives: {hit: {joint: pivot, angle: t}}\n", ["shared-name"]), ("", []),
+    ("forces: {hit: {type: torque, joint: pivot, value: 1}}\n", []),  # a force is no part of a blow
+])  # fmt: skip
+def test_what_strikes_is_told_by_its_name(rest: str, codes: list[str]) -> None:
+    assert codes_of(TOP + PIN + rest + "impulses: {hit: {on: bar.b, vector: [0, 1, 0]}}\n") == codes
+
+
+def codes_of(text: str) -> list[str]:
+    try:
+        load("x.yaml", text=text)
+    except HeunError as error:
+        return [p.code for p in error.problems]
+    return []
