@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Iterator, Mapping
+from collections.abc import Iterator
 from functools import cache
 from typing import Any
 
@@ -10,6 +10,7 @@ import numpy as np
 import pytest
 
 from heuncli.results import Results
+from tests.closed_forms.test_redundant import door
 from tests.oracle.read import state_at
 from tests.oracle.turns import Array
 from tests.oracle.values import Harmonic
@@ -19,8 +20,8 @@ from tests.shared.trees import cut_through, tree_scene
 
 WANTED = frozenset({"motion", "foundation", "joints", "sections", "forces", "shares"})
 ROUNDING = 1e-12  # of the largest share
-SEEDS = [*(("tree", n) for n in range(3, 11)), *(("loop", n) for n in [*range(3, 8), *range(1000, 1006)])]
-CASES = [("tree", 1), ("loop", 2), *(pytest.param(*case, marks=pytest.mark.heavy) for case in SEEDS)]
+SEEDS = [*(("tree", n) for n in range(3, 11)), *(("loop", n) for n in [*range(2, 8), *range(1000, 1006)])]
+CASES = [("tree", 1), *(pytest.param(*case, marks=pytest.mark.heavy) for case in SEEDS)]
 
 
 @cache
@@ -37,9 +38,6 @@ def scene_of(kind: str, seed: int) -> dict[str, Any]:
 def run(kind: str, seed: int) -> Results:
     """Its results by cause."""
     return solved(scene_of(kind, seed), wanted=WANTED)
-
-
-Wrenches = Mapping[tuple[str, ...], Mapping[str, Any]]
 
 
 def blocks(found: Results) -> Iterator[tuple[str, dict[str, Any]]]:
@@ -248,8 +246,6 @@ def test_u_w_of_59_and_P_Q_of_61(seed: int) -> None:
 
 def test_the_door_is_open_along_its_hinges_in_every_share() -> None:
     """Its weight turns it against the hinges, its motion pulls at them; how they share the weight is open."""
-    from tests.closed_forms.test_redundant import door
-
     found = solved(door(), wanted=WANTED)
     for name, sign in (("top", -1.0), ("bottom", 1.0)):
         shares = found.joints[name]["shares"]

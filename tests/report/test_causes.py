@@ -38,6 +38,7 @@ def rows_of(table: Table) -> list[dict[str, str]]:
     return [dict(zip(heads, row, strict=True)) for row in table.rows if not isinstance(row, str)]
 
 
+@pytest.mark.heavy
 def test_extremes_say_who_is_responsible() -> None:
     """The shares at the instant of each extreme add up to it, in every row but for the last digit of each."""
     made, page = study_of("crane_load")
@@ -111,6 +112,7 @@ def test_shares_alone_are_told_beside_all_three(capsys: pytest.CaptureFixture[st
         assert {row["kind"] for row in rows if row.get("cause")} == blocks
 
 
+@pytest.mark.heavy
 def test_a_share_can_be_measured_and_its_extremes_are_searched(capsys: pytest.CaptureFixture[str]) -> None:
     path = str(SPECS / "crane_load.yaml")
     answers = []
@@ -124,6 +126,7 @@ def test_a_share_can_be_measured_and_its_extremes_are_searched(capsys: pytest.Ca
     assert answers[3] == pytest.approx(900.0, rel=1e-12)
 
 
+@pytest.mark.heavy
 def test_shares_have_errors_of_their_own() -> None:
     made, page = study_of("crane_load")
     for kind in ("reactions", "foundation", "sections"):
