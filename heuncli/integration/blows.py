@@ -151,7 +151,10 @@ def behind(layout: Layout, given: Given, asked: Asked, columns: Columns) -> tupl
 
 @record
 class Told:
-    """What a blow came to: its columns by cause, the state behind it, the work of all, the contacts closed there."""
+    """What a blow came to: its columns by cause, the state behind it, the work of all, the contacts closed there.
+
+    struck: the contacts that take part in it, also those that share what others bear.
+    """
 
     time: float
     found: Answered
@@ -159,6 +162,7 @@ class Told:
     after: Array
     work: float
     holding: Array
+    struck: tuple[str, ...] = ()
 
 
 def told(evaluator: Evaluator, given: Given, asked: Asked, blow: Told) -> Jump:
@@ -172,8 +176,7 @@ def told(evaluator: Evaluator, given: Given, asked: Asked, blow: Told) -> Jump:
         idle=np.array([float(found.idle)]),
     )  # fmt: skip
     kinetic = kinetic_energy(layout, still.bodies[0]), kinetic_energy(layout, then.bodies[0])
-    given_names = given.names(layout.mechanism)
-    names = (*given_names, *dict.fromkeys(c for c in blow.causes[len(asked.causes) :] if c not in given_names))
+    names = tuple(dict.fromkeys((*given.names(layout.mechanism), *blow.struck)))
     return Jump(
         blow.time, names, still, blow.causes, asked.impulses, then.states[0], kinetic, blow.work, blow.holding
     )  # fmt: skip

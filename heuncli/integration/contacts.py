@@ -55,6 +55,11 @@ class Struck:
     equal: bool  # all took the least restitution
     rounds: int
 
+    @property
+    def closed(self) -> Mask:
+        """Those that take part (k,)."""
+        return (self.impulses != 0.0) | self.depends
+
 
 def touching(layout: Layout, at: Recovered, closed: Mask, event: int | None, last: float) -> Touching:
     """The contacts that touch at a state: closed ones, the row of the event, and those with no gap beyond rounding.

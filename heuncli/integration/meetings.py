@@ -5,6 +5,7 @@ from __future__ import annotations
 import numpy as np
 
 from heuncli import tolerances
+from heuncli.errors import Problem, SolveError
 from heuncli.integration.blows import Asked, Given, Jump, Told, asked_of, behind, told
 from heuncli.integration.contacts import (
     Struck,
@@ -59,6 +60,14 @@ def held_at(evaluator: Evaluator, t: float, state: Array) -> Array:
     return contacts.holding
 
 
+def require_energy(jump: Jump) -> None:
+    """Raise SolveError where the energies before and behind a blow and the work of its impulses do not add up."""
+    before, after = jump.kinetic
+    if not abs(after - before - jump.work) <= tolerances.UNBALANCED * max(before, after, abs(jump.work)):
+        message = f"at t = {jump.time:.9g} s the energies of the blow on {', '.join(jump.names)} do not add up"
+        raise SolveError(Problem("blow-unbalanced", message, hint="a singular pose, or contacts that hardly differ"))
+
+
 class Contacts:
     """The contacts of one run: which are closed, and what is to be told of them. Changes with every instant met."""
 
@@ -94,8 +103,11 @@ class Contacts:
         shown = np.array([*range(n), *(n + bears)], dtype=int)
         found = Answered(outcome.columns.at(shown), found.unmet[shown], found.idle)
         asked = replace(asked, still=self.shown(asked.still, touch, outcome.struck))
-        blow = Told(time, found, causes, outcome.after, outcome.work, self.holding.copy())
-        return told(self.evaluator, given, asked, blow)
+        struck = tuple(self.layout.contacts[i].name for i in touch.which[outcome.struck.closed])
+        blow = Told(time, found, causes, outcome.after, outcome.work, self.holding.copy(), struck)
+        jump = told(self.evaluator, given, asked, blow)
+        require_energy(jump)
+        return jump
 
     def pose(self, given: Given, asked: Asked, touch: Touching) -> tuple[Answered, Pressed]:
         """The columns of what is given and of each contact that touches, and the problem they make."""
@@ -145,7 +157,7 @@ class Contacts:
     def shown(self, still: Recovered, touch: Touching, struck: Struck) -> Recovered:
         """The answers before the blow, with the contacts that take part in it: what they leave open is then seen."""
         rows, closed = still.rows.copy(), np.zeros(len(self.layout.contacts))
-        closed[touch.which] = (struck.impulses != 0.0) | struck.depends
+        closed[touch.which] = struck.closed
         if not closed.any():
             return still
         chosen = self.evaluator.recovered(still.times, still.states, holding=closed).rows
@@ -156,7 +168,7 @@ class Contacts:
     def tell(self, t: float, touch: Touching, outcome: Outcome) -> None:
         """Put down what is worth a sentence."""
         own = [self.layout.contacts[i] for i in touch.which.tolist()]
-        struck = [own[k] for k in np.flatnonzero((outcome.struck.impulses > 0.0) & (touch.rate < 0.0))]
+        struck = [own[k] for k in np.flatnonzero(outcome.struck.closed & (touch.rate < 0.0))]
         for contact in struck:
             self.strikes[contact.name] = self.strikes.get(contact.name, 0) + 1
         at = f"at t = {t:.6g} s"

@@ -32,7 +32,8 @@ def least_singular_values(runner: Runner, run: Trajectory, times: Array) -> Arra
     """Estimate of the smallest relative singular value of the independent closures, (n_t,)."""
     # the rows are selected at the first instant, and pivots are relative to those there
     asked = np.concatenate([run.times[:1], times])
-    pose = runner.recovered(asked, np.concatenate([run.states[:1], runner.resample(run, times)]), hold_rows=True)
+    states = np.concatenate([run.states[:1], runner.resample(run, times)])
+    pose = runner.recovered(asked, states, hold_rows=True, holding=run.holding_at(asked))
     least: Array = np.sqrt(np.maximum(pose.pivot[1:], 0.0))
     return least
 
