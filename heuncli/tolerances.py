@@ -74,6 +74,8 @@ UNMOVED = 1e-12  # of the size, or rad: a smaller change of the start is roundin
 DUST = 1e-9  # of the size: components that a chosen value is printed without
 
 # -- contacts
+CONTACT_TOUCHES = 1e-12  # of the size, and of places and limits: START_ROUNDING after some hundred steps, so that what
+# touches at an instant touches in a run from a moved start, too
 CONTACT_RATE = 1e-12  # of the terms of a rate of opening: thousands of roundings, which settling and a blow leave
 CONTACT_ACCELERATION = 1e-11  # the same of accelerations, which loads and factors leave a digit more of
 CONTACT_DEPENDS = 1e-12  # of a contact's own answer: what others leave of it if less; squares, so 1e-6 of a lever

@@ -58,11 +58,11 @@ class Struck:
     @property
     def closed(self) -> Mask:
         """Those that take part (k,)."""
-        return (self.impulses != 0.0) | self.depends
+        return np.asarray((self.impulses != 0.0) | self.depends)
 
 
 def touching(layout: Layout, at: Recovered, closed: Mask, event: int | None, last: float) -> Touching:
-    """The contacts that touch at a state: closed ones, the row of the event, and those with no gap beyond rounding.
+    """The contacts that touch at a state: closed ones, the row of the event, and those with hardly a gap.
 
     What was closed until then opens with no rate; nor does what would stay within its reach over the run, up to `last`.
     """
@@ -70,15 +70,17 @@ def touching(layout: Layout, at: Recovered, closed: Mask, event: int | None, las
     found = []
     for i, contact in enumerate(layout.contacts):
         gap = -contact.sense * float(rows["gap"][contact.row])
-        if closed[i] or contact.row == event or gap <= reach(layout, bodies, contact):
+        near = tolerances.CONTACT_TOUCHES * terms_of_gap(layout, bodies, contact)
+        if closed[i] or contact.row == event or gap <= near:
             found.append(i)
     own = [layout.contacts[i] for i in found]
     loads = np.array([unit_load(layout, bodies, rows, contact) for contact in own]).reshape(len(own), len(bodies), 6)
     motion = np.concatenate([bodies["omega"], bodies["v"]], axis=1)
-    reaches = np.array([reach(layout, bodies, contact) for contact in own])
+    terms = np.array([terms_of_gap(layout, bodies, contact) for contact in own])
+    reaches = tolerances.KERNEL["touching"] * terms
     turned, shifted = np.linalg.norm(loads[:, :, :3], axis=2), np.linalg.norm(loads[:, :, 3:], axis=2)
-    terms = turned @ np.linalg.norm(bodies["omega"], axis=1) + shifted @ np.linalg.norm(bodies["v"], axis=1)
-    noise = tolerances.CONTACT_RATE * terms
+    speeds = turned @ np.linalg.norm(bodies["omega"], axis=1) + shifted @ np.linalg.norm(bodies["v"], axis=1)
+    noise = tolerances.CONTACT_RATE * speeds
     return Touching(
         which=np.array(found, dtype=int),
         loads=loads,
@@ -89,12 +91,11 @@ def touching(layout: Layout, at: Recovered, closed: Mask, event: int | None, las
     )
 
 
-def reach(layout: Layout, bodies: Table, contact: Contact) -> float:
-    """What rounding makes of a contact's gap [m or rad]; a start beyond a limit by typed digits is at it."""
+def terms_of_gap(layout: Layout, bodies: Table, contact: Contact) -> float:
+    """The size of what a contact's gap is the sum of [m or rad]."""
     row = layout.tables["closures"][contact.row]
     Q = point(layout, bodies, contact)
-    own = (layout.size + math.sqrt(float(Q @ Q))) / float(row["weight"]) + abs(float(row["length"]))
-    return tolerances.KERNEL["touching"] * own
+    return (layout.size + math.sqrt(float(Q @ Q))) / float(row["weight"]) + abs(float(row["length"]))
 
 
 def point(layout: Layout, bodies: Table, contact: Contact) -> Array:

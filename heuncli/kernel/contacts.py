@@ -209,13 +209,16 @@ def meet_contacts(
 def where_closed(
     scene: cython.pointer[Scene], method: cython.pointer[Method], run: cython.pointer[Run], x: cython.double
 ) -> cython.double:
-    """Where the gap of the contact found is zero, just before x, where it is no more than its level; x of others."""
+    """Where the gap of the contact found is zero, just before x, where it is no more than its level; x of others.
+
+    Late, there where it is at that level: so the rounding of a gap is seen.
+    """
     i: cython.Py_ssize_t
     rate: cython.double
     back: cython.double
     for i in range(scene.contact_count):
         contact: cython.pointer[Contact] = cython.address(scene.contacts[i])
-        if contact.row + 1 == run.contact and scene.closures[contact.row].mode == APART:
+        if contact.row + 1 == run.contact and scene.closures[contact.row].mode == APART and not run.late:
             stand_within(scene, method, run, x, 1)
             rate = contact.sense * scene.closures[contact.row].rate * run.h
             if rate > 0.0 and margin(scene, contact) > 0.0:

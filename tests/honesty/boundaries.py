@@ -603,6 +603,14 @@ def hardly_moved(x: float) -> str:
     return "moves" if answerable(layout, touch, np.array([[x]]))[0] else "held"
 
 
+def low_hop(x: float) -> str:
+    """A flight of so much height, of a gap that is a sum of 1."""
+    one = np.ones(1)
+    reach = tolerances.KERNEL["touching"] * one
+    touch = Touching(np.zeros(1, dtype=int), np.zeros((1, 1, 6)), one, one, reach, one)
+    return "none" if short_flights(touch, one, -one / (2.0 * x), 0.0)[0] else "flies"
+
+
 def hop(x: float) -> str:
     """A flight of so much time, at once and too high to be none."""
     one = np.ones(1)
@@ -669,7 +677,8 @@ ROWS = (
     Row("HOPELESS", steady_pace, "goes on", "told"),
     Row("KERNEL.unseen", unseen_pulse, "as seen", "looked into"),
     Row("UNBALANCED", lambda x: "warned" if unbalanced(x) else "fine", "fine", "warned"),
-    Row("KERNEL.touching", near_the_floor, "rests", "falls"),
+    Row("CONTACT_TOUCHES", near_the_floor, "rests", "falls"),
+    Row("KERNEL.touching", low_hop, "none", "flies"),
     Row("CONTACT_RATE", opening_rope, "taut", "struck"),
     Row("CONTACT_ACCELERATION", pressed, "open", "bears"),
     Row("CONTACT_DEPENDS", leaning, "leans", "open"),
