@@ -58,6 +58,7 @@ OPEN_RATE = 1e-10  # of the scene's speed: as OPEN_GAP
 AT_REST = 1e-6  # [rad/s] the least speed a scene is taken to have: rounding about rest opens no joint
 SOLVABLE = 1e-8  # of the acceleration asked for: what may stay unsolved, a digit above RANK
 NO_ACCELERATION = 1e-12  # of speed^2/size: accelerations below are asked for by rounding of the rates alone
+STILL = 1e-28  # [m/s^2, rad/s^2] squares of rates of 1e-14, which rounding leaves where a blow ends rates of 1
 SAME_VALUE = 1e-9  # rad, m, or relative beyond 1: a held value and a drive that agree so far say the same; typed digits
 NO_LENGTH = 1e-9  # of the size: a shorter rod's direction has one digit beyond OPEN_GAP
 NEAR_DRAWING = 0.5  # a joint's gap (by L) or angle, a body's shift or turn: a drawing off by less means this very pose

@@ -102,10 +102,12 @@ class Evaluator:
         self.workspace.recover(at, flat, held, closed.ravel(), out, width, not hold_rows, causes)
         bodies, freedoms, loads, rows, whole = parts(out.reshape(n_t, width), sizes)
         columns = out.reshape(n_t, width)[:, own:].reshape(n_t, n_c, -1) if causes else None
+        # behind a blow that ends all motion rates are left by rounding, and what their squares ask for is nothing
+        still = rows["terms"].max(axis=1, initial=0.0) <= tolerances.STILL
         return Recovered(
             times=at, states=flat.reshape(settled.shape), bodies=bodies, freedoms=freedoms, loads=loads, rows=rows,
             gap=whole["gap"][:, 0], idle=whole["idle"][:, 0], pivot=whole["pivot"][:, 0],
-            residual=whole["residual"][:, 0], may_stay=self.may_stay(whole["gap"][:, 0]),
+            residual=np.where(still, 0.0, whole["residual"][:, 0]), may_stay=self.may_stay(whole["gap"][:, 0]),
             holding=closed,
             causes=columns_of(columns, len(layout.place), len(layout.freedoms)) if columns is not None else None,
         )  # fmt: skip

@@ -213,3 +213,15 @@ def test_a_blow_presses_a_lid_on_its_stop_or_lifts_it(up: float, spin: float, st
     near(blow["energy_after"], 0.5 * spin, 1.0, 1e-13)
     near(found.coordinates["hinge"]["rate"], spin, 1.5, 1e-13)
     assert blow["names"] == ["blow", "rest"][: 1 + (up < 0.0)]
+
+
+def test_two_stops_that_one_motion_strikes_end_it() -> None:
+    """Both cranks come to their stops at one instant: nothing moves on, and rounding asks for no accelerations."""
+    bare = TWO.replace("gravity: [0, -9.81, 0]\n", "").replace("[30 deg, null]", "[0, 60 deg]")
+    moving = bare.replace("initial: {angle: 30 deg}", "initial: {angle: 30 deg, rate: 1}")
+    found = solved(moving + "analysis: {duration: 1, samples: 11}\n")
+    (blow,) = found.impulses
+    near(blow["time"], math.pi / 6.0, 1.0, 1e-12)
+    near(blow["energy_after"], 0.0, 1.0, 1e-20)
+    near(found.coordinates["A"]["rate"], [1.0] * 6 + [0.0] * 5, 1.0, 1e-12)
+    near(found.coordinates["D"]["angle"][6:], np.full(5, math.pi / 3.0), 1.0, 1e-12)

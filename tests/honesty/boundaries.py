@@ -736,6 +736,7 @@ EXEMPT = {
 }
 # Those that decide one, and have no scene at their boundary yet.
 WANTED = {
+    "STILL": "whether what rates of rounding ask for is met, where a blow has ended all motion",
     "NEIGHBOUR": "which rank is the generic one, where a machine can hardly leave its singular start",
     "MOVES": "whether a displaced pose counts",
     "SUM_POSES": "which sums of one pose are accidents",
