@@ -47,7 +47,7 @@ class Resolution:
             joints = choice.added(joints, states)
         return joints
 
-    def singular(self, times: Array, redundant: int) -> list[str]:
+    def singular(self, times: Array, redundant: Array) -> list[str]:
         """Sentences on instants with more self-stresses than `redundant`, or nearly so."""
         return singular_poses(self.searched, times, redundant) if self.searched is not None else []
 
@@ -75,7 +75,7 @@ def resolve(
     return Resolution(chosen.joints, chosen.words, stress, chosen.stress, chosen.choices, stress)
 
 
-def singular_poses(stress: SelfStress, times: Array, redundant: int) -> list[str]:
+def singular_poses(stress: SelfStress, times: Array, redundant: Array) -> list[str]:
     """Where the rank of the closures drops below the generic one, and where it comes near to that."""
     sentences = []
     more = np.flatnonzero(stress.count > redundant)

@@ -71,7 +71,7 @@ def nearly_singular(recovery: Recovery, wanted: Set[str]) -> Indices:
     """The instants so near to a singular pose that rounding may reach what is told of them, or just at one."""
     near = recovery.recovered.pivot < tolerances.NEAR_PIVOT
     if wanted & HUNG_ON_RANK and recovery.decided is not None and recovery.decided.searched is not None:
-        near |= recovery.decided.searched.count > recovery.setup.model["redundant"]
+        near |= recovery.decided.searched.count > recovery.generic
     return np.flatnonzero(near)
 
 
@@ -83,7 +83,7 @@ def rows_left_out(recovery: Recovery, near: Indices) -> Mask:
     found = recovery.decided.searched if recovery.decided is not None else None
     if found is None:
         return np.zeros(len(near), dtype=bool)
-    return np.asarray(found.count[near] > recovery.setup.model["redundant"])
+    return np.asarray(found.count[near] > recovery.generic[near])
 
 
 def moved_states(recovery: Recovery, near: Indices, run: Trajectory, jumps: Sequence[float]) -> Recovered:

@@ -110,6 +110,15 @@ class Recovery:
         return magnitudes(scene.mechanism, self.states, self.actions, self.energy, scene.layout.size)
 
     @property
+    def generic(self) -> Array:
+        """How many self-stresses there are at most at each instant but for a singular pose, (n_t,).
+
+        Those of the start, and one more for each contact that has closed since.
+        """
+        closed = (self.recovered.holding > 0.0) & ~(self.setup.runner.start_holding > 0.0)
+        return np.asarray(self.setup.model["redundant"] + closed.sum(axis=1))
+
+    @property
     def indeterminate(self) -> SelfStress | None:
         """The self-stresses that no split has resolved."""
         return self.decided.left if self.decided is not None else None

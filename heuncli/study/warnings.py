@@ -28,7 +28,7 @@ def warnings(setup: Setup, history: History, recovery: Recovery, joints: Block, 
     """Everything worth a warning at the instants of `recovery`; joints: their block, residual: d'Alembert's."""
     singular = []
     if recovery.decided is not None:
-        singular = recovery.decided.singular(recovery.recovered.times, setup.model["redundant"])
+        singular = recovery.decided.singular(recovery.recovered.times, recovery.generic)
     return (
         *unbalanced(residual),
         *(warning for cuts in setup.cuts for warning in cuts.warnings),
