@@ -255,6 +255,36 @@ analysis: {times: [0, 0.5, 1, 2, 3]}
     near(run.stops["pawl"]["moment"], (3, 3, 0, 0, 0), 3.0, 1e-12)
 
 
+def test_a_shaken_table_throws_its_block() -> None:
+    """A sin ωt shakes a block off where A ω² sin ωt = g; it flies, lands (e = 0), and is thrown again."""
+    A, w = 0.05, 20.0
+    run = study(HEAD + f"""
+bodies: {{table: {{mass: 10, {SMALL}}}, b: {{mass: 2, {SMALL}}}}}
+joints:
+  shaker: {{type: slide, from: ground.O, to: table.c, axis: [0, 0, 1]}}
+  on: {{type: slide, from: table.c, to: b.c, axis: [0, 0, 1]}}
+drives: {{shake: {{joint: shaker, travel: "{A}*sin({w}*t)"}}}}
+stops: {{lie: {{joint: on, travel: [0, null], restitution: 0}}}}
+analysis: {{duration: 0.5, samples: 2}}
+""")
+    off = math.asin(G / (A * w * w)) / w
+    z0, v0 = A * math.sin(w * off), A * w * math.cos(w * off)
+
+    def above(t: float) -> float:
+        return z0 + v0 * (t - off) - G / 2 * (t - off) ** 2 - A * math.sin(w * t)
+
+    land = brentq(above, off + 0.05, off + 0.3, xtol=1e-15)
+    near(strikes(run)[0], land, 0.5, 1e-9)
+    speed = v0 - G * (land - off) - A * w * math.cos(w * land)
+    near(run.results.impulses[0]["stops"]["lie"]["force"], -2 * speed, 2.0, 1e-8)
+    near(run.results.impulses[0]["joints"]["shaker"]["drive"], -2 * speed, 2.0, 1e-8)
+    t = np.array([0.2 * off, off * (1 - 1e-6), off * (1 + 1e-6), (off + land) / 2])
+    found = run.resample(t)
+    push = np.where(t < off, 2 * (G - A * w * w * np.sin(w * t)), 0.0)
+    near(found.stops["lie"]["force"], push, 2 * G, 1e-9)
+    near(found.coordinates["on"]["travel"][3], above(float(t[3])), 0.1, 1e-9)
+
+
 # ---- several
 def test_two_at_one_instant() -> None:
     """Two blocks fall from the same height, each on its own floor: each with its own impulse."""
@@ -303,7 +333,7 @@ def cradle(n: int, gap: float, speed: float, duration: float, e: float = 1.0, d:
     return study(CRADLE.format(anchors=anchors, bodies=bodies, joints=joints, stops=stops, duration=duration))
 
 
-@pytest.mark.parametrize("n", [3, 5])
+@pytest.mark.parametrize("n", [2, 3, 5])
 def test_a_cradle_with_gaps_passes_one_ball_on(n: int) -> None:
     """One after the other; the last one rises as high as the first one would, the others hardly move."""
     gap, speed = 1e-3, 1.0
@@ -422,6 +452,16 @@ def test_a_hammer_presses_what_lies(analysis: str) -> None:
     near(block["stops"]["floor"]["force"], 3.0, 3.0, 1e-12)
     near(block["foundation"]["force"], (0, 0, -3), 3.0, 1e-12)
     near(block["energy_jump"], 0.0, 1.0, 1e-12)
+
+
+def test_a_hammer_lifts_what_lies() -> None:
+    """It flies, and is struck when it is back."""
+    run = hit_on_the_floor(3.0)
+    first, second = run.results.impulses[:2]
+    near(first["bodies"]["b"]["center_velocity_jump"], (0, 0, 1.5), 1.0, 1e-12)
+    near(first["foundation"]["force"], np.zeros(3), 1.0, 1e-12)
+    near(second["time"], 0.5 + 3.0 / G, 1.5, INSTANT)
+    near(second["stops"]["floor"]["force"], 2 * 1.5 * 1.5, 4.5, 1e-9)
 
 
 def test_a_blow_at_the_instant_of_a_strike() -> None:
