@@ -135,7 +135,17 @@ class Contacts:
                 break
             at_rest = at_rest | short
         work += float(struck.impulses @ (0.5 * (touch.rate + struck.rate)))
+        self.bring_to_rest(asked.still.states[0], after)
         return Outcome(struck, holding, at_rest, columns, after, work)
+
+    def bring_to_rest(self, before: Array, after: Array) -> None:
+        """Rates behind a blow that are rounding of those before are none, in place: what stands still has no motion."""
+        for group in self.layout.tables["groups"]:
+            rates = slice(group["rates"], group["end"])
+            if group["rates"] < group["end"] and group["coordinates"] < group["rates"]:
+                largest = np.abs(before[rates] * self.layout.weights[rates]).max()
+                if np.abs(after[rates] * self.layout.weights[rates]).max() <= tolerances.SUM_ROUNDING * largest:
+                    after[rates] = 0.0
 
     def scaled(self, units: Columns, touch: Touching, impulses: Array) -> Columns:
         """The columns of what is given, and those of the contacts by their impulses, each with its own multiplier."""
