@@ -60,12 +60,25 @@ def held_at(evaluator: Evaluator, t: float, state: Array) -> Array:
     return contacts.holding
 
 
-def require_energy(jump: Jump) -> None:
-    """Raise SolveError where the energies before and behind a blow and the work of its impulses do not add up."""
+def require_energy(jump: Jump, terms: float) -> None:
+    """Raise SolveError where the energies before and behind a blow and the work of its impulses do not add up.
+
+    terms: what the contacts' impulses would bring alone, which others may take back.
+    """
     before, after = jump.kinetic
-    if not abs(after - before - jump.work) <= tolerances.UNBALANCED * max(before, after, abs(jump.work)):
+    size = max(before, after, abs(jump.work), tolerances.UNBALANCED * terms)
+    if not abs(after - before - jump.work) <= tolerances.UNBALANCED * size:
         message = f"at t = {jump.time:.9g} s the energies of the blow on {', '.join(jump.names)} do not add up"
         raise SolveError(Problem("blow-unbalanced", message, hint="a singular pose, or contacts that hardly differ"))
+
+
+@record
+class Unrefined:
+    """Impulses as the complementarity problem gives them, and the columns of unit impulses."""
+
+    touch: Touching
+    struck: Struck
+    units: Columns
 
 
 class Contacts:
@@ -106,7 +119,7 @@ class Contacts:
         struck = tuple(self.layout.contacts[i].name for i in touch.which[outcome.struck.closed])
         blow = Told(time, found, causes, outcome.after, outcome.work, self.holding.copy(), struck)
         jump = told(self.evaluator, given, asked, blow)
-        require_energy(jump)
+        require_energy(jump, 0.5 * float(outcome.struck.impulses**2 @ np.diag(pressed.A)))
         return jump
 
     def pose(self, given: Given, asked: Asked, touch: Touching) -> tuple[Answered, Pressed]:
@@ -134,9 +147,40 @@ class Contacts:
             if not short.any():
                 break
             at_rest = at_rest | short
+        if struck.impulses.any():
+            struck, columns, whole = self.refined(given, asked, Unrefined(touch, struck, units))
+            after, work = behind(self.layout, given, asked, whole)
         work += float(struck.impulses @ (0.5 * (touch.rate + struck.rate)))
         self.bring_to_rest(asked.still.states[0], after)
         return Outcome(struck, holding, at_rest, columns, after, work)
+
+    def refined(self, given: Given, asked: Asked, found: Unrefined) -> tuple[Struck, Columns, Columns]:
+        """The impulses and columns, and all in one, with the digits that A loses between very unequal masses.
+
+        With the rates behind known, what bears is held and answered by the factors of the closures, in one column; what
+        the columns of the contacts lack of it goes to the last of them.
+        """
+        touch, struck, n = found.touch, found.struck, len(asked.loads)
+        own = np.flatnonzero(struck.impulses)
+        contacts = [self.layout.contacts[i] for i in touch.which[own].tolist()]
+        rows, sense = [c.row for c in contacts], np.array([c.sense for c in contacts])
+        load = np.sum([np.zeros((len(self.layout.place), 6)), *asked.loads], axis=0)
+        jump = np.sum([np.zeros(len(self.layout.freedoms) + len(self.layout.rows)), *asked.jumps], axis=0)
+        jump[len(self.layout.freedoms) + np.array(rows)] -= sense * (struck.rate - touch.rate)[own]
+        holding = np.zeros(len(self.holding))
+        holding[touch.which[own]] = 1.0
+        self.evaluator.workspace.hold(holding)
+        whole = blows(self.evaluator.workspace, given.before, asked.still.states[0], load[None], jump[None]).columns
+        impulses = struck.impulses.copy()
+        impulses[own] = -sense * whole.multipliers[0, rows]
+        columns = self.scaled(found.units, touch, impulses)
+        total, last = columns.sum(), n + int(own[-1])
+        for part in ("bodies", "freedoms"):
+            table, right, summed = (getattr(x, part) for x in (columns, whole, total))
+            for name in table.dtype.names or ():
+                table[name][last] += right[name][0] - summed[name]
+        columns.multipliers[last] += whole.multipliers[0] - total.multipliers
+        return replace(struck, impulses=impulses), columns, whole
 
     def bring_to_rest(self, before: Array, after: Array) -> None:
         """Rates behind a blow that are rounding of those before are none, in place: what stands still has no motion."""
