@@ -25,7 +25,7 @@ from tests.shared.trees import tree_scene, weighed
 pytestmark = pytest.mark.heavy  # families at random: with the compiled kernel, which has the same bits
 
 LOCKED = (2,)  # two stops rock against each other: infinitely many times infinitely many strikes
-SEEDS = [s for s in range(24) if s not in LOCKED]
+SEEDS = [s for s in range(14) if s not in LOCKED]
 END = 1.0
 MOST = 12  # strikes that are looked at of a run
 GAP = 1e-9  # of the scene's size
@@ -186,7 +186,7 @@ def test_what_bears_is_that_of_the_oracle(seed: int) -> None:
 def test_the_family_is_what_it_should_be() -> None:
     """Most are struck, some rest, several have ropes."""
     runs = [run_of(seed).results for seed in SEEDS]
-    assert sum(bool(r.impulses) for r in runs) >= 15
-    assert sum(any(np.abs(next(iter(b.values()))[-1]) > 0 for b in r.stops.values()) for r in runs if r.stops) >= 3
+    assert sum(bool(r.impulses) for r in runs) >= 9
+    assert sum(any(np.abs(next(iter(b.values()))[-1]) > 0 for b in r.stops.values()) for r in runs if r.stops) >= 2
     ropes = [n for r in runs for b in r.impulses for n in b["names"] if n.startswith("rope")]
-    assert len(ropes) >= 10
+    assert len(ropes) >= 3
