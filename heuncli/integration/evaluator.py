@@ -99,7 +99,8 @@ class Evaluator:
         closed = np.zeros((n_t, len(layout.contacts)))
         # what others close is closed as much: which of all carry is a matter of rank here, and of verdicts
         closed[:] = (self.start_holding if holding is None else holding) > 0.0
-        self.workspace.recover(at, flat, held, closed.ravel(), out, width, not hold_rows, causes)
+        arrays = {"times": at, "states": flat, "branches": held, "holding": closed.ravel(), "out": out}
+        self.workspace.recover(arrays, not hold_rows, causes)
         bodies, freedoms, loads, rows, whole = parts(out.reshape(n_t, width), sizes)
         columns = out.reshape(n_t, width)[:, own:].reshape(n_t, n_c, -1) if causes else None
         # behind a blow that ends all motion rates are left by rounding, and what their squares ask for is nothing

@@ -373,61 +373,43 @@ class Workspace:
         else:
             take_holding(scene, [float(x) for x in holding], 0)
 
-    def recover(
-        self,
-        times: Any,
-        states: Any,
-        branches: Any,
-        holding: Any,
-        out: Any,
-        width: cython.Py_ssize_t,
-        afresh: cython.bint,
-        causes: cython.bint,
-    ) -> None:
-        """Everything the sweep knows at given states, which are settled in place; flat, `width` numbers an instant.
+    def recover(self, arrays: dict[str, Any], afresh: cython.bint, causes: cython.bint) -> None:
+        """Everything the sweep knows at given states: flat arrays `times`, `states`, which are settled in place, `out`.
 
         After the answers of an instant: the gap over all rows, how many freedoms had no inertia behind them, the least
-        pivot of the closures, and what of all rows the accelerations do not meet. branches: those that the expressions
-        hold, as many numbers an instant; empty: as the states say; holding: the same of the contacts, which `hold`
+        pivot of the closures, and what of all rows the accelerations do not meet. `branches`: those that expressions
+        hold, as many numbers an instant; empty: as the states say; `holding`: the same of the contacts, which `hold`
         takes; empty: as they are. afresh: choose the closure rows at every instant anew. causes: after all that a
         column a cause (columns.py).
         """
         scene: cython.pointer[Scene] = cython.address(self.scene)
+        times, states, out = arrays["times"], arrays["states"], arrays["out"]
+        branches, holding = arrays["branches"], arrays["holding"]
         count: cython.Py_ssize_t = len(times)
-        n: cython.Py_ssize_t = len(states) // max(count, 1)
-        work = array("d", bytes(16 * max(n, 1)))
         if count == 0:
             return
+        n: cython.Py_ssize_t = len(states) // count
+        width: cython.Py_ssize_t = len(out) // count
+        held: cython.bint = len(branches) > 0
+        opening: cython.int = self.opening if len(holding) else 0
+        work = array("d", bytes(16 * max(n, 1)))
         if cython.compiled:
             at: cython.double[::1] = times
             Y: cython.double[::1] = states
             to: cython.double[::1] = out
             room: cython.double[::1] = work
-            taken: cython.double[::1] = branches if len(branches) else room
-            open_: cython.double[::1] = holding if len(holding) else room
+            taken: cython.double[::1] = branches if held else room
+            open_: cython.double[::1] = holding if opening else room
             instants: Instants = Instants(
-                count,
-                n,
-                width,
-                afresh,
-                len(branches) > 0,
-                causes,
-                self.opening if len(holding) else 0,
-                cython.address(taken[0]),
-                cython.address(open_[0]),
-                cython.address(at[0]),
-                cython.address(Y[0]),
-                cython.address(to[0]),
-                cython.address(room[0]),
-                cython.address(room[n]),
-            )
+                count, n, width, afresh, held, causes, opening,
+                cython.address(taken[0]), cython.address(open_[0]), cython.address(at[0]), cython.address(Y[0]),
+                cython.address(to[0]), cython.address(room[0]), cython.address(room[n]),
+            )  # fmt: skip
             with cython.nogil:
                 recover_states(scene, cython.address(instants))
         else:
-            lists = times.tolist(), states.tolist(), out.tolist()
-            flags = afresh, len(branches) > 0, causes, self.opening if len(holding) else 0
-            given = list(branches), list(holding)
-            plain = Instants(count, n, width, *flags, *given, *lists, [0.0] * n, [0.0] * n)
+            lists = (x.tolist() for x in (branches, holding, times, states, out))
+            plain = Instants(count, n, width, afresh, held, causes, opening, *lists, [0.0] * n, [0.0] * n)
             recover_states(scene, plain)
             states[:], out[:] = plain.states, plain.out
 
