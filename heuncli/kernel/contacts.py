@@ -154,7 +154,7 @@ def set_levels(scene: cython.pointer[Scene], run: cython.pointer[Run]) -> cython
             contact.level = scene.limits.touching * size
             if contact.start < -contact.level or contact.start_rate * run.h < -contact.level:
                 contact.level = scene.limits.rounding * size
-            if contact.start > 0.0:
+            if contact.start > 0.0 and contact.start_rate <= 0.0:  # what leaves is not met again where it was left
                 contact.level += contact.start
             if found == 0:
                 found = 1
