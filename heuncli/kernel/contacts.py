@@ -221,8 +221,11 @@ def where_closed(
         if contact.row + 1 == run.contact and scene.closures[contact.row].mode == APART and not run.late:
             stand_within(scene, method, run, x, 1)
             rate = contact.sense * scene.closures[contact.row].rate * run.h
-            if rate > 0.0 and margin(scene, contact) > 0.0:
-                back = margin(scene, contact) / rate
+            back = margin(scene, contact)
+            if contact.start > 0.0 and contact.start_rate < 0.0:  # begun beyond it, a flight ends where it began
+                back -= contact.start
+            if rate > 0.0 and back > 0.0:
+                back /= rate
                 return x - back if back < x else 0.0
     return x
 
