@@ -23,6 +23,7 @@ cdef void see_contacts(Scene *scene, double t) noexcept nogil
 cdef bint pushed_at_once(Scene *scene, Run *run) noexcept nogil
 cdef bint opened_by_others(Scene *scene, Run *run) noexcept nogil
 cdef int turned_over(Scene *scene, Run *run) noexcept nogil
+cdef bint closes_early(Contact *contact, double reach) noexcept nogil
 cdef int set_levels(Scene *scene, Run *run) noexcept nogil
 cdef void stand_within(Scene *scene, Method *method, Run *run, double x, int doubt) noexcept nogil
 cdef int meet_contacts(Scene *scene, Method *method, Run *run) noexcept nogil

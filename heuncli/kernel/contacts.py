@@ -129,11 +129,15 @@ def set_levels(scene: cython.pointer[Scene], run: cython.pointer[Run]) -> cython
     """Above what margins contacts close or open, by their rounding; 0: none is in doubt, 1: open ones, 2: closed ones.
 
     A gap that is open, or leaves with a rate, closes where it is zero again, to the rounding of its sum; one that
-    touches at rest is known to what settling leaves.
+    touches at rest is known to what settling leaves. Late, to show what rounding makes of it, a gap that comes to that
+    closes there already: so a run that grazes a limit, or does not, is compared with one that does.
     """
     i: cython.Py_ssize_t
     found: cython.int = 0
     size: cython.double
+    reach: cython.double
+    likely: cython.double
+    early: cython.bint
     least: cython.double = 0.0
     for i in range(scene.contact_count):
         if scene.closures[scene.contacts[i].row].mode == CARRIES and scene.contacts[i].least < least:
@@ -144,21 +148,31 @@ def set_levels(scene: cython.pointer[Scene], run: cython.pointer[Run]) -> cython
         contact.level = 1e300  # no doubt
         if row.mode == LEANS:
             continue
-        if contact.most + 0.5 * (contact.most - contact.least) < 0.0 and not run.contact_landings:
+        size = (scene.size + norm(row.Q)) / row.weight + fabs(row.length)
+        reach = scene.limits.touching * size
+        early = row.mode == APART and run.late and closes_early(contact, reach)
+        likely = contact.most + 0.5 * (contact.most - contact.least)
+        if likely < (-reach if early else 0.0) and not run.contact_landings:
             continue
         if row.mode == CARRIES:
             contact.level = scene.limits.rounding * fabs(least)
             found = 2
+        elif early:
+            contact.level = -reach
         else:
-            size = (scene.size + norm(row.Q)) / row.weight + fabs(row.length)
-            contact.level = scene.limits.touching * size
+            contact.level = reach
             if contact.start < -contact.level or contact.start_rate * run.h < -contact.level:
                 contact.level = scene.limits.rounding * size
             if contact.start > 0.0 and contact.start_rate <= 0.0:  # what leaves is not met again where it was left
                 contact.level += contact.start
-            if found == 0:
-                found = 1
+        if row.mode == APART and found == 0:
+            found = 1
     return found
+
+
+def closes_early(contact: cython.pointer[Contact], reach: cython.double) -> cython.bint:
+    """Whether a gap is open beyond its rounding, or comes back to it."""
+    return contact.start < -reach or (contact.start_rate > 0.0 and contact.start < -0.5 * reach)
 
 
 def stand_within(
