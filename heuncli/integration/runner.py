@@ -16,7 +16,8 @@ from heuncli import tolerances
 from heuncli.errors import LimitError, Problem, SolveError
 from heuncli.expressions.discontinuities import discontinuities
 from heuncli.expressions.programs import Expression
-from heuncli.integration.blows import Blows, Jump
+from heuncli.integration.between import Blows
+from heuncli.integration.blows import Jump
 from heuncli.integration.evaluator import Evaluator
 from heuncli.integration.loop import Integration, Segment, Steps, just_before, smooth_segments
 from heuncli.integration.methods import DOP853, Method

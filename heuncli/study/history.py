@@ -12,7 +12,8 @@ import numpy as np
 
 from heuncli.errors import SolveError
 from heuncli.expressions.discontinuities import one_sided_limits
-from heuncli.integration.blows import Jump, at_once
+from heuncli.integration.between import at_once
+from heuncli.integration.blows import Jump
 from heuncli.integration.checked import Checked, Runs, checked_run, recovered_at
 from heuncli.integration.evaluator import Recovered
 from heuncli.integration.pairs import interleaved, moved_start

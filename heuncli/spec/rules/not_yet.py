@@ -13,16 +13,6 @@ Where = Callable[[DraftDocument], Iterable[Path_]]
 METHODS = ("auto", "DOP853")
 
 
-def any_of(block: str) -> Where:
-    """All entries of a block."""
-
-    def where(draft: DraftDocument) -> Iterator[Path_]:
-        for name in draft.names.entries[block]:
-            yield block, name
-
-    return where
-
-
 def other_method(draft: DraftDocument) -> Iterator[Path_]:
     """A method of integration that there is not."""
     if draft.document.analysis.method not in METHODS:
