@@ -60,7 +60,7 @@ class Run(NamedTuple):
     tolerance: Annotated[
         float | None, Option(("--tolerance",), "Error of the motion, relative to the scene.", "NUMBER")
     ] = None
-    no_reduce: Annotated[bool, Option(("--no-reduce",), "Solve the scene in full, as every run does yet.")] = False
+    no_reduce: Annotated[bool, Option(("--no-reduce",), "Solve all of the scene, in full.")] = False
     least_norm: Annotated[bool, Option(("--least-norm",), "Split what redundant supports leave open.")] = False
     by_cause: Annotated[
         bool, Option(("--by-cause",), "Split every load by its causes: gravity, each force, drives, motion.")

@@ -47,6 +47,7 @@ def main(request: Run) -> int:
         tolerance=positive("--tolerance", request.tolerance),
         method=_method(request.method),
         least_norm=request.least_norm,
+        reduce=not request.no_reduce,
         time_limit=positive("--time-limit", request.time_limit),
     )
     begun = time.perf_counter()

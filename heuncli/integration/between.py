@@ -14,6 +14,7 @@ from heuncli.errors import Problem, SolveError
 from heuncli.integration.blows import Given, Jump, schedule, strike
 from heuncli.integration.evaluator import Evaluator
 from heuncli.integration.loop import Integration, Segment, Steps
+from heuncli.integration.moving import Moving
 from heuncli.results import Array
 from heuncli.tree.layout import Layout
 
@@ -22,10 +23,13 @@ if TYPE_CHECKING:  # loaded where something opens and closes
 
 
 class Blows:
-    """The blows of a run, each done where the run comes to its instant, and its contacts. Changes the run."""
+    """The blows of a run, each done where the run comes to its instant, and its contacts. Changes the run.
 
-    def __init__(self, evaluator: Evaluator, run: Integration, steps: Steps, last: float) -> None:
-        self.evaluator, self.run, self.steps, self.last = evaluator, run, steps, last
+    They are solved in the scene itself, whatever is integrated in its place.
+    """
+
+    def __init__(self, evaluator: Evaluator, moving: Moving, run: Integration, steps: Steps, last: float) -> None:
+        self.evaluator, self.moving, self.run, self.steps, self.last = evaluator, moving, run, steps, last
         self.due = schedule(evaluator.layout.mechanism, last)
         self.done: list[Jump] = []
         self.contacts = contacts_of(evaluator, last)
@@ -48,17 +52,21 @@ class Blows:
 
     def meet(self, given: Given, time: float, row: int | None = None) -> Jump | None:
         """The blow that is given at the state reached, and that of its contacts; row: of the one that closed."""
-        state = np.array(self.run.loop.state())
+        state = self.moving.state(self.run.loop.t, np.array(self.run.loop.state()))
         if self.contacts is None:
             return strike(self.evaluator, given, state, time)
         return self.contacts.meet(given, state, time, row)
 
     def settle(self, t: float, row: int | None = None) -> None:
-        """What its contacts do at an instant that the run has reached; row: of the one that closed or opened there."""
+        """What its contacts do at an instant that the run has reached; row: of the one that closed or opened there.
+
+        row: of what is integrated.
+        """
         if self.contacts is None:
             return
         if row is not None:
             self.contacts.count(t)
+            row = self.evaluator.layout.contacts[self.moving.contact(row)].row
         jump = self.meet(Given(t, t, (), {}), t, row)
         if jump is not None:
             self.take(jump)
@@ -66,14 +74,15 @@ class Blows:
     def begin(self, segment: Segment) -> None:
         """The run goes on from the state reached, with the contacts that are closed there."""
         if self.contacts is not None:
-            self.evaluator.workspace.hold(self.contacts.holding)
+            self.moving.workspace.hold(self.contacts.holding)
             self.steps.hold(self.contacts.holding)
         self.run.loop.begin(*segment)
 
     def take(self, jump: Jump) -> None:
         """Go on from behind a blow."""
-        self.run.loop.jump(jump.after)
-        self.steps.stand(jump.after)
+        after = self.moving.restrict(self.run.loop.t, jump.after)
+        self.run.loop.jump(after)
+        self.steps.stand(after)
         self.done.append(jump)
 
     @property

@@ -15,7 +15,7 @@ from heuncli.mechanism.model import Mechanism
 from heuncli.results import Array
 
 
-def growing(runner: Runner, t: float, state: Sequence[float], kept: Sequence[tuple[float, Array]]) -> list[Problem]:
+def growing(runner: Runner, t: float, state: Array, kept: Sequence[tuple[float, Array]]) -> list[Problem]:
     """The expressions that have grown so since a quarter of the time; kept: instants and states passed, ascending."""
     earlier, then = next((k for k in reversed(kept) if k[0] <= 0.25 * t), kept[0])
     pair = runner.recovered(np.array([earlier, t]), np.array([then, state]))

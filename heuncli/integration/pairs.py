@@ -38,7 +38,7 @@ def instants_of(runner: Runner, run: Trajectory) -> Instants:
     """All instants at which a run is compared: asked ones, ends of steps, and some within the steps."""
     bounds = np.concatenate([[0.0], run.ends])
     seen = np.diff(np.searchsorted(run.times, bounds)) if len(run.ends) else np.zeros(0, dtype=np.intp)
-    ends, states = ends_of(run, seen)
+    ends, states = ends_of(runner, run, seen)
     inner = within(bounds, seen, len(runner.layout.place))
     times = np.concatenate([run.times, ends, inner])
     states = np.concatenate([run.states, states, runner.resample(run, inner)])
@@ -48,13 +48,13 @@ def instants_of(runner: Runner, run: Trajectory) -> Instants:
     return Instants(times[new], states[order][new], (order < len(run.times))[new])
 
 
-def ends_of(run: Trajectory, seen: Indices) -> tuple[Array, Array]:
+def ends_of(runner: Runner, run: Trajectory, seen: Indices) -> tuple[Array, Array]:
     """Ends of steps with fewer than two asked instants (seen: how many), as far as their states were kept."""
-    n = run.states.shape[1]  # a record begins with the state
+    n = runner.moving.layout.n_state  # a record begins with the state
     kept = [(k, record[:n]) for k, record in run.kept if k == 0 or seen[k - 1] < 2]
     kept = kept[:: -(-len(kept) // ENDS)]
     times = np.array([run.ends[k - 1] if k else 0.0 for k, _ in kept])
-    return times, np.array([state for _, state in kept])
+    return times, runner.moving.embed(times, np.array([state for _, state in kept]))
 
 
 def within(bounds: Array, seen: Indices, bodies: int) -> Array:

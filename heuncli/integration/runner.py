@@ -21,11 +21,13 @@ from heuncli.integration.blows import Jump
 from heuncli.integration.evaluator import Evaluator
 from heuncli.integration.loop import Integration, Segment, Steps, just_before, smooth_segments
 from heuncli.integration.methods import DOP853, Method
+from heuncli.integration.moving import Moving, itself
 from heuncli.integration.pace import hopeless
 from heuncli.kernel.choose import steps as kernel
 from heuncli.mechanism.model import Mechanism
 from heuncli.records import record
 from heuncli.results import Array
+from heuncli.tree.layout import Layout
 
 CHUNK = 2_000  # body-steps between two looks at the clock
 MOST_STEPS = 20_000_000
@@ -58,9 +60,10 @@ TROUBLE = {
 class Trajectory:
     """The state at the asked instants.
 
-    times (n_t,) [s]; states (n_t, n_state); ends: instants of the accepted steps; gap: largest closure gap left [m].
-    branches (n_steps, n): those of the expressions that a step held; turned: of each step whether they change at its
-    end; undecided: of how many steps bounds could not tell what loads do between the stages.
+    times (n_t,) [s]; states (n_t, n_state), those of the scene; kept: of what is integrated in its place; ends:
+    instants of the accepted steps; gap: largest closure gap left [m]. branches (n_steps, n): those of the expressions
+    that a step held; turned: of each step whether they change at its end; undecided: of how many steps bounds could not
+    tell what loads do between the stages.
     """
 
     times: Array
@@ -156,7 +159,10 @@ class Going:
 
 
 def cut_short(times: Array, run: Integration, last: float) -> tuple[Array, Array]:
-    """The asked instants before the last at which no rope would have to push, that one, and the states at all."""
+    """The asked instants before the last at which no rope would have to push, that one, and the states at all.
+
+    States are those of what is integrated.
+    """
     asked = times[: run.loop.sampled]
     ts = np.append(asked[asked <= last], last)
     states = np.vstack([run.states()[: len(ts) - 1], np.array(run.loop.state())])
@@ -164,7 +170,14 @@ def cut_short(times: Array, run: Integration, last: float) -> tuple[Array, Array
 
 
 class Runner(Evaluator):
-    """A laid-out scene with the kernel's work arrays; every call starts from what it is given."""
+    """A laid-out scene with the kernel's work arrays; every call starts from what it is given.
+
+    moving: what is integrated in the scene's place; else the scene itself.
+    """
+
+    def __init__(self, layout: Layout, moving: Moving | None = None) -> None:
+        super().__init__(layout)
+        self.moving = itself(self) if moving is None else moving
 
     def trajectory(
         self,
@@ -186,31 +199,31 @@ class Runner(Evaluator):
         Raises SolveError where the motion cannot be continued, LimitError past the deadline (time.monotonic()).
         """
         begun = time.perf_counter()
-        layout = self.layout
+        moving = self.moving
         ts = np.ascontiguousarray(times, dtype=float)
         last = float(ts[-1]) if len(ts) else 0.0
         # at rest under a load like t**4 all rates and accelerations vanish at first: this rate then sets the scale
         rate = tolerances.LEAST_RATE / last if last > 0.0 else 0.0
-        most = max(1, CHUNK // max(len(layout.mechanism.bodies), 1))
+        most = max(1, CHUNK // max(len(moving.layout.mechanism.bodies), 1))
         # what begins beside the scene's start is to show what rounding makes of a run, that of its events, too
         late = int(start is not None)
-        start = layout.y0 if start is None else start
+        start = moving.restrict(0.0, self.layout.y0 if start is None else start)
         run = Integration(
-            layout, self.workspace, method, ts,
+            moving.layout, moving.workspace, method, ts,
             most=most, state=start, tolerance=tolerance, rate=rate, following=0, late=late,
         )  # fmt: skip
         steps = Steps(start, run.width)
         check_deadline(deadline, f"before the run of {last:.6g} s began")
-        going = Going(run, steps, Blows(self, run, steps, last), last, deadline, most_steps)
+        going = Going(run, steps, Blows(self, moving, run, steps, last), last, deadline, most_steps)
         pieces, stopped, told = self._pass(going, smooth_segments(last, discontinuities))
         ts, states = (ts, run.states()) if stopped is None else cut_short(ts, run, told)
         return Trajectory(
-            times=ts, states=states, ends=steps.column("ends"), steps=run.loop.steps,
+            times=ts, states=moving.embed(ts, states), ends=steps.column("ends"), steps=run.loop.steps,
             evaluations=run.loop.evaluations, gap=run.loop.gap, tolerance=tolerance, method=method,
             seconds=time.perf_counter() - begun, segments=tuple(pieces), kept=steps.records(),
             pivots=steps.column("pivots"), settled=steps.column("settled"), branches=steps.held_branches(),
             turned=steps.column("turned"), undecided=run.loop.undecided, stopped=stopped,
-            blows=tuple(going.blows.done), holding=steps.holding(len(layout.contacts)), notes=going.blows.notes,
+            blows=tuple(going.blows.done), holding=steps.holding(len(self.layout.contacts)), notes=going.blows.notes,
         )  # fmt: skip
 
     def _pass(self, going: Going, segments: Sequence[Segment]) -> tuple[list[Segment], str | None, float]:
@@ -227,7 +240,7 @@ class Runner(Evaluator):
             going.blows.settle(segment.begin)
             if not self._piece(going, segment, pieces):
                 t = going.run.loop.t
-                rope = self.layout.mechanism.joints[self.layout.rows[going.run.loop.contact]].name
+                rope = self.moving.rope(going.run.loop.contact)
                 return pieces, rope, just_before(t) if t == pieces[-1].begin > 0.0 else t
             reached = segment.end
         stopped = going.blows.until(going.last, reached)
@@ -269,25 +282,25 @@ class Runner(Evaluator):
         if projected is not None:
             from heuncli.integration.growth import growing, stalled  # only on the way to an error
 
-            problems = growing(self, run.loop.t, run.loop.state(), steps.passed(run.n))
+            problems = growing(self, run.loop.t, self._state(run), self._passed(going))
             raise stalled(problems, f"{steps.count} {done}", projected)
 
     def _failed(self, code: int, going: Going) -> SolveError:
         """Why a run to `last` ends: an expression without a value there, else the meaning of the kernel's code."""
-        run, steps, last = going.run, going.steps, going.last
-        t, state = run.loop.t, np.array(run.loop.state())
+        run, last = going.run, going.last
+        t, state = run.loop.t, self._state(run)
         if code == CHATTERING:
             return SolveError(chattering(t, *self.layout.pack.branches[run.loop.turning]))
         name, message, hint = TROUBLE[code]
         if name == "closure-lost":
             problem = Problem(name, f"at t = {t:.9g} s: {message}", hint=hint)
-            return ClosuresLost(problem, passed=steps.passed(run.n), failed=t, last=last)
+            return ClosuresLost(problem, passed=self._passed(going), failed=t, last=last)
         from heuncli.integration.domains import joint_coordinates, without_value  # only on the way to an error
         from heuncli.integration.growth import growing, largest_load
 
         mechanism, recovered = self.layout.mechanism, self.recovered(np.array([t]), state[None, :])
         problems = without_value(mechanism, t, last, joint_coordinates(self.layout, recovered.freedoms[0]))
-        problems = problems or growing(self, t, run.loop.state(), steps.passed(run.n))
+        problems = problems or growing(self, t, state, self._passed(going))
         if problems:
             return SolveError(*problems)
         hint = "; ".join(filter(None, [hint, largest_load(mechanism, recovered)]))
@@ -296,6 +309,14 @@ class Runner(Evaluator):
         if light and name == "step-collapsed":
             hint += f", as where closed loops cease to hold the turn of what has no inertia: {', '.join(light)}"
         return SolveError(Problem(name, f"at t = {t:.9g} s: {message}", hint=hint))
+
+    def _state(self, run: Integration) -> Array:
+        """The scene's state that a run has reached."""
+        return self.moving.state(run.loop.t, np.array(run.loop.state()))
+
+    def _passed(self, going: Going) -> list[tuple[float, Array]]:
+        """Instants and the scene's states that a run has passed, ascending."""
+        return [(t, self.moving.state(t, state)) for t, state in going.steps.passed(going.run.n)]
 
     def resample(self, run: Trajectory, times: Array) -> Array:
         """States (n_t, n) of a run at other instants (ascending, within it), by replaying its own steps.
@@ -321,14 +342,19 @@ class Runner(Evaluator):
             if len(group):
                 first, record = run.kept[base[group[0]]]
                 to = others[group]
-                out[to] = self.replay(run, first, int(step[group[-1]]), record, times[to])
+                states = self.replay(run, first, int(step[group[-1]]), record, times[to])
+                out[to] = self.moving.embed(times[to], states)
         return out
 
     def replay(self, run: Trajectory, first: int, last: int, record: Array, times: Array) -> Array:
-        """States at instants within the steps from `first`, which starts from a kept record, to `last`."""
+        """States at instants within the steps from `first`, which starts from a kept record, to `last`.
+
+        States are those of what is integrated.
+        """
+        layout, workspace = self.moving.layout, self.moving.workspace
         replayed = Integration(
-            self.layout, self.workspace, run.method, times,
-            most=last - first + 1, state=self.layout.y0, tolerance=math.inf, rate=0.0, following=1, late=0,
+            layout, workspace, run.method, times,
+            most=last - first + 1, state=layout.y0, tolerance=math.inf, rate=0.0, following=1, late=0,
         )  # fmt: skip
         loop, after = replayed.loop, run.after_blows
         loop.stand(record)
@@ -340,7 +366,7 @@ class Runner(Evaluator):
             loop.follow(run.ends[steps], run.settled[steps], run.branches[steps])
             if first in after:
                 loop.stand(after[first])
-            self.workspace.hold(run.holding[first])
+            workspace.hold(run.holding[first])
             if t <= begin:
                 loop.begin(begin, before_end, end)
             else:

@@ -5,11 +5,14 @@ from __future__ import annotations
 from typing import TYPE_CHECKING
 
 from heuncli.integration.methods import METHODS, Method
+from heuncli.integration.moving import smaller
 from heuncli.integration.runner import Runner
 from heuncli.integration.solvable import ready
 from heuncli.mechanism.build import build, forms_of
 from heuncli.mechanism.model import Mechanism
 from heuncli.records import record
+from heuncli.reduction import compose as reduction
+from heuncli.reduction.model import Reduced
 from heuncli.results import Block
 from heuncli.spec.models import Spec
 from heuncli.study.model_note import model_note
@@ -23,7 +26,8 @@ if TYPE_CHECKING:  # loaded where a scene has sections
 class Setup:
     """All that is known of a scene before anything moves; method is None where nothing is integrated.
 
-    cuts: of the sections, as asked; in a search runs of cuts as whole stretches stand for them.
+    cuts: of the sections, as asked; in a search runs of cuts as whole stretches stand for them. reduced: what is
+    integrated in the scene's place, and why; None where nothing is, or where all is solved in full.
     """
 
     spec: Spec
@@ -32,17 +36,31 @@ class Setup:
     runner: Runner
     method: Method | None
     model: Block
+    reduced: Reduced | None = None
 
 
-def set_up(spec: Spec, method: str | None = None) -> Setup:
-    """Build, cut, assemble, lay out; `method` stands for the one in the spec.
+def set_up(spec: Spec, method: str | None = None, *, reduce: bool = True) -> Setup:
+    """Build, cut, assemble, lay out; `method` stands for the one in the spec; reduce: a smaller scene may move for it.
 
     Raises SpecError for a section that cannot be cut, SolveError where the scene does not close.
     """
     mechanism, cuts = draw(spec)
     scene, runner = ready(prepare(mechanism, spec.analysis.times[0] if spec.analysis.type == "state" else 0.0))
     chosen = METHODS[method or spec.analysis.method] if spec.analysis.type == "motion" else None
-    return Setup(spec, scene, cuts, runner, chosen, model_note(scene, runner, chosen.name if chosen else "none"))
+    reduced = None
+    if chosen is not None and reduce:
+        reduced, runner = reduced_runner(scene, runner)
+    note = model_note(scene, runner, chosen.name if chosen else "none")
+    return Setup(spec, scene, cuts, runner, chosen, note, reduced)
+
+
+def reduced_runner(scene: PreparedScene, runner: Runner) -> tuple[Reduced, Runner]:
+    """The smallest scene that moves as this one does, and a runner that integrates it in its place."""
+    reduced = reduction.reduce(scene)
+    if not reduced.steps:
+        return reduced, runner
+    _, own = ready(reduced.steps[-1].scene)
+    return reduced, Runner(scene.layout, smaller(own, reduced))
 
 
 def draw(spec: Spec) -> tuple[Mechanism, tuple[Cuts, ...]]:

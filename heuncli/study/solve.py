@@ -48,6 +48,7 @@ class Options:
     wanted: frozenset[str] | None = None
     time_limit: float | None = None
     least_norm: bool = False
+    reduce: bool = True  # whether less than the whole scene may be solved, where that changes nothing
     load_seconds: float = 0.0  # what reading the spec took, for the block `work`
 
     @property
@@ -61,7 +62,7 @@ def solve(spec: Spec, options: Options | None = None) -> Study:
     options = options or Options()
     deadline = time.monotonic() + options.time_limit if options.time_limit else None
     begun = time.perf_counter()
-    setup = set_up(spec, known_method(options.method))
+    setup = set_up(spec, known_method(options.method), reduce=options.reduce)
     built = time.perf_counter()
     tolerance = spec.analysis.tolerance if options.tolerance is None else options.tolerance
     history = integrate(setup, tolerance, deadline, by_cause=SHARES in options.reports)

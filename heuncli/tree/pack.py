@@ -30,14 +30,24 @@ JOINT_LOADS = {  # of the turning, of the sliding
 Scalar = tuple[int, Array, str, float, float]  # of a freedom: kind, direction, quantity, coordinate, rate
 
 
-def lay_out(mechanism: Mechanism, start: Assembly, inertias: Array, size: float, work: bool = True) -> Layout:
-    """Lay the scene out. size: of the scene [m]; inertias (n, 3, 3): about the centres of mass, of the motion."""
+def lay_out(
+    mechanism: Mechanism,
+    start: Assembly,
+    inertias: Array,
+    size: float,
+    work: bool = True,
+    spanning: Spanning | None = None,
+) -> Layout:
+    """Lay the scene out. size: of the scene [m]; inertias (n, 3, 3): about the centres of mass, of the motion.
+
+    spanning: the tree, where it is chosen already.
+    """
     pack = Pack()
     programs, uses = _programs(mechanism, pack)
     names = {j.name: k for k, j in enumerate(mechanism.joints)}
     kept = {names[joint] for joint, _ in uses} | {s.joint for s in mechanism.stops if s.quantity != "length"}
     kept |= {k for k, j in enumerate(mechanism.joints) if j.drive is not None and j.drive.quantity != "length"}
-    spanning = span(mechanism, kept)
+    spanning = span(mechanism, kept) if spanning is None else spanning
     starts = [joint_start(mechanism, start, joint) for joint in mechanism.joints]
     builder = _Builder(mechanism, start, spanning, starts, inertias, size, pack, programs)
     builder.bodies()

@@ -16,6 +16,7 @@ from heuncli.results import Array
 from heuncli.tree.idle_spins import IdleSpin, idle_spins, without_inertia
 from heuncli.tree.layout import Layout
 from heuncli.tree.pack import lay_out
+from heuncli.tree.spanning import Spanning
 
 
 @record
@@ -42,9 +43,14 @@ def prepare(mechanism: Mechanism, t0: float = 0.0) -> PreparedScene:
     return scene
 
 
-def arranged(mechanism: Mechanism, start: Assembly) -> PreparedScene:
-    """Lay out an assembled mechanism; bodies with an undetermined spin get some inertia and no spin about its axis."""
-    size = size_of_scene(mechanism, start)
+def arranged(
+    mechanism: Mechanism, start: Assembly, *, spanning: Spanning | None = None, size: float | None = None
+) -> PreparedScene:
+    """Lay out an assembled mechanism; bodies with an undetermined spin get some inertia and no spin about its axis.
+
+    spanning, size: of the tree and the scene [m], where they are those of a larger scene.
+    """
+    size = size_of_scene(mechanism, start) if size is None else size
     idle = tuple(idle_spins(mechanism, size))
     inertias = np.array([b.inertia for b in mechanism.bodies])
     omega = start.angular_velocity.copy()
@@ -57,7 +63,7 @@ def arranged(mechanism: Mechanism, start: Assembly) -> PreparedScene:
     driven = any(j.drive is not None for j in mechanism.joints)
     works = works or driven or bool(mechanism.blows or mechanism.stops)
     works = works or any(j.restitution is not None for j in mechanism.joints)
-    return PreparedScene(mechanism, start, idle, lay_out(mechanism, start, inertias, size, work=works))
+    return PreparedScene(mechanism, start, idle, lay_out(mechanism, start, inertias, size, works, spanning))
 
 
 def lacking_inertia(scene: PreparedScene) -> dict[int, Array]:

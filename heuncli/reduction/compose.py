@@ -1,0 +1,28 @@
+"""The steps of reduction, one after the other: each makes the scene that the one before it left smaller still."""
+
+from __future__ import annotations
+
+from collections.abc import Callable
+from importlib import import_module
+
+from heuncli.reduction.model import Reduced, Reduction
+from heuncli.tree.prepare import PreparedScene
+
+# in their order: the module under this one whose `step` it is, and whether it may concern a scene at all
+STEPS: tuple[tuple[str, Callable[[PreparedScene], bool]], ...] = ()
+
+
+def reduce(scene: PreparedScene) -> Reduced:
+    """The smallest scene that moves as this one does."""
+    steps: list[Reduction] = []
+    kept: list[str] = []
+    for name, concerns in STEPS:
+        if not concerns(scene):
+            continue
+        found = import_module(f"heuncli.reduction.{name}").step(scene)  # few scenes need it
+        if isinstance(found, Reduction):
+            steps.append(found)
+            scene = found.scene
+        else:
+            kept += found
+    return Reduced(tuple(steps), tuple(kept))

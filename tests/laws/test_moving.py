@@ -1,0 +1,57 @@
+"""A scene moves as what is integrated in its place, whatever stands between their states.
+
+Here the smaller scene is the scene itself from a start on which all pins are counted one turn further: its angles are
+not the scene's, but all else is.
+"""
+
+from __future__ import annotations
+
+import numpy as np
+import pytest
+
+from heuncli.integration.moving import Moving
+from heuncli.integration.runner import Runner
+from heuncli.records import replace
+from heuncli.results import Array
+from heuncli.spec.load import load
+from heuncli.study.setup import set_up
+from heuncli.tree.layout import Layout
+
+TURN = 2.0 * np.pi
+SPECS = ("four_bar", "struck_door", "bouncing_ball", "friction", "lift", "punch")
+
+
+def turned(layout: Layout, by: float) -> Array:
+    """What is added to a state so that all its pins' angles are so much larger."""
+    shift = np.zeros(layout.n_state)
+    for freedom in layout.freedoms:
+        if freedom.quantity == "angle" and freedom.q >= 0:
+            shift[freedom.q] = by
+    return shift
+
+
+def elsewhere(runner: Runner) -> Runner:
+    """A runner that integrates the scene a turn further."""
+    layout = runner.layout
+    shift = turned(layout, TURN)
+    own = Runner(replace(layout, y0=layout.y0 + shift))
+    return Runner(layout, Moving(own.layout, own.workspace, lambda t, y: y - shift, lambda t, y: y + shift))
+
+
+@pytest.mark.parametrize("name", SPECS)
+def test_states_blows_and_replays(name: str) -> None:
+    setup = set_up(load(f"specs/{name}.yaml"), reduce=False)
+    times = np.linspace(0.0, min(1.0, setup.spec.analysis.times[-1]), 11)
+    between = 0.5 * (times[1:] + times[:-1])
+    runs, replays = [], []
+    for runner in (setup.runner, elsewhere(setup.runner)):
+        runs.append(runner.trajectory(times, 1e-12))
+        replays.append(runner.resample(runs[-1], between))
+    here, there = runs
+    assert len(here.blows) == len(there.blows)
+    scale = max(1.0, float(np.abs(here.states).max()))
+    assert there.states == pytest.approx(here.states, abs=1e-9 * scale)
+    assert replays[1] == pytest.approx(replays[0], abs=1e-9 * scale)
+    for one, other in zip(here.blows, there.blows, strict=True):
+        assert other.time == pytest.approx(one.time, abs=1e-9)
+        assert other.after == pytest.approx(one.after, abs=1e-8 * scale)
