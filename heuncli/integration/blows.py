@@ -7,6 +7,8 @@ the one linear map a cause: each given impulse, the drives together. Positions s
 
 from __future__ import annotations
 
+from collections.abc import Sequence
+
 import numpy as np
 
 from heuncli import tolerances
@@ -256,4 +258,14 @@ def kinetic_energy(layout: Layout, bodies: Table) -> float:
         v = own["v"] + np.cross(own["omega"], own["R"] @ (body.center - layout.reference[place]))
         w = own["R"].T @ own["omega"]
         energy += 0.5 * (body.mass * float(v @ v) + float(w @ body.inertia @ w))
+    return energy
+
+
+def met_freely(layout: Layout, impulses: Sequence[Impulse]) -> float:
+    """The energy [J] that given impulses would bring to their bodies' mass, if no joint held them."""
+    energy = 0.0
+    for given in impulses:
+        mass = layout.mechanism.bodies[layout.mechanism.blows[given.blow].body].mass
+        arm = given.moment / layout.size
+        energy += 0.5 * float(given.force @ given.force + arm @ arm) / mass
     return energy

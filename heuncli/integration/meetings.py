@@ -6,7 +6,7 @@ import numpy as np
 
 from heuncli import tolerances
 from heuncli.errors import Problem, SolveError
-from heuncli.integration.blows import Asked, Given, Jump, Told, asked_of, behind, told
+from heuncli.integration.blows import Asked, Given, Jump, Told, asked_of, behind, met_freely, told
 from heuncli.integration.contacts import (
     Struck,
     Touching,
@@ -63,7 +63,7 @@ def held_at(evaluator: Evaluator, t: float, state: Array) -> Array:
 def require_energy(jump: Jump, terms: float) -> None:
     """Raise SolveError where the energies before and behind a blow and the work of its impulses do not add up.
 
-    terms: what the contacts' impulses would bring alone, which others may take back.
+    terms: what the impulses would bring alone, which joints and others may take back.
     """
     before, after = jump.kinetic
     size = max(before, after, abs(jump.work), tolerances.UNBALANCED * terms)
@@ -119,7 +119,8 @@ class Contacts:
         struck = tuple(self.layout.contacts[i].name for i in touch.which[outcome.struck.closed])
         blow = Told(time, found, causes, outcome.after, outcome.work, self.holding.copy(), struck)
         jump = told(self.evaluator, given, asked, blow)
-        require_energy(jump, 0.5 * float(outcome.struck.impulses**2 @ np.diag(pressed.A)))
+        terms = 0.5 * float(outcome.struck.impulses**2 @ np.diag(pressed.A)) + met_freely(self.layout, asked.impulses)
+        require_energy(jump, terms)
         return jump
 
     def pose(self, given: Given, asked: Asked, touch: Touching) -> tuple[Answered, Pressed]:

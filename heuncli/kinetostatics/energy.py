@@ -49,7 +49,7 @@ def energy_drift(energy: Block, largest: float, lift: float) -> float:
     """Change of kinetic + potential - work from the start, relative to the largest kinetic energy; 0 at rest.
 
     largest: kinetic energy over the run [J], which instants asked for may not show; lift: the work of the weight over
-    the scene's size [J], by which rest is judged.
+    the scene's size, and of blows on what is free [J], by which rest is judged.
     """
     total = energy["kinetic"] + energy["potential"] - energy["work"]
     largest = max(largest, float(energy["kinetic"].max(initial=0.0)))

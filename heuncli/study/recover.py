@@ -175,11 +175,14 @@ def certain_sums(recovery: Recovery) -> list[CertainSum]:
     return recovery.decided.sums(recovery.setup.runner, recovery.recovered)
 
 
-def accuracy(recovery: Recovery, kinetic: float = 0.0) -> Accuracy:
-    """How well the instants balance: energy, closures, d'Alembert's principle; kinetic: the run's largest [J]."""
+def accuracy(recovery: Recovery, kinetic: float = 0.0, struck: float = 0.0) -> Accuracy:
+    """How well the instants balance: energy, closures, d'Alembert's principle; kinetic: the run's largest [J].
+
+    struck: the energy that given blows would bring to what nothing holds [J].
+    """
     scene, recovered = recovery.setup.scene, recovery.recovered
     mechanism, size = scene.mechanism, scene.layout.size
-    lift = sum(body.mass for body in mechanism.bodies) * float(np.abs(mechanism.gravity).max()) * size
+    lift = sum(body.mass for body in mechanism.bodies) * float(np.abs(mechanism.gravity).max()) * size + struck
     return {
         "energy_drift": energy_drift(recovery.energy, kinetic, lift),
         "constraint_gap": float(recovered.gap.max(initial=0.0)),

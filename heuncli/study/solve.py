@@ -13,6 +13,7 @@ from typing import TYPE_CHECKING, Any
 import numpy as np
 
 from heuncli.errors import Problem, SpecError
+from heuncli.integration.blows import met_freely
 from heuncli.integration.methods import METHODS
 from heuncli.kernel.choose import KERNEL
 from heuncli.records import record, replace
@@ -107,7 +108,8 @@ def compose(
     shown, unknown = blocks_of(history, recovery, wanted)
     split = recovery.decided.words if recovery.decided is not None else ()
     checked = history.checked
-    balance = accuracy(recovery, checked.kinetic if checked is not None else 0.0)
+    struck_freely = sum(met_freely(setup.scene.layout, jump.impulses) for jump in history.blows)
+    balance = accuracy(recovery, checked.kinetic if checked is not None else 0.0, struck_freely)
     if struck is not None:
         balance["balance_residual"] = max(balance["balance_residual"], struck.residual)
     gap = checked.run.gap if checked is not None else setup.scene.start.gap
