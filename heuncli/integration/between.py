@@ -52,7 +52,7 @@ class Blows:
 
     def meet(self, given: Given, time: float, row: int | None = None) -> Jump | None:
         """The blow that is given at the state reached, and that of its contacts; row: of the one that closed."""
-        state = self.moving.state(self.run.loop.t, np.array(self.run.loop.state()))
+        state = self.moving.state(time, np.array(self.run.loop.state()))
         if self.contacts is None:
             return strike(self.evaluator, given, state, time)
         return self.contacts.meet(given, state, time, row)
@@ -80,7 +80,7 @@ class Blows:
 
     def take(self, jump: Jump) -> None:
         """Go on from behind a blow."""
-        after = self.moving.restrict(self.run.loop.t, jump.after)
+        after = self.moving.restrict(jump.time, jump.after)
         self.run.loop.jump(after)
         self.steps.stand(after)
         self.done.append(jump)
