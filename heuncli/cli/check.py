@@ -21,7 +21,8 @@ from heuncli.report.table import Column, Table, plain
 from heuncli.report.words import count
 from heuncli.results import Array
 from heuncli.spec.load import load
-from heuncli.study.expect import Case, compare, wanted
+from heuncli.study.asked import EVERYTHING, asked_by
+from heuncli.study.expect import Case, compare
 from heuncli.study.solve import Options, solve
 
 FORMATS = ("table", "json")
@@ -83,7 +84,8 @@ def _files(argument: str, skipped: list[str]) -> Iterator[str]:
 def _check(path: str, quiet: bool) -> Checked:
     try:
         spec = load(path)
-        study = solve(spec, Options(wanted=wanted(spec.expect) if spec.expect else None))
+        asked = asked_by([item.of for item in spec.expect], spec) if spec.expect else EVERYTHING
+        study = solve(spec, Options(wanted=asked.reports, entries=asked.entries))
         cases = tuple(compare(study, item) for item in spec.expect)
         warn(spec, study.results, quiet, f"heun: {path}", study.later)
         return Checked(path, cases, tables=spec.files)

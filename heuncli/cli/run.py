@@ -15,6 +15,7 @@ from heuncli.cli.solving import choice, instants, overrides, positive, timings, 
 from heuncli.cli.target import format_of, keep
 from heuncli.errors import Problem
 from heuncli.integration.methods import METHODS
+from heuncli.nearest import did_you_mean
 from heuncli.records import replace
 from heuncli.report.heading import write_heading, write_heading_markdown
 from heuncli.report.labels import Labels, labels_of
@@ -25,6 +26,7 @@ from heuncli.results import Results
 from heuncli.results_schema import BLOWS, REPORT_OF, REPORTS, SHARES, with_shared
 from heuncli.spec.load import load
 from heuncli.spec.models import Spec
+from heuncli.study.asked import Asked, Entry, asked_by, entries_of, entry_at
 from heuncli.study.extremes import Searched
 from heuncli.study.solve import Options, Study, solve
 
@@ -42,7 +44,7 @@ def main(request: Run) -> int:
         from heuncli.cli import measure  # with paths and JSON 2 ms that tables do not need
 
         asked = measure.parse(request.measure)
-    only = _only(request.only)
+    only = _only(request.only) if request.only is not None else None
     options = Options(
         tolerance=positive("--tolerance", request.tolerance),
         method=_method(request.method),
@@ -54,12 +56,12 @@ def main(request: Run) -> int:
     spec = load(request.spec, overrides=overrides(request.set), checking=False)
     keep(request.output, [request.spec, *spec.files])
     options = replace(options, load_seconds=time.perf_counter() - begun)
-    wanted = asked.wanted if asked else _wanted(request, only, spec, form)
-    study = solve(spec, replace(options, wanted=wanted))
+    what = asked_by([asked.path], spec) if asked else _asked(request, only, spec, form)
+    study = solve(spec, replace(options, wanted=what.reports, entries=what.entries))
     if asked:
         text = measure.write(asked, study, form)
     else:
-        text = _report(request, form, study, labels_of(spec), wanted or frozenset(REPORTS))
+        text = _report(request, form, study, labels_of(spec), what.reports)
     emit(text, request.output)
     later = [*study.later, *(measure.warning(asked, study) if asked else ())]
     warnings = warn(spec, study.results, request.quiet, later=later)
@@ -75,22 +77,44 @@ def _method(name: str | None) -> str | None:
     return name
 
 
-def _only(words: str | None) -> frozenset[str] | None:
-    if words is None:
-        return None
+def _only(words: str) -> tuple[frozenset[str], tuple[str, ...]]:
+    """The reports of `--only`, and the paths of single entries; what is no report with a dot may be such."""
     names = [word.strip() for word in words.split(",")]
-    return frozenset(choice("--only", REPORT_OF.get(name, name), (*REPORTS, SHARES)) for name in names)
+    paths = tuple(name for name in names if name.split(".")[0] in REPORT_OF and "." in name)
+    reports = [choice("--only", REPORT_OF.get(name, name), (*REPORTS, SHARES)) for name in names if name not in paths]
+    return frozenset(reports), paths
 
 
-def _wanted(request: Run, only: frozenset[str] | None, spec: Spec, form: str) -> frozenset[str]:
-    """The reports that are asked for; who asks for the impulses alone sees them alone."""
+def _asked(request: Run, only: tuple[frozenset[str], tuple[str, ...]] | None, spec: Spec, form: str) -> Asked:
+    """What is asked for; who asks for the impulses alone sees them alone."""
     wanted = TABLE_DEFAULT if form in TABLES else EXPORT_DEFAULT
     if form in TABLES and spec.analysis.type == "impulse":
         wanted = frozenset({BLOWS})
     if spec.report is not None:
         wanted = frozenset(spec.report)
-    wanted = wanted if only is None else only
-    return with_shared(wanted | {SHARES} if request.by_cause else wanted)
+    entries = frozenset[Entry]()
+    if only is not None:
+        wanted, paths = only
+        single = [_entry(path, spec) for path in paths]
+        entries = frozenset(entry for entry in single if REPORT_OF[entry[0]] not in wanted)
+        wanted = wanted | {REPORT_OF[entry[0]] for entry in single}
+    return Asked(with_shared(wanted | {SHARES} if request.by_cause else wanted), entries)
+
+
+def _entry(path: str, spec: Spec) -> Entry:
+    """The entry that a path of `--only` names."""
+    words = path.split(".")
+    known = entries_of(spec)
+    entry, rest = entry_at(words, known)
+    if entry is not None and not rest:
+        return entry
+    names = [".".join((*block, name)) for block, own in known.items() if block[0] == words[0] for name in own]
+    hint: str | None
+    if entry is not None:
+        hint = f"say {'.'.join(entry)}; --measure prints single numbers"
+    else:
+        hint = did_you_mean(path, names, "entries") if names else f"the scene has no {words[0]}"
+    raise UsageError(Problem("bad-option", f"--only {path}: not an entry of the results", hint=hint))
 
 
 def _report(request: Run, form: str, study: Study, labels: Labels, wanted: frozenset[str]) -> str:

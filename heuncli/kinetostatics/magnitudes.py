@@ -42,7 +42,10 @@ def _energy_like(mechanism: Mechanism, x: Array) -> Array:
 def magnitudes(
     mechanism: Mechanism, states: BodyStates, actions: Sequence[Action], energy: Block, size: float
 ) -> Magnitudes:
-    """The magnitudes at these instants; actions: of applied loads and of joints with their drives."""
+    """The magnitudes at these instants; actions: of applied loads and of joints with their drives.
+
+    energy: kinetic, potential, work; empty where nobody asks for it.
+    """
     g = float(np.sqrt(np.sum(np.square(mechanism.gravity))))
     mass = [body.mass for body in mechanism.bodies]
     force = _largest(inertia_scale(mechanism, states))
@@ -63,7 +66,7 @@ def magnitudes(
         "m": size, "m/s": speed, "m/s²": acceleration,
         "rad": 1.0, "rad/s": max(spin, float(np.sqrt(turning))), "rad/s²": turning,
         "N": force, "N·m": force * size, "W": force * speed,
-        "J": max(sum(mass) * g * size, *(_largest(energy[key]) for key in ("kinetic", "potential", "work"))),
+        "J": max([sum(mass) * g * size, *map(_largest, energy.values())]),
     }  # fmt: skip
     return Magnitudes(by_unit, size, _largest(states.x), {})
 

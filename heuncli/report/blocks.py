@@ -179,7 +179,7 @@ def _supports(groups: list[Group], results: Results) -> tuple[list[Group], tuple
     supports, elements = results.foundation.get("supports", {}), results.foundation.get("elements", {})
     if not supports and not elements:
         return groups, (FREE,)
-    if len(supports) == 1 and not elements:
+    if len(supports) == 1 and not elements and "force" in results.foundation:
         only = f"all of it goes through {next(iter(supports))}, the only support"
         return [group for group in groups if group.whole], (only,)
     return groups, ('supports: moment about the joint\'s "to" point; elements: about their own point',)

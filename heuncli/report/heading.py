@@ -21,6 +21,7 @@ def heading(results: Results) -> list[tuple[str, str]]:
     lines = [
         ("heun", f"{results.version}  {results.title}"),
         ("model", _model(results)),
+        *_reduced(results.model.get("reduced", ())),
         *(("start", sentence) for sentence in results.model.get("moved", ())),
         ("run", _run(results)),
         ("accuracy", _errors(results)),
@@ -52,6 +53,12 @@ def write_heading_markdown(results: Results) -> str:
     lines = heading(results)
     body = "".join(f"- {label + ': ' if label else ''}{text}\n" for label, text in lines[1:])
     return f"## {results.title}\n\n- heun: {results.version}\n{body}\n"
+
+
+def _reduced(sentences: Sequence[str]) -> list[tuple[str, str]]:
+    """What the model leaves out, in one line."""
+    more = f"; {len(sentences) - 1} more in heun model" if len(sentences) > 1 else ""
+    return [("reduced", f"{sentences[0]}{more}")] if sentences else []
 
 
 def _contacts(sentences: Sequence[str]) -> list[tuple[str, str]]:

@@ -13,6 +13,9 @@ MOST_NAMES = 12
 # Key of the model -> title of its list of sentences.
 LISTS = (
     ("reasons", "Why this model"),
+    ("reduced", "Left out, or made smaller"),
+    ("not_reduced", "Not made smaller"),
+    ("cannot_tell", "What this model cannot tell"),
     ("chosen", "Start values chosen for you"),
     ("moved", "Moved from the drawing"),
     ("notes", "Worth knowing"),

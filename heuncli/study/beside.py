@@ -20,12 +20,11 @@ from heuncli.integration.evaluator import Recovered
 from heuncli.integration.runner import Trajectory
 from heuncli.results import Array, Indices, Mask
 from heuncli.results_schema import quantity
-from heuncli.study.recover import Recovery, blocks
+from heuncli.study.recover import HUNG_ON_RANK, Recovery, asked_blocks
 from heuncli.tree.layout import Layout
 
 AMPLE = 10.0  # times the change: errors were 0.2 of it in the median of 4,711 instants, 3.4 at the most
 DIRECTIONS = 3  # in which a state is moved: that none of them meets the weak one is a matter of 1e-3
-HUNG_ON_RANK = frozenset({"joints", "foundation", "sections"})  # reports that ask for the rank of the closures
 OF_ACCELERATIONS = frozenset({"m/s²", "rad/s²", "N", "N·m", "Pa", "W", "N·m/s"})  # units of what hangs on them
 Kind = tuple[str, str]  # numbers of one kind: the path of the schema, and the unit
 
@@ -42,12 +41,12 @@ def known_blocks(
     recovery: Recovery, wanted: Set[str], run: Trajectory, jumps: Sequence[float]
 ) -> tuple[dict[str, Any], Array]:
     """The blocks of a motion, nan where rounding reaches a number beside a singular pose; the instants of such."""
-    shown = blocks(recovery, wanted)
+    shown = asked_blocks(recovery, wanted)
     near = nearly_singular(recovery, wanted)
     if not len(near):
         return shown, np.zeros(0)
     moved = moved_states(recovery, near, run, jumps)
-    other = blocks(Recovery(recovery.setup, moved, recovery.least_norm), wanted)
+    other = asked_blocks(Recovery(recovery.setup, moved, recovery.least_norm), wanted)
     unknown = np.zeros(len(near), dtype=bool)
     known = [
         (leaf, leaf.block[leaf.name][near], error(leaf.block[leaf.name][near], elsewhere.block[leaf.name]))

@@ -2,7 +2,6 @@
 
 from __future__ import annotations
 
-from collections.abc import Sequence
 from typing import Any, Literal
 
 import numpy as np
@@ -13,7 +12,7 @@ from heuncli.records import record
 from heuncli.results import Array, Results
 from heuncli.results_paths import find
 from heuncli.spec.models import Expect
-from heuncli.study.measure import NOT_CLAIMED, Measure, lost_from, peak, report_of
+from heuncli.study.measure import NOT_CLAIMED, Measure, lost_from, peak
 from heuncli.study.solve import Study
 
 # Where the spec gives neither rel nor abs.
@@ -35,13 +34,6 @@ class Case:
     def passed(self) -> bool:
         """Whether it holds."""
         return self.failure is None
-
-
-def wanted(expectations: Sequence[Expect]) -> frozenset[str] | None:
-    """The reports that the expectations need; None where that is not known."""
-    reports = [report_of(item.of) for item in expectations]
-    known = [report for report in reports if report is not None]
-    return frozenset().union(*known) if len(known) == len(reports) else None
 
 
 def compare(study: Study, item: Expect) -> Case:

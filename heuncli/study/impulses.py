@@ -24,7 +24,7 @@ from heuncli.mechanism.model import Mechanism
 from heuncli.records import fields, record, replace
 from heuncli.response import Columns
 from heuncli.results import Array, Block, CertainSum
-from heuncli.results_schema import BY_CAUSE, SHARES
+from heuncli.results_schema import BLOWS, BY_CAUSE, SHARES
 from heuncli.study.history import History
 from heuncli.study.recover import Recovery, blocks, certain_sums
 from heuncli.study.setup import Setup
@@ -155,6 +155,8 @@ def impulses(setup: Setup, history: History, least_norm: bool, by_cause: bool = 
     by_cause: with the shares of each that strikes.
     """
     own = of_run(setup, history.blows, least_norm, by_cause)
+    if BLOWS not in setup.asked.reports:
+        return own  # which is answered and balances, but not told
     others = [of_run(setup, jumps, least_norm, by_cause) for jumps in history.beside if jumps]
     return replace(own, errors=apart(own, others))
 

@@ -25,11 +25,22 @@ from heuncli.kinetostatics.foundation import inertia_loads, total
 from heuncli.kinetostatics.reactions import JointLoads, in_plane, joint_loads
 from heuncli.mechanism.size import marks
 from heuncli.results import Array, Estimate, Mask
-from heuncli.results_schema import BY_CAUSE
+from heuncli.results_schema import BLOWS, BY_CAUSE
 from heuncli.study.recover import about
 from heuncli.study.setup import Setup
 
 CHOSEN_ANEW = 1e-6  # of the largest multiplier: what redundant joints leave open changes by more when rows are chosen
+
+
+# Kinds, and the reports that tell something of them: what nobody asks for is not compared.
+TOLD_IN = {
+    "reactions": {"joints", "foundation"},
+    "foundation": {"foundation"},
+    "sections": {"sections"},
+    "forces": {"forces"},
+    "motion": {"motion", "points", "forces", BLOWS},
+    "energy": {"energy", BLOWS},
+}
 
 
 class Extent:
@@ -155,10 +166,11 @@ def _at_each(values: Iterable[Array]) -> Array:
 
 
 class Kinds:
-    """Collects the differences of a motion's loads and energy between two runs."""
+    """Collects the differences of a motion's loads and energy between two runs, of the kinds that are asked for."""
 
     def __init__(self, setup: Setup, by_cause: bool = False) -> None:
         self.setup, self.by_cause = setup, by_cause
+        self.compared = frozenset(kind for kind, told_in in TOLD_IN.items() if told_in & setup.asked.reports)
         self.extents: dict[tuple[str, str], Extent] = {}
         self.reach = 0.0  # farthest centre of mass from the point that the foundation's moment is about
         self.asked = self.before = np.zeros(0, dtype=bool)
@@ -180,27 +192,41 @@ class Kinds:
         if same.any() and not same.all():
             several, asked, before = several.at(np.repeat(same, count)), asked[same], before[same]
         self.asked, self.before = asked, before
-        layout, mechanism = self.setup.scene.layout, self.setup.scene.mechanism
-        states = body_states(layout, several)
-        joints = joint_loads(layout, several, states)
-        loads = applied_loads(mechanism, several)
+        states = body_states(self.setup.scene.layout, several)
+        loads = applied_loads(self.setup.scene.mechanism, several)
+        if self.compared & {"reactions", "foundation", "sections", "forces"}:
+            self.add_loads(several, states, loads)
+        if "energy" in self.compared:
+            self.add_energy(several, states, loads)
+        if "motion" in self.compared:
+            self.add_motion(states)
+
+    def add_loads(self, several: Recovered, states: BodyStates, loads: Sequence[AppliedLoad]) -> None:
+        """Loads of all kinds."""
+        joints = joint_loads(self.setup.scene.layout, several, states)
         terms = Terms(self.setup, several, states, loads)
-        self.add_joints(joints, terms)
-        driven = [load for load in joints if load.drive is not None]
-        self.add_foundation(states, [*(load.action for load in loads), *joint_actions(driven)], terms)
-        if self.setup.cuts:
-            self.add_sections(states, [*whole_joint_actions(joints), *(load.action for load in loads)], terms)
-        self.add_energy(several, states, loads)
-        self.add_motion(states)
-        for load in loads:
-            F, M = terms.rounding
-            self.take(("forces", "N"), load.action.force, F, terms.force)
-            self.take(("forces", "N·m"), load.action.moment, M, terms.moment)
-            self.take(("forces", "W"), load.power, np.zeros(len(F)), terms.force)
+        applied = [load.action for load in loads]
+        if "reactions" in self.compared:
+            self.add_joints(joints, terms)
+        if "foundation" in self.compared:
+            driven = [load for load in joints if load.drive is not None]
+            self.add_foundation(states, [*applied, *joint_actions(driven)], terms)
+        if self.setup.cuts and "sections" in self.compared:
+            self.add_sections(states, [*whole_joint_actions(joints), *applied], terms)
+        if "forces" in self.compared:
+            self.add_forces(loads, terms)
         if self.by_cause:
             from heuncli.study.shares import compare_shares  # few runs ask for them
 
-            compare_shares(self, several, states, [load.action for load in loads], about(self.setup), terms)
+            compare_shares(self, several, states, applied, about(self.setup), terms)
+
+    def add_forces(self, loads: Sequence[AppliedLoad], terms: Terms) -> None:
+        """Applied loads, and what they put into the bodies."""
+        F, M = terms.rounding
+        for load in loads:
+            self.take(("forces", "N"), load.action.force, F, terms.force)
+            self.take(("forces", "N·m"), load.action.moment, M, terms.moment)
+            self.take(("forces", "W"), load.power, np.zeros(len(F)), terms.force)
 
     def add_motion(self, states: BodyStates) -> None:
         """Velocities and accelerations: of the bodies, and of points as far from their centres as they reach."""
@@ -292,15 +318,18 @@ class Kinds:
         self.take(("energy", "work"), block["work"], none, none)
 
     def estimate(self) -> Estimate:
-        """The estimated error of each kind, relative to the largest told of it."""
-        size = self.setup.scene.layout.size
-        return Estimate(
-            reactions=self.wrench(size, "reactions"),
-            drives=max(self.wrench(1.0, "drives", "thrust", ""), self.wrench(1.0, "drives", "", "torque")),
-            foundation=self.wrench(size + self.reach, "foundation", also=("effects", "elements")),
-            sections=self.wrench(size, "sections"),
-            energy=self.energies(),
-        )
+        """The estimated error of each kind that is asked for, relative to the largest told of it."""
+        size, found = self.setup.scene.layout.size, Estimate()
+        if "reactions" in self.compared:
+            found["reactions"] = self.wrench(size, "reactions")
+            found["drives"] = max(self.wrench(1.0, "drives", "thrust", ""), self.wrench(1.0, "drives", "", "torque"))
+        if "foundation" in self.compared:
+            found["foundation"] = self.wrench(size + self.reach, "foundation", also=("effects", "elements"))
+        if "sections" in self.compared:
+            found["sections"] = self.wrench(size, "sections")
+        if "energy" in self.compared:
+            found["energy"] = self.energies()
+        return found
 
     def errors(self) -> dict[tuple[str, str], float]:
         """The estimated errors by kind and unit, before the horizon."""

@@ -35,11 +35,6 @@ class Measure(NamedTuple):
     path: str
     at: float | None = None
 
-    @property
-    def wanted(self) -> frozenset[str] | None:
-        """The report that has to be computed; None for the usual ones."""
-        return report_of(self.path)
-
 
 def report_of(path: str) -> frozenset[str] | None:
     """Which report a path needs; None where its first word does not say."""

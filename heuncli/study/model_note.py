@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+from collections.abc import Sequence
 from typing import TYPE_CHECKING
 
 import numpy as np
@@ -10,6 +11,7 @@ from heuncli import tolerances
 from heuncli.integration.runner import Runner
 from heuncli.joint_kinds import JOINTS
 from heuncli.mechanism.model import Mechanism
+from heuncli.reduction.model import Reduced
 from heuncli.redundancy.count import freedoms_of_tree, redundancy
 from heuncli.results import Block, Mask
 from heuncli.tree.layout import Layout
@@ -42,6 +44,15 @@ def model_note(scene: PreparedScene, runner: Runner, method: str) -> Block:
     if count.generic and count.stress is not None:
         block["notes"] += held_twice(layout, count.stress)
     return block
+
+
+def reductions(left_out: Sequence[str], reduced: Reduced | None) -> Block:
+    """What was left out or made smaller, what was not though one might expect it, what cannot be told: sentences."""
+    found: Block = {"reduced": [*left_out]}
+    if reduced is not None:
+        found["reduced"] += reduced.told
+        found |= {"not_reduced": list(reduced.kept), "cannot_tell": list(reduced.hidden)}
+    return {key: sentences for key, sentences in found.items() if sentences}
 
 
 def grubler(mechanism: Mechanism) -> int:

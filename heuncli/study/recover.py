@@ -24,13 +24,18 @@ from heuncli.kinetostatics.reactions import JointLoads, joint_loads
 from heuncli.mechanism.model import JointLoad, PairLoad
 from heuncli.records import record, replace
 from heuncli.results import Accuracy, Array, Block, CertainSum, Magnitudes, Mask
-from heuncli.results_schema import SHARES
+from heuncli.results_schema import BLOWS, SHARED, SHARES
+from heuncli.study.asked import chosen
 from heuncli.study.setup import Setup
 
 if TYPE_CHECKING:  # loaded where a scene has closed chains, or sections, or loads are told by cause
     from heuncli.kinetostatics.shares import Shares
     from heuncli.redundancy.resolve import Resolution
     from heuncli.redundancy.self_stress import SelfStress
+
+
+HUNG_ON_RANK = SHARED  # reports that ask for the rank of the closures
+OF_ENERGY = frozenset({"energy", BLOWS})  # reports that tell energies
 
 
 @record
@@ -60,14 +65,25 @@ class Recovery:
             return None
         from heuncli.redundancy.resolve import resolve  # a tree starts faster without it
 
-        joints = joint_loads(layout, self.recovered, self.states)
-        return resolve(self.setup.runner, self.recovered, self.states, joints, self.least_norm)
+        return resolve(self.setup.runner, self.recovered, self.states, self.unsplit, self.least_norm)
+
+    @property
+    def verdicts(self) -> bool:
+        """Whether it matters what redundant joints leave open: to what is asked for, or to how joints are split."""
+        setup = self.setup
+        may_share = bool(setup.model["redundant"] or setup.scene.layout.contacts)
+        return may_share or bool(HUNG_ON_RANK & setup.asked.reports)
 
     @cached_property
     def joints(self) -> list[JointLoads]:
         """The joints' reactions."""
         if self.decided is not None:
             return self.decided.joints
+        return self.unsplit
+
+    @cached_property
+    def unsplit(self) -> list[JointLoads]:
+        """The joints' reactions as the kernel answers them: where some are redundant, one split of many."""
         return joint_loads(self.setup.scene.layout, self.recovered, self.states)
 
     @cached_property
@@ -96,7 +112,7 @@ class Recovery:
     @property
     def actions(self) -> list[Action]:
         """Everything that acts on the bodies but their weight; of a joint constraint and drive together."""
-        return [*self.applied, *whole_joint_actions(self.joints)]
+        return [*self.applied, *whole_joint_actions(self.joints if self.verdicts else self.unsplit)]
 
     @cached_property
     def energy(self) -> Block:
@@ -107,7 +123,8 @@ class Recovery:
     def magnitudes(self) -> Magnitudes:
         """What the numbers are summed from."""
         scene = self.setup.scene
-        return magnitudes(scene.mechanism, self.states, self.actions, self.energy, scene.layout.size)
+        energy = self.energy if OF_ENERGY & self.setup.asked.reports else {}
+        return magnitudes(scene.mechanism, self.states, self.actions, energy, scene.layout.size)
 
     @property
     def generic(self) -> Array:
@@ -162,6 +179,11 @@ def blocks(recovery: Recovery, wanted: Set[str]) -> dict[str, Any]:
     return shown
 
 
+def asked_blocks(recovery: Recovery, wanted: Set[str]) -> dict[str, Any]:
+    """The same, of reports with single entries that are asked for these alone."""
+    return chosen(blocks(recovery, wanted), recovery.setup.asked)
+
+
 def about(setup: Setup) -> Array:
     """The point about which the foundation's moment is taken, world axes."""
     given = setup.spec.foundation.about
@@ -176,18 +198,18 @@ def certain_sums(recovery: Recovery) -> list[CertainSum]:
 
 
 def accuracy(recovery: Recovery, kinetic: float = 0.0, struck: float = 0.0) -> Accuracy:
-    """How well the instants balance: energy, closures, d'Alembert's principle; kinetic: the run's largest [J].
+    """How well the instants balance: energy where it is asked for, closures, d'Alembert's principle.
 
-    struck: the energy that given blows would bring to what nothing holds [J].
+    kinetic: the run's largest [J]; struck: the energy that given blows would bring to what nothing holds [J].
     """
-    scene, recovered = recovery.setup.scene, recovery.recovered
+    scene, recovered, found = recovery.setup.scene, recovery.recovered, Accuracy()
     mechanism, size = scene.mechanism, scene.layout.size
-    lift = sum(body.mass for body in mechanism.bodies) * float(np.abs(mechanism.gravity).max()) * size + struck
-    return {
-        "energy_drift": energy_drift(recovery.energy, kinetic, lift),
-        "constraint_gap": float(recovered.gap.max(initial=0.0)),
-        "balance_residual": balance_residual(mechanism, recovery.states, recovery.actions, size),
-    }
+    if OF_ENERGY & recovery.setup.asked.reports:
+        lift = sum(body.mass for body in mechanism.bodies) * float(np.abs(mechanism.gravity).max()) * size + struck
+        found["energy_drift"] = energy_drift(recovery.energy, kinetic, lift)
+    found["constraint_gap"] = float(recovered.gap.max(initial=0.0))
+    found["balance_residual"] = balance_residual(mechanism, recovery.states, recovery.actions, size)
+    return found
 
 
 def body_block(states: BodyStates, i: int) -> Block:

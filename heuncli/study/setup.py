@@ -15,7 +15,8 @@ from heuncli.reduction import compose as reduction
 from heuncli.reduction.model import Reduced
 from heuncli.results import Block
 from heuncli.spec.models import Spec
-from heuncli.study.model_note import model_note
+from heuncli.study.asked import EVERYTHING, Asked
+from heuncli.study.model_note import model_note, reductions
 from heuncli.tree.prepare import PreparedScene, prepare
 
 if TYPE_CHECKING:  # loaded where a scene has sections
@@ -26,8 +27,9 @@ if TYPE_CHECKING:  # loaded where a scene has sections
 class Setup:
     """All that is known of a scene before anything moves; method is None where nothing is integrated.
 
-    cuts: of the sections, as asked; in a search runs of cuts as whole stretches stand for them. reduced: what is
-    integrated in the scene's place, and why; None where nothing is, or where all is solved in full.
+    spec: as far as it is solved; asked: what is told of it. cuts: of the sections, as asked; in a search runs of cuts
+    as whole stretches stand for them. reduced: what is integrated in the scene's place, and why; None where nothing is,
+    or where all is solved in full.
     """
 
     spec: Spec
@@ -37,21 +39,34 @@ class Setup:
     method: Method | None
     model: Block
     reduced: Reduced | None = None
+    asked: Asked = EVERYTHING
 
 
-def set_up(spec: Spec, method: str | None = None, *, reduce: bool = True) -> Setup:
+def set_up(spec: Spec, method: str | None = None, *, reduce: bool = True, asked: Asked = EVERYTHING) -> Setup:
     """Build, cut, assemble, lay out; `method` stands for the one in the spec; reduce: a smaller scene may move for it.
 
-    Raises SpecError for a section that cannot be cut, SolveError where the scene does not close.
+    asked: what is not asked for, and what nothing asked for depends on, is left out. Raises SpecError for a section
+    that cannot be cut, SolveError where the scene does not close.
     """
+    spec, left_out = asked_part(spec, asked, reduce)
     mechanism, cuts = draw(spec)
     scene, runner = ready(prepare(mechanism, spec.analysis.times[0] if spec.analysis.type == "state" else 0.0))
     chosen = METHODS[method or spec.analysis.method] if spec.analysis.type == "motion" else None
     reduced = None
     if chosen is not None and reduce:
         reduced, runner = reduced_runner(scene, runner)
-    note = model_note(scene, runner, chosen.name if chosen else "none")
-    return Setup(spec, scene, cuts, runner, chosen, note, reduced)
+    note = model_note(scene, runner, chosen.name if chosen else "none") | reductions(left_out, reduced)
+    return Setup(spec, scene, cuts, runner, chosen, note, reduced, asked)
+
+
+def asked_part(spec: Spec, asked: Asked, reduce: bool) -> tuple[Spec, tuple[str, ...]]:
+    """The spec as far as it is asked for; what of the scene is left out, in a sentence."""
+    if asked.is_everything:
+        return spec, ()
+    from heuncli.study.parts import left_out, restricted  # where not all is asked for
+
+    part = restricted(spec, asked, reduce=reduce)
+    return part, left_out(spec, part)
 
 
 def reduced_runner(scene: PreparedScene, runner: Runner) -> tuple[Reduced, Runner]:

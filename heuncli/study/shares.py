@@ -53,11 +53,10 @@ def compare_shares(
     more = larger(shares.column, terms)
     F, M = (x * more for x in terms.rounding)
     force, moment = terms.force * more, terms.moment * more
-    for kind, name, values in [
-        *of_joints(shares),
-        *of_foundation(setup, states, shares, about),
-        *of_sections(setup, states, shares),
-    ]:
+    found = of_joints(shares) if "reactions" in kinds.compared else []
+    found += of_foundation(setup, states, shares, about) if "foundation" in kinds.compared else []
+    found += of_sections(setup, states, shares) if "sections" in kinds.compared else []
+    for kind, name, values in found:
         rounding, of = (M, moment) if name == "moment" else (F, force)
         kinds.take((f"{kind} {BY_CAUSE}", name), values, rounding, of)
 

@@ -21,9 +21,10 @@ from heuncli.results import Accuracy, Array, Block, Extremes, Magnitudes, Place,
 from heuncli.results_schema import BLOWS, REPORTS, SHARED, SHARES, with_shared
 from heuncli.spec.models import Spec
 from heuncli.study import extremes
+from heuncli.study.asked import Asked, Entry, sums_among
 from heuncli.study.extremes import Searched
 from heuncli.study.history import History, integrate, resample, search_times
-from heuncli.study.recover import Recovery, accuracy, blocks, certain_sums, recover
+from heuncli.study.recover import Recovery, accuracy, asked_blocks, certain_sums, recover
 from heuncli.study.sampled import Sampled
 from heuncli.study.setup import Setup, set_up
 from heuncli.study.warnings import beside_singular_poses, left_out, status, warnings
@@ -42,11 +43,15 @@ CUT_SHORT = "the search for extremes was ended before all was looked at that may
 
 @record
 class Options:
-    """What a command asks beside the spec; None leaves it to the spec. wanted: reports, None for all."""
+    """What a command asks beside the spec; None leaves it to the spec.
+
+    wanted: reports, None for all; entries: single ones of these, in place of the whole.
+    """
 
     tolerance: float | None = None
     method: str | None = None
     wanted: frozenset[str] | None = None
+    entries: frozenset[Entry] = frozenset()
     time_limit: float | None = None
     least_norm: bool = False
     reduce: bool = True  # whether less than the whole scene may be solved, where that changes nothing
@@ -57,13 +62,18 @@ class Options:
         """The reports that are asked for."""
         return frozenset(REPORTS) if self.wanted is None else with_shared(self.wanted)
 
+    @property
+    def asked(self) -> Asked:
+        """What of the results is asked for."""
+        return Asked(self.reports, self.entries)
+
 
 def solve(spec: Spec, options: Options | None = None) -> Study:
     """Solve a spec. Raises SpecError, SolveError, LimitError."""
     options = options or Options()
     deadline = time.monotonic() + options.time_limit if options.time_limit else None
     begun = time.perf_counter()
-    setup = set_up(spec, known_method(options.method), reduce=options.reduce)
+    setup = set_up(spec, known_method(options.method), reduce=options.reduce, asked=options.asked)
     built = time.perf_counter()
     tolerance = spec.analysis.tolerance if options.tolerance is None else options.tolerance
     history = integrate(setup, tolerance, deadline, by_cause=SHARES in options.reports)
@@ -89,7 +99,7 @@ def describe(spec: Spec) -> Block:
     """The block `model` of a scene, with advice on what is redundant; nothing is integrated."""
     from heuncli.redundancy.advice import advice  # runs give none
 
-    setup = set_up(spec)
+    setup = set_up(spec, asked=Options(wanted=None if spec.report is None else frozenset(spec.report)).asked)
     return setup.model | {"notes": setup.model["notes"] + advice(setup.scene, setup.model)}
 
 
@@ -106,7 +116,7 @@ def compose(
 ) -> Results:
     """The results at the instants of `recovery`, which are the history's own or others within it; and the blows."""
     shown, unknown = blocks_of(history, recovery, wanted)
-    split = recovery.decided.words if recovery.decided is not None else ()
+    split = recovery.decided.words if recovery.verdicts and recovery.decided is not None else ()
     checked = history.checked
     struck_freely = sum(met_freely(setup.scene.layout, jump.impulses) for jump in history.blows)
     balance = accuracy(recovery, checked.kinetic if checked is not None else 0.0, struck_freely)
@@ -122,7 +132,7 @@ def compose(
         time=recovery.recovered.times,
         **shown,
         impulses=struck.blocks() if struck is not None and BLOWS in wanted else [],
-        certain_sums=certain_sums(recovery) if "joints" in wanted else [],
+        certain_sums=sums_among(certain_sums(recovery), setup.asked) if "joints" in wanted else [],
         accuracy=balance
         | {
             "constraint_gap": max(balance["constraint_gap"], gap),
@@ -152,7 +162,7 @@ def contacts_of(history: History) -> Block:
 def blocks_of(history: History, recovery: Recovery, wanted: frozenset[str]) -> tuple[dict[str, Any], Array]:
     """The blocks of the reports that are wanted, and the instants of a motion at which some of it is not known: nan."""
     if history.checked is None or not recovery.setup.scene.layout.rows:
-        return blocks(recovery, wanted), np.zeros(0)
+        return asked_blocks(recovery, wanted), np.zeros(0)
     from heuncli.study.beside import known_blocks  # only closed chains have singular poses
 
     return known_blocks(recovery, wanted, history.checked.run, history.jumps)

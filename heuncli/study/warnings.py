@@ -27,7 +27,7 @@ def status(history: History) -> Status:
 def warnings(setup: Setup, history: History, recovery: Recovery, joints: Block, residual: float) -> tuple[str, ...]:
     """Everything worth a warning at the instants of `recovery`; joints: their block, residual: d'Alembert's."""
     singular = []
-    if recovery.decided is not None:
+    if recovery.verdicts and recovery.decided is not None:
         singular = recovery.decided.singular(recovery.recovered.times, recovery.generic)
     return (
         *unbalanced(residual),

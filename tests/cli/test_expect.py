@@ -9,7 +9,7 @@ import numpy as np
 import pytest
 
 from heuncli.errors import SourceLocation
-from heuncli.study.expect import compare, wanted
+from heuncli.study.expect import compare
 from tests.shared.fakes import ACCURATE, FakeStudy, pendulum
 
 STUDY = FakeStudy(np.linspace(0.0, 2.0, 21))
@@ -103,8 +103,3 @@ def test_open_is_expected_as_null() -> None:
 def test_one_instant_needs_no_at() -> None:
     study = FakeStudy(np.array([1.0]))
     assert compare(study, expectation(FX, FX_AT_1)).passed
-
-
-def test_only_what_is_expected_has_to_be_computed() -> None:
-    assert wanted([expectation(FX, 1.0), expectation("energy.kinetic", 1.0)]) == {"joints", "energy"}
-    assert wanted([expectation(FX, 1.0), expectation("certain_sums.0.value", 1.0)]) is None

@@ -124,9 +124,3 @@ def test_what_is_not_one_number_is_refused(words: str, why: str) -> None:
     with pytest.raises(HeunError, match=why) as caught:
         number(words)
     assert caught.value.exit_code == 2
-
-
-def test_only_what_is_measured_has_to_be_computed() -> None:
-    assert measure.parse("max abs sections.middle.M1").wanted == {"sections"}
-    assert measure.parse("final bodies.upper.center.z").wanted == {"motion"}
-    assert measure.parse("accuracy.energy_drift").wanted is None

@@ -1,0 +1,134 @@
+"""What of the results is asked for: whole reports, or single entries of them.
+
+An entry is named by the keys under which it stands in the results: ("joints", "elbow"), ("foundation", "supports",
+"pivot").
+"""
+
+from __future__ import annotations
+
+from collections.abc import Iterable, Mapping, Sequence
+from typing import Any
+
+from heuncli.records import record
+from heuncli.results import CertainSum
+from heuncli.results_schema import REPORT_OF, REPORTS, SHARES, leading_key, report_of
+from heuncli.spec.models import Spec
+
+Entry = tuple[str, ...]
+ALL_OF_IT = frozenset({"foundation", "sections"})  # of all bodies, of all sections
+
+
+@record
+class Asked:
+    """Reports that are asked for, those with entries as far as these go.
+
+    An entry of another report is not told; what it stands on is solved all the same.
+    """
+
+    reports: frozenset[str] = frozenset(REPORTS)
+    entries: frozenset[Entry] = frozenset()
+
+    @property
+    def is_everything(self) -> bool:
+        """Whether all bodies are solved for it, and all sections."""
+        return self.reports >= ALL_OF_IT and not self.entries
+
+    def whole(self, report: str) -> bool:
+        """Whether all of a report is asked for."""
+        return report in self.reports and report not in self.partial
+
+    @property
+    def partial(self) -> set[str]:
+        """The reports of which single entries are asked for."""
+        return {REPORT_OF[entry[0]] for entry in self.entries}
+
+    def of(self, block: str) -> set[str]:
+        """The names of a block's entries that are asked for."""
+        return {entry[1] for entry in self.entries if entry[0] == block}
+
+
+EVERYTHING = Asked()
+
+
+def asked_by(paths: Iterable[str], spec: Spec) -> Asked:
+    """What some paths into the results need; everything where the first word of one does not say."""
+    known = entries_of(spec)
+    reports, whole, entries = set[str](), set[str](), set[Entry]()
+    for path in paths:
+        words = path.split(".")
+        report = report_of(words[0])
+        if report is None:
+            return EVERYTHING
+        entry, rest = entry_at(words, known)
+        reports |= {report, *({SHARES} & set(rest))}
+        if entry is None:
+            whole.add(report)
+        else:
+            entries |= {entry, *share_of(rest, spec)}
+    return Asked(frozenset(reports), frozenset(entry for entry in entries if REPORT_OF[entry[0]] not in whole))
+
+
+def share_of(words: Sequence[str], spec: Spec) -> set[Entry]:
+    """The force whose share a path names: it is needed, though none of the parts that it does not reach feels it."""
+    cause = words[words.index(SHARES) + 1 :][:1] if SHARES in words else []
+    return {("forces", name) for name in cause if name in spec.forces}
+
+
+def entry_at(words: Sequence[str], known: Mapping[Entry, Mapping[str, Any]]) -> tuple[Entry | None, list[str]]:
+    """The entry of the results to which the first words of a path lead, and the words behind it."""
+    for block, names in known.items():
+        if tuple(words[: len(block)]) == block:
+            name, rest = leading_key(names, words[len(block) :])
+            if name is not None:
+                return (*block, name), rest
+    return None, list(words)
+
+
+def entries_of(spec: Spec) -> dict[Entry, dict[str, Any]]:
+    """What can be asked for by its name, by the block in which it stands: of each name what it stands on in the spec.
+
+    That is a joint, a force, ..., or the name of a body.
+    """
+    bodies = {name: name for name in spec.bodies}
+    points = {f"{name}.{point}": name for name, body in spec.bodies.items() for point in body.points}
+    own = {f"drives.{name}": drive for name, drive in spec.drives.items() if name in spec.forces}
+    elements = {**spec.drives, **spec.forces, **spec.stops, **own}
+    return {
+        ("bodies",): bodies, ("points",): dict(points), ("coordinates",): dict(spec.joints),
+        ("foundation", "supports"): dict(spec.joints), ("foundation", "elements"): elements,
+        ("joints",): dict(spec.joints), ("stops",): dict(spec.stops), ("sections",): dict(spec.sections),
+        ("forces",): dict(spec.forces), ("system_vector", "bodies"): bodies,
+    }  # fmt: skip
+
+
+def chosen(shown: Mapping[str, Any], asked: Asked) -> dict[str, Any]:
+    """The blocks of the results as far as they are asked for."""
+    if not asked.entries:
+        return dict(shown)
+    found: dict[str, Any] = {}
+    for block, value in shown.items():
+        if REPORT_OF[block] not in asked.partial:
+            found[block] = value
+        elif own := picked(value, [entry[1:] for entry in asked.entries if entry[0] == block]):
+            found[block] = {"about": value["about"], **own} if "about" in value else own
+    return found
+
+
+def picked(block: Mapping[str, Any], entries: Sequence[Entry]) -> dict[str, Any]:
+    """What stands in a block under some keys."""
+    found: dict[str, Any] = {}
+    for key, value in block.items():
+        behind = [entry[1:] for entry in entries if entry[0] == key]
+        if () in behind:
+            found[key] = value
+        elif behind and (own := picked(value, behind)):
+            found[key] = own
+    return found
+
+
+def sums_among(sums: Sequence[CertainSum], asked: Asked) -> list[CertainSum]:
+    """The certain sums that a joint has a part in that is asked for."""
+    if "joints" not in asked.partial:
+        return list(sums)
+    begins = tuple(f"{'.'.join(entry)}." for entry in asked.entries)
+    return [one for one in sums if any(term.startswith(begins) for term in one["terms"])]

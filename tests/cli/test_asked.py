@@ -1,0 +1,246 @@
+"""Only what is asked for is solved and computed: parts nothing asked depends on are left out, by words of the command.
+
+What comes out is compared with a run of everything: each run keeps its own estimate.
+"""
+
+from __future__ import annotations
+
+import json
+from collections.abc import Iterable
+from pathlib import Path
+from typing import Any
+
+import numpy as np
+import pytest
+
+from heuncli.integration.runner import Runner
+from heuncli.kernel.choose import KERNEL
+from heuncli.results import Results
+from heuncli.results_paths import find
+from heuncli.spec.load import load
+from heuncli.spec.models import Spec
+from heuncli.study import kinds, recover
+from heuncli.study import solve as solving
+from heuncli.study.asked import asked_by
+from heuncli.study.measure import Measure, value
+from heuncli.study.parts import needed, restricted
+from heuncli.study.recover import Recovery
+from heuncli.study.solve import Options, Study, solve
+from tests.cli.conftest import SPECS as SPECS_OF
+from tests.cli.conftest import Heun
+
+SPECS = Path(__file__).parents[2] / "specs"
+ROD = "shapes: [{type: rod, from: [0, 0, 0], to: [0, 0, -1], mass: 1}]"
+MANY = 100 if KERNEL == "compiled" else 10
+SMALL = 1e-7  # both runs keep 1e-9 of their scene's size; what is compared is of that size and some ten times as large
+
+
+def pendulums(n: int, more: str = "", joint: str = "") -> Spec:
+    """Pendulums of their own lengths beside each other, the first with two sections."""
+    bodies, joints = {}, {}
+    for i in range(n):
+        mass = f"mass: 1, center: [0, 0, {-0.5 - 0.01 * i}], inertia: [0.1, 0.1, 0]" if i else ROD
+        bodies[f"b{i}"] = f"{{{mass}, points: {{top: [0, 0, 0], end: [0, 0, -1]}}}}"
+        ends = f"from: {{body: ground, at: [0, {i}, 0]}}, to: b{i}.top"
+        joints[f"p{i}"] = f"{{type: pin, {ends}, axis: [0, 1, 0], initial: {{angle: {0.5 + 0.01 * i}}}}}"
+    if joint:
+        joints["coupler"] = joint
+    named = {kind: "".join(f"  {k}: {v}\n" for k, v in own.items()) for kind, own in (("b", bodies), ("j", joints))}
+    return load("scene.yaml", f"""heun: 1
+gravity: [0, 0, -9.81]
+bodies:
+{named["b"]}joints:
+{named["j"]}sections:
+  root: {{body: b0, at: [0, 0, -0.1], normal: [0, 0, -1]}}
+  along: {{body: b0, from: top, to: end, count: 5}}
+{more}analysis: {{duration: 0.5, samples: 11}}
+""")
+
+
+def asked(spec: Spec, paths: Iterable[str], **options: Any) -> Study:
+    """A study of what some paths need."""
+    what = asked_by(paths, spec)
+    return solve(spec, Options(wanted=what.reports, entries=what.entries, **options))
+
+
+def numbers(results: Results, path: str) -> Any:
+    return find(results, path).values
+
+
+def test_a_pendulum_beside_a_hundred_costs_what_it_costs_alone() -> None:
+    path = "joints.p0.force"
+    among, alone = asked(pendulums(MANY + 1), [path]), asked(pendulums(1), [path])
+    assert len(among.setup.scene.mechanism.bodies) == 1
+    assert among.setup.scene.layout.n_state == alone.setup.scene.layout.n_state
+    assert among.results.work["evaluations"] == alone.results.work["evaluations"]
+    assert np.array_equal(numbers(among.results, path), numbers(alone.results, path))
+    assert among.results.model["reduced"] == [
+        f"left out, because nothing that is asked for depends on it: b1, b2, b3, b4, b5 and {MANY - 5} more"
+    ]
+
+
+def test_what_is_told_of_a_part_is_what_the_whole_scene_tells_of_it() -> None:
+    paths = ["sections.along.M2", "joints.p3.force", "coordinates.p5.angle", "points.b3.end.position"]
+    spec = pendulums(7)
+    part, whole = asked(spec, paths).results, solve(spec).results
+    for path in paths:
+        assert np.abs(numbers(part, path) - numbers(whole, path)).max() < SMALL
+    assert part.model["bodies"] == 3 and whole.model["bodies"] == 7
+    assert list(part.joints) == ["p3"] and list(part.sections) == ["along"] and not part.bodies
+
+
+def test_nothing_is_left_out_where_that_is_forbidden() -> None:
+    spec, paths = pendulums(3), ["joints.p1.force"]
+    full, part = (asked(spec, paths, reduce=reduce) for reduce in (False, True))
+    assert (full.results.model["bodies"], part.results.model["bodies"]) == (3, 1)
+    assert "reduced" not in full.results.model
+    assert list(full.results.joints) == ["p1"]
+    assert np.abs(numbers(full.results, *paths) - numbers(part.results, *paths)).max() < SMALL
+
+
+LINKS = {  # of b0 to the others, and what it then needs
+    "spring": ("forces: {s: {type: spring, from: b0.end, to: b2.end, stiffness: 10, length: 1}}", {"b0", "b2"}),
+    "actuator": ("forces: {s: {type: actuator, from: b2.end, to: b0.end, value: 1}}", {"b0", "b2"}),
+    "spring back": ("forces: {s: {type: spring, from: b3.end, to: b0.end, stiffness: 9, length: 1}}", {"b0", "b3"}),
+    "force given in an angle": ("forces: {f: {type: force, on: b0.end, vector: [p2.angle, 0, 0]}}", {"b0", "b2"}),
+    "couple given in a rate": ("forces: {f: {type: couple, on: b0.end, vector: [0, p1.rate, 0]}}", {"b0", "b1"}),
+    "torque given in a table of an angle": (
+        "tables: {k: {x: [-4, 4], y: [0, 1]}}\nforces: {f: {type: torque, joint: p0, value: 'table(k, p1.angle)'}}",
+        {"b0", "b1"},
+    ),
+    "one that follows one that follows": (
+        "forces: {f: {type: torque, joint: p0, value: p1.angle}, g: {type: torque, joint: p1, value: p2.angle}}",
+        {"b0", "b1", "b2"},
+    ),
+    "only the other follows": ("forces: {f: {type: torque, joint: p1, value: p0.angle}}", {"b0"}),
+    "a spring to the ground": (
+        "forces: {s: {type: spring, from: {body: ground, at: [0, 9, 0]}, to: b0.end, stiffness: 1, length: 0}}", {"b0"},
+    ),
+}  # fmt: skip
+
+
+@pytest.mark.parametrize("link", LINKS)
+def test_what_a_part_follows_is_needed(link: str) -> None:
+    more, bodies = LINKS[link]
+    follows_the_whole(pendulums(4, f"{more}\n"), bodies)
+
+
+def test_bodies_that_a_joint_couples_are_one_part() -> None:
+    follows_the_whole(pendulums(4, joint="{type: rod, from: b1.end, to: b0.end}"), {"b0", "b1"})
+
+
+def follows_the_whole(spec: Spec, bodies: set[str]) -> None:
+    """The reaction of p0 needs these bodies, and is then that of the whole scene."""
+    assert needed(spec, asked_by(["joints.p0.force"], spec)) == bodies
+    runs = (asked(spec, ["joints.p0.force"], reduce=reduce).results for reduce in (True, False))
+    part, whole = (numbers(results, "joints.p0.force") for results in runs)
+    assert np.abs(part - whole).max() < SMALL * np.abs(whole).max()
+
+
+def test_a_moment_about_another_body_needs_it() -> None:
+    text = "  far: {body: b0, at: [0, 0, -0.2], normal: [0, 0, -1], reduce_to: b2.end}\n"
+    spec = pendulums(4, text)
+    path = "sections.far.moment"
+    part, whole = asked(spec, [path]), solve(spec).results
+    assert list(part.setup.spec.bodies) == ["b0", "b2"]
+    assert np.abs(numbers(part.results, path) - numbers(whole, path)).max() < SMALL
+
+
+def test_a_share_of_a_force_elsewhere_is_nothing() -> None:
+    spec = pendulums(3, "forces: {far: {type: force, on: b2.end, vector: [1, 0, 0]}}\n")
+    found = asked(spec, ["joints.p0.shares.far.force"])
+    assert list(found.setup.spec.bodies) == ["b0", "b2"]
+    assert not numbers(found.results, "joints.p0.shares.far.force").any()
+    assert not found.results.forces
+
+
+@pytest.mark.parametrize("report", ["foundation", "energy", "motion", "impulses"])
+def test_what_is_about_all_bodies_needs_all(report: str) -> None:
+    spec = pendulums(3)
+    assert restricted(spec, Options(wanted=frozenset({report})).asked).bodies == spec.bodies
+
+
+def test_a_rope_elsewhere_does_not_end_the_run() -> None:
+    spec = load("scene.yaml", """heun: 1
+gravity: [0, 0, -9.81]
+bodies:
+  ball: {mass: 1, center: [0, 0, 0], inertia: [0, 0, 0], points: {c: [0, 0, 0]}, position: [0, 9, 1]}
+  bar: {mass: 1, center: [0, 0, -1], inertia: [0, 0, 0], points: {top: [0, 0, 0]}}
+joints:
+  rope: {type: rod, from: {body: ground, at: [0, 9, 0]}, to: ball.c, tension_only: true}
+  pin: {type: pin, from: {body: ground, at: [0, 0, 0]}, to: bar.top, axis: [0, 1, 0], initial: {angle: 1}}
+analysis: {duration: 1, samples: 3}
+""")
+    assert asked(spec, ["joints.pin.force"], reduce=False).results.status["code"] == "stopped"
+    found = asked(spec, ["joints.pin.force"]).results
+    assert found.status["code"] == "completed" and len(found.time) == 3
+
+
+def test_one_section_alone_is_recovered(monkeypatch: pytest.MonkeyPatch) -> None:
+    """No other cuts, no foundation, no energy, no sums; the balance, which tells whether numbers are wrong, stays."""
+    spec = load(str(SPECS / "jib.yaml"))
+    for module, names in {
+        recover: ("foundation", "energy", "coordinates", "system_vector", "points", "forces"),
+        solving: ("certain_sums",),
+        kinds: ("energy", "total"),
+    }.items():
+        for name in names:
+            monkeypatch.setattr(module, name, forbidden)
+    study = asked(spec, ["sections.root.M1"])
+    assert [cuts.name for cuts in study.setup.cuts] == ["root"]
+    assert value(Measure("abs", "sections.root.N"), study).value > 0.0
+    assert study.results.accuracy["balance_residual"] < 1e-9
+    assert study.results.accuracy["estimate"].keys() == {"motion", "sections"}
+
+
+def test_a_motion_asks_for_no_verdicts(monkeypatch: pytest.MonkeyPatch) -> None:
+    spec = load(str(SPECS / "four_bar.yaml"))
+    monkeypatch.setattr(Recovery, "decided", property(forbidden))
+    monkeypatch.setattr(kinds, "joint_loads", forbidden)
+    study = asked(spec, ["coordinates.rocker.angle"])
+    assert value(Measure("max", "coordinates.rocker.angle"), study).value > 0.0
+    assert study.results.accuracy["balance_residual"] < 1e-9
+
+
+def test_a_state_integrates_nothing(monkeypatch: pytest.MonkeyPatch) -> None:
+    monkeypatch.setattr(Runner, "trajectory", forbidden)
+    found = solve(load(str(SPECS / "flywheel.yaml"))).results
+    assert found.work["steps"] == 0 and found.sections
+
+
+def forbidden(*given: Any, **named: Any) -> None:
+    raise AssertionError("nobody asked for it")
+
+
+def test_entries_are_asked_for_by_their_paths(heun: Heun) -> None:
+    text = heun("run", "swinging.yaml", "--only", "joints.pivot,foundation.supports.pivot", "--format", "json").stdout
+    shown = json.loads(text)
+    assert list(shown["joints"]) == ["pivot"] and "energy" not in shown
+    assert shown["foundation"].keys() == {"about", "supports"}
+    table = heun("run", "hanging.yaml", "--only", "foundation.supports.pivot").stdout
+    assert "support pivot" in table and "total" not in table and "JOINTS" not in table
+    both = json.loads(heun("run", "hanging.yaml", "--only", "joints.pivot,joints", "--format", "json").stdout)
+    assert "stops" not in both and list(both["joints"]) == ["pivot"]
+
+
+@pytest.mark.parametrize(("words", "told"), [
+    ("joints.pivto", "did you mean joints.pivot?"),
+    ("joints.pivot.force", "say joints.pivot; --measure prints single numbers"),
+    ("sections.middle", "the scene has no sections"),
+    ("foundation.force", "did you mean foundation.supports.pivot?"),
+    ("nothing.else", "known: motion"),
+])  # fmt: skip
+def test_what_is_no_entry_is_refused(heun: Heun, words: str, told: str) -> None:
+    done = heun("run", "hanging.yaml", "--only", words)
+    assert (done.returncode, done.stdout) == (2, "")
+    assert words in done.stderr and told in done.stderr
+
+
+def test_what_is_left_out_is_told(heun: Heun, folder: Path) -> None:
+    more = "  other: {mass: 1, center: [0, 0, 0], inertia: [1, 1, 1], points: {o: [0, 0, 0]}}\njoints:\n"
+    (folder / "two.yaml").write_text(SPECS_OF["swinging"].replace("joints:\n", more) + "report: [joints]\n")
+    line = "reduced   left out, because nothing that is asked for depends on it: other\n"
+    assert line in heun("run", "two.yaml").stdout
+    assert line not in heun("run", "two.yaml", "--no-reduce").stdout
+    assert line not in heun("run", "two.yaml", "--only", "energy").stdout
+    assert "Left out, or made smaller\n  - left out, because" in heun("model", "two.yaml").stdout
