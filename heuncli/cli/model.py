@@ -24,7 +24,7 @@ def main(request: Model) -> int:
     form = format_of(request.format, request.output, ENDINGS, FORMATS)
     spec = load(request.spec, overrides=overrides(request.set), checking=False)
     keep(request.output, [request.spec, *spec.files])
-    model: Mapping[str, Any] = describe(spec)
+    model: Mapping[str, Any] = describe(spec, reduce=not request.no_reduce)
     emit(dump(dict(model)) if form == "json" else note(spec.title, model), request.output)
     warn(spec, None, request.quiet)
     return 0

@@ -21,6 +21,7 @@ class Option(NamedTuple):
 SET = Option(("--set",), "Set a parameter, or a dotted key of the spec. May be repeated.", "NAME=VALUE")
 OUTPUT = Option(("--output", "-o"), "Write there, whole or not at all.", "FILE")
 QUIET = Option(("--quiet", "-q"), "No warnings on standard error.")
+NO_REDUCE = Option(("--no-reduce",), "Solve all of the scene, in full.")
 SPEC = Option((), "The scene's YAML file; - reads standard input.", "SPEC")
 
 
@@ -41,7 +42,8 @@ class Run(NamedTuple):
         str | None,
         Option(
             ("--only",),
-            "Only these: motion, points, foundation, joints, sections, forces, energy, impulses, shares.",
+            "Only these: motion, points, foundation, joints, sections, forces, energy, impulses, shares; or entries: "
+            "joints.NAME, sections.NAME, ...",
             "REPORT,...",
         ),
     ] = None
@@ -60,7 +62,7 @@ class Run(NamedTuple):
     tolerance: Annotated[
         float | None, Option(("--tolerance",), "Error of the motion, relative to the scene.", "NUMBER")
     ] = None
-    no_reduce: Annotated[bool, Option(("--no-reduce",), "Solve all of the scene, in full.")] = False
+    no_reduce: Annotated[bool, NO_REDUCE] = False
     least_norm: Annotated[bool, Option(("--least-norm",), "Split what redundant supports leave open.")] = False
     by_cause: Annotated[
         bool, Option(("--by-cause",), "Split every load by its causes: gravity, each force, drives, motion.")
@@ -85,6 +87,7 @@ class Model(NamedTuple):
     format: Annotated[str | None, Option(("--format",), "How to write it. Default: text.", "text|json")] = None
     output: Annotated[str | None, OUTPUT] = None
     set: Annotated[tuple[str, ...], SET] = ()
+    no_reduce: Annotated[bool, NO_REDUCE] = False
     quiet: Annotated[bool, QUIET] = False
 
 

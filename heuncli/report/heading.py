@@ -80,7 +80,7 @@ def _model(results: Results) -> str:
     ]
     if model.get("driven"):
         parts[2] += f" beside {int(model['driven'])} driven"
-    return ", ".join(parts) + (PLANAR if model.get("space") == "planar" else "")
+    return ", ".join(parts) + (PLANAR if model.get("plane") == "declared" else "")
 
 
 def _run(results: Results) -> str:

@@ -16,6 +16,7 @@ LISTS = (
     ("reduced", "Left out, or made smaller"),
     ("not_reduced", "Not made smaller"),
     ("cannot_tell", "What this model cannot tell"),
+    ("integrates", "What is integrated"),
     ("chosen", "Start values chosen for you"),
     ("moved", "Moved from the drawing"),
     ("notes", "Worth knowing"),
@@ -38,13 +39,13 @@ def note(title: str, model: Mapping[str, Any]) -> str:
 
 
 def _facts(model: Mapping[str, Any]) -> list[tuple[str, str]]:
-    freedoms = model.get("freedoms")
+    freedoms, names = model.get("freedoms"), model.get("names", {})
     grubler = model.get("grubler")
     beside = f" (Grübler's count: {grubler})" if grubler is not None else ""
     return [
         ("space", str(model.get("space", ""))),
-        ("bodies", _things(model.get("bodies"))),
-        ("joints", _things(model.get("joints"))),
+        ("bodies", _things(names.get("bodies", model.get("bodies")))),
+        ("joints", _things(names.get("joints", model.get("joints")))),
         ("freedoms", f"{freedoms}{beside}" if freedoms is not None else ""),
         ("loops", count(int(model["loops"]), "closed loop") if isinstance(model.get("loops"), int) else ""),
         ("redundant", _redundant(model.get("redundant"))),

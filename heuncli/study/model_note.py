@@ -35,6 +35,8 @@ def model_note(scene: PreparedScene, runner: Runner, method: str) -> Block:
     }  # fmt: skip
     if scene.start.moved:
         block["moved"] = list(scene.start.moved)
+    if mechanism.planar:
+        block["plane"] = "declared"
     block["reasons"] = reasons(scene, block)
     if layout.contacts:
         block["reasons"].append(one_sided(layout, runner.start_holding > 0.0))
@@ -46,13 +48,18 @@ def model_note(scene: PreparedScene, runner: Runner, method: str) -> Block:
     return block
 
 
-def reductions(left_out: Sequence[str], reduced: Reduced | None) -> Block:
-    """What was left out or made smaller, what was not though one might expect it, what cannot be told: sentences."""
+def reductions(left_out: Sequence[str], scene: PreparedScene, reduced: Reduced | None) -> Block:
+    """What was left out or made smaller, what was not though one might expect it, what cannot be told: sentences.
+
+    A scene that was found to stay in a plane is planar, too; what is across that is told as in space.
+    """
     found: Block = {"reduced": [*left_out]}
     if reduced is not None:
         found["reduced"] += reduced.told
         found |= {"not_reduced": list(reduced.kept), "cannot_tell": list(reduced.hidden)}
-    return {key: sentences for key, sentences in found.items() if sentences}
+        if reduced.steps and reduced.steps[-1].scene.mechanism.planar and not scene.mechanism.planar:
+            found |= {"space": "planar", "plane": "found"}
+    return {key: value for key, value in found.items() if value}
 
 
 def grubler(mechanism: Mechanism) -> int:

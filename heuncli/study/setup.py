@@ -55,7 +55,7 @@ def set_up(spec: Spec, method: str | None = None, *, reduce: bool = True, asked:
     reduced = None
     if chosen is not None and reduce:
         reduced, runner = reduced_runner(scene, runner)
-    note = model_note(scene, runner, chosen.name if chosen else "none") | reductions(left_out, reduced)
+    note = model_note(scene, runner, chosen.name if chosen else "none") | reductions(left_out, scene, reduced)
     return Setup(spec, scene, cuts, runner, chosen, note, reduced, asked)
 
 

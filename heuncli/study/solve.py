@@ -95,12 +95,17 @@ def blows(setup: Setup, history: History, least_norm: bool, by_cause: bool) -> I
     return impulses(setup, history, least_norm, by_cause)
 
 
-def describe(spec: Spec) -> Block:
-    """The block `model` of a scene, with advice on what is redundant; nothing is integrated."""
+def describe(spec: Spec, *, reduce: bool = True) -> Block:
+    """The block `model` of a scene, with its names, advice on what is redundant, and what a run of it will take."""
     from heuncli.redundancy.advice import advice  # runs give none
+    from heuncli.study.outlook import outlook
 
-    setup = set_up(spec, asked=Options(wanted=None if spec.report is None else frozenset(spec.report)).asked)
-    return setup.model | {"notes": setup.model["notes"] + advice(setup.scene, setup.model)}
+    asked = Options(wanted=None if spec.report is None else frozenset(spec.report)).asked
+    setup = set_up(spec, reduce=reduce, asked=asked)
+    mechanism = setup.scene.mechanism
+    names = {"bodies": [b.name for b in mechanism.bodies], "joints": {j.name: j.kind for j in mechanism.joints}}
+    model = setup.model | {"names": names, "integrates": outlook(setup)}
+    return model | {"notes": model["notes"] + advice(setup.scene, model)}
 
 
 def known_method(name: str | None) -> str | None:

@@ -6,6 +6,7 @@ What comes out is compared with a run of everything: each run keeps its own esti
 from __future__ import annotations
 
 import json
+import re
 from collections.abc import Iterable
 from pathlib import Path
 from typing import Any
@@ -25,7 +26,7 @@ from heuncli.study.asked import asked_by
 from heuncli.study.measure import Measure, value
 from heuncli.study.parts import needed, restricted
 from heuncli.study.recover import Recovery
-from heuncli.study.solve import Options, Study, solve
+from heuncli.study.solve import Options, Study, describe, solve
 from tests.cli.conftest import SPECS as SPECS_OF
 from tests.cli.conftest import Heun
 
@@ -244,3 +245,17 @@ def test_what_is_left_out_is_told(heun: Heun, folder: Path) -> None:
     assert line not in heun("run", "two.yaml", "--no-reduce").stdout
     assert line not in heun("run", "two.yaml", "--only", "energy").stdout
     assert "Left out, or made smaller\n  - left out, because" in heun("model", "two.yaml").stdout
+
+
+def test_the_note_tells_what_is_integrated_and_what_its_beginning_takes() -> None:
+    sentences = describe(load(str(SPECS / "double.yaml")))["integrates"]
+    assert sentences[0].startswith("14 numbers of state, by DOP853, an explicit method of order 8, to 1e-09 of")
+    took = r"the first 0\.2 s take \d+ steps, \d+ evaluations, [\d.e+]+ ms: 10 times that .*"
+    assert re.fullmatch(took, sentences[1])
+    assert describe(load(str(SPECS / "table.yaml")))["integrates"] == ["nothing: one instant is solved"]
+
+
+def test_the_note_names_bodies_and_joints(heun: Heun) -> None:
+    text = heun("model", "swinging.yaml").stdout
+    assert "bodies     1: bar\n" in text and "joints     1: pivot (ball)\n" in text
+    assert json.loads(heun("model", "swinging.yaml", "--format", "json").stdout)["names"]["joints"] == {"pivot": "ball"}

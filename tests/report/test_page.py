@@ -298,7 +298,7 @@ def test_the_heading_tells_what_was_solved_and_how_accurate_it_is() -> None:
 
 
 def test_a_planar_scene_says_what_there_is_not() -> None:
-    flat = dataclasses.replace(pendulum(T), model={**pendulum(T).model, "space": "planar"})
+    flat = dataclasses.replace(pendulum(T), model={**pendulum(T).model, "space": "planar", "plane": "declared"})
     assert "planar, 2 bodies, 4 freedoms; what points out of the xy plane" in write_heading(flat)
 
 

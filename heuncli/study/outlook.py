@@ -1,0 +1,62 @@
+"""What a run will take, as far as its beginning shows: what is integrated, by which method, in how many steps.
+
+Impure: looks at the clock.
+"""
+
+from __future__ import annotations
+
+import time
+from contextlib import suppress
+
+import numpy as np
+
+from heuncli.errors import LimitError, SolveError
+from heuncli.integration.runner import Trajectory, discontinuities_of
+from heuncli.study.setup import Setup
+
+PART = 0.1  # of the run, which is tried
+PATIENCE = 0.5  # seconds that the trial may take
+MOST_STEPS = 2_000
+
+
+def outlook(setup: Setup) -> list[str]:
+    """What is integrated, and what the first part of the run takes, in sentences."""
+    if setup.method is None:
+        return ["nothing: one instant is solved"]
+    if getattr(setup.method, "determined", False):
+        return ["nothing: every instant follows from the drives and is solved by itself, along the branch"]
+    layout, tolerance = setup.runner.moving.layout, setup.spec.analysis.tolerance
+    sentences = [
+        f"{_count(layout.n_state, 'number')} of state, by {setup.method.name}, an explicit method of order "
+        f"{setup.method.order}, to {tolerance:.3g} of the scene's size; then once more at a thirtieth of that, to check"
+    ]
+    return [*sentences, *pace(setup, tolerance)]
+
+
+def pace(setup: Setup, tolerance: float) -> list[str]:
+    """What the first part of the run takes; nothing is told where that cannot be solved: the run will say why."""
+    last = PART * float(setup.spec.analysis.times[-1])
+    whole = round(1.0 / PART)
+    with suppress(SolveError):
+        try:
+            run = min((begun(setup, tolerance, last) for _ in range(2)), key=lambda run: run.seconds)
+        except LimitError:
+            return [f"the first {last:.4g} s take more than {MOST_STEPS:,} steps or {PATIENCE} s: a long run"]
+        steps, evaluations = _count(run.steps, "step"), _count(run.evaluations, "evaluation")
+        took = f"the first {last:.4g} s take {steps}, {evaluations}, {1e3 * run.seconds:.2g} ms"
+        return [f"{took}: {whole} times that if it goes on so, and 1.3 to 1.5 times as much for the check"]
+    return []
+
+
+def begun(setup: Setup, tolerance: float, last: float) -> Trajectory:
+    """The first part of the run."""
+    jumps = tuple(discontinuities_of(setup.scene.mechanism, 0.0, last))
+    assert setup.method is not None
+    return setup.runner.trajectory(
+        np.array([0.0, last]), tolerance, discontinuities=jumps, deadline=time.monotonic() + PATIENCE,
+        most_steps=MOST_STEPS, method=setup.method,
+    )  # fmt: skip
+
+
+def _count(n: int, what: str) -> str:
+    return f"{n:,} {what}{'s' * (n != 1)}"
