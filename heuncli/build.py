@@ -32,8 +32,9 @@ DIRECTIVES = {
     "cdivision": True,
     "initializedcheck": False,
 }
-# No contraction to fused multiply-adds, so that compiled and plain files give the same bits.
-GNU_FLAGS = ("-O3", "-ffp-contract=off")
+# No contraction to fused multiply-adds, so that compiled and plain files give the same bits. No pairs of numbers as one
+# vector: a struct's numbers are written one by one and read soon after, and such a read waits until all are in memory.
+GNU_FLAGS = ("-O3", "-ffp-contract=off", "-fno-tree-slp-vectorize")
 MSVC_FLAGS = ("/O2", "/fp:precise")
 # Builds of CPython without the global lock have no stable interface yet, other Pythons none at all.
 STABLE = sys.implementation.name == "cpython" and not sysconfig.get_config_var("Py_GIL_DISABLED")

@@ -26,6 +26,7 @@ def workspace_of(layout: Layout) -> workspace.Workspace:
         "size": layout.size,
         "rank_of_gap": tolerances.RANK_OF_GAP / min((i.length for i in layout.islands), default=layout.size),
         "driven": int(layout.driven),
+        "flat": int(layout.flat),
         "work_at": layout.work_at,
         "answer_count": layout.answer_count,
         "column_count": layout.column_count,

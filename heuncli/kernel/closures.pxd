@@ -4,6 +4,7 @@ from heuncli.kernel.algebra cimport (
     Vec3, add, add_cross, add_scaled, centripetal, cross, dot, norm, rotate, rotate_back, scaled, sub,
 )
 from heuncli.kernel.expressions cimport Jet, jet
+from heuncli.kernel.plane_rows cimport demanded_in_plane, measure_in_plane
 from heuncli.kernel.scene cimport Body, Closure, Counter, DOT, GUIDE, Scene, TURN
 from heuncli.kernel.tree cimport answered, direction_of, push
 from libc.math cimport fabs
@@ -17,6 +18,7 @@ cdef Carried carried(Scene *scene, int body, Vec3 x) noexcept nogil
 cdef Vec3 place_of(Scene *scene, int body, Vec3 q) noexcept nogil
 cdef void measure_rows(Scene *scene, double t) noexcept nogil
 cdef void measure_row(Scene *scene, Closure *row, double t) noexcept nogil
+cdef bint stays_in_plane(Scene *scene, Closure *row) noexcept nogil
 cdef void guide_row(Scene *scene, Closure *row) noexcept nogil
 cdef void dot_row(Scene *scene, Closure *row) noexcept nogil
 cdef void turn_row(Scene *scene, Closure *row) noexcept nogil

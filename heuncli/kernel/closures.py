@@ -30,6 +30,7 @@ if not cython.compiled:
         sub,
     )
     from heuncli.kernel.expressions import jet
+    from heuncli.kernel.plane_rows import demanded_in_plane, measure_in_plane
     from heuncli.kernel.scene import DOT, GUIDE, TURN, Body, Closure, Counter, Scene
     from heuncli.kernel.shadow import cython
     from heuncli.kernel.structs import Carried, Jet
@@ -63,7 +64,9 @@ def measure_rows(scene: cython.pointer[Scene], t: cython.double) -> cython.void:
 def measure_row(scene: cython.pointer[Scene], row: cython.pointer[Closure], t: cython.double) -> cython.void:
     """The same of one row."""
     row.Q = place_of(scene, row.b, row.q)
-    if row.kind == GUIDE:
+    if stays_in_plane(scene, row):
+        measure_in_plane(scene, row)
+    elif row.kind == GUIDE:
         guide_row(scene, row)
     elif row.kind == DOT:
         dot_row(scene, row)
@@ -78,6 +81,11 @@ def measure_row(scene: cython.pointer[Scene], row: cython.pointer[Closure], t: c
         row.gamma -= given.second
         row.prescribed_rate = given.rate
         row.prescribed_second = given.second
+
+
+def stays_in_plane(scene: cython.pointer[Scene], row: cython.pointer[Closure]) -> cython.bint:
+    """Whether a row of a flat scene has nothing along z; rods are taken for such, TURN stands along z."""
+    return scene.flat and row.e.z == 0.0 and row.g.z == 0.0
 
 
 def guide_row(scene: cython.pointer[Scene], row: cython.pointer[Closure]) -> cython.void:
@@ -139,6 +147,8 @@ def rod_row(scene: cython.pointer[Scene], row: cython.pointer[Closure]) -> cytho
 
 def demanded(scene: cython.pointer[Scene], row: cython.pointer[Closure]) -> cython.double:
     """gamma + J Vdot of a row if no freedom accelerated: what the freedoms have to answer."""
+    if scene.flat:
+        return demanded_in_plane(scene, row)
     found: cython.double = row.gamma
     if row.b >= 0:
         found += along_row(row, scene.bodies[row.b].r, scene.bodies[row.b].a_zero, scene.bodies[row.b].alpha_zero)

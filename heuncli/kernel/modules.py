@@ -5,6 +5,8 @@ MODULES = (
     "expressions",
     "intervals",
     "enclosure",
+    "plane",
+    "plane_rows",
     "tree",
     "loads",
     "closures",

@@ -21,7 +21,8 @@ if not cython.compiled:
 
     from heuncli.kernel.algebra import Vec3, from_half, half_solve, roots
     from heuncli.kernel.closures import build_column, clear_path, put_unit_load, size_of_demand, sweep_column
-    from heuncli.kernel.scene import Body, Closure, Scene
+    from heuncli.kernel.plane_rows import spread_in_plane
+    from heuncli.kernel.scene import Body, Closure, Freedom, Scene
     from heuncli.kernel.shadow import cython
 
 
@@ -49,6 +50,11 @@ def take_roots(scene: cython.pointer[Scene]) -> cython.void:
     i: cython.Py_ssize_t
     k: cython.Py_ssize_t
     at: cython.Py_ssize_t
+    if scene.flat:
+        for k in range(scene.freedom_count):
+            freedom: cython.pointer[Freedom] = cython.address(scene.freedoms[k])
+            scene.root[freedom.answer_at] = sqrt(freedom.D)
+        return
     for i in range(scene.body_count):
         body: cython.pointer[Body] = cython.address(scene.bodies[i])
         at = body.answer_at
@@ -102,25 +108,34 @@ def answer_of_side(
     clear_path(scene, row)
     put_unit_load(scene, row, body, sign)
     sweep_column(scene, row)
-    return answer_of_column(scene, row)
+    spread_column(scene, row)
+    return answer_of_spread(scene, row)
 
 
 def answer_of_row(scene: cython.pointer[Scene], row: cython.pointer[Closure]) -> cython.double:
     """e_r . D^-1 e_r."""
-    build_column(scene, row)
-    return answer_of_column(scene, row)
+    spread_row(scene, row)
+    return answer_of_spread(scene, row)
 
 
-def answer_of_column(scene: cython.pointer[Scene], row: cython.pointer[Closure]) -> cython.double:
-    """e . D^-1 e of the column as it is built."""
+def answer_of_spread(scene: cython.pointer[Scene], row: cython.pointer[Closure]) -> cython.double:
+    """e . D^-1 e of the column that is spread."""
     k: cython.Py_ssize_t
     found: cython.double = 0.0
     x: cython.double
-    spread_column(scene, row)
     for k in range(row.answer_count):
         x = scene.spread[scene.indices[row.answers + k]]
         found += x * x
     return found
+
+
+def spread_row(scene: cython.pointer[Scene], row: cython.pointer[Closure]) -> cython.void:
+    """The row's column of B, spread over all freedoms."""
+    if scene.flat:
+        spread_in_plane(scene, row)
+        return
+    build_column(scene, row)
+    spread_column(scene, row)
 
 
 def spread_column(scene: cython.pointer[Scene], row: cython.pointer[Closure]) -> cython.void:
@@ -139,13 +154,13 @@ def reflect(scene: cython.pointer[Scene], row: cython.pointer[Closure], x: cytho
     k: cython.Py_ssize_t
     along: cython.double = 0.0
     v: cython.p_double = scene.columns
-    at: cython.Py_ssize_t = row.column
-    of: cython.Py_ssize_t = row.answers
-    for k in range(row.filled_count):
-        along += v[at + k] * x[scene.indices[of + k]]
+    for k in range(row.column, row.column + row.support_count):
+        along += v[k] * x[scene.support[k]]
+    if along == 0.0:
+        return
     along *= row.reflector
-    for k in range(row.filled_count):
-        x[scene.indices[of + k]] -= along * v[at + k]
+    for k in range(row.column, row.column + row.support_count):
+        x[scene.support[k]] -= along * v[k]
 
 
 def eliminate_row(scene: cython.pointer[Scene], i: cython.int) -> cython.double:
@@ -155,8 +170,7 @@ def eliminate_row(scene: cython.pointer[Scene], i: cython.int) -> cython.double:
     rank: cython.int
     R: cython.p_double = scene.R
     row: cython.pointer[Closure] = cython.address(scene.closures[scene.selected[i]])
-    build_column(scene, row)
-    spread_column(scene, row)
+    spread_row(scene, row)
     scene.envelope[i] = first_coupled(scene, row, i)
     for k in range(scene.envelope[i], i):
         R[m * i + k] = 0.0
@@ -185,31 +199,41 @@ def first_coupled(scene: cython.pointer[Scene], row: cython.pointer[Closure], i:
 
 
 def make_reflector(scene: cython.pointer[Scene], row: cython.pointer[Closure]) -> cython.double:
-    """The reflector that leaves of a column one entry where it is largest, and that entry; 0 where nothing is left."""
+    """The reflector that leaves of a column one entry where it is largest, and that entry; 0 where nothing is left.
+
+    It is kept where it is not zero: the pivots of earlier rows drop out, so that loops in a row stay apart.
+    """
     k: cython.Py_ssize_t
     answer: cython.int
     x: cython.double
     square: cython.double = 0.0
     largest: cython.double = 0.0
-    at: cython.int = -1
-    for k in range(row.filled_count):
-        answer = scene.indices[row.answers + k]
-        x = 0.0 if scene.taken[answer] else scene.spread[answer]
-        scene.columns[row.column + k] = x
+    at: cython.Py_ssize_t = -1
+    n: cython.Py_ssize_t = row.column
+    for k in range(row.answers, row.answers + row.filled_count):
+        answer = scene.indices[k]
+        x = scene.spread[answer]
+        if x == 0.0 or scene.taken[answer]:
+            continue
+        scene.columns[n] = x
+        scene.support[n] = answer
         square += x * x
         if fabs(x) > largest:
             largest = fabs(x)
-            at = k
+            at = n
+        n += 1
+    row.support_count = n - row.column
     row.reflector = 0.0
     row.pivot_at = scene.indices[row.answers]
     if at < 0:
+        row.support_count = 0
         return 0.0
     left: cython.double = sqrt(square)
-    if scene.columns[row.column + at] > 0.0:
+    if scene.columns[at] > 0.0:
         left = -left
-    scene.columns[row.column + at] -= left
+    scene.columns[at] -= left
     row.reflector = 1.0 / (square + sqrt(square) * largest)
-    row.pivot_at = scene.indices[row.answers + at]
+    row.pivot_at = scene.support[at]
     scene.taken[row.pivot_at] = 1
     return left
 
@@ -238,6 +262,11 @@ def solve_closures(scene: cython.pointer[Scene]) -> cython.void:
         scene.closures[scene.selected[i]].multiplier = y[i]
     for i in range(m - 1, -1, -1):
         reflect(scene, cython.address(scene.closures[scene.selected[i]]), x)
+    if scene.flat:
+        for i in range(scene.answer_count):
+            if scene.root[i] > 0.0:
+                scene.e[i] += x[i] / scene.root[i]
+        return
     for i in range(scene.body_count):
         add_doubled(scene, cython.address(scene.bodies[i]), x)
 
@@ -317,6 +346,11 @@ def size_of_loads(scene: cython.pointer[Scene]) -> cython.double:
     """x = D^(-1/2) e, spread over all freedoms; |x|."""
     i: cython.Py_ssize_t
     square: cython.double = 0.0
+    if scene.flat:
+        for i in range(scene.answer_count):
+            scene.spread[i] = scene.root[i] * scene.e[i]
+            square += scene.spread[i] * scene.spread[i]
+        return sqrt(square)
     for i in range(scene.answer_count):
         scene.spread[i] = scene.e[i]
     for i in range(scene.body_count):

@@ -136,6 +136,8 @@ cdef struct Closure:
     int mode
     int pivot_at
     int chosen
+    int support_count
+    int unused
     double reflector
     double pose_scale
 
@@ -254,6 +256,7 @@ cdef struct Scene:
     int answer_count          # freedoms, a ball's three turns among them
     int selected_count        # independent closure rows
     int driven                # something is driven: the work of drives counts
+    int flat                  # bodies turn about z and shift across it: plane.py moves them
     int work_at               # where the work stands in the state; -1: it is not asked for
     Vec3 gravity
     double size
@@ -286,6 +289,7 @@ cdef struct Scene:
     int *indices              # paths, answers and couplings of the closure rows
     int *selected             # independent rows, ascending
     int *envelope             # first coupled row of each of them
+    int *support              # which answers the reflectors have something of, as their numbers stand in `columns`
     int *taken                # which answers are pivots of reflectors already
     double *measure           # of each answer in an island: 1 of a shift, 1 / length of a turn; 0: in none, or driven
     double *e                 # load that each freedom answers

@@ -63,7 +63,7 @@ class Body(Record):
     centrifugal: Vec3  # omega x (omega x m c)
     M_applied: Vec3  # applied moment about the joint point
     f_applied: Vec3
-    A: Sym3  # articulated inertia of the branch
+    A: Sym3  # articulated inertia of the branch; in a flat scene all of it, of turn about z, shift x, shift y
     C: Mat3
     K: Sym3
     turning: Ldl3  # of a ball: factors of A
@@ -172,6 +172,8 @@ class Closure(Record):
     mode: int  # CARRIES; of a contact also APART: it is open; LEANS: closed by what others hold, it carries nothing
     pivot_at: int  # the answer that its reflector leaves something of
     chosen: int  # while rows are selected: its place in the order of pivots; -1: not yet
+    support_count: int  # numbers of its reflector
+    unused: int
     reflector: float  # 2 / |v|^2 of its reflector 1 - 2 v v' / |v|^2
     pose_scale: float  # 1 / sqrt of a part of what it could answer across its arms, and of what it does
 
@@ -324,6 +326,7 @@ class Scene(metaclass=Fields):
     answer_count: int
     selected_count: int
     driven: int
+    flat: int
     work_at: int
     gravity: Vec3
     size: float
@@ -356,6 +359,7 @@ class Scene(metaclass=Fields):
     indices: list[int]
     selected: list[int]
     envelope: list[int]
+    support: list[int]
     taken: list[int]
     measure: list[float]
     e: list[float]

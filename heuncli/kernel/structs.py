@@ -125,6 +125,19 @@ class Carried:
         self.omega = omega
 
 
+class CarriedInPlane:
+    """How a body carries a place in the plane: velocity, centripetal acceleration, its angular velocity."""
+
+    __slots__ = ("cx", "cy", "omega", "vx", "vy")
+
+    def __init__(self, vx: float, vy: float, cx: float, cy: float, omega: float) -> None:
+        self.vx = vx
+        self.vy = vy
+        self.cx = cx
+        self.cy = cy
+        self.omega = omega
+
+
 class Instants(metaclass=Fields):
     """States to recover, and room for the work."""
 

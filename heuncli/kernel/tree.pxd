@@ -7,6 +7,10 @@ from heuncli.kernel.algebra cimport (
     trace, transform, turned, unit_matrix,
 )
 from heuncli.kernel.expressions cimport Jet, jet
+from heuncli.kernel.plane cimport (
+    add_zeros_in_plane, balance_in_plane, downward_in_plane, factor_in_plane, load_all_in_plane, load_in_plane,
+    move_in_plane, upward_in_plane,
+)
 from heuncli.kernel.scene cimport Body, Freedom, Lent, SHIFT, Scene, TURN_IN_BODY, TURN_IN_PARENT, Variable
 
 cdef struct PointMotion:

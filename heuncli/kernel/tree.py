@@ -57,6 +57,16 @@ if not cython.compiled:
         unit_matrix,
     )
     from heuncli.kernel.expressions import jet
+    from heuncli.kernel.plane import (
+        add_zeros_in_plane,
+        balance_in_plane,
+        downward_in_plane,
+        factor_in_plane,
+        load_all_in_plane,
+        load_in_plane,
+        move_in_plane,
+        upward_in_plane,
+    )
     from heuncli.kernel.scene import SHIFT, TURN_IN_BODY, TURN_IN_PARENT, Body, Freedom, Lent, Scene, Variable
     from heuncli.kernel.shadow import cython
     from heuncli.kernel.structs import Jet, PointMotion
@@ -87,6 +97,9 @@ def kinematics(scene: cython.pointer[Scene], t: cython.double, y: cython.p_doubl
     """Attitudes, joint points, velocities (46) and velocity terms of all bodies at y; clears the applied loads."""
     i: cython.Py_ssize_t
     coordinates(scene, t, y)
+    if scene.flat:
+        move_in_plane(scene)
+        return
     for i in range(scene.body_count):
         body: cython.pointer[Body] = cython.address(scene.bodies[i])
         hang(scene, body)
@@ -201,6 +214,8 @@ def factor_tree(scene: cython.pointer[Scene]) -> cython.int:
     i: cython.Py_ssize_t
     k: cython.Py_ssize_t
     idle: cython.int = 0
+    if scene.flat:
+        return factor_in_plane(scene)
     for i in range(scene.body_count):
         scene.bodies[i].C = skew(scene.bodies[i].mc)
         scene.bodies[i].K = multiple_of_unit(scene.bodies[i].mass)
@@ -284,6 +299,9 @@ def put_loads(scene: cython.pointer[Scene], inertial: cython.bint) -> cython.voi
     """What each body asks of its joint: its velocity terms less the applied loads and what is lent to it takes."""
     i: cython.Py_ssize_t
     zero: Vec3 = Vec3(0.0, 0.0, 0.0)
+    if scene.flat:
+        load_in_plane(scene, inertial)
+        return
     for i in range(scene.body_count):
         body: cython.pointer[Body] = cython.address(scene.bodies[i])
         body.M_branch = sub(body.gyroscopic if inertial else zero, body.M_applied)
@@ -299,6 +317,9 @@ def put_all_loads(scene: cython.pointer[Scene]) -> cython.void:
     """
     i: cython.Py_ssize_t
     zero: Vec3 = Vec3(0.0, 0.0, 0.0)
+    if scene.flat:
+        load_all_in_plane(scene)
+        return
     for i in range(scene.body_count):
         body: cython.pointer[Body] = cython.address(scene.bodies[i])
         body.alpha_zero = zero
@@ -322,6 +343,9 @@ def put_all_loads(scene: cython.pointer[Scene]) -> cython.void:
 def add_zeros(scene: cython.pointer[Scene]) -> cython.void:
     """The accelerations that answer all loads, and those if no freedom accelerated, gravity taken off."""
     i: cython.Py_ssize_t
+    if scene.flat:
+        add_zeros_in_plane(scene)
+        return
     for i in range(scene.body_count):
         body: cython.pointer[Body] = cython.address(scene.bodies[i])
         body.alpha = add(body.alpha, body.alpha_zero)
@@ -338,6 +362,9 @@ def upward(scene: cython.pointer[Scene], inertial: cython.bint) -> cython.void:
     """From what stands in M_branch and f_branch, and velocity terms, to e, which the freedoms answer; tips to roots."""
     i: cython.Py_ssize_t
     k: cython.Py_ssize_t
+    if scene.flat:
+        upward_in_plane(scene, inertial)
+        return
     for i in range(scene.body_count - 1, -1, -1):
         body: cython.pointer[Body] = cython.address(scene.bodies[i])
         if body.ball:
@@ -383,6 +410,9 @@ def downward(scene: cython.pointer[Scene], inertial: cython.bint) -> cython.void
     """From e to the accelerations of freedoms and bodies, roots to tips."""
     i: cython.Py_ssize_t
     k: cython.Py_ssize_t
+    if scene.flat:
+        downward_in_plane(scene, inertial)
+        return
     for i in range(scene.body_count):
         body: cython.pointer[Body] = cython.address(scene.bodies[i])
         alpha: Vec3 = Vec3(0.0, 0.0, 0.0)
@@ -450,6 +480,9 @@ def balance(scene: cython.pointer[Scene], inertial: cython.bint) -> cython.void:
     """
     i: cython.Py_ssize_t
     k: cython.Py_ssize_t
+    if scene.flat:
+        balance_in_plane(scene, inertial)
+        return
     for i in range(scene.body_count):
         newton_euler(cython.address(scene.bodies[i]), inertial)
     for i in range(scene.body_count - 1, -1, -1):

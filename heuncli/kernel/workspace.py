@@ -277,6 +277,7 @@ class Workspace:
         scene.island_count = len(tables["islands"])
         scene.watch_count = len(tables["watches"])
         scene.contact_count = len(tables["contacts"])
+        scene.flat = numbers["flat"] and scene.lent_count == 0
         self.opening = sum(1 for opens in tables["contacts"]["opens"].tolist() if opens)
         scene.held_count = expressions.held
         self.take_tables(tables)
@@ -347,6 +348,7 @@ class Workspace:
         scene.indices = self.memory.ints(indices)
         scene.selected = self.memory.ints(bytes(4 * rows))
         scene.envelope = self.memory.ints(bytes(4 * rows))
+        scene.support = self.memory.ints(bytes(4 * numbers["column_count"]))
         scene.taken = self.memory.ints(bytes(4 * answers))
         scene.measure = self.memory.doubles(numbers["measure"])
         scene.e = self.memory.zeros(answers)

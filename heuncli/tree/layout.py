@@ -64,6 +64,7 @@ class Layout:
     state there. tables: the kernel's structs by name (kernel/scene.py); indices: what the closure rows point into.
     energy_group: which of the groups of components is the drives' work (-1: none). measure (answers,): of each freedom
     in its island's J, 1 of a shift, 1 / length of a turn, 0 of one that is in none. contacts: what opens and closes.
+    flat: the kernel moves it in the plane (kernel/plane.py), and finds no loads across it; without, as any scene.
     """
 
     mechanism: Mechanism
@@ -87,6 +88,7 @@ class Layout:
     islands: tuple[Island, ...] = ()
     contacts: tuple[Contact, ...] = ()
     measure: Array = np.zeros(0)
+    flat: bool = False
 
     @property
     def bodies(self) -> Table:

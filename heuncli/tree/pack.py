@@ -15,6 +15,7 @@ from heuncli.kernel.choose import scene as kernel
 from heuncli.mechanism.model import GROUND, Assembly, Joint, JointLoad, Mechanism, PairLoad, PointLoad, Stop
 from heuncli.results import Array
 from heuncli.shapes.rotations import to_quaternion
+from heuncli.tree.flat import about_z, in_plane, moves_in_plane
 from heuncli.tree.islands import with_islands
 from heuncli.tree.layout import Contact, Freedom, Layout
 from heuncli.tree.spanning import Hang, Spanning, span
@@ -179,7 +180,11 @@ class _Builder:
         """Joint point in the parent, R_ref, ball, and freedoms (kind, direction, quantity, coordinate, rate)."""
         if h.joint < 0:
             return self._free(h)
-        return self._jointed(h)
+        point, R_ref, ball, freedoms = self._jointed(h)
+        if self.mechanism.planar:
+            freedoms = [(kind, in_plane(kind, d), name, x, u) for kind, d, name, x, u in freedoms]
+            R_ref = about_z(R_ref)
+        return point, R_ref, ball, freedoms
 
     def _free(self, h: Hang) -> tuple[Array, Array, bool, list[Scalar]]:
         """A body that nothing carries: its centre of mass and its attitude, in the plane where that was declared."""
@@ -428,6 +433,7 @@ class _Builder:
             pack=self.pack,
             work_at=work_at,
             contacts=tuple(self.contacts),
+            flat=self.mechanism.planar and moves_in_plane(tables["bodies"], tables["freedoms"]),
         )
         return with_islands(layout)
 

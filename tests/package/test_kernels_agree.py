@@ -13,6 +13,7 @@ import numpy as np
 import pytest
 
 from heuncli.kernel.form import KERNEL
+from tests.shared.flat import flat_scene
 
 SPECS = Path(__file__).parents[2] / "specs"
 SCENES = {
@@ -86,9 +87,10 @@ def test_same_bits(scene: str) -> None:
 
 
 @pytest.mark.skipif(KERNEL == "pure", reason="there is no compiled kernel to compare with")
-@pytest.mark.parametrize("scene", EVENTS)
-def test_same_bits_with_events(scene: str) -> None:
-    compiled, plain = (results_of(EVENTS[scene], (), kernel) for kernel in ("compiled", "pure"))
+@pytest.mark.parametrize("scene", [*EVENTS, 0, 6])
+def test_same_bits_with_events(scene: str | int) -> None:
+    text = flat_scene(scene) if isinstance(scene, int) else EVENTS[scene]
+    compiled, plain = (results_of(text, (), kernel) for kernel in ("compiled", "pure"))
     for results in (compiled, plain):
         del results["work"]["seconds"], results["work"]["kernel"]
     assert compiled == plain
@@ -116,7 +118,7 @@ print(json.dumps({
 
 
 @pytest.mark.skipif(KERNEL == "pure", reason="there is no compiled kernel to compare with")
-@pytest.mark.parametrize("scene", ["crane", "four_bar", "engine", "cardan", "bricard", "lift"])
+@pytest.mark.parametrize("scene", ["crane", "four_bar", "engine", "cardan", "bricard", "lift", "hammered_four_bar"])
 def test_same_bits_of_the_one_linear_map(scene: str) -> None:
     told = {}
     for kernel in ("compiled", "pure"):
