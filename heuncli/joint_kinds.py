@@ -117,6 +117,11 @@ class Kind(NamedTuple):
         return 1 if self.keeps_distance else len(self.guides) + len(self.dots)
 
     @property
+    def is_rigid(self) -> bool:
+        """Whether it leaves nothing free: its two bodies are one."""
+        return self.rows == 6
+
+    @property
     def rows_in_plane(self) -> int:
         """How many of them concern the motion in the plane of a planar scene."""
         return 1 if self.keeps_distance else 3 - len(self.turns) - len(self.shifts)

@@ -7,6 +7,8 @@ starts from what it is given.
 
 from __future__ import annotations
 
+from typing import Any
+
 import numpy as np
 
 from heuncli import tolerances
@@ -14,7 +16,17 @@ from heuncli.kernel.choose import workspace
 from heuncli.records import record
 from heuncli.results import Array, Indices, Mask
 from heuncli.tree.layout import Layout
-from heuncli.tree.tables import COLUMN_BODY, COLUMN_FREEDOM, Table, parts
+from heuncli.tree.tables import (
+    BODY_ANSWER,
+    CLOSURE_ANSWER,
+    COLUMN_BODY,
+    COLUMN_FREEDOM,
+    FREEDOM_ANSWER,
+    LOAD_ANSWER,
+    STATE_ANSWER,
+    Table,
+    parts,
+)
 
 Workspace = workspace.Workspace
 
@@ -37,6 +49,27 @@ def workspace_of(layout: Layout) -> workspace.Workspace:
     made.hold([0.0] * len(layout.contacts))
     made.start(0.0, layout.y0)
     return made
+
+
+def answer_sizes(layout: Layout) -> list[tuple[Any, int]]:
+    """The parts of what the kernel answers at a state: of which kind, and how many."""
+    return [
+        (BODY_ANSWER, len(layout.place)),
+        (FREEDOM_ANSWER, len(layout.freedoms)),
+        (LOAD_ANSWER, len(layout.tables["loads"])),
+        (CLOSURE_ANSWER, len(layout.rows)),
+        (STATE_ANSWER, 1),
+    ]
+
+
+def settled(at: workspace.Workspace, layout: Layout, t: float, state: Array) -> tuple[Array, Table]:
+    """A state settled on the closures, (n,), and what the kernel tells of the bodies there, tree order."""
+    sizes = answer_sizes(layout)
+    own, out = np.array(state, dtype=float), np.zeros(sum(kind.itemsize // 8 * count for kind, count in sizes))
+    nothing = np.zeros(0)
+    arrays = {"times": np.array([t]), "states": own, "branches": nothing, "holding": nothing, "out": out}
+    at.recover(arrays, True, False)
+    return own, parts(out[None, :], sizes)[0][0]
 
 
 @record

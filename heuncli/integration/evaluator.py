@@ -8,10 +8,10 @@ import numpy as np
 
 from heuncli import tolerances
 from heuncli.records import fields, record
-from heuncli.response import Columns, columns_of, workspace_of
+from heuncli.response import Columns, answer_sizes, columns_of, workspace_of
 from heuncli.results import Array, Indices, Mask
 from heuncli.tree.layout import Layout
-from heuncli.tree.tables import BODY_ANSWER, CLOSURE_ANSWER, FREEDOM_ANSWER, LOAD_ANSWER, STATE_ANSWER, Table, parts
+from heuncli.tree.tables import Table, parts
 
 CAUSES = ("motion", "drives", "gravity")  # beside the loads: velocity terms, what is prescribed, weight
 
@@ -82,13 +82,7 @@ class Evaluator:
         start.
         """
         layout, n_t = self.layout, len(times)
-        sizes = [
-            (BODY_ANSWER, len(layout.place)),
-            (FREEDOM_ANSWER, len(layout.freedoms)),
-            (LOAD_ANSWER, len(layout.tables["loads"])),
-            (CLOSURE_ANSWER, len(layout.rows)),
-            (STATE_ANSWER, 1),
-        ]
+        sizes = answer_sizes(layout)
         own = sum(kind.itemsize // 8 * count for kind, count in sizes)
         n_c = len(layout.tables["loads"]) + len(CAUSES) if causes else 0
         width = own + n_c * self.workspace.column_width

@@ -5,11 +5,16 @@ from __future__ import annotations
 from collections.abc import Callable
 from importlib import import_module
 
+from heuncli.joint_kinds import JOINTS
 from heuncli.reduction.model import Reduced, Reduction
 from heuncli.tree.prepare import PreparedScene
 
 # in their order: the module under this one whose `step` it is, and whether it may concern a scene at all
-STEPS: tuple[tuple[str, Callable[[PreparedScene], bool]], ...] = ()
+STEPS: tuple[tuple[str, Callable[[PreparedScene], bool]], ...] = (
+    ("merged", lambda scene: any(JOINTS[joint.kind].is_rigid for joint in scene.mechanism.joints)),
+    ("held", lambda scene: bool(scene.layout.rows)),
+    ("spins", lambda scene: bool(scene.layout.bodies["ball"].any())),
+)
 
 
 def reduce(scene: PreparedScene) -> Reduced:
@@ -22,6 +27,7 @@ def reduce(scene: PreparedScene) -> Reduced:
         found = import_module(f"heuncli.reduction.{name}").step(scene)  # few scenes need it
         if isinstance(found, Reduction):
             steps.append(found)
+            kept += found.kept
             scene = found.scene
         else:
             kept += found

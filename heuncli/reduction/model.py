@@ -21,7 +21,8 @@ class Reduction:
 
     embed: instants (n_t,) and states (n_t, n') of the smaller scene to those of the larger, (n_t, n); restrict: an
     instant and a state (n,) of the larger one to that of the smaller, (n',). told: what was left out, why that changes
-    nothing; hidden: what cannot be told from the smaller scene; sentences.
+    nothing; hidden: what cannot be told from the smaller scene; kept: what might have been left out, and was not;
+    sentences.
     """
 
     scene: PreparedScene
@@ -29,6 +30,7 @@ class Reduction:
     restrict: Callable[[float, Array], Array]
     told: tuple[str, ...]
     hidden: tuple[str, ...] = ()
+    kept: tuple[str, ...] = ()
 
 
 @record

@@ -19,7 +19,7 @@ from heuncli.tree.flat import about_z, in_plane, moves_in_plane
 from heuncli.tree.islands import with_islands
 from heuncli.tree.layout import Contact, Freedom, Layout
 from heuncli.tree.spanning import Hang, Spanning, span
-from heuncli.tree.starts import JointStart, Z, joint_frame, joint_start, pose, to_direction
+from heuncli.tree.starts import GivenTree, JointStart, Z, joint_frame, joint_start, pose, to_direction
 from heuncli.tree.tables import limits, symmetric, table
 
 NO_PROGRAM = (0, 0)
@@ -37,19 +37,19 @@ def lay_out(
     inertias: Array,
     size: float,
     work: bool = True,
-    spanning: Spanning | None = None,
+    tree: GivenTree | None = None,
 ) -> Layout:
-    """Lay the scene out. size: of the scene [m]; inertias (n, 3, 3): about the centres of mass, of the motion.
-
-    spanning: the tree, where it is chosen already.
-    """
+    """Lay the scene out. size: of the scene [m]; inertias (n, 3, 3): about the centres of mass, of the motion."""
     pack = Pack()
     programs, uses = _programs(mechanism, pack)
     names = {j.name: k for k, j in enumerate(mechanism.joints)}
     kept = {names[joint] for joint, _ in uses} | {s.joint for s in mechanism.stops if s.quantity != "length"}
     kept |= {k for k, j in enumerate(mechanism.joints) if j.drive is not None and j.drive.quantity != "length"}
-    spanning = span(mechanism, kept) if spanning is None else spanning
-    starts = [joint_start(mechanism, start, joint) for joint in mechanism.joints]
+    spanning = span(mechanism, kept) if tree is None else tree.spanning
+    if tree is not None and tree.starts is not None:
+        starts = list(tree.starts)
+    else:
+        starts = [joint_start(mechanism, start, joint) for joint in mechanism.joints]
     builder = _Builder(mechanism, start, spanning, starts, inertias, size, pack, programs)
     builder.bodies()
     builder.rows()
@@ -83,7 +83,7 @@ class _Builder:
         self.inertias, self.pack, self.programs = inertias, pack, programs
         self.place = {h.body: i for i, h in enumerate(spanning.hangs)}
         self.size = size
-        self.reference = np.array([self._reference(h) for h in spanning.hangs])
+        self.reference = np.array([self._reference(h) for h in spanning.hangs]).reshape(-1, 3)
         self.body_rows: list[dict[str, Any]] = []
         self.freedom_rows: list[dict[str, Any]] = []
         self.freedoms: list[Freedom] = []

@@ -17,6 +17,7 @@ from heuncli.tree.idle_spins import IdleSpin, idle_spins, without_inertia
 from heuncli.tree.layout import Layout
 from heuncli.tree.pack import lay_out
 from heuncli.tree.spanning import Spanning
+from heuncli.tree.starts import GivenTree
 
 
 @record
@@ -63,7 +64,8 @@ def arranged(
     driven = any(j.drive is not None for j in mechanism.joints)
     works = works or driven or bool(mechanism.blows or mechanism.stops)
     works = works or any(j.restitution is not None for j in mechanism.joints)
-    return PreparedScene(mechanism, start, idle, lay_out(mechanism, start, inertias, size, works, spanning))
+    tree = None if spanning is None else GivenTree(spanning)
+    return PreparedScene(mechanism, start, idle, lay_out(mechanism, start, inertias, size, works, tree))
 
 
 def lacking_inertia(scene: PreparedScene) -> dict[int, Array]:
@@ -73,7 +75,7 @@ def lacking_inertia(scene: PreparedScene) -> dict[int, Array]:
     """
     mechanism = scene.mechanism
     order = [h.body for h in scene.layout.spanning.hangs]
-    inertia = np.array([body.inertia for body in mechanism.bodies])
+    inertia = np.array([body.inertia for body in mechanism.bodies]).reshape(-1, 3, 3)
     for spin in scene.idle:
         inertia[spin.body] += spin.lent
     inertia = inertia[order]

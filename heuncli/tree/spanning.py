@@ -1,8 +1,10 @@
 """The tree that carries the motion: which joints are kept, which are cut, and in which order bodies come.
 
 Breadth-first from the ground, so that paths stay short. A joint whose coordinate is driven, named in an expression or
-limited by a stop is never cut; those that leave a thin body free to turn about the axis without inertia are cut first,
-for there would be nothing behind that freedom; among the others of one layer those that make most conditions are kept.
+limited by a stop is never cut; next comes what leaves nothing free, so that bodies welded together hang on each other
+and only circles of welds are cut. Joints that leave a thin body free to turn about the axis without inertia are cut
+first, for there would be nothing behind that freedom; among the others of one layer those that make most conditions are
+kept.
 `line` and `plane` carry a body only from their `from` side, a rod never does; a body that nothing carries hangs on six
 freedoms of its own.
 """
@@ -74,10 +76,11 @@ def _forest(mechanism: Mechanism, depth: list[int], kept: Collection[int]) -> di
     joints = mechanism.joints
     null = null_axes(mechanism)
 
-    def urgency(k: int) -> tuple[bool, bool, int, int, int]:
+    def urgency(k: int) -> tuple[bool, bool, bool, int, int, int]:
         joint = joints[k]
         spins = any(_leaves(joint, end == joint.b, null[end]) for end in {joint.a, joint.b} & null.keys())
-        return k not in kept, spins, min(depth[joint.a], depth[joint.b]), -JOINTS[joint.kind].rows, k
+        layer, kind = min(depth[joint.a], depth[joint.b]), JOINTS[joint.kind]
+        return k not in kept, not kind.is_rigid, spins, layer, -kind.rows, k
 
     group = list(range(len(mechanism.bodies) + 1))
 

@@ -11,6 +11,7 @@ from heuncli.mechanism.model import GROUND, Assembly, Joint, Mechanism
 from heuncli.records import record
 from heuncli.results import Array
 from heuncli.shapes.rotations import about, perpendicular, to_quaternion
+from heuncli.tree.spanning import Spanning
 
 Z = np.array([0.0, 0.0, 1.0])
 
@@ -24,6 +25,14 @@ class JointStart:
     rate: float
     travel: float
     speed: float
+
+
+@record
+class GivenTree:
+    """A tree that was chosen for a larger scene, and where its joints stand; starts: None, as the start has them."""
+
+    spanning: Spanning
+    starts: tuple[JointStart, ...] | None = None
 
 
 def joint_start(mechanism: Mechanism, start: Assembly, joint: Joint) -> JointStart:

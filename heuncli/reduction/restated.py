@@ -1,0 +1,178 @@
+"""A scene in which bodies are part of others, or of the ground: the same tree, joints and loads, seen from there.
+
+    x_S = R_SB x_B + p_SB        a point of body B in the axes of the body S, or of the ground, that it is part of
+A joint's axes turn with its body, and so does the attitude at which its angle is zero: R_ref' = R_SA R_ref R_SB^T, so
+that all its coordinates stay what they were; only where a plane's two directions are chosen anew do the coordinates
+along them turn. A joint between two points of one body is gone, and what acts in it acts on the ground.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+
+import numpy as np
+
+from heuncli.expressions.programs import Expression
+from heuncli.kernel.choose import scene as kernel
+from heuncli.mechanism.model import (
+    GROUND,
+    Blow,
+    Body,
+    Joint,
+    Load,
+    Mechanism,
+    PairLoad,
+    PointLoad,
+)
+from heuncli.records import record, replace
+from heuncli.results import Array
+from heuncli.tree.layout import Layout
+from heuncli.tree.pack import lay_out
+from heuncli.tree.prepare import PreparedScene
+from heuncli.tree.spanning import Hang, Spanning
+from heuncli.tree.starts import GivenTree, JointStart
+
+
+@record
+class Part:
+    """Where a body stands in what it is part of: that body (-1: the ground), its attitude R and origin p there."""
+
+    body: int
+    R: Array
+    p: Array
+
+    def point(self, x: Array) -> Array:
+        """A point of the body."""
+        return np.asarray(self.R @ x + self.p)
+
+    def holds(self, inner: Part) -> Part:
+        """Where a body stands that stands so in this one."""
+        return Part(self.body, self.R @ inner.R, self.point(inner.p))
+
+
+WHOLE = Part(GROUND, np.eye(3), np.zeros(3))  # the ground in itself
+
+
+@record
+class Parts:
+    """Of each body what it is part of, by its number in the larger scene; roots: the bodies that are not in others.
+
+    A part's body is numbered as in the larger scene.
+    """
+
+    of: tuple[Part, ...]
+    roots: tuple[int, ...]
+
+    def at(self, body: int) -> Part:
+        """Of a body, or of the ground."""
+        return WHOLE if body == GROUND else self.of[body]
+
+    def inside(self, joint: Joint) -> bool:
+        """Whether both ends of a joint are points of one body."""
+        return self.at(joint.a).body == self.at(joint.b).body
+
+
+def restated(scene: PreparedScene, parts: Parts, bodies: Sequence[Body]) -> PreparedScene:
+    """The scene of those bodies that are roots, in the state in which the larger one starts (but for y0)."""
+    mechanism, layout, start = scene.mechanism, scene.layout, scene.start
+    number = {old: new for new, old in enumerate(parts.roots)} | {GROUND: GROUND}
+    left = [k for k, joint in enumerate(mechanism.joints) if not parts.inside(joint)]
+    joint_number = {k: n for n, k in enumerate(left)}
+    smaller = replace(
+        mechanism,
+        bodies=tuple(bodies),
+        joints=tuple(joint_of(layout, parts, number, k) for k in left),
+        loads=tuple(load_of(load, parts, number, joint_number) for load in mechanism.loads),
+        blows=tuple(blow_of(blow, parts, number) for blow in mechanism.blows),
+        stops=tuple(replace(stop, joint=joint_number[stop.joint]) for stop in mechanism.stops),
+    )
+    idle = tuple(replace(spin, body=number[spin.body]) for spin in scene.idle if spin.body in number)
+    inertias = np.array([body.inertia for body in bodies]).reshape(-1, 3, 3)
+    for spin in idle:
+        inertias[spin.body] += spin.lent
+    own = list(parts.roots)
+    begun = replace(
+        start, position=start.position[own], rotation=start.rotation[own], velocity=start.velocity[own],
+        angular_velocity=start.angular_velocity[own],
+    )  # fmt: skip
+    tree = tree_of(layout, parts, number, joint_number)
+    laid_out = lay_out(smaller, begun, inertias, layout.size, layout.work_at >= 0, tree)
+    return PreparedScene(smaller, begun, idle, laid_out)
+
+
+def tree_of(layout: Layout, parts: Parts, number: dict[int, int], joint_number: dict[int, int]) -> GivenTree:
+    """The same tree of what is left of its bodies."""
+    hangs = [
+        Hang(number[h.body], number[parts.at(h.parent).body], joint_number.get(h.joint, -1), h.reverse)
+        for h in layout.spanning.hangs
+        if h.body in number
+    ]
+    cut = tuple(joint_number[k] for k in layout.spanning.cut if k in joint_number)
+    starts = tuple(start_of(layout, parts, k) for k in joint_number)
+    return GivenTree(Spanning(tuple(hangs), cut), starts)
+
+
+def start_of(layout: Layout, parts: Parts, k: int) -> JointStart:
+    """Where a joint stands at the start, its attitude between what its bodies are part of."""
+    joint, start = layout.mechanism.joints[k], layout.starts[k]
+    return replace(start, R_ref=parts.at(joint.a).R @ start.R_ref @ parts.at(joint.b).R.T)
+
+
+def joint_of(layout: Layout, parts: Parts, number: dict[int, int], k: int) -> Joint:
+    """A joint between what its bodies are part of; a rod keeps the length that it has."""
+    joint = layout.mechanism.joints[k]
+    a, b = parts.at(joint.a), parts.at(joint.b)
+    length = joint.length
+    if length is None and k in layout.rows:
+        row = layout.tables["closures"][layout.rows.index(k)]
+        length = float(row["length"]) if row["kind"] == kernel.ROD else None
+    return replace(
+        joint, a=number[a.body], p=a.point(joint.p), axis=a.R @ joint.axis,
+        b=number[b.body], q=b.point(joint.q), to_axis=b.R @ joint.to_axis, length=length,
+    )  # fmt: skip
+
+
+def load_of(load: Load, parts: Parts, number: dict[int, int], joint_number: dict[int, int]) -> Load:
+    """A load on what its bodies are part of."""
+    if isinstance(load, PointLoad):
+        part = parts.at(load.body)
+        point = None if load.point is None else part.point(load.point)
+        vector = turned(part, load) if load.in_body else load.vector
+        return replace(load, body=number[part.body], point=point, vector=vector)
+    if isinstance(load, PairLoad):
+        a, b = parts.at(load.a), parts.at(load.b)
+        return replace(load, a=number[a.body], p=a.point(load.p), b=number[b.body], q=b.point(load.q))
+    if load.joint in joint_number:
+        return replace(load, joint=joint_number[load.joint])
+    nothing = Expression.of(0.0)
+    value = nothing if load.value is None else load.value
+    return PointLoad(load.name, "couple", GROUND, None, (value, nothing, nothing), False)
+
+
+def turned(part: Part, load: PointLoad) -> tuple[Expression, Expression, Expression]:
+    """The components of a load that is fixed in a body in the axes of what it is part of.
+
+    What is not constant can stand in the same axes only, or on the ground, which it does not move (`bound_to_axes`).
+    """
+    constants = [value.constant for value in load.vector]
+    if None in constants or np.array_equal(part.R, np.eye(3)):
+        return load.vector
+    x, y, z = (part.R @ np.array(constants, dtype=float)).tolist()
+    return Expression.of(x), Expression.of(y), Expression.of(z)
+
+
+def bound_to_axes(mechanism: Mechanism) -> set[int]:
+    """The bodies with loads that vary and are fixed in their axes: only in those can such loads be stated."""
+    return {
+        load.body
+        for load in mechanism.loads
+        if isinstance(load, PointLoad) and load.in_body and any(value.constant is None for value in load.vector)
+    }
+
+
+def blow_of(blow: Blow, parts: Parts, number: dict[int, int]) -> Blow:
+    """A blow on what its body is part of."""
+    part = parts.at(blow.body)
+    point = None if blow.point is None else part.point(blow.point)
+    vector = part.R @ blow.vector if blow.in_body else blow.vector
+    return replace(blow, body=number[part.body], point=point, vector=vector)

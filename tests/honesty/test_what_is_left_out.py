@@ -1,0 +1,146 @@
+"""Which bodies are merged, taken for immobile or spun slower; which are not, though they look so at the start."""
+
+from __future__ import annotations
+
+import numpy as np
+import pytest
+
+from heuncli.spec.load import load
+from heuncli.study.setup import set_up
+from tests.shared.reduced import pair, same
+
+HEAD = "heun: 1\ntitle: t\ngravity: [0, 0, -9.81]\nground: {points: {O: [0, 0, 0]}}\n"
+BAR = "mass: 1, center: [0.5, 0, 0], inertia: [0.002, 0.084, 0.084], points: {a: [0, 0, 0], b: [1, 0, 0]}"
+RUN = "analysis: {duration: 0.2, samples: 5}\n"
+
+
+def told(text: str) -> str:
+    """What is left out, and what is not, of a scene whose numbers are the same in full."""
+    both = pair(load("scene.yaml", text))
+    same(both)
+    reduced = both.small.setup.reduced
+    return "\n".join((*reduced.told, *reduced.kept)) if reduced is not None else ""
+
+
+def bodies(*lines: str) -> str:
+    return "bodies:\n" + "".join(f"  {line}\n" for line in lines)
+
+
+def joints(*lines: str) -> str:
+    return "joints:\n" + "".join(f"  {line}\n" for line in lines)
+
+
+SWING = "swing: {type: ball, from: ground.O, to: x.a}"
+OVER = f"x: {{{BAR}}}", f"y: {{{BAR}, position: [1, 0, 0], orientation: {{axis: [0, 0, 1], angle: 90 deg}}}}"
+WELD = "weld: {type: weld, from: x.b, to: y.a}"
+
+
+def welded(more: str = "", extra: tuple[str, ...] = ()) -> str:
+    return HEAD + bodies(*OVER) + joints(SWING, WELD, *extra) + more + RUN
+
+
+def test_welded_bodies_are_one() -> None:
+    assert "bodies.x and y are welded together" in told(welded())
+
+
+@pytest.mark.parametrize("frame", ["world", "body"])
+def test_a_load_in_axes_that_are_not_those_of_the_whole(frame: str) -> None:
+    """In time and fixed in the axes of a body that is turned against the one it is welded to."""
+    load = f'forces:\n  f: {{type: force, on: y.b, vector: ["sin(9*t)", 1, 0], frame: {frame}}}\n'
+    found = told(welded(load))
+    assert ("stays a body by itself" in found) == (frame == "body")
+    assert ("welded together" in found) == (frame == "world")
+
+
+def test_a_rope_between_bodies_that_are_welded() -> None:
+    """The run ends where it would push: as it is slack of itself here, at once."""
+    rope = "rope: {type: rod, from: x.a, to: y.b, tension_only: true, restitution: 0.2}"
+    assert "joints.rope between it" in told(welded("", (rope,)))
+
+
+FRAME = (
+    "k: {mass: 2, center: [0, 0, 1], inertia: [0.1, 0.1, 0.1], points: {a: [-1, 0, 0], b: [1, 0, 0], top: [0, 0, 1]}}",
+    f"x: {{{BAR}, position: [0, 0, 1]}}",
+)
+CARRIES = "swing: {type: pin, axis: [0, 1, 0], from: k.top, to: x.a}"
+
+
+def carried(*held: str, more: str = "") -> str:
+    return HEAD + bodies(*FRAME) + joints(CARRIES, *held) + more + RUN
+
+
+BALL = "b1: {type: ball, from: ground.O, to: {body: k, at: [0, 0, 0]}}"
+RODS = tuple(
+    f"r{i}: {{type: rod, from: {{body: ground, at: {at}}}, to: k.{end}}}"
+    for i, (at, end) in enumerate((("[0, 2, 1]", "top"), ("[2, 0, 2]", "top"), ("[-1, 2, 0]", "a"), ("[1, -2, 0]", "b")))
+)
+
+
+@pytest.mark.parametrize(("count", "held"), [(2, False), (3, True), (4, True)])
+def test_a_frame_that_carries_a_bar(count: int, held: bool) -> None:
+    """On a ball and rods: three hold it, four hold it twice."""
+    found = told(carried(BALL, *RODS[:count]))
+    assert ("bodies.k is held by joints among themselves and with the ground" in found) == held
+
+
+def test_what_a_rope_holds_may_be_let_go() -> None:
+    rope = RODS[2].replace("}}", "}").replace("to: k.a}", "to: k.a, tension_only: true}")
+    assert "bodies.k is held" not in told(carried(BALL, *RODS[:2], rope))
+
+
+def test_a_rope_beside_what_is_held() -> None:
+    """It would not be looked at any more when it pushes."""
+    rope = "rope: {type: rod, from: {body: ground, at: [0, 0, 3]}, to: k.top, tension_only: true, restitution: 0.1}"
+    assert "stays: joints.rope may go slack" in told(carried(BALL, *RODS, rope))
+
+
+def test_a_frame_that_is_driven_in_time() -> None:
+    """One of its rods changes its length, another one keeps a length that is given as a drive."""
+    drive = 'drives: {{d: {{joint: r2, length: "{}"}}}}\n'
+    length = float(np.sqrt(4.0))
+    assert "is held" in told(carried(BALL, *RODS[:3], more=drive.format(length)))
+    assert "is held" not in told(carried(BALL, *RODS[:3], more=drive.format(f"{length} + 0.01*t**2")))
+
+
+def test_a_slider_at_its_dead_centre_is_not_held() -> None:
+    """It does not move at first, as the crank stands in line with the rod."""
+    text = HEAD + bodies(f"crank: {{{BAR}, angular_velocity: [0, 3, 0]}}", f"link: {{{BAR}, position: [1, 0, 0]}}",
+                         "piston: {mass: 1, inertia: [0.1, 0.1, 0.1], points: {c: [0, 0, 0]}, position: [2, 0, 0]}")
+    text += joints("main: {type: pin, axis: [0, 1, 0], from: ground.O, to: crank.a}",
+                   "pin: {type: pin, axis: [0, 1, 0], from: crank.b, to: link.a}",
+                   "guide: {type: slide, axis: [1, 0, 0], from: ground.O, to: piston.c}",
+                   "wrist: {type: pin, axis: [0, 1, 0], from: piston.c, to: link.b}") + RUN  # fmt: skip
+    assert "held" not in told(text)
+
+
+TOP = "x: {mass: 1, center: [0, 0, 1], inertia: [0.1, 0.1, 0.01], points: {a: [0, 0, 0], c: [0, 0, 1], off: [0.1, 0, 1]}, "
+TOP += "orientation: {axis: [1, 0, 0], angle: 60 deg}, angular_velocity: {vector: [0, 0, 100], frame: body}}"
+
+
+@pytest.mark.parametrize(
+    ("load", "slower"),
+    [
+        ("", True),
+        ("forces:\n  f: {type: force, on: x.c, vector: [1, 0, 0]}\n", True),
+        ("forces:\n  f: {type: force, on: x.c, vector: [1, 0, 0], frame: body}\n", False),
+        ("forces:\n  f: {type: force, on: x.off, vector: [1, 0, 0]}\n", False),
+        ("forces:\n  f: {type: couple, on: x, vector: [1, 0, 0], frame: body}\n", False),
+        ("forces:\n  f: {type: damper, joint: swing, coefficient: 0.01}\n", False),
+        ("impulses:\n  f: {on: x.c, vector: [0.3, 0, 0], frame: body, time: 0.1}\n", True),
+        ("impulses:\n  f: {on: x.off, vector: [0.3, 0, 0], time: 0.1}\n", False),
+        ("impulses:\n  f: {body: x, couple: [0, 0, 0.1], time: 0.1}\n", False),
+    ],
+)
+def test_a_top_spins_slower_where_nothing_turns_it(load: str, slower: bool) -> None:
+    found = told(HEAD + bodies(TOP) + joints(SWING) + load + RUN)
+    assert ("its spin of 100 rad/s stays" in found) == slower
+
+
+def test_a_wire_costs_as_many_steps_as_a_rod() -> None:
+    """A hundredth of a millimetre thick; in full half a million steps follow rounding over its inertia."""
+    text = HEAD + bodies(
+        "x: {shapes: [{type: cylinder, from: [0, 0, 0], to: [0, 0, -1], radius: 0.01 mm, density: 7850}], "
+        "points: {a: [0, 0, 0]}, orientation: {axis: [1, 0, 0], angle: 60 deg}, angular_velocity: [0.3, 0.2, 1]}"
+    )
+    setup = set_up(load("scene.yaml", text + joints(SWING) + "analysis: {duration: 1, samples: 3}\n"))
+    assert setup.runner.trajectory(np.array([0.0, 0.5, 1.0]), 1e-10).steps < 60
