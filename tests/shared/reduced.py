@@ -13,6 +13,7 @@ from heuncli.study.solve import Options, Study, solve
 
 BLOCKS = ("bodies", "points", "coordinates", "foundation", "joints", "stops", "sections", "forces", "energy",
           "system_vector")  # fmt: skip
+NOTHING = 1e-25  # squares of roundings of what is zero
 ROUNDING = 1e-11  # of the largest of a kind, beside what both runs say of themselves
 UNTOLD = ("axis", "line", "stress")  # directions of what may be zero; the rest are functions of what is compared
 SPINS = ("moment", "M1", "M2", "T")
@@ -81,7 +82,7 @@ def same(both: Pair) -> float:
         assert np.array_equal(np.isnan(a), np.isnan(b)), f"{path}: open at other places"
         difference = float(np.nan_to_num(np.abs(a - b)).max(initial=0.0))
         size = largest[path.rsplit(".", 1)[-1]]
-        allowed = (2.0 * estimate + ROUNDING) * size
+        allowed = (2.0 * estimate + ROUNDING) * size + NOTHING
         assert difference <= allowed, f"{path}: off by {difference:.3g}, {difference / size:.1e} of {size:.3g}"
         worst = max(worst, difference / (size or 1.0))
     return worst
@@ -113,6 +114,11 @@ def sizes(found: Mapping[str, Any]) -> dict[str, float]:
     for kind, among in ALIKE.items():
         if kind in largest:
             largest[kind] = max(largest.get(name, 0.0) for name in among)
+    # what is estimated are places: velocities and accelerations err by as much of what turning makes of them
+    turned = largest.get("angular_velocity", 0.0) * largest.get("center", 0.0)
+    for kind, least in (("velocity", turned), ("acceleration", turned * largest.get("angular_velocity", 0.0))):
+        for name in (kind, f"center_{kind}"):
+            largest[name] = max(largest.get(name, 0.0), least)
     return largest
 
 
