@@ -115,11 +115,10 @@ def sizes(found: Mapping[str, Any]) -> dict[str, float]:
         if kind in largest:
             largest[kind] = max(largest.get(name, 0.0) for name in among)
     # what is estimated are places: velocities and accelerations err by as much of what turning makes of them
-    turned = largest.get("angular_velocity", 0.0) * largest.get("center", 0.0)
-    for kind, least in (("velocity", turned), ("acceleration", turned * largest.get("angular_velocity", 0.0))):
-        for name in (kind, f"center_{kind}"):
-            largest[name] = max(largest.get(name, 0.0), least)
-    return largest
+    rate, length = largest.get("angular_velocity", 0.0), largest.get("center", 0.0)
+    turned = {"velocity": rate * length, "acceleration": rate**2 * length}
+    turned |= {f"center_{kind}": size for kind, size in turned.items()} | {"angular_acceleration": rate**2}
+    return largest | {kind: max(largest.get(kind, 0.0), size) for kind, size in turned.items()}
 
 
 FORCES = ("force", "N", "Q1", "Q2", "axial", "radial", "tension")
