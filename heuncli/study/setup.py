@@ -10,7 +10,7 @@ from heuncli.integration.runner import Runner
 from heuncli.integration.solvable import ready
 from heuncli.mechanism.build import build, forms_of
 from heuncli.mechanism.model import Mechanism
-from heuncli.records import record
+from heuncli.records import record, replace
 from heuncli.reduction import compose as reduction
 from heuncli.reduction.model import Reduced
 from heuncli.results import Block
@@ -50,7 +50,10 @@ def set_up(spec: Spec, method: str | None = None, *, reduce: bool = True, asked:
     """
     spec, left_out = asked_part(spec, asked, reduce)
     mechanism, cuts = draw(spec)
-    scene, runner = ready(prepare(mechanism, spec.analysis.times[0] if spec.analysis.type == "state" else 0.0))
+    prepared = prepare(mechanism, spec.analysis.times[0] if spec.analysis.type == "state" else 0.0)
+    if not reduce:  # what is declared planar is moved as in space, too
+        prepared = replace(prepared, layout=replace(prepared.layout, flat=False))
+    scene, runner = ready(prepared)
     chosen = METHODS[method or spec.analysis.method] if spec.analysis.type == "motion" else None
     reduced = None
     if chosen is not None and reduce:
