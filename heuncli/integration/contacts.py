@@ -16,7 +16,7 @@ from heuncli import tolerances
 from heuncli.errors import Problem, SolveError
 from heuncli.integration.complementarity import Pivots, complementary
 from heuncli.integration.evaluator import Recovered
-from heuncli.records import record
+from heuncli.records import fields, record
 from heuncli.results import Array, Indices, Mask
 from heuncli.tree.layout import Contact, Layout
 from heuncli.tree.tables import Table
@@ -41,19 +41,24 @@ class Touching:
     reach: Array
     restitution: Array
 
+    def some(self, own: Indices) -> Touching:
+        """Some of them."""
+        return Touching(**{name: value[own] for name, value in fields(self).items()})
+
 
 @record
 class Struck:
     """Impulses of touching contacts (k,), the rates of opening behind them, and what is worth telling.
 
-    depends (k,): those that others hold, so that how they share is not known.
+    depends (k,): those that others hold, so that how they share is not known; equal (k,): those that took the least
+    restitution of all that feel each other; rounds (k,).
     """
 
     impulses: Array
     rate: Array
     depends: Mask
-    equal: bool  # all took the least restitution
-    rounds: int
+    equal: Mask
+    rounds: Indices
 
     @property
     def closed(self) -> Mask:
@@ -136,8 +141,34 @@ def strikes(touch: Touching, A: Array, moves: Mask, pressed: Array, plastic: Mas
     """The impulses of contacts that are struck, or pressed by given blows (pressed: rates these add).
 
     What moves apart at the instant takes part only if it is struck in a later round. plastic: contacts that rest behind
-    the blow, whatever their restitution, and though they would open by less than is seen.
+    the blow, whatever their restitution, and though they would open by less than is seen. Contacts that do not feel
+    each other are struck as if each were alone: what one machine loses does not hide what another would gain.
     """
+    k = len(touch.which)
+    none = np.zeros(k, dtype=bool)
+    found = Struck(np.zeros(k), touch.rate.copy(), none.copy(), none.copy(), np.zeros(k, dtype=int))
+    for own in feeling(A):
+        part = struck_together(touch.some(own), A[np.ix_(own, own)], moves[own], pressed[own], plastic[own])
+        for name, values in fields(part).items():
+            getattr(found, name)[own] = values
+    return found
+
+
+def feeling(A: Array) -> list[Indices]:
+    """The groups of contacts that feel each other, by what one that bears does to the other, in their order."""
+    size = np.sqrt(np.maximum(np.diag(A), 0.0))
+    felt = np.abs(A) > tolerances.SUM_ROUNDING * size[:, None] * size
+    np.fill_diagonal(felt, True)
+    for _ in range(len(A)):
+        reached = felt @ felt
+        if np.array_equal(reached, felt):
+            break
+        felt = reached
+    return [np.flatnonzero(row) for k, row in enumerate(felt) if not row[:k].any()]
+
+
+def struck_together(touch: Touching, A: Array, moves: Mask, pressed: Array, plastic: Mask) -> Struck:
+    """The same of contacts that feel each other."""
     v = touch.rate.copy()
     total = np.zeros(len(v))
     depends = np.zeros(len(v), dtype=bool)
@@ -168,7 +199,8 @@ def strikes(touch: Touching, A: Array, moves: Mask, pressed: Array, plastic: Mas
         own = np.flatnonzero(moves & (v == 0.0) & (total > 0.0) | plastic & (v > 0.0))
         total[own] -= np.linalg.lstsq(A[np.ix_(own, own)], v[own], rcond=tolerances.CONTACT_DEPENDS)[0]
         v[own] = 0.0
-    return Struck(total, v, depends & (total == 0.0), equal, rounds)
+    every = np.ones(len(v), dtype=bool)
+    return Struck(total, v, depends & (total == 0.0), equal & every, rounds * every)
 
 
 def one_round(A: Array, v: Array, pressed: Array, own: Indices, e: Array, noise: Array) -> Pivots:

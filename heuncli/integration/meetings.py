@@ -231,9 +231,11 @@ class Contacts:
             names = [contact.name for contact in struck]
             together = f"{', '.join(names[:-1])} and {names[-1]}"
             self.notes[f"{at} {together} are struck at once: Newton's restitution is taken for each"] = None
-            if outcome.struck.equal:
-                least = min(contact.restitution for contact in struck)
-                self.notes[f"{at} they all take the restitution {least:g}: each with its own would add energy"] = None
+        alike = [own[k] for k in np.flatnonzero(outcome.struck.equal & (touch.rate < 0.0))]
+        if len(alike) > 1:
+            least = min(contact.restitution for contact in alike)
+            told = ", ".join(contact.name for contact in alike)
+            self.notes[f"{at} {told} take the restitution {least:g}: each with its own would add energy"] = None
         for k in np.flatnonzero(outcome.at_rest):
             name = own[k].name
             count = self.strikes.get(name, 0)
