@@ -54,6 +54,27 @@ ABOUT_TWO = Turn("square", (("axis", "to_axis"),), ("axis", "to_axis"))
 NOT_AT_ALL = Turn("all", (("first", "second"), ("second", "axis"), ("axis", "first")))
 ABOUT_Z = Turn("free", (("z", "axis"), ("z", "across")), ("z",))  # upright as drawn: in the plane nothing tilts it
 
+# What of these moves in a plane, where that is all that is left of a scene: no condition across it. The axis stands
+# along the plane's normal, which is then z, or lies across it, in the plane; what has no axis is as if it stood along.
+HELD_ALONG = {
+    POINT: Hold("point", ("first", "second")), LINE: Hold("point", ("first", "second")),
+    PLANE: Hold("plane", (), ("first", "second")), DISTANCE: DISTANCE,
+}  # fmt: skip
+TURNS_ALONG = {
+    FREE: Turn("free", (), ("z",)), ABOUT_AXIS: Turn("axis", (), ("axis",)), ABOUT_TWO: Turn("axis", (), ("axis",)),
+    NOT_AT_ALL: Turn("all", (("first", "second"),)),
+}  # fmt: skip
+HELD_ACROSS = {
+    POINT: Hold("point", ("axis", "across")), LINE: Hold("line", ("across",), ("axis",)),
+    PLANE: Hold("plane", ("axis",), ("across",)), LINE_IN_PLANE: Hold("line", ("across",), ("axis",)),
+    PLANE_IN_PLANE: Hold("plane", ("axis",), ("across",)),
+}  # fmt: skip
+TURNS_ACROSS = {
+    FREE: Turn("free", (), ("z",)), ABOUT_Z: Turn("free", (), ("z",)),
+    ABOUT_AXIS: Turn("all", (("axis", "across"),)), ABOUT_TWO: Turn("all", (("axis", "across"),)),
+    NOT_AT_ALL: Turn("all", (("axis", "across"),)),
+}  # fmt: skip
+
 
 class Kind(NamedTuple):
     """One kind of joint; a row of JOINTS. What is left out is what most kinds have not."""
@@ -201,6 +222,18 @@ JOINTS: dict[str, Kind] = TYPES | {
              spoken="plane"),
     )
 }  # fmt: skip
+# with what they all are where a scene is solved in its plane (reduction/plane.py)
+FLAT: dict[tuple[str, bool], Kind] = {
+    (kind.name, along): kind._replace(
+        name=f"{kind.name} {'along' if along else 'across'} the normal", hold=held[kind.hold], turn=turns[kind.turn],
+        coordinates=tuple(x for x in kind.coordinates if x == ("angle" if along else "travel")),
+        spoken=kind.spoken or kind.name,
+    )
+    for kind in JOINTS.values()
+    for along, held, turns in ((True, HELD_ALONG, TURNS_ALONG), (False, HELD_ACROSS, TURNS_ACROSS))
+    if kind.hold in held and kind.turn in turns
+}  # fmt: skip
+JOINTS |= {kind.name: kind for kind in FLAT.values()}
 RATES = {"angle": "rate", "travel": "speed"}  # of the coordinates
 SYNONYMS = {word: kind.name for kind in TYPES.values() for word in kind.synonyms}
 

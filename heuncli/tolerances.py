@@ -41,6 +41,12 @@ SUM_POSES = (0.05, 0.1, 0.2, 0.4)
 ONE_DIRECTION = 1e-6  # of the largest: over poses NEIGHBOUR apart an open force in one direction turns by NEIGHBOUR**2
 ZERO_COMPONENT = 1e-12  # of a unit direction that is proposed: smaller ones are rounding and would be printed as such
 
+# -- in the plane
+# sine of a direction, and of the size or a vector's length: some thousand roundings, which assembling in a tilted plane
+# leaves; what is left out is nothing beside what every step rounds
+FLAT = 1e-12
+NEARLY_FLAT = 1e-3  # the same: a drawing off by less was meant to be flat, which is told
+
 # -- no inertia
 NO_INERTIA = 1e-12  # of the body's largest moment: a tensor turned into other axes keeps 14 digits, some are typed
 POINT_MASS = 1e-9  # of m L^2: a body whose radius of gyration is 3e-5 of the scene's size is no point mass yet

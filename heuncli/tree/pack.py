@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import math
 from array import array
+from collections.abc import Sequence
 from typing import Any
 
 import numpy as np
@@ -50,11 +51,23 @@ def lay_out(
         starts = list(tree.starts)
     else:
         starts = [joint_start(mechanism, start, joint) for joint in mechanism.joints]
-    builder = _Builder(mechanism, start, spanning, starts, inertias, size, pack, programs)
-    builder.bodies()
-    builder.rows()
-    builder.loads()
-    return builder.finish(work)
+    return _Builder(mechanism, start, spanning, starts, inertias, size, pack, programs).layout(work)
+
+
+def lay_out_like(
+    layout: Layout, mechanism: Mechanism, start: Assembly, inertias: Array, starts: Sequence[JointStart]
+) -> Layout:
+    """Lay out what is made of a scene that is laid out already, with its tree, size and programs; starts: as given.
+
+    Programs that it has of its own come after those of the other, so that the branches of both are the same.
+    """
+    pack = Pack()
+    programs, _ = _programs(layout.mechanism, pack)
+    for e in mechanism.expressions():
+        if e.constant is None and id(e) not in programs:
+            programs[id(e)] = pack.add(e)
+    builder = _Builder(mechanism, start, layout.spanning, list(starts), inertias, layout.size, pack, programs)
+    return builder.layout(layout.work_at >= 0)
 
 
 def _programs(mechanism: Mechanism, pack: Pack) -> tuple[dict[int, tuple[int, int]], set[tuple[str, str]]]:
@@ -91,6 +104,13 @@ class _Builder:
         self.weights: list[float] = []
         self.groups: list[dict[str, Any]] = []
         self.answer_count = 0
+
+    def layout(self, work: bool) -> Layout:
+        """All of it."""
+        self.bodies()
+        self.rows()
+        self.loads()
+        return self.finish(work)
 
     def _reference(self, h: Hang) -> Array:
         body = self.mechanism.bodies[h.body]
@@ -209,7 +229,7 @@ class _Builder:
         if h.reverse:
             axes = {"axis": joint.axis, "to_axis": joint.to_axis}
             if len(kind.turns) != 2:
-                axes = {"axis": R_ref.T @ joint.axis}
+                axes = {"axis": R_ref.T @ joint.axis, "z": Z}
             R_ref, sign = R_ref.T, -1.0
         turns = kind.turns[::-1] if h.reverse else kind.turns
         if len(turns) == 2:

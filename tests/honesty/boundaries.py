@@ -38,6 +38,7 @@ from heuncli.study.warnings import unbalanced
 from heuncli.tree.prepare import prepare
 from tests.closed_forms.test_stretched_chain import chain
 from tests.convergence.test_pulses import slide
+from tests.honesty.nearly_flat import PARTS, drawn_askew, leaving
 from tests.shared.scenes import near, solved, study
 
 FACTORS = (0.01, 1 / 3, 3.0, 100.0)
@@ -709,6 +710,9 @@ ROWS = (
     Row("CONTACT_DEPENDS", leaning, "leans", "open"),
     Row("NO_ANSWER", hardly_moved, "held", "moves"),
     Row("SHORTEST_FLIGHT", hop, "none", "flies"),
+    # in the plane
+    *(Row("FLAT", leaving(part), "flat", "not flat") for part in PARTS),
+    Row("NEARLY_FLAT", drawn_askew, "told", "in space"),
 )
 
 # Those that decide no verdict: on either side the same numbers, to their digits.

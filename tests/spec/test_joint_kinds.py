@@ -7,11 +7,13 @@ from typing import get_args
 
 import pytest
 
-from heuncli.joint_kinds import JOINTS, RATES, SYNONYMS, TYPES, Kind
+from heuncli.joint_kinds import FLAT, JOINTS, RATES, SYNONYMS, TYPES, Kind
 from heuncli.spec import format as f
 from heuncli.spec.fields import keys_of
 
-ROWS = pytest.mark.parametrize("kind", JOINTS.values(), ids=JOINTS)
+IN_PLANE = {kind.name: kind for kind in FLAT.values()}
+IN_SPACE = {name: kind for name, kind in JOINTS.items() if name not in IN_PLANE}
+ROWS = pytest.mark.parametrize("kind", IN_SPACE.values(), ids=IN_SPACE)
 WRITTEN = pytest.mark.parametrize("kind", TYPES.values(), ids=TYPES)
 
 
@@ -61,6 +63,20 @@ def test_what_is_not_held_is_free(kind: Kind) -> None:
     """Six freedoms of one body against another: held ones are rows, the others freedoms; a rod's are not told apart."""
     free = len(kind.shifts) + (3 if kind.ball else len(kind.turns))
     assert kind.rows + free == 6 or (kind.keeps_distance and kind.rows == 1)
+
+
+@pytest.mark.parametrize("kind", IN_PLANE.values(), ids=IN_PLANE)
+def test_what_is_not_held_in_the_plane_is_free(kind: Kind) -> None:
+    """Three freedoms of one body against another in a plane: held ones are rows; no condition across it is left."""
+    assert kind.rows + len(kind.shifts) + len(kind.turns) == 3 or (kind.keeps_distance and kind.rows == 1)
+    assert set(kind.coordinates) <= {*["angle"] * bool(kind.turns), *["travel"] * bool(kind.shifts)}
+
+
+@pytest.mark.parametrize("kind", TYPES.values(), ids=TYPES)
+def test_every_kind_has_its_forms_in_the_plane(kind: Kind) -> None:
+    """With its axis along the normal and across it; without an axis one."""
+    assert (kind.name, True) in FLAT
+    assert not kind.has_axis or (kind.name, False) in FLAT
 
 
 @ROWS

@@ -1,0 +1,123 @@
+"""A scene seen from a plane: which bodies cannot tilt out of it whatever acts, how its joints stand to it.
+
+A body is upright where joints lead from the ground to it that only turn about the normal or slide across it. Its
+motion is one along the plane at any height, and what acts out of the plane is carried by its joints.
+"""
+
+from __future__ import annotations
+
+from collections import defaultdict
+from collections.abc import Sequence
+
+import numpy as np
+
+from heuncli import tolerances
+from heuncli.joint_kinds import ABOUT_AXIS, ABOUT_TWO, ABOUT_Z, FLAT, JOINTS, NOT_AT_ALL, Kind
+from heuncli.mechanism.model import GROUND, Joint, Mechanism
+from heuncli.records import record
+from heuncli.reduction.plane_frame import axes_of
+from heuncli.results import Array
+from heuncli.tree.prepare import PreparedScene
+from heuncli.tree.starts import pose
+
+
+@record
+class Stance:
+    """How a joint stands to the plane: its axis, or one of its two, along the normal, or all of them across it.
+
+    axis: the one along the normal, else its own, world; signed: its component along the normal, 1 or -1, 0 across;
+    off: the sine by which what should be along or across is not. What has no axis is taken to stand along.
+    """
+
+    along: bool
+    axis: Array
+    off: float
+
+    def flat(self, kind: Kind) -> Kind:
+        """What moves in the plane of a joint of that kind."""
+        return FLAT[kind.name, self.along]
+
+
+@record
+class View:
+    """A scene and a plane: its axes E (3, 3), which bodies are upright, and how each joint stands."""
+
+    scene: PreparedScene
+    E: Array
+    upright: tuple[bool, ...]
+    stances: tuple[Stance, ...]
+    reach: float  # of places [m]: the scene's size and how far it is from the origin
+
+    @property
+    def n(self) -> Array:
+        """The normal."""
+        return np.asarray(self.E[2])
+
+    def stays(self, body: int) -> bool:
+        """Whether nothing can tilt a body out of the plane; the ground."""
+        return body == GROUND or self.upright[body]
+
+    def height(self, body: int, point: Array) -> float:
+        """Of a body's point above the origin's plane [m]."""
+        x, R, _, _ = pose(self.scene.start, body)
+        return float(self.n @ (x + R @ point))
+
+    def normal_in(self, body: int, in_body: bool = True) -> Array:
+        """The normal in a body's axes, or in the world's."""
+        return np.asarray(pose(self.scene.start, body)[1].T @ self.n) if in_body else self.n
+
+    def still(self, joint: int, quantity: str) -> bool:
+        """Whether the plane leaves a coordinate no motion."""
+        of = self.scene.mechanism.joints[joint]
+        kind = JOINTS[of.kind]
+        return quantity in kind.coordinates and quantity not in self.stances[joint].flat(kind).coordinates
+
+
+def view(scene: PreparedScene, n: Array) -> View:
+    """A scene seen from the plane across n."""
+    E = axes_of(n)
+    mechanism, start = scene.mechanism, scene.start
+    stances = tuple(_stance(j, pose(start, j.a)[1], pose(start, j.b)[1], E[2]) for j in mechanism.joints)
+    upright = _upright(mechanism, stances)
+    places = [start.position] + [p[None] for j in mechanism.joints for b, p in ((j.a, j.p), (j.b, j.q)) if b == GROUND]
+    reach = scene.layout.size + float(np.abs(np.concatenate(places)).max(initial=0.0))
+    return View(scene, E, upright, stances, reach)
+
+
+def _upright(mechanism: Mechanism, stances: Sequence[Stance]) -> tuple[bool, ...]:
+    """Which bodies joints that keep them upright lead to from the ground, whether the tree has them or not."""
+    near = defaultdict(list)
+    for joint, stance in zip(mechanism.joints, stances, strict=True):
+        if _keeps_upright(JOINTS[joint.kind], stance):
+            near[joint.a].append(joint.b)
+            near[joint.b].append(joint.a)
+    found = {GROUND}
+    waiting = [GROUND]
+    while waiting:
+        reached = [i for i in near[waiting.pop()] if i not in found]
+        found.update(reached)
+        waiting += reached
+    return tuple(mechanism.planar or i in found for i in range(len(mechanism.bodies)))
+
+
+def _stance(joint: Joint, R_a: Array, R_b: Array, n: Array) -> Stance:
+    kind = JOINTS[joint.kind]
+    if not kind.has_axis:
+        return Stance(True, n, 0.0)
+    axes = [R_a @ joint.axis, *([R_b @ joint.to_axis] if kind.turn is ABOUT_TWO else [])]
+    components = [float(axis @ n) for axis in axes]
+    offs = [float(np.sqrt(np.sum(np.square(axis - c * n)))) for axis, c in zip(axes, components, strict=True)]
+    k = int(np.argmin(offs))
+    # of two axes, which stay square, one is along the normal where the other is across, or both are across
+    if offs[k] < max(map(abs, components)):
+        others = [abs(c) for i, c in enumerate(components) if i != k]
+        return Stance(True, np.copysign(1.0, components[k]) * n, max([offs[k], *others]))
+    return Stance(False, axes[0], max(map(abs, components)))
+
+
+def _keeps_upright(kind: Kind, stance: Stance) -> bool:
+    """Whether a joint leaves no other motion than turns about the normal and shifts across it."""
+    if stance.off > tolerances.FLAT:
+        return False
+    turns = kind.turn in (NOT_AT_ALL, ABOUT_Z) or (kind.turn is ABOUT_AXIS and stance.along)
+    return turns and (not kind.shifts or kind.turn is ABOUT_Z or not stance.along)
