@@ -213,13 +213,15 @@ TYPES: dict[str, Kind] = {
              synonyms=("distance", "link", "cable", "rope")),
     )
 }  # fmt: skip
-# with what line and plane are in a scene declared planar: the bodies' z axes stay parallel
+# with what line and plane are in a scene declared planar: the bodies' z axes stay parallel; and with a pin of what has
+# no inertia to turn about it, the angle of which no law determines
 JOINTS: dict[str, Kind] = TYPES | {
     kind.name: kind
     for kind in (
         Kind("flat line", LINE_IN_PLANE, ABOUT_Z, "forward", axis_key="axis", motions=("sliding",), spoken="line"),
         Kind("flat plane", PLANE_IN_PLANE, ABOUT_Z, "forward", axis_key="normal", motions=("sliding",),
              spoken="plane"),
+        Kind("spun pin", POINT, ABOUT_AXIS, motions=("turning",), looser_in_plane=("flat line",), spoken="pin"),
     )
 }  # fmt: skip
 # with what they all are where a scene is solved in its plane (reduction/plane.py)

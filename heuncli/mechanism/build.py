@@ -21,6 +21,7 @@ from heuncli.mechanism.model import (
     PointLoad,
     Stop,
 )
+from heuncli.records import replace
 from heuncli.results import Array
 from heuncli.shapes.inertia import properties
 
@@ -46,14 +47,20 @@ def build(spec: Any, forms: dict[str, Form]) -> Mechanism:
     joints = {name: (k, TYPES[j.type]) for k, (name, j) in enumerate(spec.joints.items())}
     drives = {d.joint: (name, d) for name, d in spec.drives.items()}
     planar = spec.space == "planar"
+    bodies = tuple(body(name, b, forms.get(name)) for name, b in spec.bodies.items())
+    made = tuple(joint(name, j, index, drives.get(name), planar) for name, j in spec.joints.items())
+    loads = tuple(load(name, f, index, joints) for name, f in spec.forces.items())
+    if planar:
+        told = {joints[stop.joint][0] for stop in spec.stops.values()} | coordinates_used(loads, joints)
+        made = tuple(spun(j, bodies) if k not in told else j for k, j in enumerate(made))
     return Mechanism(
         title=spec.title,
         planar=planar,
         gravity=np.array(spec.gravity),
         ground_points=vectors(spec.ground.points),
-        bodies=tuple(body(name, b, forms.get(name)) for name, b in spec.bodies.items()),
-        joints=tuple(joint(name, j, index, drives.get(name), planar) for name, j in spec.joints.items()),
-        loads=tuple(load(name, f, index, joints) for name, f in spec.forces.items()),
+        bodies=bodies,
+        joints=made,
+        loads=loads,
         blows=tuple(blow(name, i, index) for name, i in spec.impulses.items()),
         stops=tuple(
             Stop(name, joints[s.joint][0], s.quantity, s.low, s.high, s.restitution) for name, s in spec.stops.items()
@@ -120,6 +127,23 @@ def joint(name: str, j: Any, index: dict[str, int], driven: Any, planar: bool) -
         length=j.length, tension_only=j.tension_only, stiffness=stiffness, drive=drive,  # type: ignore[arg-type]
         restitution=j.restitution,
     )  # fmt: skip
+
+
+def coordinates_used(loads: tuple[Load, ...], joints: dict[str, tuple[int, Kind]]) -> set[int]:
+    """The joints in which loads act, or whose coordinates they name."""
+    acting = {load.joint for load in loads if isinstance(load, JointLoad)}
+    return acting | {joints[name][0] for load in loads for e in load.values for name, _ in e.uses}
+
+
+def spun(joint: Joint, bodies: tuple[Body, ...]) -> Joint:
+    """A pin of the plane; at the centre of a body without inertia one whose angle nothing determines or asks for."""
+    given = (joint.angle, joint.rate, joint.drive)
+    if joint.kind != "pin" or joint.to_axis_given or any(value is not None for value in given):
+        return joint
+    for end, point in ((joint.a, joint.p), (joint.b, joint.q)):
+        if end != GROUND and bodies[end].inertia[2, 2] <= 0.0 and np.array_equal(point, bodies[end].center):
+            return replace(joint, kind="spun pin")
+    return joint
 
 
 def load(name: str, f: Any, index: dict[str, int], joints: dict[str, tuple[int, Kind]]) -> Load:

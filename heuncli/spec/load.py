@@ -8,7 +8,6 @@ from typing import Any
 
 from heuncli.errors import Problem, SourceLocation, SpecError
 from heuncli.expressions.programs import Table
-from heuncli.joint_kinds import TYPES
 from heuncli.spec import format as f
 from heuncli.spec.document import Reader
 from heuncli.spec.fields import Context
@@ -16,6 +15,7 @@ from heuncli.spec.models import Spec
 from heuncli.spec.names import NAMED, Names, mapping
 from heuncli.spec.overrides import override
 from heuncli.spec.parameters import evaluate_parameters
+from heuncli.spec.planar import in_the_plane
 from heuncli.spec.quantity import Scope, kind_of
 from heuncli.spec.resolve import Meaning, resolve
 from heuncli.spec.rules.every import RULES, DraftDocument, Violation, violations
@@ -151,25 +151,6 @@ class Loading:
         values = self.source.values
         wanted = [path for path in values if 0 < len(path) <= 2 or (path and path[0] in PLACED)]
         return {dotted(path): self.location(path, key=len(path) <= 2) for path in (*wanted, *self.set)}
-
-
-def in_the_plane(data: dict[str, Any]) -> dict[str, Any]:
-    """A planar scene's balls read as pins about z, its pins with that axis if they give none."""
-    about_z = {"type": "pin", "axis": [0, 0, 1]}
-    joints = {
-        name: {**about_z, **joint, "type": "pin"} if _turns_in_the_plane(joint) else joint
-        for name, joint in mapping(data.get("joints")).items()
-    }
-    return {**data, "joints": joints} if joints else data
-
-
-def _turns_in_the_plane(joint: Any) -> bool:
-    if type(joint) is not dict:
-        return False
-    kind = TYPES.get(str(joint.get("type")))
-    if kind is None or kind.planar != "pin":
-        return False
-    return kind.has_axis or not {"axis", "to_axis"} & joint.keys()
 
 
 def in_order(problems: list[Problem]) -> list[Problem]:

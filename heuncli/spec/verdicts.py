@@ -35,7 +35,10 @@ def verdicts(error: ValidationError, data: Any, model: type[Model]) -> Iterator[
             if path not in short:
                 short.add(path)
                 value = at(data, path)
-                yield "wrong-length", Violation(path, f"{len(value)} values instead of {needed(item['loc'])}")
+                message, hint = f"{len(value)} values instead of {needed(item['loc'])}", None
+                if (len(value), needed(item["loc"])) == (2, 3):
+                    hint = "two components are for a scene in the xy plane: space: planar"
+                yield "wrong-length", Violation(path, message, hint)
         elif kind == "missing":
             yield missing(path, str(item["loc"][-1]), at(data, path))
         elif kind == "extra_forbidden":
