@@ -53,8 +53,8 @@ POINT_MASS = 1e-9  # of m L^2: a body whose radius of gyration is 3e-5 of the sc
 ON_AXIS = 1e-9  # of the size: points typed with ten digits; what is nearer to the thin axis acts on it
 ALONG = 1.0 - 1e-9  # cosine of an axis with that of the missing inertia: 4.5e-5 rad, for the spin it frees is idle
 ALONG_SQUARED = 1.0 - 1e-9  # square of the same cosine, as found from the points on the axis: 3e-5 rad
-AXISYMMETRIC = 16.0 * EPS  # of the largest moment, of the size: sums of some dozen terms, and turned axes; a body that
-# is less round by more is turned by its own motion
+AXISYMMETRIC = 16.0 * EPS  # of the largest moment about the origin, of the size: sums of some dozen terms, and turned
+# axes; a body that is less round by more is turned by its own motion
 SPINS_LIGHTLY = 1e-3  # of the moment across: rounding of the moments about the axis accelerates 1e3 times as much
 LENT_REACH = 1e-3  # of the size: the least radius of gyration of an inertia lent to an idle spin (it cancels)
 SLENDER = 1e-6  # determinant over the cube of the trace: above, no moment is NO_INERTIA of it; a rod 200 diameters long

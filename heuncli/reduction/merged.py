@@ -1,6 +1,6 @@
 """Bodies that are welded together are one: the sum of their pseudo-inertias, held and loaded at all their points.
 
-    P = sum G P_b G^T,   G = [[R, p], [0, 1]]        about the origin of the body nearest the ground, in its axes
+    P = sum G P_b G^T,   G = [[R, p], [0, 1]]        about their common centre, axes of the body nearest the ground
 Those welded to the ground are part of it. Only welds of the tree count, and the tree takes welds first: what is left of
 a circle of welds is then between two points of one body, and holds nothing more. What the welds carry, and cuts through
 the bodies, are told from the whole scene.
@@ -94,15 +94,18 @@ def whole(mechanism: Mechanism, parts: Parts, root: int) -> Body:
     body = mechanism.bodies[root]
     if members == [root]:
         return body
-    mass, center, inertia = properties(np.sum([moved(mechanism.bodies[i], parts.of[i]) for i in members], axis=0))
-    return replace(body, mass=mass, center=center, inertia=0.5 * (inertia + inertia.T))
+    masses = np.array([mechanism.bodies[i].mass for i in members])
+    centres = np.array([parts.of[i].point(mechanism.bodies[i].center) for i in members])
+    about = masses @ centres / masses.sum()  # about their common centre no moment is the difference of larger ones
+    P = sum((moved(mechanism.bodies[i], parts.of[i], about) for i in members), np.zeros((4, 4)))
+    mass, center, inertia = properties(P)
+    return replace(body, mass=mass, center=about + center, inertia=0.5 * (inertia + inertia.T))
 
 
-def moved(body: Body, part: Part) -> Array:
-    """The pseudo-inertia of a body about the origin of what it is part of, in its axes."""
-    G = np.eye(4)
-    G[:3, :3], G[:3, 3] = part.R, part.p
-    return np.asarray(G @ pseudo_inertia(body.mass, body.center, body.inertia) @ G.T)
+def moved(body: Body, part: Part, about: Array) -> Array:
+    """The pseudo-inertia of a body about a point of what it is part of, in its axes."""
+    centre = part.point(body.center) - about
+    return pseudo_inertia(body.mass, centre, part.R @ body.inertia @ part.R.T)
 
 
 def sentences(mechanism: Mechanism, parts: Parts) -> Iterable[str]:

@@ -152,9 +152,13 @@ def spins_of(scene: PreparedScene) -> dict[int, Spin]:
 
 
 def axis_of(body: Body, arms: Array, size: float) -> Array | None:
-    """The axis (body axes) about which a body is symmetric and on which all points lie, arms (n, 3) from its centre."""
+    """The axis (body axes) about which a body is symmetric and on which all points lie, arms (n, 3) from its centre.
+
+    Its moments are found from those about its origin, as long as that is not far away.
+    """
     moments, axes = np.linalg.eigh(body.inertia)
-    rounding = tolerances.AXISYMMETRIC * float(moments[2])
+    about_origin = float(moments[2]) + body.mass * min(float(body.center @ body.center), size * size)
+    rounding = tolerances.AXISYMMETRIC * about_origin
     axis = axes[:, 2] if moments[1] - moments[0] <= rounding else axes[:, 0]
     lengths = np.sqrt(np.sum(np.square(arms), axis=1))
     if moments[2] - moments[0] <= rounding and lengths.max(initial=0.0) > 0.0:  # any axis: that through the points

@@ -292,8 +292,8 @@ def topspin(inertia: str, end: str) -> str:
 
 
 def nearly_round(x: float) -> str:
-    """A top whose two moments across its axis differ by x of them."""
-    return topspin(f"[0.2, {0.2 * (1.0 + x)!r}, 0.1]", "0")
+    """A top whose two moments across its axis differ by x of the one about its tip, 1.2."""
+    return topspin(f"[0.2, {0.2 + 1.2 * x!r}, 0.1]", "0")
 
 
 def beside_the_axis(x: float) -> str:
