@@ -17,6 +17,8 @@ from heuncli.results_schema import BLOWS, SHARES
 from heuncli.spec.models import End, Spec
 from heuncli.study.asked import Asked, entries_of
 
+Ends = Mapping[str, Mapping[str, set[str]]]
+STANDING = ("joints", "drives", "forces", "impulses", "stops")  # blocks of what stands on bodies
 MOST_NAMES = 5  # that a sentence lists
 # reports that are of some bodies alone, and the blocks of what they tell; the others are of all
 OF_SOME = {"joints": (("joints",), ("stops",)), "sections": (("sections",),), "forces": (("forces",),),
@@ -42,8 +44,7 @@ def bodies_of(item: Any, spec: Spec) -> set[str]:
 
 def named_fields(item: Any) -> Iterator[tuple[str, Any]]:
     """The fields of a part of a spec: a named tuple, or a record."""
-    named: dict[str, Any] = item._asdict() if hasattr(item, "_asdict") else fields(item)
-    yield from named.items()
+    yield from zip(item._fields, item, strict=True) if hasattr(item, "_fields") else fields(item).items()
 
 
 def expressions_in(item: Any) -> Iterator[Expression]:
@@ -60,17 +61,29 @@ def followed(item: Any, spec: Spec) -> set[str]:
     return set().union(*(bodies_of(spec.joints[joint], spec) for joint in uses))
 
 
-def needed(spec: Spec, asked: Asked) -> set[str]:
+def ends_of(spec: Spec) -> Ends:
+    """The bodies that everything with a name stands on, by block and name."""
+    items: dict[str, Mapping[str, Any]] = {block: getattr(spec, block) for block in STANDING}
+    return {block: {name: bodies_of(item, spec) for name, item in own.items()} for block, own in items.items()}
+
+
+def needed(spec: Spec, asked: Asked, ends: Ends) -> set[str]:
     """The bodies on which it depends what is asked for: their parts, and those that these follow."""
     begun = roots(spec, asked)
     if begun is None:
         return set(spec.bodies)
+    moved = list(ends["joints"].values())  # sets of bodies of which none is solved without the others
     beside: dict[str, set[str]] = {name: set() for name in spec.bodies}
-    for item in (*spec.joints.values(), *spec.forces.values(), *spec.drives.values()):
-        ends = bodies_of(item, spec)
-        moved = ends | followed(item, spec)
-        for body in ends:
-            beside[body] |= moved
+    for block in ("forces", "drives"):
+        items: Mapping[str, Any] = getattr(spec, block)
+        moved += ends[block].values()
+        for name, item in items.items():
+            others = followed(item, spec)
+            for body in ends[block][name]:
+                beside[body] |= others
+    for group in moved:
+        for body in group:
+            beside[body] |= group
     found, ahead = set(begun), list(begun)
     while ahead:
         new = beside[ahead.pop()] - found
@@ -92,14 +105,14 @@ def roots(spec: Spec, asked: Asked) -> set[str] | None:
 
 def restricted(spec: Spec, asked: Asked, *, reduce: bool = True) -> Spec:
     """The spec as far as it is asked for: without other sections, and if reduced without parts nothing depends on."""
-    kept = needed(spec, asked) if reduce else set(spec.bodies)
+    ends = ends_of(spec) if reduce else {}
+    kept = needed(spec, asked, ends) if reduce else set(spec.bodies)
     cut = set(spec.sections) if asked.whole("sections") or BLOWS in asked.reports else asked.of("sections")
     if len(kept) == len(spec.bodies):
         return spec if len(cut) == len(spec.sections) else spec._replace(sections=only(spec.sections, cut))
     held: dict[str, Any] = {"bodies": only(spec.bodies, kept), "sections": only(spec.sections, cut)}
-    for block in ("joints", "drives", "forces", "impulses", "stops"):
-        items: Mapping[str, Any] = getattr(spec, block)
-        held[block] = {name: item for name, item in items.items() if bodies_of(item, spec) <= kept}
+    for block, standing in ends.items():
+        held[block] = only(getattr(spec, block), {name for name, on in standing.items() if on <= kept})
     return spec._replace(**held)
 
 

@@ -24,7 +24,7 @@ from heuncli.study import kinds, recover
 from heuncli.study import solve as solving
 from heuncli.study.asked import asked_by
 from heuncli.study.measure import Measure, value
-from heuncli.study.parts import needed, restricted
+from heuncli.study.parts import restricted
 from heuncli.study.recover import Recovery
 from heuncli.study.solve import Options, Study, describe, solve
 from tests.cli.conftest import SPECS as SPECS_OF
@@ -133,7 +133,7 @@ def test_bodies_that_a_joint_couples_are_one_part() -> None:
 
 def follows_the_whole(spec: Spec, bodies: set[str]) -> None:
     """The reaction of p0 needs these bodies, and is then that of the whole scene."""
-    assert needed(spec, asked_by(["joints.p0.force"], spec)) == bodies
+    assert set(restricted(spec, asked_by(["joints.p0.force"], spec)).bodies) == bodies
     runs = (asked(spec, ["joints.p0.force"], reduce=reduce).results for reduce in (True, False))
     part, whole = (numbers(results, "joints.p0.force") for results in runs)
     assert np.abs(part - whole).max() < SMALL * np.abs(whole).max()
