@@ -43,7 +43,7 @@ def _facts(model: Mapping[str, Any]) -> list[tuple[str, str]]:
     grubler = model.get("grubler")
     beside = f" (Grübler's count: {grubler})" if grubler is not None else ""
     return [
-        ("space", str(model.get("space", ""))),
+        ("space", str(model.get("space", "")) + (f" ({model['plane']})" if "plane" in model else "")),
         ("bodies", _things(names.get("bodies", model.get("bodies")))),
         ("joints", _things(names.get("joints", model.get("joints")))),
         ("freedoms", f"{freedoms}{beside}" if freedoms is not None else ""),
