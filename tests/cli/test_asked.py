@@ -131,6 +131,24 @@ def test_bodies_that_a_joint_couples_are_one_part() -> None:
     follows_the_whole(pendulums(4, joint="{type: rod, from: b1.end, to: b0.end}"), {"b0", "b1"})
 
 
+@pytest.mark.parametrize("seed", range(12))
+def test_whatever_follows_whatever(seed: int) -> None:
+    """Some forces between five pendulums, each given in the angle of any: a body is left out if it has no way to p0."""
+    rng = np.random.default_rng(seed)
+    kinds = ("{{type: spring, from: b{0}.end, to: b{1}.end, stiffness: 2, length: 1}}",
+             "{{type: torque, joint: p{0}, value: p{1}.angle}}",
+             "{{type: actuator, from: b{0}.end, to: b{1}.top, value: p{2}.rate}}",
+             "{{type: force, on: b{0}.end, vector: [0, 0, p{1}.angle*p{2}.angle]}}")  # fmt: skip
+    drawn = [(int(rng.integers(len(kinds))), rng.permutation(5)[:3].tolist()) for _ in range(3)]
+    lines = "".join(f"  f{i}: {kinds[kind].format(*of)}\n" for i, (kind, of) in enumerate(drawn))
+    ways = {0: ((0, 1), (1, 0)), 1: ((0, 1),), 2: ((0, 1), (1, 0), (0, 2), (1, 2)), 3: ((0, 1), (0, 2))}
+    to = {(of[a], of[b]) for kind, of in drawn for a, b in ways[kind]}
+    found = {0}
+    for _ in range(5):
+        found |= {b for a, b in to if a in found}
+    follows_the_whole(pendulums(5, f"forces:\n{lines}"), {f"b{i}" for i in found})
+
+
 def follows_the_whole(spec: Spec, bodies: set[str]) -> None:
     """The reaction of p0 needs these bodies, and is then that of the whole scene."""
     assert set(restricted(spec, asked_by(["joints.p0.force"], spec)).bodies) == bodies
