@@ -47,7 +47,8 @@ def step(scene: PreparedScene) -> Reduction | tuple[str, ...]:
     begun = replace(smaller.layout, y0=places.restrict(0.0, layout.y0))
     names = [i for i, part in enumerate(of) if part.body == GROUND]
     verb = "is" if len(names) == 1 else "are"
-    told = f"{listed(mechanism, names)} {verb} held by joints among themselves and with the ground: part of the ground"
+    told = f"{listed(mechanism, names)} {verb} held by joints among themselves and with the ground, whatever else moves"
+    told += " and acts: part of the ground"
     return Reduction(replace(smaller, layout=begun), places.embed, places.restrict, (told,), kept=kept)
 
 

@@ -1,6 +1,6 @@
 """Speed, printed: `python -m tests.bench [PART ...] [--against PATH]`. Nothing here asserts a time.
 
-Parts: motion, chart, chain, process, export, sections, causes; each line: what, how far from the truth, how long.
+Parts: motion, chart, chain, process, export, sections, causes, reduced; each line: what, how far from the truth, time.
 figures: the few that matter in one table, with --against beside those of another checkout (tests/bench/figures.py).
 honesty: no times, but true error over estimate of each kind of number, over random scenes (tests/bench/honesty.py).
 """
@@ -36,6 +36,7 @@ from tests.bench.chart import chart
 from tests.bench.figures import figures
 from tests.bench.generated import chain
 from tests.bench.honesty import honesty
+from tests.bench.reduced import reduced
 
 SCENES = Path(__file__).parent / "scenes"
 REFERENCE = json.loads((SCENES / "reference.json").read_text())
@@ -185,7 +186,7 @@ def sections() -> None:
 
 PARTS = {
     "motion": motion, "chart": charted, "chain": chains, "process": process, "export": export, "sections": sections,
-    "causes": by_cause,
+    "causes": by_cause, "reduced": reduced,
 }  # fmt: skip
 
 if __name__ == "__main__":
