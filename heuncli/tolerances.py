@@ -184,4 +184,8 @@ KERNEL: dict[str, float] = {
     "touching": 1e-14,  # of the size, and of places and limits: what settling leaves of a gap (nearly_closed)
     "unseen": 1e-4,  # of a load's largest in a step: what it does beyond what the stages saw
     "pivot_noise": 3e-13,  # what ten lengths could not avoid: the gap that settling leaves, amplified likewise
+    # -- branches that are followed
+    # rows of J turn threefold with what moves, so the least pivot keeps five eighths, Newton's method contracts by 3/5
+    "branch_step": 0.125,
+    "branch_beside": 0.7,  # other steps, few more; what differs then is rounding, or the branch
 }

@@ -105,6 +105,8 @@ class Runs:
         try:
             return self.run(local)
         except SolveError as error:
+            if self.method.determined:
+                raise
             collapsed = self.runner.layout.rows and error.problems[0].code in COLLAPSED
             coarser = [local * RATIO**k for k in (1, 2, 3)] if collapsed else []
             for other in (x for x in coarser if x <= tolerances.COARSEST_RETRY):
@@ -152,7 +154,9 @@ class Runs:
 
     def beside(self, a: Trajectory, at: Array) -> Trajectory | None:
         """A run like A from the moved start, where rounding may matter; else None."""
-        return self.attempt(a.tolerance, a, at, self.moved) if a.tolerance < tolerances.ROUNDING_MATTERS else None
+        if a.method.determined or a.tolerance >= tolerances.ROUNDING_MATTERS:
+            return None
+        return self.attempt(a.tolerance, a, at, self.moved)
 
 
 @record
@@ -191,7 +195,7 @@ def checked_run(runs: Runs, tolerance: float, loads: Loads) -> Checked:
         lost += worse.runs[0].seconds + worse.seconds if worse is not None else 0.0
         miss = found.motion / tolerance
         no_finer = a.tolerance <= tolerances.LEAST_TOLERANCE or found.runs[1].tolerance > a.tolerance
-        if miss <= 1.0 or attempt == RERUNS or no_finer:
+        if miss <= 1.0 or attempt == RERUNS or no_finer or a.method.determined:
             break
         finer = runs.finer(a, 2.0 * miss)
         if finer is None:

@@ -20,7 +20,7 @@ class Method:
     nodes: of all stages; stages: rows of the stages 1..; solution; extra: further stages for the dense output;
     estimates: the rows of the error, one, or two, of which the first is coarser (then h e5^2 / sqrt(e5^2 + 0.01 e3^2));
     error_order: of the estimate in h; dense: rows of the interpolating polynomial in nested form, beside the three that
-    every method has: y + x (F0 + (1 - x) (F1 + x (F2 + (1 - x) (F3 + ...)))).
+    every method has: y + x (F0 + (1 - x) (F1 + x (F2 + (1 - x) (F3 + ...)))). determined: nothing is integrated.
     """
 
     name: str
@@ -32,6 +32,7 @@ class Method:
     estimates: tuple[Row, ...]
     error_order: int
     dense: tuple[Row, ...]
+    determined: bool = False
 
     @cached_property
     def arrays(self) -> dict[str, Any]:
@@ -46,6 +47,7 @@ class Method:
             "dense_rows": len(self.dense),
             "estimates": len(self.estimates),
             "exponent": 1.0 / self.error_order,
+            "determined": int(self.determined),
             "begin": array("i", begin),
             "stage": array("i", [stage for row in rows for stage, _ in row]),
             "coefficient": array("d", [c for row in rows for _, c in row]),
@@ -270,6 +272,20 @@ DOP853 = Method(
             (15, -149.72683625798564),
         ),
     ),
+)
+
+# Of a motion that its drives determine (kernel/following.py): its interpolation has two rows more than the cubic's.
+FOLLOWED = Method(
+    name="none: every instant follows from the drives",
+    order=1,
+    nodes=(0.0,),
+    stages=(),
+    solution=((0, 1.0),),
+    extra=(),
+    estimates=(((0, 1.0),),),
+    error_order=1,
+    dense=((), ()),
+    determined=True,
 )
 
 METHODS: Mapping[str, Method] = MappingProxyType({"auto": DOP853, "DOP853": DOP853})  # by the names of --method

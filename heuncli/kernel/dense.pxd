@@ -1,7 +1,7 @@
 """Structs and signatures of dense.py for C."""
 
 from heuncli.kernel.response cimport evaluate, settle
-from heuncli.kernel.scene cimport Group, Scene
+from heuncli.kernel.scene cimport Freedom, Group, Scene
 
 cdef enum:                    # what a step tried comes to
     STANDS, AGAIN_TO, TURNS_OVER, CHATTERS
@@ -42,10 +42,19 @@ cdef struct Course:           # of the coordinates over a stretch of time, for t
     double *before            # branches put aside
     double *turned            # branches behind the event
 
+cdef struct Branch:           # of a motion that its drives determine, at the start of the step under way
+    double length             # by which shifts are measured
+    double pivot              # least of what is left of an independent row
+    double moved              # the most that any coordinate moves in the step
+    double energy             # kinetic and potential
+    double *reach             # of each freedom, then each closure row: how far a unit of its drive moves any; -1: none
+    double *marks             # of each counted angle a direction across its axis, in b
+
 cdef struct Run:
     int n                     # length of the state
     int group_count
     int energy_group          # the group of the drives' work; -1: none
+    int determined            # 1: nothing is integrated, the closures tell where everything is
     int following             # 1: the steps are given by `ends` and `settled`, none is judged
     int fresh                 # 1: a piece begins
     int last                  # 1: this step reaches the end of the piece
@@ -88,6 +97,7 @@ cdef struct Run:
     double cut
     double flurry_begin
     Course course
+    Branch branch
     Group *groups
     double *weights           # of the components: 1, or 1 / size
     double *y
@@ -111,6 +121,7 @@ cdef struct Run:
 cdef void combine(Method *method, int row, double **K, int n, double *out) noexcept nogil
 cdef double clipped(Run *run, double t) noexcept nogil
 cdef void hermite(Method *method, Run *run) noexcept nogil
+cdef void quintic(Scene *scene, Method *method, Run *run) noexcept nogil
 cdef void interpolant(Scene *scene, Method *method, Run *run) noexcept nogil
 cdef void need_interpolant(Scene *scene, Method *method, Run *run) noexcept nogil
 cdef void interpolate(Run *run, int rows, double x, double *out) noexcept nogil

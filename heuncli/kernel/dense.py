@@ -12,7 +12,7 @@ except ImportError:
 
 if not cython.compiled:
     from heuncli.kernel.response import evaluate, settle
-    from heuncli.kernel.scene import Scene
+    from heuncli.kernel.scene import Freedom, Scene
     from heuncli.kernel.shadow import cython
     from heuncli.kernel.structs import Method, Run
 
@@ -59,6 +59,27 @@ def hermite(method: cython.pointer[Method], run: cython.pointer[Run]) -> cython.
         run.dense[2][i] = 2.0 * change - run.h * (last[i] + first[i])
 
 
+def quintic(scene: cython.pointer[Scene], method: cython.pointer[Method], run: cython.pointer[Run]) -> cython.void:
+    """The polynomial with the accelerations at both ends too, where they are known; beside the cubic two more rows.
+
+    The cubic's second derivatives are 2 (F2 - F1) and -2 (F1 + 2 F2); x^2 (1-x)^2 has 2 at both ends, x^3 (1-x)^2 0, 2.
+    """
+    i: cython.Py_ssize_t
+    q: cython.Py_ssize_t
+    square: cython.double = run.h * run.h
+    hermite(method, run)
+    for i in range(run.n):
+        run.dense[3][i] = run.dense[4][i] = 0.0
+    for i in range(scene.freedom_count):
+        freedom: cython.pointer[Freedom] = cython.address(scene.freedoms[i])
+        if not freedom.driven:
+            q = freedom.q_at
+            first: cython.double = run.K[0][freedom.u_at]
+            last: cython.double = run.K[method.stages][freedom.u_at]
+            run.dense[3][q] = 0.5 * square * first + run.dense[1][q] - run.dense[2][q]
+            run.dense[4][q] = 0.5 * square * last + run.dense[1][q] + 2.0 * run.dense[2][q] - run.dense[3][q]
+
+
 def interpolant(scene: cython.pointer[Scene], method: cython.pointer[Method], run: cython.pointer[Run]) -> cython.void:
     """The interpolating polynomial over the step y -> z, in nested form: its rows of coefficients."""
     s: cython.int
@@ -85,7 +106,10 @@ def need_interpolant(
 ) -> cython.void:
     """The interpolating polynomial of the step tried, made once."""
     if not run.has_interpolant:
-        interpolant(scene, method, run)
+        if run.determined:
+            quintic(scene, method, run)
+        else:
+            interpolant(scene, method, run)
         run.has_interpolant = 1
 
 

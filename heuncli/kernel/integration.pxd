@@ -1,12 +1,13 @@
 """The door to steps.py, for C."""
 
 from heuncli.kernel.chosen cimport chosen_width
-from heuncli.kernel.dense cimport Course, Method, Run, clipped
+from heuncli.kernel.dense cimport Branch, Course, Method, Run, clipped
 from heuncli.kernel.events cimport PARTS, take_branches
 from heuncli.kernel.expressions cimport FREE, HELD
+from heuncli.kernel.following cimport stand_here
 from heuncli.kernel.memory cimport Memory
 from heuncli.kernel.response cimport evaluate
-from heuncli.kernel.scene cimport Group, Scene
+from heuncli.kernel.scene cimport Body, Freedom, Group, SHIFT, Scene
 from heuncli.kernel.steps cimport run_steps, take_record
 from heuncli.kernel.workspace cimport Workspace
 
@@ -19,4 +20,5 @@ cdef class Integration:
     cpdef object take_method(self, dict method)
     cpdef object take_start(self, dict start)
     cpdef object make_room(self)
+    cpdef object make_branch(self)
     cpdef object take_output(self, dict output)

@@ -17,12 +17,13 @@ if not cython.compiled:
     from heuncli.kernel.dense import clipped
     from heuncli.kernel.events import PARTS, take_branches
     from heuncli.kernel.expressions import FREE, HELD
+    from heuncli.kernel.following import stand_here
     from heuncli.kernel.memory import Memory
     from heuncli.kernel.response import evaluate
-    from heuncli.kernel.scene import Group, Scene
+    from heuncli.kernel.scene import SHIFT, Body, Freedom, Group, Scene
     from heuncli.kernel.shadow import cython
     from heuncli.kernel.steps import run_steps, take_record
-    from heuncli.kernel.structs import Course, Method, Run
+    from heuncli.kernel.structs import Branch, Course, Method, Run
     from heuncli.kernel.workspace import Workspace
 
 
@@ -43,13 +44,14 @@ class Integration:
         """
         if not cython.compiled:
             self.run, self.method = Run(), Method()
-            self.run.course = Course()
+            self.run.course, self.run.branch = Course(), Branch()
         self.workspace = workspace
         self.output = output
         self.memory = Memory()
         self.take_method(method)
         self.take_start(start)
         self.make_room()
+        self.make_branch()
         self.take_output(output)
 
     def take_method(self, method: dict[str, Any]) -> None:
@@ -60,6 +62,7 @@ class Integration:
         to.dense_rows = method["dense_rows"]
         to.estimates = method["estimates"]
         to.exponent = method["exponent"]
+        self.run.determined = method["determined"]
         to.begin = self.memory.ints(method["begin"])
         to.stage = self.memory.ints(method["stage"])
         to.coefficient = self.memory.doubles(method["coefficient"])
@@ -78,7 +81,7 @@ class Integration:
         run.next_sample = run.contact = run.steps = run.evaluations = run.rejected = run.done = run.dodges = 0
         run.rejected_before = run.has_cut = run.landings = run.contact_landings = run.at_once = run.turns = 0
         run.flurry = run.undecided = run.seeing = 0
-        run.proposed = run.energy_scale = run.gap = run.cut = run.flurry_begin = 0.0
+        run.t = run.proposed = run.energy_scale = run.gap = run.cut = run.flurry_begin = 0.0
         run.weights = self.memory.doubles(start["weights"])
         run.y = self.memory.doubles(start["state"])
         run.z = self.memory.zeros(n)
@@ -111,6 +114,38 @@ class Integration:
         course.before = self.memory.zeros(scene.held_count)
         course.turned = self.memory.zeros(scene.held_count)
         course.slot = 0
+
+    def make_branch(self) -> None:
+        """Room for what is known of a branch, with the drives of its loops and the length that shifts are measured by.
+
+        Turns count in an island by its length (measure: 1 / length); the least of all islands' counts.
+        """
+        i: cython.Py_ssize_t
+        k: cython.Py_ssize_t
+        n: cython.Py_ssize_t
+        most: cython.double = 0.0
+        scene: cython.pointer[Scene] = cython.address(self.workspace.scene)
+        branch: cython.pointer[Branch] = cython.address(self.run.branch)
+        branch.reach = self.memory.doubles([-1.0] * (scene.freedom_count + scene.closure_count))
+        branch.marks = self.memory.zeros(3 * scene.counter_count)
+        branch.pivot = branch.moved = branch.energy = 0.0
+        for i in range(scene.body_count):
+            body: cython.pointer[Body] = cython.address(scene.bodies[i])
+            if body.ball and scene.measure[body.answer_at] > most:
+                most = scene.measure[body.answer_at]
+            for k in range(body.first_freedom, body.end_freedom):
+                freedom: cython.pointer[Freedom] = cython.address(scene.freedoms[k])
+                if freedom.kind != SHIFT and scene.measure[freedom.answer_at] > most:
+                    most = scene.measure[freedom.answer_at]
+        branch.length = 1.0 / most if most > 0.0 else scene.size
+        for i in range(scene.closure_count):
+            if scene.closures[i].program.count:
+                branch.reach[scene.freedom_count + i] = 0.0
+            for n in range(scene.closures[i].path, scene.closures[i].path + scene.closures[i].path_count):
+                on: cython.pointer[Body] = cython.address(scene.bodies[scene.indices[n]])
+                for k in range(on.first_freedom, on.end_freedom):
+                    if scene.freedoms[k].driven:
+                        branch.reach[k] = 0.0
 
     def take_output(self, output: dict[str, Any]) -> None:
         """The asked instants, and where states at them and at the ends of the steps go."""
@@ -157,6 +192,8 @@ class Integration:
             take_branches(scene, run.branches[0])
         scene.programs.holding = HELD
         evaluate(scene, clipped(run, t), run.y, run.K[0])
+        if run.determined:
+            stand_here(scene, run)
 
     def follow(self, ends: Any, settled: Any, branches: Any) -> None:
         """The ends of the steps to be done again, which of them settled their stages, and their branches, (n, held)."""

@@ -21,6 +21,7 @@ MODULES = (
     "events",
     "contacts",
     "landing",
+    "following",
     "steps",
     "integration",
 )

@@ -239,6 +239,8 @@ cdef struct Limits:
     double touching
     double unseen
     double pivot_noise
+    double branch_step
+    double branch_beside
 
 cdef struct Scene:
     int body_count

@@ -306,6 +306,8 @@ class Limits(Record):
     touching: float  # of the size, and of its places and limits: a contact's gap is not known better
     unseen: float  # of a load's largest: what it does beyond what stages saw, before the step is done again
     pivot_noise: float  # what a step at the least of the lengths tried may be off by, likewise
+    branch_step: float  # of the least pivot: how far coordinates move in a step along a branch
+    branch_beside: float  # of that, how far what begins beside the start
 
 
 class Scene(metaclass=Fields):

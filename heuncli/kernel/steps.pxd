@@ -8,6 +8,7 @@ from heuncli.kernel.dense cimport (
 )
 from heuncli.kernel.events cimport follow_angles, take_branches
 from heuncli.kernel.expressions cimport HELD, TAKEN
+from heuncli.kernel.following cimport find_between, follow, is_determined, stand_here
 from heuncli.kernel.landing cimport begin_to_see, in_flurry, meet, see_stage
 from heuncli.kernel.response cimport evaluate, must_choose_anew, settle
 from heuncli.kernel.scene cimport Body, Group, Scene

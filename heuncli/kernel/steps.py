@@ -30,6 +30,7 @@ if not cython.compiled:
     )
     from heuncli.kernel.events import follow_angles, take_branches
     from heuncli.kernel.expressions import HELD, TAKEN
+    from heuncli.kernel.following import find_between, follow, is_determined, stand_here
     from heuncli.kernel.landing import begin_to_see, in_flurry, meet, see_stage
     from heuncli.kernel.response import evaluate, must_choose_anew, settle
     from heuncli.kernel.scene import Body, Group, Scene
@@ -112,7 +113,10 @@ def group_error(method: cython.pointer[Method], run: cython.pointer[Run], b: cyt
 
 
 def begin_piece(scene: cython.pointer[Scene], method: cython.pointer[Method], run: cython.pointer[Run]) -> cython.int:
-    """The derivative at the start of a piece and a first step from it; ROPE_SLACK where a rope would push at once."""
+    """The derivative at the start of a piece and a first step from it; ROPE_SLACK where a rope would push at once.
+
+    COLLAPSED where a motion that should be determined is not.
+    """
     i: cython.Py_ssize_t
     h: cython.double
     scene.pivot_of_step = 1.0
@@ -129,7 +133,12 @@ def begin_piece(scene: cython.pointer[Scene], method: cython.pointer[Method], ru
     start_contacts(scene, run.t)
     if run.watching and pushed_at_once(scene, run):
         return ROPE_SLACK
-    if not run.following:
+    if run.determined:
+        run.proposed = run.end - run.t
+        if not is_determined(scene):
+            return COLLAPSED
+        stand_here(scene, run)
+    elif not run.following:
         h = first_step(scene, method, run)
         if run.proposed <= 0.0 or h < run.proposed:
             run.proposed = h
@@ -263,6 +272,8 @@ def attempt(scene: cython.pointer[Scene], method: cython.pointer[Method], run: c
     i: cython.Py_ssize_t
     t: cython.double
     change: cython.double
+    if run.determined:
+        return follow(scene, method, run)
     run.has_interpolant = 0
     if run.seeing:
         begin_to_see(scene, run)
@@ -298,6 +309,8 @@ def judge(
     run.error = 0.0
     if run.following:
         return ACCEPTED
+    if run.determined:
+        return AGAIN if trouble < 0 else ACCEPTED
     combine(method, row, run.K, run.n, run.coarse)
     combine(method, row + method.estimates - 1, run.K, run.n, run.fine)
     error = step_error(method, run)
@@ -368,6 +381,8 @@ def sample(scene: cython.pointer[Scene], method: cython.pointer[Method], run: cy
     while run.next_sample < run.sample_count and run.times[run.next_sample] < run.stop:
         x = (run.times[run.next_sample] - run.t) / run.h
         interpolate(run, 3 + method.dense_rows, x, run.samples[run.next_sample])
+        if run.determined:
+            find_between(scene, run, run.samples[run.next_sample])
         run.next_sample += 1
 
 
@@ -430,6 +445,8 @@ def accept(scene: cython.pointer[Scene], method: cython.pointer[Method], run: cy
     else:
         for i in range(run.n):
             run.K[0][i] = run.K[method.stages][i]
+    if code == REACHED and run.determined:
+        stand_here(scene, run)
     if code == REACHED:
         sample_reached(run)
         if not run.following:
@@ -491,7 +508,7 @@ def jumped(scene: cython.pointer[Scene], run: cython.pointer[Run]) -> cython.bin
     explained: cython.double = scene.limits.jump
     if scene.pivot > 0.0:
         explained += scene.limits.jump_of_error * run.tolerance / sqrt(scene.pivot)
-    if run.following:
+    if run.following or run.determined:
         return False
     for b in range(run.group_count):
         group: cython.pointer[Group] = cython.address(run.groups[b])
@@ -523,8 +540,10 @@ def run_steps(scene: cython.pointer[Scene], method: cython.pointer[Method], run:
     run.dodges = 0
     run.watching = run.watching and not run.following and scene.contact_count > 0
     run.seeing = not run.following and (scene.watch_count > 0 or run.watching)
-    if run.fresh and begin_piece(scene, method, run) == ROPE_SLACK:
-        return ROPE_SLACK
+    if run.fresh:
+        code = begin_piece(scene, method, run)
+        if code != REACHED:
+            return code
     sample_reached(run)
     run.pivot_at_start = scene.pivot
     attempts: cython.int = 0

@@ -200,12 +200,24 @@ class Course(metaclass=Fields):
     turned: list[float]
 
 
+class Branch(metaclass=Fields):
+    """The start of a step of a motion that its drives determine; dense.pxd says what the fields are."""
+
+    length: float
+    pivot: float
+    moved: float
+    energy: float
+    reach: list[float]
+    marks: list[float]
+
+
 class Run(metaclass=Fields):
     """The stepping loop's state; dense.pxd says what the fields are."""
 
     n: int
     group_count: int
     energy_group: int
+    determined: int
     following: int
     fresh: int
     last: int
@@ -248,6 +260,7 @@ class Run(metaclass=Fields):
     cut: float
     flurry_begin: float
     course: Course
+    branch: Branch
     groups: list[Any]
     weights: list[float]
     y: list[float]

@@ -479,6 +479,11 @@ class Workspace:
         """What has to be left of a row for it to be one of the independent ones."""
         return self.scene.least_row
 
+    def chosen_count(self, t: cython.double, state: Any) -> int:
+        """How many closure rows are independent at a state, which is not changed."""
+        self.configure_at(t, state)
+        return self.scene.selected_count
+
     @property
     def freedom_count(self) -> int:
         """Scalar freedoms."""

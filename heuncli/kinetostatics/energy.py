@@ -10,6 +10,8 @@ from heuncli import tolerances
 from heuncli.integration.evaluator import Recovered
 from heuncli.kinetostatics.actions import AppliedLoad
 from heuncli.kinetostatics.bodies import BodyStates
+from heuncli.kinetostatics.foundation import inertia_loads
+from heuncli.kinetostatics.reactions import JointLoads
 from heuncli.mechanism.model import Mechanism, PairLoad
 from heuncli.results import Array, Block
 from heuncli.tree.layout import Layout
@@ -45,12 +47,50 @@ def system_vector(mechanism: Mechanism, states: BodyStates) -> Block:
     return {"total": B.sum(axis=1), "bodies": {b.name: B[:, i] for i, b in enumerate(mechanism.bodies)}}
 
 
-def energy_drift(energy: Block, largest: float, lift: float) -> float:
+def power_imbalance(
+    layout: Layout, states: BodyStates, loads: Sequence[AppliedLoad], joints: Sequence[JointLoads], span: float
+) -> float:
+    """The largest |P - d(T + V)/dt| over the instants, kept up for a time [J]: of a motion that is not integrated.
+
+    P of loads and drives by the rates of the points and joints they act on, the rest by velocities and accelerations.
+    """
+    mechanism = layout.mechanism
+    ma, spin = inertia_loads(mechanism, states)
+    weight = np.array([b.mass for b in mechanism.bodies])[:, None] * mechanism.gravity
+    gain = np.einsum("tni,tni->t", states.v_centre, ma - weight) + np.einsum("tni,tni->t", states.omega, spin)
+    power = np.zeros(len(gain))
+    for load in loads:
+        power = power + load.power
+    for joint in joints:
+        if joint.drive is not None and joint.joint.drive is not None:
+            power = power + joint.drive * drive_rate(states, joint)
+    return float(np.abs(power - gain).max(initial=0.0)) * span
+
+
+def drive_rate(states: BodyStates, load: JointLoads) -> Array:
+    """The rate of a driven coordinate as the bodies move, (n_t,)."""
+    joint = load.joint
+    assert joint.drive is not None
+    if joint.drive.quantity == "angle":
+        omega = [states.omega[:, b] if b >= 0 else np.zeros_like(load.point) for b in (joint.a, joint.b)]
+        return np.asarray(np.sum((omega[1] - omega[0]) * load.axis, axis=1))
+    Q = states.point_position(joint.b, joint.q)
+    at = Q if joint.drive.quantity == "travel" else states.point_position(joint.a, joint.p)
+    along = load.axis
+    if joint.drive.quantity == "length":
+        D = Q - at
+        along = D / np.maximum(np.sqrt(np.sum(D * D, axis=1)), tolerances.LEAST_EXTENT)[:, None]
+    return np.asarray(np.sum((states.velocity(joint.b, Q) - states.velocity(joint.a, at)) * along, axis=1))
+
+
+def energy_drift(energy: Block, largest: float, lift: float, imbalance: float | None = None) -> float:
     """Change of kinetic + potential - work from the start, relative to the largest kinetic energy; 0 at rest.
 
     largest: kinetic energy over the run [J], which instants asked for may not show; lift: the work of the weight over
-    the scene's size, and of blows on what is free [J], by which rest is judged.
+    the scene's size, and of blows on what is free [J], by which rest is judged. imbalance [J]: stands for the change
+    where the work is that sum.
     """
     total = energy["kinetic"] + energy["potential"] - energy["work"]
+    change = float(np.abs(total - total[0]).max(initial=0.0)) if imbalance is None else imbalance
     largest = max(largest, float(energy["kinetic"].max(initial=0.0)))
-    return float(np.abs(total - total[0]).max(initial=0.0)) / largest if largest > tolerances.NO_ENERGY * lift else 0.0
+    return change / largest if largest > tolerances.NO_ENERGY * lift else 0.0

@@ -5,6 +5,7 @@ Impure: integrating looks at the clock.
 
 from __future__ import annotations
 
+import contextlib
 from collections.abc import Mapping
 from types import MappingProxyType
 
@@ -16,6 +17,7 @@ from heuncli.integration.between import at_once
 from heuncli.integration.blows import Jump
 from heuncli.integration.checked import Checked, Runs, checked_run, recovered_at
 from heuncli.integration.evaluator import Recovered
+from heuncli.integration.methods import METHODS
 from heuncli.integration.pairs import interleaved, moved_start
 from heuncli.integration.runner import Runner, Trajectory, check_deadline, discontinuities_of
 from heuncli.integration.singular import singular_poses
@@ -56,6 +58,12 @@ class History:
     errors: Mapping[tuple[str, str], float] = MappingProxyType({})
 
     @property
+    def followed_for(self) -> float | None:
+        """How long the run is, if it was followed and not integrated [s]."""
+        run = self.checked.run if self.checked is not None else None
+        return float(run.times[-1]) if run is not None and run.method.determined else None
+
+    @property
     def times(self) -> Array:
         """The instants, (n_t,) ascending; fewer than asked for where the run stopped."""
         return self.recovered.times
@@ -75,20 +83,38 @@ def integrate(setup: Setup, tolerance: float, deadline: float | None, *, by_caus
     require_start(setup.scene, first)
     require_motion(setup.scene.layout, first)
     jumps = tuple(discontinuities_of(setup.scene.mechanism, 0.0, float(times[-1])))
-    runs = Runs(runner, times, jumps, deadline, setup.method)
-    checked = checked_run(runs, tolerance, Kinds(setup, by_cause))
+    checked = checked_motion(setup, tolerance, jumps, deadline, by_cause)
     jumps = tuple(sorted({*jumps, *checked.run.jumps}))
     require_followed(runner, checked.run)
     seconds = {"integrate": checked.run.seconds, "check": checked.check_seconds}
     if checked.lost_seconds:
         seconds["lost"] = checked.lost_seconds
     check_deadline(deadline, "before the loads were computed")
-    singular = tuple(singular_poses(runner, checked.run))
+    # what is followed comes through none
+    singular = () if checked.run.method.determined else tuple(singular_poses(runner, checked.run))
     estimate, beside = Estimate(motion=checked.motion, **checked.loads), checked.beside
     return History(
         checked.recovered, tolerance, estimate, checked, checked.run.blows, beside, jumps, singular, seconds,
         checked.errors,
     )  # fmt: skip
+
+
+def checked_motion(
+    setup: Setup, tolerance: float, jumps: tuple[float, ...], deadline: float | None, by_cause: bool
+) -> Checked:
+    """The motion asked for with its check run.
+
+    Where it cannot be followed, at a singular pose or beyond what the loops can do, it is integrated: there what moves
+    has a say in how it goes on, or the error is told.
+    """
+    assert setup.method is not None
+    times, method = np.array(setup.spec.analysis.times, dtype=float), setup.method
+    if method.determined:
+        with contextlib.suppress(SolveError):
+            runs = Runs(setup.runner, times, jumps, deadline, method)
+            return checked_run(runs, tolerance, Kinds(setup, by_cause))
+        method = METHODS["auto"]
+    return checked_run(Runs(setup.runner, times, jumps, deadline, method), tolerance, Kinds(setup, by_cause))
 
 
 def state(setup: Setup, at: float, tolerance: float, by_cause: bool = False) -> History:

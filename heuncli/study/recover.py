@@ -17,7 +17,7 @@ from heuncli.kinetostatics.actions import Action, AppliedLoad, applied_loads, jo
 from heuncli.kinetostatics.balance import balance_residual
 from heuncli.kinetostatics.bodies import BodyStates, body_states
 from heuncli.kinetostatics.coordinates import coordinates, points
-from heuncli.kinetostatics.energy import energy, energy_drift, system_vector
+from heuncli.kinetostatics.energy import energy, energy_drift, power_imbalance, system_vector
 from heuncli.kinetostatics.foundation import foundation
 from heuncli.kinetostatics.magnitudes import magnitudes
 from heuncli.kinetostatics.reactions import JointLoads, joint_loads
@@ -197,16 +197,20 @@ def certain_sums(recovery: Recovery) -> list[CertainSum]:
     return recovery.decided.sums(recovery.setup.runner, recovery.recovered)
 
 
-def accuracy(recovery: Recovery, kinetic: float = 0.0, struck: float = 0.0) -> Accuracy:
+def accuracy(recovery: Recovery, kinetic: float = 0.0, struck: float = 0.0, span: float | None = None) -> Accuracy:
     """How well the instants balance: energy where it is asked for, closures, d'Alembert's principle.
 
     kinetic: the run's largest [J]; struck: the energy that given blows would bring to what nothing holds [J].
+    span: how long a run is that was not integrated [s]: there the work is the gain of energy, and powers tell.
     """
     scene, recovered, found = recovery.setup.scene, recovery.recovered, Accuracy()
     mechanism, size = scene.mechanism, scene.layout.size
     if OF_ENERGY & recovery.setup.asked.reports:
         lift = sum(body.mass for body in mechanism.bodies) * float(np.abs(mechanism.gravity).max()) * size + struck
-        found["energy_drift"] = energy_drift(recovery.energy, kinetic, lift)
+        imbalance = None
+        if span is not None:
+            imbalance = power_imbalance(scene.layout, recovery.states, recovery.loads, recovery.joints, span)
+        found["energy_drift"] = energy_drift(recovery.energy, kinetic, lift, imbalance)
     found["constraint_gap"] = float(recovered.gap.max(initial=0.0))
     found["balance_residual"] = balance_residual(mechanism, recovery.states, recovery.actions, size)
     return found

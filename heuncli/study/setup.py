@@ -4,7 +4,8 @@ from __future__ import annotations
 
 from typing import TYPE_CHECKING
 
-from heuncli.integration.methods import METHODS, Method
+from heuncli.integration.following import determined
+from heuncli.integration.methods import FOLLOWED, METHODS, Method
 from heuncli.integration.moving import smaller
 from heuncli.integration.runner import Runner
 from heuncli.integration.solvable import ready
@@ -58,7 +59,11 @@ def set_up(spec: Spec, method: str | None = None, *, reduce: bool = True, asked:
     reduced = None
     if chosen is not None and reduce:
         reduced, runner = reduced_runner(scene, runner)
-    note = model_note(scene, runner, chosen.name if chosen else "none") | reductions(left_out, scene, reduced)
+    told = reductions(left_out, scene, reduced)
+    if chosen is not None and reduce and (method or spec.analysis.method) == "auto":
+        follows = determined(runner.moving)
+        chosen, told = FOLLOWED if follows.is_so else chosen, follows.beside(told)
+    note = model_note(scene, runner, chosen.name if chosen else "none") | told
     return Setup(spec, scene, cuts, runner, chosen, note, reduced, asked)
 
 

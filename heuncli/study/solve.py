@@ -14,6 +14,7 @@ import numpy as np
 
 from heuncli.errors import Problem, SpecError
 from heuncli.integration.blows import met_freely
+from heuncli.integration.following import integrated_after_all
 from heuncli.integration.methods import METHODS
 from heuncli.kernel.choose import KERNEL
 from heuncli.records import record, replace
@@ -124,7 +125,8 @@ def compose(
     split = recovery.decided.words if recovery.verdicts and recovery.decided is not None else ()
     checked = history.checked
     struck_freely = sum(met_freely(setup.scene.layout, jump.impulses) for jump in history.blows)
-    balance = accuracy(recovery, checked.kinetic if checked is not None else 0.0, struck_freely)
+    kinetic = checked.kinetic if checked is not None else 0.0
+    balance = accuracy(recovery, kinetic, struck_freely, history.followed_for)
     if struck is not None:
         balance["balance_residual"] = max(balance["balance_residual"], struck.residual)
     gap = checked.run.gap if checked is not None else setup.scene.start.gap
@@ -132,7 +134,10 @@ def compose(
         title=setup.spec.title,
         spec={"path": setup.spec.path, "sha256": setup.spec.sha256},
         version=VERSION,
-        model=setup.model | ({"split": "; ".join(split)} if split else {}) | contacts_of(history),
+        model=setup.model
+        | ({"split": "; ".join(split)} if split else {})
+        | contacts_of(history)
+        | unfollowed(setup, history),
         status=status(history),
         time=recovery.recovered.times,
         **shown,
@@ -156,6 +161,14 @@ def compose(
             *beside_singular_poses(unknown),
         ),
     )
+
+
+def unfollowed(setup: Setup, history: History) -> Block:
+    """What is told of a motion that was to be followed, and was integrated."""
+    if setup.method is None or not setup.method.determined or history.followed_for is not None:
+        return {}
+    assert history.checked is not None
+    return {"method": history.checked.run.method.name} | integrated_after_all(setup.model)
 
 
 def contacts_of(history: History) -> Block:

@@ -762,6 +762,7 @@ EXEMPT = {
     "KERNEL.leaving_first": "how an event's own rounding is left behind",
     "KERNEL.leaving_last": "how an event's own rounding is left behind; what chatters is driven back at once",
     "KERNEL.least_load": "which loads are so small that doubles lose their digits",
+    "KERNEL.branch_beside": "lengths of the check run's steps along a branch, on which no number depends",
     "KERNEL.pivot_noise": "lengths of steps that are tried: the estimate says what was reached",
 }
 # Those that decide one, and have no scene at their boundary yet.
@@ -782,6 +783,7 @@ WANTED = {
     "TOUCHING": "whether two outlines without extent are one",
     "CLAIMED": "the horizon",
     "BOUNDLESS": "the words on a run that fails",
+    "KERNEL.branch_step": "lengths of steps along a branch: where they are too long another branch is taken",
     "KERNEL.across": "what a pivot is measured by",
     "RANK": "which motions of bodies without inertia, and of the assembly, are none; the kernel has its own of it",
     "RANK_OF_GAP": "which rows a gap feigns: what is near to a singular pose closes its gaps by a move",
