@@ -67,19 +67,30 @@ def power_imbalance(
     return float(np.abs(power - gain).max(initial=0.0)) * span
 
 
+def magnitude_of_work(mechanism: Mechanism, loads: Sequence[AppliedLoad], size: float, span: float) -> float:
+    """Work of the loads over the scene's size, and kinetic energy of crossing it in the run's time [J]."""
+    found = sum(body.mass for body in mechanism.bodies) * (size / span) ** 2 if span > 0.0 else 0.0
+    for load in loads:
+        largest = np.abs(load.action.force).max(initial=0.0) * size + np.abs(load.action.moment).max(initial=0.0)
+        found += float(largest)
+    return found
+
+
 def drive_rate(states: BodyStates, load: JointLoads) -> Array:
     """The rate of a driven coordinate as the bodies move, (n_t,)."""
     joint = load.joint
     assert joint.drive is not None
     if joint.drive.quantity == "angle":
+        assert load.axis is not None
         omega = [states.omega[:, b] if b >= 0 else np.zeros_like(load.point) for b in (joint.a, joint.b)]
         return np.asarray(np.sum((omega[1] - omega[0]) * load.axis, axis=1))
     Q = states.point_position(joint.b, joint.q)
-    at = Q if joint.drive.quantity == "travel" else states.point_position(joint.a, joint.p)
-    along = load.axis
-    if joint.drive.quantity == "length":
-        D = Q - at
-        along = D / np.maximum(np.sqrt(np.sum(D * D, axis=1)), tolerances.LEAST_EXTENT)[:, None]
+    if joint.drive.quantity == "travel":
+        assert load.axis is not None
+        at, along = Q, load.axis
+    else:
+        at = states.point_position(joint.a, joint.p)
+        along = (Q - at) / np.maximum(np.sqrt(np.sum((Q - at) ** 2, axis=1)), tolerances.LEAST_EXTENT)[:, None]
     return np.asarray(np.sum((states.velocity(joint.b, Q) - states.velocity(joint.a, at)) * along, axis=1))
 
 

@@ -17,7 +17,7 @@ from heuncli.kinetostatics.actions import Action, AppliedLoad, applied_loads, jo
 from heuncli.kinetostatics.balance import balance_residual
 from heuncli.kinetostatics.bodies import BodyStates, body_states
 from heuncli.kinetostatics.coordinates import coordinates, points
-from heuncli.kinetostatics.energy import energy, energy_drift, power_imbalance, system_vector
+from heuncli.kinetostatics.energy import energy, energy_drift, magnitude_of_work, power_imbalance, system_vector
 from heuncli.kinetostatics.foundation import foundation
 from heuncli.kinetostatics.magnitudes import magnitudes
 from heuncli.kinetostatics.reactions import JointLoads, joint_loads
@@ -210,6 +210,7 @@ def accuracy(recovery: Recovery, kinetic: float = 0.0, struck: float = 0.0, span
         imbalance = None
         if span is not None:
             imbalance = power_imbalance(scene.layout, recovery.states, recovery.loads, recovery.joints, span)
+            lift += magnitude_of_work(mechanism, recovery.loads, size, span)
         found["energy_drift"] = energy_drift(recovery.energy, kinetic, lift, imbalance)
     found["constraint_gap"] = float(recovered.gap.max(initial=0.0))
     found["balance_residual"] = balance_residual(mechanism, recovery.states, recovery.actions, size)
