@@ -36,7 +36,8 @@ bodies:
   crank:
     {{mass: 1, center: [0, 0, 0], inertia: [1, 1, 1], points: {{O: [0, 0, 0], A: [{a}, 0, 0]}},
      orientation: {{axis: [0, 0, 1], angle: {start}}}}}
-  coupler: {{mass: 1, center: [0, 0, 0], inertia: [1, 1, 1], points: {{A: [0, 0, 0], B: [{b}, 0, 0]}}, near: {{{near}}}}}
+  coupler:
+    {{mass: 1, center: [0, 0, 0], inertia: [1, 1, 1], points: {{A: [0, 0, 0], B: [{b}, 0, 0]}}, near: {{{near}}}}}
   rocker: {{mass: 1, center: [0, 0, 0], inertia: [1, 1, 1], points: {{C: [0, 0, 0], B: [{c}, 0, 0]}}, near: {{{over}}}}}
 joints:
   O: {{type: pin, from: ground.O, to: crank.O, axis: [0, 0, 1]}}
