@@ -188,4 +188,5 @@ KERNEL: dict[str, float] = {
     # rows of J turn threefold with what moves, so the least pivot keeps five eighths, Newton's method contracts by 3/5
     "branch_step": 0.125,
     "branch_beside": 0.7,  # other steps, few more; what differs then is rounding, or the branch
+    "branch_bend": 0.05,  # a sine's step is then two fifths of its period; extremes are looked for at four places in it
 }

@@ -9,7 +9,7 @@ from heuncli.kernel.course cimport set_time
 from heuncli.kernel.dense cimport Branch, Method, Run, clipped, interpolate, need_interpolant
 from heuncli.kernel.enclosure cimport enclose
 from heuncli.kernel.events cimport see
-from heuncli.kernel.expressions cimport Bounds, Program
+from heuncli.kernel.expressions cimport Bounds, Jet, Program, jet
 from heuncli.kernel.landing cimport begin_to_see, see_stage
 from heuncli.kernel.response cimport evaluate, respond, settle
 from heuncli.kernel.scene cimport Body, Counter, Freedom, Load, SHIFT, SPRING, Scene
@@ -18,13 +18,15 @@ from heuncli.kernel.tree cimport coordinates, direction_of, kinematics
 from libc.math cimport INFINITY, atan2, fabs, sqrt
 
 cdef enum:
-    LOOKED_AT = 8             # parts of a step at whose ends loads are seen
+    LOOKED_AT = 2             # parts of a step at whose ends loads are seen
 
 cdef bint is_determined(Scene *scene) noexcept nogil
 cdef void stand_here(Scene *scene, Run *run) noexcept nogil
 cdef void measure_reach(Scene *scene, Branch *branch) noexcept nogil
 cdef double farthest(Scene *scene, Branch *branch, double found) noexcept nogil
 cdef double moved_by_drives(Scene *scene, Run *run) noexcept nogil
+cdef bint bends_between(Scene *scene, Run *run) noexcept nogil
+cdef bint bends(Scene *scene, Run *run, Program program) noexcept nogil
 cdef double room(Scene *scene, Run *run) noexcept nogil
 cdef int follow(Scene *scene, Method *method, Run *run) noexcept nogil
 cdef void shorten_to(Run *run, double part) noexcept nogil

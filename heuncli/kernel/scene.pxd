@@ -241,6 +241,7 @@ cdef struct Limits:
     double pivot_noise
     double branch_step
     double branch_beside
+    double branch_bend
 
 cdef struct Scene:
     int body_count

@@ -308,6 +308,7 @@ class Limits(Record):
     pivot_noise: float  # what a step at the least of the lengths tried may be off by, likewise
     branch_step: float  # of the least pivot: how far coordinates move in a step along a branch
     branch_beside: float  # of that, how far what begins beside the start
+    branch_bend: float  # of a drive's acceleration in a step: by how much its middle may be off what the ends tell
 
 
 class Scene(metaclass=Fields):
