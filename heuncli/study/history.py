@@ -90,8 +90,7 @@ def integrate(setup: Setup, tolerance: float, deadline: float | None, *, by_caus
     if checked.lost_seconds:
         seconds["lost"] = checked.lost_seconds
     check_deadline(deadline, "before the loads were computed")
-    # what is followed comes through none
-    singular = () if checked.run.method.determined else tuple(singular_poses(runner, checked.run))
+    singular = tuple(singular_poses(runner, checked.run))
     estimate, beside = Estimate(motion=checked.motion, **checked.loads), checked.beside
     return History(
         checked.recovered, tolerance, estimate, checked, checked.run.blows, beside, jumps, singular, seconds,
