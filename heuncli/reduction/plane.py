@@ -8,6 +8,8 @@ from __future__ import annotations
 
 from itertools import islice
 
+import numpy as np
+
 from heuncli import tolerances
 from heuncli.reduction.model import Reduction
 from heuncli.reduction.plane_departures import Departure, departures
@@ -65,8 +67,8 @@ def _direction(seen: View) -> str:
     """The normal in words."""
     n = seen.n
     for k, name in enumerate("xyz"):
-        if abs(n[k]) == 1.0:
+        if np.count_nonzero(n) == 1 and n[k] != 0.0:
             return name
-    return "({})".format(", ".join(f"{0.0 if abs(x) < tolerances.DUST else x:.6g}" for x in n))
+    return "({})".format(", ".join(f"{0.0 if abs(x) <= tolerances.FLAT else x:.6g}" for x in n))
 
 

@@ -43,9 +43,13 @@ def departures(seen: View) -> Iterator[Departure]:
 
 
 def _height(seen: View) -> float:
-    """Of the plane, in which the centre of the first body that is not upright lies."""
-    i = seen.upright.index(False)
-    return seen.height(i, seen.scene.mechanism.bodies[i].center)
+    """Of the plane: the middle one of the heights of the centres and joints of the bodies that are not upright."""
+    mechanism = seen.scene.mechanism
+    loose = [i for i, stays in enumerate(seen.upright) if not stays]
+    heights = [seen.height(i, mechanism.bodies[i].center) for i in loose]
+    for joint in mechanism.joints:
+        heights += [seen.height(b, p) for b, p in ((joint.a, joint.p), (joint.b, joint.q)) if not seen.stays(b)]
+    return sorted(heights)[len(heights) // 2]
 
 
 def _beside(seen: View, height: float, body: int, point: Array, what: str) -> Iterator[Departure]:

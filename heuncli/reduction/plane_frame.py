@@ -7,6 +7,7 @@ Of a coordinate plane the axes are the world's in another order, and components 
 from __future__ import annotations
 
 from collections.abc import Iterator
+from itertools import islice
 
 import numpy as np
 
@@ -49,16 +50,29 @@ def candidates(scene: PreparedScene) -> Iterator[Array]:
 
 
 def _directions(scene: PreparedScene) -> Iterator[Array]:
-    """Axes of pins, across what lies in the plane, the world's axes, across slides, angular velocities, other axes."""
+    """Axes of pins and hinges, across what lies in the plane, the world's, across slides, of turns, all others."""
     mechanism, start = scene.mechanism, scene.start
     axes = [(JOINTS[j.kind], pose(start, j.a)[1] @ j.axis) for j in mechanism.joints]
     pins = [axis for kind, axis in axes if kind.turns == ("axis",) and not kind.shifts]
     yield from pins[:1]
+    yield from islice(_hinge_lines(scene), 1)
     yield from _across(_within(scene))
     yield from np.eye(3)[::-1]
     yield from _across(np.array([axis for kind, axis in axes if kind.shifts]).reshape(-1, 3))
     yield from start.angular_velocity[:1]
     yield from (axis for kind, axis in axes if kind.has_axis)
+
+
+def _hinge_lines(scene: PreparedScene) -> Iterator[Array]:
+    """From one joint to another between the same two bodies: along a door's hinges."""
+    first: dict[tuple[int, int], Array] = {}
+    for joint in scene.mechanism.joints:
+        x, R, _, _ = pose(scene.start, joint.b)
+        place = x + R @ joint.q
+        ends = (min(joint.a, joint.b), max(joint.a, joint.b))
+        if ends in first:
+            yield place - first[ends]
+        first.setdefault(ends, place)
 
 
 def _within(scene: PreparedScene) -> Array:

@@ -1,7 +1,8 @@
 """A scene seen from a plane: which bodies cannot tilt out of it whatever acts, how its joints stand to it.
 
-A body is upright where joints lead from the ground to it that only turn about the normal or slide across it. Its
-motion is one along the plane at any height, and what acts out of the plane is carried by its joints.
+A body is upright where joints lead from the ground to it that only turn about the normal or slide across it, or hold it
+as two hinges hold a door. Its motion is one along the plane at any height, and what acts out of the plane is carried by
+its joints.
 """
 
 from __future__ import annotations
@@ -12,8 +13,8 @@ from collections.abc import Sequence
 import numpy as np
 
 from heuncli import tolerances
-from heuncli.joint_kinds import ABOUT_AXIS, ABOUT_TWO, ABOUT_Z, FLAT, JOINTS, NOT_AT_ALL, Kind
-from heuncli.mechanism.model import GROUND, Joint, Mechanism
+from heuncli.joint_kinds import ABOUT_AXIS, ABOUT_TWO, ABOUT_Z, FLAT, JOINTS, LINE, NOT_AT_ALL, POINT, Kind
+from heuncli.mechanism.model import GROUND, Joint
 from heuncli.records import record
 from heuncli.reduction.plane_frame import axes_of
 from heuncli.results import Array
@@ -78,26 +79,48 @@ def view(scene: PreparedScene, n: Array) -> View:
     E = axes_of(n)
     mechanism, start = scene.mechanism, scene.start
     stances = tuple(_stance(j, pose(start, j.a)[1], pose(start, j.b)[1], E[2]) for j in mechanism.joints)
-    upright = _upright(mechanism, stances)
+    upright = _upright(scene, stances, E[2])
     places = [start.position] + [p[None] for j in mechanism.joints for b, p in ((j.a, j.p), (j.b, j.q)) if b == GROUND]
     reach = scene.layout.size + float(np.abs(np.concatenate(places)).max(initial=0.0))
     return View(scene, E, upright, stances, reach)
 
 
-def _upright(mechanism: Mechanism, stances: Sequence[Stance]) -> tuple[bool, ...]:
+def _upright(scene: PreparedScene, stances: Sequence[Stance], n: Array) -> tuple[bool, ...]:
     """Which bodies joints that keep them upright lead to from the ground, whether the tree has them or not."""
-    near = defaultdict(list)
-    for joint, stance in zip(mechanism.joints, stances, strict=True):
-        if _keeps_upright(JOINTS[joint.kind], stance):
-            near[joint.a].append(joint.b)
-            near[joint.b].append(joint.a)
-    found = {GROUND}
-    waiting = [GROUND]
+    mechanism = scene.mechanism
+    near: dict[int, dict[int, list[int]]] = defaultdict(lambda: defaultdict(list))
+    for k, joint in enumerate(mechanism.joints):
+        near[joint.a][joint.b].append(k)
+        near[joint.b][joint.a].append(k)
+    found, waiting = {GROUND}, [GROUND]
     while waiting:
-        reached = [i for i in near[waiting.pop()] if i not in found]
-        found.update(reached)
-        waiting += reached
+        for body, joints in near[waiting.pop()].items():
+            one = any(_keeps_upright(JOINTS[mechanism.joints[k].kind], stances[k]) for k in joints)
+            if body not in found and (one or _hinged(scene, [(mechanism.joints[k], stances[k]) for k in joints], n)):
+                found.add(body)
+                waiting.append(body)
     return tuple(mechanism.planar or i in found for i in range(len(mechanism.bodies)))
+
+
+def _hinged(scene: PreparedScene, joints: Sequence[tuple[Joint, Stance]], n: Array) -> bool:
+    """Whether joints between two bodies hold points of one line along the normal, as two hinges hold a door.
+
+    One of them holds its point altogether, another one where it cannot leave that line.
+    """
+    points = []
+    for joint, stance in joints:
+        hold = JOINTS[joint.kind].hold
+        if hold is POINT or (hold is LINE and stance.along and stance.off <= tolerances.FLAT):
+            x, R, _, _ = pose(scene.start, joint.b)
+            points.append((x + R @ joint.q, hold is POINT))
+    for i, (x, held) in enumerate(points):
+        for y, also in points[:i]:
+            lever = abs(float((y - x) @ n))
+            beside = y - x - ((y - x) @ n) * n
+            near = float(np.sqrt(beside @ beside)) <= tolerances.FLAT * lever
+            if (held or also) and lever > tolerances.NO_LENGTH * scene.layout.size and near:
+                return True
+    return False
 
 
 def _stance(joint: Joint, R_a: Array, R_b: Array, n: Array) -> Stance:

@@ -15,9 +15,8 @@ from heuncli.results import Array
 from heuncli.shapes.rotations import about, from_vector
 
 X, Y, Z = np.eye(3)
-ACROSS_ONLY = {"slide": "slide", "weld": None}
 TREE = {  # kinds of joints, and where their axes stand
-    True: ("pin", "pin", "pin", "slide across", "weld"),
+    True: ("pin", "pin", "pin", "slide across", "weld", "hinges"),
     False: ("ball", "ball", "pin", "pin across", "slide across", "slide", "cylinder", "cylinder across", "universal",
             "universal back", "universal across", "weld", "line", "line across", "plane", "plane across", "free"),
 }  # fmt: skip
@@ -79,11 +78,21 @@ class Draft:
             "orientation": {"matrix": (self.E.T @ self.axes(name).T).tolist()},
         }  # fmt: skip
 
-    def joint(self, name: str, how: str, a: str, b: str) -> None:
-        rng = self.rng
-        kind, _, side = how.partition(" ")
+    def hinges(self, name: str, a: str, b: str) -> None:
+        """A ball, and what slides along the normal through it, at another height."""
         place = 0.5 * (self.x[a] + self.x[b]) + self.somewhere(0.2)
-        place[2] = self.x[b][2] + self.height()
+        self.joint(name, "ball", a, b, place)
+        self.joint(f"{name}_top", str(self.rng.choice(["line", "ball", "cylinder"])), a, b, place + 0.7 * Z)
+
+    def joint(self, name: str, how: str, a: str, b: str, place: Array | None = None) -> None:
+        rng = self.rng
+        if how == "hinges":
+            self.hinges(name, a, b)
+            return
+        kind, _, side = how.partition(" ")
+        if place is None:
+            place = 0.5 * (self.x[a] + self.x[b]) + self.somewhere(0.2)
+            place[2] = self.x[b][2] + self.height()
         n = Z * (1.0 if rng.random() < 0.5 else -1.0)
         axis = self.across() if side == "across" else n
         end = place.copy()
