@@ -1,5 +1,6 @@
 """Signatures of chosen.py for C."""
 
+from heuncli.kernel.orthogonal cimport list_coupled
 from heuncli.kernel.response cimport settle
 from heuncli.kernel.scene cimport Closure, Scene
 from heuncli.kernel.selection cimport order_all, select_independent_rows

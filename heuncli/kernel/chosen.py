@@ -11,6 +11,7 @@ except ImportError:
     from heuncli.kernel.shadow import cython
 
 if not cython.compiled:
+    from heuncli.kernel.orthogonal import list_coupled
     from heuncli.kernel.response import settle
     from heuncli.kernel.scene import Closure, Scene
     from heuncli.kernel.selection import order_all, select_independent_rows
@@ -73,3 +74,4 @@ def take_chosen(scene: cython.pointer[Scene], given: cython.p_double, at: cython
         if rank >= 0:
             scene.selected[rank] = i
             scene.selected_count += 1
+    list_coupled(scene)

@@ -17,8 +17,8 @@ cdef struct Carried:
 cdef Carried carried(Scene *scene, int body, Vec3 x) noexcept nogil
 cdef Vec3 place_of(Scene *scene, int body, Vec3 q) noexcept nogil
 cdef void measure_rows(Scene *scene, double t) noexcept nogil
+cdef void measure_moving_rows(Scene *scene, double t) noexcept nogil
 cdef void measure_row(Scene *scene, Closure *row, double t) noexcept nogil
-cdef bint stays_in_plane(Scene *scene, Closure *row) noexcept nogil
 cdef void guide_row(Scene *scene, Closure *row) noexcept nogil
 cdef void dot_row(Scene *scene, Closure *row) noexcept nogil
 cdef void turn_row(Scene *scene, Closure *row) noexcept nogil

@@ -61,19 +61,33 @@ def measure_rows(scene: cython.pointer[Scene], t: cython.double) -> cython.void:
         measure_row(scene, cython.address(scene.closures[r]), t)
 
 
+def measure_moving_rows(scene: cython.pointer[Scene], t: cython.double) -> cython.void:
+    """The same of the rows that the freedoms may answer, where all were measured when rows were chosen.
+
+    In a flat scene the others hold what stands across it: their gaps stay, their rates are none.
+    """
+    r: cython.Py_ssize_t
+    for r in range(scene.closure_count):
+        row: cython.pointer[Closure] = cython.address(scene.closures[r])
+        if scene.flat and row.kind != TURN and (row.e.z != 0.0 or row.g.z != 0.0):
+            continue
+        measure_row(scene, row, t)
+
+
 def measure_row(scene: cython.pointer[Scene], row: cython.pointer[Closure], t: cython.double) -> cython.void:
     """The same of one row."""
-    row.Q = place_of(scene, row.b, row.q)
-    if stays_in_plane(scene, row):
+    if scene.flat and row.e.z == 0.0 and row.g.z == 0.0:  # nothing along z, nor a turn about it
         measure_in_plane(scene, row)
-    elif row.kind == GUIDE:
-        guide_row(scene, row)
-    elif row.kind == DOT:
-        dot_row(scene, row)
-    elif row.kind == TURN:
-        turn_row(scene, row)
     else:
-        rod_row(scene, row)
+        row.Q = place_of(scene, row.b, row.q)
+        if row.kind == GUIDE:
+            guide_row(scene, row)
+        elif row.kind == DOT:
+            dot_row(scene, row)
+        elif row.kind == TURN:
+            turn_row(scene, row)
+        else:
+            rod_row(scene, row)
     if row.program.count:
         given: Jet = jet(scene.programs, row.program, t)
         row.gap -= given.value
@@ -81,11 +95,6 @@ def measure_row(scene: cython.pointer[Scene], row: cython.pointer[Closure], t: c
         row.gamma -= given.second
         row.prescribed_rate = given.rate
         row.prescribed_second = given.second
-
-
-def stays_in_plane(scene: cython.pointer[Scene], row: cython.pointer[Closure]) -> cython.bint:
-    """Whether a row of a flat scene has nothing along z; rods are taken for such, TURN stands along z."""
-    return scene.flat and row.e.z == 0.0 and row.g.z == 0.0
 
 
 def guide_row(scene: cython.pointer[Scene], row: cython.pointer[Closure]) -> cython.void:
@@ -274,7 +283,7 @@ def count_turns(scene: cython.pointer[Scene], dy: cython.p_double) -> cython.voi
     i: cython.Py_ssize_t
     for i in range(scene.counter_count):
         counter: cython.pointer[Counter] = cython.address(scene.counters[i])
-        n: Vec3 = direction_of(scene, counter.a, counter.axis)
+        n: Vec3 = counter.axis if scene.flat else direction_of(scene, counter.a, counter.axis)
         dy[counter.at] = 0.0
         if counter.b >= 0:
             dy[counter.at] += dot(n, scene.bodies[counter.b].omega)

@@ -16,8 +16,9 @@ cdef double answer_of_spread(Scene *scene, Closure *row) noexcept nogil
 cdef void spread_row(Scene *scene, Closure *row) noexcept nogil
 cdef void spread_column(Scene *scene, Closure *row) noexcept nogil
 cdef void reflect(Scene *scene, Closure *row, double *x) noexcept nogil
+cdef void list_coupled(Scene *scene) noexcept nogil
 cdef double eliminate_row(Scene *scene, int i) noexcept nogil
-cdef int first_coupled(Scene *scene, Closure *row, int i) noexcept nogil
+cdef void begin_row(Scene *scene, Py_ssize_t i, int first) noexcept nogil
 cdef double make_reflector(Scene *scene, Closure *row) noexcept nogil
 cdef void solve_closures(Scene *scene) noexcept nogil
 cdef void meet_demands(Scene *scene) noexcept nogil

@@ -163,6 +163,20 @@ def reflect(scene: cython.pointer[Scene], row: cython.pointer[Closure], x: cytho
         x[scene.support[k]] -= along * v[k]
 
 
+def list_coupled(scene: cython.pointer[Scene]) -> cython.void:
+    """Of each independent row the places of the earlier ones that fill it, ascending."""
+    i: cython.Py_ssize_t
+    k: cython.Py_ssize_t
+    for i in range(scene.selected_count):
+        row: cython.pointer[Closure] = cython.address(scene.closures[scene.selected[i]])
+        row.coupled_count = 0
+        for k in range(row.couplings, row.couplings + row.coupling_count):
+            rank: cython.int = scene.closures[scene.indices[k]].rank
+            if 0 <= rank < i:
+                scene.coupled[row.couplings + row.coupled_count] = rank
+                row.coupled_count += 1
+
+
 def eliminate_row(scene: cython.pointer[Scene], i: cython.int) -> cython.double:
     """Row i of R' and the reflector that ends its column; its pivot."""
     k: cython.Py_ssize_t
@@ -171,15 +185,14 @@ def eliminate_row(scene: cython.pointer[Scene], i: cython.int) -> cython.double:
     R: cython.p_double = scene.R
     row: cython.pointer[Closure] = cython.address(scene.closures[scene.selected[i]])
     spread_row(scene, row)
-    scene.envelope[i] = first_coupled(scene, row, i)
-    for k in range(scene.envelope[i], i):
-        R[m * i + k] = 0.0
-    for k in range(row.couplings, row.couplings + row.coupling_count):
-        earlier: cython.pointer[Closure] = cython.address(scene.closures[scene.indices[k]])
-        rank = earlier.rank
-        if 0 <= rank < i:
-            reflect(scene, earlier, scene.spread)
-            R[m * i + rank] = scene.spread[earlier.pivot_at]
+    scene.envelope[i] = i
+    if row.coupled_count:
+        begin_row(scene, i, scene.coupled[row.couplings])
+    for k in range(row.couplings, row.couplings + row.coupled_count):
+        rank = scene.coupled[k]
+        earlier: cython.pointer[Closure] = cython.address(scene.closures[scene.selected[rank]])
+        reflect(scene, earlier, scene.spread)
+        R[m * i + rank] = scene.spread[earlier.pivot_at]
     left: cython.double = make_reflector(scene, row)
     if left == 0.0:
         R[m * i + i] = 1.0
@@ -188,14 +201,12 @@ def eliminate_row(scene: cython.pointer[Scene], i: cython.int) -> cython.double:
     return left * left * row.pose_scale * row.pose_scale
 
 
-def first_coupled(scene: cython.pointer[Scene], row: cython.pointer[Closure], i: cython.int) -> cython.int:
-    """The first independent row that fills the i-th."""
+def begin_row(scene: cython.pointer[Scene], i: cython.Py_ssize_t, first: cython.int) -> cython.void:
+    """Row i of R' begins at the first independent row that fills it."""
     k: cython.Py_ssize_t
-    for k in range(row.couplings, row.couplings + row.coupling_count):
-        rank: cython.int = scene.closures[scene.indices[k]].rank
-        if rank >= 0:
-            return rank
-    return i
+    scene.envelope[i] = first
+    for k in range(first, i):
+        scene.R[scene.selected_count * i + k] = 0.0
 
 
 def make_reflector(scene: cython.pointer[Scene], row: cython.pointer[Closure]) -> cython.double:

@@ -257,9 +257,9 @@ def add_zeros_in_plane(scene: cython.pointer[Scene]) -> cython.void:
     i: cython.Py_ssize_t
     for i in range(scene.body_count):
         body: cython.pointer[Body] = cython.address(scene.bodies[i])
-        body.alpha = Vec3(0.0, 0.0, body.alpha.z + body.alpha_zero.z)
-        x: cython.double = body.a.x + (body.a_zero.x - scene.gravity.x)
-        body.a = Vec3(x, body.a.y + (body.a_zero.y - scene.gravity.y), 0.0)
+        body.alpha.z += body.alpha_zero.z
+        body.a.x += body.a_zero.x - scene.gravity.x
+        body.a.y += body.a_zero.y - scene.gravity.y
 
 
 def upward_in_plane(scene: cython.pointer[Scene], inertial: cython.bint) -> cython.void:
@@ -291,8 +291,9 @@ def upward_in_plane(scene: cython.pointer[Scene], inertial: cython.bint) -> cyth
                 y += body.A.xz * alpha + body.A.yz * ax + body.A.zz * ay
             parent: cython.pointer[Body] = cython.address(scene.bodies[body.parent])
             M += body.arm.x * y - body.arm.y * x
-            parent.M_branch = Vec3(0.0, 0.0, parent.M_branch.z + M)
-            parent.f_branch = Vec3(parent.f_branch.x + x, parent.f_branch.y + y, 0.0)
+            parent.M_branch.z += M
+            parent.f_branch.x += x
+            parent.f_branch.y += y
 
 
 def downward_in_plane(scene: cython.pointer[Scene], inertial: cython.bint) -> cython.void:
@@ -351,8 +352,9 @@ def balance_in_plane(scene: cython.pointer[Scene], inertial: cython.bint) -> cyt
         y: cython.double = body.f_joint.y
         if body.parent >= 0:
             parent: cython.pointer[Body] = cython.address(scene.bodies[body.parent])
-            parent.M_joint = Vec3(0.0, 0.0, parent.M_joint.z + (M + (body.arm.x * y - body.arm.y * x)))
-            parent.f_joint = Vec3(parent.f_joint.x + x, parent.f_joint.y + y, 0.0)
+            parent.M_joint.z += M + (body.arm.x * y - body.arm.y * x)
+            parent.f_joint.x += x
+            parent.f_joint.y += y
         for k in range(body.first_freedom, body.end_freedom):
             freedom: cython.pointer[Freedom] = cython.address(scene.freedoms[k])
             if freedom.driven:

@@ -146,8 +146,9 @@ def unit_load_in_plane(
         fx: cython.double = sign * row.f.x
         fy: cython.double = sign * row.f.y
         turn: cython.double = (row.Q.x - on.r.x) * fy - (row.Q.y - on.r.y) * fx
-        on.M_branch = Vec3(0.0, 0.0, on.M_branch.z + (sign * row.m.z + turn))
-        on.f_branch = Vec3(on.f_branch.x + fx, on.f_branch.y + fy, 0.0)
+        on.M_branch.z += sign * row.m.z + turn
+        on.f_branch.x += fx
+        on.f_branch.y += fy
 
 
 def spread_in_plane(scene: cython.pointer[Scene], row: cython.pointer[Closure]) -> cython.void:
@@ -184,5 +185,6 @@ def climb_in_plane(scene: cython.pointer[Scene], body: cython.pointer[Body]) -> 
     if body.parent >= 0:
         parent: cython.pointer[Body] = cython.address(scene.bodies[body.parent])
         M += body.arm.x * y - body.arm.y * x
-        parent.M_branch = Vec3(0.0, 0.0, parent.M_branch.z + M)
-        parent.f_branch = Vec3(parent.f_branch.x + x, parent.f_branch.y + y, 0.0)
+        parent.M_branch.z += M
+        parent.f_branch.x += x
+        parent.f_branch.y += y

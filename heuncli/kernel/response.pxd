@@ -1,7 +1,7 @@
 """Signatures of response.py for C."""
 
 from heuncli.kernel.algebra cimport Quaternion, Vec3, dot, slightly_turned, turned
-from heuncli.kernel.closures cimport count_turns, demanded, measure_row, measure_rows, push_closures
+from heuncli.kernel.closures cimport count_turns, demanded, measure_row, measure_moving_rows, push_closures
 from heuncli.kernel.loads cimport apply_loads
 from heuncli.kernel.orthogonal cimport factor_closures, solve_closures
 from heuncli.kernel.scene cimport APART, Body, Closure, Freedom, Lent, Scene

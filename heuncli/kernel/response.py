@@ -17,7 +17,7 @@ if not cython.compiled:
     from math import fabs, sqrt
 
     from heuncli.kernel.algebra import Quaternion, Vec3, dot, slightly_turned, turned
-    from heuncli.kernel.closures import count_turns, demanded, measure_row, measure_rows, push_closures
+    from heuncli.kernel.closures import count_turns, demanded, measure_moving_rows, measure_row, push_closures
     from heuncli.kernel.loads import apply_loads
     from heuncli.kernel.orthogonal import factor_closures, solve_closures
     from heuncli.kernel.scene import APART, Body, Closure, Freedom, Lent, Scene
@@ -231,7 +231,7 @@ def settle(scene: cython.pointer[Scene], t: cython.double, y: cython.p_double) -
     if scene.closure_count == 0:
         return 0.0
     kinematics(scene, t, y)
-    measure_rows(scene, t)
+    measure_moving_rows(scene, t)
     if scene.selected_count == 0:  # rows that nothing answers may still open, in a singular pose say
         return largest_gap(scene)
     factor_tree(scene)
@@ -267,7 +267,7 @@ def normalise(scene: cython.pointer[Scene], y: cython.p_double) -> cython.void:
 def refactor(scene: cython.pointer[Scene], t: cython.double, y: cython.p_double) -> cython.void:
     """Kinematics, rows and factors at y."""
     kinematics(scene, t, y)
-    measure_rows(scene, t)
+    measure_moving_rows(scene, t)
     factor_tree(scene)
     scene.pivot = factor_closures(scene)
 

@@ -137,7 +137,7 @@ cdef struct Closure:
     int pivot_at
     int chosen
     int support_count
-    int unused
+    int coupled_count
     double reflector
     double pose_scale
 
@@ -293,6 +293,7 @@ cdef struct Scene:
     int *selected             # independent rows, ascending
     int *envelope             # first coupled row of each of them
     int *support              # which answers the reflectors have something of, as their numbers stand in `columns`
+    int *coupled              # of the independent rows: places of earlier ones that fill them, where their couplings stand
     int *taken                # which answers are pivots of reflectors already
     double *measure           # of each answer in an island: 1 of a shift, 1 / length of a turn; 0: in none, or driven
     double *e                 # load that each freedom answers

@@ -173,7 +173,7 @@ class Closure(Record):
     pivot_at: int  # the answer that its reflector leaves something of
     chosen: int  # while rows are selected: its place in the order of pivots; -1: not yet
     support_count: int  # numbers of its reflector
-    unused: int
+    coupled_count: int  # independent rows that fill it
     reflector: float  # 2 / |v|^2 of its reflector 1 - 2 v v' / |v|^2
     pose_scale: float  # 1 / sqrt of a part of what it could answer across its arms, and of what it does
 
@@ -363,6 +363,7 @@ class Scene(metaclass=Fields):
     selected: list[int]
     envelope: list[int]
     support: list[int]
+    coupled: list[int]
     taken: list[int]
     measure: list[float]
     e: list[float]

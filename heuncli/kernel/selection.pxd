@@ -2,7 +2,7 @@
 
 from heuncli.kernel.algebra cimport Vec3, add, add_cross, cross, dot, inverse_form, sub
 from heuncli.kernel.closures cimport clear_path, measure_rows, put_unit_load
-from heuncli.kernel.orthogonal cimport answer_of_side, factor_closures, take_roots
+from heuncli.kernel.orthogonal cimport answer_of_side, factor_closures, list_coupled, take_roots
 from heuncli.kernel.scene cimport Body, CARRIES, Closure, Freedom, Island, SHIFT, Scene
 from heuncli.kernel.tree cimport factor_tree, kinematics, load_along
 from libc.math cimport fabs, sqrt

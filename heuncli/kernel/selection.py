@@ -17,7 +17,7 @@ if not cython.compiled:
 
     from heuncli.kernel.algebra import Vec3, add, add_cross, cross, dot, inverse_form, sub
     from heuncli.kernel.closures import clear_path, measure_rows, put_unit_load
-    from heuncli.kernel.orthogonal import answer_of_side, factor_closures, take_roots
+    from heuncli.kernel.orthogonal import answer_of_side, factor_closures, list_coupled, take_roots
     from heuncli.kernel.scene import CARRIES, SHIFT, Body, Closure, Freedom, Island, Scene
     from heuncli.kernel.shadow import cython
     from heuncli.kernel.tree import factor_tree, kinematics, load_along
@@ -45,6 +45,7 @@ def select_independent_rows(
             one.rank = scene.selected_count
             scene.selected[scene.selected_count] = i
             scene.selected_count += 1
+    list_coupled(scene)
     if scene.selected_count:
         scene.pivot_chosen = factor_closures(scene)
         scene.pivot = scene.pivot_chosen

@@ -349,6 +349,7 @@ class Workspace:
         scene.selected = self.memory.ints(bytes(4 * rows))
         scene.envelope = self.memory.ints(bytes(4 * rows))
         scene.support = self.memory.ints(bytes(4 * numbers["column_count"]))
+        scene.coupled = self.memory.ints(bytes(4 * len(indices)))
         scene.taken = self.memory.ints(bytes(4 * answers))
         scene.measure = self.memory.doubles(numbers["measure"])
         scene.e = self.memory.zeros(answers)

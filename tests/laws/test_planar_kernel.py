@@ -22,9 +22,9 @@ from heuncli.tree.tables import Table
 from tests.shared.flat import flat_scene
 from tests.shared.scenes import near
 
-# rods, ropes, lines, welds, slides, free bodies, drives of all kinds, stops; 14, 9: a light end of a lever, pivot 4e-5
-SEEDS = (0, 2, 5, 6, 14)
-MORE = [*range(7, 10), *range(11, 14), *range(17, 31)]
+# rods, ropes, lines, welds, slides, free bodies, drives of all kinds, stops; 14: a light end of a lever, pivot 4e-5
+SEEDS = (0, 6, 14)
+MORE = [2, 5, *range(7, 10), *range(11, 14), *range(17, 31)]
 ROUNDING = 1e-12  # of the largest of a field; of what the closures amplify, by the root of the pivot
 
 
