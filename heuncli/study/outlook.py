@@ -23,7 +23,7 @@ def outlook(setup: Setup) -> list[str]:
     """What is integrated, and what the first part of the run takes, in sentences."""
     if setup.method is None:
         return ["nothing: one instant is solved"]
-    if getattr(setup.method, "determined", False):
+    if setup.method.determined:
         return ["nothing: every instant follows from the drives and is solved by itself, along the branch"]
     layout, tolerance = setup.runner.moving.layout, setup.spec.analysis.tolerance
     sentences = [
