@@ -42,9 +42,9 @@ ONE_DIRECTION = 1e-6  # of the largest: over poses NEIGHBOUR apart an open force
 ZERO_COMPONENT = 1e-12  # of a unit direction that is proposed: smaller ones are rounding and would be printed as such
 
 # -- in the plane
-# sine of a direction, and of the size or a vector's length: some thousand roundings, which assembling in a tilted plane
-# leaves; what is left out is nothing beside what every step rounds
-FLAT = 1e-12
+# sine of a direction, and of the size or a vector's length: some dozen roundings, which turning a plane in space leaves
+# and every step makes anew; nothing that is typed is so small
+FLAT = 64.0 * EPS
 NEARLY_FLAT = 1e-3  # the same: a drawing off by less was meant to be flat, which is told
 
 # -- no inertia

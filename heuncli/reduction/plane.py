@@ -58,7 +58,7 @@ def _reduction(seen: View) -> Reduction | tuple[str, ...]:
     if all(seen.upright):
         why = "the joints leave no other motion than turns about that direction and shifts across it"
         return Reduction(flat, states.embed, states.restrict, (where + why,))
-    why = "the scene is its own mirror image in it, and so is its motion"
+    why = "the scene is its own mirror image in it, and so is its motion, were it stable against leaving it or not"
     hidden = "whether the motion in the plane is stable against leaving it: what is integrated cannot leave it"
     return Reduction(flat, states.embed, states.restrict, (where + why,), (hidden,))
 

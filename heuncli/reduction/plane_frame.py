@@ -91,4 +91,5 @@ def _across(vectors: Array) -> Iterator[Array]:
     size = np.sqrt(np.sum(np.square(vectors), axis=1))
     large = size > tolerances.FLAT * size.max(initial=0.0)
     if np.any(large):
-        yield np.linalg.svd(vectors[large] / size[large, None], full_matrices=True)[2][2]
+        triangle = np.linalg.qr(vectors[large] / size[large, None], mode="r")  # many vectors, the same right-hand side
+        yield np.linalg.svd(triangle, full_matrices=True)[2][2]

@@ -41,6 +41,35 @@ def test_a_force_in_time_is_not_looked_at_by_sampling(force: str) -> None:
     assert told == ("not solved in the plane across y: forces.push.vector varies along y, 1 of which points out of it",)
 
 
+DRIVEN_OUT = """
+heun: 1
+gravity: [0, 0, -9.81]
+ground: {points: {O: [0, 0, 0]}}
+bodies:
+  arm: {mass: 1, center: [0, 0, 0.5], inertia: [1, 1, 1], points: {p: [0, 0, 0], q: [0, 0, 1]}}
+  bob: {mass: 1, center: [0, 0, -1], inertia: [1, 1, 0.5], points: {p: [0, 0, 0]}, angular_velocity: [0, 1, 0]}
+joints: {hook: {type: ball, from: ground.O, to: arm.p}, side: {type: pin, axis: [1, 0, 0], from: arm.q, to: bob.p}}
+analysis: {duration: 1, samples: 3}
+"""
+
+
+@pytest.mark.parametrize(
+    ("more", "what"),
+    [
+        ("stops: {s: {joint: side, angle: [-1, 1]}}", "stops.s limits a coordinate out of it"),
+        ("forces: {f: {type: torque, joint: side, value: 2}}", "forces.f acts out of it"),
+        (
+            "forces: {f: {type: force, on: {body: bob, at: [0, 0, -1]}, vector: [side.angle, 0, 0]}}",
+            "forces.f names side.angle, a coordinate out of it",
+        ),
+        ("drives: {d: {joint: side, angle: 'sin(t)**2'}}", "drives.d moves joints.side out of it"),
+    ],
+)
+def test_what_limits_names_or_moves_what_the_plane_leaves_out(more: str, what: str) -> None:
+    assert isinstance(found(DRIVEN_OUT), Reduction)
+    assert found(f"{DRIVEN_OUT}\n{more}\n") == (f"not solved in the plane across y: {what}",)
+
+
 def test_a_force_that_turns_with_its_body_stays_in_the_plane() -> None:
     assert isinstance(found(swing(frame="body")), Reduction)
 
