@@ -22,6 +22,7 @@ def heading(results: Results) -> list[tuple[str, str]]:
         ("heun", f"{results.version}  {results.title}"),
         ("model", _model(results)),
         *_reduced(results.model.get("reduced", ())),
+        *(("unseen", sentence) for sentence in results.model.get("cannot_tell", ())),
         *(("start", sentence) for sentence in results.model.get("moved", ())),
         ("run", _run(results)),
         ("accuracy", _errors(results)),
