@@ -1,0 +1,227 @@
+"""Scenes that only look as if less would do: what is reduced is told, what is not is told with its reason, and wherever
+less moves in a scene's place the numbers are those of the whole.
+"""
+
+from __future__ import annotations
+
+import math
+from typing import NamedTuple
+
+import pytest
+
+from heuncli.reduction.model import Reduced
+from heuncli.spec.load import load
+from heuncli.study.setup import set_up
+from heuncli.study.solve import solve
+from tests.shared.reduced import pair, same
+from tests.shared.scenes import near
+
+PLANE = "solved in the plane"
+
+
+class Arm(NamedTuple):
+    """Two bars in the xy plane on joints of a kind, and what of them leaves it."""
+
+    kind: str = "ball"
+    center: float = 0.0  # of the second bar, above the plane [m]
+    spin: float = 0.0  # of the first bar, about x [rad/s]
+    gravity: float = 0.0  # along z [m/s^2]
+    deviation: float = 0.0  # of the first bar's inertia [kg m^2]
+    point: float = 0.0  # of the first bar, above the plane [m]
+    tail: str = ""
+
+    def text(self) -> str:
+        """The scene."""
+        axis = "" if self.kind == "ball" else ", axis: [0, 0, 1]"
+        D = self.deviation
+        return f"""
+heun: 1
+gravity: [0, -9.81, {self.gravity!r}]
+ground: {{points: {{O: [0, 0, 0], P: [1.5, 0.3, 0]}}}}
+bodies:
+  a:
+    mass: 1
+    center: [0.4, 0, 0]
+    inertia: [[0.02, 0, {D!r}], [0, 0.03, 0], [{D!r}, 0, 0.045]]
+    points: {{o: [0, 0, 0], e: [0.9, 0, 0], s: [0.4, 0.1, {self.point!r}]}}
+    orientation: {{axis: [0, 0, 1], angle: -40 deg}}
+    angular_velocity: [{self.spin!r}, 0, 0.5]
+  b:
+    mass: 0.8
+    center: [0.3, 0, {self.center!r}]
+    inertia: [0.01, 0.02, 0.028]
+    points: {{o: [0, 0, 0], e: [0.7, 0, 0]}}
+    orientation: {{axis: [0, 0, 1], angle: 20 deg}}
+joints:
+  root: {{type: {self.kind}, from: ground.O, to: a.o{axis}}}
+  elbow: {{type: {self.kind}, from: a.e, to: b.o{axis}}}
+{self.tail}
+analysis: {{duration: 2, samples: 5}}
+"""
+
+
+def load_of(vector: str, kind: str = "force") -> str:
+    return f"forces: {{f: {{type: {kind}, on: b.e, vector: {vector}}}}}"
+
+
+def spring() -> str:
+    return "forces: {f: {type: spring, from: ground.P, to: a.s, stiffness: 50, length: 0.2}}"
+
+
+FLAT = {
+    "as drawn": Arm(),
+    "a couple about the normal": Arm(tail=load_of('[0, 0, "sin(3*t)"]', "couple")),
+    "a spring": Arm(tail=spring()),
+    "a blow along it": Arm(tail="impulses: {h: {on: b.e, vector: [0, 0.1, 0], time: 1}}"),
+    "pins, and all that acts points out of it": Arm(
+        "pin", center=0.2, point=0.4, deviation=0.001, tail=load_of('[1, "sin(t)", "5*t"]')
+    ),
+    "pins, and a blow out of it": Arm("pin", tail="impulses: {h: {on: b.e, vector: [0.1, 0.2, 0.5], time: 1}}"),
+}
+NOT_FLAT = {  # and what is told
+    "a centre beside it": (Arm(center=1e-9), "bodies.b.center lies 1e-09 m beside it"),
+    "a deviation": (Arm(deviation=1e-9), "bodies.a: its inertia leaves it by 1e-09 kg m^2"),
+    "gravity beside it": (Arm(gravity=1e-9), "gravity leaves it by 1e-09 m/s^2"),
+    "a spin": (Arm(spin=1e-9), "bodies.a.angular_velocity leaves it by 1e-09 rad/s"),
+    "a spring beside it": (Arm(point=1e-9, tail=spring()), "a point of forces.f lies 1e-09 m beside it"),
+    "a blow at 1 s": (Arm(tail="impulses: {h: {on: b.e, vector: [0, 1, 1.0e-9], time: 1}}"),
+                      "impulses.h at t = 1 s leaves it by 1e-09 N s"),
+    "a couple": (Arm(tail=load_of("[1.0e-6, 0, 1]", "couple")), "forces.f.vector leaves it by 1e-06 N m"),
+    "a force from 1 s on": (Arm(tail=load_of('[0, 0, "0 if t < 1 else 5"]')), "forces.f.vector varies along z"),
+    "a table that begins at 0": (
+        Arm(tail="tables: {w: {x: [0, 1, 2], y: [0, 0, 5]}}\n" + load_of('[0, 0, "table(w, t)"]')),
+        "forces.f.vector varies along z",
+    ),
+}  # fmt: skip
+
+
+def reduced(text: str) -> Reduced:
+    """What is left out of a scene, nothing integrated."""
+    found = set_up(load("scene.yaml", text)).reduced
+    assert found is not None
+    return found
+
+
+def in_plane(found: Reduced) -> bool:
+    return any(sentence.startswith(PLANE) for sentence in found.told)
+
+
+@pytest.mark.parametrize("name", FLAT)
+def test_flat(name: str) -> None:
+    both = pair(load("scene.yaml", FLAT[name].text()))
+    same(both)
+    found = both.small.setup.reduced
+    assert found is not None and in_plane(found)
+    # what joints hold in the plane cannot leave it; what is its own mirror image could
+    assert bool(found.hidden) == (FLAT[name].kind == "ball")
+
+
+@pytest.mark.parametrize("name", NOT_FLAT)
+def test_flat_but_for(name: str) -> None:
+    arm, why = NOT_FLAT[name]
+    found = reduced(arm.text())
+    assert not in_plane(found)
+    assert any(why in sentence for sentence in found.kept), found.kept
+
+
+def lateral(tail: str, rate: float = 0.0) -> str:
+    """A pendulum that carries a bar on a pin along itself, which does not turn in the plane."""
+    return f"""
+heun: 1
+gravity: [0, -9.81, 0]
+ground: {{points: {{O: [0, 0, 0]}}}}
+bodies:
+  a: {{mass: 1, center: [0.4, 0, 0], inertia: [0.02, 0.03, 0.045], points: {{o: [0, 0, 0], e: [0.9, 0, 0]}},
+    orientation: {{axis: [0, 0, 1], angle: -40 deg}}}}
+  b: {{mass: 0.5, center: [0.2, 0, 0], inertia: [0.01, 0.012, 0.02], points: {{o: [0, 0, 0], e: [0.5, 0, 0]}},
+    orientation: {{axis: [0, 0, 1], angle: -40 deg}}}}
+joints:
+  root: {{type: pin, from: ground.O, to: a.o, axis: [0, 0, 1]}}
+  along: {{type: pin, from: a.e, to: b.o, axis: [1, 0, 0], initial: {{angle: 0, rate: {rate!r}}}}}
+{tail}
+analysis: {{duration: 1, samples: 5}}
+"""
+
+
+OUT_OF_IT = {
+    "driven from 0.5 s on": 'drives: {d: {joint: along, angle: "0 if t < 0.5 else (t - 0.5)**2"}}',
+    "a torque at an angle": 'forces: {f: {type: torque, joint: along, value: "0.1*step(root.angle + 1)"}}',
+    "a force at an angle": 'forces: {f: {type: force, on: b.e, vector: [0, 0, "0 if root.angle > -1 else 5"]}}',
+    "named": 'forces: {f: {type: torque, joint: root, value: "1 + along.angle"}}',
+    "limited": "stops: {s: {joint: along, angle: [-0.1, 0.1]}}",
+    "at its limit": "stops: {s: {joint: along, angle: [0, 0.1]}}",
+}
+
+
+@pytest.mark.parametrize("name", OUT_OF_IT)
+def test_coordinates_out_of_the_plane(name: str) -> None:
+    """What drives, loads, names or limits the turn that the plane has not."""
+    assert not in_plane(reduced(lateral(OUT_OF_IT[name])))
+
+
+def test_a_coordinate_out_of_the_plane_at_rest() -> None:
+    assert in_plane(reduced(lateral("")))
+    assert in_plane(reduced(lateral("forces: {f: {type: damper, joint: along, coefficient: 1}}")))
+    assert not in_plane(reduced(lateral("", rate=1e-9)))
+
+
+def wire(tail: str = "", radius: str = "0.01", off: float = 0.0, spin: str = "[0.5, 0.2, 3]") -> str:
+    """A wire on a ball that is off its axis by so much."""
+    return f"""
+heun: 1
+gravity: [0, 0, -9.81]
+ground: {{points: {{O: [0, 0, 0], P: [0.5, 0, 0]}}}}
+bodies:
+  w:
+    shapes: [{{type: cylinder, from: [0, 0, 0], to: [0, 0, -1], radius: {radius}, density: 7850}}]
+    points: {{o: [{off!r}, 0, 0], m: [0, 0, -0.5], e: [0, 0, -1], beside: [0, 0.005, -0.5]}}
+    orientation: {{axis: [1, 0, 0], angle: 60 deg}}
+    angular_velocity: {spin}
+joints: {{p: {{type: ball, from: ground.O, to: w.o}}}}
+{tail}
+analysis: {{duration: 0.5, samples: 5}}
+"""
+
+
+SPUN = {
+    "alone": wire(),
+    "fast": wire(spin="{vector: [0.5, 0.2, 200], frame: body}"),
+    "a spring on its axis": wire("forces: {s: {type: spring, from: ground.P, to: w.m, stiffness: 20, length: 0.1}}"),
+    "a blow on its axis": wire("impulses: {h: {on: w.e, vector: [0.1, 0, 0], time: 0.25}}"),
+}
+TURNED = {
+    "a joint beside its axis": wire(off=1e-10),
+    "a couple along it": wire("forces: {c: {type: couple, on: w, vector: [0.01, 0, 1.0e-9], frame: body}}"),
+    "a couple along it, later": wire(
+        'forces: {c: {type: couple, on: w, vector: [0, 0, "1e-3*step(t - 0.25)"], frame: body}}'
+    ),
+    "a force beside it": wire("forces: {c: {type: force, on: w.beside, vector: [1, 0, 0]}}"),
+    "a blow beside it": wire("impulses: {h: {on: w.beside, vector: [1, 0, 0], time: 0.25}}"),
+    "a couple's blow": wire("impulses: {h: {body: w, couple: [0.01, 0.02, 0.03], time: 0.25}}"),
+    "a spring beside it": wire("forces: {s: {type: spring, from: ground.P, to: w.beside, stiffness: 20, length: 0}}"),
+    "a damper": wire("forces: {d: {type: damper, joint: p, coefficient: 0.01}}"),
+}
+
+
+@pytest.mark.parametrize("name", SPUN)
+def test_spins(name: str) -> None:
+    both = pair(load("scene.yaml", SPUN[name]))
+    same(both)
+    assert any("symmetric about its axis" in sentence for sentence in both.told)
+
+
+@pytest.mark.parametrize("name", TURNED)
+def test_spins_that_something_changes(name: str) -> None:
+    assert not any("symmetric about its axis" in sentence for sentence in reduced(TURNED[name]).told)
+
+
+def test_a_thin_wire_moves_as_a_rod() -> None:
+    """A hundredth of a millimetre on a metre: but for the square of that, 1e-10, as without inertia about its axis."""
+    thin = solve(load("scene.yaml", wire(radius="1.0e-5"))).results
+    mass = math.pi * 1e-10 * 7850
+    shape = f"{{type: rod, from: [0, 0, 0], to: [0, 0, -1], mass: {mass!r}}}"
+    cylinder = "{type: cylinder, from: [0, 0, 0], to: [0, 0, -1], radius: 1.0e-5, density: 7850}"
+    rod = solve(load("scene.yaml", wire(radius="1.0e-5").replace(cylinder, shape))).results
+    error = 1e-9 + thin.accuracy["estimate"]["motion"] + rod.accuracy["estimate"]["motion"]
+    near(thin.bodies["w"]["center"], rod.bodies["w"]["center"], 1.0, error)
+    assert thin.work["steps"] <= 2 * rod.work["steps"]
