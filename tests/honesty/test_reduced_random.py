@@ -10,7 +10,7 @@ import pytest
 from heuncli.spec.load import load
 from tests.oracle.values import to_yaml
 from tests.shared.doubles import redundant_scene
-from tests.shared.in_plane import flat_scene
+from tests.shared.in_plane import PLANAR, flat_scene
 from tests.shared.loops import loop_scene
 from tests.shared.reduced import Pair, pair, same
 from tests.shared.reducible import carried, driven, round_scene, welded
@@ -20,13 +20,21 @@ from tests.shared.trees import tree_scene
 pytestmark = pytest.mark.heavy  # families at random: with the compiled kernel, which has the same bits
 
 TIMES = (0.0, 0.1, 0.3)
+
+
+def declared(seed: int) -> dict[str, Any]:
+    """A scene declared planar."""
+    return {**flat_scene(seed, "mirror", "world", PLANAR), "space": "planar"}
+
+
 # scenes by seed, which seeds, and of how many at least less than all is solved, or nothing is integrated
 FAMILIES: dict[str, tuple[Callable[[int], dict[str, Any]], range, int]] = {
-    "flat": (flat_scene, range(40, 52), 2),
+    "flat": (flat_scene, range(40, 52), 8),
+    "planar": (declared, range(60, 68), 8),
     "welded": (welded, range(40, 50), 6),
     "round": (round_scene, range(8, 17), 3),
     "carried": (carried, range(20, 28), 6),
-    "driven": (driven, range(8, 18), 2),
+    "driven": (driven, range(8, 18), 10),
     "trees": (lambda seed: tree_scene(seed)[0], range(60, 66), 0),
     "loops": (lambda seed: loop_scene(seed)[0], range(60, 66), 0),
     "redundant": (lambda seed: redundant_scene(seed)[1], range(2000, 2006), 0),

@@ -26,7 +26,7 @@ TREES = {
     "kinematic": ("pin", "pin", "slide", "weld"),
     "mirror": ("ball", "pin", "slide", "universal", "cylinder", "line", "plane", "weld", "free"),
 }
-PLANAR = ("ball", "pin", "slide", "line", "plane", "weld", "free")  # what a scene declared planar may have, mirror
+PLANAR = ("ball", "pin", "slide", "line", "weld", "free")  # what a scene declared planar may have
 CLOSURES = {
     "kinematic": ("pin", "ball", "line", "plane", "rod", "slide", "cylinder"), "mirror": ("ball", "line", "rod", "pin"),
 }  # fmt: skip
