@@ -51,6 +51,7 @@ ROWS = (
     Row("the same alone", "", lambda: pendulums(1), ("joints.p0.force",)),
     Row("slider-crank", "space", (SCENES / "crank.yaml").read_text),
     Row("Andrews' squeezer", "space", lambda: to_yaml(moving(andrews(START, STILL), (0.0, 0.03), 1e-9))),
+    Row("two windows of bars", "space", lambda: to_yaml(moving(windows(2, 0.0, 1.0), (0.0, 10.0), 1e-9))),
     Row("forty windows of bars", "space", lambda: to_yaml(moving(windows(40, 0.0, 1.0), (0.0, 0.5, 1.0, 2.0), 1e-6))),
     Row("driven engine, 10 bodies", "integration, space, welds", engine),
     Row("48 bodies, welded to 8", "40 bodies", cluster),
