@@ -126,49 +126,53 @@ def restricted(layout: Layout, spins: Mapping[int, Spin], t: float, state: Array
 
 def spins_of(scene: PreparedScene) -> dict[int, Spin]:
     """The bodies with a spin that nothing changes, and inertia about its axis."""
-    layout, mechanism = scene.layout, scene.mechanism
+    mechanism = scene.mechanism
     found: dict[int, Spin] = {}
     if mechanism.planar:
         return found
     idle = {spin.body for spin in scene.idle}
-    for i, points in free_to_turn(mechanism).items():
-        if i in idle:
-            continue
+    points = {i: own for i, own in free_to_turn(mechanism).items() if i not in idle}
+    if not points:
+        return found
+    moments, axes = np.linalg.eigh(np.array([mechanism.bodies[i].inertia for i in points]))
+    for k, (i, own) in enumerate(points.items()):
         body = mechanism.bodies[i]
-        arms = np.array([point - body.center for point in points]).reshape(-1, 3)
-        axis = axis_of(body, arms, layout.size)
-        if axis is None:
+        rounding = rounding_of(body, float(moments[k, 2]), scene.layout.size)
+        apart = (np.diff(moments[k]) > rounding).tolist()
+        if all(apart):
             continue
+        arms = np.array([point - body.center for point in own]).reshape(-1, 3)
+        axis = axes[k][:, 0 if apart[0] else 2]
+        far = float(np.sqrt(np.max(np.sum(np.square(arms), axis=1), initial=0.0)))
+        if not any(apart) and far > 0.0:  # any axis: that through the points
+            axis = arms[np.argmax(np.sum(np.square(arms), axis=1))] / far
         moment = float(axis @ body.inertia @ axis)
         across = 0.5 * (float(np.trace(body.inertia)) - moment)
-        if moment <= tolerances.NO_INERTIA * across:
-            continue
-        row = layout.bodies[layout.place[i]]
-        q, omega = layout.y0[row["attitude_at"] :][:4], layout.y0[row["rate_at"] :][:3]
-        far = float(np.max(np.sum(np.square(arms), axis=1), initial=0.0))
-        rate = float(omega @ rotated(q[None, :], axis)[0])
-        found[i] = Spin(axis, moment, across + body.mass * far, rate)
+        if moment > tolerances.NO_INERTIA * across and is_round(body, arms, axis, scene.layout.size, rounding):
+            found[i] = Spin(axis, moment, across + body.mass * far**2, rate_about(scene.layout, i, axis))
     return found
 
 
-def axis_of(body: Body, arms: Array, size: float) -> Array | None:
-    """The axis (body axes) about which a body is symmetric and on which all points lie, arms (n, 3) from its centre.
+def rounding_of(body: Body, largest: float, size: float) -> float:
+    """By how much equal moments may differ: they are found from those about the origin, unless that is far away."""
+    return tolerances.AXISYMMETRIC * (largest + body.mass * min(float(body.center @ body.center), size * size))
 
-    Its moments are found from those about its origin, as long as that is not far away.
-    """
-    moments, axes = np.linalg.eigh(body.inertia)
-    about_origin = float(moments[2]) + body.mass * min(float(body.center @ body.center), size * size)
-    rounding = tolerances.AXISYMMETRIC * about_origin
-    axis = axes[:, 2] if moments[1] - moments[0] <= rounding else axes[:, 0]
-    lengths = np.sqrt(np.sum(np.square(arms), axis=1))
-    if moments[2] - moments[0] <= rounding and lengths.max(initial=0.0) > 0.0:  # any axis: that through the points
-        axis = arms[np.argmax(lengths)] / lengths.max()
+
+def rate_about(layout: Layout, i: int, axis: Array) -> float:
+    """A body's spin about an axis of its own at the start [rad/s]."""
+    row = layout.bodies[layout.place[i]]
+    q, omega = layout.y0[row["attitude_at"] :][:4], layout.y0[row["rate_at"] :][:3]
+    return float(omega @ rotated(q[None, :], axis)[0])
+
+
+def is_round(body: Body, arms: Array, axis: Array, size: float, rounding: float) -> bool:
+    """Whether a body is symmetric about an axis on which all points lie, arms (n, 3) from its centre; body axes."""
     moment = float(axis @ body.inertia @ axis)
     across = 0.5 * (float(np.trace(body.inertia)) - moment)
-    symmetric_about = across * np.eye(3) + (moment - across) * np.outer(axis, axis)
+    about_axis = across * np.eye(3) + (moment - across) * np.outer(axis, axis)
     off = arms - np.outer(arms @ axis, axis)
-    beside = bool((np.abs(off) > tolerances.AXISYMMETRIC * size).any())
-    return None if beside or np.abs(body.inertia - symmetric_about).max() > rounding else np.asarray(axis)
+    on_axis = bool((np.abs(off) <= tolerances.AXISYMMETRIC * size).all())
+    return on_axis and bool(np.abs(body.inertia - about_axis).max() <= rounding)
 
 
 def free_to_turn(mechanism: Mechanism) -> dict[int, list[Array]]:
