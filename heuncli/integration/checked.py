@@ -163,7 +163,8 @@ class Runs:
 class Compared:
     """Runs seen at the same instants: A, and beside it B and, where it was made, M.
 
-    states: of each run; error (n,): of A's motion there; horizon: where that passes CLAIMED.
+    states: of each run; error (n,): of A's motion there; horizon: where that passes CLAIMED. several: the answers, at
+    each instant those of all runs, where they are few enough to be kept.
     """
 
     runs: tuple[Trajectory, ...]
@@ -173,6 +174,7 @@ class Compared:
     error: Array
     horizon: float | None
     seconds: float
+    several: Recovered | None
 
     @property
     def motion(self) -> float:
@@ -205,14 +207,33 @@ def checked_run(runs: Runs, tolerance: float, loads: Loads) -> Checked:
     begun = time.perf_counter()
     a = best.runs[0]
     kept = ~between_strikes(best.runs, best.times)
-    at, states, asked = best.times[kept], [x[kept] for x in best.states], best.asked[kept]
-    for part, several in recovered_together(runs, a, at, states, causes=loads.by_cause):
+    at, asked = best.times[kept], best.asked[kept]
+    for part, several in answers_of(runs, best, kept, loads.by_cause):
         loads.add(several, asked[part], at[part] < (np.inf if best.horizon is None else best.horizon))
-    recovered = recovered_at(runs.runner, a, a.times, a.states, runs.jumps, causes=loads.by_cause)
+    recovered = told_of(runs, best, loads.by_cause)
     seconds = best.seconds + time.perf_counter() - begun
     told = best.motion, loads.estimate(), loads.errors(), best.horizon, loads.kinetic()
     beside = tuple(run.blows for run in best.runs[1:])
     return Checked(a, recovered, *told, beside, seconds, lost)
+
+
+def answers_of(runs: Runs, best: Compared, kept: Mask, causes: bool) -> Iterator[tuple[slice, Recovered]]:
+    """The answers at those of the instants that are kept, as `recovered_together` gives them; none is found twice."""
+    if best.several is None or causes:
+        yield from recovered_together(
+            runs, best.runs[0], best.times[kept], [x[kept] for x in best.states], causes=causes
+        )
+    else:
+        several = best.several if kept.all() else best.several.at(np.repeat(kept, len(best.runs)))
+        yield slice(None), several
+
+
+def told_of(runs: Runs, best: Compared, causes: bool) -> Recovered:
+    """The answers at A's asked instants; where all of them were compared they are among those already."""
+    a = best.runs[0]
+    if best.several is None or causes or np.count_nonzero(best.asked) != len(a.times):
+        return recovered_at(runs.runner, a, a.times, a.states, runs.jumps, causes=causes)
+    return best.several.at(len(best.runs) * np.flatnonzero(best.asked))
 
 
 def compared(runs: Runs, a: Trajectory) -> Compared:
@@ -226,26 +247,34 @@ def compared(runs: Runs, a: Trajectory) -> Compared:
         # the runs end at instants of their own; the last of A is judged by the one before it
         n = min(int(np.sum(at.times[: len(x.times)] == x.times[: len(at.times)])) for x in others)
     times, states = at.times[:n], (at.states[:n], *(x.states[:n] for x in others))
-    error = errors(runs, a, times, states)
+    error, several = errors(runs, a, times, states)
     late = np.flatnonzero(error > tolerances.CLAIMED)
     horizon = None
     if len(late):
         horizon = float(times[late[0]])
         ends, between = passed_between(runs.runner, (a, *others), float(times[max(late[0] - 1, 0)]), horizon)
-        sooner = ends[errors(runs, a, ends, between) > tolerances.CLAIMED]
+        sooner = ends[errors(runs, a, ends, between)[0] > tolerances.CLAIMED]
         horizon = float(sooner[0]) if len(sooner) else horizon
-    return Compared((a, *others), times, states, at.asked[:n], error, horizon, time.perf_counter() - begun)
+    seconds = time.perf_counter() - begun
+    return Compared((a, *others), times, states, at.asked[:n], error, horizon, seconds, several)
 
 
-def errors(runs: Runs, a: Trajectory, times: Array, states: Sequence[Array]) -> Array:
-    """Estimated errors of the motion at the instants, (n,); states: of A and of the other runs."""
+def errors(
+    runs: Runs, a: Trajectory, times: Array, states: Sequence[Array]
+) -> tuple[Array, Recovered | None]:
+    """Estimated errors of the motion at the instants, (n,), and the answers there, where one part holds them all.
+
+    states: of A and of the other runs.
+    """
     layout = runs.runner.layout
     places, angles, largest = np.zeros(len(times)), np.zeros(len(times)), 1.0
+    several = None
     for part, several in recovered_together(runs, a, times, states):
         places[part] = motion_error(runs.marks, several, len(states), layout.size)
         angles[part], turned = angle_error(layout, several, len(states))
         largest = max(largest, turned)
-    return np.maximum(places, angles / largest)
+    whole = several if several is not None and len(several.times) == len(states) * len(times) else None
+    return np.maximum(places, angles / largest), whole
 
 
 def recovered_together(
