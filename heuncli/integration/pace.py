@@ -6,15 +6,21 @@ a steady pace, √2 a rate in proportion to the time, 1 an exponential growth, l
 of its own. Every further doubling of n is taken to last r times the one before:
 
     last - t = d (r + r^2 + ... + r^k),  d of the last doubling,  n 2^k steps
+
+So only where its shortest steps are its last: those of an irregular motion become shorter for a while, and longer
+again; it is taken to go on at the pace of its last part.
 """
 
 from __future__ import annotations
 
 import math
 
+import numpy as np
+
 from heuncli import tolerances
 from heuncli.results import Array
 
+PARTS = 8  # of the steps done, whose lengths are compared
 FIRST_LOOK = 2_000  # steps; then each time that their number has doubled
 
 
@@ -40,5 +46,9 @@ def hopeless(ends: Array, last: float, most: int) -> float | None:
     The longer a pace has been kept the less may still change it: what may be left of the steps projected is the root of
     the part done of the most, a hundredth after 2,000 of 20 million.
     """
-    steps = projected_steps(ends, last)
+    took = np.diff(ends[np.linspace(0, len(ends) - 1, PARTS + 1).astype(int)])
+    if took[-1] <= took.min():
+        steps = projected_steps(ends, last)
+    else:
+        steps = len(ends) * (1.0 + float((last - ends[-1]) / took[-1]) / PARTS)
     return steps if steps > tolerances.HOPELESS * most * math.sqrt(most / len(ends)) else None
