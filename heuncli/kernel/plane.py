@@ -2,7 +2,8 @@
 
     [n_z; f_x; f_y] = A [alpha_z; a_x; a_y] + [M_z; f_x; f_y]       what a joint must exert on its branch
 The turn and the two shifts are the whole of a motion, so the articulated inertia of a branch is one symmetric matrix of
-three (body.A; C, K and G are left alone). Behind a joint that turns freely nothing is left of the first row: what the
+three (body.A; C and G are left alone; K has the sizes of its terms before any freedom gave way: K.xx of the turn, of
+masses at their levers, K.yy of the shifts). Behind a joint that turns freely nothing is left of the first row: what the
 branch puts on its parent is a mass, not the same in all directions, at the joint. Other fields are as in space, with
 what there is none of zero, so that loads and closures read them alike; heights along z stay, for lengths count them.
 Loads out of the plane are not found here: they move nothing.
@@ -132,11 +133,12 @@ def factor_in_plane(scene: cython.pointer[Scene]) -> cython.int:
     for i in range(scene.body_count):
         own: cython.pointer[Body] = cython.address(scene.bodies[i])
         own.A = Sym3(own.inertia.zz, -own.mc.y, own.mc.x, own.mass, 0.0, own.mass)
+        own.K = Sym3(own.inertia.zz, 0.0, 0.0, own.mass, 0.0, own.mass)
     for i in range(scene.body_count - 1, -1, -1):
         body: cython.pointer[Body] = cython.address(scene.bodies[i])
         # a freedom's inertia is nothing beside that before any freedom was taken out: what is left of it is rounding
-        mass: cython.double = scene.limits.no_inertia * (body.A.yy + body.A.zz)
-        turning: cython.double = scene.limits.no_inertia * body.A.xx
+        mass: cython.double = scene.limits.no_inertia * body.K.yy
+        turning: cython.double = scene.limits.no_inertia * body.K.xx
         for k in range(body.first_freedom, body.end_freedom):
             freedom: cython.pointer[Freedom] = cython.address(scene.freedoms[k])
             if freedom.driven:
@@ -199,6 +201,8 @@ def add_branch_in_plane(parent: cython.pointer[Body], body: cython.pointer[Body]
     y: cython.double = body.arm.y
     lx: cython.double = x * body.A.yz - y * body.A.yy
     ly: cython.double = x * body.A.zz - y * body.A.yz
+    parent.K.xx += body.K.xx + body.K.yy * (x * x + y * y)
+    parent.K.yy += body.K.yy
     parent.A = Sym3(
         parent.A.xx + body.A.xx + 2.0 * (x * body.A.xz - y * body.A.xy) + (x * ly - y * lx),
         parent.A.xy + body.A.xy + lx,

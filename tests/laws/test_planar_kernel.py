@@ -16,8 +16,9 @@ from heuncli.records import replace
 from heuncli.response import Columns, Jacobian, blows, carried, columns, jacobian
 from heuncli.results import Array
 from heuncli.spec.load import load
-from heuncli.study.setup import set_up
+from heuncli.study.setup import draw, set_up
 from heuncli.tree.flat import moves_in_plane
+from heuncli.tree.prepare import prepare
 from heuncli.tree.tables import Table
 from tests.shared.flat import flat_scene
 from tests.shared.scenes import near
@@ -158,3 +159,28 @@ def test_a_scene_is_flat_only_if_it_is_declared() -> None:
     shifted = planar.tables["freedoms"].copy()
     shifted["direction"]["z"][0] *= 0.5
     assert not moves_in_plane(planar.tables["bodies"], shifted)
+
+
+WEIGHTLESS = """
+heun: 1
+space: planar
+bodies:
+  arm: {{mass: 1, center: [0, 0, 0], inertia: {inertia}}}
+  block: {{mass: 2, center: [0, 0, 0], inertia: 0, position: [{x}, {y}, 0]}}
+joints:
+  pin: {{type: pin, from: {{body: ground, at: [0, 0, 0]}}, to: {{body: arm, at: [0, 0, 0]}}}}
+  guide:
+    {{type: slide, from: {{body: arm, at: [{x}, {y}, 0]}}, to: {{body: block, at: [0, 0, 0]}}, axis: [-{y}, {x}, 0]}}
+"""
+
+
+@pytest.mark.parametrize(("inertia", "idle"), [(0.0, 1), (1e-9, 0)])
+def test_what_rounding_leaves_of_an_inertia_is_none(inertia: float, idle: int) -> None:
+    """A block that slides across its arm takes its whole mass out of the arm's turn: no inertia, or the arm's own."""
+    for angle in np.linspace(0.1, 1.4, 12).tolist():
+        x, y = 3.0 * np.cos(angle), 3.0 * np.sin(angle)
+        mechanism, _ = draw(load("scene.yaml", WEIGHTLESS.format(inertia=inertia, x=x, y=y)))
+        layout = prepare(mechanism).layout  # before any inertia is lent
+        assert layout.flat
+        for runner in (Runner(layout), Runner(replace(layout, flat=False))):
+            assert runner.recovered(np.zeros(1), layout.y0[None]).idle[0] == idle
