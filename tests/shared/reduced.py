@@ -102,7 +102,8 @@ def slenderness(study: Study) -> dict[str, float]:
     size, found = study.setup.scene.layout.size, {}
     for body in study.setup.scene.mechanism.bodies:
         moments = np.linalg.eigvalsh(body.inertia)
-        if moments[0] > tolerances.NO_INERTIA * moments[2]:
+        moments = moments[moments > tolerances.NO_INERTIA * moments[2]]  # what has none is not turned by rounding
+        if len(moments):
             found[body.name] = max(1.0, size / math.sqrt(moments[0] / body.mass))
     return found
 
