@@ -2,8 +2,6 @@
 
 from __future__ import annotations
 
-import numpy as np
-
 from heuncli.assembly.chosen import chosen, pose_choices, rate_choices
 from heuncli.assembly.conditions import Condition, conditions_of
 from heuncli.assembly.gaps import size_of
@@ -12,6 +10,7 @@ from heuncli.assembly.poses import Placing
 from heuncli.assembly.rates import Moving
 from heuncli.mechanism.model import Assembly, Mechanism
 from heuncli.records import replace
+from heuncli.shapes.rotations import cross_rows
 
 
 def assemble(mechanism: Mechanism, t0: float = 0.0) -> Assembly:
@@ -39,7 +38,7 @@ def _assembled(mechanism: Mechanism, found: list[Condition], size: float) -> Ass
     start = Assembly(
         position=x[:n],
         rotation=placing.poses.R[:n],
-        velocity=r.v[:n] + np.cross(r.w[:n], x[:n] - r.s[:n]),
+        velocity=r.v[:n] + cross_rows(r.w[:n], x[:n] - r.s[:n]),
         angular_velocity=r.w[:n],
         chosen=(),
         gap=placing.gap,

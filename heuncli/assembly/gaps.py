@@ -9,6 +9,7 @@ import numpy as np
 from heuncli.assembly.conditions import Ask, Condition
 from heuncli.mechanism.model import GROUND, Mechanism
 from heuncli.results import Array
+from heuncli.shapes.rotations import cross_rows
 
 
 class Closure:
@@ -66,7 +67,7 @@ def _angle(ask: Ask, Ra: Array, Rb: Array, c: dict[str, Array]) -> Array:
         return np.asarray(np.arctan2(np.sqrt(np.sum(skew * skew, -1)), np.trace(E, axis1=-2, axis2=-1) - 1.0))
     n, m = _apply(Ra, c["axis"]), _apply(Rb, c["to_axis"])
     cos = np.einsum("...i,...i->...", n, m)
-    sine = np.cross(n, m)
+    sine = cross_rows(n, m)
     sin = np.sqrt(np.einsum("...i,...i->...", sine, sine))
     return np.asarray(np.abs(np.arctan2(cos, sin)) if ask.turn == "square" else np.arctan2(sin, cos))
 

@@ -21,6 +21,7 @@ from heuncli.records import record, replace
 from heuncli.response import Blows as Answered
 from heuncli.response import Columns, blows
 from heuncli.results import Array
+from heuncli.shapes.rotations import cross_rows
 from heuncli.tree.layout import Layout
 from heuncli.tree.tables import Table
 
@@ -194,7 +195,7 @@ def column(layout: Layout, bodies: Table, given: Impulse) -> Array:
     """An impulse as a column of loads, (n_b, 6): moment about the body's joint point, force."""
     place = layout.place[layout.mechanism.blows[given.blow].body]
     loads = np.zeros((len(bodies), 6))
-    loads[place, :3] = given.moment + np.cross(given.at - bodies["r"][place], given.force)
+    loads[place, :3] = given.moment + cross_rows(given.at - bodies["r"][place], given.force)
     loads[place, 3:] = given.force
     return loads
 
@@ -226,7 +227,7 @@ def work_of_impulses(layout: Layout, bodies: Table, jump: Columns, impulses: tup
         place = layout.place[layout.mechanism.blows[given.blow].body]
         body, change = bodies[place], jump.bodies[place]
         omega = body["omega"] + 0.5 * change["alpha"]
-        v = body["v"] + 0.5 * change["a"] + np.cross(omega, given.at - body["r"])
+        v = body["v"] + 0.5 * change["a"] + cross_rows(omega, given.at - body["r"])
         work += float(given.force @ v + given.moment @ omega)
     return work
 
@@ -255,7 +256,7 @@ def kinetic_energy(layout: Layout, bodies: Table) -> float:
     energy = 0.0
     for place, hang in enumerate(layout.spanning.hangs):
         body, own = layout.mechanism.bodies[hang.body], bodies[place]
-        v = own["v"] + np.cross(own["omega"], own["R"] @ (body.center - layout.reference[place]))
+        v = own["v"] + cross_rows(own["omega"], own["R"] @ (body.center - layout.reference[place]))
         w = own["R"].T @ own["omega"]
         energy += 0.5 * (body.mass * float(v @ v) + float(w @ body.inertia @ w))
     return energy

@@ -18,6 +18,7 @@ from heuncli.integration.complementarity import Pivots, complementary
 from heuncli.integration.evaluator import Recovered
 from heuncli.records import fields, record
 from heuncli.results import Array, Indices, Mask
+from heuncli.shapes.rotations import cross_rows
 from heuncli.tree.layout import Contact, Layout
 from heuncli.tree.tables import Table
 
@@ -118,7 +119,7 @@ def unit_load(layout: Layout, bodies: Table, rows: Table, contact: Contact) -> A
     load = np.zeros((len(bodies), 6))
     for body, sign in ((int(row["b"]), 1.0), (int(row["a"]), -1.0)):
         if body >= 0:
-            load[body, :3] += sign * (m + np.cross(Q - bodies["r"][body], f))
+            load[body, :3] += sign * (m + cross_rows(Q - bodies["r"][body], f))
             load[body, 3:] += sign * f
     return load
 

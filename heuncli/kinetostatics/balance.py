@@ -17,6 +17,7 @@ from heuncli.kinetostatics.foundation import inertia_loads
 from heuncli.kinetostatics.magnitudes import inertia_scale
 from heuncli.kinetostatics.reactions import in_plane
 from heuncli.mechanism.model import GROUND, Mechanism
+from heuncli.shapes.rotations import cross_rows
 
 AT_ONCE = 100_000  # instants times actions that are added up together
 
@@ -34,7 +35,7 @@ def balance_residual(mechanism: Mechanism, states: BodyStates, actions: Sequence
         ends, forces, moments = zip(*acting[first : first + many], strict=True)
         F, M = np.stack(forces, axis=1), np.stack(moments, axis=1)
         position = np.stack([end.position for end in ends], axis=1)
-        about_centre = M + np.cross(position - states.centre[:, [end.body for end in ends]], F)
+        about_centre = M + cross_rows(position - states.centre[:, [end.body for end in ends]], F)
         of_action = np.maximum(np.abs(F).max(axis=2), np.abs(M).max(axis=2) / size)
         for k, body in enumerate(end.body for end in ends):
             force[:, body] += F[:, k]

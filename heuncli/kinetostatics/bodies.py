@@ -11,6 +11,7 @@ from heuncli.integration.evaluator import Recovered
 from heuncli.mechanism.model import GROUND
 from heuncli.records import record
 from heuncli.results import Array
+from heuncli.shapes.rotations import cross_rows
 from heuncli.tree.layout import Layout
 
 
@@ -41,7 +42,7 @@ class BodyStates:
         """Velocity of the body's point that is at a world position, (n_t, 3)."""
         if body == GROUND:
             return np.zeros_like(position)
-        return self.v[:, body] + np.cross(self.omega[:, body], position - self.x[:, body])
+        return self.v[:, body] + cross_rows(self.omega[:, body], position - self.x[:, body])
 
     def acceleration(self, body: int, position: Array) -> Array:
         """Acceleration of the body's point that is at a world position, (n_t, 3)."""
@@ -49,7 +50,7 @@ class BodyStates:
             return np.zeros_like(position)
         arm = position - self.x[:, body]
         w = self.omega[:, body]
-        return self.a[:, body] + np.cross(self.alpha[:, body], arm) + np.cross(w, np.cross(w, arm))
+        return self.a[:, body] + cross_rows(self.alpha[:, body], arm) + cross_rows(w, cross_rows(w, arm))
 
     def direction(self, body: int, vector: Array) -> Array:
         """World components of a direction fixed in a body, (n_t, 3)."""
@@ -68,8 +69,8 @@ def body_states(layout: Layout, recovered: Recovered) -> BodyStates:
 
     def of(points: Array) -> tuple[Array, Array, Array]:
         arm = np.einsum("tnij,nj->tni", R, points)
-        turn = np.cross(w, arm)
-        return r + arm, v + turn, a + np.cross(alpha, arm) + np.cross(w, turn)
+        turn = cross_rows(w, arm)
+        return r + arm, v + turn, a + cross_rows(alpha, arm) + cross_rows(w, turn)
 
     x0, v0, a0 = of(-layout.reference[order])
     xc, vc, ac = of(np.array([b.center for b in bodies]) - layout.reference[order])

@@ -9,6 +9,7 @@ from heuncli.joint_kinds import JOINTS
 from heuncli.kinetostatics.bodies import BodyStates
 from heuncli.mechanism.model import Joint, Mechanism
 from heuncli.results import Array, Block
+from heuncli.shapes.rotations import cross_rows
 from heuncli.tree.layout import Layout
 
 
@@ -59,7 +60,7 @@ def _sliding(states: BodyStates, joint: Joint) -> Block:
     Q = states.point_position(joint.b, joint.q)
     v = states.velocity(joint.b, Q) - states.velocity(joint.a, Q)
     w = states.omega[:, joint.a] if joint.a >= 0 else np.zeros_like(n)
-    a = states.acceleration(joint.b, Q) - states.acceleration(joint.a, Q) - 2.0 * np.cross(w, v)
+    a = states.acceleration(joint.b, Q) - states.acceleration(joint.a, Q) - 2.0 * cross_rows(w, v)
     D = Q - states.point_position(joint.a, joint.p)
 
     def along(x: Array) -> Array:

@@ -14,6 +14,7 @@ from heuncli.kinetostatics.foundation import inertia_loads
 from heuncli.kinetostatics.reactions import JointLoads
 from heuncli.mechanism.model import Mechanism, PairLoad
 from heuncli.results import Array, Block
+from heuncli.shapes.rotations import cross_rows
 from heuncli.tree.layout import Layout
 
 
@@ -42,8 +43,8 @@ def system_vector(mechanism: Mechanism, states: BodyStates) -> Block:
     u = np.einsum("tnji,tnj->tni", states.R, states.alpha)
     T = 0.5 * np.trace(inertia, axis1=1, axis2=2)[:, None, None] * np.eye(3) - inertia
     twice_e = np.einsum("tni,nij,tnj->tn", w, inertia, w)
-    own: Array = twice_e[:, :, None] * w + np.einsum("nij,tnj->tni", T, np.cross(w, u))
-    B = m[:, None] * np.cross(states.v_centre, states.a_centre) + np.einsum("tnij,tnj->tni", states.R, own)
+    own: Array = twice_e[:, :, None] * w + np.einsum("nij,tnj->tni", T, cross_rows(w, u))
+    B = m[:, None] * cross_rows(states.v_centre, states.a_centre) + np.einsum("tnij,tnj->tni", states.R, own)
     return {"total": B.sum(axis=1), "bodies": {b.name: B[:, i] for i, b in enumerate(mechanism.bodies)}}
 
 

@@ -17,6 +17,7 @@ from heuncli.kinetostatics.bodies import BodyStates
 from heuncli.kinetostatics.reactions import in_plane
 from heuncli.mechanism.model import Mechanism
 from heuncli.results import Array, Block
+from heuncli.shapes.rotations import cross_rows
 
 
 def inertia_loads(mechanism: Mechanism, states: BodyStates) -> tuple[Array, Array]:
@@ -25,7 +26,7 @@ def inertia_loads(mechanism: Mechanism, states: BodyStates) -> tuple[Array, Arra
     inertia = np.array([b.inertia for b in mechanism.bodies])
     w = np.einsum("tnji,tnj->tni", states.R, states.omega)
     u = np.einsum("tnji,tnj->tni", states.R, states.alpha)
-    spin = np.einsum("nij,tnj->tni", inertia, u) + np.cross(w, np.einsum("nij,tnj->tni", inertia, w))
+    spin = np.einsum("nij,tnj->tni", inertia, u) + cross_rows(w, np.einsum("nij,tnj->tni", inertia, w))
     loads = m[:, None] * states.a_centre, np.einsum("tnij,tnj->tni", states.R, spin)
     return in_plane(*loads) if mechanism.planar else loads
 
@@ -35,11 +36,11 @@ def total(
 ) -> tuple[Array, Array]:
     """s and M_s, (n_t, 3); forces: weight less m x_s.. of every body, spin: I sigma. + sigma x I sigma, (n_t, n, 3)."""
     force = np.sum(forces, axis=1)
-    moment = np.sum(np.cross(states.centre - about, forces) - spin, axis=1)
+    moment = np.sum(cross_rows(states.centre - about, forces) - spin, axis=1)
     for action in actions:
         if action.from_ is None:
             force = force + action.force
-            moment = moment + np.cross(action.to.position - about, action.force) + action.moment
+            moment = moment + cross_rows(action.to.position - about, action.force) + action.moment
     return force, moment
 
 
@@ -52,7 +53,7 @@ def foundation(mechanism: Mechanism, states: BodyStates, actions: Sequence[Actio
     for (kind, name), on in on_ground(actions).items():
         where = {"point": on.about.copy()} if kind == "elements" else {}
         standing[kind][name] = {"force": on.force, "moment": on.moment} | where
-    orbital = np.cross(states.centre - about, ma).sum(axis=1)
+    orbital = cross_rows(states.centre - about, ma).sum(axis=1)
     if mechanism.planar:
         force, moment = in_plane(force, moment)
         _, orbital = in_plane(force, orbital)
@@ -96,7 +97,7 @@ def central_axis(s: Array, M: Array, about: Array, scale: float) -> Block:
     none = s2 <= (tolerances.NO_FORCE * largest) ** 2
     safe = np.where(none, np.nan, s2)
     return {
-        "point": about + np.cross(s, M) / safe[:, None],
+        "point": about + cross_rows(s, M) / safe[:, None],
         "direction": s / np.sqrt(safe)[:, None],
         "pitch": np.sum(s * M, axis=1) / safe,
     }

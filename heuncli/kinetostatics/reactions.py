@@ -20,6 +20,7 @@ from heuncli.kinetostatics.bodies import BodyStates
 from heuncli.mechanism.model import Joint, Stop
 from heuncli.records import record
 from heuncli.results import Array
+from heuncli.shapes.rotations import cross_rows
 from heuncli.tree.layout import Layout
 from heuncli.tree.starts import joint_frame
 
@@ -132,7 +133,7 @@ def joint_loads(layout: Layout, recovered: Answers, states: BodyStates) -> list[
             force, moment = (recovered.bodies[name][..., i, :] for name in ("joint_force", "joint_moment"))
             if h.reverse:
                 arm = states.point_position(joint.a, joint.p) - point
-                force, moment = -force, -moment - np.cross(arm, force)
+                force, moment = -force, -moment - cross_rows(arm, force)
             for n, freedom in enumerate(layout.freedoms):
                 if freedom.joint == k and freedom.q < 0:
                     drive = recovered.freedoms["drive"][..., n]
@@ -188,7 +189,7 @@ def constrained_part(joint: Joint, states: BodyStates, force: Array, moment: Arr
     if kind.ball:
         moment = np.zeros_like(moment)
     elif len(kind.turns) == 2:
-        n = np.cross(states.direction(joint.a, joint.axis), states.direction(joint.b, joint.to_axis))
+        n = cross_rows(states.direction(joint.a, joint.axis), states.direction(joint.b, joint.to_axis))
         n = n / np.sqrt(np.sum(n * n, axis=1))[:, None]
         moment = np.sum(moment * n, axis=-1)[..., None] * n
     elif kind.turns:

@@ -23,6 +23,7 @@ from heuncli.kinetostatics.sections import (
 )
 from heuncli.kinetostatics.shares import GRAVITY, MOTION, Shares
 from heuncli.results import Array, Block, Mask
+from heuncli.shapes.rotations import cross_rows
 from heuncli.tree.layout import Layout
 
 
@@ -78,11 +79,11 @@ def acceleration_matrix_by_cause(body: int, layout: Layout, states: BodyStates, 
     i, R = layout.place[body], states.R[:, body]
     alpha, a = (shares.column.bodies[name][:, :, i] for name in ("alpha", "a"))
     arm = -R @ layout.reference[i]
-    a = a + np.cross(alpha, arm)
+    a = a + cross_rows(alpha, arm)
     omega = np.zeros_like(alpha)
     if MOTION in shares.causes:
         omega[shares.place(MOTION)] = w = states.omega[:, body]
-        a[shares.place(MOTION)] += np.cross(w, np.cross(w, arm))
+        a[shares.place(MOTION)] += cross_rows(w, cross_rows(w, arm))
     if GRAVITY in shares.causes:
         a[shares.place(GRAVITY)] += layout.mechanism.gravity  # the kernel's is less g
     return accelerations_as_matrix(*(in_body_axes(R, x) for x in (omega, alpha, a)))

@@ -22,6 +22,7 @@ from heuncli.kinetostatics.cuts import Cuts
 from heuncli.kinetostatics.stress import MODULI, stresses
 from heuncli.records import record
 from heuncli.results import Array, Block, Mask
+from heuncli.shapes.rotations import cross_rows
 
 
 @record
@@ -49,7 +50,7 @@ def attachments(body: int, states: BodyStates, actions: Sequence[Action]) -> lis
                 attached.append(Attachment(in_body_axes(R, end.position - states.x[:, body]), F, M))
                 continue
             if end.apart:
-                M = M + np.cross(in_body_axes(R, end.position - states.x[:, body]) - end.point, F)
+                M = M + cross_rows(in_body_axes(R, end.position - states.x[:, body]) - end.point, F)
             attached.append(Attachment(end.point, F, M))
     return attached
 

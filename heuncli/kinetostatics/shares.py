@@ -27,6 +27,7 @@ from heuncli.mechanism.model import Mechanism
 from heuncli.records import record, replace
 from heuncli.response import Columns
 from heuncli.results import Array, Block, Mask
+from heuncli.shapes.rotations import cross_rows
 from heuncli.tree.layout import Layout
 
 GRAVITY, DRIVES, MOTION = "gravity", "drives", "motion"
@@ -140,7 +141,7 @@ def foundation_shares(
     parts: dict[tuple[str, ...], Block] = {}
     inner = [action for action in shares.applied if action.from_ is not None]
     for keys, on in on_ground([*(alone(shares, action) for action in inner), *joint_actions(shares.joints)]).items():
-        force, moment = force + on.force, moment + np.cross(on.about - about, on.force) + on.moment
+        force, moment = force + on.force, moment + cross_rows(on.about - about, on.force) + on.moment
         parts[keys] = shares.by_name({"force": on.force, "moment": on.moment})
     if mechanism.planar:
         force, moment = in_plane(force, moment)
@@ -167,10 +168,10 @@ def from_outside(
     found = {}
     if GRAVITY in shares.all:
         weight = np.array([b.mass for b in mechanism.bodies])[:, None] * mechanism.gravity
-        levers = np.sum(np.cross(states.centre - about, weight), axis=1)
+        levers = np.sum(cross_rows(states.centre - about, weight), axis=1)
         found[GRAVITY] = np.broadcast_to(weight.sum(axis=0), levers.shape), levers
     for action in shares.applied:
-        M = action.moment + np.cross(action.to.position - about, action.force)
+        M = action.moment + cross_rows(action.to.position - about, action.force)
         inside = action.from_ is not None
         found[action.name] = (np.zeros_like(M), np.zeros_like(M)) if inside else (action.force, M)
     return found

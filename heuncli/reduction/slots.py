@@ -18,6 +18,7 @@ from heuncli.joint_kinds import JOINTS
 from heuncli.records import record
 from heuncli.reduction.restated import Parts
 from heuncli.results import Array, Indices
+from heuncli.shapes.rotations import cross_rows
 from heuncli.tree.layout import Layout
 from heuncli.tree.spanning import Hang
 from heuncli.tree.starts import joint_frame
@@ -134,7 +135,7 @@ def in_space(states: Array, at: tuple[int, int], d: Array) -> tuple[Array, Array
     """R d and omega x (R d) of a body whose attitude and rate stand at those places, (n_t, 3) each."""
     q, omega = states[:, at[0] : at[0] + 4], states[:, at[1] : at[1] + 3]
     out = rotated(q, d)
-    return out, np.cross(omega, out)
+    return out, cross_rows(omega, out)
 
 
 def in_plane(states: Array, at: tuple[int, int], d: Array) -> tuple[Array, Array]:
@@ -148,5 +149,5 @@ def in_plane(states: Array, at: tuple[int, int], d: Array) -> tuple[Array, Array
 def rotated(q: Array, d: Array) -> Array:
     """R d of quaternions (n_t, 4), which need not be of unit length."""
     w, v = q[:, :1], q[:, 1:]
-    across = np.cross(v, d)
-    return np.asarray(d + 2.0 * (w * across + np.cross(v, across)) / np.sum(q * q, axis=1, keepdims=True))
+    across = cross_rows(v, d)
+    return np.asarray(d + 2.0 * (w * across + cross_rows(v, across)) / np.sum(q * q, axis=1, keepdims=True))

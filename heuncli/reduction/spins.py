@@ -23,6 +23,7 @@ from heuncli.records import record, replace
 from heuncli.reduction.model import Reduction
 from heuncli.reduction.slots import rotated
 from heuncli.results import Array
+from heuncli.shapes.rotations import cross_rows
 from heuncli.tree.layout import Layout
 from heuncli.tree.prepare import PreparedScene
 from heuncli.tree.tables import Table, symmetric
@@ -115,7 +116,7 @@ def turned(layout: Layout, spins: Mapping[int, Spin], sense: float, times: Array
         half = 0.5 * sense * spin.less * np.asarray(times, dtype=float)[:, None]
         w, v, a = q[:, :1].copy(), q[:, 1:].copy(), spin.axis
         q[:, :1] = w * np.cos(half) - (v @ a)[:, None] * np.sin(half)
-        q[:, 1:] = v * np.cos(half) + (w * a + np.cross(v, a)) * np.sin(half)
+        q[:, 1:] = v * np.cos(half) + (w * a + cross_rows(v, a)) * np.sin(half)
     return out
 
 

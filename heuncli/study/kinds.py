@@ -26,6 +26,7 @@ from heuncli.kinetostatics.reactions import JointLoads, in_plane, joint_loads
 from heuncli.mechanism.size import marks
 from heuncli.results import Array, Estimate, Mask
 from heuncli.results_schema import BLOWS, BY_CAUSE
+from heuncli.shapes.rotations import cross_rows
 from heuncli.study.recover import about
 from heuncli.study.setup import Setup
 
@@ -277,7 +278,7 @@ class Kinds:
         elements = [on for action in inner if (on := action.on_ground()) is not None]
         wrenches = [
             ("foundation", *total(states, terms.weight - terms.ma, terms.spin, actions, origin)),
-            ("effects", terms.ma.sum(axis=1), np.sum(np.cross(arm, terms.ma) + terms.spin, axis=1)),
+            ("effects", terms.ma.sum(axis=1), np.sum(cross_rows(arm, terms.ma) + terms.spin, axis=1)),
             *(("elements", force, moment) for force, moment, _ in elements),
         ]
         for kind, force, moment in wrenches:

@@ -15,7 +15,7 @@ from heuncli.joint_kinds import JOINTS, Direction
 from heuncli.kernel.choose import scene as kernel
 from heuncli.mechanism.model import GROUND, Assembly, Joint, JointLoad, Mechanism, PairLoad, PointLoad, Stop
 from heuncli.results import Array
-from heuncli.shapes.rotations import to_quaternion
+from heuncli.shapes.rotations import cross_rows, to_quaternion
 from heuncli.tree.flat import about_z, in_plane, moves_in_plane
 from heuncli.tree.islands import with_islands
 from heuncli.tree.layout import Contact, Freedom, Layout
@@ -210,7 +210,7 @@ class _Builder:
         """A body that nothing carries: its centre of mass and its attitude, in the plane where that was declared."""
         x, R, v, w = pose(self.start, h.body)
         c = R @ self.mechanism.bodies[h.body].center
-        place, speed = x + c, v + np.cross(w, c)
+        place, speed = x + c, v + cross_rows(w, c)
         e = np.eye(3)
         names = ("x", "y", "z")
         shifts = [(kernel.SHIFT, e[k], names[k], float(place[k]), float(speed[k])) for k in range(3)]
@@ -258,7 +258,7 @@ class _Builder:
         xb, Rb, vb, wb = pose(self.start, joint.b)
         f = Ra @ joint_frame(joint, direction)
         Q = xb + Rb @ joint.q
-        v = vb + np.cross(wb, Rb @ joint.q) - va - np.cross(wa, Q - xa)
+        v = vb + cross_rows(wb, Rb @ joint.q) - va - cross_rows(wa, Q - xa)
         return float(f @ (Q - xa - Ra @ joint.p)), float(f @ v)
 
     def rows(self) -> None:

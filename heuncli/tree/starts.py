@@ -10,7 +10,7 @@ from heuncli.joint_kinds import JOINTS, Direction
 from heuncli.mechanism.model import GROUND, Assembly, Joint, Mechanism
 from heuncli.records import record
 from heuncli.results import Array
-from heuncli.shapes.rotations import about, perpendicular, to_quaternion
+from heuncli.shapes.rotations import about, cross_rows, perpendicular, to_quaternion
 from heuncli.tree.spanning import Spanning
 
 Z = np.array([0.0, 0.0, 1.0])
@@ -46,7 +46,7 @@ def joint_start(mechanism: Mechanism, start: Assembly, joint: Joint) -> JointSta
     n = joint.axis
     D = Ra.T @ (xb + Rb @ joint.q - xa) - joint.p
     rate = float((Ra @ (Z if kind.turns == ("z",) else n)) @ (wb - wa))
-    v = vb + np.cross(wb, Rb @ joint.q) - va - np.cross(wa, Rb @ joint.q + xb - xa)
+    v = vb + cross_rows(wb, Rb @ joint.q) - va - cross_rows(wa, Rb @ joint.q + xb - xa)
     travel, speed = float(D @ n), float((Ra @ n) @ v)
     if "angle" not in kind.coordinates:
         return JointStart(R, 0.0, rate, travel, speed)
@@ -78,7 +78,7 @@ def joint_frame(joint: Joint, direction: Direction) -> Array:
     if direction == "z":
         return Z
     if direction == "across":
-        return np.cross(Z, joint.axis)
+        return cross_rows(Z, joint.axis)
     e, f = perpendicular(joint.axis)
     return e if direction == "first" else f
 
