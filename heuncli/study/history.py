@@ -5,13 +5,12 @@ Impure: integrating looks at the clock.
 
 from __future__ import annotations
 
-import contextlib
 from collections.abc import Mapping
 from types import MappingProxyType
 
 import numpy as np
 
-from heuncli.errors import SolveError
+from heuncli.errors import LimitError, SolveError
 from heuncli.expressions.discontinuities import one_sided_limits
 from heuncli.integration.between import at_once
 from heuncli.integration.blows import Jump
@@ -109,10 +108,15 @@ def checked_motion(
     assert setup.method is not None
     times, method = np.array(setup.spec.analysis.times, dtype=float), setup.method
     if method.determined:
-        with contextlib.suppress(SolveError):
+        try:
             runs = Runs(setup.runner, times, jumps, deadline, method)
             return checked_run(runs, tolerance, Kinds(setup, by_cause))
-        method = METHODS["auto"]
+        except SolveError:
+            method = METHODS["auto"]
+        except LimitError as limit:
+            if limit.problems[0].code != "step-limit":
+                raise
+            method = METHODS["auto"]  # towards a singular pose steps along a branch become ever shorter
     return checked_run(Runs(setup.runner, times, jumps, deadline, method), tolerance, Kinds(setup, by_cause))
 
 

@@ -9,12 +9,15 @@ from typing import NamedTuple
 
 import pytest
 
+from heuncli.errors import SolveError
 from heuncli.reduction.model import Reduced
 from heuncli.spec.load import load
 from heuncli.study.setup import set_up
-from heuncli.study.solve import solve
+from heuncli.study.solve import Options, solve
+from tests.oracle.values import to_yaml
 from tests.shared.reduced import pair, same
-from tests.shared.scenes import near
+from tests.shared.reducible import driven
+from tests.shared.scenes import moving, near
 
 PLANE = "solved in the plane"
 
@@ -225,3 +228,41 @@ def test_a_thin_wire_moves_as_a_rod() -> None:
     error = 1e-9 + thin.accuracy["estimate"]["motion"] + rod.accuracy["estimate"]["motion"]
     near(thin.bodies["w"]["center"], rod.bodies["w"]["center"], 1.0, error)
     assert thin.work["steps"] <= 2 * rod.work["steps"]
+
+
+EQUAL = """
+heun: 1
+gravity: [0, -9.81, 0]
+ground: {points: {O: [0, 0, 0]}}
+bodies:
+  crank: {mass: 1, center: [0.2, 0, 0], inertia: [0.01, 0.02, 0.02], points: {o: [0, 0, 0], e: [0.4, 0, 0]}}
+  rod: {mass: 0.8, center: [0.2, 0, 0], inertia: [0.01, 0.07, 0.07], points: {a: [0, 0, 0], e: [0.4, 0, 0]}}
+  piston: {mass: 0.5, center: [0, 0, 0], inertia: [0.001, 0.001, 0.001], points: {o: [0, 0, 0]}}
+joints:
+  shaft: {type: pin, from: ground.O, to: crank.o, axis: [0, 0, 1]}
+  big: {type: pin, from: crank.e, to: rod.a, axis: [0, 0, 1]}
+  small: {type: pin, from: rod.e, to: piston.o, axis: [0, 0, 1]}
+  guide: {type: slide, from: ground.O, to: piston.o, axis: [1, 0, 0]}
+drives: {motor: {joint: shaft, angle: "0.3 + 2*t"}}
+analysis: {duration: 1, samples: 5}
+"""
+
+
+def test_a_crank_as_long_as_its_rod() -> None:
+    """In the folded pose another motion branches off: what is followed comes no nearer, what is integrated goes on."""
+    both = pair(load("scene.yaml", EQUAL))
+    same(both)
+    assert any("singular pose" in why for why in both.small.results.model["not_reduced"])
+
+
+@pytest.mark.heavy
+def test_a_lock_is_told_alike() -> None:
+    """Steps along a branch become ever shorter where the drives ask for what does not go."""
+    scene = load("scene.yaml", to_yaml(moving(driven(21), (0.0, 0.3), 1e-9)))
+    told = []
+    for reduce in (False, True):
+        with pytest.raises(SolveError) as error:
+            solve(scene, Options(reduce=reduce))
+        told.append(error.value.problems[0])
+    assert [problem.code for problem in told] == ["closure-lost"] * 2
+    assert "0.18033" in told[0].message and "0.18033" in told[1].message
