@@ -5,6 +5,9 @@ Rigid-body kinematics: v_P = v + σ × (P − O), a_P = a + σ̇ × (P − O) + 
 
 from __future__ import annotations
 
+from collections.abc import Mapping
+from types import MappingProxyType
+
 import numpy as np
 
 from heuncli.integration.evaluator import Recovered
@@ -13,6 +16,8 @@ from heuncli.records import record
 from heuncli.results import Array
 from heuncli.shapes.rotations import cross_rows
 from heuncli.tree.layout import Layout
+
+NONE: Mapping[int, Array] = MappingProxyType({})
 
 
 @record
@@ -59,13 +64,20 @@ class BodyStates:
         return self.R[:, body] @ vector
 
 
-def body_states(layout: Layout, recovered: Recovered) -> BodyStates:
-    """From the kernel's values at the joint points (accelerations less g) to those of origins and centres of mass."""
+def body_states(layout: Layout, recovered: Recovered, steady: Mapping[int, Array] = NONE) -> BodyStates:
+    """From the kernel's values at the joint points (accelerations less g) to those of origins and centres of mass.
+
+    steady: axes (body axes) about which the spins of bodies do not change: d/dt (omega . a) = alpha . a = 0. What of it
+    the kernel finds is rounding of a moment over the inertia about the axis, of a wire next to none.
+    """
     bodies = layout.mechanism.bodies
     order = [layout.place[i] for i in range(len(bodies))]
     rows = recovered.bodies[:, order]
     R, r, w, v, alpha = (rows[name] for name in ("R", "r", "omega", "v", "alpha"))
     a = rows["a"] + layout.mechanism.gravity
+    for i, axis in steady.items():
+        n = R[:, i] @ axis
+        alpha[:, i] -= np.sum(alpha[:, i] * n, axis=1, keepdims=True) * n
 
     def of(points: Array) -> tuple[Array, Array, Array]:
         arm = np.einsum("tnij,nj->tni", R, points)

@@ -55,7 +55,7 @@ class Recovery:
     @cached_property
     def states(self) -> BodyStates:
         """Places, velocities and accelerations of the bodies."""
-        return body_states(self.setup.scene.layout, self.recovered)
+        return body_states(self.setup.scene.layout, self.recovered, self.setup.steady)
 
     @cached_property
     def decided(self) -> Resolution | None:

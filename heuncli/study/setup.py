@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+from functools import cached_property
 from typing import TYPE_CHECKING
 
 from heuncli.integration.following import determined
@@ -14,7 +15,7 @@ from heuncli.mechanism.model import Mechanism
 from heuncli.records import record, replace
 from heuncli.reduction import compose as reduction
 from heuncli.reduction.model import Reduced
-from heuncli.results import Block
+from heuncli.results import Array, Block
 from heuncli.spec.models import Spec
 from heuncli.study.asked import EVERYTHING, Asked
 from heuncli.study.model_note import model_note, reductions
@@ -41,6 +42,15 @@ class Setup:
     model: Block
     reduced: Reduced | None = None
     asked: Asked = EVERYTHING
+
+    @cached_property
+    def steady(self) -> dict[int, Array]:
+        """The axes, in body axes, about which bodies have a spin that nothing changes."""
+        if not self.scene.layout.bodies["ball"].any():
+            return {}
+        from heuncli.reduction.spins import spins_of  # only what hangs on balls, or on nothing, has such
+
+        return {i: spin.axis for i, spin in spins_of(self.scene).items()}
 
 
 def set_up(spec: Spec, method: str | None = None, *, reduce: bool = True, asked: Asked = EVERYTHING) -> Setup:

@@ -8,6 +8,7 @@ import pytest
 from heuncli.spec.load import load
 from heuncli.study.setup import set_up
 from tests.shared.reduced import pair, same
+from tests.shared.scenes import study
 
 HEAD = "heun: 1\ntitle: t\ngravity: [0, 0, -9.81]\nground: {points: {O: [0, 0, 0]}}\n"
 BAR = "mass: 1, center: [0.5, 0, 0], inertia: [0.002, 0.084, 0.084], points: {a: [0, 0, 0], b: [1, 0, 0]}"
@@ -141,14 +142,23 @@ def test_a_top_spins_slower_where_nothing_turns_it(load: str, slower: bool) -> N
     assert ("its spin of 100 rad/s stays" in found) == slower
 
 
+WIRE = HEAD + bodies(
+    "x: {shapes: [{type: cylinder, from: [0, 0, 0], to: [0, 0, -1], radius: 0.01 mm, density: 7850}], "
+    "points: {a: [0, 0, 0]}, orientation: {axis: [1, 0, 0], angle: 60 deg}, angular_velocity: [0.3, 0.2, 1]}"
+)
+
+
 def test_a_wire_costs_as_many_steps_as_a_rod() -> None:
     """A hundredth of a millimetre thick; in full half a million steps follow rounding over its inertia."""
-    text = HEAD + bodies(
-        "x: {shapes: [{type: cylinder, from: [0, 0, 0], to: [0, 0, -1], radius: 0.01 mm, density: 7850}], "
-        "points: {a: [0, 0, 0]}, orientation: {axis: [1, 0, 0], angle: 60 deg}, angular_velocity: [0.3, 0.2, 1]}"
-    )
-    setup = set_up(load("scene.yaml", text + joints(SWING) + "analysis: {duration: 1, samples: 3}\n"))
+    setup = set_up(load("scene.yaml", WIRE + joints(SWING) + "analysis: {duration: 1, samples: 3}\n"))
     assert setup.runner.trajectory(np.array([0.0, 0.5, 1.0]), 1e-10).steps < 60
+
+
+def test_the_spin_of_a_wire_does_not_change() -> None:
+    """Rounding of the moments over the inertia about its axis, which is next to none, is no angular acceleration."""
+    wire = study(WIRE + joints(SWING) + "analysis: {duration: 1, samples: 11}\n").results.bodies["x"]
+    alpha, axis = wire["angular_acceleration"], wire["rotation"][:, :, 2]
+    assert np.abs(np.sum(alpha * axis, axis=1)).max() <= 1e-15 * np.abs(alpha).max()
 
 
 @pytest.mark.parametrize(
