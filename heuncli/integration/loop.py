@@ -25,6 +25,7 @@ class Integration:
 
     def __init__(self, layout: Layout, workspace: Workspace, method: Method, times: Array, **given: Any) -> None:
         n = self.n = layout.n_state
+        self.method = method
         most = given.pop("most")
         self.width = integration.record_width(workspace, n)
         self.output = {name: np.zeros(most) for name in PER_STEP}

@@ -276,7 +276,7 @@ DOP853 = Method(
 
 # Of a motion that its drives determine (kernel/following.py): its interpolation has two rows more than the cubic's.
 FOLLOWED = Method(
-    name="none: every instant follows from the drives",
+    name="none: every instant is solved by itself",
     order=1,
     nodes=(0.0,),
     stages=(),

@@ -40,14 +40,16 @@ def projected_steps(ends: Array, last: float) -> float:
     return n * 2.0**doublings if doublings < 1000.0 else math.inf
 
 
-def hopeless(ends: Array, last: float, most: int) -> float | None:
+def hopeless(ends: Array, last: float, most: int, *, irregular: bool = True) -> float | None:
     """How many steps a run would take that cannot come near its end within `most` of them; None: it may.
+
+    irregular: whether steps may become shorter for a while; those along a branch do so towards where it ends.
 
     The longer a pace has been kept the less may still change it: what may be left of the steps projected is the root of
     the part done of the most, a hundredth after 2,000 of 20 million.
     """
     took = np.diff(ends[np.linspace(0, len(ends) - 1, PARTS + 1).astype(int)])
-    if took[-1] <= took.min():
+    if took[-1] <= took.min() or not irregular:
         steps = projected_steps(ends, last)
     else:
         steps = len(ends) * (1.0 + float((last - ends[-1]) / took[-1]) / PARTS)

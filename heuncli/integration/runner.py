@@ -278,7 +278,9 @@ class Runner(Evaluator):
         done = f"steps were done at t = {run.loop.t:.6g} s of {last:.6g} s"
         if steps.count > going.most_steps:
             raise LimitError(Problem("step-limit", f"{going.most_steps} {done}"))
-        projected = hopeless(steps.column("ends"), last, MOST_STEPS) if steps.doubled() else None
+        projected = None
+        if steps.doubled():
+            projected = hopeless(steps.column("ends"), last, MOST_STEPS, irregular=not run.method.determined)
         if projected is not None:
             from heuncli.integration.growth import growing, stalled  # only on the way to an error
 
@@ -316,7 +318,9 @@ class Runner(Evaluator):
 
     def _passed(self, going: Going) -> list[tuple[float, Array]]:
         """Instants and the scene's states that a run has passed, ascending."""
-        return [(t, self.moving.state(t, state)) for t, state in going.steps.passed(going.run.n)]
+        passed = going.steps.passed(going.run.n)
+        times = [t for t, _ in passed]
+        return list(zip(times, self.moving.embed(np.array(times), np.array([y for _, y in passed])), strict=True))
 
     def resample(self, run: Trajectory, times: Array) -> Array:
         """States (n_t, n) of a run at other instants (ascending, within it), by replaying its own steps.

@@ -24,7 +24,7 @@ def outlook(setup: Setup) -> list[str]:
     if setup.method is None:
         return ["nothing: one instant is solved"]
     if setup.method.determined:
-        return ["nothing: every instant follows from the drives and is solved by itself, along the branch"]
+        return ["nothing: every instant is solved by itself, along its branch"]
     layout, tolerance = setup.runner.moving.layout, setup.spec.analysis.tolerance
     sentences = [
         f"{_count(layout.n_state, 'number')} of state, by {setup.method.name}, an explicit method of order "
