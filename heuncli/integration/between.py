@@ -15,6 +15,7 @@ from heuncli.integration.blows import Given, Jump, schedule, strike
 from heuncli.integration.evaluator import Evaluator
 from heuncli.integration.loop import Integration, Segment, Steps
 from heuncli.integration.moving import Moving
+from heuncli.records import replace
 from heuncli.results import Array
 from heuncli.tree.layout import Layout
 
@@ -83,7 +84,7 @@ class Blows:
         after = self.moving.restrict(jump.time, jump.after)
         self.run.loop.jump(after)
         self.steps.stand(after)
-        self.done.append(jump)
+        self.done.append(replace(jump, after=self.moving.state(jump.time, after)))
 
     @property
     def notes(self) -> tuple[str, ...]:

@@ -51,13 +51,14 @@ def shares(found: Results) -> dict[tuple[str, str], list[Array]]:
 @pytest.mark.parametrize("name", NAMES)
 def test_never_below_the_true_error(name: str) -> None:
     made, told = studied(name, LOOSE)
-    _, exact = studied(name, 1e-13)
+    finest, exact = studied(name, 1e-13)
     errors = made.magnitudes.errors
     for kind, values in shares(told).items():
         apart = [np.nan_to_num(a - b) for a, b in zip(values, shares(exact)[kind], strict=True)]
         error = max(float(np.sqrt(np.sum(d * d, axis=-1)).max(initial=0.0)) for d in apart)
         scale = max(float(np.abs(np.nan_to_num(v)).max(initial=0.0)) for v in values)
-        assert errors[kind] >= error - 1e-12 * scale, kind
+        # beside a singular pose rounding reaches the finest run, too, by as much as it says itself
+        assert errors[kind] + finest.magnitudes.errors[kind] >= error - 1e-12 * scale, kind
 
 
 def knee(sag: float) -> Study:

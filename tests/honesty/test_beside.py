@@ -78,7 +78,8 @@ def test_extremes_are_those_of_what_is_known(rate: float) -> None:
         pytest.skip("it does not come to the bottom in two seconds")
     found, at, _ = value(Measure("abs", "joints.C.radial"), s)
     assert at is not None
-    near(found, bottom, bottom, 1e-8)
+    # a search ends where nothing promises more than a tenth of the error that is told, which singular poses enlarge
+    near(found, bottom, bottom, max(1e-8, 0.1 * s.magnitudes.errors["reactions", "N"] / bottom))
     near(value(Measure("max", "energy.kinetic"), s)[0], 5.0 / 6.0 * (rate**2 + 4.8 * G), bottom, 1e-8)
 
 
