@@ -24,10 +24,14 @@ if not cython.compiled:
 def combine(
     method: cython.pointer[Method], row: cython.int, K: cython.pp_double, n: cython.int, out: cython.p_double
 ) -> cython.void:
-    """out = sum over stages of the row's coefficients times K, four components at a time, which stay in registers."""
+    """out = sum over stages of the row's coefficients times K, four components at a time, which stay in registers.
+
+    Where the last are fewer than four, earlier ones are made again beside them.
+    """
     i: cython.Py_ssize_t = 0
     j: cython.Py_ssize_t
-    while i + 4 <= n:
+    while i < n and n >= 4:
+        i = i if i + 4 <= n else n - 4
         a: cython.double = 0.0
         b: cython.double = 0.0
         c: cython.double = 0.0

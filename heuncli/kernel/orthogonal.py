@@ -239,11 +239,10 @@ def make_reflector(scene: cython.pointer[Scene], row: cython.pointer[Closure]) -
     if at < 0:
         row.support_count = 0
         return 0.0
-    left: cython.double = sqrt(square)
-    if scene.columns[at] > 0.0:
-        left = -left
+    length: cython.double = sqrt(square)
+    left: cython.double = -length if scene.columns[at] > 0.0 else length
     scene.columns[at] -= left
-    row.reflector = 1.0 / (square + sqrt(square) * largest)
+    row.reflector = 1.0 / (square + length * largest)
     row.pivot_at = scene.support[at]
     scene.taken[row.pivot_at] = 1
     return left

@@ -20,8 +20,13 @@ cdef double taken(Scene *scene, Lent *lent) noexcept nogil
 cdef double eliminate_lent(Scene *scene, Py_ssize_t j) noexcept nogil
 cdef void find_taken(Scene *scene) noexcept nogil
 cdef int evaluate(Scene *scene, double t, double *y, double *dy) noexcept nogil
+cdef void evaluate_settled(Scene *scene, double t, double *y, double *dy) noexcept nogil
+cdef double put_in_motion(Scene *scene, double t, double *y, double *dy) noexcept nogil
+cdef void accelerate(Scene *scene, double *y, double *dy, double power) noexcept nogil
 cdef double driving_power(Scene *scene) noexcept nogil
 cdef double settle(Scene *scene, double t, double *y) noexcept nogil
+cdef double settle_evaluated(Scene *scene, double t, double *y) noexcept nogil
+cdef double close(Scene *scene, double t, double *y) noexcept nogil
 cdef bint must_choose_anew(Scene *scene, double gap) noexcept nogil
 cdef void normalise(Scene *scene, double *y) noexcept nogil
 cdef void refactor(Scene *scene, double t, double *y) noexcept nogil

@@ -191,23 +191,51 @@ def find_taken(scene: cython.pointer[Scene]) -> cython.void:
 
 
 def evaluate(scene: cython.pointer[Scene], t: cython.double, y: cython.p_double, dy: cython.p_double) -> cython.int:
-    """Time derivative dy of the state y at t; as `configure` gives, for what has no inertia or cannot be closed.
+    """Time derivative dy of the state y at t; as `configure` gives, for what has no inertia or cannot be closed."""
+    power: cython.double = put_in_motion(scene, t, y, dy)
+    idle: cython.int = configure(scene, t)
+    accelerate(scene, y, dy, power)
+    return idle
+
+
+def evaluate_settled(
+    scene: cython.pointer[Scene], t: cython.double, y: cython.p_double, dy: cython.p_double
+) -> cython.void:
+    """The same of what `settle` has just left; in the plane its factors stand, for only rates have changed since."""
+    i: cython.Py_ssize_t
+    if not scene.flat or scene.selected_count == 0:
+        evaluate(scene, t, y, dy)
+        return
+    power: cython.double = put_in_motion(scene, t, y, dy)
+    for i in range(scene.selected_count):
+        measure_row(scene, cython.address(scene.closures[scene.selected[i]]), t)
+    if scene.pivot < scene.pivot_of_step:
+        scene.pivot_of_step = scene.pivot
+    accelerate(scene, y, dy, power)
+
+
+def put_in_motion(
+    scene: cython.pointer[Scene], t: cython.double, y: cython.p_double, dy: cython.p_double
+) -> cython.double:
+    """Kinematics and applied loads at y, rates of counted angles; power of what has no potential [W]."""
+    kinematics(scene, t, y)
+    count_turns(scene, dy)
+    return apply_loads(scene) if scene.load_count else 0.0
+
+
+def accelerate(
+    scene: cython.pointer[Scene], y: cython.p_double, dy: cython.p_double, power: cython.double
+) -> cython.void:
+    """The time derivative by the factors that stand.
 
     Where something is driven the joint loads are found too, for the work of the drives.
     """
-    power: cython.double = 0.0
-    kinematics(scene, t, y)
-    count_turns(scene, dy)
-    if scene.load_count:
-        power = apply_loads(scene)
-    idle: cython.int = configure(scene, t)
     respond(scene, True)
     if scene.driven:
         push_closures(scene)
         balance(scene, True)
         power += driving_power(scene)
     derivative(scene, y, dy, power)
-    return idle
 
 
 def driving_power(scene: cython.pointer[Scene]) -> cython.double:
@@ -231,11 +259,25 @@ def settle(scene: cython.pointer[Scene], t: cython.double, y: cython.p_double) -
     if scene.closure_count == 0:
         return 0.0
     kinematics(scene, t, y)
+    if scene.selected_count:
+        factor_tree(scene)
+        measure_moving_rows(scene, t)
+        scene.pivot = factor_closures(scene)
+        return close(scene, t, y)
     measure_moving_rows(scene, t)
-    if scene.selected_count == 0:  # rows that nothing answers may still open, in a singular pose say
-        return largest_gap(scene)
-    factor_tree(scene)
-    scene.pivot = factor_closures(scene)
+    return largest_gap(scene)  # rows that nothing answers may still open, in a singular pose say
+
+
+def settle_evaluated(scene: cython.pointer[Scene], t: cython.double, y: cython.p_double) -> cython.double:
+    """The same of the state that `evaluate` saw last: in the plane, where nothing is a ball, its factors stand."""
+    if not scene.flat or scene.selected_count == 0:
+        return settle(scene, t, y)
+    measure_moving_rows(scene, t)
+    return close(scene, t, y)
+
+
+def close(scene: cython.pointer[Scene], t: cython.double, y: cython.p_double) -> cython.double:
+    """Positions, then rates, onto the closures, by the factors that stand; leaves those of the positions reached."""
     gap: cython.double = close_gaps(scene, t, y)
     correct_rates(scene, y)
     if scene.pivot < scene.limits.near_singular:  # there the rows turn with the rates' own correction: once more

@@ -10,7 +10,7 @@ from heuncli.kernel.events cimport follow_angles, take_branches
 from heuncli.kernel.expressions cimport HELD, TAKEN
 from heuncli.kernel.following cimport find_between, follow, is_determined, stand_here
 from heuncli.kernel.landing cimport begin_to_see, in_flurry, meet, see_stage
-from heuncli.kernel.response cimport evaluate, must_choose_anew, settle
+from heuncli.kernel.response cimport evaluate, evaluate_settled, must_choose_anew, settle, settle_evaluated
 from heuncli.kernel.scene cimport Body, Group, Scene
 from heuncli.kernel.selection cimport select_independent_rows
 from heuncli.kernel.tree cimport coordinates
@@ -42,6 +42,7 @@ cdef double growth(Method *method, Run *run) noexcept nogil
 cdef int accept(Scene *scene, Method *method, Run *run) noexcept nogil
 cdef bint turn_branches(Scene *scene, Run *run) noexcept nogil
 cdef int land(Scene *scene, Run *run) noexcept nogil
+cdef bint stands_at_end(Scene *scene, Run *run) noexcept nogil
 cdef bint jumped(Scene *scene, Run *run) noexcept nogil
 cdef int verdict(Scene *scene, Run *run) noexcept nogil
 cdef int run_steps(Scene *scene, Method *method, Run *run) noexcept nogil

@@ -32,7 +32,7 @@ if not cython.compiled:
     from heuncli.kernel.expressions import HELD, TAKEN
     from heuncli.kernel.following import find_between, follow, is_determined, stand_here
     from heuncli.kernel.landing import begin_to_see, in_flurry, meet, see_stage
-    from heuncli.kernel.response import evaluate, must_choose_anew, settle
+    from heuncli.kernel.response import evaluate, evaluate_settled, must_choose_anew, settle, settle_evaluated
     from heuncli.kernel.scene import Body, Group, Scene
     from heuncli.kernel.selection import select_independent_rows
     from heuncli.kernel.shadow import cython
@@ -483,7 +483,7 @@ def turn_branches(scene: cython.pointer[Scene], run: cython.pointer[Run]) -> cyt
 def land(scene: cython.pointer[Scene], run: cython.pointer[Run]) -> cython.int:
     """Bring the end of a step back onto the closures, with its derivative; CLOSURES_LOST where they cannot be held."""
     t: cython.double = clipped(run, run.t)
-    gap: cython.double = settle(scene, t, run.y)
+    gap: cython.double = settle_evaluated(scene, t, run.y) if stands_at_end(scene, run) else settle(scene, t, run.y)
     if must_choose_anew(scene, gap):
         select_independent_rows(scene, t, run.y, False)
         gap = settle(scene, t, run.y)
@@ -491,10 +491,15 @@ def land(scene: cython.pointer[Scene], run: cython.pointer[Run]) -> cython.int:
         run.gap = gap
     if not gap <= scene.limits.lost * scene.size or jumped(scene, run):
         return CLOSURES_LOST
-    evaluate(scene, t, run.y, run.K[0])
+    evaluate_settled(scene, t, run.y, run.K[0])
     start_contacts(scene, t)
     run.evaluations += 2
     return REACHED
+
+
+def stands_at_end(scene: cython.pointer[Scene], run: cython.pointer[Run]) -> cython.bint:
+    """Whether what `attempt` evaluated last, the end of the step, is what the scene was put to last."""
+    return not (run.has_interpolant or run.seeing or run.determined or scene.held_count)
 
 
 def jumped(scene: cython.pointer[Scene], run: cython.pointer[Run]) -> cython.bint:
