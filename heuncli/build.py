@@ -34,7 +34,8 @@ DIRECTIVES = {
 }
 # No contraction to fused multiply-adds, so that compiled and plain files give the same bits. No pairs of numbers as one
 # vector: a struct's numbers are written one by one and read soon after, and such a read waits until all are in memory.
-GNU_FLAGS = ("-O3", "-ffp-contract=off", "-fno-tree-slp-vectorize")
+# No error numbers from sqrt: nobody reads them, and the call that would set one stands in the way of its loop.
+GNU_FLAGS = ("-O3", "-ffp-contract=off", "-fno-tree-slp-vectorize", "-fno-math-errno")
 MSVC_FLAGS = ("/O2", "/fp:precise")
 # Builds of CPython without the global lock have no stable interface yet, other Pythons none at all.
 STABLE = sys.implementation.name == "cpython" and not sysconfig.get_config_var("Py_GIL_DISABLED")
