@@ -15,7 +15,7 @@ from heuncli.mechanism.model import GROUND
 from heuncli.records import record
 from heuncli.reduction.plane_view import View
 from heuncli.results import Array
-from heuncli.shapes.rotations import cross_rows
+from heuncli.shapes.rotations import about_axis, quaternion_product
 from heuncli.tree.layout import Layout
 from heuncli.tree.prepare import PreparedScene
 from heuncli.tree.tables import vectors
@@ -83,7 +83,7 @@ class States:
             rate[:, turn.body] = rate[:, turn.parent] + turn.sign * u
         for ball in self.balls:
             at = slice(ball.attitude_at, ball.attitude_at + 4)
-            found[:, at] = turned_by(phi[:, ball.body], self.n, ball.start)
+            found[:, at] = quaternion_product(about_axis(self.n, phi[:, ball.body]), ball.start[None])
             found[:, ball.rate_at : ball.rate_at + 3] = rate[:, ball.body, None] * self.n
         return found
 
@@ -117,18 +117,10 @@ class States:
         return given[:, 0], given[:, 1]
 
 
-def turned_by(phi: Array, n: Array, start: Array) -> Array:
-    """The quaternions (n_t, 4) of an attitude turned by phi (n_t,) about n: (cos phi/2, n sin phi/2) times it."""
-    c, s = np.cos(0.5 * phi)[:, None], np.sin(0.5 * phi)[:, None]
-    w, v = start[0], start[1:]
-    return np.concatenate([c * w - s * (n @ v), c * v + s * (w * n + cross_rows(n, v))], axis=1)
-
-
 def angle_about(n: Array, attitude: Array, start: Array) -> float:
     """The angle about n, within two turns, that takes a quaternion to another, its sign with it."""
-    w = float(attitude @ start)
-    v = start[0] * attitude[1:] - attitude[0] * start[1:] - cross_rows(attitude[1:], start[1:])
-    return 2.0 * float(np.arctan2(n @ v, w))
+    turn = quaternion_product(attitude, start * np.array([1.0, -1.0, -1.0, -1.0]))
+    return 2.0 * float(np.arctan2(n @ turn[1:], turn[0]))
 
 
 def _turns(small: Layout) -> list[Turn]:

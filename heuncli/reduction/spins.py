@@ -23,7 +23,7 @@ from heuncli.records import record, replace
 from heuncli.reduction.model import Reduction
 from heuncli.reduction.slots import rotated
 from heuncli.results import Array
-from heuncli.shapes.rotations import cross_rows
+from heuncli.shapes.rotations import about_axis, quaternion_product
 from heuncli.tree.layout import Layout
 from heuncli.tree.prepare import PreparedScene
 from heuncli.tree.tables import Table, symmetric
@@ -113,10 +113,7 @@ def turned(layout: Layout, spins: Mapping[int, Spin], sense: float, times: Array
         n = rotated(q, spin.axis)
         rate = spin.rate if sense > 0.0 else spin.rate - spin.less
         omega += (rate - np.sum(omega * n, axis=1, keepdims=True)) * n
-        half = 0.5 * sense * spin.less * np.asarray(times, dtype=float)[:, None]
-        w, v, a = q[:, :1].copy(), q[:, 1:].copy(), spin.axis
-        q[:, :1] = w * np.cos(half) - (v @ a)[:, None] * np.sin(half)
-        q[:, 1:] = v * np.cos(half) + (w * a + cross_rows(v, a)) * np.sin(half)
+        q[:] = quaternion_product(q, about_axis(spin.axis, sense * spin.less * np.asarray(times, dtype=float)))
     return out
 
 

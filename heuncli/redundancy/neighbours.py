@@ -10,6 +10,7 @@ from heuncli import tolerances
 from heuncli.integration.evaluator import Recovered
 from heuncli.integration.runner import Runner
 from heuncli.results import Array
+from heuncli.shapes.rotations import quaternion_product
 from heuncli.tree.layout import Layout
 
 DIRECTIONS = 3
@@ -55,9 +56,7 @@ def displaced(layout: Layout, state: Array, by: float) -> Array:
     for body in layout.bodies[layout.bodies["ball"] == 1]:
         attitude, rate = body["attitude_at"], body["rate_at"]
         q, w = state[attitude : attitude + 4], 0.5 * by * state[rate : rate + 3]
-        turn = np.array([
-            -w @ q[1:], *(w * q[0] + np.cross(w, q[1:])),
-        ])  # fmt: skip
+        turn = quaternion_product(np.array([0.0, *w]), q)
         moved[attitude : attitude + 4] = (q + turn) / np.sqrt(np.sum((q + turn) ** 2))
     for freedom in layout.freedoms:
         if freedom.q >= 0:

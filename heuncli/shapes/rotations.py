@@ -112,3 +112,15 @@ def cross_rows(a: Array, b: Array) -> Array:
     out[..., 1] = a[..., 2] * b[..., 0] - a[..., 0] * b[..., 2]
     out[..., 2] = a[..., 0] * b[..., 1] - a[..., 1] * b[..., 0]
     return out
+
+
+def about_axis(n: Array, angle: Array) -> Array:
+    """The quaternions (n_t, 4) of turns by angles (n_t,) about a unit vector."""
+    half = 0.5 * angle[:, None]
+    return np.concatenate([np.cos(half), np.sin(half) * n], axis=1)
+
+
+def quaternion_product(p: Array, q: Array) -> Array:
+    """The turn q, then p: Hamilton's product along the last axes, (..., 4), of arrays that broadcast."""
+    w, v, x, u = p[..., :1], p[..., 1:], q[..., :1], q[..., 1:]
+    return np.concatenate([w * x - np.sum(v * u, axis=-1, keepdims=True), w * u + x * v + cross_rows(v, u)], axis=-1)

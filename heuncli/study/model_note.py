@@ -14,6 +14,7 @@ from heuncli.mechanism.model import Mechanism
 from heuncli.reduction.model import Reduced
 from heuncli.redundancy.count import freedoms_of_tree, redundancy
 from heuncli.results import Block, Mask
+from heuncli.study.words import count, some
 from heuncli.tree.layout import Layout
 from heuncli.tree.prepare import PreparedScene
 
@@ -24,12 +25,12 @@ if TYPE_CHECKING:  # loaded where a scene has closed chains
 def model_note(scene: PreparedScene, runner: Runner, method: str) -> Block:
     """The block `model`: freedoms, loops, redundancy, and the reasons in sentences."""
     mechanism, layout = scene.mechanism, scene.layout
-    count = redundancy(scene, runner)
+    found = redundancy(scene, runner)
     block: Block = {
         "space": "planar" if mechanism.planar else "spatial",
-        "freedoms": freedoms_of_tree(layout) - (count.closed - count.dependent),
+        "freedoms": freedoms_of_tree(layout) - (found.closed - found.dependent),
         "driven": sum(1 for j in mechanism.joints if j.drive is not None),
-        "bodies": len(mechanism.bodies), "loops": len(layout.spanning.cut), "redundant": count.generic,
+        "bodies": len(mechanism.bodies), "loops": len(layout.spanning.cut), "redundant": found.generic,
         "method": method, "reasons": [], "joints": len(mechanism.joints), "grubler": grubler(mechanism),
         "chosen": list(scene.start.chosen), "notes": [],
     }  # fmt: skip
@@ -40,11 +41,11 @@ def model_note(scene: PreparedScene, runner: Runner, method: str) -> Block:
     block["reasons"] = reasons(scene, block)
     if layout.contacts:
         block["reasons"].append(one_sided(layout, runner.start_holding > 0.0))
-    if count.at_start > count.generic:
-        more = _count(count.at_start - count.generic, "condition depends", "conditions depend")
+    if found.at_start > found.generic:
+        more = count(found.at_start - found.generic, "condition depends", "conditions depend")
         block["notes"].append(f"the start is a singular pose: {more} on the others just there")
-    if count.generic and count.stress is not None:
-        block["notes"] += held_twice(layout, count.stress)
+    if found.generic and found.stress is not None:
+        block["notes"] += held_twice(layout, found.stress)
     return block
 
 
@@ -75,21 +76,21 @@ def reasons(scene: PreparedScene, model: Block) -> list[str]:
     """The model in sentences."""
     mechanism, layout = scene.mechanism, scene.layout
     where = "in the plane" if mechanism.planar else "in space"
-    bodies = _count(len(layout.place), "body", "bodies")
-    sentences = [f"{bodies} {where}, {_count(model['freedoms'], 'freedom', 'freedoms')}"]
+    bodies = count(len(layout.place), "body", "bodies")
+    sentences = [f"{bodies} {where}, {count(model['freedoms'], 'freedom', 'freedoms')}"]
     cut = [mechanism.joints[k].name for k in layout.spanning.cut]
     if cut:
-        sentences.append(f"closed at {_some(cut)}; the other joints make the tree that carries the motion")
+        sentences.append(f"closed at {some(cut)}; the other joints make the tree that carries the motion")
     driven = [j.name for j in mechanism.joints if j.drive is not None]
     if driven:
-        sentences.append(f"driven: {_some(driven)}")
+        sentences.append(f"driven: {some(driven)}")
     floating = [mechanism.bodies[h.body].name for h in layout.spanning.hangs if h.joint < 0]
     if floating:
-        sentences.append(f"carried by nothing, free: {_some(floating)}")
+        sentences.append(f"carried by nothing, free: {some(floating)}")
     if model["redundant"]:
         sentences.append(
             f"Grübler counts {model['grubler']}, there are {model['freedoms']}: "
-            f"{_count(model['redundant'], 'condition holds', 'conditions hold')} what others hold already"
+            f"{count(model['redundant'], 'condition holds', 'conditions hold')} what others hold already"
         )
     for spin in scene.idle:
         name = mechanism.bodies[spin.body].name
@@ -102,7 +103,7 @@ def one_sided(layout: Layout, closed: Mask) -> str:
     contacts = layout.contacts
     names = list(dict.fromkeys(contact.name for contact in contacts))
     shut = list(dict.fromkeys(contact.name for contact, held in zip(contacts, closed, strict=True) if held))
-    return f"opens and closes: {_some(names)}; closed at the start: {_some(shut) if shut else 'none'}"
+    return f"opens and closes: {some(names)}; closed at the start: {some(shut) if shut else 'none'}"
 
 
 def held_twice(layout: Layout, stress: SelfStress) -> list[str]:
@@ -116,11 +117,3 @@ def held_twice(layout: Layout, stress: SelfStress) -> list[str]:
         if names:
             notes.append(f"held more than once: {joint.name} {', '.join(names)}")
     return notes
-
-
-def _count(n: int, one: str, many: str) -> str:
-    return f"{n} {one if n == 1 else many}"
-
-
-def _some(names: list[str]) -> str:
-    return ", ".join(names[:5]) + (f" and {len(names) - 5} more" if len(names) > 5 else "")

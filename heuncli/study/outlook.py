@@ -13,6 +13,7 @@ import numpy as np
 from heuncli.errors import LimitError, SolveError
 from heuncli.integration.runner import Trajectory, discontinuities_of
 from heuncli.study.setup import Setup
+from heuncli.study.words import count
 
 PART = 0.1  # of the run, which is tried
 PATIENCE = 0.5  # seconds that the trial may take
@@ -27,7 +28,7 @@ def outlook(setup: Setup) -> list[str]:
         return ["nothing: every instant is solved by itself, along its branch"]
     layout, tolerance = setup.runner.moving.layout, setup.spec.analysis.tolerance
     sentences = [
-        f"{_count(layout.n_state, 'number')} of state, by {setup.method.name}, an explicit method of order "
+        f"{count(layout.n_state, 'number')} of state, by {setup.method.name}, an explicit method of order "
         f"{setup.method.order}, to {tolerance:.3g} of the scene's size; then once more at a thirtieth of that, to check"
     ]
     return [*sentences, *pace(setup, tolerance)]
@@ -42,7 +43,7 @@ def pace(setup: Setup, tolerance: float) -> list[str]:
             run = min((begun(setup, tolerance, last) for _ in range(2)), key=lambda run: run.seconds)
         except LimitError:
             return [f"the first {last:.4g} s take more than {MOST_STEPS:,} steps or {PATIENCE} s: a long run"]
-        steps, evaluations = _count(run.steps, "step"), _count(run.evaluations, "evaluation")
+        steps, evaluations = count(run.steps, "step"), count(run.evaluations, "evaluation")
         took = f"the first {last:.4g} s take {steps}, {evaluations}, {1e3 * run.seconds:.2g} ms"
         return [f"{took}: {whole} times that if it goes on so, and 1.3 to 1.5 times as much for the check"]
     return []
@@ -56,7 +57,3 @@ def begun(setup: Setup, tolerance: float, last: float) -> Trajectory:
         np.array([0.0, last]), tolerance, discontinuities=jumps, deadline=time.monotonic() + PATIENCE,
         most_steps=MOST_STEPS, method=setup.method,
     )  # fmt: skip
-
-
-def _count(n: int, what: str) -> str:
-    return f"{n:,} {what}{'s' * (n != 1)}"

@@ -16,10 +16,10 @@ from heuncli.records import fields
 from heuncli.results_schema import BLOWS, SHARES
 from heuncli.spec.models import End, Spec
 from heuncli.study.asked import Asked, entries_of
+from heuncli.study.words import some
 
 Ends = Mapping[str, Mapping[str, set[str]]]
 STANDING = ("joints", "drives", "forces", "impulses", "stops")  # blocks of what stands on bodies
-MOST_NAMES = 5  # that a sentence lists
 # reports that are of some bodies alone, and the blocks of what they tell; the others are of all
 OF_SOME = {"joints": (("joints",), ("stops",)), "sections": (("sections",),), "forces": (("forces",),),
     "points": (("points",),)}  # fmt: skip
@@ -126,5 +126,4 @@ def left_out(whole: Spec, part: Spec) -> tuple[str, ...]:
     names = [name for name in whole.bodies if name not in part.bodies]
     if not names:
         return ()
-    listed = ", ".join(names[:MOST_NAMES]) + (f" and {len(names) - MOST_NAMES} more" * (len(names) > MOST_NAMES))
-    return (f"left out, because nothing that is asked for depends on it: {listed}",)
+    return (f"left out, because nothing that is asked for depends on it: {some(names)}",)
