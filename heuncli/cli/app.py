@@ -8,7 +8,7 @@ from typing import Annotated, Any
 
 import typer
 
-from heuncli.cli.requests import COMMANDS, Request, Row, rows
+from heuncli.cli.requests import COMMANDS, LATER_OPTIONS, Request, Row, rows
 
 EPILOG = "Exit codes: 0 fine, 1 a check failed, 2 bad usage or spec, 3 cannot be solved, 4 a limit, 5 output, 70 a bug."
 
@@ -65,5 +65,8 @@ def _parameter(row: Row, defaults: Mapping[str, Any]) -> inspect.Parameter:
         row.name,
         inspect.Parameter.KEYWORD_ONLY,
         default=list(default) if isinstance(default, tuple) else default,
-        annotation=Annotated[kind, typer.Option(*words, help=text, metavar=metavar, show_default=False)],
+        annotation=Annotated[
+            kind,
+            typer.Option(*words, help=text, metavar=metavar, show_default=False, hidden=row.name in LATER_OPTIONS),
+        ],
     )

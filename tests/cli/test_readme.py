@@ -16,6 +16,9 @@ from heuncli.cli.requests import COMMANDS, LATER_COMMANDS
 from heuncli.expressions.grammar import ARITY, CONSTANTS
 from heuncli.expressions.units import UNITS
 from heuncli.spec import format as document
+from heuncli.spec.load import load
+from heuncli.study.solve import solve
+from tests.shared.picture import picture
 
 ROOT = Path(__file__).parents[2]
 TEXT = (ROOT / "README.md").read_text()
@@ -73,6 +76,11 @@ def test_the_first_example_runs(monkeypatch: pytest.MonkeyPatch, capsys: pytest.
     monkeypatch.setattr(sys, "stdin", io.TextIOWrapper(io.BytesIO(example.encode())))
     assert enter(["run", "-"]) == 0
     assert "A bar hangs, and swings" in capsys.readouterr().out
+
+
+def test_the_picture_shows_the_moments() -> None:
+    shaft = solve(load(str(ROOT / "specs" / "chimney.yaml"))).results.sections["shaft"]
+    assert "\n".join(picture(shaft["s"], shaft["M2"][0])) in blocks("text")[0]
 
 
 def keys() -> set[str]:
