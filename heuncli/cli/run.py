@@ -17,11 +17,12 @@ from heuncli.errors import Problem
 from heuncli.integration.methods import METHODS
 from heuncli.nearest import did_you_mean
 from heuncli.records import replace
+from heuncli.report.fit import fit
 from heuncli.report.heading import write_heading, write_heading_markdown
 from heuncli.report.labels import Labels, labels_of
 from heuncli.report.page import EXPORT_DEFAULT, TABLE_DEFAULT, page_of
 from heuncli.report.runs import RESULTANTS
-from heuncli.report.table import Table, markdown, plain
+from heuncli.report.table import WIDTH, Table, markdown, plain
 from heuncli.results import Results
 from heuncli.results_schema import BLOWS, REPORT_OF, REPORTS, SHARES, with_shared
 from heuncli.spec.load import load
@@ -148,13 +149,13 @@ def _report(request: Run, form: str, study: Study, labels: Labels, wanted: froze
 
 
 def _writer(request: Run) -> Callable[[list[Table]], list[str]]:
-    """How tables become text: fitted to a terminal where one is written to, else as wide as they are."""
+    """How tables become text: fitted to a terminal where one is written to, else to a page."""
     if request.output is None:
         from heuncli.cli import terminal  # rich is worth its 44 ms only where somebody looks
 
         if terminal.present():
             return terminal.write
-    return lambda tables: [plain(table) for table in tables]
+    return lambda tables: [plain(part, WIDTH) for table in tables for part in fit(table, WIDTH)]
 
 
 def _strict(results: Results, warnings: list[str]) -> int:

@@ -6,7 +6,8 @@ import io
 import sys
 from collections.abc import Sequence
 
-from heuncli.report.table import GAP, INDENT, Table, aligned, plain
+from heuncli.report.fit import fit
+from heuncli.report.table import Table, plain, wrapped
 
 
 def present() -> bool:
@@ -20,40 +21,15 @@ def write(tables: Sequence[Table]) -> list[str]:
     from rich.text import Text
 
     console = Console(file=io.StringIO(), force_terminal=True, highlight=False)
-    texts = []
+    texts, width = [], Console().width
     for table in tables:
-        for part in fit(table, Console().width):
-            lines = plain(part).splitlines()
-            across = {row for row in part.rows if isinstance(row, str)}
+        for part in fit(table, width):
+            lines = plain(part, width).splitlines()
+            across = {line for row in part.rows if isinstance(row, str) for line in wrapped(row, width)}
             with console.capture() as captured:
                 for number, line in enumerate(lines):
-                    heads = number == 0 and bool(part.heading)
+                    heads = bool(part.heading) and number < len(wrapped(part.heading, width))
                     style = "bold" if heads else "cyan" if line in across else ""
                     console.print(Text(line, style=style), soft_wrap=True)
             texts.append(captured.get())
     return texts
-
-
-def fit(table: Table, width: int) -> list[Table]:
-    """The table in parts no wider than `width` if that can be; each repeats the leading columns of words."""
-    if not table.columns:
-        return [table]
-    cells = aligned(table)
-    widths = [max(map(len, column)) + len(GAP) for column in zip(*cells, strict=True)]
-    lead = 1 + max((i for i, column in enumerate(table.columns[:3]) if column.align == "left"), default=0)
-    room = width - len(INDENT) - sum(widths[:lead])
-    parts: list[list[int]] = [[]]
-    for place in range(lead, len(widths)):
-        if parts[-1] and sum(widths[i] for i in (*parts[-1], place)) > room:
-            parts.append([])
-        parts[-1].append(place)
-    if len(parts) == 1:
-        return [table]
-    tables = []
-    for number, part in enumerate(parts):
-        kept = [*range(lead), *part]
-        rows = tuple(row if isinstance(row, str) else tuple(row[i] for i in kept) for row in table.rows)
-        heading = table.heading if number == 0 else ""
-        notes = table.notes if number == len(parts) - 1 else ()
-        tables.append(Table(heading, tuple(table.columns[i] for i in kept), rows, notes))
-    return tables

@@ -28,7 +28,8 @@ def instants_tables(block: Block, times: Array, horizon: float | None, certain: 
         labels = _not_zero(groups, cells) if word == OPEN else _in_order(groups)
         if len(labels) < len(units):
             notes.append(ZERO_NOTE if labels else f"0 throughout: {', '.join(group.name for group in groups)}")
-        columns = [Column(f"{label} [{units[label]}]" if units[label] != "1" else label) for label in labels]
+        of = {row.label: row.vector for group in groups for row in group.rows}
+        columns = [Column(head(label, units[label]), vector=of[label]) for label in labels]
         lead, rows = lay(block, groups, labels, cells, times)
         tables += [Table("" if tables else block.heading, (*lead, *columns), tuple(rows))] if labels else []
     shown = {text for table in tables for row in table.rows if not isinstance(row, str) for text in row}
@@ -36,6 +37,11 @@ def instants_tables(block: Block, times: Array, horizon: float | None, certain: 
     if not tables:
         return [Table(block.heading, notes=("0 throughout",))]
     return [*tables[:-1], tables[-1]._replace(notes=tuple(dict.fromkeys(notes)))]
+
+
+def head(label: str, unit: str) -> str:
+    """What stands above a column of numbers."""
+    return f"{label} [{unit}]" if unit != "1" else label
 
 
 def _at_one(
@@ -48,7 +54,7 @@ def _at_one(
     for group in groups:
         about = [group.name] * named + [group.note] * noted
         rows.append((*about, *(cells[group.name].get(label, [""])[0] for label in labels)))
-    return [Column(block.what, "left")] * named + [Column("", "left")] * noted, rows
+    return [Column(block.what, "left")] * named + [Column("", "left", once=named)] * noted, rows
 
 
 def _one_below_the_other(

@@ -97,7 +97,7 @@ MASS_EFFECT = Plan(
     "",
     ("force", "moment_orbital", "moment_spin"),
     lambda results, labels: (
-        "MASS EFFECT  F = Σ m ẍ, orbital and spin moment the rates of Σ m x × ẋ and Σ I σ,"
+        "MASS EFFECT  F = Σ m ẍ, moments the rates of Σ m x × ẋ (orbital) and Σ I σ (spin),"
         f" world axes, about {_about(results, labels)}"
     ),
     only="mass_effect",

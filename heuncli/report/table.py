@@ -7,14 +7,21 @@ from typing import Literal, NamedTuple
 
 GAP = "  "
 INDENT = "  "
+WIDTH = 120  # of tables that no terminal sets one for
+MORE = 4  # by which the lines that a long heading, title or note goes on in stand further in
 Align = Literal["left", "point"]  # `point`: decimal points stand under each other
 
 
 class Column(NamedTuple):
-    """A column's head and how its cells stand."""
+    """A column's head and how its cells stand.
+
+    Where a table is too wide for a page: neighbours of one `vector` stay together; what stands `once` is not repeated.
+    """
 
     head: str
     align: Align = "point"
+    vector: str = ""
+    once: bool = False
 
 
 class Table(NamedTuple):
@@ -26,17 +33,40 @@ class Table(NamedTuple):
     notes: tuple[str, ...] = ()
 
 
-def plain(table: Table) -> str:
-    """The table as aligned text, as wide as it needs; ends with a newline."""
+def plain(table: Table, width: int | None = None) -> str:
+    """The table as aligned text; ends with a newline. Headings, titles and notes go on in more lines, if of a width."""
     indent = INDENT if any(isinstance(row, str) for row in table.rows) else ""
-    lines = [table.heading] if table.heading else []
+    lines = wrapped(table.heading, width) if table.heading else []
     if table.columns:
         cells = aligned(table)
         widths = [max(map(len, column)) for column in zip(*cells, strict=True)]
         texts = iter(_line(row, widths, table.columns, indent) for row in cells)
         lines.append(next(texts))
-        lines += [row if isinstance(row, str) else next(texts) for row in table.rows]
-    return "\n".join([*lines, *(indent + note for note in table.notes), ""])
+        for row in table.rows:
+            lines += wrapped(row, width) if isinstance(row, str) else [next(texts)]
+    notes = [line for note in table.notes for line in wrapped(indent + note, width)]
+    return "\n".join([*lines, *notes, ""])
+
+
+def wrapped(text: str, width: int | None, more: int = MORE) -> list[str]:
+    """A text in lines no wider than that; `textwrap` would have to be imported for it, and knows no clauses."""
+    lines = [text]
+    while width is not None and len(lines[-1]) > width:
+        line, start = lines[-1], len(lines[-1]) - len(lines[-1].lstrip())
+        cut = _end_of_line(line, start, width)
+        if cut < 0:
+            break  # one long word
+        lead = " " * (start if len(lines) > 1 else start + more)
+        lines[-1:] = [line[:cut].rstrip(), lead + line[cut:].lstrip()]
+    return lines
+
+
+def _end_of_line(line: str, start: int, width: int) -> int:
+    """The blank at which a line is parted: behind a clause where one ends in its last third, not within brackets."""
+    blanks = [i for i in range(start + 1, min(width + 1, len(line))) if line[i] == " "]
+    late = [i for i in blanks if line[i - 1] in ",;" and 3 * i > 2 * width]
+    ends = [i for i in late if line.count("(", 0, i) == line.count(")", 0, i)]
+    return max(ends or blanks, default=line.find(" ", width))
 
 
 def markdown(table: Table) -> str:

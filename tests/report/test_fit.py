@@ -1,0 +1,77 @@
+"""Tables in parts that fit a page."""
+
+from __future__ import annotations
+
+import pytest
+
+from heuncli.report.fit import fit
+from heuncli.report.table import Column, Table, plain, wrapped
+
+WIDE = Table(
+    "JOINTS",
+    (Column("joint", "left"), *(Column(f"F{i} [N]") for i in range(12))),
+    tuple((name, *(f"{i}.5" for i in range(12))) for name in ("pivot", "elbow")),
+    ("a note",),
+)
+
+
+VECTORS = Table(
+    "MASS EFFECT  what it is",
+    (Column("", "left"), Column("", "left", once=True),
+     *(Column(name, vector=name[0]) for name in ("Fx", "Fy", "Fz", "Mx", "My"))),
+    (("total", "a long note on it", "11111", "22222", "33333", "44444", "55555"),),
+)  # fmt: skip
+
+
+@pytest.mark.parametrize("width", [30, 60, 80, 500])
+def test_every_part_fits_and_no_cell_is_lost(width: int) -> None:
+    parts = fit(WIDE, width)
+    assert all(len(line) <= width for part in parts for line in plain(part, width).splitlines())
+    assert [column.head for part in parts for column in part.columns[1:]] == [c.head for c in WIDE.columns[1:]]
+    assert all(row[0] in ("pivot", "elbow") for part in parts for row in part.rows)
+    assert [part.heading for part in parts] == ["JOINTS"] + ["JOINTS  continued"] * (len(parts) - 1)
+    assert [part.notes for part in parts] == [()] * (len(parts) - 1) + [("a note",)]
+
+
+def test_what_fits_is_left_alone_to_the_last_column() -> None:
+    width = max(map(len, plain(WIDE).splitlines()))
+    assert fit(WIDE, width) == [WIDE]
+    assert len(fit(WIDE, width - 1)) == 2
+
+
+def test_a_vector_is_not_parted_and_a_note_not_repeated() -> None:
+    first, second = fit(VECTORS, 56)
+    assert [column.head for column in first.columns] == ["", "", "Fx", "Fy", "Fz"]
+    assert [column.head for column in second.columns] == ["", "Mx", "My"]
+    assert second.heading == "MASS EFFECT  continued"
+    assert second.rows == (("total", "44444", "55555"),)
+
+
+def test_a_vector_wider_than_a_page_is_parted_all_the_same() -> None:
+    table = Table("", (Column("", "left"), *(Column("F" * 9, vector="F") for _ in range(3))), (("a", "1", "2", "3"),))
+    assert [len(part.columns) for part in fit(table, 25)] == [3, 2]
+
+
+def test_a_blow_is_named_again_with_what_goes_on() -> None:
+    table = WIDE._replace(heading="IMPULSE at t = 0.1 s (ball)  JOINTS  what they are")
+    assert fit(table, 80)[1].heading == "IMPULSE at t = 0.1 s (ball)  JOINTS  continued"
+
+
+@pytest.mark.parametrize("width", [20, 31, 32, 33, 200])
+def test_long_texts_go_on_in_more_lines(width: int) -> None:
+    text = "  what this is, in world axes, about O"
+    lines = wrapped(text, width)
+    assert all(len(line) <= width for line in lines)
+    assert " ".join(" ".join(lines).split()) == text.strip()
+    assert all(line.startswith(" " * 6) for line in lines[1:])
+
+
+def test_one_long_word_is_left_whole() -> None:
+    assert wrapped("a" * 30, 10) == ["a" * 30]
+    assert wrapped("b " + "a" * 30 + " c", 10) == ["b", "    " + "a" * 30, "    c"]
+    assert wrapped("any text at all", None) == ["any text at all"]
+
+
+def test_a_line_ends_with_a_clause_and_not_within_brackets() -> None:
+    text = "FOUNDATION  force and moment ON it, world axes, moment about A = (0, 0, 0) m"
+    assert wrapped(text, 70) == [text[:47], f"    {text[48:]}"]
