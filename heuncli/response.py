@@ -33,7 +33,15 @@ Workspace = workspace.Workspace
 
 def workspace_of(layout: Layout) -> workspace.Workspace:
     """The kernel's copy of a scene, with its work arrays."""
-    numbers = {
+    made = workspace.Workspace(layout.tables, layout.indices, layout.pack.expressions, numbers_of(layout))
+    made.hold([0.0] * len(layout.contacts))
+    made.start(0.0, layout.y0)
+    return made
+
+
+def numbers_of(layout: Layout) -> dict[str, Any]:
+    """What the kernel takes of a scene beside its tables and indices."""
+    return {
         "gravity": layout.mechanism.gravity.tolist(),
         "size": layout.size,
         "rank_of_gap": tolerances.RANK_OF_GAP / min((i.length for i in layout.islands), default=layout.size),
@@ -45,10 +53,6 @@ def workspace_of(layout: Layout) -> workspace.Workspace:
         "measure": layout.measure,
         "island_room": max((len(i.rows) * len(i.freedoms) for i in layout.islands), default=0),
     }
-    made = workspace.Workspace(layout.tables, layout.indices, layout.pack.expressions, numbers)
-    made.hold([0.0] * len(layout.contacts))
-    made.start(0.0, layout.y0)
-    return made
 
 
 def answer_sizes(layout: Layout) -> list[tuple[Any, int]]:

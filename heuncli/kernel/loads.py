@@ -105,6 +105,8 @@ def pair_load(scene: cython.pointer[Scene], load: cython.pointer[Load], given: V
     if load.span > 0.0:
         F: cython.double = load.value
         load.force = Vec3(F * span.x / load.span, F * span.y / load.span, F * span.z / load.span)
+    elif load.kind == SPRING and load.length == 0.0:  # no direction, nor force; but this is how the force begins
+        load.force = Vec3(0.0 - load.stiffness * span.x, 0.0 - load.stiffness * span.y, 0.0 - load.stiffness * span.z)
     if not inside:
         push(scene, load.b, load.at, load.force, load.moment)
         push(scene, load.a, load.from_at, scaled(-1.0, load.force), load.moment)
@@ -129,7 +131,9 @@ def joint_load(scene: cython.pointer[Scene], load: cython.pointer[Load], given: 
         speed: cython.double = norm(motion)
         against: cython.double = load.coefficient
         if load.kind >= TURN_FRICTION:
-            against = load.coefficient * tanh(speed / load.speed) / speed if speed > 0.0 else 0.0
+            against = load.coefficient / load.speed  # what it comes to at rest, as a slope
+            if speed > 0.0:
+                against = load.coefficient * tanh(speed / load.speed) / speed
         load.value = -against * load.rate if load.in_body else -against * speed
         load.power = -against * speed * speed
         acts = scaled(-against, motion)

@@ -19,7 +19,7 @@ from heuncli.integration.runner import Runner
 from heuncli.kinetostatics.bodies import BodyStates, body_states
 from heuncli.records import replace
 from heuncli.results import Array
-from heuncli.tree.layout import Island, Layout
+from heuncli.tree.layout import Island, Layout, places_of_rates
 
 
 def require_motion(layout: Layout, recovered: Recovered) -> None:
@@ -84,21 +84,6 @@ def rates_of(layout: Layout, recovered: Recovered) -> Array:
     for k, freedom in enumerate(layout.tables["freedoms"]):
         if not freedom["driven"]:
             found[freedom["u_at"]] = recovered.freedoms["udot"][0, k]
-    return found
-
-
-def places_of_rates(layout: Layout) -> Array:
-    """Where the rate of each freedom that is not driven stands in the state, a ball's three turns each; by answers.
-
-    -1: driven.
-    """
-    found = np.full(layout.answer_count, -1)
-    for body in layout.bodies:
-        if body["ball"]:
-            found[body["answer_at"] : body["answer_at"] + 3] = np.arange(body["rate_at"], body["rate_at"] + 3)
-    for freedom in layout.tables["freedoms"]:
-        if not freedom["driven"]:
-            found[freedom["answer_at"]] = freedom["u_at"]
     return found
 
 

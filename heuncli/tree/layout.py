@@ -113,3 +113,18 @@ class Layout:
             found.append(at)
             at = int(parents[at])
         return found
+
+
+def places_of_rates(layout: Layout) -> Array:
+    """Where the rate of each freedom that is not driven stands in the state, a ball's three turns each; by answers.
+
+    -1: driven.
+    """
+    found = np.full(layout.answer_count, -1)
+    for body in layout.bodies:
+        if body["ball"]:
+            found[body["answer_at"] : body["answer_at"] + 3] = np.arange(body["rate_at"], body["rate_at"] + 3)
+    for freedom in layout.tables["freedoms"]:
+        if not freedom["driven"]:
+            found[freedom["answer_at"]] = freedom["u_at"]
+    return found
