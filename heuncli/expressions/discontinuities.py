@@ -17,6 +17,7 @@ from heuncli.records import record
 COARSEST, FINEST = 1 << 12, 1 << 20  # cells of the grids on which branches are looked for
 CELLS_PER_CHANGE = 16  # a grid with fewer is not fine enough to trust
 FIRST_CELLS = 256  # of a stretch looked at first
+MOST_EQUAL = 4  # doubles before a change of branch at which rounding makes the operands equal
 MOST_OPEN = 1 << 13  # stretches open at once; margins that are zero but for rounding have as many as there are doubles
 RISING = frozenset(OPS[name] for name in ("sign", "step", "lt", "le", "gt", "ge"))  # rise or fall with their margin
 Decide = Callable[[list[float]], list[float]]
@@ -26,9 +27,9 @@ Enclose = Callable[[list[float], list[float]], Sequence[Sequence[float]]]
 def discontinuities(expression: Expression, t0: float, t1: float) -> list[float]:
     """The instants in (t0, t1) at which a branch of the expression changes with time alone: its jumps and kinks.
 
-    Each is the first double at which the new branch holds; two may be neighbours (sign at its zero): then the segment
-    between them is a single instant, to be stepped over. Branches that depend on coordinates are left out. Raises
-    LimitError where there are too many to tell apart.
+    Each is the first double at which the new branch holds; neighbours (sign at its zero, min(t, 1) at t = 1) leave a
+    single instant between them, to be stepped over. Branches that depend on coordinates are left out. Raises LimitError
+    where there are too many to tell apart.
     """
     return sorted({t for switch in expression.switches for t in _changes(expression, switch, t0, t1)})
 
@@ -52,7 +53,25 @@ def one_sided_limits(instants: Sequence[float]) -> list[tuple[float, float]]:
 def _changes(expression: Expression, switch: Switch, t0: float, t1: float) -> list[float]:
     """Where one switch changes, decided; where that has no end, as seen on a grid, too."""
     found = Search(expression, switch, Grid(t0, t1, COARSEST)).changes()
-    return [t for t in (_seen(expression, switch, t0, t1) if found is None else found) if t0 < t < t1]
+    found = _seen(expression, switch, t0, t1) if found is None else found
+    return [t for t in (*found, *_edges(expression, switch, found)) if t0 < t < t1]
+
+
+def _edges(expression: Expression, switch: Switch, changes: Sequence[float]) -> list[float]:
+    """The instants just before changes of branch at which the margin is zero: min(t, 1) keeps t at t = 1 itself.
+
+    There the old branch ends, not at the next double. Together with it they are one discontinuity, at which the limits
+    from either side are those before and after the edge, whichever branch the edge belongs to. By rounding the margin
+    of min(100*t, 5) is zero at several doubles.
+    """
+    if switch.margin is None:
+        return []
+    margin, edges, ends = _at_instants(expression, switch.margin), list[float](), list(changes)
+    for _ in range(MOST_EQUAL):
+        before = [math.nextafter(t, -math.inf) for t in ends]
+        ends = [t for t, value in zip(before, margin(before), strict=True) if value == 0.0]
+        edges += ends
+    return edges
 
 
 @record

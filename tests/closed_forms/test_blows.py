@@ -319,6 +319,21 @@ def test_a_drive_whose_rate_jumps_is_a_blow() -> None:
     near(total, total[0], 25.0, 1e-9)
 
 
+@pytest.mark.parametrize("angle", [
+    "5*t - 5*max(t - 0.4, 0)", "5*min(t, 0.4)", "5*min(0.4, t)", "2 - 2.5*(0.4 - t) - 2.5*abs(0.4 - t)",
+    "5*t if t <= 0.4 else 2", "5*t if t < 0.4 else 2",
+])  # fmt: skip
+def test_its_instant_is_told_as_after_it(angle: str) -> None:
+    """Whichever way the drive is written: the wheel stands at 0.4 s, its drive and bearing are free of load."""
+    found = solved(wheel(angle) + "analysis: {duration: 1, samples: 11}\n")
+    (hit,) = found.impulses
+    assert hit["time"] == pytest.approx(0.4, abs=1e-15)
+    near(hit["joints"]["shaft"]["drive"], -10.15, 10.0, EXACT)
+    turns = found.time < 0.4
+    near(found.coordinates["shaft"]["rate"], 5.0 * turns, 5.0, EXACT)
+    near(found.joints["shaft"]["force"][:, 0], -7.5 * np.cos(5.0 * found.time) * turns, 7.5, 1e-9)
+
+
 def test_what_is_driven_does_not_jump() -> None:
     """A blow on a driven wheel goes into the drive and the bearing."""
     text = wheel("5*t") + "impulses: {blow: {on: w.rim, vector: [2, 3, 1], time: 0}}\n"

@@ -9,7 +9,7 @@ import pytest
 
 from heuncli.errors import LimitError
 from heuncli.expressions.curves import fit
-from heuncli.expressions.discontinuities import discontinuities
+from heuncli.expressions.discontinuities import discontinuities, one_sided_limits
 from heuncli.expressions.grammar import Scope, compile_expression
 from heuncli.expressions.programs import Expression, Table
 
@@ -26,6 +26,11 @@ def after(t: float) -> float:
     return math.nextafter(t, math.inf)
 
 
+def ends(text: str, last: float) -> list[float]:
+    """The first instants of all pieces but the first."""
+    return [t for _, t in one_sided_limits(discontinuities(read(text), 0.0, last))]
+
+
 @pytest.mark.parametrize(("text", "expected"), [
     ("t*t", []),
     ("step(t - 1)", [1.0]),
@@ -33,7 +38,7 @@ def after(t: float) -> float:
     ("max(t, 1)", [1.0]),
     ("min(1, t)", [1.0]),
     ("min(t, 1)", [after(1.0)]),
-    ("sign(t - 1)", [1.0, after(1.0)]),
+    ("sign(t - 1)", [after(1.0)]),
     ("3 if t < 1 else 4", [1.0]),
     ("3 if t <= 1 else 4", [after(1.0)]),
     ("3 if 0.5 <= t < 1.5 else 4", [0.5, 1.5]),
@@ -54,25 +59,37 @@ def after(t: float) -> float:
     ("table(ramp, 5*t)", [0.2, 0.4, after(0.8)]),
 ])  # fmt: skip
 def test_where_branches_change(text: str, expected: list[float]) -> None:
-    assert discontinuities(read(text), 0.0, 2.0) == expected
+    assert ends(text, 2.0) == expected
+
+
+@pytest.mark.parametrize("text", [
+    "min(t, 1)", "min(1, t)", "max(1 - t, 0)", "max(0, 1 - t)", "abs(t - 1)", "abs(1 - t)", "sign(1 - t)",
+    "step(1 - t)", "3 if t <= 1 else 4", "3 if 1 > t else 4", "min(100*t, 100)", "min(t/3, 1/3)", "table(ramp, t)",
+])  # fmt: skip
+def test_an_edge_is_no_part_of_the_piece_before_it(text: str) -> None:
+    """Whichever branch an expression takes at the edge itself."""
+    ((before, behind),) = one_sided_limits(discontinuities(read(text), 0.0, 2.0))
+    assert before < 1.0 <= behind
+    assert 1.0 - 1e-15 < before
+    assert behind < 1.0 + 1e-15
 
 
 def test_each_is_the_first_instant_of_its_branch() -> None:
     expression = read("step(sin(7*t) - 0.3) + abs(cos(3*t)) + min(sin(t), 0.5)")
     found = discontinuities(expression, 0.0, 10.0)
     assert len(found) > 30
-    for t in found:
-        left, right = (expression.derivatives(s) for s in (math.nextafter(t, -math.inf), t))
+    for limits in one_sided_limits(found):
+        left, right = map(expression.derivatives, limits)
         assert abs(right[0] - left[0]) > 0.5 or abs(right[1] - left[1]) > 0.1
 
 
 def test_many_and_narrow_ones_are_found() -> None:
-    assert len(discontinuities(read("step(sin(1000*t))"), 0.0, 1.0)) == 318
-    narrow = discontinuities(read("step(sin(2*pi*t) - 1 + 1e-10)"), 0.0, 3.0)
+    assert len(ends("step(sin(1000*t))", 1.0)) == 318
+    narrow = ends("step(sin(2*pi*t) - 1 + 1e-10)", 3.0)
     assert len(narrow) == 6
     width = math.acos(1.0 - 1e-10) / math.pi
     assert [b - a for a, b in zip(narrow[::2], narrow[1::2], strict=True)] == pytest.approx([width] * 3, rel=1e-4)
-    assert discontinuities(read("step(t - 50)*step(50.00001 - t)"), 0.0, 100.0) == [50.0, after(50.00001)]
+    assert ends("step(t - 50)*step(50.00001 - t)", 100.0) == [50.0, after(50.00001)]
     assert discontinuities(read("abs((t - 1)**2)"), 0.0, 2.0) == []  # touches zero from above
 
 
@@ -93,9 +110,11 @@ def test_nothing_is_too_narrow_to_be_found() -> None:
     for _ in range(60):
         begin = random.uniform(0.0, 100.0)
         end = max(begin + 10.0 ** random.uniform(-17.0, 0.0), after(after(begin)))
-        assert discontinuities(read(f"1000 if {begin!r} < t < {end!r} else 0"), 0.0, 200.0) == [after(begin), end]
-    assert discontinuities(read("1 if t == 0.7 else 0"), 0.0, 2.0) == [0.7, after(0.7)]
-    assert discontinuities(read("1 if (t - 0.3)**2 > 0 else 0"), 0.0, 2.0) == [0.3, after(0.3)]
+        found = discontinuities(read(f"1000 if {begin!r} < t < {end!r} else 0"), 0.0, 200.0)
+        assert {after(begin), end} <= set(found)
+        assert all(begin <= t <= after(begin) or end - t < 1e-13 for t in found)
+    assert ends("1 if t == 0.7 else 0", 2.0) == [after(0.7)]
+    assert ends("1 if (t - 0.3)**2 > 0 else 0", 2.0) == [after(0.3)]
     thin = fit("thin", [0.0, 0.5, 0.5000001, 0.5000002, 3.0], [0.0, 0.0, 1.0, 0.0, 0.0], "linear", None, None)
     scope = Scope(tables={"thin": thin}, in_time=True)
     for text, stretch in (("table(thin, t)", 1.0), ("table(thin, t/50)", 50.0)):
@@ -106,7 +125,7 @@ def test_nothing_is_too_narrow_to_be_found() -> None:
 @pytest.mark.heavy
 def test_crests_between_the_points_of_a_grid_are_found() -> None:
     """sin² > 0.9999 twice in each half turn: 1910 of them in two seconds."""
-    found = discontinuities(read("1 if sin(3000*t)**2 > 0.9999 else 0"), 0.0, 2.0)
+    found = ends("1 if sin(3000*t)**2 > 0.9999 else 0", 2.0)
     aside = math.acos(math.sqrt(0.9999))
     crests = [(k + 0.5) * math.pi for k in range(1910)]
     expected = [(crest + side) / 3000.0 for crest in crests for side in (-aside, aside)]
