@@ -40,6 +40,28 @@ class Numbers(NamedTuple):
 
 def find(results: Results, path: str) -> Numbers:
     """The numbers at a path; nan is open. Raises SpecError [unknown-path] with what is known at the place it fails."""
+    try:
+        return _found(results, path)
+    except SpecError as error:
+        from heuncli.path_hints import meant  # only on the way to an error
+
+        (problem,) = error.problems
+        likely = meant(path, lambda words: _leads(results, words)) if problem.code == "unknown-path" else None
+        if likely is None:
+            raise
+        raise SpecError(problem._replace(hint=f"did you mean {likely}?")) from None
+
+
+def _leads(results: Results, words: Sequence[str]) -> bool:
+    """Whether there is a number at a path."""
+    try:
+        _found(results, ".".join(words))
+    except SpecError:
+        return False
+    return True
+
+
+def _found(results: Results, path: str) -> Numbers:
     keys, node, rest = _walk(results, path)
     values = _numbers(path, keys, node)
     row = quantity(keys)

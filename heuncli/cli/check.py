@@ -105,7 +105,7 @@ def _table(checked: Sequence[Checked], skipped: Sequence[str]) -> str:
             f"{one.path}:{case.location.line}",
             case.of,
             case.when,
-            _text(case.expected),
+            _expected(case),
             _text(case.found),
             case.failure or "",
         )
@@ -138,15 +138,29 @@ def _json(checked: Sequence[Checked]) -> str:
                     "line": case.location.line,
                     "of": case.of,
                     "when": case.when,
-                    "expected": case.expected,
-                    "found": case.found,
-                    "tolerance": case.tolerance,
+                    **_wanted(case),
                     "passed": case.passed,
                     "message": case.failure or "",
                 }
             )
     passed = sum(bool(case["passed"]) for case in cases)
     return dump({"passed": passed, "failed": len(cases) - passed, "cases": cases})
+
+
+def _wanted(case: Case) -> dict[str, Any]:
+    """What was expected and found; of bounds the extreme that decides, with its instant and place."""
+    if case.below is None and case.above is None:
+        return {"expected": case.expected, "found": case.found, "tolerance": case.tolerance}
+    bounds = {"below": case.below, "above": case.above}
+    block: dict[str, Any] = {key: bound for key, bound in bounds.items() if bound is not None}
+    block |= {"found": case.found, "at": case.extreme.at if case.extreme is not None else None}
+    return block | (case.extreme.place._asdict() if case.extreme is not None and case.extreme.place is not None else {})
+
+
+def _expected(case: Case) -> str:
+    bounds = [f"{word} {bound:.9g}" for word, bound in (("above", case.above), ("below", case.below))
+              if bound is not None]  # fmt: skip
+    return ", ".join(bounds) or _text(case.expected)
 
 
 def _text(values: Array | None) -> str:

@@ -1,15 +1,23 @@
-"""`--measure`: one number of a run, such as `max abs sections.middle.M1` or `at 0.5 energy.kinetic`."""
+"""`--measure`: single numbers of a run, such as `max abs sections.middle.M1` or `at 0.5 energy.kinetic`."""
 
 from __future__ import annotations
 
 import math
+from collections.abc import Callable, Sequence
+from functools import partial
+from typing import Any, TypeVar
 
 from heuncli.cli.entry import UsageError
-from heuncli.errors import Problem
+from heuncli.errors import HeunError, Problem, SpecError
 from heuncli.report.export import dump
 from heuncli.report.numbers import OPEN, UNKNOWN
-from heuncli.study.measure import NOT_CLAIMED, Measure, NotOneNumber, lost_from, value
+from heuncli.spec.models import Spec
+from heuncli.spec.names import names_in
+from heuncli.spec.rules.outcome import wrong_path
+from heuncli.study.measure import NOT_CLAIMED, Measure, NotOneNumber, Peak, lost_from, value
 from heuncli.study.solve import Study
+
+T = TypeVar("T")
 
 FORMS = "expected [max | min | max abs | first | final | at T] PATH"
 HINT = "such as --measure 'max abs sections.middle.M1'"
@@ -30,31 +38,78 @@ def parse(text: str) -> Measure:
     raise UsageError(Problem("bad-option", f"--measure '{text}': {FORMS}", hint=HINT))
 
 
-def write(asked: Measure, study: Study, form: str) -> str:
-    """The number as text, all its digits; as JSON with its instant. What is not known beyond the horizon is `?`."""
-    try:
-        number, at, place = value(asked, study)
-        horizon = lost_from(asked, study)
-    except NotOneNumber as error:
-        raise UsageError(Problem("bad-option", f"--measure: {error.problems[0].message}", hint=HINT)) from None
+def parse_all(texts: Sequence[str]) -> list[Measure]:
+    """The Measures that several mean. Raises UsageError with all that mean none."""
+    return all_or_errors([partial(parse, text) for text in texts])
+
+
+def check(several: Sequence[Measure], spec: Spec) -> None:
+    """Whether their paths lead anywhere, as far as that is seen before the run. Raises SpecError [unknown-path]."""
+    names = names_in(spec)
+    runs = {name: section.from_ is not None for name, section in spec.sections.items()}
+    wrong = [found for asked in several if (found := wrong_path(asked.path, names, runs)) is not None]
+    if wrong:
+        raise SpecError(*(Problem("unknown-path", f"--measure: {what}", hint=hint) for what, hint in wrong))
+
+
+def write(several: Sequence[Measure], study: Study, form: str) -> str:
+    """Each number as text, all its digits, on a line; as JSON with its instant, several in a list.
+
+    What is not known beyond the horizon is `?`.
+    """
     if form == "json":
-        block = {"measure": f"{asked.how} {asked.path}".strip(), "value": number, "at": at}
-        if horizon is not None:
-            block |= {"value": None, "at": None, "horizon": horizon}
-        elif place is not None and not math.isnan(number):
-            block |= place._asdict()
-        return dump(block)
+        blocks = all_or_errors([partial(block, asked, study) for asked in several])
+        return dump(blocks[0] if len(blocks) == 1 else blocks)
+    return "".join(all_or_errors([partial(line, asked, study) for asked in several]))
+
+
+def line(asked: Measure, study: Study) -> str:
+    """One number as text."""
+    peak, horizon = measured(asked, study)
     if horizon is not None:
         return f"{UNKNOWN}\n"
-    if math.isnan(number):
-        return f"{UNKNOWN if at in study.unknown else OPEN}\n"
-    return f"{number!r}\n"
+    if math.isnan(peak.value):
+        return f"{UNKNOWN if peak.at in study.unknown else OPEN}\n"
+    return f"{peak.value!r}\n"
 
 
-def warning(asked: Measure, study: Study) -> list[str]:
-    """Why there is `?` in place of the number."""
-    horizon = lost_from(asked, study)
-    return [] if horizon is None else [f"{asked.path} is not known: {NOT_CLAIMED.format(horizon)}"]
+def block(asked: Measure, study: Study) -> dict[str, Any]:
+    """One number for JSON."""
+    peak, horizon = measured(asked, study)
+    found = {"measure": f"{asked.how} {asked.path}".strip(), "value": peak.value, "at": peak.at}
+    if horizon is not None:
+        return found | {"value": None, "at": None, "horizon": horizon}
+    if peak.place is not None and not math.isnan(peak.value):
+        found |= peak.place._asdict()
+    return found
+
+
+def measured(asked: Measure, study: Study) -> tuple[Peak, float | None]:
+    """The number, and the horizon where it lies beyond. Raises UsageError."""
+    try:
+        return value(asked, study), lost_from(asked, study)
+    except NotOneNumber as error:
+        raise UsageError(Problem("bad-option", f"--measure: {error.problems[0].message}", hint=HINT)) from None
+
+
+def all_or_errors(calls: Sequence[Callable[[], T]]) -> list[T]:
+    """What all of them give. Raises what the first that fails raises, with the problems of all that do."""
+    given: list[T] = []
+    errors: list[HeunError] = []
+    for call in calls:
+        try:
+            given.append(call())
+        except HeunError as error:
+            errors.append(error)
+    if errors:
+        raise type(errors[0])(*(problem for error in errors for problem in error.problems))
+    return given
+
+
+def warnings(several: Sequence[Measure], study: Study) -> list[str]:
+    """Why there is `?` in place of some numbers."""
+    lost = [(asked.path, lost_from(asked, study)) for asked in several]
+    return [f"{path} is not known: {NOT_CLAIMED.format(horizon)}" for path, horizon in lost if horizon is not None]
 
 
 def _is_number(word: str) -> bool:

@@ -51,13 +51,13 @@ class Run(NamedTuple):
     at: Annotated[str | None, Option(("--at",), "Show these instants instead of the extremes.", "T,...")] = None
     all: Annotated[bool, Option(("--all",), "Show every instant, and every cut of a run of cuts.")] = False
     measure: Annotated[
-        str | None,
+        tuple[str, ...],
         Option(
             ("--measure",),
-            "Print one number: 'max abs sections.middle.M1', 'final energy.kinetic', 'at 0.5 PATH'.",
+            "Print one number: 'max abs sections.middle.M1', 'final energy.kinetic', 'at 0.5 PATH'. May be repeated.",
             "WHAT",
         ),
-    ] = None
+    ] = ()
     method: Annotated[str | None, Option(("--method",), "The method of integration.", "NAME")] = None
     tolerance: Annotated[
         float | None, Option(("--tolerance",), "Error of the motion, relative to the scene.", "NUMBER")

@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 import time
-from collections.abc import Callable
+from collections.abc import Callable, Mapping
 from typing import Any
 
 import numpy as np
@@ -15,7 +15,7 @@ from heuncli.cli.solving import choice, instants, overrides, positive, timings, 
 from heuncli.cli.target import format_of, keep
 from heuncli.errors import Problem
 from heuncli.integration.methods import METHODS
-from heuncli.nearest import did_you_mean
+from heuncli.nearest import did_you_mean, nearest
 from heuncli.records import replace
 from heuncli.report.fit import fit
 from heuncli.report.heading import write_heading, write_heading_markdown
@@ -40,11 +40,11 @@ def main(request: Run) -> int:
     """Run the command; returns the exit code."""
     keep(request.output, [request.spec])
     form = format_of(request.format, request.output, ENDINGS, FORMATS)
-    asked = None
-    if request.measure is not None:
+    asked = []
+    if request.measure:
         from heuncli.cli import measure  # with paths and JSON 2 ms that tables do not need
 
-        asked = measure.parse(request.measure)
+        asked = measure.parse_all(request.measure)
     only = _only(request.only) if request.only is not None else None
     options = Options(
         tolerance=positive("--tolerance", request.tolerance),
@@ -57,14 +57,16 @@ def main(request: Run) -> int:
     spec = load(request.spec, overrides=overrides(request.set), checking=False)
     keep(request.output, [request.spec, *spec.files])
     options = replace(options, load_seconds=time.perf_counter() - begun)
-    what = asked_by([asked.path], spec) if asked else _asked(request, only, spec, form)
+    if asked:
+        measure.check(asked, spec)
+    what = asked_by([each.path for each in asked], spec) if asked else _asked(request, only, spec, form)
     study = solve(spec, replace(options, wanted=what.reports, entries=what.entries))
     if asked:
         text = measure.write(asked, study, form)
     else:
         text = _report(request, form, study, labels_of(spec), what.reports)
     emit(text, request.output)
-    later = [*study.later, *(measure.warning(asked, study) if asked else ())]
+    later = [*study.later, *(measure.warnings(asked, study) if asked else ())]
     warnings = warn(spec, study.results, request.quiet, later=later)
     if request.verbose:
         say(f"heun: {timings(study.results.work)}")
@@ -79,11 +81,13 @@ def _method(name: str | None) -> str | None:
 
 
 def _only(words: str) -> tuple[frozenset[str], tuple[str, ...]]:
-    """The reports of `--only`, and the paths of single entries; what is no report with a dot may be such."""
-    names = [word.strip() for word in words.split(",")]
-    paths = tuple(name for name in names if name.split(".")[0] in REPORT_OF and "." in name)
-    reports = [choice("--only", REPORT_OF.get(name, name), (*REPORTS, SHARES)) for name in names if name not in paths]
-    return frozenset(reports), paths
+    """The reports of `--only`, and the paths of single entries; what is no report may be such."""
+    names = [REPORT_OF.get(word.strip(), word.strip()) for word in words.split(",")]
+    paths = tuple(name for name in names if name not in (*REPORTS, SHARES))
+    for name in paths:
+        if not all(part.isidentifier() or part.isdecimal() for part in name.split(".")):
+            choice("--only", name, (*REPORTS, SHARES))
+    return frozenset(names) - frozenset(paths), paths
 
 
 def _asked(request: Run, only: tuple[frozenset[str], tuple[str, ...]] | None, spec: Spec, form: str) -> Asked:
@@ -113,9 +117,23 @@ def _entry(path: str, spec: Spec) -> Entry:
     hint: str | None
     if entry is not None:
         hint = f"say {'.'.join(entry)}; --measure prints single numbers"
+    elif words[0] not in REPORT_OF:
+        hint = _meant(path, known)
     else:
         hint = did_you_mean(path, names, "entries") if names else f"the scene has no {words[0]}"
     raise UsageError(Problem("bad-option", f"--only {path}: not an entry of the results", hint=hint))
+
+
+def _meant(path: str, known: Mapping[Entry, Mapping[str, Any]]) -> str:
+    """What may be meant by a path of `--only` that begins with no block."""
+    from heuncli.path_hints import meant  # only on the way to an error
+
+    entry = meant(path, lambda words: entry_at(words, known)[0] is not None)
+    if entry is not None:
+        return f"did you mean {'.'.join(entry_at(entry.split('.'), known)[0] or ())}?"
+    near = nearest(path, (*REPORTS, SHARES))
+    known_reports = f"known: {', '.join((*REPORTS, SHARES))}; entries of them as joints.NAME"
+    return f"did you mean {near}?" if near else known_reports
 
 
 def _report(request: Run, form: str, study: Study, labels: Labels, wanted: frozenset[str]) -> str:

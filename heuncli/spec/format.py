@@ -8,8 +8,9 @@ outside `spec` sees these models.
 from collections.abc import Mapping
 from typing import Annotated, Any, Literal, NamedTuple
 
-from pydantic import Field, StrictBool, Tag
+from pydantic import Field, StrictBool, Tag, model_validator
 
+from heuncli.errors import Finding
 from heuncli.spec.fields import (
     FORM,
     Acceleration,
@@ -451,9 +452,24 @@ class Expect(Model):
     of: str
     at: Time | None = None
     peak: Literal["max", "min", "abs"] | None = None
-    is_: Expected = Field(alias="is")
+    is_: Expected = Field(default=None, alias="is")
     rel: Number | None = None
     abs: Either | None = None
+    below: Either | None = None
+    above: Either | None = None
+
+    @property
+    def is_bounded(self) -> bool:
+        """Whether it is expected to stay below or above something, and not to be something."""
+        return self.below is not None or self.above is not None
+
+    @model_validator(mode="before")
+    @classmethod
+    def says_what(cls, data: Any) -> Any:
+        """It is something, or it stays below or above something: null is something, too."""
+        if type(data) is dict and not {"is", "below", "above"} & data.keys() and "of" in data:
+            raise Finding("missing-key", "'is' is missing", "is: a number, a list or null; or below: and above: bounds")
+        return data
 
 
 class Head(Model):

@@ -278,7 +278,7 @@ class Foundation(NamedTuple):
 
 
 class Expect(NamedTuple):
-    """One expectation: the value found at `of` is `is_` (None: must be open) within rel and abs."""
+    """One expectation: the value found at `of` is `is_` (None: must be open) within rel and abs, or within bounds."""
 
     of: str
     at: float | None
@@ -287,6 +287,8 @@ class Expect(NamedTuple):
     rel: float | None
     abs: float | None
     location: SourceLocation
+    below: float | None = None
+    above: float | None = None
 
 
 class Spec(NamedTuple):

@@ -8,6 +8,7 @@ from heuncli.expressions.grammar import RESERVED
 from heuncli.nearest import misspelt
 from heuncli.spec.fields import Model, keys_of
 from heuncli.spec.format import Body, Ground
+from heuncli.spec.models import Spec
 
 GROUND = "ground"
 NAMED = ("parameters", "bodies", "joints", "drives", "forces", "impulses", "stops", "sections", "tables")
@@ -39,6 +40,13 @@ class Names(NamedTuple):
         points[GROUND] = points_of(data.get(GROUND), Ground)
         joints = {name: str(mapping(joint).get("type")) for name, joint in mapping(data.get("joints")).items()}
         return cls(entries, points, joints)
+
+
+def names_in(spec: Spec) -> Names:
+    """The same of a scene that was read."""
+    entries = {block: dict(getattr(spec, block)) for block in NAMED}
+    points = {name: dict(body.points) for name, body in spec.bodies.items()} | {GROUND: dict(spec.ground.points)}
+    return Names(entries, points, {name: joint.type for name, joint in spec.joints.items()})
 
 
 def points_of(owner: Any, model: type[Model]) -> dict[str, Any]:

@@ -207,7 +207,8 @@ class Resolver:
 
     def expect(self, i: int, item: f.Expect) -> m.Expect:
         location = self.locations.get(f"expect.{i}", SourceLocation("", 1, 1))
-        return m.Expect(item.of, item.at, item.peak, numbers(item.is_), item.rel, numbers(item.abs), location)
+        bounds = numbers(item.below), numbers(item.above)
+        return m.Expect(item.of, item.at, item.peak, numbers(item.is_), item.rel, numbers(item.abs), location, *bounds)
 
 
 def stop(given: f.Stop) -> m.Stop:

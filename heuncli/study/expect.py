@@ -8,19 +8,20 @@ import numpy as np
 
 from heuncli import tolerances
 from heuncli.errors import HeunError, Problem, SourceLocation
-from heuncli.records import record
+from heuncli.records import record, replace
 from heuncli.results import Array, Results
 from heuncli.results_paths import find
 from heuncli.spec.models import Expect
-from heuncli.study.measure import NOT_CLAIMED, Measure, lost_from, peak
+from heuncli.study.measure import NOT_CLAIMED, Measure, Peak, lost_from, peak
 from heuncli.study.solve import Study
-
-# Where the spec gives neither rel nor abs.
 
 
 @record
 class Case:
-    """One comparison: what was expected where, what was found (nan is open), and if they differ why that fails."""
+    """One comparison: what was expected where, what was found (nan is open), and if they differ why that fails.
+
+    extreme: of what is expected to stay below or above something, that which comes nearest to it.
+    """
 
     location: SourceLocation
     of: str
@@ -29,6 +30,9 @@ class Case:
     found: Array | None
     tolerance: float
     failure: str | None
+    below: float | None = None
+    above: float | None = None
+    extreme: Peak | None = None
 
     @property
     def passed(self) -> bool:
@@ -41,14 +45,25 @@ def compare(study: Study, item: Expect) -> Case:
     expected = np.asarray(np.nan if item.is_ is None else _with_nan(item.is_), dtype=np.float64)
     when = f"{item.peak} over the run" if item.peak else f"t = {item.at:.6g} s" if item.at is not None else ""
     tolerance = _tolerance(expected, item.rel, item.abs)
+    case = Case(item.location, item.of, when, expected, None, tolerance, None, item.below, item.above)
     try:
-        found = _found(study, item)
         horizon = _lost_from(study, item)
+        if horizon is not None:
+            return replace(case, failure=NOT_CLAIMED.format(horizon))
+        if item.below is not None or item.above is not None:
+            return _bounded(case, study, item)
+        found = _found(study, item)
     except HeunError as error:
-        return Case(item.location, item.of, when, expected, None, tolerance, error.problems[0].message)
-    if horizon is not None:
-        return Case(item.location, item.of, when, expected, None, tolerance, NOT_CLAIMED.format(horizon))
-    return Case(item.location, item.of, when, expected, found, tolerance, _failure(expected, found, tolerance))
+        return replace(case, failure=error.problems[0].message)
+    return replace(case, found=found, failure=_failure(expected, found, tolerance))
+
+
+def _bounded(case: Case, study: Study, item: Expect) -> Case:
+    """Of what is expected to stay below or above something."""
+    from heuncli.study.bounds import bounded  # that few specs have
+
+    extreme, failure = bounded(study, item)
+    return replace(case, found=np.asarray(extreme.value), failure=failure, extreme=extreme)
 
 
 def _found(study: Study, item: Expect) -> Array:

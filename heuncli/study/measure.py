@@ -121,23 +121,27 @@ def time_of_blow(results: Results, there: Numbers) -> float:
 
 
 class Peak(NamedTuple):
-    """An extreme with its instant, and in a run of cuts its place."""
+    """An extreme with its instant, and in a run of cuts its place; open_at: an instant at which it is open, if any."""
 
     value: float
     at: float | None
     place: Place | None = None
+    open_at: float | None = None
 
 
-def peak(study: Study, path: str, how: str) -> Peak:
+def peak(study: Study, path: str, how: str, times: Array | None = None) -> Peak:
     """Highest (`max`), lowest (`min`) or largest (`abs`) value up to the horizon, between the samples too; where, when.
 
-    A vector counts by its magnitude, a run of cuts over its whole stretch.
+    A vector counts by its magnitude, a run of cuts over its whole stretch. times: of these instants alone.
     """
     asked = find(study.results, path)
     even = asked.of_vectors or asked.keys[-1] in MAGNITUDES
+    open_at: list[float] = []
 
     def columns(results: Results) -> Array:
         values = find(results, path).values
+        is_open = np.isnan(values.reshape(len(values), -1)).any(axis=1)
+        open_at.extend(results.time[is_open & ~np.isin(results.time, results.accuracy.get("unknown", []))][:1])
         # the square of a magnitude is smooth where the magnitude is zero
         if asked.of_vectors:
             values = np.einsum("...k,...k->...", values, values)
@@ -154,13 +158,14 @@ def peak(study: Study, path: str, how: str) -> Peak:
     if CUT in asked.axes:
         name, bent = asked.keys[1], asked.keys[2] in ("stress", "line")
         searched = Searched(none, [], error, np.array([even]), lambda results: [(name, columns(results))], bent)
-    bounds = study.extremes(searched, report_of(path))
+    bounds = study.extremes(searched, report_of(path), times=times)
     low, high = float(bounds.low[0]), float(bounds.high[0])
     if how == "abs" and abs(low) > abs(high):
         how, low = "min", abs(low)
     result, at = (low + 0.0, bounds.low_at) if how == "min" else (high + 0.0, bounds.high_at)
     place = bounds.places[0][0 if how == "min" else 1] if bounds.places else None
-    return Peak(float(np.sqrt(np.abs(result))) if even else result, float(at[0]), place)
+    value = float(np.sqrt(np.abs(result))) if even else result
+    return Peak(value, float(at[0]), place, float(min(open_at)) if open_at else None)
 
 
 def stated_error(study: Study, keys: Sequence[str]) -> float:

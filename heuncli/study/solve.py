@@ -295,15 +295,19 @@ class Study:
 
         return stretched(self.setup, HALVED if bent else 0)
 
-    def extremes(self, searched: Searched, wanted: frozenset[str] | None, *, whole: bool = False) -> Extremes:
+    def extremes(
+        self, searched: Searched, wanted: frozenset[str] | None, *, whole: bool = False, times: Array | None = None
+    ) -> Extremes:
         """The extremes over the run, before its horizon, of the columns made of its results.
 
         wanted: the reports that the columns are made of, None for any. whole: of a whole report, where
         there may be so many columns that a search would outweigh the run: then they are those of the asked instants.
+        times: of these instants alone.
         """
-        times = self.search_times
-        between = not (whole and len(searched.errors) * len(times) > MOST_SEARCHED)
-        times = times if between else self.results.time
+        between = times is None
+        times = self.search_times if times is None else times
+        if whole and len(searched.errors) * len(times) > MOST_SEARCHED:
+            times, between = self.results.time, False
         horizon = self.results.accuracy.get("horizon")
         if horizon is not None:
             times = times[times < horizon] if times[0] < horizon else times[:1]

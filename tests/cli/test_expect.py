@@ -20,7 +20,8 @@ FX_AT_1 = 3.0 * np.sin(2.0)
 
 def expectation(of: str, is_: Any, **more: Any) -> Any:
     return SimpleNamespace(
-        **{"of": of, "is_": is_, "at": None, "peak": None, "rel": None, "abs": None, "location": PLACE, **more}
+        **{"of": of, "is_": is_, "at": None, "peak": None, "rel": None, "abs": None, "below": None, "above": None,
+           "location": PLACE, **more}
     )
 
 
@@ -103,3 +104,56 @@ def test_open_is_expected_as_null() -> None:
 def test_one_instant_needs_no_at() -> None:
     study = FakeStudy(np.array([1.0]))
     assert compare(study, expectation(FX, FX_AT_1)).passed
+
+
+BOUNDS = [
+    expectation(FX, None, below=3.1),
+    expectation(FX, None, below=3.1, above=-2.3),
+    expectation(FX, None, above=3.0 * np.sin(4.0) - 1e-9),
+    expectation(FX, None, below=FX_AT_1 + 1e-9, at=1.0),
+    expectation(FX, None, above=2.9, peak="max"),
+    expectation(FX, None, below=-2.0, peak="min"),
+    expectation(FX, None, above=2.9, below=3.1, peak="abs"),
+    expectation("joints.pivot.force", None, below=10.9, above=8.0),  # a vector counts by its magnitude
+    expectation("sections.along.M2", None, below=2.5, above=-2.0),
+    expectation("sections.along.M2.1", None, below=0.61),
+    expectation("sections.along.M2", None, below=2.4 * np.sin(2.0) + 1e-9, at=1.0),
+    expectation("model.freedoms", None, below=5, above=3),
+    expectation("foundation.about", None, below=1e-9),
+]
+
+
+@pytest.mark.parametrize("item", BOUNDS)
+def test_what_stays_within_bounds(item: Any) -> None:
+    assert compare(STUDY, item).failure is None
+
+
+@pytest.mark.parametrize(
+    ("item", "why"),
+    [
+        (expectation(FX, None, below=2.99), "the largest, 3 at t = 0.785398 s, is not below 2.99"),
+        (expectation(FX, None, above=-2.2), "the least, -2.27040749 at t = 2 s, is not above -2.2"),
+        (expectation(FX, None, below=5.0, above=-2.2), "is not above -2.2"),
+        (expectation(FX, None, below=2.7, at=1.0), "2.72789228 at t = 1 s, is not below 2.7"),
+        (expectation(FX, None, below=2.9, peak="abs"), "the largest magnitude, 3 at t = 0.785398 s, is not below 2.9"),
+        (expectation("joints.pivot.force", None, below=10.0), "the largest, 10.81 at t = 0 s, is not below 10"),
+        (expectation("sections.along.M2", None, below=2.3), "at t = 0.785398 s, s = 0.8 m, is not below 2.3"),
+        (expectation("model.freedoms", None, below=4.0), "the largest, 4, is not below 4"),
+        (expectation("model.freedoms", None, above=4.0), "the least, 4, is not above 4"),
+    ],
+)
+def test_what_leaves_its_bounds_says_how_far_when_and_where(item: Any, why: str) -> None:
+    failure = compare(STUDY, item).failure
+    assert failure is not None
+    assert why in failure
+
+
+def test_no_bound_is_met_by_what_is_open_or_beyond_the_horizon() -> None:
+    force = pendulum(STUDY.times).joints["pivot"]["force"].copy()
+    force[3:5, 2] = np.nan
+    study = FakeStudy(STUDY.times[:1], {"joints": {"pivot": {"force": force[3:4]}}})
+    assert compare(study, expectation("joints.pivot.force.z", None, below=1e9)).failure == "open at t = 0 s"
+    assert compare(study, expectation("joints.pivot.force.x", None, below=1e9)).passed
+    lost = compare(LOST, expectation(FX, None, below=1e9))
+    assert (lost.failure, lost.found) == ("from t = 1.25 s on nothing is claimed", None)
+    assert compare(LOST, expectation(FX, None, below=3.0, at=1.0)).passed

@@ -23,7 +23,7 @@ G = 9.81
 
 def told(run: Study, words: str) -> dict[str, Any]:
     """What `--measure WORDS --format json` prints."""
-    block: dict[str, Any] = json.loads(measure.write(measure.parse(words), run, "json"))
+    block: dict[str, Any] = json.loads(measure.write([measure.parse(words)], run, "json"))
     return block
 
 
@@ -176,7 +176,7 @@ def test_open_in_part_is_open() -> None:
     """Beyond the last bearing the moment is certain, between the three it is not: nobody knows the largest."""
     run = shaft(5, middle=True)
     assert told(run, "max abs sections.shaft.M1")["value"] is None
-    assert measure.write(measure.parse("max sections.shaft.moment"), run, "table") == "open\n"
+    assert measure.write([measure.parse("max sections.shaft.moment")], run, "table") == "open\n"
     assert in_table(run, "SECTION shaft", "M1")[2] == "open"
     assert told(run, "max abs sections.shaft.N")["value"] == 0.0
     assert told(run, "max abs sections.shaft.M1.3")["value"] > 0.0  # of a cut that is certain

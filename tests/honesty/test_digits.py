@@ -208,7 +208,7 @@ def test_beyond_the_horizon_of_a_pendulum_nothing_is_told() -> None:
     assert 13.0 < horizon < 16.0
 
     def told(words: str) -> str:
-        return measure.write(measure.parse(words), run, "table").strip()
+        return measure.write([measure.parse(words)], run, "table").strip()
 
     for words in ("max", "min", "max abs", "final", "at 19.99", f"at {horizon!r}"):
         assert told(f"{words} joints.p.force.x") == told(f"{words} energy.kinetic") == "?"

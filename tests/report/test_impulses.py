@@ -151,8 +151,8 @@ def test_beyond_the_horizon_nothing_is_told_of_a_blow() -> None:
     assert set(numbers) <= {"?", "0"}
     assert "?" in numbers
     study = FakeStudy(T, {"impulses": results.impulses, "accuracy": accuracy})
-    assert measure.write(measure.parse("impulses.0.energy_jump"), study, "table") == "0.25\n"
-    assert measure.write(measure.parse("impulses.1.energy_jump"), study, "table") == "?\n"
+    assert measure.write([measure.parse("impulses.0.energy_jump")], study, "table") == "0.25\n"
+    assert measure.write([measure.parse("impulses.1.energy_jump")], study, "table") == "?\n"
 
 
 @pytest.mark.parametrize(("words", "value"), [
@@ -172,13 +172,13 @@ def test_beyond_the_horizon_nothing_is_told_of_a_blow() -> None:
 def test_measures(words: str, value: float) -> None:
     study = FakeStudy(T, {"impulses": [blow()]})
     asked = measure.parse(words)
-    assert float(measure.write(asked, study, "table")) == pytest.approx(value, rel=1e-14)
+    assert float(measure.write([asked], study, "table")) == pytest.approx(value, rel=1e-14)
 
 
 def test_what_is_open_measures_open() -> None:
     study = FakeStudy(T, {"impulses": [blow()]})
     for words in ("impulses.0.joints.pivot.force.y", "max abs impulses.0.joints.pivot.force"):
-        assert measure.write(measure.parse(words), study, "table") == "open\n"
+        assert measure.write([measure.parse(words)], study, "table") == "open\n"
 
 
 @pytest.mark.parametrize(("words", "message"), [
@@ -188,7 +188,7 @@ def test_what_is_open_measures_open() -> None:
 ])  # fmt: skip
 def test_measures_that_are_no_number(words: str, message: str) -> None:
     with pytest.raises(UsageError, match=message):
-        measure.write(measure.parse(words), FakeStudy(T, {"impulses": [blow()]}), "table")
+        measure.write([measure.parse(words)], FakeStudy(T, {"impulses": [blow()]}), "table")
 
 
 def test_csv_has_every_number_of_a_blow() -> None:

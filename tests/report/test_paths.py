@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import json
+from pathlib import Path
 
 import numpy as np
 import pytest
@@ -11,6 +12,9 @@ from heuncli.errors import SpecError
 from heuncli.report.export import to_json
 from heuncli.report.quantities import walk
 from heuncli.results_paths import find
+from heuncli.spec.load import load
+from heuncli.spec.names import names_in
+from heuncli.spec.rules.outcome import wrong_path
 from tests.report.test_export import BLOW
 from tests.shared.fakes import LABELS, pendulum
 
@@ -86,3 +90,65 @@ def test_a_wrong_path_tells_what_is_known_there(path: str, message: str) -> None
     assert caught.value.problems[0].code == "unknown-path"
     if "elbw" in path:
         assert caught.value.problems[0].hint == "did you mean elbow?"
+
+
+JIB, ENGINE = (load(Path(__file__).parents[2] / "specs" / name) for name in ("jib.yaml", "engine.yaml"))
+
+
+@pytest.mark.parametrize(
+    ("path", "meant"),
+    [
+        ("main.angle", "coordinates.main.angle"),
+        ("joints.main.angle", "coordinates.main.angle"),
+        ("joints.bore.position", "coordinates.bore.travel"),
+        ("big.force.z", "joints.big.force.z"),
+        ("joint.big.force.z", "joints.big.force.z"),
+        ("joints.big.fx", "joints.big.force.x"),
+        ("joints.big.Fx", "joints.big.force.x"),
+        ("joints.big.force_x", "joints.big.force.x"),
+        ("joints.big.force.X", "joints.big.force.x"),
+        ("big.Mz", "joints.big.moment.z"),
+        ("big.mag", "joints.big.force"),
+        ("joints.big.force.mag", "joints.big.force"),
+        ("bodies.crank.z", "bodies.crank.center.z"),
+        ("crank.center.x", "bodies.crank.center.x"),
+        ("crank.omega.z", "bodies.crank.angular_velocity.z"),
+        ("bodies.crank.acceleration.x", "bodies.crank.center_acceleration.x"),
+        ("crank.pin.x", "points.crank.pin.position.x"),
+        ("foundation.fz", "foundation.force.z"),
+        ("foundation.pitch", "foundation.axis.pitch"),
+        ("foundation.supports.main.fx", "foundation.supports.main.force.x"),
+        ("kinetic", "energy.kinetic"),
+        ("gas.value", "forces.gas.value"),
+    ],
+)
+def test_what_was_meant_by_a_path_is_found(path: str, meant: str) -> None:
+    what, hint = wrong_path(path, names_in(ENGINE), {}) or ("", "")
+    assert path in what
+    assert hint == f"did you mean {meant}?"
+    assert wrong_path(meant, names_in(ENGINE), {}) is None
+
+
+@pytest.mark.parametrize(
+    ("path", "hint"),
+    [
+        ("root.M1", "did you mean sections.root.M1?"),
+        ("sections.root.mises", "did you mean sections.root.stress.mises?"),
+        ("rope.tension", "did you mean joints.rope.tension?"),
+        ("along.M2.3", "did you mean sections.along.M2.3?"),
+        ("coordinates.rope.length", "known words here: slew"),
+        ("mag", "known names: jib"),
+        ("stops.buffer.force", "the scene has no stops"),
+        ("shaft.angle", "known names: jib, load, slew, rope, root, along"),
+        ("slew.colour", "slew is one of the joints; joints.slew has point, force"),
+    ],
+)
+def test_what_nothing_is_like_is_told_with_what_there_is(path: str, hint: str) -> None:
+    _, told = wrong_path(path, names_in(JIB), {"root": False, "along": True}) or ("", "")
+    assert (told or "").startswith(hint)
+
+
+def test_after_the_run_a_path_is_read_the_same_way() -> None:
+    with pytest.raises(SpecError) as caught:
+        find(RESULTS, "elbow.fz")
+    assert caught.value.problems[0].hint == "did you mean joints.elbow.force.z?"

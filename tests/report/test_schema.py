@@ -44,7 +44,7 @@ class Cuts(FakeStudy):
 
 
 def number(words: str, count: int) -> float:
-    return float(measure.write(measure.parse(words), Cuts(T, {"count": count}), "table"))
+    return float(measure.write([measure.parse(words)], Cuts(T, {"count": count}), "table"))
 
 
 @pytest.mark.parametrize("count", [2, 3, 4])

@@ -8,59 +8,75 @@ from typing import TYPE_CHECKING, Any
 from heuncli import tolerances
 from heuncli.expressions import units as u
 from heuncli.expressions.programs import Expression
-from heuncli.nearest import did_you_mean
+from heuncli.results_schema import CUT
 from heuncli.spec import format as f
 from heuncli.spec.rules.registry import DraftDocument, Path_, Violation, rule
 from heuncli.spec.semantics import instants_of, type_of
 
 if TYPE_CHECKING:
     from heuncli.results_schema import Shape
-    from heuncli.spec.rules.outcome import Outcome, UnknownWord
+    from heuncli.spec.rules.outcome import Outcome
 
 RAGGED = -1  # the length of a list whose members have different ones
 Lengths = tuple[int | None, ...]  # of nested lists, the outer first; None: not known before the run
 
 
-def outcomes(draft: DraftDocument) -> Iterator[tuple[Path_, f.Expect, Outcome | None, UnknownWord | None]]:
-    """Every expectation with the quantity at its path, or the unknown word; neither if only the run can decide."""
+def outcomes(draft: DraftDocument) -> Iterator[tuple[Path_, f.Expect, Outcome | None]]:
+    """Every expectation with the quantity at its path; None where there is none, or only the run can tell."""
     if draft.document.expect:
         from heuncli.spec.rules.outcome import Outcome, outcome  # a run of a scene without expectations starts faster
 
         for i, item in draft.document.expect.items():
             result = outcome(item.of, draft)
-            yield ("expect", i), item, *((result, None) if isinstance(result, Outcome) else (None, result))
+            yield ("expect", i), item, result if isinstance(result, Outcome) else None
 
 
 @rule("expect-path")
 def expect_path(draft: DraftDocument) -> Iterator[Violation]:
     """`of` leads to a result."""
-    for path, item, _, unknown in outcomes(draft):
-        if unknown is not None and unknown.word:
-            known = unknown.known
-            hint = did_you_mean(unknown.word, known, "words here") if known else "the path ends before it"
-            yield Violation((*path, "of"), f"'{item.of}': '{unknown.word}' is not a result", hint)
-        elif unknown is not None:
-            hint = f"it goes on with one of {', '.join(unknown.known)}"
-            yield Violation((*path, "of"), f"'{item.of}' is not a number", hint)
+    if draft.document.expect:
+        from heuncli.spec.rules.outcome import runs_of, wrong_path  # as in outcomes
+
+        for i, item in draft.document.expect.items():
+            if (wrong := wrong_path(item.of, draft.names, runs_of(draft))) is not None:
+                yield Violation(("expect", i, "of"), *wrong)
 
 
 @rule("expect-form")
 def expect_form(draft: DraftDocument) -> Iterator[Violation]:
     """An expectation is at an instant or at a peak, a number or a list, in the dimension of the result."""
-    for path, item, quantity, _ in outcomes(draft):
+    for path, item, quantity in outcomes(draft):
         if item.at is not None and item.peak is not None:
             yield Violation(
                 (*path, "peak"), "both at and peak", "at is one instant, peak is over all of them", key=True
             )
         if RAGGED in lengths_of(item.is_):
             yield Violation((*path, "is"), "lists of different lengths", "[1, 2, 3], or [[1, 0], [0, 1]]")
+        yield from bounds(path, item, quantity)
         if quantity is not None:
             for key in ("at", "peak") if not quantity.timed else ():
                 if getattr(item, key) is not None:
                     message = f"{item.of} does not run over the instants"
                     yield Violation((*path, key), message, f"leave {key} out", key=True)
             yield from dimensions((*path, "is"), item.is_, quantity.dimensions)
-            yield from dimensions((*path, "abs"), item.abs, quantity.dimensions)
+            for key in ("abs", "below", "above"):
+                yield from dimensions((*path, key), getattr(item, key), quantity.dimensions)
+
+
+def bounds(path: Path_, item: f.Expect, quantity: Outcome | None) -> Iterator[Violation]:
+    """Bounds stand alone, leave room between them, and bound what has a magnitude."""
+    if not item.is_bounded:
+        return
+    first = "below" if item.below is not None else "above"
+    for key in ("is", "rel", "abs"):
+        if (key if key != "is" else "is_") in item.model_fields_set:
+            hint = "is: beside rel: and abs:, or below: and above: alone" if key == "is" else "put it into the bound"
+            yield Violation((*path, key), f"{key} beside {first}", hint, key=True)
+    low, high = (None if x is None else x.constant for x in (item.above, item.below))
+    if low is not None and high is not None and low >= high:
+        yield Violation((*path, "above"), f"nothing is above {low:g} and below {high:g}", key=True)
+    if quantity is not None and sum(axis is not CUT for axis in quantity.axes) > 1:
+        yield Violation((*path, "of"), f"{item.of} is a list of lists", f"name one of its numbers, as {item.of}.0.0")
 
 
 def dimensions(path: Path_, value: Any, known: tuple[u.Dimension, ...]) -> Iterator[Violation]:
@@ -82,14 +98,14 @@ def expect_instants(draft: DraftDocument) -> Iterator[Violation]:
     instants = instants_of(document) if type_of(document) == "motion" else (0.0,)
     if not instants or document.analysis.type == "impulse" or "analysis" in draft.unread:
         return
-    for path, item, quantity, _ in outcomes(draft):
+    for path, item, quantity in outcomes(draft):
         if item.at is not None:
             nearest = min(instants, key=lambda t: abs(t - item.at))  # type: ignore[operator]
             if abs(nearest - item.at) > tolerances.SAME_INSTANT * max(instants[-1], abs(item.at)):
                 message = f"{item.at:g} s is not an instant of the output; the nearest is {nearest:g} s"
                 yield Violation((*path, "at"), message, "add it to analysis.times, or choose other samples")
                 continue
-        if quantity is not None and item.is_ is not None:
+        if quantity is not None and item.is_ is not None and not item.is_bounded:
             yield from sizes((*path, "is"), item, quantity, output_instants(draft, len(instants)))
 
 

@@ -2,9 +2,12 @@
 
 from __future__ import annotations
 
+from collections.abc import Mapping
 from typing import NamedTuple
 
 from heuncli.expressions import units as u
+from heuncli.joint_kinds import RATES, TYPES
+from heuncli.nearest import did_you_mean, nearest
 from heuncli.results_schema import (
     AFTER_THE_RUN,
     BLOWS,
@@ -49,16 +52,25 @@ class Reached(NamedTuple):
 
 def outcome(path: str, draft: DraftDocument) -> Outcome | UnknownWord | None:
     """What a path leads to; None where that is seen only after the run."""
-    reached = follow(path.split("."), draft.names)
+    return result(path.split("."), draft.names, runs_of(draft))
+
+
+def runs_of(draft: DraftDocument) -> dict[str, bool]:
+    """Whether the sections that could be read are runs of cuts."""
+    return {name: is_run(section) for name, section in draft.document.sections.items()}
+
+
+def result(path: list[str], names: Names, runs: Mapping[str, bool]) -> Outcome | UnknownWord | None:
+    """What the words of a path lead to; runs: of the sections, whether they are runs of cuts."""
+    reached = follow(path, names)
     if not isinstance(reached, Reached):
         return reached
     run, at_a_blow = False, reached.keys[0] == BLOWS
     keys = reached.keys[2:] if at_a_blow else reached.keys
     if keys[0] == "sections":
-        section = draft.document.sections.get(keys[1])
-        if section is None:
+        if keys[1] not in runs:
             return None
-        run = is_run(section)
+        run = runs[keys[1]]
     dimensions = tuple(u.parse_unit(unit)[1] for unit in reached.quantity.units)
     timed = reached.quantity.timed and not at_a_blow
     return part(Outcome(dimensions, reached.quantity.axes(run), timed), reached.rest)
@@ -70,7 +82,7 @@ def follow(path: list[str], names: Names) -> Reached | UnknownWord | None:
     keys: list[str] = []
     rest = path
     while isinstance(node, dict):
-        known = keys_in(node, names)
+        known = keys_in(node, keys, names)
         key, behind = leading_key(known, rest)
         if NUMBER in node and rest[:1] and rest[0].isdecimal():  # how many there are, only the run tells
             key, behind = rest[0], rest[1:]
@@ -83,9 +95,59 @@ def follow(path: list[str], names: Names) -> Reached | UnknownWord | None:
     return Reached(node, keys, rest) if node is not None and node.units else None
 
 
-def keys_in(node: Node, names: Names) -> list[str]:
-    """The keys that the results will have there: words of the schema, and names of the scene."""
-    return [key for word in node for key in named(word, names)]
+def keys_in(node: Node, above: list[str], names: Names) -> list[str]:
+    """The keys that the results will have there: words of the schema, and names of the scene; above: where it is."""
+    known = [key for word in node for key in named(word, names)]
+    if above[:1] == ["coordinates"]:
+        return [key for key in known if has_coordinate(above[1:], key, names)]
+    return known
+
+
+def has_coordinate(joint: list[str], key: str, names: Names) -> bool:
+    """Whether a joint, the key or the one given, has coordinates, or this one."""
+    kind = TYPES.get(names.joints[joint[0] if joint else key])
+    if kind is None:
+        return True
+    own = {*kind.coordinates, *(TYPES[kind.planar].coordinates if kind.planar in TYPES else ())}
+    if not joint or len(own) == 2:
+        return bool(own)
+    return key in {word for quantity in own for word in (quantity, RATES[quantity], "acceleration")}
+
+
+def wrong_path(path: str, names: Names, runs: Mapping[str, bool]) -> tuple[str, str | None] | None:
+    """What is wrong with a path into the results, and a hint; None: nothing, or only the run can tell."""
+    reached = result(path.split("."), names, runs)
+    if not isinstance(reached, UnknownWord):
+        return None
+    from heuncli.path_hints import meant  # only on the way to an error
+
+    likely = meant(path, lambda words: isinstance(result(words, names, runs), Outcome))
+    what = f"'{path}': '{reached.word}' is not a result" if reached.word else f"'{path}' is not a number"
+    if likely is not None:
+        return what, f"did you mean {likely}?"
+    return what, names_hint(path.split("."), reached, names)
+
+
+def names_hint(path: list[str], reached: UnknownWord, names: Names) -> str:
+    """What may stand at the place where a path leads nowhere."""
+    block, *rest = path
+    if not reached.word:
+        return f"it goes on with one of {', '.join(reached.known)}"
+    if not reached.known:
+        return "the path ends before it" if names.entries.get(block) or not rest else f"the scene has no {block}"
+    if reached.word == block and nearest(block, reached.known) is None:
+        known = {name: kind for kind, own in names.entries.items() for name in own if kind in TREE}
+        if block in known:
+            whole = f"{known[block]}.{block}"
+            return f"{block} is one of the {known[block]}; {whole} has {', '.join(keys_behind(whole, names))}"
+        return did_you_mean(block, known, "names") or ""
+    return did_you_mean(reached.word, reached.known, "words here") or ""
+
+
+def keys_behind(path: str, names: Names) -> list[str]:
+    """The keys with which a path that is too short goes on."""
+    reached = follow(path.split("."), names)
+    return reached.known if isinstance(reached, UnknownWord) else []
 
 
 def named(word: str, names: Names) -> list[str]:
