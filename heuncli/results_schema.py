@@ -35,6 +35,7 @@ class Axis(NamedTuple):
 
 
 SPACE = Axis("space", ("x", "y", "z"))
+QUATERNION = Axis("quaternion", ("w", "x", "y", "z"))
 CUT = Axis("cut")  # only in runs of cuts
 INSTANT = Axis("instant")
 INDEX = Axis("index")  # of lists that the schema does not describe
@@ -109,6 +110,8 @@ ROWS: tuple[Quantity, ...] = (
     *at("", "the instants", scalar("time", "s")),
     *at("bodies.BODY", "of the body's origin", vector("position", "m"), vector("velocity", "m/s")),
     *at("bodies.BODY", "of the body: its axes are the columns", scalar("rotation", "1", (SPACE, SPACE))),
+    *at("bodies.BODY", "the same as unit quaternion `w`, `x`, `y`, `z`; w ≥ 0 at the start, no jumps of its sign",
+        scalar("quaternion", "1", (QUATERNION,))),
     *at("bodies.BODY", "of the centre of mass",
         vector("center", "m"), vector("center_velocity", "m/s"), vector("center_acceleration", "m/s²")),
     *at("bodies.BODY", "of the body", vector("angular_velocity", "rad/s"), vector("angular_acceleration", "rad/s²")),

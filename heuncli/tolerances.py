@@ -39,7 +39,7 @@ WHOLE_FACTOR = 1e-9  # a factor so near to a whole number is that number; shares
 # what has one freedom gives two poses each, and among more components than poses some sums hold by accident
 SUM_POSES = (0.05, 0.1, 0.2, 0.4)
 ONE_DIRECTION = 1e-6  # of the largest: over poses NEIGHBOUR apart an open force in one direction turns by NEIGHBOUR**2
-ZERO_COMPONENT = 1e-12  # of a unit direction that is proposed: smaller ones are rounding and would be printed as such
+ZERO_COMPONENT = 1e-12  # of a unit direction that is proposed, or quaternion: smaller ones are rounding, not printed
 
 # -- in the plane
 # sine of a direction, and of the size or a vector's length: some dozen roundings, which turning a plane in space leaves

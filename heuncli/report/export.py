@@ -8,14 +8,14 @@ from __future__ import annotations
 import json
 from collections.abc import Iterable, Iterator, Sequence
 from dataclasses import fields
-from typing import Any
+from typing import Any, NamedTuple
 
 import numpy as np
 
 from heuncli.errors import LimitError, Problem
 from heuncli.report.labels import Labels
 from heuncli.report.quantities import Series, walk, walk_impulse
-from heuncli.results import Results
+from heuncli.results import Block, Results
 from heuncli.results_schema import AT_A_BLOW, BLOWS, row_of
 
 FORMAT = 1
@@ -23,6 +23,7 @@ MOST_NUMBERS = 200_000_000  # about 4 GB of text
 ALWAYS = frozenset({"title", "spec", "version", "model", "status", "time"})
 CERTAIN_SUM = row_of("certain_sums.NUMBER.value")
 CSV_COLUMNS = ("time", "kind", "name", "quantity", "component", "unit", "value")  # and cause, where shares are told
+CUT_COLUMNS = ("section", "cut", "s", "side")  # behind these, where there are sections
 
 
 def to_json(results: Results) -> str:
@@ -33,27 +34,44 @@ def to_json(results: Results) -> str:
     return "".join(chunks) + "\n"
 
 
+class Rows(NamedTuple):
+    """The lines of one series in CSV: kind and name, the instants it holds at, and the sections that it may be of."""
+
+    series: Series
+    kind: str
+    name: str
+    instants: list[str]
+    sections: Block
+
+
 def to_csv(results: Results, labels: Labels) -> str:
     """The results in long form, a line a number; an empty value is open, an empty time holds for all instants."""
     _limit(results)
     instants = [repr(t) for t in results.time.tolist()]
-    rows: list[tuple[Series, str, str, list[str]]] = []  # series, kind, name, and the instants it holds at
-    for series in walk(results, labels):
-        rows.append((series, series.kind, series.name, [""] if series.static else instants))
+    rows = [
+        Rows(series, series.kind, series.name, [""] if series.static else instants, results.sections)
+        for series in walk(results, labels)
+    ]
     for number, block in enumerate(results.impulses):
-        for series in walk_impulse(block, labels):
-            name = ".".join(part for part in (str(number), series.kind, series.name) if part)
-            rows.append((series, BLOWS, name, [repr(float(block["time"]))]))
-        for name, series in _sums(block.get("certain_sums", ())):
-            own = f"{number}.certain_sums.{name}"
-            series = series._replace(unit=AT_A_BLOW[series.unit])
-            rows.append((series, BLOWS, own, [repr(float(block["time"]))]))
-    rows += [(series, series.kind, name, instants) for name, series in _sums(results.certain_sums)]
-    by_cause = any(series.cause for series, *_ in rows)
-    lines = [",".join([*CSV_COLUMNS, *["cause"] * by_cause]) + "\n"]
-    for series, kind, name, times in rows:
-        lines += _lines(series, kind, name, times, f",{series.cause}" * by_cause)
+        rows += _of_blow(number, block, labels)
+    rows += [Rows(series, series.kind, name, instants, {}) for name, series in _sums(results.certain_sums)]
+    by_cause = any(row.series.cause for row in rows)
+    cut = any(row.series.kind == "sections" for row in rows)
+    lines = [",".join([*CSV_COLUMNS, *["cause"] * by_cause, *CUT_COLUMNS * cut]) + "\n"]
+    for row in rows:
+        ends = _cuts(row) if cut else [""] * len(row.series.components)
+        lines += _lines(row, [f",{row.series.cause}{end}" if by_cause else end for end in ends])
     return "".join(lines)
+
+
+def _of_blow(number: int, block: Block, labels: Labels) -> Iterator[Rows]:
+    """The rows of one blow."""
+    at, sections = [repr(float(block["time"]))], block.get("sections", {})
+    for series in walk_impulse(block, labels):
+        name = ".".join(part for part in (str(number), series.kind, series.name) if part)
+        yield Rows(series, BLOWS, name, at, sections)
+    for name, series in _sums(block.get("certain_sums", ())):
+        yield Rows(series._replace(unit=AT_A_BLOW[series.unit]), BLOWS, f"{number}.certain_sums.{name}", at, {})
 
 
 def _sums(sums: Sequence[Any]) -> Iterator[tuple[str, Series]]:
@@ -117,13 +135,28 @@ def _plain(values: Any) -> Any:
     )
 
 
-def _lines(series: Series, kind: str, name: str, instants: list[str], end: str) -> Iterator[str]:
-    """A line an instant and component."""
-    for component, column in zip(series.components, series.values.T, strict=True):
-        middle = f",{kind},{name},{series.quantity},{component},{series.unit},"
+def _lines(row: Rows, ends: Sequence[str]) -> Iterator[str]:
+    """A line an instant and component; ends: what stands behind its number."""
+    series = row.series
+    for component, end, column in zip(series.components, ends, series.values.T, strict=True):
+        middle = f",{row.kind},{row.name},{series.quantity},{component},{series.unit},"
         known = np.isfinite(column).tolist()
         numbers = [repr(number) if sure else "" for number, sure in zip((column + 0.0).tolist(), known, strict=True)]
-        yield from [f"{t}{middle}{number}{end}\n" for t, number in zip(instants, numbers, strict=True)]
+        yield from [f"{t}{middle}{number}{end}\n" for t, number in zip(row.instants, numbers, strict=True)]
+
+
+def _cuts(row: Rows) -> list[str]:
+    """Of each component the section, the cut of a run, its distance and its side, as they end its lines."""
+    series = row.series
+    if series.kind != "sections":
+        return [",,,,"] * len(series.components)
+    name = series.name.split(".")[0]
+    if not series.of_cuts or "s" not in row.sections[name]:
+        return [f",{name},,,"] * len(series.components)
+    s = [repr(float(at)) for at in row.sections[name]["s"]]
+    side = [word or "" for word in row.sections[name].get("side") or [None] * len(s)]
+    numbers = [int(component.partition(".")[0]) for component in series.components]
+    return [f",{name},{cut},{s[cut]},{side[cut]}" for cut in numbers]
 
 
 def _limit(results: Results) -> None:

@@ -23,7 +23,8 @@ SIDES = {None: np.nan, "before": -1.0, "beyond": 1.0}  # as numbers, in CSV
 class Series(NamedTuple):
     """One quantity over the instants: `values` is (n_t, n_components), or (1, n_components) where `static`.
 
-    cause: of whose share it is, in the quantity of the same name; empty for the whole.
+    cause: of whose share it is, in the quantity of the same name; empty for the whole. of_cuts: whether components
+    begin with the number of a cut.
     """
 
     kind: str
@@ -34,6 +35,7 @@ class Series(NamedTuple):
     values: Array
     static: bool = False
     cause: str = ""
+    of_cuts: bool = False
 
     @property
     def path(self) -> str:
@@ -98,13 +100,14 @@ class _Walk(NamedTuple):
         cause = keys[-1] if is_share(row) else ""
         name = ".".join(keys[:-2] if cause else keys)
         unit = row.unit(len(row.units) > 1 and self.labels.turns(self.kind, name))
-        components = component_names(row.axes(run), values.shape[1:])
-        return Series(self.kind, name, key, unit, components, values.reshape(len(values), -1), cause=cause)
+        axes = row.axes(run)
+        components, flat = component_names(axes, values.shape[1:]), values.reshape(len(values), -1)
+        return Series(self.kind, name, key, unit, components, flat, cause=cause, of_cuts=CUT in axes)
 
     def along_cuts(self, keys: tuple[str, ...], key: str, unit: str, values: Array) -> Series:
         """The series of one number a cut that is the same at all instants."""
         components = component_names((CUT,), values.shape)
-        return Series(self.kind, ".".join(keys), key, unit, components, values[None, :], static=True)
+        return Series(self.kind, ".".join(keys), key, unit, components, values[None, :], static=True, of_cuts=True)
 
 
 def _node(node: Node, key: str) -> Node:

@@ -167,7 +167,10 @@ def blocks(recovery: Recovery, wanted: Set[str]) -> dict[str, Any]:
     if "energy" in wanted:
         shown["energy"] = recovery.energy
     if "motion" in wanted:
-        shown["bodies"] = {b.name: body_block(states, i) for i, b in enumerate(mechanism.bodies)}
+        from heuncli.kinetostatics.attitudes import quaternions  # tables do not show them
+
+        turns = quaternions(layout, recovered)
+        shown["bodies"] = {b.name: body_block(states, turns, i) for i, b in enumerate(mechanism.bodies)}
         shown["coordinates"] = coordinates(layout, recovered, states)
         shown["system_vector"] = system_vector(mechanism, states)
     if "points" in wanted:
@@ -217,12 +220,13 @@ def accuracy(recovery: Recovery, kinetic: float = 0.0, struck: float = 0.0, span
     return found
 
 
-def body_block(states: BodyStates, i: int) -> Block:
+def body_block(states: BodyStates, turns: Array, i: int) -> Block:
     """Motion of one body."""
     return {
         "position": states.x[:, i],
         "velocity": states.v[:, i],
         "rotation": states.R[:, i],
+        "quaternion": turns[:, i],
         "center": states.centre[:, i],
         "center_velocity": states.v_centre[:, i],
         "center_acceleration": states.a_centre[:, i],

@@ -109,6 +109,20 @@ def test_csv_names_the_cuts_of_a_run_by_their_number_and_tells_where_they_are() 
     assert len(forces) == 15
 
 
+def test_csv_has_section_cut_distance_and_side_in_columns() -> None:
+    lines = rows(to_csv(pendulum(T, impulses=[BLOW]), LABELS))
+    assert list(lines[0])[7:] == ["section", "cut", "s", "side"]
+    along = {r["cut"]: r for r in lines if r["name"] == "along" and r["quantity"] == "force"}
+    assert [along[cut]["side"] for cut in "01234"] == ["", "", "before", "beyond", ""]
+    assert [float(along[cut]["s"]) for cut in "01234"] == pendulum(T).sections["along"]["s"].tolist()
+    assert all(r["cut"] == r["component"].split(".")[0] for r in lines if r["cut"])
+    assert {(r["section"], r["cut"]) for r in lines if r["quantity"] == "normal"} == {("along", "")}
+    assert {r["section"] for r in lines if r["name"] == "middle"} == {"middle"}
+    assert {r["section"] for r in lines if r["name"] == "pivot"} == {""}
+    without = rows(to_csv(pendulum(T, sections={}), LABELS))
+    assert "section" not in without[0]
+
+
 def test_csv_leaves_what_is_open_empty() -> None:
     results = pendulum(T)
     results.joints["pivot"]["force"][2, 1] = np.nan
