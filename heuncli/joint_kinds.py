@@ -91,7 +91,7 @@ class Kind(NamedTuple):
     coordinates: tuple[Literal["angle", "travel"], ...] = ()
     drives: tuple[Literal["angle", "travel", "length"], ...] = ()
     # what acts in it: kinds of loads, and the motions on which they act
-    loads: tuple[Literal["torque", "damper", "friction"], ...] = ()
+    loads: tuple[Literal["torque", "turn_spring", "damper", "friction"], ...] = ()
     motions: tuple[Motion, ...] = ()
     # what it is in a scene declared planar, None: it cannot be there
     planar: str | None = None
@@ -162,6 +162,10 @@ class Kind(NamedTuple):
         """Whether the place where it loads its `from` body moves over that body."""
         return bool(self.shifts)
 
+    def moved_by(self, load: str) -> tuple[Motion, ...]:
+        """The motions on which a load of this kind acts: a row of the kernel's table of loads each."""
+        return ("turning",) if load == "turn_spring" else self.motions
+
     def takes(self, load: str) -> bool:
         """Whether a load of this kind may act in it."""
         return load in self.loads
@@ -177,7 +181,7 @@ TYPES: dict[str, Kind] = {
         ),
         Kind(
             "pin", POINT, ABOUT_AXIS, axis_key="axis", to_axis="optional", coordinates=("angle",), drives=("angle",),
-            loads=("torque", "damper", "friction"), motions=("turning",), planar="pin",
+            loads=("torque", "turn_spring", "damper", "friction"), motions=("turning",), planar="pin",
             looser=("universal", "ball", "cylinder", "line"),  # a pin with side play is a line
             looser_in_plane=("flat line",),
             synonyms=("revolute", "hinge", "pivot", "rotational", "rotary", "bearing"),
@@ -190,11 +194,12 @@ TYPES: dict[str, Kind] = {
         ),
         Kind(
             "cylinder", LINE, ABOUT_AXIS, axis_key="axis", to_axis="optional", coordinates=("angle", "travel"),
-            drives=("travel",), loads=("damper", "friction"), motions=("turning", "sliding"), looser=("line",),
+            drives=("travel",), loads=("turn_spring", "damper", "friction"), motions=("turning", "sliding"),
+            looser=("line",),
             synonyms=("cylindrical",),
         ),
         Kind(
-            "universal", POINT, ABOUT_TWO, axis_key="axis", to_axis="required", loads=("damper",),
+            "universal", POINT, ABOUT_TWO, axis_key="axis", to_axis="required", loads=("turn_spring", "damper"),
             motions=("turning",), looser=("ball",), synonyms=("cardan", "hooke", "u"),
         ),
         Kind(

@@ -167,8 +167,10 @@ ROWS: tuple[Quantity, ...] = (
         cut_scalar("N", "N"), cut_scalar("Q1", "N"), cut_scalar("Q2", "N"),
         cut_scalar("T", "N·m"), cut_scalar("M1", "N·m"), cut_scalar("M2", "N·m")),
     *at("sections.SECTION.shares.CAUSE", DIRECT, cut_vector("direct_force", "N"), cut_vector("direct_moment", "N·m")),
-    *at("forces.FORCE", "as in the spec; of its line; of that, or in its joint; put into the bodies",
-        scalar("value", "N | N·m"), scalar("length", "m"), scalar("rate", "m/s | rad/s"), scalar("power", "W")),
+    *at("forces.FORCE", "as in the spec, of a vector its magnitude, of a distributed one its resultant's; of its line; "
+        "of a turn spring; of its line, or in its joint; put into the bodies",
+        scalar("value", "N | N·m"), scalar("length", "m"), scalar("angle", "rad"), scalar("rate", "m/s | rad/s"),
+        scalar("power", "W")),
     *at("energy", "kinetic + potential − work is constant",
         scalar("kinetic", "J"), scalar("potential", "J"), scalar("work", "J")),
     *at("system_vector", "Heun's B (44)", vector("total", "N·m/s")),
@@ -295,7 +297,7 @@ def kind_of_error(kind: str, name: str, number: str) -> str:
     if kind == "foundation" and name == "axis":
         return "axis"
     if kind == "forces":
-        return "motion" if number in ("length", "rate") else "forces"
+        return "motion" if number in ("length", "angle", "rate") else "forces"
     if number.startswith("energy_"):
         return "energy"
     return ESTIMATES.get(kind, "motion")

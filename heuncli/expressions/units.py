@@ -36,6 +36,7 @@ DAMPING: Dimension = (1, 0, -1)
 PRESSURE: Dimension = (1, -1, -2)
 POWER: Dimension = (1, 2, -3)
 ANGLE = NUMBER
+LINE_FORCE = STIFFNESS
 TURNING_STIFFNESS = MOMENT
 TURNING_DAMPING = ANGULAR_IMPULSE
 
@@ -57,7 +58,7 @@ NAMES: dict[Dimension, tuple[str, str]] = {  # what a value of the dimension is 
     MOMENT: ("a moment", "N*m"),
     IMPULSE: ("an impulse", "N*s"),
     ANGULAR_IMPULSE: ("a moment of an impulse", "N*m*s"),
-    STIFFNESS: ("a stiffness", "N/m"),
+    STIFFNESS: ("a stiffness or force per length", "N/m"),
     DAMPING: ("a damping coefficient", "N*s/m"),
     PRESSURE: ("a pressure", "Pa"),
     POWER: ("a power", "W"),

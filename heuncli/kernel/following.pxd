@@ -11,8 +11,9 @@ from heuncli.kernel.enclosure cimport enclose
 from heuncli.kernel.events cimport see
 from heuncli.kernel.expressions cimport Bounds, Jet, Program, jet
 from heuncli.kernel.landing cimport begin_to_see, see_stage
+from heuncli.kernel.loads cimport turned_by
 from heuncli.kernel.response cimport evaluate, respond, settle
-from heuncli.kernel.scene cimport Body, Counter, Freedom, Load, SHIFT, SPRING, Scene
+from heuncli.kernel.scene cimport Body, Counter, Freedom, Load, SHIFT, SPRING, Scene, TURN_SPRING
 from heuncli.kernel.selection cimport order_all
 from heuncli.kernel.tree cimport coordinates, direction_of, kinematics
 from libc.math cimport INFINITY, atan2, fabs, sqrt

@@ -44,8 +44,9 @@ if not cython.compiled:
     from heuncli.kernel.events import see
     from heuncli.kernel.expressions import jet
     from heuncli.kernel.landing import begin_to_see, see_stage
+    from heuncli.kernel.loads import turned_by
     from heuncli.kernel.response import evaluate, respond, settle
-    from heuncli.kernel.scene import SHIFT, SPRING, Body, Counter, Freedom, Load, Scene
+    from heuncli.kernel.scene import SHIFT, SPRING, TURN_SPRING, Body, Counter, Freedom, Load, Scene
     from heuncli.kernel.selection import order_all
     from heuncli.kernel.shadow import cython
     from heuncli.kernel.structs import Bounds, Branch, Jet, Method, Program, Run
@@ -334,6 +335,9 @@ def mechanical_energy(scene: cython.pointer[Scene]) -> cython.double:
         load: cython.pointer[Load] = cython.address(scene.loads[i])
         if load.kind == SPRING:
             stretch = norm(sub(place_of(scene, load.b, load.q), place_of(scene, load.a, load.p))) - load.length
+            found += 0.5 * load.stiffness * stretch * stretch
+        elif load.kind == TURN_SPRING:
+            stretch = turned_by(scene, load) - load.length
             found += 0.5 * load.stiffness * stretch * stretch
     return found
 

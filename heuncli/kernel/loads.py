@@ -11,7 +11,7 @@ except ImportError:
     from heuncli.kernel.shadow import cython
 
 if not cython.compiled:
-    from math import tanh
+    from math import atan2, tanh
 
     from heuncli.kernel.algebra import Vec3, cross, dot, norm, scaled, sub
     from heuncli.kernel.expressions import value
@@ -24,7 +24,9 @@ if not cython.compiled:
         SPRING,
         THRUST,
         TURN_FRICTION,
+        TURN_SPRING,
         Body,
+        Counter,
         Load,
         Scene,
     )
@@ -51,8 +53,7 @@ def apply_loads(scene: cython.pointer[Scene]) -> cython.double:
         elif load.kind == SPRING or load.kind == ACTUATOR:
             power += pair_load(scene, load, given, there.v)
         else:
-            joint_load(scene, load, given, there.v)
-            power += load.power
+            power += joint_load(scene, load, given, there.v)
     return power
 
 
@@ -67,7 +68,7 @@ def given_vector(scene: cython.pointer[Scene], load: cython.pointer[Load]) -> Ve
 
 def outer_load(scene: cython.pointer[Scene], load: cython.pointer[Load], given: Vec3, v: Vec3) -> cython.void:
     """A force on a point that moves with v, or a couple, from outside the system."""
-    turned: Vec3 = direction_of(scene, load.b, given) if load.in_body else given
+    turned: Vec3 = scaled(load.factor, direction_of(scene, load.b, given) if load.in_body else given)
     load.value = norm(turned)
     if load.kind == FORCE:
         load.force = turned
@@ -113,18 +114,22 @@ def pair_load(scene: cython.pointer[Scene], load: cython.pointer[Load], given: V
     return lost
 
 
-def joint_load(scene: cython.pointer[Scene], load: cython.pointer[Load], given: Vec3, v: Vec3) -> cython.void:
-    """A torque or thrust about or along the joint's axis, a damper or friction against its turning or sliding.
+def joint_load(scene: cython.pointer[Scene], load: cython.pointer[Load], given: Vec3, v: Vec3) -> cython.double:
+    """A torque, thrust or spring about or along the joint's axis, a damper or friction against its turning or sliding.
 
-    Friction is Coulomb's, smoothed: F tanh(rate / speed), against the direction of the motion.
+    A spring's torque is -k (angle - free angle) - c rate. Friction is Coulomb's, smoothed: F tanh(rate / speed),
+    against the direction of the motion. Gives the power of what has no potential.
     """
     axis: Vec3 = direction_of(scene, load.a, load.axis)
     slides: cython.bint = load.kind == THRUST or load.kind == SHIFT_DAMPER or load.kind == SHIFT_FRICTION
     motion: Vec3 = sliding_in(scene, load, v) if slides else sub(omega_of(scene, load.b), omega_of(scene, load.a))
     acts: Vec3
     load.rate = dot(motion, axis)
-    if load.kind <= THRUST:
+    if load.kind <= TURN_SPRING:
         load.value = given.x
+        if load.kind == TURN_SPRING:
+            load.span = turned_by(scene, load)
+            load.value = -load.stiffness * (load.span - load.length) - load.coefficient * load.rate
         load.power = load.value * load.rate
         acts = scaled(load.value, axis)
     else:
@@ -144,6 +149,29 @@ def joint_load(scene: cython.pointer[Scene], load: cython.pointer[Load], given: 
     load.from_at = load.at
     push(scene, load.b, load.at, load.force, load.moment)
     push(scene, load.a, load.at, scaled(-1.0, load.force), scaled(-1.0, load.moment))
+    return -load.coefficient * load.rate * load.rate if load.kind == TURN_SPRING else load.power
+
+
+def turned_by(scene: cython.pointer[Scene], load: cython.pointer[Load]) -> cython.double:
+    """The angle of a turn spring, turns counted: a coordinate, or of a joint that was cut what the bodies' axes make.
+
+    The latter in the revolution nearest to the angle that is counted along. What turns neither way keeps its angle.
+    """
+    if load.freedom >= 0:
+        return scene.freedoms[load.freedom].q + load.offset
+    if load.counter < 0:
+        return load.offset
+    counter: cython.pointer[Counter] = cython.address(scene.counters[load.counter])
+    n: Vec3 = direction_of(scene, load.a, load.axis)
+    before: Vec3 = direction_of(scene, load.a, load.across)
+    now: Vec3 = direction_of(scene, load.b, load.mark)
+    angle: cython.double = atan2(dot(n, cross(before, now)), dot(before, now))
+    half: cython.double = 3.141592653589793
+    while counter.counted - angle > half:
+        angle += 2.0 * half
+    while angle - counter.counted > half:
+        angle -= 2.0 * half
+    return angle
 
 
 def sliding_in(scene: cython.pointer[Scene], load: cython.pointer[Load], v: Vec3) -> Vec3:

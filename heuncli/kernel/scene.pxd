@@ -7,7 +7,7 @@ cdef enum:
     TURN_IN_PARENT, TURN_IN_BODY, SHIFT
 
 cdef enum:
-    FORCE, COUPLE, SPRING, ACTUATOR, TORQUE, THRUST, TURN_DAMPER, SHIFT_DAMPER, TURN_FRICTION, SHIFT_FRICTION
+    FORCE, COUPLE, SPRING, ACTUATOR, TORQUE, THRUST, TURN_SPRING, TURN_DAMPER, SHIFT_DAMPER, TURN_FRICTION, SHIFT_FRICTION
 
 cdef enum:
     GUIDE, DOT, ROD, TURN
@@ -79,6 +79,8 @@ cdef struct Load:
     int a
     int b
     int in_body
+    int freedom
+    int counter
     Program x
     Program y
     Program z
@@ -90,6 +92,10 @@ cdef struct Load:
     double coefficient
     Vec3 axis
     double speed
+    double factor
+    double offset
+    Vec3 across
+    Vec3 mark
     Vec3 force
     Vec3 moment
     Vec3 at
@@ -166,6 +172,7 @@ cdef struct Counter:
     int at
     int unused
     Vec3 axis
+    double counted
 
 cdef struct Variable:
     int freedom

@@ -17,7 +17,8 @@ from heuncli.kernel.structs import Fields, Program, Programs
 
 # Kinds of freedoms, loads and closure rows; for C they stand in scene.pxd, in the same order.
 TURN_IN_PARENT, TURN_IN_BODY, SHIFT = range(3)
-FORCE, COUPLE, SPRING, ACTUATOR, TORQUE, THRUST, TURN_DAMPER, SHIFT_DAMPER, TURN_FRICTION, SHIFT_FRICTION = range(10)
+FORCE, COUPLE, SPRING, ACTUATOR, TORQUE, THRUST, TURN_SPRING = range(7)
+TURN_DAMPER, SHIFT_DAMPER, TURN_FRICTION, SHIFT_FRICTION = range(7, 11)
 GUIDE, DOT, ROD, TURN = range(4)
 CARRIES, APART, LEANS = range(3)  # modes of closure rows
 
@@ -106,6 +107,8 @@ class Load(Record):
     a: int
     b: int
     in_body: int  # the vector's components are in b's axes; of joint loads: reported along the axis
+    freedom: int  # of a turn spring: whose coordinate, and `offset`, make its angle; -1: its joint was cut
+    counter: int  # that then counts its turns
     x: Program  # components of `vector` that vary; x alone for a single value
     y: Program
     z: Program
@@ -117,13 +120,17 @@ class Load(Record):
     coefficient: float
     axis: Vec3  # in a
     speed: float
+    factor: float  # of a force or couple: by which the vector is to be multiplied
+    offset: float
+    across: Vec3  # of a joint that was cut: a direction across the axis, in a
+    mark: Vec3  # and the one in b that agrees with it at angle 0
 
     force: Vec3  # on b
     moment: Vec3
     at: Vec3  # where on b
     from_at: Vec3  # where on a
     value: float
-    span: float  # distance of the two points
+    span: float  # distance of the two points; of a turn spring its angle
     rate: float
     power: float
 
@@ -212,6 +219,8 @@ class Counter(Record):
     at: int  # where it stands in the state
     unused: int
     axis: Vec3  # in a
+
+    counted: float  # the state's angle, which is right to half a turn
 
 
 class Variable(Record):

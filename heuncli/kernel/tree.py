@@ -86,6 +86,8 @@ def coordinates(scene: cython.pointer[Scene], t: cython.double, y: cython.p_doub
             freedom.q = y[freedom.q_at]
             freedom.u = y[freedom.u_at]
             freedom.udot = 0.0
+    for i in range(scene.counter_count):
+        scene.counters[i].counted = y[scene.counters[i].at]
     scene.programs.variables[0] = t
     for i in range(1, scene.variable_count):
         variable: cython.pointer[Variable] = cython.address(scene.variables[i])

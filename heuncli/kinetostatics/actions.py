@@ -9,12 +9,16 @@ from __future__ import annotations
 from collections.abc import Iterator, Sequence
 from typing import Literal
 
+import numpy as np
+from numpy.typing import NDArray
+
 from heuncli.integration.evaluator import Recovered
 from heuncli.joint_kinds import JOINTS
 from heuncli.kinetostatics.reactions import JointLoads
-from heuncli.mechanism.model import GROUND, Joint, JointLoad, Load, Mechanism, PairLoad, PointLoad
+from heuncli.mechanism.model import GROUND, Joint, JointLoad, Load, Mechanism, PairLoad, PointLoad, Spread
 from heuncli.records import record
 from heuncli.results import Array
+from heuncli.shapes.rotations import cross_rows
 
 
 @record
@@ -32,11 +36,19 @@ class End:
 
 
 @record
+class Along:
+    """A part of a distributed load: its force (n_t, 3), world, and how it is spread along the body."""
+
+    spread: Spread
+    force: Array
+
+
+@record
 class Action:
     """Force [N] and moment [N m] ON the body of `to`, (n_t, 3); the opposite ON that of `from_`, None: from outside.
 
     name: of the load, of the joint (its constraint alone, unless drive and stops are included on purpose), of the drive
-    or of the stop.
+    or of the stop. spread: the parts of a distributed load, whose resultant the force and the moment are.
     """
 
     kind: Literal["load", "joint", "drive", "stop"]
@@ -45,6 +57,7 @@ class Action:
     from_: End | None
     force: Array
     moment: Array
+    spread: tuple[Along, ...] = ()
 
     def on_bodies(self) -> Iterator[tuple[End, Array, Array]]:
         """Each end with the force and moment ON the body there, about its position."""
@@ -62,8 +75,9 @@ class Action:
 class AppliedLoad:
     """An applied load at the asked instants: its action, value, length [m], rate and power [W] (n_t,).
 
-    value: the force or moment of a load between two bodies; length and rate: of the line between its points, or of the
-    turning or sliding of its joint (then without a length).
+    value: the force or moment of a load between two bodies, the magnitude of one from outside, of a distributed one
+    that of its resultant; length and rate: of the line between its points, or of the turning or sliding of its joint
+    (of which a turn spring's angle is the length, other loads have none).
     """
 
     load: Load
@@ -77,15 +91,40 @@ class AppliedLoad:
 def applied_loads(mechanism: Mechanism, recovered: Recovered) -> list[AppliedLoad]:
     """The applied loads in the order of the spec; of a joint's load the parts of its several motions together."""
     loads: list[AppliedLoad] = []
+    first: tuple[PointLoad, LoadRows] | None = None  # of a distributed load's two parts
     for load, own in mechanism.load_rows():
         joint = mechanism.joints[load.joint] if isinstance(load, JointLoad) else None
         rows = recovered.loads[:, own]
+        if isinstance(load, PointLoad) and load.spread is not None:
+            if first is not None:
+                loads.append(distributed((first, (load, rows))))
+            first = (load, rows) if first is None else None
+            continue
         force, moment = rows["force"].sum(axis=1), rows["moment"].sum(axis=1)
         to, from_ = _ends(mechanism, load, joint, rows["at"][:, 0], rows["from_at"][:, 0])
         action = Action("load", load.name, to, from_, force, moment)
         value, span, rate = (rows[name][:, 0] for name in ("value", "span", "rate"))
         loads.append(AppliedLoad(load, action, value, span, rate, rows["power"].sum(axis=1)))
     return loads
+
+
+LoadRows = NDArray[np.void]  # of the kernel's answers
+
+
+def distributed(parts: Sequence[tuple[PointLoad, LoadRows]]) -> AppliedLoad:
+    """A distributed load of its two parts: its resultant, about the middle between theirs."""
+    load = parts[0][0]
+    on = [row["at"][:, 0] for _, row in parts]
+    forces = [row["force"][:, 0] for _, row in parts]
+    middle, force = 0.5 * (on[0] + on[1]), forces[0] + forces[1]
+    moment = cross_rows(0.5 * (on[0] - on[1]), forces[0] - forces[1])
+    spreads = [part.spread for part, _ in parts if part.spread is not None]
+    end = End(load.body, middle, 0.5 * (spreads[0].center + spreads[1].center))
+    along = tuple(Along(spread, own) for spread, own in zip(spreads, forces, strict=True))
+    action = Action("load", load.name, end, None, force, moment, along)
+    none = np.zeros(len(force))
+    power = sum((row["power"].sum(axis=1) for _, row in parts), none)
+    return AppliedLoad(load, action, np.sqrt(np.sum(force * force, axis=1)), none, none, power)
 
 
 def _ends(

@@ -16,7 +16,7 @@ from numpy.typing import NDArray
 from heuncli import tolerances
 from heuncli.errors import Problem, SpecError
 from heuncli.joint_kinds import JOINTS
-from heuncli.mechanism.model import GROUND, Mechanism
+from heuncli.mechanism.model import GROUND, Mechanism, PointLoad
 from heuncli.records import record, replace
 from heuncli.results import Array
 from heuncli.shapes.forms import Form
@@ -78,6 +78,8 @@ def attached(mechanism: Mechanism, body: int) -> list[tuple[str, Array]]:
         if joint.a == body and not JOINTS[joint.kind].wanders:
             points.append((f"joint {joint.name}", joint.p))
     for load in mechanism.loads:
+        if isinstance(load, PointLoad) and load.spread is not None:
+            continue
         points += [(f"force {load.name}", point) for owner, point in load.points if owner == body]
     for blow in mechanism.blows:
         if blow.body == body and blow.point is not None:
@@ -88,6 +90,15 @@ def attached(mechanism: Mechanism, body: int) -> list[tuple[str, Array]]:
             limits = [limit for limit in (stop.low, stop.high) if limit is not None]
             points += [(f"stop {stop.name}", joint.p + limit * joint.axis) for limit in limits]
     return points
+
+
+def spread_on(mechanism: Mechanism, body: int) -> list[tuple[str, Array]]:
+    """Distributed loads on a body, each with the two ends of its line, (2, 3), body axes."""
+    found: dict[str, Array] = {}
+    for load in mechanism.loads:
+        if isinstance(load, PointLoad) and load.spread is not None and load.body == body:
+            found.setdefault(f"force {load.name}", np.stack([load.spread.start, load.spread.end]))
+    return list(found.items())
 
 
 def lay_cuts(mechanism: Mechanism, spec: Any, forms: dict[str, Form]) -> tuple[Cuts, ...]:
@@ -125,10 +136,14 @@ def _lay(mechanism: Mechanism, spec: Any, name: str, section: Any, index: dict[s
     e1 = first_axis(n, section.first_axis)
     points, s = _cut_points(section)
     d = points @ n
-    loaded = attached(mechanism, body)
+    loaded, lines = attached(mechanism, body), spread_on(mechanism, body)
     heights = np.array([point for _, point in loaded]).reshape(-1, 3) @ n
-    near = _near(form, heights, d)
-    in_plane = np.abs(heights[None, :] - d[:, None]) <= near
+    ends = np.array([line for _, line in lines]).reshape(-1, 2, 3) @ n
+    near = _near(form, np.append(heights, ends), d)
+    # of a distributed load's line an end in the plane carries nothing, but all of it may lie there
+    off = np.concatenate([np.abs(heights - d[:, None]), np.abs(ends - d[:, None, None]).max(axis=2)], axis=1)
+    in_plane: NDArray[np.bool_] = np.asarray(off <= near)
+    loaded, heights = loaded + lines, np.append(heights, ends)
     jumps = in_plane.any(axis=1)
     if form is not None:
         jumps = jumps | form.masses_in_plane(n, d) | form.rods_in_plane(n, d)

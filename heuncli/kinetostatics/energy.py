@@ -12,7 +12,7 @@ from heuncli.kinetostatics.actions import AppliedLoad
 from heuncli.kinetostatics.bodies import BodyStates
 from heuncli.kinetostatics.foundation import inertia_loads
 from heuncli.kinetostatics.reactions import JointLoads
-from heuncli.mechanism.model import Mechanism, PairLoad
+from heuncli.mechanism.model import JointLoad, Mechanism, PairLoad
 from heuncli.results import Array, Block
 from heuncli.shapes.rotations import cross_rows
 from heuncli.tree.layout import Layout
@@ -31,6 +31,8 @@ def energy(layout: Layout, recovered: Recovered, states: BodyStates, loads: Sequ
         load = applied.load
         if isinstance(load, PairLoad) and load.value is None:
             potential = potential + 0.5 * load.stiffness * np.square(applied.length - load.length)
+        elif isinstance(load, JointLoad) and load.kind == "turn_spring":
+            potential = potential + 0.5 * load.stiffness * np.square(applied.length - load.angle)
     work = recovered.states[:, layout.work_at] if layout.work_at >= 0 else np.zeros_like(kinetic)
     return {"kinetic": kinetic, "potential": potential, "work": work}
 

@@ -29,12 +29,24 @@ from heuncli.shapes.rotations import cross_rows
 class Attachment:
     """Force and couple ON a body, body axes, (n_t, 3); at: their point (3,), or (n_t, 3) if it moves over the body.
 
+    to: the end of the line from `at` along which the force is spread, falling evenly to nothing; None where it is not.
     By causes: (n_c, n_t, 3).
     """
 
     at: Array
     force: Array
     moment: Array
+    to: Array | None = None
+
+    def beyond(self, cuts: Cuts) -> tuple[Array, Array]:
+        """What part of it stands on the pieces, (k,), and that part times its place, (k, 3).
+
+        (n_t, k) and (n_t, k, 3) where the point or the cuts move over the body.
+        """
+        if self.to is None:
+            part = on_piece(cuts, self.at)
+            return part, part[..., None] * self.at[..., None, :]
+        return line_on_piece(cuts, self.at, self.to)
 
 
 def attachments(body: int, states: BodyStates, actions: Sequence[Action]) -> list[Attachment]:
@@ -44,6 +56,11 @@ def attachments(body: int, states: BodyStates, actions: Sequence[Action]) -> lis
     for action in actions:
         for end, force, moment in action.on_bodies():
             if end.body != body:
+                continue
+            for along in action.spread:
+                F = in_body_axes(R, along.force)
+                attached.append(Attachment(along.spread.start, F, np.zeros_like(F), along.spread.end))
+            if action.spread:
                 continue
             F, M = in_body_axes(R, force), in_body_axes(R, moment)
             if end.point is None:
@@ -78,6 +95,29 @@ def on_piece(cuts: Cuts, at: Array) -> Array:
     return mask
 
 
+def line_on_piece(cuts: Cuts, start: Array, end: Array) -> tuple[Array, Array]:
+    """What part of a force spread from start to end stands on the pieces, and that part times its place.
+
+    From a to b of the line, parts of its length x = 0 to 1, where it is 2 (1 - x) dx at start + x (end - start):
+
+        int 2 (1 - x) dx = (b - a)(2 - a - b),   int 2 (1 - x) x dx = (b^2 - a^2) - 2/3 (b^3 - a^3)
+
+    A line in the plane of a cut is on one side of it, as a point is.
+    """
+    d = cuts.points @ cuts.n
+    first, last = float(start @ cuts.n) - d, float(end @ cuts.n) - d
+    cut = (first > 0.0) != (last > 0.0)
+    at = np.where(cut, first, 0.0) / np.where(cut, first - last, 1.0)
+    a = np.where(first > 0.0, 0.0, np.where(cut, at, 1.0))
+    b = np.where(last > 0.0, 1.0, np.where(cut, at, a))
+    in_plane = (np.abs(first) <= cuts.near) & (np.abs(last) <= cuts.near)
+    a = np.where(in_plane, 0.0, a)
+    b = np.where(in_plane, (np.broadcast_to(cuts.side, d.shape) > 0.0).astype(float), b)
+    part = (b - a) * (2.0 - a - b)
+    run = (b - a) * ((a + b) - 2.0 / 3.0 * (a * a + a * b + b * b))
+    return part, part[..., None] * start + run[..., None] * (end - start)
+
+
 def acceleration_matrix(body: int, states: BodyStates, gravity: Array) -> Array:
     """Acc = [hat(sigma.) + hat(sigma)^2, x_o.. - g] in body axes, rows first: (3, n_t, 4)."""
     R = states.R[:, body]
@@ -110,8 +150,9 @@ def piece_loads(cuts: Cuts, A: Array, on: Sequence[Attachment]) -> tuple[Array, 
         return moving_piece_loads(cuts, A, on)
     P, p = cuts.pieces.transpose(1, 2, 0), cuts.points.T
     fixed = [a for a in on if a.at.ndim == 1]
-    at = np.array([a.at for a in fixed]).reshape(-1, 3, 1)
-    mask = np.array([on_piece(cuts, a.at) for a in fixed]).reshape(-1, len(cuts.points))
+    beyond = [a.beyond(cuts) for a in fixed]
+    mask = np.array([part for part, _ in beyond]).reshape(-1, len(cuts.points))
+    first = np.array([moment for _, moment in beyond]).reshape(-1, len(cuts.points), 3)
     B = [np.concatenate([A[i], *(a.force[..., i : i + 1] for a in fixed)], axis=-1) for i in range(3)]
     C = np.concatenate([-P[:, 3], mask])
     force, moment = scratch(2, 3, *A.shape[1:-1], len(cuts.points))
@@ -120,8 +161,8 @@ def piece_loads(cuts: Cuts, A: Array, on: Sequence[Attachment]) -> tuple[Array, 
         np.matmul(B[i], C, out=force[i])
         left = np.concatenate([B[j], B[k], *(a.moment[..., i : i + 1] for a in fixed)], axis=-1)
         right = (
-            np.concatenate([P[:, k], -mask * at[:, k]]) + p[k] * C,
-            np.concatenate([-P[:, j], mask * at[:, j]]) - p[j] * C,
+            np.concatenate([P[:, k], -first[..., k]]) + p[k] * C,
+            np.concatenate([-P[:, j], first[..., j]]) - p[j] * C,
             mask,
         )
         np.matmul(left, np.concatenate(right), out=moment[i])
@@ -146,10 +187,11 @@ def moving_piece_loads(cuts: Cuts, A: Array, on: Sequence[Attachment]) -> tuple[
     moment = np.stack([inertia[2, 1] - inertia[1, 2], inertia[0, 2] - inertia[2, 0], inertia[1, 0] - inertia[0, 1]])
     moment -= crossed(p, force)
     for a in on:
-        F, M = (np.moveaxis(x, -1, 0)[..., None] * on_piece(cuts, a.at) for x in (a.force, a.moment))
-        force += F
-        moment += crossed(np.moveaxis(np.atleast_2d(a.at), 1, 0)[:, :, None] - p, F)
-        moment += M
+        part, first = a.beyond(cuts)
+        F, M = (np.moveaxis(x, -1, 0)[..., None] for x in (a.force, a.moment))
+        force += F * part
+        moment += crossed(np.moveaxis(first, -1, 0) - p * part, F)
+        moment += M * part
     return force, moment
 
 

@@ -72,9 +72,15 @@ Members = Mapping[str, Sequence[int]]  # of a cause: which of the kernel's colum
 
 
 def members_of(mechanism: Mechanism) -> Members:
-    """Of all causes of forces, in the order of the results: a load in a joint has a column a motion of it."""
-    rows = {load.name: range(own.start, own.stop) for load, own in mechanism.load_rows()}
-    n = max((own.stop for own in rows.values()), default=0)
+    """Of all causes of forces, in the order of the results: a load in a joint has a column a motion of it.
+
+    A distributed load has one from either end.
+    """
+    rows: dict[str, list[int]] = {}
+    n = 0
+    for load, own in mechanism.load_rows():
+        rows.setdefault(load.name, []).extend(range(own.start, own.stop))
+        n = own.stop
     beside = {name: [n + k] for k, name in enumerate(CAUSES)}
     return {GRAVITY: beside[GRAVITY], **rows, DRIVES: beside[DRIVES], MOTION: beside[MOTION]}
 

@@ -141,15 +141,19 @@ def laid(asked: Cuts, s: Array, side: Array) -> Cuts:
     return replace(asked, points=points, s=s, side=side, pieces=pieces, centroids=centroids)
 
 
-def stretch_of(asked: Cuts, attached: Sequence[Array], *, halved: int = 0) -> Stretch:
-    """The whole stretch of a run; attached: where loads and joints act on the body; halved: each piece, so often."""
+def stretch_of(asked: Cuts, attached: Sequence[Array], lines: Sequence[Array] = (), *, halved: int = 0) -> Stretch:
+    """The whole stretch of a run; attached: where loads and joints act on the body; halved: each piece, so often.
+
+    lines: the two ends (2, 3) of each distributed load, where loads bend but do not jump, if the line is not in a cut.
+    """
     form, n = asked.form, asked.n
     assert form is not None and asked.s is not None
     low = float(asked.points[0] @ n)
     high = low + float(asked.s[-1])
-    acting = np.array([point @ n for point in attached])
-    shape = form.corners(n)
-    inside = np.concatenate([acting, shape])
+    ends = np.array(lines).reshape(-1, 2, 3) @ n
+    flat = np.abs(ends[:, 1] - ends[:, 0]) <= 4.0 * asked.near
+    acting = np.concatenate([[point @ n for point in attached], ends[flat].mean(axis=1)])
+    inside = np.concatenate([acting, ends[~flat].ravel(), form.corners(n)])
     inside = np.sort(inside[(inside > low + asked.near) & (inside < high - asked.near)])
     corners = np.concatenate([[low], inside, [high]])
     corners = corners[np.append(True, np.diff(corners) > 4.0 * asked.near)]

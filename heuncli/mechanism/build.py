@@ -19,6 +19,7 @@ from heuncli.mechanism.model import (
     Mechanism,
     PairLoad,
     PointLoad,
+    Spread,
     Stop,
 )
 from heuncli.records import replace
@@ -49,7 +50,7 @@ def build(spec: Any, forms: dict[str, Form]) -> Mechanism:
     planar = spec.space == "planar"
     bodies = tuple(body(name, b, forms.get(name)) for name, b in spec.bodies.items())
     made = tuple(joint(name, j, index, drives.get(name), planar) for name, j in spec.joints.items())
-    loads = tuple(load(name, f, index, joints) for name, f in spec.forces.items())
+    loads = tuple(part for name, f in spec.forces.items() for part in parts_of(name, f, index, joints))
     if planar:
         told = {joints[stop.joint][0] for stop in spec.stops.values()} | coordinates_used(loads, joints)
         made = tuple(spun(j, bodies) if k not in told else j for k, j in enumerate(made))
@@ -146,6 +147,20 @@ def spun(joint: Joint, bodies: tuple[Body, ...]) -> Joint:
     return joint
 
 
+def parts_of(
+    name: str, f: Any, index: dict[str, int], joints: dict[str, tuple[int, Kind]]
+) -> tuple[Load, ...]:
+    """An applied load: of a distributed one the parts that grow towards its one end and its other."""
+    if f.type != "distributed":
+        return (load(name, f, index, joints),)
+    start, end = np.array(f.from_), np.array(f.to)
+    spreads = (f.vector, Spread(start, end)), (f.to_vector, Spread(end, start))
+    return tuple(
+        PointLoad(name, "force", index[f.body], spread.center, vector, f.frame == "body", spread)
+        for vector, spread in spreads
+    )
+
+
 def load(name: str, f: Any, index: dict[str, int], joints: dict[str, tuple[int, Kind]]) -> Load:
     """One applied load."""
     match f.type:
@@ -159,7 +174,10 @@ def load(name: str, f: Any, index: dict[str, int], joints: dict[str, tuple[int, 
             spring = (None, f.stiffness, f.length, f.damping) if f.type == "spring" else (f.value, 0.0, 0.0, 0.0)
             return PairLoad(name, index[a.body], np.array(a.point), index[b.body], np.array(b.point), *spring)
         case "torque":
-            return JointLoad(name, "torque", joints[f.joint][0], f.value, 1.0, 1.0, 1.0)
+            return JointLoad(name, "torque", joints[f.joint][0], f.value)
+        case "turn_spring":
+            k = joints[f.joint][0]
+            return JointLoad(name, "turn_spring", k, None, f.damping, stiffness=f.stiffness, angle=f.angle)
         case "damper":
             # the coefficient is that of the one motion; a joint of both gives that of the sliding apart
             k, kind = joints[f.joint]

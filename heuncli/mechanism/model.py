@@ -8,6 +8,8 @@ from __future__ import annotations
 from collections.abc import Iterator
 from typing import Literal
 
+import numpy as np
+
 from heuncli.expressions.programs import Expression
 from heuncli.joint_kinds import JOINTS
 from heuncli.records import record
@@ -83,8 +85,35 @@ class Joint:
 
 
 @record
+class Spread:
+    """How a force is spread along a line of its body: densest at `start`, falling evenly to nothing at `end`.
+
+    Both in the axes of the body that has the load; its resultant acts a third of the way from the start. So the force
+    per length q there makes a force q l/2.
+    """
+
+    start: Array
+    end: Array
+
+    @property
+    def half_length(self) -> float:
+        """l/2 [m]."""
+        run = self.end - self.start
+        return 0.5 * float(np.sqrt(run @ run))
+
+    @property
+    def center(self) -> Array:
+        """Where the resultant acts."""
+        return np.asarray((2.0 * self.start + self.end) / 3.0)
+
+
+@record
 class PointLoad:
-    """A force [N] at a body's point, or a couple [N m] on it (point None or where the couple enters)."""
+    """A force [N] at a body's point, or a couple [N m] on it (point None or where the couple enters).
+
+    Two of one name that are spread, one from either end, make a distributed load: q(s) = q0 (1 - s/l) + q1 s/l. Of a
+    rigid body's motion their resultants are all that counts; `vector` is then q0 or q1 [N/m].
+    """
 
     name: str
     kind: Literal["force", "couple"]
@@ -92,11 +121,22 @@ class PointLoad:
     point: Array | None
     vector: tuple[Expression, Expression, Expression]
     in_body: bool
+    spread: Spread | None = None
+
+    @property
+    def factor(self) -> float:
+        """By which the vector makes the force."""
+        return 1.0 if self.spread is None else self.spread.half_length
 
     @property
     def values(self) -> tuple[Expression, ...]:
         """Its values in time."""
         return self.vector
+
+    @property
+    def is_conservative(self) -> bool:
+        """Whether it has a potential."""
+        return False
 
     @property
     def points(self) -> tuple[tuple[int, Array], ...]:
@@ -124,6 +164,11 @@ class PairLoad:
         return (self.value,) if self.value is not None else ()
 
     @property
+    def is_conservative(self) -> bool:
+        """Whether it has a potential."""
+        return self.value is None and self.damping == 0.0
+
+    @property
     def points(self) -> tuple[tuple[int, Array], ...]:
         """Bodies with the points at which it acts on them, body axes."""
         return (self.a, self.p), (self.b, self.q)
@@ -131,20 +176,27 @@ class PairLoad:
 
 @record
 class JointLoad:
-    """A torque (thrust), damper or friction in a joint; acts on `to`, opposite on `from`."""
+    """A torque (thrust), turn spring, damper or friction in a joint; acts on `to`, opposite on `from`."""
 
     name: str
-    kind: Literal["torque", "damper", "friction"]
+    kind: Literal["torque", "turn_spring", "damper", "friction"]
     joint: int
     value: Expression | None  # torque: N m about the axis, or N along the slide
-    turning: float  # damper: N m s; friction: N m; torque: 1
-    sliding: float  # damper: N s/m; friction: N; thrust: 1
-    speed: float  # friction: where tanh(rate/speed) bends
+    turning: float = 1.0  # damper, turn spring: N m s; friction: N m; torque: 1
+    sliding: float = 1.0  # damper: N s/m; friction: N; thrust: 1
+    speed: float = 1.0  # friction: where tanh(rate/speed) bends
+    stiffness: float = 0.0  # turn spring: N m/rad
+    angle: float = 0.0  # turn spring: where it is relaxed [rad]
 
     @property
     def values(self) -> tuple[Expression, ...]:
         """Its values in time."""
         return (self.value,) if self.value is not None else ()
+
+    @property
+    def is_conservative(self) -> bool:
+        """Whether it has a potential."""
+        return self.kind == "turn_spring" and self.turning == 0.0
 
     @property
     def points(self) -> tuple[tuple[int, Array], ...]:
@@ -201,7 +253,9 @@ class Mechanism:
         """The loads, each with its rows in the kernel's table of loads: of a load in a joint one a motion."""
         at = 0
         for load in self.loads:
-            count = len(JOINTS[self.joints[load.joint].kind].motions) if isinstance(load, JointLoad) else 1
+            count = 1
+            if isinstance(load, JointLoad):
+                count = len(JOINTS[self.joints[load.joint].kind].moved_by(load.kind))
             yield load, slice(at, at + count)
             at += count
 

@@ -123,6 +123,9 @@ def _loads(seen: View, height: float) -> Iterator[Departure]:
             if load.a != load.b and not (seen.stays(load.a) and seen.stays(load.b)):
                 for end, point in load.points:
                     yield from _beside(seen, height, end, point, f"a point of {name}")
+        elif load.kind == "turn_spring":
+            if not seen.stances[load.joint].winds and not _all_stay(seen, mechanism.joints[load.joint]):
+                yield Departure(f"{name} turns about an axis in it", 1.0, True)
         elif load.value is not None and load.value.constant != 0.0:
             joint = mechanism.joints[load.joint]
             turns = "turning" in JOINTS[joint.kind].motions

@@ -146,13 +146,26 @@ class Flat:
         if isinstance(load, PairLoad):
             p, q = self.ends(load.a, load.p, load.b, load.q)
             return replace(load, p=p, q=q)
-        if isinstance(load, JointLoad) or load.body == GROUND:
+        if isinstance(load, JointLoad):
+            return self.turn_spring(load) if load.kind == "turn_spring" else load
+        if load.body == GROUND:
             return load
         S = self.axes(load.body) if load.in_body else self.seen.E
         point = None if load.point is None else self.place(load.body, load.point)
         acts = (0, 1) if load.kind == "force" else (2,)
         vector = tuple(self.component(load, S[k]) if k in acts else ZERO for k in range(3))
         return replace(load, point=point, vector=vector)
+
+    def turn_spring(self, load: JointLoad) -> Load:
+        """A spring about a joint's axis: what acts about another axis than the normal moves nothing.
+
+        The angle of what was a universal is counted from the start there.
+        """
+        if not self.seen.stances[load.joint].winds:
+            return PointLoad(load.name, "couple", GROUND, None, (ZERO, ZERO, ZERO), False)
+        counted = "angle" in JOINTS[self.scene.mechanism.joints[load.joint].kind].coordinates
+        start = 0.0 if counted else self.scene.layout.starts[load.joint].angle
+        return replace(load, angle=load.angle - start)
 
     def component(self, load: PointLoad, direction: Array) -> Expression:
         """A load's component along a direction. Raises NotTold where its program cannot be written down."""

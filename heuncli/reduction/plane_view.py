@@ -27,12 +27,19 @@ class Stance:
     """How a joint stands to the plane: its axis, or one of its two, along the normal, or all of them across it.
 
     axis: the one along the normal, else its own, world; signed: its component along the normal, 1 or -1, 0 across;
-    off: the sine by which what should be along or across is not. What has no axis is taken to stand along.
+    off: the sine by which what should be along or across is not. What has no axis is taken to stand along. second: of
+    two axes the one along the normal is the second.
     """
 
     along: bool
     axis: Array
     off: float
+    second: bool = False
+
+    @property
+    def winds(self) -> bool:
+        """Whether what turns about the joint's own axis turns along the plane."""
+        return self.along and not self.second
 
     def flat(self, kind: Kind) -> Kind:
         """What moves in the plane of a joint of that kind."""
@@ -134,7 +141,7 @@ def _stance(joint: Joint, R_a: Array, R_b: Array, n: Array) -> Stance:
     # of two axes, which stay square, one is along the normal where the other is across, or both are across
     if offs[k] < max(map(abs, components)):
         others = [abs(c) for i, c in enumerate(components) if i != k]
-        return Stance(True, np.copysign(1.0, components[k]) * n, max([offs[k], *others]))
+        return Stance(True, np.copysign(1.0, components[k]) * n, max([offs[k], *others]), k == 1)
     return Stance(False, axes[0], max(map(abs, components)))
 
 

@@ -16,7 +16,7 @@ from heuncli.joint_kinds import TYPES, Kind
 from heuncli.records import record
 from heuncli.spec.models import End, Force, Friction, Section, Spec, Vec
 
-PUSHING_FORCES = frozenset({"force", "actuator", "spring"})
+PUSHING_FORCES = frozenset({"force", "distributed", "actuator", "spring"})
 AXES = ("x", "y", "z")
 ABOUT = {"at": "the cut's point", "centroid": "the cut's centroid", "line": "the cut's point, and Heun's line"}
 

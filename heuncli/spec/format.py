@@ -40,6 +40,7 @@ from heuncli.spec.fields import (
     LengthInTime,
     LengthLimits,
     LineDensity,
+    LineForceInTime,
     Mass,
     Matrix,
     Model,
@@ -53,6 +54,7 @@ from heuncli.spec.fields import (
     Stiffness,
     Tensor,
     Time,
+    TurningDamping,
     TurningStiffness,
     Velocity,
 )
@@ -336,6 +338,24 @@ class Spring(Model):
     damping: Damping = 0.0
 
 
+class TurnSpring(Model):
+    type: Literal["turn_spring"]
+    joint: str
+    stiffness: TurningStiffness
+    angle: Angle = 0.0
+    damping: TurningDamping = 0.0
+
+
+class Distributed(Model):
+    type: Literal["distributed"]
+    on: str
+    from_: PointOrName = Field(alias="from")
+    to: PointOrName
+    vector: tuple[LineForceInTime, LineForceInTime, LineForceInTime]
+    to_vector: tuple[LineForceInTime, LineForceInTime, LineForceInTime] | None = None
+    frame: Frame = "world"
+
+
 class Damper(Model):
     type: Literal["damper"]
     joint: str
@@ -351,10 +371,10 @@ class Friction(Model):
     speed: Either
 
 
-Load = PointForce | Couple | Torque | Actuator | Spring | Damper | Friction
+Load = PointForce | Couple | Torque | Actuator | Spring | TurnSpring | Distributed | Damper | Friction
 LOADS: dict[str, type[Load]] = {
-    "force": PointForce, "couple": Couple, "torque": Torque, "actuator": Actuator, "spring": Spring, "damper": Damper,
-    "friction": Friction,
+    "force": PointForce, "couple": Couple, "torque": Torque, "actuator": Actuator, "spring": Spring,
+    "turn_spring": TurnSpring, "distributed": Distributed, "damper": Damper, "friction": Friction,
 }  # fmt: skip
 
 

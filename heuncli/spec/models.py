@@ -184,6 +184,28 @@ class Spring(NamedTuple):
     type: Literal["spring"] = "spring"
 
 
+class TurnSpring(NamedTuple):
+    """A spring and damper about a joint's axis: N m/rad, angle where it is relaxed [rad], N m s."""
+
+    joint: str
+    stiffness: float
+    angle: float
+    damping: float = 0.0
+    type: Literal["turn_spring"] = "turn_spring"
+
+
+class Distributed(NamedTuple):
+    """A force along a line of a body, N/m: `vector` at from_, `to_vector` at to, linear between."""
+
+    body: str
+    from_: Vec
+    to: Vec
+    vector: Vector
+    to_vector: Vector
+    frame: Frame = "world"
+    type: Literal["distributed"] = "distributed"
+
+
 class Damper(NamedTuple):
     """Resistance of a joint: coefficient N m s (turning) or N s/m (slide, line, plane); sliding N s/m (cylinder)."""
 
@@ -203,7 +225,7 @@ class Friction(NamedTuple):
     type: Literal["friction"] = "friction"
 
 
-Force = PointForce | Couple | Torque | Actuator | Spring | Damper | Friction
+Force = PointForce | Couple | Torque | Actuator | Spring | TurnSpring | Distributed | Damper | Friction
 
 
 class Impulse(NamedTuple):

@@ -88,8 +88,10 @@ class Resolver:
     def placed(self, value: Expression, path: str) -> Expression:
         return value.at(self.locations[path]) if path in self.locations else value
 
-    def vector(self, values: tuple[Expression, Expression, Expression], path: str) -> m.Vector:
-        x, y, z = (self.placed(value, f"{path}.vector.{i}") for i, value in enumerate(values))
+    def vector(
+        self, values: tuple[Expression, Expression, Expression], path: str, key: str = "vector"
+    ) -> m.Vector:
+        x, y, z = (self.placed(value, f"{path}.{key}.{i}") for i, value in enumerate(values))
         return x, y, z
 
     def shape(self, shape: f.Shape) -> m.Shape:
@@ -167,11 +169,24 @@ class Resolver:
                 return m.Actuator(self.end(load.from_), self.end(load.to), self.placed(load.value, f"{path}.value"))
             case f.Spring():
                 return m.Spring(self.end(load.from_), self.end(load.to), load.stiffness, load.length, load.damping)
+            case f.TurnSpring():
+                return m.TurnSpring(load.joint, load.stiffness, load.angle, load.damping)
+            case f.Distributed():
+                return self.distributed(load, path)
             case f.Damper():
                 coefficient = constant(load.coefficient) if load.coefficient is not None else 0.0
                 return m.Damper(load.joint, coefficient, load.sliding)
             case _:
                 return m.Friction(load.joint, load.torque, load.force, constant(load.speed))
+
+    def distributed(self, load: f.Distributed, path: str) -> m.Distributed:
+        body = self.document.bodies[load.on]
+        start, end = point_in(body, load.from_), point_in(body, load.to)
+        assert start is not None
+        assert end is not None
+        vector = self.vector(load.vector, path)
+        to_vector = vector if load.to_vector is None else self.vector(load.to_vector, path, "to_vector")
+        return m.Distributed(load.on, start, end, vector, to_vector, load.frame)
 
     def impulse(self, blow: f.Blow) -> m.Impulse:
         body, on = blow.body, None

@@ -7,6 +7,10 @@ from heuncli.joint_kinds import SYNONYMS
 FORCE_WORDS = {
     "moment": "couple", "motor": "torque", "thrust": "torque", "springdamper": "spring", "spring_damper": "spring",
     "dashpot": "damper", "load": "force", "cylinder": "actuator", "coulomb": "friction",
+    "torsion_spring": "turn_spring", "torsional_spring": "turn_spring", "rotational_spring": "turn_spring",
+    "rotary_spring": "turn_spring", "angular_spring": "turn_spring", "spiral_spring": "turn_spring",
+    "line_load": "distributed", "udl": "distributed", "uniform": "distributed", "distributed_load": "distributed",
+    "line_force": "distributed",
 }  # fmt: skip
 SHAPE_WORDS = {
     "bar": "rod", "line": "rod", "beam": "rod", "tube": "cylinder", "pipe": "cylinder", "disk": "cylinder",

@@ -295,6 +295,8 @@ def forces(loads: Sequence[AppliedLoad]) -> Block:
         own: Block = {"value": applied.value}
         if isinstance(applied.load, PairLoad):
             own["length"] = applied.length
+        if isinstance(applied.load, JointLoad) and applied.load.kind == "turn_spring":
+            own["angle"] = applied.length
         if isinstance(applied.load, PairLoad | JointLoad):
             own["rate"] = applied.rate
         block[applied.load.name] = own | {"power": applied.power}

@@ -12,7 +12,7 @@ from typing import NamedTuple
 
 import numpy as np
 
-from heuncli.kinetostatics.cuts import BEFORE, BEYOND, Cuts, attached
+from heuncli.kinetostatics.cuts import BEFORE, BEYOND, Cuts, attached, spread_on
 from heuncli.kinetostatics.stretch import DEGREE, Stretch, laid, stretch_of, summits
 from heuncli.records import replace
 from heuncli.results import Array, Block, Extremes, Place
@@ -26,7 +26,8 @@ def stretched(setup: Setup, halved: int) -> Setup:
     def whole(cuts: Cuts) -> Cuts | Stretch:
         if cuts.s is None or cuts.form is None:
             return cuts
-        return stretch_of(cuts, [point for _, point in attached(mechanism, cuts.body)], halved=halved)
+        points = [point for _, point in attached(mechanism, cuts.body)]
+        return stretch_of(cuts, points, [line for _, line in spread_on(mechanism, cuts.body)], halved=halved)
 
     return replace(setup, cuts=tuple(map(whole, setup.cuts)))
 

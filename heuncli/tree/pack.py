@@ -15,7 +15,7 @@ from heuncli.joint_kinds import JOINTS, Direction
 from heuncli.kernel.choose import scene as kernel
 from heuncli.mechanism.model import GROUND, Assembly, Joint, JointLoad, Mechanism, PairLoad, PointLoad, Stop
 from heuncli.results import Array
-from heuncli.shapes.rotations import cross_rows, to_quaternion
+from heuncli.shapes.rotations import cross_rows, perpendicular, to_quaternion
 from heuncli.tree.flat import about_z, in_plane, moves_in_plane
 from heuncli.tree.islands import with_islands
 from heuncli.tree.layout import Contact, Freedom, Layout
@@ -26,6 +26,7 @@ from heuncli.tree.tables import limits, symmetric, table
 NO_PROGRAM = (0, 0)
 JOINT_LOADS = {  # of the turning, of the sliding
     "torque": (kernel.TORQUE, kernel.THRUST),
+    "turn_spring": (kernel.TURN_SPRING, kernel.THRUST),
     "damper": (kernel.TURN_DAMPER, kernel.SHIFT_DAMPER),
     "friction": (kernel.TURN_FRICTION, kernel.SHIFT_FRICTION),
 }
@@ -46,12 +47,19 @@ def lay_out(
     names = {j.name: k for k, j in enumerate(mechanism.joints)}
     kept = {names[joint] for joint, _ in uses} | {s.joint for s in mechanism.stops if s.quantity != "length"}
     kept |= {k for k, j in enumerate(mechanism.joints) if j.drive is not None and j.drive.quantity != "length"}
+    # of a universal that is cut nothing tells the angle
+    kept |= {k for k in sprung(mechanism) if len(JOINTS[mechanism.joints[k].kind].turns) == 2}
     spanning = span(mechanism, kept) if tree is None else tree.spanning
     if tree is not None and tree.starts is not None:
         starts = list(tree.starts)
     else:
         starts = [joint_start(mechanism, start, joint) for joint in mechanism.joints]
     return _Builder(mechanism, start, spanning, starts, inertias, size, pack, programs).layout(work)
+
+
+def sprung(mechanism: Mechanism) -> set[int]:
+    """The joints with springs about their axes."""
+    return {load.joint for load in mechanism.loads if isinstance(load, JointLoad) and load.kind == "turn_spring"}
 
 
 def lay_out_like(
@@ -368,7 +376,8 @@ class _Builder:
     def _point_load(self, load: PointLoad) -> None:
         q = np.zeros(3) if load.point is None else self.relative(load.body, load.point)
         kind = kernel.FORCE if load.kind == "force" else kernel.COUPLE
-        self._load(list(load.vector), kind=kind, a=GROUND, b=self.in_tree(load.body), in_body=int(load.in_body), q=q)
+        body, in_body = self.in_tree(load.body), int(load.in_body)
+        self._load(list(load.vector), kind=kind, a=GROUND, b=body, in_body=in_body, q=q, factor=load.factor)
 
     def _pair_load(self, load: PairLoad) -> None:
         self._load(
@@ -388,7 +397,8 @@ class _Builder:
         kind = JOINTS[joint.kind]
         turns, slides = JOINT_LOADS[load.kind]
         parts = {"turning": (turns, load.turning), "sliding": (slides, load.sliding)}
-        for motion in kind.motions:
+        spring = self._turn_spring(load) if load.kind == "turn_spring" else {}
+        for motion in kind.moved_by(load.kind):
             number, coefficient = parts[motion]
             self._load(
                 [] if load.value is None else [load.value],
@@ -401,7 +411,25 @@ class _Builder:
                 coefficient=coefficient,
                 axis=joint.axis,
                 speed=load.speed,
+                **spring,
             )
+
+    def _turn_spring(self, load: JointLoad) -> dict[str, Any]:
+        """What a spring about a joint's axis has of its own: where its angle stands, or tells it where that was cut."""
+        joint, start = self.mechanism.joints[load.joint], self.starts[load.joint]
+        named = enumerate(self.freedoms)
+        freedom = next((i for i, f in named if f.joint == load.joint and f.quantity in ("angle", "first")), -1)
+        across = perpendicular(joint.axis)[0]
+        return {
+            "stiffness": load.stiffness,
+            "length": load.angle,
+            "freedom": freedom,
+            "counter": list(self.counters).index(load.joint) if load.joint in self.counters else -1,
+            # a universal's coordinate is counted from the start; without any the angle stays what it is there
+            "offset": 0.0 if freedom >= 0 and self.freedoms[freedom].quantity == "angle" else start.angle,
+            "across": across,
+            "mark": start.R_ref.T @ across,
+        }
 
     def finish(self, work: bool) -> Layout:
         """Counted angles and the work join the state; the tables are made."""

@@ -9,7 +9,7 @@ import numpy as np
 from heuncli import tolerances
 from heuncli.assembly.assemble import assemble
 from heuncli.errors import SolveError
-from heuncli.mechanism.model import Assembly, Mechanism, PairLoad
+from heuncli.mechanism.model import Assembly, Mechanism
 from heuncli.mechanism.size import size_of_scene
 from heuncli.records import record, replace
 from heuncli.results import Array
@@ -60,7 +60,7 @@ def arranged(
         axes = spin.axes @ start.rotation[spin.body].T
         omega[spin.body] -= axes.T @ (axes @ omega[spin.body])
     start = replace(start, angular_velocity=omega)
-    works = any(not isinstance(f, PairLoad) or f.value is not None or f.damping != 0.0 for f in mechanism.loads)
+    works = any(not load.is_conservative for load in mechanism.loads)
     driven = any(j.drive is not None for j in mechanism.joints)
     works = works or driven or bool(mechanism.blows or mechanism.stops)
     works = works or any(j.restitution is not None for j in mechanism.joints)

@@ -128,6 +128,8 @@ def _leaves(joint: Joint, to: bool, null: Array) -> bool:
 def _over_driven(mechanism: Mechanism, k: int) -> Problem:
     joint = mechanism.joints[k]
     what = "is driven" if joint.drive else "is named in an expression"
+    if JOINTS[joint.kind].coordinates == ():
+        what = "has a turn_spring"
     if any(stop.joint == k for stop in mechanism.stops):
         what = "is limited by a stop"
     return Problem(

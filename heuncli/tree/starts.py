@@ -6,6 +6,7 @@ import math
 
 import numpy as np
 
+from heuncli import tolerances
 from heuncli.joint_kinds import JOINTS, Direction
 from heuncli.mechanism.model import GROUND, Assembly, Joint, Mechanism
 from heuncli.records import record
@@ -18,7 +19,10 @@ Z = np.array([0.0, 0.0, 1.0])
 
 @record
 class JointStart:
-    """Where a joint stands at the start: R_ref (to axes -> from axes at angle zero), angle, rate, travel, speed."""
+    """Where a joint stands at the start: R_ref (to axes -> from axes at angle zero), angle, rate, travel, speed.
+
+    angle of a universal: about its first axis (`first_angle`); its coordinates are counted from the start.
+    """
 
     R_ref: Array
     angle: float
@@ -49,7 +53,7 @@ def joint_start(mechanism: Mechanism, start: Assembly, joint: Joint) -> JointSta
     v = vb + cross_rows(wb, Rb @ joint.q) - va - cross_rows(wa, Rb @ joint.q + xb - xa)
     travel, speed = float(D @ n), float((Ra @ n) @ v)
     if "angle" not in kind.coordinates:
-        return JointStart(R, 0.0, rate, travel, speed)
+        return JointStart(R, first_angle(joint, R) if len(kind.turns) == 2 else 0.0, rate, travel, speed)
     near = joint.angle
     if joint.drive is not None and joint.drive.quantity == "angle":
         near = joint.drive.value.derivatives(0.0)[0]
@@ -58,6 +62,19 @@ def joint_start(mechanism: Mechanism, start: Assembly, joint: Joint) -> JointSta
         return JointStart(about(n, -near) @ R, near, rate, travel, speed)
     near = near if near is not None else middle_of_limits(mechanism, joint)
     return JointStart(np.eye(3), unwrapped(axial_angle(R, n), near), rate, travel, speed)
+
+
+def first_angle(joint: Joint, R: Array) -> float:
+    """Of a universal: by how much its second axis has turned about the first, in (-pi, pi].
+
+    From where it stands while the axes of the two bodies agree, as a pin's angle is counted; at the start, if it then
+    lies along the first axis.
+    """
+    n, there, now = joint.axis, joint.to_axis, R @ joint.to_axis
+    before = there - (there @ n) * n
+    if float(np.sqrt(before @ before)) < tolerances.PARALLEL:
+        return 0.0
+    return math.atan2(float(n @ cross_rows(before, now)), float(before @ now))
 
 
 def middle_of_limits(mechanism: Mechanism, joint: Joint) -> float:

@@ -7,9 +7,9 @@ from typing import Any, NamedTuple
 
 import numpy as np
 
-from tests.oracle.read import GROUND, End, Joint, Model, State, at_time, end, placed, vector_at
-from tests.oracle.rows import directions
-from tests.oracle.turns import Array, cross
+from tests.oracle.read import GROUND, End, Joint, Model, State, at_time, end, placed, start_state, vector_at
+from tests.oracle.rows import coordinates, directions
+from tests.oracle.turns import Array, cross, unit
 
 Spec = Mapping[str, Any]
 
@@ -132,9 +132,43 @@ def opposing(rate: Array, size: float, speed: float) -> Array:
     return -rate / length * size * np.tanh(length / speed) if length > 0.0 and size != 0.0 else np.zeros(3)
 
 
+def distributed(scene: Model, state: State, t: float, spec: Spec) -> list[Push]:
+    """By Gauss's rule of two points a half, which has no error in forces and moments that are cubic along the line."""
+    me = placed(state, spec["on"])
+    a, b = (np.array(spec[key], dtype=float) for key in ("from", "to"))
+    turn = me.rotation if spec.get("frame", "world") == "body" else np.eye(3)
+    first, last = (turn @ vector_at(spec.get(key, spec["vector"]), t) for key in ("vector", "to_vector"))
+    places = [0.25 + 0.5 * half + side * 0.25 / np.sqrt(3.0) for half in (0, 1) for side in (-1.0, 1.0)]
+    length = float(np.linalg.norm(b - a))
+    return [Push(spec["on"], me.point(a + x * (b - a)), 0.25 * length * ((1.0 - x) * first + x * last), np.zeros(3))
+            for x in places]
+
+
+def turn_spring(scene: Model, state: State, t: float, spec: Spec) -> list[Push]:
+    joint = joint_named(scene, spec["joint"])
+    A, B = placed(state, joint.a.body), placed(state, joint.b.body)
+    axis = A.rotation @ joint.axis
+    angle = turned_by(joint, state)
+    start = turned_by(joint, start_state(scene.scene))
+    angle += 2.0 * np.pi * np.round((start - angle) / (2.0 * np.pi))  # short motions only
+    rate = float(axis @ (B.angular_velocity - A.angular_velocity))
+    value = -spec["stiffness"] * (angle - spec.get("angle", 0.0)) - spec.get("damping", 0.0) * rate
+    return in_joint(joint, state, np.zeros(3), value * axis)
+
+
+def turned_by(joint: Joint, state: State) -> float:
+    """The angle about the axis; of a universal that of its second axis."""
+    if joint.kind != "universal":
+        return coordinates(joint, state)["angle"]
+    A, B = placed(state, joint.a.body), placed(state, joint.b.body)
+    now = A.rotation.T @ B.rotation @ joint.to_axis
+    u = unit(joint.to_axis - (joint.to_axis @ joint.axis) * joint.axis)
+    return float(np.arctan2(now @ cross(joint.axis, u), now @ u))
+
+
 KINDS_OF_LOAD: dict[str, Callable[[Model, State, float, Spec], list[Push]]] = {
     "force": force, "couple": couple, "torque": torque, "actuator": actuator, "spring": spring, "damper": damper,
-    "friction": friction,
+    "friction": friction, "distributed": distributed, "turn_spring": turn_spring,
 }
 
 

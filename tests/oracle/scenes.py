@@ -19,6 +19,7 @@ from tests.oracle.values import Harmonic
 
 ALL_KINDS = ("ball", "pin", "slide", "cylinder", "universal", "weld", "line", "plane", "rod")
 LOADS = ("force", "couple", "spring", "actuator", "torque", "damper", "friction")
+SPREAD = ("force", "distributed", "turn_spring", "spring")
 DRIVEN = {"pin": "angle", "slide": "travel", "cylinder": "travel", "rod": "length"}
 
 
@@ -256,6 +257,22 @@ class Maker:
         if self.scene["joints"][joint]["type"] == "cylinder":
             spec["sliding"] = float(self.rng.uniform(0.1, 1))
         return spec
+
+    def load_distributed(self, in_time: bool) -> dict[str, Any]:
+        """Linear or uniform along a line of a body; of a thin one along its axis."""
+        on = self.some()
+        spec = {"on": on, "from": self.spot(on).tolist(), "to": self.spot(on).tolist(), "frame": "world",
+                "vector": [self.value(4, in_time) for _ in range(3)]}
+        if self.rng.random() < 0.7:
+            spec["to_vector"] = [self.value(4, in_time) for _ in range(3)]
+        return spec | ({"frame": "body"} if self.rng.random() < 0.5 else {})
+
+    def load_turn_spring(self, in_time: bool) -> dict[str, Any] | None:
+        joint = self.on_joint(("pin", "cylinder", "universal"))
+        if joint is None:
+            return None
+        stiffness, angle, damping = (float(self.rng.uniform(*ends)) for ends in ((1, 10), (-2, 2), (0, 1)))
+        return {"joint": joint, "stiffness": stiffness, "angle": angle, "damping": damping}
 
     def load_friction(self, in_time: bool) -> dict[str, Any] | None:
         joint = self.on_joint(("pin", "slide"))

@@ -54,9 +54,8 @@ def turned(scene: Scene, Q: Array) -> Scene:
         return new
 
     def force(spec: Spec) -> Spec:
-        if "vector" not in spec:
-            return spec
-        return {**spec, "vector": (axial if spec["type"] == "couple" else polar)(spec["vector"])}
+        way = axial if spec["type"] == "couple" else polar
+        return {**spec, **{key: way(spec[key]) for key in ("vector", "to_vector") if key in spec}}
 
     ends = ends_mapped(scene, lambda _, at: (Q @ at).tolist())
     return {**ends, "gravity": polar(scene["gravity"]),
@@ -130,6 +129,8 @@ def units_changed(scene: Scene, length: float = 1.0, mass: float = 1.0, time: fl
                    "torque": {"value": force if sliding else moment},
                    "spring": {"stiffness": mass / time**2, "length": length, "damping": mass / time},
                    "damper": {"coefficient": mass / time if sliding else moment * time, "sliding": mass / time},
+                   "distributed": {"vector": force / length, "to_vector": force / length},
+                   "turn_spring": {"stiffness": moment, "damping": moment * time},
                    "friction": {"torque": moment, "force": force, "speed": speed}}[spec["type"]]
         for key, factor in factors.items():
             if key in spec:
@@ -181,6 +182,8 @@ def renamed(scene: Scene, rng: np.random.Generator) -> tuple[Scene, dict[str, st
     def name(value: Any) -> Any:
         if isinstance(value, Mapping):
             return {**value, "body": body_names[value["body"]]}
+        if isinstance(value, list):  # a distributed load's end on the body that it names
+            return value
         body, dot, point = value.partition(".")
         return body_names[body] + dot + point
 
@@ -227,15 +230,21 @@ def swapped(scene: Scene, joint: str) -> Scene:
 
 
 def ends_mapped(scene: Scene, change: Callable[[str, Array], list[float]]) -> Scene:
-    """All {body, at} ends of joints and loads with their place changed; named points are the bodies' own affair."""
+    """All {body, at} ends of joints and loads with their place changed; named points are the bodies' own affair.
 
-    def end(value: Any) -> Any:
+    And those of distributed loads, which are given in the axes of the body that they are on.
+    """
+
+    def end(value: Any, on: Any) -> Any:
+        if isinstance(value, list):
+            return change(on, np.array(value, dtype=float))
         if isinstance(value, Mapping) and "at" in value:
             return {**value, "at": change(value["body"], np.array(value["at"], dtype=float))}
         return value
 
     parts = [part for part in ("joints", "forces") if part in scene]
-    return {**scene, **{part: {name: {k: end(v) for k, v in spec.items()} for name, spec in scene[part].items()}
+    return {**scene, **{part: {name: {k: end(v, spec.get("on")) if k in ("from", "to", "on") else v
+                                    for k, v in spec.items()} for name, spec in scene[part].items()}
                         for part in parts}}
 
 

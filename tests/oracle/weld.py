@@ -13,7 +13,7 @@ from typing import Any, NamedTuple
 import numpy as np
 
 from tests.oracle.masses import Mass, Plane, cut, mass_of, without
-from tests.oracle.read import Scene, State, end, placed
+from tests.oracle.read import InTime, Scene, State, at_time, end, placed
 from tests.oracle.solve import Solution, solve
 from tests.oracle.turns import Array, cross, unit
 
@@ -86,6 +86,9 @@ def saw(scene: Scene, state: State, body: str, point: str | Sequence[float] | Ar
                    "to": {"body": body, "at": at.tolist()}}
     forces = {}
     for name, spec in (scene.get("forces") or {}).items():
+        if spec["type"] == "distributed":
+            forces |= divided(name, spec, plane, body) if spec["on"] == body else {name: spec}
+            continue
         if spec.get("on") == body:
             raise ValueError(f"{name}: a couple on a body with a section needs the point")
         forces[name] = {**spec, **{key: own(spec[key]) for key in ("on", "from", "to") if key in spec}}
@@ -95,6 +98,31 @@ def saw(scene: Scene, state: State, body: str, point: str | Sequence[float] | Ar
             raise ValueError(f"{name}: a couple on a body with a section needs the point")
         blows[name] = {**spec, **({"on": own(spec["on"])} if "on" in spec else {})}
     return {**scene, "bodies": bodies, "joints": joints, "forces": forces, "impulses": blows}
+
+
+def divided(name: str, spec: Mapping[str, Any], plane: Plane, body: str) -> dict[str, Any]:
+    """A distributed load on the two parts: that before the plane and that beyond it, where it crosses the plane."""
+    a, b = (np.array(spec[key], dtype=float) for key in ("from", "to"))
+    first, last = spec["vector"], spec.get("to_vector", spec["vector"])
+    h, k = (float(plane.normal @ (x - plane.at)) for x in (a, b))
+    owner = {True: body + PIECE, False: body}
+    if (h > 0.0) == (k > 0.0):
+        return {name: {**spec, "on": owner[h > 0.0]}}
+    x = h / (h - k)
+    between, there = [Between(x, p, q) for p, q in zip(first, last, strict=True)], (a + x * (b - a)).tolist()
+    return {f"{name}_1": {**spec, "on": owner[h > 0.0], "to": there, "vector": first, "to_vector": between},
+            f"{name}_2": {**spec, "on": owner[k > 0.0], "from": there, "vector": between, "to_vector": last}}
+
+
+class Between(NamedTuple):
+    """A value in time a part x of the way from one to another."""
+
+    x: float
+    first: InTime
+    last: InTime
+
+    def __call__(self, t: float) -> float:
+        return (1.0 - self.x) * at_time(self.first, t) + self.x * at_time(self.last, t)
 
 
 def given(mass: Mass) -> dict[str, Any]:

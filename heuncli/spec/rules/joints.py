@@ -50,11 +50,17 @@ def same_body(draft: DraftDocument) -> Iterator[Violation]:
 
 @rule("same-point")
 def same_point(draft: DraftDocument) -> Iterator[Violation]:
-    """A spring or actuator stands between two points, and not within the ground.
+    """A spring or actuator stands between two points, and not within the ground; a distributed load has a length.
 
-    Within one body it moves nothing, but the cuts between its points carry it.
+    Within one body a spring moves nothing, but the cuts between its points carry it.
     """
     for name, load in draft.document.forces.items():
+        if isinstance(load, f.Distributed):
+            owner = draft.document.bodies.get(load.on)
+            start = None if owner is None else point_in(owner, load.from_)
+            if owner is not None and start is not None and start == point_in(owner, load.to):
+                message = "from and to are the same point"
+                yield Violation(("forces", name, "to"), message, "a force at one point is type: force, in N")
         if not isinstance(load, f.Actuator | f.Spring) or load.from_.body != load.to.body:
             continue
         path, body = ("forces", name, "to"), draft.document.bodies.get(load.to.body)

@@ -14,10 +14,13 @@ ON_MOTION = {"turning": "about a", "sliding": "along a"}
 FRICTION = {"turning": "torque", "sliding": "force"}  # the key of each motion
 
 
-def loads(draft: DraftDocument) -> Iterator[tuple[str, f.Torque | f.Damper | f.Friction, Kind]]:
+InJoint = f.Torque | f.TurnSpring | f.Damper | f.Friction
+
+
+def loads(draft: DraftDocument) -> Iterator[tuple[str, InJoint, Kind]]:
     """Loads in joints that exist, with the kind of the joint; one whose type is in error takes no load."""
     for name, load in draft.document.forces.items():
-        if isinstance(load, f.Torque | f.Damper | f.Friction) and load.joint in draft.names.joints:
+        if isinstance(load, InJoint) and load.joint in draft.names.joints:
             written = draft.names.joints[load.joint]
             yield name, load, TYPES.get(written, Kind(written, POINT, FREE))
 
@@ -32,6 +35,10 @@ def load_joint(draft: DraftDocument) -> Iterator[Violation]:
                 where = " or ".join(f"{ON_MOTION[fit.motions[0]]} {fit.name}" for fit in taking("torque"))
                 hint = "between two points use actuator, on a body couple"
                 yield Violation((*path, "joint"), f"a torque acts {where}, not in a {kind.name}", hint)
+        elif isinstance(load, f.TurnSpring):
+            if not kind.takes("turn_spring"):
+                message = f"a turn_spring acts about a {named(taking('turn_spring'), 'or')}, not in a {kind.name}"
+                yield Violation((*path, "joint"), message, "between two points use a spring")
         elif isinstance(load, f.Damper):
             of_both = [fit for fit in taking("damper") if len(fit.motions) == 2]
             if not kind.takes("damper"):
@@ -64,6 +71,8 @@ def load_dimension(draft: DraftDocument) -> Iterator[Violation]:
         sliding = kind.motions == ("sliding",)
         if isinstance(load, f.Torque):
             checks = [("value", load.value, u.FORCE if sliding else u.MOMENT)]
+        elif isinstance(load, f.TurnSpring):
+            checks = []
         elif isinstance(load, f.Damper):
             given = [load.coefficient] if load.coefficient is not None else []
             checks = [("coefficient", value, u.DAMPING if sliding else u.TURNING_DAMPING) for value in given]

@@ -15,7 +15,7 @@ from heuncli.spec.turns import IDENTITY, unit
 OR_ELSE = "or declare space: spatial"
 # Vectors of bodies and of loads with the components that they cannot have in the plane.
 MOTIONS = {"velocity": ("z",), "angular_velocity": ("x", "y")}
-LOADS = {"force": ("z",), "couple": ("x", "y")}
+LOADS = {"force": ("z",), "distributed": ("z",), "couple": ("x", "y")}
 BLOWS = {"vector": ("z",), "couple": ("x", "y")}
 
 
@@ -41,9 +41,11 @@ def not_planar(draft: DraftDocument) -> Iterator[Violation]:
                     (*path, "vector") if framed else path, given.vector if framed else given, forbidden
                 )
     for name, load in draft.document.forces.items():
-        if isinstance(load, f.PointForce | f.Couple):
-            vector = tuple(x.constant for x in load.vector)
-            yield from _out_of_plane(("forces", name, "vector"), vector, LOADS[load.type])
+        if isinstance(load, f.PointForce | f.Couple | f.Distributed):
+            for key in ("vector", "to_vector"):
+                given = getattr(load, key, None)
+                vector = tuple(x.constant for x in given or ())
+                yield from _out_of_plane(("forces", name, key), vector, LOADS[load.type])
     for name, blow in draft.document.impulses.items():
         for key, forbidden in BLOWS.items():
             given = getattr(blow, key)
@@ -53,7 +55,7 @@ def not_planar(draft: DraftDocument) -> Iterator[Violation]:
 
 def _out_of_plane(path: Path_, vector: tuple[float | None, ...], forbidden: tuple[str, ...]) -> Iterator[Violation]:
     """Forbidden components that are not zero; None is one that changes with time."""
-    for i, (letter, value) in enumerate(zip("xyz", vector, strict=True)):
+    for i, (letter, value) in enumerate(zip("xyz", vector, strict=False)):
         if letter in forbidden and value != 0.0:
             yield Violation((*path, i), f"in a planar scene {path[2]} has no {letter} component", OR_ELSE)
 

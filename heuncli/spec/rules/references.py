@@ -62,6 +62,9 @@ def bodies_spoken_of(draft: DraftDocument) -> Iterator[tuple[Path_, str, bool]]:
         yield path, end.body, may_be_ground
     for name, section in draft.document.sections.items():
         yield ("sections", name, "body"), section.body, False
+    for name, load in draft.document.forces.items():
+        if isinstance(load, f.Distributed):
+            yield ("forces", name, "on"), load.on, False
     for name, blow in draft.document.impulses.items():
         if blow.body is not None:
             yield ("impulses", name, "body"), blow.body, False
@@ -96,10 +99,20 @@ def unknown_point(draft: DraftDocument) -> Iterator[Violation]:
             yield absent(path, end.body, end.at, points[end.body])
         elif end.at is None and not may_be_whole(draft, path) and end.body in points:
             yield Violation(path, "a point is missing", "write body.point, or {body: name, at: [x, y, z]}")
+    for path, body, value in points_of_bodies(draft):
+        if isinstance(value, str) and body in points and value not in points[body]:
+            yield absent(path, body, value, points[body])
+
+
+def points_of_bodies(draft: DraftDocument) -> Iterator[tuple[Path_, str, object]]:
+    """Every point that is given, by name or by coordinates, of a body that is named beside it."""
     for name, section in draft.document.sections.items():
         for key, value in (("at", section.at), ("from", section.from_), ("to", section.to)):
-            if isinstance(value, str) and section.body in points and value not in points[section.body]:
-                yield absent(("sections", name, key), section.body, value, points[section.body])
+            yield ("sections", name, key), section.body, value
+    for name, load in draft.document.forces.items():
+        if isinstance(load, f.Distributed):
+            for key, value in (("from", load.from_), ("to", load.to)):
+                yield ("forces", name, key), load.on, value
 
 
 def may_be_whole(draft: DraftDocument, path: Path_) -> bool:
