@@ -167,8 +167,8 @@ ROWS: tuple[Quantity, ...] = (
         cut_scalar("N", "N"), cut_scalar("Q1", "N"), cut_scalar("Q2", "N"),
         cut_scalar("T", "N·m"), cut_scalar("M1", "N·m"), cut_scalar("M2", "N·m")),
     *at("sections.SECTION.shares.CAUSE", DIRECT, cut_vector("direct_force", "N"), cut_vector("direct_moment", "N·m")),
-    *at("forces.FORCE", "as in the spec, of a vector its magnitude, of a distributed one its resultant's; of its line; "
-        "of a turn spring; of its line, or in its joint; put into the bodies",
+    *at("forces.FORCE", "its value as in the spec, of a vector its size, of a distributed one that of the resultant; "
+        "of its line; of a turn spring; of its line, or in its joint; put into the bodies",
         scalar("value", "N | N·m"), scalar("length", "m"), scalar("angle", "rad"), scalar("rate", "m/s | rad/s"),
         scalar("power", "W")),
     *at("energy", "kinetic + potential − work is constant",

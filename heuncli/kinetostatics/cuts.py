@@ -142,9 +142,9 @@ def _lay(mechanism: Mechanism, spec: Any, name: str, section: Any, index: dict[s
     near = _near(form, np.append(heights, ends), d)
     # of a distributed load's line an end in the plane carries nothing, but all of it may lie there
     off = np.concatenate([np.abs(heights - d[:, None]), np.abs(ends - d[:, None, None]).max(axis=2)], axis=1)
-    in_plane: NDArray[np.bool_] = np.asarray(off <= near)
+    in_plane = off <= near
     loaded, heights = loaded + lines, np.append(heights, ends)
-    jumps = in_plane.any(axis=1)
+    jumps = np.asarray(in_plane.any(axis=1))
     if form is not None:
         jumps = jumps | form.masses_in_plane(n, d) | form.rods_in_plane(n, d)
     location = spec.location(f"sections.{name}")
