@@ -67,6 +67,10 @@ class Run(NamedTuple):
     by_cause: Annotated[
         bool, Option(("--by-cause",), "Split every load by its causes: gravity, each force, drives, motion.")
     ] = False
+    axes: Annotated[
+        str | None,
+        Option(("--axes",), "Joint loads in the axes of the one or the other body, as it turns.", "world|from|to"),
+    ] = None
     strict: Annotated[bool, Option(("--strict",), "Leave with 1 if there are warnings or open reactions.")] = False
     time_limit: Annotated[float | None, Option(("--time-limit",), "Give up after that long.", "SECONDS")] = None
     quiet: Annotated[bool, QUIET] = False

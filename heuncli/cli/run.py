@@ -15,6 +15,7 @@ from heuncli.cli.solving import choice, instants, overrides, positive, timings, 
 from heuncli.cli.target import format_of, keep
 from heuncli.errors import Problem
 from heuncli.integration.methods import METHODS
+from heuncli.kinetostatics.joint_axes import JOINT_AXES
 from heuncli.nearest import did_you_mean, nearest
 from heuncli.records import replace
 from heuncli.report.fit import fit
@@ -51,6 +52,7 @@ def main(request: Run) -> int:
         method=_method(request.method),
         least_norm=request.least_norm,
         reduce=not request.no_reduce,
+        axes="world" if request.axes is None else choice("--axes", request.axes, JOINT_AXES),
         time_limit=positive("--time-limit", request.time_limit),
     )
     begun = time.perf_counter()

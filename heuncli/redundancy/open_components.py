@@ -13,6 +13,7 @@ import numpy as np
 from heuncli import tolerances
 from heuncli.kinetostatics.actions import joint_action
 from heuncli.kinetostatics.bodies import BodyStates
+from heuncli.kinetostatics.joint_axes import components_of_shares
 from heuncli.kinetostatics.reactions import JointLoads
 from heuncli.redundancy.self_stress import SelfStress
 from heuncli.results import Array, Block, Mask
@@ -45,9 +46,15 @@ def names_of(parts: Mapping[str, Mask]) -> list[str]:
     return found
 
 
-def open_joint(block: Block, load: JointLoads, share: Array, free: Array, stress: SelfStress) -> None:
-    """Open components of a joint's block, in place; shares (n_t, 6, k) of its constraint, and of its drive."""
-    force, moment = wrench_open(stress, share)
+def open_joint(
+    block: Block, load: JointLoads, shares: tuple[Array, Array], stress: SelfStress, along: Array | None = None
+) -> None:
+    """Open components of a joint's block, in place; shares (n_t, 6, k) of its constraint, and of its drive.
+
+    along (n_t, 3, 3): the axes in which its force and moment are told, if not the world's.
+    """
+    share, free = shares
+    force, moment = wrench_open(stress, components_of_shares(share, along))
     parts: dict[str, Mask] = {"force": force, "moment": moment}
     if load.axis is not None:
         n = load.axis

@@ -10,6 +10,7 @@ from heuncli import tolerances
 from heuncli.integration.evaluator import Recovered
 from heuncli.integration.runner import Runner
 from heuncli.kinetostatics.bodies import BodyStates, body_states
+from heuncli.kinetostatics.joint_axes import axes_at, components_of_shares
 from heuncli.kinetostatics.reactions import JointLoads
 from heuncli.records import record, replace
 from heuncli.redundancy.certain_sums import certain_sums
@@ -51,13 +52,16 @@ class Resolution:
         """Sentences on instants with more self-stresses than `redundant`, or nearly so."""
         return singular_poses(self.searched, times, redundant) if self.searched is not None else []
 
-    def show(self, states: BodyStates, shown: Block) -> None:
-        """Mark what is open, or was until a split was chosen, in the blocks of foundation, joints, stops, in place."""
+    def show(self, states: BodyStates, shown: Block, axes: str = "world") -> None:
+        """Mark what is open, or was until a split was chosen, in the blocks of foundation, joints, stops, in place.
+
+        axes: in which the joints' loads are told.
+        """
         reactions = shown.get("joints")
         if self.left is not None:
-            put_verdicts(self.left, self.joints, states, shown)
+            put_verdicts(self.left, self.joints, states, shown, axes)
         if self.words and self.stress is not None and reactions is not None:
-            mark_chosen(self.stress, self.joints, states, reactions)
+            mark_chosen(self.stress, self.joints, states, reactions, axes)
 
     def sums(self, runner: Runner, recovered: Recovered) -> list[CertainSum]:
         """Certain sums of what is open."""
@@ -99,14 +103,17 @@ def singular_poses(stress: SelfStress, times: Array, redundant: Array) -> list[s
     return sentences
 
 
-def put_verdicts(stress: SelfStress, joints: Sequence[JointLoads], states: BodyStates, shown: Block) -> None:
+def put_verdicts(
+    stress: SelfStress, joints: Sequence[JointLoads], states: BodyStates, shown: Block, axes: str
+) -> None:
     """Make the open components of joints, stops and what stands on the ground visible, in place."""
     base = shown.get("foundation", {})
     supports, elements = base.get("supports", {}), base.get("elements", {})
     for load, whole in zip(joints, stress.shares, strict=True):
         share, free = load.parts(states, whole)
         if "joints" in shown:
-            open_joint(shown["joints"][load.joint.name], load, share, free, stress)
+            block, along = shown["joints"][load.joint.name], axes_at(load.joint, states, axes)
+            open_joint(block, load, (share, free), stress, along)
         if load.joint.name in supports:
             open_support(supports[load.joint.name], share, stress)
         drive = load.joint.drive
@@ -123,10 +130,13 @@ def put_verdicts(stress: SelfStress, joints: Sequence[JointLoads], states: BodyS
                 open_support(elements[key], of_quantity(free, drive.quantity), stress)
 
 
-def mark_chosen(stress: SelfStress, joints: Sequence[JointLoads], states: BodyStates, reactions: Block) -> None:
+def mark_chosen(
+    stress: SelfStress, joints: Sequence[JointLoads], states: BodyStates, reactions: Block, axes: str
+) -> None:
     """Name the components that were open before a split was chosen, in place."""
     for load, whole in zip(joints, stress.shares, strict=True):
-        force, moment = wrench_open(stress, load.parts(states, whole)[0])
+        share = components_of_shares(load.parts(states, whole)[0], axes_at(load.joint, states, axes))
+        force, moment = wrench_open(stress, share)
         names = names_of({"force": force, "moment": moment})
         if names:
             reactions[load.joint.name]["chosen"] = names

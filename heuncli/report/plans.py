@@ -48,6 +48,12 @@ def _about(results: Results, labels: Labels) -> str:
     return f"{labels.about} = ({x}, {y}, {z}) m" if labels.about else f"{POINTS[bool(about.any())]} ({x}, {y}, {z}) m"
 
 
+def _axes(results: Results) -> str:
+    """The axes in which joint loads are told."""
+    told = results.model.get("axes")
+    return f'axes of the "{told}" body' if told else "world axes"
+
+
 def _joint_note(name: str, labels: Labels) -> str:
     info = labels.joints.get(name)
     return f"{info.type}, {info.from_} → {info.to}" if info else ""
@@ -143,7 +149,7 @@ PLANS = (
         "joint",
         ("force", "moment", "axial", "radial", "tilting", "tension", "drive"),
         lambda results, labels: (
-            'JOINTS  what "from" exerts ON "to" (drive, friction apart), world axes, moment about the "to" point'
+            f'JOINTS  what "from" exerts ON "to" (drive, friction apart), {_axes(results)}, moment about the "to" point'
         ),
         _joint_note,
     ),
@@ -214,7 +220,7 @@ IMPULSES = (
         "joint",
         ("force", "moment", "axial", "radial", "tilting", "tension", "drive"),
         lambda results, labels: (
-            'JOINTS  impulse that "from" exerts ON "to" (drive apart), world axes, moment about the "to" point'
+            f'JOINTS  impulse that "from" exerts ON "to" (drive apart), {_axes(results)}, moment about the "to" point'
         ),
         _joint_note,
     ),

@@ -32,7 +32,8 @@ def sums_table(
     left = len(results.certain_sums) - len(lines)
     rest = f"{left} more in --format json (moments, or more than {MOST_TERMS} terms)" if left else ""
     notes = [*lines, *([TURNS] if any("(t)·" in line for line in lines) else []), *([rest] if rest else [])]
-    return Table("CERTAIN SUMS  of components that redundancy leaves open", notes=tuple(notes))
+    axes = ", world axes" if "axes" in results.model else ""  # elsewhere others are told
+    return Table(f"CERTAIN SUMS  of components that redundancy leaves open{axes}", notes=tuple(notes))
 
 
 def _line(block: CertainSum, certain: Certainty, beyond: CertainSum | None, unit: str) -> str | None:

@@ -22,11 +22,12 @@ ALL_OF_IT = frozenset({"foundation", "sections"})  # of all bodies, of all secti
 class Asked:
     """Reports that are asked for, those with entries as far as these go.
 
-    An entry of another report is not told; what it stands on is solved all the same.
+    An entry of another report is not told; what it stands on is solved all the same. axes: of joint loads (joint_axes).
     """
 
     reports: frozenset[str] = frozenset(REPORTS)
     entries: frozenset[Entry] = frozenset()
+    axes: str = "world"
 
     @property
     def is_everything(self) -> bool:

@@ -22,6 +22,7 @@ from heuncli.kinetostatics.actions import Action, AppliedLoad, applied_loads, jo
 from heuncli.kinetostatics.bodies import BodyStates, body_states
 from heuncli.kinetostatics.energy import energy
 from heuncli.kinetostatics.foundation import inertia_loads, total
+from heuncli.kinetostatics.joint_axes import in_axes
 from heuncli.kinetostatics.reactions import JointLoads, in_plane, joint_loads
 from heuncli.mechanism.size import marks
 from heuncli.results import Array, Estimate, Mask
@@ -208,7 +209,7 @@ class Kinds:
         terms = Terms(self.setup, several, states, loads)
         applied = [load.action for load in loads]
         if "reactions" in self.compared:
-            self.add_joints(joints, terms)
+            self.add_joints([in_axes(load, states, self.setup.asked.axes) for load in joints], terms)
         if "foundation" in self.compared:
             driven = [load for load in joints if load.drive is not None]
             self.add_foundation(states, [*applied, *joint_actions(driven)], terms)
@@ -255,7 +256,7 @@ class Kinds:
         return np.asarray(np.sqrt(far))
 
     def add_joints(self, joints: Sequence[JointLoads], terms: Terms) -> None:
-        """Reactions and drives."""
+        """Reactions, in the axes in which they are told, and drives."""
         F, M = terms.rounding
         if joints:
             self.take(("reactions", "force"), np.stack([x.force for x in joints], axis=1), F, terms.force)

@@ -19,6 +19,7 @@ from heuncli.kinetostatics.bodies import BodyStates, body_states
 from heuncli.kinetostatics.coordinates import coordinates, points
 from heuncli.kinetostatics.energy import energy, energy_drift, magnitude_of_work, power_imbalance, system_vector
 from heuncli.kinetostatics.foundation import foundation
+from heuncli.kinetostatics.joint_axes import axes_at, put_in_axes
 from heuncli.kinetostatics.magnitudes import magnitudes
 from heuncli.kinetostatics.reactions import JointLoads, joint_loads
 from heuncli.mechanism.model import JointLoad, PairLoad
@@ -162,8 +163,11 @@ def blocks(recovery: Recovery, wanted: Set[str]) -> dict[str, Any]:
         from heuncli.study.shares import put_shares  # few runs ask for them
 
         put_shares(recovery, about(recovery.setup), shown)
+    axes = recovery.setup.asked.axes
+    for load in recovery.joints if axes != "world" and "joints" in shown else ():
+        put_in_axes(shown["joints"][load.joint.name], axes_at(load.joint, states, axes))
     if shown and recovery.decided is not None:
-        recovery.decided.show(states, shown)
+        recovery.decided.show(states, shown, axes)
     if "energy" in wanted:
         shown["energy"] = recovery.energy
     if "motion" in wanted:

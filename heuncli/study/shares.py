@@ -14,6 +14,8 @@ import numpy as np
 from heuncli.integration.evaluator import Recovered
 from heuncli.kinetostatics.actions import Action
 from heuncli.kinetostatics.bodies import BodyStates
+from heuncli.kinetostatics.joint_axes import in_axes
+from heuncli.kinetostatics.reactions import JointLoads
 from heuncli.kinetostatics.shares import Column, Shares, foundation_shares, joint_shares, members_of, shares_of
 from heuncli.results import Array, Block
 from heuncli.results_schema import BY_CAUSE
@@ -53,7 +55,8 @@ def compare_shares(
     more = larger(shares.column, terms)
     F, M = (x * more for x in terms.rounding)
     force, moment = terms.force * more, terms.moment * more
-    found = of_joints(shares) if "reactions" in kinds.compared else []
+    told = [in_axes(load, states, setup.asked.axes) for load in shares.joints]
+    found = of_joints(told) if "reactions" in kinds.compared else []
     found += of_foundation(setup, states, shares, about) if "foundation" in kinds.compared else []
     found += of_sections(setup, states, shares) if "sections" in kinds.compared else []
     for kind, name, values in found:
@@ -72,13 +75,13 @@ def larger(column: Column, terms: Terms) -> Array:
 Compared = list[tuple[str, str, Array]]  # kind, quantity, values with the instants first
 
 
-def of_joints(shares: Shares) -> Compared:
+def of_joints(joints: Sequence[JointLoads]) -> Compared:
     """The joints' shares."""
     found: Compared = []
     for name in ("force", "moment"):
-        values = [np.moveaxis(getattr(load, name), 0, 1) for load in shares.joints]
+        values = [np.moveaxis(getattr(load, name), 0, 1) for load in joints]
         found += [("reactions", name, np.stack(values, axis=1))] if values else []
-    for load in shares.joints:
+    for load in joints:
         if load.drive is not None and load.joint.drive is not None:
             name = "moment" if load.joint.drive.quantity == "angle" else "force"
             found.append(("drives", name, load.drive.T[..., None]))

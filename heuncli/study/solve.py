@@ -46,13 +46,14 @@ CUT_SHORT = "the search for extremes was ended before all was looked at that may
 class Options:
     """What a command asks beside the spec; None leaves it to the spec.
 
-    wanted: reports, None for all; entries: single ones of these, in place of the whole.
+    wanted: reports, None for all; entries: single ones of these, in place of the whole. axes: of joint loads.
     """
 
     tolerance: float | None = None
     method: str | None = None
     wanted: frozenset[str] | None = None
     entries: frozenset[Entry] = frozenset()
+    axes: str = "world"
     time_limit: float | None = None
     least_norm: bool = False
     reduce: bool = True  # whether less than the whole scene may be solved, where that changes nothing
@@ -66,7 +67,7 @@ class Options:
     @property
     def asked(self) -> Asked:
         """What of the results is asked for."""
-        return Asked(self.reports, self.entries)
+        return Asked(self.reports, self.entries, self.axes)
 
 
 def solve(spec: Spec, options: Options | None = None) -> Study:
@@ -136,6 +137,7 @@ def compose(
         version=VERSION,
         model=setup.model
         | ({"split": "; ".join(split)} if split else {})
+        | ({"axes": setup.asked.axes} if setup.asked.axes != "world" else {})
         | contacts_of(history)
         | unfollowed(setup, history),
         status=status(history),
