@@ -16,6 +16,7 @@ from numpy.typing import NDArray
 from heuncli import tolerances
 from heuncli.errors import Problem, SpecError
 from heuncli.joint_kinds import JOINTS
+from heuncli.kinetostatics.section_axes import first_axis
 from heuncli.mechanism.model import GROUND, Mechanism, PointLoad
 from heuncli.records import record, replace
 from heuncli.results import Array
@@ -114,19 +115,6 @@ def lay_cuts(mechanism: Mechanism, spec: Any, forms: dict[str, Form]) -> tuple[C
     if problems:
         raise SpecError(*problems)
     return tuple(cuts)
-
-
-def first_axis(n: Array, given: Sequence[float] | None) -> Array:
-    """e1: the given direction, or the body axis most nearly in the plane (x before y before z), made normal to n."""
-    if given is not None:
-        a = np.array(given, dtype=float)
-        a = a / np.sqrt(a @ a)
-    else:
-        out = np.abs(n)
-        a = np.eye(3)[int(np.flatnonzero(out <= out.min() + tolerances.EQUAL_COMPONENTS)[0])]
-    in_plane = a - (a @ n) * n
-    e1: Array = in_plane / np.sqrt(in_plane @ in_plane)
-    return e1
 
 
 def _lay(mechanism: Mechanism, spec: Any, name: str, section: Any, index: dict[str, int], form: Form | None) -> Cuts:

@@ -13,6 +13,7 @@ import numpy as np
 
 from heuncli import tolerances
 from heuncli.joint_kinds import TYPES, Kind
+from heuncli.kinetostatics.section_axes import default_axis, nearest_axis
 from heuncli.records import record
 from heuncli.spec.models import End, Force, Friction, Section, Spec, Vec
 
@@ -112,12 +113,15 @@ def _section(section: Section) -> SectionInfo:
 
 
 def _first_axis(section: Section) -> str:
-    """e1 in words: as given, else the body axis most nearly in the plane, x before y before z."""
+    """e1 in words: as given, else the body axis that it is made of, with the one beside which it is the first."""
     if section.first_axis is not None:
         return f"body {_vector(section.first_axis)}"
-    normal = np.abs(np.asarray(section.normal) / np.linalg.norm(section.normal))
-    least = float(np.min(normal)) + tolerances.EQUAL_COMPONENTS
-    return f"body {next(name for name, n in zip(AXES, normal, strict=True) if n <= least)}"
+    n = np.asarray(section.normal, dtype=float)
+    n = n / np.sqrt(n @ n)
+    axis = default_axis(n)
+    askew = abs(float(n[axis])) > tolerances.PARALLEL
+    why = f" made perpendicular to n, which is nearest to body {AXES[nearest_axis(n)]}" if askew else ""
+    return f"body {AXES[axis]}{why}"
 
 
 def _end(end: End) -> str:

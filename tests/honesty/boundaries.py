@@ -19,9 +19,9 @@ from heuncli.errors import HeunError
 from heuncli.integration.complementarity import complementary
 from heuncli.integration.contacts import Touching, answerable, short_flights
 from heuncli.integration.pace import hopeless
-from heuncli.kinetostatics.cuts import first_axis
 from heuncli.kinetostatics.energy import energy_drift
 from heuncli.kinetostatics.foundation import central_axis
+from heuncli.kinetostatics.section_axes import nearest_axis
 from heuncli.mechanism.build import build
 from heuncli.mechanism.model import Stop
 from heuncli.records import replace
@@ -557,9 +557,9 @@ def axis_of(x: float) -> str:
 
 
 def equal(x: float) -> str:
-    # z is the least; of x and z alike, x goes first
-    n = np.array([0.6 + x, 0.8, 0.6]) / math.sqrt((0.6 + x) ** 2 + 1.0)
-    return "x" if first_axis(n, None)[0] > 0.5 else "z"
+    # y is the nearest to the normal; of x and y alike, x is
+    n = np.array([0.6, 0.6 + x, 0.4])
+    return "xyz"[nearest_axis(n / math.sqrt(n @ n))]
 
 
 def drift(x: float) -> str:
@@ -660,7 +660,7 @@ ROWS = (
     Row("AT_LIMIT", start_beyond, "fine", "refused: beyond-stop"),
     Row("PARALLEL", along_the_normal, "refused: first-axis", "fine"),
     Row("UPRIGHT", tilted, "fine", "refused: not-planar"),
-    Row("EQUAL_COMPONENTS", equal, "x", "z"),
+    Row("EQUAL_COMPONENTS", equal, "x", "y"),
     Row("IN_PLANE", needs_side, "refused: needs-side", "fine"),
     Row("OUTLINES_APART", two_legs, "fine", "warned: sections.s: the plane meets the body bar"),
     Row("ONE_PLACE", one_place, "1 m", "its extent"),
