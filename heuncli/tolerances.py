@@ -127,6 +127,9 @@ LEAST_RATE = 1e-5  # of a radian, or of the size, in the time asked for: slower 
 BOUNDLESS = 1e3  # a value that grows so many times over within 2**-20 of the run is on its way to infinity; where steps
 # become too many, one that has grown so in the last three quarters of the time is what they follow
 HOPELESS = 1.0  # times the most steps, over the root of their part done: what may be left of the steps projected
+INTEGRATED = 2.0 * EPS  # of a rate's size times the time: the rounding of one rule's sum, between whole and halves
+UNSEEN_RATE = 1e-9  # of a rate's size: what it may do in the mean between the nodes of its integral, no more than a
+# default tolerance; the integral itself errs by rounding
 QUADRATURE = 1e-14  # of the scale: whole against halves; planes that graze thin walls then err by as much
 
 # -- what is typed in a spec

@@ -84,7 +84,8 @@ def _condition_of(mechanism: Mechanism, k: int, joint: Joint, t0: float, problem
                           zero_free == "travel", problems)  # fmt: skip
     length, stretch = joint.length, (0.0, 0.0)
     if jet := driven.get("length"):
-        length, stretch = jet.value, (jet.rate, jet.acceleration)
+        length = length if drive and drive.from_start else jet.value
+        stretch = jet.rate, jet.acceleration
     if length is not None and length <= 0.0:
         message = f"joint {joint.name} (rod): its length is {length:.6g} m at the start"
         problems.append(Problem("no-length", message, hint="give a length above zero; for zero take a ball"))
@@ -133,7 +134,7 @@ def _known(
         both = (v for v in (held, jet and jet.value) if v is not None)
         problems += [_not_zero(joint, value, v) for v in both if abs(v) > tolerances.SAME_VALUE]
         held = None
-    elif jet:
+    elif jet and joint.drive is not None and not joint.drive.from_start:
         problems += _compare(joint, value, jet.value)
         held = jet.value
     if jet:

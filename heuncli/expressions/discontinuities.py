@@ -18,6 +18,7 @@ COARSEST, FINEST = 1 << 12, 1 << 20  # cells of the grids on which branches are 
 CELLS_PER_CHANGE = 16  # a grid with fewer is not fine enough to trust
 FIRST_CELLS = 256  # of a stretch looked at first
 MOST_EQUAL = 4  # doubles before a change of branch at which rounding makes the operands equal
+LOOKED_AT = 1000  # equal parts of a run, at whose ends the sign of a value is looked at
 MOST_OPEN = 1 << 13  # stretches open at once; margins that are zero but for rounding have as many as there are doubles
 RISING = frozenset(OPS[name] for name in ("sign", "step", "lt", "le", "gt", "ge"))  # rise or fall with their margin
 Decide = Callable[[list[float]], list[float]]
@@ -48,6 +49,19 @@ def one_sided_limits(instants: Sequence[float]) -> list[tuple[float, float]]:
         else:
             limits.append((before, t))
     return limits
+
+
+def changes(value: Expression, last: float) -> list[tuple[float, float]]:
+    """The last instant before and the first after each change of branch within the run, not what is at 0 alone."""
+    instants = discontinuities(value, 0.0, last) if last > 0.0 else []
+    return [(before, after) for before, after in one_sided_limits(instants) if before > 0.0]
+
+
+def first_not_positive(value: Expression, last: float) -> float | None:
+    """The first of many instants of a run, those beside jumps and kinks among them, at which a value is not above 0."""
+    grid = {last * k / LOOKED_AT for k in range(LOOKED_AT + 1)}
+    grid.update(t for pair in changes(value, last) for t in pair)
+    return next((t for t in sorted(grid) if value.value(t) <= 0.0), None)
 
 
 def _changes(expression: Expression, switch: Switch, t0: float, t1: float) -> list[float]:

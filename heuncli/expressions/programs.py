@@ -16,6 +16,7 @@ from heuncli.records import record, replace
 
 OPS = expressions.OPERATIONS
 CONST, VAR, TABLE, KNOT, HOLD = OPS["const"], OPS["var"], OPS["table"], OPS["knot"], OPS["hold"]
+INTEGRAL = OPS["integral"]
 
 TIME = "t"
 Variable = str | tuple[str, str]  # the time, or (joint, quantity)
@@ -173,6 +174,8 @@ class Pack:
                 argument = variables[argument]
             elif op in (TABLE, KNOT):
                 argument, is_data = tables[argument], True
+            elif op == INTEGRAL:
+                argument, is_data = argument + first, True
             elif op == HOLD:
                 argument += held
             self.code.extend((op, argument))

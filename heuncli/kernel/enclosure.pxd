@@ -1,10 +1,10 @@
 """Signatures of enclosure.py for C."""
 
 from heuncli.kernel.expressions cimport (
-    ABS, ADD, ASIN, ATAN, ATAN2, CONST, COS, COSH, DIV, EQ, EXP, EXTENDED, GE, GT, HELD, HOLD, HYPOT, JUMP, KNOT, LE,
-    LOG, LT, MAX, MIN, MUL, NE, NEG, PERIODIC, POW, POWER, SIGN, SIN, SINH, SQRT, STEP, SUB, TABLE, TAN, TANH, UNLESS,
-    VAR, Bounds, Expressions, Program, Programs, Span, Table, angle_on, piece, piece_counted, side_of_cut, table_at,
-    takes_two,
+    ABS, ADD, ASIN, ATAN, ATAN2, CONST, COS, COSH, DIV, EQ, EXP, EXTENDED, GE, GT, HELD, HOLD, HYPOT, INTEGRAL, JUMP, KNOT,
+    LE, LOG, LT, MAX, MIN, MUL, NE, NEG, PERIODIC, POW, POWER, SIGN, SIN, SINH, SQRT, STEP, SUB, TABLE, TAN, TANH, UNLESS,
+    VAR, Bounds, Expressions, Program, Programs, Span, Table, angle_on, integral, integrated, piece, piece_counted, side_of_cut,
+    summed_at, table_at, takes_two,
 )
 from heuncli.kernel.intervals cimport (
     angle, anything, arccosine, arcsine, arctangent, cosine, distance, exact_times, exponential_of, hull, hyperbolic_cosine,
@@ -50,6 +50,8 @@ cdef Bounds cubic_at(double *c, Py_ssize_t i, double h) noexcept nogil
 cdef Bounds slope_at(double *c, Py_ssize_t i, double h) noexcept nogil
 cdef Bounds with_extreme(Bounds value, double *c, Py_ssize_t i, Bounds h, double x) noexcept nogil
 cdef Bounds widened(Bounds a, double size) noexcept nogil
+cdef Span span_of_integral(Programs *programs, Span *ranges, Py_ssize_t at, int k) noexcept nogil
+cdef Bounds integral_at(Programs *programs, Span *ranges, Py_ssize_t at, int k, double t) noexcept nogil
 cdef Span span_on_branch(Programs *programs, int k, Py_ssize_t at, Span a, Span b) noexcept nogil
 cdef bint may_change(Programs *programs, Py_ssize_t at, double branch, Bounds a, Bounds b) noexcept nogil
 cdef Span angle_above(Span y, Span x) noexcept nogil

@@ -43,6 +43,7 @@ if not cython.compiled:
         HELD,
         HOLD,
         HYPOT,
+        INTEGRAL,
         JUMP,
         KNOT,
         LE,
@@ -69,9 +70,12 @@ if not cython.compiled:
         VAR,
         Expressions,
         angle_on,
+        integral,
+        integrated,
         piece,
         piece_counted,
         side_of_cut,
+        summed_at,
         table_at,
         takes_two,
     )
@@ -192,6 +196,9 @@ def run_on(
                 stack[height] = x
                 height += 1
                 x = either(then, other)
+        elif op == INTEGRAL:
+            x = span_of_integral(programs, ranges, at, k)
+            at = end
         elif op <= NE or programs.holding == HELD:
             result: Span
             if op == HOLD:
@@ -607,6 +614,49 @@ def with_extreme(value: Bounds, c: cython.p_double, i: cython.Py_ssize_t, h: Bou
 def widened(a: Bounds, size: cython.double) -> Bounds:
     """By the rounding of a polynomial whose terms are that large together."""
     return Bounds(a.low - 8.9e-16 * size, a.high + 8.9e-16 * size)
+
+
+# Integrals
+
+
+def span_of_integral(
+    programs: cython.pointer[Programs], ranges: cython.pointer[Span], at: cython.Py_ssize_t, k: cython.int
+) -> Span:
+    """An integral over time: what it is at the ends of the stretch, and no more than its rate adds from either."""
+    rate: Span = run_on(programs, ranges, integrated(programs, at), 0, no_span())
+    if is_nothing(rate.value):
+        return no_span()
+    t: Bounds = ranges[0].value
+    way: Bounds = times(rate.value, Bounds(0.0, minus(point(t.high), point(t.low)).high))
+    first: Bounds = integral_at(programs, ranges, at, k, t.low)
+    last: Bounds = integral_at(programs, ranges, at, k, t.high)
+    if is_nothing(first) or is_nothing(last):
+        return Span(anything(), rate.value, rate.rate)
+    return Span(closer(plus(first, way), minus(last, way)), rate.value, rate.rate)
+
+
+def integral_at(
+    programs: cython.pointer[Programs],
+    ranges: cython.pointer[Span],
+    at: cython.Py_ssize_t,
+    k: cython.int,
+    t: cython.double,
+) -> Bounds:
+    """Bounds of an integral at an instant; nothing where it has no value.
+
+    It errs by the rounding of the instants at which the rate is summed up, since the last knot.
+    """
+    f: cython.double = integral(programs, at, k, t)
+    if f - f != 0.0:
+        return nothing()
+    knots: Table = summed_at(programs, at, k)
+    knot: cython.double = programs.constants[knots.knots + piece(programs.constants, knots, t)]
+    asked: Span = ranges[0]
+    ranges[0] = Span(Bounds(knot if knot < t else t, t if knot < t else knot), point(1.0), point(0.0))
+    rate: Bounds = run_on(programs, ranges, integrated(programs, at), 0, no_span()).value
+    ranges[0] = asked
+    size: cython.double = 0.0 if is_nothing(rate) else magnitude(rate).high
+    return widened(point(f), fabs(f) + size * (fabs(t) + fabs(knot)))
 
 
 # Held branches

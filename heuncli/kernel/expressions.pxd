@@ -8,7 +8,10 @@ cdef enum:
     SINH, COSH, TANH, EXP, LOG, SQRT
     TABLE, KNOT, JUMP, UNLESS
     LT, LE, GT, GE, EQ, NE
-    HOLD
+    HOLD, INTEGRAL
+
+cdef enum:
+    NODES = 8
 
 cdef enum:
     FREE, HELD, TAKEN
@@ -66,6 +69,9 @@ cdef double side_of_cut(double y) noexcept nogil
 cdef Table table_at(Programs *programs, Py_ssize_t at, Py_ssize_t k) noexcept nogil
 cdef int piece(double *c, Table table, double x) noexcept nogil
 cdef double piece_counted(double *c, Table table, double x) noexcept nogil
+cdef Program integrated(Programs *programs, Py_ssize_t at) noexcept nogil
+cdef Table summed_at(Programs *programs, Py_ssize_t at, Py_ssize_t k) noexcept nogil
+cdef double integral(Programs *programs, Py_ssize_t at, Py_ssize_t k, double t) noexcept nogil
 cdef Jet jet(Programs *programs, Program program, double t) noexcept nogil
 
 cdef class Expressions:

@@ -12,6 +12,8 @@ An instruction takes its operands from the top of a stack and leaves its result 
                        two branches of a condition is run, so the other may be NaN
     LT ... NE          1 or 0; with the argument 1 the right operand stays above the result, for 0 < t < 1
     HOLD k             the operation that follows has branches and hangs on coordinates: held[k] is its branch
+    INTEGRAL k         the integral over time, from 0, of the program that follows, which is in time alone; it is all of
+                       its program. An instruction that is data comes between: (pieces, length of what is integrated).
 
 A branch that changes within a step of the integrator would be a jump or kink in what should be smooth. So it can be
 held: `holding` says what HOLD means.
@@ -27,6 +29,10 @@ An operand that is no number gives none, held or not. Where a held program has n
 beyond x = 0, it has that of the branches as they are.
 
 A table is a piecewise cubic, c0 + c1 h + c2 h² + c3 h³ with h from the knot at which the piece begins.
+
+An integral has in the constants from k the nodes and the weights of a quadrature on [0, 1], the knots, and what the
+integral is at each of them: from the last knot before t it is summed up by the quadrature. Its derivative is the
+program itself.
 
 `jet` carries the first and second derivative in time along. They are those of the chosen branches; at a jump or kink
 they are those of the piece that begins there.
@@ -80,7 +86,8 @@ else:
     SINH, COSH, TANH, EXP, LOG, SQRT = range(22, 28)
     TABLE, KNOT, JUMP, UNLESS = range(28, 32)
     LT, LE, GT, GE, EQ, NE = range(32, 38)
-    HOLD = 38
+    HOLD, INTEGRAL = range(38, 40)
+    NODES = 8  # of the quadrature: exact for polynomials of degree 15
 
     FREE, HELD, TAKEN = range(3)  # what HOLD means
     REFUSED, EXTENDED, PERIODIC = range(3)  # what a table says beyond its ends
@@ -92,8 +99,10 @@ OPERATIONS = {
     "power": POWER, "abs": ABS, "sign": SIGN, "step": STEP, "sin": SIN, "cos": COS, "tan": TAN, "asin": ASIN,
     "acos": ACOS, "atan": ATAN, "sinh": SINH, "cosh": COSH, "tanh": TANH, "exp": EXP, "log": LOG, "sqrt": SQRT,
     "table": TABLE, "knot": KNOT, "jump": JUMP, "unless": UNLESS, "hold": HOLD,
+    "integral": INTEGRAL,
 }  # fmt: skip
 HOLDING = {"free": FREE, "held": HELD, "taken": TAKEN}
+QUADRATURE = NODES  # nodes of integrals, for those who lay out their constants
 
 COMPILED = cython.compiled
 
@@ -136,6 +145,9 @@ def value(programs: cython.pointer[Programs], program: Program) -> cython.double
                 break
             height -= 1
             x = stack[height]
+        elif op == INTEGRAL:
+            x = integral(programs, at, k, programs.variables[0])
+            at = end
         elif op == HOLD and programs.holding != HELD:
             if programs.holding == TAKEN:
                 take_branch(programs, k, at, stack[height - 1], x)
@@ -533,6 +545,50 @@ def of_piece(c: cython.p_double, table: Table, counted: cython.double, x: cython
     return ((c[i + 3] * h + c[i + 2]) * h + c[i + 1]) * h + c[i]
 
 
+# Integrals
+
+
+@cython.cfunc
+@cython.inline
+@cython.nogil
+@cython.exceptval(check=False)
+def integrated(programs: cython.pointer[Programs], at: cython.Py_ssize_t) -> Program:
+    """The program under an integral whose data are the instruction at `at`."""
+    return Program(cython.cast(cython.int, at + 1), programs.code[at].argument)
+
+
+@cython.cfunc
+@cython.inline
+@cython.nogil
+@cython.exceptval(check=False)
+def summed_at(programs: cython.pointer[Programs], at: cython.Py_ssize_t, k: cython.Py_ssize_t) -> Table:
+    """Its knots and, as coefficients, what it is at each of them; they stand in the constants behind the quadrature."""
+    pieces: cython.int = programs.code[at].op
+    return Table(pieces, EXTENDED, 0.0, k + 2 * NODES, k + 2 * NODES + pieces + 1)
+
+
+@cython.cfunc
+@cython.nogil
+@cython.exceptval(check=False)
+def integral(
+    programs: cython.pointer[Programs], at: cython.Py_ssize_t, k: cython.Py_ssize_t, t: cython.double
+) -> cython.double:
+    """The integral from 0 to t; its table stands in the constants from k, its data are the instruction at `at`."""
+    c: cython.p_double = programs.constants
+    table: Table = summed_at(programs, at, k)
+    number: cython.int = piece(c, table, t)
+    knot: cython.double = c[table.knots + number]
+    h: cython.double = t - knot
+    mean: cython.double = 0.0
+    now: cython.double = programs.variables[0]
+    i: cython.Py_ssize_t
+    for i in range(NODES):
+        programs.variables[0] = knot + h * c[k + i]
+        mean += c[k + NODES + i] * value(programs, integrated(programs, at))
+    programs.variables[0] = now
+    return c[table.coefficients + number] + h * mean
+
+
 # Values with their derivatives in time
 
 
@@ -571,6 +627,10 @@ def jet(programs: cython.pointer[Programs], program: Program, t: cython.double) 
                 return Jet(NAN, NAN, NAN)
             height -= 1
             x = jets[height]
+        elif op == INTEGRAL:
+            first: Jet = jet(programs, integrated(programs, at), t)
+            x = Jet(integral(programs, at, k, t), first.value, first.rate)
+            at = end
         elif op == HOLD:  # what hangs on coordinates has no derivatives here
             pass
         elif k == 1:
@@ -834,7 +894,7 @@ def stack_depth(code: Sequence[int]) -> int:
             height += 1
         elif op <= MAX or (LT <= op <= NE and argument == 0):
             height -= 1
-        elif op in (TABLE, KNOT):
+        elif op in (TABLE, KNOT, INTEGRAL):
             is_data = True
         elif op in (JUMP, UNLESS):  # after JUMP the other branch begins, where this one's result is not there
             height -= 1

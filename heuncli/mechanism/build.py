@@ -49,7 +49,8 @@ def build(spec: Any, forms: dict[str, Form]) -> Mechanism:
     drives = {d.joint: (name, d) for name, d in spec.drives.items()}
     planar = spec.space == "planar"
     bodies = tuple(body(name, b, forms.get(name)) for name, b in spec.bodies.items())
-    made = tuple(joint(name, j, index, drives.get(name), planar) for name, j in spec.joints.items())
+    last = max(spec.analysis.times, default=0.0)
+    made = tuple(joint(name, j, index, drives.get(name), planar, last) for name, j in spec.joints.items())
     loads = tuple(part for name, f in spec.forces.items() for part in parts_of(name, f, index, joints))
     if planar:
         told = {joints[stop.joint][0] for stop in spec.stops.values()} | coordinates_used(loads, joints)
@@ -107,14 +108,24 @@ def body(name: str, b: Any, shape: Form | None) -> Body:
     )  # fmt: skip
 
 
-def joint(name: str, j: Any, index: dict[str, int], driven: Any, planar: bool) -> Joint:
-    """One joint with its drive, as what it is in the plane where that was declared."""
+def drive_of(name: str, d: Any, last: float) -> Drive:
+    """A drive; of one by its rate the integral, for a run up to `last`, is the value."""
+    value = d.value
+    if d.by_rate:
+        from heuncli.expressions.integrals import integral  # few scenes have them
+
+        value = integral(value, last)
+    return Drive(name, d.quantity, value, d.zero == "assembled", d.by_rate)
+
+
+def joint(name: str, j: Any, index: dict[str, int], driven: Any, planar: bool, last: float) -> Joint:
+    """One joint with its drive, as what it is in the plane where that was declared; last: the end of the run [s]."""
     given = j.axis if j.axis is not None else j.normal
     axis = unit(given) if given is not None else np.array([0.0, 0.0, 1.0])
     initial = j.initial
     drive = None
     if driven is not None:
-        drive = Drive(driven[0], driven[1].quantity, driven[1].value, driven[1].zero == "assembled")
+        drive = drive_of(driven[0], driven[1], last)
     stiffness = None
     if j.stiffness is not None:
         parts = (j.stiffness.force, j.stiffness.moment)

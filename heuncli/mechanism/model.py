@@ -48,12 +48,16 @@ class Body:
 
 @record
 class Drive:
-    """A coordinate prescribed in time: angle [rad], travel [m] or length [m]."""
+    """A coordinate prescribed in time: angle [rad], travel [m] or length [m].
+
+    from_start: the value is what is added to the coordinate since t = 0, whose start the assembly is yet to find.
+    """
 
     name: str
     quantity: Literal["angle", "travel", "length"]
     value: Expression
     zero_assembled: bool
+    from_start: bool = False
 
 
 @record

@@ -51,12 +51,14 @@ from heuncli.spec.fields import (
     Position,
     Pressure,
     Rate,
+    RateInTime,
     Stiffness,
     Tensor,
     Time,
     TurningDamping,
     TurningStiffness,
     Velocity,
+    VelocityInTime,
 )
 
 Frame = Literal["world", "body"]
@@ -299,6 +301,8 @@ class Drive(Model):
     angle: AngleInTime | None = None
     travel: LengthInTime | None = None
     length: LengthInTime | None = None
+    rate: RateInTime | None = None
+    speed: VelocityInTime | None = None
     zero: Literal["assembled"] | None = None
 
 

@@ -129,12 +129,13 @@ class Joint(NamedTuple):
 
 
 class Drive(NamedTuple):
-    """A coordinate of a joint prescribed in time."""
+    """A coordinate of a joint prescribed in time; by_rate: its rate of change is, from where it starts."""
 
     joint: str
     quantity: Literal["angle", "travel", "length"]
     value: Expression
     zero: Literal["assembled"] | None = None
+    by_rate: bool = False
 
 
 class PointForce(NamedTuple):

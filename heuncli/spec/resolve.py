@@ -151,9 +151,10 @@ class Resolver:
         )
 
     def drive(self, name: str, drive: f.Drive) -> m.Drive:
-        driven = drive_of(drive)
+        driven = drive_of(drive, self.document.joints[drive.joint].type)
         assert driven is not None
-        return m.Drive(drive.joint, driven[0], self.placed(driven[1], f"drives.{name}.{driven[0]}"), drive.zero)
+        value = self.placed(driven.value, f"drives.{name}.{driven.key}")
+        return m.Drive(drive.joint, driven.quantity, value, drive.zero, driven.by_rate)
 
     def force(self, name: str, load: f.Load) -> m.Force:
         path = f"forces.{name}"

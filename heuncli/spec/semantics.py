@@ -8,16 +8,20 @@ from __future__ import annotations
 import math
 from collections.abc import Iterator
 from decimal import Decimal
-from typing import Any, Literal
+from typing import Any, Literal, NamedTuple
 
 from heuncli.errors import Finding
 from heuncli.expressions.programs import Expression
+from heuncli.joint_kinds import RATES, TYPES, Kind
 from heuncli.spec import format as f
 from heuncli.spec import models as m
 from heuncli.spec import turns
 from heuncli.spec.fields import End
 
 DEFAULT_SAMPLES = 201
+# what a drive may prescribe: a coordinate, or its rate of change
+DRIVEN_RATES = RATES | {"length": "speed"}
+DRIVEN = tuple(dict.fromkeys((*DRIVEN_RATES, *DRIVEN_RATES.values())))
 Limits = tuple[float | None, float | None]
 ORIENTATIONS: dict[str, tuple[str, ...]] = {
     "axis": ("axis", "angle"),
@@ -73,13 +77,36 @@ def tensor(owner: f.Body | f.Piece) -> m.Matrix:
     return ((x, c, b), (c, y, a), (b, a, z))
 
 
-def drive_of(drive: f.Drive) -> tuple[Literal["angle", "travel", "length"], Expression] | None:
-    """Quantity and value of a drive that has one."""
-    if drive.angle is not None:
-        return "angle", drive.angle
-    if drive.travel is not None:
-        return "travel", drive.travel
-    return ("length", drive.length) if drive.length is not None else None
+class Driven(NamedTuple):
+    """What a drive prescribes: key, the coordinate or its rate, as a value in time, and the coordinate itself."""
+
+    key: Literal["angle", "travel", "length", "rate", "speed"]
+    value: Expression
+    quantity: Literal["angle", "travel", "length"]
+
+    @property
+    def by_rate(self) -> bool:
+        """Whether the value is the coordinate's rate of change."""
+        return self.key != self.quantity
+
+
+def driven_keys(kind: Kind) -> tuple[str, ...]:
+    """The keys by which a joint of this kind may be driven."""
+    return (*kind.drives, *(DRIVEN_RATES[quantity] for quantity in kind.drives))
+
+
+def drive_of(drive: f.Drive, joint_type: str | None) -> Driven | None:
+    """What a drive prescribes that prescribes one thing; joint_type: of its joint, None: unknown."""
+    given = [key for key in DRIVEN if getattr(drive, key) is not None]
+    if len(given) != 1:
+        return None
+    key = given[0]
+    value = getattr(drive, key)
+    if key not in DRIVEN_RATES.values():
+        return Driven(key, value, key)  # type: ignore[arg-type]
+    kind = TYPES.get(joint_type or "")
+    of = [quantity for quantity in (kind.drives if kind is not None else ()) if DRIVEN_RATES[quantity] == key]
+    return Driven(key, value, of[0]) if of else None  # type: ignore[arg-type]
 
 
 def limits_of(stop: f.Stop) -> tuple[Literal["angle", "travel", "length"], Limits] | None:

@@ -62,6 +62,10 @@ def set_up(spec: Spec, method: str | None = None, *, reduce: bool = True, asked:
     spec, left_out = asked_part(spec, asked, reduce)
     mechanism, cuts = draw(spec)
     prepared = prepare(mechanism, spec.analysis.times[0] if spec.analysis.type == "state" else 0.0)
+    if any(drive.by_rate for drive in spec.drives.values()):
+        from heuncli.tree.driven_starts import require_lengths  # few scenes have them
+
+        require_lengths(prepared.mechanism, max(spec.analysis.times))
     if not reduce:  # what is declared planar is moved as in space, too
         prepared = replace(prepared, layout=replace(prepared.layout, flat=False))
     scene, runner = ready(prepared)

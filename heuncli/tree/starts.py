@@ -55,7 +55,7 @@ def joint_start(mechanism: Mechanism, start: Assembly, joint: Joint) -> JointSta
     if "angle" not in kind.coordinates:
         return JointStart(R, first_angle(joint, R) if len(kind.turns) == 2 else 0.0, rate, travel, speed)
     near = joint.angle
-    if joint.drive is not None and joint.drive.quantity == "angle":
+    if joint.drive is not None and joint.drive.quantity == "angle" and not joint.drive.from_start:
         near = joint.drive.value.derivatives(0.0)[0]
     if joint.to_axis_given or (joint.drive is not None and joint.drive.zero_assembled):
         near = near or 0.0

@@ -717,6 +717,8 @@ ROWS = (
 
 # Those that decide no verdict: on either side the same numbers, to their digits.
 EXEMPT = {
+    "INTEGRATED": "whether a stretch is halved once more: the integral is right to rounding on either side",
+    "UNSEEN_RATE": "whether a stretch is halved once more; tests/spec/test_integrals.py has pulses that hide",
     "EPS": "the rounding of one operation; others are told by it",
     "NEAR_DRAWING": "which start a search takes first; tests/laws/test_nearest.py looks at what comes of it",
     "FARTHER": "which of two poses that both close; tests/laws/test_nearest.py holds how far it may be",

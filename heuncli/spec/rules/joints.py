@@ -6,16 +6,12 @@ import math
 from collections.abc import Iterator
 
 from heuncli import tolerances
-from heuncli.expressions.discontinuities import discontinuities, one_sided_limits
-from heuncli.expressions.programs import Expression
+from heuncli.expressions.discontinuities import changes, first_not_positive
 from heuncli.joint_kinds import RATES, TYPES, named
 from heuncli.spec import format as f
 from heuncli.spec.fields import End
 from heuncli.spec.rules.registry import DraftDocument, Path_, Violation, rule
-from heuncli.spec.semantics import drive_of, point_in, span_of
-
-LOOKED_AT = 1000  # equal parts of the run, at whose ends a driven length is evaluated
-DRIVEN = ("angle", "travel", "length")
+from heuncli.spec.semantics import DRIVEN, Driven, drive_of, driven_keys, point_in, span_of
 
 
 def directions(draft: DraftDocument) -> Iterator[tuple[Path_, tuple[float, float, float]]]:
@@ -94,19 +90,19 @@ def drive_form(draft: DraftDocument) -> Iterator[Violation]:
         path = ("drives", name)
         quantities = [key for key in DRIVEN if getattr(drive, key) is not None]
         kind = TYPES.get(draft.names.joints.get(drive.joint, ""))
-        fitting = kind.drives if kind is not None else ()
+        fitting = driven_keys(kind) if kind is not None else ()
         if len(quantities) != 1:
             what = " and ".join(quantities) if quantities else "nothing"
-            hint = f"a {kind.name} has {fitting[0]}" if kind is not None and fitting else f"one of {', '.join(DRIVEN)}"
+            hint = may_have(kind.name, fitting) if kind is not None and fitting else f"one of {', '.join(DRIVEN)}"
             yield Violation(path, f"the drive prescribes {what}", hint, key=True)
             continue
         quantity = quantities[0]
         if kind is not None:
             if quantity not in fitting:
                 driven_kinds = named([kind for kind in TYPES.values() if kind.drives], "and")
-                hint = f"a {kind.name} has {fitting[0]}" if fitting else f"drives act on {driven_kinds}"
+                hint = may_have(kind.name, fitting) if fitting else f"drives act on {driven_kinds}"
                 yield Violation((*path, quantity), f"a {kind.name} has no {quantity} to be driven", hint, key=True)
-            elif quantity == "length" and drive.zero is not None:
+            elif kind.keeps_distance and drive.zero is not None:
                 yield Violation(
                     (*path, "zero"), "a length is not counted from the assembled one", "zero is for angle and travel"
                 )
@@ -119,52 +115,52 @@ def drive_form(draft: DraftDocument) -> Iterator[Violation]:
         driven.setdefault(drive.joint, name)
 
 
-def drives(draft: DraftDocument) -> Iterator[tuple[str, str, str, Expression]]:
-    """Drives of one coordinate in time: name, joint, quantity, value."""
+def may_have(kind: str, keys: tuple[str, ...]) -> str:
+    """What a joint of this kind may be driven by, in words."""
+    return f"a {kind} has {' or '.join(keys)}"
+
+
+def drives(draft: DraftDocument) -> Iterator[tuple[str, str, Driven]]:
+    """Drives of one coordinate in time: name, joint, what they prescribe."""
     for name, drive in draft.document.drives.items():
-        driven = drive_of(drive)
-        if driven is not None and not driven[1].uses:
-            yield name, drive.joint, *driven
+        driven = drive_of(drive, draft.names.joints.get(drive.joint))
+        if driven is not None and not driven.value.uses:
+            yield name, drive.joint, driven
 
 
 @rule("drive-contradicts")
 def drive_contradicts(draft: DraftDocument) -> Iterator[Violation]:
     """A held start value is the drive's own at t = 0."""
-    for name, joint_name, quantity, value in drives(draft):
+    for name, joint_name, driven in drives(draft):
         joint = draft.document.joints.get(joint_name)
         initial = getattr(joint, "initial", None)
         if initial is None:
             continue
-        at_start = value.derivatives(0.0)
+        start, rate, _ = driven.value.derivatives(0.0)
+        quantity = driven.quantity
         relative = draft.document.drives[name].zero == "assembled" or getattr(joint, "to_axis", None) is not None
         for key, expected in (
-            (quantity, at_start[0]),
-            (RATES.get(quantity, ""), at_start[1]),
+            (quantity, None if relative or driven.by_rate else start),
+            (RATES.get(quantity, ""), start if driven.by_rate else rate),
         ):
             held = getattr(initial, key, None)
-            if held is None or (relative and key == quantity):
+            if held is None or expected is None:
                 continue
             if abs(held - expected) > tolerances.SAME_VALUE * max(abs(held), abs(expected), 1.0):
                 message = f"{key} is held at {held:g}, but the drive {name} prescribes {expected:g} at t = 0"
                 yield Violation(("joints", joint_name, "initial", key), message, "leave it out: the drive sets it")
 
 
-def changes(value: Expression, duration: float) -> list[tuple[float, float]]:
-    """The last instant before and the first after each change of branch within the run, not what is at 0 alone."""
-    instants = discontinuities(value, 0.0, duration) if duration > 0.0 else []
-    return [(before, after) for before, after in one_sided_limits(instants) if before > 0.0]
-
-
 @rule("drive-jumps")
 def drive_jumps(draft: DraftDocument) -> Iterator[Violation]:
-    """A driven coordinate does not jump, and is a number all along the run."""
+    """A driven coordinate does not jump, its rate may; it is a number all along the run."""
     duration = span_of(draft.document.analysis)
-    for name, _, quantity, value in drives(draft):
-        path = ("drives", name, quantity)
+    for name, _, driven in drives(draft):
+        path, value = ("drives", name, driven.key), driven.value
         if math.isnan(value.value(0.0)):
             yield Violation(path, "the drive has no value at t = 0", "look at the domains of its functions and tables")
             continue
-        for last, t in changes(value, duration):
+        for last, t in changes(value, duration) if not driven.by_rate else ():
             before, after = value.value(last), value.value(t)
             if abs(after - before) > tolerances.SAME_VALUE * max(abs(before), abs(after), 1.0):
                 message = f"the drive jumps from {before:g} to {after:g} at t = {t:g} s"
@@ -176,12 +172,11 @@ def drive_jumps(draft: DraftDocument) -> Iterator[Violation]:
 def drive_length(draft: DraftDocument) -> Iterator[Violation]:
     """A driven rod keeps a positive length: at length 0 its direction is undefined."""
     duration = span_of(draft.document.analysis)
-    for name, _, quantity, value in drives(draft):
-        if quantity != "length" or draft.document.drives[name].zero == "assembled":
+    for name, _, driven in drives(draft):
+        value = driven.value
+        if driven.key != "length" or draft.document.drives[name].zero == "assembled":
             continue
-        grid = {duration * k / LOOKED_AT for k in range(LOOKED_AT + 1)}
-        grid.update(t for pair in changes(value, duration) for t in pair)
-        gone = next((t for t in sorted(grid) if value.value(t) <= 0.0), None)
+        gone = first_not_positive(value, duration)
         if gone is not None:
             message = f"the rod {draft.document.drives[name].joint} has no length left at t = {gone:.4g} s"
             yield Violation(("drives", name, "length"), message, "let the run end before, or the length stay above 0")

@@ -71,9 +71,9 @@ def stop_joint(draft: DraftDocument) -> Iterator[Violation]:
     """What a stop limits can reach the limit by itself, and no other stop stands there already."""
     driven: dict[tuple[str, str], str] = {}
     for name, drive in draft.document.drives.items():
-        prescribed = drive_of(drive)
+        prescribed = drive_of(drive, draft.names.joints.get(drive.joint))
         if prescribed is not None:
-            driven[drive.joint, prescribed[0]] = name
+            driven[drive.joint, prescribed.quantity] = name
     taken: dict[tuple[str, str, int], str] = {}
     for name, joint, _, quantity, limits in limited(draft):
         path = ("stops", name)
