@@ -9,9 +9,10 @@ import math
 from array import array
 
 from heuncli.errors import Finding
+from heuncli.expressions.dimensions import COORDINATES, FACTOR, FREE, OF_TIME, Measure, combined, looked_up, loose
 from heuncli.expressions.programs import Code, Expression, Switch, Table, outside
 from heuncli.kernel.choose import expressions
-from heuncli.records import record
+from heuncli.records import record, replace
 
 OP = expressions.OPERATIONS
 MOST_NODES = 500
@@ -25,13 +26,14 @@ BRANCHING = frozenset({*TRUTHS, "sign", "abs", "min", "max", "atan2"})
 class Part:
     """The code of a part of an expression, the variables it uses, and its value where it is constant.
 
-    is_truth: it is 1 or 0, and where it changes a branch changes in its own code.
+    is_truth: it is 1 or 0, and where it changes a branch changes in its own code. measure: its dimension.
     """
 
     code: Code
     uses: frozenset[int]
     constant: float | None = None
     is_truth: bool = False
+    measure: Measure = FREE
 
 
 class Codegen:
@@ -58,16 +60,17 @@ class Codegen:
             source=text, constant=part.constant, uses=tuple(self.variables), time_dependent=0 in part.uses,
             code=part.code, constants=tuple(self.constants), tables=tuple(self.tables),
             switches=tuple(self.switches), held=tuple(self.held),
+            dimension=part.measure.dimension if part.measure.kind == "known" else None,
         )  # fmt: skip
 
     def time(self) -> Part:
         """The variable t."""
-        return self.counted(Part((OP["var"], 0), frozenset({0})))
+        return self.counted(Part((OP["var"], 0), frozenset({0}), measure=OF_TIME))
 
     def coordinate(self, joint: str, quantity: str) -> Part:
         """The variable that is a joint's coordinate."""
         number = self.variables.setdefault((joint, quantity), len(self.variables) + 1)
-        return self.counted(Part((OP["var"], number), frozenset({number})))
+        return self.counted(Part((OP["var"], number), frozenset({number}), measure=loose(COORDINATES[quantity])))
 
     def held_branch(self, text: str, uses: frozenset[int]) -> Code:
         """What stands before an operation that branches: its branch is held where it hangs on coordinates."""
@@ -80,17 +83,18 @@ class Codegen:
         """A table's value at the argument."""
         if table not in self.tables:
             self.tables.append(table)
-        looked_up = (OP["table"], self.tables.index(table), table.pieces, table.kind)
-        code = (*argument.code, *self.held_branch(text, argument.uses), *looked_up)
+        measure = looked_up(table.name, table.dimensions, argument.measure)
+        operation = (OP["table"], self.tables.index(table), table.pieces, table.kind)
+        code = (*argument.code, *self.held_branch(text, argument.uses), *operation)
         if argument.constant is not None:
             value = self.run(code, table)
             if math.isnan(value) and math.isfinite(argument.constant):
                 message, hint = outside(table)
                 self.out_of_range = Finding("not-computable", f"{message}, not {argument.constant:.9g}", hint)
-            return self.number(value)
+            return self.number(value, measure)
         if argument.uses <= {0}:
             self.switches.append(Switch((*argument.code, OP["knot"], *code[-3:]), None))
-        return self.counted(Part(code, argument.uses))
+        return self.counted(Part(code, argument.uses, measure=measure))
 
     def chain(self, first: Part, links: list[tuple[str, Part, Part, str]]) -> Part:
         """a < b < c as one condition, in which each part is run once; links: comparison, left, right, text."""
@@ -101,15 +105,16 @@ class Codegen:
             return truth
         code, uses = first.code, first.uses
         for n, (name, left, right, text) in enumerate(links):
+            combined(name, (left.measure, right.measure))
             self.switch_of_comparison(name, left, right)
             again = 0 if n == len(links) - 1 else 1  # 1: the right one is needed again
             code = (*code, *right.code, *self.held_branch(text, left.uses | right.uses), OP[name], again)
             uses |= right.uses
-        return self.counted(Part(code + (OP["mul"], 0) * (len(links) - 1), uses, is_truth=True))
+        return self.counted(Part(code + (OP["mul"], 0) * (len(links) - 1), uses, is_truth=True, measure=FACTOR))
 
-    def number(self, value: float) -> Part:
+    def number(self, value: float, measure: Measure = FACTOR) -> Part:
         self.constants.append(value)
-        return self.counted(Part((OP["const"], len(self.constants) - 1), frozenset(), value))
+        return self.counted(Part((OP["const"], len(self.constants) - 1), frozenset(), value, measure=measure))
 
     def counted(self, part: Part) -> Part:
         self.nodes += 1
@@ -133,20 +138,22 @@ class Codegen:
         for part in parts:
             code += part.code
             uses |= part.uses
+        measure = combined(name, [part.measure for part in parts], argument)
         if not uses:
-            return self.number(self.run((*code, OP[name], argument)))
+            return self.number(self.run((*code, OP[name], argument)), measure)
         if uses <= {0}:
             self.switch(name, parts)
         held = self.held_branch(text, uses) if text and name in BRANCHING else ()
-        return self.counted(Part((*code, *held, OP[name], argument), uses, is_truth=name in TRUTHS))
+        return self.counted(Part((*code, *held, OP[name], argument), uses, is_truth=name in TRUTHS, measure=measure))
 
     def choose(self, condition: Part, then: Part, otherwise: Part, text: str = "") -> Part:
         """then where the condition is not 0, else otherwise; only the chosen one is run. text: of the condition."""
         self.branches = True
+        measure = combined("choose", (then.measure, otherwise.measure))
         if condition.constant is not None:
             if math.isnan(condition.constant):
                 return condition
-            return then if condition.constant != 0.0 else otherwise
+            return replace(then if condition.constant != 0.0 else otherwise, measure=measure)
         chosen = condition.code
         if not condition.is_truth and not condition.uses <= {0}:
             self.constants.append(0.0)
@@ -156,7 +163,8 @@ class Codegen:
             OP["jump"], len(otherwise.code) // 2, *otherwise.code,
         )  # fmt: skip
         is_truth = all(part.is_truth or part.constant in (0.0, 1.0) for part in (then, otherwise))
-        return self.counted(Part(code, condition.uses | then.uses | otherwise.uses, is_truth=is_truth))
+        uses = condition.uses | then.uses | otherwise.uses
+        return self.counted(Part(code, uses, is_truth=is_truth, measure=measure))
 
     def truth(self, part: Part, text: str, name: str = "ne") -> Part:
         """1 where a part is not 0, else 0; or, with "eq", the other way round."""

@@ -12,15 +12,16 @@ import math
 import re
 from collections.abc import Mapping
 from types import MappingProxyType
-from typing import Any
+from typing import Any, NamedTuple
 
 from heuncli.errors import Finding
 from heuncli.expressions.codegen import COMPARISONS, MOST_NODES, Codegen, Part
+from heuncli.expressions.dimensions import FACTOR, FREE, known, loose, of_literal, raised
 from heuncli.expressions.programs import Expression, Table
-from heuncli.expressions.units import in_si
+from heuncli.expressions.units import RATE, Dimension, describe, in_si
 from heuncli.joint_kinds import RATES, TYPES
 from heuncli.nearest import did_you_mean, nearest
-from heuncli.records import record
+from heuncli.records import record, replace
 
 LONGEST, DEEPEST = 2000, 48
 LARGEST_POWER = 64  # whole powers up to this one are multiplied out
@@ -77,13 +78,26 @@ NONE: Mapping[str, Any] = MappingProxyType({})
 class Scope:
     """The names an expression may use. A parameter or table of value None is known, but was itself in error.
 
-    joints gives the type of each; time and coordinates may be used only where in_time.
+    joints gives the type of each; time and coordinates may be used only where in_time. given: the parameters that have
+    a dimension, as they are written.
     """
 
     parameters: Mapping[str, float | None] = NONE
     joints: Mapping[str, str] = NONE
     tables: Mapping[str, Table | None] = NONE
     in_time: bool = False
+    given: Mapping[str, Given] = NONE
+
+
+class Given(NamedTuple):
+    """A parameter with a dimension, as it is written."""
+
+    dimension: Dimension
+    text: str
+
+    def told(self, name: str) -> str:
+        """In words."""
+        return f"{name} = {self.text} is {describe(self.dimension)}"
 
 
 class Follows(Finding):
@@ -97,7 +111,18 @@ def compile_expression(text: str, scope: Scope) -> Expression:
     """The expression a text means. Raises Finding."""
     if len(text) > LONGEST:
         raise Finding("expression-limit", f"an expression of {len(text)} characters; at most {LONGEST} are read")
-    return _Parser(text, scope).parse()
+    try:
+        return _Parser(text, scope).parse()
+    except Finding as finding:
+        if finding.code != "wrong-dimension":
+            raise
+        raise Finding(finding.code, f"'{text.strip()}' {finding.message}", told_of(text, scope)) from None
+
+
+def told_of(text: str, scope: Scope) -> str | None:
+    """The dimensions of the parameters in a text, in words: a hint."""
+    names = dict.fromkeys(found[0] for found in re.finditer(r"[^\W\d]\w*", text) if found[0] in scope.given)
+    return ", ".join(scope.given[name].told(name) for name in names) or None
 
 
 class _Parser:
@@ -283,10 +308,13 @@ class _Parser:
         exponent = self.unary()  # binds to the right: 2**-3**2
         self.nested -= 1
         n = exponent.constant
+        measure = raised(part.measure, n, exponent.measure)
         if n is not None and n == int(n if math.isfinite(n) else 0.0) and 2.0 <= abs(n) <= LARGEST_POWER:
             whole = self.codegen.apply("power", part, argument=int(abs(n)))
-            return whole if n > 0.0 else self.codegen.apply("div", self.codegen.number(1.0), whole)
-        return self.codegen.apply("pow", part, exponent)
+            result = whole if n > 0.0 else self.codegen.apply("div", self.codegen.number(1.0), whole)
+        else:
+            result = self.codegen.apply("pow", part, exponent)
+        return replace(result, measure=measure)
 
     def operand(self) -> Part:
         kind, token = self.kind, self.token
@@ -297,7 +325,7 @@ class _Parser:
             value = float(token)
             if not math.isfinite(value):
                 raise Finding("not-computable", f"{token} is too large a number")
-            return self.codegen.number(value)
+            return self.codegen.number(value, of_literal(token))
         if kind == "name" and token not in WORDS:
             self.at += 1
             if self.take("("):
@@ -379,9 +407,10 @@ class _Parser:
             value = self.scope.parameters[name]
             if value is None:
                 raise Follows
-            return self.codegen.number(value)
+            given = self.scope.given.get(name)
+            return self.codegen.number(value, known(given.dimension) if given is not None else FREE)
         if name in CONSTANTS:
-            return self.codegen.number(CONSTANTS[name])
+            return self.codegen.number(CONSTANTS[name], loose(RATE) if name == "rpm" else FACTOR)
         if name == "t":
             if not self.scope.in_time:
                 raise Finding("not-in-time", "the time t may stand only in a value in time (forces, drives)")

@@ -28,7 +28,7 @@ class Table:
     """A function given by points, as the kernel reads it: a piecewise cubic.
 
     numbers: period, knots (pieces + 1), four coefficients a piece; kind: outside is 0 refused, 1 held, 2 periodic.
-    x and y are the points as given, in SI.
+    x and y are the points as given, in SI; dimensions: of the columns that have a unit.
     """
 
     name: str
@@ -38,6 +38,7 @@ class Table:
     x: tuple[float, ...] = ()
     y: tuple[float, ...] = ()
     interpolation: str = "linear"
+    dimensions: tuple[tuple[int, int, int] | None, tuple[int, int, int] | None] = (None, None)
 
 
 def outside(table: Table) -> tuple[str, str]:

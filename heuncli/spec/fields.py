@@ -14,7 +14,7 @@ from heuncli.errors import Finding
 from heuncli.expressions import units as u
 from heuncli.expressions.programs import Expression
 from heuncli.records import record
-from heuncli.spec.quantity import Scope, in_time, kind_of, number
+from heuncli.spec.quantity import Scope, in_time, kind_of, number, unit_in
 
 
 @record
@@ -60,6 +60,14 @@ class Si(Value):
         if type(value) is float and value - value == 0.0:
             return value
         return number(value, self.dimension, info.context.load)
+
+
+class Component(Si):
+    """A component of a direction, of which the ratios count: all three may be lengths."""
+
+    def read(self, value: Any, info: Any) -> float:
+        is_expression = type(value) is str and unit_in(value) is None
+        return number(value, None, info.context.load) if is_expression else super().read(value, info)
 
 
 class InTime(Value):
@@ -155,7 +163,8 @@ FormatVersion = Annotated[int, Version()]
 Expected = Annotated[Any, NumbersOrOpen()]
 
 Position = tuple[Length, Length, Length]
-Direction = tuple[Number, Number, Number]
+Ratio = Annotated[float, Component(u.NUMBER)]
+Direction = tuple[Ratio, Ratio, Ratio]
 Matrix = tuple[Direction, Direction, Direction]
 Tensor = tuple[tuple[Inertia, Inertia, Inertia], tuple[Inertia, Inertia, Inertia], tuple[Inertia, Inertia, Inertia]]
 

@@ -7,6 +7,7 @@ from pathlib import Path
 from typing import Any
 
 from heuncli.errors import Problem, SourceLocation, SpecError
+from heuncli.expressions.grammar import Given
 from heuncli.expressions.programs import Table
 from heuncli.spec import format as f
 from heuncli.spec.document import Reader
@@ -79,11 +80,11 @@ class Loading:
 
     def spec(self) -> Spec:
         """The scene. Raises SpecError."""
-        parameters = self.parameters()
+        parameters, given = self.parameters()
         names = Names.of(self.data)
-        scope = Scope(parameters)
+        scope = Scope(parameters, given=given)
         tables = self.tables(scope)
-        context = Context(scope, Scope(parameters, names.joints, tables, in_time=True))
+        context = Context(scope, Scope(parameters, names.joints, tables, in_time=True, given=given))
         reader = Reader(self.data, context, self.report)
         draft = DraftDocument(reader.document(), names, frozenset(self.unread))
         self.judge(draft, reader.follows)
@@ -96,12 +97,12 @@ class Loading:
         meaning = Meaning(source.file, source.sha256, values, built, warnings, self.locations(), files)
         return resolve(draft.document, meaning)
 
-    def parameters(self) -> dict[str, float | None]:
-        """Values of the parameters; None for those in error."""
-        values, findings = evaluate_parameters(self.block("parameters"))
-        for name, finding in findings:
+    def parameters(self) -> tuple[dict[str, float | None], dict[str, Given]]:
+        """Values of the parameters, None for those in error; and those that have a dimension."""
+        parameters = evaluate_parameters(self.block("parameters"))
+        for name, finding in parameters.findings:
             self.report(finding.code, Violation(("parameters", name), finding.message, finding.hint))
-        return values
+        return parameters.values, parameters.given
 
     def tables(self, scope: Scope) -> dict[str, Table | None]:
         """The tables; None for those in error."""

@@ -5,7 +5,9 @@ from __future__ import annotations
 from typing import Any
 
 from heuncli.errors import Finding
-from heuncli.spec.quantity import Follows, Scope, number
+from heuncli.expressions.grammar import Given
+from heuncli.records import record
+from heuncli.spec.quantity import Follows, Scope, in_time
 
 
 class _Needed(Exception):
@@ -30,10 +32,20 @@ class _Values(dict[str, float | None]):
         raise _Needed(name)
 
 
-def evaluate_parameters(given: dict[str, Any]) -> tuple[dict[str, float | None], list[tuple[str, Finding]]]:
-    """Values in SI (None for those in error) and what is wrong."""
+@record
+class Parameters:
+    """Values in SI, None for those in error; those with a dimension, as they are written; and what is wrong."""
+
+    values: dict[str, float | None]
+    given: dict[str, Given]
+    findings: list[tuple[str, Finding]]
+
+
+def evaluate_parameters(given: dict[str, Any]) -> Parameters:
+    """The parameters that a spec gives."""
     values = _Values(given)
-    scope = Scope(parameters=values)
+    written: dict[str, Given] = {}
+    scope = Scope(parameters=values, given=written)
     findings: list[tuple[str, Finding]] = []
     for first in given:
         waiting = [first]
@@ -43,7 +55,10 @@ def evaluate_parameters(given: dict[str, Any]) -> tuple[dict[str, float | None],
                 waiting.pop()
                 continue
             try:
-                values[name] = number(given[name], None, scope)
+                expression = in_time(given[name], None, scope)
+                values[name] = expression.constant
+                if expression.dimension is not None:
+                    written[name] = Given(expression.dimension, expression.source.strip())
             except _Needed as needed:
                 if needed.name in waiting:
                     circle = [*waiting[waiting.index(needed.name) :], needed.name]
@@ -57,4 +72,4 @@ def evaluate_parameters(given: dict[str, Any]) -> tuple[dict[str, float | None],
             except Finding as finding:
                 values[name] = None
                 findings.append((name, finding))
-    return {name: values[name] for name in given}, findings
+    return Parameters({name: values[name] for name in given}, written, findings)

@@ -7,13 +7,15 @@ import re
 from typing import Any
 
 from heuncli.errors import Finding
-from heuncli.expressions.grammar import RESERVED, WORDS, Follows, Scope, compile_expression
+from heuncli.expressions.grammar import RESERVED, WORDS, Follows, Scope, compile_expression, told_of
 from heuncli.expressions.programs import Expression
 from heuncli.expressions.units import Dimension, describe, in_si, parse_unit, si_unit
 from heuncli.records import replace
 
 # A number and then something that begins like a unit; "2 if t < 1 else 3" is an expression all the same.
 WITH_UNIT = re.compile(r"\s*([+-]?\s*(?:\d+\.?\d*|\.\d+)(?:[eE][+-]?\d+)?+)\s*((?:[^\W\d_]|°|1/)[^,]*)\s*\Z")
+WHOLE_NUMBER = re.compile(r"(?<![\w.*])\d(?![\w.])|(?<=[^*]\*)\d(?![\w.])")
+TIME_IN_IT = re.compile(r"(?<![\w.])t(?![\w.])")
 NOT_A_NUMBER = re.compile(r"[+-]?\.?(?:inf|nan)(?:inity)?\Z", re.IGNORECASE)
 
 
@@ -34,9 +36,9 @@ def in_time(value: Any, dimension: Dimension | None, scope: Scope) -> Expression
         raise Finding("wrong-kind", f"expected a number, found {kind_of(value)}", hint_for(value))
     if NOT_A_NUMBER.match(value.strip()):
         raise Finding("not-finite", f"'{value.strip()}' is not a finite number")
-    with_unit = WITH_UNIT.match(value)
-    if with_unit is None or re.split(r"\W", with_unit[2], maxsplit=1)[0] in WORDS:
-        return compile_expression(value, scope)
+    with_unit = unit_in(value)
+    if with_unit is None:
+        return fitting(compile_expression(value, scope), dimension, scope)
     size, measured = measure(with_unit[1], with_unit[2].strip(), scope)
     if dimension is not None and measured != dimension:
         hint = (
@@ -45,6 +47,30 @@ def in_time(value: Any, dimension: Dimension | None, scope: Scope) -> Expression
         )
         raise Finding("dimension", f"'{value.strip()}' is {describe(measured)}, expected {describe(dimension)}", hint)
     return replace(Expression.of(size), source=value, dimension=measured)
+
+
+def unit_in(text: str) -> re.Match[str] | None:
+    """The figure and the unit of a text that is a number with a unit."""
+    found = WITH_UNIT.match(text)
+    return found if found is not None and re.split(r"\W", found[2], maxsplit=1)[0] not in WORDS else None
+
+
+def fitting(expression: Expression, dimension: Dimension | None, scope: Scope) -> Expression:
+    """The expression, unless it is certainly of another dimension. Raises Finding."""
+    found = expression.dimension
+    if dimension is None or found is None or found == dimension:
+        return expression
+    text, hint = expression.source.strip(), "without a unit a parameter fits anywhere"
+    what = f"'{text}' is {describe(found)}"
+    if text in scope.given:
+        what = f"{text} is {describe(found)} ({scope.given[text].text})"
+    else:
+        hint = f"{told_of(text, scope)}; {hint}"
+        if WHOLE_NUMBER.search(text):
+            hint += "; a whole number is a plain factor: write 3.0 for one that has a unit"
+        if TIME_IN_IT.search(text):
+            hint += "; t beside it is a time: for a ramp divide by one, as in F*t/T"
+    raise Finding("wrong-dimension", f"{what}, {describe(dimension)} is wanted here", hint)
 
 
 def measure(figure: str, unit: str, scope: Scope) -> tuple[float, Dimension]:

@@ -11,9 +11,9 @@ from heuncli import tolerances
 from heuncli.errors import Finding, SourceLocation
 from heuncli.expressions.curves import fit
 from heuncli.expressions.programs import Table
-from heuncli.expressions.units import parse_unit
+from heuncli.expressions.units import Dimension, parse_unit
 from heuncli.nearest import nearest
-from heuncli.records import record
+from heuncli.records import record, replace
 from heuncli.spec.format import Table as Entry
 from heuncli.spec.quantity import Scope, number
 
@@ -73,11 +73,17 @@ def build_table(name: str, entry: Entry, scope: Scope, folder: Path) -> tuple[Ta
     if entry.period is not None:
         x[-1], y[-1] = x[0] + entry.period, y[0]
     table = fit(name, x, y, entry.interpolation, entry.outside, entry.period)
+    table = replace(table, dimensions=(dimension_of(entry.x_unit), dimension_of(entry.y_unit)))
     if not all(map(math.isfinite, table.numbers)):
         return None, [
             Wrong((), Finding("table-shape", "its points lie too close together or too far apart for a slope"))
         ]
     return table, []
+
+
+def dimension_of(unit: str | None) -> Dimension | None:
+    """The dimension of a column with a unit that was read."""
+    return parse_unit(unit)[1] if unit is not None else None
 
 
 def unit_size(key: str, unit: str | None, wrong: list[Wrong]) -> float:

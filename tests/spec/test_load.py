@@ -355,7 +355,7 @@ expect:
 
 
 def test_parameters_in_any_order() -> None:
-    top = "parameters: {a: 2*b, b: c + 1, c: 5 mm, n: 1500 rpm, d: 'sqrt(a)', r: 30*deg}\n"
+    top = "parameters: {a: 2*b, b: c + 1, c: 5 mm/s^2, n: 1500 rpm, d: 'sqrt(a)', r: 30*deg}\n"
     found = scene(f"{top}gravity: [0, 0, -a]\nbodies: {{b: {POINT}}}\n")
     assert found.parameters["a"] == pytest.approx(2.01)
     assert found.parameters["n"] == pytest.approx(157.0796, rel=1e-6)
