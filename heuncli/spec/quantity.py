@@ -13,7 +13,8 @@ from heuncli.expressions.units import Dimension, describe, in_si, parse_unit, si
 from heuncli.records import replace
 
 # A number and then something that begins like a unit; "2 if t < 1 else 3" is an expression all the same.
-WITH_UNIT = re.compile(r"\s*([+-]?\s*(?:\d+\.?\d*|\.\d+)(?:[eE][+-]?\d+)?+)\s*((?:[^\W\d_]|°|1/)[^,]*)\s*\Z")
+# The 1 of 1/s stands apart from it: 21/s is no 2 of 1/s, nor 9.81/2 a 9.8 of 1/2.
+WITH_UNIT = re.compile(r"\s*([+-]?\s*(?:\d+\.?\d*|\.\d+)(?:[eE][+-]?\d+)?+)\s*((?:[^\W\d_]|°|(?<=\s)1/)[^,]*)\s*\Z")
 WHOLE_NUMBER = re.compile(r"(?<![\w.*])\d(?![\w.])|(?<=[^*]\*)\d(?![\w.])")
 TIME_IN_IT = re.compile(r"(?<![\w.])t(?![\w.])")
 NOT_A_NUMBER = re.compile(r"[+-]?\.?(?:inf|nan)(?:inity)?\Z", re.IGNORECASE)

@@ -42,6 +42,7 @@ def test_units(text: str, value: float, dimension: u.Dimension) -> None:
 
 @pytest.mark.parametrize(("text", "value"), [
     (3, 3.0), (2.5, 2.5), ("3", 3.0), ("2*L", 4.0), ("-L/2", -1.0), ("2*m", 6.0), ("1e3", 1000.0), ("1.5E-2", 0.015),
+    ("9.81/2", 4.905), ("21/2*L", 21.0), ("0.31/2/L", 0.0775), ("11/2", 5.5), ("1/2", 0.5), ("9.81/2*cos(0)", 4.905),
     ("2 if L > 1 else 3", 2.0), ("2 if 0 else 3", 3.0), ("90*deg", math.pi / 2), (" 4 ", 4.0), ("1 and 0", 0.0),
 ])  # fmt: skip
 def test_plain_numbers_and_expressions(text: object, value: float) -> None:
@@ -66,6 +67,7 @@ def test_plain_numbers_and_expressions(text: object, value: float) -> None:
     ("2 m^", "unknown-unit", "power"),
     ("2 m^1000", "unknown-unit", "power"),
     ("2 m2", "unknown-unit", "m^2"),
+    ("21/s", "unknown-name", "'s'"),
     ("2 m/", "unknown-unit", "early"),
     ("2 m/(s", "unknown-unit", "closed"),
     ("2 m)", "unknown-unit", "')'"),
