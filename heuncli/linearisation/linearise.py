@@ -33,8 +33,13 @@ class Linearised:
     by_rate: Array  # (n, n) d accelerations / d rates
     tangent: Array  # (n, f) orthonormal, by the layout's weights: displacements that the closures admit
     drift: Array  # (n, f) change of rates that a displacement along the tangent needs: 0 where nothing moves
+    twists: Array  # (n_b, 6, n) of each body, tree order: turn, and shift of its centre of mass; world axes
+    attitudes: Array  # (n_b, 3, 3) body to world, tree order
+    centres: Array  # (n_b, 3) of mass
+    arms: Array  # (n_b,) how far they are from the bodies' joint points [m]
+    omega: Array  # (n_b, 3)
+    velocities: Array  # (n_b, 3) of the centres
     mass: Array  # (n, n) mass matrix of the tree, without what is lent
-    rates: Array  # (n,)
 
 
 def linearised(layout: Layout, t: float, state: Array, holding: Array | None = None) -> Linearised:
@@ -55,6 +60,7 @@ def linearised(layout: Layout, t: float, state: Array, holding: Array | None = N
     kernel.evaluate(t, moving, dy)
     gradients = np.array([gradient_of(dy[at], 2 * n) for at in place]).reshape(n, 2 * n)
     tangent, drift = kernel.admitted(n, layout.weights[place])
+    bodies = kernel.bodies(layout, n)
     return Linearised(
         state=np.array(y),
         accelerations=np.array([value_of(dy[at]) for at in place]),
@@ -62,8 +68,7 @@ def linearised(layout: Layout, t: float, state: Array, holding: Array | None = N
         by_rate=gradients[:, n:],
         tangent=tangent,
         drift=drift,
-        mass=kernel.mass(layout, n),
-        rates=np.array([y[at] for at in place]),
+        **bodies,
     )
 
 
@@ -134,17 +139,25 @@ class DualKernel:
         by_rows = U.T @ (turned @ tangent)
         return tangent, -(V[:m].T @ (by_rows / s[:, None])) / weights[:, None]
 
-    def mass(self, layout: Layout, n: int) -> Array:
-        """The mass matrix: of each body m v.v + 2 m c.(v x w) + w.J w, v of its joint point, by the rates."""
-        found = np.zeros((n, n))
-        bodies = layout.mechanism.bodies
+    def bodies(self, layout: Layout, n: int) -> dict[str, Array]:
+        """Where the bodies are, how they turn and their centres shift with the freedoms; the mass matrix of that."""
+        names = ("twists", "attitudes", "centres", "arms", "omega", "velocities")
+        parts: dict[str, list[Any]] = {name: [] for name in names}
+        mass = np.zeros((n, n))
         for k, hang in enumerate(layout.spanning.hangs):
-            body, own = self.scene.bodies[k], bodies[hang.body]
+            body, own = self.scene.bodies[k], layout.mechanism.bodies[hang.body]
             R = np.array([[value_of(getattr(body.R, i + j)) for j in "xyz"] for i in "xyz"])
-            turn = np.array([gradient_of(getattr(body.omega, i), 2 * n)[n:] for i in "xyz"])
-            shift = np.array([gradient_of(getattr(body.v, i), 2 * n)[n:] for i in "xyz"])
             arm = R @ (own.center - layout.reference[k])
+            turn, shift = (
+                np.array([gradient_of(getattr(v, i), 2 * n)[n:] for i in "xyz"]) for v in (body.omega, body.v)
+            )
             shift = shift + np.cross(turn, arm, axis=0)
-            found += own.mass * shift.T @ shift + turn.T @ (R @ own.inertia @ R.T) @ turn
-        return found
-
+            mass += own.mass * shift.T @ shift + turn.T @ (R @ own.inertia @ R.T) @ turn
+            parts["twists"].append(np.concatenate([turn, shift]))
+            parts["attitudes"].append(R)
+            parts["centres"].append(np.array([value_of(getattr(body.r, i)) for i in "xyz"]) + arm)
+            parts["arms"].append(np.sqrt(arm @ arm))
+            omega, v = (np.array([value_of(getattr(u, i)) for i in "xyz"]) for u in (body.omega, body.v))
+            parts["omega"].append(omega)
+            parts["velocities"].append(v + np.cross(omega, arm))
+        return {name: np.array(values) for name, values in parts.items()} | {"mass": mass}

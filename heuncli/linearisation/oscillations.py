@@ -1,0 +1,181 @@
+"""Small oscillations: the motions exp(l t) of the reduced linear equations.
+
+    l = growth + 2 pi i frequency;   damping ratio = -growth / |l|
+What nothing holds is found from the null space of the stiffness and taken out before the rest is looked for: of the
+double eigenvalue 0 of a free motion rounding makes two of the order of its root, which would read as a frequency.
+Where neither damping nor gyroscopic terms are, l^2 are the eigenvalues of -K, half as many, and real for what has a
+potential. What an eigenvalue may be off by is rounding times its own condition; a growth within that is none.
+"""
+
+from __future__ import annotations
+
+from typing import Literal
+
+import numpy as np
+
+from heuncli import tolerances
+from heuncli.linearisation.reduced import Reduced
+from heuncli.records import record
+from heuncli.results import Array
+
+Kind = Literal["free", "decay", "divergence", "oscillation", "flutter"]
+
+
+@record
+class Mode:
+    """One motion: its eigenvalue l [1/s] and what that may be off by; shape (n,) on the freedoms of the tree, complex.
+
+    A pair of conjugate eigenvalues is one motion, with the positive frequency; what is free has the eigenvalue 0, and
+    its error bounds the frequency and growth below which no motion is told from a free one.
+    """
+
+    kind: Kind
+    eigenvalue: complex
+    error: float
+    shape: Array
+
+    @property
+    def frequency(self) -> float:
+        """[Hz]"""
+        return self.eigenvalue.imag / (2.0 * np.pi)
+
+    @property
+    def growth(self) -> float:
+        """[1/s]"""
+        return self.eigenvalue.real
+
+    @property
+    def damping(self) -> float:
+        """Lehr's ratio: 1 of what decays without oscillating, -1 of what so diverges, 0 of what is free."""
+        return 0.0 - self.eigenvalue.real / abs(self.eigenvalue) if self.eigenvalue else 0.0
+
+
+def oscillations(system: Reduced) -> list[Mode]:
+    """All motions: what is free, what creeps or diverges, and oscillations by their frequency."""
+    if system.count == 0:
+        return []
+    if not system.A11.any() and not system.A22.any():
+        found = without_rates(-system.A21, system.terms)
+    else:
+        found = with_rates(system)
+    modes = [mode_of(system, *row) for row in found]
+    return sorted(modes, key=lambda mode: (mode.kind != "free", mode.frequency, abs(mode.growth)))
+
+
+def mode_of(system: Reduced, eigenvalue: complex, error: float, x: Array, free: bool) -> Mode:
+    """A motion by its eigenvalue and its displacement x in the reduced coordinates."""
+    shape = system.tangent @ x
+    if free:
+        return Mode("free", 0j, error, shape)
+    growth = eigenvalue.real if abs(eigenvalue.real) > error else 0.0
+    if eigenvalue.imag == 0.0:
+        return Mode("divergence" if growth > 0.0 else "decay", complex(growth), error, shape)
+    return Mode("flutter" if growth > 0.0 else "oscillation", complex(growth, eigenvalue.imag), error, shape)
+
+
+Row = tuple[complex, float, Array, bool]
+
+
+def without_rates(K: Array, terms: float) -> list[Row]:
+    """x'' + K x = 0: l^2 = -k of the eigenvalues k of K; terms: of what size those are whose sum it is."""
+    rounding = tolerances.EIGENVALUE * len(K) * max(norm(K), terms)
+    free, rest = invariant(K, null_space(K, rounding)[0], rounding)
+    rows: list[Row] = [(0j, float(np.sqrt(rounding)), x, True) for x in free.T]
+    if not rest.shape[1]:
+        return rows
+    B = rest.T @ K @ rest
+    if np.abs(B - B.T).max() <= rounding:
+        values, vectors = np.linalg.eigh(0.5 * (B + B.T))
+        condition = np.ones(len(values))
+    else:
+        values, vectors, condition = eigenvalues(B)
+    for k, c, v in zip(values, condition, whole(K, free, rest, values, vectors).T, strict=True):
+        rows += roots(complex(k), c * rounding, v)
+    return rows
+
+
+def roots(k: complex, error: float, x: Array) -> list[Row]:
+    """The motions l = +-sqrt(-k): one oscillates, or two diverge and decay, or flutter and its counterpart."""
+    root = complex(np.sqrt(-k + 0j))
+    off = error / (2.0 * abs(root))
+    if abs(k.imag) <= error:
+        if k.real > 0.0:
+            return [(1j * abs(root), off, x, False)]
+        return [(complex(abs(root)), off, x, False), (complex(-abs(root)), off, x, False)]
+    if k.imag < 0.0:
+        return []  # the conjugate says the same
+    root = root if root.imag > 0.0 else -root
+    # l and -l*, the other of the four with a positive frequency: that of the conjugate shape
+    return [(root, off, x, False), (-root.conjugate(), off, x.conj(), False)]
+
+
+def with_rates(system: Reduced) -> list[Row]:
+    """(x, z)' = A (x, z), rates in units of the fastest of its motions, what is free taken out first."""
+    f = system.count
+    K = system.stiffness
+    scale = max(float(np.sqrt(max(norm(K), system.terms))), norm(system.A22), norm(system.A11))
+    A = np.block([[system.A11, scale * np.eye(f)], [system.A21 / scale, system.A22]])
+    rounding = tolerances.EIGENVALUE * len(A) * scale
+    free, _ = null_space(K, rounding * scale)
+    rows: list[Row] = [(0j, rounding, x, True) for x in free.T]
+    taken, rest = invariant(A, np.concatenate([free, -system.A11 @ free / scale]), rounding)
+    if not rest.shape[1]:
+        return rows
+    values, vectors, condition = eigenvalues(rest.T @ A @ rest)
+    shapes = whole(A, taken, rest, values, vectors)[:f]
+    for value, c, x in zip(values, condition, shapes.T, strict=True):
+        if value.imag >= 0.0:
+            rows.append((complex(value), float(c * rounding), x, False))
+    return rows
+
+
+def invariant(A: Array, null: Array, rounding: float) -> tuple[Array, Array]:
+    """Orthonormal bases of all that A takes to nothing sooner or later, begun with its null space, and of the rest.
+
+    What A takes to nothing only on the rest goes with it: the other half of a double eigenvalue 0.
+    """
+    taken, rest = completed(null)
+    while rest.shape[1]:
+        again, _ = null_space(rest.T @ A @ rest, rounding)
+        if not again.shape[1]:
+            break
+        taken, rest = completed(np.concatenate([taken, rest @ again], axis=1))
+    return taken, rest
+
+
+def completed(columns: Array) -> tuple[Array, Array]:
+    """Orthonormal bases of what columns span, which are independent, and of what is left."""
+    n, m = columns.shape
+    U = np.linalg.svd(columns, full_matrices=True)[0] if m else np.eye(n)
+    return U[:, :m], U[:, m:]
+
+
+def whole(A: Array, taken: Array, rest: Array, values: Array, vectors: Array) -> Array:
+    """Eigenvectors of A from those of its quotient: what they have of the subspace taken out follows."""
+    found = rest @ vectors
+    if not taken.shape[1]:
+        return found
+    inside, across = taken.T @ A @ taken, taken.T @ A @ rest
+    one = np.eye(len(inside))
+    parts = [np.linalg.solve(k * one - inside, across @ v) for k, v in zip(values, vectors.T, strict=True)]
+    return np.asarray(found + taken @ np.array(parts).T)
+
+
+def eigenvalues(A: Array) -> tuple[Array, Array, Array]:
+    """Eigenvalues, right vectors, and the condition of each: |x| |y| / |y x| of the right and the left vector."""
+    values, vectors = np.linalg.eig(A)
+    left = np.linalg.pinv(vectors)
+    lengths = np.sqrt(np.sum(np.abs(left) ** 2, axis=1))
+    return values, vectors, lengths * np.sqrt(np.sum(np.abs(vectors) ** 2, axis=0))
+
+
+def null_space(A: Array, rounding: float) -> tuple[Array, Array]:
+    """Orthonormal bases of what A takes to nothing, and of what is left."""
+    _, s, V = np.linalg.svd(A)
+    kept = int(np.sum(s > rounding))
+    return V[kept:].T, V[:kept].T
+
+
+def norm(A: Array) -> float:
+    """The largest singular value; 0 of nothing."""
+    return float(np.linalg.norm(A, 2)) if A.size else 0.0

@@ -1,0 +1,143 @@
+"""The linear equations on what closures leave free, in coordinates that are orthonormal in the mass matrix.
+
+    dq = T x,   du = T z + S x                  T' M T = 1;  S: what the closures ask of rates where they move
+    x' = A11 x + z,   z' = A21 x + A22 z        at rest A11 = 0, A21 = -K, A22 = -C of  x'' + C x' + K x = 0
+A body on a ball is seen from a frame that turns with what it hangs on, at its angular velocity W there: small turns
+about axes of that frame change by du + (w - W) x turn, and rates by da - W x du. With drives that turn steadily the
+equations so keep constant coefficients: T' M of the kernel's derivatives are stiffness, damping and gyroscopic terms.
+"""
+
+from __future__ import annotations
+
+import numpy as np
+
+from heuncli import tolerances
+from heuncli.integration.evaluator import Recovered
+from heuncli.linearisation.linearise import Linearised
+from heuncli.records import record
+from heuncli.results import Array
+from heuncli.shapes.rotations import hat
+from heuncli.tree.layout import Layout, places_of_rates
+from heuncli.tree.prepare import PreparedScene
+
+
+@record
+class Reduced:
+    """The equations of f free motions, and T (n, f) that leads back to the freedoms of the tree."""
+
+    tangent: Array
+    drift: Array  # S (n, f)
+    A11: Array
+    A21: Array
+    A22: Array
+    pushed: Array  # (f,) accelerations left at the state itself
+    loads: float  # of what size the parts are whose sum that is
+    terms: float  # and those whose sum the stiffness is
+
+    @property
+    def count(self) -> int:
+        """How many motions are free."""
+        return int(self.tangent.shape[1])
+
+    @property
+    def stiffness(self) -> Array:
+        """K: what a displacement that stays asks for, per unit mass; A22 A11 where closures move."""
+        return np.asarray(self.A22 @ self.A11 - self.A21)
+
+
+def reduced(scene: PreparedScene, found: Linearised, at: Recovered) -> Reduced:
+    """The equations on what is free and has inertia; scene: whose bodies' spins may be idle; at: the loads there."""
+    kept = without_idle(scene, found)
+    T = found.tangent @ kept
+    back = np.linalg.inv(np.linalg.cholesky(T.T @ found.mass @ T)).T
+    return on_basis(scene.layout, found, at, T @ back, found.drift @ kept @ back)
+
+
+def on_basis(layout: Layout, found: Linearised, at: Recovered, T: Array, S: Array) -> Reduced:
+    """The equations on displacements T that are orthonormal in the mass matrix, and the rates S that these need."""
+    spin, frame = frames(layout, found)
+    P = T.T @ found.mass
+    slow = found.by_rate - frame
+    A11 = P @ (S + (spin - frame) @ T)
+    loads, terms = sizes(layout, found, at, T)
+    return Reduced(
+        tangent=T,
+        drift=S,
+        A11=A11,
+        A21=P @ (found.by_place @ T + slow @ S) - P @ S @ A11,
+        A22=P @ slow @ T - P @ S,
+        pushed=P @ (found.accelerations - frame @ rates_of_balls(layout, found)),
+        loads=loads,
+        terms=terms,
+    )
+
+
+def sizes(layout: Layout, found: Linearised, at: Recovered, T: Array) -> tuple[float, float]:
+    """Of what size the parts are whose sums are the loads along the motions, and their stiffness.
+
+    What stands on a body and in its joint, F and M, acts along a motion x by F |shift| + M |turn|, and changes, as the
+    body turns with it, by F |turn| |shift| + M |turn|^2; spins W ask for W^2.
+    """
+    twists = found.twists @ T
+    turn, shift = (np.sqrt(np.sum(part**2, axis=1)) for part in (twists[:, :3], twists[:, 3:]))
+    shift = shift + turn * found.arms[:, None]
+    force, moment = (np.sqrt(np.sum(at.bodies[name][0] ** 2, axis=1)) for name in ("joint_force", "joint_moment"))
+    force = force + layout.bodies["mass"] * float(np.sqrt(np.sum(layout.mechanism.gravity**2)))
+    applied, turning = (np.sqrt(np.sum(at.loads[name][0] ** 2, axis=1)).sum() for name in ("force", "moment"))
+    force, moment = force + applied, moment + turning
+    along = float(np.max(force @ shift + moment @ turn, initial=0.0))
+    spins = float(np.sum(found.omega**2, axis=1).max(initial=0.0))
+    return along, float(np.max(force @ (turn * shift) + moment @ turn**2, initial=0.0)) + spins
+
+
+def frames(layout: Layout, found: Linearised) -> tuple[Array, Array]:
+    """w x and W x of the turns of balls, (n, n): of the bodies themselves, and of what they hang on."""
+    spin, frame = np.zeros(found.mass.shape), np.zeros(found.mass.shape)
+    for first, own, carrier in balls(layout, found):
+        turns = slice(first, first + 3)
+        spin[turns, turns], frame[turns, turns] = hat(own), hat(carrier)
+    return spin, frame
+
+
+def rates_of_balls(layout: Layout, found: Linearised) -> Array:
+    """The angular velocities of bodies on balls, each where its turns stand, (n,)."""
+    rates = np.zeros(len(found.accelerations))
+    for first, own, _ in balls(layout, found):
+        rates[first : first + 3] = own
+    return rates
+
+
+def balls(layout: Layout, found: Linearised) -> list[tuple[int, Array, Array]]:
+    """Of each body on a ball its first turn, and the angular velocities of it and of what it hangs on."""
+    place = places_of_rates(layout)
+    order = {at: k for k, at in enumerate(place[place >= 0].tolist())}
+    still = np.zeros(3)
+    return [
+        (order[int(body["rate_at"])], found.omega[k], found.omega[body["parent"]] if body["parent"] >= 0 else still)
+        for k, body in enumerate(layout.bodies)
+        if body["ball"]
+    ]
+
+
+def without_idle(scene: PreparedScene, found: Linearised) -> Array:
+    """An orthonormal basis, of the tangent's coordinates, without the spins that no inertia resists and nothing turns.
+
+    A spin about an axis without inertia is no part of the motion: its frequency would be without bound.
+    """
+    f = found.tangent.shape[1]
+    if not (f and scene.idle):
+        return np.eye(f)
+    twists = (found.twists @ found.tangent).reshape(-1, f)
+    idle = []
+    for spin in scene.idle:
+        k = scene.layout.place[spin.body]
+        for axis in spin.axes:
+            alone = np.zeros(found.twists.shape[:2])
+            alone[k, :3] = found.attitudes[k] @ axis
+            x = np.linalg.lstsq(twists, alone.ravel(), rcond=None)[0]
+            if np.abs(twists @ x - alone.ravel()).max() <= tolerances.RANK:  # else a closure holds it
+                idle.append(x / np.linalg.norm(x))
+    if not idle:
+        return np.eye(f)
+    _, s, V = np.linalg.svd(np.array(idle), full_matrices=True)
+    return np.asarray(V[int(np.sum(s > tolerances.RANK)) :].T)

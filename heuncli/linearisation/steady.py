@@ -1,0 +1,115 @@
+"""Whether a state stays as it is: at rest, or in a frame that its drives turn with it.
+
+The linear equations then have constant coefficients. At rest nothing moves and nothing is pushed. Where something moves
+steadily (what is driven, and what spins freely), the same must hold after the motion has gone on for a while, as seen
+by what moved along: a weight across a turning shaft turns in the shaft's frame, and nothing settles there.
+"""
+
+from __future__ import annotations
+
+import numpy as np
+
+from heuncli import tolerances
+from heuncli.integration.evaluator import Evaluator, Recovered
+from heuncli.linearisation.displace import displaced
+from heuncli.linearisation.linearise import Linearised, linearised
+from heuncli.linearisation.oscillations import norm, null_space
+from heuncli.linearisation.reduced import Reduced, balls, on_basis, reduced
+from heuncli.records import record
+from heuncli.results import Array
+from heuncli.shapes.rotations import from_vector
+from heuncli.tree.layout import Layout, places_of_rates
+from heuncli.tree.prepare import PreparedScene
+
+PHASES = (0.7, 2.0, 4.1)  # [rad] of the fastest turn, after which a steady motion is looked at again
+
+
+@record
+class Looked:
+    """A scene looked at in one state: its linear equations, whole and reduced, and the loads there."""
+
+    scene: PreparedScene
+    evaluator: Evaluator
+    t: float
+    holding: Array
+    found: Linearised
+    at: Recovered
+    system: Reduced
+
+    @property
+    def layout(self) -> Layout:
+        """How it is laid out."""
+        return self.scene.layout
+
+    @property
+    def weights(self) -> Array:
+        """Of the undriven freedoms: 1 of turns, 1 / size of shifts."""
+        place = places_of_rates(self.layout)
+        return np.asarray(self.layout.weights[place[place >= 0]])
+
+
+def look(scene: PreparedScene, evaluator: Evaluator, t: float, state: Array, holding: Array) -> Looked:
+    """Linearise a scene in a state."""
+    found, at = equations(evaluator, t, state, holding)
+    return Looked(scene, evaluator, t, holding, found, at, reduced(scene, found, at))
+
+
+def equations(evaluator: Evaluator, t: float, state: Array, holding: Array) -> tuple[Linearised, Recovered]:
+    """The linear equations in a state, and the kernel's answers there."""
+    found = linearised(evaluator.layout, t, state, holding)
+    return found, evaluator.recovered(np.array([t]), found.state[None, :], holding=holding)
+
+
+def fastest(here: Looked) -> float:
+    """The fastest turn of any body [rad/s], or speed of its centre over the scene's size."""
+    turn, shift = (np.sqrt(np.sum(v**2, axis=1)).max(initial=0.0) for v in (here.found.omega, here.found.velocities))
+    return float(max(turn, shift / here.layout.size))
+
+
+def off_balance(here: Looked) -> float:
+    """How far the state is from the one that rests, by the linear equations: the largest turn, or shift by the size.
+
+    Infinite where what nothing holds is pushed.
+    """
+    system = here.system
+    if not system.count:
+        return 0.0
+    K = system.stiffness
+    rounding = tolerances.EIGENVALUE * len(K) * max(norm(K), system.terms)
+    _, rest = null_space(K, rounding)
+    x = rest @ np.linalg.lstsq(K @ rest, system.pushed, rcond=None)[0]
+    if norm((system.pushed - K @ x)[:, None]) > tolerances.FREELY_PUSHED * system.loads:
+        return np.inf
+    return float(np.abs(here.weights * (system.tangent @ x)).max(initial=0.0))
+
+
+def goes_on_as_it_is(here: Looked) -> bool:
+    """Whether a steady motion has the same linear equations later on, as seen by what moved along."""
+    own = here.system
+    size = max(norm(own.stiffness), own.terms)
+    rate = size**0.5
+    parts = ((own.A11, rate), (own.A21, size), (own.A22, rate), (own.pushed, own.loads), (np.eye(own.count), 1.0))
+    for phase in PHASES:
+        dt = phase / fastest(here)
+        y, turn = carried_on(here, dt)
+        found, at = equations(here.evaluator, here.t + dt, y, here.holding)
+        if np.abs(found.state - y).max(initial=0.0) > tolerances.STEADY:
+            return False  # it did not close
+        T = turn @ own.tangent
+        later = on_basis(here.layout, found, at, T, turn @ own.drift)
+        again = (later.A11, later.A21, later.A22, later.pushed, T.T @ found.mass @ T)
+        for (a, scale), b in zip(parts, again, strict=True):
+            if np.abs(a - b).max(initial=0.0) > tolerances.STEADY * scale:
+                return False
+    return True
+
+
+def carried_on(here: Looked, dt: float) -> tuple[Array, Array]:
+    """The state a while later if its motion is steady, and how the freedoms' axes have turned, (n, n)."""
+    layout, place = here.layout, places_of_rates(here.layout)
+    rates = here.found.state[place[place >= 0]]
+    turn = np.eye(len(rates))
+    for first, _, carrier in balls(layout, here.found):
+        turn[first : first + 3, first : first + 3] = from_vector(carrier * dt)
+    y = displaced(layout, here.found.state, rates * dt, turn @ rates - rates)
+    return y, turn
