@@ -95,6 +95,23 @@ class Model(NamedTuple):
     quiet: Annotated[bool, QUIET] = False
 
 
+class Modes(NamedTuple):
+    """Frequencies, damping and shapes of small oscillations about the pose at rest."""
+
+    spec: Annotated[str, SPEC]
+    format: Annotated[
+        str | None,
+        Option(
+            ("--format",),
+            "How to write them. Default: by the name's end of -o FILE, else table.",
+            "table|json|csv",
+        ),
+    ] = None
+    output: Annotated[str | None, OUTPUT] = None
+    set: Annotated[tuple[str, ...], SET] = ()
+    quiet: Annotated[bool, QUIET] = False
+
+
 class Check(NamedTuple):
     """Run specs, and folders of specs, against what they `expect`."""
 
@@ -112,8 +129,8 @@ class Check(NamedTuple):
     quiet: Annotated[bool, QUIET] = False
 
 
-Request = Run | Validate | Model | Check
-COMMANDS: dict[str, type[Request]] = {"run": Run, "validate": Validate, "model": Model, "check": Check}
+Request = Run | Validate | Model | Modes | Check
+COMMANDS: dict[str, type[Request]] = {"run": Run, "validate": Validate, "model": Model, "modes": Modes, "check": Check}
 LATER_COMMANDS = ("balance", "chart", "probe", "lagrange", "methods", "schema", "explain", "new", "sweep", "plot")
 LATER_OPTIONS = ("golden", "update", "junit")
 

@@ -47,10 +47,14 @@ class Reduced:
 
 def reduced(scene: PreparedScene, found: Linearised, at: Recovered) -> Reduced:
     """The equations on what is free and has inertia; scene: whose bodies' spins may be idle; at: the loads there."""
-    kept = without_idle(scene, found)
+    idle = idle_spins(scene, found)
+    kept = complement(np.array([spin.along for spin in idle]), found.tangent.shape[1])
     T = found.tangent @ kept
     back = np.linalg.inv(np.linalg.cholesky(T.T @ found.mass @ T)).T
-    return on_basis(scene.layout, found, at, T @ back, found.drift @ kept @ back)
+    T, S = T @ back, found.drift @ kept @ back
+    for spin in idle:
+        S = S - np.outer(found.tangent @ spin.along, spin.gained(found, T))
+    return on_basis(scene.layout, found, at, T, S)
 
 
 def on_basis(layout: Layout, found: Linearised, at: Recovered, T: Array, S: Array) -> Reduced:
@@ -119,14 +123,29 @@ def balls(layout: Layout, found: Linearised) -> list[tuple[int, Array, Array]]:
     ]
 
 
-def without_idle(scene: PreparedScene, found: Linearised) -> Array:
-    """An orthonormal basis, of the tangent's coordinates, without the spins that no inertia resists and nothing turns.
+@record
+class Idle:
+    """The spin of a body about an axis n (3,) without inertia: along (f,) the tangent, which moves nothing else.
 
-    A spin about an axis without inertia is no part of the motion: its frequency would be without bound.
+    It is no part of the motion, its frequency would be without bound. The inertia that the kernel lends it has no spin,
+    and keeps none: the rate w . n stays as it is, also where n is tilted.
     """
+
+    body: int
+    axis: Array
+    along: Array
+
+    def gained(self, found: Linearised, T: Array) -> Array:
+        """What displacements T would make of the rate if w stayed: w . (turn x n), (f,)."""
+        turn = found.twists[self.body, :3] @ T
+        return np.asarray(np.cross(self.axis, found.omega[self.body]) @ turn)
+
+
+def idle_spins(scene: PreparedScene, found: Linearised) -> list[Idle]:
+    """The spins that no inertia resists and nothing turns."""
     f = found.tangent.shape[1]
     if not (f and scene.idle):
-        return np.eye(f)
+        return []
     twists = (found.twists @ found.tangent).reshape(-1, f)
     idle = []
     for spin in scene.idle:
@@ -134,10 +153,15 @@ def without_idle(scene: PreparedScene, found: Linearised) -> Array:
         for axis in spin.axes:
             alone = np.zeros(found.twists.shape[:2])
             alone[k, :3] = found.attitudes[k] @ axis
-            x = np.linalg.lstsq(twists, alone.ravel(), rcond=None)[0]
-            if np.abs(twists @ x - alone.ravel()).max() <= tolerances.RANK:  # else a closure holds it
-                idle.append(x / np.linalg.norm(x))
-    if not idle:
+            along: Array = np.linalg.lstsq(twists, alone.ravel(), rcond=None)[0].astype(float)
+            if np.abs(twists @ along - alone.ravel()).max() <= tolerances.RANK:  # else a closure holds it
+                idle.append(Idle(k, alone[k, :3], along))
+    return idle
+
+
+def complement(rows: Array, f: int) -> Array:
+    """An orthonormal basis of what is left beside some rows (k, f), (f, f - rank)."""
+    if not len(rows):
         return np.eye(f)
-    _, s, V = np.linalg.svd(np.array(idle), full_matrices=True)
+    _, s, V = np.linalg.svd(rows / np.sqrt(np.sum(rows**2, axis=1, keepdims=True)), full_matrices=True)
     return np.asarray(V[int(np.sum(s > tolerances.RANK)) :].T)

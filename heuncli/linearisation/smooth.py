@@ -29,11 +29,11 @@ def without_slope(here: Looked) -> Iterator[str]:
 
 def coincident(here: Looked) -> Iterator[str]:
     """Springs and actuators whose two points coincide; but a spring without length, or damping, pulls back evenly."""
-    for k, load in enumerate(here.layout.mechanism.loads):
+    for load, rows in here.layout.mechanism.load_rows():
         if not isinstance(load, PairLoad) or load.a == load.b:
             continue
         even = load.value is None and load.length == 0.0 and load.damping == 0.0
-        if here.at.loads["span"][0, k] <= tolerances.NO_LENGTH * here.layout.size and not even:
+        if here.at.loads["span"][0, rows].min() <= tolerances.NO_LENGTH * here.layout.size and not even:
             yield f"forces.{load.name} has no direction, for its two points coincide"
 
 
@@ -81,10 +81,11 @@ def values(here: Looked) -> Array:
 
 def programs_of(here: Looked) -> list[tuple[str, int, int]]:
     """The programs of all loads: whose, and where they stand."""
-    loads, table = here.layout.mechanism.loads, here.layout.tables["loads"]
+    table = here.layout.tables["loads"]
     return [
         (load.name, int(row[part]["start"]), int(row[part]["count"]))
-        for load, row in zip(loads, table, strict=True)
+        for load, rows in here.layout.mechanism.load_rows()
+        for row in table[rows]
         for part in "xyz"
         if row[part]["count"]
     ]

@@ -105,11 +105,15 @@ def goes_on_as_it_is(here: Looked) -> bool:
 
 
 def carried_on(here: Looked, dt: float) -> tuple[Array, Array]:
-    """The state a while later if its motion is steady, and how the freedoms' axes have turned, (n, n)."""
+    """The state a while later if its motion is steady, and how the freedoms' axes have turned, (n, n).
+
+    A body on a ball first spins on in the frame of what it hangs on, then turns with that.
+    """
     layout, place = here.layout, places_of_rates(here.layout)
     rates = here.found.state[place[place >= 0]]
-    turn = np.eye(len(rates))
+    turn, carried = np.eye(len(rates)), np.zeros(len(rates))
     for first, _, carrier in balls(layout, here.found):
         turn[first : first + 3, first : first + 3] = from_vector(carrier * dt)
-    y = displaced(layout, here.found.state, rates * dt, turn @ rates - rates)
-    return y, turn
+        carried[first : first + 3] = carrier * dt
+    spun = displaced(layout, here.found.state, rates * dt - carried)
+    return displaced(layout, spun, carried, turn @ rates - rates), turn

@@ -6,49 +6,20 @@ about itself alone. In steady motions, where drives turn at constant rates, mode
 
 from __future__ import annotations
 
-from typing import Any, Literal
+from typing import Literal
 
 from heuncli import tolerances
 from heuncli.errors import Problem, SolveError
-from heuncli.linearisation.oscillations import Mode, oscillations
+from heuncli.linearisation.modes import Modes, most, shape_of
+from heuncli.linearisation.oscillations import oscillations
 from heuncli.linearisation.shapes import coordinates
 from heuncli.linearisation.smooth import without_slope
 from heuncli.linearisation.steady import Looked, fastest, goes_on_as_it_is, look, off_balance
-from heuncli.records import record
-from heuncli.results import Array
+from heuncli.redundancy.neighbours import neighbours
 from heuncli.spec.models import Spec
 from heuncli.study.setup import Setup, set_up
 
 REST_HINT = "analysis: {type: rest} looks for the pose that rests"
-
-
-@record
-class Modes:
-    """The modes of a scene; at: about which pose; shapes: of each mode its coordinates, the largest 1."""
-
-    title: str
-    at: Literal["rest", "state"]
-    steady: bool  # in a frame that turns with the drives
-    modes: tuple[Mode, ...]
-    shapes: tuple[dict[str, complex], ...]
-    largest: tuple[tuple[str, ...], ...]  # of each mode the coordinates that move most, lengths by the scene's size
-
-    def block(self) -> dict[str, Any]:
-        """As JSON has it."""
-        rows = [row(mode, shape) for mode, shape in zip(self.modes, self.shapes, strict=True)]
-        return {"at": self.at, "steady": self.steady, "modes": rows}
-
-
-def row(mode: Mode, shape: dict[str, complex]) -> dict[str, Any]:
-    """A mode as JSON has it; error [1/s]: what growth and 2 pi frequency may be off by."""
-    return {
-        "frequency": mode.frequency,
-        "damping": mode.damping,
-        "growth": mode.growth,
-        "kind": mode.kind,
-        "error": mode.error,
-        "shape": {name: [x.real, x.imag] for name, x in shape.items()},
-    }
 
 
 def modes(spec: Spec) -> Modes:
@@ -56,7 +27,7 @@ def modes(spec: Spec) -> Modes:
     setup = set_up(spec, reduce=False)
     require_no_time(setup)
     here, at = state_of(setup)
-    require_slopes(here)
+    require_slopes(setup, here)
     found = oscillations(here.system)
     rows = coordinates(here.layout, here.found)
     shapes = [shape_of(mode.shape, rows) for mode in found]
@@ -64,6 +35,7 @@ def modes(spec: Spec) -> Modes:
         title=spec.title,
         at=at,
         steady=moves(here),
+        held=here.layout.driven and not moves(here),
         modes=tuple(found),
         shapes=tuple(shapes),
         largest=tuple(most(shape, here.layout.size) for shape in shapes),
@@ -113,38 +85,25 @@ def restless(here: Looked) -> str | None:
     return None
 
 
+def is_singular(setup: Setup, here: Looked) -> bool:
+    """Whether fewer closure rows are independent there than close by."""
+    if not here.layout.rows or not here.system.count:
+        return False
+    near = neighbours(setup.runner, here.t, here.found.state, (tolerances.NEIGHBOUR,), holding=here.holding)
+    return near is not None and bool(near.rows["chosen"].sum(axis=1).max() > here.at.rows["chosen"].sum())
+
+
 def pushed_most(here: Looked) -> str:
     """The coordinate with the largest acceleration, lengths by the scene's size."""
     rows = coordinates(here.layout, here.found)
     return most(shape_of(here.system.tangent @ here.system.pushed, rows), here.layout.size)[0]
 
 
-def require_slopes(here: Looked) -> None:
-    """Raise SolveError where a law has no slope."""
-    problems = [
-        Problem("no-modes", f"{sentence}: oscillations about it are not linear, however small", hint=None)
-        for sentence in dict.fromkeys(without_slope(here))
-    ]
-    if problems:
-        raise SolveError(*problems)
-
-
-def shape_of(x: Array, rows: dict[str, Array]) -> dict[str, complex]:
-    """A displacement by coordinates, its largest 1."""
-    found = {name: complex(row @ x) for name, row in rows.items()}
-    largest = max(found.values(), key=abs, default=0j)
-    return {name: value / largest if largest else value for name, value in found.items()}
-
-
-def most(shape: dict[str, complex], size: float) -> tuple[str, ...]:
-    """The coordinates that move most, at most three that move by half of it; lengths by the scene's size."""
-    by = {name: abs(x) / (size if is_length(name) else 1.0) for name, x in shape.items()}
-    largest = max(by.values(), default=0.0)
-    names = sorted((name for name, x in by.items() if x >= 0.5 * largest), key=lambda name: -round(by[name], 9))
-    return tuple(names[:3]) or ("nothing",)
-
-
-def is_length(name: str) -> bool:
-    """Whether a coordinate is a length."""
-    end = name.rpartition(".")[2]
-    return end == "travel" or end.startswith("d")
+def require_slopes(setup: Setup, here: Looked) -> None:
+    """Raise SolveError where a law has no slope, or where closed chains give way to the first order only."""
+    sentences = list(dict.fromkeys(without_slope(here)))
+    if is_singular(setup, here):
+        sentences.append("closed chains are stretched, folded or flat there, and give way to the first order only")
+    if sentences:
+        so = "oscillations about it are not linear, however small"
+        raise SolveError(*(Problem("no-modes", f"{sentence}: {so}") for sentence in sentences))

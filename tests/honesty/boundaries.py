@@ -22,6 +22,9 @@ from heuncli.integration.pace import hopeless
 from heuncli.kinetostatics.energy import energy_drift
 from heuncli.kinetostatics.foundation import central_axis
 from heuncli.kinetostatics.section_axes import nearest_axis
+from heuncli.linearisation.oscillations import oscillations
+from heuncli.linearisation.reduced import Reduced
+from heuncli.linearisation.steady import off_balance
 from heuncli.mechanism.build import build
 from heuncli.mechanism.model import Stop
 from heuncli.records import replace
@@ -34,6 +37,7 @@ from heuncli.spec.load import load
 from heuncli.spec.turns import of_matrix
 from heuncli.study.beside import AMPLE, error, reached
 from heuncli.study.expect import compare
+from heuncli.study.modes import modes
 from heuncli.study.warnings import unbalanced
 from heuncli.tree.prepare import prepare
 from tests.closed_forms.test_stretched_chain import chain
@@ -643,6 +647,50 @@ def hop(x: float) -> str:
     return "none" if short[0] else "flies"
 
 
+# ---- small oscillations
+def soft_beside_stiff(x: float) -> str:
+    """Two motions, one of stiffness 1, the other of 2 x: the kind of the softer."""
+    f = np.zeros((2, 2))
+    system = Reduced(np.eye(2), f, f, -np.diag([2.0 * x, 1.0]), f, np.zeros(2), 0.0, 0.0)
+    return oscillations(system)[0].kind
+
+
+def pushed_freely(x: float) -> str:
+    """What nothing holds, pushed by x of the loads there."""
+    f = np.zeros((1, 1))
+    here = SimpleNamespace(system=Reduced(np.eye(1), f, f, f, f, np.array([x]), 1.0, 0.0), weights=np.ones(1))
+    return "falls" if np.isinf(off_balance(here)) else "rests"  # type: ignore[arg-type]
+
+
+def hanging(x: float, law: str = "0") -> str:
+    """Modes of a pendulum drawn askew by x, with a torque: refused, or the right frequency."""
+    text = f"""
+heun: 1
+gravity: [0, 0, -9.81]
+ground: {{points: {{O: [0, 0, 0]}}}}
+bodies:
+  bar:
+    mass: 1
+    center: [0, 0, -1]
+    inertia: [0, 0, 0]
+    points: {{a: [0, 0, 0]}}
+    orientation: {{axis: [0, 1, 0], angle: {x!r}}}
+joints: {{pivot: {{type: pin, axis: [0, 1, 0], from: ground.O, to: bar.a}}}}
+forces: {{law: {{type: torque, joint: pivot, value: "{law}"}}}}
+"""
+    try:
+        found = modes(load("scene.yaml", text))
+    except HeunError as error:
+        return f"refused: {error.problems[0].code}"
+    near(2.0 * np.pi * found.modes[0].frequency, np.sqrt(9.81), 1.0, 1e-12)
+    return "fine"
+
+
+def beside_a_kink(x: float) -> str:
+    """The same at rest, with a torque that begins beyond an angle of x."""
+    return hanging(0.0, f"max(0, pivot.angle - {x!r})")
+
+
 ROWS = (
     # what is typed
     Row("UNIT_TYPED", quaternion, "fine", "refused: orientation"),
@@ -655,6 +703,10 @@ ROWS = (
     Row("EXPECTED_ABSOLUTE", absolutely_off, "passed", "failed"),
     Row("LEAST_ASKED", tolerance, "refused: tolerance", "fine"),
     # same instant, place, direction
+    Row("EIGENVALUE", soft_beside_stiff, "free", "oscillation"),
+    Row("FREELY_PUSHED", pushed_freely, "rests", "falls"),
+    Row("OFF_BALANCE", hanging, "fine", "refused: not-at-rest"),
+    Row("KINK", beside_a_kink, "refused: no-modes", "fine"),
     Row("SAME_INSTANT", expected_at, "fine", "refused: expect-instants"),
     Row("SAME_VALUE", held_and_driven, "fine", "refused: drive-contradicts"),
     Row("AT_LIMIT", start_beyond, "fine", "refused: beyond-stop"),
@@ -770,6 +822,7 @@ EXEMPT = {
 }
 # Those that decide one, and have no scene at their boundary yet.
 WANTED = {
+    "STEADY": "whether what moves steadily goes on in the same way",
     "STILL": "whether what rates of rounding ask for is met, where a blow has ended all motion",
     "NEIGHBOUR": "which rank is the generic one, where a machine can hardly leave its singular start",
     "MOVES": "whether a displaced pose counts",

@@ -1,0 +1,100 @@
+"""Modes as a table, and in long form."""
+
+from __future__ import annotations
+
+import math
+from collections.abc import Iterator
+
+from heuncli.linearisation.modes import Modes, is_length
+from heuncli.linearisation.oscillations import Mode
+from heuncli.report.numbers import style
+from heuncli.report.table import WIDTH, Column, Table, plain
+from heuncli.version import VERSION
+
+ABOUT = {"rest": "about the rest pose", "state": "about the start"}
+FRAME = ", as seen by what moves steadily there"
+HELD = ", its drives held where they are"
+HEADING = "MODES  motions exp(growth t) cos(2π frequency t): damping ratio -growth/|growth + 2πi frequency|"
+COLUMNS = (
+    Column("mode"), Column("frequency Hz"), Column("period s"), Column("damping"), Column("growth 1/s"),
+    Column("kind", "left"), Column("what moves most (rad, m)", "left"),
+)  # fmt: skip
+CSV_COLUMNS = "mode,kind,name,quantity,component,unit,value"
+ALMOST = 0.02  # of the largest: a smaller part of the other phase is not worth a table's room
+
+
+def table(found: Modes) -> Table:
+    """The modes, a row each; notes say what is unstable, and what nothing holds."""
+    rows = tuple(row(k, mode, found) for k, mode in enumerate(found.modes))
+    return Table(HEADING, COLUMNS, rows, tuple(notes(found)))
+
+
+def page(found: Modes) -> list[tuple[str, str]]:
+    """Label and text of the lines above the table."""
+    frame = FRAME if found.steady else HELD if found.held else ""
+    lines = [("heun", f"{VERSION}  {found.title}"), ("modes", f"small oscillations {ABOUT[found.at]}{frame}")]
+    if not found.modes:
+        return [*lines, ("", "nothing is free to oscillate")]
+    unstable = any(mode.growth > 0.0 for mode in found.modes)
+    loose = any(mode.kind == "free" for mode in found.modes)
+    return [*lines, ("", "unstable" if unstable else "stable, but for what nothing holds" if loose else "stable")]
+
+
+def write(found: Modes) -> str:
+    """The page as text."""
+    lines = page(found)
+    head = "".join(f"{label.ljust(5)}  {text}\n" for label, text in lines)
+    return head + ("\n" + plain(table(found), WIDTH) if found.modes else "")
+
+
+def row(k: int, mode: Mode, found: Modes) -> tuple[str, ...]:
+    """A mode's cells: digits as far as its error lets them be."""
+    hertz = mode.error / (2.0 * math.pi)
+    frequency = style(mode.frequency, hertz).write(mode.frequency) if mode.frequency else "0"
+    seconds = 1.0 / mode.frequency if mode.frequency else 0.0
+    period = style(seconds, hertz * seconds**2).write(seconds) if seconds else ""
+    growth = style(abs(mode.growth), mode.error).write(mode.growth) if mode.growth else "0"
+    size = abs(mode.eigenvalue)
+    damping = style(abs(mode.damping), mode.error / size).write(mode.damping) if size and mode.damping else "0"
+    if mode.kind == "free":
+        damping = ""
+    return str(k + 1), frequency, period, damping, growth, mode.kind, moving(k, found)
+
+
+def moving(k: int, found: Modes) -> str:
+    """The coordinates that move most, with their amplitudes."""
+    shape = found.shapes[k]
+    return ", ".join(f"{name} {amplitude(shape[name])}" for name in found.largest[k] if name in shape)
+
+
+def amplitude(x: complex) -> str:
+    """An amplitude relative to the largest, with its phase where that is neither along nor against it."""
+    if abs(x.imag) <= ALMOST * abs(x):
+        return f"{x.real:.3g}"
+    return f"{abs(x):.3g}∠{math.degrees(math.atan2(x.imag, x.real)):.0f}°"
+
+
+def notes(found: Modes) -> Iterator[str]:
+    """Sentences on what is unstable and what is free."""
+    for k, mode in enumerate(found.modes):
+        names = ", ".join(found.largest[k])
+        if mode.kind == "free":
+            yield f"free: {names}: nothing holds it"
+        elif mode.growth > 0.0:
+            yield f"unstable: mode {k + 1}, {names}: e times as large after every {1.0 / mode.growth:.3g} s"
+
+
+def to_csv(found: Modes) -> str:
+    """The modes in long form, a line a number."""
+    lines = [CSV_COLUMNS]
+    for k, (mode, shape) in enumerate(zip(found.modes, found.shapes, strict=True)):
+        for quantity, unit, value in (
+            ("frequency", "Hz", mode.frequency), ("damping", "1", mode.damping), ("growth", "1/s", mode.growth),
+            ("error", "1/s", mode.error),
+        ):  # fmt: skip
+            lines.append(f"{k + 1},{mode.kind},,{quantity},,{unit},{value!r}")
+        for name, x in shape.items():
+            unit = "m" if is_length(name) else "rad"
+            for part, value in (("re", x.real), ("im", x.imag)):
+                lines.append(f"{k + 1},{mode.kind},{name},shape,{part},{unit},{value!r}")
+    return "\n".join(lines) + "\n"

@@ -1,0 +1,113 @@
+"""`heun modes`: what it writes, and what it refuses."""
+
+from __future__ import annotations
+
+import csv
+import io
+import json
+from pathlib import Path
+
+import pytest
+
+from heuncli.errors import HeunError
+from heuncli.spec.load import load
+from heuncli.study.modes import modes
+from tests.cli.conftest import Heun
+
+SCENE = """\
+heun: 1
+title: A carriage with a pendulum
+gravity: [0, 0, -9.81]
+ground: {points: {O: [0, 0, 0], W: [-1, 0, 0]}}
+bodies:
+  cart: {mass: 4, center: [0, 0, 0], inertia: [1, 1, 1], points: {c: [0, 0, 0]}}
+  bob: {mass: 1, center: [0, 0, -1], inertia: [0.1, 0.1, 0.1], points: {a: [0, 0, 0], b: [0, 0, -1]}}
+joints:
+  rail: {type: slide, axis: [1, 0, 0], from: ground.O, to: cart.c}
+  hinge: {type: pin, axis: [0, 1, 0], from: cart.c, to: bob.a}
+"""
+ASKED = "analysis: {type: state}\n"
+
+
+def with_force(text: str) -> str:
+    return f"{SCENE}forces: {{f: {text}}}\n{ASKED}"
+
+
+def test_json_keeps_to_the_contract(heun: Heun, folder: Path) -> None:
+    spring = "{type: spring, from: ground.W, to: cart.c, stiffness: 90, length: 1}"
+    (folder / "cart.yaml").write_text(with_force(spring))
+    done = heun("modes", "cart.yaml", "--format", "json")
+    found = json.loads(done.stdout)
+    assert done.returncode == 0 and found["at"] == "state" and len(found["modes"]) == 2
+    for mode in found["modes"]:
+        assert {"frequency", "damping", "growth", "shape"} <= mode.keys()
+        assert mode["shape"].keys() == {"rail.travel", "hinge.angle"}
+        assert max(abs(complex(*x)) for x in mode["shape"].values()) == 1.0
+        assert mode["growth"] == 0.0 and mode["damping"] == 0.0 and mode["frequency"] > 0.0
+    rows = list(csv.DictReader(io.StringIO(heun("modes", "cart.yaml", "--format", "csv").stdout)))
+    told = [float(row["value"]) for row in rows if row["quantity"] == "frequency"]
+    assert told == [mode["frequency"] for mode in found["modes"]]
+
+
+def test_a_table_names_what_is_free_and_what_is_unstable(heun: Heun, folder: Path) -> None:
+    (folder / "cart.yaml").write_text(SCENE + ASKED)
+    text = heun("modes", "cart.yaml").stdout
+    assert "free: rail.travel: nothing holds it" in text and "stable, but for what nothing holds" in text
+    (folder / "upright.yaml").write_text(SCENE.replace("center: [0, 0, -1]", "center: [0, 0, 1]") + ASKED)
+    text = heun("modes", "upright.yaml").stdout
+    assert "\n       unstable\n" in text and "unstable: mode" in text and "divergence" in text
+
+
+def test_the_whole_thing_driven_has_none(heun: Heun, folder: Path) -> None:
+    drives = "drives: {a: {joint: rail, travel: 0}, b: {joint: hinge, angle: 0}}\n"
+    (folder / "driven.yaml").write_text(SCENE + drives + ASKED)
+    done = heun("modes", "driven.yaml")
+    assert done.returncode == 0 and "nothing is free to oscillate" in done.stdout
+
+
+@pytest.mark.parametrize(
+    ("text", "code", "said"),
+    [
+        (with_force("{type: force, on: bob.b, vector: [sin(t), 0, 0]}"), "no-modes", "forces.f depends on t"),
+        (with_force("{type: force, on: bob.b, vector: [1, 0, 0]}"), "not-at-rest", "is pushed"),
+        (with_force("{type: torque, joint: hinge, value: -3*sign(hinge.rate)}"), "no-modes", "forces.f jumps or bends"),
+        (with_force("{type: torque, joint: hinge, value: -3*abs(hinge.angle)}"), "no-modes", "forces.f jumps or bends"),
+        (with_force("{type: spring, from: ground.O, to: cart.c, stiffness: 9, length: 1}"), "no-modes", "no direction"),
+    ],
+)
+def test_refused(text: str, code: str, said: str) -> None:
+    with pytest.raises(HeunError) as caught:
+        modes(load("scene.yaml", text))
+    assert caught.value.problems[0].code == code and said in caught.value.problems[0].message
+    assert caught.value.exit_code == 3
+
+
+@pytest.mark.parametrize(
+    "text",
+    [
+        with_force("{type: torque, joint: hinge, value: -3*hinge.rate*abs(hinge.rate)}"),
+        with_force("{type: torque, joint: hinge, value: 'min(0, -hinge.angle**3)'}"),
+        with_force("{type: spring, from: ground.O, to: cart.c, stiffness: 9, length: 0}"),
+    ],
+)
+def test_smooth_enough(text: str) -> None:
+    """What bends in its second derivative only has a slope."""
+    assert len(modes(load("scene.yaml", text)).modes) == 2
+
+
+def test_a_stretched_chain_is_refused() -> None:
+    bar = "{mass: 1, center: [0.5, 0, 0], inertia: [1, 1, 1], points: {a: [0, 0, 0], b: [1, 0, 0]}"
+    scene = f"""\
+heun: 1
+ground: {{points: {{A: [0, 0, 0], B: [2, 0, 0]}}}}
+bodies:
+  left: {bar}}}
+  right: {bar}, position: [1, 0, 0]}}
+joints:
+  a: {{type: pin, axis: [0, 0, 1], from: ground.A, to: left.a}}
+  k: {{type: pin, axis: [0, 0, 1], from: left.b, to: right.a}}
+  b: {{type: pin, axis: [0, 0, 1], from: ground.B, to: right.b}}
+"""
+    with pytest.raises(HeunError) as caught:
+        modes(load("scene.yaml", scene))
+    assert "give way to the first order only" in caught.value.problems[0].message
