@@ -8,6 +8,7 @@ from typing import Any
 
 import numpy as np
 
+from heuncli.cli import searches
 from heuncli.cli.entry import UsageError
 from heuncli.cli.output import emit, say
 from heuncli.cli.requests import FORMATS, Run
@@ -22,14 +23,13 @@ from heuncli.report.fit import fit
 from heuncli.report.heading import write_heading, write_heading_markdown
 from heuncli.report.labels import Labels, labels_of
 from heuncli.report.page import EXPORT_DEFAULT, TABLE_DEFAULT, page_of
-from heuncli.report.runs import RESULTANTS
+from heuncli.report.runs import LOADS
 from heuncli.report.table import WIDTH, Table, markdown, plain
 from heuncli.results import Results
 from heuncli.results_schema import BLOWS, REPORT_OF, REPORTS, SHARES, with_shared
 from heuncli.spec.load import load
 from heuncli.spec.models import Spec
 from heuncli.study.asked import Asked, Entry, asked_by, entries_of, entry_at
-from heuncli.study.extremes import Searched
 from heuncli.study.solve import Options, Study, solve
 
 ENDINGS = {".json": "json", ".csv": "csv", ".md": "markdown", ".txt": "table", "": "table"}
@@ -147,13 +147,13 @@ def _report(request: Run, form: str, study: Study, labels: Labels, wanted: froze
         return to_json(shown) if form == "json" else to_csv(shown, labels)
     page = page_of(study.results, labels, study.magnitudes)
     if study.results.impulses:
-        page = page._replace(struck=study.struck_along([name for name, _ in RESULTANTS]))
+        page = page._replace(struck=study.struck_along([load.name for load in LOADS]))
     one = len(study.results.time) == 1
     extremes = None
     if not (request.all or at is not None or (one and not page.has_runs)):
-        along = page.along if page.has_runs else None
-        searched = Searched(page.columns, page.groups(), page.errors(), page.even(), along)
-        extremes = study.extremes(searched, wanted - {SHARES}, whole=True)
+        extremes = searches.rows(page, study, wanted)
+        if page.has_runs:
+            page = page._replace(along_runs=searches.along_runs(page, study))
     shares = study if SHARES in wanted else None
     if extremes is None or one:
         tables = page.instants(shown, every_cut=request.all, searched=extremes, shares=shares)

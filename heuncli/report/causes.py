@@ -26,7 +26,7 @@ from heuncli.report.numbers import (
 )
 from heuncli.report.plans import MASS_EFFECT
 from heuncli.report.quantities import Series
-from heuncli.report.runs import Run, position
+from heuncli.report.runs import Along, Run, position
 from heuncli.report.table import INDENT, Column, Table
 from heuncli.results import Array, Extremes, Place, Results
 from heuncli.results_schema import BY_CAUSE, SHARES
@@ -297,13 +297,13 @@ def run_extremes_table(
     """
     lines: list[Line] = []
     span = float(np.ptp(np.concatenate([extremes.low_at, extremes.high_at])))
-    for i, (label, unit) in enumerate(run.resultants):
+    for i, load in enumerate(run.loads):
         ends = (("min", extremes.low, extremes.low_at), ("max", extremes.high, extremes.high_at))
         for j, (word, value, at) in enumerate(ends):
             k = int(np.searchsorted(results.time, at[i]))
             clock = [f"{write_times([float(at[i])], span)[0]} s"] if span > 0.0 else []
             where = ", ".join([f"s = {position(places[i][j], run.s)} m", *clock])
-            lines.append(line_of_run(results, run.name, (label, unit), f"{label} {word}", (k, 2 * i + j), where)
+            lines.append(line_of_run(results, run.name, load, f"{load.label} {word}", (k, 2 * i + j), where)
                          ._replace(total=float(value[i])))  # fmt: skip
     return of_run(run, lines, certain)
 
@@ -314,21 +314,21 @@ def run_instants_table(run: Run, results: Results, horizon: float | None, certai
     clock = [] if len(times) == 1 else [f", {text} s" for text in write_times(times, float(np.ptp(results.time)))]
     lines: list[Line] = []
     for k, t in enumerate(times):
-        for i, (label, unit) in enumerate(run.resultants):
+        for i, load in enumerate(run.loads):
             values = np.nan_to_num(run.values[i, k])
             for word, cut in (("min", int(np.argmin(values))), ("max", int(np.argmax(values)))):
                 where = f"s = {write([float(run.s[cut])], style(float(run.s[-1]), 0.0))[0]} m"
                 where += clock[k] if clock else ""
-                line = line_of_run(results, run.name, (label, unit), f"{label} {word}", (k, cut), where)
+                line = line_of_run(results, run.name, load, f"{load.label} {word}", (k, cut), where)
                 lines.append(line._replace(lost=horizon is not None and t >= horizon))
     return of_run(run, lines, certain)
 
 
 def line_of_run(
-    results: Results, name: str, resultant: tuple[str, str], label: str, at: tuple[int, int], where: str
+    results: Results, name: str, load: Along, label: str, at: tuple[int, int], where: str
 ) -> Line:
     """The line of a resultant of a run at an instant and a cut."""
-    quantity, unit = resultant
+    quantity, unit = load.name, load.unit
     section = results.sections[name]
     shares = {cause: float(own[quantity][at]) for cause, own in section.get(SHARES, {}).items()}
     row = Row(quantity, unit, AXES[quantity][0], "sections", np.zeros(0))

@@ -8,7 +8,7 @@ import numpy as np
 
 from heuncli.report.blocks import Block, Group, texts_of
 from heuncli.report.numbers import OPEN, UNKNOWN, UNKNOWN_NOTE, ZERO_NOTE, Certainty, beyond_horizon, write_times
-from heuncli.report.table import Column, Table
+from heuncli.report.table import Column, Table, head
 from heuncli.results import Array
 
 Cells = dict[str, dict[str, list[str]]]  # group -> label -> a text for each instant
@@ -37,11 +37,6 @@ def instants_tables(block: Block, times: Array, horizon: float | None, certain: 
     if not tables:
         return [Table(block.heading, notes=("0 throughout",))]
     return [*tables[:-1], tables[-1]._replace(notes=tuple(dict.fromkeys(notes)))]
-
-
-def head(label: str, unit: str) -> str:
-    """What stands above a column of numbers."""
-    return f"{label} [{unit}]" if unit != "1" else label
 
 
 def _at_one(

@@ -13,6 +13,7 @@ from typing import TYPE_CHECKING, Any, NamedTuple, Protocol
 import numpy as np
 
 from heuncli.report import extremes, instants, runs
+from heuncli.report.along import NONE, OfRun, with_stresses
 from heuncli.report.blocks import Block, Row, build
 from heuncli.report.labels import Labels
 from heuncli.report.numbers import Certainty, certainty, with_axis
@@ -45,7 +46,7 @@ class Page(NamedTuple):
     """The tables of a run: blocks and runs of cuts up to the horizon, before they are laid out.
 
     of: what its numbers are summed from; beyond: the last instant alone, where the run ends beyond its horizon; struck:
-    of each blow the extremes along its runs of cuts.
+    of each blow the extremes along its runs of cuts; along_runs: of the whole run, what else was searched of them.
     """
 
     results: Results
@@ -54,6 +55,7 @@ class Page(NamedTuple):
     of: Magnitudes
     beyond: Results | None = None
     struck: Sequence[Mapping[str, Extremes]] = ()
+    along_runs: Mapping[str, OfRun] = NONE
 
     def columns(self, results: Results) -> Array:
         """What is searched, (n_t, n): all rows of all blocks, magnitudes squared."""
@@ -63,7 +65,7 @@ class Page(NamedTuple):
     def along(self, results: Results) -> list[tuple[str, Array]]:
         """The resultants of the runs of cuts, each (n_t, n_cuts), with the names of their runs."""
         made = runs.runs_of(results, self.labels)
-        return [(run.name, values) for run in made for values in run.values]
+        return [(run.name, values) for run in made for values in run.values[: len(runs.LOADS)]]
 
     @property
     def has_runs(self) -> bool:
@@ -78,13 +80,13 @@ class Page(NamedTuple):
         """How well the numbers are known, of all rows and of the resultants of runs, (n,)."""
         errors = [self.certain.error(row.kind, row.unit) for row in self._rows(self.results)]
         for _ in runs.runs_of(self.results, self.labels):
-            errors += [self.certain.error("sections", unit) for _, unit in runs.RESULTANTS]
+            errors += [self.certain.error("sections", load.unit) for load in runs.LOADS]
         return np.array(errors)
 
     def even(self) -> Mask:
         """Which of them are squares, (n,)."""
         rows = [row.even for row in self._rows(self.results)]
-        more = len(runs.RESULTANTS) * len(runs.runs_of(self.results, self.labels))
+        more = len(runs.LOADS) * len(runs.runs_of(self.results, self.labels))
         return np.array(rows + [False] * more, dtype=bool)
 
     def extremes(self, searched: Extremes, shares: SharesAt | None = None) -> list[Table]:
@@ -100,7 +102,9 @@ class Page(NamedTuple):
             tables += extremes.extremes_table(block, times, part, self.certain, beyond)
             start += len(rows)
         for k, run in enumerate(runs.runs_of(self.results, self.labels)):
-            tables += runs.extremes_tables(run, times, *self._of_run(searched, k), self.certain)
+            of = self.along_runs.get(run.name, OfRun())
+            whole = with_stresses(run, *self._of_run(searched, k), of.stresses)
+            tables += runs.extremes_tables(run, times, *whole, self.certain, of.cuts)
         more = self._by_cause(searched, shares) if shares is not None else []
         return [*tables, *more, *self._ending()]
 
@@ -159,7 +163,9 @@ class Page(NamedTuple):
             tables += instants.instants_tables(block, results.time, horizon, certain)
         for k, run in enumerate(runs.runs_of(results, self.labels)):
             if searched is not None:
-                tables.append(runs.extremes_table(run, results.time, *self._of_run(searched, k), self.certain))
+                of = self.along_runs.get(run.name, OfRun())
+                whole = with_stresses(run, *self._of_run(searched, k), of.stresses)
+                tables.append(runs.extremes_table(run, results.time, *whole, self.certain))
             made = runs.instants_tables(run, results.time, horizon, self.certain, every=every_cut)
             tables += [made[0]._replace(heading=""), *made[1:]] if searched is not None else made
         if shares is not None:
@@ -185,7 +191,7 @@ class Page(NamedTuple):
 
     def _of_run(self, searched: Extremes, k: int) -> tuple[Extremes, tuple[tuple[Place, Place], ...]]:
         """The extremes of the resultants of a run, and their places."""
-        n = len(runs.RESULTANTS)
+        n = len(runs.LOADS)
         first = len(searched.low) - len(searched.places) + n * k
         return searched.part(slice(first, first + n)), searched.places[n * k : n * (k + 1)]
 

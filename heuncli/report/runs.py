@@ -7,12 +7,14 @@ from typing import NamedTuple
 
 import numpy as np
 
+from heuncli.report.blocks import SPOKEN_UNITS
 from heuncli.report.labels import Labels
 from heuncli.report.numbers import (
     OPEN,
     OPEN_NOTE,
     UNKNOWN,
     UNKNOWN_NOTE,
+    ZERO_NOTE,
     Certainty,
     Style,
     beyond_horizon,
@@ -21,29 +23,64 @@ from heuncli.report.numbers import (
     write,
     write_times,
 )
-from heuncli.report.table import Column, Table
+from heuncli.report.plans import STRESSES
+from heuncli.report.table import Column, Table, head
 from heuncli.results import Array, Extremes, Indices, Place, Results
-from heuncli.results_schema import row_of
+from heuncli.results_schema import MAGNITUDES, row_of
 
-RESULTANTS = tuple((name, row_of(f"sections.SECTION.{name}").unit()) for name in ("N", "Q1", "Q2", "T", "M1", "M2"))
 STRETCH_NOTE = "extremes of the whole stretch, between the cuts and at its corners, too"
 MOST_CUTS = 25  # of a diagram: evenly spaced cuts, with all jumps and extremes
 
 
+class Along(NamedTuple):
+    """A quantity along a run: its name in the results, its label, its unit, and whether it is never negative.
+
+    bounds: which of its lowest and highest say something at a cut; size: of one of its unit in the results, here.
+    """
+
+    name: str
+    label: str
+    unit: str
+    even: bool = False
+    bounds: tuple[str, ...] = ("min", "max")
+    size: float = 1.0
+
+
+def _stress(name: str) -> Along:
+    unit, size = SPOKEN_UNITS.get(row := row_of(f"sections.SECTION.stress.{name}").unit(), (row, 1.0))
+    bounds = ("min",) if name == "normal_min" else ("max",)
+    return Along(name, name.replace("_", " "), unit, name in MAGNITUDES, bounds, size)
+
+
+RESULTANTS = ("N", "Q1", "Q2", "T", "M1", "M2")
+LOADS = tuple(Along(name, name, row_of(f"sections.SECTION.{name}").unit()) for name in RESULTANTS)
+ALONG_STRESSES = tuple(_stress(name) for name in STRESSES)
+
+
 class Run(NamedTuple):
-    """One run of cuts: positions along the body, sides, and its resultants (6, n_t, n_cuts), with their units."""
+    """One run of cuts: positions along the body, sides; its loads, then its stresses, (n, n_t, n_cuts)."""
 
     name: str
     heading: str
     s: Array
     side: tuple[str | None, ...]
     values: Array
-    resultants: tuple[tuple[str, str], ...] = RESULTANTS
+    quantities: tuple[Along, ...] = LOADS
+
+    @property
+    def loads(self) -> tuple[Along, ...]:
+        """Those of its quantities that are loads."""
+        return self.quantities[: len(LOADS)]
+
+    @property
+    def stresses(self) -> tuple[Along, ...]:
+        """Those of its quantities that are stresses."""
+        return self.quantities[len(LOADS) :]
 
 
 def runs_of(results: Results, labels: Labels, units: Mapping[str, str] | None = None) -> list[Run]:
     """The runs of cuts among the sections; units: those that stand for others, of what is no force but an impulse."""
-    resultants = tuple((name, (units or {}).get(unit, unit)) for name, unit in RESULTANTS)
+    loads = tuple(load._replace(unit=(units or {}).get(load.unit, load.unit)) for load in LOADS)
     runs = []
     for name, section in results.sections.items():
         if "s" not in section:
@@ -54,22 +91,103 @@ def runs_of(results: Results, labels: Labels, units: Mapping[str, str] | None = 
         about = info.about if info else "the cut's point"
         whose = f"{'impulse of ' * bool(units)}the piece beyond the cut ON the part before it; N > 0 tension"
         heading = f"SECTION {of}  {whose}; {axis}; moments about {about}"
-        values = np.stack([section[quantity] for quantity, _ in RESULTANTS])
+        stress = section.get("stress", {})
+        stresses = tuple(own for own in ALONG_STRESSES if own.name in stress)
+        own = [section[load.name] for load in loads] + [one.size * stress[one.name] for one in stresses]
         side = tuple(section.get("side") or [None] * len(section["s"]))
-        runs.append(Run(name, heading, np.asarray(section["s"], dtype=np.float64), side, values, resultants))
+        s = np.asarray(section["s"], dtype=np.float64)
+        runs.append(Run(name, heading, s, side, np.stack(own), (*loads, *stresses)))
     return runs
 
 
 def extremes_tables(
-    run: Run, times: Array, extremes: Extremes, places: Sequence[tuple[Place, Place]], certain: Certainty
+    run: Run,
+    times: Array,
+    extremes: Extremes,
+    places: Sequence[tuple[Place, Place]],
+    certain: Certainty,
+    cuts: Extremes | None = None,
 ) -> list[Table]:
-    """Extremes over the whole stretch and time, (6,) each with their places; at each cut the value farthest from 0."""
-    styles = _styles(run, certain, extremes)
-    envelope = np.take_along_axis(run.values, _farthest(run.values)[:, None, :], axis=1)[:, 0, :]
+    """Extremes over the whole stretch and time, of each quantity with their places; and those at each cut.
+
+    cuts: those at the cuts that are shown, of one quantity after the other; without, among the samples.
+    """
     kept = thinned(run)
-    notes = [f"envelope: at each cut the value farthest from zero in {run.values.shape[1]} samples" + _rest(run, kept)]
+    shape = len(run.quantities), len(kept)
+    if cuts is None:
+        own = run.values[:, :, kept].transpose(1, 0, 2).reshape(run.values.shape[1], -1)
+        cuts = extremes_of_samples(times, own)
+    extremes, places, cuts = one_source(run, kept, extremes, places, cuts)
+    where = "between the samples, too" if cuts.searched else f"in {run.values.shape[1]} samples"
+    notes = [f"envelope: lowest and highest at each cut over the run, {where}{_rest(run, kept)}"]
     table = extremes_table(run, times, extremes, places, certain)
-    return [table, _diagram(run, envelope, kept, styles, notes)]
+    styles = _styles(run, certain, extremes)
+    bounds = {"min": cuts.low.reshape(shape), "max": cuts.high.reshape(shape)}
+    return [table, _envelope(run, bounds, kept, styles, notes)]
+
+
+def extremes_of_samples(times: Array, values: Array) -> Extremes:
+    """The lowest and the highest of columns (n_t, n) at the instants."""
+    low = np.argmin(np.nan_to_num(values, nan=np.inf), axis=0)
+    high = np.argmax(np.nan_to_num(values, nan=-np.inf), axis=0)
+    column = np.arange(values.shape[1])
+    return Extremes(values[low, column], times[low], column, values[high, column], times[high], column, searched=False)
+
+
+def one_source(
+    run: Run, kept: Indices, head: Extremes, places: Sequence[tuple[Place, Place]], cuts: Extremes
+) -> tuple[Extremes, tuple[tuple[Place, Place], ...], Extremes]:
+    """Extremes of the stretch and of its cuts, each the better of what two searches found there."""
+    ends, ends_at = np.stack([head.low, head.high]), np.stack([head.low_at, head.high_at])
+    bounds, instants = np.stack([cuts.low, cuts.high]), np.stack([cuts.low_at, cuts.high_at])
+    found = [list(both) for both in places]
+    for i in range(len(places)):
+        for side, sign in ((0, -1.0), (1, 1.0)):
+            own = slice(i * len(kept), (i + 1) * len(kept))
+            best = int(np.argmax(np.nan_to_num(sign * bounds[side, own], nan=-np.inf)))
+            cut = int(kept[best])
+            if sign * bounds[side, own][best] > sign * ends[side, i]:
+                ends[side, i], ends_at[side, i] = bounds[side, own][best], instants[side, own][best]
+                found[i][side] = Place(float(run.s[cut]), run.side[cut], cut)
+            elif found[i][side].cut in kept:
+                bounds[side, own][kept == found[i][side].cut] = ends[side, i]
+    whole = head._replace(low=ends[0], high=ends[1], low_at=ends_at[0], high_at=ends_at[1])
+    return whole, tuple((a, b) for a, b in found), cuts._replace(low=bounds[0], high=bounds[1])
+
+
+def _envelope(
+    run: Run, bounds: Mapping[str, Array], kept: Indices, styles: Mapping[str, Style], notes: Sequence[str]
+) -> Table:
+    """A line a cut with the lowest and the highest there; what is 0 throughout is left out."""
+    columns, texts, left_out = list[Column](), list[list[str]](), False
+    for i, own in enumerate(run.quantities):
+        both = [write(bounds[word][i].tolist(), styles[own.unit]) for word in own.bounds]
+        if {text for column in both for text in column} == {"0"}:
+            left_out = True
+            continue
+        words = own.bounds if len(both) > 1 and both[0] != both[1] else ("",)  # what is steady is told once
+        texts += both[: len(words)]
+        columns += [Column(head(f"{own.label} {word}".rstrip(), own.unit), vector=own.label) for word in words]
+    if not columns:
+        return Table("", notes=(*notes, "0 throughout"))
+    shown = {text for column in texts for text in column}
+    below = [*notes, *[ZERO_NOTE] * left_out]
+    below += [note for word, note in ((OPEN, OPEN_NOTE), (UNKNOWN, UNKNOWN_NOTE)) if word in shown]
+    return _at_cuts(run, kept, columns, texts, below)
+
+
+def _at_cuts(
+    run: Run, kept: Indices, columns: Sequence[Column], texts: Sequence[Sequence[str]], notes: Sequence[str]
+) -> Table:
+    """A line a cut, behind its place and side."""
+    positions = _positions(run.s)
+    sides = any(side is not None for side in run.side)
+    rows = tuple(
+        (positions[cut], *([run.side[cut] or ""] if sides else []), *(column[j] for column in texts))
+        for j, cut in enumerate(kept)
+    )
+    heads = [Column("s [m]"), *([Column("side", "left")] if sides else [])]
+    return Table("", (*heads, *columns), rows, tuple(notes))
 
 
 def extremes_table(
@@ -79,14 +197,15 @@ def extremes_table(
     styles = _styles(run, certain, extremes)
     span = float(np.ptp(times))
     rows: list[tuple[str, ...]] = []
-    for i, (label, unit) in enumerate(run.resultants):
-        low, high = write([float(extremes.low[i]), float(extremes.high[i])], styles[unit])
+    for i, own in enumerate(run.quantities[: len(extremes.low)]):
+        low, high = write([float(extremes.low[i]), float(extremes.high[i])], styles[own.unit])
+        label, unit = own.label, own.unit if own.unit != "1" else ""
         if low == high:
             rows.append((label, unit, low, "", "", high, "", ""))
             continue
         clock = write_times([float(extremes.low_at[i]), float(extremes.high_at[i])], span)
         low_at, high_at = (
-            "" if _steady(run.values[i][:, _nearest(run, place)], styles[unit]) else t
+            "" if _steady(run.values[i][:, _nearest(run, place)], styles[own.unit]) else t
             for place, t in zip(places[i], clock, strict=True)
         )
         where = [position(place, run.s) for place in places[i]]
@@ -141,40 +260,29 @@ def _diagram(
     beyond: Certainty | None = None,
 ) -> Table:
     """A line a cut; `values` is (6, n_cuts). beyond: given where the instant is beyond the horizon."""
-    positions = _positions(run.s)
     texts = []
-    for (_, unit), row in zip(run.resultants, values[:, kept].tolist(), strict=True):
-        own = write(row, styles[unit])
+    for own, row in zip(run.quantities, values[:, kept].tolist(), strict=True):
+        column = write(row, styles[own.unit])
         if beyond is not None:
-            own = [beyond_horizon(value, unit, beyond, text) for value, text in zip(row, own, strict=True)]
-        texts.append(own)
-    sides = any(side is not None for side in run.side)
-    rows = tuple(
-        (positions[cut], *([run.side[cut] or ""] if sides else []), *(column[j] for column in texts))
-        for j, cut in enumerate(kept)
-    )
-    heads = [Column("s [m]"), *([Column("side", "left")] if sides else [])]
+            column = [beyond_horizon(value, own.unit, beyond, text) for value, text in zip(row, column, strict=True)]
+        texts.append(column)
     shown = {text for column in texts for text in column}
     below = [note for note in notes if note]
     below += [note for word, note in ((OPEN, OPEN_NOTE), (UNKNOWN, UNKNOWN_NOTE)) if word in shown]
-    return Table("", (*heads, *(Column(f"{label} [{unit}]") for label, unit in run.resultants)), rows, tuple(below))
+    columns = [Column(head(own.label, own.unit), vector="loads") for own in run.loads]
+    columns += [Column(head(own.label, own.unit)) for own in run.stresses]
+    return _at_cuts(run, kept, columns, texts, below)
 
 
 def _styles(run: Run, certain: Certainty, extremes: Extremes | None = None) -> dict[str, Style]:
     """The style of forces and that of moments, by all that is shown of them."""
-    bounds = np.zeros((2, len(run.resultants))) if extremes is None else np.stack([extremes.low, extremes.high])
+    bounds = np.zeros((2, 0)) if extremes is None else np.stack([extremes.low, extremes.high])
     styles = {}
-    for unit in dict.fromkeys(unit for _, unit in run.resultants):
-        own = [i for i, (_, other) in enumerate(run.resultants) if other == unit]
-        scale = max(largest(run.values[own]), largest(bounds[:, own]))
+    for unit in dict.fromkeys(own.unit for own in run.quantities):
+        own = [i for i, other in enumerate(run.quantities) if other.unit == unit]
+        scale = max(largest(run.values[own]), largest(bounds[:, [i for i in own if i < bounds.shape[1]]]))
         styles[unit] = certain.style("sections", unit, scale)
     return styles
-
-
-def _farthest(values: Array) -> Indices:
-    """Index of the instant at which each is farthest from zero, (6, n_cuts); the first where all are open."""
-    farthest: Indices = np.argmax(np.nan_to_num(np.abs(values), nan=-1.0), axis=1)
-    return farthest
 
 
 def _steady(values: Array, how: Style) -> bool:

@@ -33,6 +33,11 @@ class Table(NamedTuple):
     notes: tuple[str, ...] = ()
 
 
+def head(label: str, unit: str) -> str:
+    """What stands above a column of numbers."""
+    return f"{label} [{unit}]" if unit != "1" else label
+
+
 def plain(table: Table, width: int | None = None) -> str:
     """The table as aligned text; ends with a newline. Headings, titles and notes go on in more lines, if of a width."""
     indent = INDENT if any(isinstance(row, str) for row in table.rows) else ""

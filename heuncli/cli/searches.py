@@ -1,0 +1,50 @@
+"""What a report asks a study to search for: the extremes of its rows, along its runs of cuts, and at their cuts."""
+
+from __future__ import annotations
+
+import numpy as np
+
+from heuncli.report.along import Numbers, OfRun, at_cuts, stresses_along
+from heuncli.report.page import Page
+from heuncli.report.runs import Run, runs_of
+from heuncli.results import Array, Extremes, Results
+from heuncli.results_schema import SHARES
+from heuncli.study.extremes import Searched
+from heuncli.study.solve import Study
+
+SECTIONS = frozenset({"sections"})
+
+
+def rows(page: Page, study: Study, wanted: frozenset[str]) -> Extremes:
+    """Of the rows of the page, and of the loads along its runs of cuts."""
+    along = page.along if page.has_runs else None
+    searched = Searched(page.columns, page.groups(), page.errors(), page.even(), along)
+    return study.extremes(searched, wanted - {SHARES}, whole=True)
+
+
+def along_runs(page: Page, study: Study) -> dict[str, OfRun]:
+    """Of the stresses along each run of cuts, and of all at its cuts where more than one instant is told."""
+    return {run.name: of_run(run, page, study) for run in runs_of(page.results, page.labels)}
+
+
+def of_run(run: Run, page: Page, study: Study) -> OfRun:
+    """Those of one run."""
+    stresses = cuts = None
+    if run.stresses:
+        own = stresses_along(run, page.labels)
+        searched = Searched(none, [], own.errors(page.certain), own.even, own.along, bent=True)
+        stresses = own.roots(study.extremes(searched, SECTIONS))
+    if len(page.results.time) > 1:
+        cuts = extremes_at_cuts(at_cuts(run, page.labels), page, study)
+    return OfRun(stresses, cuts)
+
+
+def extremes_at_cuts(own: Numbers, page: Page, study: Study) -> Extremes:
+    """Those of the quantities at each cut."""
+    searched = Searched(own.columns, own.groups, own.errors(page.certain), own.even)
+    return own.roots(study.extremes(searched, SECTIONS, whole=True))
+
+
+def none(results: Results) -> Array:
+    """No columns beside those along the run."""
+    return np.zeros((len(results.time), 0))

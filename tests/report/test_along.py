@@ -1,0 +1,114 @@
+"""Runs of cuts over a motion: extremes of loads and stresses along them and at each cut, the same in head and rows."""
+
+from __future__ import annotations
+
+import math
+from pathlib import Path
+
+import numpy as np
+import pytest
+
+from heuncli.cli import searches
+from heuncli.report.labels import labels_of
+from heuncli.report.page import Page, page_of
+from heuncli.report.runs import extremes_of_samples, one_source, runs_of
+from heuncli.report.table import Table
+from heuncli.results import Extremes, Place
+from heuncli.spec.load import load
+from heuncli.study.measure import peak
+from heuncli.study.solve import Options, Study, solve
+
+SPEC = """
+heun: 1
+gravity: [0, 0, -9.81]
+ground: {points: {O: [0, 0, 0]}}
+bodies:
+  bar:
+    shapes: [{type: cylinder, from: [0, 0, 0], to: [0, 0, -1], radius: 10 mm, density: 7850 kg/m^3}]
+    points: {top: [0, 0, 0], end: [0, 0, -1]}
+joints:
+  pivot: {type: pin, from: ground.O, to: bar.top, axis: [0, 1, 0], initial: {angle: 60 deg}}
+sections:
+  bar: {body: bar, from: top, to: end, count: 6, properties: {circle: {radius: 10 mm}}, strength: 200 MPa}
+analysis: {duration: 2, samples: 4}
+"""
+SECTIONS = frozenset({"sections"})
+
+
+@pytest.fixture(scope="module")
+def solved(tmp_path_factory: pytest.TempPathFactory) -> tuple[Study, Page, Extremes]:
+    path = tmp_path_factory.mktemp("bar") / "bar.yaml"
+    path.write_text(SPEC)
+    spec = load(str(path))
+    study = solve(spec, Options(wanted=SECTIONS))
+    page = page_of(study.results, labels_of(spec), study.magnitudes)
+    found = searches.rows(page, study, SECTIONS)
+    return study, page._replace(along_runs=searches.along_runs(page, study)), found
+
+
+def cells(table: Table) -> list[tuple[str, ...]]:
+    return [row for row in table.rows if not isinstance(row, str)]
+
+
+@pytest.mark.heavy
+def test_at_each_cut_stand_the_extremes_of_the_motion(solved: tuple[Study, Page, Extremes]) -> None:
+    study, page, _ = solved
+    (run,) = runs_of(page.results, page.labels)
+    found = page.along_runs["bar"].cuts
+    assert found is not None
+    for i, own in enumerate(run.quantities):
+        name = f"sections.bar.stress.{own.name}" if own in run.stresses else f"sections.bar.{own.name}"
+        for cut in (0, 2):
+            for bound, how in ((found.low, "min"), (found.high, "max")):
+                expected = own.size * peak(study, f"{name}.{cut}", how).value
+                scale = max(abs(expected), own.size * 1e-6)
+                assert bound[i * len(run.s) + cut] == pytest.approx(expected, abs=1e-8 * scale), (name, cut, how)
+
+
+@pytest.mark.heavy
+def test_head_and_rows_are_of_one_source(solved: tuple[Study, Page, Extremes]) -> None:
+    """The root carries m g + m L w^2 / 2 at the lowest point, w^2 = m g L / 2 over the moment of inertia."""
+    _, page, found = solved
+    head, rows = page.extremes(found)
+    weight = 9.81 * 7850.0 * math.pi * 1e-4
+    most = weight * (1.0 + 0.25 / (1.0 / 3.0 + 0.25e-4))
+    bounds = {row[0]: row for row in cells(head)}
+    columns = {column.head: [row[i] for row in cells(rows)] for i, column in enumerate(rows.columns)}
+    assert bounds["N"][5] == columns["N max [N]"][0] == f"{most:.4f}"
+    assert float(bounds["M2"][5]) > max(map(float, columns["M2 max [N·m]"]))  # between the cuts, at a third
+    assert bounds["mises"][1] == "MPa"
+    assert bounds["utilisation"][1] == ""
+    assert float(bounds["mises"][5]) / 200.0 == pytest.approx(float(bounds["utilisation"][5]), rel=1e-5)
+    assert float(bounds["normal max"][6]) == pytest.approx(0.33, abs=0.01)
+    assert [head for head in columns if head.startswith("normal m")] == ["normal max [MPa]", "normal min [MPa]"]
+    assert "between the samples, too" in rows.notes[0]
+
+
+def test_the_better_of_two_searches_stands_in_both() -> None:
+    """3.1 of the cut against 3.0 of the stretch there; at the other end the stretch has the better one."""
+    from tests.shared.fakes import LABELS, pendulum
+
+    (run,) = runs_of(pendulum(np.linspace(0.0, 1.0, 3)), LABELS)
+    run = run._replace(quantities=run.quantities[:1], values=run.values[:1])
+    one = np.zeros(1, dtype=np.intp)
+    ends = Extremes(np.array([-2.0]), np.array([0.5]), one, np.array([3.0]), np.array([0.6]), one, searched=True)
+    places = ((Place(0.0, None, 0), Place(0.2, None, 1)),)
+    at = extremes_of_samples(np.array([0.1, 0.2]), np.array([[-1.9, -1.0, 0.0, 0.0, 0.0], [-1.5, 3.1, 0.0, 0.0, 0.0]]))
+    whole, where, cuts = one_source(run, np.arange(5), ends, places, at)
+    assert (whole.high[0], whole.high_at[0], where[0][1].cut) == (3.1, 0.2, 1)
+    assert (whole.low[0], cuts.low[0]) == (-2.0, -2.0)
+
+
+def test_of_too_many_numbers_the_samples_stand(solved: tuple[Study, Page, Extremes]) -> None:
+    _, page, found = solved
+    _, rows = page._replace(along_runs={}).extremes(found)
+    assert "in 4 samples" in rows.notes[0]
+
+
+def test_the_command_shows_stresses_of_runs(tmp_path: Path, capsys: pytest.CaptureFixture[str]) -> None:
+    from heuncli.cli.entry import enter
+
+    path = tmp_path / "bar.yaml"
+    path.write_text(SPEC)
+    assert enter(["run", str(path), "--only", "sections", "--at", "0.5"]) == 0
+    assert "mises [MPa]" in capsys.readouterr().out
