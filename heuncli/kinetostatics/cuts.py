@@ -8,7 +8,8 @@ ends of the run only the one inside.
 from __future__ import annotations
 
 from collections.abc import Sequence
-from typing import Any
+from functools import cached_property
+from typing import TYPE_CHECKING, Any
 
 import numpy as np
 from numpy.typing import NDArray
@@ -23,6 +24,9 @@ from heuncli.results import Array
 from heuncli.shapes.forms import Form
 from heuncli.shapes.inertia import pseudo_inertia
 
+if TYPE_CHECKING:
+    from heuncli.kinetostatics.auto_properties import Cutting, Found
+
 BEFORE, BEYOND = 1.0, -1.0
 
 
@@ -34,7 +38,8 @@ class Cuts:
     for a single cut; side (k,): +1 just before what lies in the plane, -1 just beyond, 0 nothing there; near: what
     counts as in it; pieces (k, 4, 4): pseudo-inertias about the body's origin; centroids (k, 3) of the cross-sections,
     None without shapes; about: where moments are taken: "at", "centroid", or (body, point);
-    properties, strength [Pa]: for stresses, None where not given; form: the shapes that are cut.
+    properties, strength [Pa]: for stresses, None where not given (of kind `auto` those of the form); form: the shapes
+    that are cut.
 
     Where cuts move along a body from instant to instant, points, pieces and centroids have an axis of instants first.
     """
@@ -56,6 +61,22 @@ class Cuts:
     strength: float | None
     warnings: tuple[str, ...]
     form: Form | None = None
+
+    @cached_property
+    def taken(self) -> Found:
+        """The properties taken from the shapes, of all cuts one after the other."""
+        from heuncli.kinetostatics.auto_properties import properties_of  # few scenes ask for them
+
+        return properties_of(self.cutting)
+
+    @property
+    def cutting(self) -> Cutting:
+        """The form and the planes that cut it."""
+        from heuncli.kinetostatics.auto_properties import Cutting
+
+        assert self.form is not None
+        side = np.broadcast_to(self.side, self.points.shape[:-1])
+        return Cutting(self.form, self.n, self.e1, (self.points @ self.n).ravel(), side.ravel())
 
     def laid_for(self, on: Sequence[object]) -> Cuts:
         """Themselves, whatever acts on the body."""
@@ -154,11 +175,37 @@ def _lay(mechanism: Mechanism, spec: Any, name: str, section: Any, index: dict[s
     elif not isinstance(section.reduce_to, str):
         end = section.reduce_to
         about = (GROUND if end.body == "ground" else index[end.body], np.array(end.point))
-    return Cuts(
+    cuts = Cuts(
         name=name, body=body, n=n, e1=e1, e2=np.cross(n, e1), points=points, s=s, side=side, near=near, pieces=pieces,
         centroids=centroids, about=about, line=section.reduce_to == "line", properties=section.properties,
         strength=section.strength, warnings=warnings, form=form,
     )  # fmt: skip
+    if section.properties is not None and section.properties.kind == "auto":
+        _require_properties(location, cuts)
+    return cuts
+
+
+def _require_properties(location: Any, cuts: Cuts) -> None:
+    """Raise SpecError where the properties of a cut cannot be taken from the shapes; of a run anywhere along it."""
+    from heuncli.kinetostatics.auto_properties import properties_of
+
+    cutting = cuts.cutting
+    if cuts.s is not None and cuts.form is not None:
+        low, high = float(cutting.d[0]), float(cutting.d[-1])
+        corners = np.sort(cuts.form.corners(cuts.n))
+        inside = (corners > low + cuts.near) & (corners < high - cuts.near)
+        ends = np.concatenate([[low], corners[inside], [high]])
+        d = np.concatenate([ends[:-1], 0.5 * (ends[1:] + ends[:-1]), ends[1:]])
+        side = np.repeat([BEYOND, 0.0, BEFORE], len(ends) - 1)
+        long = np.tile(np.diff(ends) > 4.0 * cuts.near, 3)
+        cutting = replace(cutting, d=d[long], side=side[long])
+    missing = properties_of(cutting).missing
+    if missing:
+        k = min(missing, key=lambda k: float(cutting.d[k]))
+        where = f" at s = {float(cutting.d[k] - cuts.points[0] @ cuts.n):.6g} m" if cuts.s is not None else ""
+        hint = "give them: circle, tube, rectangle, or area, I1, I2, J, c1, c2; or cut square to the bar"
+        message = f"properties: auto cannot be taken from the shapes{where}: {missing[k]}"
+        raise SpecError(Problem("no-properties", message, location, hint=hint))
 
 
 def _cut_points(section: Any) -> tuple[Array, Array | None]:

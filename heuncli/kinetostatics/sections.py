@@ -320,10 +320,7 @@ def section(
         "open": [],
     } | components
     if cuts.properties is not None:
-        moduli = MODULI[cuts.properties.kind](cuts.properties.values)
-        block["stress"] = stresses(
-            moduli, {**{name: components[name] for name in ("N", "Q1", "Q2")}, **about_centroid}, cuts.strength
-        )
+        block["stress"] = stress(cuts, {name: components[name] for name in ("N", "Q1", "Q2")} | about_centroid)
     if cuts.line:
         sure = np.isfinite(np.sum([components[name] for name in ("N", "Q1", "Q2", "T", "M1", "M2")], axis=0))
         line = reduction_line(where, force, moment)
@@ -336,6 +333,15 @@ def section(
         return block
     words = {1.0: "before", -1.0: "beyond", 0.0: None}
     return {"s": cuts.s, "side": [words[x] for x in cuts.side.tolist()]} | block
+
+
+def stress(cuts: Cuts, loads: Mapping[str, Array]) -> Block:
+    """The stresses of all cuts, by the properties given or by those of the shapes."""
+    if cuts.properties.kind == "auto":
+        from heuncli.kinetostatics.auto_properties import stress_block
+
+        return stress_block(cuts.taken, cuts.points.shape[:-1], loads, cuts.strength)
+    return stresses(MODULI[cuts.properties.kind](cuts.properties.values), loads, cuts.strength)
 
 
 def reduction_line(where: Planes, force: Array, moment: Array) -> Block:

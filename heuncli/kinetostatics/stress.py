@@ -64,6 +64,7 @@ def rectangle(v: Mapping[str, float]) -> SectionModuli:
     return SectionModuli(b * h, I1, I2, 0.5 * b, 0.5 * h, W_T, 1.5, False, fields.rectangle(b, h))
 
 
+ODD = range(1, 40, 2)
 FIFTH = 1.0045237627951382  # sum of 1/n^5 over odd n, 31/32 zeta(5): the rest of the series converges exponentially
 
 
@@ -73,11 +74,15 @@ def torsion_modulus(b: float, h: float) -> float:
     Timoshenko, Goodier, Theory of Elasticity, section 109.
     """
     a, c = min(b, h), max(b, h)
-    odd = range(1, 40, 2)
-    tanh = FIFTH - sum((1.0 - math.tanh(0.5 * n * math.pi * c / a)) / n**5 for n in odd)
-    J = a**3 * c / 3.0 * (1.0 - 192.0 * a / (math.pi**5 * c) * tanh)
-    slope = 1.0 - 8.0 / math.pi**2 * sum(1.0 / (n * n * math.cosh(min(0.5 * n * math.pi * c / a, 700.0))) for n in odd)
-    return J / (a * slope)
+    slope = 1.0 - 8.0 / math.pi**2 * sum(1.0 / (n * n * math.cosh(min(0.5 * n * math.pi * c / a, 700.0))) for n in ODD)
+    return torsion_constant(b, h) / (a * slope)
+
+
+def torsion_constant(b: float, h: float) -> float:
+    """J of a rectangle: T over modulus of rigidity and twist."""
+    a, c = min(b, h), max(b, h)
+    tanh = FIFTH - sum((1.0 - math.tanh(0.5 * n * math.pi * c / a)) / n**5 for n in ODD)
+    return a**3 * c / 3.0 * (1.0 - 192.0 * a / (math.pi**5 * c) * tanh)
 
 
 def general(v: Mapping[str, float]) -> SectionModuli:

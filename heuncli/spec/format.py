@@ -439,7 +439,9 @@ class Section(Model):
     first_axis: Direction | None = None
     reduce_to: Annotated[Annotated[str, Tag("single")] | Annotated[AnEnd, Tag("mapping")], FORM] = "at"
     side: Literal["before", "beyond"] | None = None
-    properties: Properties | None = None
+    properties: (
+        Annotated[Annotated[Literal["auto"], Tag("single")] | Annotated[Properties, Tag("mapping")], FORM] | None
+    ) = None
     strength: Pressure | None = None
     piece: Piece | None = None
 

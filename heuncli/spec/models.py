@@ -254,10 +254,10 @@ class Properties(NamedTuple):
     """Of a section's shape, for stresses: SI values by name.
 
     circle: radius; tube: radius, inner_radius; rectangle: width (along e1), height (along e2); general: area, I1, I2,
-    J, c1, c2 (half extents along e1, e2), and, where it is known, shear_factor.
+    J, c1, c2 (half extents along e1, e2), and, where it is known, shear_factor; auto: those of the shapes that are cut.
     """
 
-    kind: Literal["circle", "tube", "rectangle", "general"]
+    kind: Literal["circle", "tube", "rectangle", "general", "auto"]
     values: Mapping[str, float]
 
 

@@ -6,7 +6,7 @@ For documents in which no rule found an error.
 from __future__ import annotations
 
 from collections.abc import Mapping
-from typing import Any
+from typing import Any, Literal
 
 from heuncli.errors import Problem, SourceLocation
 from heuncli.expressions.programs import Expression, Table
@@ -257,10 +257,12 @@ def stiffness(value: float | f.StiffnessParts | None) -> m.Stiffness | None:
     return m.Stiffness(three(value.force), three(value.moment))
 
 
-def properties(value: f.Properties | None) -> m.Properties | None:
-    """A named shape with its sizes, or the numbers themselves."""
+def properties(value: f.Properties | Literal["auto"] | None) -> m.Properties | None:
+    """A named shape with its sizes, the numbers themselves, or those of what is cut."""
     if value is None:
         return None
+    if isinstance(value, str):
+        return m.Properties("auto", {})
     given = value.model_dump(exclude_none=True)
     for kind in ("circle", "tube", "rectangle"):
         if kind in given:

@@ -19,6 +19,7 @@ from heuncli.errors import HeunError
 from heuncli.integration.complementarity import complementary
 from heuncli.integration.contacts import Touching, answerable, short_flights
 from heuncli.integration.pace import hopeless
+from heuncli.kinetostatics.auto_properties import Cutting, joined
 from heuncli.kinetostatics.energy import energy_drift
 from heuncli.kinetostatics.foundation import central_axis
 from heuncli.kinetostatics.section_axes import nearest_axis
@@ -33,6 +34,8 @@ from heuncli.redundancy.turning_sums import factors
 from heuncli.report.labels import labels_of
 from heuncli.report.page import page_of
 from heuncli.results import Results
+from heuncli.shapes.figures import Rectangle
+from heuncli.shapes.forms import Form
 from heuncli.spec.load import load
 from heuncli.spec.turns import of_matrix
 from heuncli.study.beside import AMPLE, error, reached
@@ -566,6 +569,20 @@ def equal(x: float) -> str:
     return "xyz"[nearest_axis(n / math.sqrt(n @ n))]
 
 
+def askew(x: float) -> str:
+    """A web and two flanges, shifted either way until I12 is x of √(I1 I2)."""
+    I1, I2 = 2 * 2.0 * 1.0**3 / 12 + 2 * 2.0 * 1.5**2 + 1.0 * 2.0**3 / 12, 2 * 2.0**3 / 12 + 2.0 / 12
+    shift = x * math.sqrt(I1 * I2) / (2 * 2.0 * 1.5)
+    met, at = np.array([True]), [[0.0, 0.0], [shift, 1.5], [-shift, -1.5]]
+    parts = [
+        Rectangle(met, np.array([[*place, 0.0]]), width, height)
+        for place, width, height in zip(at, (1.0, 2.0, 2.0), (2.0, 1.0, 1.0), strict=True)
+    ]
+    zero, ex, ez = np.zeros(1), np.array([1.0, 0.0, 0.0]), np.array([0.0, 0.0, 1.0])
+    found = joined(parts, 0, Cutting(Form((), 1e-15), ez, ex, zero, zero), 1e-12)
+    return "refused" if isinstance(found, str) else "taken"
+
+
 def drift(x: float) -> str:
     found = energy_drift({"kinetic": np.array([0.0, x]), "potential": np.zeros(2), "work": np.zeros(2)}, 0.0, 1.0)
     return "at rest" if found == 0.0 else "a drift"
@@ -713,6 +730,7 @@ ROWS = (
     Row("PARALLEL", along_the_normal, "refused: first-axis", "fine"),
     Row("UPRIGHT", tilted, "fine", "refused: not-planar"),
     Row("EQUAL_COMPONENTS", equal, "x", "y"),
+    Row("PRINCIPAL", askew, "taken", "refused"),
     Row("IN_PLANE", needs_side, "refused: needs-side", "fine"),
     Row("OUTLINES_APART", two_legs, "fine", "warned: sections.s: the plane meets the body bar"),
     Row("ONE_PLACE", one_place, "1 m", "its extent"),

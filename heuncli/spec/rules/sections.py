@@ -108,8 +108,14 @@ def properties_form(draft: DraftDocument) -> Iterator[Violation]:
         path = ("sections", name)
         if properties is None:
             if section.strength is not None:
-                hint = "properties: {circle: {radius: 10 mm}}"
+                hint = "properties: {circle: {radius: 10 mm}}, or properties: auto"
                 yield Violation((*path, "strength"), "strength without properties gives no stress", hint, key=True)
+            continue
+        if isinstance(properties, str):
+            body = draft.document.bodies.get(section.body)
+            if body is not None and body.shapes is None:
+                message = f"{section.body} has no shapes to take them from"
+                yield Violation((*path, "properties"), message, f"circle, tube, rectangle, or all of {GENERAL}")
             continue
         shapes = [key for key in ("circle", "tube", "rectangle") if getattr(properties, key) is not None]
         numbers = [key for key in GENERAL if getattr(properties, key) is not None]
@@ -117,7 +123,7 @@ def properties_form(draft: DraftDocument) -> Iterator[Violation]:
             yield Violation(
                 (*path, "properties"),
                 "properties of one shape are needed",
-                f"circle, tube, rectangle, or all of {GENERAL}",
+                f"auto, circle, tube, rectangle, or all of {GENERAL}",
             )
         elif numbers and len(numbers) < len(GENERAL):
             missing = ", ".join(key for key in GENERAL if key not in numbers)
