@@ -92,6 +92,7 @@ class Results:
     energy: Block = field(default_factory=dict)
     system_vector: Block = field(default_factory=dict)
     impulses: list[Block] = field(default_factory=list)
+    events: Block = field(default_factory=dict)
     certain_sums: list[CertainSum] = field(default_factory=list)
     accuracy: Accuracy = field(default_factory=Accuracy)
     work: Work = field(default_factory=Work)

@@ -181,6 +181,11 @@ ROWS: tuple[Quantity, ...] = (
         vector("center_velocity_jump", "m/s"), vector("angular_velocity_jump", "rad/s")),
     *at("impulses.NUMBER", "kinetic energy before and after, and what was given to it",
         scalar("energy_before", "J"), scalar("energy_after", "J"), scalar("energy_jump", "J")),
+    *at("events.EVENT", "what is watched: a condition, and whether it is true at the start",
+        words("condition"), scalar("begins", "1", timed=False)),
+    *at("events.EVENT", "the instants at which it changes, and their errors",
+        scalar("time", "s", (INDEX,), timed=False), scalar("error", "s", (INDEX,), timed=False)),
+    *at("events.EVENT", "what it becomes there: 1 true, 0 not", scalar("to", "1", (INDEX,), timed=False)),
     *at("certain_sums.NUMBER", "the factor of each open component", words("terms")),
     *at("certain_sums.NUMBER", "of the open components in `terms`, each times its factor", scalar("value", "N | N·m")),
     *at("accuracy", "drift, gap and residual; nothing is claimed after the horizon (null: none)",
@@ -210,8 +215,8 @@ REPORT_OF = {
     "energy": "energy",
     "system_vector": "motion",
 }
-BLOWS = "impulses"  # the report of what does not run over the instants
-REPORTS = (*dict.fromkeys(REPORT_OF.values()), BLOWS)
+BLOWS, EVENTS = "impulses", "events"  # the reports of what does not run over the instants
+REPORTS = (*dict.fromkeys(REPORT_OF.values()), BLOWS, EVENTS)
 SHARES = "shares"  # no block of its own, but beside every wrench of these:
 SHARED = frozenset({"foundation", "joints", "sections"})
 # Magnitudes: never negative, with a kink at zero that their squares do not have.
@@ -220,7 +225,7 @@ AFTER_THE_RUN = frozenset({"certain_sums", "accuracy"})  # of numbers that no sp
 ESTIMATES = {
     "foundation": "foundation", "joints": "reactions", "stops": "reactions", "sections": "sections", "energy": "energy",
 }  # fmt: skip
-NAMES = ("BODY", "POINT", "JOINT", "ELEMENT", "STOP", "SECTION", "FORCE", "CAUSE", "NUMBER")
+NAMES = ("BODY", "POINT", "JOINT", "ELEMENT", "STOP", "SECTION", "FORCE", "CAUSE", "EVENT", "NUMBER")
 BY_CAUSE = "by cause"  # of kinds of errors
 AT_A_BLOW = {"N": "N·s", "N·m": "N·m·s"}  # units of the loads in `impulses`
 # what a blow has besides its own quantities, as at one instant; stresses are no matter of impulses
@@ -305,7 +310,7 @@ def kind_of_error(kind: str, name: str, number: str) -> str:
 
 def report_of(block: str) -> str | None:
     """The report to which a block of the results belongs; None where it always stays."""
-    return block if block == BLOWS else REPORT_OF.get(block)
+    return block if block in (BLOWS, EVENTS) else REPORT_OF.get(block)
 
 
 def leading_key(known: Collection[str], path: Sequence[str]) -> tuple[str | None, list[str]]:

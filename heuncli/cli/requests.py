@@ -42,7 +42,7 @@ class Run(NamedTuple):
         str | None,
         Option(
             ("--only",),
-            "Only these: motion, points, foundation, joints, sections, forces, energy, impulses, shares; or entries: "
+            "Only these: motion, points, foundation, joints, sections, forces, energy, impulses, events, shares; or entries: "
             "joints.NAME, sections.NAME, ...",
             "REPORT,...",
         ),

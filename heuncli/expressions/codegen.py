@@ -59,7 +59,7 @@ class Codegen:
         return Expression(
             source=text, constant=part.constant, uses=tuple(self.variables), time_dependent=0 in part.uses,
             code=part.code, constants=tuple(self.constants), tables=tuple(self.tables),
-            switches=tuple(self.switches), held=tuple(self.held),
+            switches=tuple(self.switches), held=tuple(self.held), is_truth=part.is_truth,
             dimension=part.measure.dimension if part.measure.kind == "known" else None,
         )  # fmt: skip
 

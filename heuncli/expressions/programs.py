@@ -79,6 +79,7 @@ class Expression:
     switches: tuple[Switch, ...] = ()
     held: tuple[str, ...] = ()
     dimension: tuple[int, int, int] | None = None  # where it was written with a unit
+    is_truth: bool = False  # 1 or 0, and it changes where a branch of its own does
 
     @classmethod
     def of(cls, value: float, location: SourceLocation | None = None) -> Expression:

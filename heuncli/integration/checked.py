@@ -13,7 +13,7 @@ from __future__ import annotations
 import contextlib
 import time
 from collections.abc import Iterator, Mapping, Sequence
-from typing import Protocol
+from typing import TYPE_CHECKING, Protocol
 
 import numpy as np
 
@@ -29,6 +29,9 @@ from heuncli.records import record, replace
 from heuncli.results import Array, Estimate, Mask
 from heuncli.tree.layout import Layout
 from heuncli.tree.tables import Table
+
+if TYPE_CHECKING:  # loaded where there are conditions
+    from heuncli.integration.conditions import Changes
 
 RATIO = 30.0  # local tolerance of A over that of B
 FIRST = 1.0  # local tolerance of the first run over the tolerance asked
@@ -79,6 +82,7 @@ class Checked:
     beside: tuple[tuple[Jump, ...], ...]
     check_seconds: float
     lost_seconds: float  # of runs that missed the tolerance
+    changes: tuple[Changes, ...] = ()  # of the conditions
 
 
 class Runs:
@@ -94,10 +98,13 @@ class Runs:
     def run(
         self, local: float, at: Array | None = None, start: Array | None = None, most_steps: int = MOST_STEPS
     ) -> Trajectory:
-        """A run from the start, or from one beside it, seen at the asked instants or at others."""
+        """A run from the start, or from one beside it, seen at the asked instants or at others.
+
+        At others: a check run, which goes as far as the run that it checks.
+        """
         return self.runner.trajectory(
             self.times if at is None else at, local, discontinuities=self.jumps, deadline=self.deadline,
-            most_steps=most_steps, method=self.method, start=start,
+            most_steps=most_steps, method=self.method, start=start, whole=at is not None,
         )  # fmt: skip
 
     def first(self, local: float) -> Trajectory:
@@ -214,7 +221,16 @@ def checked_run(runs: Runs, tolerance: float, loads: Loads) -> Checked:
     seconds = best.seconds + time.perf_counter() - begun
     told = best.motion, loads.estimate(), loads.errors(), best.horizon, loads.kinetic()
     beside = tuple(run.blows for run in best.runs[1:])
-    return Checked(a, recovered, *told, beside, seconds, lost)
+    return Checked(a, recovered, *told, beside, seconds, lost, changes_of_conditions(runs, best))
+
+
+def changes_of_conditions(runs: Runs, best: Compared) -> tuple[Changes, ...]:
+    """When the conditions change, up to the horizon."""
+    if not runs.runner.layout.mechanism.conditions:
+        return ()
+    from heuncli.integration.conditions import changes_of  # few scenes have them
+
+    return changes_of(runs.runner, best.runs, np.inf if best.horizon is None else best.horizon)
 
 
 def answers_of(runs: Runs, best: Compared, kept: Mask, causes: bool) -> Iterator[tuple[slice, Recovered]]:

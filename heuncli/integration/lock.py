@@ -127,7 +127,7 @@ def forward(runner: Runner, good: State, t: float) -> State | None:
     )  # fmt: skip
     if begin < end:
         piece.loop.begin(begin, end, t)
-        reached = piece.loop.advance(MOST_STEPS, False) == REACHED
+        reached = piece.loop.advance(MOST_STEPS, False, False) == REACHED
         y = piece.states()[0] if reached else np.array(piece.loop.state())
     else:
         y = good.y

@@ -9,6 +9,7 @@ import math
 import time
 from bisect import bisect_right
 from collections.abc import Sequence
+from typing import TYPE_CHECKING, NamedTuple
 
 import numpy as np
 
@@ -29,13 +30,16 @@ from heuncli.records import record
 from heuncli.results import Array
 from heuncli.tree.layout import Layout
 
+if TYPE_CHECKING:  # loaded where a condition ends the run
+    from heuncli.integration.conditions import Until
+
 CHUNK = 2_000  # body-steps between two looks at the clock
 MOST_STEPS = 20_000_000
 
-REACHED, MORE, ROPE_SLACK, CHATTERING, STRUCK, LET_GO = (
-    kernel.CODES[name] for name in ("reached", "more", "rope slack", "chattering", "struck", "let go")
+REACHED, MORE, ROPE_SLACK, CHATTERING, STRUCK, LET_GO, TURNED = (
+    kernel.CODES[name] for name in ("reached", "more", "rope slack", "chattering", "struck", "let go", "turned")
 )
-GOES_ON = (MORE, STRUCK, LET_GO)
+GOES_ON = (MORE, STRUCK, LET_GO, TURNED)
 TROUBLE = {
     kernel.CODES["collapsed"]: (
         "step-collapsed",
@@ -84,6 +88,8 @@ class Trajectory:
     turned: Array = np.zeros(0)
     undecided: int = 0
     stopped: str | None = None  # the rope that would have to push just after the last instant
+    ended: bool = False  # by the condition that ends it
+    behind: Array = np.zeros(0)  # the branches that hold behind the last step
     blows: tuple[Jump, ...] = ()
     holding: Array = np.zeros((1, 0))  # (n_steps + 1, contacts): closed in each step, and behind the last one
     notes: tuple[str, ...] = ()  # what is told of contacts
@@ -156,10 +162,27 @@ class Going:
     last: float
     deadline: float | None
     most_steps: int
+    until: Until | None
+
+
+class Ending(NamedTuple):
+    """Where a run ends before its time, the last instant that is told: a rope would have to push, or a condition."""
+
+    rope: str | None
+    told: float
+
+
+def until_of(layout: Layout) -> Until | None:
+    """The condition that ends the runs of a scene, if there is one."""
+    if not any(condition.ends for condition in layout.mechanism.conditions):
+        return None
+    from heuncli.integration.conditions import Until
+
+    return Until(layout)
 
 
 def cut_short(times: Array, run: Integration, last: float) -> tuple[Array, Array]:
-    """The asked instants before the last at which no rope would have to push, that one, and the states at all.
+    """The asked instants before the last one that is told, that one, and the states at all.
 
     States are those of what is integrated.
     """
@@ -189,12 +212,14 @@ class Runner(Evaluator):
         most_steps: int = MOST_STEPS,
         method: Method = DOP853,
         start: Array | None = None,
+        whole: bool = False,
     ) -> Trajectory:
         """Integrate from the start at t = 0 over the asked instants (ascending); `tolerance` is the local one.
 
         start: a state to start from instead of the scene's own.
 
-        Where a rope would have to push the run ends: the instants up to there, and that one.
+        Where a rope would have to push the run ends: the instants up to there, and that one. So it does where the
+        condition that ends it becomes true, unless the whole of it is asked for.
 
         Raises SolveError where the motion cannot be continued, LimitError past the deadline (time.monotonic()).
         """
@@ -214,46 +239,57 @@ class Runner(Evaluator):
         )  # fmt: skip
         steps = Steps(start, run.width)
         check_deadline(deadline, f"before the run of {last:.6g} s began")
-        going = Going(run, steps, Blows(self, moving, run, steps, last), last, deadline, most_steps)
-        pieces, stopped, told = self._pass(going, smooth_segments(last, discontinuities))
-        ts, states = (ts, run.states()) if stopped is None else cut_short(ts, run, told)
+        blows, until = Blows(self, moving, run, steps, last), None if whole else until_of(moving.layout)
+        going = Going(run, steps, blows, last, deadline, most_steps, until)
+        pieces, ending = self._pass(going, smooth_segments(last, discontinuities))
+        ts, states = (ts, run.states()) if ending is None else cut_short(ts, run, ending.told)
         return Trajectory(
             times=ts, states=moving.embed(ts, states), ends=steps.column("ends"), steps=run.loop.steps,
             evaluations=run.loop.evaluations, gap=run.loop.gap, tolerance=tolerance, method=method,
             seconds=time.perf_counter() - begun, segments=tuple(pieces), kept=steps.records(),
             pivots=steps.column("pivots"), settled=steps.column("settled"), branches=steps.held_branches(),
-            turned=steps.column("turned"), undecided=run.loop.undecided, stopped=stopped,
-            blows=tuple(going.blows.done), holding=steps.holding(len(self.layout.contacts)), notes=going.blows.notes,
+            turned=steps.column("turned"), undecided=run.loop.undecided,
+            stopped=ending.rope if ending is not None else None, ended=ending is not None and ending.rope is None,
+            behind=np.array(moving.layout.pack.expressions.branches()), blows=tuple(going.blows.done),
+            holding=steps.holding(len(self.layout.contacts)), notes=going.blows.notes,
         )  # fmt: skip
 
-    def _pass(self, going: Going, segments: Sequence[Segment]) -> tuple[list[Segment], str | None, float]:
-        """One segment after the other, blows between them: its pieces; the rope at which it stops, if one would push.
+    def _pass(self, going: Going, segments: Sequence[Segment]) -> tuple[list[Segment], Ending | None]:
+        """One segment after the other, blows between them: its pieces; where it ends, if before its time.
 
-        And the last instant that is told: where a rope is slack by a jump or a blow, what held before it.
+        Where a rope is slack by a jump or a blow, what held before it is told.
         """
         pieces: list[Segment] = []
         reached = 0.0
         for segment in segments:
             stopped = going.blows.until(segment.begin, reached)
             if stopped is not None:
-                return pieces, stopped, just_before(reached)
+                return pieces, Ending(stopped, just_before(reached))
             going.blows.settle(segment.begin)
-            if not self._piece(going, segment, pieces):
+            code = self._piece(going, segment, pieces)
+            if code != REACHED:
                 t = going.run.loop.t
+                if code == TURNED:
+                    return pieces, Ending(None, t)
                 rope = self.moving.rope(going.run.loop.contact)
-                return pieces, rope, just_before(t) if t == pieces[-1].begin > 0.0 else t
+                return pieces, Ending(rope, just_before(t) if t == pieces[-1].begin > 0.0 else t)
             reached = segment.end
         stopped = going.blows.until(going.last, reached)
-        return pieces, stopped, just_before(reached)
+        return pieces, None if stopped is None else Ending(stopped, just_before(reached))
 
-    def _piece(self, going: Going, segment: Segment, pieces: list[Segment]) -> bool:
-        """Steps to the end of a segment, from one event of contacts to the next; not so where a rope would push."""
+    def _piece(self, going: Going, segment: Segment, pieces: list[Segment]) -> int:
+        """Steps to the end of a segment, from one event of contacts to the next: REACHED.
+
+        ROPE_SLACK where a rope would push, TURNED where the condition that ends the run became true.
+        """
         run, most = going.run, len(going.run.output["ends"])
         code, begin = MORE, segment.begin
         going.blows.begin(segment)
         while code in GOES_ON:
-            code = run.loop.advance(most, True)
+            code = run.loop.advance(most, True, going.until is not None)
             going.steps.add(run)
+            if code == TURNED and going.until is not None and going.until.ends(run.loop.t, np.array(run.loop.state())):
+                break
             if code == REACHED or code in GOES_ON:
                 check_deadline(going.deadline, f"at t = {run.loop.t:.6g} s of {going.last:.6g} s")
             if code in GOES_ON:
@@ -265,9 +301,9 @@ class Runner(Evaluator):
                 going.blows.settle(t, run.loop.contact)
                 going.blows.begin(Segment(t, segment.before_end, segment.end))
         pieces.append(Segment(begin, segment.before_end, segment.end))
-        if code not in (REACHED, ROPE_SLACK):
+        if code not in (REACHED, ROPE_SLACK, TURNED):
             raise self._failed(code, going)
-        return code == REACHED
+        return code
 
     def _require_progress(self, going: Going) -> None:
         """Raise LimitError beyond the most steps, and where they become so short that the run cannot come to its end.
@@ -375,7 +411,7 @@ class Runner(Evaluator):
                 loop.begin(begin, before_end, end)
             else:
                 loop.resume(t, before_end, end)
-            loop.advance(to + 1 - first, False)
+            loop.advance(to + 1 - first, False, False)
             t = loop.t
             first = to + 1
         return replayed.states()

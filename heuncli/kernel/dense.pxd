@@ -63,6 +63,7 @@ cdef struct Run:
     int dodges                # other lengths tried for this step, to keep its stages off a singular pose
     int contact               # 1 + the one-sided row that closes or opens
     int watching              # 1: contacts are watched
+    int halting               # 1: the loop is left where a piece begins and where branches turn
     int late                  # 1: events are met late by the rounding of an instant, to see what that makes
     int seeing                # 1: stages are looked at for events
     int has_cut               # 1: the step under way ends at `cut`

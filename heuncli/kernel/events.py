@@ -82,7 +82,12 @@ def largest_seen(watch: cython.pointer[Watch]) -> cython.double:
 def out_of_sight(
     scene: cython.pointer[Scene], watch: cython.pointer[Watch], bounds: Bounds, scale: cython.double
 ) -> cython.bint:
-    """Whether a number within bounds may lie beyond what the stages saw, by half of what they saw it vary."""
+    """Whether a number within bounds may lie beyond what the stages saw, by half of what they saw it vary.
+
+    The motion hangs on no condition, so its value need not be seen: what matters of it are its branches.
+    """
+    if watch.condition:
+        return False
     room: cython.double = 0.5 * (watch.high - watch.low) + scene.limits.unseen * scale + watch.rounding
     return not (bounds.low >= watch.low - room and bounds.high <= watch.high + room)
 

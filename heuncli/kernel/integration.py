@@ -205,14 +205,18 @@ class Integration:
             for k in range(self.workspace.scene.held_count):
                 self.run.branches[i][k] = float(branches[i][k])
 
-    def advance(self, most: cython.int, watching: cython.bint) -> int:
-        """Up to `most` steps; REACHED, MORE to do, or why not. watching: stop where a contact closes or opens."""
+    def advance(self, most: cython.int, watching: cython.bint, halting: cython.bint) -> int:
+        """Up to `most` steps; REACHED, MORE to do, or why not. watching: stop where a contact closes or opens.
+
+        halting: stop where a piece begins, and where branches turn.
+        """
         code: cython.int
         scene: cython.pointer[Scene] = cython.address(self.workspace.scene)
         run: cython.pointer[Run] = cython.address(self.run)
         method: cython.pointer[Method] = cython.address(self.method)
         run.most = most
         run.watching = watching
+        run.halting = halting
         scene.programs.holding = HELD
         with cython.nogil:
             code = run_steps(scene, method, run)

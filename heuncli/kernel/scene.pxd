@@ -181,7 +181,7 @@ cdef struct Variable:
 cdef struct Watch:
     Program program
     int curved
-    int unused
+    int condition
     double low
     double high
     double scale

@@ -231,11 +231,11 @@ class Variable(Record):
 
 
 class Watch(Record):
-    """A program that is watched over the steps: a load's, or a drive's."""
+    """A program that is watched over the steps: a load's, a drive's, or a condition that nothing moves by."""
 
     program: Program
     curved: int  # 1: the acceleration of a drive counts
-    unused: int
+    condition: int  # 1: its branches alone count
 
     low: float  # what the stages of a step saw of it
     high: float

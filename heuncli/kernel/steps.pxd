@@ -17,7 +17,7 @@ from heuncli.kernel.tree cimport coordinates
 from libc.math cimport fabs, pow, sqrt
 
 cdef enum:
-    REACHED, MORE, COLLAPSED, NOT_A_NUMBER, CLOSURES_LOST, ROPE_SLACK, CHATTERING, STRUCK, LET_GO
+    REACHED, MORE, COLLAPSED, NOT_A_NUMBER, CLOSURES_LOST, ROPE_SLACK, CHATTERING, STRUCK, LET_GO, TURNED
     ACCEPTED, AGAIN
 
 cdef double step_error(Method *method, Run *run) noexcept nogil

@@ -41,7 +41,7 @@ if not cython.compiled:
 
     # What `advance` answers; for C these stand in steps.pxd, in the same order.
     REACHED, MORE, COLLAPSED, NOT_A_NUMBER, CLOSURES_LOST, ROPE_SLACK, CHATTERING = range(7)
-    STRUCK, LET_GO, ACCEPTED, AGAIN = range(7, 11)
+    STRUCK, LET_GO, TURNED, ACCEPTED, AGAIN = range(7, 12)
 
 CODES = {
     "reached": REACHED,
@@ -53,6 +53,7 @@ CODES = {
     "chattering": CHATTERING,
     "struck": STRUCK,
     "let go": LET_GO,
+    "turned": TURNED,
 }
 
 
@@ -536,7 +537,8 @@ def verdict(scene: cython.pointer[Scene], run: cython.pointer[Run]) -> cython.in
 def run_steps(scene: cython.pointer[Scene], method: cython.pointer[Method], run: cython.pointer[Run]) -> cython.int:
     """Up to `most` accepted steps towards the end of the piece: REACHED, MORE to do, or why it cannot be continued.
 
-    Following, `ends` and `settled` give the steps, and none is judged.
+    Following, `ends` and `settled` give the steps, and none is judged. Halting, TURNED where a piece begins and where
+    branches turn.
     """
     code: cython.int
     trouble: cython.int
@@ -549,6 +551,8 @@ def run_steps(scene: cython.pointer[Scene], method: cython.pointer[Method], run:
         code = begin_piece(scene, method, run)
         if code != REACHED:
             return code
+        if run.halting:
+            return TURNED
     sample_reached(run)
     run.pivot_at_start = scene.pivot
     attempts: cython.int = 0
@@ -573,6 +577,8 @@ def run_steps(scene: cython.pointer[Scene], method: cython.pointer[Method], run:
                 return CHATTERING
             if met == AGAIN_TO:
                 run.has_cut = run.cut > run.t
+                if run.halting and not run.has_cut:  # they turned at once
+                    return TURNED
                 continue
             if met == TURNS_OVER and run.stop <= run.t:
                 return verdict(scene, run)
@@ -584,6 +590,8 @@ def run_steps(scene: cython.pointer[Scene], method: cython.pointer[Method], run:
                 return verdict(scene, run)
             if run.watching and opened_by_others(scene, run):
                 return LET_GO
+            if run.halting and run.turns:
+                return TURNED
         elif code != AGAIN:
             return code
     return REACHED

@@ -226,6 +226,7 @@ class Run(metaclass=Fields):
     dodges: int
     contact: int
     watching: int
+    halting: int
     late: int
     seeing: int
     has_cut: int

@@ -11,6 +11,7 @@ from heuncli.mechanism.model import (
     GROUND,
     Blow,
     Body,
+    Condition,
     Directed,
     Drive,
     Joint,
@@ -52,8 +53,10 @@ def build(spec: Any, forms: dict[str, Form]) -> Mechanism:
     last = max(spec.analysis.times, default=0.0)
     made = tuple(joint(name, j, index, drives.get(name), planar, last) for name, j in spec.joints.items())
     loads = tuple(part for name, f in spec.forces.items() for part in parts_of(name, f, index, joints))
+    conditions = tuple(Condition(c.name, c.value, c.ends) for c in spec.analysis.conditions if c.value is not None)
     if planar:
         told = {joints[stop.joint][0] for stop in spec.stops.values()} | coordinates_used(loads, joints)
+        told |= {joints[name][0] for condition in conditions for name, _ in condition.value.uses}
         made = tuple(spun(j, bodies) if k not in told else j for k, j in enumerate(made))
     return Mechanism(
         title=spec.title,
@@ -67,6 +70,7 @@ def build(spec: Any, forms: dict[str, Form]) -> Mechanism:
         stops=tuple(
             Stop(name, joints[s.joint][0], s.quantity, s.low, s.high, s.restitution) for name, s in spec.stops.items()
         ),
+        conditions=conditions,
     )
 
 

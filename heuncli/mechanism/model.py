@@ -240,6 +240,15 @@ class Stop:
 
 
 @record
+class Condition:
+    """What is true or not (1 or 0), in time and coordinates; ends: whether the motion ends where it becomes true."""
+
+    name: str
+    value: Expression
+    ends: bool = False
+
+
+@record
 class Mechanism:
     """A scene, ready to be assembled."""
 
@@ -252,6 +261,7 @@ class Mechanism:
     loads: tuple[Load, ...]
     blows: tuple[Blow, ...] = ()
     stops: tuple[Stop, ...] = ()
+    conditions: tuple[Condition, ...] = ()
 
     def load_rows(self) -> Iterator[tuple[Load, slice]]:
         """The loads, each with its rows in the kernel's table of loads: of a load in a joint one a motion."""
@@ -264,12 +274,14 @@ class Mechanism:
             at += count
 
     def expressions(self) -> Iterator[Expression]:
-        """The values in time of the loads, then those of the drives."""
+        """The values in time of the loads, then those of the drives, then the conditions."""
         for load in self.loads:
             yield from load.values
         for joint in self.joints:
             if joint.drive is not None:
                 yield joint.drive.value
+        for condition in self.conditions:
+            yield condition.value
 
 
 @record

@@ -205,7 +205,7 @@ class Flat:
             bodies=tuple(self.body(i) for i in range(len(of.bodies))),
             joints=tuple(self.joint(k) for k in range(len(of.joints))),
             loads=tuple(self.load(load) for load in of.loads), blows=tuple(self.blow(blow) for blow in of.blows),
-            stops=of.stops,
+            stops=of.stops, conditions=of.conditions,
         )  # fmt: skip
 
 

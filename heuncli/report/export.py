@@ -61,6 +61,10 @@ def to_csv(results: Results, labels: Labels) -> str:
     for row in rows:
         ends = _cuts(row) if cut else [""] * len(row.series.components)
         lines += _lines(row, [f",{row.series.cause}{end}" if by_cause else end for end in ends])
+    if results.events:
+        from heuncli.report.events import csv_lines  # where there are conditions
+
+        lines += csv_lines(results, "," * (by_cause + len(CUT_COLUMNS) * cut))
     return "".join(lines)
 
 

@@ -26,6 +26,7 @@ def heading(results: Results) -> list[tuple[str, str]]:
         *(("unseen", sentence) for sentence in results.model.get("cannot_tell", ())),
         *(("start", sentence) for sentence in results.model.get("moved", ())),
         ("run", _run(results)),
+        *(("until", sentence) for sentence in results.model.get("until", ())),
         ("accuracy", _errors(results)),
         ("", _residuals(results)),
         *_contacts(results.model.get("contacts", ())),

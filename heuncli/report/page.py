@@ -210,7 +210,14 @@ class Page(NamedTuple):
 
     def _ending(self, every: bool = False) -> list[Table]:
         sums = sums_table(self.results, self.certain, self.beyond)
-        return [*([sums] if sums else []), *self._impulses(every)]
+        return [*([sums] if sums else []), *self._events(every), *self._impulses(every)]
+
+    def _events(self, every: bool) -> list[Table]:
+        if not self.results.events:
+            return []
+        from heuncli.report.events import events_table  # where there are conditions
+
+        return [events_table(self.results, every=every)]
 
     def _impulses(self, every: bool) -> list[Table]:
         if not self.results.impulses:

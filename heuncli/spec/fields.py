@@ -14,7 +14,7 @@ from heuncli.errors import Finding
 from heuncli.expressions import units as u
 from heuncli.expressions.programs import Expression
 from heuncli.records import record
-from heuncli.spec.quantity import Scope, in_time, kind_of, number, unit_in
+from heuncli.spec.quantity import Scope, condition, in_time, kind_of, number, unit_in
 
 
 @record
@@ -75,6 +75,13 @@ class InTime(Value):
 
     def read(self, value: Any, info: Any) -> Expression:
         return in_time(value, self.dimension, info.context.time)
+
+
+class Truth(Value):
+    """A condition in time."""
+
+    def read(self, value: Any, info: Any) -> Expression:
+        return condition(value, info.context.time)
 
 
 class OfEither(Value):
@@ -158,6 +165,7 @@ LengthInTime = Annotated[Expression, InTime(u.LENGTH)]
 ForceInTime = Annotated[Expression, InTime(u.FORCE)]
 LineForceInTime = Annotated[Expression, InTime(u.LINE_FORCE)]
 MomentInTime = Annotated[Expression, InTime(u.MOMENT)]
+TruthInTime = Annotated[Expression, Truth()]
 EitherInTime = Annotated[Expression, InTime()]
 FormatVersion = Annotated[int, Version()]
 Expected = Annotated[Any, NumbersOrOpen()]

@@ -55,6 +55,7 @@ from heuncli.spec.fields import (
     Stiffness,
     Tensor,
     Time,
+    TruthInTime,
     TurningDamping,
     TurningStiffness,
     Velocity,
@@ -62,7 +63,7 @@ from heuncli.spec.fields import (
 )
 
 Frame = Literal["world", "body"]
-Report = Literal["motion", "points", "foundation", "joints", "sections", "forces", "energy", "impulses", "shares"]
+Report = Literal["motion", "points", "foundation", "joints", "sections", "forces", "energy", "impulses", "events", "shares"]
 Points = dict[str, Position]
 
 
@@ -460,6 +461,17 @@ class Table(Model):
     outside: Literal["hold"] | None = None
 
 
+class OfResults(Model):
+    """A condition on a number of the results."""
+
+    of: str
+    below: Either | None = None
+    above: Either | None = None
+
+
+Condition = Annotated[Annotated[TruthInTime, Tag("single")] | Annotated[OfResults, Tag("mapping")], FORM]
+
+
 class Analysis(Model):
     type: Literal["motion", "impulse", "state"] | None = None
     duration: Time | None = None
@@ -468,6 +480,8 @@ class Analysis(Model):
     tolerance: Number | None = None
     method: str = "auto"
     step: Time | None = None
+    until: Condition | None = None
+    events: dict[str, Condition] = Field(default_factory=dict)
 
 
 class Foundation(Model):

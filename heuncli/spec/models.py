@@ -280,6 +280,22 @@ class Section:
     piece: Piece | None = None
 
 
+class Condition(NamedTuple):
+    """What is watched for during a motion, by its name; ends: whether the motion ends where it becomes true.
+
+    text: as written. value: what is true or not, in time and coordinates; or None, and the number of the results at the
+    path `of` is below the limit, or above it.
+    """
+
+    name: str
+    text: str
+    ends: bool
+    value: Expression | None
+    of: str = ""
+    limit: float = 0.0
+    above: bool = False
+
+
 class Analysis(NamedTuple):
     """What is solved: times are the instants asked for [s]; duration is the last of them in a motion.
 
@@ -292,6 +308,7 @@ class Analysis(NamedTuple):
     tolerance: float
     method: str
     step: float | None
+    conditions: tuple[Condition, ...] = ()
 
 
 class Foundation(NamedTuple):

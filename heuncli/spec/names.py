@@ -12,6 +12,7 @@ from heuncli.spec.models import Spec
 
 GROUND = "ground"
 NAMED = ("parameters", "bodies", "joints", "drives", "forces", "impulses", "stops", "sections", "tables")
+UNTIL = "until"  # the condition that ends a motion, beside the events that have names
 CAUSES = frozenset({"gravity", "drives", "motion"})  # of shares, beside the entries' own names
 RESERVED_FOR: dict[str, frozenset[str]] = {
     "parameters": RESERVED,
@@ -35,6 +36,8 @@ class Names(NamedTuple):
     def of(cls, data: dict[str, Any]) -> Names:
         """Of plain data of any shape."""
         entries = {block: mapping(data.get(block)) for block in NAMED}
+        analysis = mapping(data.get("analysis"))
+        entries["events"] = {key: analysis[key] for key in (UNTIL,) if key in analysis} | mapping(analysis.get("events"))
         bodies = entries["bodies"]
         points = {name: points_of(body, Body) for name, body in bodies.items()}
         points[GROUND] = points_of(data.get(GROUND), Ground)

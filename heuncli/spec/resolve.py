@@ -14,7 +14,7 @@ from heuncli.records import record
 from heuncli.spec import format as f
 from heuncli.spec import models as m
 from heuncli.spec.fields import End
-from heuncli.spec.names import GROUND
+from heuncli.spec.names import GROUND, UNTIL
 from heuncli.spec.semantics import body_axes, drive_of, end_of, instants_of, limits_of, point_in, tensor, type_of
 from heuncli.spec.turns import IDENTITY
 
@@ -59,6 +59,7 @@ def resolve(document: f.Document, meaning: Meaning) -> m.Spec:
         analysis=m.Analysis(
             kind, instants, instants[-1] if kind == "motion" else None,
             analysis.tolerance if analysis.tolerance is not None else DEFAULT_TOLERANCE, analysis.method, analysis.step,
+            r.conditions(analysis),
         ),
         report=tuple(document.head.report) if document.head.report is not None else None,
         foundation=m.Foundation(r.about(document.foundation.about)),
@@ -220,6 +221,21 @@ class Resolver:
         if isinstance(about, str):
             return self.document.ground.points[about.rpartition(".")[2]]
         return about  # type: ignore[return-value]
+
+    def conditions(self, analysis: f.Analysis) -> tuple[m.Condition, ...]:
+        found = [(UNTIL, True, UNTIL, analysis.until)] if analysis.until is not None else []
+        found += [(name, False, f"events.{name}", given) for name, given in analysis.events.items()]
+        return tuple(self.condition(*row) for row in found)
+
+    def condition(self, name: str, ends: bool, path: str, given: Expression | f.OfResults) -> m.Condition:
+        if isinstance(given, Expression):
+            return m.Condition(name, given.source.strip(), ends, self.placed(given, f"analysis.{path}"))
+        above = given.above is not None
+        limit = given.above if given.above is not None else given.below
+        assert limit is not None
+        number = limit.source.strip() if limit.dimension is not None else f"{constant(limit):.9g}"
+        text = f"{given.of} {'above' if above else 'below'} {number}"
+        return m.Condition(name, text, ends, None, given.of, constant(limit), above)
 
     def expect(self, i: int, item: f.Expect) -> m.Expect:
         location = self.locations.get(f"expect.{i}", SourceLocation("", 1, 1))

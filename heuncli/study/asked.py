@@ -12,7 +12,7 @@ from typing import Any
 from heuncli.records import record
 from heuncli.results import CertainSum
 from heuncli.results_schema import REPORT_OF, REPORTS, SHARES, leading_key, report_of
-from heuncli.spec.models import Spec
+from heuncli.spec.models import Condition, Spec
 
 Entry = tuple[str, ...]
 ALL_OF_IT = frozenset({"foundation", "sections"})  # of all bodies, of all sections
@@ -48,6 +48,13 @@ class Asked:
         return {entry[1] for entry in self.entries if entry[0] == block}
 
 
+    def with_all(self, other: Asked) -> Asked:
+        """What either of the two asks for."""
+        whole = {report for one in (self, other) for report in one.reports if one.whole(report)}
+        entries = frozenset(entry for entry in self.entries | other.entries if REPORT_OF[entry[0]] not in whole)
+        return Asked(self.reports | other.reports, entries)
+
+
 EVERYTHING = Asked()
 
 
@@ -67,6 +74,11 @@ def asked_by(paths: Iterable[str], spec: Spec) -> Asked:
         else:
             entries |= {entry, *share_of(rest, spec)}
     return Asked(frozenset(reports), frozenset(entry for entry in entries if REPORT_OF[entry[0]] not in whole))
+
+
+def needed_by(conditions: Iterable[Condition], spec: Spec) -> Asked:
+    """What conditions on numbers of the results need."""
+    return asked_by([condition.of for condition in conditions if condition.value is None], spec)
 
 
 def share_of(words: Sequence[str], spec: Spec) -> set[Entry]:

@@ -7,6 +7,7 @@ from __future__ import annotations
 
 from collections.abc import Mapping
 from types import MappingProxyType
+from typing import TYPE_CHECKING
 
 import numpy as np
 
@@ -28,6 +29,9 @@ from heuncli.study.at_rest import require_motion
 from heuncli.study.extremes import distinct
 from heuncli.study.kinds import Kinds
 from heuncli.study.setup import Setup
+
+if TYPE_CHECKING:  # loaded where there are conditions
+    from heuncli.integration.conditions import Changes
 
 WITHIN_STEP = (0.0, 0.23, 0.52, 0.77)  # of each step of the integrator: where it is looked at for extremes first
 TURNED = np.pi / 8.0  # rad: so far a body may turn between two of these instants, an eighth period of what goes twice
@@ -55,6 +59,11 @@ class History:
     singular: tuple[float, ...] = ()
     seconds: Mapping[str, float] = MappingProxyType({})
     errors: Mapping[tuple[str, str], float] = MappingProxyType({})
+
+    @property
+    def changes(self) -> tuple[Changes, ...]:
+        """When the conditions in time and coordinates change."""
+        return self.checked.changes if self.checked is not None else ()
 
     @property
     def followed_for(self) -> float | None:

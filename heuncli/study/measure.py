@@ -12,7 +12,7 @@ from heuncli import results_schema, tolerances
 from heuncli.errors import HeunError, Problem
 from heuncli.results import Array, Place, Results
 from heuncli.results_paths import Numbers, find
-from heuncli.results_schema import BLOWS, CUT, MAGNITUDES, SHARES, kind_of_error, quantity
+from heuncli.results_schema import BLOWS, CUT, EVENTS, MAGNITUDES, SHARES, kind_of_error, quantity
 from heuncli.study.extremes import Searched
 from heuncli.study.solve import Study
 
@@ -49,6 +49,8 @@ def value(asked: Measure, study: Study) -> Peak:
     there = find(results, path)
     if there.keys[0] == BLOWS:
         return struck(asked, there, study)
+    if there.keys[0] == EVENTS and asked.how:
+        return of_event(asked, there)
     if not there.timed:
         if asked.how:
             raise NotOneNumber(f"{path} has no instants: give the path alone")
@@ -73,6 +75,9 @@ def lost_from(asked: Measure, study: Study) -> float | None:
     horizon, there = results.accuracy.get("horizon"), find(results, asked.path)
     if horizon is not None and there.keys[0] == BLOWS:
         return float(horizon) if time_of_blow(results, there) >= horizon else None
+    if there.keys[0] == EVENTS:  # of a run that goes on beyond its horizon more may follow
+        certain = horizon is None or not there.axes or (asked.how == "first" and there.values.size)
+        return None if certain else horizon
     if horizon is None or asked.path.split(".")[0] == "time" or not (there.timed or there.instant is not None):
         return None
     last = results.time[0 if asked.how == "first" else -1]
@@ -81,6 +86,15 @@ def lost_from(asked: Measure, study: Study) -> float | None:
     elif asked.how == "at":
         last = instant_of(asked, results.time)
     return float(horizon) if last >= horizon else None
+
+
+def of_event(asked: Measure, there: Numbers) -> Peak:
+    """The first or last of what is told of an event."""
+    if asked.how not in ("first", "final") or not there.axes:
+        raise NotOneNumber(f"{asked.path} is told of an event: say first or final, or give its place: {asked.path}.0")
+    if not there.values.size:
+        raise NotOneNumber(f"{asked.path}: the event does not happen in this run")
+    return Peak(float(there.values[0 if asked.how == "first" else -1]), None)
 
 
 def struck(asked: Measure, there: Numbers, study: Study) -> Peak:

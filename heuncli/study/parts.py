@@ -13,7 +13,7 @@ from typing import Any
 
 from heuncli.expressions.programs import Expression
 from heuncli.records import fields
-from heuncli.results_schema import BLOWS, SHARES
+from heuncli.results_schema import BLOWS, EVENTS, SHARES
 from heuncli.spec.models import End, Spec
 from heuncli.study.asked import Asked, entries_of
 from heuncli.study.words import some
@@ -94,12 +94,14 @@ def needed(spec: Spec, asked: Asked, ends: Ends) -> set[str]:
 
 def roots(spec: Spec, asked: Asked) -> set[str] | None:
     """The bodies that what is asked for names itself; None where it is about all of them."""
-    whole = [report for report in asked.reports - {SHARES} if asked.whole(report)]
+    whole = [report for report in asked.reports - {SHARES, EVENTS} if asked.whole(report)]
     if any(report not in OF_SOME for report in whole):
         return None
     known = entries_of(spec)
     items = [item for report in whole for block in OF_SOME[report] for item in known[block].values()]
     items += [known[entry[:-1]][entry[-1]] for entry in asked.entries]
+    watched = [c.value for c in spec.analysis.conditions if c.value is not None]
+    items += [spec.joints[joint] for value in watched for joint, _ in value.uses]
     return set().union(*(bodies_of(item, spec) for item in items))
 
 

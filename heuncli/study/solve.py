@@ -6,8 +6,9 @@ Impure: looks at the clock.
 from __future__ import annotations
 
 import time
-from collections.abc import Sequence
+from collections.abc import Mapping, Sequence
 from functools import cached_property
+from types import MappingProxyType
 from typing import TYPE_CHECKING, Any
 
 import numpy as np
@@ -22,7 +23,7 @@ from heuncli.results import Accuracy, Array, Block, Extremes, Magnitudes, Place,
 from heuncli.results_schema import BLOWS, REPORTS, SHARED, SHARES, with_shared
 from heuncli.spec.models import Spec
 from heuncli.study import extremes
-from heuncli.study.asked import Asked, Entry, sums_among
+from heuncli.study.asked import Asked, Entry, needed_by, sums_among
 from heuncli.study.extremes import Searched
 from heuncli.study.history import History, integrate, resample, search_times
 from heuncli.study.recover import Recovery, accuracy, asked_blocks, certain_sums, recover
@@ -32,6 +33,7 @@ from heuncli.study.warnings import beside_singular_poses, left_out, status, warn
 from heuncli.version import VERSION
 
 if TYPE_CHECKING:
+    from heuncli.integration.conditions import Changes
     from heuncli.study.impulses import Impulses
 
 MOST_SEARCHED = 1_000_000  # numbers to look at for the extremes of a whole report; one measure has no such bound
@@ -75,17 +77,25 @@ def solve(spec: Spec, options: Options | None = None) -> Study:
     options = options or Options()
     deadline = time.monotonic() + options.time_limit if options.time_limit else None
     begun = time.perf_counter()
-    setup = set_up(spec, known_method(options.method), reduce=options.reduce, asked=options.asked)
+    conditions = spec.analysis.conditions
+    asked = options.asked.with_all(needed_by(conditions, spec)) if conditions else options.asked
+    setup = set_up(spec, known_method(options.method), reduce=options.reduce, asked=asked)
     built = time.perf_counter()
     tolerance = spec.analysis.tolerance if options.tolerance is None else options.tolerance
     history = integrate(setup, tolerance, deadline, by_cause=SHARES in options.reports)
+    whole, setup = setup, replace(setup, asked=options.asked) if conditions else setup
     moved = time.perf_counter()
     recovery = recover(setup, history.recovered, options.least_norm)
     struck = blows(setup, history, options.least_norm, SHARES in options.reports)
     results = compose(setup, history, recovery, options.reports, struck)
     seconds = {"load": options.load_seconds, "build": built - begun, **history.seconds}
     results.work["seconds"] = seconds | {"recover": time.perf_counter() - moved}
-    return Study(spec, options, setup, history, recovery, results, struck)
+    study = Study(spec, options, setup, history, recovery, results, struck)
+    if not conditions:
+        return study
+    from heuncli.study.events import with_events  # few scenes have them
+
+    return with_events(study, whole)
 
 
 def blows(setup: Setup, history: History, least_norm: bool, by_cause: bool) -> Impulses | None:
@@ -107,7 +117,8 @@ def describe(spec: Spec, *, reduce: bool = True) -> Block:
     mechanism = setup.scene.mechanism
     names = {"bodies": [b.name for b in mechanism.bodies], "joints": {j.name: j.kind for j in mechanism.joints}}
     model = setup.model | {"names": names, "integrates": outlook(setup)}
-    return model | {"notes": model["notes"] + advice(setup.scene, model)}
+    watched = [f"ends: until {c.text}" if c.ends else f"watched: {c.name} ({c.text})" for c in spec.analysis.conditions]
+    return model | {"reasons": [*model["reasons"], *watched], "notes": model["notes"] + advice(setup.scene, model)}
 
 
 def known_method(name: str | None) -> str | None:
@@ -202,6 +213,7 @@ class Study:
     recovery: Recovery
     results: Results
     struck: Impulses | None = None
+    changes: Mapping[str, Changes] = MappingProxyType({})
 
     @property
     def magnitudes(self) -> Magnitudes:

@@ -81,6 +81,7 @@ def lay_out_like(
 def _programs(mechanism: Mechanism, pack: Pack) -> tuple[dict[int, tuple[int, int]], set[tuple[str, str]]]:
     """Put every expression in time into the pack; where each stands, by identity, and the coordinates they name."""
     expressions = [value for load in mechanism.loads for value in load.values]
+    expressions += [condition.value for condition in mechanism.conditions]
     driven = [j.drive.value for j in mechanism.joints if j.drive is not None]
     programs = {id(e): pack.add(e) for e in expressions if e.constant is None} | {id(e): pack.add(e) for e in driven}
     return programs, {use for e in expressions for use in e.uses}
@@ -526,14 +527,19 @@ class _Builder:
         ]
 
     def _watch_rows(self) -> list[dict[str, Any]]:
-        """The programs of loads and drives: what they do between the stages of a step must not be passed over."""
+        """The programs of loads and drives: what they do between the stages of a step must not be passed over.
+
+        Of conditions only where they change.
+        """
         driven = {id(j.drive.value): j.drive.value for j in self.mechanism.joints if j.drive is not None}
         loads = {id(e): e for load in self.mechanism.loads for e in load.values}
-        return [
-            {"program": self.programs[key], "curved": int(key in driven)}
+        watched = [
+            {"program": self.programs[key], "curved": int(key in driven), "condition": 0}
             for key, e in (loads | driven).items()
             if e.constant is None
         ]
+        conditions = (self.programs[id(condition.value)] for condition in self.mechanism.conditions)
+        return watched + [{"program": program, "curved": 0, "condition": 1} for program in conditions]
 
     def _variable_rows(self) -> list[dict[str, Any]]:
         """The first is the time, which is no coordinate."""

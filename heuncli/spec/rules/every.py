@@ -5,6 +5,7 @@ from __future__ import annotations
 from heuncli.spec.rules import (
     analysis,
     bodies,
+    conditions,
     expect,
     joints,
     loads,
@@ -17,6 +18,6 @@ from heuncli.spec.rules import (
 )
 from heuncli.spec.rules.registry import RULES, DraftDocument, Rule, Violation, violations
 
-MODULES = (naming, references, bodies, joints, plane, loads, stops, sections, analysis, expect, not_yet)
+MODULES = (naming, references, bodies, joints, plane, loads, stops, sections, analysis, conditions, expect, not_yet)
 
 __all__ = ["MODULES", "RULES", "DraftDocument", "Rule", "Violation", "violations"]

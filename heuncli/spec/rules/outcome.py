@@ -171,6 +171,8 @@ def named(word: str, names: Names) -> list[str]:
             return ["0", "1", "2"]
         case "FORCE":
             return list(entries["forces"])
+        case "EVENT":
+            return list(entries["events"])
         case "CAUSE":
             return ["gravity", *entries["forces"], "drives", "motion"]
     return [word]

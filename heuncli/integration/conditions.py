@@ -1,0 +1,246 @@
+"""Conditions on a motion: what is true of it within each step, and so when that changes.
+
+A condition is a program with branches that the kernel holds within a step and ends steps at, as those of loads
+(kernel/events.py). Between two changes of its branches it stands still, so it is asked once for each: with the branches
+of the step, whatever rounding says of margins beside zero.
+
+An instant found so errs by as much as the motion by which it is found. The check run, or another beside it, is to show
+the same change there but for an interval d of time: its course about the instant is known by its rates and accelerations,
+
+    q(t + d) = q + u d + a d^2 / 2,    u(t + d) = u + a d
+
+and d is widened until the condition has its one value before it and its other behind. Where a margin only just passes
+through zero that takes long: such an instant has few digits, or none.
+"""
+
+from __future__ import annotations
+
+import math
+from collections.abc import Mapping, Sequence
+
+import numpy as np
+
+from heuncli import tolerances
+from heuncli.expressions.programs import Expression, Pack
+from heuncli.integration.blows import Jump
+from heuncli.integration.pairs import matched
+from heuncli.integration.runner import Runner, Trajectory
+from heuncli.kernel.choose import expressions as kernel
+from heuncli.mechanism.model import Condition
+from heuncli.records import record, replace
+from heuncli.results import Array, Mask
+from heuncli.tree.layout import Layout
+
+HELD, FREE = kernel.HOLDING["held"], kernel.HOLDING["free"]
+Coordinates = Mapping[tuple[str, str], tuple[float, float, float]]  # of a joint: value, rate, second derivative
+UNKNOWN = math.nan  # an error of which nothing is known
+
+
+@record
+class Changes:
+    """When a condition changes: begins, whether it is true at the start; times (n,) ascending, to (n,): what it becomes.
+
+    error (n,) [s]: of the instants; nan where a run beside this one does not show the change.
+    """
+
+    name: str
+    begins: bool
+    times: Array
+    to: Mask
+    error: Array
+
+    def before(self, t: float) -> Changes:
+        """Those before an instant."""
+        return self.some(self.times < t)
+
+    def until(self, t: float) -> Changes:
+        """Those up to an instant."""
+        return self.some(self.times <= t)
+
+    def some(self, kept: Mask) -> Changes:
+        """Those."""
+        return replace(self, times=self.times[kept], to=self.to[kept], error=self.error[kept])
+
+
+class Conditions:
+    """The conditions of a scene that is laid out, and where their branches stand among all that its kernel holds."""
+
+    def __init__(self, layout: Layout) -> None:
+        self.conditions: tuple[Condition, ...] = layout.mechanism.conditions
+        self.pack = Pack()
+        self.programs = [self.pack.add(condition.value) for condition in self.conditions]
+        known = {(id(e), k): i for i, (e, k) in enumerate(layout.pack.branches)}
+        self.places = [known[id(e), k] for e, k in self.pack.branches]
+
+    def held(self, t: float, branches: Sequence[float], coordinates: Coordinates) -> list[float]:
+        """Whether each is true (1 or 0) with its branches among those that the kernel holds; nan: it has no value."""
+        own = self.pack.expressions
+        own.hold_branches([branches[i] for i in self.places])
+        own.hold(HELD)
+        values = [own.evaluate(*program, self.variables(t, coordinates)) for program in self.programs]
+        own.hold(FREE)
+        return values
+
+    def free(self, number: int, t: float, d: float, coordinates: Coordinates) -> float:
+        """Whether one is true at t + d, by the coordinates at t."""
+        return self.pack.value(*self.programs[number], self.variables(t, coordinates, d))
+
+    def variables(self, t: float, coordinates: Coordinates, d: float = 0.0) -> list[float]:
+        """The time, and the coordinates that are used, d later than at t."""
+        uses = [coordinates[use] for use in self.pack.variables if not isinstance(use, str)]
+        return [t + d, *(q + d * (u + 0.5 * d * a) for q, u, a in uses)]
+
+
+def coordinates_in(layout: Layout, t: float, state: Array) -> Coordinates:
+    """The coordinates of the joints at a state, by their places in it, without their second derivatives.
+
+    Nothing is asked of the kernel, which may be under way.
+    """
+    found: dict[tuple[str, str], tuple[float, float, float]] = {}
+    for freedom in layout.freedoms:
+        if freedom.joint < 0 or freedom.quantity not in ("angle", "travel"):
+            continue
+        joint = layout.mechanism.joints[freedom.joint]
+        if freedom.q >= 0:
+            q, u = float(state[freedom.q]), float(state[freedom.u])
+        else:
+            assert joint.drive is not None
+            q, u, _ = joint.drive.value.derivatives(t)
+        put(found, joint.name, freedom.quantity, (q, u, 0.0))
+    return found
+
+
+def put(to: dict[tuple[str, str], tuple[float, float, float]], joint: str, quantity: str, jet: tuple[float, ...]) -> None:
+    """A coordinate and its rate."""
+    q, u, a = jet
+    to[joint, quantity] = q, u, a
+    to[joint, "rate" if quantity == "angle" else "speed"] = u, a, 0.0
+
+
+def coordinates_at(runner: Runner, times: Array, states: Array) -> list[Coordinates]:
+    """The coordinates of the joints at states of a scene, as they go on from there."""
+    if not any(condition.value.uses for condition in runner.layout.mechanism.conditions):
+        return [{}] * len(times)
+    answers = runner.recovered(times, states)
+    found = []
+    for row in answers.freedoms:
+        own: dict[tuple[str, str], tuple[float, float, float]] = {}
+        for freedom, (q, u, a, _) in zip(runner.layout.freedoms, row.tolist(), strict=True):
+            if freedom.joint >= 0 and freedom.quantity in ("angle", "travel"):
+                name = runner.layout.mechanism.joints[freedom.joint].name
+                put(own, name, freedom.quantity, (q, u, a if math.isfinite(a) else 0.0))
+        found.append(own)
+    return found
+
+
+class Until:
+    """The condition that ends a run, asked where a piece begins and where branches turn. Remembers what it was."""
+
+    def __init__(self, layout: Layout) -> None:
+        self.conditions = Conditions(layout)
+        self.layout = layout
+        self.number = next(i for i, condition in enumerate(self.conditions.conditions) if condition.ends)
+        self.was: float | None = None
+
+    def ends(self, t: float, state: Array) -> bool:
+        """Whether it became true here: at the start it is what it is."""
+        branches = self.layout.pack.expressions.branches()
+        now = self.conditions.held(t, branches, coordinates_in(self.layout, t, state))[self.number]
+        became = self.was == 0.0 and now == 1.0 and t > 0.0
+        self.was = now
+        return became
+
+
+def changes_of(runner: Runner, runs: Sequence[Trajectory], before: float) -> tuple[Changes, ...]:
+    """When the conditions of a scene change in the first of some runs, before an instant; the others tell the errors."""
+    found = changes_in(runner, runs[0])
+    return tuple(
+        replace(own, error=errors(runner, runs, number, own))
+        for number, own in enumerate(changes.before(before) for changes in found)
+    )
+
+
+def changes_in(runner: Runner, run: Trajectory) -> list[Changes]:
+    """When the conditions change in a run, errors left out."""
+    conditions = Conditions(runner.moving.layout)
+    begins, inside, branches = stretches(run)
+    coordinates = coordinates_at(runner, inside, runner.resample(run, inside))
+    truths = np.array([
+        conditions.held(t, row, there) for t, row, there in zip(inside.tolist(), branches, coordinates, strict=True)
+    ])  # fmt: skip
+    found = []
+    for condition, truth in zip(conditions.conditions, truths.T, strict=True):
+        if np.isnan(truth).any():
+            raise no_value(condition.value, float(inside[np.isnan(truth)][0]))
+        found.append(changes(condition.name, begins, truth > 0.5))
+    return found
+
+
+def stretches(run: Trajectory) -> tuple[Array, Array, Array]:
+    """Stretches of a run in which no branch changes: where each begins, an instant within it, the branches held there.
+
+    The last one is the end of the run, with the branches behind it.
+    """
+    bounds = np.concatenate([[0.0], run.ends])
+    count = len(run.ends)
+    rows = np.vstack([run.branches.reshape(count, -1), run.behind[None, :]])
+    fresh = np.isin(bounds, [segment.begin for segment in run.segments])
+    fresh[1:] |= (rows[1:] != rows[:-1]).any(axis=1)
+    fresh[0] = fresh[count] = True
+    inside = np.append(0.5 * (bounds[:-1] + bounds[1:]), bounds[-1])
+    return bounds[fresh], inside[fresh], rows[fresh]
+
+
+def changes(name: str, begins: Array, truth: Mask) -> Changes:
+    """The changes from stretch to stretch; what is taken back at the same instant is none."""
+    last = np.append(begins[1:] != begins[:-1], True)  # of several at one instant what holds behind them
+    begins, truth = begins[last], truth[last]
+    changed = np.flatnonzero(truth[1:] != truth[:-1]) + 1
+    return Changes(name, bool(truth[0]), begins[changed], truth[changed], np.zeros(len(changed)))
+
+
+def errors(runner: Runner, runs: Sequence[Trajectory], number: int, own: Changes) -> Array:
+    """The errors of the instants of a condition's changes, by the other runs, (n,)."""
+    found = np.zeros(len(own.times))
+    if not len(own.times):
+        return found
+    conditions, last = Conditions(runner.layout), float(runs[0].times[-1])
+    for run in runs[1:]:
+        at = np.minimum(own.times, run.ends[-1])
+        coordinates = coordinates_at(runner, at, runner.resample(run, at))
+        struck = blows_apart(runs[0].blows, run.blows)
+        for i, (t, to, there) in enumerate(zip(own.times.tolist(), own.to.tolist(), coordinates, strict=True)):
+            apart = struck[t] if t in struck else apart_from(conditions, number, (t, to, last), there)
+            found[i] = np.maximum(found[i], 2.0 * apart)
+    return found
+
+
+def blows_apart(own: Sequence[Jump], others: Sequence[Jump]) -> dict[float, float]:
+    """Of each blow of a run by how much another run has it sooner or later; nan where that has none."""
+    found = dict.fromkeys((blow.time for blow in own), UNKNOWN)
+    for i, k in matched(own, others):
+        t = own[i].time
+        found[t] = max(abs(others[k].time - t), tolerances.EPS * t)
+    return found
+
+
+def apart_from(
+    conditions: Conditions, number: int, change: tuple[float, bool, float], coordinates: Coordinates
+) -> float:
+    """Within which time of a change another run shows it, too; nan if not within a part of the run."""
+    t, to, last = change
+    d = tolerances.KERNEL["one_instant"] * max(t, 0.01 * last)
+    while d <= tolerances.CLAIMED * last:
+        sides = (conditions.free(number, t, side * d, coordinates) for side in (-1.0, 1.0))
+        if tuple(sides) == ((0.0, 1.0) if to else (1.0, 0.0)):
+            return d
+        d *= 2.0
+    return UNKNOWN
+
+
+def no_value(value: Expression, t: float) -> Exception:
+    """The error of a condition that has no value."""
+    from heuncli.errors import Problem, SolveError
+
+    hint = "keep it within the domain of its functions, as with max(x, 0) or 'a if c else b', or within its tables"
+    return SolveError(Problem("no-value", f"'{value.source.strip()}' has no value at t = {t:.9g} s", value.location, hint))

@@ -1,0 +1,93 @@
+"""Conditions that end a motion or are watched in it: of motions alone, on numbers that the results will have."""
+
+from __future__ import annotations
+
+from collections.abc import Iterator
+from typing import TYPE_CHECKING
+
+from heuncli.nearest import did_you_mean
+from heuncli.spec import format as f
+from heuncli.spec.names import UNTIL, is_name
+from heuncli.spec.rules.registry import DraftDocument, Path_, Violation, rule
+from heuncli.spec.semantics import type_of
+
+if TYPE_CHECKING:
+    from heuncli.spec.rules.outcome import Outcome, UnknownWord
+
+
+def conditions(draft: DraftDocument) -> Iterator[tuple[Path_, object]]:
+    """All conditions with their paths."""
+    analysis = draft.document.analysis
+    if analysis.until is not None:
+        yield ("analysis", UNTIL), analysis.until
+    for name, given in analysis.events.items():
+        yield ("analysis", "events", name), given
+
+
+def on_results(draft: DraftDocument) -> Iterator[tuple[Path_, f.OfResults, Outcome | UnknownWord | None]]:
+    """Those on numbers of the results, with what their paths lead to."""
+    for path, given in conditions(draft):
+        if isinstance(given, f.OfResults):
+            from heuncli.spec.rules.outcome import outcome  # a run without expectations starts faster
+
+            yield path, given, outcome(given.of, draft)
+
+
+@rule("event-name")
+def event_name(draft: DraftDocument) -> Iterator[Violation]:
+    """Events have names of their own."""
+    for name in draft.document.analysis.events:
+        path = ("analysis", "events", name)
+        if not is_name(name):
+            yield Violation(path, f"'{name}' is not a name", "a name is a letter, then letters, digits and _", key=True)
+        elif name == UNTIL:
+            yield Violation(path, f"'{name}' is taken: results tell by it what ended the motion", "call it stop, say", key=True)
+
+
+@rule("event-motion")
+def event_motion(draft: DraftDocument) -> Iterator[Violation]:
+    """Only in a motion does anything become true."""
+    kind = type_of(draft.document)
+    if kind == "motion" or "analysis" in draft.unread:
+        return
+    for path, _ in conditions(draft):
+        message = f"{path[-1]}: {'an impulse' if kind == 'impulse' else f'a {kind}'} is one instant, at which nothing changes"
+        yield Violation(path, message, "give analysis a duration, the longest that is waited", key=True)
+
+
+@rule("event-path")
+def event_path(draft: DraftDocument) -> Iterator[Violation]:
+    """`of` leads to one number of each instant: of a vector its magnitude is taken, of a run of cuts its whole stretch."""
+    from heuncli.results_schema import CUT, SPACE  # already there where it is needed
+
+    for path, given, found in on_results(draft):
+        where = (*path, "of")
+        if isinstance(found, tuple) and hasattr(found, "word"):
+            known = found.known
+            if found.word:
+                hint = did_you_mean(found.word, known, "words here") if known else "the path ends before it"
+                yield Violation(where, f"'{given.of}': '{found.word}' is not a result", hint)
+            else:
+                yield Violation(where, f"'{given.of}' is not a number", f"it goes on with one of {', '.join(known)}")
+        elif found is None:
+            if given.of.split(".")[0] not in draft.unread:
+                yield Violation(where, f"'{given.of}': what it is, only the run can tell", "name a number of the results")
+        elif not found.timed:
+            yield Violation(where, f"'{given.of}' does not run over the instants", "name a number that changes in time")
+        elif found.axes not in ((), (SPACE,), (CUT,), (CUT, SPACE)):
+            yield Violation(where, f"'{given.of}' is several numbers", f"name one of them, as {given.of}.x.x")
+
+
+@rule("event-limit")
+def event_limit(draft: DraftDocument) -> Iterator[Violation]:
+    """A number is below one limit or above one, in its dimension."""
+    for path, given, found in on_results(draft):
+        limits = [key for key in ("below", "above") if getattr(given, key) is not None]
+        if len(limits) != 1:
+            message = "both below and above" if limits else "neither below nor above"
+            hint = "one event a limit" if limits else "{of: joints.wall.force.x, below: 0}"
+            yield Violation(path, message, hint)
+        elif found is not None and hasattr(found, "dimensions"):
+            from heuncli.spec.rules.expect import dimensions
+
+            yield from dimensions((*path, limits[0]), getattr(given, limits[0]), found.dimensions)

@@ -1,0 +1,175 @@
+"""The events of a motion: when conditions change, those in time and coordinates and those on numbers of the results.
+
+The first are met by the kernel (integration/conditions.py). The others are searched for after the run: a number of the
+results is taken against its limit, a vector by its magnitude, a run of cuts over its whole stretch. A motion that ends
+where such a number passes its limit is solved twice: as a whole, and up to there.
+"""
+
+from __future__ import annotations
+
+import math
+from dataclasses import replace as changed
+from typing import TYPE_CHECKING, NamedTuple
+
+import numpy as np
+
+from heuncli import tolerances
+from heuncli.integration.conditions import Changes, blows_apart
+from heuncli.records import replace
+from heuncli.results import Array, Block, Results, Status
+from heuncli.results_paths import find
+from heuncli.results_schema import CUT, EVENTS, MAGNITUDES
+from heuncli.spec.models import Condition
+from heuncli.study.crossings import Crossings, crossings
+from heuncli.study.measure import report_of, stated_error
+from heuncli.study.setup import Setup
+
+if TYPE_CHECKING:
+    from heuncli.study.solve import Study
+
+HALVED = 2  # pieces of a stretch along which stresses are looked at (study/solve.py)
+SHOWN = 6  # digits of an instant in sentences
+NOT_TOLD = "of the event {} instants may be missing: {} is open, or not known, at some of those looked at"
+TOO_MANY = "of the event {} instants may be missing: the search was ended before all was looked at"
+
+
+def with_events(study: Study, setup: Setup) -> Study:
+    """The study with its events; setup: of all that conditions need. One that ends on a result is solved up to there."""
+    found = {changes.name: changes for changes in study.history.changes}
+    conditions = study.spec.analysis.conditions
+    for condition in conditions:
+        if condition.value is None:
+            found[condition.name] = on_result(study, setup, condition)
+    last = next((c for c in conditions if c.ends), None)
+    if last is not None and last.value is None:
+        became = found[last.name].times[found[last.name].to]
+        if len(became) and became[0] < study.results.time[-1]:
+            return ended(study, last, found[last.name], float(became[0]))
+    return told(replace(study, changes=found))
+
+
+def ended(study: Study, last: Condition, changes: Changes, t: float) -> Study:
+    """The same motion up to an instant at which the last condition becomes true."""
+    from heuncli.study.solve import solve
+
+    analysis = study.spec.analysis
+    times = (*(x for x in analysis.times if x < t), t)
+    others = tuple(c for c in analysis.conditions if c is not last)
+    shorter = solve(study.spec._replace(analysis=analysis._replace(times=times, conditions=others)), study.options)
+    return told(replace(shorter, spec=study.spec, changes={**shorter.changes, last.name: changes.until(t)}))
+
+
+# Conditions on numbers of the results
+
+
+class Watched(NamedTuple):
+    """A number of the results against its limit: above zero where the condition is true, squared where it is even."""
+
+    study: Study
+    setup: Setup
+    condition: Condition
+    even: bool
+    along: bool
+
+    def sample(self, times: Array) -> Array:
+        """The number at instants (n,), ascending; nan where it is open."""
+        most = self.study.at_once
+        return np.concatenate([self._part(times[i : i + most]) for i in range(0, len(times), most)])
+
+    def _part(self, times: Array) -> Array:
+        values, condition = self.values(times), self.condition
+        limit = condition.limit * abs(condition.limit) if self.even else condition.limit
+        return np.asarray(values - limit if condition.above else limit - values)
+
+    def values(self, times: Array) -> Array:
+        """The number itself, or its square; of a run of cuts the end of its range that comes first to the limit."""
+        wanted = report_of(self.condition.of)
+        results = self.study.only(times, wanted if wanted is not None else frozenset(), self.setup)
+        found = find(results, self.condition.of)
+        values = found.values
+        if found.of_vectors:
+            values = np.einsum("...k,...k->...", values, values)
+        elif self.even:
+            values = values * values
+        if not self.along:
+            return values.reshape(len(times))
+        from heuncli.study.stretches import envelope
+
+        return np.asarray(envelope(values)[:, int(self.condition.above)])
+
+
+def on_result(study: Study, setup: Setup, condition: Condition) -> Changes:
+    """When a number of the results comes below its limit, or above it, and back; up to the horizon."""
+    times, horizon = study.search_times, study.results.accuracy.get("horizon")
+    if horizon is not None:
+        times = times[times < horizon]
+    wanted = report_of(condition.of)
+    asked = find(study.only(times[:1], wanted if wanted is not None else frozenset(), setup), condition.of)
+    even, along = asked.of_vectors or asked.keys[-1] in MAGNITUDES, CUT in asked.axes
+    if along:
+        from heuncli.study.stretches import stretched
+
+        setup = stretched(setup, HALVED if asked.keys[2] in ("stress", "line") else 0)
+    number = Watched(study, setup, condition, even, along)
+    error = max(np.nan_to_num(stated_error(study, asked.keys)), tolerances.SUM_ROUNDING * abs(condition.limit))
+    found = crossings(number.sample, times, error * (2.0 * abs(condition.limit) + error) if even else error)
+    if found.gaps:
+        study.later[NOT_TOLD.format(condition.name, condition.of)] = None
+    if not found.complete:
+        study.later[TOO_MANY.format(condition.name)] = None
+    return Changes(condition.name, found.begins, found.times, found.up, at_jumps(study, found))
+
+
+def at_jumps(study: Study, found: Crossings) -> Array:
+    """The errors of the instants; of a blow by when other runs have it, of other jumps that of the motion."""
+    history, off = study.history, found.error.copy()
+    struck = [blows_apart(history.blows, other) for other in history.beside]
+    moving = history.estimate["motion"] * float(history.times[-1])
+    for i in np.flatnonzero(found.jumps):
+        apart = [each.get(float(found.times[i]), 0.5 * moving) for each in struck] or [0.5 * moving]
+        off[i] = max(off[i], 2.0 * max(apart))
+    return off
+
+
+# What is told
+
+
+def told(study: Study) -> Study:
+    """The study with its events in the results, and a sentence on how it ended."""
+    results, conditions = study.results, study.spec.analysis.conditions
+    if EVENTS in study.options.reports:
+        results = changed(results, events={c.name: block(c, study.changes[c.name]) for c in conditions})
+    last = next((c for c in conditions if c.ends), None)
+    if last is not None:
+        results = ending(results, last, study.changes[last.name])
+    return replace(study, results=results)
+
+
+def block(condition: Condition, changes: Changes) -> Block:
+    """One event as it stands in the results."""
+    return {
+        "condition": condition.text, "begins": changes.begins, "time": changes.times, "error": changes.error,
+        "to": changes.to.tolist(),
+    }  # fmt: skip
+
+
+def ending(results: Results, last: Condition, changes: Changes) -> Results:
+    """The results with a sentence on the condition that was to end the motion."""
+    began = "; it is true from the start, which ends nothing" if changes.begins else ""
+    became = np.flatnonzero(changes.to)
+    if len(became):
+        k = int(became[0])
+        message = f"ended at t = {instant(float(changes.times[k]), float(changes.error[k]))} s: until {last.text}{began}"
+        status: Status = {"code": results.status["code"], "message": message}
+    else:
+        message = f"until {last.text}: this did not become true{began}"
+        status = {"code": results.status["code"], "message": f"{results.status['message']}; {message}"}
+    return changed(results, status=status, model=results.model | {"until": [message]})
+
+
+def instant(t: float, error: float) -> str:
+    """An instant with the digits that its error leaves."""
+    if not error < t:
+        return f"{t:.1g}?"
+    digits = SHOWN if error <= 0.0 else min(SHOWN, max(1, math.floor(math.log10(t / error))))
+    return f"{t:.{digits}g}"
