@@ -225,6 +225,8 @@ AFTER_THE_RUN = frozenset({"certain_sums", "accuracy"})  # of numbers that no sp
 ESTIMATES = {
     "foundation": "foundation", "joints": "reactions", "stops": "reactions", "sections": "sections", "energy": "energy",
 }  # fmt: skip
+# of which estimate those errors are that have none of their own
+KIND_OF = {"forces": "reactions", "axis": "foundation"}
 NAMES = ("BODY", "POINT", "JOINT", "ELEMENT", "STOP", "SECTION", "FORCE", "CAUSE", "EVENT", "NUMBER")
 BY_CAUSE = "by cause"  # of kinds of errors
 AT_A_BLOW = {"N": "N·s", "N·m": "N·m·s"}  # units of the loads in `impulses`

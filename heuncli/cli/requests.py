@@ -42,8 +42,8 @@ class Run(NamedTuple):
         str | None,
         Option(
             ("--only",),
-            "Only these: motion, points, foundation, joints, sections, forces, energy, impulses, events, shares; or entries: "
-            "joints.NAME, sections.NAME, ...",
+            "Only these: motion, points, foundation, joints, sections, forces, energy, impulses, events, shares; or "
+            "entries: joints.NAME, sections.NAME, ...",
             "REPORT,...",
         ),
     ] = None

@@ -5,7 +5,7 @@ A condition is a program with branches that the kernel holds within a step and e
 of the step, whatever rounding says of margins beside zero.
 
 An instant found so errs by as much as the motion by which it is found. The check run, or another beside it, is to show
-the same change there but for an interval d of time: its course about the instant is known by its rates and accelerations,
+the same change there but for an interval d of time: its course about the instant is known by rates and accelerations,
 
     q(t + d) = q + u d + a d^2 / 2,    u(t + d) = u + a d
 
@@ -21,6 +21,7 @@ from collections.abc import Mapping, Sequence
 import numpy as np
 
 from heuncli import tolerances
+from heuncli.errors import Problem, SolveError
 from heuncli.expressions.programs import Expression, Pack
 from heuncli.integration.blows import Jump
 from heuncli.integration.pairs import matched
@@ -32,13 +33,14 @@ from heuncli.results import Array, Mask
 from heuncli.tree.layout import Layout
 
 HELD, FREE = kernel.HOLDING["held"], kernel.HOLDING["free"]
-Coordinates = Mapping[tuple[str, str], tuple[float, float, float]]  # of a joint: value, rate, second derivative
+Jet = tuple[float, float, float]  # value, rate, second derivative
+Coordinates = Mapping[tuple[str, str], Jet]  # of a joint and a quantity
 UNKNOWN = math.nan  # an error of which nothing is known
 
 
 @record
 class Changes:
-    """When a condition changes: begins, whether it is true at the start; times (n,) ascending, to (n,): what it becomes.
+    """When a condition changes: begins, whether it is true at first; times (n,) ascending, to (n,): what it becomes.
 
     error (n,) [s]: of the instants; nan where a run beside this one does not show the change.
     """
@@ -96,7 +98,7 @@ def coordinates_in(layout: Layout, t: float, state: Array) -> Coordinates:
 
     Nothing is asked of the kernel, which may be under way.
     """
-    found: dict[tuple[str, str], tuple[float, float, float]] = {}
+    found: dict[tuple[str, str], Jet] = {}
     for freedom in layout.freedoms:
         if freedom.joint < 0 or freedom.quantity not in ("angle", "travel"):
             continue
@@ -110,7 +112,7 @@ def coordinates_in(layout: Layout, t: float, state: Array) -> Coordinates:
     return found
 
 
-def put(to: dict[tuple[str, str], tuple[float, float, float]], joint: str, quantity: str, jet: tuple[float, ...]) -> None:
+def put(to: dict[tuple[str, str], Jet], joint: str, quantity: str, jet: Jet) -> None:
     """A coordinate and its rate."""
     q, u, a = jet
     to[joint, quantity] = q, u, a
@@ -122,9 +124,9 @@ def coordinates_at(runner: Runner, times: Array, states: Array) -> list[Coordina
     if not any(condition.value.uses for condition in runner.layout.mechanism.conditions):
         return [{}] * len(times)
     answers = runner.recovered(times, states)
-    found = []
+    found: list[Coordinates] = []
     for row in answers.freedoms:
-        own: dict[tuple[str, str], tuple[float, float, float]] = {}
+        own: dict[tuple[str, str], Jet] = {}
         for freedom, (q, u, a, _) in zip(runner.layout.freedoms, row.tolist(), strict=True):
             if freedom.joint >= 0 and freedom.quantity in ("angle", "travel"):
                 name = runner.layout.mechanism.joints[freedom.joint].name
@@ -152,7 +154,7 @@ class Until:
 
 
 def changes_of(runner: Runner, runs: Sequence[Trajectory], before: float) -> tuple[Changes, ...]:
-    """When the conditions of a scene change in the first of some runs, before an instant; the others tell the errors."""
+    """When the conditions of a scene change in the first of some runs, before an instant; others tell the errors."""
     found = changes_in(runner, runs[0])
     return tuple(
         replace(own, error=errors(runner, runs, number, own))
@@ -184,7 +186,7 @@ def stretches(run: Trajectory) -> tuple[Array, Array, Array]:
     bounds = np.concatenate([[0.0], run.ends])
     count = len(run.ends)
     rows = np.vstack([run.branches.reshape(count, -1), run.behind[None, :]])
-    fresh = np.isin(bounds, [segment.begin for segment in run.segments])
+    fresh = np.isin(bounds, [segment.end for segment in run.segments])
     fresh[1:] |= (rows[1:] != rows[:-1]).any(axis=1)
     fresh[0] = fresh[count] = True
     inside = np.append(0.5 * (bounds[:-1] + bounds[1:]), bounds[-1])
@@ -238,9 +240,8 @@ def apart_from(
     return UNKNOWN
 
 
-def no_value(value: Expression, t: float) -> Exception:
+def no_value(value: Expression, t: float) -> SolveError:
     """The error of a condition that has no value."""
-    from heuncli.errors import Problem, SolveError
-
     hint = "keep it within the domain of its functions, as with max(x, 0) or 'a if c else b', or within its tables"
-    return SolveError(Problem("no-value", f"'{value.source.strip()}' has no value at t = {t:.9g} s", value.location, hint))
+    message = f"'{value.source.strip()}' has no value at t = {t:.9g} s"
+    return SolveError(Problem("no-value", message, value.location, hint))

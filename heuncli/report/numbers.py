@@ -22,7 +22,7 @@ from heuncli import tolerances
 from heuncli.report.labels import Labels
 from heuncli.report.quantities import Series, walk, walk_impulse
 from heuncli.results import Array, Estimate, Magnitudes, Results
-from heuncli.results_schema import BY_CAUSE, SHARES, kind_of_error
+from heuncli.results_schema import BY_CAUSE, KIND_OF, SHARES, kind_of_error
 
 DIGITS = 6
 LARGE, SMALL = 1e7, 1e-4  # families beyond these are written with an exponent
@@ -34,11 +34,6 @@ UNKNOWN_NOTE = "?: the estimated error is as large as the number, as beyond the 
 LOADS: tuple[Literal["reactions", "drives", "foundation", "sections"], ...] = (
     "reactions", "drives", "foundation", "sections",
 )  # fmt: skip
-KIND_OF = {
-    "forces": "reactions",
-    "axis": "foundation",
-}  # of which estimate those errors are that have none of their own
-
 Scales = Mapping[tuple[str, str], float]  # by kind and unit
 
 

@@ -63,7 +63,9 @@ from heuncli.spec.fields import (
 )
 
 Frame = Literal["world", "body"]
-Report = Literal["motion", "points", "foundation", "joints", "sections", "forces", "energy", "impulses", "events", "shares"]
+Report = Literal[
+    "motion", "points", "foundation", "joints", "sections", "forces", "energy", "impulses", "events", "shares"
+]  # fmt: skip
 Points = dict[str, Position]
 
 

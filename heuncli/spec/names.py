@@ -37,7 +37,8 @@ class Names(NamedTuple):
         """Of plain data of any shape."""
         entries = {block: mapping(data.get(block)) for block in NAMED}
         analysis = mapping(data.get("analysis"))
-        entries["events"] = {key: analysis[key] for key in (UNTIL,) if key in analysis} | mapping(analysis.get("events"))
+        ends = {key: analysis[key] for key in (UNTIL,) if key in analysis}
+        entries["events"] = ends | mapping(analysis.get("events"))
         bodies = entries["bodies"]
         points = {name: points_of(body, Body) for name, body in bodies.items()}
         points[GROUND] = points_of(data.get(GROUND), Ground)

@@ -17,7 +17,7 @@ from heuncli.records import replace
 WITH_UNIT = re.compile(r"\s*([+-]?\s*(?:\d+\.?\d*|\.\d+)(?:[eE][+-]?\d+)?+)\s*((?:[^\W\d_]|°|(?<=\s)1/)[^,]*)\s*\Z")
 WHOLE_NUMBER = re.compile(r"(?<![\w.*])\d(?![\w.])|(?<=[^*]\*)\d(?![\w.])")
 TIME_IN_IT = re.compile(r"(?<![\w.])t(?![\w.])")
-CONDITIONS = "conditions are such as guide.travel > 0.2, shaft.rate < 0 and t > 1, or {of: joints.wall.force.x, below: 0}"
+CONDITIONS = "such as guide.travel > 0.2, shaft.rate < 0 and t > 1, or {of: joints.wall.force.x, below: 0}"
 NOT_A_NUMBER = re.compile(r"[+-]?\.?(?:inf|nan)(?:inity)?\Z", re.IGNORECASE)
 
 
@@ -85,7 +85,7 @@ def condition(value: Any, scope: Scope) -> Expression:
         hint = f"compare it: {text.removesuffix(' == 0')} > 0, say"
         raise Finding("condition", f"'{text}' is a number, not a condition", hint)
     if found.constant is not None:
-        raise Finding("condition", f"'{text}' never changes: it hangs neither on the time nor on a coordinate", CONDITIONS)
+        raise Finding("condition", f"'{text}' never changes: it uses neither the time nor a coordinate", CONDITIONS)
     if equality := re.search("[=!]=", text):
         message = f"'{text}': a motion passes through an equality ({equality[0]}) in no time"
         raise Finding("condition", message, "compare by > or <: an event tells the instants of both directions")

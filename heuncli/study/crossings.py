@@ -48,9 +48,8 @@ class Bracket(NamedTuple):
     g: Array
 
 
-def crossings(sample: Sample, times: Array, error: float) -> Crossings:
-    """Where what is sampled passes zero within the span of `times`, (n,) ascending; error: of its numbers."""
-    h = sample(times)
+def crossings(sample: Sample, times: Array, h: Array, error: float) -> Crossings:
+    """Where what is sampled passes zero within the span of `times`, (n,) ascending; h: it there, error: of h."""
     times, h, complete = refined(sample, times, h, error)
     known = np.isfinite(h)
     gaps = not bool(known.all())
@@ -149,7 +148,7 @@ def next_share(of: Bracket, c: Array, e: Array, width: Array) -> Array:
 
 
 def errors(sample: Sample, at: Array, error: float, span: tuple[float, float]) -> Array:
-    """Within which time of each root h is beyond its own error on either side, (n,); nan if not within a part of all."""
+    """Within which time of each root h is beyond its error on either side, (n,); nan if not within a part of all."""
     found, open_ = np.full(len(at), np.nan), np.ones(len(at), dtype=bool)
     d = tolerances.KERNEL["one_instant"] * max(abs(span[1]), 1e-300)
     while open_.any() and d <= tolerances.CLAIMED * (span[1] - span[0]):

@@ -8,6 +8,7 @@ where such a number passes its limit is solved twice: as a whole, and up to ther
 from __future__ import annotations
 
 import math
+from collections.abc import Sequence
 from dataclasses import replace as changed
 from typing import TYPE_CHECKING, NamedTuple
 
@@ -18,7 +19,7 @@ from heuncli.integration.conditions import Changes, blows_apart
 from heuncli.records import replace
 from heuncli.results import Array, Block, Results, Status
 from heuncli.results_paths import find
-from heuncli.results_schema import CUT, EVENTS, MAGNITUDES
+from heuncli.results_schema import CUT, EVENTS, KIND_OF, MAGNITUDES, kind_of_error, quantity
 from heuncli.spec.models import Condition
 from heuncli.study.crossings import Crossings, crossings
 from heuncli.study.measure import report_of, stated_error
@@ -34,7 +35,7 @@ TOO_MANY = "of the event {} instants may be missing: the search was ended before
 
 
 def with_events(study: Study, setup: Setup) -> Study:
-    """The study with its events; setup: of all that conditions need. One that ends on a result is solved up to there."""
+    """The study with its events; setup: of all that conditions need. What ends on a result is solved up to there."""
     found = {changes.name: changes for changes in study.history.changes}
     conditions = study.spec.analysis.conditions
     for condition in conditions:
@@ -98,6 +99,21 @@ class Watched(NamedTuple):
         return np.asarray(envelope(values)[:, int(self.condition.above)])
 
 
+    def error(self, keys: Sequence[str], h: Array) -> float:
+        """The error of the number; h: as sampled. A place errs by the scene's size; what has no error, as its kind."""
+        row, estimate, limit = quantity(keys), self.study.history.estimate, abs(self.condition.limit)
+        largest = float(np.max(np.abs(h), initial=0.0, where=np.isfinite(h)))
+        largest = limit + (math.sqrt(largest) if self.even else largest)
+        kind = kind_of_error(keys[0], ".".join(keys[1:-1]), keys[-1])
+        if row is not None and row.units[-1] in ("m", "rad"):
+            relative, scale = estimate["motion"], max(largest, self.setup.scene.layout.size)
+        else:
+            relative, scale = float(estimate.get(KIND_OF.get(kind, kind), 0.0)), largest  # type: ignore[arg-type]
+        known = (*(self.study.magnitudes.errors.get((kind, unit), 0.0) for unit in row.units),) if row else ()
+        own = stated_error(self.study, keys) if any(known) else relative * scale
+        return max(float(np.nan_to_num(own)), tolerances.WRITTEN * largest)
+
+
 def on_result(study: Study, setup: Setup, condition: Condition) -> Changes:
     """When a number of the results comes below its limit, or above it, and back; up to the horizon."""
     times, horizon = study.search_times, study.results.accuracy.get("horizon")
@@ -111,8 +127,9 @@ def on_result(study: Study, setup: Setup, condition: Condition) -> Changes:
 
         setup = stretched(setup, HALVED if asked.keys[2] in ("stress", "line") else 0)
     number = Watched(study, setup, condition, even, along)
-    error = max(np.nan_to_num(stated_error(study, asked.keys)), tolerances.SUM_ROUNDING * abs(condition.limit))
-    found = crossings(number.sample, times, error * (2.0 * abs(condition.limit) + error) if even else error)
+    h = number.sample(times)
+    error = number.error(asked.keys, h)
+    found = crossings(number.sample, times, h, error * (2.0 * abs(condition.limit) + error) if even else error)
     if found.gaps:
         study.later[NOT_TOLD.format(condition.name, condition.of)] = None
     if not found.complete:
@@ -155,14 +172,15 @@ def block(condition: Condition, changes: Changes) -> Block:
 
 def ending(results: Results, last: Condition, changes: Changes) -> Results:
     """The results with a sentence on the condition that was to end the motion."""
-    began = "; it is true from the start, which ends nothing" if changes.begins else ""
+    began = "; it is true at the start, which ends nothing" if changes.begins else ""
     became = np.flatnonzero(changes.to)
     if len(became):
         k = int(became[0])
-        message = f"ended at t = {instant(float(changes.times[k]), float(changes.error[k]))} s: until {last.text}{began}"
+        at = instant(float(changes.times[k]), float(changes.error[k]))
+        message = f"ended at t = {at} s: until {last.text}{began}"
         status: Status = {"code": results.status["code"], "message": message}
     else:
-        message = f"until {last.text}: this did not become true{began}"
+        message = f"the condition to end, {last.text}, did not become true{began}"
         status = {"code": results.status["code"], "message": f"{results.status['message']}; {message}"}
     return changed(results, status=status, model=results.model | {"until": [message]})
 

@@ -24,13 +24,16 @@ def conditions(draft: DraftDocument) -> Iterator[tuple[Path_, object]]:
         yield ("analysis", "events", name), given
 
 
-def on_results(draft: DraftDocument) -> Iterator[tuple[Path_, f.OfResults, Outcome | UnknownWord | None]]:
-    """Those on numbers of the results, with what their paths lead to."""
+def on_results(
+    draft: DraftDocument,
+) -> Iterator[tuple[Path_, f.OfResults, Outcome | None, UnknownWord | None]]:
+    """Those on numbers of the results, with the quantity at their paths, or the unknown word."""
     for path, given in conditions(draft):
         if isinstance(given, f.OfResults):
-            from heuncli.spec.rules.outcome import outcome  # a run without expectations starts faster
+            from heuncli.spec.rules.outcome import Outcome, outcome  # a run without any starts faster
 
-            yield path, given, outcome(given.of, draft)
+            result = outcome(given.of, draft)
+            yield path, given, *((result, None) if isinstance(result, Outcome) else (None, result))
 
 
 @rule("event-name")
@@ -41,7 +44,8 @@ def event_name(draft: DraftDocument) -> Iterator[Violation]:
         if not is_name(name):
             yield Violation(path, f"'{name}' is not a name", "a name is a letter, then letters, digits and _", key=True)
         elif name == UNTIL:
-            yield Violation(path, f"'{name}' is taken: results tell by it what ended the motion", "call it stop, say", key=True)
+            message = f"'{name}' is taken: by it results tell what ended the motion"
+            yield Violation(path, message, f"call it {name}_1, say", key=True)
 
 
 @rule("event-motion")
@@ -51,43 +55,45 @@ def event_motion(draft: DraftDocument) -> Iterator[Violation]:
     if kind == "motion" or "analysis" in draft.unread:
         return
     for path, _ in conditions(draft):
-        message = f"{path[-1]}: {'an impulse' if kind == 'impulse' else f'a {kind}'} is one instant, at which nothing changes"
-        yield Violation(path, message, "give analysis a duration, the longest that is waited", key=True)
+        message = f"{path[-1]}: type: {kind} is one instant, at which nothing changes"
+        yield Violation(path, message, "give analysis a duration, the longest that is to be waited", key=True)
 
 
 @rule("event-path")
 def event_path(draft: DraftDocument) -> Iterator[Violation]:
-    """`of` leads to one number of each instant: of a vector its magnitude is taken, of a run of cuts its whole stretch."""
-    from heuncli.results_schema import CUT, SPACE  # already there where it is needed
-
-    for path, given, found in on_results(draft):
+    """`of` leads to a number at each instant: of a vector its magnitude counts, of a run of cuts its whole stretch."""
+    for path, given, found, unknown in on_results(draft):
         where = (*path, "of")
-        if isinstance(found, tuple) and hasattr(found, "word"):
-            known = found.known
-            if found.word:
-                hint = did_you_mean(found.word, known, "words here") if known else "the path ends before it"
-                yield Violation(where, f"'{given.of}': '{found.word}' is not a result", hint)
-            else:
-                yield Violation(where, f"'{given.of}' is not a number", f"it goes on with one of {', '.join(known)}")
+        if unknown is not None:
+            yield nowhere(where, given.of, unknown.word, unknown.known)
         elif found is None:
             if given.of.split(".")[0] not in draft.unread:
-                yield Violation(where, f"'{given.of}': what it is, only the run can tell", "name a number of the results")
+                message = f"'{given.of}': only the run can tell what that is"
+                yield Violation(where, message, "name a number of joints, sections, coordinates, energy, ...")
         elif not found.timed:
             yield Violation(where, f"'{given.of}' does not run over the instants", "name a number that changes in time")
-        elif found.axes not in ((), (SPACE,), (CUT,), (CUT, SPACE)):
+        elif [axis.name for axis in found.axes].count("space") > 1:
             yield Violation(where, f"'{given.of}' is several numbers", f"name one of them, as {given.of}.x.x")
+
+
+def nowhere(path: Path_, of: str, word: str, known: list[str]) -> Violation:
+    """A path that leads nowhere."""
+    if not word:
+        return Violation(path, f"'{of}' is not a number", f"it goes on with one of {', '.join(known)}")
+    hint = did_you_mean(word, known, "words here") if known else "the path ends before it"
+    return Violation(path, f"'{of}': '{word}' is not a result", hint)
 
 
 @rule("event-limit")
 def event_limit(draft: DraftDocument) -> Iterator[Violation]:
     """A number is below one limit or above one, in its dimension."""
-    for path, given, found in on_results(draft):
+    for path, given, found, _ in on_results(draft):
         limits = [key for key in ("below", "above") if getattr(given, key) is not None]
         if len(limits) != 1:
             message = "both below and above" if limits else "neither below nor above"
             hint = "one event a limit" if limits else "{of: joints.wall.force.x, below: 0}"
             yield Violation(path, message, hint)
-        elif found is not None and hasattr(found, "dimensions"):
+        elif found is not None:
             from heuncli.spec.rules.expect import dimensions
 
             yield from dimensions((*path, limits[0]), getattr(given, limits[0]), found.dimensions)
