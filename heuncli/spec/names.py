@@ -48,7 +48,8 @@ class Names(NamedTuple):
 
 def names_in(spec: Spec) -> Names:
     """The same of a scene that was read."""
-    entries = {block: dict(getattr(spec, block)) for block in NAMED}
+    entries: dict[str, dict[str, Any]] = {block: dict(getattr(spec, block)) for block in NAMED}
+    entries["events"] = {condition.name: condition for condition in spec.analysis.conditions}
     points = {name: dict(body.points) for name, body in spec.bodies.items()} | {GROUND: dict(spec.ground.points)}
     return Names(entries, points, {name: joint.type for name, joint in spec.joints.items()})
 

@@ -5,7 +5,6 @@ from __future__ import annotations
 from collections.abc import Iterator
 from typing import TYPE_CHECKING
 
-from heuncli.nearest import did_you_mean
 from heuncli.spec import format as f
 from heuncli.spec.names import UNTIL, is_name
 from heuncli.spec.rules.registry import DraftDocument, Path_, Violation, rule
@@ -24,16 +23,13 @@ def conditions(draft: DraftDocument) -> Iterator[tuple[Path_, object]]:
         yield ("analysis", "events", name), given
 
 
-def on_results(
-    draft: DraftDocument,
-) -> Iterator[tuple[Path_, f.OfResults, Outcome | None, UnknownWord | None]]:
-    """Those on numbers of the results, with the quantity at their paths, or the unknown word."""
+def on_results(draft: DraftDocument) -> Iterator[tuple[Path_, f.OfResults, Outcome | UnknownWord | None]]:
+    """Those on numbers of the results, with what their paths lead to; None where only the run can tell."""
     for path, given in conditions(draft):
         if isinstance(given, f.OfResults):
-            from heuncli.spec.rules.outcome import Outcome, outcome  # a run without any starts faster
+            from heuncli.spec.rules.outcome import outcome  # a run without any starts faster
 
-            result = outcome(given.of, draft)
-            yield path, given, *((result, None) if isinstance(result, Outcome) else (None, result))
+            yield path, given, outcome(given.of, draft)
 
 
 @rule("event-name")
@@ -62,11 +58,13 @@ def event_motion(draft: DraftDocument) -> Iterator[Violation]:
 @rule("event-path")
 def event_path(draft: DraftDocument) -> Iterator[Violation]:
     """`of` leads to a number at each instant: of a vector its magnitude counts, of a run of cuts its whole stretch."""
-    for path, given, found, unknown in on_results(draft):
+    for path, given, found in on_results(draft):
+        from heuncli.spec.rules.outcome import Outcome, runs_of, wrong_path
+
         where = (*path, "of")
-        if unknown is not None:
-            yield nowhere(where, given.of, unknown.word, unknown.known)
-        elif found is None:
+        if (wrong := wrong_path(given.of, draft.names, runs_of(draft))) is not None:
+            yield Violation(where, *wrong)
+        elif not isinstance(found, Outcome):
             if given.of.split(".")[0] not in draft.unread:
                 message = f"'{given.of}': only the run can tell what that is"
                 yield Violation(where, message, "name a number of joints, sections, coordinates, energy, ...")
@@ -76,24 +74,18 @@ def event_path(draft: DraftDocument) -> Iterator[Violation]:
             yield Violation(where, f"'{given.of}' is several numbers", f"name one of them, as {given.of}.x.x")
 
 
-def nowhere(path: Path_, of: str, word: str, known: list[str]) -> Violation:
-    """A path that leads nowhere."""
-    if not word:
-        return Violation(path, f"'{of}' is not a number", f"it goes on with one of {', '.join(known)}")
-    hint = did_you_mean(word, known, "words here") if known else "the path ends before it"
-    return Violation(path, f"'{of}': '{word}' is not a result", hint)
-
-
 @rule("event-limit")
 def event_limit(draft: DraftDocument) -> Iterator[Violation]:
     """A number is below one limit or above one, in its dimension."""
-    for path, given, found, _ in on_results(draft):
+    for path, given, found in on_results(draft):
         limits = [key for key in ("below", "above") if getattr(given, key) is not None]
         if len(limits) != 1:
             message = "both below and above" if limits else "neither below nor above"
             hint = "one event a limit" if limits else "{of: joints.wall.force.x, below: 0}"
             yield Violation(path, message, hint)
-        elif found is not None:
+        else:
             from heuncli.spec.rules.expect import dimensions
+            from heuncli.spec.rules.outcome import Outcome
 
-            yield from dimensions((*path, limits[0]), getattr(given, limits[0]), found.dimensions)
+            known = found.dimensions if isinstance(found, Outcome) else ()
+            yield from dimensions((*path, limits[0]), getattr(given, limits[0]), known)
