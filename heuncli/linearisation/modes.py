@@ -35,7 +35,7 @@ def row(mode: Mode, shape: dict[str, complex]) -> dict[str, Any]:
         "growth": mode.growth,
         "kind": mode.kind,
         "error": mode.error,
-        "shape": {name: [x.real, x.imag] for name, x in shape.items()},
+        "shape": {name: [x.real + 0.0, x.imag + 0.0] for name, x in shape.items()},
     }
 
 

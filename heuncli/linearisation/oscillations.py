@@ -58,7 +58,7 @@ def oscillations(system: Reduced) -> list[Mode]:
         found = without_rates(-system.A21, system.terms)
     else:
         found = with_rates(system)
-    modes = [mode_of(system, *row) for row in found]
+    modes = [mode_of(system, value, float(error), x, free) for value, error, x, free in found]
     return sorted(modes, key=lambda mode: (mode.kind != "free", mode.frequency, abs(mode.growth)))
 
 

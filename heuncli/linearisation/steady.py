@@ -10,6 +10,7 @@ from __future__ import annotations
 import numpy as np
 
 from heuncli import tolerances
+from heuncli.errors import Problem, SolveError
 from heuncli.integration.evaluator import Evaluator, Recovered
 from heuncli.linearisation.displace import displaced
 from heuncli.linearisation.linearise import Linearised, linearised
@@ -49,8 +50,11 @@ class Looked:
 
 
 def look(scene: PreparedScene, evaluator: Evaluator, t: float, state: Array, holding: Array) -> Looked:
-    """Linearise a scene in a state."""
+    """Linearise a scene in a state. Raises SolveError [no-modes] where its laws have no slope."""
     found, at = equations(evaluator, t, state, holding)
+    if not (np.isfinite(found.by_place).all() and np.isfinite(found.by_rate).all()):
+        message = "a load has no slope there (a root at 0, an angle of a point that lies on the axis)"
+        raise SolveError(Problem("no-modes", f"{message}: oscillations about it are not linear, however small"))
     return Looked(scene, evaluator, t, holding, found, at, reduced(scene, found, at))
 
 
@@ -93,13 +97,13 @@ def goes_on_as_it_is(here: Looked) -> bool:
         dt = phase / fastest(here)
         y, turn = carried_on(here, dt)
         found, at = equations(here.evaluator, here.t + dt, y, here.holding)
-        if np.abs(found.state - y).max(initial=0.0) > tolerances.STEADY:
+        if np.abs(found.state - y).max(initial=0.0) > tolerances.GOES_ON:
             return False  # it did not close
         T = turn @ own.tangent
         later = on_basis(here.layout, found, at, T, turn @ own.drift)
         again = (later.A11, later.A21, later.A22, later.pushed, T.T @ found.mass @ T)
         for (a, scale), b in zip(parts, again, strict=True):
-            if np.abs(a - b).max(initial=0.0) > tolerances.STEADY * scale:
+            if np.abs(a - b).max(initial=0.0) > tolerances.GOES_ON * scale:
                 return False
     return True
 

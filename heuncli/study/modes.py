@@ -8,8 +8,11 @@ from __future__ import annotations
 
 from typing import Literal
 
+import numpy as np
+
 from heuncli import tolerances
 from heuncli.errors import Problem, SolveError
+from heuncli.integration.solvable import Asked, require_solvable
 from heuncli.linearisation.modes import Modes, most, shape_of
 from heuncli.linearisation.oscillations import oscillations
 from heuncli.linearisation.shapes import coordinates
@@ -61,6 +64,8 @@ def state_of(setup: Setup) -> tuple[Looked, Literal["rest", "state"]]:
     """The scene in the state that it oscillates about."""
     runner, layout = setup.runner, setup.scene.layout
     t = float(setup.spec.analysis.times[0]) if setup.spec.analysis.type == "state" else 0.0
+    at = runner.recovered(np.array([t]), layout.y0[None, :])
+    require_solvable(setup.scene, at, Asked("accelerations of the start"))
     here = look(setup.scene, runner, t, layout.y0, runner.start_holding)
     reason = restless(here)
     if reason is None:

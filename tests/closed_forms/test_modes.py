@@ -260,3 +260,64 @@ def test_parallelogram() -> None:
     near(frequencies(told), [math.sqrt(G * (mc * l + m * l) / inertia)])
     shape = told.shapes[0]
     assert all(abs(shape[f"{j}.angle"] - s * shape["A.angle"]) <= 1e-12 for j, s in (("B", 1), ("C", -1), ("D", -1)))
+
+
+def cantilever(n: int) -> dict[str, Any]:
+    """A bar of length, mass and EI 1 in n links, springs n EI about the hinges between, 2 n EI at the wall."""
+    h = 1.0 / n
+    link = {"mass": h, "center": [h / 2, 0, 0], "inertia": [0, h**3 / 12, h**3 / 12],
+            "points": {"a": [0, 0, 0], "b": [h, 0, 0]}}  # fmt: skip
+    ends = ["ground.O", *(f"l{i}.b" for i in range(n - 1))]
+    return {
+        "ground": {"points": {"O": [0, 0, 0]}},
+        "bodies": {f"l{i}": {**link, "position": [i * h, 0, 0]} for i in range(n)},
+        "joints": {f"h{i}": {"type": "pin", "axis": [0, 0, 1], "from": a, "to": f"l{i}.a"} for i, a in enumerate(ends)},
+        "forces": {
+            f"k{i}": {"type": "turn_spring", "joint": f"h{i}", "stiffness": n * (1.0 if i else 2.0)} for i in range(n)
+        },
+    }
+
+
+def test_beam_of_links() -> None:
+    """Euler's cantilever, w = 1.8751^2, 4.6941^2, 7.8548^2: the error falls with the square of the links' length."""
+    wanted = np.array([1.8751040687119611, 4.694091132974174, 7.854757438237613]) ** 2
+    coarse, fine = (np.array(frequencies(found(cantilever(n)))[:3]) for n in (20, 40))
+    assert np.abs((coarse - wanted) / (fine - wanted) - 4.0).max() <= 0.2
+    assert np.abs((4.0 * fine - coarse) / 3.0 - wanted).max() <= 1e-3 * wanted.max()
+
+
+def porter(w: float) -> tuple[dict[str, Any], float]:
+    """Porter's governor at its pose, cos = (m + M) g / (m l w^2), and the square of its frequency."""
+    l, m, M = 0.3, 1.0, 5.0
+    c = (m + M) * G / (m * l * w * w)
+    s = math.sqrt(1.0 - c * c)
+    arm = {"mass": m, "inertia": [0, 0, 0]}
+    low = [0, 0, -2 * l * c]
+    pin = {"type": "pin", "axis": [0, 1, 0], "from": "spindle.head"}
+    balls = {"left": [-l * s, 0, -l * c], "right": [l * s, 0, -l * c]}
+    scene = {
+        "gravity": [0, 0, -G],
+        "ground": {"points": {"O": [0, 0, 0]}},
+        "bodies": {
+            "spindle": {"mass": 2, "center": [0, 0, 0], "inertia": [1, 1, 1], "points": {"head": [0, 0, 0]}},
+            "sleeve": {"mass": M, "center": low, "inertia": [1, 1, 1], "points": {"eye": low}},
+            **{name: {**arm, "center": at, "points": {"head": [0, 0, 0], "ball": at}} for name, at in balls.items()},
+        },
+        "joints": {
+            "bearing": {"type": "pin", "axis": [0, 0, 1], "from": "ground.O", "to": "spindle.head"},
+            "guide": {"type": "slide", "axis": [0, 0, 1], "from": "spindle.head", "to": "sleeve.eye"},
+            **{f"{name}_arm": {**pin, "to": f"{name}.head"} for name in balls},
+            **{f"{name}_link": {"type": "rod", "from": f"{name}.ball", "to": "sleeve.eye"} for name in balls},
+        },
+        "drives": {"motor": {"joint": "bearing", "angle": f"{w}*t"}},
+    }  # fmt: skip
+    inertia = 2.0 * m * l * l + 4.0 * M * l * l * s * s
+    stiffness = 2.0 * (m + M) * G * l * c - 2.0 * m * l * l * w * w * (2.0 * c * c - 1.0)
+    return scene, stiffness / inertia
+
+
+@pytest.mark.parametrize("w", [16.0, 20.0, 30.0])
+def test_porters_governor(w: float) -> None:
+    """Closed chains on a spindle that turns: second derivatives of potential and centrifugal potential."""
+    scene, square = porter(w)
+    near(frequencies(found(scene)), [math.sqrt(square)])

@@ -840,7 +840,7 @@ EXEMPT = {
 }
 # Those that decide one, and have no scene at their boundary yet.
 WANTED = {
-    "STEADY": "whether what moves steadily goes on in the same way",
+    "GOES_ON": "whether what moves steadily goes on in the same way",
     "STILL": "whether what rates of rounding ask for is met, where a blow has ended all motion",
     "NEIGHBOUR": "which rank is the generic one, where a machine can hardly leave its singular start",
     "MOVES": "whether a displaced pose counts",
