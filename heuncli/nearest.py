@@ -16,7 +16,7 @@ def nearest(word: str, known: Iterable[str]) -> str | None:
     for name in known:
         if name.lower() == word.lower():
             return name
-    matches = difflib.get_close_matches(word, known, 1, 0.6)
+    matches = difflib.get_close_matches(word, known, 1, 0.65)
     return matches[0] if matches else None
 
 

@@ -116,17 +116,18 @@ def _entry(path: str, spec: Spec) -> Entry:
     if entry is not None and not rest:
         return entry
     names = [".".join((*block, name)) for block, own in known.items() if block[0] == words[0] for name in own]
-    hint: str | None
+    message, hint = f"--only {path}: not an entry of the results", None
     if entry is not None:
         hint = f"say {'.'.join(entry)}; --measure prints single numbers"
     elif words[0] not in REPORT_OF:
+        message = f"--only {path}: known: {', '.join((*REPORTS, SHARES))}, or entries of them, as joints.NAME"
         hint = _meant(path, known)
     else:
         hint = did_you_mean(path, names, "entries") if names else f"the scene has no {words[0]}"
-    raise UsageError(Problem("bad-option", f"--only {path}: not an entry of the results", hint=hint))
+    raise UsageError(Problem("bad-option", message, hint=hint))
 
 
-def _meant(path: str, known: Mapping[Entry, Mapping[str, Any]]) -> str:
+def _meant(path: str, known: Mapping[Entry, Mapping[str, Any]]) -> str | None:
     """What may be meant by a path of `--only` that begins with no block."""
     from heuncli.path_hints import meant  # only on the way to an error
 
@@ -134,8 +135,7 @@ def _meant(path: str, known: Mapping[Entry, Mapping[str, Any]]) -> str:
     if entry is not None:
         return f"did you mean {'.'.join(entry_at(entry.split('.'), known)[0] or ())}?"
     near = nearest(path, (*REPORTS, SHARES))
-    known_reports = f"known: {', '.join((*REPORTS, SHARES))}; entries of them as joints.NAME"
-    return f"did you mean {near}?" if near else known_reports
+    return f"did you mean {near}?" if near else None
 
 
 def _report(request: Run, form: str, study: Study, labels: Labels, wanted: frozenset[str]) -> str:

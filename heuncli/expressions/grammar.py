@@ -65,6 +65,7 @@ OTHER_NAMES = {  # what people write who come from elsewhere
     "arcsin": "asin", "arccos": "acos", "arctan": "atan", "arctan2": "atan2", "ln": "log", "fabs": "abs", "sgn": "sign",
     "heaviside": "step", "time": "t", "PI": "pi", "Pi": "pi", "π": "pi", "degrees": "deg", "pow": "**", "sqr": "**2",
 }  # fmt: skip
+LIBRARIES = frozenset({"math", "np", "numpy", "sp", "Math"})  # whose functions are written with a dot elsewhere
 
 TOKEN = re.compile(
     r"\s*(?:(?P<number>(?:\d+\.?\d*|\.\d+)(?:[eE][+-]?\d+)?)|(?P<name>[^\W\d]\w*)|(?P<mark>\*\*|[<>=!]=|//|&&|\|\||\S))"
@@ -184,6 +185,10 @@ class _Parser:
         if not self.token:
             return self.syntax("it ends too early")
         hint = hints.get(self.token)
+        if self.token == "%" and self.at == len(self.tokens) - 1:
+            hint = "a part of a hundred is written as 0.5 for 50 %"
+        if hint is None and self.kind == "name" and self.at and self.tokens[self.at - 1][0] != "number":
+            hint = self.product_hint()
         if (
             hint is None
             and self.kind in ("name", "number")
@@ -193,11 +198,24 @@ class _Parser:
             before = self.tokens[self.at - 1][1]
             known = self.token in self.scope.parameters or self.token in RESERVED
             hint = (None if known else in_si(before, self.token)) or f"for a product write {before}*{self.token}"
+        if hint is None:
+            hint = self.product_hint() if self.at else None
         if hint is None and self.token == ",":
             hint = self.decimal(self.at)
+        if hint is None and self.token == "if":
+            hint = "a value by cases is: a if c else b"
         if hint is None and self.token == "." and self.at and self.tokens[self.at - 1][1] == ")":
             hint = "only a joint has coordinates: shaft.angle, guide.travel"
         return self.syntax(f"'{self.token}' is not expected here", hint)
+
+    def product_hint(self) -> str | None:
+        """A hint for 2(t + 1), and for a unit behind an expression."""
+        kind, before, _ = self.tokens[self.at - 1]
+        if self.token == "(" and (kind == "number" or before == ")"):
+            return f"for a product write {before}*("
+        if before in (")", "t") and self.kind == "name" and in_si("", self.token) is not None:
+            return f"an expression is taken in SI: leave {self.token} out"
+        return None
 
     def decimal(self, comma: int) -> str | None:
         """A hint for 1,5: the comma stands right between two numbers."""
@@ -341,6 +359,8 @@ class _Parser:
 
     def call(self, name: str) -> Part:
         begin = self.at - 2
+        if name in self.scope.parameters or name in ("t", *CONSTANTS):
+            raise Finding("unknown-name", f"'{name}' is not a function", f"for a product write {name}*(...)")
         if name not in ARITY:
             raise self.unknown(name, ARITY, "function")
         if name == "table":
@@ -392,7 +412,7 @@ class _Parser:
         if not self.scope.in_time:
             raise Finding("not-in-time", f"{joint}.{quantity} may stand only in a value in time (forces, drives)")
         if joint not in joints:
-            hint = did_you_mean(joint, joints, "joints")
+            hint = f"write {quantity}" if joint in LIBRARIES else did_you_mean(joint, joints, "joints")
             raise Finding("unknown-name", f"'{joint}.{quantity}': '{joint}' is not a joint", hint)
         words = COORDINATES.get(joints[joint], ())
         if quantity not in words:

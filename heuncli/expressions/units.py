@@ -124,6 +124,8 @@ SPELLINGS = {
 HINTS = {
     "Hz": "as an angular velocity write 2*pi*50 for 50 turns a second, or 3000 rpm",
     "t": "a thousand kilograms are '1 tonne'; t is the time: write 2*t for a multiple of it",
+    "grad": "a degree is deg",
+    "Grad": "a degree is deg",
     "kgf": "write the force in N",
     "kp": "write the force in N",
 }
@@ -158,6 +160,16 @@ def in_si(figure: str, symbol: str, rest: str = "") -> str | None:
     except ValueError:
         written = f"{figure}*{size!r}" if figure else repr(size)
     return f"units do not stand inside expressions: write {written}{rest} in SI, or name {named} under parameters"
+
+
+def spelled(unit: str) -> str | None:
+    """A unit as it is written here, for kgm2, kg*m2, g/cm3, kgm^2; None where it is no other than it was."""
+    powers = re.sub(r"(?<=[^\W\d])([2-4])(?!\w)", r"^\1", re.sub(r"\bkgm(?=\b|\d)", "kg*m", unit))
+    try:
+        parse_unit(powers)
+    except Finding:
+        return None
+    return powers if powers != unit else None
 
 
 def parse_unit(text: str) -> tuple[float, Dimension]:

@@ -13,6 +13,7 @@ from heuncli.spec.fields import Context, Model, keys_of
 from heuncli.spec.quantity import kind_of
 from heuncli.spec.rules.registry import Path_, Violation
 from heuncli.spec.verdicts import unknown_key, unknown_type, verdicts
+from heuncli.spec.words import FORMS
 
 Report = Callable[[str, Violation], None]
 
@@ -88,9 +89,8 @@ class Reader:
         """A block of named entries."""
         entries = self.data.get(block, {})
         if type(entries) is not dict:
-            self.report(
-                "wrong-kind", Violation((block,), f"expected a mapping, found {kind_of(entries)}", "its keys are names")
-            )
+            hint = f"each under a name of its own: {block}: {{NAME: {{...}}}}"
+            self.report("wrong-kind", Violation((block,), f"expected a mapping, found {kind_of(entries)}", hint))
             return {}
         read: dict[str, Any] = {}
         for name, data in entries.items():
@@ -115,7 +115,8 @@ class Reader:
         """The list of expectations, by their indices in it."""
         items = self.data.get("expect", [])
         if type(items) is not list:
-            self.report("wrong-kind", Violation(("expect",), f"expected a list, found {kind_of(items)}"))
+            message = f"expected a list, found {kind_of(items)}"
+            self.report("wrong-kind", Violation(("expect",), message, FORMS["expect"]))
             return {}
         read = {i: self.model(("expect", i), item, f.Expect) for i, item in enumerate(items)}
         return {i: item for i, item in read.items() if item is not None}

@@ -5,6 +5,7 @@ Each reads by way of the validation's context, in which the parameters, joints a
 
 from __future__ import annotations
 
+from collections.abc import Collection, Mapping
 from typing import Annotated, Any
 
 from pydantic import BaseModel, BeforeValidator, ConfigDict, Discriminator, Tag
@@ -12,17 +13,20 @@ from pydantic_core import core_schema
 
 from heuncli.errors import Finding
 from heuncli.expressions import units as u
+from heuncli.expressions.grammar import NONE
 from heuncli.expressions.programs import Expression
 from heuncli.records import record
 from heuncli.spec.quantity import Scope, condition, in_time, kind_of, number, unit_in
+from heuncli.spec.words import FORMS
 
 
 @record
 class Context:
-    """What values may refer to: on loading, and in time."""
+    """What values may refer to: on loading, and in time; the points of each body and of the ground, for hints."""
 
     load: Scope
     time: Scope
+    points: Mapping[str, Collection[str]] = NONE
 
 
 class Model(BaseModel):
@@ -96,7 +100,7 @@ class InParts(Value):
 
     def read(self, value: Any, info: Any) -> list[Any]:
         if type(value) is not list:
-            raise Finding("wrong-kind", f"expected a list, found {kind_of(value)}")
+            raise Finding("wrong-kind", f"expected a list, found {kind_of(value)}", FORMS["shapes"])
         return value
 
 
@@ -195,23 +199,39 @@ class End(Model):
     at: PointOrName | None = None
 
 
-def split_end(value: Any) -> Any:
+def split_end(value: Any, info: Any) -> Any:
     """'crank.pin' as {body: crank, at: pin}."""
+    if type(value) is list:
+        hint = f"a point of the ground is {{body: ground, at: {in_brackets(value)}}}"
+        raise Finding("end", "an end is no list", hint)
     if type(value) is not str:
         return value
     body, dot, point = value.partition(".")
     if not dot or not body or not point or "." in point:
-        raise Finding(
-            "end", f"'{value}' is not an end", "an end is body.point, ground.point or {body: name, at: [x, y, z]}"
-        )
+        raise Finding("end", f"'{value}' is not an end", end_hint(value, info.context.points))
     return End.model_construct(body=body, at=point)
 
 
-def split_body_or_end(value: Any) -> Any:
+def in_brackets(values: list[Any]) -> str:
+    return f"[{', '.join(map(str, values))}]" if len(values) == 3 else "[x, y, z]"
+
+
+def end_hint(word: str, points: Mapping[str, Collection[str]]) -> str:
+    """Which ends a word may stand for: the points of a body, or the point of that name."""
+    own = [f"{word}.{point}" for point in points.get(word, ())]
+    own += [f"{body}.{word}" for body, names in points.items() if word in names]
+    if own:
+        return f"did you mean {', or '.join(own[:4])}?"
+    if word in points:
+        return f"name a point under {'ground' if word == 'ground' else f'bodies: {word}'}: points: {{top: [0, 0, 0]}}"
+    return "an end is body.point, ground.point or {body: name, at: [x, y, z]}"
+
+
+def split_body_or_end(value: Any, info: Any) -> Any:
     """'crank' as {body: crank}, 'crank.pin' as {body: crank, at: pin}."""
     if type(value) is str and "." not in value:
         return End.model_construct(body=value, at=None)
-    return split_end(value)
+    return split_end(value, info)
 
 
 def two_limits(value: Any) -> Any:

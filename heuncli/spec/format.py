@@ -61,6 +61,7 @@ from heuncli.spec.fields import (
     Velocity,
     VelocityInTime,
 )
+from heuncli.spec.words import SEVERAL
 
 Frame = Literal["world", "body"]
 Report = Literal[
@@ -510,7 +511,9 @@ class Expect(Model):
     def says_what(cls, data: Any) -> Any:
         """It is something, or it stays below or above something: null is something, too."""
         if type(data) is dict and not {"is", "below", "above"} & data.keys() and "of" in data:
-            raise Finding("missing-key", "'is' is missing", "is: a number, a list or null; or below: and above: bounds")
+            other = next((key for key in data if {"is", "below", "above"} & {*SEVERAL.get(str(key), ())}), None)
+            hint = "is: a number, a list or null; or below: and above: bounds"
+            raise Finding("missing-key", "'is' is missing", f"{hint} ('{other}' means nothing)" if other else hint)
         return data
 
 

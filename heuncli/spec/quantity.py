@@ -9,7 +9,7 @@ from typing import Any
 from heuncli.errors import Finding
 from heuncli.expressions.grammar import RESERVED, WORDS, Follows, Scope, compile_expression, told_of
 from heuncli.expressions.programs import Expression
-from heuncli.expressions.units import Dimension, describe, in_si, parse_unit, si_unit
+from heuncli.expressions.units import Dimension, describe, in_si, parse_unit, si_unit, spelled
 from heuncli.records import replace
 
 # A number and then something that begins like a unit; "2 if t < 1 else 3" is an expression all the same.
@@ -97,7 +97,9 @@ def measure(figure: str, unit: str, scope: Scope) -> tuple[float, Dimension]:
     try:
         size, dimension = parse_unit(unit)
     except Finding as finding:
-        hint = product_hint(figure, unit, scope) or inside_hint(figure, unit) or finding.hint
+        written = spelled(unit)
+        hint = f"write {figure.strip()} {written}" if written else product_hint(figure, unit, scope)
+        hint = hint or inside_hint(figure, unit) or finding.hint
         raise Finding(finding.code, finding.message, hint) from None
     return finite(float(figure.replace(" ", "")) * size), dimension
 

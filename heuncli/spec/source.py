@@ -201,6 +201,12 @@ def yaml_hint(text: str, line: int, what: str) -> str | None:
     return None
 
 
+ALIAS = (
+    "name the value once under parameters and use the name; a program writes the spec as JSON, which is read, too, "
+    "or tells its YAML library to write no aliases (PyYAML: yaml.Dumper.ignore_aliases = lambda *_: True)"
+)
+
+
 class Frame:
     """An open mapping or list; skipped: the value of a key that was refused."""
 
@@ -238,8 +244,7 @@ class Builder:
         elif kind is events.MappingEndEvent or kind is events.SequenceEndEvent:
             self.stack.pop()
         elif kind is events.AliasEvent:
-            hint = "name the value once under parameters and use the name"
-            self.problems.append(self.problem("alias", f"aliases (*{event.anchor}) are not read", event, hint=hint))
+            self.problems.append(self.problem("alias", f"aliases (*{event.anchor}) are not read", event, hint=ALIAS))
             top = self.stack[-1] if self.stack else None
             if top is not None and top.key is None and type(top.container) is dict:  # it stands for a key
                 top.key, top.skipped = "", True
@@ -253,8 +258,7 @@ class Builder:
     def check(self, event: Any) -> None:
         """No anchors, no tags."""
         if event.anchor is not None:
-            hint = "name the value once under parameters and use the name"
-            self.problems.append(self.problem("alias", f"anchors (&{event.anchor}) are not read", event, hint=hint))
+            self.problems.append(self.problem("alias", f"anchors (&{event.anchor}) are not read", event, hint=ALIAS))
         if event.tag is not None and event.tag != "!":
             tag = event.tag.replace("tag:yaml.org,2002:", "!!")
             hint = "values are plain numbers and texts; a value used often belongs into parameters"

@@ -9,16 +9,18 @@ from typing import Annotated, Any, Union, get_args, get_origin
 from pydantic import ValidationError
 
 from heuncli.errors import Finding
-from heuncli.nearest import did_you_mean, nearest
+from heuncli.nearest import did_you_mean
 from heuncli.spec.fields import Model
+from heuncli.spec.hints import elsewhere, of_form, of_key, of_missing, of_word
 from heuncli.spec.quantity import Follows, kind_of
 from heuncli.spec.rules.registry import Path_, Violation
-from heuncli.spec.words import ELSEWHERE, KEY_WORDS, LATER, TYPES
+from heuncli.spec.words import LATER, TYPES
 
 KINDS = {  # pydantic's error types for a value of the wrong kind
     "dict_type": "a mapping", "model_type": "a mapping", "model_attributes_type": "a mapping", "list_type": "a list",
     "tuple_type": "a list", "string_type": "a text", "bool_type": "true or false", "int_type": "a whole number",
 }  # fmt: skip
+PLACES = frozenset({"at", "from", "to", "about"})  # keys of points, by name or by coordinates
 FORMS = {"single": "a number", "list": "a list", "rows": "a list of lists", "mapping": "a mapping"}
 
 
@@ -47,17 +49,15 @@ def verdicts(error: ValidationError, data: Any, model: type[Model]) -> Iterator[
             message = f"{context['actual_length']} values instead of {context['max_length']}"
             cut = any(isinstance(part, str) and part.count("(") > part.count(")") for part in item["input"])
             hint = "inside [ ] an expression with a comma is written in quotes" if cut else None
+            if path[-1:] == ("inertia",):
+                hint = "the products of inertia stand beside it: deviation: [D1, D2, D3], D1 = sum of m*a2*a3"
             yield "wrong-length", Violation(path, message, hint)
         elif kind in ("union_tag_invalid", "union_tag_not_found"):
             yield "wrong-kind", wrong_form(path, context, data)
         elif kind == "literal_error":
             yield wrong_word(path, item["input"], str(context["expected"]))
         else:
-            expected = KINDS.get(kind, "something else")
-            hint = (
-                "write it in quotes" if expected == "a text" and isinstance(item["input"], int | float | bool) else None
-            )
-            yield "wrong-kind", Violation(path, f"expected {expected}, found {kind_of(item['input'])}", hint)
+            yield "wrong-kind", wrong_kind(path, KINDS.get(kind, "something else"), item["input"])
 
 
 def is_primary(code: str) -> bool:
@@ -94,9 +94,18 @@ def missing(path: Path_, key: str, owner: dict[str, Any]) -> tuple[str, Violatio
     """A key that must be there."""
     if key == "heun":
         return "missing-key", Violation(path, "'heun' is missing", "a spec starts with the line 'heun: 1'")
-    present = [k for k in owner if KEY_WORDS.get(k) == key]
-    hint = f"'{present[0]}' is called {key} here" if present else None
-    return "missing-key", Violation(path, f"'{key}' is missing", hint, key=True)
+    return "missing-key", Violation(path, f"'{key}' is missing", of_missing(key, owner), key=True)
+
+
+def wrong_kind(path: Path_, expected: str, found: Any) -> Violation:
+    """A value that is no list, no mapping, ..."""
+    key = next((part for part in reversed(path) if isinstance(part, str)), "")
+    hint = of_form(key, found, expected)
+    if expected == "a text" and isinstance(found, int | float | bool):
+        hint = "write it in quotes"
+        if key in PLACES:
+            expected, hint = "a point", "[x, y, z], or the name of a point"
+    return Violation(path, f"expected {expected}, found {kind_of(found)}", hint)
 
 
 def unknown_key(path: Path_, known: list[str]) -> tuple[str, Violation]:
@@ -104,18 +113,7 @@ def unknown_key(path: Path_, known: list[str]) -> tuple[str, Violation]:
     key = str(path[-1])
     if ("keys", key) in LATER:
         return "not-yet", Violation(path, f"not yet: {key}", key=True)
-    if key.isdigit() and key not in known:
-        comma = "a decimal is written with a point, as 1.5; a comma ends the value"
-        return "unknown-key", Violation(path, f"'{key}' is not known here", comma, key=True)
-    word = KEY_WORDS.get(key.lower())
-    hint = f"it is called {word} here" if word in known else elsewhere(key) or did_you_mean(key, known, "keys here")
-    return "unknown-key", Violation(path, f"'{key}' is not known here", hint, key=True)
-
-
-def elsewhere(word: str) -> str | None:
-    """Where what a word means is written, if not where it was."""
-    word = word.lower()
-    return ELSEWHERE.get(word) or (ELSEWHERE["stops"] if KEY_WORDS.get(word) == "stops" else None)
+    return "unknown-key", Violation(path, f"'{key}' is not known here", of_key(key, known), key=True)
 
 
 def unknown_type(entry: Any, block: str, known: list[str]) -> tuple[str, Violation]:
@@ -140,7 +138,8 @@ def wrong_form(path: Path_, context: dict[str, Any], data: Any) -> Violation:
     """A value in a form that its key does not take."""
     tags = [tag.strip(" '") for tag in str(context.get("expected_tags", "")).split(",")]
     forms = " or ".join("a name" if tag == "single" and path[-1:] == ("at",) else FORMS[tag] for tag in tags)
-    return Violation(path, f"expected {forms}, found {kind_of(at(data, path))}")
+    hint = of_form(str(path[-1]) if path else "", at(data, path), forms)
+    return Violation(path, f"expected {forms}, found {kind_of(at(data, path))}", hint)
 
 
 def article(word: str) -> str:
@@ -152,9 +151,8 @@ def wrong_word(path: Path_, word: Any, expected: str) -> tuple[str, Violation]:
     known = [word.strip(" '") for word in expected.replace(" or ", ", ").split(",")]
     if not isinstance(word, str):
         return "wrong-kind", Violation(path, f"expected one of {', '.join(known)}, found {kind_of(word)}")
-    near = nearest(word, known)
     message = f"'{word}' is not known here; known: {', '.join(known)}"
-    return "unknown-word", Violation(path, message, f"did you mean {near}?" if near else None)
+    return "unknown-word", Violation(path, message, of_word(word, known))
 
 
 def models_in(annotation: Any) -> tuple[int, list[type[Model]]]:

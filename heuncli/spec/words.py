@@ -32,10 +32,54 @@ KEY_WORDS = {
     "position": "travel", "displacement": "travel", "distance": "length", "moment": "couple", "torque": "couple",
     "when": "time", "instant": "time", "t": "time", "point": "on", "one_sided": "tension_only", "slack": "tension_only",
 }  # fmt: skip
+SEVERAL = {  # words that mean one thing here and another there, the likeliest first
+    "value": ("vector", "is", "value"), "vector": ("value",), "force": ("vector", "value"), "path": ("of",),
+    "what": ("of",), "quantity": ("of",), "result": ("of",), "body": ("on",), "at": ("on",), "where": ("on",),
+    "damping": ("coefficient",), "coefficient": ("damping",), "c": ("coefficient",), "d": ("coefficient", "damping"),
+    "l0": ("length",), "natural_length": ("length",), "free": ("length",), "rpm": ("rate",), "n": ("rate",),
+    "omega": ("rate",), "velocity": ("rate", "speed"), "angular_velocity": ("rate",), "solver": ("method", "analysis"),
+    "integrator": ("method",), "t_max": ("duration",), "tmax": ("duration",), "stop": ("duration",),
+    "t_stop": ("duration",), "simulation": ("analysis",), "settings": ("analysis",), "run": ("analysis",),
+    "options": ("analysis",), "g": ("gravity",), "world": ("ground",), "base": ("ground",), "frame": ("ground",),
+    "springs": ("forces",), "dampers": ("forces",), "actuators": ("forces",), "materials": ("parameters",),
+    "output": ("report",), "outputs": ("report",), "equals": ("is",), "expected": ("is",), "max": ("below",),
+    "min": ("above",), "less": ("below",), "greater": ("above",), "j": ("inertia",), "i": ("inertia",),
+    "m": ("mass",), "r": ("radius",), "start": ("from",), "sides": ("size",), "pos": ("position",),
+    "pose": ("position",), "markers": ("points",), "frames": ("points",), "geometry": ("shapes",),
+    "shape": ("shapes",), "a": ("from",), "b": ("to",), "body1": ("from",), "body2": ("to",), "body_a": ("from",),
+    "body_b": ("to",), "kind": ("type",), "n_samples": ("samples",), "mode": ("type",),
+}  # fmt: skip
+WORDS = {  # of `type` under analysis, and the like
+    **dict.fromkeys(("dynamic", "dynamics", "transient", "simulation", "kinematic", "kinematics"), ("motion",)),
+    **dict.fromkeys(("static", "statics", "equilibrium", "steady"), ("rest", "state")),
+    "2d": ("planar",), "plane": ("planar",), "3d": ("spatial",), "space": ("spatial",), "local": ("body",),
+    "global": ("world",), "shock": ("impulse",),
+}  # fmt: skip
+FORMS = {  # what the values of some keys look like
+    "gravity": "it is a vector: [0, 0, -9.81]", "orientation": "as {axis: [0, 0, 1], angle: 60 deg}",
+    "inertia": "the moments about the axes [A1, A2, A3], or a 3x3 tensor in rows",
+    "report": "as [joints, energy]", "expect": "as [{of: joints.NAME.force.z, is: 9.81}]",
+    "shapes": "one shape is a list, too: [{type: cylinder, ...}]", "times": "as [0, 0.5, 1]",
+    "points": "by their names: {top: [0, 0, 0]}",
+}  # fmt: skip
+MISSING = {  # what a key is that must be there
+    "length": "the length at which it exerts no force", "vector": "three components, as [0, 0, -10]",
+    "on": "the point at which it acts: body.point", "speed": "the rate at which friction is nearly full, as 0.01",
+    "axis": "a direction, as [0, 0, 1]", "joint": "the name of the joint in which it acts",
+    "of": "the path of a result: joints.NAME.force.z",
+}  # fmt: skip
 ELSEWHERE = {  # keys that stand in another place than the one where they were written
     "stops": "limits of coordinates are a block of their own: stops: {buffer: {joint: guide, travel: [0, 0.2]}}",
     "restitution": "it stands at a rod with tension_only, or at a stop",
     "tension_only": "it stands at a joint of type rod",
+    "diameter": "write the radius, half of it", "length": "its ends are from and to",
+    "height": "its ends are from and to",
+    "torque": "a torque is a force of type torque; a drive prescribes the motion, and its torque comes out",
+    "on": "a torque acts in a joint; what acts on a body is a couple, type: couple",
+    "dt": "steps are chosen by the tolerance; samples is the number of instants told, times lists them",
+    "units": "units stand with the numbers, as 12 mm; plain numbers are SI; for tables: --units",
+    "mu": "friction takes the torque or force itself, as a number: mu times the load that presses",
+    "material": "a shape takes density: 7850 kg/m^3", "color": "shapes have no looks", "colour": "shapes have no looks",
 }
 JOINT_WORDS = SYNONYMS | dict.fromkeys(("cable", "rope", "string", "tether"), "rod, with tension_only: true")
 LATER = {  # of the format, but of a later version: (block or key, word)

@@ -168,7 +168,7 @@ def test_what_is_expected_at_an_instant_that_was_set_away_stops_no_run(heun: Heu
         (["run", "swinging.yaml", "--at", "1.5"], "the run goes from 0 to 1 s"),
         (["run", "swinging.yaml", "--at", "soon"], "expected numbers"),
         (["run", "hanging.yaml", "--tolerance", "-1"], "positive"),
-        (["run", "hanging.yaml", "--measure", "joints.pivt.force.z"], "no 'pivt'"),
+        (["run", "hanging.yaml", "--measure", "joints.pivt.force.z"], "'pivt' is not a result [unknown-path]"),
         (["run", "hanging.yaml", "--method", "rk4"], "not yet: a method other than auto and DOP853 [not-yet]"),
         (["run", "hanging.yaml", "-o", "hanging.yaml"], "the spec itself"),
         (["validate", "hanging.yaml", "wrong.yaml"], "wrong.yaml:9:"),

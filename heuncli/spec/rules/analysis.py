@@ -27,7 +27,8 @@ def times(draft: DraftDocument) -> Iterator[Violation]:
             elif i and t <= analysis.times[i - 1]:
                 yield Violation((*path, "times", i), f"times ascend, but {t:g} follows {analysis.times[i - 1]:g}")
         if analysis.times == [0.0] and analysis.type in (None, "motion"):
-            yield Violation((*path, "times"), "a motion that ends when it starts", "for one instant: type: state")
+            yield Violation((*path, "times"), "a motion that ends when it starts",
+                            "for the start alone: analysis: {type: state}")  # fmt: skip
     elif analysis.samples is not None:
         if analysis.duration is None:
             yield Violation(

@@ -15,7 +15,7 @@ from heuncli.spec.turns import principal
 @rule("no-bodies")
 def no_bodies(draft: DraftDocument) -> Iterator[Violation]:
     """A scene has bodies."""
-    if not draft.names.entries["bodies"]:
+    if not draft.names.entries["bodies"] and "bodies" not in draft.unread:
         yield Violation(
             (), "the scene has no bodies", "bodies: {bar: {mass: 1, center: [0, 0, 0], inertia: [0, 0, 0]}}"
         )

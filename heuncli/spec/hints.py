@@ -1,0 +1,84 @@
+"""Hints for what newcomers write: a key in another place, by another name, or with a value of another form."""
+
+from __future__ import annotations
+
+import re
+from collections.abc import Collection
+from typing import Any
+
+from heuncli.nearest import did_you_mean, nearest
+from heuncli.spec import format as f
+from heuncli.spec.fields import keys_of
+from heuncli.spec.words import ELSEWHERE, FORMS, KEY_WORDS, MISSING, SEVERAL, WORDS
+
+AXES = {"x": "[1, 0, 0]", "y": "[0, 1, 0]", "z": "[0, 0, 1]"}
+COORDINATES = frozenset({"angle", "rate", "travel", "speed"})
+
+
+def called(key: str, known: Collection[str]) -> str | None:
+    """What a key of another program is called here, if it is one of the known ones."""
+    word = key.lower()
+    return next((name for name in (KEY_WORDS.get(word), *SEVERAL.get(word, ())) if name in known), None)
+
+
+def of_key(key: str, known: Collection[str]) -> str | None:
+    """What to write in place of an unknown key."""
+    if key[:1].isdigit():
+        return "a decimal is written with a point, as 1.5; a comma ends the value"
+    word = called(key, known)
+    if word is not None:
+        return f"it is called {word} here"
+    return belonging(key, known) or elsewhere(key) or did_you_mean(key, known, "keys here")
+
+
+def belonging(key: str, known: Collection[str]) -> str | None:
+    """Where a key of the format belongs that stands in a wrong place."""
+    if "heun" in known:
+        for block, model in f.SINGLE.items():
+            word = key if key in keys_of(model) else called(key, keys_of(model))
+            if word is not None and (block == "analysis" or word == key):
+                return f"it belongs under {block}: {block}: {{{word}: ...}}"
+        if key in keys_of(f.Body):
+            return f"it belongs to a body: bodies: {{NAME: {{{key}: ...}}}}"
+    if key in COORDINATES and "initial" in known:
+        return f"the start of a coordinate is initial: {{{key}: ...}}"
+    if key == "initial" and "length" in known:
+        return "a rod starts as it is assembled, or with its length: ..."
+    if key == "initial" and {"from", "to"} <= set(known):
+        return (
+            "only a pin, slide or cylinder has coordinates; else the start is the body's: "
+            "bodies: {NAME: {orientation: ..., angular_velocity: [0, 0, 1]}}"
+        )
+    return None
+
+
+def elsewhere(word: str) -> str | None:
+    """Where what a word means is written, if not where it was."""
+    word = word.lower()
+    return ELSEWHERE.get(word) or (ELSEWHERE["stops"] if KEY_WORDS.get(word) == "stops" else None)
+
+
+def of_missing(key: str, present: Collection[str]) -> str | None:
+    """What a missing key is, or which one stands for it."""
+    other = next((name for name in present if called(name, [key])), None)
+    return f"'{other}' is called {key} here" if other is not None else MISSING.get(key)
+
+
+def of_form(key: str, found: Any, wanted: str) -> str | None:
+    """What a value should look like; wanted: "a list", "a mapping", ... as it is told."""
+    if wanted == "a list" and key in FORMS:
+        return FORMS[key]
+    if wanted == "a list" and isinstance(found, str) and re.fullmatch(r"[+-]?[xyzXYZ]", found.strip()):
+        axis = AXES[found.strip()[-1].lower()]
+        return f"the {found.strip()[-1].lower()} axis is {axis.replace('1', '-1') if found.strip()[0] == '-' else axis}"
+    if wanted == "a list" and isinstance(found, dict):
+        return "a list has a dash before each of its entries, or [ ] around them"
+    if wanted == "a list":
+        return "three components, as [0, 0, 1]" if not isinstance(found, str) else f"a list is [{found}, ...]"
+    return FORMS.get(key)
+
+
+def of_word(word: str, known: Collection[str]) -> str | None:
+    """Which of the allowed words was meant."""
+    near = next((name for name in WORDS.get(word.lower(), ()) if name in known), None) or nearest(word, known)
+    return f"did you mean {near}?" if near is not None else None

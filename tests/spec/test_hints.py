@@ -1,0 +1,143 @@
+"""What newcomers write first, and what they are told: where, and what to write instead."""
+
+from __future__ import annotations
+
+import json
+
+import pytest
+
+from heuncli.errors import SpecError
+from heuncli.spec.load import load
+
+ANALYSIS = "analysis: {duration: 2, samples: 11}\n"
+LUMP = "{mass: 1 kg, center: [0, 0, 0], inertia: [1, 1, 1], points: {p: [0, 0, 0]}}"
+SCENE = f"""\
+heun: 1
+gravity: [0, 0, -9.81]
+ground: {{points: {{O: [0, 0, 0]}}}}
+bodies:
+  bar:
+    shapes: [{{type: cylinder, from: [0, 0, 0], to: [0, 0, -1], radius: 10 mm, density: 7850 kg/m^3}}]
+    points: {{top: [0, 0, 0], end: [0, 0, -1]}}
+  ball: {LUMP}
+joints:
+  pivot: {{type: pin, from: ground.O, to: bar.top, axis: [0, 1, 0]}}
+{ANALYSIS}"""
+
+
+def told(text: str) -> dict[str, str]:
+    """The hints of all problems by 'path [code]'."""
+    with pytest.raises(SpecError) as caught:
+        load("x.yaml", text)
+    return {f"{p.location.path if p.location else ''} [{p.code}]": p.hint or "" for p in caught.value.problems}
+
+
+def hint(text: str) -> str:
+    found = told(text)
+    assert len(found) == 1, found
+    return next(iter(found.values()))
+
+
+@pytest.mark.parametrize("key", ["tolerance: 1e-8", "duration: 2", "samples: 5", "times: [0, 1]", "method: auto"])
+def test_a_key_of_the_analysis_at_the_top_is_sent_there(key: str) -> None:
+    word = key.partition(":")[0]
+    found = told(SCENE + f"{key}\n")
+    assert f"analysis: {{{word}: ...}}" in found[f"{word} [unknown-key]"]
+
+
+@pytest.mark.parametrize(
+    ("line", "path", "said"),
+    [
+        ("time: 2", "time [unknown-key]", "analysis: {duration: ...}"),
+        ("points: {a: [0, 0, 0]}", "points [unknown-key]", "belongs under ground"),
+        ("mass: 2", "mass [unknown-key]", "bodies: {NAME: {mass: ...}}"),
+        ("units: mm", "units [unknown-key]", "12 mm"),
+        ("report: joints", "report [wrong-kind]", "[joints, energy]"),
+        ("expect: {of: time, is: 1}", "expect [wrong-kind]", "[{of: "),
+        ("sections: {s: {body: bar, at: 0.5, normal: [0, 0, 1]}}", "sections.s.at [wrong-kind]", "[x, y, z]"),
+        ("drives: {d: {joint: pivot, torque: 5}}", "drives.d.torque [unknown-key]", "type torque"),
+        ("drives: {d: {joint: pivot, rpm: 1500}}", "drives.d.rpm [unknown-key]", "rate"),
+        ("forces: [{type: torque}]", "forces [wrong-kind]", "forces: {NAME: {...}}"),
+        ("forces: {f: {type: torque, on: bar, value: 5}}", "forces.f.on [unknown-key]", "couple"),
+        ("forces: {f: {type: damper, joint: pivot, damping: 5}}", "forces.f.damping [unknown-key]", "coefficient"),
+        ("forces: {f: {type: friction, joint: pivot, mu: 5, speed: 1}}", "forces.f.mu [unknown-key]", "mu times"),
+        ("forces: {f: {type: force, on: bar, vector: [0, 0, 1]}}", "forces.f.on [end]", "bar.top, or bar.end?"),
+        ("forces: {f: {type: force, on: bar.end, vector: 5}}", "forces.f.vector [wrong-kind]", "three components"),
+    ],
+)
+def test_a_line_more(line: str, path: str, said: str) -> None:
+    assert said in told(f"{SCENE}{line}\n")[path]
+
+
+@pytest.mark.parametrize(
+    ("given", "instead", "said"),
+    [
+        ("gravity: [0, 0, -9.81]", "gravity: -9.81", "[0, 0, -9.81]"),
+        ("axis: [0, 1, 0]}", "axis: y}", "the y axis is [0, 1, 0]"),
+        ("axis: [0, 1, 0]}", "axis: -z}", "the z axis is [0, 0, -1]"),
+        ("axis: [0, 1, 0]}", "axis: [0, 1, 0], angle: 60 deg}", "initial: {angle: ...}"),
+        ("joints:\n", "joints:\n  b: {type: ball, from: ground.O, to: ball.p, initial: {rate: 3}}\n", "orientation"),
+        ("type: pin", "type: revolute", "type: pin"),
+        ("type: pin", "type: fixed", "type: weld"),
+        ("from: ground.O", "from: O", "did you mean ground.O?"),
+        ("from: ground.O", "from: ground", "did you mean ground.O?"),
+        ("from: ground.O", "from: [0, 0, 1]", "{body: ground, at: [0, 0, 1]}"),
+        ("to: bar.top", "to: top", "did you mean bar.top?"),
+        (ANALYSIS, "analysis: {times: [0]}\n", "analysis: {type: state}"),
+        (ANALYSIS, "analysis: {type: dynamic, duration: 2}\n", "did you mean motion?"),
+        (ANALYSIS, "analysis: {duration: 2, dt: 0.01}\n", "samples"),
+        ("density: 7850 kg/m^3", "density: 7.85 g/cm3", "write 7.85 g/cm^3"),
+        ("inertia: [1, 1, 1]", "inertia: [1 kgm2, 1, 1]", "write 1 kg*m^2"),
+        ("inertia: [1, 1, 1]", "inertia: [1 kgm^2, 1, 1]", "write 1 kg*m^2"),
+        ("inertia: [1, 1, 1]", "inertia: [1 kg*m2, 1, 1]", "write 1 kg*m^2"),
+        ("inertia: [1, 1, 1]", "inertia: [1, 1, 1, 0, 0, 0]", "deviation"),
+        ("inertia: [1, 1, 1]", "inertia: {xx: 1}", "[A1, A2, A3]"),
+        ("mass: 1 kg", "mass: 1,5 kg", "a decimal is written with a point"),
+        ("bar:\n", "bar: &a\n", "JSON"),
+        ("shapes: [{", "orientation: 60 deg\n    shapes: [{", "{axis: [0, 0, 1], angle: 60 deg}"),
+        ("radius: 10 mm", "radius: 10 mm, diameter: 20 mm", "half of it"),
+    ],
+)
+def test_one_thing_wrong_has_one_hint(given: str, instead: str, said: str) -> None:
+    assert given in SCENE
+    assert said in hint(SCENE.replace(given, instead))
+
+
+@pytest.mark.parametrize(
+    ("written", "said"),
+    [
+        ("1.5t", "1.5*t"),
+        ("5*sin(2pi*t)", "2*pi"),
+        ("2(t + 1)", "2*("),
+        ("t(1)", "t*(...)"),
+        ("Sin(t)", "did you mean sin?"),
+        ("arcsin(t)", "asin"),
+        ("math.sin(t)", "write sin"),
+        ("t^2", "**"),
+        ("'1,5'", "1.5"),
+        ("5*sin(t) N", "leave N out"),
+        ("5 N * sin(t)", "name 5 N under parameters"),
+        ("50%", "0.5"),
+        ("'if(t > 1, 5, 0)'", "a if c else b"),
+        ("'t > 1 ? 5 : 0'", "a if c else b"),
+        ("5*pivot", "pivot.angle"),
+        ("5*time", "write t"),
+    ],
+)
+def test_an_expression_as_others_write_it(written: str, said: str) -> None:
+    force = f"forces: {{f: {{type: force, on: bar.end, vector: [{written}, 0, 0]}}}}\n"
+    assert said in hint(SCENE + force)
+
+
+def test_a_list_in_place_of_the_bodies_is_told_once() -> None:
+    assert hint("heun: 1\nbodies:\n  - {name: bar, mass: 1}\n") == "each under a name of its own: bodies: {NAME: {...}}"
+
+
+def test_json_is_read() -> None:
+    blocks = {"heun": 1, "bodies": {"bar": {"mass": 1.0, "center": [0, 0, 1e-3], "inertia": [1, 1, 1]}}}
+    assert load("x.json", json.dumps(blocks, indent=1)).bodies["bar"].center == (0.0, 0.0, 1e-3)
+
+
+def test_units_that_are_understood() -> None:
+    text = SCENE.replace("axis: [0, 1, 0]}", "axis: [0, 1, 0], initial: {angle: 60°}, stiffness: {moment: 5 Nm/rad}}")
+    assert load("x.yaml", text).joints["pivot"].stiffness is not None
