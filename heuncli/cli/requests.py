@@ -71,6 +71,10 @@ class Run(NamedTuple):
         str | None,
         Option(("--axes",), "Joint loads in the axes of the one or the other body, as it turns.", "world|from|to"),
     ] = None
+    units: Annotated[
+        str | None,
+        Option(("--units",), "Units of tables, such as kN,mm,deg,rpm; JSON, CSV and --measure stay SI.", "UNIT,..."),
+    ] = None
     strict: Annotated[bool, Option(("--strict",), "Leave with 1 if there are warnings or open reactions.")] = False
     time_limit: Annotated[float | None, Option(("--time-limit",), "Give up after that long.", "SECONDS")] = None
     quiet: Annotated[bool, QUIET] = False

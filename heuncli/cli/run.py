@@ -14,17 +14,19 @@ from heuncli.cli.output import emit, say
 from heuncli.cli.requests import FORMATS, Run
 from heuncli.cli.solving import choice, instants, overrides, positive, timings, warn
 from heuncli.cli.target import format_of, keep
-from heuncli.errors import Problem
+from heuncli.errors import Finding, Problem
 from heuncli.integration.methods import METHODS
 from heuncli.kinetostatics.joint_axes import JOINT_AXES
 from heuncli.nearest import did_you_mean, nearest
 from heuncli.records import replace
+from heuncli.report import units
 from heuncli.report.fit import fit
 from heuncli.report.heading import write_heading, write_heading_markdown
 from heuncli.report.labels import Labels, labels_of
 from heuncli.report.page import EXPORT_DEFAULT, TABLE_DEFAULT, page_of
 from heuncli.report.runs import LOADS
 from heuncli.report.table import WIDTH, Table, markdown, plain
+from heuncli.report.units import Units
 from heuncli.results import Results
 from heuncli.results_schema import BLOWS, REPORT_OF, REPORTS, SHARES, with_shared
 from heuncli.spec.load import load
@@ -47,6 +49,7 @@ def main(request: Run) -> int:
 
         asked = measure.parse_all(request.measure)
     only = _only(request.only) if request.only is not None else None
+    shown = Units() if request.units is None else _units(request.units)
     options = Options(
         tolerance=positive("--tolerance", request.tolerance),
         method=_method(request.method),
@@ -66,13 +69,22 @@ def main(request: Run) -> int:
     if asked:
         text = measure.write(asked, study, form)
     else:
-        text = _report(request, form, study, labels_of(spec), what.reports)
+        text = _report(request, form, study, replace(labels_of(spec), units=shown), what.reports)
     emit(text, request.output)
+    if request.units is not None and not request.quiet and (asked or form not in TABLES):
+        say(f"heun: --units is of tables: {'--measure' if asked else form} stays in SI")
     later = [*study.later, *(measure.warnings(asked, study) if asked else ())]
     warnings = warn(spec, study.results, request.quiet, later=later)
     if request.verbose:
         say(f"heun: {timings(study.results.work)}")
     return _strict(study.results, warnings) if request.strict else 0
+
+
+def _units(words: str) -> Units:
+    try:
+        return units.asked(words)
+    except Finding as finding:
+        raise UsageError(Problem("bad-option", f"--units {words}: {finding.message}", hint=finding.hint)) from None
 
 
 def _method(name: str | None) -> str | None:

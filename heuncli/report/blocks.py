@@ -41,7 +41,6 @@ FAMILIES = {
 }
 POSITIONS = frozenset({"position", "center", "point", "direction"})  # vectors whose length means nothing
 FREE = "nothing stands on the ground: the scene is free"
-SPOKEN_UNITS = {"Pa": ("MPa", 1e-6)}  # units of the tables that are not SI: the unit shown and the factor
 
 
 class Row(NamedTuple):
@@ -154,10 +153,10 @@ def build(plan: Plan, results: Results, labels: Labels, series: Iterable[Series]
 
 def rows_of(series: Series) -> list[Row]:
     """The rows of one quantity: itself, or its components and the magnitude of a free vector."""
-    quantity, (unit, size) = series.quantity, SPOKEN_UNITS.get(series.unit, (series.unit, 1.0))
+    quantity, unit = series.quantity, series.unit
     spoken, family, kind = quantity.replace("_", " "), FAMILIES.get(quantity, quantity), kind_of(series)
     if len(series.components) == 1:
-        return [Row(spoken, unit, family, kind, size * series.values[:, 0], even=quantity in MAGNITUDES)]
+        return [Row(spoken, unit, family, kind, series.values[:, 0], even=quantity in MAGNITUDES)]
     symbol = SYMBOLS.get(quantity, f"{spoken} ")
     vector = "" if quantity in POSITIONS else symbol.strip()
     columns = zip(series.components, series.values.T, strict=True)
@@ -208,5 +207,5 @@ def _with_sum(group: Group) -> Group:
         return group
     total = part["kinetic"] + part["potential"] - part["work"]
     terms = max(largest(values) for values in part.values())
-    rows = (*group.rows, Row("sum", "J", "sum", "energy", total, beside=terms))
+    rows = (*group.rows, Row("sum", group.rows[0].unit, "sum", "energy", total, beside=terms))
     return Group(group.name, group.note, rows, whole=True)

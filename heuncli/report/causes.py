@@ -20,7 +20,6 @@ from heuncli.report.numbers import (
     ZERO_NOTE,
     Certainty,
     beyond_horizon,
-    style,
     write,
     write_times,
 )
@@ -302,7 +301,7 @@ def run_extremes_table(
         for j, (word, value, at) in enumerate(ends):
             k = int(np.searchsorted(results.time, at[i]))
             clock = [f"{write_times([float(at[i])], span)[0]} s"] if span > 0.0 else []
-            where = ", ".join([f"s = {position(places[i][j], run.s)} m", *clock])
+            where = ", ".join([f"s = {position(places[i][j], run)} {run.length[0]}", *clock])
             lines.append(line_of_run(results, run.name, load, f"{load.label} {word}", (k, 2 * i + j), where)
                          ._replace(total=float(value[i])))  # fmt: skip
     return of_run(run, lines, certain)
@@ -317,7 +316,7 @@ def run_instants_table(run: Run, results: Results, horizon: float | None, certai
         for i, load in enumerate(run.loads):
             values = np.nan_to_num(run.values[i, k])
             for word, cut in (("min", int(np.argmin(values))), ("max", int(np.argmax(values)))):
-                where = f"s = {write([float(run.s[cut])], style(float(run.s[-1]), 0.0))[0]} m"
+                where = f"s = {position(Place(float(run.s[cut]), None, cut), run)} {run.length[0]}"
                 where += clock[k] if clock else ""
                 line = line_of_run(results, run.name, load, f"{load.label} {word}", (k, cut), where)
                 lines.append(line._replace(lost=horizon is not None and t >= horizon))
@@ -330,9 +329,9 @@ def line_of_run(
     """The line of a resultant of a run at an instant and a cut."""
     quantity, unit = load.name, load.unit
     section = results.sections[name]
-    shares = {cause: float(own[quantity][at]) for cause, own in section.get(SHARES, {}).items()}
+    shares = {cause: load.size * float(own[quantity][at]) for cause, own in section.get(SHARES, {}).items()}
     row = Row(quantity, unit, AXES[quantity][0], "sections", np.zeros(0))
-    return Line(label, where, row, shares, float(section[quantity][at]))
+    return Line(label, where, row, shares, load.size * float(section[quantity][at]))
 
 
 def of_run(run: Run, lines: Sequence[Line], certain: Certainty) -> list[Table]:

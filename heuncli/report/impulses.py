@@ -18,7 +18,7 @@ from heuncli.report.blocks import build
 from heuncli.report.labels import Labels
 from heuncli.report.numbers import UNKNOWN, Certainty, largest, with_axis, write, write_times
 from heuncli.report.plans import IMPULSES
-from heuncli.report.quantities import Series, walk_impulse
+from heuncli.report.quantities import Series, in_units, walk_impulse
 from heuncli.report.sums import sums_table
 from heuncli.report.table import Column, Table
 from heuncli.results import Array, Block, CertainSum, Extremes, Indices, Magnitudes, Results
@@ -76,11 +76,12 @@ def listing(blows: Blows, sizes: Array, shown: Indices, every: bool) -> Table:
     found, certain = blows.results.impulses, blows.certain
     times = np.array([float(impulse["time"]) for impulse in found])
     energies = {key: np.array([float(impulse.get(key, np.nan)) for impulse in found]) for key in ENERGIES}
-    whole = [*energies.values()]
-    energy = write(np.concatenate(whole).tolist(), certain.style("energy", "J", max(map(largest, whole))))
+    (of_energy, joules), *told = (blows.labels.units.of(unit) for unit in ("J", UNIT, AT_A_BLOW["N·m"]))
+    whole = [joules * own for own in energies.values()]
+    energy = write(np.concatenate(whole).tolist(), certain.style("energy", of_energy, max(map(largest, whole))))
     impulse, moment = (
-        write(own.tolist(), certain.style("reactions", unit, largest(own)))
-        for own, unit in zip(sizes.T, (UNIT, AT_A_BLOW["N·m"]), strict=True)
+        write((size * own).tolist(), certain.style("reactions", unit, size * largest(own)))
+        for own, (unit, size) in zip(sizes.T, told, strict=True)
     )
     clock = write_times(times.tolist(), float(np.ptp(blows.results.time)) or float(np.ptp(times)))
     horizon = blows.results.accuracy.get("horizon")
@@ -91,7 +92,8 @@ def listing(blows: Blows, sizes: Array, shown: Indices, every: bool) -> Table:
         if horizon is not None and times[i] >= horizon:
             cells = [UNKNOWN] * len(cells)
         rows.append((str(i), clock[i], ", ".join(block["names"]), *cells))
-    heads = (f"largest [{UNIT}]", f"largest [{AT_A_BLOW['N·m']}]", "energy before [J]", "after [J]", "jump [J]")
+    heads = [f"largest [{unit}]" for unit, _ in told]
+    heads += [f"{word} [{of_energy}]" for word in ("energy before", "after", "jump")]
     columns = (Column(""), Column("t [s]"), Column("struck by", "left"), *map(Column, heads))
     numbers = ", ".join(map(str, shown.tolist()))
     note = f"below: {numbers}, the largest; all: --all, or --format csv"
@@ -107,8 +109,8 @@ def tables_of(blows: Blows, number: int, every: bool = False) -> list[Table]:
     view, labels = at_one_instant(blows.results, impulse), blows.labels
     lead = f"IMPULSE at t = {at:.6g} s ({', '.join(impulse['names'])})  "
     horizon = blows.results.accuracy.get("horizon")
-    certain = with_axis(blows.certain, view, blows.of, UNIT)
-    series = list(walk_impulse(impulse, labels))
+    certain = with_axis(blows.certain, view, blows.of, labels.units, UNIT)
+    series = in_units(walk_impulse(impulse, labels), labels.units)
     by_cause = any(item.cause for item in series)
     tables, more = list[Table](), list[Table]()
     for plan in IMPULSES:
@@ -121,13 +123,13 @@ def tables_of(blows: Blows, number: int, every: bool = False) -> list[Table]:
     for run in runs.runs_of(view, labels, AT_A_BLOW):
         made = runs.instants_tables(run, view.time, horizon, certain, every=every)
         if run.name in along:
-            found = along[run.name]
+            found = runs.in_units(run, along[run.name])
             table = runs.extremes_table(run, view.time, found, found.places, certain)
             made = [table, made[0]._replace(heading=""), *made[1:]]
         tables += [made[0]._replace(heading=lead + made[0].heading), *made[1:]]
         more += [own._replace(heading=lead + own.heading) for own in shares_along(run, view, certain, horizon)]
     tables += more
-    sums = sums_table(view, certain, unit=UNIT)
+    sums = sums_table(view, certain, unit=labels.units.of(UNIT))
     return [*tables, sums._replace(heading=lead + sums.heading)] if sums else tables
 
 

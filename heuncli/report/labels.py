@@ -15,6 +15,7 @@ from heuncli import tolerances
 from heuncli.joint_kinds import TYPES, Kind
 from heuncli.kinetostatics.section_axes import default_axis, nearest_axis
 from heuncli.records import record
+from heuncli.report.units import Units
 from heuncli.spec.models import End, Force, Friction, Section, Spec, Vec
 
 PUSHING_FORCES = frozenset({"force", "distributed", "actuator", "spring"})
@@ -55,18 +56,23 @@ class SectionInfo(NamedTuple):
     about: str = "the cut's point"
 
 
+SHOWN = Units()
 NONE: Mapping[str, Any] = MappingProxyType({})
 
 
 @record
 class Labels:
-    """The kinds of everything named in the results; `about` is the ground point where M_s is taken, if one is there."""
+    """The kinds of everything named in the results; `about` is the ground point where M_s is taken, if one is there.
+
+    units: in which tables show them.
+    """
 
     joints: Mapping[str, JointInfo] = NONE
     forces: Mapping[str, ForceInfo] = NONE
     sections: Mapping[str, SectionInfo] = NONE
     stops: Mapping[str, StopInfo] = NONE
     about: str | None = None
+    units: Units = SHOWN
 
     def turns(self, block: str, name: str) -> bool:
         """Whether it turns, not slides: which of the two units of a quantity of `block` holds for `name`."""

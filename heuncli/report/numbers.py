@@ -21,6 +21,7 @@ import numpy as np
 from heuncli import tolerances
 from heuncli.report.labels import Labels
 from heuncli.report.quantities import Series, walk, walk_impulse
+from heuncli.report.units import Units
 from heuncli.results import Array, Estimate, Magnitudes, Results
 from heuncli.results_schema import BY_CAUSE, KIND_OF, SHARES, kind_of_error
 
@@ -109,13 +110,25 @@ def certainty(results: Results, labels: Labels, of: Magnitudes) -> Certainty:
     if load > 0.0:  # stresses are in proportion to what makes them
         stress = scales.get(("sections", "Pa"), 0.0) / load
         error = max(errors["sections", "N"], errors["sections", "N·m"] / of.size)
-        errors["sections", "Pa"], errors["sections", "MPa"] = stress * error, 1e-6 * stress * error
+        errors["sections", "Pa"] = stress * error
         errors["sections", "1"] = scales.get(("sections", "1"), 0.0) / load * error
-        lost |= {"Pa": stress * lost["N"], "MPa": 1e-6 * stress * lost["N"]}
+        lost["Pa"] = stress * lost["N"]
     horizon = results.accuracy.get("horizon")
     if horizon is not None and results.time[0] >= horizon:
         errors = dict.fromkeys(errors, math.inf)
-    return Certainty(errors, lost)
+    return with_units(Certainty(errors, lost), labels.units)
+
+
+def with_units(certain: Certainty, units: Units) -> Certainty:
+    """The same, also in the units that tables show."""
+    errors, lost = dict(certain.errors), dict(certain.rounding)
+    for (kind, unit), error in certain.errors.items():
+        shown, size = units.of(unit)
+        errors[kind, shown] = size * error
+    for unit, rounding in certain.rounding.items():
+        shown, size = units.of(unit)
+        lost[shown] = size * rounding
+    return certain._replace(errors=errors, rounding=lost)
 
 
 def kind_of(series: Series) -> str:
@@ -133,7 +146,7 @@ def _of_wrench(kind: str, relative: float, scales: Scales, size: float) -> dict[
     return errors
 
 
-def with_axis(certain: Certainty, results: Results, of: Magnitudes, unit: str = "N") -> Certainty:
+def with_axis(certain: Certainty, results: Results, of: Magnitudes, units: Units, unit: str = "N") -> Certainty:
     """The same, with the errors of the central axis at the instants that are shown: no better than its force's.
 
     direction s/|s|, point s × M / s², pitch s·M / s²: an error of M is one of s on a lever. unit: N·s of impulses.
@@ -144,7 +157,9 @@ def with_axis(certain: Certainty, results: Results, of: Magnitudes, unit: str = 
     force = np.sqrt(np.sum(results.foundation["force"] ** 2, axis=1))[np.isfinite(axis["pitch"])]
     relative = certain.error("foundation", unit) / float(force.min()) if force.size else 0.0
     lever = of.size + largest(axis["point"]) + largest(axis["pitch"])
-    return certain._replace(errors={**certain.errors, ("axis", "1"): relative, ("axis", "m"): relative * lever})
+    shown, size = units.of("m")
+    own = {("axis", "1"): relative, ("axis", shown): relative * lever * size}
+    return certain._replace(errors={**certain.errors, **own})
 
 
 def _rounding(of: Magnitudes) -> dict[str, float]:

@@ -18,7 +18,7 @@ from heuncli.report.blocks import Block, Row, build
 from heuncli.report.labels import Labels
 from heuncli.report.numbers import Certainty, certainty, with_axis
 from heuncli.report.plans import PLANS
-from heuncli.report.quantities import Series, walk
+from heuncli.report.quantities import Series, in_units, walk
 from heuncli.report.sums import sums_table
 from heuncli.report.table import Table
 from heuncli.results import Array, CertainSum, Extremes, Magnitudes, Mask, Place, Results
@@ -128,7 +128,7 @@ class Page(NamedTuple):
     def _shared(self, results: Results) -> dict[causes.Key, causes.Shared]:
         from heuncli.report import causes
 
-        return causes.shared_rows(results, walk(results, self.labels))
+        return causes.shared_rows(results, in_units(walk(results, self.labels), self.labels.units))
 
     def _run_by_cause(self, run: runs.Run, searched: Extremes, k: int, shares: SharesAt) -> list[Table]:
         """What each cause does of the extremes along a run."""
@@ -157,7 +157,7 @@ class Page(NamedTuple):
         """The tables at the instants of `results`, which is the same run at any instants; searched: where it is one."""
         horizon = self.results.accuracy.get("horizon")
         unknown = frozenset(results.accuracy.get("unknown", ()))
-        certain = with_axis(self.certain._replace(beside=unknown), results, self.of)
+        certain = with_axis(self.certain._replace(beside=unknown), results, self.of, self.labels.units)
         tables: list[Table] = []
         for block in _blocks(results, self.labels):
             tables += instants.instants_tables(block, results.time, horizon, certain)
@@ -209,7 +209,7 @@ class Page(NamedTuple):
         return _blocks(results, self.labels, lasting=True)
 
     def _ending(self, every: bool = False) -> list[Table]:
-        sums = sums_table(self.results, self.certain, self.beyond)
+        sums = sums_table(self.results, self.certain, self.beyond, self.labels.units.of("N"))
         return [*([sums] if sums else []), *self._events(every), *self._impulses(every)]
 
     def _events(self, every: bool) -> list[Table]:
@@ -260,7 +260,7 @@ def _some_of_sum(block: CertainSum, which: slice) -> CertainSum:
 
 
 def _blocks(results: Results, labels: Labels, *, lasting: bool = False) -> list[Block]:
-    series: Sequence[Series] = list(walk(results, labels))
+    series: Sequence[Series] = in_units(walk(results, labels), labels.units)
     blocks = [build(plan, results, labels, series) for plan in PLANS if plan.lasting or not lasting]
     made = [block for block in blocks if block is not None]
     return [extremes.abridged(block) for block in made] if lasting else made

@@ -43,9 +43,10 @@ class Plan(NamedTuple):
 
 
 def _about(results: Results, labels: Labels) -> str:
-    about = np.asarray(results.foundation.get("about", (0.0, 0.0, 0.0))) + 0.0
-    x, y, z = (f"{component:.6g}" for component in about)
-    return f"{labels.about} = ({x}, {y}, {z}) m" if labels.about else f"{POINTS[bool(about.any())]} ({x}, {y}, {z}) m"
+    unit, size = labels.units.of("m")
+    about = size * np.asarray(results.foundation.get("about", (0.0, 0.0, 0.0))) + 0.0
+    place = f"({', '.join(f'{component:.6g}' for component in about)}) {unit}"
+    return f"{labels.about} = {place}" if labels.about else f"{POINTS[bool(about.any())]} {place}"
 
 
 def _axes(results: Results) -> str:
@@ -68,9 +69,9 @@ def _stop_note(name: str, labels: Labels) -> str:
     info = labels.stops.get(name)
     if info is None:
         return ""
-    unit = "rad" if info.coordinate.endswith(".angle") else "m"
+    unit, size = labels.units.of("rad" if info.coordinate.endswith(".angle") else "m")
     limits = (("from", info.low), ("to", info.high))
-    told = [f"{word} {limit:.6g}" for word, limit in limits if limit is not None]
+    told = [f"{word} {size * limit:.6g}" for word, limit in limits if limit is not None]
     return f"{info.coordinate} {' '.join(told)} {unit}"
 
 

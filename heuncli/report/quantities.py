@@ -7,13 +7,14 @@ those of the schema: what is added to the results later needs a row there.
 
 from __future__ import annotations
 
-from collections.abc import Iterator
+from collections.abc import Iterable, Iterator
 from functools import cache
 from typing import NamedTuple
 
 import numpy as np
 
 from heuncli.report.labels import Labels
+from heuncli.report.units import Units
 from heuncli.results import Array, Block, Results
 from heuncli.results_schema import CUT, REPORT_OF, SHARES, TREE, Node, Quantity, Shape, below, is_share
 
@@ -48,6 +49,15 @@ def walk(results: Results, labels: Labels) -> Iterator[Series]:
     """Every quantity of the results that runs over the instants, in the order of the JSON."""
     for kind in REPORT_OF:
         yield from _Walk(kind, labels).block((), _node(TREE, kind), getattr(results, kind))
+
+
+def in_units(series: Iterable[Series], units: Units) -> list[Series]:
+    """The same as tables show them."""
+    shown = [(item, *units.of(item.unit)) for item in series]
+    return [
+        item._replace(unit=unit, values=size * item.values) if unit != item.unit else item
+        for item, unit, size in shown
+    ]
 
 
 def walk_impulse(impulse: Block, labels: Labels) -> Iterator[Series]:

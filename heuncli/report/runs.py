@@ -7,7 +7,6 @@ from typing import NamedTuple
 
 import numpy as np
 
-from heuncli.report.blocks import SPOKEN_UNITS
 from heuncli.report.labels import Labels
 from heuncli.report.numbers import (
     OPEN,
@@ -25,6 +24,7 @@ from heuncli.report.numbers import (
 )
 from heuncli.report.plans import STRESSES
 from heuncli.report.table import Column, Table, head
+from heuncli.report.units import Shown, Units
 from heuncli.results import Array, Extremes, Indices, Place, Results
 from heuncli.results_schema import MAGNITUDES, row_of
 
@@ -47,9 +47,9 @@ class Along(NamedTuple):
 
 
 def _stress(name: str) -> Along:
-    unit, size = SPOKEN_UNITS.get(row := row_of(f"sections.SECTION.stress.{name}").unit(), (row, 1.0))
+    unit = row_of(f"sections.SECTION.stress.{name}").unit()
     bounds = ("min",) if name == "normal_min" else ("max",)
-    return Along(name, name.replace("_", " "), unit, name in MAGNITUDES, bounds, size)
+    return Along(name, name.replace("_", " "), unit, name in MAGNITUDES, bounds)
 
 
 RESULTANTS = ("N", "Q1", "Q2", "T", "M1", "M2")
@@ -58,7 +58,10 @@ ALONG_STRESSES = tuple(_stress(name) for name in STRESSES)
 
 
 class Run(NamedTuple):
-    """One run of cuts: positions along the body, sides; its loads, then its stresses, (n, n_t, n_cuts)."""
+    """One run of cuts: positions along the body [m], sides; its loads, then its stresses, (n, n_t, n_cuts).
+
+    length: the unit in which positions are shown.
+    """
 
     name: str
     heading: str
@@ -66,6 +69,7 @@ class Run(NamedTuple):
     side: tuple[str | None, ...]
     values: Array
     quantities: tuple[Along, ...] = LOADS
+    length: Shown = ("m", 1.0)
 
     @property
     def loads(self) -> tuple[Along, ...]:
@@ -80,7 +84,8 @@ class Run(NamedTuple):
 
 def runs_of(results: Results, labels: Labels, units: Mapping[str, str] | None = None) -> list[Run]:
     """The runs of cuts among the sections; units: those that stand for others, of what is no force but an impulse."""
-    loads = tuple(load._replace(unit=(units or {}).get(load.unit, load.unit)) for load in LOADS)
+    shown = labels.units
+    loads = tuple(_shown_in(load._replace(unit=(units or {}).get(load.unit, load.unit)), shown) for load in LOADS)
     runs = []
     for name, section in results.sections.items():
         if "s" not in section:
@@ -92,12 +97,24 @@ def runs_of(results: Results, labels: Labels, units: Mapping[str, str] | None = 
         whose = f"{'impulse of ' * bool(units)}the piece beyond the cut ON the part before it; N > 0 tension"
         heading = f"SECTION {of}  {whose}; {axis}; moments about {about}"
         stress = section.get("stress", {})
-        stresses = tuple(own for own in ALONG_STRESSES if own.name in stress)
-        own = [section[load.name] for load in loads] + [one.size * stress[one.name] for one in stresses]
+        stresses = tuple(_shown_in(own, shown) for own in ALONG_STRESSES if own.name in stress)
+        own = [load.size * section[load.name] for load in loads]
+        own += [one.size * stress[one.name] for one in stresses]
         side = tuple(section.get("side") or [None] * len(section["s"]))
         s = np.asarray(section["s"], dtype=np.float64)
-        runs.append(Run(name, heading, s, side, np.stack(own), (*loads, *stresses)))
+        runs.append(Run(name, heading, s, side, np.stack(own), (*loads, *stresses), shown.of("m")))
     return runs
+
+
+def _shown_in(quantity: Along, units: Units) -> Along:
+    unit, size = units.of(quantity.unit)
+    return quantity._replace(unit=unit, size=size)
+
+
+def in_units(run: Run, found: Extremes) -> Extremes:
+    """Extremes of the loads along a run, of results, as they are shown."""
+    sizes = np.array([load.size for load in run.loads])
+    return found._replace(low=sizes * found.low, high=sizes * found.high)
 
 
 def extremes_tables(
@@ -180,13 +197,13 @@ def _at_cuts(
     run: Run, kept: Indices, columns: Sequence[Column], texts: Sequence[Sequence[str]], notes: Sequence[str]
 ) -> Table:
     """A line a cut, behind its place and side."""
-    positions = _positions(run.s)
+    positions = _positions(run)
     sides = any(side is not None for side in run.side)
     rows = tuple(
         (positions[cut], *([run.side[cut] or ""] if sides else []), *(column[j] for column in texts))
         for j, cut in enumerate(kept)
     )
-    heads = [Column("s [m]"), *([Column("side", "left")] if sides else [])]
+    heads = [Column(f"s [{run.length[0]}]"), *([Column("side", "left")] if sides else [])]
     return Table("", (*heads, *columns), rows, tuple(notes))
 
 
@@ -208,9 +225,10 @@ def extremes_table(
             "" if _steady(run.values[i][:, _nearest(run, place)], styles[own.unit]) else t
             for place, t in zip(places[i], clock, strict=True)
         )
-        where = [position(place, run.s) for place in places[i]]
+        where = [position(place, run) for place in places[i]]
         rows.append((label, unit, low, where[0], low_at, high, where[1], high_at))
-    heads = ("min", "at s [m]", "t [s]", "max", "at s [m]", "t [s]")
+    at = f"at s [{run.length[0]}]"
+    heads = ("min", at, "t [s]", "max", at, "t [s]")
     columns = (Column("", "left"), Column("", "left"), *(Column(head) for head in heads))
     if len(times) == 1:
         columns, rows = columns[:4] + columns[5:7], [(*row[:4], *row[5:7]) for row in rows]
@@ -295,13 +313,15 @@ def _nearest(run: Run, place: Place) -> int:
     return int(np.argmin(np.abs(run.s - place.s))) if place.cut is None else place.cut
 
 
-def position(place: Place, s: Array) -> str:
+def position(place: Place, run: Run) -> str:
     """A place in words: the distance, and between the ends the side of what acts there."""
-    side = [place.side] if place.side and 0.0 < place.s < s[-1] else []
-    return " ".join([*write([place.s], style(largest(s), 0.0)), *side])
+    side = [place.side] if place.side and 0.0 < place.s < run.s[-1] else []
+    size = run.length[1]
+    return " ".join([*write([size * place.s], style(size * largest(run.s), 0.0)), *side])
 
 
-def _positions(s: Array) -> list[str]:
+def _positions(run: Run) -> list[str]:
+    s = run.length[1] * run.s
     return write(s.tolist(), style(largest(s), 0.0))
 
 

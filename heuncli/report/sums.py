@@ -9,6 +9,7 @@ import numpy as np
 from heuncli.report.blocks import short
 from heuncli.report.numbers import Certainty, beyond_horizon, largest, write
 from heuncli.report.table import Table
+from heuncli.report.units import Shown
 from heuncli.results import Array, CertainSum, Results
 from heuncli.results_schema import XYZ
 
@@ -18,11 +19,11 @@ FORCES = frozenset({"force", "axial", "radial", "tension", "N", "Q1", "Q2"})
 
 
 def sums_table(
-    results: Results, certain: Certainty, beyond: Results | None = None, unit: str = "N"
+    results: Results, certain: Certainty, beyond: Results | None = None, unit: Shown = ("N", 1.0)
 ) -> Table | None:
     """The sums that are certain although their terms are open; None where there are none.
 
-    beyond: the last instant, where the run ends beyond its horizon; unit: N·s of impulses.
+    beyond: the last instant, where the run ends beyond its horizon; unit: that is shown, for N·s of impulses.
     """
     if not results.certain_sums:
         return None
@@ -36,16 +37,17 @@ def sums_table(
     return Table(f"CERTAIN SUMS  of components that redundancy leaves open{axes}", notes=tuple(notes))
 
 
-def _line(block: CertainSum, certain: Certainty, beyond: CertainSum | None, unit: str) -> str | None:
+def _line(block: CertainSum, certain: Certainty, beyond: CertainSum | None, of: Shown) -> str | None:
     terms = {path: np.atleast_1d(np.asarray(factor, dtype=np.float64)) for path, factor in block["terms"].items()}
     if len(terms) > MOST_TERMS or not all(_is_force(path) for path in terms):
         return None
-    values = np.asarray(block["value"], dtype=np.float64)
+    unit, size = of
+    values = size * np.asarray(block["value"], dtype=np.float64)
     scale = largest(values)
     numbers = [values[0], values[-1], np.nanmin(values), np.nanmax(values)]
     texts = write(numbers, certain.style("reactions", unit, scale))
     if beyond is not None:
-        texts[1] = beyond_horizon(beyond["value"][-1], unit, certain, texts[1])
+        texts[1] = beyond_horizon(size * beyond["value"][-1], unit, certain, texts[1])
     if texts == ["0"] * 4 and _opposite(terms):
         return " = ".join(map(label, terms)) + "; the size is open"
     left = _sum(terms)
