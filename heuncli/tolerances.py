@@ -30,6 +30,8 @@ NEARLY_SINGULAR = 1e-6  # relative singular value: reactions err by gap / value,
 # -- open: which components no law of rigid bodies decides, and the sums that are certain
 NO_SELF_STRESS = 1e-13  # of unit multipliers: a null vector that puts less into every joint is rounding
 OPEN_SHARE = 1e-8  # of a self-stress's largest share: a null vector is known to RANK, ten times better
+HELD_BY_OTHERS = 1e-12  # sine squared between a direction that gives way and what self-stresses reach: 1e-6, as shares
+# of 1e-8 err where they are summed from levers a hundred times as long
 STRAINED = 1e-9  # of the largest strain: RANK again, a self-stress that strains less is not decided by the stiffness
 STILL_OPEN = 1e-9  # of unit share: what is left of self-stresses after a split, if below, is rounding of their parts
 DEPENDENT_SHARES = 1e-7  # of a row's length: shares known to OPEN_SHARE, with a digit for the elimination

@@ -183,6 +183,13 @@ def in_plane(force: Array, moment: Array) -> tuple[Array, Array]:
     return force * np.array([1.0, 1.0, 0.0]), moment * np.array([0.0, 0.0, 1.0])
 
 
+def constraint_map(joint: Joint, states: BodyStates) -> Array:
+    """The map of a wrench in the joint to what of it its constraint carries, (n_t, 6, 6)."""
+    wrenches = np.broadcast_to(np.eye(6)[:, None, :], (6, len(states.x), 6))
+    force, moment = constrained_part(joint, states, wrenches[..., :3], wrenches[..., 3:])
+    return np.moveaxis(np.concatenate([force, moment], axis=2), 0, 2)
+
+
 def constrained_part(joint: Joint, states: BodyStates, force: Array, moment: Array) -> tuple[Array, Array]:
     """Force and moment without their components in the joint's free directions (drives are reported apart)."""
     kind = JOINTS[joint.kind]

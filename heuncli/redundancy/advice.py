@@ -1,7 +1,8 @@
 """How to make a redundant model determinate: joints replaced by looser ones, found by trying.
 
 A looser joint holds part of what the one before held, so where the freedoms stay the same the motion does. Joints that
-are driven, loaded, named in an expression or hold a start value keep their kind: they need it.
+are driven, loaded, named in an expression or hold a start value keep their kind: they need it. They may give way to the
+moments that others hold (giving_way.py).
 """
 
 from __future__ import annotations
@@ -26,6 +27,8 @@ from heuncli.tree.prepare import PreparedScene, arranged
 
 MOST_TRIED = 400  # replacements tried before the hint is given up
 
+YIELDING = (np.full(3, np.inf), np.zeros(3))  # a joint's stiffness by force and by moment: it takes no moments
+
 Choices = Mapping[int, tuple[Joint, ...]]  # joint -> what may take its place
 
 
@@ -34,20 +37,21 @@ def advice(scene: PreparedScene, model: Block) -> list[str]:
 
     Nothing where nothing is held twice.
     """
-    if not model["redundant"]:
+    redundant = int(model["redundant"]) - int(model.get("given_way", 0))
+    if not redundant:
         return []
     choices = choices_of(scene)
-    for tried, changed in enumerate(_replacements(scene.mechanism.joints, choices, model["redundant"])):
+    for tried, changed in enumerate(_replacements(scene.mechanism.joints, choices, redundant)):
         if tried >= MOST_TRIED:
             break
         if _left(scene, changed, model) == 0:
             return [f"determinate with {in_words(scene, changed, ' and ')}: the same motion, and no reaction is open"]
-    return stepwise(scene, choices, model)
+    return stepwise(scene, choices, model, redundant)
 
 
-def stepwise(scene: PreparedScene, choices: Choices, model: Block) -> list[str]:
+def stepwise(scene: PreparedScene, choices: Choices, model: Block, redundant: int) -> list[str]:
     """Joints loosened one after another, inner ones first, wherever that opens less and changes no freedom."""
-    changed, left = dict[int, Joint](), int(model["redundant"])
+    changed, left = dict[int, Joint](), redundant
     for k, kinds in choices.items():
         for other in reversed(kinds):
             found = _left(scene, {**changed, k: other}, model) if left else None
@@ -58,7 +62,7 @@ def stepwise(scene: PreparedScene, choices: Choices, model: Block) -> list[str]:
         return ["no looser joints were found that leave less open; `stiffness` on the joints concerned makes a split"]
     if left == 0:
         return [f"determinate with {in_words(scene, changed, ', ')}: the same motion, and no reaction is open"]
-    rest = f"{left} of {model['redundant']} are left; for those give joints their `stiffness`"
+    rest = f"{left} of {redundant} are left; for those give joints their `stiffness`"
     return [f"with {in_words(scene, changed, ', ')} only {rest}"]
 
 
@@ -77,6 +81,8 @@ def choices_of(scene: PreparedScene) -> Choices:
             looser = JOINTS[j.kind].looser_in_plane if mechanism.planar else JOINTS[j.kind].looser
             others = (loosened(j, kind, along[k]) for kind in looser)
             found[k] = tuple(other for other in others if other is not None)
+        elif JOINTS[j.kind].dots and not mechanism.planar and j.stiffness is None:
+            found[k] = (replace(j, stiffness=YIELDING),)
     return found
 
 
@@ -105,22 +111,28 @@ def _left(scene: PreparedScene, changed: Mapping[int, Joint], model: Block) -> i
     other, runner = ready(arranged(replace(scene.mechanism, joints=joints), scene.start))
     found = redundancy(other, runner)
     freedoms = freedoms_of_tree(other.layout) - (found.closed - found.dependent)
-    return found.generic if freedoms == model["freedoms"] and len(other.idle) <= len(scene.idle) else None
+    return found.open if freedoms == model["freedoms"] and len(other.idle) <= len(scene.idle) else None
 
 
 def _replacements(joints: tuple[Joint, ...], choices: Choices, redundant: int) -> Iterator[dict[int, Joint]]:
-    """Up to three joints made looser by as many conditions as are redundant, few ones first."""
+    """Up to three joints made looser by as many conditions as are redundant, few ones first.
 
-    def less(k: int, other: Joint) -> int:
-        return JOINTS[joints[k].kind].rows - JOINTS[other.kind].rows
+    One that gives way is looser by as many of its moments as others hold, one at least.
+    """
 
-    most = max((less(k, other) for k, others in choices.items() for other in others), default=0)
+    def less(k: int, other: Joint) -> tuple[int, int]:
+        kind = JOINTS[joints[k].kind]
+        fewer = kind.rows - JOINTS[other.kind].rows
+        return (fewer, fewer) if fewer else (1, len(kind.dots))
+
+    most = max((less(k, other)[1] for k, others in choices.items() for other in others), default=0)
     for n in (1, 2, 3):
         if n * most < redundant:
             continue
         for chosen in combinations(choices, n):
             for others in product(*(choices[k] for k in chosen)):
-                if sum(map(less, chosen, others)) == redundant:
+                least, largest = (sum(ends) for ends in zip(*map(less, chosen, others), strict=True))
+                if least <= redundant <= largest:
                     yield dict(zip(chosen, others, strict=True))
 
 
@@ -148,7 +160,9 @@ def in_words(scene: PreparedScene, changed: Mapping[int, Joint], between: str) -
         before = scene.mechanism.joints[k]
         kind = JOINTS[other.kind]
         text = f"{other.name} as {kind.spoken or kind.name}"
-        if kind.to_axis == "required":
+        if other.kind == before.kind:
+            text = f"stiffness: {{moment: 0}} on {other.name}"
+        elif kind.to_axis == "required":
             text += f" (to_axis {_numbers(other.to_axis)})"
         elif kind.has_axis and other.axis is not before.axis:
             text += f" (axis {_numbers(other.axis)})"

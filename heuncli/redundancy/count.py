@@ -2,13 +2,15 @@
 
 from __future__ import annotations
 
+from collections.abc import Sequence
 from typing import TYPE_CHECKING, NamedTuple
 
 import numpy as np
 
 from heuncli import tolerances
 from heuncli.integration.runner import Runner
-from heuncli.kinetostatics.bodies import body_states
+from heuncli.kinetostatics.bodies import BodyStates, body_states
+from heuncli.mechanism.model import Joint
 from heuncli.tree.layout import Layout
 from heuncli.tree.prepare import PreparedScene
 
@@ -25,7 +27,7 @@ class Redundancy(NamedTuple):
     """How many conditions hold what others hold: near the start (a singular pose does not count), and just at it.
 
     dependent: the same near the start, in a planar scene with those across the plane, which are not counted; closed:
-    how many rows take part at the start.
+    how many rows take part at the start. open: how many are left where joints give way; giving: what these do.
     """
 
     generic: int
@@ -33,25 +35,44 @@ class Redundancy(NamedTuple):
     dependent: int
     closed: int
     stress: SelfStress | None
+    open: int
+    giving: tuple[str, ...] = ()
 
 
 def redundancy(scene: PreparedScene, runner: Runner) -> Redundancy:
     """Count what is held twice."""
     layout = scene.layout
     if not layout.rows:
-        return Redundancy(0, 0, 0, 0, None)
+        return Redundancy(0, 0, 0, 0, None, 0)
     from heuncli.redundancy.neighbours import neighbours  # a tree starts faster without them
     from heuncli.redundancy.self_stress import self_stress
 
     here = runner.recovered(np.zeros(1), layout.y0[None, :])
     closed = int(here.rows["closed"][0].sum())
-    stress = self_stress(runner, here, body_states(layout, here))
+    states = body_states(layout, here)
+    stress = self_stress(runner, here, states)
     assert stress is not None
+    at_start, joints = int(stress.count[0]), layout.mechanism.joints
     near = neighbours(runner, 0.0, here.states[0], (tolerances.NEIGHBOUR,))
     if near is None:
-        return Redundancy(int(stress.count[0]), int(stress.count[0]), int(stress.dependent[0]), closed, stress)
-    beside = self_stress(runner, near, body_states(layout, near))
+        left, giving = left_open(stress, joints, states)
+        return Redundancy(at_start, at_start, int(stress.dependent[0]), closed, stress, left, giving)
+    around = body_states(layout, near)
+    beside = self_stress(runner, near, around)
     assert beside is not None
-    at_start = int(stress.count[0])
     dependent = min(stress.dependent[0], beside.dependent.min())
-    return Redundancy(int(min(at_start, beside.count.min())), at_start, int(dependent), closed, beside)
+    generic = int(min(at_start, beside.count.min()))
+    left, giving = left_open(beside, joints, around)
+    return Redundancy(generic, at_start, int(dependent), closed, beside, min(generic, left), giving)
+
+
+def left_open(stress: SelfStress, joints: Sequence[Joint], states: BodyStates) -> tuple[int, tuple[str, ...]]:
+    """How many self-stresses are left at each pose once joints have given way, and what these do, in words."""
+    if all(joint.stiffness is None for joint in joints):
+        return int(stress.count.min()), ()
+    from heuncli.redundancy.giving_way import soft_maps, told, vanishing
+    from heuncli.redundancy.split import with_least_strain
+
+    maps = vanishing(stress, soft_maps(joints, states, stress.length))
+    _, left = with_least_strain(stress, maps)
+    return int(left.count.min()) if left is not None else 0, told(joints, maps)

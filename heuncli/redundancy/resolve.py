@@ -33,7 +33,10 @@ SUMS_FROM = 9  # instants whose self-stresses certain sums are read from
 
 @record
 class Resolution:
-    """The joints' loads after the split described in words; the self-stresses, and those it left (None: none)."""
+    """The joints' loads after the split described in words; the self-stresses it chose from, and those it left.
+
+    None: none.
+    """
 
     joints: list[JointLoads]
     words: tuple[str, ...] = ()
@@ -76,7 +79,7 @@ def resolve(
     if stress is None or not stress.count.any():
         return Resolution(joints, searched=stress)
     chosen = split(joints, states, stress, least_norm)
-    return Resolution(chosen.joints, chosen.words, stress, chosen.stress, chosen.choices, stress)
+    return Resolution(chosen.joints, chosen.words, chosen.undecided, chosen.stress, chosen.choices, stress)
 
 
 def singular_poses(stress: SelfStress, times: Array, redundant: Array) -> list[str]:

@@ -1,6 +1,7 @@
 """A split of what redundancy leaves indeterminate, on request: by the joints' stiffness, by the least norm.
 
-Neither follows from the laws of rigid bodies; both add self-stresses to one solution. Stiffness: least sum of
+Neither follows from the laws of rigid bodies; both add self-stresses to one solution. Before either, joints that give
+way do so (giving_way.py): that is no choice. Stiffness: least sum of
 F^2/k + M^2/k over the joints that have one, components in `from` axes; what they do not feel stays open. Least norm:
 least sum F^2 + (M/length)^2 over all joints; independent of the units. theory.md 2b (weights).
 """
@@ -15,6 +16,7 @@ from heuncli import tolerances
 from heuncli.kinetostatics.bodies import BodyStates
 from heuncli.kinetostatics.reactions import JointLoads, StopLoad, constrained_part
 from heuncli.records import record, replace
+from heuncli.redundancy.giving_way import gives_way, reached, soft_maps, vanishing
 from heuncli.redundancy.self_stress import SelfStress
 from heuncli.results import Array
 
@@ -41,23 +43,37 @@ class Choice:
 
 @record
 class Split:
-    """Joint loads after some choices, the self-stresses these left (None: none), and how they were made, in words."""
+    """Joint loads after some choices, the self-stresses these left (None: none), and how they were made, in words.
+
+    undecided: the self-stresses that were there to choose from, once joints have given way.
+    """
 
     joints: list[JointLoads]
+    undecided: SelfStress | None
     stress: SelfStress | None
     choices: tuple[Choice, ...]
     words: tuple[str, ...]
 
 
 def split(joints: list[JointLoads], states: BodyStates, stress: SelfStress, least_norm: bool) -> Split:
-    """Apply the joints' stiffness where it is given, then the least norm if asked for."""
+    """Let joints give way, apply their stiffness where it is given, then the least norm if asked for."""
     words: list[str] = []
     choices: list[Choice] = []
     left: SelfStress | None = stress
-    if any(j.joint.stiffness is not None for j in joints):
-        choice, left = with_least_strain(stress, [stiffness_map(j, states) for j in joints])
+    among: SelfStress | None = None  # what joints that give way hand over to one another
+    if any(gives_way(j.joint) for j in joints):
+        soft = soft_maps([j.joint for j in joints], states, stress.length)
+        choice, left = with_least_strain(stress, vanishing(stress, soft))
+        choices.append(choice)
+        if left is not None:
+            left, among = apart(left, soft)
+    undecided = together(left, among)
+    maps = [stiffness_map(j, states) for j in joints]
+    if left is not None and any(m.any() for m in maps):
+        choice, left = with_least_strain(left, maps)
         choices.append(choice)
         words.append("chosen by stiffness")
+    left = together(left, among)
     if least_norm and left is not None:
         maps = [np.broadcast_to(np.diag([1.0] * 3 + [1.0 / stress.length] * 3), (len(states.x), 6, 6)) for _ in joints]
         choice, left = with_least_strain(left, maps)
@@ -65,18 +81,22 @@ def split(joints: list[JointLoads], states: BodyStates, stress: SelfStress, leas
         words.append(f"chosen by least norm, moments divided by {stress.length:.4g} m")
     for choice in choices:
         joints = choice.added(joints, states)
-    return Split(joints, left, tuple(choices), tuple(words))
+    return Split(joints, undecided, left, tuple(choices), tuple(words))
 
 
 def stiffness_map(load: JointLoads, states: BodyStates) -> Array:
-    """Map of a wrench (world axes) to strains F/sqrt(k), M/sqrt(k) in `from` axes, (n_t, 6, 6); zero where rigid."""
+    """Map of a wrench (world axes) to strains F/sqrt(k), M/sqrt(k) in `from` axes, (n_t, 6, 6).
+
+    Zero where it is rigid, and where it gives way.
+    """
     n_t = len(load.force)
     strains = np.zeros((n_t, 6, 6))
     if load.joint.stiffness is None:
         return strains
     axes = np.stack([states.direction(load.joint.a, e) for e in np.eye(3)], axis=1)
     for part, k in enumerate(load.joint.stiffness):
-        strains[:, 3 * part : 3 * part + 3, 3 * part : 3 * part + 3] = axes / np.sqrt(k)[:, None]
+        strain = 1.0 / np.sqrt(np.where(k == 0.0, np.inf, k))
+        strains[:, 3 * part : 3 * part + 3, 3 * part : 3 * part + 3] = axes * strain[:, None]
     return strains
 
 
@@ -90,18 +110,44 @@ def with_least_strain(stress: SelfStress, maps: Sequence[Array]) -> tuple[Choice
     answers = -(V.transpose(0, 2, 1) * inverse[:, None, :]) @ U.transpose(0, 2, 1) / size[:, :, None]
     answers = np.concatenate([answers[:, :, 6 * n : 6 * n + 6] @ m for n, m in enumerate(maps)], axis=2)
     choice = Choice(stress.shares, answers)
-    alive = stress.largest > 0.0
-    rest_count = alive.sum(axis=1) - strained.sum(axis=1)
-    if not (rest_count > 0).any():
-        return choice, None
     # what strains nothing: the self-stresses' part outside the rows of V that strain something
     rest = np.eye(S.shape[2]) - np.einsum("tki,tk,tkj->tij", V, strained.astype(float), V)
-    unstrained = np.einsum("tij,tj->tij", rest, alive.astype(float)) / size[:, :, None]
-    shares = np.stack([np.einsum("tik,tkj->tij", s, unstrained) for s in stress.shares])
+    return choice, part_of(stress, rest, stress.count - strained.sum(axis=1))
+
+
+def part_of(stress: SelfStress, part: Array, count: Array) -> SelfStress | None:
+    """A part (n_t, k, k) of self-stresses of unit size, `count` (n_t,) of them; None where there are none."""
+    if not (count > 0).any():
+        return None
+    alive = stress.largest > 0.0
+    size = np.where(alive, stress.largest, 1.0)
+    of_unit = np.einsum("tij,tj->tij", part, alive.astype(float)) / size[:, :, None]
+    shares = np.stack([np.einsum("tik,tkj->tij", s, of_unit) for s in stress.shares])
     parts = [np.maximum(np.abs(s[:, :3]).max(axis=1), np.abs(s[:, 3:]).max(axis=1) / stress.length) for s in shares]
     largest = np.max(parts, axis=0)
     largest = np.where(largest > tolerances.STILL_OPEN, largest, 0.0)
-    return choice, replace(stress, shares=shares, largest=largest, count=rest_count)
+    found: SelfStress = replace(stress, shares=shares, largest=largest, count=count)
+    return found
+
+
+def apart(stress: SelfStress, soft: Sequence[Array]) -> tuple[SelfStress | None, SelfStress | None]:
+    """The self-stresses that load nothing where it gives way, and those that do."""
+    _, sigma, V = np.linalg.svd(reached(stress, soft), full_matrices=False)
+    loading = sigma > tolerances.OPEN_SHARE
+    part = np.einsum("tki,tk,tkj->tij", V, loading.astype(float), V)
+    count = loading.sum(axis=1)
+    return part_of(stress, np.eye(V.shape[2]) - part, stress.count - count), part_of(stress, part, count)
+
+
+def together(a: SelfStress | None, b: SelfStress | None) -> SelfStress | None:
+    """The self-stresses of both."""
+    if a is None or b is None:
+        return a if b is None else b
+    both: SelfStress = replace(
+        a, shares=np.concatenate([a.shares, b.shares], axis=3), count=a.count + b.count,
+        largest=np.concatenate([a.largest, b.largest], axis=1),
+    )  # fmt: skip
+    return both
 
 
 def _wrench(load: JointLoads) -> Array:

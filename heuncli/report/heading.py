@@ -83,6 +83,8 @@ def _model(results: Results) -> str:
         for key, what in things
         if isinstance(model.get(key), int) and (model[key] or key in ("bodies", "freedoms"))
     ]
+    if model.get("given_way"):
+        parts[-1] += f", of which {int(model['given_way'])} give way"
     if model.get("driven"):
         parts[2] += f" beside {int(model['driven'])} driven"
     return ", ".join(parts) + (PLANAR if model.get("plane") == "declared" else "")

@@ -46,6 +46,9 @@ def model_note(scene: PreparedScene, runner: Runner, method: str) -> Block:
         block["notes"].append(f"the start is a singular pose: {more} on the others just there")
     if found.generic and found.stress is not None:
         block["notes"] += held_twice(layout, found.stress)
+    block["notes"] += found.giving
+    if found.open < found.generic:
+        block["given_way"] = found.generic - found.open
     return block
 
 

@@ -841,6 +841,7 @@ EXEMPT = {
 # Those that decide one, and have no scene at their boundary yet.
 WANTED = {
     "GOES_ON": "whether what moves steadily goes on in the same way",
+    "HELD_BY_OTHERS": "whether a joint gives way in a direction that others hold askew",
     "STILL": "whether what rates of rounding ask for is met, where a blow has ended all motion",
     "NEIGHBOUR": "which rank is the generic one, where a machine can hardly leave its singular start",
     "MOVES": "whether a displaced pose counts",

@@ -204,6 +204,7 @@ joints:
     ("joints.j: {type: weld, from: ground.O, to: a.p, stiffness: 0}", "joints.j.stiffness not-positive"),
     ("joints.j: {type: weld, from: ground.O, to: a.p, stiffness: {force: [1, -1, 1]}}",
      "joints.j.stiffness not-positive"),
+    ("joints.j: {type: weld, from: ground.O, to: a.p, stiffness: {force: [1, 0, 1], moment: 0}}", ""),
     ("joints.j: {type: weld, from: ground.O, to: a.p, stiffness: [1, 1, 1]}", "joints.j.stiffness wrong-kind"),
     ("joints.j: {type: weld, from: ground.O, to: a.p, stiffness: 1 N*m}", "joints.j.stiffness dimension"),
     ("joints.j: {type: rod, from: ground.O, to: a.p, length: 0}", "joints.j.length not-positive"),

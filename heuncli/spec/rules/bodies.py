@@ -63,10 +63,14 @@ def not_positive(draft: DraftDocument) -> Iterator[Violation]:
     for name, joint in draft.document.joints.items():
         path = ("joints", name)
         yield from positive(path, joint, "length")
-        parts = (joint.stiffness, *(getattr(joint.stiffness, key, None) for key in ("force", "moment")))
+        if isinstance(joint.stiffness, float) and joint.stiffness <= 0.0:
+            message = f"a stiffness must be more than 0, not {joint.stiffness:g}"
+            yield Violation((*path, "stiffness"), message, "{moment: 0} gives way to what others hold; {force: 0}, too")
+        parts = [getattr(joint.stiffness, key, None) for key in ("force", "moment")]
         numbers = [n for part in parts for n in (part if isinstance(part, tuple) else (part,)) if isinstance(n, float)]
-        if any(n <= 0.0 for n in numbers):
-            yield Violation((*path, "stiffness"), f"a stiffness must be more than 0, not {min(numbers):g}")
+        if any(n < 0.0 for n in numbers):
+            message = f"a stiffness must not be negative, as {min(numbers):g} is"
+            yield Violation((*path, "stiffness"), message, "0: the joint gives way there to what others hold")
     for name, load in draft.document.forces.items():
         path = ("forces", name)
         if isinstance(load, f.Friction) and load.speed.constant is not None and load.speed.constant <= 0.0:
