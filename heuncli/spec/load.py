@@ -14,7 +14,7 @@ from heuncli.spec.document import Reader
 from heuncli.spec.fields import Context
 from heuncli.spec.models import Spec
 from heuncli.spec.names import NAMED, Names, mapping
-from heuncli.spec.overrides import override
+from heuncli.spec.overrides import override, taken_in_si
 from heuncli.spec.parameters import evaluate_parameters
 from heuncli.spec.planar import in_the_plane
 from heuncli.spec.quantity import Scope, kind_of
@@ -56,6 +56,7 @@ class Loading:
             )
         without_empty = {k: {} if v is None and k in (*NAMED, "ground") else v for k, v in source.data.items()}
         given, self.set, problems = override(without_empty, overrides)
+        self.warnings += taken_in_si(without_empty, given, self.set) if self.set else ()
         self.data = in_the_plane(given) if given.get("space") == "planar" else given
         self.problems += problems
 

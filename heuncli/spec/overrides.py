@@ -3,10 +3,10 @@
 from __future__ import annotations
 
 import copy
-from collections.abc import Mapping
+from collections.abc import Iterator, Mapping
 from typing import Any
 
-from heuncli.errors import Problem, SourceLocation, SpecError
+from heuncli.errors import Finding, Problem, SourceLocation, SpecError
 from heuncli.nearest import did_you_mean
 from heuncli.spec.names import NAMED, mapping
 from heuncli.spec.source import Path_, parse
@@ -38,6 +38,35 @@ def override(
             problems.append(Problem("no-such-key", reason[0], SourceLocation(word, 1, 1), reason[1]))
         locations[path] = SourceLocation(word, 1, len(key) + 2, ".".join(map(str, path)))
     return data, locations, problems
+
+
+def taken_in_si(
+    before: dict[str, Any], after: dict[str, Any], locations: Mapping[Path_, SourceLocation]
+) -> Iterator[Problem]:
+    """Warnings of plain numbers in place of numbers with a unit that is not the SI's own."""
+    from heuncli.expressions.units import parse_unit, si_unit  # where something is set
+    from heuncli.spec.quantity import unit_in
+
+    for path, location in locations.items():
+        old, new = at(before, path), at(after, path)
+        found = unit_in(old) if type(old) is str and type(new) in (int, float) and new != 0 else None
+        if found is None:
+            continue
+        unit = found[2].strip()
+        try:
+            size, dimension = parse_unit(unit)
+        except Finding:
+            continue
+        if size != 1.0:
+            message = f"{new:.9g} is taken in {si_unit(dimension)}; the file gives it in {unit}"
+            yield Problem("set-in-si", message, location, f"with the unit: --set {location.path}='{new:.9g} {unit}'")
+
+
+def at(data: Any, path: Path_) -> Any:
+    """The value at a path, None where there is none."""
+    for part in path:
+        data = below(data, part)
+    return data
 
 
 def path_of(key: str, data: dict[str, Any]) -> Path_:

@@ -54,6 +54,8 @@ def against(study: Study, item: Expect, how: How, sign: float, bound: float) -> 
 
 def not_a_number(study: Study, there: Numbers, found: Peak) -> str | None:
     """Why there is no number to hold against a bound: open, or beside a singular pose, at an instant at least."""
+    if not there.values.size:
+        return "there is none"
     at = found.at if math.isnan(found.value) else found.open_at
     if there.timed and at is None:
         gaps = np.flatnonzero(np.isnan(there.values.reshape(len(there.values), -1)).any(axis=1))
@@ -70,6 +72,8 @@ def extreme_of(study: Study, item: Expect, how: How) -> Peak:
         return value(Measure("" if there.values.size == 1 else item.peak or how, item.of), study)
     if not there.timed:
         values = np.linalg.norm(there.values, axis=-1) if there.of_vectors else there.values
+        if not values.size:
+            return Peak(math.nan, None)
         return Peak(float(values.max() if how == "max" else values.min()), None)
     if item.at is None:
         return peak(study, item.of, item.peak or how)

@@ -148,6 +148,11 @@ def test_what_leaves_its_bounds_says_how_far_when_and_where(item: Any, why: str)
     assert why in failure
 
 
+def test_no_bound_is_met_by_nothing() -> None:
+    study = FakeStudy(STUDY.times, {"accuracy": {**ACCURATE, "unknown": []}})
+    assert compare(study, expectation("accuracy.unknown", None, below=1.0)).failure == "there is none"
+
+
 def test_no_bound_is_met_by_what_is_open_or_beyond_the_horizon() -> None:
     force = pendulum(STUDY.times).joints["pivot"]["force"].copy()
     force[3:5, 2] = np.nan

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import json
+import random
 from pathlib import Path
 
 import numpy as np
@@ -13,6 +14,7 @@ from heuncli.report.export import to_json
 from heuncli.report.quantities import walk
 from heuncli.results_paths import find
 from heuncli.spec.load import load
+from heuncli.spec.models import Spec
 from heuncli.spec.names import names_in
 from heuncli.spec.rules.outcome import wrong_path
 from tests.report.test_export import BLOW
@@ -146,6 +148,22 @@ def test_what_was_meant_by_a_path_is_found(path: str, meant: str) -> None:
 def test_what_nothing_is_like_is_told_with_what_there_is(path: str, hint: str) -> None:
     _, told = wrong_path(path, names_in(JIB), {"root": False, "along": True}) or ("", "")
     assert (told or "").startswith(hint)
+
+
+@pytest.mark.parametrize("spec", [JIB, ENGINE], ids=["jib", "engine"])
+def test_what_is_proposed_is_there(spec: Spec) -> None:
+    names = names_in(spec)
+    runs = {name: section.from_ is not None for name, section in spec.sections.items()}
+    words = [*spec.bodies, *spec.joints, *spec.forces, *spec.sections, "joints", "coordinates", "force", "fx", "Mz",
+             "z", "mag", "angle", "3", "", "supports", "M1", "shares", "gravity", "impulses", "nonsense"]  # fmt: skip
+    draw, proposed = random.Random(1), 0
+    for _ in range(150):
+        path = ".".join(draw.choice(words) for _ in range(draw.randint(1, 4)))
+        hint = (wrong_path(path, names, runs) or ("", ""))[1] or ""
+        if hint.startswith("did you mean ") and "." in hint:
+            proposed += 1
+            assert wrong_path(hint.removeprefix("did you mean ").removesuffix("?"), names, runs) is None, path
+    assert proposed > 5
 
 
 def test_after_the_run_a_path_is_read_the_same_way() -> None:

@@ -246,6 +246,18 @@ def test_a_number_set_without_a_unit_is_free_and_one_with_a_unit_is_not() -> Non
     assert codes("L", L="3 kg") == ["wrong-dimension: L is a mass (3 kg), a length is wanted here"]
 
 
+@pytest.mark.parametrize(
+    ("key", "text", "warned"),
+    [
+        ("r", "5", True), ("r", "5 mm", False), ("r", "0", False), ("L", "3", False), ("free", "3", False),
+        ("r", "L/100.0", False), ("phi", "0.5", True), ("bodies.bar.mass", "2", False),
+    ],
+)  # fmt: skip
+def test_a_number_set_in_place_of_another_unit_is_warned_of(key: str, text: str, warned: bool) -> None:
+    spec = load("x.yaml", SCENE % ("L", ""), {key: text})
+    assert [p.code for p in spec.warnings] == (["set-in-si"] if warned else [])
+
+
 def test_a_wrong_parameter_is_told_once() -> None:
     assert codes("free", free="L + c") == ["wrong-dimension: 'L + c' adds a length and a mass"]
 
