@@ -8,6 +8,7 @@ from typing import Any
 import pytest
 
 from heuncli.spec.load import load
+from tests.oracle.scenes import SPREAD
 from tests.oracle.values import to_yaml
 from tests.shared.doubles import redundant_scene
 from tests.shared.in_plane import PLANAR, flat_scene
@@ -37,6 +38,10 @@ FAMILIES: dict[str, tuple[Callable[[int], dict[str, Any]], range, int]] = {
     "driven": (driven, range(8, 18), 10),
     "trees": (lambda seed: tree_scene(seed)[0], range(60, 66), 0),
     "loops": (lambda seed: loop_scene(seed)[0], range(60, 66), 0),
+    "flat, spread loads": (lambda seed: flat_scene(seed, loads=SPREAD), range(20, 30), 5),
+    "welded, spread loads": (lambda seed: welded(seed, SPREAD), range(20, 26), 3),
+    "carried, spread loads": (lambda seed: carried(seed, SPREAD), range(40, 44), 2),
+    "driven, spread loads": (lambda seed: driven(seed, SPREAD), range(8, 14), 5),
     "redundant": (lambda seed: redundant_scene(seed)[1], range(2000, 2006), 0),
 }
 

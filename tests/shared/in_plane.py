@@ -17,7 +17,7 @@ from tests.oracle.read import GROUND, Placed, model, placed, start_state
 from tests.oracle.rows import assemble, coordinates, velocities
 from tests.oracle.scenes import LOADS, Maker
 from tests.oracle.solve import solve
-from tests.oracle.transforms import combined, turned
+from tests.oracle.transforms import combined, in_time_scaled, turned
 from tests.oracle.turns import Array, about, cross, random_rotation
 from tests.oracle.values import Harmonic
 
@@ -217,6 +217,12 @@ class FlatMaker(Maker):
             vector = combined(self.own[on].T, vector) if self.frames == "any" else permuted(self.own[on], vector)
         return {**given, "vector": vector}
 
+    def load_distributed(self, in_time: bool) -> dict[str, Any]:
+        given = self.load_force(in_time)
+        on = given["on"]["body"] if isinstance(given["on"], dict) else given["on"].split(".")[0]
+        ends = {"from": self.spot(on).tolist(), "to": self.spot(on).tolist()}
+        return {**given, "on": on, **ends, "to_vector": [in_time_scaled(x, -0.4, 1.0) for x in given["vector"]]}
+
     def on_joint(self, kinds: Any) -> str | None:
         """A pin in the plane is not loaded: it would leave it."""
         found = super().on_joint(kinds)
@@ -237,7 +243,9 @@ def permuted(F: Array, vector: list[Any]) -> list[Any]:
     return new
 
 
-def flat_scene(seed: int, mode: str = "", plane: str = "", kinds: Sequence[str] = ()) -> dict[str, Any]:
+def flat_scene(
+    seed: int, mode: str = "", plane: str = "", kinds: Sequence[str] = (), loads: Sequence[str] = LOADS
+) -> dict[str, Any]:
     """A random flat scene; plane: world | axes | any, where it lies; kinds: of joints, where they are others."""
     rng = np.random.default_rng(seed)
     mode = mode or ("kinematic", "mirror")[seed % 2]
@@ -251,7 +259,7 @@ def flat_scene(seed: int, mode: str = "", plane: str = "", kinds: Sequence[str] 
             maker.closure(f"loop{k}", CLOSURES[mode])
         maker.set_moving()
         maker.drives(int(rng.integers(0, 2)))
-        maker.loads(LOADS, True)
+        maker.loads(loads, True)
         if solve(maker.scene, start_state(maker.scene)).residual < 1e-9:
             return more(rng, maker, plane)
     raise RuntimeError("no scene found whose drives fit its loops")

@@ -3,7 +3,7 @@ bodies that may spin, driven machines; as the oracle's dicts."""
 
 from __future__ import annotations
 
-from collections.abc import Callable
+from collections.abc import Callable, Sequence
 from typing import Any
 
 import numpy as np
@@ -22,12 +22,13 @@ Scene = dict[str, Any]
 WELDS = ("weld", "weld", "weld", "pin", "ball", "slide", "universal")
 
 
-def welded(seed: int) -> Scene:
+def welded(seed: int, loads: Sequence[str] = LOADS) -> Scene:
     """Bodies most of which are welded to each other or the ground, in loops, too."""
     rng = np.random.default_rng(seed)
     scene, _ = random_scene(
         rng, int(rng.integers(2, 7)), kinds=WELDS, roots=0.15, loops=int(rng.integers(0, 3)),
         loop_kinds=("weld", "ball", "plane", "rod"), drives=seed % 2, masses=str(rng.choice(["given", "shapes"])),
+        loads=loads,
     )  # fmt: skip
     return struck(scene, seed)
 
@@ -73,7 +74,7 @@ def round_scene(seed: int) -> Scene:
     return struck(scene, seed, couples=seed % 2 == 0, thin=seed % 6 == 0)
 
 
-def carried(seed: int) -> Scene:
+def carried(seed: int, loads: Sequence[str] = LOADS) -> Scene:
     """A plate on six bars, or two bars to a point, that carry a machine."""
     rng = np.random.default_rng(seed)
     for _ in range(100):
@@ -92,7 +93,7 @@ def carried(seed: int) -> Scene:
         maker.drives(seed // 2 % 2)
         if any(maker.scene["joints"][d["joint"]]["type"] == "rod" for d in maker.scene.get("drives", {}).values()):
             continue
-        maker.loads(LOADS, True)
+        maker.loads(loads, True)
         if solve(maker.scene, start_state(maker.scene)).residual < 1e-9:
             return struck(maker.scene, seed)
     raise RuntimeError("no scene found")
@@ -102,7 +103,7 @@ def joint(maker: Maker, name: str, kind: str, a: str, p: Any, b: str, q: Any, sp
     maker.join(name, kind, spec, a, np.asarray(p, dtype=float), b, np.asarray(q, dtype=float))
 
 
-def driven(seed: int) -> Scene:
+def driven(seed: int, loads: Sequence[str] = LOADS) -> Scene:
     """Every freedom is driven: chains of pins and slides in space, or in a plane with pairs of bars between them."""
     rng = np.random.default_rng(seed)
     for _ in range(200):
@@ -116,7 +117,7 @@ def driven(seed: int) -> Scene:
             pair(maker, k)
         maker.set_moving()
         drive_all(maker, able)
-        maker.loads(LOADS, True)
+        maker.loads(loads, True)
         if able and solve(maker.scene, start_state(maker.scene)).residual < 1e-9:
             scene = maker.scene
             return struck(turned(scene, random_rotation(rng)) if seed % 4 == 3 else scene, seed)

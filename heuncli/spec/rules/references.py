@@ -110,7 +110,7 @@ def points_of_bodies(draft: DraftDocument) -> Iterator[tuple[Path_, str, object]
         for key, value in (("at", section.at), ("from", section.from_), ("to", section.to)):
             yield ("sections", name, key), section.body, value
     for name, load in draft.document.forces.items():
-        if isinstance(load, f.Distributed):
+        if isinstance(load, f.Distributed) and load.on != GROUND:
             for key, value in (("from", load.from_), ("to", load.to)):
                 yield ("forces", name, key), load.on, value
 
