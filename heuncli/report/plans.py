@@ -174,8 +174,8 @@ PLANS = (
         "forces",
         "forces",
         "force",
-        ("value", "length", "rate", "power"),
-        lambda results, labels: "FORCES  value, length of its line, rate of its length or turning, power it puts in",
+        ("value", "length", "angle", "rate", "power"),
+        lambda results, labels: "FORCES  value, length of its line, angle of a turn spring, their rate, power put in",
         _force_note,
     ),
     Plan(
