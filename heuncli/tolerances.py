@@ -142,6 +142,20 @@ UNSEEN_RATE = 1e-9  # of a rate's size: what it may do in the mean between the n
 # default tolerance; the integral itself errs by rounding
 QUADRATURE = 1e-14  # of the scale: whole against halves; planes that graze thin walls then err by as much
 
+# -- rest
+REST_FIRST = 0.01  # rad, or of the size: the first step, short against any lever
+REST_FARTHEST = 0.5  # the same: a longer step may pass over what bends within half a turn
+REST_BENT = 0.2  # of a step: what the linear law may be off by
+REST_STRAIGHT = 1e-6  # the same of a step beyond REST_FARTHEST: nothing bends there
+RUN_AWAY = 1e6  # times the scene's size: what shifts as far is held by nothing
+TURNS_ON = 63.0  # rad: ten turns have seen every pose of a turn, several times
+PUSHED_BY_ROUNDING = 50.0  # times what START_ROUNDING of a pose makes of its accelerations: some hundred steps' worth,
+# so that a scene drawn alike on both sides comes to rest so, stable or not
+STEADY = 1e-9  # of the terms of an acceleration, of the fastest drive: axes typed with ten digits turn on themselves
+GROWS = 1e-6  # of the fastest exponent: their squares are known to some dozen roundings of the largest
+INDIFFERENT = 1024.0 * EPS  # of the terms of an eigenvalue: exact slopes, of a pose known to its rounding
+NOT_HELD = 1e-6  # of the terms of an acceleration: a rest leaves rounding of them, loads that jump leave their part
+
 # -- what is typed in a spec
 UNIT_TYPED = 1e-2  # a unit quaternion or rotation matrix may be this far off: two digits at least
 UNIT_EXACT = 1e-14  # some dozen roundings: nearer to a rotation, a matrix is taken as it stands

@@ -26,6 +26,7 @@ def heading(results: Results) -> list[tuple[str, str]]:
         *(("unseen", sentence) for sentence in results.model.get("cannot_tell", ())),
         *(("start", sentence) for sentence in results.model.get("moved", ())),
         ("run", _run(results)),
+        *_labelled("rest", results.model.get("rest", ())),
         *(("until", sentence) for sentence in results.model.get("until", ())),
         ("accuracy", _errors(results)),
         ("", _residuals(results)),
@@ -66,12 +67,17 @@ def _reduced(sentences: Sequence[str]) -> list[tuple[str, str]]:
     return [("reduced", f"{sentences[0]}{more}")] if sentences else []
 
 
+def _labelled(label: str, sentences: Sequence[str]) -> list[tuple[str, str]]:
+    """Sentences, the first of them with a label."""
+    return [(label * (not i), sentence) for i, sentence in enumerate(sentences)]
+
+
 def _contacts(sentences: Sequence[str]) -> list[tuple[str, str]]:
     """What is told of contacts, the first of it."""
     shown = list(sentences[:MOST_TOLD])
     if len(sentences) > MOST_TOLD:
         shown.append(f"{len(sentences) - MOST_TOLD} more in --format json, model.contacts")
-    return [("contacts" * (not i), sentence) for i, sentence in enumerate(shown)]
+    return _labelled("contacts", shown)
 
 
 def _model(results: Results) -> str:
@@ -109,7 +115,9 @@ def _run(results: Results) -> str:
 def _errors(results: Results) -> str:
     estimate, parts = results.accuracy.get("estimate", Estimate()), []
     loads = max(estimate.get(kind) or 0.0 for kind in LOADS)
-    if results.work.get("steps"):
+    if "rest" in results.model:
+        parts = _sentence("pose within {} of the scene's size", estimate.get("motion"))
+    elif results.work.get("steps"):
         parts = _sentence("motion within {} of the scene's size", estimate.get("motion"))
     elif loads <= tolerances.WRITTEN:
         return "exact but for rounding"
@@ -119,7 +127,8 @@ def _errors(results: Results) -> str:
 
 def _residuals(results: Results) -> str:
     accuracy = results.accuracy
-    parts = _sentence("energy kept to {}", accuracy.get("energy_drift")) if results.work.get("steps") else []
+    moves = results.work.get("steps") and "rest" not in results.model
+    parts = _sentence("energy kept to {}", accuracy.get("energy_drift")) if moves else []
     parts += _sentence("joints closed to {} m", accuracy.get("constraint_gap") or None)
     parts += _sentence("forces balance to {}", accuracy.get("balance_residual"))
     return ", ".join(parts)

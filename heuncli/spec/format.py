@@ -476,7 +476,7 @@ Condition = Annotated[Annotated[TruthInTime, Tag("single")] | Annotated[OfResult
 
 
 class Analysis(Model):
-    type: Literal["motion", "impulse", "state"] | None = None
+    type: Literal["motion", "impulse", "state", "rest"] | None = None
     duration: Time | None = None
     samples: Count | None = None
     times: list[Time] | None = None

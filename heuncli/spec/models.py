@@ -302,7 +302,7 @@ class Analysis(NamedTuple):
     step is for methods of fixed step.
     """
 
-    type: Literal["motion", "impulse", "state"]
+    type: Literal["motion", "impulse", "state", "rest"]
     times: tuple[float, ...]
     duration: float | None
     tolerance: float

@@ -118,7 +118,7 @@ def limits_of(stop: f.Stop) -> tuple[Literal["angle", "travel", "length"], Limit
     return found[0] if len(found) == 1 else None
 
 
-def type_of(document: f.Document) -> Literal["motion", "impulse", "state"]:
+def type_of(document: f.Document) -> Literal["motion", "impulse", "state", "rest"]:
     """What is solved, by default what the rest of the scene asks for."""
     analysis = document.analysis
     if analysis.type is not None:

@@ -15,7 +15,7 @@ from heuncli.errors import LimitError, SolveError
 from heuncli.expressions.discontinuities import one_sided_limits
 from heuncli.integration.between import at_once
 from heuncli.integration.blows import Jump
-from heuncli.integration.checked import Checked, Runs, checked_run, recovered_at
+from heuncli.integration.checked import Checked, Marks, Runs, checked_run, motion_error, recovered_at
 from heuncli.integration.evaluator import Recovered
 from heuncli.integration.methods import METHODS
 from heuncli.integration.pairs import interleaved, moved_start
@@ -132,8 +132,10 @@ def checked_motion(
 def state(setup: Setup, at: float, tolerance: float, by_cause: bool = False) -> History:
     """The history of one instant, behind the blow that is asked for; beside it, from a start moved by rounding."""
     runner, layout = setup.runner, setup.scene.layout
-    starts = [layout.y0, moved_start(layout)]
-    blows: list[tuple[Jump, ...]] = [(), ()]
+    # a rest pose moved by rounding would be another one: beside it are those that rounding does not tell from it
+    others = [moved_start(layout)] if setup.rest is None else list(setup.rest.beside)
+    starts = [layout.y0, *others]
+    blows: list[tuple[Jump, ...]] = [() for _ in starts]
     if setup.spec.analysis.type == "impulse" or layout.contacts:
         blows = [at_once(runner, start, at) for start in starts]
         starts = [jumps[-1].after if jumps else start for start, jumps in zip(starts, blows, strict=True)]
@@ -146,8 +148,10 @@ def state(setup: Setup, at: float, tolerance: float, by_cause: bool = False) -> 
     both = runner.recovered(*beside, causes=by_cause, holding=holding)
     kinds = Kinds(setup, by_cause)
     kinds.add(both, *np.ones((2, 1), dtype=bool))
-    # of one instant: what rounding of its state makes of the loads
-    estimate, seconds = Estimate(motion=0.0, **kinds.estimate()), {"integrate": 0.0, "check": 0.0}
+    # of one instant: what rounding of its state makes of the loads, and of a pose that was looked for
+    off = 0.0 if setup.rest is None else float(motion_error(Marks(layout), both, len(starts), layout.size)[0])
+    estimate = Estimate(motion=off, **kinds.estimate())
+    seconds = {"integrate": 0.0 if setup.rest is None else setup.rest.seconds, "check": 0.0}
     return History(
         answers, tolerance, estimate, blows=blows[0], beside=tuple(blows[1:]), seconds=seconds,
         errors=kinds.errors_by_cause(),

@@ -66,6 +66,11 @@ def reductions(left_out: Sequence[str], scene: PreparedScene, reduced: Reduced |
     return {key: value for key, value in found.items() if value}
 
 
+def rested(block: Block, told: Sequence[str]) -> Block:
+    """The block `model` with how the scene rests, in sentences."""
+    return block | {"rest": list(told), "notes": [*told, *block["notes"]]} if told else block
+
+
 def grubler(mechanism: Mechanism) -> int:
     """Grübler's count of freedoms: 6 (in the plane 3) a body less the joints' conditions and the drives."""
     kinds = [JOINTS[j.kind] for j in mechanism.joints]

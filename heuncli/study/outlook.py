@@ -22,6 +22,8 @@ MOST_STEPS = 2_000
 
 def outlook(setup: Setup) -> list[str]:
     """What is integrated, and what the first part of the run takes, in sentences."""
+    if setup.spec.analysis.type == "rest":
+        return ["nothing: what is looked for is the pose at rest that a heavily damped motion from the start comes to"]
     if setup.method is None:
         return ["nothing: one instant is solved"]
     if setup.method.determined:

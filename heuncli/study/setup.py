@@ -18,11 +18,12 @@ from heuncli.reduction.model import Reduced
 from heuncli.results import Array, Block
 from heuncli.spec.models import Spec
 from heuncli.study.asked import EVERYTHING, Asked
-from heuncli.study.model_note import model_note, reductions
+from heuncli.study.model_note import model_note, reductions, rested
 from heuncli.tree.prepare import PreparedScene, prepare
 
 if TYPE_CHECKING:  # loaded where a scene has sections
     from heuncli.kinetostatics.cuts import Cuts
+    from heuncli.study.resting import Rest
 
 
 @record
@@ -31,7 +32,7 @@ class Setup:
 
     spec: as far as it is solved; asked: what is told of it. cuts: of the sections, as asked; in a search runs of cuts
     as whole stretches stand for them. reduced: what is integrated in the scene's place, and why; None where nothing is,
-    or where all is solved in full.
+    or where all is solved in full. rest: how the pose was found, where that is what is asked for.
     """
 
     spec: Spec
@@ -42,6 +43,7 @@ class Setup:
     model: Block
     reduced: Reduced | None = None
     asked: Asked = EVERYTHING
+    rest: Rest | None = None
 
     @cached_property
     def steady(self) -> dict[int, Array]:
@@ -53,14 +55,20 @@ class Setup:
         return {i: spin.axis for i, spin in spins_of(self.scene).items()}
 
 
-def set_up(spec: Spec, method: str | None = None, *, reduce: bool = True, asked: Asked = EVERYTHING) -> Setup:
+def set_up(
+    spec: Spec, method: str | None = None, *, reduce: bool = True, asked: Asked = EVERYTHING,
+    looked_for: bool = True, deadline: float | None = None,
+) -> Setup:  # fmt: skip
     """Build, cut, assemble, lay out; `method` stands for the one in the spec; reduce: a smaller scene may move for it.
 
+    looked_for: a rest pose that is asked for is found, before the deadline (time.monotonic()).
     asked: what is not asked for, and what nothing asked for depends on, is left out. Raises SpecError for a section
     that cannot be cut, SolveError where the scene does not close.
     """
     spec, left_out = asked_part(spec, asked, reduce)
     mechanism, cuts = draw(spec)
+    if spec.analysis.type == "rest":
+        mechanism = with_slack_ropes(mechanism)
     prepared = prepare(mechanism, spec.analysis.times[0] if spec.analysis.type == "state" else 0.0)
     if any(drive.by_rate for drive in spec.drives.values()):
         from heuncli.tree.driven_starts import require_lengths  # few scenes have them
@@ -69,6 +77,8 @@ def set_up(spec: Spec, method: str | None = None, *, reduce: bool = True, asked:
     if not reduce:  # what is declared planar is moved as in space, too
         prepared = replace(prepared, layout=replace(prepared.layout, flat=False))
     scene, runner = ready(prepared)
+    if spec.analysis.type == "rest":
+        return set_up_at_rest(Setup(spec, scene, cuts, runner, None, {}, None, asked), left_out, looked_for, deadline)
     chosen = METHODS[method or spec.analysis.method] if spec.analysis.type == "motion" else None
     reduced = None
     if chosen is not None and reduce:
@@ -79,6 +89,23 @@ def set_up(spec: Spec, method: str | None = None, *, reduce: bool = True, asked:
         chosen, told = FOLLOWED if follows.is_so else chosen, follows.beside(told)
     note = model_note(scene, runner, chosen.name if chosen else "none") | told
     return Setup(spec, scene, cuts, runner, chosen, note, reduced, asked)
+
+
+def set_up_at_rest(setup: Setup, left_out: tuple[str, ...], looked_for: bool, deadline: float | None) -> Setup:
+    """The same at its rest pose, unless that is not looked for."""
+    from heuncli.study.resting import at_rest  # few scenes ask for it
+
+    scene, runner, rest = setup.scene, setup.runner, None
+    if looked_for:
+        scene, runner, rest = at_rest(scene, runner, deadline)
+    note = model_note(scene, runner, "rest") | reductions(left_out, scene, None)
+    return replace(setup, scene=scene, runner=runner, rest=rest, model=rested(note, rest.told if rest else ()))
+
+
+def with_slack_ropes(mechanism: Mechanism) -> Mechanism:
+    """Ropes that may go slack: at rest they bear or do not, and nothing ends where they would push."""
+    joints = [replace(j, restitution=0.0) if j.tension_only and j.restitution is None else j for j in mechanism.joints]
+    return replace(mechanism, joints=tuple(joints))
 
 
 def asked_part(spec: Spec, asked: Asked, reduce: bool) -> tuple[Spec, tuple[str, ...]]:

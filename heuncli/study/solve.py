@@ -79,7 +79,7 @@ def solve(spec: Spec, options: Options | None = None) -> Study:
     begun = time.perf_counter()
     conditions = spec.analysis.conditions
     asked = options.asked.with_all(needed_by(conditions, spec)) if conditions else options.asked
-    setup = set_up(spec, known_method(options.method), reduce=options.reduce, asked=asked)
+    setup = set_up(spec, known_method(options.method), reduce=options.reduce, asked=asked, deadline=deadline)
     built = time.perf_counter()
     tolerance = spec.analysis.tolerance if options.tolerance is None else options.tolerance
     history = integrate(setup, tolerance, deadline, by_cause=SHARES in options.reports)
@@ -113,7 +113,7 @@ def describe(spec: Spec, *, reduce: bool = True) -> Block:
     from heuncli.study.outlook import outlook
 
     asked = Options(wanted=None if spec.report is None else frozenset(spec.report)).asked
-    setup = set_up(spec, reduce=reduce, asked=asked)
+    setup = set_up(spec, reduce=reduce, asked=asked, looked_for=False)
     mechanism = setup.scene.mechanism
     names = {"bodies": [b.name for b in mechanism.bodies], "joints": {j.name: j.kind for j in mechanism.joints}}
     model = setup.model | {"names": names, "integrates": outlook(setup)}
@@ -136,6 +136,8 @@ def compose(
     shown, unknown = blocks_of(history, recovery, wanted)
     split = recovery.decided.words if recovery.verdicts and recovery.decided is not None else ()
     checked = history.checked
+    rest = setup.rest
+    done = checked.run if checked is not None else rest
     struck_freely = sum(met_freely(setup.scene.layout, jump.impulses) for jump in history.blows)
     kinetic = checked.kinetic if checked is not None else 0.0
     balance = accuracy(recovery, kinetic, struck_freely, history.followed_for)
@@ -151,7 +153,7 @@ def compose(
         | ({"axes": setup.asked.axes} if setup.asked.axes != "world" else {})
         | contacts_of(history)
         | unfollowed(setup, history),
-        status=status(history),
+        status=status(history) if rest is None else rest.status,
         time=recovery.recovered.times,
         **shown,
         impulses=struck.blocks() if struck is not None and BLOWS in wanted else [],
@@ -165,13 +167,14 @@ def compose(
         | ({"unknown": unknown.tolist()} if len(unknown) else {}),
         work={
             "kernel": KERNEL,
-            "steps": checked.run.steps if checked is not None else 0,
-            "evaluations": checked.run.evaluations if checked is not None else 0,
+            "steps": done.steps if done is not None else 0,
+            "evaluations": done.evaluations if done is not None else 0,
             "seconds": {},
         },
         warnings=(
             *warnings(setup, history, recovery, shown.get("joints", {}), balance["balance_residual"]),
             *beside_singular_poses(unknown),
+            *(rest.warnings if rest is not None else ()),
         ),
     )
 

@@ -45,6 +45,7 @@ from heuncli.study.warnings import unbalanced
 from heuncli.tree.prepare import prepare
 from tests.closed_forms.test_stretched_chain import chain
 from tests.convergence.test_pulses import slide
+from tests.honesty import rest
 from tests.honesty.nearly_flat import PARTS, drawn_askew, leaving
 from tests.shared.scenes import near, solved, study
 
@@ -783,12 +784,24 @@ ROWS = (
     # in the plane
     *(Row("FLAT", leaving(part), "flat", "not flat") for part in PARTS),
     Row("NEARLY_FLAT", drawn_askew, "told", "in space"),
+    # rest
+    Row("RUN_AWAY", rest.far_away, "rests", "refused"),
+    Row("TURNS_ON", rest.wound_up, "rests", "refused"),
+    Row("PUSHED_BY_ROUNDING", rest.beside_upright, "stays", "falls", (0.01, 0.1, 10.0, 100.0)),
+    Row("STEADY", rest.tilted, "rests", "refused"),
+    Row("NOT_HELD", rest.jumping, "rests", "refused"),
+    Row("GROWS", rest.pushed_off, "stable", "unstable"),
+    Row("INDIFFERENT", rest.hardly_held, "indifferent", "held"),
 )
 
 # Those that decide no verdict: on either side the same numbers, to their digits.
 EXEMPT = {
     "INTEGRATED": "whether a stretch is halved once more: the integral is right to rounding on either side",
     "UNSEEN_RATE": "whether a stretch is halved once more; tests/spec/test_integrals.py has pulses that hide",
+    "REST_FIRST": "the first step of a search: its end is told to its digits",
+    "REST_FARTHEST": "what accepts a step of the search",
+    "REST_BENT": "what accepts a step of the search",
+    "REST_STRAIGHT": "what accepts a step of the search",
     "EPS": "the rounding of one operation; others are told by it",
     "NEAR_DRAWING": "which start a search takes first; tests/laws/test_nearest.py looks at what comes of it",
     "FARTHER": "which of two poses that both close; tests/laws/test_nearest.py holds how far it may be",

@@ -48,17 +48,38 @@ def analysis_type(draft: DraftDocument) -> Iterator[Violation]:
     timed = analysis.duration is not None or analysis.times is not None
     if analysis.type == "motion" and not timed:
         yield Violation(path, "a motion needs a duration or times", "analysis: {duration: 2, samples: 201}")
-    if analysis.type in ("state", "impulse") and timed:
+    if analysis.type in ("state", "impulse", "rest") and timed:
         yield Violation(
             path,
             f"type: {analysis.type} is one instant and takes no duration or times",
             "leave the type out for a motion",
         )
-    if analysis.type == "state" and draft.names.entries["impulses"]:
+    if analysis.type in ("state", "rest") and draft.names.entries["impulses"]:
         hint = "type: impulse for the jump at time 0, a duration for a motion with blows"
-        yield Violation(path, "a state has no blows, but there are impulses", hint)
+        yield Violation(path, f"a {analysis.type} has no blows, but there are impulses", hint)
     if analysis.type == "impulse" and not draft.names.entries["impulses"]:
         yield Violation(path, "type: impulse without impulses", "impulses: {blow: {on: body.point, vector: [1, 0, 0]}}")
+
+
+@rule("rest-start")
+def rest_start(draft: DraftDocument) -> Iterator[Violation]:
+    """What is looked for at rest has no start velocities; those of what is driven are the drives' own."""
+    document = draft.document
+    if document.analysis.type != "rest":
+        return
+    hint = "leave it out, or ask for a motion"
+    driven = {drive.joint for drive in document.drives.values()}
+    for name, joint in document.joints.items():
+        given = getattr(joint, "initial", None)
+        for key in ("rate", "speed"):
+            if name not in driven and getattr(given, key, None):
+                yield Violation(("joints", name, "initial", key), f"a rest has no start {key}", hint, key=True)
+    for name, body in document.bodies.items():
+        for key in ("velocity", "angular_velocity"):
+            value = getattr(body, key)
+            if value is not None and any(getattr(value, "vector", value)):
+                what = key.replace("_", " ")
+                yield Violation(("bodies", name, key), f"a rest has no start {what}", hint, key=True)
 
 
 @rule("tolerance")

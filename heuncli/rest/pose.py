@@ -1,0 +1,53 @@
+"""A pose at which all coordinates rest, with what would accelerate them there, and the contacts that bear."""
+
+from __future__ import annotations
+
+from typing import TYPE_CHECKING
+
+import numpy as np
+
+from heuncli.integration.evaluator import Evaluator, Recovered
+from heuncli.records import record
+from heuncli.rest.coordinates import Coordinates, resting
+from heuncli.results import Array
+
+if TYPE_CHECKING:
+    from heuncli.tree.layout import Contact
+
+
+@record
+class Pose:
+    """A settled state (n_state,) at rest, the kernel's answers there, accelerations (n,), closed contacts (n_c,)."""
+
+    t: float
+    state: Array
+    recovered: Recovered
+    accelerations: Array
+    holding: Array
+
+    @property
+    def is_sound(self) -> bool:
+        """Whether there are accelerations, of coordinates that close."""
+        return bool(np.isfinite(self.accelerations).all() and np.isfinite(self.recovered.gap).all())
+
+
+def pose_at(evaluator: Evaluator, coordinates: Coordinates, t: float, state: Array, holding: Array) -> Pose:
+    """The pose of a state whose rates are let go; holding: the contacts that are closed."""
+    at = resting(evaluator, t, state[None, :], holding)
+    return Pose(t, at.states[0], at, coordinates.accelerations(at)[0], holding)
+
+
+def bearing(evaluator: Evaluator, coordinates: Coordinates, t: float, state: Array) -> Pose:
+    """The same, with the contacts closed that touch there and bear."""
+    none = np.zeros(len(evaluator.layout.contacts))
+    if not len(none):
+        return pose_at(evaluator, coordinates, t, state, none)
+    from heuncli.integration.meetings import held_at  # few scenes have them
+
+    still = pose_at(evaluator, coordinates, t, state, none).state
+    return pose_at(evaluator, coordinates, t, state, held_at(evaluator, t, still))
+
+
+def opening(contact: Contact, at: Pose) -> float:
+    """How far a contact is open [m or rad]."""
+    return -contact.sense * float(at.recovered.rows["gap"][0, contact.row])

@@ -1,0 +1,393 @@
+"""Rest poses against closed forms, an independent minimum of the energy, and against themselves: what rests stays.
+
+Steady states of what drives turn; ropes and stops that bear or do not; why there is no rest.
+"""
+
+from __future__ import annotations
+
+import math
+
+import numpy as np
+import pytest
+from scipy.optimize import brentq, minimize_scalar
+
+from heuncli.errors import SolveError
+from heuncli.results import Array, Results
+from heuncli.shapes.rotations import from_vector
+from heuncli.study.solve import Study
+from tests.shared.scenes import near, solved, study
+
+pytestmark = pytest.mark.heavy  # families: the plain kernel has the same bits (tests/package/test_kernels_agree.py)
+
+G = 9.81
+HEAD = f"heun: 1\ngravity: [0, 0, -{G}]\nanalysis: {{type: rest}}\n"
+POINTS = "ground: {points: {O: [0, 0, 0], A: [1, 0, 0]}}\n"
+BAR = "mass: 1, center: [0, 0, -0.5], inertia: [0.08, 0.08, 0.001], points: {top: [0, 0, 0], end: [0, 0, -1]}"
+BALL = "mass: 2, center: [0, 0, 0], inertia: [0.1, 0.1, 0.1], points: {c: [0, 0, 0]}"
+PIN = "type: pin, axis: [0, 1, 0]"
+
+
+def pendulum(angle: str, more: str = "") -> str:
+    """A bar of 1 m on a pin."""
+    pin = f"p: {{{PIN}, from: ground.O, to: bar.top, initial: {{angle: {angle}}}}}"
+    return f"{HEAD}{POINTS}bodies: {{bar: {{{BAR}}}}}\njoints: {{{pin}}}\n{more}"
+
+
+def refused(text: str) -> str:
+    """Why there is no rest pose."""
+    with pytest.raises(SolveError) as caught:
+        solved(text)
+    problem = caught.value.problems[0]
+    assert problem.code == "no-rest-pose"
+    assert problem.hint
+    return problem.message
+
+
+def unstable(results: Results) -> bool:
+    return any("unstable" in warning for warning in results.warnings)
+
+
+# ---- chains and springs ----------------------------------------------------------------------------------------
+SPAN, LENGTH = 1.0, 1.5
+
+
+def chain(places: Array) -> str:
+    """Rods of 1 kg/m between places in the xz plane, the first and the last on the ground; pins."""
+    n = len(places) - 1
+    lines = []
+    for i, (p, q) in enumerate(zip(places[:-1].tolist(), places[1:].tolist(), strict=True)):
+        shape = f"{{type: rod, from: {p}, to: {q}, line_density: 1}}"
+        lines.append(f"  l{i}: {{shapes: [{shape}], points: {{a: {p}, b: {q}}}}}")
+    ends = [f"ground.A, to: l{0}.a", *(f"l{i}.b, to: l{i + 1}.a" for i in range(n - 1))]
+    joints = [f"  j{i}: {{{PIN}, from: {end}}}" for i, end in enumerate(ends)]
+    joints.append(f"  last: {{type: line, axis: [0, 1, 0], from: l{n - 1}.b, to: ground.B}}")
+    ground = f"ground: {{points: {{A: {places[0].tolist()}, B: {places[-1].tolist()}}}}}"
+    return "\n".join([HEAD + ground, "bodies:", *lines, "joints:", *joints])
+
+
+def parameter() -> float:
+    """a of z = a cosh(x/a), which hangs from level ends: 2 a sinh(SPAN / 2a) = LENGTH."""
+    return float(brentq(lambda a: 2.0 * a * math.sinh(SPAN / (2.0 * a)) - LENGTH, 0.05, 5.0, xtol=1e-15))
+
+
+def tent(n: int) -> Array:
+    """n links drawn as two straight halves, standing up."""
+    s = np.linspace(0.0, 1.0, n + 1)
+    h = math.sqrt((LENGTH / 2.0) ** 2 - (SPAN / 2.0) ** 2)
+    return np.stack([SPAN * s, 0.0 * s, -2.0 * h * np.minimum(s, 1.0 - s)], axis=1)
+
+
+def test_a_chain_hangs_in_the_catenary() -> None:
+    """Links of equal length err by 1/n^2: of the pull H = w a, and of the sag."""
+    a, errors = parameter(), []
+    for n in (6, 12, 24):
+        found = solved(chain(tent(n)))
+        assert not found.warnings
+        sag = found.bodies[f"l{n // 2}"]["position"][0] + found.bodies[f"l{n // 2}"]["rotation"][0] @ tent(n)[n // 2]
+        deep = a * (math.cosh(SPAN / (2.0 * a)) - 1.0)
+        errors.append([abs(found.joints["last"]["force"][0, 0]) / (G * a) - 1.0, -sag[2] / deep - 1.0])
+        near(abs(found.joints["j0"]["force"][0, 2]), G * LENGTH / 2.0, G, 1e-10)
+    ratios = np.array(errors[:-1]) / np.array(errors[1:])
+    assert np.all(np.abs(ratios[-1] - 4.0) < 0.15), ratios
+
+
+def test_fifty_links() -> None:
+    """From the catenary itself, cut into equal chords: the pull to its own 1/n^2."""
+    a, n = parameter(), 50
+    s = np.linspace(-LENGTH / 2.0, LENGTH / 2.0, n + 1)
+    x = a * np.arcsinh(s / a)
+    places = np.stack([x + SPAN / 2.0, 0.0 * s, a * np.cosh(x / a)], axis=1)
+    found = solved(chain(places))
+    assert abs(abs(found.joints["last"]["force"][0, 0]) / (G * a) - 1.0) < 2.0 / n**2
+
+
+def plate(rng: np.random.Generator) -> tuple[str, Array, Array, Array, float]:
+    """A plate on three springs without length, hung at its centre of mass: ground ends, points, stiffnesses, mass."""
+    tops: Array = np.array([[1.0, 0.0, 1.0], [-0.6, 0.8, 1.2], [-0.5, -0.9, 0.9]]) + rng.uniform(-0.2, 0.2, (3, 3))
+    own = np.array([[0.8, 0.1, 0.0], [-0.5, 0.6, 0.1], [-0.4, -0.7, 0.05]]) + rng.uniform(-0.1, 0.1, (3, 3))
+    k, mass = rng.uniform(30.0, 80.0, 3), 3.0
+    ground = ", ".join(f"G{i}: {p}" for i, p in enumerate(tops.tolist()))
+    points = ", ".join(f"p{i}: {p}" for i, p in enumerate(own.tolist()))
+    springs = "\n".join(
+        f"  s{i}: {{type: spring, from: ground.G{i}, to: plate.p{i}, stiffness: {float(k[i])!r}, length: 0}}"
+        for i in range(3)
+    )
+    body = f"mass: {mass}, center: [0, 0, 0], inertia: [0.3, 0.4, 0.6], points: {{{points}}}"
+    text = f"{HEAD}ground: {{points: {{{ground}}}}}\nbodies: {{plate: {{{body}}}}}\nforces:\n{springs}\n"
+    return text, tops, own, k, mass
+
+
+@pytest.mark.parametrize("seed", range(3))
+def test_a_plate_on_three_springs(seed: int) -> None:
+    """sum k |x + R p - G|^2 / 2 + m g z is least where R turns the moments best onto each other (Kabsch)."""
+    text, tops, own, k, mass = plate(np.random.default_rng(seed))
+    mean_top, mean_own = k @ tops / k.sum(), k @ own / k.sum()
+    U, _, V = np.linalg.svd((own - mean_own).T @ (k[:, None] * (tops - mean_top)))
+    R = V.T @ np.diag([1.0, 1.0, np.linalg.det(V.T @ U.T)]) @ U.T
+    # weight acts at the centre, which the springs' own resultant does not pass: with it the moment is shifted
+    found = solved(text)
+    x, turned = found.bodies["plate"]["position"][0], found.bodies["plate"]["rotation"][0]
+    force = sum(k[i] * (tops[i] - x - turned @ own[i]) for i in range(3))
+    near(force, [0.0, 0.0, mass * G], mass * G, 1e-13)
+    moment = sum(np.cross(turned @ own[i], k[i] * (tops[i] - x - turned @ own[i])) for i in range(3))
+    near(moment, np.zeros(3), mass * G, 1e-13)
+    assert np.linalg.norm(turned - R) < 0.9  # on the branch of the least energy
+    if seed == 0:
+        light = solved(text.replace(f"-{G}", "0"))
+        near(light.bodies["plate"]["rotation"][0], R, 1.0, 1e-13)
+        near(light.bodies["plate"]["position"][0], mean_top - R @ mean_own, 1.0, 1e-13)
+
+
+@pytest.mark.parametrize(("stiff", "soft"), [(100.0, 20.0), (1e9, 1.0), (1.0, 1e9), (1e3, 1e-3)])
+def test_spring_scales(stiff: float, soft: float) -> None:
+    """Two masses one below the other: z = -L - (m + n) g / k, and the lower one m g / k more."""
+    bodies = f"bodies: {{a: {{{BALL}, position: [0, 0, -1]}}, b: {{{BALL}, position: [0, 0, -2.1]}}}}\n"
+    slides = ", ".join(f"{x}: {{type: slide, from: ground.O, to: {y}.c, axis: [0, 0, 1]}}" for x, y in ("ua", "vb"))
+    springs = (
+        f"forces: {{s: {{type: spring, from: ground.O, to: a.c, stiffness: {stiff}, length: 1}}, "
+        f"q: {{type: spring, from: a.c, to: b.c, stiffness: {soft}, length: 1}}}}"
+    )
+    found = solved(f"{HEAD}{POINTS}{bodies}joints: {{{slides}}}\n{springs}")
+    a = -1.0 - 4.0 * G / stiff
+    wanted = np.array([a, a - 1.0 - 2.0 * G / soft])
+    told = np.array([found.bodies[x]["position"][0, 2] for x in "ab"])
+    near(told, wanted, float(np.abs(wanted).max()), 1e-12)
+    assert np.abs(told - wanted).max() <= 3.0 * found.accuracy["estimate"]["motion"] * np.abs(wanted).max() + 1e-15
+    near(found.forces["s"]["value"], -4.0 * G, 4.0 * G, 1e-6 if stiff > 1e8 else 1e-11)
+
+
+def test_a_follower_load() -> None:
+    """sin of the lower bar = -2F/mg, tan of the upper one = -F cos / (1.5 m g + F sin): moments about the two pins."""
+    F = 2.0
+    lower = f"l: {{{BAR}, orientation: {{axis: [0, 1, 0], angle: 20 deg}}}}"
+    joints = f"joints: {{p: {{{PIN}, from: ground.O, to: u.top}}, e: {{{PIN}, from: u.end, to: l.top}}}}\n"
+    push = f"forces: {{f: {{type: force, on: l.end, vector: [{F}, 0, 0], frame: body}}}}"
+    found = solved(f"{HEAD}{POINTS}bodies: {{u: {{{BAR}}}, {lower}}}\n{joints}{push}")
+    second = math.asin(-2.0 * F / G)
+    first = math.atan(-F * math.cos(second) / (1.5 * G + F * math.sin(second)))
+    near(found.coordinates["p"]["angle"][0], first, 1.0, 1e-14)
+    near(found.coordinates["e"]["angle"][0], second - first, 1.0, 1e-14)
+
+
+# ---- stable or not ---------------------------------------------------------------------------------------------
+@pytest.mark.parametrize("angle", ["60 deg", "-179.999999 deg", "0.001", "179 deg"])
+def test_a_pendulum_hangs(angle: str) -> None:
+    found = solved(pendulum(angle))
+    near(found.coordinates["p"]["angle"][0], 0.0, 1.0, 1e-15)
+    near(found.joints["p"]["force"][0], [0.0, 0.0, G], G, 1e-14)
+    assert not found.warnings
+    assert f"{0.5 * G / 0.33:.4g} 1/s²" in found.model["rest"][0]
+    assert f"{math.sqrt(0.5 * G / 0.33) / (2.0 * math.pi):.4g} Hz" in found.model["rest"][0]
+
+
+def test_upright_it_stays_and_says_so() -> None:
+    found = solved(pendulum("180 deg"))
+    near(found.coordinates["p"]["angle"][0], math.pi, 1.0, 1e-15)
+    assert unstable(found)
+    assert f"exp({math.sqrt(0.5 * G / 0.33):.4g} t)" in found.model["rest"][0]
+
+
+def test_a_carriage_stays_where_it_is() -> None:
+    """On a level rail, with a pendulum that swings out and back: its own coordinate is indifferent."""
+    bodies = f"bodies: {{c: {{{BALL}}}, bar: {{{BAR}, orientation: {{axis: [0, 1, 0], angle: 100 deg}}}}}}\n"
+    rail = "r: {type: slide, from: ground.O, to: c.c, axis: [1, 0, 0]}"
+    found = solved(f"{HEAD}{POINTS}{bodies}joints: {{{rail}, p: {{{PIN}, from: c.c, to: bar.top}}}}")
+    near(found.coordinates["p"]["angle"][0], 0.0, 1.0, 1e-14)
+    assert "indifferent: joints.r" in found.model["rest"][1]
+    # nothing pushes both: the common centre of mass hardly shifts across, as far as steps of the search are exact
+    near(3.0 * found.coordinates["r"]["travel"][0], -0.5 * math.sin(math.radians(100.0)), 0.5, 0.1)
+
+
+def test_what_bends_alone_holds() -> None:
+    """A force of -100 x^3 has no slope at rest: it is found all the same."""
+    slide = "u: {type: slide, from: ground.O, to: b.c, axis: [1, 0, 0], initial: {travel: 0.5}}"
+    load = "forces: {s: {type: torque, joint: u, value: -100*u.travel**3 + 1e-6}}"
+    found = solved(f"heun: 1\nanalysis: {{type: rest}}\n{POINTS}bodies: {{b: {{{BALL}}}}}\njoints: {{{slide}}}\n{load}")
+    near(found.coordinates["u"]["travel"][0], 1e-8 ** (1.0 / 3.0), 1e-2, 1e-9)
+
+
+# ---- against the least energy, and against motion --------------------------------------------------------------
+def triangle(rng: np.random.Generator) -> tuple[str, Array, float, float]:
+    """Two bars from A and B of the ground to a common point, which swings about AB, and a spring from S to it."""
+    S, k, free = np.array([0.4, *rng.uniform(-1.0, 1.0, 2)]), float(rng.uniform(20.0, 60.0)), 0.3
+    elbow = [0.5, 0.6, -0.5]
+    shapes = [f"[{{type: rod, from: {end}, to: {elbow}, mass: 1}}]" for end in ([0, 0, 0], [1, 0, 0])]
+    bodies = (
+        f"bodies: {{a: {{shapes: {shapes[0]}, points: {{o: [0, 0, 0], e: {elbow}}}}}, "
+        f"b: {{shapes: {shapes[1]}, points: {{o: [1, 0, 0], e: {elbow}}}}}}}\n"
+    )
+    joints = "joints: {o: {type: ball, from: ground.O, to: a.o}, "
+    joints += "A: {type: ball, from: ground.A, to: b.o}, e: {type: ball, from: a.e, to: b.e}}\n"
+    spring = f"forces: {{s: {{type: spring, from: ground.S, to: a.e, stiffness: {k!r}, length: {free}}}}}"
+    ground = POINTS.replace("A:", f"S: {S.tolist()}, A:")
+    return HEAD + ground + bodies + joints + spring, S, k, free
+
+
+@pytest.mark.parametrize("seed", range(4))
+def test_a_loop_in_space_has_the_least_energy(seed: int) -> None:
+    text, S, k, free = triangle(np.random.default_rng(seed))
+    found = solved(text)
+    R = math.hypot(0.6, 0.5)
+
+    def elbow(phi: float) -> Array:
+        return np.array([0.5, R * math.cos(phi), R * math.sin(phi)])
+
+    def energy(phi: float) -> float:
+        stretched = float(np.linalg.norm(elbow(phi) - S)) - free
+        return G * float(elbow(phi)[2]) + 0.5 * k * stretched**2
+
+    told = found.bodies["a"]["rotation"][0] @ np.array([0.5, 0.6, -0.5])
+    phi = math.atan2(told[2], told[1])
+    least = minimize_scalar(energy, bounds=(phi - 0.3, phi + 0.3), method="bounded", options={"xatol": 1e-10})
+    near(elbow(least.x), told, 1.0, 1e-7)  # a minimum is known to the root of its digits
+    assert abs(energy(phi + 1e-5) - energy(phi - 1e-5)) < 1e-5 * k * 1e-8
+    assert not unstable(found)
+
+
+def stays(run: Study, within: float) -> None:
+    """A motion from the rest pose, over a second, does not leave it."""
+    layout = run.setup.scene.layout
+    later = run.setup.runner.trajectory(np.array([0.0, 1.0]), 1e-10).states
+    rates = np.concatenate([np.arange(g["rates"], g["end"]) for g in layout.tables["groups"]])
+    near(later[1, rates] - later[0, rates], 0.0, 1.0, within)
+
+
+def tree(rng: np.random.Generator) -> str:
+    """Bars on balls, pins, universals, each with a spring to the ground."""
+    n = 4
+    bodies, joints, springs, grounds = [], [], [], ["O: [0, 0, 0]"]
+    for i in range(n):
+        axis = from_vector(rng.uniform(-1.0, 1.0, 3))[0].tolist()
+        bodies.append(f"b{i}: {{{BAR}, near: {{orientation: {{axis: {axis}, angle: {rng.uniform(0.2, 1.0)!r}}}}}}}")
+        on = "ground.O" if i == 0 else f"b{rng.integers(i)}.end"
+        kind = rng.choice(["ball", "pin, axis: [0.6, 0.8, 0]", "universal, axis: [1, 0, 0], to_axis: [0, 1, 0]"])
+        joints.append(f"j{i}: {{type: {kind}, from: {on}, to: b{i}.top}}")
+        grounds.append(f"G{i}: {rng.uniform(-2.0, 2.0, 3).tolist()}")
+        springs.append(f"s{i}: {{type: spring, from: ground.G{i}, to: b{i}.end, stiffness: 40, length: 0.5}}")
+    blocks = {"bodies": bodies, "joints": joints, "forces": springs}
+    ground = f"ground: {{points: {{{', '.join(grounds)}}}}}\n"
+    return HEAD + ground + "\n".join(f"{name}: {{{', '.join(rows)}}}" for name, rows in blocks.items())
+
+
+@pytest.mark.parametrize("seed", range(6))
+def test_what_rests_stays(seed: int) -> None:
+    run = study(tree(np.random.default_rng(seed)))
+    assert not unstable(run.results)
+    stays(run, 1e-8)
+
+
+def test_loops_that_rest_stay() -> None:
+    stays(study(triangle(np.random.default_rng(7))[0]), 1e-8)
+
+
+# ---- what turns steadily ---------------------------------------------------------------------------------------
+def spindle(joint: str, drive: str = "6*t", gravity: str = f"[0, 0, -{G}]") -> str:
+    """A bar hung on the axis of a spindle that turns about z."""
+    bodies = f"s: {{{BALL}}}, bar: {{{BAR}, orientation: {{axis: [0, 1, 0], angle: -40 deg}}}}"
+    joints = f"m: {{type: pin, axis: [0, 0, 1], from: ground.O, to: s.c}}, p: {{{joint}, from: s.c, to: bar.top}}"
+    head = HEAD.replace(f"[0, 0, -{G}]", gravity)
+    drives = f"drives: {{w: {{joint: m, angle: {drive}}}}}"
+    return f"{head}{POINTS}bodies: {{{bodies}}}\njoints: {{{joints}}}\n{drives}\n"
+
+
+@pytest.mark.parametrize("joint", [PIN, "type: ball"])
+def test_a_bar_on_a_spindle(joint: str) -> None:
+    """cos = m g l / w^2 (A - C): the moment of the centrifugal forces about the pin, A and C about its top."""
+    found = solved(spindle(joint))
+    cos = 0.5 * G / (36.0 * (0.33 - 0.001))
+    near(found.bodies["bar"]["center"][0], [0.5 * math.sqrt(1.0 - cos**2), 0.0, -0.5 * cos], 1.0, 1e-14)
+    assert "frame that goes along with drives.w" in found.model["rest"][0]
+    assert not unstable(found)
+    # what drives the spindle has nothing to do, and carries the weight and the centripetal force
+    near(found.joints["m"]["drive"][0], 0.0, 1.0, 1e-12)
+    near(found.joints["p"]["force"][0], [-36.0 * 0.5 * math.sqrt(1.0 - cos**2), 0.0, G], 20.0, 1e-14)
+
+
+def test_slowly_turned_it_hangs_and_faster_that_is_unstable() -> None:
+    """On the axis it rests at any speed; above w^2 = m g l / (A - C) not stably."""
+    along = spindle(PIN).replace("-40 deg", "0")
+    least = math.sqrt(0.5 * G / 0.329)
+    assert not unstable(solved(along.replace("6*t", f"{0.99 * least!r}*t")))
+    assert unstable(solved(along.replace("6*t", f"{1.01 * least!r}*t")))
+
+
+def test_the_governor() -> None:
+    """Porter's: two balls m on arms l, links l to a sleeve M: w^2 = (m + M) g / (m l cos); the sleeve a loop's end."""
+    m, M, length, w = 1.0, 5.0, 0.3, 20.0
+    x, z = length * math.sin(0.5), -length * math.cos(0.5)
+    light = "inertia: [1e-9, 1e-9, 1e-9]"
+    bodies = [
+        f"s: {{{BALL}}}",
+        f"sleeve: {{mass: {M}, center: [0, 0, {2 * z!r}], inertia: [1, 1, 1], points: {{c: [0, 0, {2 * z!r}]}}}}",
+    ]
+    joints = [
+        "m: {type: pin, axis: [0, 0, 1], from: ground.O, to: s.c}",
+        "guide: {type: slide, axis: [0, 0, 1], from: s.c, to: sleeve.c}",
+    ]
+    for name, side in (("a", 1.0), ("b", -1.0)):
+        at = [side * x, 0.0, z]
+        bodies.append(f"{name}: {{mass: {m}, center: {at}, {light}, points: {{o: [0, 0, 0], e: {at}}}}}")
+        joints.append(f"p{name}: {{{PIN}, from: s.c, to: {name}.o}}")
+        joints.append(f"r{name}: {{type: rod, from: {name}.e, to: sleeve.c}}")
+    drives = f"drives: {{w: {{joint: m, angle: {w}*t}}}}"
+    found = solved(f"{HEAD}{POINTS}bodies: {{{', '.join(bodies)}}}\njoints: {{{', '.join(joints)}}}\n{drives}")
+    cos = (m + M) * G / (m * length * w**2)
+    assert cos < 1.0
+    near(found.coordinates["guide"]["travel"][0], -2.0 * length * cos, length, 1e-8)  # 1e-9 of inertia beside m l^2
+    near(2.0 * found.joints["ra"]["tension"][0] * cos, M * G, M * G, 1e-8)
+
+
+# ---- one side only ---------------------------------------------------------------------------------------------
+def test_a_trapdoor_rests_on_its_buffer() -> None:
+    found = solved(pendulum("170 deg", "stops: {b: {joint: p, angle: [30 deg, null]}}"))
+    near(found.coordinates["p"]["angle"][0], math.radians(30.0), 1.0, 1e-15)
+    near(found.stops["b"]["moment"][0], 0.5 * G * math.sin(math.radians(30.0)), G, 1e-14)
+
+
+@pytest.mark.parametrize("more", ["", ", restitution: 0.5"])
+def test_a_rope_that_bears_and_one_that_hangs_slack(more: str) -> None:
+    """A mass of 2 kg hangs on 1 m of rope; with a second rope from 1 m beside it between both, if that is short."""
+    body = f"bodies: {{d: {{{BALL}, position: [0.3, 0, -0.2]}}}}\n"
+    for other, slack in ((1.2, False), (3.0, True)):
+        rope = f"type: rod, tension_only: true{more}, to: d.c"
+        ropes = f"r: {{{rope}, from: ground.O, length: 1}}, q: {{{rope}, from: ground.A, length: {other}}}"
+        found = solved(f"{HEAD}{POINTS}{body}joints: {{{ropes}}}")
+        x = 0.0 if slack else (1.0 - other**2 + 1.0) / 2.0
+        z = -math.sqrt(1.0 - x * x)
+        near(found.bodies["d"]["position"][0], [x, 0.0, z], 1.0, 1e-14)
+        q = 2.0 * G * x / -z * other
+        near(found.joints["q"]["tension"][0], q, 2.0 * G, 1e-13)
+        near(found.joints["r"]["tension"][0], (2.0 * G - q * -z / other) / -z, 2.0 * G, 1e-13)
+
+
+# ---- no rest ---------------------------------------------------------------------------------------------------
+def test_what_nothing_holds() -> None:
+    stone = f"{HEAD}{POINTS}bodies: {{stone: {{{BALL}}}}}"
+    assert "bodies.stone falls: nothing holds it" in refused(stone)
+    slope = "r: {type: slide, from: ground.O, to: c.c, axis: [1, 0, -0.1]}"
+    cart = f"{HEAD}{POINTS}bodies: {{c: {{{BALL}}}}}\njoints: {{{slope}}}"
+    assert "joints.r slides on and on" in refused(cart)
+    assert "joints.p turns on and on" in refused(pendulum("0", "forces: {m: {type: torque, joint: p, value: 6}}"))
+
+
+def test_what_does_not_keep_still() -> None:
+    load = "forces: {f: {type: force, on: bar.end, vector: [sin(t), 0, 0]}}"
+    assert "forces.f depends on t" in refused(pendulum("0", load))
+    assert "drives.w does not go on at a constant rate" in refused(spindle(PIN, "t**2"))
+    assert "does not stay at rest in the frame" in refused(spindle(PIN, gravity="[0, 1e-6, -9.81]"))
+    assert "changes as drives.w goes on" in refused(spindle(PIN, gravity="[0, -9.81, 0]"))
+    assert "a load jumps" in refused(
+        pendulum("0.5", "forces: {f: {type: torque, joint: p, value: -8*sign(p.angle - 0.2)}}")
+    )
+
+
+def test_a_crank_drive_keeps_the_rod_moving() -> None:
+    crank = "c: {mass: 1, center: [0, 0, 0], inertia: [1, 1, 1], points: {o: [0, 0, 0], p: [0.1, 0, 0]}}"
+    rod = "r: {mass: 1, center: [0.25, 0, 0], inertia: [1, 1, 1], points: {p: [0.1, 0, 0], q: [0.4, 0, 0]}}"
+    pin = "type: pin, axis: [0, 0, 1]"
+    joints = f"m: {{{pin}, from: ground.O, to: c.o}}, p: {{{pin}, from: c.p, to: r.p}}"
+    joints += ", q: {type: line, from: ground.O, to: r.q, axis: [1, 0, 0]}"
+    text = f"{HEAD}{POINTS}bodies: {{{crank}, {rod}}}\njoints: {{{joints}}}\ndrives: {{w: {{joint: m, angle: 3*t}}}}"
+    assert "drives.w keeps bodies.r moving" in refused(text)
+    still = solved(text.replace("3*t", "0.3"))
+    near(still.coordinates["m"]["angle"][0], 0.3, 1.0, 1e-15)

@@ -1,0 +1,100 @@
+"""What is said of a rest on either side of each threshold, by the smallest scene that reaches it."""
+
+from __future__ import annotations
+
+import math
+
+from heuncli import tolerances
+from heuncli.errors import SolveError
+from tests.shared.scenes import near, solved
+
+G = 9.81
+GROUND = "ground: {points: {O: [0, 0, 0]}}\n"
+MASS = "mass: 1, center: [0, 0, 0], inertia: [1, 1, 1], points: {c: [0, 0, 0]}"
+BAR = "mass: 1, center: [0, 0, -0.5], inertia: [0.08, 0.08, 0.001], points: {top: [0, 0, 0], end: [0, 0, -1]}"
+
+
+def scene(text: str, gravity: str = "[0, 0, 0]") -> str:
+    return f"heun: 1\ngravity: {gravity}\nanalysis: {{type: rest}}\n{GROUND}{text}"
+
+
+def slides(*names: str) -> str:
+    """Masses of 1 kg on slides along x."""
+    bodies = ", ".join(f"{name}: {{{MASS}}}" for name in names)
+    joints = ", ".join(f"u{name}: {{type: slide, from: ground.O, to: {name}.c, axis: [1, 0, 0]}}" for name in names)
+    return f"bodies: {{{bodies}}}\njoints: {{{joints}}}\n"
+
+
+def rests(text: str) -> str:
+    try:
+        solved(text)
+    except SolveError as error:
+        assert error.problems[0].code == "no-rest-pose"
+        return "refused"
+    return "rests"
+
+
+def far_away(x: float) -> str:
+    """A force of 1 N against a spring that gives way by x times the scene's size, 2 sqrt(3/2) m."""
+    size = 2.0 * math.sqrt(1.5)
+    return rests(scene(f"{slides('a')}forces: {{f: {{type: torque, joint: ua, value: 1 - ua.travel/{x * size!r}}}}}"))
+
+
+def wound_up(x: float) -> str:
+    """A torque of 1 N m against a spring that it winds up by x."""
+    body = f"bodies: {{a: {{{MASS}}}}}\njoints: {{p: {{type: pin, from: ground.O, to: a.c, axis: [1, 0, 0]}}}}\n"
+    return rests(scene(f"{body}forces: {{f: {{type: torque, joint: p, value: 1 - p.angle/{x!r}}}}}"))
+
+
+def pendulum(angle: str, more: str = "") -> str:
+    joints = f"joints: {{p: {{type: pin, from: ground.O, to: a.top, axis: [0, 1, 0], initial: {{angle: {angle}}}}}}}\n"
+    return scene(f"bodies: {{a: {{{BAR}}}}}\n{joints}{more}", f"[0, 0, -{G}]")
+
+
+def beside_upright(x: float) -> str:
+    """Drawn upright to x times the rounding of a pose."""
+    found = solved(pendulum(repr(math.pi + x * tolerances.START_ROUNDING * math.pi)))
+    angle = float(found.coordinates["p"]["angle"][0])
+    if abs(angle - math.pi) < 1.0:
+        near(angle, math.pi, 1.0, 1e-15)
+        return "stays"
+    near(angle, 2.0 * math.pi, 1.0, 1e-14)
+    return "falls"
+
+
+def tilted(x: float) -> str:
+    """A bar on a spindle that turns about an axis which is upright to x."""
+    bodies = f"bodies: {{s: {{{MASS}}}, a: {{{BAR}, orientation: {{axis: [0, 1, 0], angle: -40 deg}}}}}}\n"
+    joints = (
+        "joints: {m: {type: pin, axis: [0, 0, 1], from: ground.O, to: s.c}, "
+        "p: {type: pin, axis: [0, 1, 0], from: s.c, to: a.top}}\n"
+    )
+    return rests(scene(f"{bodies}{joints}drives: {{w: {{joint: m, angle: 6*t}}}}", f"[0, {G * x!r}, -{G}]"))
+
+
+def jumping(x: float) -> str:
+    """A torque that jumps where it should hold, x of those that cancel there."""
+    torques = ", ".join(
+        f"{name}: {{type: torque, joint: p, value: {value}}}"
+        for name, value in (("a", "10"), ("b", "-10"), ("c", f"{10.0 * x!r} - {20.0 * x!r}*sign(p.angle)"))
+    )
+    return rests(pendulum("0.3", f"forces: {{{torques}}}"))
+
+
+def pushed_off(x: float) -> str:
+    """Beside a spring that swings with 1/s something that is pushed off by exp(x t)."""
+    loads = (
+        f"a: {{type: torque, joint: ua, value: -ua.travel}}, b: {{type: torque, joint: ub, value: {x * x!r}*ub.travel}}"
+    )
+    found = solved(scene(f"{slides('a', 'b')}forces: {{{loads}}}"))
+    return "unstable" if found.warnings else "stable"
+
+
+def hardly_held(x: float) -> str:
+    """Two masses on a spring of 1 N/m, of which one of 4 x N/m holds them both: 2 x/s^2 of terms of 2."""
+    loads = (
+        "a: {type: torque, joint: ua, value: ub.travel - ua.travel}, "
+        f"b: {{type: torque, joint: ub, value: ua.travel - {1.0 + 4.0 * x!r}*ub.travel}}"
+    )
+    found = solved(scene(f"{slides('a', 'b')}forces: {{{loads}}}"))
+    return "indifferent" if any("indifferent" in told for told in found.model["rest"]) else "held"
