@@ -12,6 +12,7 @@ import numpy as np
 from heuncli import tolerances
 from heuncli.errors import Problem, SolveError
 from heuncli.integration.evaluator import Evaluator, Recovered
+from heuncli.integration.runner import Runner
 from heuncli.linearisation.displace import displaced
 from heuncli.linearisation.linearise import Linearised, linearised
 from heuncli.linearisation.oscillations import norm, null_space
@@ -30,7 +31,7 @@ class Looked:
     """A scene looked at in one state: its linear equations, whole and reduced, and the loads there."""
 
     scene: PreparedScene
-    evaluator: Evaluator
+    runner: Runner
     t: float
     holding: Array
     found: Linearised
@@ -49,13 +50,13 @@ class Looked:
         return np.asarray(self.layout.weights[place[place >= 0]])
 
 
-def look(scene: PreparedScene, evaluator: Evaluator, t: float, state: Array, holding: Array) -> Looked:
+def look(scene: PreparedScene, runner: Runner, t: float, state: Array, holding: Array) -> Looked:
     """Linearise a scene in a state. Raises SolveError [no-modes] where its laws have no slope."""
-    found, at = equations(evaluator, t, state, holding)
+    found, at = equations(runner, t, state, holding)
     if not (np.isfinite(found.by_place).all() and np.isfinite(found.by_rate).all()):
         message = "a load has no slope there (a root at 0, an angle of a point that lies on the axis)"
         raise SolveError(Problem("no-modes", f"{message}: oscillations about it are not linear, however small"))
-    return Looked(scene, evaluator, t, holding, found, at, reduced(scene, found, at))
+    return Looked(scene, runner, t, holding, found, at, reduced(scene, found, at))
 
 
 def equations(evaluator: Evaluator, t: float, state: Array, holding: Array) -> tuple[Linearised, Recovered]:
@@ -96,7 +97,7 @@ def goes_on_as_it_is(here: Looked) -> bool:
     for phase in PHASES:
         dt = phase / fastest(here)
         y, turn = carried_on(here, dt)
-        found, at = equations(here.evaluator, here.t + dt, y, here.holding)
+        found, at = equations(here.runner, here.t + dt, y, here.holding)
         if np.abs(found.state - y).max(initial=0.0) > tolerances.GOES_ON:
             return False  # it did not close
         T = turn @ own.tangent

@@ -30,7 +30,7 @@ def modes(spec: Spec) -> Modes:
     setup = set_up(spec, reduce=False)
     require_no_time(setup)
     here, at = state_of(setup)
-    require_slopes(setup, here)
+    require_slopes(here)
     found = oscillations(here.system)
     rows = coordinates(here.layout, here.found)
     shapes = [shape_of(mode.shape, rows) for mode in found]
@@ -62,15 +62,30 @@ def require_no_time(setup: Setup) -> None:
 
 def state_of(setup: Setup) -> tuple[Looked, Literal["rest", "state"]]:
     """The scene in the state that it oscillates about."""
+    kind = setup.spec.analysis.type
+    here = looked_at(setup)
+    reason = restless(here)
+    if reason is None:
+        return here, "rest" if kind == "rest" else "state"
+    if kind in ("state", "rest"):
+        what = "state is not at rest" if kind == "state" else "pose found is not quite at rest"
+        raise SolveError(Problem("not-at-rest", f"the {what}: {reason}", hint=REST_HINT if kind == "state" else None))
+    return state_of(at_rest(setup.spec))
+
+
+def looked_at(setup: Setup) -> Looked:
+    """The scene at its start, or at the rest pose that was found."""
     runner, layout = setup.runner, setup.scene.layout
     t = float(setup.spec.analysis.times[0]) if setup.spec.analysis.type == "state" else 0.0
     at = runner.recovered(np.array([t]), layout.y0[None, :])
     require_solvable(setup.scene, at, Asked("accelerations of the start"))
-    here = look(setup.scene, runner, t, layout.y0, runner.start_holding)
-    reason = restless(here)
-    if reason is None:
-        return here, "state"
-    raise SolveError(Problem("not-at-rest", f"the state is not at rest: {reason}", hint=REST_HINT))
+    return look(setup.scene, runner, t, layout.y0, runner.start_holding)
+
+
+def at_rest(spec: Spec) -> Setup:
+    """The scene at the rest pose that is found from its start."""
+    asked = spec.analysis._replace(type="rest", times=(0.0,), duration=None, conditions=())
+    return set_up(spec._replace(analysis=asked), reduce=False)
 
 
 def moves(here: Looked) -> bool:
@@ -90,11 +105,11 @@ def restless(here: Looked) -> str | None:
     return None
 
 
-def is_singular(setup: Setup, here: Looked) -> bool:
+def is_singular(here: Looked) -> bool:
     """Whether fewer closure rows are independent there than close by."""
     if not here.layout.rows or not here.system.count:
         return False
-    near = neighbours(setup.runner, here.t, here.found.state, (tolerances.NEIGHBOUR,), holding=here.holding)
+    near = neighbours(here.runner, here.t, here.found.state, (tolerances.NEIGHBOUR,), holding=here.holding)
     return near is not None and bool(near.rows["chosen"].sum(axis=1).max() > here.at.rows["chosen"].sum())
 
 
@@ -104,10 +119,10 @@ def pushed_most(here: Looked) -> str:
     return most(shape_of(here.system.tangent @ here.system.pushed, rows), here.layout.size)[0]
 
 
-def require_slopes(setup: Setup, here: Looked) -> None:
+def require_slopes(here: Looked) -> None:
     """Raise SolveError where a law has no slope, or where closed chains give way to the first order only."""
     sentences = list(dict.fromkeys(without_slope(here)))
-    if is_singular(setup, here):
+    if is_singular(here):
         sentences.append("closed chains are stretched, folded or flat there, and give way to the first order only")
     if sentences:
         so = "oscillations about it are not linear, however small"

@@ -72,7 +72,7 @@ def follow(here: Looked, mode: Mode) -> None:
     start = started(here, x.real, (value * x).real)
     until = 0.3 / abs(value.real) if value.imag == 0.0 else 0.25 / mode.frequency
     times = np.array([0.0, 0.5, 1.0]) * until
-    run = here.evaluator.trajectory(times, 1e-12, method=DOP853, start=start)  # type: ignore[attr-defined]
+    run = here.runner.trajectory(times, 1e-12, method=DOP853, start=start)
     for t, state in zip(run.times, run.states, strict=True):
         wanted = (np.exp(value * t) * x).real
         assert np.abs(here.weights * (moved(here, state) - wanted)).max() <= 1e2 * SMALL**2
