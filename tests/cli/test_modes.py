@@ -111,3 +111,18 @@ joints:
     with pytest.raises(HeunError) as caught:
         modes(load("scene.yaml", scene))
     assert "give way to the first order only" in caught.value.problems[0].message
+
+
+def test_a_motion_is_looked_at_about_the_pose_that_rests() -> None:
+    """Drawn askew and let go, or looked for: the same pose, hanging, and the same frequencies as drawn so."""
+    spring = "forces: {k: {type: spring, from: ground.W, to: cart.c, stiffness: 90, length: 1}}\n"
+    drawn = SCENE.replace("b: [0, 0, -1]}}", "b: [0, 0, -1]}, orientation: {axis: [0, 1, 0], angle: 0.4}}") + spring
+    hangs = modes(load("scene.yaml", SCENE + spring + ASKED))
+    for analysis in ("analysis: {duration: 1, samples: 2}\n", "analysis: {type: rest}\n"):
+        found = modes(load("scene.yaml", drawn + analysis))
+        assert found.at == "rest"
+        for mode, wanted in zip(found.modes, hangs.modes, strict=True):
+            assert abs(mode.frequency - wanted.frequency) <= 1e-12 * wanted.frequency
+    with pytest.raises(HeunError) as caught:
+        modes(load("scene.yaml", drawn + ASKED))
+    assert caught.value.problems[0].code == "not-at-rest" and "type: rest" in str(caught.value.problems[0].hint)
