@@ -124,8 +124,11 @@ def with_rates(system: Reduced) -> list[Row]:
     values, vectors, condition = eigenvalues(rest.T @ A @ rest)
     shapes = whole(A, taken, rest, values, vectors)[:f]
     for value, c, x in zip(values, condition, shapes.T, strict=True):
-        if value.imag >= 0.0:
-            rows.append((complex(value), float(c * rounding), x, False))
+        error = float(c * rounding)
+        if abs(value.imag) <= error:  # a double root, at the aperiodic limit, is split by rounding
+            rows.append((complex(value.real), error, x, False))
+        elif value.imag > 0.0:
+            rows.append((complex(value), error, x, False))
     return rows
 
 

@@ -94,6 +94,15 @@ def test_a_damped_mass(c: float) -> None:
         assert told.modes[0].frequency == pytest.approx(root.imag / (2 * m) / (2 * math.pi), rel=1e-13)
 
 
+def test_the_aperiodic_limit() -> None:
+    """c^2 = 4 m k: one double root -c / 2 m, which rounding would split into a slow oscillation."""
+    scene = masses(1, ends=True)
+    scene["forces"]["c"] = {"type": "damper", "joint": "s0", "coefficient": 2.0 * math.sqrt(200.0)}
+    told = found(scene)
+    assert [(mode.kind, mode.frequency) for mode in told.modes] == [("decay", 0.0)] * 2
+    assert all(abs(mode.growth + math.sqrt(50.0)) <= mode.error <= 1e-3 for mode in told.modes)
+
+
 def pendulum(kind: str, **more: Any) -> dict[str, Any]:
     """Two points on massless bars of length 1, one below the other; up: where the second bar stands up."""
     bar = {"mass": 1.5, "center": [0, 0, -1], "inertia": [0, 0, 0], "points": {"a": [0, 0, 0], "b": [0, 0, -1]}}
@@ -321,3 +330,49 @@ def test_porters_governor(w: float) -> None:
     """Closed chains on a spindle that turns: second derivatives of potential and centrifugal potential."""
     scene, square = porter(w)
     near(frequencies(found(scene)), [math.sqrt(square)])
+
+
+@pytest.mark.parametrize("W", [0.0, 30.0, 300.0])
+def test_whirl_of_a_rotor_in_springs(W: float) -> None:
+    """A disc in a gimbal: A1 A2 w^4 - (k (A1 + A2) + (C W)^2) w^2 + k^2 = 0, with the rings' inertia in A1 and A2."""
+    A, C, ring, k = 0.3, 0.5, 0.02, 70.0
+    body = {"mass": 1, "center": [0, 0, 0], "points": {"o": [0, 0, 0]}}
+    told = found({
+        "ground": {"points": {"O": [0, 0, 0]}},
+        "bodies": {
+            "outer": {**body, "inertia": [ring] * 3}, "inner": {**body, "inertia": [ring] * 3},
+            "disc": {**body, "inertia": [A, A, C]},
+        },
+        "joints": {
+            "x": {"type": "pin", "axis": [1, 0, 0], "from": "ground.O", "to": "outer.o"},
+            "y": {"type": "pin", "axis": [0, 1, 0], "from": "outer.o", "to": "inner.o"},
+            "z": {"type": "pin", "axis": [0, 0, 1], "from": "inner.o", "to": "disc.o"},
+        },
+        "forces": {f"k{n}": {"type": "turn_spring", "joint": n, "stiffness": k} for n in "xy"},
+        "drives": {"motor": {"joint": "z", "angle": f"{W}*t"}},
+    })  # fmt: skip
+    A1, A2 = A + 2.0 * ring, A + ring
+    half = 0.5 * (k * (A1 + A2) + (C * W) ** 2) / (A1 * A2)
+    fast = math.sqrt(half + math.sqrt(half * half - k * k / (A1 * A2)))
+    slow = k / math.sqrt(A1 * A2) / fast
+    assert all(mode.growth == 0.0 for mode in told.modes)
+    for mode, wanted in zip(told.modes, (slow, fast), strict=True):
+        assert abs(mode.eigenvalue.imag - wanted) <= max(mode.error, 1e-12 * wanted)
+        assert mode.error <= 1e-9 * fast
+
+
+def test_a_pendulum_in_a_lift_at_constant_speed() -> None:
+    """It swings as at rest; speeding up at a, as under g + a: but that is no state that lasts."""
+    cabin = {"mass": 5, "center": [0, 0, 0], "inertia": [1, 1, 1], "points": {"c": [0, 0, 0]}}
+    bob = {"mass": 1, "center": [0, 0, -1], "inertia": [0, 0, 0], "points": {"a": [0, 0, 0]}}
+    scene = {
+        "gravity": [0, 0, -G],
+        "ground": {"points": {"O": [0, 0, 0]}},
+        "bodies": {"cabin": cabin, "bob": {**bob, "velocity": [0, 0, 3]}},
+        "joints": {"shaft": {"type": "slide", "axis": [0, 0, 1], "from": "ground.O", "to": "cabin.c"},
+                   "hook": {"type": "pin", "axis": [0, 1, 0], "from": "cabin.c", "to": "bob.a"}},
+        "drives": {"winch": {"joint": "shaft", "travel": "3*t"}},
+    }  # fmt: skip
+    told = found(scene)
+    assert told.steady
+    near(frequencies(told), [math.sqrt(G)])
