@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import math
+import re
 from collections.abc import Callable, Sequence
 from functools import partial
 from typing import Any, TypeVar
@@ -18,6 +19,12 @@ from heuncli.study.measure import NOT_CLAIMED, Measure, NotOneNumber, Peak, lost
 from heuncli.study.solve import Study
 
 T = TypeVar("T")
+PATH = re.compile(r"[\w.]+\Z")
+OTHER_WORDS = {
+    "last": "final", "end": "final", "start": "first", "initial": "first", "maximum": "max", "largest": "max",
+    "highest": "max", "minimum": "min", "least": "min", "lowest": "min", "maxabs": "max abs", "peak": "max abs",
+    "amplitude": "max abs", "t": "at",
+}  # fmt: skip
 
 FORMS = "expected [max | min | max abs | first | final | at T] PATH"
 HINT = "such as --measure 'max abs sections.middle.M1'"
@@ -26,7 +33,7 @@ HINT = "such as --measure 'max abs sections.middle.M1'"
 def parse(text: str) -> Measure:
     """The Measure that the words mean. Raises UsageError."""
     words = text.split()
-    match words:
+    match words if words and PATH.match(words[-1]) else []:
         case [path] if path not in ("max", "min", "abs", "first", "final", "at"):
             return Measure("", path)
         case ["max" | "min" | "abs" | "first" | "final" as how, path]:
@@ -35,7 +42,24 @@ def parse(text: str) -> Measure:
             return Measure("abs", path)
         case ["at", t, path] if _is_number(t):
             return Measure("at", path, float(t))
-    raise UsageError(Problem("bad-option", f"--measure '{text}': {FORMS}", hint=HINT))
+    raise UsageError(Problem("bad-option", f"--measure '{text}': {FORMS}", hint=meant(text)))
+
+
+def meant(text: str) -> str:
+    """A hint: the words in the order and spelling in which they are read, where that makes them a form."""
+    if "," in text:
+        return "one number each: --measure may be repeated"
+    plain = re.sub(r"\[(\d+)\]", r".\1", text)
+    words = [OTHER_WORDS.get(word.lower(), word) for word in re.split(r"[\s()|]+", plain) if word]
+    words.sort(key=lambda word: "." in word and not _is_number(word))
+    proposed = " ".join(words)
+    if proposed == text or "," in proposed:
+        return HINT
+    try:
+        parse(proposed)
+    except UsageError:
+        return HINT
+    return f"did you mean '{proposed}'?"
 
 
 def parse_all(texts: Sequence[str]) -> list[Measure]:

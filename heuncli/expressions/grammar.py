@@ -22,6 +22,7 @@ from heuncli.expressions.units import RATE, Dimension, describe, in_si
 from heuncli.joint_kinds import RATES, TYPES
 from heuncli.nearest import did_you_mean, nearest
 from heuncli.records import record, replace
+from heuncli.results_schema import REPORT_OF
 
 LONGEST, DEEPEST = 2000, 48
 LARGEST_POWER = 64  # whole powers up to this one are multiplied out
@@ -64,6 +65,7 @@ BINARY = {"+": (1, "add"), "-": (1, "sub"), "*": (2, "mul"), "/": (2, "div")}
 OTHER_NAMES = {  # what people write who come from elsewhere
     "arcsin": "asin", "arccos": "acos", "arctan": "atan", "arctan2": "atan2", "ln": "log", "fabs": "abs", "sgn": "sign",
     "heaviside": "step", "time": "t", "PI": "pi", "Pi": "pi", "π": "pi", "degrees": "deg", "pow": "**", "sqr": "**2",
+    "interp": "table(NAME, ...)", "lookup": "table(NAME, ...)", "spline": "table(NAME, ...)",
 }  # fmt: skip
 LIBRARIES = frozenset({"math", "np", "numpy", "sp", "Math"})  # whose functions are written with a dot elsewhere
 
@@ -191,6 +193,7 @@ class _Parser:
             hint = self.product_hint()
         if (
             hint is None
+            and self.token not in WORDS
             and self.kind in ("name", "number")
             and self.at
             and self.tokens[self.at - 1][0] in ("name", "number")
@@ -361,6 +364,8 @@ class _Parser:
         begin = self.at - 2
         if name in self.scope.parameters or name in ("t", *CONSTANTS):
             raise Finding("unknown-name", f"'{name}' is not a function", f"for a product write {name}*(...)")
+        if name in self.scope.tables:
+            raise Finding("unknown-name", f"'{name}' is a table, not a function", f"write table({name}, ...)")
         if name not in ARITY:
             raise self.unknown(name, ARITY, "function")
         if name == "table":
@@ -389,7 +394,9 @@ class _Parser:
         begin, name = self.at - 2, self.token if self.kind == "name" else ""
         self.at += 1
         if not name or not self.take(","):
-            raise Finding("function-arguments", "table() takes a table's name and a value: table(gas, shaft.angle)")
+            hint = "the name without quotes" if self.tokens[self.at - 1][1] in ("'", '"') else None
+            message = "table() takes a table's name and a value: table(gas, shaft.angle)"
+            raise Finding("function-arguments", message, hint)
         argument = self.expression()
         self.expect(")", "to close table(...)")
         if not self.scope.in_time:
@@ -413,6 +420,8 @@ class _Parser:
             raise Finding("not-in-time", f"{joint}.{quantity} may stand only in a value in time (forces, drives)")
         if joint not in joints:
             hint = f"write {quantity}" if joint in LIBRARIES else did_you_mean(joint, joints, "joints")
+            if joint in REPORT_OF:
+                hint = "paths of results stand in {of: joints.NAME.force.z, below: 0}; in expressions NAME.angle"
             raise Finding("unknown-name", f"'{joint}.{quantity}': '{joint}' is not a joint", hint)
         words = COORDINATES.get(joints[joint], ())
         if quantity not in words:

@@ -36,7 +36,9 @@ SEVERAL = {  # words that mean one thing here and another there, the likeliest f
     "value": ("vector", "is", "value"), "vector": ("value",), "force": ("vector", "value"), "path": ("of",),
     "what": ("of",), "quantity": ("of",), "result": ("of",), "body": ("on",), "at": ("on",), "where": ("on",),
     "damping": ("coefficient",), "coefficient": ("damping",), "c": ("coefficient",), "d": ("coefficient", "damping"),
-    "l0": ("length",), "natural_length": ("length",), "free": ("length",), "rpm": ("rate",), "n": ("rate",),
+    "l0": ("length",), "natural_length": ("length",), "free": ("length",), "rpm": ("rate",),
+    "n": ("rate", "count"), "number": ("count",), "samples": ("count",), "on": ("body",), "load": ("vector",),
+    "q": ("vector",), "intensity": ("vector",),
     "omega": ("rate",), "velocity": ("rate", "speed"), "angular_velocity": ("rate",), "solver": ("method", "analysis"),
     "integrator": ("method",), "t_max": ("duration",), "tmax": ("duration",), "stop": ("duration",),
     "t_stop": ("duration",), "simulation": ("analysis",), "settings": ("analysis",), "run": ("analysis",),
@@ -60,7 +62,9 @@ FORMS = {  # what the values of some keys look like
     "inertia": "the moments about the axes [A1, A2, A3], or a 3x3 tensor in rows",
     "report": "as [joints, energy]", "expect": "as [{of: joints.NAME.force.z, is: 9.81}]",
     "shapes": "one shape is a list, too: [{type: cylinder, ...}]", "times": "as [0, 0.5, 1]",
-    "points": "by their names: {top: [0, 0, 0]}",
+    "points": "by their names: {top: [0, 0, 0]}", "events": "by their names: {falls: pivot.angle > 1}",
+    "rectangle": "as {width: 0.1, height: 0.2}", "circle": "as {radius: 0.1}",
+    "tube": "as {radius: 0.1, inner_radius: 0.09}",
 }  # fmt: skip
 MISSING = {  # what a key is that must be there
     "length": "the length at which it exerts no force", "vector": "three components, as [0, 0, -10]",

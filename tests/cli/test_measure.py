@@ -151,3 +151,23 @@ def test_of_several_all_that_are_wrong_are_told() -> None:
         measure.write(several, STUDY, "table")
     assert len(caught.value.problems) == 2
     assert caught.value.exit_code == 2
+
+
+@pytest.mark.parametrize(
+    ("text", "said"),
+    [
+        ("last energy.kinetic", "did you mean 'final energy.kinetic'?"),
+        ("max energy.kinetic abs", "did you mean 'max abs energy.kinetic'?"),
+        ("max(energy.kinetic)", "did you mean 'max energy.kinetic'?"),
+        ("max |joints.pivot.force|", "did you mean 'max joints.pivot.force'?"),
+        ("energy.kinetic at 0.5", "did you mean 'at 0.5 energy.kinetic'?"),
+        ("first joints.pivot.force[2]", "did you mean 'first joints.pivot.force.2'?"),
+        ("max energy.kinetic, min energy.kinetic", "one number each: --measure may be repeated"),
+        ("mean energy.kinetic", "such as --measure 'max abs sections.middle.M1'"),
+        ("", "such as --measure 'max abs sections.middle.M1'"),
+    ],
+)
+def test_other_words_get_the_form_that_was_meant(text: str, said: str) -> None:
+    with pytest.raises(HeunError) as caught:
+        measure.parse(text)
+    assert caught.value.problems[0].hint == said

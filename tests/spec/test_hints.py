@@ -51,6 +51,8 @@ def test_a_key_of_the_analysis_at_the_top_is_sent_there(key: str) -> None:
         ("time: 2", "time [unknown-key]", "analysis: {duration: ...}"),
         ("points: {a: [0, 0, 0]}", "points [unknown-key]", "belongs under ground"),
         ("mass: 2", "mass [unknown-key]", "bodies: {NAME: {mass: ...}}"),
+        ("sections: {s: {on: bar, from: top, to: end, n: 5}}", "sections.s.n [unknown-key]", "it is called count here"),
+        ("sections: {s: {body: bar, from: bar.top, to: end, count: 5}}", "sections.s.from [unknown-point]", ": top"),
         ("units: mm", "units [unknown-key]", "12 mm"),
         ("report: joints", "report [wrong-kind]", "[joints, energy]"),
         ("expect: {of: time, is: 1}", "expect [wrong-kind]", "[{of: "),
@@ -121,6 +123,9 @@ def test_one_thing_wrong_has_one_hint(given: str, instead: str, said: str) -> No
         ("'if(t > 1, 5, 0)'", "a if c else b"),
         ("'t > 1 ? 5 : 0'", "a if c else b"),
         ("5*pivot", "pivot.angle"),
+        ("joints.pivot.force.z", "{of: "),
+        ("\"table('f', t)\"", "without quotes"),
+        ("interp(t)", "table(NAME, ...)"),
         ("5*time", "write t"),
     ],
 )

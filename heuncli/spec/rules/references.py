@@ -125,7 +125,10 @@ def may_be_whole(draft: DraftDocument, path: Path_) -> bool:
 def absent(path: Path_, body: str, point: str, points: Iterable[str]) -> Violation:
     """A point that its body does not have."""
     owner = "the ground" if body == GROUND else f"body {body}"
-    return Violation(path, f"{owner} has no point '{point}'", did_you_mean(point, points, f"points of {body}"))
+    own = point.removeprefix(f"{body}.")
+    hint = f"the point alone: {own}" if own != point and own in points else None
+    message = f"{owner} has no point '{point}'"
+    return Violation(path, message, hint or did_you_mean(point, points, f"points of {body}"))
 
 
 @rule("unknown-joint")
