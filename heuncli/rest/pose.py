@@ -51,3 +51,9 @@ def bearing(evaluator: Evaluator, coordinates: Coordinates, t: float, state: Arr
 def opening(contact: Contact, at: Pose) -> float:
     """How far a contact is open [m or rad]."""
     return -contact.sense * float(at.recovered.rows["gap"][0, contact.row])
+
+
+def dependent(at: Pose) -> int:
+    """How many of the closed rows depend on the others."""
+    rows = at.recovered.rows
+    return int(np.count_nonzero(rows["closed"][0])) - int(np.count_nonzero(rows["chosen"][0]))

@@ -69,3 +69,23 @@ def jumps(coordinates: Coordinates, at: Pose, shape: Array) -> Problem:
     message = f"{name} is driven to where a load jumps, from both sides; nothing holds it there by itself"
     hint = f"give the jump a width, tanh(x/0.001) in place of sign(x); {left:.3g} 1/s² is left there"
     return no_rest(message, hint)
+
+
+def singular(coordinates: Coordinates, at: Pose) -> Problem:
+    """The problem of a way that ends in a singular pose: what moves there moves on in more than one way."""
+    layout, rows = coordinates.layout, at.recovered.rows
+    left_out = [r for r in range(len(layout.rows)) if rows["closed"][0, r] > rows["chosen"][0, r]]
+    names = dict.fromkeys(f"joints.{layout.mechanism.joints[layout.rows[r]].name}" for r in left_out)
+    through = f" through {' and '.join(names)}" if names else ""
+    message = f"the way there ends where the closed chain{through} is stretched, folded or flat: a singular pose"
+    return no_rest(message, "from there it may go on in more than one way: limit it by a stop before that pose")
+
+
+def no_value(coordinates: Coordinates, change: Array) -> Problem:
+    """The problem of loads without a value, or a slope, where the search has come; change (k, f): beside the pose."""
+    what = "value" if not np.isfinite(change).all() else "slope"
+    layout = coordinates.layout
+    loads = [f"forces.{load.name}" for load in layout.mechanism.loads if any(e.constant is None for e in load.values)]
+    which = f" ({', '.join(loads[:MOST_NAMES])})" if loads else ""
+    message = f"the search came to where a load{which} has no {what}: a root, a logarithm, points that coincide"
+    return no_rest(message, "start nearer to the pose, or give the load a value on both sides")

@@ -22,8 +22,8 @@ from heuncli.kinetostatics.bodies import body_states
 from heuncli.kinetostatics.coordinates import coordinates as joint_coordinates
 from heuncli.records import record, replace
 from heuncli.rest.coordinates import Coordinates, coordinates_of
-from heuncli.rest.pose import Pose, bearing, opening, pose_at
-from heuncli.rest.reasons import endless, jumps, run_away
+from heuncli.rest.pose import Pose, bearing, dependent, opening, pose_at
+from heuncli.rest.reasons import endless, jumps, run_away, singular
 from heuncli.rest.slopes import SAMPLES, Slopes, slopes
 from heuncli.results import Array
 
@@ -78,7 +78,8 @@ class Search:
         left, most = np.abs(own.c), tolerances.NOT_HELD / tolerances.SUM_ROUNDING * own.summed + own.rough
         driven = np.where((left > most) & (own.bent > 0.5 * left), left, 0.0)
         if driven.any():
-            raise SolveError(jumps(self.coordinates, at, (own.T @ own.V[:, int(np.argmax(driven))]).real))
+            shape = (own.T @ own.V[:, int(np.argmax(driven))]).real
+            raise SolveError(self.lost_rank(at) or jumps(self.coordinates, at, shape))
 
     def check(self, at: Pose, own: Slopes) -> None:
         """Raise what ends a search: something runs away, the steps or the time are used up."""
@@ -87,7 +88,7 @@ class Search:
         if (far > limit).any():
             raise SolveError(run_away(self.coordinates, self.passed, far / limit))
         if self.steps >= MOST_STEPS:
-            raise SolveError(endless(self.coordinates, at, self.steps))
+            raise SolveError(self.lost_rank(at) or endless(self.coordinates, at, self.steps))
         if self.deadline is not None and time.monotonic() > self.deadline:
             message = f"the time limit was reached after {self.steps} steps towards the rest pose"
             raise LimitError(Problem("time-limit", message, hint="a longer --time-limit"))
@@ -108,7 +109,13 @@ class Search:
                 self.h *= float(np.clip(0.9 * shorter, SLOWER, 0.9))
                 continue
             return self.accepted(at, own, by, new, off / size if size > 0.0 else 0.0)
-        raise SolveError(endless(self.coordinates, at, self.steps))
+        raise SolveError(self.lost_rank(at) or endless(self.coordinates, at, self.steps))
+
+    def lost_rank(self, at: Pose) -> Problem | None:
+        """The problem of a singular pose, if it is one to which the search came: the start was none."""
+        if dependent(at) <= dependent(self.begun()):
+            return None
+        return singular(self.coordinates, at)
 
     def moved(self, at: Pose, by: Array) -> Pose | None:
         """The pose displaced, with the same contacts; None where it cannot be closed."""

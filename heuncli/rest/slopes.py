@@ -10,11 +10,13 @@ from __future__ import annotations
 import numpy as np
 
 from heuncli import tolerances
+from heuncli.errors import SolveError
 from heuncli.integration.evaluator import Evaluator
 from heuncli.linearisation.linearise import Linearised, linearised
 from heuncli.records import record
 from heuncli.rest.coordinates import Coordinates, resting, rounding_of
 from heuncli.rest.pose import Pose
+from heuncli.rest.reasons import no_value
 from heuncli.results import Array, Mask
 
 SAMPLES = 4  # poses moved by rounding: that all of them hide a direction is unlikely
@@ -81,13 +83,15 @@ def slopes(evaluator: Evaluator, coordinates: Coordinates, at: Pose) -> Slopes:
     T = law.tangent
     back = T.T * coordinates.weights**2
     A = back @ law.by_place @ T
-    eigenvalues, V = np.linalg.eig(A) if len(A) else (np.zeros(0), np.zeros((0, 0)))
-    inverse = np.linalg.pinv(V) if len(A) else V
     by = np.array([rounding_of(coordinates, at.state, k) for k in range(SAMPLES)])
     moved = resting(
         evaluator, at.t, coordinates.displaced(np.repeat(at.state[None, :], SAMPLES, axis=0), by), at.holding
     )
     change = (coordinates.accelerations(moved) - at.accelerations) @ back.T
+    if not (np.isfinite(A).all() and np.isfinite(change).all()):
+        raise SolveError(no_value(coordinates, change))
+    eigenvalues, V = np.linalg.eig(A) if len(A) else (np.zeros(0), np.zeros((0, 0)))
+    inverse = np.linalg.pinv(V) if len(A) else V
     noise = np.abs(inverse @ change.T).max(axis=1, initial=0.0)
     sums = rounding(evaluator, coordinates, at)
     c = inverse @ (back @ at.accelerations)

@@ -42,7 +42,7 @@ def stability(found: Found) -> Stability:
     grown = np.flatnonzero(s.real > tolerances.GROWS * np.abs(s).max(initial=0.0))
     fastest = max(grown.tolist(), key=lambda k: float(s[k].real), default=-1)
     least = min(np.flatnonzero(real).tolist(), key=lambda k: float(-own.eigenvalues[k].real), default=-1)
-    swings = [k for k in range(len(s)) if s[k].imag > 0.0]
+    swings = [k for k in range(len(s)) if s[k].imag > tolerances.GROWS * np.abs(s).max()]
     near = min(swings, key=lambda k: abs(s[k].imag), default=-1)
     return Stability(
         growth=float(s[fastest].real) if fastest >= 0 else 0.0,
@@ -75,9 +75,11 @@ def indifferent(found: Found) -> tuple[str, ...]:
     loose = ~own.decided
     if not loose.any():
         return ()
-    shapes = own.T @ np.linalg.qr(np.hstack([own.V.real, own.V.imag])[:, np.concatenate([loose, loose])])[0]
+    U, size, _ = np.linalg.svd(np.hstack([own.V.real[:, loose], own.V.imag[:, loose]]), full_matrices=False)
+    shapes = own.T @ U[:, size > tolerances.MOVES]
     inertia, axes = np.linalg.eigh(shapes.T @ own.law.mass @ shapes)
-    shapes = shapes @ axes[:, inertia > tolerances.NO_INERTIA * inertia.max(initial=0.0)]
+    largest = float(np.linalg.norm(own.T.T @ own.law.mass @ own.T))
+    shapes = shapes @ axes[:, inertia > tolerances.NO_INERTIA * largest]
     share = np.sqrt(np.sum(shapes**2, axis=1)) * coordinates.weights
     own_share = np.flatnonzero(share > tolerances.MOVES * share.max(initial=0.0))
     return tuple(dict.fromkeys(coordinates.owner(k)[0] for k in own_share.tolist()))

@@ -6,6 +6,7 @@ Steady states of what drives turn; ropes and stops that bear or do not; why ther
 from __future__ import annotations
 
 import math
+from pathlib import Path
 
 import numpy as np
 import pytest
@@ -14,11 +15,13 @@ from scipy.optimize import brentq, minimize_scalar
 from heuncli.errors import SolveError
 from heuncli.results import Array, Results
 from heuncli.shapes.rotations import from_vector
-from heuncli.study.solve import Study
+from heuncli.spec.load import load
+from heuncli.study.solve import Study, solve
 from tests.shared.scenes import near, solved, study
 
 pytestmark = pytest.mark.heavy  # families: the plain kernel has the same bits (tests/package/test_kernels_agree.py)
 
+ROOT = Path(__file__).parents[2]
 G = 9.81
 HEAD = f"heun: 1\ngravity: [0, 0, -{G}]\nanalysis: {{type: rest}}\n"
 POINTS = "ground: {points: {O: [0, 0, 0], A: [1, 0, 0]}}\n"
@@ -379,6 +382,33 @@ def test_what_does_not_keep_still() -> None:
     assert "a load jumps" in refused(
         pendulum("0.5", "forces: {f: {type: torque, joint: p, value: -8*sign(p.angle - 0.2)}}")
     )
+
+
+def test_a_way_that_ends_stretched() -> None:
+    """Turned too slowly, arms and links of the governor hang straight down: there either arm may swing by itself."""
+    spec = load(str(ROOT / "specs" / "governor.yaml"), overrides={"w": "10"})
+    with pytest.raises(SolveError) as caught:
+        solve(spec)
+    assert "singular pose" in caught.value.problems[0].message
+    assert caught.value.problems[0].code == "no-rest-pose"
+
+
+def test_where_a_load_has_no_value() -> None:
+    root = "forces: {k: {type: torque, joint: p, value: -sqrt(p.angle - 0.5)}}"
+    assert "forces.k" in refused(pendulum("1", root))
+
+
+def test_idle_spins_are_not_told() -> None:
+    """Two thin rods that hang from each other: what spins about their axes is nothing."""
+    thin = BAR.replace("0.001", "0")
+    bodies = ", ".join(
+        f"{x}: {{{thin}, orientation: {{axis: [1, 1, 0], angle: {a} deg}}}}" for x, a in (("u", 70), ("l", 30))
+    )
+    joints = "p: {type: ball, from: ground.O, to: u.top}, e: {type: ball, from: u.end, to: l.top}"
+    found = solved(f"{HEAD}{POINTS}bodies: {{{bodies}}}\njoints: {{{joints}}}")
+    assert len(found.model["rest"]) == 1
+    assert "stable" in found.model["rest"][0]
+    near(found.joints["p"]["force"][0], [0.0, 0.0, 2.0 * G], G, 1e-14)
 
 
 def test_a_crank_drive_keeps_the_rod_moving() -> None:
