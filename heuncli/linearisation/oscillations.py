@@ -67,10 +67,17 @@ def mode_of(system: Reduced, eigenvalue: complex, error: float, x: Array, free: 
     shape = system.tangent @ x
     if free:
         return Mode("free", 0j, error, shape)
+    error += 0.5 * abs(eigenvalue) * tolerances.EIGENVALUE * cancelled(system.mass, shape)
     growth = eigenvalue.real if abs(eigenvalue.real) > error else 0.0
     if eigenvalue.imag == 0.0:
         return Mode("divergence" if growth > 0.0 else "decay", complex(growth), error, shape)
     return Mode("flutter" if growth > 0.0 else "oscillation", complex(growth, eigenvalue.imag), error, shape)
+
+
+def cancelled(M: Array, v: Array) -> float:
+    """How large the terms of v* M v are against their sum: of a light body's motion on heavy ones much may cancel."""
+    size = np.abs(v)
+    return float(size @ np.abs(M) @ size / abs(v.conj() @ M @ v))
 
 
 Row = tuple[complex, float, Array, bool]

@@ -27,6 +27,7 @@ class Reduced:
 
     tangent: Array
     drift: Array  # S (n, f)
+    mass: Array  # (n, n) of the tree
     A11: Array
     A21: Array
     A22: Array
@@ -67,6 +68,7 @@ def on_basis(layout: Layout, found: Linearised, at: Recovered, T: Array, S: Arra
     return Reduced(
         tangent=T,
         drift=S,
+        mass=found.mass,
         A11=A11,
         A21=P @ (found.by_place @ T + slow @ S) - P @ S @ A11,
         A22=P @ slow @ T - P @ S,

@@ -7,7 +7,7 @@ from collections.abc import Iterator
 
 from heuncli.linearisation.modes import Modes, is_length
 from heuncli.linearisation.oscillations import Mode
-from heuncli.report.numbers import style
+from heuncli.report.numbers import rough, style
 from heuncli.report.table import WIDTH, Column, Table, plain
 from heuncli.version import VERSION
 
@@ -20,6 +20,7 @@ COLUMNS = (
     Column("kind", "left"), Column("what moves most (rad, m)", "left"),
 )  # fmt: skip
 CSV_COLUMNS = "mode,kind,name,quantity,component,unit,value"
+SOFT = 1e-3  # [1/s]: a bound on what is free is told if it leaves motions that take less than an hour or two
 ALMOST = 0.02  # of the largest: a smaller part of the other phase is not worth a table's room
 
 
@@ -79,7 +80,9 @@ def notes(found: Modes) -> Iterator[str]:
     for k, mode in enumerate(found.modes):
         names = ", ".join(found.largest[k])
         if mode.kind == "free":
-            yield f"free: {names}: nothing holds it"
+            bound = rough(mode.error / (2.0 * math.pi))
+            beside = f", or too softly to tell it beside what is so stiff: less than {bound} Hz"
+            yield f"free: {names}: nothing holds it{beside if mode.error > SOFT else ''}"
         elif mode.growth > 0.0:
             yield f"unstable: mode {k + 1}, {names}: e times as large after every {1.0 / mode.growth:.3g} s"
 

@@ -669,14 +669,14 @@ def hop(x: float) -> str:
 def soft_beside_stiff(x: float) -> str:
     """Two motions, one of stiffness 1, the other of 2 x: the kind of the softer."""
     f = np.zeros((2, 2))
-    system = Reduced(np.eye(2), f, f, -np.diag([2.0 * x, 1.0]), f, np.zeros(2), 0.0, 0.0)
+    system = Reduced(np.eye(2), f, np.eye(2), f, -np.diag([2.0 * x, 1.0]), f, np.zeros(2), 0.0, 0.0)
     return oscillations(system)[0].kind
 
 
 def pushed_freely(x: float) -> str:
     """What nothing holds, pushed by x of the loads there."""
-    f = np.zeros((1, 1))
-    here = SimpleNamespace(system=Reduced(np.eye(1), f, f, f, f, np.array([x]), 1.0, 0.0), weights=np.ones(1))
+    f, one = np.zeros((1, 1)), np.eye(1)
+    here = SimpleNamespace(system=Reduced(one, f, one, f, f, f, np.array([x]), 1.0, 0.0), weights=np.ones(1))
     return "falls" if np.isinf(off_balance(here)) else "rests"  # type: ignore[arg-type]
 
 
