@@ -101,6 +101,8 @@ def block(asked: Measure, study: Study) -> dict[str, Any]:
     """One number for JSON."""
     peak, horizon = measured(asked, study)
     found = {"measure": f"{asked.how} {asked.path}".strip(), "value": peak.value, "at": peak.at}
+    if "axes" in study.results.model and "joints." in asked.path:
+        found["axes"] = study.results.model["axes"]
     if horizon is not None:
         return found | {"value": None, "at": None, "horizon": horizon}
     if peak.place is not None and not math.isnan(peak.value):

@@ -144,9 +144,10 @@ def _lines(row: Rows, ends: Sequence[str]) -> Iterator[str]:
     series = row.series
     for component, end, column in zip(series.components, ends, series.values.T, strict=True):
         middle = f",{row.kind},{row.name},{series.quantity},{component},{series.unit},"
-        known = np.isfinite(column).tolist()
-        numbers = [repr(number) if sure else "" for number, sure in zip((column + 0.0).tolist(), known, strict=True)]
-        yield from [f"{t}{middle}{number}{end}\n" for t, number in zip(row.instants, numbers, strict=True)]
+        numbers, tail = list(map(repr, (column + 0.0).tolist())), f"{end}\n"
+        for i in np.flatnonzero(~np.isfinite(column)).tolist():
+            numbers[i] = ""
+        yield from [f"{t}{middle}{number}{tail}" for t, number in zip(row.instants, numbers, strict=True)]
 
 
 def _cuts(row: Rows) -> list[str]:

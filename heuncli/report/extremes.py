@@ -77,6 +77,8 @@ def _full(block: Block, parts: Sequence[Part], times: Array, certain: Certainty)
         notes |= needed
     heads = ("first", "last", "min", "at [s]", "max", "at [s]")
     columns = (Column("", "left"), Column("", "left"), *(Column(head) for head in heads))
+    if all(isinstance(row, str) for row in rows):
+        columns = (Column("", "left"),)  # a title and what is open of each: no numbers to head
     return Table(block.heading, columns, tuple(rows), (*block.notes, *(note for note in NOTES if note in notes)))
 
 

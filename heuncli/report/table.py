@@ -46,7 +46,7 @@ def plain(table: Table, width: int | None = None) -> str:
         cells = aligned(table)
         widths = [max(map(len, column)) for column in zip(*cells, strict=True)]
         texts = iter(_line(row, widths, table.columns, indent) for row in cells)
-        lines.append(next(texts))
+        lines += [head for head in [next(texts)] if head]
         for row in table.rows:
             lines += wrapped(row, width) if isinstance(row, str) else [next(texts)]
     notes = [line for note in table.notes for line in wrapped(indent + note, width)]

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import json
 from pathlib import Path
 
 import numpy as np
@@ -116,6 +117,16 @@ def test_an_unbalance_stands_still_in_the_axes_of_the_rotor(tmp_path: Path, caps
         assert turned == pytest.approx([expected - unbalance, expected], rel=1e-9)
     assert measured(spec, "max joints.shaft.force.z", capsys) == pytest.approx(weight + unbalance, rel=1e-9)
     assert measured(spec, "max joints.shaft.force.z", capsys, "--axes", "from") == pytest.approx(weight + unbalance)
+
+
+def test_a_measure_in_json_says_so(tmp_path: Path, capsys: pytest.CaptureFixture[str]) -> None:
+    spec = tmp_path / "rotor.yaml"
+    spec.write_text(ROTOR)
+    words = ["--measure", "first joints.shaft.force.y", "--format", "json"]
+    assert enter(["run", str(spec), *words, "--axes", "to"]) == 0
+    assert json.loads(capsys.readouterr().out)["axes"] == "to"
+    assert enter(["run", str(spec), *words]) == 0
+    assert "axes" not in json.loads(capsys.readouterr().out)
 
 
 @pytest.mark.parametrize(("words", "heading"), [

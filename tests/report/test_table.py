@@ -28,6 +28,11 @@ def test_points_stand_under_each_other() -> None:
     ]
 
 
+def test_heads_that_are_all_blank_take_no_line() -> None:
+    table = Table("JOINTS", (Column("", "left"),), ("pin  a pin", "  open: Fx"))
+    assert plain(table).splitlines() == ["JOINTS", "pin  a pin", "  open: Fx"]
+
+
 def test_no_line_ends_in_blanks() -> None:
     assert all(line == line.rstrip() for line in plain(TABLE).splitlines())
 
