@@ -88,7 +88,8 @@ POLISHED = 1e-12  # turns [rad] and shifts (by the size): nothing is left to pol
 SUMS_BLIND = 1e-5  # the same: squares of steps below 1e-5 are 1e-10 and drown in what closing leaves in the sums
 SAME_SUM = 1e-13  # of a sum of squares: hundreds of roundings
 DRAWN_IN_PLACE = 0.1  # a joint's gap (by L) or angle: a slip of the drawing is less, bodies drawn apart miss by a link
-MOVED = 1e-2  # of the scene's size: a body that had to leave its place by more is mentioned above the tables
+MOVED = 1e-3  # of the scene's size: a body that had to leave its place by more is mentioned above the tables; places
+# typed with three digits, a millimetre in a metre, close that well
 UNMOVED = 1e-12  # of the size, or rad: a smaller change of the start is rounding, and no choice to mention
 DUST = 1e-9  # of the size: components that a chosen value is printed without
 
@@ -116,6 +117,7 @@ PRINCIPAL = 1e-9  # I12 of sqrt(I1 I2): typed lengths; the neutral axis turns by
 UPRIGHT = 1e-9  # 1 - cosine of a body's z axis to the world's: 4.5e-5 rad, as typed quaternions leave
 
 # -- loads that are none
+SET_GOING = 1e-10  # of the largest load on a body over its mass: ten times NO_LOAD, which a sweep leaves
 NO_FORCE = 1e-12  # of the largest load it is summed from: hundreds of roundings; it has no line of action
 NO_LOAD = 1e-11  # of the largest m (a - g): what a sweep leaves at six freedoms that nothing holds
 NO_ENERGY = 1e-20  # of the weight's work over the size: squares of speeds of 1e-10, as OPEN_RATE lets pass

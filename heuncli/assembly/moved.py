@@ -21,13 +21,12 @@ from heuncli.results import Array
 from heuncli.shapes.rotations import to_vector
 
 LEAST_ANGLE = 0.01  # [deg] that is mentioned
-NAMED = 5  # bodies named beside the one that moved most
 
 
 def moved(
     mechanism: Mechanism, found: Sequence[Condition], drawn: Poses, start: Assembly, lever: float
 ) -> tuple[str, ...]:
-    """One sentence on all bodies that were moved by more than a hundredth of the scene's size, or none.
+    """The bodies that were moved by more than typed digits are off, each with its way, the longest first.
 
     lever: the size of the joints' levers, by which gaps are judged [m].
     """
@@ -38,21 +37,14 @@ def moved(
         if any(counts) and (way := _way(body, drawn, start, i, counts)) > tolerances.UNMOVED * lever:
             ways.append((way, i))
     size = size_of_scene(mechanism, start) if ways else 1.0
-    ways = [(way, i) for way, i in ways if way > tolerances.MOVED * size]
-    if not ways:
-        return ()
-    ways.sort(key=lambda w: (-w[0], w[1]))
-    way, first = ways[0]
-    angle = float(np.degrees(np.linalg.norm(to_vector(start.rotation[first] @ drawn.R[first].T))))
-    names = [mechanism.bodies[i].name for _, i in ways[1:]]
-    others = f"; {', '.join(names[:NAMED])}" if names else ""
-    others += f" and {len(names) - NAMED:,} more" if len(names) > NAMED else ""
-    return (
-        f"to close the joints {mechanism.bodies[first].name} was moved from where it is drawn, "
-        f"by up to {way:.2g} m ({100.0 * way / size:.3g} % of the scene's size)"
-        + (f" and {angle:.2g} deg" if angle >= LEAST_ANGLE else "")
-        + (f"{others} by less" if names else ""),
-    )
+    ways = sorted(((way, i) for way, i in ways if way > tolerances.MOVED * size), key=lambda w: (-w[0], w[1]))
+    return tuple(_told(mechanism.bodies[i].name, way, start.rotation[i] @ drawn.R[i].T) for way, i in ways)
+
+
+def _told(name: str, way: float, turned: Array) -> str:
+    """A body with the way of the point of it that moved most, and how far it was turned."""
+    angle = float(np.degrees(np.linalg.norm(to_vector(turned))))
+    return f"{name} by {way:.2g} m" + (f" and {angle:.2g} deg" if angle >= LEAST_ANGLE else "")
 
 
 def drawn_in_place(mechanism: Mechanism, found: Sequence[Condition], drawn: Poses, lever: float) -> bool:

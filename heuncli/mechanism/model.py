@@ -289,8 +289,8 @@ class Assembly:
     """Poses and rates at the start that fit all joints, world axes.
 
     position (n, 3) and velocity (n, 3) of the bodies' origins, rotation (n, 3, 3), angular_velocity (n, 3);
-    chosen: sentences on what was chosen for the user; gap: largest closure gap [m]; moved: a sentence, if a body had to
-    leave the place in which it is drawn by more than a hundredth of the scene.
+    chosen: sentences on what was chosen for the user; gap: largest closure gap [m]; moved: the bodies that had to leave
+    the place in which they are drawn, each with its way.
     """
 
     position: Array

@@ -14,6 +14,7 @@ from heuncli.report.words import count
 from heuncli.results import Estimate, Results
 
 MOST_TOLD = 5
+MOST_MOVED = 3
 PLANAR = "; what points out of the xy plane does not exist and reads 0"
 
 
@@ -24,13 +25,14 @@ def heading(results: Results) -> list[tuple[str, str]]:
         ("model", _model(results)),
         *_reduced(results.model.get("reduced", ())),
         *(("unseen", sentence) for sentence in results.model.get("cannot_tell", ())),
-        *(("start", sentence) for sentence in results.model.get("moved", ())),
+        *_moved(results.model.get("moved", ())),
         ("run", _run(results)),
         *_labelled("rest", results.model.get("rest", ())),
         *(("until", sentence) for sentence in results.model.get("until", ())),
         ("accuracy", _errors(results)),
         ("", _residuals(results)),
         *_contacts(results.model.get("contacts", ())),
+        *(("moves", sentence) for sentence in results.model.get("moves", ())),
     ]
     if results.model.get("split"):
         lines.append(("split", f"{results.model['split']}; other splits do as well"))
@@ -70,6 +72,13 @@ def _reduced(sentences: Sequence[str]) -> list[tuple[str, str]]:
 def _labelled(label: str, sentences: Sequence[str]) -> list[tuple[str, str]]:
     """Sentences, the first of them with a label."""
     return [(label * (not i), sentence) for i, sentence in enumerate(sentences)]
+
+
+def _moved(ways: Sequence[str]) -> list[tuple[str, str]]:
+    """Which bodies had to leave their place in the drawing, those that moved most first."""
+    shown = ", ".join(ways[:MOST_MOVED])
+    more = f" and {len(ways) - MOST_MOVED} more" if len(ways) > MOST_MOVED else ""
+    return [("moved", f"to close the joints: {shown}{more}; heun model lists it")] if ways else []
 
 
 def _contacts(sentences: Sequence[str]) -> list[tuple[str, str]]:

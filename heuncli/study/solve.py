@@ -150,6 +150,7 @@ def compose(
         version=VERSION,
         model=setup.model
         | ({"split": "; ".join(split)} if split else {})
+        | not_at_rest(recovery)
         | ({"axes": setup.asked.axes} if setup.asked.axes != "world" else {})
         | contacts_of(history)
         | unfollowed(setup, history),
@@ -177,6 +178,16 @@ def compose(
             *(rest.warnings if rest is not None else ()),
         ),
     )
+
+
+def not_at_rest(recovery: Recovery) -> Block:
+    """What is told of a state that its loads set going."""
+    if recovery.setup.spec.analysis.type != "state":
+        return {}
+    from heuncli.study.moves import moves  # a motion moves
+
+    found = moves(recovery)
+    return {"moves": found} if found else {}
 
 
 def unfollowed(setup: Setup, history: History) -> Block:

@@ -195,6 +195,19 @@ def moved(text: str) -> str:
     return "moved" if study(text).results.model.get("moved") else "quiet"
 
 
+def nearly_carried(x: float) -> str:
+    """What hangs on an upright slide, pushed up by its weight and x of it more."""
+    text = f"""
+heun: 1
+gravity: [0, 0, -9.81]
+ground: {{points: {{O: [0, 0, 0]}}}}
+bodies: {{b: {{mass: 2, center: [0, 0, 0], inertia: [1, 1, 1], points: {{O: [0, 0, 0]}}}}}}
+joints: {{j: {{type: slide, from: ground.O, to: b.O, axis: [0, 0, 1]}}}}
+forces: {{up: {{type: force, on: b.O, vector: [0, 0, {19.62 * (1.0 + x)!r}]}}}}
+"""
+    return "moves" if study(text).results.model.get("moves") else "rests"
+
+
 def misplaced(x: float) -> str:
     """The hanging bar, drawn x of the scene's size too far to the right."""
     return moved(bar(f", near: {{position: [{x * BAR_SIZE!r}, 0, 0]}}"))
@@ -738,6 +751,7 @@ ROWS = (
     # gaps
     Row("OPEN_GAP", too_far, "fine", "refused: does-not-fit"),
     Row("MOVED", misplaced, "quiet", "moved"),
+    Row("SET_GOING", nearly_carried, "rests", "moves"),
     Row("DRAWN_IN_PLACE", half_in_place, "moved", "quiet"),
     Row("GAP_ROUNDING", lambda x: too_far(x * 1e5, 1e5), "fine", "refused: does-not-fit", (1 / 3, 3.0, 100.0)),
     Row("NO_LENGTH", no_length, "refused: no-length", "fine"),

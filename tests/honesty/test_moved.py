@@ -2,6 +2,8 @@
 
 from __future__ import annotations
 
+from dataclasses import replace
+
 import pytest
 
 from heuncli.report.heading import write_heading
@@ -29,14 +31,15 @@ joints:
 SIZE = 3.3  # of the four-bar [m], nearly
 
 
-@pytest.mark.parametrize(("slip", "said"), [(0.0, False), (0.005, False), (0.1, True)])
+@pytest.mark.parametrize(("slip", "said"), [(0.0, False), (0.005, False), (0.006, True), (0.1, True)])
 def test_a_slip_of_the_drawing_is_said_in_one_line(slip: float, said: bool) -> None:
     done = study(four_bar(slip))
-    lines = [line for line in write_heading(done.results).splitlines() if line.startswith("start")]
+    lines = [line for line in write_heading(done.results).splitlines() if line.startswith("moved")]
     assert len(lines) == int(said)
     assert not done.results.warnings
     if said:
-        assert "to close the joints coupler was moved from where it is drawn, by up to 0.1 m" in lines[0]
+        assert lines[0].endswith("; heun model lists it")
+        assert f"to close the joints: coupler by {slip:.1g}" in lines[0]
 
 
 def test_what_the_spec_asks_for_is_not_a_slip() -> None:
@@ -64,4 +67,11 @@ joints:
 def test_near_is_a_place() -> None:
     """The crank's own pin lies 0.2 m beside where near puts it."""
     (said,) = study(four_bar(crank=", near: {position: [0.2, 0, 0]}")).results.model["moved"]
-    assert said.startswith("to close the joints crank was moved")
+    assert said == "crank by 0.2 m"
+
+
+def test_three_are_named() -> None:
+    """Of many bodies those that moved most; all of them stand in the note on the model."""
+    results = replace(study(four_bar(0.1)).results, model={"moved": [f"b{i} by 1 m" for i in range(8)]})
+    told = " ".join(write_heading(results).split())
+    assert "moved to close the joints: b0 by 1 m, b1 by 1 m, b2 by 1 m and 5 more; heun model lists it" in told
