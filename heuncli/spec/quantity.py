@@ -16,6 +16,7 @@ from heuncli.records import replace
 # The 1 of 1/s stands apart from it: 21/s is no 2 of 1/s, nor 9.81/2 a 9.8 of 1/2.
 WITH_UNIT = re.compile(r"\s*([+-]?\s*(?:\d+\.?\d*|\.\d+)(?:[eE][+-]?\d+)?+)\s*((?:[^\W\d_]|°|(?<=\s)1/)[^,]*)\s*\Z")
 WHOLE_NUMBER = re.compile(r"(?<![\w.*])\d(?![\w.])|(?<=[^*]\*)\d(?![\w.])")
+OVER_UNIT = re.compile(r"\s*([+-]?\s*(?:\d+\.?\d*|\.\d+)(?:[eE][+-]?\d+)?)\s*/\s*([^\W\d]+)\s*\Z")
 TIME_IN_IT = re.compile(r"(?<![\w.])t(?![\w.])")
 CONDITIONS = "such as guide.travel > 0.2, shaft.rate < 0 and t > 1, or {of: joints.wall.force.x, below: 0}"
 NOT_A_NUMBER = re.compile(r"[+-]?\.?(?:inf|nan)(?:inity)?\Z", re.IGNORECASE)
@@ -40,7 +41,7 @@ def in_time(value: Any, dimension: Dimension | None, scope: Scope) -> Expression
         raise Finding("not-finite", f"'{value.strip()}' is not a finite number")
     with_unit = unit_in(value)
     if with_unit is None:
-        return fitting(compile_expression(value, scope), dimension, scope)
+        return fitting(compiled(value, scope), dimension, scope)
     size, measured = measure(with_unit[1], with_unit[2].strip(), scope)
     if dimension is not None and measured != dimension:
         hint = (
@@ -49,6 +50,22 @@ def in_time(value: Any, dimension: Dimension | None, scope: Scope) -> Expression
         )
         raise Finding("dimension", f"'{value.strip()}' is {describe(measured)}, expected {describe(dimension)}", hint)
     return replace(Expression.of(size), source=value, dimension=measured)
+
+
+def compiled(text: str, scope: Scope) -> Expression:
+    """The expression a text means; of 21/s the hint is the unit as it is written."""
+    try:
+        return compile_expression(text, scope)
+    except Finding as finding:
+        found = OVER_UNIT.match(text)
+        if found is None or finding.code not in ("unknown-name", "function-arguments"):
+            raise
+        unit = f"1/{found[2]}"
+        try:
+            parse_unit(unit)
+        except Finding:
+            raise finding from None
+        raise Finding(finding.code, finding.message, f"with a unit: {found[1].strip()} {unit}") from None
 
 
 def unit_in(text: str) -> re.Match[str] | None:
