@@ -1,6 +1,7 @@
 """How well a rest pose is known: poses beside it that rounding does not tell from it.
 
-Each is found as the pose itself is, by Newton's step from a pose moved by rounding; and where a direction is held by
+Each is found as the pose itself is, by Newton's step from a pose moved by rounding; or as far off as rounding of the
+sums pushes a soft direction; and where a direction is held by
 no stiffness but by what bends (a quartic potential), as far out along it as the accelerations are still rounding.
 """
 
@@ -8,6 +9,7 @@ from __future__ import annotations
 
 import numpy as np
 
+from heuncli import tolerances
 from heuncli.integration.evaluator import Evaluator
 from heuncli.rest.coordinates import resting, rounding_of
 from heuncli.rest.search import Found
@@ -26,7 +28,16 @@ def beside(evaluator: Evaluator, found: Found) -> list[Array]:
     there = resting(evaluator, at.t, states, at.holding)
     back = np.array([own.newton(a) for a in coordinates.accelerations(there)])
     again = resting(evaluator, at.t, coordinates.displaced(there.states, back), at.holding)
-    return [*again.states, *bent(evaluator, found)]
+    sums = coordinates.displaced(at.state[None, :], rounding_of_sums(found)[None, :])
+    return [*again.states, *resting(evaluator, at.t, sums, at.holding).states, *bent(evaluator, found)]
+
+
+def rounding_of_sums(found: Found) -> Array:
+    """How far each direction gives way to what rounding leaves of its accelerations' sums, all together, (n,)."""
+    own = found.slopes
+    push = tolerances.PLACE_ROUNDING / tolerances.SUM_ROUNDING * own.summed
+    give = np.where(own.decided, push / np.where(own.decided, np.abs(own.eigenvalues), 1.0), 0.0)
+    return np.asarray((own.T @ (own.V @ give)).real)
 
 
 def bent(evaluator: Evaluator, found: Found) -> list[Array]:

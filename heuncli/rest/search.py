@@ -54,7 +54,7 @@ class Search:
         self.start = evaluator.layout.y0
         self.passed = np.zeros(self.coordinates.count)
         self.steps = self.evaluations = 0
-        self.h = 0.0
+        self.h = self.most = 0.0
 
     def found(self) -> Found:
         """The rest pose. Raises SolveError [no-rest-pose], LimitError past the deadline."""
@@ -75,7 +75,10 @@ class Search:
 
     def require_held(self, at: Pose, own: Slopes) -> None:
         """Raise SolveError [no-rest-pose] where what is left is no rounding of what acts: a load jumps just there."""
-        left, most = np.abs(own.c), tolerances.NOT_HELD / tolerances.SUM_ROUNDING * own.summed + own.rough
+        terms = own.summed / tolerances.SUM_ROUNDING
+        self.most = max(self.most, float(terms.max(initial=0.0)))
+        left = np.where(np.abs(own.c) > tolerances.NOT_HELD**2 * self.most, np.abs(own.c), 0.0)
+        most = tolerances.NOT_HELD * terms + own.rough
         driven = np.where((left > most) & (own.bent > 0.5 * left), left, 0.0)
         if driven.any():
             shape = (own.T @ own.V[:, int(np.argmax(driven))]).real
@@ -83,6 +86,7 @@ class Search:
 
     def check(self, at: Pose, own: Slopes) -> None:
         """Raise what ends a search: something runs away, the steps or the time are used up."""
+        self.most = max(self.most, float(own.summed.max(initial=0.0)) / tolerances.SUM_ROUNDING)
         far = np.abs(self.passed) * self.coordinates.weights
         limit = np.where(self.coordinates.shifts, tolerances.RUN_AWAY, tolerances.TURNS_ON)
         if (far > limit).any():

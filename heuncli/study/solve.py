@@ -88,7 +88,8 @@ def solve(spec: Spec, options: Options | None = None) -> Study:
     recovery = recover(setup, history.recovered, options.least_norm)
     struck = blows(setup, history, options.least_norm, SHARES in options.reports)
     results = compose(setup, history, recovery, options.reports, struck)
-    seconds = {"load": options.load_seconds, "build": built - begun, **history.seconds}
+    looked_for = setup.rest.seconds if setup.rest is not None else 0.0
+    seconds = {"load": options.load_seconds, "build": built - begun - looked_for, **history.seconds}
     results.work["seconds"] = seconds | {"recover": time.perf_counter() - moved}
     study = Study(spec, options, setup, history, recovery, results, struck)
     if not conditions:

@@ -209,6 +209,17 @@ def test_what_bends_alone_holds() -> None:
     near(found.coordinates["u"]["travel"][0], 1e-8 ** (1.0 / 3.0), 1e-2, 1e-9)
 
 
+@pytest.mark.parametrize("soft", [1e-4, 1e-8, 1e-12])
+def test_a_soft_pose_shows_no_false_digits(soft: float) -> None:
+    """A torque that takes back all but a trace of the weight's moment: what rounding makes of the pose is told."""
+    all_but = 0.5 * G * (1.0 - soft)
+    left = 0.5 * G - all_but
+    load = f"forces: {{k: {{type: torque, joint: p, value: \"{all_but!r}*sin(p.angle) + {1e-3 * left!r}\"}}}}"
+    found = solved(pendulum("0.01", load))
+    error = abs(found.coordinates["p"]["angle"][0] - math.asin(1e-3))
+    assert error <= found.accuracy["estimate"]["motion"] * 1.25 <= 1e3 * 2.0**-52 / soft + 1e-15
+
+
 # ---- against the least energy, and against motion --------------------------------------------------------------
 def triangle(rng: np.random.Generator) -> tuple[str, Array, float, float]:
     """Two bars from A and B of the ground to a common point, which swings about AB, and a spring from S to it."""
