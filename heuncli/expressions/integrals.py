@@ -32,7 +32,7 @@ assert len(NODES) == expressions.QUADRATURE
 LOOKED_AT = 256  # equal parts of the run, at whose ends the size of a rate is estimated
 BEYOND = 2.0**-20  # of the run: behind a pole a rate has values again there, behind the end of its domain none
 MOST_PIECES = 1 << 16
-STILL: Code = (VAR, 0, CONST, 0, OPS["mul"], 0, CONST, 1, OPS["add"], 0)  # r t + start
+STEADY: Code = (VAR, 0, CONST, 0, OPS["mul"], 0)  # r t
 
 
 def integral(rate: Expression, last: float) -> Expression:
@@ -42,8 +42,8 @@ def integral(rate: Expression, last: float) -> Expression:
     """
     if rate.constant is not None:
         r = rate.constant
-        code, constant = (STILL, None) if r != 0.0 else ((CONST, 1), 0.0)
-        return replace(rate, constant=constant, time_dependent=r != 0.0, code=code, constants=(r, 0.0), tables=())
+        code, constant = (STEADY, None) if r != 0.0 else ((CONST, 0), 0.0)
+        return replace(rate, constant=constant, time_dependent=r != 0.0, code=code, constants=(r,), tables=())
     knots, sums = pieces_of(rate, last)
     return replace(
         rate,
@@ -53,11 +53,14 @@ def integral(rate: Expression, last: float) -> Expression:
 
 
 def begun_at(value: Expression, start: float) -> Expression:
-    """An integral with what it is at t = 0."""
-    pieces = value.code[2] if value.code[0] == INTEGRAL else 1
-    moved = tuple(start + x for x in value.constants[-pieces:])
-    constant = start if value.constant is not None else None
-    return replace(value, constant=constant, constants=(*value.constants[:-pieces], *moved))
+    """An integral, or another value in time, and what is added to it: the start of what it is counted from."""
+    if value.code[0] == INTEGRAL:
+        pieces = value.code[2]
+        sums = tuple(start + x for x in value.constants[-pieces:])
+        return replace(value, constants=(*value.constants[:-pieces], *sums))
+    constant = start + value.constant if value.constant is not None else None
+    code = (*value.code, CONST, len(value.constants), OPS["add"], 0)
+    return replace(value, constant=constant, code=code, constants=(*value.constants, start))
 
 
 def pieces_of(rate: Expression, last: float) -> tuple[list[float], list[float]]:

@@ -59,6 +59,14 @@ class Drive:
     zero_assembled: bool
     from_start: bool = False
 
+    @property
+    def adds_to_start(self) -> bool:
+        """Whether the value is to be added to what the coordinate is at the assembled start.
+
+        An angle counted from there is zero there; a travel is zero where the points are level.
+        """
+        return self.from_start or (self.zero_assembled and self.quantity == "travel")
+
 
 @record
 class Joint:

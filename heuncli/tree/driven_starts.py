@@ -1,4 +1,4 @@
-"""Drives by a rate, from where the assembled scene starts: from there on their coordinates are known in time."""
+"""Drives by a rate, or counted from the assembled start: from there on their coordinates are known in time."""
 
 from __future__ import annotations
 
@@ -32,10 +32,11 @@ def require_lengths(mechanism: Mechanism, last: float) -> None:
 
 def _begun(mechanism: Mechanism, start: Assembly, joint: Joint) -> Joint:
     drive = joint.drive
-    if drive is None or not drive.from_start:
+    if drive is None or not drive.adds_to_start:
         return joint
+    zero = drive.zero_assembled and drive.quantity == "angle"  # a travel is told from where the points are level
     value = begun_at(drive.value, _coordinate(mechanism, start, joint))
-    begun_joint: Joint = replace(joint, drive=replace(drive, value=value, from_start=False))
+    begun_joint: Joint = replace(joint, drive=replace(drive, value=value, from_start=False, zero_assembled=zero))
     return begun_joint
 
 

@@ -33,7 +33,7 @@ class PreparedScene:
 def prepare(mechanism: Mechanism, t0: float = 0.0) -> PreparedScene:
     """Assemble at t0 and lay out. Raises SolveError where the scene does not close, or starts beyond a stop."""
     start = assemble(mechanism, t0)
-    if any(j.drive is not None and j.drive.from_start for j in mechanism.joints):
+    if any(j.drive is not None and j.drive.adds_to_start for j in mechanism.joints):
         from heuncli.tree.driven_starts import begun  # few scenes have drives by a rate
 
         mechanism = begun(mechanism, start)

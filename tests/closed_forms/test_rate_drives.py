@@ -118,6 +118,17 @@ def test_counted_from_the_start() -> None:
         near(found["angle"], np.array([start, start + 9.0]), 10.0, 1e-15)
 
 
+@pytest.mark.parametrize("drive", ["travel: 't**2', zero: assembled", "speed: '2*t', zero: assembled", "speed: '2*t'"])
+def test_a_travel_counted_from_where_it_is_drawn(drive: str) -> None:
+    """What is drawn 0.3 along its slide starts there, and its travel is that of its points all the same."""
+    body = "  b: {mass: 2, center: [0, 0, 0], inertia: [1, 1, 1], points: {p: [0.3, 0, 0]}}\n"
+    joint = "  j: {type: slide, from: ground.O, to: b.p, axis: [1, 0, 0]}\n"
+    text = f"{HEAD}bodies:\n{body}joints:\n{joint}drives: {{motor: {{joint: j, {drive}}}}}\n"
+    found = solved(text + "analysis: {times: [0, 1]}\n")
+    near(found.bodies["b"]["position"][:, 0], [0.0, 1.0], 1.0, 1e-15)
+    near(found.coordinates["j"]["travel"], [0.3, 1.3], 1.0, 1e-15)
+
+
 def test_a_rod_that_is_used_up() -> None:
     """A rod that shortens to nothing is refused with the instant, whether its length is given or as assembled."""
     bodies, joints = MACHINES["a rod, as it is assembled"][:2]
