@@ -8,6 +8,7 @@ import pytest
 from heuncli.cli import measure
 from heuncli.errors import SpecError
 from heuncli.results import Array
+from heuncli.results_schema import REPORTS
 from tests.shared.scenes import near, solved, study
 
 BEAM = """
@@ -85,6 +86,18 @@ def test_a_bar_in_flight() -> None:
     near(-found["Q1"][0], V, 36.0, 1e-14)
     near(found["M2"][0], M, 36.0, 1e-13)
     assert abs(V[-1]) < 1e-12 and abs(M[-1]) < 1e-12
+
+
+def test_its_share() -> None:
+    """By cause: on a cantilever what stands beyond the cut, directly; nothing of it through motion; the sum is all."""
+    forces = f"q: {load(1, 5, 3, 3)}, push: {{type: force, on: beam.tip, vector: [0, 2, 0]}}"
+    block = solved(beam(forces), wanted=frozenset((*REPORTS, "shares"))).sections["along"]
+    own, x = block["shares"]["q"], np.asarray(block["s"])
+    beyond = 3 * np.clip(5 - x, 0, 4)
+    near(own["force"][0, :, 1], -beyond, 12.0, 1e-14)
+    near(own["direct_force"], own["force"], 12.0, 1e-14)
+    near(own["direct_moment"], own["moment"], 36.0, 1e-14)
+    near(sum(np.asarray(share["M2"]) for share in block["shares"].values()), block["M2"], 36.0, 1e-14)
 
 
 TURNING = """
