@@ -23,6 +23,7 @@ from heuncli.spec.models import Spec
 from heuncli.study.setup import Setup, set_up
 
 REST_HINT = "analysis: {type: rest} looks for the pose that rests"
+MOVING_HINT = "leave out the velocities, or run a motion: modes are those about a pose, or what turns steadily as one"
 
 
 def modes(spec: Spec) -> Modes:
@@ -69,7 +70,8 @@ def state_of(setup: Setup) -> tuple[Looked, Literal["rest", "state"]]:
         return here, "rest" if kind == "rest" else "state"
     if kind in ("state", "rest"):
         what = "state is not at rest" if kind == "state" else "pose found is not quite at rest"
-        raise SolveError(Problem("not-at-rest", f"the {what}: {reason}", hint=REST_HINT if kind == "state" else None))
+        hint = MOVING_HINT if moves(here) else REST_HINT
+        raise SolveError(Problem("not-at-rest", f"the {what}: {reason}", hint=hint if kind == "state" else None))
     return state_of(at_rest(setup.spec))
 
 

@@ -2,7 +2,9 @@
 
 from __future__ import annotations
 
+import math
 from pathlib import Path
+from typing import Any
 
 import numpy as np
 import pytest
@@ -11,12 +13,14 @@ from heuncli.errors import SolveError
 from heuncli.integration.methods import DOP853
 from heuncli.linearisation.displace import displaced
 from heuncli.linearisation.oscillations import Mode, oscillations
-from heuncli.linearisation.steady import Looked
+from heuncli.linearisation.steady import Looked, carried_on
 from heuncli.results import Array
 from heuncli.spec.load import load
 from heuncli.study.modes import require_no_time, state_of
 from heuncli.study.setup import set_up
 from heuncli.tree.layout import places_of_rates
+from tests.closed_forms.test_modes import porter, spindle
+from tests.oracle.values import to_yaml
 
 ROOT = Path(__file__).parents[2]
 SMALL = 1e-5  # of turns, of the size, and of both a second: what is not linear is smaller by this once more
@@ -28,9 +32,9 @@ def started(here: Looked, x: Array, rate: Array) -> Array:
     return displaced(here.layout, here.found.state, x, rate)
 
 
-def moved(here: Looked, state: Array) -> Array:
-    """How far the freedoms of a state are from those of the pose: small turns of balls, and differences."""
-    layout, y0 = here.layout, here.found.state
+def moved(here: Looked, state: Array, y0: Array) -> Array:
+    """How far the freedoms of a state are from those of another: small turns of balls, and differences."""
+    layout = here.layout
     place = places_of_rates(layout)
     order = {u: k for k, u in enumerate(place[place >= 0].tolist())}
     out = np.zeros(len(order))
@@ -75,4 +79,46 @@ def follow(here: Looked, mode: Mode) -> None:
     run = here.runner.trajectory(times, 1e-13, method=DOP853, start=start)
     for t, state in zip(run.times, run.states, strict=True):
         wanted = (np.exp(value * t) * x).real
-        assert np.abs(here.weights * (moved(here, state) - wanted)).max() <= 1e2 * SMALL * amplitude
+        assert np.abs(here.weights * (moved(here, state, here.found.state) - wanted)).max() <= 1e2 * SMALL * amplitude
+
+
+def top(spin: float) -> dict[str, Any]:
+    """One that sleeps: upright, and fast enough."""
+    body = {"mass": 1.2, "center": [0, 0, 0.1], "inertia": [0.008, 0.008, 0.003], "points": {"tip": [0, 0, 0]}}
+    return {
+        "gravity": [0, 0, -9.81],
+        "ground": {"points": {"O": [0, 0, 0]}},
+        "bodies": {"top": {**body, "angular_velocity": [0, 0, spin]}},
+        "joints": {"tip": {"type": "ball", "from": "ground.O", "to": "top.tip"}},
+    }
+
+
+STEADY = {
+    "top": top(150.0), "slow top": top(20.0), "governor": porter(20.0)[0],
+    "arm": spindle("pin", math.sqrt(9.81 / math.cos(0.7)), 0.7),
+    "ball": spindle("ball", math.sqrt(9.81 / math.cos(0.7)), 0.7),
+}  # fmt: skip
+
+
+@pytest.mark.heavy
+@pytest.mark.parametrize("name", STEADY)
+def test_a_steady_run_follows_its_modes(name: str) -> None:
+    """Beside a motion that goes on steadily another one, seen by what turns along: exp(l t), rates to fit."""
+    here, _ = state_of(set_up(load("scene.yaml", to_yaml(STEADY[name])), reduce=False))
+    system = here.system
+    for mode in oscillations(system):
+        if mode.kind == "free":
+            continue
+        value = mode.eigenvalue
+        xi = system.tangent.T @ system.mass @ mode.shape
+        rate = system.tangent @ (value * xi - system.A11 @ xi) + system.drift @ xi
+        amplitude = SMALL / np.abs(np.concatenate([here.weights * mode.shape, here.weights * rate])).max()
+        times = np.array([0.0, 0.5, 1.0]) * 0.3 / abs(value)
+        start = displaced(here.layout, here.found.state, amplitude * mode.shape.real, amplitude * rate.real)
+        runs = [here.runner.trajectory(times, 1e-13, method=DOP853, start=y) for y in (start, here.found.state)]
+        for t, state, beside in zip(times, runs[0].states, runs[1].states, strict=True):
+            wanted = (amplitude * np.exp(value * t) * mode.shape).real
+            found = carried_on(here, t)[1].T @ moved(here, state, beside)
+            # in the mass matrix's measure: spins of points, which have no inertia, go as they like
+            off = np.abs(system.tangent.T @ system.mass @ (found - wanted)).max()
+            assert off <= 1e2 * SMALL * amplitude * np.abs(xi).max()
