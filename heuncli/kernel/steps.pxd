@@ -7,7 +7,7 @@ from heuncli.kernel.dense cimport (
     AGAIN_TO, CHATTERS, Method, Run, STANDS, TURNS_OVER, clipped, combine, interpolate, need_interpolant,
 )
 from heuncli.kernel.events cimport follow_angles, take_branches
-from heuncli.kernel.expressions cimport HELD, TAKEN
+from heuncli.kernel.expressions cimport HELD, TAKEN, value
 from heuncli.kernel.following cimport find_between, follow, is_determined, stand_here
 from heuncli.kernel.landing cimport begin_to_see, in_flurry, meet, see_stage
 from heuncli.kernel.response cimport evaluate, evaluate_settled, must_choose_anew, settle, settle_evaluated

@@ -29,7 +29,7 @@ if not cython.compiled:
         need_interpolant,
     )
     from heuncli.kernel.events import follow_angles, take_branches
-    from heuncli.kernel.expressions import HELD, TAKEN
+    from heuncli.kernel.expressions import HELD, TAKEN, value
     from heuncli.kernel.following import find_between, follow, is_determined, stand_here
     from heuncli.kernel.landing import begin_to_see, in_flurry, meet, see_stage
     from heuncli.kernel.response import evaluate, evaluate_settled, must_choose_anew, settle, settle_evaluated
@@ -129,6 +129,9 @@ def begin_piece(scene: cython.pointer[Scene], method: cython.pointer[Method], ru
     if not run.following:
         scene.programs.holding = TAKEN
     evaluate(scene, run.t, run.y, run.K[0])
+    if not run.following:
+        for i in range(scene.watch_count):  # conditions are no part of what was evaluated
+            value(scene.programs, scene.watches[i].program)
     scene.programs.holding = HELD
     run.evaluations += 1
     start_contacts(scene, run.t)

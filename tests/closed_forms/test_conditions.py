@@ -3,13 +3,14 @@
 from __future__ import annotations
 
 import math
+from random import Random
 from typing import Any
 
 import numpy as np
 import pytest
 from scipy.special import ellipk, ellipkinc
 
-from heuncli.integration.conditions import Changes
+from heuncli.integration.conditions import Changes, Conditions, coordinates_at
 from heuncli.results import Array
 from heuncli.spec.load import load
 from heuncli.study.solve import Options, Study, solve
@@ -204,3 +205,54 @@ def test_the_largest_moment_along_a_beam_passes_its_limit() -> None:
     n, j = study.changes["n"], study.changes["j"]
     assert len(n.times) == len(j.times) > 2
     assert study.results.sections == {}
+
+
+RANDOM = """\
+heun: 1
+gravity: [0, 0, -9.81]
+ground: {points: {O: [0, 0, 0]}}
+bodies:
+  a: {mass: 1, center: [0, 0, -0.5], inertia: [0.1, 0.1, 0.01], points: {top: [0, 0, 0], end: [0, 0, -1]}}
+  b: {mass: 0.5, center: [0, 0, -0.3], inertia: [0.02, 0.02, 0.01], points: {top: [0, 0, 0]}}
+joints:
+  p: {type: pin, from: ground.O, to: a.top, axis: [0, 1, 0], initial: {angle: 1.2, rate: 0.3}}
+  q: {type: pin, from: a.end, to: b.top, axis: [0, 1, 0], initial: {angle: -0.7, rate: 1}}
+"""
+
+
+def random_condition(random: Random, deep: int = 0) -> str:
+    kind = random.random()
+    if deep < 2 and kind < 0.4:
+        word = "and" if kind < 0.2 else "or"
+        return f"({random_condition(random, deep + 1)} {word} {random_condition(random, deep + 1)})"
+    if deep < 2 and kind < 0.5:
+        return f"(not {random_condition(random, deep + 1)})"
+    return f"{random_term(random)} {random.choice(['<', '>'])} {random_term(random)}"
+
+
+def random_term(random: Random) -> str:
+    one, other = (f"{random.choice(['p.angle', 'q.angle', 'p.rate', 'q.rate', 't'])}" for _ in "12")
+    scale, shift = random.uniform(-2, 2), random.uniform(-1, 1)
+    return random.choice([f"{scale!r}*{one}*{other}", f"sin({one} + {scale!r}*{other})", f"abs({one} + {shift!r})"])
+
+
+@pytest.mark.heavy
+@pytest.mark.parametrize("seed", range(5))
+def test_conditions_at_random_against_dense_samples(seed: int) -> None:
+    """Between the instants told every condition is, as its coordinates say, what the last change made it."""
+    random = Random(seed)
+    texts = [random_condition(random) for _ in range(4)]
+    events = ", ".join(f'e{k}: "{text}"' for k, text in enumerate(texts))
+    study = run(RANDOM, f"duration: 3, samples: 2, events: {{{events}}}")
+    runner, trajectory = study.setup.runner, study.history.checked.run  # type: ignore[union-attr]
+    times = np.linspace(0, 3, 3001)[1:-1]
+    conditions = Conditions(runner.layout)
+    coordinates = coordinates_at(runner, times, runner.resample(trajectory, times))
+    for k in range(len(texts)):
+        found = study.changes[f"e{k}"]
+        own = np.array([
+            conditions.free(k, t, 0.0, there) for t, there in zip(times.tolist(), coordinates, strict=True)
+        ])  # fmt: skip
+        states = np.concatenate([[found.begins], found.to])
+        assert (states[np.searchsorted(found.times, times)] == (own > 0.5)).all(), texts[k]
+        assert (found.error < 1e-6).all()
