@@ -2,11 +2,12 @@
 
 from __future__ import annotations
 
-from collections.abc import Sequence
+from collections.abc import Iterator, Sequence
 
-from heuncli.report.table import GAP, INDENT, Table, aligned
+from heuncli.report.table import GAP, INDENT, Table, aligned, wrapped
 
 GOES_ON = "continued"
+LEAST_TEXT = 24  # places that a last column of text must have to go on in lines of its own
 
 
 def fit(table: Table, width: int) -> list[Table]:
@@ -15,8 +16,11 @@ def fit(table: Table, width: int) -> list[Table]:
         return [table]
     widths = [max(map(len, column)) + len(GAP) for column in zip(*aligned(table), strict=True)]
     indent = len(INDENT) if any(isinstance(row, str) for row in table.rows) else 0
-    if indent + sum(widths) - len(GAP) <= width:
+    over = indent + sum(widths) - len(GAP) - width
+    if over <= 0:
         return [table]
+    if len(widths) > 1 and table.columns[-1].align == "left" and widths[-1] - len(GAP) - over >= LEAST_TEXT:
+        return [table._replace(rows=tuple(in_lines(table, widths[-1] - len(GAP) - over)))]
     lead = 1 + max((i for i, column in enumerate(table.columns[:3]) if column.align == "left"), default=0)
     again = [i for i in range(lead) if not table.columns[i].once]
     room = [width - indent + len(GAP) - sum(widths[i] for i in columns) for columns in (range(lead), again)]
@@ -28,6 +32,17 @@ def fit(table: Table, width: int) -> list[Table]:
         notes = table.notes if number == len(parts) - 1 else ()
         tables.append(Table(heading(table, number), tuple(table.columns[i] for i in kept), rows, notes))
     return tables
+
+
+def in_lines(table: Table, room: int) -> Iterator[tuple[str, ...] | str]:
+    """The rows with the text of the last column in lines of so many places."""
+    for row in table.rows:
+        if isinstance(row, str):
+            yield row
+            continue
+        first, *rest = wrapped(row[-1], room, 0)
+        yield (*row[:-1], first)
+        yield from ((*[""] * (len(row) - 1), line) for line in rest)
 
 
 def heading(table: Table, part: int) -> str:

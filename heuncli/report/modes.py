@@ -7,6 +7,7 @@ from collections.abc import Iterator
 
 from heuncli.linearisation.modes import Modes, is_length
 from heuncli.linearisation.oscillations import Mode
+from heuncli.report.fit import fit
 from heuncli.report.numbers import rough, style
 from heuncli.report.table import WIDTH, Column, Table, plain
 from heuncli.version import VERSION
@@ -45,7 +46,7 @@ def write(found: Modes) -> str:
     """The page as text."""
     lines = page(found)
     head = "".join(f"{label.ljust(5)}  {text}\n" for label, text in lines)
-    return head + ("\n" + plain(table(found), WIDTH) if found.modes else "")
+    return head + ("\n" + "".join(plain(part, WIDTH) for part in fit(table(found), WIDTH)) if found.modes else "")
 
 
 def row(k: int, mode: Mode, found: Modes) -> tuple[str, ...]:

@@ -75,3 +75,12 @@ def test_one_long_word_is_left_whole() -> None:
 def test_a_line_ends_with_a_clause_and_not_within_brackets() -> None:
     text = "FOUNDATION  force and moment ON it, world axes, moment about A = (0, 0, 0) m"
     assert wrapped(text, 70) == [text[:47], f"    {text[48:]}"]
+
+
+def test_a_last_column_of_text_goes_on_in_lines_of_its_own() -> None:
+    row = ("1", "a.angle 1, b.angle -1, guide.travel -0.5")
+    table = Table("MODES", (Column("mode"), Column("shape", "left")), (row,))
+    (part,) = fit(table, 40)
+    assert plain(part, 40).splitlines() == [
+        "MODES", "mode  shape", "   1  a.angle 1, b.angle -1,", "      guide.travel -0.5",
+    ]  # fmt: skip
