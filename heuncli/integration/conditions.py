@@ -189,7 +189,8 @@ def stretches(run: Trajectory) -> tuple[Array, Array, Array]:
     fresh = np.isin(bounds, [segment.end for segment in run.segments])
     fresh[1:] |= (rows[1:] != rows[:-1]).any(axis=1)
     fresh[0] = fresh[count] = True
-    inside = np.append(0.5 * (bounds[:-1] + bounds[1:]), bounds[-1])
+    # a jump in time alone may end a run one double behind its last step, where the condition is true
+    inside = np.append(0.5 * (bounds[:-1] + bounds[1:]), max(bounds[-1], run.times[-1]))
     return bounds[fresh], inside[fresh], rows[fresh]
 
 

@@ -143,7 +143,9 @@ def smooth_segments(last: float, jumps: Sequence[float]) -> list[Segment]:
     begins, ends = [0.0, *(t for _, t in limits)], [*(t for t, _ in limits), just_before(last)]
     # a discontinuity at t = 0 makes a first segment without length
     segments = [Segment(t0, t1, just_after(t1)) for t0, t1 in zip(begins, ends, strict=True)]
-    return [segment for segment in segments if segment.before_end > segment.begin] or segments[-1:]
+    kept = [segment for segment in segments if segment.before_end > segment.begin] or segments[-1:]
+    # where a discontinuity is the double before the last instant, no segment is left behind it
+    return [*kept[:-1], kept[-1]._replace(end=last)] if kept[-1].end < last else kept
 
 
 def just_before(t: float) -> float:

@@ -170,6 +170,19 @@ def test_a_followed_machine_ends_where_its_crank_is() -> None:
     near(study.results.time[-1], math.pi / 3, 3.0, 1e-13)
 
 
+@pytest.mark.parametrize("condition", [
+    "t > 1", "t >= 1", "1 < t", "min(t, 1) >= 1", "t > 1 and guide.travel > 1", "guide.travel > 10 or t > 1",
+])  # fmt: skip
+def test_a_run_ends_at_an_instant(condition: str) -> None:
+    """Whichever branch the edge itself belongs to; what is told there is the fall after 1 s."""
+    study = run(FALL, f'duration: 3, samples: 4, until: "{condition}"')
+    met(study.changes["until"], np.array([1.0]), up=True)
+    near(study.results.time[-1], 1.0, 1.0, 1e-15)
+    near(study.results.coordinates["guide"]["travel"][-1], G / 2, G / 2, 1e-13)
+    assert study.results.accuracy["horizon"] is None
+    assert study.results.accuracy["estimate"]["motion"] < 1e-12
+
+
 def test_true_at_the_start_ends_nothing() -> None:
     study = run(PENDULUM, 'duration: 3, samples: 2, until: "pin.angle > 0"')
     quarter = float(ellipk(math.sin(math.pi / 6) ** 2)) / math.sqrt(G)
