@@ -17,6 +17,7 @@ from heuncli.results import Array
 
 BESIDE = 2  # poses moved by rounding
 REACHES = 10.0 ** np.arange(-8.0, -2.0)  # rad, or of the size: how far out directions without stiffness are tried
+THRICE = 3.0  # of Newton's steps: so far away is the rest of what is held by a cubic force alone
 BACK = 6  # of Newton's steps by the slopes of the pose itself: beside it each errs by as much as that is away
 
 
@@ -35,9 +36,10 @@ def beside(evaluator: Evaluator, found: Found) -> list[Array]:
 def rounding_of_sums(found: Found) -> Array:
     """How far each direction gives way to what rounding leaves of its accelerations' sums, all together, (n,)."""
     own = found.slopes
-    push = tolerances.PLACE_ROUNDING / tolerances.SUM_ROUNDING * own.summed
+    push = THRICE * tolerances.PLACE_ROUNDING / tolerances.SUM_ROUNDING * own.summed
     give = np.where(own.decided, push / np.where(own.decided, np.abs(own.eigenvalues), 1.0), 0.0)
-    return np.asarray((own.T @ (own.V @ give)).real)
+    way = np.asarray((own.T @ (own.V @ give)).real)
+    return way / max(1.0, found.coordinates.size(way))  # a radian, or the size: nothing is known beyond that
 
 
 def bent(evaluator: Evaluator, found: Found) -> list[Array]:

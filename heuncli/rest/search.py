@@ -64,7 +64,7 @@ class Search:
             self.evaluations += 3 + SAMPLES
             if not own.left.any():
                 self.require_held(at, own)
-                return Found(self.polished(at, own), own, self.coordinates, self.steps, self.evaluations)
+                return Found(*self.polished(at, own), self.coordinates, self.steps, self.evaluations)
             self.check(at, own)
             at = self.advanced(at, own)
             self.steps += 1
@@ -192,14 +192,16 @@ class Search:
             state[place] = told[layout.mechanism.joints[joint].name]["angle"][0]
         return replace(new, state=state, recovered=replace(recovered, states=state[None, :]))
 
-    def polished(self, at: Pose, own: Slopes) -> Pose:
+    def polished(self, at: Pose, own: Slopes) -> tuple[Pose, Slopes]:
         """The pose behind Newton's steps along all directions that are not indifferent, as long as they better it."""
         while own.decided.any():
             new = self.moved(at, own.newton(at.accelerations))
             if new is None or self.push(new) >= 0.5 * self.push(at):
                 break
             at = self.counted(at, new)
-        return at
+            own = slopes(self.evaluator, self.coordinates, at)
+            self.evaluations += 3 + SAMPLES
+        return at, own
 
     def push(self, at: Pose) -> float:
         """The largest acceleration left [rad/s^2, or sizes a s^2]."""

@@ -12,8 +12,10 @@ import numpy as np
 from heuncli import tolerances
 from heuncli.errors import SolveError
 from heuncli.integration.evaluator import Evaluator
+from heuncli.kernel.choose import scene as kernel
 from heuncli.linearisation.linearise import Linearised, linearised
 from heuncli.records import record
+from heuncli.response import columns
 from heuncli.rest.coordinates import Coordinates, resting, rounding_of
 from heuncli.rest.pose import Pose
 from heuncli.rest.reasons import no_value
@@ -100,6 +102,7 @@ def slopes(evaluator: Evaluator, coordinates: Coordinates, at: Pose) -> Slopes:
     spin = float(np.abs(at.recovered.bodies["omega"]).max(initial=0.0))  # centrifugal terms cancel before they are seen
     known = np.maximum(known, tolerances.EPS * terms.max(initial=0.0)) + tolerances.INDIFFERENT * spin * spin
     summed = np.abs(inverse) @ (np.abs(back) @ sums)
+    summed = summed + np.abs(inverse @ (back @ of_springs(evaluator, coordinates, at))).sum(axis=1)
     bent = np.abs(inverse @ (change.T - A @ (back @ by.T))).max(axis=1, initial=0.0)
     rough = np.abs(inverse) @ (np.abs(back) @ (np.abs(law.by_place) @ np.abs(by).max(axis=0)))
     noise = tolerances.PUSHED_BY_ROUNDING * (noise + summed)
@@ -111,3 +114,23 @@ def rounding(evaluator: Evaluator, coordinates: Coordinates, at: Pose) -> Array:
     terms = coordinates.terms(resting(evaluator, at.t, at.state[None, :], at.holding, causes=True))
     gravity = float(np.abs(evaluator.layout.mechanism.gravity).max()) / evaluator.size
     return tolerances.SUM_ROUNDING * (terms + gravity / coordinates.weights)
+
+
+def of_springs(evaluator: Evaluator, coordinates: Coordinates, at: Pose) -> Array:
+    """What rounding of each spring's length makes of the accelerations, (n, k): near its free length that is all."""
+    layout, bodies = evaluator.layout, at.recovered.bodies[0]
+    rows = layout.tables["loads"]
+    own = [k for k in np.flatnonzero(rows["kind"] == kernel.SPRING).tolist() if at.recovered.loads["span"][0, k] > 0.0]
+    units = np.zeros((len(own), len(bodies), 6))
+    for n, k in enumerate(own):
+        load = at.recovered.loads[0, k]
+        line = (load["at"] - load["from_at"]) / load["span"]
+        force = tolerances.SUM_ROUNDING * rows["stiffness"][k] * (load["span"] + rows["length"][k]) * line
+        for body, place, sign in ((int(rows["b"][k]), load["at"], 1.0), (int(rows["a"][k]), load["from_at"], -1.0)):
+            if body >= 0:
+                units[n, body, :3] += sign * np.cross(place - bodies["r"][body], force)
+                units[n, body, 3:] += sign * force
+    if not own:
+        return np.zeros((coordinates.count, 0))
+    answers = columns(evaluator.workspace, at.t, at.state, units, np.zeros(len(own)))
+    return coordinates.along(answers.bodies["alpha"], answers.freedoms["udot"]).T

@@ -220,6 +220,17 @@ def test_a_soft_pose_shows_no_false_digits(soft: float) -> None:
     assert error <= found.accuracy["estimate"]["motion"] * 1.25 <= 1e3 * 2.0**-52 / soft + 1e-15
 
 
+def test_across_springs_without_tension() -> None:
+    """Springs at their free length hold what moves across them by its cube alone: eight digits, and that is told."""
+    slide = "u: {type: slide, from: ground.O, to: b.c, axis: [0, 0, 1], initial: {travel: 0.5}}"
+    ends = "ground: {points: {O: [0, 0, 0], A: [-1, 0, 0], B: [1, 0, 0]}}"
+    springs = ", ".join(f"s{x}: {{type: spring, from: ground.{x}, to: b.c, stiffness: 100, length: 1}}" for x in "AB")
+    body = f"bodies: {{b: {{{BALL}}}}}\njoints: {{{slide}}}\nforces: {{{springs}}}"
+    found = solved(f"heun: 1\nanalysis: {{type: rest}}\n{ends}\n{body}")
+    travel = abs(found.coordinates["u"]["travel"][0])
+    assert travel <= 2.0 * found.accuracy["estimate"]["motion"] <= 1e-6
+
+
 # ---- against the least energy, and against motion --------------------------------------------------------------
 def triangle(rng: np.random.Generator) -> tuple[str, Array, float, float]:
     """Two bars from A and B of the ground to a common point, which swings about AB, and a spring from S to it."""
