@@ -156,6 +156,7 @@ PUSHED_BY_ROUNDING = 50.0  # times what START_ROUNDING of a pose makes of its ac
 STEADY = 1e-9  # of the terms of an acceleration, of the fastest drive: axes typed with ten digits turn on themselves
 GROWS = 1e-6  # of the fastest exponent: their squares are known to some dozen roundings of the largest
 INDIFFERENT = 1024.0 * EPS  # of the terms of an eigenvalue: exact slopes, of a pose known to its rounding
+NEARLY_DEFECTIVE = 1e-6  # of unit eigenvectors, across each other: apart by more they keep ten digits, as a block all
 NOT_HELD = 1e-6  # of the terms of an acceleration: a rest leaves rounding of them, loads that jump leave their part
 
 # -- what is typed in a spec

@@ -37,7 +37,7 @@ def rounding_of_sums(found: Found) -> Array:
     """How far each direction gives way to what rounding leaves of its accelerations' sums, all together, (n,)."""
     own = found.slopes
     push = THRICE * tolerances.PLACE_ROUNDING / tolerances.SUM_ROUNDING * own.summed
-    give = np.where(own.decided, push / np.where(own.decided, np.abs(own.eigenvalues), 1.0), 0.0)
+    give = np.abs(own.directions.softened(push, own.known))
     way = np.asarray((own.T @ (own.V @ give)).real)
     return way / max(1.0, found.coordinates.size(way))  # a radian, or the size: nothing is known beyond that
 

@@ -104,6 +104,9 @@ class Search:
             self.h = tolerances.REST_FIRST / first if first > 0.0 else 1.0
         for _ in range(MOST_TRIES):
             by = own.way(self.h)
+            if not np.isfinite(by).all():
+                self.h *= SHORTER
+                continue
             size = self.coordinates.size(by)
             new = self.moved(at, by)
             off = self.bent(at, own, by, new) if new is not None else np.inf

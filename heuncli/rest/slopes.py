@@ -3,6 +3,7 @@
     a(q + T z) = a + T A z,     A = V diag(lambda) V^-1,     c = V^-1 T+ a
 T are displacements that the closures admit, orthonormal by the coordinates' weights (linearisation/linearise.py). c is
 what is left to be followed along each direction; noise is what rounding makes of it: less than that is nothing.
+Directions that hardly differ share a block in place of eigenvalues of their own (directions.py).
 """
 
 from __future__ import annotations
@@ -17,18 +18,17 @@ from heuncli.linearisation.linearise import Linearised, linearised
 from heuncli.records import record
 from heuncli.response import columns
 from heuncli.rest.coordinates import Coordinates, resting, rounding_of
+from heuncli.rest.directions import Directions, directions
 from heuncli.rest.pose import Pose
 from heuncli.rest.reasons import no_value
 from heuncli.results import Array, Mask
 
 SAMPLES = 4  # poses moved by rounding: that all of them hide a direction is unlikely
-MOST_GROWTH = 300.0  # exponents beyond it are as good as infinite
-SERIES = 1e-8  # below it the series has all digits
 
 
 @record
 class Slopes:
-    """The linear law at a pose: T (n, f), T+ (f, n), A (f, f), its eigenvalues, V and V^-1, c and its noise (f,).
+    """The linear law at a pose: T (n, f), T+ (f, n), A (f, f) by its directions, c and its noise (f,).
 
     known (f,): what rounding makes of the eigenvalues; summed (f,): of the sums in c alone, a part of its noise;
     bent (f,): by how much a pose moved by rounding leaves the law: rounding, but for loads that jump; rough (f,): what
@@ -39,9 +39,7 @@ class Slopes:
     T: Array
     back: Array
     A: Array
-    eigenvalues: Array
-    V: Array
-    inverse: Array
+    directions: Directions
     c: Array
     noise: Array
     known: Array
@@ -50,9 +48,26 @@ class Slopes:
     rough: Array
 
     @property
+    def eigenvalues(self) -> Array:
+        """Of A, (f,)."""
+        return self.directions.eigenvalues
+
+    @property
+    def V(self) -> Array:
+        """The directions, (f, f)."""
+        return self.directions.X
+
+    @property
+    def inverse(self) -> Array:
+        """V^-1."""
+        return self.directions.inverse
+
+    @property
     def left(self) -> Array:
-        """c where it is more than rounding, else 0, (f,)."""
-        return np.where(np.abs(self.c) > self.noise, self.c, 0.0)
+        """c where it is more than rounding, else 0, (f,); of a block of directions all or nothing."""
+        beyond = np.abs(self.c) > self.noise
+        beyond[self.directions.alone :] = beyond[self.directions.alone :].any()
+        return np.where(beyond, self.c, 0.0)
 
     @property
     def decided(self) -> Mask:
@@ -65,18 +80,13 @@ class Slopes:
 
     def way(self, h: float, c: Array | None = None) -> Array:
         """How far dq/ds = a leads in s = h, by the linear law, (n,): z = V h phi(h lambda) c, phi(x) = (e^x - 1)/x."""
-        x = h * self.eigenvalues
-        x = np.where(x.real > MOST_GROWTH, MOST_GROWTH, x)
-        small = np.abs(x) < SERIES
-        phi = np.where(small, 1.0 + 0.5 * x, np.expm1(x) / np.where(small, 1.0, x))
-        z = self.V @ (h * phi * (self.left if c is None else c))
+        z = self.V @ self.directions.led(h, self.left if c is None else c)
         return np.asarray(self.T @ z.real)
 
     def newton(self, accelerations: Array) -> Array:
         """The displacement (n,) that takes accelerations (n,) back, along all directions that are not indifferent."""
-        decided = self.decided
-        softness = np.where(decided, -1.0 / np.where(decided, self.eigenvalues, 1.0), 0.0)
-        return np.asarray(self.T @ (self.V @ (softness * self.along(accelerations))).real)
+        c = self.along(accelerations)
+        return np.asarray(self.T @ (self.V @ self.directions.softened(c, self.known)).real)
 
 
 def slopes(evaluator: Evaluator, coordinates: Coordinates, at: Pose) -> Slopes:
@@ -92,21 +102,34 @@ def slopes(evaluator: Evaluator, coordinates: Coordinates, at: Pose) -> Slopes:
     change = (coordinates.accelerations(moved) - at.accelerations) @ back.T
     if not (np.isfinite(A).all() and np.isfinite(change).all()):
         raise SolveError(no_value(coordinates, change))
-    eigenvalues, V = np.linalg.eig(A) if len(A) else (np.zeros(0), np.zeros((0, 0)))
-    inverse = np.linalg.pinv(V) if len(A) else V
+    own = directions(A, T.T @ law.mass @ T)
+    inverse = own.inverse
     noise = np.abs(inverse @ change.T).max(axis=1, initial=0.0)
     sums = rounding(evaluator, coordinates, at)
     c = inverse @ (back @ at.accelerations)
     terms = np.abs(back) @ np.abs(law.by_place) @ np.abs(T)
-    known = tolerances.INDIFFERENT * np.einsum("ij,jk,ki->i", np.abs(inverse), terms, np.abs(V))
-    spin = float(np.abs(at.recovered.bodies["omega"]).max(initial=0.0))  # centrifugal terms cancel before they are seen
-    known = np.maximum(known, tolerances.EPS * terms.max(initial=0.0)) + tolerances.INDIFFERENT * spin * spin
+    known = known_to(own, terms, float(np.abs(at.recovered.bodies["omega"]).max(initial=0.0)))
     summed = np.abs(inverse) @ (np.abs(back) @ sums)
     summed = summed + np.abs(inverse @ (back @ of_springs(evaluator, coordinates, at))).sum(axis=1)
     bent = np.abs(inverse @ (change.T - A @ (back @ by.T))).max(axis=1, initial=0.0)
     rough = np.abs(inverse) @ (np.abs(back) @ (np.abs(law.by_place) @ np.abs(by).max(axis=0)))
     noise = tolerances.PUSHED_BY_ROUNDING * (noise + summed)
-    return Slopes(law, T, back, A, eigenvalues, V, inverse, c, noise, known, summed, bent, rough)
+    return Slopes(law, T, back, A, own, c, noise, known, summed, bent, rough)
+
+
+def known_to(own: Directions, terms: Array, spin: float) -> Array:
+    """What rounding makes of the eigenvalues, (f,); terms (f, f): of A; spin: the fastest angular velocity.
+
+    |y' dA x| of directions y, x; where k directions fall together with another one, dA to the power 1 / (k + 1), times
+    |A| to what is left (Elsner).
+    """
+    known = tolerances.INDIFFERENT * np.einsum("ij,jk,ki->i", np.abs(own.inverse), terms, np.abs(own.X))
+    # centrifugal terms cancel before they are seen
+    known = np.maximum(known, tolerances.EPS * terms.max(initial=0.0)) + tolerances.INDIFFERENT * spin * spin
+    if own.lost:
+        together, power = known[own.alone :].sum(), 1.0 / (own.lost + 1)
+        known[own.alone :] = together**power * (2.0 * np.linalg.norm(own.B) + together) ** (1.0 - power)
+    return np.asarray(known)
 
 
 def rounding(evaluator: Evaluator, coordinates: Coordinates, at: Pose) -> Array:

@@ -63,8 +63,8 @@ def motions_of(found: Found) -> tuple[Array, Array]:
         C[first : first + 3, first : first + 3] -= hat(omega[place])
     f = own.T.shape[1]
     # what is indifferent to the pose is so in V's own directions: there eigenvalues are zero, and not their rounding
-    A = (own.V * np.where(own.decided, own.eigenvalues, 0.0)) @ own.inverse
-    whole = np.block([[np.zeros((f, f)), np.eye(f)], [A.real, own.back @ C @ own.T]])
+    A = own.directions.whole(own.decided)
+    whole = np.block([[np.zeros((f, f)), np.eye(f)], [A, own.back @ C @ own.T]])
     s, vectors = np.linalg.eig(whole) if f else (np.zeros(0), np.zeros((0, 0)))
     return s, own.T @ vectors[:f]
 

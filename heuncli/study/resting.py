@@ -11,9 +11,11 @@ from heuncli.integration.solvable import Asked, require_solvable
 from heuncli.mechanism.model import Mechanism
 from heuncli.records import record, replace
 from heuncli.rest.digits import beside
+from heuncli.rest.pose import bearing
 from heuncli.rest.search import Found, Search
 from heuncli.rest.stability import Stability, stability
 from heuncli.rest.steady import going_on, require_constant, require_steady, require_together
+from heuncli.rest.still import require_still
 from heuncli.results import Array, Status
 from heuncli.study.words import count, some
 from heuncli.tree.prepare import PreparedScene
@@ -49,12 +51,14 @@ def at_rest(scene: PreparedScene, runner: Runner, deadline: float | None) -> tup
     require_steady(runner, found.coordinates, found.pose, found.slopes)
     own = stability(found)
     layout = replace(scene.layout, y0=found.pose.state)
+    again = Runner(layout)
+    require_still(again, found.coordinates, bearing(again, found.coordinates, 0.0, layout.y0))
     rest = Rest(
         steps=found.steps, evaluations=found.evaluations, seconds=time.perf_counter() - begun,
         beside=tuple(beside(runner, found)), told=tuple(sentences(scene.mechanism, found, own)),
         warnings=unstable(own),
     )  # fmt: skip
-    return replace(scene, layout=layout), Runner(layout), rest
+    return replace(scene, layout=layout), again, rest
 
 
 def sentences(mechanism: Mechanism, found: Found, own: Stability) -> list[str]:

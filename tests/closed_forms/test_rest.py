@@ -13,6 +13,8 @@ import pytest
 from scipy.optimize import brentq, minimize_scalar
 
 from heuncli.errors import SolveError
+from heuncli.rest.directions import directions
+from heuncli.rest.slopes import Slopes
 from heuncli.results import Array, Results
 from heuncli.shapes.rotations import from_vector
 from heuncli.spec.load import load
@@ -383,6 +385,52 @@ def test_a_rope_that_bears_and_one_that_hangs_slack(more: str) -> None:
         q = 2.0 * G * x / -z * other
         near(found.joints["q"]["tension"][0], q, 2.0 * G, 1e-13)
         near(found.joints["r"]["tension"][0], (2.0 * G - q * -z / other) / -z, 2.0 * G, 1e-13)
+
+
+# ---- directions that fall together ------------------------------------------------------------------------------
+def carriage(angle: str) -> str:
+    """A bar that hangs on a carriage on a level rail, drawn at an angle."""
+    bodies = f"bodies: {{c: {{{BALL}}}, bar: {{{BAR}, orientation: {{axis: [0, 1, 0], angle: {angle}}}}}}}\n"
+    rail = "r: {type: slide, from: ground.O, to: c.c, axis: [1, 0, 0]}"
+    return f"{HEAD}{POINTS}{bodies}joints: {{{rail}, p: {{{PIN}, from: c.c, to: bar.top}}}}"
+
+
+@pytest.mark.parametrize("off", [0.0, 1e-15, 1e-12, 1e-9, 1e-6, 1e-3])
+def test_a_level_bar_on_a_free_carriage_falls(off: float) -> None:
+    """Drawn level it is pushed, but no slope turns it back: A = [[0, 0], [k, 0]], and nearly so beside."""
+    found = solved(carriage(repr(math.pi / 2.0 - off)))
+    near(found.coordinates["p"]["angle"][0], 0.0, 1.0, 1e-13)
+    near(found.joints["p"]["force"][0], [0.0, 0.0, G], G, 1e-13)
+    near(3.0 * found.coordinates["r"]["travel"][0], -0.5, 0.5, 0.1)
+    assert "stable" in found.model["rest"][0]
+    assert "indifferent: joints.r" in found.model["rest"][1]
+
+
+@pytest.mark.parametrize("seed", range(4))
+def test_matrices_whose_directions_fall_together(seed: int) -> None:
+    """X B X^-1 is the matrix, and the step it leads to solves z' = c + A z: against the sum of its own series."""
+    rng = np.random.default_rng(seed)
+    off = [0.0, 1e-14, 1e-9, 1e-5][seed]
+    J = np.diag([-3.0, -3.0 - off, 0.0, off, -40.0, 2.0])
+    J[0, 1] = J[2, 3] = 5.0
+    P = np.linalg.qr(rng.normal(size=(6, 6)))[0] + 0.2 * rng.normal(size=(6, 6))
+    A = P @ J @ np.linalg.inv(P)
+    own = directions(A, np.eye(6))
+    near(own.whole(np.ones(6, dtype=bool)), A, 40.0, 1e-9)
+    c = rng.normal(size=6)
+    z, term, h = np.zeros(6), c.copy(), 0.7 / 40.0
+    for k in range(1, 40):
+        term = term * h / k
+        z = z + term
+        term = A @ term
+    near((own.X @ own.led(h, own.inverse @ c)).real, z, float(np.abs(z).max()), 1e-9)
+
+
+def test_what_is_told_is_judged(monkeypatch: pytest.MonkeyPatch) -> None:
+    """A search that ends too early is refused, whatever it was told."""
+    monkeypatch.setattr(Slopes, "left", property(lambda own: np.zeros(len(own.c))))
+    monkeypatch.setattr(Slopes, "newton", lambda own, a: 0.0 * a)
+    assert "the search ended where bodies.bar still accelerates by" in refused(carriage("90 deg"))
 
 
 # ---- no rest ---------------------------------------------------------------------------------------------------

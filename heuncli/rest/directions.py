@@ -1,0 +1,136 @@
+"""A matrix by its own directions, those that are hardly apart together in one block.
+
+    A = X diag(lambda_1 ... lambda_g, B) X^-1
+Where forces follow what they move, or a pose is still pushed, eigenvectors may fall together (A is then defective, as
+[[0, 0], [k, 0]] of a carriage that a level bar hangs on): their directions have no coordinates of their own, and what
+pushes would be lost between them. They share an orthonormal basis instead, in which B is followed as a matrix. What is
+orthonormal is so by the mass: about a rest pose under loads with a potential A is symmetric there.
+"""
+
+from __future__ import annotations
+
+import numpy as np
+
+from heuncli import tolerances
+from heuncli.records import record
+from heuncli.results import Array, Mask
+
+MOST_GROWTH = 300.0  # exponents beyond it are as good as infinite
+SERIES = 1e-8  # below it the series has all digits
+TERMS = 12  # of the series of the exponential, below a norm of 1/4: 0.25**13 / 13! is nothing
+HALVED = 0.25
+
+
+@record
+class Directions:
+    """X (f, f) and its inverse; the eigenvalues (f,), those of the block B (m, m) last; lost: how many directions of
+    the block fall together, so that its eigenvalues are known to the root of that order more."""
+
+    eigenvalues: Array
+    X: Array
+    inverse: Array
+    B: Array
+    lost: int
+
+    @property
+    def alone(self) -> int:
+        """How many directions stand alone: the first ones."""
+        return len(self.eigenvalues) - len(self.B)
+
+    def whole(self, kept: Mask) -> Array:
+        """The matrix, without the eigenvalues that are not kept; the block as one."""
+        g = self.alone
+        middle = np.zeros(self.X.shape, dtype=complex)
+        middle[range(g), range(g)] = np.where(kept[:g], self.eigenvalues[:g], 0.0)
+        middle[g:, g:] = self.B if kept[g:].any() else 0.0
+        return np.asarray((self.X @ middle @ self.inverse).real)
+
+    def led(self, h: float, c: Array) -> Array:
+        """h phi(h A) c in X's coordinates, phi(x) = (e^x - 1)/x: how far dz/ds = c + A z leads in s = h, (f,)."""
+        g = self.alone
+        x = h * self.eigenvalues[:g]
+        x = np.where(x.real > MOST_GROWTH, MOST_GROWTH, x)
+        small = np.abs(x) < SERIES
+        phi = np.where(small, 1.0 + 0.5 * x, np.expm1(x) / np.where(small, 1.0, x))
+        return np.concatenate([h * phi * c[:g], led_together(self.B, h, c[g:].real)])
+
+    def softened(self, c: Array, known: Array) -> Array:
+        """-A^-1 c in X's coordinates, along what is more than is known of the eigenvalues; of B, by singular values."""
+        g = self.alone
+        decided = np.abs(self.eigenvalues[:g]) > known[:g]
+        single = np.where(decided, -c[:g] / np.where(decided, self.eigenvalues[:g], 1.0), 0.0)
+        if not len(self.B):
+            return np.asarray(single)
+        U, s, V = np.linalg.svd(self.B)
+        held = s > tolerances.NEARLY_DEFECTIVE * s[0]
+        along = np.where(held, (U.T @ c[g:].real) / np.where(held, s, 1.0), 0.0)
+        return np.concatenate([single, -(V.T @ along)])
+
+
+def led_together(B: Array, h: float, c: Array) -> Array:
+    """h phi(h B) c by the exponential of [[B, c], [0, 0]] h: its series, halved and squared. Not finite if it grows."""
+    m = len(B)
+    if not c.any():
+        return np.zeros(m)
+    size = float(np.abs(c).max())
+    whole = np.zeros((m + 1, m + 1))
+    whole[:m, :m] = h * B
+    whole[:m, m] = c / size
+    norm = float(np.abs(whole).sum(axis=1).max())
+    halvings = max(0, int(np.ceil(np.log2(norm / HALVED)))) if norm > 0.0 else 0
+    power = np.eye(m + 1)
+    found = power.copy()
+    for k in range(1, TERMS + 1):
+        power = power @ (whole / 2.0**halvings) / k
+        found = found + power
+    with np.errstate(over="ignore", invalid="ignore"):
+        for _ in range(halvings):
+            found = found @ found
+        return np.asarray(h * size * found[:m, m])
+
+
+def directions(A: Array, mass: Array) -> Directions:
+    """Those of a matrix (f, f); mass (f, f): of the same coordinates, positive or zero."""
+    f = len(A)
+    if not f:
+        return Directions(np.zeros(0), A, A, A, 0)
+    least = tolerances.NO_INERTIA * float(np.trace(mass))
+    L = np.linalg.cholesky(0.5 * (mass + mass.T) + (least if least > 0.0 else 1.0) * np.eye(f))
+    S = np.linalg.solve(L, (L.T @ A).T).T  # L' A L'^-1
+    eigenvalues, V = np.linalg.eig(S)
+    _, sizes, R = np.linalg.svd(V)
+    lost = int(np.count_nonzero(sizes <= tolerances.NEARLY_DEFECTIVE))
+    if not lost:
+        return Directions(eigenvalues, np.linalg.solve(L.T, V), np.linalg.inv(V) @ L.T, np.zeros((0, 0)), 0)
+    alone, Q = apart(S, eigenvalues, np.abs(R[-lost:]).max(axis=0))
+    X = np.hstack([V[:, alone], Q])
+    if np.linalg.svd(X, compute_uv=False)[-1] <= tolerances.NEARLY_DEFECTIVE:
+        alone, X = np.zeros(f, dtype=bool), np.eye(f)  # nothing is well apart
+    g = int(np.count_nonzero(alone))
+    back = np.linalg.inv(X)
+    B = (back[g:] @ S @ X[:, g:]).real
+    values = np.concatenate([eigenvalues[alone], np.linalg.eigvals(B)])
+    return Directions(values, np.linalg.solve(L.T, X), back @ L.T, B, lost)
+
+
+def apart(S: Array, eigenvalues: Array, shares: Array) -> tuple[Mask, Array]:
+    """Which eigenvectors are apart from all others, and an orthonormal basis of what the others span with their like.
+
+    shares (f,): of the eigenvectors in what they lose together. The basis is what the left eigenvectors of all that are
+    apart are across to.
+    """
+    f = len(S)
+    near = tolerances.NEARLY_DEFECTIVE * float(np.linalg.norm(S))  # eigenvalues whose vectors are so near are so near
+    alike = shares > tolerances.NEARLY_DEFECTIVE**0.5 * shares.max()
+    while True:
+        off = np.abs(eigenvalues[:, None] - eigenvalues[None, alike]).min(axis=1)
+        off = np.minimum(off, np.abs(eigenvalues.conj()[:, None] - eigenvalues[None, alike]).min(axis=1))
+        if not (more := (off <= near) & ~alike).any():
+            break
+        alike |= more
+    others, left = np.linalg.eig(S.T)
+    order = np.argsort(-np.abs(others[:, None] - eigenvalues[None, alike]).min(axis=1))
+    g = f - int(np.count_nonzero(alike))
+    own = left[:, order[:g]]
+    _, _, Q = np.linalg.svd(np.hstack([own.real, own.imag]).T) if g else (0, 0, np.eye(f))
+    return ~alike, Q[g:].T
