@@ -1,4 +1,4 @@
-"""Whether a state stays as it is: at rest, or in a frame that its drives turn with it.
+"""Whether a motion is steady: at rest, or in a frame that its drives turn with it.
 
 The linear equations then have constant coefficients. At rest nothing moves and nothing is pushed. Where something moves
 steadily (what is driven, and what spins freely), the same must hold after the motion has gone on for a while, as seen

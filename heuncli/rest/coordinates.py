@@ -10,9 +10,9 @@ import numpy as np
 from heuncli import tolerances
 from heuncli.integration.evaluator import Evaluator, Recovered
 from heuncli.kernel.choose import scene as kernel
+from heuncli.linearisation.displace import displaced
 from heuncli.records import record
 from heuncli.results import Array, Indices, Mask
-from heuncli.shapes.rotations import quaternion_product
 from heuncli.tree.layout import Layout
 from heuncli.tree.tables import Table
 
@@ -43,14 +43,7 @@ class Coordinates:
 
     def displaced(self, states: Array, by: Array) -> Array:
         """States (k, n_state) displaced by small turns and shifts (k, n)."""
-        moved = states.copy()
-        for body, first in zip(self.layout.bodies[self.balls], self.turns.tolist(), strict=True):
-            at, turn = int(body["attitude_at"]), by[:, first : first + 3]
-            angle = np.sqrt(np.sum(turn * turn, axis=1, keepdims=True))
-            half = np.concatenate([np.cos(0.5 * angle), 0.5 * np.sinc(0.5 * angle / np.pi) * turn], axis=1)
-            moved[:, at : at + 4] = quaternion_product(half, states[:, at : at + 4])
-        moved[:, self.layout.tables["freedoms"]["q_at"][self.freedoms]] += by[:, self.numbers]
-        return moved
+        return displaced(self.layout, states, by)
 
     def accelerations(self, at: Recovered) -> Array:
         """Accelerations of the coordinates, (k, n)."""

@@ -1,8 +1,8 @@
 """How well a rest pose is known: poses beside it that rounding does not tell from it.
 
 Each is found as the pose itself is, by Newton's step from a pose moved by rounding; or as far off as rounding of the
-sums pushes a soft direction; and where a direction is held by
-no stiffness but by what bends (a quartic potential), as far out along it as the accelerations are still rounding.
+sums pushes a soft direction; and where a direction is held by no stiffness but by what bends (a quartic potential), as
+far out along it as the accelerations are still rounding.
 """
 
 from __future__ import annotations

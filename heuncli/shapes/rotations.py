@@ -120,6 +120,12 @@ def about_axis(n: Array, angle: Array) -> Array:
     return np.concatenate([np.cos(half), np.sin(half) * n], axis=1)
 
 
+def quaternion_from_vector(turn: Array) -> Array:
+    """The unit quaternions (..., 4) of rotations by the vectors axis * angle (..., 3) [rad]."""
+    half = 0.5 * np.sqrt(np.sum(turn * turn, axis=-1, keepdims=True))
+    return np.concatenate([np.cos(half), 0.5 * np.sinc(half / np.pi) * turn], axis=-1)
+
+
 def quaternion_product(p: Array, q: Array) -> Array:
     """The turn q, then p: Hamilton's product along the last axes, (..., 4), of arrays that broadcast."""
     w, v, x, u = p[..., :1], p[..., 1:], q[..., :1], q[..., 1:]

@@ -94,10 +94,12 @@ def name_of(item: Expect, how: How) -> str:
 
 
 def instant(at: float | None) -> str:
+    """When, in words; nothing of what has no instant."""
     return "" if at is None else f" at t = {at:.6g} s"
 
 
 def located(place: Place | None) -> str:
+    """Where along a run of cuts, in words; nothing of what is not of one."""
     if place is None:
         return ""
     return f", s = {place.s:.6g} m" + (f" ({place.side})" if place.side else "")

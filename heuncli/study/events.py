@@ -98,7 +98,6 @@ class Watched(NamedTuple):
 
         return np.asarray(envelope(values)[:, int(self.condition.above)])
 
-
     def error(self, keys: Sequence[str], h: Array) -> float:
         """The error of the number; h: as sampled. A place errs by the scene's size; what has no error, as its kind."""
         row, estimate, limit = quantity(keys), self.study.history.estimate, abs(self.condition.limit)

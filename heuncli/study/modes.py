@@ -23,7 +23,7 @@ from heuncli.spec.models import Spec
 from heuncli.study.setup import Setup, set_up
 
 REST_HINT = "analysis: {type: rest} looks for the pose that rests"
-MOVING_HINT = "leave out the velocities, or run a motion: modes are those about a pose, or what turns steadily as one"
+MOVING_HINT = "leave out the velocities, or run a motion: modes are those about a pose, or a steady motion"
 
 
 def modes(spec: Spec) -> Modes:
@@ -103,7 +103,7 @@ def restless(here: Looked) -> str | None:
     if not off <= tolerances.OFF_BALANCE:
         return f"{pushed_most(here)} is pushed" + (f", some {off:.2g} from where it would rest" if off < 1.0 else "")
     if moves(here) and not goes_on_as_it_is(here):
-        return "what moves there changes what acts, also as seen by what turns with it"
+        return "its motion is not steady: loads change as it goes on, also in the frame that turns along"
     return None
 
 
