@@ -77,5 +77,5 @@ def told(joints: Sequence[Joint], maps: Sequence[Array]) -> tuple[str, ...]:
             if rows.any():
                 sentences.append(f"gives way, and carries no {name} there: {joint.name}")
             elif (k == 0.0).any():
-                sentences.append(f"gives way by its {name}, but nothing else holds there: {joint.name} carries it")
+                sentences.append(f"gives way to {name}s, but nothing else holds there: {joint.name} carries them")
     return tuple(sentences)
