@@ -11,18 +11,22 @@ import numpy as np
 
 from heuncli import tolerances
 from heuncli.integration.evaluator import Evaluator
-from heuncli.rest.coordinates import resting, rounding_of
+from heuncli.linearisation.linearise import linearised
+from heuncli.records import replace
+from heuncli.rest.coordinates import Coordinates, resting, rounding_of
 from heuncli.rest.search import Found
-from heuncli.results import Array
+from heuncli.rest.slopes import Slopes
+from heuncli.results import Array, Mask
 
+TWICE = 2.0  # the change of an eigenvalue between two poses that rounding does not tell apart
 BESIDE = 2  # poses moved by rounding
 REACHES = 10.0 ** np.arange(-8.0, -2.0)  # rad, or of the size: how far out directions without stiffness are tried
 THRICE = 3.0  # of Newton's steps: so far away is the rest of what is held by a cubic force alone
 BACK = 6  # of Newton's steps by the slopes of the pose itself: beside it each errs by as much as that is away
 
 
-def beside(evaluator: Evaluator, found: Found) -> list[Array]:
-    """States (n_state,) of such poses."""
+def beside(evaluator: Evaluator, found: Found) -> tuple[list[Array], Mask]:
+    """States (n_state,) of such poses; which directions (f,) without stiffness are held, or pushed, by what bends."""
     at, own, coordinates = found.pose, found.slopes, found.coordinates
     by = np.array([rounding_of(coordinates, at.state, k) for k in range(BESIDE)])
     states = coordinates.displaced(np.repeat(at.state[None, :], BESIDE, axis=0), by)
@@ -30,7 +34,8 @@ def beside(evaluator: Evaluator, found: Found) -> list[Array]:
     back = np.array([own.newton(a) for a in coordinates.accelerations(there)])
     again = resting(evaluator, at.t, coordinates.displaced(there.states, back), at.holding)
     sums = coordinates.displaced(at.state[None, :], rounding_of_sums(found)[None, :])
-    return [*again.states, *resting(evaluator, at.t, sums, at.holding).states, *bent(evaluator, found)]
+    far, bends = bent(evaluator, found)
+    return [*again.states, *resting(evaluator, at.t, sums, at.holding).states, *far], bends
 
 
 def rounding_of_sums(found: Found) -> Array:
@@ -42,12 +47,13 @@ def rounding_of_sums(found: Found) -> Array:
     return way / max(1.0, found.coordinates.size(way))  # a radian, or the size: nothing is known beyond that
 
 
-def bent(evaluator: Evaluator, found: Found) -> list[Array]:
+def bent(evaluator: Evaluator, found: Found) -> tuple[list[Array], Mask]:
     """The farthest poses along directions without stiffness at which accelerations are rounding, but are none farther.
 
-    Nothing of a direction in which they are so as far as one looks: that is indifferent.
+    And which directions (f,) these are; none in which accelerations are rounding as far as one looks: indifferent ones.
     """
     own, coordinates, states = found.slopes, found.coordinates, []
+    bends = np.zeros(len(own.known), dtype=bool)
     for k in np.flatnonzero(~own.decided).tolist():
         shape = own.T @ own.V[:, k].real
         size = coordinates.size(shape)
@@ -56,7 +62,19 @@ def bent(evaluator: Evaluator, found: Found) -> list[Array]:
             held = np.flatnonzero(np.abs(push[:, k]) > own.noise[k])
             if len(held):
                 states.append(out[max(held[0] - 1, 0)])
-    return states
+                bends[k] = True
+    return states, bends
+
+
+def softened(found: Found, states: list[Array]) -> Slopes:
+    """The slopes at a pose, with eigenvalues known no better than they stay as far off as rounding leaves the pose."""
+    at, own, coordinates = found.pose, found.slopes, found.coordinates
+    if not own.decided.any():
+        return own
+    farthest = max(states, key=lambda state: off(coordinates, at.state, state))
+    there = linearised(coordinates.layout, at.t, farthest, at.holding)
+    change = own.inverse @ (own.back @ there.by_place @ own.T - own.A) @ own.V
+    return replace(own, known=own.known + TWICE * np.abs(np.diag(change)))
 
 
 def beyond(evaluator: Evaluator, found: Found, way: Array) -> tuple[Array, Array]:
@@ -70,3 +88,11 @@ def beyond(evaluator: Evaluator, found: Found, way: Array) -> tuple[Array, Array
         )
     there = resting(evaluator, at.t, states, at.holding)
     return there.states, np.array([own.along(a) for a in coordinates.accelerations(there)])
+
+
+def off(coordinates: Coordinates, state: Array, other: Array) -> float:
+    """How far a state is off another one: the largest of turns, and of shifts by the scene's size."""
+    change = np.abs(other - state)
+    balls = [change[a : a + 4].max() for a in coordinates.layout.bodies["attitude_at"][coordinates.balls].tolist()]
+    shifts = change[coordinates.layout.tables["freedoms"]["q_at"][coordinates.freedoms]]
+    return float(np.max([*balls, *(shifts * coordinates.weights[coordinates.numbers])], initial=0.0))

@@ -198,12 +198,15 @@ class Search:
     def polished(self, at: Pose, own: Slopes) -> tuple[Pose, Slopes]:
         """The pose behind Newton's steps along all directions that are not indifferent, as long as they better it."""
         while own.decided.any():
-            new = self.moved(at, own.newton(at.accelerations))
+            by = own.newton(at.accelerations)
+            new = self.moved(at, by)
             if new is None or self.push(new) >= 0.5 * self.push(at):
                 break
             at = self.counted(at, new)
             own = slopes(self.evaluator, self.coordinates, at)
             self.evaluations += 3 + SAMPLES
+            if self.coordinates.size(by) <= tolerances.PLACE_ROUNDING:
+                break  # a force that bends alone leads on through all the numbers below
         return at, own
 
     def push(self, at: Pose) -> float:

@@ -13,13 +13,15 @@ from heuncli import tolerances
 from heuncli.records import record
 from heuncli.rest.coordinates import Coordinates
 from heuncli.rest.search import Found
-from heuncli.results import Array
+from heuncli.results import Array, Mask
 from heuncli.shapes.rotations import hat
 
 
 @record
 class Stability:
     """Growth [1/s] of what grows fastest, 0 where nothing does; what moves in it, and what is indifferent, by name.
+
+    flat: what is indifferent to first order alone, by name: what bends may hold it, or push it off.
 
     least: the least eigenvalue of stiffness over inertia, -lambda, of what is not indifferent [1/s^2]; slowest: what
     moves in it; frequency: of that motion [Hz], 0 where it does not swing.
@@ -31,10 +33,11 @@ class Stability:
     slowest: str
     frequency: float
     indifferent: tuple[str, ...]
+    flat: tuple[str, ...]
 
 
-def stability(found: Found) -> Stability:
-    """Of a rest pose."""
+def stability(found: Found, bends: Mask) -> Stability:
+    """Of a rest pose; bends (f,): the directions without stiffness that are held, or pushed, by what bends."""
     own, coordinates = found.slopes, found.coordinates
     real = own.decided
     shapes = own.T @ own.V
@@ -42,20 +45,23 @@ def stability(found: Found) -> Stability:
     grown = np.flatnonzero(s.real > tolerances.GROWS * np.abs(s).max(initial=0.0))
     fastest = max(grown.tolist(), key=lambda k: float(s[k].real), default=-1)
     least = min(np.flatnonzero(real).tolist(), key=lambda k: float(-own.eigenvalues[k].real), default=-1)
-    swings = [k for k in range(len(s)) if s[k].imag > tolerances.GROWS * np.abs(s).max()]
+    free = np.abs(own.inverse @ motions)
+    swung = free[real].max(axis=0, initial=0.0) > tolerances.MOVES * free.max(axis=0, initial=0.0)
+    swings = [k for k in range(len(s)) if swung[k] and s[k].imag > tolerances.GROWS * np.abs(s).max()]
     near = min(swings, key=lambda k: abs(s[k].imag), default=-1)
     return Stability(
         growth=float(s[fastest].real) if fastest >= 0 else 0.0,
-        grows=moves(coordinates, motions[:, fastest]) if fastest >= 0 else "",
+        grows=moves(coordinates, own.T @ motions[:, fastest]) if fastest >= 0 else "",
         least=float(-own.eigenvalues[least].real) if least >= 0 else 0.0,
         slowest=moves(coordinates, shapes[:, least]) if least >= 0 else "",
         frequency=float(abs(s[near].imag)) / (2.0 * np.pi) if near >= 0 else 0.0,
-        indifferent=indifferent(found),
+        indifferent=indifferent(found, ~real & ~bends),
+        flat=indifferent(found, ~real & bends),
     )
 
 
 def motions_of(found: Found) -> tuple[Array, Array]:
-    """The exponents s of small motions along directions that are not indifferent, and their displacements (n, k)."""
+    """The exponents s of small motions along directions that are not indifferent, and their displacements (f, k)."""
     own, coordinates = found.slopes, found.coordinates
     C = own.law.by_rate.copy()
     omega = found.pose.recovered.bodies["omega"][0]
@@ -66,13 +72,12 @@ def motions_of(found: Found) -> tuple[Array, Array]:
     A = own.directions.whole(own.decided)
     whole = np.block([[np.zeros((f, f)), np.eye(f)], [A, own.back @ C @ own.T]])
     s, vectors = np.linalg.eig(whole) if f else (np.zeros(0), np.zeros((0, 0)))
-    return s, own.T @ vectors[:f]
+    return s, vectors[:f]
 
 
-def indifferent(found: Found) -> tuple[str, ...]:
-    """What stays wherever it is put, by name; not what moves no mass, as spins that nothing determines."""
+def indifferent(found: Found, loose: Mask) -> tuple[str, ...]:
+    """What moves along some directions, by name; not what moves no mass, as spins that nothing determines."""
     own, coordinates = found.slopes, found.coordinates
-    loose = ~own.decided
     if not loose.any():
         return ()
     U, size, _ = np.linalg.svd(np.hstack([own.V.real[:, loose], own.V.imag[:, loose]]), full_matrices=False)

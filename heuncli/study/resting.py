@@ -10,7 +10,7 @@ from heuncli.integration.runner import Runner
 from heuncli.integration.solvable import Asked, require_solvable
 from heuncli.mechanism.model import Mechanism
 from heuncli.records import record, replace
-from heuncli.rest.digits import beside
+from heuncli.rest.digits import beside, softened
 from heuncli.rest.pose import bearing
 from heuncli.rest.search import Found, Search
 from heuncli.rest.stability import Stability, stability
@@ -49,13 +49,15 @@ def at_rest(scene: PreparedScene, runner: Runner, deadline: float | None) -> tup
     require_together(runner, search.coordinates, search.begun())
     found = search.found()
     require_steady(runner, found.coordinates, found.pose, found.slopes)
-    own = stability(found)
+    states, bends = beside(runner, found)
+    firm = softened(found, states)
+    own = stability(replace(found, slopes=firm), bends | (found.slopes.decided & ~firm.decided))
     layout = replace(scene.layout, y0=found.pose.state)
     again = Runner(layout)
     require_still(again, found.coordinates, bearing(again, found.coordinates, 0.0, layout.y0))
     rest = Rest(
         steps=found.steps, evaluations=found.evaluations, seconds=time.perf_counter() - begun,
-        beside=tuple(beside(runner, found)), told=tuple(sentences(scene.mechanism, found, own)),
+        beside=tuple(states), told=tuple(sentences(scene.mechanism, found, own)),
         warnings=unstable(own),
     )  # fmt: skip
     return replace(scene, layout=layout), again, rest
@@ -71,10 +73,13 @@ def sentences(mechanism: Mechanism, found: Found, own: Stability) -> list[str]:
     elif own.slowest:
         swings = f", the slowest small oscillation has {own.frequency:.4g} Hz" if own.frequency else ""
         told.append(f"stable: {least}{swings}")
-    elif not own.indifferent:
+    elif not own.indifferent and not own.flat:
         told.append("nothing is free to move")
     if own.indifferent:
-        told.append(f"indifferent: {some(list(own.indifferent))} would stay elsewhere as well")
+        elsewhere = f"{some(list(own.indifferent))} would stay elsewhere as well"
+        told.append(f"indifferent: {elsewhere}; where along it is by the way it came")
+    if own.flat:
+        told.append(f"indifferent to first order: {some(list(own.flat))}, which what bends alone holds or pushes off")
     return told
 
 

@@ -404,6 +404,7 @@ def test_a_level_bar_on_a_free_carriage_falls(off: float) -> None:
     near(3.0 * found.coordinates["r"]["travel"][0], -0.5, 0.5, 0.1)
     assert "stable" in found.model["rest"][0]
     assert "indifferent: joints.r" in found.model["rest"][1]
+    assert "where along it is by the way it came" in found.model["rest"][1]
 
 
 @pytest.mark.parametrize("seed", range(4))
@@ -431,6 +432,16 @@ def test_what_is_told_is_judged(monkeypatch: pytest.MonkeyPatch) -> None:
     monkeypatch.setattr(Slopes, "left", property(lambda own: np.zeros(len(own.c))))
     monkeypatch.setattr(Slopes, "newton", lambda own, a: 0.0 * a)
     assert "the search ended where bodies.bar still accelerates by" in refused(carriage("90 deg"))
+
+
+@pytest.mark.parametrize("cube", ["100", "1e-3"])
+def test_what_bends_alone_is_not_told_as_stable(cube: str) -> None:
+    """At the flat point of -k x^3 the slope is the rounding of the pose."""
+    slide = "u: {type: slide, from: ground.O, to: b.c, axis: [1, 0, 0], initial: {travel: 0.5}}"
+    load = f"forces: {{s: {{type: torque, joint: u, value: -{cube}*u.travel**3}}}}"
+    found = solved(f"heun: 1\nanalysis: {{type: rest}}\n{POINTS}bodies: {{b: {{{BALL}}}}}\njoints: {{{slide}}}\n{load}")
+    assert not any(sentence.startswith("stable") for sentence in found.model["rest"]), found.model["rest"]
+    assert any("to first order" in sentence and "joints.u" in sentence for sentence in found.model["rest"])
 
 
 # ---- no rest ---------------------------------------------------------------------------------------------------
