@@ -247,7 +247,7 @@ def test_entries_are_asked_for_by_their_paths(heun: Heun) -> None:
     ("joints.pivto", "did you mean joints.pivot?"),
     ("joints.pivot.force", "say joints.pivot; --measure prints single numbers"),
     ("sections.middle", "the scene has no sections"),
-    ("foundation.force", "did you mean foundation.supports.pivot?"),
+    ("foundation.force", "known entries: foundation.supports.pivot"),
     ("nothing.else", "known: motion"),
 ])  # fmt: skip
 def test_what_is_no_entry_is_refused(heun: Heun, words: str, told: str) -> None:

@@ -76,7 +76,7 @@ def test_extremes_are_those_of_what_is_known(rate: float) -> None:
     bottom = 0.5 * (rate**2 + 4.8 * G + G)
     if s.results.points["left.top"]["position"][:, 1].min() > 0.0 or len(s.history.singular) < 2:
         pytest.skip("it does not come to the bottom in two seconds")
-    found, at, _ = value(Measure("abs", "joints.C.radial"), s)
+    found, at, *_ = value(Measure("abs", "joints.C.radial"), s)
     assert at is not None
     # a search ends where nothing promises more than a tenth of the error that is told, which singular poses enlarge
     near(found, bottom, bottom, max(1e-8, 0.1 * s.magnitudes.errors["reactions", "N"] / bottom))
