@@ -38,7 +38,7 @@ def modes(spec: Spec) -> Modes:
     return Modes(
         title=spec.title,
         at=at,
-        steady=moves(here),
+        steady=moves(here) and bool(found),  # with nothing free nothing was compared at later instants
         held=here.layout.driven and not moves(here),
         modes=tuple(found),
         shapes=tuple(shapes),
