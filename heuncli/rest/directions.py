@@ -62,7 +62,7 @@ class Directions:
         if not len(self.B):
             return np.asarray(single)
         U, s, V = np.linalg.svd(self.B)
-        held = s > tolerances.NEARLY_DEFECTIVE * s[0]
+        held = s > max(tolerances.NEARLY_DEFECTIVE * s[0], known[g:].max())
         along = np.where(held, (U.T @ c[g:].real) / np.where(held, s, 1.0), 0.0)
         return np.concatenate([single, -(V.T @ along)])
 
