@@ -41,6 +41,9 @@ cdef struct Course:           # of the coordinates over a stretch of time, for t
     double *promise           # and what they may hold
     double *before            # branches put aside
     double *turned            # branches behind the event
+    double *resting           # 1: a branch whose margin rests at zero, which is passed over ...
+    double rests_from         # ... between these x
+    double rests_to
 
 cdef struct Branch:           # of a motion that its drives determine, at the start of the step under way
     double length             # by which shifts are measured

@@ -30,6 +30,10 @@ cdef int quiet(Scene *scene, double begin, double end) noexcept nogil
 cdef Bounds bounds_of(Scene *scene, Watch *watch) noexcept nogil
 cdef void clear_doubts(Scene *scene) noexcept nogil
 cdef bint any_doubt(Scene *scene) noexcept nogil
+cdef bint is_resting(Course *course, Py_ssize_t i, double x) noexcept nogil
+cdef bint moving_doubt(Scene *scene, Course *course, double x) noexcept nogil
+cdef bint pass_over(Scene *scene, Course *course, double x0, double x1) noexcept nogil
+cdef bint moves_off(Scene *scene, Course *course, double x) noexcept nogil
 cdef int doubt_over(Scene *scene, Course *course, double x0, double x1) noexcept nogil
 cdef Bounds closer(Scene *scene, Course *course, Watch *watch, double x0, double x1) noexcept nogil
 cdef void scale_watches(Scene *scene, Course *course) noexcept nogil

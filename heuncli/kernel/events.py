@@ -135,6 +135,20 @@ def any_doubt(scene: cython.pointer[Scene]) -> cython.bint:
     return doubts > 0
 
 
+def is_resting(course: cython.pointer[Course], i: cython.Py_ssize_t, x: cython.double) -> cython.bint:
+    """Whether a branch is passed over at x, because its margin rests at zero."""
+    return 0.0 < course.rests_to and x <= course.rests_to and course.resting[i] > 0.0
+
+
+def moving_doubt(scene: cython.pointer[Scene], course: cython.pointer[Course], x: cython.double) -> cython.bint:
+    """Whether some branch is in doubt at x that is not passed over there."""
+    i: cython.Py_ssize_t
+    found: cython.bint = False
+    for i in range(scene.held_count):
+        found = found or (scene.programs.doubt[i] > 0 and not is_resting(course, i, x))
+    return found
+
+
 def doubt_over(
     scene: cython.pointer[Scene], course: cython.pointer[Course], x0: cython.double, x1: cython.double
 ) -> cython.int:
@@ -159,7 +173,7 @@ def doubt_over(
             found = UNSEEN
         elif found == CLEAR and out_of_sight(scene, watch, closer(scene, course, watch, x0, x1), watch.scale):
             found = VALUE_IN_DOUBT
-    return BRANCH_IN_DOUBT if any_doubt(scene) else found
+    return BRANCH_IN_DOUBT if moving_doubt(scene, course, x0) else found
 
 
 def closer(
@@ -270,7 +284,7 @@ def branches_at(scene: cython.pointer[Scene], course: cython.pointer[Course], x:
     stand_at(scene, course, x)
     take_afresh(scene, course)
     for i in range(scene.held_count):
-        course.turned[i] = scene.programs.held[i]
+        course.turned[i] = course.before[i] if is_resting(course, i, x) else scene.programs.held[i]
         if course.turned[i] != course.before[i]:
             found = TURNED
             course.slot = i
@@ -287,7 +301,7 @@ def changed_at(scene: cython.pointer[Scene], course: cython.pointer[Course], x: 
     stand_at(scene, course, x)
     take_afresh(scene, course)
     for i in range(scene.held_count):
-        changed = changed or scene.programs.held[i] != course.before[i]
+        changed = changed or (scene.programs.held[i] != course.before[i] and not is_resting(course, i, x))
     take_branches(scene, course.before)
     return changed
 
@@ -323,7 +337,7 @@ def is_open(scene: cython.pointer[Scene], course: cython.pointer[Course], x: cyt
     clear_doubts(scene)
     for i in range(scene.watch_count):
         enclose(scene.programs, scene.watches[i].program)
-    return any_doubt(scene)
+    return moving_doubt(scene, course, x)
 
 
 def beyond_rounding(
@@ -372,6 +386,7 @@ def first_event(scene: cython.pointer[Scene], course: cython.pointer[Course]) ->
     looks: cython.int = 0
     course.undecided = 0
     course.crossed_by = -1.0
+    course.rests_to = 0.0
     scale_watches(scene, course)
     if scene.held_count and branches_at(scene, course, 0.0) == TURNED:
         x = turns_at_once(scene, course)
@@ -381,6 +396,9 @@ def first_event(scene: cython.pointer[Scene], course: cython.pointer[Course]) ->
     course.ends[0] = 1.0
     while top >= 0:
         looks += 1
+        if x < course.rests_to < course.ends[top] and top < PARTS - 1:
+            top += 1
+            course.ends[top] = course.rests_to
         found = doubt_over(scene, course, x, course.ends[top])
         if found == BRANCH_IN_DOUBT:
             found = look_at_turn(scene, course, x, course.ends[top])
@@ -408,6 +426,8 @@ def first_event(scene: cython.pointer[Scene], course: cython.pointer[Course]) ->
         else:
             top += 1
             course.ends[top] = division(scene, course, x, course.ends[top - 1], found)
+        if 0.0 < course.rests_to <= x and moves_off(scene, course, x):
+            return TURNS
     return NOTHING
 
 
@@ -424,12 +444,46 @@ def look_at_turn(
     if branches_at(scene, course, x0) != OPEN:
         return BRANCH_IN_DOUBT
     course.event = beyond_rounding(scene, course, x0, x1)
+    if course.event - x0 > scene.limits.leaving_last and pass_over(scene, course, x0, course.event):
+        return BRANCH_IN_DOUBT
     if branches_at(scene, course, course.event) != TURNED:
         return PASSED
     # not where it is certain, which would be late each time: where the margin itself is zero
     if not course.late:
         course.event = crossing_in(scene, course, x0, course.event, 0.0)
     return TURNS
+
+
+def pass_over(
+    scene: cython.pointer[Scene], course: cython.pointer[Course], x0: cython.double, x1: cython.double
+) -> cython.bint:
+    """Pass over the branches that rounding leaves open from x0 to x1, in a good part of the stretch; whether any.
+
+    What rests at a margin, as on a stop, is open for so long, and the others are to be met meanwhile.
+    """
+    i: cython.Py_ssize_t
+    found: cython.bint = False
+    course.rests_to = 0.0
+    branches_at(scene, course, x0)  # in doubt is then what is neither as held nor turned
+    for i in range(scene.held_count):
+        course.resting[i] = scene.programs.doubt[i]
+    branches_at(scene, course, 0.5 * (x0 + x1))
+    for i in range(scene.held_count):
+        if scene.programs.doubt[i] == 0:
+            course.resting[i] = 0.0
+        found = found or course.resting[i] > 0.0
+    course.rests_from = x0
+    course.rests_to = x1 if found else 0.0
+    return found
+
+
+def moves_off(scene: cython.pointer[Scene], course: cython.pointer[Course], x: cython.double) -> cython.bint:
+    """Whether branches that were passed over up to x turn there: then the event is where their margin is zero."""
+    course.rests_to = 0.0
+    if branches_at(scene, course, x) != TURNED:
+        return False
+    course.event = x if course.late else crossing_in(scene, course, course.rests_from, x, 0.0)
+    return True
 
 
 def crossing_in(

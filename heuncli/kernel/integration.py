@@ -113,6 +113,8 @@ class Integration:
         course.promise = self.memory.zeros(PARTS)
         course.before = self.memory.zeros(scene.held_count)
         course.turned = self.memory.zeros(scene.held_count)
+        course.resting = self.memory.zeros(scene.held_count)
+        course.rests_from = course.rests_to = 0.0
         course.slot = 0
 
     def make_branch(self) -> None:

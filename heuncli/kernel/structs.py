@@ -198,6 +198,9 @@ class Course(metaclass=Fields):
     promise: list[float]
     before: list[float]
     turned: list[float]
+    resting: list[float]
+    rests_from: float
+    rests_to: float
 
 
 class Branch(metaclass=Fields):

@@ -207,6 +207,25 @@ def test_until_stops_before_what_would_fail() -> None:
     near(study.results.coordinates["guide"]["travel"][-1], 0.49, 1.0, 1e-12)
 
 
+@pytest.mark.parametrize("still", [
+    "pin.angle - pin.angle >= 0", "min(pin.angle, pin.angle) > 2*pin.angle - pin.angle", "guide.travel >= 0",
+    "guide.travel <= 0",
+])  # fmt: skip
+def test_what_rests_at_its_margin_hides_nothing(still: str) -> None:
+    """A block lies on its stop, where rounding leaves open on which side of 0 it is; the pendulum beside it passes."""
+    scene = PENDULUM.replace("bodies: {bob:", BLOCK.replace("}}}", "}}, bob:").rstrip()).replace(
+        "joints: {", "joints: {guide: {type: slide, from: ground.O, to: block.c, axis: [0, 0, 1]}, "
+    )  # fmt: skip
+    more = "stops: {floor: {joint: guide, travel: [0, null]}}\n"
+    events = f'still: "{still}", bottom: "pin.angle < 0"'
+    for force in ("", f'forces: {{none: {{type: torque, joint: pin, value: "0 if {still} else 0*t"}}}}\n'):
+        study = run(scene, f"duration: 3, samples: 2, events: {{{events}}}", more + force)
+        quarter = float(ellipk(math.sin(math.pi / 6) ** 2)) / math.sqrt(G)
+        times = quarter * np.arange(1, 7, 2)
+        met(study.changes["bottom"], times[times < 3.0], up=True)
+        assert not len(study.changes["still"].times)
+
+
 def test_the_largest_moment_along_a_beam_passes_its_limit() -> None:
     """A swung bar's largest N is at its root, the joint's force along it; what a condition needs is not told."""
     bar = "{shapes: [{type: cylinder, from: [0, 0, 0], to: [0, 0, -1], radius: 0.01, mass: 1}]"
