@@ -63,6 +63,7 @@ class SolveError(HeunError):
     """The scene cannot be solved: it does not close, is singular, or no acceleration exists."""
 
     exit_code = 3
+    reached: float | None = None  # the instant up to which a motion went
 
 
 class LimitError(HeunError):

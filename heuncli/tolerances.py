@@ -125,6 +125,9 @@ UNBALANCED = 1e-6  # of a body's largest load: rounding stays far below, near a 
 CONSTANT = 1e-13  # of its size: a quantity that varies less varies by hundreds of roundings, and has no peak
 
 # -- accuracy
+# of the way to where a motion fails: how long before it a run may end, that finds what is passed sooner; near a lock
+# rates grow as the inverse root of what is left
+BEFORE_FAILURE = (1e-9, 1e-6, 1e-3, 1e-2, 0.1)
 CLAIMED = 1e-3  # of the whole: the contract's error at the horizon, beyond which nothing is claimed
 LEAST_ASKED = 1e-15  # a tolerance must be above the rounding of one number
 LEAST_TOLERANCE = 3e-14  # local tolerance: a thirtieth of it, of the check run, is 5 EPS; below, steps chase rounding

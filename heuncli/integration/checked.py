@@ -122,7 +122,9 @@ class Runs:
             if isinstance(error, ClosuresLost):
                 from heuncli.integration.lock import located  # only on the way to an error
 
-                raise located(self.runner, error) from None
+                lock = located(self.runner, error)
+                lock.reached = error.reached
+                raise lock from None
             raise
 
     def attempt(self, local: float, than: Trajectory, at: Array | None, start: Array | None) -> Trajectory | None:

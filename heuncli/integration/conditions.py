@@ -55,9 +55,10 @@ class Changes:
         """Those before an instant."""
         return self.some(self.times < t)
 
-    def until(self, t: float) -> Changes:
-        """Those up to an instant."""
-        return self.some(self.times <= t)
+    def known_by(self, t: float, last: float) -> Changes:
+        """Those that may lie up to an instant, by their errors, in a run that ends there: at its last instant then."""
+        kept = self.some(self.times - np.nan_to_num(self.error) <= t)
+        return replace(kept, times=np.where(kept.times < t, kept.times, last))
 
     def some(self, kept: Mask) -> Changes:
         """Those."""

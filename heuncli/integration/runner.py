@@ -116,8 +116,11 @@ class Trajectory:
 
     def branches_at(self, times: Array) -> Array:
         """The branches that hold at instants, (n_t, n); at an event those behind it."""
+        if not self.branches.size:
+            return self.branches
         step = np.searchsorted(self.ends, times, side="right")
-        return self.branches[np.minimum(step, max(len(self.branches) - 1, 0))] if self.branches.size else self.branches
+        held = np.vstack([self.branches, self.behind[None, :]]) if self.ended else self.branches
+        return np.asarray(held[np.minimum(step, len(held) - 1)])
 
 
 def discontinuities_of(mechanism: Mechanism, t0: float, t1: float) -> list[float]:
@@ -241,7 +244,11 @@ class Runner(Evaluator):
         check_deadline(deadline, f"before the run of {last:.6g} s began")
         blows, until = Blows(self, moving, run, steps, last), None if whole else until_of(moving.layout)
         going = Going(run, steps, blows, last, deadline, most_steps, until)
-        pieces, ending = self._pass(going, smooth_segments(last, discontinuities))
+        try:
+            pieces, ending = self._pass(going, smooth_segments(last, discontinuities))
+        except SolveError as error:
+            error.reached = run.loop.t
+            raise
         ts, states = (ts, run.states()) if ending is None else cut_short(ts, run, ending.told)
         return Trajectory(
             times=ts, states=moving.embed(ts, states), ends=steps.column("ends"), steps=run.loop.steps,

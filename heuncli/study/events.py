@@ -2,31 +2,35 @@
 
 The first are met by the kernel (integration/conditions.py). The others are searched for after the run: a number of the
 results is taken against its limit, a vector by its magnitude, a run of cuts over its whole stretch. A motion that ends
-where such a number passes its limit is solved twice: as a whole, and up to there.
+where such a number passes its limit is solved twice: as a whole, or as far as it goes, and up to there.
 """
 
 from __future__ import annotations
 
+import contextlib
 import math
-from collections.abc import Sequence
+from collections.abc import Mapping, Sequence
 from dataclasses import replace as changed
 from typing import TYPE_CHECKING, NamedTuple
 
 import numpy as np
 
 from heuncli import tolerances
+from heuncli.errors import SolveError
 from heuncli.integration.conditions import Changes, blows_apart
 from heuncli.records import replace
 from heuncli.results import Array, Block, Results, Status
 from heuncli.results_paths import find
-from heuncli.results_schema import CUT, EVENTS, KIND_OF, MAGNITUDES, kind_of_error, quantity
-from heuncli.spec.models import Condition
+from heuncli.results_schema import CUT, EVENTS, KIND_OF, MAGNITUDES, SHARES, kind_of_error, quantity
+from heuncli.spec.models import Condition, Spec
 from heuncli.study.crossings import Crossings, crossings
+from heuncli.study.history import History, resample
 from heuncli.study.measure import report_of, stated_error
+from heuncli.study.recover import recover
 from heuncli.study.setup import Setup
 
 if TYPE_CHECKING:
-    from heuncli.study.solve import Study
+    from heuncli.study.solve import Options, Study
 
 HALVED = 2  # pieces of a stretch along which stresses are looked at (study/solve.py)
 SHOWN = 6  # digits of an instant in sentences
@@ -34,7 +38,7 @@ NOT_TOLD = "of the event {} instants may be missing: {} is open, or not known, a
 TOO_MANY = "of the event {} instants may be missing: the search was ended before all was looked at"
 
 
-def with_events(study: Study, setup: Setup) -> Study:
+def with_events(study: Study, setup: Setup, deadline: float | None) -> Study:
     """The study with its events; setup: of all that conditions need. What ends on a result is solved up to there."""
     found = {changes.name: changes for changes in study.history.changes}
     conditions = study.spec.analysis.conditions
@@ -45,19 +49,87 @@ def with_events(study: Study, setup: Setup) -> Study:
     if last is not None and last.value is None:
         became = found[last.name].times[found[last.name].to]
         if len(became) and became[0] < study.results.time[-1]:
-            return ended(study, last, found[last.name], float(became[0]))
+            return ended(study, found, float(became[0]), deadline)
     return told(replace(study, changes=found))
 
 
-def ended(study: Study, last: Condition, changes: Changes, t: float) -> Study:
-    """The same motion up to an instant at which the last condition becomes true."""
-    from heuncli.study.solve import solve
+def ended(study: Study, found: Mapping[str, Changes], t: float, deadline: float | None) -> Study:
+    """The same motion up to an instant at which the last condition becomes true; found: what changes in all of it.
+
+    Where something strikes, rests or jumps there, what holds behind it is told: the run goes on for a moment.
+    """
+    from heuncli.study.solve import solved
 
     analysis = study.spec.analysis
-    times = (*(x for x in analysis.times if x < t), t)
-    others = tuple(c for c in analysis.conditions if c is not last)
-    shorter = solve(study.spec._replace(analysis=analysis._replace(times=times, conditions=others)), study.options)
-    return told(replace(shorter, spec=study.spec, changes={**shorter.changes, last.name: changes.until(t)}))
+    asked, later = [x for x in analysis.times if x < t] + [t], moment_behind(study.history, t)
+    run_to = asked if later is None else [*asked, later]
+    shorter = solved(
+        study.spec._replace(analysis=analysis._replace(times=tuple(run_to), conditions=())), study.options, deadline
+    )
+    if later is not None:
+        shorter = up_to(shorter, jump_at(shorter.history, t))
+    last = float(shorter.results.time[-1])
+    changes = {name: changes.known_by(t, last) for name, changes in found.items()}
+    return told(replace(shorter, spec=study.spec, changes=changes))
+
+
+def jump_at(history: History, t: float) -> float:
+    """The jump of a motion that is at an instant but for rounding; the instant itself where none is."""
+    jumps = np.array(history.jumps)
+    near = jumps[np.abs(jumps - t) <= tolerances.SIDE_BY_SIDE * t]
+    return float(near[np.argmin(np.abs(near - t))]) if len(near) else t
+
+
+def moment_behind(history: History, t: float) -> float | None:
+    """An instant behind a jump at t, before anything else happens; None where nothing jumps there."""
+    assert history.checked is not None
+    near = tolerances.SIDE_BY_SIDE * t
+    if not any(abs(jump - t) <= near for jump in history.jumps):
+        return None
+    marks = np.concatenate([history.checked.run.ends, history.jumps, history.times])
+    behind = marks[marks > t + near]
+    return float(0.5 * (t + behind.min())) if len(behind) else None
+
+
+def up_to(study: Study, t: float) -> Study:
+    """What a study tells before its last instants, those from t on, and at t."""
+    from heuncli.study.solve import blows, compose
+
+    history, setup, options = study.history, study.setup, study.options
+    assert history.checked is not None
+    times = np.append(history.times[history.times < t * (1.0 - tolerances.SIDE_BY_SIDE)], t)
+    by_cause = SHARES in options.reports
+    own, run = resample(setup.runner, history, times, by_cause=by_cause), history.checked.run
+    kept = tuple(blow for blow in run.blows if blow.time <= t)
+    run = replace(run, times=times, states=setup.runner.resample(run, times), blows=kept)
+    history = replace(
+        history, recovered=own, checked=replace(history.checked, run=run, recovered=own), blows=kept,
+        jumps=tuple(x for x in history.jumps if x <= t), singular=tuple(x for x in history.singular if x <= t),
+    )  # fmt: skip
+    recovery = recover(setup, own, options.least_norm)
+    struck = blows(setup, history, options.least_norm, by_cause)
+    results = compose(setup, history, recovery, options.reports, struck)
+    results.work["seconds"] = dict(study.results.work["seconds"])
+    return replace(study, history=history, recovery=recovery, results=results, struck=struck)
+
+
+def before_failure(spec: Spec, options: Options, deadline: float | None, error: SolveError) -> Study:
+    """The motion that ends on a result before the instant at which it would fail; else raises the error."""
+    from heuncli.study.solve import solved
+
+    assert error.reached is not None
+    for share in tolerances.BEFORE_FAILURE:
+        last = error.reached * (1.0 - share)
+        times = (*(x for x in spec.analysis.times if x < last), last)
+        if len(times) < 2:
+            break
+        with contextlib.suppress(SolveError):
+            study = solved(spec._replace(analysis=spec.analysis._replace(times=times)), options, deadline)
+            ending = next(c for c in spec.analysis.conditions if c.ends)
+            if study.changes[ending.name].to.any():
+                return replace(study, spec=spec)
+            break
+    raise error
 
 
 # Conditions on numbers of the results

@@ -13,7 +13,7 @@ from typing import TYPE_CHECKING, Any
 
 import numpy as np
 
-from heuncli.errors import Problem, SpecError
+from heuncli.errors import Problem, SolveError, SpecError
 from heuncli.integration.blows import met_freely
 from heuncli.integration.following import integrated_after_all
 from heuncli.integration.methods import METHODS
@@ -76,6 +76,18 @@ def solve(spec: Spec, options: Options | None = None) -> Study:
     """Solve a spec. Raises SpecError, SolveError, LimitError."""
     options = options or Options()
     deadline = time.monotonic() + options.time_limit if options.time_limit else None
+    try:
+        return solved(spec, options, deadline)
+    except SolveError as error:
+        if error.reached is None or not any(c.ends and c.value is None for c in spec.analysis.conditions):
+            raise
+        from heuncli.study.events import before_failure  # few scenes end so
+
+        return before_failure(spec, options, deadline, error)
+
+
+def solved(spec: Spec, options: Options, deadline: float | None) -> Study:
+    """The same by a deadline (time.monotonic()), with nothing where the motion fails."""
     begun = time.perf_counter()
     conditions = spec.analysis.conditions
     asked = options.asked.with_all(needed_by(conditions, spec)) if conditions else options.asked
@@ -96,7 +108,7 @@ def solve(spec: Spec, options: Options | None = None) -> Study:
         return study
     from heuncli.study.events import with_events  # few scenes have them
 
-    return with_events(study, whole)
+    return with_events(study, whole, deadline)
 
 
 def blows(setup: Setup, history: History, least_norm: bool, by_cause: bool) -> Impulses | None:

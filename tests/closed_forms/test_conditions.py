@@ -10,6 +10,7 @@ import numpy as np
 import pytest
 from scipy.special import ellipk, ellipkinc
 
+from heuncli.errors import SolveError
 from heuncli.integration.conditions import Changes, Conditions, coordinates_at
 from heuncli.results import Array
 from heuncli.spec.load import load
@@ -224,6 +225,59 @@ def test_what_rests_at_its_margin_hides_nothing(still: str) -> None:
         times = quarter * np.arange(1, 7, 2)
         met(study.changes["bottom"], times[times < 3.0], up=True)
         assert not len(study.changes["still"].times)
+
+
+def test_what_holds_behind_the_last_instant_is_told_there() -> None:
+    """A ball lands and stays, where the floor begins to bear; a load that jumps where a run ends.
+
+    An event with the condition that ends the run is at its end, and so is one that means the same in other words.
+    """
+    scene = FALL.replace("axis: [0, 0, -1]", "axis: [0, 0, 1]").replace("travel: 0", "travel: 1")
+    more = "stops: {floor: {joint: guide, travel: [0, null], restitution: 0}}\n"
+    bears = "{of: stops.floor.force, above: 1}"
+    study = run(scene, f"duration: 3, samples: 7, until: {bears}, events: {{bear: {bears}}}", more)
+    met(study.changes["until"], np.array([math.sqrt(2 / G)]), up=True)
+    assert study.changes["bear"].times.tolist() == study.changes["until"].times.tolist() == [study.results.time[-1]]
+    near(study.results.stops["floor"]["force"], [0.0, 2 * G], 2 * G, 1e-12)
+    near(study.results.coordinates["guide"]["acceleration"][-1], 0.0, G, 1e-12)
+    more = 'forces: {push: {type: torque, joint: guide, value: "7 if guide.travel > 0.5 else 0"}}\n'
+    at_half = ('"guide.travel > 0.5"', "{of: coordinates.guide.travel, above: 0.5}")
+    for until in (*at_half, "{of: forces.push.value, above: 1}"):
+        study = run(FALL, f'duration: 3, samples: 3, until: {until}, events: {{e: "guide.travel > 0.5"}}', more)
+        met(study.changes["e"], np.array([math.sqrt(1 / G)]), up=True)
+        near(study.results.coordinates["guide"]["acceleration"], [G, G + 3.5], G, 1e-12)
+
+
+LOCK = """\
+heun: 1
+ground: {points: {O: [0, 0, 0]}}
+bodies:
+  bar: {mass: 1, center: [0.5, 0, 0], inertia: [0.01, 0.1, 0.1], points: {o: [0, 0, 0], tip: [1, 0, 0]}}
+  block: {mass: 1, center: [0, 0, 0], inertia: [1, 1, 1], points: {c: [0, 0, 0]}}
+joints:
+  pin: {type: pin, from: ground.O, to: bar.o, axis: [0, -1, 0], initial: {angle: 60 deg}}
+  guide: {type: slide, from: ground.O, to: block.c, axis: [1, 0, 0]}
+  link: {type: rod, from: bar.tip, to: block.c, length: 1}
+drives: {motor: {joint: guide, travel: "1 + t"}}
+"""
+
+
+def test_a_result_ends_a_run_before_what_would_fail() -> None:
+    """Two rods of 1 m are drawn straight at 1 s, cos angle = (1 + t)/2; and a table that ends at 0.5 m."""
+    angle = "of: coordinates.pin.angle, below"
+    events = f"until: {{{angle}: 0.5}}, events: {{same: {{{angle}: 0.5}}, later: {{{angle}: 0.4}}}}"
+    study = run(LOCK, f"duration: 3, samples: 7, {events}")
+    for name, count in (("until", 1), ("same", 1), ("later", 0)):
+        assert len(study.changes[name].times) == count
+        if count:
+            met(study.changes[name], np.array([2 * math.cos(0.5) - 1]), up=True)
+    assert len(study.results.time) == 3
+    with pytest.raises(SolveError, match="closure-lost"):
+        run(LOCK, f"duration: 3, samples: 7, until: {{{angle}: -0.5}}")
+    more = "tables: {k: {x: [0, 0.5], y: [0, 1]}}\n"
+    more += 'forces: {push: {type: torque, joint: guide, value: "table(k, guide.travel)"}}\n'
+    study = run(FALL, "duration: 5, samples: 3, until: {of: coordinates.guide.travel, above: 0.499}", more)
+    near(study.results.coordinates["guide"]["travel"][-1], 0.499, 1.0, 1e-12)
 
 
 def test_the_largest_moment_along_a_beam_passes_its_limit() -> None:

@@ -817,6 +817,7 @@ EXEMPT = {
     "REST_FARTHEST": "what accepts a step of the search",
     "REST_BENT": "what accepts a step of the search",
     "REST_STRAIGHT": "what accepts a step of the search",
+    "BEFORE_FAILURE": "where a search ends that lies before an error; of what is later the error is told",
     "EPS": "the rounding of one operation; others are told by it",
     "NEAR_DRAWING": "which start a search takes first; tests/laws/test_nearest.py looks at what comes of it",
     "FARTHER": "which of two poses that both close; tests/laws/test_nearest.py holds how far it may be",
