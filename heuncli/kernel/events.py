@@ -445,7 +445,9 @@ def look_at_turn(
         return BRANCH_IN_DOUBT
     course.event = beyond_rounding(scene, course, x0, x1)
     if course.event - x0 > scene.limits.leaving_last and pass_over(scene, course, x0, course.event):
-        return BRANCH_IN_DOUBT
+        if branches_at(scene, course, x0) != OPEN:
+            return BRANCH_IN_DOUBT
+        course.event = beyond_rounding(scene, course, x0, x1)
     if branches_at(scene, course, course.event) != TURNED:
         return PASSED
     # not where it is certain, which would be late each time: where the margin itself is zero
