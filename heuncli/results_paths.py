@@ -37,6 +37,11 @@ class Numbers(NamedTuple):
         """Whether the last axis is that of a vector's components; a run of three cuts is none."""
         return self.axes[-1:] == (SPACE,)
 
+    @property
+    def bent(self) -> bool:
+        """Whether it is of a section and no polynomial of its loads: stresses, and where the reduction line lies."""
+        return self.keys[:1] == ("sections",) and self.keys[2:3] in (("stress",), ("line",))
+
 
 def find(results: Results, path: str) -> Numbers:
     """The numbers at a path; nan is open. Raises SpecError [unknown-path] with what is known at the place it fails."""

@@ -32,7 +32,6 @@ from heuncli.study.setup import Setup
 if TYPE_CHECKING:
     from heuncli.study.solve import Options, Study
 
-HALVED = 2  # pieces of a stretch along which stresses are looked at (study/solve.py)
 SHOWN = 6  # digits of an instant in sentences
 NOT_TOLD = "of the event {} instants may be missing: {} is open, or not known, at some of those looked at"
 TOO_MANY = "of the event {} instants may be missing: the search was ended before all was looked at"
@@ -196,7 +195,7 @@ def on_result(study: Study, setup: Setup, condition: Condition) -> Changes:
     if along:
         from heuncli.study.stretches import stretched
 
-        setup = stretched(setup, HALVED if asked.keys[2] in ("stress", "line") else 0)
+        setup = stretched(setup, asked.bent)
     number = Watched(study, setup, condition, even, along)
     h = number.sample(times)
     error = number.error(asked.keys, h)

@@ -170,8 +170,8 @@ def peak(study: Study, path: str, how: str, times: Array | None = None) -> Peak:
     n = columns(study.results).shape[1]
     searched = Searched(columns, [list(range(n))], error, np.array([even]))
     if CUT in asked.axes:
-        name, bent = asked.keys[1], asked.keys[2] in ("stress", "line")
-        searched = Searched(none, [], error, np.array([even]), lambda results: [(name, columns(results))], bent)
+        name = asked.keys[1]
+        searched = Searched(none, [], error, np.array([even]), lambda results: [(name, columns(results))], asked.bent)
     bounds = study.extremes(searched, report_of(path), times=times)
     low, high = float(bounds.low[0]), float(bounds.high[0])
     if how == "abs" and abs(low) > abs(high):

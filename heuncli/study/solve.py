@@ -37,7 +37,6 @@ if TYPE_CHECKING:
     from heuncli.study.impulses import Impulses
 
 MOST_SEARCHED = 1_000_000  # numbers to look at for the extremes of a whole report; one measure has no such bound
-HALVED = 2  # pieces of a stretch along which stresses are looked at: they bend where loads change their sign
 NONE: frozenset[str] = frozenset()
 CHUNK = 200_000  # body-instants whose answers are kept at a time
 TOO_FEW = "extremes are searched from {} instants: too few to see every turn and step of this motion"
@@ -334,7 +333,7 @@ class Study:
         """The scene with its runs of cuts as whole stretches; bent: for what is no polynomial of the loads."""
         from heuncli.study.stretches import stretched  # only runs of cuts are worth it
 
-        return stretched(self.setup, HALVED if bent else 0)
+        return stretched(self.setup, bent)
 
     def extremes(
         self, searched: Searched, wanted: frozenset[str] | None, *, whole: bool = False, times: Array | None = None

@@ -18,10 +18,12 @@ from heuncli.records import replace
 from heuncli.results import Array, Block, Extremes, Place
 from heuncli.study.setup import Setup
 
+HALVED = 2  # how often pieces are halved for what bends where loads change their sign: stresses, reduction lines
 
-def stretched(setup: Setup, halved: int) -> Setup:
-    """The same, with its runs of cuts as whole stretches; halved: their pieces, so often at least."""
-    mechanism = setup.scene.mechanism
+
+def stretched(setup: Setup, bent: bool) -> Setup:
+    """The same, with its runs of cuts as whole stretches; bent: for what is no polynomial of the loads."""
+    mechanism, halved = setup.scene.mechanism, HALVED if bent else 0
 
     def whole(cuts: Cuts) -> Cuts | Stretch:
         if cuts.s is None or cuts.form is None:
