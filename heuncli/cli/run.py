@@ -15,8 +15,8 @@ from heuncli.cli.requests import FORMATS, Run
 from heuncli.cli.solving import choice, instants, overrides, positive, timings, warn
 from heuncli.cli.target import format_of, keep
 from heuncli.errors import Finding, Problem
-from heuncli.integration.methods import METHODS
 from heuncli.kinetostatics.joint_axes import JOINT_AXES
+from heuncli.method_rows import NAMES
 from heuncli.nearest import did_you_mean, nearest
 from heuncli.records import replace
 from heuncli.report import units
@@ -88,9 +88,9 @@ def _units(words: str) -> Units:
 
 
 def _method(name: str | None) -> str | None:
-    if name is not None and name not in METHODS:
-        message = f"--method {name}: not yet: a method other than {' and '.join(METHODS)}"
-        raise UsageError(Problem("not-yet", message, hint=f"known: {', '.join(METHODS)}"))
+    if name is not None and name not in NAMES:
+        message = f"--method {name}: not yet: a method other than {' and '.join(NAMES)}"
+        raise UsageError(Problem("not-yet", message, hint=f"known: {', '.join(NAMES)}"))
     return name
 
 

@@ -22,7 +22,8 @@ from heuncli.errors import LimitError, SolveError
 from heuncli.expressions.discontinuities import one_sided_limits
 from heuncli.integration.blows import Jump
 from heuncli.integration.evaluator import Recovered
-from heuncli.integration.methods import DOP853, Method
+from heuncli.integration.methods.dop853 import DOP853
+from heuncli.integration.methods.method import Method
 from heuncli.integration.pairs import between_strikes, instants_of, interleaved, moved_start, passed_between
 from heuncli.integration.runner import MOST_STEPS, ClosuresLost, Runner, Trajectory
 from heuncli.records import record, replace
@@ -141,7 +142,7 @@ class Runs:
     def finer(self, a: Trajectory, by: float) -> Trajectory | None:
         """A run at a tolerance smaller by a factor; by that of check runs at least, and where it collapses."""
         for ratio in (by, RATIO) if by > RATIO else (RATIO,):
-            run = self.attempt(max(a.tolerance / ratio, tolerances.LEAST_TOLERANCE), a, None, None)
+            run = self.attempt(max(a.local / ratio, tolerances.LEAST_TOLERANCE), a, None, None)
             if run is not None:
                 return run
         return None
@@ -153,9 +154,9 @@ class Runs:
         is larger, never too small. A start moved by rounding may set what A holds exactly at rest trembling so fast
         that no run can follow: then the start stays.
         """
-        coarser = a.tolerance * RATIO
-        tried = [(a.tolerance / ratio, self.moved) for ratio in (RATIO, LEAST_RATIO, 1.0 / RATIO)]
-        for local, start in (*tried, (a.tolerance / RATIO, None)):
+        coarser = a.local * RATIO
+        tried = [(a.local / ratio, self.moved) for ratio in (RATIO, LEAST_RATIO, 1.0 / RATIO)]
+        for local, start in (*tried, (a.local / RATIO, None)):
             run = self.attempt(local, a, at, start)
             if run is not None:
                 return run
@@ -163,9 +164,9 @@ class Runs:
 
     def beside(self, a: Trajectory, at: Array) -> Trajectory | None:
         """A run like A from the moved start, where rounding may matter; else None."""
-        if a.method.determined or a.tolerance >= tolerances.ROUNDING_MATTERS:
+        if a.method.determined or a.local >= tolerances.ROUNDING_MATTERS:
             return None
-        return self.attempt(a.tolerance, a, at, self.moved)
+        return self.attempt(a.local, a, at, self.moved)
 
 
 @record
@@ -205,7 +206,7 @@ def checked_run(runs: Runs, tolerance: float, loads: Loads) -> Checked:
         best, worse = (best, found) if best is not None and not found.better(best) else (found, best)
         lost += worse.runs[0].seconds + worse.seconds if worse is not None else 0.0
         miss = found.motion / tolerance
-        no_finer = a.tolerance <= tolerances.LEAST_TOLERANCE or found.runs[1].tolerance > a.tolerance
+        no_finer = a.local <= tolerances.LEAST_TOLERANCE or found.runs[1].local > a.local
         if miss <= 1.0 or attempt == RERUNS or no_finer or a.method.determined:
             break
         finer = runs.finer(a, 2.0 * miss)

@@ -19,7 +19,7 @@ from heuncli import tolerances
 from heuncli.errors import Problem, SolveError
 from heuncli.integration.evaluator import Recovered
 from heuncli.integration.loop import Integration, just_after, just_before
-from heuncli.integration.methods import DOP853
+from heuncli.integration.methods.dop853 import DOP853
 from heuncli.integration.runner import REACHED, ClosuresLost, Runner, Trajectory
 from heuncli.records import record
 from heuncli.results import Array
@@ -122,7 +122,7 @@ def forward(runner: Runner, good: State, t: float) -> State | None:
     begin, end = just_after(good.t), just_before(t)
     piece = Integration(
         runner.layout, runner.workspace, DOP853, np.array([t]),
-        most=MOST_STEPS, state=good.y, tolerance=LOCAL, rate=tolerances.LEAST_RATE / (t - good.t), following=0,
+        most=MOST_STEPS, state=good.y, local=LOCAL, rate=tolerances.LEAST_RATE / (t - good.t), following=0,
         late=0,
     )  # fmt: skip
     if begin < end:

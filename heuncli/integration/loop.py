@@ -9,7 +9,7 @@ from typing import Any, NamedTuple
 import numpy as np
 
 from heuncli.expressions.discontinuities import one_sided_limits
-from heuncli.integration.methods import Method
+from heuncli.integration.methods.method import Method
 from heuncli.integration.pace import FIRST_LOOK
 from heuncli.kernel.choose import integration
 from heuncli.response import Workspace
@@ -26,7 +26,8 @@ class Integration:
     def __init__(self, layout: Layout, workspace: Workspace, method: Method, times: Array, **given: Any) -> None:
         n = self.n = layout.n_state
         self.method = method
-        most = given.pop("most")
+        most, local = given.pop("most"), given.pop("local")
+        given |= {"tolerance": 1.0, "step": local} if method.fixed else {"tolerance": local, "step": 0.0}
         self.width = integration.record_width(workspace, n)
         self.output = {name: np.zeros(most) for name in PER_STEP}
         self.held = layout.pack.held

@@ -21,7 +21,8 @@ from heuncli.integration.between import Blows
 from heuncli.integration.blows import Jump
 from heuncli.integration.evaluator import Evaluator
 from heuncli.integration.loop import Integration, Segment, Steps, just_before, smooth_segments
-from heuncli.integration.methods import DOP853, Method
+from heuncli.integration.methods.dop853 import DOP853
+from heuncli.integration.methods.method import Method
 from heuncli.integration.moving import Moving, itself
 from heuncli.integration.pace import hopeless
 from heuncli.kernel.choose import steps as kernel
@@ -76,7 +77,7 @@ class Trajectory:
     steps: int
     evaluations: int
     gap: float
-    tolerance: float  # local, of this run
+    local: float  # its local tolerance; of a method of fixed step, the step
     method: Method
     seconds: float
     segments: tuple[Segment, ...] = ()  # without discontinuities, events of contacts or blows
@@ -208,7 +209,7 @@ class Runner(Evaluator):
     def trajectory(
         self,
         times: Sequence[float] | Array,
-        tolerance: float,
+        local: float,
         *,
         discontinuities: Sequence[float] = (),
         deadline: float | None = None,
@@ -217,7 +218,8 @@ class Runner(Evaluator):
         start: Array | None = None,
         whole: bool = False,
     ) -> Trajectory:
-        """Integrate from the start at t = 0 over the asked instants (ascending); `tolerance` is the local one.
+        """Integrate from the start at t = 0 over the asked instants (ascending); `local` is the local tolerance,
+        of a method of fixed step the step.
 
         start: a state to start from instead of the scene's own.
 
@@ -238,7 +240,7 @@ class Runner(Evaluator):
         start = moving.restrict(0.0, self.layout.y0 if start is None else start)
         run = Integration(
             moving.layout, moving.workspace, method, ts,
-            most=most, state=start, tolerance=tolerance, rate=rate, following=0, late=late,
+            most=most, state=start, local=local, rate=rate, following=0, late=late,
         )  # fmt: skip
         steps = Steps(start, run.width)
         check_deadline(deadline, f"before the run of {last:.6g} s began")
@@ -252,7 +254,7 @@ class Runner(Evaluator):
         ts, states = (ts, run.states()) if ending is None else cut_short(ts, run, ending.told)
         return Trajectory(
             times=ts, states=moving.embed(ts, states), ends=steps.column("ends"), steps=run.loop.steps,
-            evaluations=run.loop.evaluations, gap=run.loop.gap, tolerance=tolerance, method=method,
+            evaluations=run.loop.evaluations, gap=run.loop.gap, local=local, method=method,
             seconds=time.perf_counter() - begun, segments=tuple(pieces), kept=steps.records(),
             pivots=steps.column("pivots"), settled=steps.column("settled"), branches=steps.held_branches(),
             turned=steps.column("turned"), undecided=run.loop.undecided,
@@ -401,7 +403,7 @@ class Runner(Evaluator):
         layout, workspace = self.moving.layout, self.moving.workspace
         replayed = Integration(
             layout, workspace, run.method, times,
-            most=last - first + 1, state=layout.y0, tolerance=math.inf, rate=0.0, following=1, late=0,
+            most=last - first + 1, state=layout.y0, local=math.inf, rate=0.0, following=1, late=0,
         )  # fmt: skip
         loop, after = replayed.loop, run.after_blows
         loop.stand(record)

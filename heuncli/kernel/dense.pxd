@@ -14,6 +14,10 @@ cdef struct Method:
     int extra                 # further stages of the dense output
     int dense_rows            # rows of the interpolating polynomial beside the three that every method has
     int estimates             # rows of the error estimate: the finer, and (2) a coarser one to weigh it by
+    int fixed                 # 1: the steps are given (Run.step), none is judged
+    int by_step               # 1: an asked instant within a step is reached by a step of its own from the step's start
+    int implicit              # 1: the stages are solved for (collocation.py)
+    int attitude              # held within a step: 0 quaternion, 1 Rodrigues' parameters, 2 the same from the step's start
     double exponent           # 1 / order of the error estimate in h
     int *begin                # of each row: stages, solution, extra stages, estimates (coarser first), dense
     int *stage                # which stages a row combines
@@ -91,6 +95,7 @@ cdef struct Run:
     double before_end         # the last instant at which the piece's expressions hold
     double end
     double tolerance
+    double step               # the step of a method of fixed step
     double rate               # the scene's largest
     double energy_scale       # sum m size^2
     double error

@@ -1,6 +1,6 @@
 """A step's stages combined, and its dense output: what happens between its ends.
 
-A method is data (integration/methods.py): rows of (stage, coefficient).
+A method is data (integration/methods): rows of (stage, coefficient).
 """
 
 from __future__ import annotations

@@ -38,9 +38,9 @@ class Integration:
     def __init__(
         self, workspace: Workspace, method: dict[str, Any], start: dict[str, Any], output: dict[str, Any]
     ) -> None:
-        """method: numbers and arrays by name (integration/methods.py); start: groups (a table), energy_group, weights,
-        state, tolerance, rate, following, late; output: times, samples, and of the steps ends, settled, pivots, turned,
-        branches, passed, which are written into: flat arrays. following: ends, settled and branches are given.
+        """method: numbers and arrays by name (integration/methods); start: groups (a table), energy_group, weights,
+        state, tolerance, step, rate, following, late; output: times, samples, and of the steps ends, settled, pivots,
+        turned, branches, passed, which are written into: flat arrays. following: ends, settled and branches are given.
         """
         if not cython.compiled:
             self.run, self.method = Run(), Method()
@@ -61,6 +61,10 @@ class Integration:
         to.extra = method["extra"]
         to.dense_rows = method["dense_rows"]
         to.estimates = method["estimates"]
+        to.fixed = method["fixed"]
+        to.by_step = method["by_step"]
+        to.implicit = method["implicit"]
+        to.attitude = method["attitude"]
         to.exponent = method["exponent"]
         self.run.determined = method["determined"]
         to.begin = self.memory.ints(method["begin"])
@@ -75,6 +79,7 @@ class Integration:
         run.n = n
         run.energy_group = start["energy_group"]
         run.tolerance = start["tolerance"]
+        run.step = start["step"]
         run.rate = start["rate"]
         run.following = start["following"]
         run.late = start["late"]

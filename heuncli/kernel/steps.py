@@ -1,6 +1,6 @@
 """The stepping loop: an adaptive embedded Runge-Kutta method with dense output, and the states at asked instants.
 
-A method is data (integration/methods.py). The error of a step is measured body by body and the largest counts, for a
+A method is data (integration/methods). The error of a step is measured body by body and the largest counts, for a
 resting neighbour must not dilute it: coordinates against tol (angles) and tol * size (shifts), rates against tol * the
 largest rate the body has had. Hairer, Norsett, Wanner, Solving Ordinary Differential Equations I (1993), II.4-II.6.
 """

@@ -168,6 +168,10 @@ class Method(metaclass=Fields):
     extra: int
     dense_rows: int
     estimates: int
+    fixed: int
+    by_step: int
+    implicit: int
+    attitude: int
     exponent: float
     begin: list[int]
     stage: list[int]
@@ -254,6 +258,7 @@ class Run(metaclass=Fields):
     before_end: float
     end: float
     tolerance: float
+    step: float
     rate: float
     energy_scale: float
     error: float

@@ -17,12 +17,13 @@ from heuncli.integration.between import at_once
 from heuncli.integration.blows import Jump
 from heuncli.integration.checked import Checked, Marks, Runs, checked_run, motion_error, recovered_at
 from heuncli.integration.evaluator import Recovered
-from heuncli.integration.methods import METHODS
+from heuncli.integration.methods.registry import method_of
 from heuncli.integration.pairs import interleaved, moved_start
 from heuncli.integration.runner import Runner, Trajectory, check_deadline, discontinuities_of
 from heuncli.integration.singular import singular_poses
 from heuncli.integration.solvable import Asked, require_start
 from heuncli.mechanism.model import Mechanism
+from heuncli.method_rows import AUTO
 from heuncli.records import record
 from heuncli.results import Array, Estimate
 from heuncli.study.at_rest import require_motion
@@ -121,11 +122,11 @@ def checked_motion(
             runs = Runs(setup.runner, times, jumps, deadline, method)
             return checked_run(runs, tolerance, Kinds(setup, by_cause))
         except SolveError:
-            method = METHODS["auto"]
+            method = method_of(AUTO)
         except LimitError as limit:
             if limit.problems[0].code != "step-limit":
                 raise
-            method = METHODS["auto"]  # towards a singular pose steps along a branch become ever shorter
+            method = method_of(AUTO)  # towards a singular pose steps along a branch become ever shorter
     return checked_run(Runs(setup.runner, times, jumps, deadline, method), tolerance, Kinds(setup, by_cause))
 
 

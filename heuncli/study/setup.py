@@ -6,7 +6,9 @@ from functools import cached_property
 from typing import TYPE_CHECKING
 
 from heuncli.integration.following import determined
-from heuncli.integration.methods import FOLLOWED, METHODS, Method
+from heuncli.integration.methods.followed import FOLLOWED
+from heuncli.integration.methods.method import Method
+from heuncli.integration.methods.registry import method_of
 from heuncli.integration.moving import smaller
 from heuncli.integration.runner import Runner
 from heuncli.integration.solvable import ready
@@ -79,7 +81,7 @@ def set_up(
     scene, runner = ready(prepared)
     if spec.analysis.type == "rest":
         return set_up_at_rest(Setup(spec, scene, cuts, runner, None, {}, None, asked), left_out, looked_for, deadline)
-    chosen = METHODS[method or spec.analysis.method] if spec.analysis.type == "motion" else None
+    chosen = method_of(method or spec.analysis.method) if spec.analysis.type == "motion" else None
     reduced = None
     if chosen is not None and reduce:
         reduced, runner = reduced_runner(scene, runner)

@@ -16,8 +16,8 @@ import numpy as np
 from heuncli.errors import Problem, SolveError, SpecError
 from heuncli.integration.blows import met_freely
 from heuncli.integration.following import integrated_after_all
-from heuncli.integration.methods import METHODS
 from heuncli.kernel.choose import KERNEL
+from heuncli.method_rows import NAMES
 from heuncli.records import record, replace
 from heuncli.results import Accuracy, Array, Block, Extremes, Magnitudes, Place, Results
 from heuncli.results_schema import BLOWS, REPORTS, SHARED, SHARES, with_shared
@@ -135,9 +135,9 @@ def describe(spec: Spec, *, reduce: bool = True) -> Block:
 
 def known_method(name: str | None) -> str | None:
     """The name of a method if it is one. Raises SpecError [not-yet]."""
-    if name is not None and name not in METHODS:
-        message = f"method {name}: not yet: a method other than {' and '.join(METHODS)}"
-        raise SpecError(Problem("not-yet", message, hint=f"known: {', '.join(METHODS)}"))
+    if name is not None and name not in NAMES:
+        message = f"method {name}: not yet: a method other than {' and '.join(NAMES)}"
+        raise SpecError(Problem("not-yet", message, hint=f"known: {', '.join(NAMES)}"))
     return name
 
 

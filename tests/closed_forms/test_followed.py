@@ -6,7 +6,8 @@ import numpy as np
 import pytest
 
 from heuncli.errors import SolveError
-from heuncli.integration.methods import DOP853, FOLLOWED
+from heuncli.integration.methods.dop853 import DOP853
+from heuncli.integration.methods.followed import FOLLOWED
 from heuncli.results import Array, Results
 from tests.shared.scenes import solved
 

@@ -7,14 +7,15 @@ from collections.abc import Callable
 import numpy as np
 import pytest
 
-from heuncli.integration import methods
-from heuncli.integration.methods import Method, Row
+from heuncli.integration.methods.method import Method, Row
+from heuncli.integration.methods.registry import method_of
+from heuncli.method_rows import METHODS as ROWS
 from heuncli.results import Array
 from tests.closed_forms.test_theory_2j_motion import heavy_top
 from tests.shared.bars import chain, double, rods
 from tests.shared.scenes import study
 
-METHODS = [value for value in vars(methods).values() if isinstance(value, Method)]
+METHODS = [method_of(row.name) for row in ROWS]
 
 
 def slope_of_pendulum(t: float, y: Array) -> Array:

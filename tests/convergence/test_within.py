@@ -167,7 +167,7 @@ def test_a_chaotic_run_has_its_energy_at_every_instant() -> None:
     found = s.only(s.search_times, frozenset({"energy"})).energy
     total = found["kinetic"] + found["potential"]
     near(total, np.full(len(total), total[0]), float(np.ptp(found["potential"])), 1e-6)
-    own = trajectory(s.setup, s.search_times, run.tolerance)
+    own = trajectory(s.setup, s.search_times, run.local)
     assert np.array_equal(s.setup.runner.resample(run, s.search_times), own.states)
 
 

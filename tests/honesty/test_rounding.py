@@ -8,7 +8,7 @@ import numpy as np
 import pytest
 
 from heuncli.errors import SolveError
-from heuncli.integration.methods import FOLLOWED
+from heuncli.integration.methods.followed import FOLLOWED
 from heuncli.study.warnings import unbalanced
 from tests.shared.scenes import near, solved
 

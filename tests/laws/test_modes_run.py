@@ -10,7 +10,7 @@ import numpy as np
 import pytest
 
 from heuncli.errors import SolveError
-from heuncli.integration.methods import DOP853
+from heuncli.integration.methods.dop853 import DOP853
 from heuncli.linearisation.displace import displaced
 from heuncli.linearisation.oscillations import Mode, oscillations
 from heuncli.linearisation.reduced import idle_spins

@@ -7,15 +7,15 @@ from __future__ import annotations
 
 from collections.abc import Callable, Iterable, Iterator
 
+from heuncli.method_rows import NAMES
 from heuncli.spec.rules.registry import DraftDocument, Path_, Violation, rule
 
 Where = Callable[[DraftDocument], Iterable[Path_]]
-METHODS = ("auto", "DOP853")
 
 
 def other_method(draft: DraftDocument) -> Iterator[Path_]:
     """A method of integration that there is not."""
-    if draft.document.analysis.method not in METHODS:
+    if draft.document.analysis.method not in NAMES:
         yield "analysis", "method"
 
 
@@ -34,7 +34,7 @@ def rubbing(draft: DraftDocument) -> Iterator[Path_]:
 
 NOT_YET: tuple[tuple[str, Where], ...] = (
     ("friction at strikes", rubbing),
-    (f"a method other than {' and '.join(METHODS)}", other_method),
+    (f"a method other than {' and '.join(NAMES)}", other_method),
     ("fixed steps", fixed_step),
 )
 

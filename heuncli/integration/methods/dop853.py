@@ -1,61 +1,12 @@
-"""The methods by which the motion is integrated, as data: rows of (stage, coefficient), zeros left out."""
+"""Dormand and Prince 8(5,3), dense output of order 7.
+
+Hairer, Norsett, Wanner, Solving Ordinary Differential Equations I (1993), II.10, and their code DOP853.
+"""
 
 from __future__ import annotations
 
-from array import array
-from collections.abc import Mapping
-from functools import cached_property
-from types import MappingProxyType
-from typing import Any
+from heuncli.integration.methods.method import Method
 
-from heuncli.records import record
-
-Row = tuple[tuple[int, float], ...]
-
-
-@record
-class Method:
-    """An explicit embedded Runge-Kutta method with dense output.
-
-    nodes: of all stages; stages: rows of the stages 1..; solution; extra: further stages for the dense output;
-    estimates: the rows of the error, one, or two, of which the first is coarser (then h e5^2 / sqrt(e5^2 + 0.01 e3^2));
-    error_order: of the estimate in h; dense: rows of the interpolating polynomial in nested form, beside the three that
-    every method has: y + x (F0 + (1 - x) (F1 + x (F2 + (1 - x) (F3 + ...)))). determined: nothing is integrated.
-    """
-
-    name: str
-    order: int
-    nodes: tuple[float, ...]
-    stages: tuple[Row, ...]
-    solution: Row
-    extra: tuple[Row, ...]
-    estimates: tuple[Row, ...]
-    error_order: int
-    dense: tuple[Row, ...]
-    determined: bool = False
-
-    @cached_property
-    def arrays(self) -> dict[str, Any]:
-        """The method as the kernel takes it (kernel/steps.pxd)."""
-        rows = [(), *self.stages, self.solution, *self.extra, *self.estimates, *self.dense]
-        begin = [0]
-        for row in rows:
-            begin.append(begin[-1] + len(row))
-        return {
-            "stages": len(self.stages) + 1,
-            "extra": len(self.extra),
-            "dense_rows": len(self.dense),
-            "estimates": len(self.estimates),
-            "exponent": 1.0 / self.error_order,
-            "determined": int(self.determined),
-            "begin": array("i", begin),
-            "stage": array("i", [stage for row in rows for stage, _ in row]),
-            "coefficient": array("d", [c for row in rows for _, c in row]),
-            "node": array("d", self.nodes),
-        }
-
-
-# Dormand and Prince 8(5,3), dense output of order 7: Hairer, Norsett, Wanner, Solving ODEs I (1993), II.10 and DOP853.
 DOP853 = Method(
     name="DOP853",
     order=8,
@@ -273,19 +224,3 @@ DOP853 = Method(
         ),
     ),
 )
-
-# Of a motion that its drives determine (kernel/following.py): its interpolation has two rows more than the cubic's.
-FOLLOWED = Method(
-    name="none: every instant is solved by itself",
-    order=1,
-    nodes=(0.0,),
-    stages=(),
-    solution=((0, 1.0),),
-    extra=(),
-    estimates=(((0, 1.0),),),
-    error_order=1,
-    dense=((), ()),
-    determined=True,
-)
-
-METHODS: Mapping[str, Method] = MappingProxyType({"auto": DOP853, "DOP853": DOP853})  # by the names of --method
