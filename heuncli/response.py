@@ -183,6 +183,17 @@ def jacobian(at: workspace.Workspace, layout: Layout, times: Array, states: Arra
     return Jacobian(out.reshape(len(times), width), row, freedom, shape)
 
 
+def tangent(at: workspace.Workspace, t: float, state: Array) -> Array:
+    """d(ydot)/dy at a state, (n, n): how the motion's derivative hangs on the state, closure rows and branches kept.
+
+    Off the closures it is that of the equations as they are integrated: accelerations that keep gaps as they grow.
+    """
+    n = len(state)
+    out = np.zeros(n * n)
+    at.jacobian(t, np.ascontiguousarray(state, dtype=float), out)
+    return out.reshape(n, n)
+
+
 def carried(at: workspace.Workspace, times: Array, states: Array, multipliers: Array, n_b: int) -> Array:
     """Joint loads ON the bodies, moment about the joint point and force, that hold closure multipliers at rest.
 

@@ -15,6 +15,7 @@ MODULES = (
     "chosen",
     "response",
     "columns",
+    "jacobian",
     "workspace",
     "dense",
     "course",

@@ -249,6 +249,7 @@ cdef struct Limits:
     double branch_step
     double branch_beside
     double branch_bend
+    double varied
 
 cdef struct Scene:
     int body_count

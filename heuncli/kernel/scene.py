@@ -318,6 +318,7 @@ class Limits(Record):
     branch_step: float  # of the least pivot: how far coordinates move in a step along a branch
     branch_beside: float  # of that, how far what begins beside the start
     branch_bend: float  # of a drive's acceleration in a step: by how much its middle may be off what the ends tell
+    varied: float  # of a number's size: what is small, and far above its rounding, for a derivative
 
 
 class Scene(metaclass=Fields):

@@ -161,6 +161,15 @@ class Instants(metaclass=Fields):
             setattr(self, name, value)
 
 
+class Tangent(metaclass=Fields):
+    """The tangent of a motion at a state, and room for its work; jacobian.pxd says what the fields are."""
+
+    n: int
+    J: list[float]
+    at: list[float]
+    beside: list[float]
+
+
 class Method(metaclass=Fields):
     """A Runge-Kutta method; dense.pxd says what the fields are."""
 

@@ -5,7 +5,8 @@ from heuncli.kernel.chosen cimport choose_afresh, judge_start
 from heuncli.kernel.closures cimport acceleration_of, measure_rows, push_closures, size_of_answer
 from heuncli.kernel.columns cimport answer_blow, answer_causes, answer_column, measure_answers, put, unmet
 from heuncli.kernel.events cimport find_angles
-from heuncli.kernel.expressions cimport FREE, HELD, Expressions
+from heuncli.kernel.expressions cimport FREE, HELD, TAKEN, Expressions
+from heuncli.kernel.jacobian cimport Tangent, find_jacobian
 from heuncli.kernel.memory cimport Memory
 from heuncli.kernel.orthogonal cimport doubt_multipliers
 from heuncli.kernel.response cimport configure, evaluate, must_choose_anew, settle

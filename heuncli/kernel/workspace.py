@@ -2,7 +2,8 @@
 
     recover     everything the sweep knows at given states
     columns     one factorisation, many loads: what answers each
-    jacobian    the closure rows on the tree's freedoms
+    jacobians   the closure rows on the tree's freedoms
+    jacobian    the tangent of the motion
     carried     the joint loads that closure multipliers alone leave in the tree
 Everything goes in and out as flat arrays of double (tree/tables.py names their parts); nothing is kept between calls.
 """
@@ -23,7 +24,8 @@ if not cython.compiled:
     from heuncli.kernel.closures import acceleration_of, measure_rows, push_closures, size_of_answer
     from heuncli.kernel.columns import answer_blow, answer_causes, answer_column, measure_answers, put, unmet
     from heuncli.kernel.events import find_angles
-    from heuncli.kernel.expressions import FREE, HELD, Expressions
+    from heuncli.kernel.expressions import FREE, HELD, TAKEN, Expressions
+    from heuncli.kernel.jacobian import find_jacobian
     from heuncli.kernel.memory import Memory
     from heuncli.kernel.orthogonal import doubt_multipliers
     from heuncli.kernel.response import configure, evaluate, must_choose_anew, settle
@@ -46,7 +48,7 @@ if not cython.compiled:
     )
     from heuncli.kernel.selection import jacobian_row, order_all, select_independent_rows
     from heuncli.kernel.shadow import cython
-    from heuncli.kernel.structs import Instants
+    from heuncli.kernel.structs import Instants, Tangent
     from heuncli.kernel.tree import balance, factor_tree, kinematics
 
 
@@ -511,6 +513,28 @@ class Workspace:
                 answer = [0.0] * width
                 put_jacobian(scene, answer)
                 out[width * j : width * j + width] = answer
+
+    def jacobian(self, t: cython.double, state: Any, out: Any) -> None:
+        """d(ydot)/dy at a state, which is not changed, flat by rows: rows and branches are those of the state."""
+        scene: cython.pointer[Scene] = cython.address(self.scene)
+        memory: Memory = Memory()
+        tangent: Tangent
+        if not cython.compiled:
+            tangent = Tangent()
+        tangent.n = len(state)
+        y: cython.p_double = memory.doubles(state)
+        tangent.at = memory.zeros(tangent.n)
+        tangent.beside = memory.zeros(tangent.n)
+        tangent.J = memory.over(out, 1, tangent.n * tangent.n)[0]
+        if scene.closure_count:
+            choose_afresh(scene, t, y)
+        scene.programs.holding = TAKEN
+        evaluate(scene, t, y, tangent.at)
+        scene.programs.holding = HELD
+        find_jacobian(scene, t, y, cython.address(tangent))
+        scene.programs.holding = FREE
+        if not cython.compiled:
+            out[:] = tangent.J
 
     def carried(self, times: Any, states: Any, multipliers: Any, out: Any) -> None:
         """Joint loads that hold closure multipliers at rest: flat, instants, columns, bodies, moment and force.
