@@ -99,7 +99,7 @@ def test_same_bits_with_events(scene: str | int) -> None:
 MAPS = """
 import json, sys
 import numpy as np
-from heuncli.response import carried, columns, jacobian
+from heuncli.response import carried, columns, jacobian, tangent
 from heuncli.spec.load import load
 from heuncli.study.setup import set_up
 setup = set_up(load(sys.argv[1]))
@@ -113,6 +113,7 @@ print(json.dumps({
     "jacobian": jacobian(at[0], layout, *at[1:]).entries.tolist(),
     "carried": carried(*at, multipliers, len(layout.place)).tolist(),
     "columns": [answers.bodies.tolist(), answers.multipliers.tolist()],
+    "tangent": tangent(at[0], 0.0, found.states[0]).tolist(),
 }, default=list))
 """
 
