@@ -73,6 +73,7 @@ def test_a_tree(seed: int, way: str) -> None:
     same_results(other, first, run_tree(other.scene, other.time), SAME)
 
 
+@pytest.mark.heavy
 @each(("other ends",), seeds(8))
 def test_a_tree_from_its_other_ends(seed: int, way: str) -> None:
     scene, first = tree(seed, kinds=EITHER_END)

@@ -50,6 +50,7 @@ def sizes(c: Case, k: int) -> tuple[float, float]:
     return c.force[k], c.force[k] * c.length
 
 
+@pytest.mark.heavy
 @pytest.mark.parametrize("seed", SEEDS)
 def test_a_cut_carries_what_its_weld_would(seed: int) -> None:
     """s' and M' about the cut's point, its place and frame, and the six resultants in that frame."""

@@ -41,6 +41,7 @@ def spread(seed: int) -> Case:
     return case({**scene, "sections": cuts})
 
 
+@pytest.mark.heavy
 @pytest.mark.parametrize("seed", SEEDS)
 def test_motion_and_reactions(seed: int) -> None:
     """Accelerations, and all that is certain of the joints' loads."""

@@ -96,6 +96,7 @@ TURNING = [
 ]
 
 
+@pytest.mark.heavy
 @pytest.mark.parametrize(("time", "hinge", "rate"), TURNING)
 def test_bricard_set_by_its_crank(time: float, hinge: tuple[float, float, float], rate: float) -> None:
     """The crank angle that brings P3's x where it was published brings y and z there too; rates fit."""

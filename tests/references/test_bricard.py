@@ -84,6 +84,7 @@ def test_open_components(name: str) -> None:
         assert (~np.isnan(got)).tolist() == unique[:6].tolist()
 
 
+@pytest.mark.heavy
 def test_neighbouring_hinges_carry_the_same_forces() -> None:
     """Fifteen equalities of components: what lies between two hinges is weight and inertia, which are certain."""
     forces = [s for s in run().results.certain_sums if all(".force." in n for n in s["terms"])]
@@ -123,6 +124,7 @@ def test_certain_sums_are_certain() -> None:
                 assert not any(solution.sum({name: 1.0})[1] for name in s["terms"])
 
 
+@pytest.mark.heavy
 def test_differences_at_the_start() -> None:
     """At t = 0 the self-stress is (1, 1, 1) in every hinge: differences of components are certain in any split."""
     P0 = run(least_norm=True).results.joints["P0"]["force"][0]
