@@ -147,6 +147,10 @@ UNSEEN_RATE = 1e-9  # of a rate's size: what it may do in the mean between the n
 # default tolerance; the integral itself errs by rounding
 QUADRATURE = 1e-14  # of the scale: whole against halves; planes that graze thin walls then err by as much
 
+# -- choice of the method
+STIFF = 0.5  # of the boundary of stability: where that holds steps short they are at it, else seldom beyond a third
+RADAU5 = 1e-6  # local tolerance above which three stages take less than five
+
 # -- rest
 REST_FIRST = 0.01  # rad, or of the size: the first step, short against any lever
 REST_FARTHEST = 0.5  # the same: a longer step may pass over what bends within half a turn

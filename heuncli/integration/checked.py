@@ -84,16 +84,19 @@ class Checked:
     check_seconds: float
     lost_seconds: float  # of runs that missed the tolerance
     changes: tuple[Changes, ...] = ()  # of the conditions
+    begun_anew: str | None = None  # why by another method than the one that was chosen
 
 
 class Runs:
     """Runs of one motion, at several tolerances."""
 
     def __init__(
-        self, runner: Runner, times: Array, jumps: Sequence[float], deadline: float | None, method: Method = DOP853
-    ) -> None:
+        self, runner: Runner, times: Array, jumps: Sequence[float], deadline: float | None, method: Method = DOP853,
+        *, watched: bool = False,
+    ) -> None:  # fmt: skip
+        """watched: the runs to be told are left where another method takes less (Stiff)."""
         self.runner, self.times, self.jumps = runner, times, jumps
-        self.deadline, self.method = deadline, method
+        self.deadline, self.method, self.watched = deadline, method, watched
         self.moved, self.marks = moved_start(runner.layout), Marks(runner.layout)
 
     def run(
@@ -106,6 +109,7 @@ class Runs:
         return self.runner.trajectory(
             self.times if at is None else at, local, discontinuities=self.jumps, deadline=self.deadline,
             most_steps=most_steps, method=self.method, start=start, whole=at is not None,
+            watched=self.watched and at is None,
         )  # fmt: skip
 
     def first(self, local: float) -> Trajectory:

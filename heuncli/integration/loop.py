@@ -8,6 +8,7 @@ from typing import Any, NamedTuple
 
 import numpy as np
 
+from heuncli import tolerances
 from heuncli.expressions.discontinuities import one_sided_limits
 from heuncli.integration.methods.method import Method
 from heuncli.integration.pace import FIRST_LOOK
@@ -17,6 +18,9 @@ from heuncli.results import Array
 from heuncli.tree.layout import Layout
 
 KEPT = 20_000_000  # numbers in the states kept for replays, at the ends of all steps or of every second, fourth, ...
+STIFF_AFTER = 15  # steps held short by stability, as in Hairer's DOP853 ...
+EASY_AFTER = 6  # ... and steps on end that were not, after which their count begins anew
+UNWATCHED = {"stiff_after": 0, "easy_after": 0, "stable": 0.0}
 PER_STEP = ("ends", "settled", "pivots", "turned")  # what is put down of each step
 
 
@@ -27,6 +31,9 @@ class Integration:
         n = self.n = layout.n_state
         self.method = method
         most, local = given.pop("most"), given.pop("local")
+        self.local, self.rate = local, given["rate"]
+        self.looked = 0  # steps after which it was looked at last whether another method takes less
+        given |= stiffness_of(method) if given.pop("watched", False) else UNWATCHED
         given |= {"tolerance": 1.0, "step": local} if method.fixed else {"tolerance": local, "step": 0.0}
         self.width = integration.record_width(workspace, n)
         self.output = {name: np.zeros(most) for name in PER_STEP}
@@ -53,6 +60,13 @@ class Integration:
         """The states at the asked instants, (n_t, n)."""
         self.loop.fetch()
         return self.samples.reshape(self.count, self.n)
+
+
+def stiffness_of(method: Method) -> dict[str, float]:
+    """By what the kernel's loop notices stiffness (kernel/stiffness.py); an implicit method is not held by it."""
+    if method.stable == 0.0:
+        return UNWATCHED
+    return {"stiff_after": STIFF_AFTER, "easy_after": EASY_AFTER, "stable": tolerances.STIFF * method.stable}
 
 
 class Segment(NamedTuple):

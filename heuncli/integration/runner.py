@@ -37,10 +37,11 @@ if TYPE_CHECKING:  # loaded where a condition ends the run
 CHUNK = 2_000  # body-steps between two looks at the clock
 MOST_STEPS = 20_000_000
 
-REACHED, MORE, ROPE_SLACK, CHATTERING, STRUCK, LET_GO, TURNED = (
-    kernel.CODES[name] for name in ("reached", "more", "rope slack", "chattering", "struck", "let go", "turned")
+REACHED, MORE, ROPE_SLACK, CHATTERING, STRUCK, LET_GO, TURNED, STIFF = (
+    kernel.CODES[name]
+    for name in ("reached", "more", "rope slack", "chattering", "struck", "let go", "turned", "stiff")
 )
-GOES_ON = (MORE, STRUCK, LET_GO, TURNED)
+GOES_ON = (MORE, STRUCK, LET_GO, TURNED, STIFF)
 TROUBLE = {
     kernel.CODES["collapsed"]: (
         "step-collapsed",
@@ -156,6 +157,14 @@ class ClosuresLost(SolveError):
         self.passed, self.failed, self.last = passed, failed, last
 
 
+class Stiff(Exception):
+    """A run that was left, for another method takes less; told: why, in a sentence; seconds: that it took."""
+
+    def __init__(self, method: Method, told: str) -> None:
+        super().__init__(told)
+        self.method, self.told, self.seconds = method, told, 0.0
+
+
 @record
 class Going:
     """A run under way: the kernel's loop, what is put down of it, its blows, its end; its limits."""
@@ -217,6 +226,7 @@ class Runner(Evaluator):
         method: Method = DOP853,
         start: Array | None = None,
         whole: bool = False,
+        watched: bool = False,
     ) -> Trajectory:
         """Integrate from the start at t = 0 over the asked instants (ascending); `local` is the local tolerance,
         of a method of fixed step the step.
@@ -226,7 +236,8 @@ class Runner(Evaluator):
         Where a rope would have to push the run ends: the instants up to there, and that one. So it does where the
         condition that ends it becomes true, unless the whole of it is asked for.
 
-        Raises SolveError where the motion cannot be continued, LimitError past the deadline (time.monotonic()).
+        Raises SolveError where the motion cannot be continued, LimitError past the deadline (time.monotonic()); and if
+        it is watched Stiff where an implicit method takes less (integration/stiffness.py).
         """
         begun = time.perf_counter()
         moving = self.moving
@@ -241,6 +252,7 @@ class Runner(Evaluator):
         run = Integration(
             moving.layout, moving.workspace, method, ts,
             most=most, state=start, local=local, rate=rate, following=0, late=late,
+            watched=watched,
         )  # fmt: skip
         steps = Steps(start, run.width)
         check_deadline(deadline, f"before the run of {last:.6g} s began")
@@ -250,6 +262,9 @@ class Runner(Evaluator):
             pieces, ending = self._pass(going, smooth_segments(last, discontinuities))
         except SolveError as error:
             error.reached = run.loop.t
+            raise
+        except Stiff as stiff:
+            stiff.seconds = time.perf_counter() - begun
             raise
         ts, states = (ts, run.states()) if ending is None else cut_short(ts, run, ending.told)
         return Trajectory(
@@ -303,6 +318,10 @@ class Runner(Evaluator):
                 check_deadline(going.deadline, f"at t = {run.loop.t:.6g} s of {going.last:.6g} s")
             if code in GOES_ON:
                 self._require_progress(going)
+            if code == STIFF:
+                from heuncli.integration.stiffness import require_easy  # few scenes are
+
+                require_easy(self, going, segment)
             if code in (STRUCK, LET_GO):
                 t = run.loop.t
                 pieces += [Segment(begin, segment.before_end, t)] if t > begin else []

@@ -80,6 +80,10 @@ cdef struct Run:
     int turns                 # 1: branches turn at the end of the step under way
     int at_once               # turns of branches since the time went on
     int flurry                # events since flurry_begin
+    int stiff_after           # steps held short by stability after which the loop is left; 0: not looked at
+    int easy_after            # steps on end that were not, after which their count begins anew
+    int stiff_steps           # the counts
+    int easy_steps
     int undecided             # steps of which bounds could not decide what they hold
     int steps
     int evaluations
@@ -96,6 +100,8 @@ cdef struct Run:
     double end
     double tolerance
     double step               # the step of a method of fixed step
+    double stable             # h |lambda| from which a step counts as held short by stability
+    double swiftness          # that of the step tried
     double rate               # the scene's largest
     double energy_scale       # sum m size^2
     double error

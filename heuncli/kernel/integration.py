@@ -85,7 +85,8 @@ class Integration:
         run.late = start["late"]
         run.next_sample = run.contact = run.steps = run.evaluations = run.rejected = run.done = run.dodges = 0
         run.rejected_before = run.has_cut = run.landings = run.contact_landings = run.at_once = run.turns = 0
-        run.flurry = run.undecided = run.seeing = 0
+        run.flurry = run.undecided = run.seeing = run.stiff_steps = run.easy_steps = 0
+        run.stiff_after, run.easy_after, run.stable = start["stiff_after"], start["easy_after"], start["stable"]
         run.t = run.proposed = run.energy_scale = run.gap = run.cut = run.flurry_begin = 0.0
         run.weights = self.memory.doubles(start["weights"])
         run.y = self.memory.doubles(start["state"])

@@ -23,6 +23,7 @@ MODULES = (
     "contacts",
     "landing",
     "following",
+    "stiffness",
     "steps",
     "integration",
 )

@@ -13,11 +13,12 @@ from heuncli.kernel.landing cimport begin_to_see, in_flurry, meet, see_stage
 from heuncli.kernel.response cimport evaluate, evaluate_settled, must_choose_anew, settle, settle_evaluated
 from heuncli.kernel.scene cimport Body, Group, Scene
 from heuncli.kernel.selection cimport select_independent_rows
+from heuncli.kernel.stiffness cimport estimate_swiftness, is_held_short
 from heuncli.kernel.tree cimport coordinates
 from libc.math cimport fabs, pow, sqrt
 
 cdef enum:
-    REACHED, MORE, COLLAPSED, NOT_A_NUMBER, CLOSURES_LOST, ROPE_SLACK, CHATTERING, STRUCK, LET_GO, TURNED
+    REACHED, MORE, COLLAPSED, NOT_A_NUMBER, CLOSURES_LOST, ROPE_SLACK, CHATTERING, STRUCK, LET_GO, TURNED, STIFF
     ACCEPTED, AGAIN
 
 cdef double step_error(Method *method, Run *run) noexcept nogil

@@ -36,12 +36,13 @@ if not cython.compiled:
     from heuncli.kernel.scene import Body, Group, Scene
     from heuncli.kernel.selection import select_independent_rows
     from heuncli.kernel.shadow import cython
+    from heuncli.kernel.stiffness import estimate_swiftness, is_held_short
     from heuncli.kernel.structs import Method, Run
     from heuncli.kernel.tree import coordinates
 
     # What `advance` answers; for C these stand in steps.pxd, in the same order.
     REACHED, MORE, COLLAPSED, NOT_A_NUMBER, CLOSURES_LOST, ROPE_SLACK, CHATTERING = range(7)
-    STRUCK, LET_GO, TURNED, ACCEPTED, AGAIN = range(7, 12)
+    STRUCK, LET_GO, TURNED, STIFF, ACCEPTED, AGAIN = range(7, 13)
 
 CODES = {
     "reached": REACHED,
@@ -54,6 +55,7 @@ CODES = {
     "struck": STRUCK,
     "let go": LET_GO,
     "turned": TURNED,
+    "stiff": STIFF,
 }
 
 
@@ -300,6 +302,8 @@ def attempt(scene: cython.pointer[Scene], method: cython.pointer[Method], run: c
     trouble: cython.int = evaluate(scene, clipped(run, run.stop), run.z, run.K[method.stages])
     if run.seeing:
         see_stage(scene, run)
+    if run.stiff_after:
+        estimate_swiftness(method, run)
     return trouble
 
 
@@ -541,7 +545,7 @@ def run_steps(scene: cython.pointer[Scene], method: cython.pointer[Method], run:
     """Up to `most` accepted steps towards the end of the piece: REACHED, MORE to do, or why it cannot be continued.
 
     Following, `ends` and `settled` give the steps, and none is judged. Halting, TURNED where a piece begins and where
-    branches turn.
+    branches turn. STIFF where stability keeps the steps short, if that is looked at.
     """
     code: cython.int
     trouble: cython.int
@@ -595,6 +599,8 @@ def run_steps(scene: cython.pointer[Scene], method: cython.pointer[Method], run:
                 return LET_GO
             if run.halting and run.turns:
                 return TURNED
+            if run.stiff_after and is_held_short(run):
+                return STIFF
         elif code != AGAIN:
             return code
     return REACHED

@@ -252,6 +252,10 @@ class Run(metaclass=Fields):
     turns: int
     at_once: int
     flurry: int
+    stiff_after: int
+    easy_after: int
+    stiff_steps: int
+    easy_steps: int
     undecided: int
     steps: int
     evaluations: int
@@ -268,6 +272,8 @@ class Run(metaclass=Fields):
     end: float
     tolerance: float
     step: float
+    stable: float
+    swiftness: float
     rate: float
     energy_scale: float
     error: float

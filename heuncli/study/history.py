@@ -17,14 +17,15 @@ from heuncli.integration.between import at_once
 from heuncli.integration.blows import Jump
 from heuncli.integration.checked import Checked, Marks, Runs, checked_run, motion_error, recovered_at
 from heuncli.integration.evaluator import Recovered
+from heuncli.integration.methods.method import Method
 from heuncli.integration.methods.registry import method_of
 from heuncli.integration.pairs import interleaved, moved_start
-from heuncli.integration.runner import Runner, Trajectory, check_deadline, discontinuities_of
+from heuncli.integration.runner import Runner, Stiff, Trajectory, check_deadline, discontinuities_of
 from heuncli.integration.singular import singular_poses
 from heuncli.integration.solvable import Asked, require_start
 from heuncli.mechanism.model import Mechanism
 from heuncli.method_rows import AUTO
-from heuncli.records import record
+from heuncli.records import record, replace
 from heuncli.results import Array, Estimate
 from heuncli.study.at_rest import require_motion
 from heuncli.study.extremes import distinct
@@ -127,7 +128,23 @@ def checked_motion(
             if limit.problems[0].code != "step-limit":
                 raise
             method = method_of(AUTO)  # towards a singular pose steps along a branch become ever shorter
-    return checked_run(Runs(setup.runner, times, jumps, deadline, method), tolerance, Kinds(setup, by_cause))
+    try:
+        runs = Runs(setup.runner, times, jumps, deadline, method, watched=setup.auto)
+        return checked_run(runs, tolerance, Kinds(setup, by_cause))
+    except Stiff as stiff:
+        runs = Runs(setup.runner, times, jumps, deadline, stiff.method)
+        return begun_anew(runs, stiff, method, setup, tolerance, by_cause)
+
+
+def begun_anew(runs: Runs, stiff: Stiff, method: Method, setup: Setup, tolerance: float, by_cause: bool) -> Checked:
+    """A stiff motion by an implicit method, or, where that does not come through, after all as it was begun."""
+    try:
+        checked = checked_run(runs, tolerance, Kinds(setup, by_cause))
+    except SolveError:
+        runs.method = method
+        checked = checked_run(runs, tolerance, Kinds(setup, by_cause))
+        return replace(checked, lost_seconds=checked.lost_seconds + stiff.seconds)
+    return replace(checked, lost_seconds=checked.lost_seconds + stiff.seconds, begun_anew=stiff.told)
 
 
 def state(setup: Setup, at: float, tolerance: float, by_cause: bool = False) -> History:

@@ -14,6 +14,7 @@ from heuncli.integration.runner import Runner
 from heuncli.integration.solvable import ready
 from heuncli.mechanism.build import build, forms_of
 from heuncli.mechanism.model import Mechanism
+from heuncli.method_rows import AUTO
 from heuncli.records import record, replace
 from heuncli.reduction import compose as reduction
 from heuncli.reduction.model import Reduced
@@ -35,6 +36,7 @@ class Setup:
     spec: as far as it is solved; asked: what is told of it. cuts: of the sections, as asked; in a search runs of cuts
     as whole stretches stand for them. reduced: what is integrated in the scene's place, and why; None where nothing is,
     or where all is solved in full. rest: how the pose was found, where that is what is asked for.
+    auto: the method was left to heun, which may change it on the way.
     """
 
     spec: Spec
@@ -46,6 +48,7 @@ class Setup:
     reduced: Reduced | None = None
     asked: Asked = EVERYTHING
     rest: Rest | None = None
+    auto: bool = False
 
     @cached_property
     def steady(self) -> dict[int, Array]:
@@ -81,16 +84,17 @@ def set_up(
     scene, runner = ready(prepared)
     if spec.analysis.type == "rest":
         return set_up_at_rest(Setup(spec, scene, cuts, runner, None, {}, None, asked), left_out, looked_for, deadline)
-    chosen = method_of(method or spec.analysis.method) if spec.analysis.type == "motion" else None
+    asked_method = method or spec.analysis.method
+    chosen = method_of(asked_method) if spec.analysis.type == "motion" else None
     reduced = None
     if chosen is not None and reduce:
         reduced, runner = reduced_runner(scene, runner)
     told = reductions(left_out, scene, reduced)
-    if chosen is not None and reduce and (method or spec.analysis.method) == "auto":
+    if chosen is not None and reduce and asked_method == AUTO:
         follows = determined(runner.moving)
         chosen, told = FOLLOWED if follows.is_so else chosen, follows.beside(told)
     note = model_note(scene, runner, chosen.name if chosen else "none") | told
-    return Setup(spec, scene, cuts, runner, chosen, note, reduced, asked)
+    return Setup(spec, scene, cuts, runner, chosen, note, reduced, asked, auto=asked_method == AUTO)
 
 
 def set_up_at_rest(setup: Setup, left_out: tuple[str, ...], looked_for: bool, deadline: float | None) -> Setup:

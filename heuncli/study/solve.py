@@ -165,7 +165,7 @@ def compose(
         | not_at_rest(recovery)
         | ({"axes": setup.asked.axes} if setup.asked.axes != "world" else {})
         | contacts_of(history)
-        | unfollowed(setup, history),
+        | integrated(setup, history),
         status=status(history) if rest is None else rest.status,
         time=recovery.recovered.times,
         **shown,
@@ -202,12 +202,17 @@ def not_at_rest(recovery: Recovery) -> Block:
     return {"moves": found} if found else {}
 
 
-def unfollowed(setup: Setup, history: History) -> Block:
-    """What is told of a motion that was to be followed, and was integrated."""
-    if setup.method is None or not setup.method.determined or history.followed_for is not None:
+def integrated(setup: Setup, history: History) -> Block:
+    """What is told of a motion that went by another method than it was begun with."""
+    checked = history.checked
+    if checked is None or setup.method is None or checked.run.method is setup.method:
         return {}
-    assert history.checked is not None
-    return {"method": history.checked.run.method.name} | integrated_after_all(setup.model)
+    told: Block = {"method": checked.run.method.name}
+    if setup.method.determined:
+        told |= integrated_after_all(setup.model)
+    if checked.begun_anew is not None:
+        told |= {"reasons": [*setup.model["reasons"], checked.begun_anew]}
+    return told
 
 
 def contacts_of(history: History) -> Block:

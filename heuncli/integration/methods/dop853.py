@@ -9,6 +9,7 @@ from heuncli.integration.methods.method import Method
 
 DOP853 = Method(
     name="DOP853",
+    stable=6.39,
     order=8,
     nodes=(
         0.0,

@@ -23,7 +23,8 @@ class Method:
 
     fixed: steps are given and none is judged. by_step: no dense output of its own: an asked instant within a step is
     reached by a step of the same method from the step's start. implicit: the stages are solved for
-    (kernel/collocation.py). attitude: how it is held within a step.
+    (kernel/collocation.py). attitude: how it is held within a step. stable: of an explicit method, how large h lambda
+    may be of what decays exp(lambda t), lambda < 0, before the method lets it grow: |R(-x)| = 1.
     """
 
     name: str
@@ -40,6 +41,7 @@ class Method:
     by_step: bool = False
     implicit: bool = False
     attitude: int = QUATERNION
+    stable: float = 0.0
 
     @cached_property
     def arrays(self) -> dict[str, Any]:

@@ -1,0 +1,67 @@
+"""Whether stability, and not accuracy, keeps the steps of an explicit method short.
+
+The last two stages of an explicit method stand at the same instant, the end of the step, and differ by errors in which
+what decays or swings fastest prevails. So the quotient of their derivatives,
+
+    h |lambda|  ~  h |f(z) - f(g)| / |z - g|,
+
+is what one turn of the power method gives of the largest eigenvalue of the tangent; rates count by h, for they are
+changes of coordinates in a step. Where accuracy decides, it is well below the boundary of the method's stability; where
+stability does, the control of the step keeps it there.
+Hairer, Wanner, Solving Ordinary Differential Equations II (1996), IV.2.
+"""
+
+from __future__ import annotations
+
+try:
+    import cython
+except ImportError:
+    from heuncli.kernel.shadow import cython
+
+if not cython.compiled:
+    from math import sqrt
+
+    from heuncli.kernel.scene import Group
+    from heuncli.kernel.shadow import cython
+    from heuncli.kernel.structs import Method, Run
+
+
+def estimate_swiftness(method: cython.pointer[Method], run: cython.pointer[Run]) -> cython.void:
+    """h |lambda| of the step tried, whose last stage is still in `stage`."""
+    b: cython.int
+    i: cython.Py_ssize_t
+    w: cython.double
+    x: cython.double
+    changes: cython.double = 0.0
+    apart: cython.double = 0.0
+    end: cython.p_double = run.K[method.stages]
+    last: cython.p_double = run.K[method.stages - 1]
+    for b in range(run.group_count):
+        if b != run.energy_group:  # work has no say in the motion
+            group: cython.pointer[Group] = cython.address(run.groups[b])
+            for i in range(group.coordinates, group.end):
+                w = run.weights[i]
+                if i >= group.rates:
+                    w *= run.h
+                x = w * (run.z[i] - run.stage[i])
+                apart += x * x
+                x = w * (end[i] - last[i])
+                changes += x * x
+    run.swiftness = run.h * sqrt(changes / apart) if apart > 0.0 else 0.0
+
+
+def is_held_short(run: cython.pointer[Run]) -> cython.bint:
+    """Whether so many of the steps done were at the boundary; some on end that were not begin the count anew."""
+    if run.near or run.last:
+        return False  # its length says nothing
+    if run.swiftness > run.stable:
+        run.stiff_steps += 1
+        run.easy_steps = 0
+    else:
+        run.easy_steps += 1
+        if run.easy_steps >= run.easy_after:
+            run.stiff_steps = 0
+    if run.stiff_steps < run.stiff_after:
+        return False
+    run.stiff_steps = 0
+    return True
