@@ -31,11 +31,13 @@ from heuncli.spec.load import load
 from heuncli.study.setup import set_up
 from heuncli.study.solve import solve
 from heuncli.tree.prepare import PreparedScene
+from tests.bench.auto import table
 from tests.bench.causes import by_cause
 from tests.bench.chart import chart
 from tests.bench.figures import figures
 from tests.bench.generated import chain
 from tests.bench.honesty import honesty
+from tests.bench.long import long
 from tests.bench.reduced import reduced
 
 SCENES = Path(__file__).parent / "scenes"
@@ -191,9 +193,11 @@ PARTS = {
 
 if __name__ == "__main__":
     parser = argparse.ArgumentParser(prog="python -m tests.bench", description="Speed, printed.")
-    parts = [*PARTS, "figures", "honesty"]
+    parts = [*PARTS, "auto", "long", "figures", "honesty"]
     parser.add_argument("parts", nargs="*", choices=[*parts, []], metavar="PART", help=", ".join(parts))
     parser.add_argument("--against", type=Path, metavar="PATH", help="another checkout, whose figures stand beside")
+    parser.add_argument("--only", nargs="*", default=[], metavar="TEXT", help="auto: scenes whose names hold it")
+    parser.add_argument("--periods", type=int, default=100_000, metavar="N", help="long: how many")
     parser.add_argument("--scenes", type=int, default=1000, metavar="N", help="honesty: how many")
     parser.add_argument("--seed", type=int, default=0, metavar="S", help="honesty: the first one's seed")
     parser.add_argument("--jobs", type=int, default=os.cpu_count() or 1, metavar="J", help="honesty: processes")
@@ -205,5 +209,9 @@ if __name__ == "__main__":
             PARTS[part]()
     if "figures" in asked.parts or asked.against is not None:
         figures(asked.against)
+    if "auto" in asked.parts:
+        table(asked.only)
+    if "long" in asked.parts:
+        long(asked.periods)
     if "honesty" in asked.parts:
         honesty(asked.scenes, asked.seed, asked.jobs, asked.keep)
