@@ -30,6 +30,14 @@ METHODS = (
         "DOP853", 8, "explicit", "adaptive", "quaternion",
         "the default: smooth motions to six digits and more", "dop853.DOP853",
     ),
+    MethodRow(
+        "DOP853-rodrigues", 8, "explicit", "adaptive", "rodrigues",
+        "Heun's no. 20: attitudes from the drawn one; ends at half turns", "charted.GLOBAL",
+    ),
+    MethodRow(
+        "DOP853-recentred", 8, "explicit", "adaptive", "recentred",
+        "attitudes from each step's start: as good as quaternions", "charted.ANEW",
+    ),
 )  # fmt: skip
 BY_NAME = {row.name.lower(): row for row in METHODS}
 NAMES = (AUTO, *(row.name for row in METHODS))

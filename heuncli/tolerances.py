@@ -227,4 +227,8 @@ KERNEL: dict[str, float] = {
     "branch_beside": 0.7,  # other steps, few more; what differs then is rounding, or the branch
     "branch_bend": 0.05,  # a sine's step is then two fifths of its period; extremes are looked for at four places in it
     "varied": 2.0**-26,  # the root of EPS: rounding over it and what bends within it are alike, eight digits are left
+    # -- charts of attitudes
+    # cube root of EPS: rounding of W, EPS kappa, is there what the straight last way to the half turn leaves, kappa^-2
+    "half_turn": EPS ** (1 / 3),
+    "chart_turn": 0.5,  # half the way there: no step passes it, and of what turns re-centred |kappa| stays below 1
 }

@@ -37,9 +37,9 @@ if TYPE_CHECKING:  # loaded where a condition ends the run
 CHUNK = 2_000  # body-steps between two looks at the clock
 MOST_STEPS = 20_000_000
 
-REACHED, MORE, ROPE_SLACK, CHATTERING, STRUCK, LET_GO, TURNED, STIFF = (
+REACHED, MORE, ROPE_SLACK, CHATTERING, STRUCK, LET_GO, TURNED, STIFF, HALF_TURN = (
     kernel.CODES[name]
-    for name in ("reached", "more", "rope slack", "chattering", "struck", "let go", "turned", "stiff")
+    for name in ["reached", "more", "rope slack", "chattering", "struck", "let go", "turned", "stiff", "half turn"]
 )
 GOES_ON = (MORE, STRUCK, LET_GO, TURNED, STIFF)
 TROUBLE = {
@@ -261,7 +261,7 @@ class Runner(Evaluator):
         try:
             pieces, ending = self._pass(going, smooth_segments(last, discontinuities))
         except SolveError as error:
-            error.reached = run.loop.t
+            error.reached = run.loop.t if error.reached is None else error.reached
             raise
         except Stiff as stiff:
             stiff.seconds = time.perf_counter() - begun
@@ -357,6 +357,11 @@ class Runner(Evaluator):
         t, state = run.loop.t, self._state(run)
         if code == CHATTERING:
             return SolveError(chattering(t, *self.layout.pack.branches[run.loop.turning]))
+        if code == HALF_TURN:
+            from heuncli.integration.half_turns import half_turn  # only on the way to an error
+
+            itself = self.moving.layout is self.layout
+            return half_turn(self.moving, run.loop.half_turn, t, np.array(run.loop.state()), itself=itself)
         name, message, hint = TROUBLE[code]
         if name == "closure-lost":
             problem = Problem(name, f"at t = {t:.9g} s: {message}", hint=hint)

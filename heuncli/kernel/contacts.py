@@ -184,7 +184,7 @@ def stand_within(
 ) -> cython.void:
     """The scene at x of the step tried, by its dense output; where closed contacts are in doubt with their loads."""
     t: cython.double = clipped(run, run.t + x * run.h)
-    interpolate(run, 3 + method.dense_rows, x, run.stage)
+    interpolate(scene, method, run, x, run.stage)
     settle(scene, t, run.stage)
     if doubt == 2:
         evaluate(scene, t, run.stage, run.fine)

@@ -1,5 +1,6 @@
 """Structs and signatures of dense.py for C."""
 
+from heuncli.kernel.attitudes cimport chart_slopes, leave_chart, nearing
 from heuncli.kernel.response cimport evaluate, settle
 from heuncli.kernel.scene cimport Freedom, Group, Scene
 
@@ -84,6 +85,7 @@ cdef struct Run:
     int easy_after            # steps on end that were not, after which their count begins anew
     int stiff_steps           # the counts
     int easy_steps
+    int half_turn             # 1 + the body whose attitude has come to the end of its chart
     int undecided             # steps of which bounds could not decide what they hold
     int steps
     int evaluations
@@ -105,6 +107,7 @@ cdef struct Run:
     double rate               # the scene's largest
     double energy_scale       # sum m size^2
     double error
+    double nearing            # largest angular velocity that a stage saw, by the way to the chart's end [1/s]
     double gap                # the largest that closures were left with [m]
     double best               # the least trouble of the lengths tried, and its length
     double best_h
@@ -124,6 +127,10 @@ cdef struct Run:
     double *fine
     double **dense            # rows of the interpolating polynomial
     double *stage             # a state under way
+    double *chart_y           # y, z and K in the numbers that steps are taken in: the same, or those of a chart of attitudes
+    double *chart_z
+    double **chart_K
+    double *ways              # of each body, how far its attitude may turn before it leaves the chart [rad]
     double *times
     double **samples
     double *ends              # of the steps done, or of those to be followed
@@ -135,8 +142,10 @@ cdef struct Run:
 
 cdef void combine(Method *method, int row, double **K, int n, double *out) noexcept nogil
 cdef double clipped(Run *run, double t) noexcept nogil
+cdef void evaluate_stage(Scene *scene, Method *method, Run *run, int s, bint near) noexcept nogil
+cdef void enter_slopes(Scene *scene, Method *method, Run *run, double *state, int s) noexcept nogil
 cdef void hermite(Method *method, Run *run) noexcept nogil
 cdef void quintic(Scene *scene, Method *method, Run *run) noexcept nogil
 cdef void interpolant(Scene *scene, Method *method, Run *run) noexcept nogil
 cdef void need_interpolant(Scene *scene, Method *method, Run *run) noexcept nogil
-cdef void interpolate(Run *run, int rows, double x, double *out) noexcept nogil
+cdef void interpolate(Scene *scene, Method *method, Run *run, double x, double *out) noexcept nogil

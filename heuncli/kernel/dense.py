@@ -11,6 +11,7 @@ except ImportError:
     from heuncli.kernel.shadow import cython
 
 if not cython.compiled:
+    from heuncli.kernel.attitudes import chart_slopes, leave_chart, nearing
     from heuncli.kernel.response import evaluate, settle
     from heuncli.kernel.scene import Freedom, Scene
     from heuncli.kernel.shadow import cython
@@ -61,14 +62,54 @@ def clipped(run: cython.pointer[Run], t: cython.double) -> cython.double:
     return run.before_end if t > run.before_end else t
 
 
+def evaluate_stage(
+    scene: cython.pointer[Scene],
+    method: cython.pointer[Method],
+    run: cython.pointer[Run],
+    s: cython.int,
+    near: cython.bint,
+) -> cython.void:
+    """The derivative at stage s, in `run.stage`, which is settled first where the step comes near to a singular pose.
+
+    What was taken in a chart of attitudes is made a state for it.
+    """
+    rate: cython.double
+    t: cython.double = clipped(run, run.t + method.node[s] * run.h)
+    if method.attitude:
+        leave_chart(scene, method.attitude, run.y, run.stage)
+    if near:
+        settle(scene, t, run.stage)
+    evaluate(scene, t, run.stage, run.K[s])
+    if method.attitude:
+        enter_slopes(scene, method, run, run.stage, s)
+        if not run.following:
+            rate = nearing(scene, run.stage, run.ways)
+            if rate > run.nearing:
+                run.nearing = rate
+
+
+def enter_slopes(
+    scene: cython.pointer[Scene],
+    method: cython.pointer[Method],
+    run: cython.pointer[Run],
+    state: cython.p_double,
+    s: cython.int,
+) -> cython.void:
+    """The derivative at a state, of stage s, in the chart of attitudes."""
+    i: cython.Py_ssize_t
+    for i in range(run.n):
+        run.chart_K[s][i] = run.K[s][i]
+    chart_slopes(scene, method.attitude, run.y, state, run.K[s], run.chart_K[s])
+
+
 def hermite(method: cython.pointer[Method], run: cython.pointer[Run]) -> cython.void:
     """The first rows of the interpolating polynomial: the cubic with the values and derivatives at both ends."""
     i: cython.Py_ssize_t
     change: cython.double
-    last: cython.p_double = run.K[method.stages]
-    first: cython.p_double = run.K[0]
+    last: cython.p_double = run.chart_K[method.stages]
+    first: cython.p_double = run.chart_K[0]
     for i in range(run.n):
-        change = run.z[i] - run.y[i]
+        change = run.chart_z[i] - run.chart_y[i]
         run.dense[0][i] = change
         run.dense[1][i] = run.h * first[i] - change
         run.dense[2][i] = 2.0 * change - run.h * (last[i] + first[i])
@@ -99,19 +140,16 @@ def interpolant(scene: cython.pointer[Scene], method: cython.pointer[Method], ru
     """The interpolating polynomial over the step y -> z, in nested form: its rows of coefficients."""
     s: cython.int
     i: cython.Py_ssize_t
-    t: cython.double
     for s in range(method.stages + 1, method.stages + 1 + method.extra):
-        combine(method, s, run.K, run.n, run.stage)
+        combine(method, s, run.chart_K, run.n, run.stage)
         for i in range(run.n):
-            run.stage[i] = run.y[i] + run.h * run.stage[i]
-        t = clipped(run, run.t + method.node[s] * run.h)
-        if scene.closure_count and scene.pivot_of_step < scene.limits.near_singular:
-            settle(scene, t, run.stage)
-        evaluate(scene, t, run.stage, run.K[s])
+            run.stage[i] = run.chart_y[i] + run.h * run.stage[i]
+        near: cython.bint = scene.closure_count > 0 and scene.pivot_of_step < scene.limits.near_singular
+        evaluate_stage(scene, method, run, s, near)
     run.evaluations += method.extra
     hermite(method, run)
     for s in range(method.dense_rows):
-        combine(method, method.stages + 1 + method.extra + method.estimates + s, run.K, run.n, run.dense[3 + s])
+        combine(method, method.stages + 1 + method.extra + method.estimates + s, run.chart_K, run.n, run.dense[3 + s])
         for i in range(run.n):
             run.dense[3 + s][i] *= run.h
 
@@ -128,17 +166,25 @@ def need_interpolant(
         run.has_interpolant = 1
 
 
-def interpolate(run: cython.pointer[Run], rows: cython.int, x: cython.double, out: cython.p_double) -> cython.void:
+def interpolate(
+    scene: cython.pointer[Scene],
+    method: cython.pointer[Method],
+    run: cython.pointer[Run],
+    x: cython.double,
+    out: cython.p_double,
+) -> cython.void:
     """State at the fraction x of the step: y + x (F0 + (1 - x) (F1 + x (F2 + (1 - x) (F3 + ...))))."""
     i: cython.Py_ssize_t
     k: cython.int
     factor: cython.double
     for i in range(run.n):
         out[i] = 0.0
-    for k in range(rows - 1, -1, -1):
+    for k in range(2 + method.dense_rows, -1, -1):
         factor = x if k % 2 == 0 else 1.0 - x
         row: cython.p_double = run.dense[k]
         for i in range(run.n):
             out[i] = (out[i] + row[i]) * factor
     for i in range(run.n):
-        out[i] = run.y[i] + out[i]
+        out[i] = run.chart_y[i] + out[i]
+    if method.attitude:
+        leave_chart(scene, method.attitude, run.y, out)

@@ -354,7 +354,7 @@ def see_between(scene: cython.pointer[Scene], method: cython.pointer[Method], ru
     need_interpolant(scene, method, run)
     for k in range(1, LOOKED_AT):
         part = k
-        interpolate(run, 3 + method.dense_rows, part / LOOKED_AT, run.stage)
+        interpolate(scene, method, run, part / LOOKED_AT, run.stage)
         coordinates(scene, clipped(run, run.t + part / LOOKED_AT * run.h), run.stage)
         see(scene)
 

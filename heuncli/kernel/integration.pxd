@@ -19,6 +19,7 @@ cdef class Integration:
     cdef Memory memory
     cpdef object take_method(self, dict method)
     cpdef object take_start(self, dict start)
+    cpdef object make_chart(self, int n)
     cpdef object make_room(self)
     cpdef object make_branch(self)
     cpdef object take_output(self, dict output)

@@ -85,9 +85,9 @@ class Integration:
         run.late = start["late"]
         run.next_sample = run.contact = run.steps = run.evaluations = run.rejected = run.done = run.dodges = 0
         run.rejected_before = run.has_cut = run.landings = run.contact_landings = run.at_once = run.turns = 0
-        run.flurry = run.undecided = run.seeing = run.stiff_steps = run.easy_steps = 0
+        run.flurry = run.undecided = run.seeing = run.stiff_steps = run.easy_steps = run.half_turn = 0
         run.stiff_after, run.easy_after, run.stable = start["stiff_after"], start["easy_after"], start["stable"]
-        run.t = run.proposed = run.energy_scale = run.gap = run.cut = run.flurry_begin = 0.0
+        run.t = run.proposed = run.energy_scale = run.gap = run.cut = run.flurry_begin = run.nearing = 0.0
         run.weights = self.memory.doubles(start["weights"])
         run.y = self.memory.doubles(start["state"])
         run.z = self.memory.zeros(n)
@@ -98,12 +98,23 @@ class Integration:
         run.stage = self.memory.zeros(n)
         run.K = self.memory.matrix(self.method.stages + 1 + self.method.extra, n)
         run.dense = self.memory.matrix(3 + self.method.dense_rows, n)
+        self.make_chart(n)
         run.group_count = len(start["groups"])
         if cython.compiled:
             groups: cython.p_void = self.memory.rows(start["groups"], cython.sizeof(Group))
             run.groups = cython.cast(cython.pointer[Group], groups)
         else:
             run.groups = [Group(row) for row in start["groups"].tolist()]
+
+    def make_chart(self, n: cython.int) -> None:
+        """Room for the numbers that steps are taken in, where those are not the state's own."""
+        run: cython.pointer[Run] = cython.address(self.run)
+        run.chart_y, run.chart_z, run.chart_K = run.y, run.z, run.K
+        run.ways = self.memory.zeros(self.workspace.scene.body_count)
+        if self.method.attitude:
+            run.chart_y = self.memory.zeros(n)
+            run.chart_z = self.memory.zeros(n)
+            run.chart_K = self.memory.matrix(self.method.stages + 1 + self.method.extra, n)
 
     def make_room(self) -> None:
         """Room for the course of the coordinates that expressions hang on."""
@@ -290,6 +301,11 @@ class Integration:
     def turning(self) -> int:
         """The branch that turned last."""
         return self.run.course.slot
+
+    @property
+    def half_turn(self) -> int:
+        """The body, by its place in the tree, that came to a half turn of the global chart."""
+        return self.run.half_turn - 1
 
     @property
     def undecided(self) -> int:

@@ -17,6 +17,7 @@ MODULES = (
     "columns",
     "jacobian",
     "workspace",
+    "attitudes",
     "dense",
     "course",
     "events",

@@ -250,6 +250,8 @@ cdef struct Limits:
     double branch_beside
     double branch_bend
     double varied
+    double half_turn
+    double chart_turn
 
 cdef struct Scene:
     int body_count

@@ -319,6 +319,8 @@ class Limits(Record):
     branch_beside: float  # of that, how far what begins beside the start
     branch_bend: float  # of a drive's acceleration in a step: by how much its middle may be off what the ends tell
     varied: float  # of a number's size: what is small, and far above its rounding, for a derivative
+    half_turn: float  # cosine of half a turn: where it is less, Rodrigues' numbers have come to a half turn
+    chart_turn: float  # of the turn that leads out of a chart of attitudes: a longer step is none
 
 
 class Scene(metaclass=Fields):

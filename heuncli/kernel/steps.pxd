@@ -1,10 +1,14 @@
 """Structs and signatures of steps.py for C."""
 
 from heuncli.kernel.algebra cimport Vec3, norm
+from heuncli.kernel.attitudes cimport (
+    at_half_turn, drop_small_parts, enter_chart, leave_chart, measure_ways, nearing, weigh_in_chart,
+)
 from heuncli.kernel.chosen cimport choose_afresh, put_chosen, take_chosen
 from heuncli.kernel.contacts cimport opened_by_others, pushed_at_once, start_contacts, turned_over
 from heuncli.kernel.dense cimport (
-    AGAIN_TO, CHATTERS, Method, Run, STANDS, TURNS_OVER, clipped, combine, interpolate, need_interpolant,
+    AGAIN_TO, CHATTERS, Method, Run, STANDS, TURNS_OVER, clipped, combine, enter_slopes, evaluate_stage, interpolate,
+    need_interpolant,
 )
 from heuncli.kernel.events cimport follow_angles, take_branches
 from heuncli.kernel.expressions cimport HELD, TAKEN, value
@@ -19,6 +23,7 @@ from libc.math cimport fabs, pow, sqrt
 
 cdef enum:
     REACHED, MORE, COLLAPSED, NOT_A_NUMBER, CLOSURES_LOST, ROPE_SLACK, CHATTERING, STRUCK, LET_GO, TURNED, STIFF
+    HALF_TURN
     ACCEPTED, AGAIN
 
 cdef double step_error(Method *method, Run *run) noexcept nogil
@@ -34,6 +39,10 @@ cdef void propose(Run *run) noexcept nogil
 cdef int blocked(Scene *scene, Run *run) noexcept nogil
 cdef bint near_singular(Scene *scene, Run *run) noexcept nogil
 cdef int attempt(Scene *scene, Method *method, Run *run) noexcept nogil
+cdef void enter(Scene *scene, Method *method, Run *run) noexcept nogil
+cdef void leave(Scene *scene, Method *method, Run *run) noexcept nogil
+cdef bint leaves_chart(Scene *scene, Method *method, Run *run) noexcept nogil
+cdef bint turns_too_far(Scene *scene, Run *run) noexcept nogil
 cdef int judge(Scene *scene, Method *method, Run *run, int trouble) noexcept nogil
 cdef int dodge(Scene *scene, Run *run, double error, int trouble) noexcept nogil
 cdef double singular_noise(Scene *scene, Run *run) noexcept nogil

@@ -16,6 +16,15 @@ if not cython.compiled:
     from math import fabs, pow, sqrt
 
     from heuncli.kernel.algebra import Vec3, norm
+    from heuncli.kernel.attitudes import (
+        at_half_turn,
+        drop_small_parts,
+        enter_chart,
+        leave_chart,
+        measure_ways,
+        nearing,
+        weigh_in_chart,
+    )
     from heuncli.kernel.chosen import choose_afresh, put_chosen, take_chosen
     from heuncli.kernel.contacts import opened_by_others, pushed_at_once, start_contacts, turned_over
     from heuncli.kernel.dense import (
@@ -25,6 +34,8 @@ if not cython.compiled:
         TURNS_OVER,
         clipped,
         combine,
+        enter_slopes,
+        evaluate_stage,
         interpolate,
         need_interpolant,
     )
@@ -42,7 +53,7 @@ if not cython.compiled:
 
     # What `advance` answers; for C these stand in steps.pxd, in the same order.
     REACHED, MORE, COLLAPSED, NOT_A_NUMBER, CLOSURES_LOST, ROPE_SLACK, CHATTERING = range(7)
-    STRUCK, LET_GO, TURNED, STIFF, ACCEPTED, AGAIN = range(7, 13)
+    STRUCK, LET_GO, TURNED, STIFF, HALF_TURN, ACCEPTED, AGAIN = range(7, 14)
 
 CODES = {
     "reached": REACHED,
@@ -56,6 +67,7 @@ CODES = {
     "let go": LET_GO,
     "turned": TURNED,
     "stiff": STIFF,
+    "half turn": HALF_TURN,
 }
 
 
@@ -276,35 +288,80 @@ def attempt(scene: cython.pointer[Scene], method: cython.pointer[Method], run: c
     """
     s: cython.int
     i: cython.Py_ssize_t
-    t: cython.double
     change: cython.double
     if run.determined:
         return follow(scene, method, run)
     run.has_interpolant = 0
     if run.seeing:
         begin_to_see(scene, run)
+    if method.attitude:
+        enter(scene, method, run)
     for s in range(1, method.stages):
-        combine(method, s, run.K, run.n, run.stage)
+        combine(method, s, run.chart_K, run.n, run.stage)
         for i in range(run.n):
-            run.stage[i] = run.y[i] + run.h * run.stage[i]
-        t = clipped(run, run.t + method.node[s] * run.h)
-        if run.near:
-            settle(scene, t, run.stage)
-        evaluate(scene, t, run.stage, run.K[s])
+            run.stage[i] = run.chart_y[i] + run.h * run.stage[i]
+        evaluate_stage(scene, method, run, s, run.near)
         if run.seeing:
             see_stage(scene, run)
-    combine(method, method.stages, run.K, run.n, run.z)
+    combine(method, method.stages, run.chart_K, run.n, run.chart_z)
     for i in range(run.n):
-        change = run.h * run.z[i] + run.carry[i]
-        run.z[i] = run.y[i] + change
-        run.z_carry[i] = change - (run.z[i] - run.y[i])
+        change = run.h * run.chart_z[i] + run.carry[i]
+        run.chart_z[i] = run.chart_y[i] + change
+        run.z_carry[i] = change - (run.chart_z[i] - run.chart_y[i])
+    if method.attitude:
+        leave(scene, method, run)
     run.evaluations += method.stages
     trouble: cython.int = evaluate(scene, clipped(run, run.stop), run.z, run.K[method.stages])
+    if method.attitude:
+        enter_slopes(scene, method, run, run.z, method.stages)
     if run.seeing:
         see_stage(scene, run)
     if run.stiff_after:
         estimate_swiftness(method, run)
     return trouble
+
+
+def enter(scene: cython.pointer[Scene], method: cython.pointer[Method], run: cython.pointer[Run]) -> cython.void:
+    """The start of a step, with its derivative, in the chart of attitudes."""
+    i: cython.Py_ssize_t
+    for i in range(run.n):
+        run.chart_y[i] = run.y[i]
+    enter_chart(scene, method.attitude, run.y, run.y, run.chart_y)
+    enter_slopes(scene, method, run, run.y, 0)
+
+
+def leave(scene: cython.pointer[Scene], method: cython.pointer[Method], run: cython.pointer[Run]) -> cython.void:
+    """The end of a step made a state again; small parts of a chart's numbers are none of the state's."""
+    i: cython.Py_ssize_t
+    for i in range(run.n):
+        run.z[i] = run.chart_z[i]
+    leave_chart(scene, method.attitude, run.y, run.z)
+    drop_small_parts(scene, method.attitude, run.z_carry)
+
+
+def leaves_chart(
+    scene: cython.pointer[Scene], method: cython.pointer[Method], run: cython.pointer[Run]
+) -> cython.bint:
+    """Whether an attitude is at the end of its chart; else the step is held to a part of the way there.
+
+    So no step jumps over a half turn, however well its ends may fit.
+    """
+    run.half_turn = at_half_turn(scene, method.attitude, run.y)
+    measure_ways(scene, method.attitude, run.y, run.ways)
+    run.nearing = nearing(scene, run.y, run.ways)
+    if 0.9 * scene.limits.chart_turn < run.nearing * run.proposed:
+        run.proposed = 0.9 * scene.limits.chart_turn / run.nearing
+    return run.half_turn > 0
+
+
+def turns_too_far(scene: cython.pointer[Scene], run: cython.pointer[Run]) -> cython.bint:
+    """Whether a stage turned so fast that the step may have passed the end of the chart: a shorter one, then."""
+    if run.following or not run.nearing * run.h > scene.limits.chart_turn:
+        return False
+    run.proposed = 0.9 * scene.limits.chart_turn / run.nearing
+    run.rejected += 1
+    run.rejected_before = 1
+    return True
 
 
 def judge(
@@ -319,8 +376,13 @@ def judge(
         return ACCEPTED
     if run.determined:
         return AGAIN if trouble < 0 else ACCEPTED
-    combine(method, row, run.K, run.n, run.coarse)
-    combine(method, row + method.estimates - 1, run.K, run.n, run.fine)
+    combine(method, row, run.chart_K, run.n, run.coarse)
+    combine(method, row + method.estimates - 1, run.chart_K, run.n, run.fine)
+    if method.attitude:
+        weigh_in_chart(scene, method.attitude, run.chart_y, run.coarse)
+        weigh_in_chart(scene, method.attitude, run.chart_y, run.fine)
+        if turns_too_far(scene, run):
+            return AGAIN
     error = step_error(method, run)
     if run.near:
         if dodge(scene, run, error, trouble):
@@ -388,7 +450,7 @@ def sample(scene: cython.pointer[Scene], method: cython.pointer[Method], run: cy
     scene.pivot_of_step = pivot
     while run.next_sample < run.sample_count and run.times[run.next_sample] < run.stop:
         x = (run.times[run.next_sample] - run.t) / run.h
-        interpolate(run, 3 + method.dense_rows, x, run.samples[run.next_sample])
+        interpolate(scene, method, run, x, run.samples[run.next_sample])
         if run.determined:
             find_between(scene, run, run.samples[run.next_sample])
         run.next_sample += 1
@@ -567,6 +629,8 @@ def run_steps(scene: cython.pointer[Scene], method: cython.pointer[Method], run:
         attempts += 1
         if run.done >= run.most or attempts > 100 * run.most:  # also where none stands: the clock is looked at
             return MORE
+        if method.attitude and not run.following and leaves_chart(scene, method, run):
+            return HALF_TURN
         propose(run)
         code = blocked(scene, run)
         if code != REACHED:

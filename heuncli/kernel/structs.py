@@ -256,6 +256,7 @@ class Run(metaclass=Fields):
     easy_after: int
     stiff_steps: int
     easy_steps: int
+    half_turn: int
     undecided: int
     steps: int
     evaluations: int
@@ -277,6 +278,7 @@ class Run(metaclass=Fields):
     rate: float
     energy_scale: float
     error: float
+    nearing: float
     gap: float
     best: float
     best_h: float
@@ -296,6 +298,10 @@ class Run(metaclass=Fields):
     fine: list[float]
     dense: list[list[float]]
     stage: list[float]
+    chart_y: list[float]
+    chart_z: list[float]
+    chart_K: list[list[float]]
+    ways: list[float]
     times: list[float]
     samples: list[list[float]]
     ends: list[float]

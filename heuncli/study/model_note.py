@@ -8,6 +8,7 @@ from typing import TYPE_CHECKING
 import numpy as np
 
 from heuncli import tolerances
+from heuncli.integration.methods.method import QUATERNION, RECENTRED, RODRIGUES, Method
 from heuncli.integration.runner import Runner
 from heuncli.joint_kinds import JOINTS
 from heuncli.mechanism.model import Mechanism
@@ -20,6 +21,8 @@ from heuncli.tree.prepare import PreparedScene
 
 if TYPE_CHECKING:  # loaded where a scene has closed chains
     from heuncli.redundancy.self_stress import SelfStress
+
+COUNTED_FROM = {RODRIGUES: "counted from the drawn ones: none can pass a half turn", RECENTRED: "anew in each step"}
 
 
 def model_note(scene: PreparedScene, runner: Runner, method: str) -> Block:
@@ -104,6 +107,15 @@ def reasons(scene: PreparedScene, model: Block) -> list[str]:
         name = mechanism.bodies[spin.body].name
         sentences.append(f"{name}: the spin about its own axis is undetermined and harmless; taken as zero")
     return sentences
+
+
+def attitudes(method: Method, integrated: Layout) -> list[str]:
+    """How a method holds attitudes within a step, if not as quaternions, in a sentence."""
+    if method.attitude == QUATERNION:
+        return []
+    if not integrated.bodies["ball"].any():
+        return [f"{method.name}: of what is integrated no body hangs on a ball or floats, so this is DOP853"]
+    return [f"{method.name}: attitudes by Rodrigues' numbers, {COUNTED_FROM[method.attitude]}"]
 
 
 def one_sided(layout: Layout, closed: Mask) -> str:

@@ -21,7 +21,7 @@ from heuncli.reduction.model import Reduced
 from heuncli.results import Array, Block
 from heuncli.spec.models import Spec
 from heuncli.study.asked import EVERYTHING, Asked
-from heuncli.study.model_note import model_note, reductions, rested
+from heuncli.study.model_note import attitudes, model_note, reductions, rested
 from heuncli.tree.prepare import PreparedScene, prepare
 
 if TYPE_CHECKING:  # loaded where a scene has sections
@@ -94,6 +94,8 @@ def set_up(
         follows = determined(runner.moving)
         chosen, told = FOLLOWED if follows.is_so else chosen, follows.beside(told)
     note = model_note(scene, runner, chosen.name if chosen else "none") | told
+    if chosen is not None:
+        note["reasons"] += attitudes(chosen, runner.moving.layout)
     return Setup(spec, scene, cuts, runner, chosen, note, reduced, asked, auto=asked_method == AUTO)
 
 

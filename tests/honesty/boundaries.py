@@ -175,6 +175,24 @@ def absolutely_off(x: float) -> str:
     return expectation(f"{{of: joints.pivot.force.x, is: {x!r}}}")
 
 
+
+def beside_a_half_turn(x: float) -> str:
+    """A free body that starts 2 x before a half turn, in the global chart, and turns back: its angle after 1 s."""
+    scene = f"""
+heun: 1
+bodies:
+  wheel: {{mass: 1, center: [0, 0, 0], inertia: [1, 2, 3], angular_velocity: [0, 0, -1],
+           orientation: {{axis: [0, 0, 1], angle: {math.pi - 2.0 * x!r}}}}}
+analysis: {{times: [1], method: DOP853-rodrigues}}
+"""
+    try:
+        R = solved(scene, reduce=False).bodies["wheel"]["rotation"][0]
+    except HeunError as error:
+        return f"refused: {error.problems[0].code}"
+    near(R[:2, 0], [math.cos(math.pi - 2.0 * x - 1.0), math.sin(math.pi - 2.0 * x - 1.0)], 1.0)
+    return "fine"
+
+
 # ---- what solving says
 def verdict(text: str, right: Callable[[Results], None] = lambda found: None) -> str:
     """The code of a refusal, else the first warning's first words, else `fine`; numbers are held against `right`."""
@@ -786,6 +804,7 @@ ROWS = (
     Row("NO_ENERGY", drift, "at rest", "a drift"),
     Row("TOLD_BESIDE", moved_by, "told", "not known"),
     Row("HOPELESS", steady_pace, "goes on", "told"),
+    Row("KERNEL.half_turn", beside_a_half_turn, "refused: half-turn", "fine"),
     Row("KERNEL.unseen", unseen_pulse, "as seen", "looked into"),
     Row("UNBALANCED", lambda x: "warned" if unbalanced(x) else "fine", "fine", "warned"),
     Row("CONTACT_TOUCHES", near_the_floor, "rests", "falls"),
@@ -866,6 +885,7 @@ EXEMPT = {
     "KERNEL.leaving_last": "how an event's own rounding is left behind; what chatters is driven back at once",
     "KERNEL.least_load": "which loads are so small that doubles lose their digits",
     "KERNEL.varied": "the digits of a tangent that an iteration contracts by: its end is told to its own digits",
+    "KERNEL.chart_turn": "lengths of steps in a chart of attitudes; tests/closed_forms/test_half_turns.py: none jumps",
     "KERNEL.branch_bend": "lengths of steps along a branch, in which extremes are looked for: no number depends on it",
     "KERNEL.branch_beside": "lengths of the check run's steps along a branch, on which no number depends",
     "KERNEL.pivot_noise": "lengths of steps that are tried: the estimate says what was reached",
