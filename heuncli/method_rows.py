@@ -27,8 +27,29 @@ class MethodRow(NamedTuple):
 AUTO, DEFAULT = "auto", "DOP853"
 METHODS = (
     MethodRow(
+        "Euler", 1, "explicit", "fixed", "quaternion",
+        "a warning: energy grows without bound, and a digit more takes ten times the steps", "explicit.EULER",
+    ),
+    MethodRow(
+        "Heun2", 2, "explicit", "fixed", "quaternion",
+        "Heun's mean of two slopes (1900): teaching, and comparison with old programs", "explicit.HEUN2",
+    ),
+    MethodRow("Heun3", 3, "explicit", "fixed", "quaternion", "Heun's third order (1900): the same", "explicit.HEUN3"),
+    MethodRow(
+        "RK4", 4, "explicit", "fixed", "quaternion",
+        "the classical one: a given step, as in real time, and comparison with other programs", "explicit.RK4",
+    ),
+    MethodRow(
+        "DOPRI5", 5, "explicit", "adaptive", "quaternion",
+        "coarse tolerances, 1e-3 to 1e-5, and loads that jump often", "explicit.DOPRI5",
+    ),
+    MethodRow(
         "DOP853", 8, "explicit", "adaptive", "quaternion",
         "the default: smooth motions to six digits and more", "dop853.DOP853",
+    ),
+    MethodRow(
+        "Verner98", 9, "explicit", "adaptive", "quaternion",
+        "smooth motions to 1e-12 and below", "verner.VERNER98",
     ),
     MethodRow(
         "DOP853-rodrigues", 8, "explicit", "adaptive", "rodrigues",
@@ -41,6 +62,12 @@ METHODS = (
 )  # fmt: skip
 BY_NAME = {row.name.lower(): row for row in METHODS}
 NAMES = (AUTO, *(row.name for row in METHODS))
+
+
+def canonical(name: str) -> str:
+    """The name of a method as its row has it; other words as they are."""
+    row = row_of(name)
+    return row.name if row is not None else name.lower() if name.lower() == AUTO else name
 
 
 def row_of(name: str) -> MethodRow | None:

@@ -58,7 +58,10 @@ class Run(NamedTuple):
             "WHAT",
         ),
     ] = ()
-    method: Annotated[str | None, Option(("--method",), "The method of integration.", "NAME")] = None
+    method: Annotated[
+        str | None, Option(("--method",), "The method of integration; `heun methods` lists them.", "NAME")
+    ] = None
+    step: Annotated[float | None, Option(("--step",), "The step of a method of fixed step.", "SECONDS")] = None
     tolerance: Annotated[
         float | None, Option(("--tolerance",), "Error of the motion, relative to the scene.", "NUMBER")
     ] = None

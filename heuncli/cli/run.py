@@ -16,7 +16,6 @@ from heuncli.cli.solving import choice, instants, overrides, positive, timings, 
 from heuncli.cli.target import format_of, keep
 from heuncli.errors import Finding, Problem
 from heuncli.kinetostatics.joint_axes import JOINT_AXES
-from heuncli.method_rows import NAMES
 from heuncli.nearest import did_you_mean, nearest
 from heuncli.records import replace
 from heuncli.report import units
@@ -52,7 +51,8 @@ def main(request: Run) -> int:
     shown = Units() if request.units is None else _units(request.units)
     options = Options(
         tolerance=positive("--tolerance", request.tolerance),
-        method=_method(request.method),
+        method=request.method,
+        step=positive("--step", request.step),
         least_norm=request.least_norm,
         reduce=not request.no_reduce,
         axes="world" if request.axes is None else choice("--axes", request.axes, JOINT_AXES),
@@ -85,13 +85,6 @@ def _units(words: str) -> Units:
         return units.asked(words)
     except Finding as finding:
         raise UsageError(Problem("bad-option", f"--units {words}: {finding.message}", hint=finding.hint)) from None
-
-
-def _method(name: str | None) -> str | None:
-    if name is not None and name not in NAMES:
-        message = f"--method {name}: not yet: a method other than {' and '.join(NAMES)}"
-        raise UsageError(Problem("not-yet", message, hint=f"known: {', '.join(NAMES)}"))
-    return name
 
 
 def _only(words: str) -> tuple[frozenset[str], tuple[str, ...]]:

@@ -4,6 +4,9 @@ The estimate is 2 |A - B|: A is the run that is told, B a check run at 1/30 of A
 rounding, both seen at the same instants (integration/pairs.py). Tried on free, open and closed chains, |A - B| is 0.9
 to 1.1 of the true error; a coarser check run would give 3 to 100 times it.
 
+A method of given step has no tolerance: B goes in quarters of the step, |A - B| is then 1 - 4^-p of A's error, three
+quarters at order 1, and A is not made again, for its step was asked for.
+
 At small tolerances the error of A may be no larger than what the moved start has grown to in B, and cancel it. There a
 third run M goes from the moved start as A goes from its own: |A - M| is what rounding grows to, and the larger counts.
 """
@@ -25,7 +28,7 @@ from heuncli.integration.evaluator import Recovered
 from heuncli.integration.methods.dop853 import DOP853
 from heuncli.integration.methods.method import Method
 from heuncli.integration.pairs import between_strikes, instants_of, interleaved, moved_start, passed_between
-from heuncli.integration.runner import MOST_STEPS, ClosuresLost, Runner, Trajectory
+from heuncli.integration.runner import ClosuresLost, Runner, Trajectory
 from heuncli.records import record, replace
 from heuncli.results import Array, Estimate, Mask
 from heuncli.tree.layout import Layout
@@ -37,6 +40,7 @@ if TYPE_CHECKING:  # loaded where there are conditions
 RATIO = 30.0  # local tolerance of A over that of B
 FIRST = 1.0  # local tolerance of the first run over the tolerance asked
 LEAST_RATIO = 4.0  # the same at least: errors are as the tolerances, 2 |A - B| is still 1.5 times that of A
+LEAST_HALVING = 2.0  # of a given step: 2 |A - B| is at order 1 still the error of A
 RERUNS = 2
 COLLAPSED = ("step-collapsed", "closure-lost")  # how a run may end near a singular pose because of rounding
 FUTILE = 20  # a finer run that takes more than so many times the steps of the coarser one is dominated by rounding
@@ -92,15 +96,15 @@ class Runs:
 
     def __init__(
         self, runner: Runner, times: Array, jumps: Sequence[float], deadline: float | None, method: Method = DOP853,
-        *, watched: bool = False,
+        *, step: float | None = None, watched: bool = False,
     ) -> None:  # fmt: skip
-        """watched: the runs to be told are left where another method takes less (Stiff)."""
-        self.runner, self.times, self.jumps = runner, times, jumps
+        """step: of a method of given step. watched: the runs to be told are left where another takes less (Stiff)."""
+        self.runner, self.times, self.jumps, self.step = runner, times, jumps, step
         self.deadline, self.method, self.watched = deadline, method, watched
         self.moved, self.marks = moved_start(runner.layout), Marks(runner.layout)
 
     def run(
-        self, local: float, at: Array | None = None, start: Array | None = None, most_steps: int = MOST_STEPS
+        self, local: float, at: Array | None = None, start: Array | None = None, most_steps: int = tolerances.MOST_STEPS
     ) -> Trajectory:
         """A run from the start, or from one beside it, seen at the asked instants or at others.
 
@@ -112,8 +116,11 @@ class Runs:
             watched=self.watched and at is None,
         )  # fmt: skip
 
-    def first(self, local: float) -> Trajectory:
+    def first(self, tolerance: float) -> Trajectory:
         """The run asked for; where it collapses at a singular pose, a coarser one that passes it."""
+        if self.step is not None:
+            return self.run(self.step)
+        local = max(tolerance * FIRST, tolerances.LEAST_TOLERANCE)
         try:
             return self.run(local)
         except SolveError as error:
@@ -158,17 +165,17 @@ class Runs:
         is larger, never too small. A start moved by rounding may set what A holds exactly at rest trembling so fast
         that no run can follow: then the start stays.
         """
-        coarser = a.local * RATIO
-        tried = [(a.local / ratio, self.moved) for ratio in (RATIO, LEAST_RATIO, 1.0 / RATIO)]
-        for local, start in (*tried, (a.local / RATIO, None)):
+        most, least = (RATIO, LEAST_RATIO) if not a.method.fixed else (float(tolerances.CHECK_STEPS), LEAST_HALVING)
+        tried = [(a.local / ratio, self.moved) for ratio in (most, least, 1.0 / most)]
+        for local, start in (*tried, (a.local / most, None)):
             run = self.attempt(local, a, at, start)
             if run is not None:
                 return run
-        return self.run(coarser, at)
+        return self.run(a.local * most, at)
 
     def beside(self, a: Trajectory, at: Array) -> Trajectory | None:
         """A run like A from the moved start, where rounding may matter; else None."""
-        if a.method.determined or a.local >= tolerances.ROUNDING_MATTERS:
+        if a.method.determined or (not a.method.fixed and a.local >= tolerances.ROUNDING_MATTERS):
             return None
         return self.attempt(a.local, a, at, self.moved)
 
@@ -203,7 +210,7 @@ class Compared:
 
 def checked_run(runs: Runs, tolerance: float, loads: Loads) -> Checked:
     """Integrate until the motion's estimated error is below `tolerance`, with at most two reruns; else the best run."""
-    a = runs.first(max(tolerance * FIRST, tolerances.LEAST_TOLERANCE))
+    a = runs.first(tolerance)
     best, lost = None, 0.0
     for attempt in range(RERUNS + 1):
         found = compared(runs, a)
@@ -211,7 +218,7 @@ def checked_run(runs: Runs, tolerance: float, loads: Loads) -> Checked:
         lost += worse.runs[0].seconds + worse.seconds if worse is not None else 0.0
         miss = found.motion / tolerance
         no_finer = a.local <= tolerances.LEAST_TOLERANCE or found.runs[1].local > a.local
-        if miss <= 1.0 or attempt == RERUNS or no_finer or a.method.determined:
+        if miss <= 1.0 or attempt == RERUNS or no_finer or a.method.determined or a.method.fixed:
             break
         finer = runs.finer(a, 2.0 * miss)
         if finer is None:

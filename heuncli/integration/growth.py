@@ -7,10 +7,11 @@ from collections.abc import Sequence
 
 import numpy as np
 
+from heuncli import tolerances
 from heuncli.errors import HeunError, LimitError, Problem, SolveError
 from heuncli.integration.domains import grown, joint_coordinates
 from heuncli.integration.evaluator import Recovered
-from heuncli.integration.runner import MOST_STEPS, Runner
+from heuncli.integration.runner import Runner
 from heuncli.mechanism.model import Mechanism
 from heuncli.results import Array
 
@@ -29,7 +30,8 @@ def stalled(problems: Sequence[Problem], done: str, projected: float) -> HeunErr
         return SolveError(*problems)
     needed = f"about {projected:.1g} would be needed" if projected < math.inf else "no number of them will do"
     hint = "look for loads, rates, stiffness or friction far beyond the others, or end the run before"
-    return LimitError(Problem("step-limit", f"{done}; for all of it {needed}, and {MOST_STEPS} is the most", hint=hint))
+    message = f"{done}; for all of it {needed}, and {tolerances.MOST_STEPS} is the most"
+    return LimitError(Problem("step-limit", message, hint=hint))
 
 
 def largest_load(mechanism: Mechanism, recovered: Recovered) -> str:

@@ -35,7 +35,6 @@ if TYPE_CHECKING:  # loaded where a condition ends the run
     from heuncli.integration.conditions import Until
 
 CHUNK = 2_000  # body-steps between two looks at the clock
-MOST_STEPS = 20_000_000
 
 REACHED, MORE, ROPE_SLACK, CHATTERING, STRUCK, LET_GO, TURNED, STIFF, HALF_TURN = (
     kernel.CODES[name]
@@ -222,7 +221,7 @@ class Runner(Evaluator):
         *,
         discontinuities: Sequence[float] = (),
         deadline: float | None = None,
-        most_steps: int = MOST_STEPS,
+        most_steps: int = tolerances.MOST_STEPS,
         method: Method = DOP853,
         start: Array | None = None,
         whole: bool = False,
@@ -344,7 +343,7 @@ class Runner(Evaluator):
             raise LimitError(Problem("step-limit", f"{going.most_steps} {done}"))
         projected = None
         if steps.doubled():
-            projected = hopeless(steps.column("ends"), last, MOST_STEPS, irregular=not run.method.determined)
+            projected = hopeless(steps.column("ends"), last, tolerances.MOST_STEPS, irregular=not run.method.determined)
         if projected is not None:
             from heuncli.integration.growth import growing, stalled  # only on the way to an error
 

@@ -87,6 +87,7 @@ cdef struct Run:
     int easy_steps
     int half_turn             # 1 + the body whose attitude has come to the end of its chart
     int undecided             # steps of which bounds could not decide what they hold
+    int on_grid               # given steps done since `grid`
     int steps
     int evaluations
     int rejected
@@ -101,7 +102,8 @@ cdef struct Run:
     double before_end         # the last instant at which the piece's expressions hold
     double end
     double tolerance
-    double step               # the step of a method of fixed step
+    double step               # the step of a method of fixed step; 0: adaptive
+    double grid               # the instant from which given steps are counted
     double stable             # h |lambda| from which a step counts as held short by stability
     double swiftness          # that of the step tried
     double rate               # the scene's largest
@@ -123,6 +125,7 @@ cdef struct Run:
     double *carry             # small parts of y that its digits do not hold
     double *z_carry
     double **K                # derivatives at the stages
+    double **beside           # the same of steps to asked instants within the step under way
     double *coarse            # error estimates
     double *fine
     double **dense            # rows of the interpolating polynomial
@@ -142,7 +145,7 @@ cdef struct Run:
 
 cdef void combine(Method *method, int row, double **K, int n, double *out) noexcept nogil
 cdef double clipped(Run *run, double t) noexcept nogil
-cdef void evaluate_stage(Scene *scene, Method *method, Run *run, int s, bint near) noexcept nogil
+cdef int evaluate_stage(Scene *scene, Method *method, Run *run, int s, bint near) noexcept nogil
 cdef void enter_slopes(Scene *scene, Method *method, Run *run, double *state, int s) noexcept nogil
 cdef void hermite(Method *method, Run *run) noexcept nogil
 cdef void quintic(Scene *scene, Method *method, Run *run) noexcept nogil

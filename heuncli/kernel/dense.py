@@ -68,10 +68,10 @@ def evaluate_stage(
     run: cython.pointer[Run],
     s: cython.int,
     near: cython.bint,
-) -> cython.void:
+) -> cython.int:
     """The derivative at stage s, in `run.stage`, which is settled first where the step comes near to a singular pose.
 
-    What was taken in a chart of attitudes is made a state for it.
+    Answers what `evaluate` says. What was taken in a chart of attitudes is made a state for it.
     """
     rate: cython.double
     t: cython.double = clipped(run, run.t + method.node[s] * run.h)
@@ -79,13 +79,14 @@ def evaluate_stage(
         leave_chart(scene, method.attitude, run.y, run.stage)
     if near:
         settle(scene, t, run.stage)
-    evaluate(scene, t, run.stage, run.K[s])
+    trouble: cython.int = evaluate(scene, t, run.stage, run.K[s])
     if method.attitude:
         enter_slopes(scene, method, run, run.stage, s)
         if not run.following:
             rate = nearing(scene, run.stage, run.ways)
             if rate > run.nearing:
                 run.nearing = rate
+    return trouble
 
 
 def enter_slopes(

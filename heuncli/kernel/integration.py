@@ -86,8 +86,9 @@ class Integration:
         run.next_sample = run.contact = run.steps = run.evaluations = run.rejected = run.done = run.dodges = 0
         run.rejected_before = run.has_cut = run.landings = run.contact_landings = run.at_once = run.turns = 0
         run.flurry = run.undecided = run.seeing = run.stiff_steps = run.easy_steps = run.half_turn = 0
+        run.on_grid = 0
         run.stiff_after, run.easy_after, run.stable = start["stiff_after"], start["easy_after"], start["stable"]
-        run.t = run.proposed = run.energy_scale = run.gap = run.cut = run.flurry_begin = run.nearing = 0.0
+        run.t = run.grid = run.proposed = run.energy_scale = run.gap = run.cut = run.flurry_begin = run.nearing = 0.0
         run.weights = self.memory.doubles(start["weights"])
         run.y = self.memory.doubles(start["state"])
         run.z = self.memory.zeros(n)
@@ -97,6 +98,7 @@ class Integration:
         run.fine = self.memory.zeros(n)
         run.stage = self.memory.zeros(n)
         run.K = self.memory.matrix(self.method.stages + 1 + self.method.extra, n)
+        run.beside = self.memory.matrix(self.method.stages if self.method.by_step else 0, n)
         run.dense = self.memory.matrix(3 + self.method.dense_rows, n)
         self.make_chart(n)
         run.group_count = len(start["groups"])

@@ -24,6 +24,7 @@ MODULES = (
     "contacts",
     "landing",
     "following",
+    "stages",
     "stiffness",
     "steps",
     "integration",

@@ -7,7 +7,7 @@ from heuncli.kernel.attitudes cimport (
 from heuncli.kernel.chosen cimport choose_afresh, put_chosen, take_chosen
 from heuncli.kernel.contacts cimport opened_by_others, pushed_at_once, start_contacts, turned_over
 from heuncli.kernel.dense cimport (
-    AGAIN_TO, CHATTERS, Method, Run, STANDS, TURNS_OVER, clipped, combine, enter_slopes, evaluate_stage, interpolate,
+    AGAIN_TO, CHATTERS, Method, Run, STANDS, TURNS_OVER, clipped, combine, enter_slopes, interpolate,
     need_interpolant,
 )
 from heuncli.kernel.events cimport follow_angles, take_branches
@@ -17,6 +17,7 @@ from heuncli.kernel.landing cimport begin_to_see, in_flurry, meet, see_stage
 from heuncli.kernel.response cimport evaluate, evaluate_settled, must_choose_anew, settle, settle_evaluated
 from heuncli.kernel.scene cimport Body, Group, Scene
 from heuncli.kernel.selection cimport select_independent_rows
+from heuncli.kernel.stages cimport step_to, take_stages
 from heuncli.kernel.stiffness cimport estimate_swiftness, is_held_short
 from heuncli.kernel.tree cimport coordinates
 from libc.math cimport fabs, pow, sqrt
@@ -44,9 +45,11 @@ cdef void leave(Scene *scene, Method *method, Run *run) noexcept nogil
 cdef bint leaves_chart(Scene *scene, Method *method, Run *run) noexcept nogil
 cdef bint turns_too_far(Scene *scene, Run *run) noexcept nogil
 cdef int judge(Scene *scene, Method *method, Run *run, int trouble) noexcept nogil
+cdef bint takes_rates(Run *run) noexcept nogil
 cdef int dodge(Scene *scene, Run *run, double error, int trouble) noexcept nogil
 cdef double singular_noise(Scene *scene, Run *run) noexcept nogil
 cdef void sample(Scene *scene, Method *method, Run *run) noexcept nogil
+cdef void sample_by_steps(Scene *scene, Method *method, Run *run) noexcept nogil
 cdef void sample_reached(Run *run) noexcept nogil
 cdef double growth(Method *method, Run *run) noexcept nogil
 cdef int accept(Scene *scene, Method *method, Run *run) noexcept nogil

@@ -1,8 +1,9 @@
-"""The stepping loop: an adaptive embedded Runge-Kutta method with dense output, and the states at asked instants.
+"""The stepping loop: Runge-Kutta methods of adaptive or of given step, and the states at asked instants.
 
-A method is data (integration/methods). The error of a step is measured body by body and the largest counts, for a
-resting neighbour must not dilute it: coordinates against tol (angles) and tol * size (shifts), rates against tol * the
-largest rate the body has had. Hairer, Norsett, Wanner, Solving Ordinary Differential Equations I (1993), II.4-II.6.
+A method is data (integration/methods). Of a given step nothing is judged. The error of another is measured body by body
+and the largest counts, for a resting neighbour must not dilute it: coordinates against tol (angles) and tol * size
+(shifts), rates against tol * the largest rate the body has had. Hairer, Norsett, Wanner, Solving Ordinary Differential
+Equations I (1993), II.4-II.6.
 """
 
 from __future__ import annotations
@@ -35,7 +36,6 @@ if not cython.compiled:
         clipped,
         combine,
         enter_slopes,
-        evaluate_stage,
         interpolate,
         need_interpolant,
     )
@@ -47,6 +47,7 @@ if not cython.compiled:
     from heuncli.kernel.scene import Body, Group, Scene
     from heuncli.kernel.selection import select_independent_rows
     from heuncli.kernel.shadow import cython
+    from heuncli.kernel.stages import step_to, take_stages
     from heuncli.kernel.stiffness import estimate_swiftness, is_held_short
     from heuncli.kernel.structs import Method, Run
     from heuncli.kernel.tree import coordinates
@@ -161,6 +162,8 @@ def begin_piece(scene: cython.pointer[Scene], method: cython.pointer[Method], ru
         if run.proposed <= 0.0 or h < run.proposed:
             run.proposed = h
     run.fresh = 0
+    run.grid = run.t
+    run.on_grid = 0
     run.rejected_before = 0
     run.has_cut = run.landings = run.contact_landings = run.at_once = 0
     for i in range(run.n):
@@ -244,6 +247,8 @@ def take_record(scene: cython.pointer[Scene], run: cython.pointer[Run], record: 
 def propose(run: cython.pointer[Run]) -> cython.void:
     """Where the next step ends; the last of a piece ends it, the one before is halved with it.
 
+    Given steps are counted from where the piece, or the last event in it, began: the last one is shorter.
+
     Its length is the way to that end, rounded as the end is: so the ends alone tell the steps.
     """
     run.stop = run.t + run.proposed
@@ -254,6 +259,12 @@ def propose(run: cython.pointer[Run]) -> cython.void:
     elif run.has_cut:
         run.stop = run.cut
         run.last = 0
+    elif run.step > 0.0:
+        # some millions of steps know their ends to 1e-8 of one
+        run.stop = run.grid + (run.on_grid + 1) * run.step
+        run.last = run.stop + 1e-6 * run.step >= run.end
+        if run.last:
+            run.stop = run.end
     elif run.last:
         run.stop = run.end
     elif run.t + 2.0 * run.proposed > run.end:
@@ -284,9 +295,8 @@ def near_singular(scene: cython.pointer[Scene], run: cython.pointer[Run]) -> cyt
 def attempt(scene: cython.pointer[Scene], method: cython.pointer[Method], run: cython.pointer[Run]) -> cython.int:
     """The stages of a step and its solution z, with its small parts beside it; what `evaluate` says there.
 
-    What is off the closures by a little is accelerated by a lot near a singular pose: there the stages are settled.
+    Of a given step also what it says of the worst stage: no estimate of an error tells of it.
     """
-    s: cython.int
     i: cython.Py_ssize_t
     change: cython.double
     if run.determined:
@@ -296,13 +306,7 @@ def attempt(scene: cython.pointer[Scene], method: cython.pointer[Method], run: c
         begin_to_see(scene, run)
     if method.attitude:
         enter(scene, method, run)
-    for s in range(1, method.stages):
-        combine(method, s, run.chart_K, run.n, run.stage)
-        for i in range(run.n):
-            run.stage[i] = run.chart_y[i] + run.h * run.stage[i]
-        evaluate_stage(scene, method, run, s, run.near)
-        if run.seeing:
-            see_stage(scene, run)
+    worst: cython.int = take_stages(scene, method, run)
     combine(method, method.stages, run.chart_K, run.n, run.chart_z)
     for i in range(run.n):
         change = run.h * run.chart_z[i] + run.carry[i]
@@ -318,7 +322,7 @@ def attempt(scene: cython.pointer[Scene], method: cython.pointer[Method], run: c
         see_stage(scene, run)
     if run.stiff_after:
         estimate_swiftness(method, run)
-    return trouble
+    return worst if method.fixed and worst < trouble else trouble
 
 
 def enter(scene: cython.pointer[Scene], method: cython.pointer[Method], run: cython.pointer[Run]) -> cython.void:
@@ -367,7 +371,7 @@ def turns_too_far(scene: cython.pointer[Scene], run: cython.pointer[Run]) -> cyt
 def judge(
     scene: cython.pointer[Scene], method: cython.pointer[Method], run: cython.pointer[Run], trouble: cython.int
 ) -> cython.int:
-    """ACCEPTED, AGAIN with another length, or NOT_A_NUMBER."""
+    """ACCEPTED, AGAIN with another length, NOT_A_NUMBER, or CLOSURES_LOST."""
     error: cython.double
     noise: cython.double = 0.0
     row: cython.int = method.stages + 1 + method.extra
@@ -376,6 +380,10 @@ def judge(
         return ACCEPTED
     if run.determined:
         return AGAIN if trouble < 0 else ACCEPTED
+    if method.fixed:
+        if not takes_rates(run):
+            return NOT_A_NUMBER
+        return CLOSURES_LOST if trouble < 0 else ACCEPTED
     combine(method, row, run.chart_K, run.n, run.coarse)
     combine(method, row + method.estimates - 1, run.chart_K, run.n, run.fine)
     if method.attitude:
@@ -404,6 +412,19 @@ def judge(
         return AGAIN
     run.error = error
     return ACCEPTED
+
+
+def takes_rates(run: cython.pointer[Run]) -> cython.bint:
+    """The rates of the groups at the end of a given step; whether all is finite there."""
+    b: cython.int
+    size: cython.double = 0.0
+    for b in range(run.group_count):
+        group: cython.pointer[Group] = cython.address(run.groups[b])
+        group.trial = norm_of(run, run.z, group.rates, group.end)
+        if group.trial < group.rate:
+            group.trial = group.rate
+        size += norm_of(run, run.z, group.coordinates, group.end)
+    return size < 1e300  # neither infinite nor not a number
 
 
 def dodge(
@@ -446,6 +467,10 @@ def sample(scene: cython.pointer[Scene], method: cython.pointer[Method], run: cy
     pivot: cython.double = scene.pivot_of_step
     if run.next_sample >= run.sample_count or run.times[run.next_sample] >= run.stop:
         return
+    if method.by_step:
+        sample_by_steps(scene, method, run)
+        scene.pivot_of_step = pivot
+        return
     need_interpolant(scene, method, run)
     scene.pivot_of_step = pivot
     while run.next_sample < run.sample_count and run.times[run.next_sample] < run.stop:
@@ -454,6 +479,19 @@ def sample(scene: cython.pointer[Scene], method: cython.pointer[Method], run: cy
         if run.determined:
             find_between(scene, run, run.samples[run.next_sample])
         run.next_sample += 1
+
+
+def sample_by_steps(
+    scene: cython.pointer[Scene], method: cython.pointer[Method], run: cython.pointer[Run]
+) -> cython.void:
+    """The same where there is no dense output: a step of its own to each."""
+    seeing: cython.bint = run.seeing
+    run.seeing = 0
+    run.has_interpolant = 1  # the scene does not stand at the step's end any more
+    while run.next_sample < run.sample_count and run.times[run.next_sample] < run.stop:
+        step_to(scene, method, run, run.times[run.next_sample], run.samples[run.next_sample])
+        run.next_sample += 1
+    run.seeing = seeing
 
 
 def sample_reached(run: cython.pointer[Run]) -> cython.void:
@@ -497,6 +535,10 @@ def accept(scene: cython.pointer[Scene], method: cython.pointer[Method], run: cy
             if run.groups[b].rate > run.rate and b != run.energy_group:
                 run.rate = run.groups[b].rate
     run.t = run.stop
+    run.on_grid += 1
+    if run.has_cut:
+        run.grid = run.t
+        run.on_grid = 0
     if not cut_short or run.proposed < run.h * factor:
         # a step cut short by an event or the end of the piece says nothing against a longer one after it
         run.proposed = run.h * factor
@@ -581,7 +623,10 @@ def jumped(scene: cython.pointer[Scene], run: cython.pointer[Run]) -> cython.bin
     i: cython.Py_ssize_t
     change: cython.double
     explained: cython.double = scene.limits.jump
-    if scene.pivot > 0.0:
+    if run.step > 0.0:
+        # what a step may turn the scene by, its rates may be off by: Euler's are, by half of it
+        explained += run.h * run.rate if run.h * run.rate < 0.5 else 0.5
+    elif scene.pivot > 0.0:
         explained += scene.limits.jump_of_error * run.tolerance / sqrt(scene.pivot)
     if run.following or run.determined:
         return False

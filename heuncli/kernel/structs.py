@@ -258,6 +258,7 @@ class Run(metaclass=Fields):
     easy_steps: int
     half_turn: int
     undecided: int
+    on_grid: int
     steps: int
     evaluations: int
     rejected: int
@@ -273,6 +274,7 @@ class Run(metaclass=Fields):
     end: float
     tolerance: float
     step: float
+    grid: float
     stable: float
     swiftness: float
     rate: float
@@ -294,6 +296,7 @@ class Run(metaclass=Fields):
     carry: list[float]
     z_carry: list[float]
     K: list[list[float]]
+    beside: list[list[float]]
     coarse: list[float]
     fine: list[float]
     dense: list[list[float]]

@@ -115,6 +115,8 @@ def _run(results: Results) -> str:
         parts = [f"{times[0]:.6g} to {times[-1]:.6g} s, {len(times)} samples"]
     if work.get("steps"):
         method = f"{results.model['method']}, " if results.model.get("method") else ""
+        if results.model.get("step"):
+            method = f"{results.model['method']} in steps of {results.model['step']:.4g} s, "
         parts.append(f"{method}{count(int(work['steps']), 'step')}, {count(int(work['evaluations']), 'evaluation')}")
     elif len(times) == 1:
         parts.append("nothing integrated")

@@ -10,6 +10,7 @@ from typing import Any, Literal
 
 from heuncli.errors import Problem, SourceLocation
 from heuncli.expressions.programs import Expression, Table
+from heuncli.method_rows import canonical
 from heuncli.records import record
 from heuncli.spec import format as f
 from heuncli.spec import models as m
@@ -58,7 +59,8 @@ def resolve(document: f.Document, meaning: Meaning) -> m.Spec:
         tables=meaning.tables,
         analysis=m.Analysis(
             kind, instants, instants[-1] if kind == "motion" else None,
-            analysis.tolerance if analysis.tolerance is not None else DEFAULT_TOLERANCE, analysis.method, analysis.step,
+            analysis.tolerance if analysis.tolerance is not None else DEFAULT_TOLERANCE, canonical(analysis.method),
+            analysis.step,
             r.conditions(analysis),
         ),
         report=tuple(document.head.report) if document.head.report is not None else None,

@@ -57,6 +57,21 @@ WORDS = {  # of `type` under analysis, and the like
     "2d": ("planar",), "plane": ("planar",), "3d": ("spatial",), "space": ("spatial",), "local": ("body",),
     "global": ("world",), "shock": ("impulse",),
 }  # fmt: skip
+METHOD_WORDS = {  # of methods, in lower case, without hyphens
+    "forwardeuler": "Euler", "expliciteuler": "Euler", "improvedeuler": "Heun2", "heun": "Heun2", "midpoint": "Heun2",
+    "rk2": "Heun2", "rk3": "Heun3", "rungekutta": "RK4", "rungekutta4": "RK4", "kutta": "RK4", "classical": "RK4",
+    "rk45": "DOPRI5", "ode45": "DOPRI5", "dopri": "DOPRI5", "dp5": "DOPRI5", "rkf45": "DOPRI5", "tsit5": "DOPRI5",
+    "dormandprince": "DOPRI5", "rk23": "DOPRI5", "ode23": "DOPRI5", "rk853": "DOP853", "dop8": "DOP853",
+    "dopri8": "DOP853", "dp8": "DOP853", "ode78": "DOP853", "ode113": "DOP853", "abm": "DOP853", "adams": "DOP853",
+    "vern9": "Verner98", "vern98": "Verner98", "verner": "Verner98", "ode89": "Verner98",
+    "gauss": "Gauss4", "gausslegendre": "Gauss4", "implicitmidpoint": "Gauss4", "symplectic": "Gauss4",
+    "verlet": "Gauss4", "leapfrog": "Gauss4", "newmark": "Gauss4", "gausslegendre4": "Gauss4",
+    "gausslegendre6": "Gauss6", "radau": "Radau5", "radauiia": "Radau5", "radauiia5": "Radau5", "stiff": "Radau5",
+    "implicit": "Radau5", "implicteuler": "Radau5", "ode15s": "Radau5", "ode23s": "Radau5", "ode23t": "Radau5",
+    "dassl": "Radau5", "ida": "Radau5", "cvode": "Radau5", "gstiff": "Radau5", "hht": "Radau5", "rodas": "Radau5",
+    "rosenbrock": "Radau5", "generalizedalpha": "Radau5", "bdf": "SciPy-BDF", "lsoda": "SciPy-LSODA",
+    "odeint": "SciPy-LSODA", "vode": "SciPy-BDF", "default": "auto", "automatic": "auto", "adaptive": "auto",
+}  # fmt: skip
 FORMS = {  # what the values of some keys look like
     "gravity": "it is a vector: [0, 0, -9.81]", "orientation": "as {axis: [0, 0, 1], angle: 60 deg}",
     "inertia": "the moments about the axes [A1, A2, A3], or a 3x3 tensor in rows",

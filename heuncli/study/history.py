@@ -129,7 +129,7 @@ def checked_motion(
                 raise
             method = method_of(AUTO)  # towards a singular pose steps along a branch become ever shorter
     try:
-        runs = Runs(setup.runner, times, jumps, deadline, method, watched=setup.auto)
+        runs = Runs(setup.runner, times, jumps, deadline, method, step=setup.step, watched=setup.auto)
         return checked_run(runs, tolerance, Kinds(setup, by_cause))
     except Stiff as stiff:
         runs = Runs(setup.runner, times, jumps, deadline, stiff.method)

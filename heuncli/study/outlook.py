@@ -12,6 +12,7 @@ import numpy as np
 
 from heuncli.errors import LimitError, SolveError
 from heuncli.integration.runner import Trajectory, discontinuities_of
+from heuncli.method_rows import row_of
 from heuncli.study.setup import Setup
 from heuncli.study.words import count
 
@@ -29,33 +30,39 @@ def outlook(setup: Setup) -> list[str]:
     if setup.method.determined:
         return ["nothing: every instant is solved by itself, along its branch"]
     layout, tolerance = setup.runner.moving.layout, setup.spec.analysis.tolerance
-    sentences = [
-        f"{count(layout.n_state, 'number')} of state, by {setup.method.name}, an explicit method of order "
-        f"{setup.method.order}, to {tolerance:.3g} of the scene's size; then once more at a thirtieth of that, to check"
-    ]
-    return [*sentences, *pace(setup, tolerance)]
+    how = f"to {tolerance:.3g} of the scene's size; then once more at a thirtieth of that, to check"
+    if setup.step is not None:
+        how = f"in steps of {setup.step:.4g} s; then once more in quarters of them, to check"
+    row = row_of(setup.method.name)
+    kind = f"{row.kind} " if row is not None and row.kind != "SciPy" else ""
+    sentence = (
+        f"{count(layout.n_state, 'number')} of state, by {setup.method.name}, an {kind}method of order "
+        f"{setup.method.order}, {how}"
+    )
+    return [sentence, *pace(setup, tolerance if setup.step is None else setup.step)]
 
 
-def pace(setup: Setup, tolerance: float) -> list[str]:
+def pace(setup: Setup, local: float) -> list[str]:
     """What the first part of the run takes; nothing is told where that cannot be solved: the run will say why."""
     last = PART * float(setup.spec.analysis.times[-1])
     whole = round(1.0 / PART)
     with suppress(SolveError):
         try:
-            run = min((begun(setup, tolerance, last) for _ in range(2)), key=lambda run: run.seconds)
+            run = min((begun(setup, local, last) for _ in range(2)), key=lambda run: run.seconds)
         except LimitError:
             return [f"the first {last:.4g} s take more than {MOST_STEPS:,} steps or {PATIENCE} s: a long run"]
         steps, evaluations = count(run.steps, "step"), count(run.evaluations, "evaluation")
+        check = "1.3 to 1.5" if setup.step is None else "5"
         took = f"the first {last:.4g} s take {steps}, {evaluations}, {1e3 * run.seconds:.2g} ms"
-        return [f"{took}: {whole} times that if it goes on so, and 1.3 to 1.5 times as much for the check"]
+        return [f"{took}: {whole} times that if it goes on so, and {check} times as much for the check"]
     return []
 
 
-def begun(setup: Setup, tolerance: float, last: float) -> Trajectory:
+def begun(setup: Setup, local: float, last: float) -> Trajectory:
     """The first part of the run."""
     jumps = tuple(discontinuities_of(setup.scene.mechanism, 0.0, last))
     assert setup.method is not None
     return setup.runner.trajectory(
-        np.array([0.0, last]), tolerance, discontinuities=jumps, deadline=time.monotonic() + PATIENCE,
+        np.array([0.0, last]), local, discontinuities=jumps, deadline=time.monotonic() + PATIENCE,
         most_steps=MOST_STEPS, method=setup.method,
     )  # fmt: skip

@@ -35,7 +35,8 @@ class Setup:
 
     spec: as far as it is solved; asked: what is told of it. cuts: of the sections, as asked; in a search runs of cuts
     as whole stretches stand for them. reduced: what is integrated in the scene's place, and why; None where nothing is,
-    or where all is solved in full. rest: how the pose was found, where that is what is asked for.
+    or where all is solved in full. rest: how the pose was found, where that is what is asked for. step: that is given
+    to a method of fixed step [s].
     auto: the method was left to heun, which may change it on the way.
     """
 
@@ -49,6 +50,7 @@ class Setup:
     asked: Asked = EVERYTHING
     rest: Rest | None = None
     auto: bool = False
+    step: float | None = None
 
     @cached_property
     def steady(self) -> dict[int, Array]:
@@ -96,7 +98,9 @@ def set_up(
     note = model_note(scene, runner, chosen.name if chosen else "none") | told
     if chosen is not None:
         note["reasons"] += attitudes(chosen, runner.moving.layout)
-    return Setup(spec, scene, cuts, runner, chosen, note, reduced, asked, auto=asked_method == AUTO)
+    step = spec.analysis.step if chosen is not None and chosen.fixed else None
+    note |= {} if step is None else {"step": step}
+    return Setup(spec, scene, cuts, runner, chosen, note, reduced, asked, auto=asked_method == AUTO, step=step)
 
 
 def set_up_at_rest(setup: Setup, left_out: tuple[str, ...], looked_for: bool, deadline: float | None) -> Setup:

@@ -17,10 +17,11 @@ from heuncli.errors import Problem, SolveError, SpecError
 from heuncli.integration.blows import met_freely
 from heuncli.integration.following import integrated_after_all
 from heuncli.kernel.choose import KERNEL
-from heuncli.method_rows import NAMES
+from heuncli.method_rows import canonical, row_of
 from heuncli.records import record, replace
 from heuncli.results import Accuracy, Array, Block, Extremes, Magnitudes, Place, Results
 from heuncli.results_schema import BLOWS, REPORTS, SHARED, SHARES, with_shared
+from heuncli.spec.methods import unfit
 from heuncli.spec.models import Spec
 from heuncli.study import extremes
 from heuncli.study.asked import Asked, Entry, needed_by, sums_among
@@ -52,6 +53,7 @@ class Options:
 
     tolerance: float | None = None
     method: str | None = None
+    step: float | None = None  # of a method of fixed step [s]
     wanted: frozenset[str] | None = None
     entries: frozenset[Entry] = frozenset()
     axes: str = "world"
@@ -90,7 +92,8 @@ def solved(spec: Spec, options: Options, deadline: float | None) -> Study:
     begun = time.perf_counter()
     conditions = spec.analysis.conditions
     asked = options.asked.with_all(needed_by(conditions, spec)) if conditions else options.asked
-    setup = set_up(spec, known_method(options.method), reduce=options.reduce, asked=asked, deadline=deadline)
+    spec = stepping(spec, options)
+    setup = set_up(spec, reduce=options.reduce, asked=asked, deadline=deadline)
     built = time.perf_counter()
     tolerance = spec.analysis.tolerance if options.tolerance is None else options.tolerance
     history = integrate(setup, tolerance, deadline, by_cause=SHARES in options.reports)
@@ -133,12 +136,19 @@ def describe(spec: Spec, *, reduce: bool = True) -> Block:
     return model | {"reasons": [*model["reasons"], *watched], "notes": model["notes"] + advice(setup.scene, model)}
 
 
-def known_method(name: str | None) -> str | None:
-    """The name of a method if it is one. Raises SpecError [not-yet]."""
-    if name is not None and name not in NAMES:
-        message = f"method {name}: not yet: a method other than {' and '.join(NAMES)}"
-        raise SpecError(Problem("not-yet", message, hint=f"known: {', '.join(NAMES)}"))
-    return name
+def stepping(spec: Spec, options: Options) -> Spec:
+    """The spec with the method and the step that are asked for; its own step goes with no method but one of fixed step.
+
+    Raises SpecError where they do not go together.
+    """
+    method = options.method or spec.analysis.method
+    row = row_of(method)
+    fixed = row is not None and row.steps == "fixed"
+    step = options.step if options.step is not None or not (fixed or options.method is None) else spec.analysis.step
+    wrong = [Problem(one.code, one.message, hint=one.hint) for one in unfit(method, step, spec.analysis.duration)]
+    if wrong:
+        raise SpecError(*wrong)
+    return spec._replace(analysis=spec.analysis._replace(method=canonical(method), step=step))
 
 
 def compose(

@@ -1,56 +1,31 @@
-"""The order a method claims, measured: its tableau with fixed steps, and the program's own runs."""
+"""The order a method claims, measured: one test over the registry by the program's own runs, and of the tableaus.
+
+Any method goes in given steps if it is told so; a row that joins the registry is measured like the others.
+"""
 
 from __future__ import annotations
 
-from collections.abc import Callable
+from fractions import Fraction
 
 import numpy as np
 import pytest
 
 from heuncli.integration.methods.method import Method, Row
 from heuncli.integration.methods.registry import method_of
-from heuncli.method_rows import METHODS as ROWS
+from heuncli.integration.runner import Runner
+from heuncli.method_rows import METHODS
+from heuncli.records import replace
 from heuncli.results import Array
 from tests.closed_forms.test_theory_2j_motion import heavy_top
 from tests.shared.bars import chain, double, rods
 from tests.shared.scenes import study
 
-METHODS = [method_of(row.name) for row in ROWS]
-
-
-def slope_of_pendulum(t: float, y: Array) -> Array:
-    """A pushed pendulum: smooth, not linear, and it knows the time."""
-    return np.array([y[1], -np.sin(y[0]) + 0.3 * np.cos(1.7 * t)])
-
-
-def combined(row: Row, K: list[Array]) -> Array:
-    return np.sum([c * K[stage] for stage, c in row], axis=0)
-
-
-def fixed_steps(method: Method, count: int, until: float = 3.0) -> tuple[Array, Callable[[float], Array]]:
-    """The state at the end, and the dense output of the last step by its fraction."""
-    y, h = np.array([1.0, 0.5]), until / count
-    for n in range(count):
-        t, K = n * h, [slope_of_pendulum(n * h, y)]
-        for row, node in zip(method.stages, method.nodes[1:], strict=False):
-            K.append(slope_of_pendulum(t + node * h, y + h * combined(row, K)))
-        end = y + h * combined(method.solution, K)
-        K.append(slope_of_pendulum(t + h, end))
-        for row, node in zip(method.extra, method.nodes[len(method.stages) + 2:], strict=True):
-            K.append(slope_of_pendulum(t + node * h, y + h * combined(row, K)))
-        start, y = y, end
-    # Hairer, Norsett, Wanner, Solving ODEs I, II.6: alternately x and 1 - x are multiplied in
-    q = y - start
-    F = [q, h * K[0] - q, 2 * q - h * (K[len(method.stages) + 1] + K[0])]
-    F += [h * combined(row, K) for row in method.dense]
-
-    def dense(x: float) -> Array:
-        total = np.zeros(2)
-        for k, part in reversed(list(enumerate(F))):
-            total = (total + part) * (x if k % 2 == 0 else 1.0 - x)
-        return start + total
-
-    return y, dense
+NAMES = [row.name for row in METHODS if row.kind != "SciPy"]  # what SciPy integrates takes no given steps
+TABLEAUS = [row.name for row in METHODS if row.kind == "explicit" and row.attitude == "quaternion"]
+SCENE = double("{times: [1]}")  # balls in space, which turn by a radian in the first half second
+COUNTS = np.array([2, 3, 4, 5, 6, 8, 10, 12, 14, 16, 20, 24, 28, 32, 40, 48, 64, 96, 128, 256])
+ROUNDED, COARSE = 1e-12, 0.1  # m: below, rounding shows; above, the error is not yet that of small steps
+POINTS = 4  # the finest of those between
 
 
 def fitted(counts: Array, errors: Array) -> float:
@@ -58,31 +33,104 @@ def fitted(counts: Array, errors: Array) -> float:
     return -float(np.polyfit(np.log(counts), np.log(errors), 1)[0])
 
 
-@pytest.mark.parametrize("method", METHODS, ids=lambda m: m.name)
-def test_order_with_fixed_steps(method: Method) -> None:
-    """The error at the end falls with the order claimed, steps 0.3 to 0.15."""
-    counts = np.array([10, 12, 14, 17, 20])
-    exact = fixed_steps(method, 240)[0]
-    errors = np.array([np.abs(fixed_steps(method, n)[0] - exact).max() for n in counts])
-    assert errors.min() > 1e-13  # above rounding, else the slope means nothing
-    assert fitted(counts, errors) == pytest.approx(method.order, abs=0.5)
+def centres(runner: Runner, times: Array, states: Array) -> Array:
+    """Attitudes and places of all bodies."""
+    found = runner.recovered(times, states)
+    return np.concatenate([found.bodies["R"].reshape(*found.bodies.shape, 9), found.bodies["r"]], axis=2)
 
 
-@pytest.mark.parametrize("method", METHODS, ids=lambda m: m.name)
-def test_order_of_the_dense_output(method: Method) -> None:
-    """Between the ends of a step the error falls at least as fast as one order below the method's."""
-    counts = np.array([10, 12, 15, 18, 21])
-    errors = []
-    for n in counts.tolist():
-        step = 3.0 / n
-        inside = fixed_steps(method, n)[1]
-        worst = 0.0
-        for x in (0.3, 0.5, 0.8):
-            end = 3.0 - (1.0 - x) * step
-            worst = max(worst, float(np.abs(inside(x) - fixed_steps(method, 240, end)[0]).max()))
-        errors.append(worst)
-    assert min(errors) > 1e-13
-    assert fitted(counts, np.array(errors)) > method.order - 1.5
+def measured(name: str, end: float, at: Array) -> tuple[Array, Array]:
+    """Numbers of steps, and the largest error at some instants, parts of the last step: where it tells the order."""
+    runner = study(SCENE).setup.runner
+    method = replace(method_of(name), fixed=True)
+    counts, errors = [], []
+    for n in COUNTS.tolist():
+        times = end - (1.0 - at) * (end / n)
+        exact = runner.trajectory(times, 1e-15)
+        run = runner.trajectory(times, end / n, method=method)
+        assert run.steps == n
+        error = float(np.abs(centres(runner, times, run.states) - centres(runner, times, exact.states)).max())
+        if error < ROUNDED:
+            break
+        if error < COARSE:
+            counts.append(n)
+            errors.append(error)
+    return np.array(counts[-POINTS:]), np.array(errors[-POINTS:])
+
+
+@pytest.mark.heavy
+@pytest.mark.parametrize("name", NAMES)
+def test_order_in_given_steps(name: str) -> None:
+    """The error at the end falls with the order claimed."""
+    counts, errors = measured(name, 0.3, np.array([1.0]))
+    assert len(counts) == POINTS
+    order = next(row.order for row in METHODS if row.name == name)
+    assert method_of(name).order == order
+    assert fitted(counts, errors) == pytest.approx(order, abs=0.5)
+
+
+@pytest.mark.heavy
+@pytest.mark.parametrize("name", NAMES)
+def test_order_between_the_ends_of_steps(name: str) -> None:
+    """There the error falls at least as fast as one order below the method's."""
+    counts, errors = measured(name, 0.5, np.array([0.3, 0.5, 0.8]))
+    assert len(counts) == POINTS
+    assert fitted(counts, errors) > method_of(name).order - 1.5
+
+
+# ---- tableaus: what their rows must fulfil, to the rounding of their numbers
+
+
+def total(row: Row, nodes: tuple[float, ...], power: int) -> float:
+    """Sum of a row's coefficients times a power of the nodes, exactly; the end of the step is a node, too."""
+    return float(sum(Fraction(c) * Fraction(nodes[stage]) ** power for stage, c in row))
+
+
+def nodes_of(method: Method) -> tuple[float, ...]:
+    """The nodes of all stages, with that of the derivative at the end."""
+    count = len(method.stages) + 1
+    return (*method.nodes[:count], 1.0, *method.nodes[count + 1 :])
+
+
+@pytest.mark.parametrize("name", TABLEAUS)
+def test_rows_add_up_to_their_nodes(name: str) -> None:
+    """For y' = 1 every stage is where it says."""
+    method = method_of(name)
+    rows = [*zip(method.stages, method.nodes[1:], strict=False)]
+    rows += zip(method.extra, method.nodes[len(method.stages) + 2 :], strict=True)
+    for row, node in rows:
+        size = sum(abs(c) for _, c in row)
+        assert total(row, (0.0,) * 99, 0) == pytest.approx(node, abs=4e-16 * max(size, 1.0))
+
+
+@pytest.mark.parametrize("name", TABLEAUS)
+def test_the_solution_is_a_quadrature_of_its_order(name: str) -> None:
+    """For y' = t^k, k < order: the integral; and the estimates see nothing of it as far as their own order goes."""
+    method = method_of(name)
+    nodes = nodes_of(method)
+    for k in range(method.order):
+        assert total(method.solution, nodes, k) == pytest.approx(1.0 / (k + 1), abs=2e-15)
+    for row in method.estimates[-1:]:
+        size = sum(abs(c) for _, c in row)
+        for k in range(method.error_order - 1 if len(method.estimates) == 1 else 5):
+            assert total(row, nodes, k) == pytest.approx(0.0, abs=1e-15 * size)
+
+
+@pytest.mark.parametrize("name", TABLEAUS)
+@pytest.mark.parametrize("x", [0.2, 0.5, 0.9])
+def test_the_dense_output_is_a_quadrature_of_one_order_less(name: str, x: float) -> None:
+    """For y' = t^k the interpolating polynomial is x^(k+1) / (k+1), as far as its order goes."""
+    method = method_of(name)
+    nodes, end = nodes_of(method), len(method.stages) + 1
+    order = min(method.order, max(3, method.order - 1))
+    for k in range(order):
+        change = total(method.solution, nodes, k)
+        first, last = float(k == 0), nodes[end] ** k
+        F = [change, first - change, 2.0 * change - last - first, *(total(row, nodes, k) for row in method.dense)]
+        value = 0.0
+        for i, part in reversed(list(enumerate(F))):
+            value = (value + part) * (x if i % 2 == 0 else 1.0 - x)
+        assert value == pytest.approx(x ** (k + 1) / (k + 1), abs=1e-12)
 
 
 RUNS = {
@@ -100,14 +148,13 @@ def test_order_of_runs(name: str, dense: bool) -> None:
     end = float(s.history.times[-1])
     times = np.linspace(0.0, end, 101) if dense else np.array([end])
 
-    def centres(tolerance: float) -> tuple[Array, int]:
+    def run_to(tolerance: float) -> tuple[Array, int]:
         run = s.setup.runner.trajectory(times, tolerance)
-        found = s.setup.runner.recovered(run.times, run.states)
-        return np.concatenate([found.bodies["R"].reshape(*found.bodies.shape, 9), found.bodies["r"]], axis=2), run.steps
+        return centres(s.setup.runner, run.times, run.states), run.steps
 
-    exact, _ = centres(1e-15)
+    exact, _ = run_to(1e-15)
     tolerances = 10.0 ** -np.arange(3.0, 11.5, 0.25)
-    runs = [centres(tol) for tol in tolerances]
+    runs = [run_to(tol) for tol in tolerances]
     errors = np.array([np.abs(x - exact).max() for x, _ in runs])
     steps = np.array([n for _, n in runs])
     assert fitted(steps, errors) == pytest.approx(9.0, abs=1.2)  # 8, and fewer steps are wasted when they are small

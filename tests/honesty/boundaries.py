@@ -80,6 +80,11 @@ def steady_pace(x: float) -> str:
     return "told" if hopeless(np.arange(1.0, 101.0), x * 1e5, 10_000) else "goes on"
 
 
+def steps_given(x: float) -> str:
+    """A run whose check run goes in x steps, quarters of those given."""
+    return read(bar(tail=f"analysis: {{duration: 1, method: RK4, step: {4.0 / x!r}}}\n"))
+
+
 def start_beyond(x: float) -> str:
     """A pin that starts at the angle 0, above the limit of its stop by x."""
     mechanism = build(load("scene.yaml", bar(kind="pin, axis: [0, 1, 0]")), {})
@@ -803,6 +808,7 @@ ROWS = (
     Row("NO_LOAD", carried_by_nothing, "none", "judged"),
     Row("NO_ENERGY", drift, "at rest", "a drift"),
     Row("TOLD_BESIDE", moved_by, "told", "not known"),
+    Row("MOST_STEPS", steps_given, "fine", "refused: step"),
     Row("HOPELESS", steady_pace, "goes on", "told"),
     Row("KERNEL.half_turn", beside_a_half_turn, "refused: half-turn", "fine"),
     Row("KERNEL.unseen", unseen_pulse, "as seen", "looked into"),
@@ -831,6 +837,7 @@ ROWS = (
 EXEMPT = {
     "STIFF": "what is integrated by: either way the same motion, and its estimate",
     "RADAU5": "what is integrated by: either way the same motion, and its estimate",
+    "CHECK_STEPS": "how much finer a check run goes: 2 |A - B| is no less than the error on either side of 4",
     "INTEGRATED": "whether a stretch is halved once more: the integral is right to rounding on either side",
     "UNSEEN_RATE": "whether a stretch is halved once more; tests/spec/test_integrals.py has pulses that hide",
     "NEARLY_DEFECTIVE": "how a step is taken: tests/closed_forms/test_rest.py has matrices and scenes on both sides",

@@ -323,7 +323,7 @@ def test_analysis_by_default() -> None:
     assert scene(f"bodies: {{b: {POINT}}}\n{blow}").analysis.type == "impulse"
     asked = "analysis: {duration: 2, tolerance: 1e-6, method: rk4, step: 1 ms}"
     found = scene(f"bodies: {{b: {POINT}}}\n{asked}\n").analysis
-    assert (found.tolerance, found.method, found.step) == (1e-6, "rk4", 1e-3)
+    assert (found.tolerance, found.method, found.step) == (1e-6, "RK4", 1e-3)
 
 
 @pytest.mark.parametrize(("text", "about"), [

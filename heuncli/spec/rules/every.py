@@ -9,6 +9,7 @@ from heuncli.spec.rules import (
     expect,
     joints,
     loads,
+    methods,
     naming,
     not_yet,
     plane,
@@ -18,6 +19,8 @@ from heuncli.spec.rules import (
 )
 from heuncli.spec.rules.registry import RULES, DraftDocument, Rule, Violation, violations
 
-MODULES = (naming, references, bodies, joints, plane, loads, stops, sections, analysis, conditions, expect, not_yet)
+MODULES = (
+    naming, references, bodies, joints, plane, loads, stops, sections, analysis, methods, conditions, expect, not_yet,
+)  # fmt: skip
 
 __all__ = ["MODULES", "RULES", "DraftDocument", "Rule", "Violation", "violations"]

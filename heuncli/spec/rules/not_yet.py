@@ -7,22 +7,9 @@ from __future__ import annotations
 
 from collections.abc import Callable, Iterable, Iterator
 
-from heuncli.method_rows import NAMES
 from heuncli.spec.rules.registry import DraftDocument, Path_, Violation, rule
 
 Where = Callable[[DraftDocument], Iterable[Path_]]
-
-
-def other_method(draft: DraftDocument) -> Iterator[Path_]:
-    """A method of integration that there is not."""
-    if draft.document.analysis.method not in NAMES:
-        yield "analysis", "method"
-
-
-def fixed_step(draft: DraftDocument) -> Iterator[Path_]:
-    """The step of a method with fixed steps."""
-    if draft.document.analysis.step is not None:
-        yield "analysis", "step"
 
 
 def rubbing(draft: DraftDocument) -> Iterator[Path_]:
@@ -34,8 +21,6 @@ def rubbing(draft: DraftDocument) -> Iterator[Path_]:
 
 NOT_YET: tuple[tuple[str, Where], ...] = (
     ("friction at strikes", rubbing),
-    (f"a method other than {' and '.join(NAMES)}", other_method),
-    ("fixed steps", fixed_step),
 )
 
 
