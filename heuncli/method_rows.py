@@ -28,16 +28,16 @@ AUTO, DEFAULT = "auto", "DOP853"
 METHODS = (
     MethodRow(
         "Euler", 1, "explicit", "fixed", "quaternion",
-        "a warning: energy grows without bound, and a digit more takes ten times the steps", "explicit.EULER",
+        "a warning: a digit more takes ten times the steps", "explicit.EULER",
     ),
     MethodRow(
         "Heun2", 2, "explicit", "fixed", "quaternion",
-        "Heun's mean of two slopes (1900): teaching, and comparison with old programs", "explicit.HEUN2",
+        "Heun's mean of two slopes, 1900: to teach, to compare", "explicit.HEUN2",
     ),
-    MethodRow("Heun3", 3, "explicit", "fixed", "quaternion", "Heun's third order (1900): the same", "explicit.HEUN3"),
+    MethodRow("Heun3", 3, "explicit", "fixed", "quaternion", "Heun's third order, 1900: the same", "explicit.HEUN3"),
     MethodRow(
         "RK4", 4, "explicit", "fixed", "quaternion",
-        "the classical one: a given step, as in real time, and comparison with other programs", "explicit.RK4",
+        "the classical one: in real time, and to compare", "explicit.RK4",
     ),
     MethodRow(
         "DOPRI5", 5, "explicit", "adaptive", "quaternion",

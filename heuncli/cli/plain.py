@@ -43,7 +43,9 @@ def read(argv: Sequence[str]) -> Request | None:
                 return None
         else:
             values[row.name] = text
-    target = next(row for row in table if not row.option.words)
+    target = next((row for row in table if not row.option.words), None)
+    if target is None:
+        return command(**values) if not arguments else None
     many = target.type == tuple[str, ...]
     if not arguments or (len(arguments) > 1 and not many):
         return None

@@ -136,9 +136,21 @@ class Check(NamedTuple):
     quiet: Annotated[bool, QUIET] = False
 
 
-Request = Run | Validate | Model | Modes | Check
-COMMANDS: dict[str, type[Request]] = {"run": Run, "validate": Validate, "model": Model, "modes": Modes, "check": Check}
-LATER_COMMANDS = ("balance", "chart", "probe", "lagrange", "methods", "schema", "explain", "new", "sweep", "plot")
+class Methods(NamedTuple):
+    """List the methods of integration, and what each is for."""
+
+    format: Annotated[
+        str | None,
+        Option(("--format",), "How to write it. Default: by the name's end of -o FILE, else table.", "table|json"),
+    ] = None
+    output: Annotated[str | None, OUTPUT] = None
+
+
+Request = Run | Validate | Model | Modes | Check | Methods
+COMMANDS: dict[str, type[Request]] = {
+    "run": Run, "validate": Validate, "model": Model, "modes": Modes, "check": Check, "methods": Methods,
+}  # fmt: skip
+LATER_COMMANDS = ("balance", "chart", "probe", "lagrange", "schema", "explain", "new", "sweep", "plot")
 LATER_OPTIONS = ("golden", "update", "junit")
 
 

@@ -1,0 +1,22 @@
+"""`heun methods`: the methods of integration, and what each is for."""
+
+from __future__ import annotations
+
+import json
+
+from heuncli.cli.output import emit
+from heuncli.cli.requests import Methods
+from heuncli.cli.target import format_of
+from heuncli.report.methods import block, table
+from heuncli.report.table import WIDTH, plain
+
+FORMATS = ("table", "json")
+ENDINGS = {".json": "json", ".txt": "table", "": "table"}
+
+
+def main(request: Methods) -> int:
+    """Run the command; returns the exit code."""
+    form = format_of(request.format, request.output, ENDINGS, FORMATS)
+    text = json.dumps(block(), indent=1) + "\n" if form == "json" else plain(table(), WIDTH)
+    emit(text, request.output)
+    return 0

@@ -1,0 +1,77 @@
+"""`heun methods`, and the options and keys that choose one."""
+
+from __future__ import annotations
+
+import json
+
+import pytest
+
+from heuncli.method_rows import METHODS
+from heuncli.spec.methods import meant, unfit
+from heuncli.spec.words import METHOD_WORDS
+from tests.cli.conftest import Heun
+
+
+def test_every_method_is_listed(heun: Heun) -> None:
+    done = heun("methods")
+    assert (done.returncode, done.stderr) == (0, "")
+    assert max(map(len, done.stdout.splitlines())) <= 120
+    listed = [line.split()[:4] for line in done.stdout.splitlines()]
+    for row in METHODS:
+        assert [row.name, str(row.order), row.kind, row.steps] in listed
+
+
+def test_the_list_as_data(heun: Heun) -> None:
+    found = json.loads(heun("methods", "--format", "json").stdout)
+    assert found["default"] == "auto"
+    assert [m["name"] for m in found["methods"]] == [row.name for row in METHODS]
+    assert {"name", "order", "kind", "steps", "attitude", "purpose"} == set(found["methods"][0])
+
+
+def test_a_word_too_many_is_bad_usage(heun: Heun) -> None:
+    assert heun("methods", "RK4").returncode == 2
+
+
+@pytest.mark.parametrize(
+    ("words", "told"),
+    [
+        (["--method", "RK4"], "[fixed-step]"),
+        (["--step", "0.01"], "auto finds its own steps and takes none [fixed-step]"),
+        (["--method", "DOP853", "--step", "0.01"], "[fixed-step]"),
+        (["--method", "ode45"], "here that is method: DOPRI5"),
+        (["--method", "RK5"], "did you mean RK4?"),
+        (["--method", "RK4", "--step", "2"], "the step of 2 s is longer than the run of 1 s [step]"),
+        (["--method", "RK4", "--step", "1e-8"], "steps of 2e-07 s and more"),
+        (["--method", "RK4", "--step", "-1"], "expected a positive number"),
+    ],
+)
+def test_what_does_not_go_together_is_refused(heun: Heun, words: list[str], told: str) -> None:
+    done = heun("run", "swinging.yaml", *words)
+    assert (done.returncode, done.stdout) == (2, "")
+    assert told in done.stderr
+
+
+def test_a_method_asked_for_stands_for_the_specs(heun: Heun) -> None:
+    """Its step goes with it; another one of adaptive step leaves it."""
+    of_spec = ("--set", "analysis.method=rk4", "--set", "analysis.step=0.01", "--format", "json")
+    found = json.loads(heun("run", "swinging.yaml", *of_spec).stdout)
+    assert (found["model"]["method"], found["model"]["step"], found["work"]["steps"]) == ("RK4", 0.01, 100)
+    found = json.loads(heun("run", "swinging.yaml", *of_spec, "--method", "heun2", "--step", "0.02").stdout)
+    assert (found["model"]["method"], found["model"]["step"], found["work"]["steps"]) == ("Heun2", 0.02, 50)
+    found = json.loads(heun("run", "swinging.yaml", *of_spec, "--method", "dop853").stdout)
+    assert found["model"]["method"] == "DOP853" and "step" not in found["model"]
+
+
+def test_the_heading_tells_the_step(heun: Heun) -> None:
+    text = heun("run", "swinging.yaml", "--method", "RK4", "--step", "0.01").stdout
+    assert "RK4 in steps of 0.01 s, 100 steps" in text
+
+
+def test_words_of_other_programs_lead_to_methods() -> None:
+    known = {row.name for row in METHODS} | {"auto"}
+    for word, name in METHOD_WORDS.items():
+        assert word == word.lower()
+        if name not in known:
+            continue
+        assert meant(word) == f"here that is method: {name}"
+        assert [one.code for one in unfit(word, None, 1.0)] == ["unknown-method"]
