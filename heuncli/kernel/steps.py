@@ -360,9 +360,11 @@ def leaves_chart(
 
 def turns_too_far(scene: cython.pointer[Scene], run: cython.pointer[Run]) -> cython.bint:
     """Whether a stage turned so fast that the step may have passed the end of the chart: a shorter one, then."""
-    if run.following or not run.nearing * run.h > scene.limits.chart_turn:
+    part: cython.double
+    if not run.nearing * run.h > scene.limits.chart_turn:
         return False
-    run.proposed = 0.9 * scene.limits.chart_turn / run.nearing
+    part = 0.9 * scene.limits.chart_turn / (run.nearing * run.h)
+    run.proposed = run.h * (part if part > 0.2 else 0.2)
     run.rejected += 1
     run.rejected_before = 1
     return True
@@ -389,8 +391,6 @@ def judge(
     if method.attitude:
         weigh_in_chart(scene, method.attitude, run.chart_y, run.coarse)
         weigh_in_chart(scene, method.attitude, run.chart_y, run.fine)
-        if turns_too_far(scene, run):
-            return AGAIN
     error = step_error(method, run)
     if run.near:
         if dodge(scene, run, error, trouble):
@@ -409,6 +409,8 @@ def judge(
         run.proposed = run.h * (factor if factor > 0.2 else 0.2)
         run.rejected += 1
         run.rejected_before = 1
+        return AGAIN
+    if method.attitude and turns_too_far(scene, run):
         return AGAIN
     run.error = error
     return ACCEPTED
