@@ -27,7 +27,12 @@ def emit(text: str, target: str | None = None) -> None:
     if target is None or target == "-":
         _to_standard_output(text)
     else:
-        _to_file(text, Path(target))
+        _to_file(text.encode(), Path(target))
+
+
+def save(content: bytes, target: str) -> None:
+    """Write what is no text to a file."""
+    _to_file(content, Path(target))
 
 
 def say(text: str) -> None:
@@ -62,26 +67,26 @@ def _silence() -> None:
         os.close(nowhere)
 
 
-def _to_file(text: str, path: Path) -> None:
+def _to_file(content: bytes, path: Path) -> None:
     try:
         target = path.resolve()
         if target.exists() and not target.is_file():
-            target.write_text(text, encoding="utf-8")  # a pipe or a device has no "whole"
+            target.write_bytes(content)  # a pipe or a device has no "whole"
         else:
-            _replace(text, target)
+            _replace(content, target)
     except OSError as reason:
         raise OutputError(Problem("output-failed", f"{path}: {reason.strerror or reason}")) from reason
 
 
-def _replace(text: str, target: Path) -> None:
-    """Write beside the target, then rename over it: at every moment the old text or the new one stands there."""
+def _replace(content: bytes, target: Path) -> None:
+    """Write beside the target, then rename over it: at every moment the old content or the new one stands there."""
     import tempfile  # 4 ms that only files need
 
     mode = stat.S_IMODE(target.stat().st_mode) if target.exists() else NEW_FILE_MODE & ~_umask()
     handle, name = tempfile.mkstemp(prefix=f".{target.name}.", dir=target.parent)
     try:
-        with os.fdopen(handle, "w", encoding="utf-8", newline="\n") as file:
-            file.write(text)
+        with os.fdopen(handle, "wb") as file:
+            file.write(content)
             file.flush()
             os.fsync(file.fileno())
         Path(name).chmod(mode)

@@ -119,6 +119,34 @@ class Modes(NamedTuple):
     quiet: Annotated[bool, QUIET] = False
 
 
+class Chart(NamedTuple):
+    """Speed against accuracy: methods at several tolerances or steps, which ones fail, and where."""
+
+    spec: Annotated[str, SPEC]
+    format: Annotated[
+        str | None,
+        Option(
+            ("--format",),
+            "How to write it. Default: by the name's end of -o FILE, else table.",
+            "table|json|csv",
+        ),
+    ] = None
+    output: Annotated[str | None, OUTPUT] = None
+    save: Annotated[
+        str | None, Option(("--save",), "Draw it there, too: chart.svg; .png and .pdf by matplotlib.", "FILE")
+    ] = None
+    methods: Annotated[str | None, Option(("--methods",), "These alone; heun methods lists them.", "NAME,...")] = None
+    tolerances: Annotated[
+        str | None, Option(("--tolerances",), "Local tolerances of adaptive methods.", "NUMBER,...")
+    ] = None
+    steps: Annotated[str | None, Option(("--steps",), "Steps of methods of fixed step [s].", "NUMBER,...")] = None
+    set: Annotated[tuple[str, ...], SET] = ()
+    time_limit: Annotated[
+        float | None, Option(("--time-limit",), "After that long no run is begun; what is left is told.", "SECONDS")
+    ] = None
+    quiet: Annotated[bool, QUIET] = False
+
+
 class Check(NamedTuple):
     """Run specs, and folders of specs, against what they `expect`."""
 
@@ -146,11 +174,12 @@ class Methods(NamedTuple):
     output: Annotated[str | None, OUTPUT] = None
 
 
-Request = Run | Validate | Model | Modes | Check | Methods
+Request = Run | Validate | Model | Modes | Chart | Check | Methods
 COMMANDS: dict[str, type[Request]] = {
-    "run": Run, "validate": Validate, "model": Model, "modes": Modes, "check": Check, "methods": Methods,
+    "run": Run, "validate": Validate, "model": Model, "modes": Modes, "chart": Chart, "check": Check,
+    "methods": Methods,
 }  # fmt: skip
-LATER_COMMANDS = ("balance", "chart", "probe", "lagrange", "schema", "explain", "new", "sweep", "plot")
+LATER_COMMANDS = ("balance", "probe", "lagrange", "schema", "explain", "new", "sweep", "plot")
 LATER_OPTIONS = ("golden", "update", "junit")
 
 

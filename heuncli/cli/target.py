@@ -32,10 +32,11 @@ def format_of(asked: str | None, output: str | None, endings: Mapping[str, str],
     return endings[ending]
 
 
-def require_room(output: str) -> None:
+def require_room(output: str, option: str = "-o") -> None:
     """Say before the work what would keep a file from being written after it."""
     if not output:
-        raise UsageError(Problem("bad-option", "-o: expected the name of a file", hint="such as -o results.json"))
+        hint = f"such as {option} results.json" if option == "-o" else None
+        raise UsageError(Problem("bad-option", f"{option}: expected the name of a file", hint=hint))
     path = Path(output)
     if path.is_dir():
         hint = "name a file in it"
@@ -45,11 +46,11 @@ def require_room(output: str) -> None:
         raise OutputError(Problem("output-failed", f"{output}: there is no folder {path.parent}", hint=hint))
 
 
-def keep(output: str | None, read: Sequence[str]) -> None:
+def keep(output: str | None, read: Sequence[str], option: str = "-o") -> None:
     """The output must not take the place of what the results are made from: the spec, and the files of its tables."""
     if output is None or output == STDOUT:
         return
     for number, file in enumerate(read):
         if file != STDOUT and Path(output).resolve() == Path(file).resolve():
             what = "a table of the spec" if number else "the spec itself"
-            raise UsageError(Problem("bad-option", f"-o {output}: that is {what}", hint="name another file"))
+            raise UsageError(Problem("bad-option", f"{option} {output}: that is {what}", hint="name another file"))

@@ -338,11 +338,15 @@ def recovered_at(
 
 def motion_error(marks: Marks, several: Recovered, count: int, size: float) -> Array:
     """Estimated error of any point, relative to the size, (n,); the answers are those of so many runs."""
+    far = np.abs(several.bodies[0::count]["r"]).max(axis=(1, 2)) / size
+    return known(2.0 * points_apart(marks, several, count, size) + tolerances.PLACE_ROUNDING * np.maximum(far, 1.0))
+
+
+def points_apart(marks: Marks, several: Recovered, count: int, size: float) -> Array:
+    """How far any point of the first of so many runs is from that of another one, relative to the size, (n,)."""
     bodies = several.bodies
     own = bodies[0::count]
-    apart = np.max([marks.apart(own, bodies[k::count]) for k in range(1, count)], axis=0) / size
-    far = np.abs(own["r"]).max(axis=(1, 2)) / size
-    return known(2.0 * apart + tolerances.PLACE_ROUNDING * np.maximum(far, 1.0))
+    return np.asarray(np.max([marks.apart(own, bodies[k::count]) for k in range(1, count)], axis=0) / size)
 
 
 def angle_error(layout: Layout, several: Recovered, count: int) -> tuple[Array, float]:
@@ -350,12 +354,17 @@ def angle_error(layout: Layout, several: Recovered, count: int) -> tuple[Array, 
 
     A small wheel's angle may err by far more than its points do.
     """
+    apart, largest = angles_apart(layout, several, count)
+    return known(2.0 * apart + tolerances.PLACE_ROUNDING * largest), float(largest.max(initial=1.0))
+
+
+def angles_apart(layout: Layout, several: Recovered, count: int) -> tuple[Array, Array]:
+    """How far any counted angle of the first of so many runs is from that of another one [rad], (n,); the largest."""
     turning = [n for n, freedom in enumerate(layout.freedoms) if freedom.quantity == "angle"]
     angles = np.hstack([several.freedoms["q"][:, turning], several.states[:, list(layout.counters.values())]])
     own = angles[0::count]
-    largest = np.abs(own).max(axis=1, initial=1.0)
     apart = np.max([np.abs(own - angles[k::count]).max(axis=1, initial=0.0) for k in range(1, count)], axis=0)
-    return known(2.0 * apart + tolerances.PLACE_ROUNDING * largest), float(largest.max(initial=1.0))
+    return np.asarray(apart), np.abs(own).max(axis=1, initial=1.0)
 
 
 def known(error: Array) -> Array:

@@ -85,14 +85,10 @@ def integrate(setup: Setup, tolerance: float, deadline: float | None, *, by_caus
     Raises SolveError where no acceleration exists or the motion cannot be continued, LimitError past the deadline.
     """
     times, runner = np.array(setup.spec.analysis.times, dtype=float), setup.runner
-    start = setup.scene.layout.y0[None, :]
     if setup.method is None:
         check_deadline(deadline, "before the loads were computed")
         return state(setup, float(times[0]), tolerance, by_cause)
-    first = runner.recovered(np.zeros(1), start)  # before a long run, not after it
-    require_start(setup.scene, first)
-    require_motion(setup.scene.layout, first)
-    jumps = tuple(discontinuities_of(setup.scene.mechanism, 0.0, float(times[-1])))
+    jumps = begin(setup)
     checked = checked_motion(setup, tolerance, jumps, deadline, by_cause)
     jumps = tuple(sorted({*jumps, *checked.run.jumps}))
     require_followed(runner, checked.run)
@@ -106,6 +102,14 @@ def integrate(setup: Setup, tolerance: float, deadline: float | None, *, by_caus
         checked.recovered, tolerance, estimate, checked, checked.run.blows, beside, jumps, singular, seconds,
         checked.errors,
     )  # fmt: skip
+
+
+def begin(setup: Setup) -> tuple[float, ...]:
+    """The discontinuities in time of a motion that can begin. Raises SolveError: before a long run, not after it."""
+    first = setup.runner.recovered(np.zeros(1), setup.scene.layout.y0[None, :])
+    require_start(setup.scene, first)
+    require_motion(setup.scene.layout, first)
+    return tuple(discontinuities_of(setup.scene.mechanism, 0.0, float(setup.spec.analysis.times[-1])))
 
 
 def checked_motion(

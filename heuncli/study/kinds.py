@@ -13,6 +13,7 @@ from __future__ import annotations
 
 from collections.abc import Iterable, Sequence
 from functools import cached_property
+from typing import NamedTuple
 
 import numpy as np
 
@@ -45,13 +46,25 @@ TOLD_IN = {
 }
 
 
+class Weights(NamedTuple):
+    """What an error is made of: so many times the difference between the runs, and the rounding of sums."""
+
+    difference: float
+    rounding: float
+
+
+ESTIMATED = Weights(2.0, 1.0)  # of a run, by one that is finer
+APART = Weights(1.0, 0.0)  # the difference itself
+
+
 class Extent:
     """Of one quantity over the instants so far: largest error, rounding and terms; largest value and range as told.
 
     claimed: the largest difference before the horizon.
     """
 
-    def __init__(self) -> None:
+    def __init__(self, weights: Weights = ESTIMATED) -> None:
+        self.weights = weights
         self.difference = self.claimed = self.rounding = self.terms = 0.0
         self.largest = self.told = 0.0
         self.low, self.high = np.inf, -np.inf
@@ -83,12 +96,12 @@ class Extent:
     @property
     def error(self) -> float:
         """The estimated error."""
-        return 2.0 * self.difference + self.rounding
+        return self.weights.difference * self.difference + self.weights.rounding * self.rounding
 
     @property
     def claimed_error(self) -> float:
         """The same before the horizon."""
-        return 2.0 * self.claimed + self.rounding
+        return self.weights.difference * self.claimed + self.weights.rounding * self.rounding
 
     @property
     def exchanged(self) -> float:
@@ -170,8 +183,8 @@ def _at_each(values: Iterable[Array]) -> Array:
 class Kinds:
     """Collects the differences of a motion's loads and energy between two runs, of the kinds that are asked for."""
 
-    def __init__(self, setup: Setup, by_cause: bool = False) -> None:
-        self.setup, self.by_cause = setup, by_cause
+    def __init__(self, setup: Setup, by_cause: bool = False, weights: Weights = ESTIMATED) -> None:
+        self.setup, self.by_cause, self.weights = setup, by_cause, weights
         self.compared = frozenset(kind for kind, told_in in TOLD_IN.items() if told_in & setup.asked.reports)
         self.extents: dict[tuple[str, str], Extent] = {}
         self.reach = 0.0  # farthest centre of mass from the point that the foundation's moment is about
@@ -179,7 +192,7 @@ class Kinds:
 
     def extent(self, kind: str, quantity: str) -> Extent:
         """That of a quantity."""
-        return self.extents.setdefault((kind, quantity), Extent())
+        return self.extents.setdefault((kind, quantity), Extent(self.weights))
 
     def take(
         self, name: tuple[str, str], values: Array, rounding: Array, terms: Array, more: Array | None = None

@@ -39,6 +39,7 @@ from heuncli.shapes.forms import Form
 from heuncli.spec.load import load
 from heuncli.spec.turns import of_matrix
 from heuncli.study.beside import AMPLE, error, reached
+from heuncli.study.chart_reference import judged_instants
 from heuncli.study.expect import compare
 from heuncli.study.modes import modes
 from heuncli.study.warnings import unbalanced
@@ -100,6 +101,13 @@ def moved_by(x: float) -> str:
     """A load whose largest companion is 2 N, where its state is moved by rounding."""
     off = error(np.array([3.0]), np.array([3.0, 3.0 - 2.0 * x / AMPLE, 3.0]))
     return "not known" if reached(off, np.array([2.0])).any() else "told"
+
+
+def judged(x: float) -> str:
+    """Two references that agree, differ by x and then by everything."""
+    error = np.array([0.0, 1e-14, x, 1.0])
+    pair: Any = SimpleNamespace(error=error, first=SimpleNamespace(times=np.arange(4.0)))
+    return {2: "not judged", 3: "judged"}[judged_instants(pair)[0]]
 
 
 def bar(more: str = "", tail: str = "", inertia: str = "[0.08, 0.08, 0.001]", kind: str = "ball") -> str:
@@ -807,6 +815,7 @@ ROWS = (
     Row("NO_FORCE", axis_of, "no axis", "an axis"),
     Row("NO_LOAD", carried_by_nothing, "none", "judged"),
     Row("NO_ENERGY", drift, "at rest", "a drift"),
+    Row("JUDGED", judged, "judged", "not judged"),
     Row("TOLD_BESIDE", moved_by, "told", "not known"),
     Row("MOST_STEPS", steps_given, "fine", "refused: step"),
     Row("HOPELESS", steady_pace, "goes on", "told"),

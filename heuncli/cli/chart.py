@@ -1,0 +1,136 @@
+"""`heun chart`: speed against accuracy of the methods, on the user's own scene."""
+
+from __future__ import annotations
+
+import math
+from collections.abc import Callable
+from pathlib import Path
+
+from heuncli.cli.entry import UsageError
+from heuncli.cli.output import emit, save
+from heuncli.cli.progress import progress
+from heuncli.cli.requests import Chart as Request
+from heuncli.cli.solving import overrides, positive, warn
+from heuncli.cli.target import format_of, keep, require_room
+from heuncli.errors import Problem
+from heuncli.integration.charted import Chart
+from heuncli.method_rows import AUTO, METHODS, row_of
+from heuncli.report import chart as report
+from heuncli.report.export import dump
+from heuncli.report.fit import fit
+from heuncli.report.table import WIDTH, plain
+from heuncli.spec.load import load
+from heuncli.spec.methods import meant
+from heuncli.study.chart import chart
+from heuncli.study.chart_plan import Wanted
+
+FORMATS = ("table", "json", "csv")
+ENDINGS = {".json": "json", ".csv": "csv", ".txt": "table", "": "table"}
+PICTURES = {".svg": "svg", ".png": "png", ".pdf": "pdf"}
+
+
+def main(request: Request) -> int:
+    """Run the command; returns the exit code."""
+    keep(request.output, [request.spec])
+    form = format_of(request.format, request.output, ENDINGS, FORMATS)
+    drawn = picture_format(request)
+    wanted = Wanted(
+        methods(request.methods),
+        numbers("--tolerances", request.tolerances, 1.0),
+        numbers("--steps", request.steps, math.inf),
+        positive("--time-limit", request.time_limit),
+    )
+    spec = load(request.spec, overrides=overrides(request.set), checking=False)
+    keep(request.output, [request.spec, *spec.files])
+    keep(request.save, [request.spec, *spec.files], "--save")
+    with progress(request.quiet) as tell:
+        found = chart(spec, wanted, tell)
+    if drawn is not None and request.save is not None:
+        save(drawn(found), request.save)
+    emit(text(found, form, request.output), request.output)
+    warn(spec, None, request.quiet)
+    return 0
+
+
+def text(found: Chart, form: str, output: str | None) -> str:
+    """The chart in one of the formats."""
+    if form == "json":
+        return dump(report.block(found))
+    if form == "csv":
+        return report.to_csv(found)
+    from heuncli.cli import terminal
+    from heuncli.report.chart_text import draw
+
+    own = report.table(found)
+    if output is None and terminal.present():
+        rows = "".join(terminal.write([own]))
+    else:
+        rows = "".join(plain(part, WIDTH) for part in fit(own, WIDTH))
+    return f"{report.write_heading(found)}\n{rows}\n{draw(found)}"
+
+
+def picture_format(request: Request) -> Callable[[Chart], bytes] | None:
+    """How the picture is drawn that is to be saved, by the end of its name."""
+    if request.save is None:
+        return None
+    form = PICTURES.get(Path(request.save).suffix.lower())
+    if form is None:
+        hint = f"known endings: {', '.join(PICTURES)}"
+        raise UsageError(Problem("bad-option", f"--save {request.save}: no picture is known by that ending", hint=hint))
+    require_room(request.save, "--save")
+    if request.output is not None and Path(request.output).resolve() == Path(request.save).resolve():
+        message = f"--save {request.save}: that is what -o writes"
+        raise UsageError(Problem("bad-option", message, hint="name another file"))
+    if form == "svg":
+        return _svg
+    from heuncli.report.picture_plot import require_plot
+
+    require_plot(f"--save {request.save}")
+    return lambda found: _plotted(found, form)
+
+
+def _svg(found: Chart) -> bytes:
+    from heuncli.report.chart_picture import picture
+    from heuncli.report.picture import svg
+
+    return svg(picture(found)).encode()
+
+
+def _plotted(found: Chart, form: str) -> bytes:
+    from heuncli.report.chart_picture import picture
+    from heuncli.report.picture_plot import rendered
+
+    return rendered(picture(found), form)
+
+
+def methods(words: str | None) -> tuple[str, ...] | None:
+    """The names of `--methods` as the registry writes them."""
+    if words is None:
+        return None
+    found = []
+    for word in words.split(","):
+        row = row_of(word.strip())
+        if row is None:
+            names = [each.name for each in METHODS]
+            hint = meant(word.strip())
+            if word.strip().lower() == AUTO:
+                hint = f"auto chooses among these: {', '.join(names)}"
+            raise UsageError(Problem("bad-option", f"--methods {word.strip()}: not a method", hint=hint))
+        found.append(row.name)
+    return tuple(dict.fromkeys(found))
+
+
+def numbers(option: str, words: str | None, below: float) -> tuple[float, ...] | None:
+    """Positive numbers between commas, all below a bound."""
+    if words is None:
+        return None
+    try:
+        found = [float(word) for word in words.split(",")]
+    except ValueError:
+        hint = f"such as {option} 1e-4,1e-6"
+        raise UsageError(Problem("bad-option", f"{option} {words}: expected numbers", hint=hint)) from None
+    for value in found:
+        if not (0.0 < value < below and math.isfinite(value)):
+            limit = "" if below == math.inf else f" below {below:g}"
+            raise UsageError(Problem("bad-option", f"{option} {value:g}: expected positive numbers{limit}"))
+    return tuple(found)

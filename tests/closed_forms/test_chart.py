@@ -1,0 +1,175 @@
+"""The errors that a chart tells, against closed forms; its reference, against quadruple precision."""
+
+from __future__ import annotations
+
+import json
+import math
+from pathlib import Path
+from typing import Any
+
+import numpy as np
+import pytest
+from scipy.special import ellipj, ellipk
+
+from heuncli.integration.charted import Chart, Charted, Row
+from heuncli.integration.methods.dop853 import DOP853
+from heuncli.spec.load import load
+from heuncli.study.chart import chart
+from heuncli.study.chart_motion import motion_of
+from heuncli.study.chart_plan import Wanted
+from heuncli.study.chart_reference import refer
+from heuncli.study.chart_runs import Charting
+
+SCENES = Path(__file__).parents[1] / "bench" / "scenes"
+REFERENCE = json.loads((SCENES / "reference.json").read_text())
+G, START = 9.81, math.radians(100.0)
+PENDULUM = """\
+heun: 1
+title: A uniform rod swings
+gravity: [0, 0, -9.81]
+ground: {points: {O: [0, 0, 0]}}
+bodies:
+  rod:
+    shapes: [{type: rod, from: [0, 0, 0], to: [0, 0, -1], mass: 1}]
+    points: {top: [0, 0, 0], tip: [0, 0, -1]}
+joints:
+  pivot: {type: pin, from: ground.O, to: rod.top, axis: [0, 1, 0], initial: {angle: 100 deg}}
+sections:
+  middle: {body: rod, at: [0, 0, -0.5], normal: [0, 0, -1]}
+analysis: {duration: 4, samples: 161}
+"""
+TOLERANCES = (1e-4, 1e-6, 1e-8)
+
+
+def swing(t: Any) -> tuple[Any, Any]:
+    """Angle and rate of the rod, let go at START: sin(theta/2) = k cd(w t | k^2), w^2 = 3 g / 2 L."""
+    k, w = math.sin(START / 2.0), math.sqrt(1.5 * G)
+    m = k * k
+    sn, cn, dn, _ = ellipj(w * t + ellipk(m), m)
+    half = k * sn
+    return 2.0 * np.arcsin(half), 2.0 * k * w * cn * dn / np.sqrt(1.0 - half**2)
+
+
+def pivot_force(angle: Any, rate: Any) -> Any:
+    """What the ground exerts on the rod, (n, 2) along x and z: m (a - g), a of the centre at half the length."""
+    turning = -1.5 * G * np.sin(angle)
+    out = np.stack([-np.sin(angle), -np.cos(angle)], axis=-1)  # towards the tip, for the angle about y is positive so
+    across = np.stack([-np.cos(angle), np.sin(angle)], axis=-1)
+    a = 0.5 * (turning[:, None] * across - rate[:, None] ** 2 * out)
+    return a + np.array([0.0, G])
+
+
+@pytest.fixture(scope="module")
+def pendulum() -> Chart:
+    return chart(load("pendulum.yaml", PENDULUM), Wanted(("DOP853",), TOLERANCES))
+
+
+def test_the_errors_of_a_pendulum_are_those_of_the_closed_form(pendulum: Chart) -> None:
+    """The tip's distance from where it should be, and the pivot's force."""
+    motion = motion_of(load("pendulum.yaml", PENDULUM), None)
+    angle, rate = swing(motion.times)
+    wanted = pivot_force(angle, rate)
+    size = motion.setup.scene.layout.size
+    for run, tolerance in zip(pendulum.runs, TOLERANCES, strict=True):
+        own = motion.setup.runner.trajectory(motion.times, tolerance, method=DOP853)
+        answers = motion.setup.runner.recovered(motion.times, own.states)
+        off = np.abs(answers.freedoms["q"][:, 0] - angle)
+        tip = float(np.max(2.0 * np.sin(off / 2.0))) / size
+        assert run.error["motion"] == pytest.approx(max(tip, off.max() / np.abs(angle).max()), rel=1e-3, abs=3e-13)
+        force = np.linalg.norm(answers.bodies["joint_force"][:, 0][:, [0, 2]] - wanted, axis=1).max()
+        assert run.error["reactions"] == pytest.approx(force / np.linalg.norm(wanted, axis=1).max(), rel=1e-3)
+
+
+def test_sections_stand_where_there_are_some(pendulum: Chart) -> None:
+    assert pendulum.kinds == ("motion", "reactions", "sections")
+    for run in pendulum.runs:
+        motion, sections = run.error["motion"] or 0.0, run.error["sections"] or 0.0
+        assert 0.01 * motion < sections < 100.0 * motion
+
+
+@pytest.mark.parametrize("name", ["double", "top", "chain10", "crank"])
+def test_a_reference_is_as_good_as_it_says(name: str) -> None:
+    """The end states of the benchmark scenes are known in quadruple precision, to 1e-13 m."""
+    motion = motion_of(load(str(SCENES / f"{name}.yaml")), None)
+    found = refer(motion)
+    scene, run = motion.setup.scene, found.judge.reference
+    bodies = motion.setup.runner.recovered(run.times[-1:], run.states[-1:]).bodies[0]
+    own = found.reference.own["motion"]
+    assert own is not None and own < 1e-9
+    for i, body in enumerate(scene.mechanism.bodies):
+        k = scene.layout.place[i]
+        centre = bodies["r"][k] + bodies["R"][k] @ (body.center - scene.layout.reference[k])
+        off = np.linalg.norm(centre - REFERENCE[name]["center"][body.name])
+        assert off <= own * scene.layout.size + 1e-13
+
+
+FREE = """\
+heun: 1
+title: A free top
+bodies: {top: {mass: 1, center: [0, 0, 0], inertia: [1, 2, 2.5], angular_velocity: [0.9, 0, 1.1]}}
+analysis: {times: [1, 10]}
+"""
+
+
+def test_a_free_top_has_no_reactions_and_turns_as_it_should() -> None:
+    """Momentum stays: what the chart calls the error of the motion is that of where the axes point."""
+    found = chart(load("free.yaml", FREE), Wanted(("DOP853",), (1e-4, 1e-8)))
+    assert found.kinds == ("motion",)
+    coarse, fine = (run.error["motion"] or 0.0 for run in found.runs)
+    assert fine < 1e-5 and coarse > 1e3 * fine
+
+
+BALL = """\
+heun: 1
+title: A ball falls onto a stop
+gravity: [0, 0, -9.81]
+ground: {points: {O: [0, 0, 0]}}
+bodies:
+  ball: {mass: 1, center: [0, 0, 0], inertia: [0.01, 0.01, 0.01], points: {c: [0, 0, 0]}, position: [0, 0, 1]}
+joints:
+  guide: {type: slide, from: ground.O, to: ball.c, axis: [0, 0, 1]}
+stops: {floor: {joint: guide, travel: [0, null], restitution: 0.8}}
+analysis: {duration: 1.5, samples: 151}
+"""
+
+
+def test_strikes_are_met_by_all_and_errors_do_not_see_the_jump() -> None:
+    found = chart(load("ball.yaml", BALL), Wanted(("DOP853",), (1e-4, 1e-8)))
+    for run in found.runs:
+        assert run.status == "completed" and (run.error["motion"] or 1.0) < 1e-10
+
+
+def test_references_that_part_are_judged_up_to_where_they_agree() -> None:
+    """theory.md, section 3: growth of about 1.9 a second; a bar beside another, from (2.5, 2.5) at rest."""
+    scene = """\
+heun: 1
+title: Two bars, chaotic
+gravity: [0, 0, -9.81]
+ground: {points: {O: [0, 0, 0]}}
+bodies:
+  a: {shapes: [{type: rod, from: [0, 0, 0], to: [0, 0, -1], mass: 1}], points: {o: [0, 0, 0], e: [0, 0, -1]}}
+  b: {shapes: [{type: rod, from: [0, 0, 0], to: [0, 0, -1], mass: 1}], points: {o: [0, 0, 0], e: [0, 0, -1]}}
+joints:
+  p: {type: pin, axis: [0, 1, 0], from: ground.O, to: a.o, initial: {angle: 2.5}}
+  q: {type: pin, axis: [0, 1, 0], from: a.e, to: b.o, initial: {angle: 0}}
+analysis: {duration: 20, samples: 401}
+"""
+    found = chart(load("chaotic.yaml", scene), Wanted(("DOP853",), (1e-6, 1e-12)))
+    reference = found.reference
+    assert reference.horizon is not None and 12.0 < reference.horizon < 18.0
+    assert 0.4 * reference.horizon < reference.until < reference.horizon and (reference.own["motion"] or 1) <= 1e-8
+    assert "nobody can compare" in reference.notes[0]
+    coarse, fine = (run.error["motion"] or 0.0 for run in found.runs)
+    assert coarse > 1e-3 > fine
+
+
+def row(found: Chart, local: float) -> Charted:
+    return next(run for run in found.runs if run.row.local == local)
+
+
+def test_a_row_that_would_take_too_long_is_not_run() -> None:
+    motion = motion_of(load("pendulum.yaml", PENDULUM), None)
+    charting = Charting(motion, refer(motion), lambda done, of, what: None)
+    found = charting.one(Row("DOP853", "quaternion", True, 1e-9))
+    assert isinstance(found, Charted) and found.status == "not run" and found.code == "too-long"
+    assert found.reason.startswith("about 4e9 steps") and found.seconds is not None and found.seconds > 1.0

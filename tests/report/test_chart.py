@@ -1,0 +1,162 @@
+"""Charts made by hand: the front, ties, failures and bounds, in table, JSON and CSV, and in letters."""
+
+from __future__ import annotations
+
+import csv
+import io
+import json
+import math
+
+import pytest
+
+from heuncli.integration.charted import (
+    COMPLETED,
+    FAILED,
+    KINDS,
+    NOT_RUN,
+    Chart,
+    Charted,
+    Reference,
+    Row,
+    shown,
+    with_front,
+)  # fmt: skip
+from heuncli.records import replace
+from heuncli.report import chart as report
+from heuncli.report.chart_scale import LOST, Scale, scales
+from heuncli.report.chart_text import draw, letters
+from heuncli.report.export import dump
+from heuncli.report.fit import fit
+from heuncli.report.table import WIDTH, plain
+
+OWN = {"motion": 1e-13, "reactions": 2e-13, "sections": None}
+REFERENCE = Reference("A at 3e-14 and B at 3e-14 agree: motion to 1e-13 of the scene's size", OWN, 2.0, 201)
+
+
+def run(method: str, seconds: float, error: float, evaluations: int = 100, local: float = 1e-6) -> Charted:
+    row = Row(method, "quaternion", local > 1e-4, local)
+    errors = {"motion": error, "reactions": 2.0 * error, "sections": None}
+    return Charted(row, COMPLETED, seconds, 5, 10, evaluations, errors)
+
+
+def chart(*runs: Charted, reference: Reference = REFERENCE) -> Chart:
+    return Chart("A scene", {"path": "scene.yaml", "sha256": "0"}, reference, with_front(runs), 1.0)
+
+
+FAILS = Charted(
+    Row("Euler", "quaternion", True, 0.01), FAILED, 1e-4, at=0.25, code="not-a-number",
+    reason="at t = 0.25 s: no finite acceleration exists beyond this instant",
+)  # fmt: skip
+TOO_LONG = Charted(
+    Row("Euler", "quaternion", True, 1e-9), NOT_RUN, 9e3, code="too-long", reason="about 2e9 steps, 9e+03 s"
+)
+
+
+def front(*runs: Charted) -> list[bool]:
+    return [each.front for each in with_front(runs)]
+
+
+def test_the_front_is_what_no_other_run_beats() -> None:
+    assert front(run("A", 1.0, 1e-3), run("A", 2.0, 1e-6), run("B", 3.0, 1e-5), run("B", 4.0, 1e-8)) == [
+        True, True, False, True,
+    ]  # fmt: skip
+
+
+def test_what_fails_is_never_on_the_front_and_beats_nothing() -> None:
+    assert front(FAILS, run("A", 1.0, 1e-3), TOO_LONG) == [False, True, False]
+
+
+def test_equal_times_are_decided_by_the_error_and_equal_errors_by_the_time() -> None:
+    assert front(run("A", 1.0, 1e-3), run("B", 1.0, 1e-4)) == [False, True]
+    assert front(run("A", 1.0, 1e-3), run("B", 0.5, 1e-3)) == [False, True]
+
+
+def test_times_and_errors_that_read_the_same_are_ties_decided_by_evaluations() -> None:
+    a, b = run("A", 1.01e-3, 1.04e-6, 120), run("B", 1.04e-3, 0.96e-6, 100)
+    assert shown(a.seconds or 0.0) == shown(b.seconds or 0.0)
+    assert front(a, replace(b, error={**b.error, "motion": 1.02e-6})) == [False, True]
+    assert front(run("A", 1.0, 1e-6), run("B", 1.0, 1e-6)) == [True, False]  # equal in all: the first
+
+
+def test_a_single_run_is_the_front() -> None:
+    assert front(run("A", 1.0, 1.0)) == [True]
+
+
+def test_what_the_reference_does_not_tell_apart_is_a_bound() -> None:
+    error, bounded = REFERENCE.judged({"motion": 0.5e-13, "reactions": 1e-9, "sections": None})
+    assert error == {"motion": 2e-13, "reactions": 1e-9, "sections": None} and bounded == {"motion"}
+    error, bounded = REFERENCE.judged({"motion": 1.5e-13, "reactions": 2e-13, "sections": 1.0})
+    assert error == {"motion": 2e-13, "reactions": 4e-13, "sections": None} and bounded == {"reactions"}
+
+
+def table(made: Chart) -> str:
+    return "".join(plain(part, WIDTH) for part in fit(report.table(made), WIDTH))
+
+
+def test_the_table_marks_the_front_bounds_and_failures_within_a_page() -> None:
+    known = replace(run("DOP853", 2e-3, 2e-13), bounded=frozenset({"motion"}))
+    text = table(chart(FAILS, TOO_LONG, run("DOP853", 1e-3, 1.5e-6), known))
+    lines = text.splitlines()
+    assert max(map(len, lines)) <= WIDTH
+    assert any("0.01 s" in line and "fails at t = 0.25 s [not-a-number]" in line for line in lines)
+    assert "  [not-a-number] Euler: no finite acceleration exists beyond this instant" in lines
+    assert any("1e-9 s" in line.replace("1e-09", "1e-9") and "not run: about 2e9 steps" in line for line in lines)
+    assert any(line.split()[:3] == ["*", "1e-6", "1"] and "1.5e-06" in line and "3.0e-06" in line for line in lines)
+    assert any("≤2.0e-13" in line for line in lines) and "≤: the run differs" in text
+    assert "sections" not in text and "DOP853  order 8, explicit, adaptive" in text
+
+
+def test_json_keeps_to_the_contract() -> None:
+    found = json.loads(dump(report.block(chart(FAILS, run("DOP853", 1e-3, 1.5e-6)))))
+    assert found["reference"] == REFERENCE.words
+    failed, done = found["runs"]
+    assert done["tolerance"] == 1e-6 and "step" not in done and done["seconds"] == 1e-3 and done["front"] is True
+    assert done["error"] == {"motion": 1.5e-6, "reactions": 3e-6, "sections": None} and done["status"] == "completed"
+    assert (done["method"], done["chart"], done["steps"], done["evaluations"]) == ("DOP853", "quaternion", 10, 100)
+    assert failed["step"] == 0.01 and "tolerance" not in failed and failed["at"] == 0.25 and not failed["front"]
+    assert failed["status"] == "failed" and failed["seconds"] is None and set(failed["error"].values()) == {None}
+    assert failed["code"] == "not-a-number" and "no finite acceleration" in failed["reason"]
+
+
+def test_csv_has_a_line_a_run() -> None:
+    rows = list(csv.DictReader(io.StringIO(report.to_csv(chart(FAILS, run("DOP853", 1e-3, 1.5e-6))))))
+    assert [row["method"] for row in rows] == ["Euler", "DOP853"]
+    assert rows[0]["step"] == "0.01" and rows[0]["error_motion"] == "" and rows[0]["at"] == "0.25"
+    assert float(rows[1]["error_reactions"]) == 3e-6 and rows[1]["front"] == "true" and rows[1]["step"] == ""
+    assert set(report.COLUMNS) == set(rows[0]) and {f"error_{kind}" for kind in KINDS} <= set(rows[0])
+
+
+def test_letters_stand_where_time_and_error_say() -> None:
+    made = chart(run("A", 1e-3, 1e-4), run("A", 1e-2, 1e-8), run("B", 1e-1, 1e-4), FAILS)
+    text = draw(made, 80)
+    lines = text.splitlines()
+    assert all(len(line) <= 80 for line in lines)
+    row = {line.split("|")[0].strip(): line.partition("|")[2] for line in lines if "|" in line}
+    assert row["1e-4"].index("A") < row["1e-8"].index("A") < row["1e-4"].index("b")
+    assert "c" in row["failed"] and letters(made) == {"A": "a", "B": "b", "Euler": "c"}
+    assert "a A, b B, c Euler" in text and "1 ms" in text and "10 ms" in text
+
+
+def test_points_of_several_methods_in_one_place_are_told() -> None:
+    text = draw(chart(run("A", 1e-3, 1e-4), run("B", 1.001e-3, 1.001e-4), run("A", 1e-4, 1e-5)), 80)
+    assert "+" in "".join(line.partition("|")[2] for line in text.splitlines())
+
+
+@pytest.mark.parametrize("error", [1e300, 50.0])
+def test_what_is_lost_stands_at_the_border(error: float) -> None:
+    made = chart(run("A", 1e-3, error), run("A", 1e-2, 1e-8))
+    assert scales(made)[1].high == math.log10(LOST)
+    assert draw(made, 80).splitlines()[0].split("|")[0].strip() == "1e1"
+
+
+def test_a_chart_of_failures_alone_can_be_drawn() -> None:
+    made = chart(FAILS, TOO_LONG)
+    assert "failed" in draw(made) and "fails at t = 0.25 s [" in table(made)
+
+
+def test_scales_hold_their_values() -> None:
+    scale = Scale(-3.0, 1.0)
+    assert scale.at(1e-3) == 0.0 and scale.at(10.0) == 1.0 and scale.at(0.1) == 0.5
+    assert scale.at(0.0) == 0.0 and scale.at(math.inf) == 1.0
+    assert scale.decades == [1e-3, 1e-2, 1e-1, 1.0, 10.0] and scale.between == []
+    assert Scale(-0.5, 0.5).between == [0.5, 0.7, 2.0, 3.0]
