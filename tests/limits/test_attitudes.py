@@ -7,6 +7,7 @@ import math
 import numpy as np
 import pytest
 
+from heuncli.errors import SolveError
 from heuncli.results import Array
 from tests.limits.methods import rk4, stepped
 from tests.oracle.turns import about
@@ -78,6 +79,21 @@ def test_heun_turns_on() -> None:
     body = solved(free("[1, 2, 3]", [0.9, 0, 1.1], [0.0, 5.0, 10.0, 20.0])).bodies["top"]
     L = np.einsum("tij,j,tkj,tk->ti", body["rotation"], [1.0, 2.0, 3.0], body["rotation"], body["angular_velocity"])
     near(L, L[0], float(np.linalg.norm(L[0])), 1e-10)
+
+
+def test_heun_has_the_failing_chart_in_its_list() -> None:
+    """DOP853-rodrigues, Lagrange's form of no. 20, ends at the half turn and names the body.
+
+    The same numbers anew in each step go on. In full: reduced, this is a turn in a plane, which needs no chart.
+    """
+    scene = free("[1, 2, 3]", [0, 0, 1], [3.0, 3.2, 2 * math.pi])
+    with pytest.raises(SolveError) as caught:
+        solved(scene, method="DOP853-rodrigues", reduce=False)
+    (problem,) = caught.value.problems
+    assert problem.code == "half-turn" and "top comes to a half turn" in problem.message
+    assert caught.value.reached == pytest.approx(math.pi, abs=0.01)
+    turning = solved(scene, method="DOP853-recentred", reduce=False).bodies["top"]["rotation"]
+    near(turning, [about(Z, t) for t in (3.0, 3.2, 2 * math.pi)], 1.0, 1e-11)
 
 
 # ---- Euler's angles

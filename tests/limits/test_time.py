@@ -7,6 +7,7 @@ import math
 import numpy as np
 import pytest
 
+from heuncli.errors import SolveError
 from heuncli.results import Array
 from tests.limits.methods import rk4, stepped
 from tests.shared.bars import rods
@@ -107,6 +108,19 @@ def test_explicit_steps_on_a_stiff_spring_have_a_bound(h: float, grows: bool) ->
     *_, last = stepped(rk4, spring, np.array([0.01, 0.0]), h, round(0.3 / h))
     amplitude = math.hypot(last[0], last[1] / OMEGA)
     assert amplitude > 1e3 if grows else amplitude < 1e-3
+
+
+def test_heun_s_own_steps_of_given_length_own_up() -> None:
+    """--method RK4: beyond the bound nothing is claimed from the first steps on, or the run ends; below it, as told."""
+    lost = solved(SPRING, method="RK4", step=2.86e-4).accuracy
+    assert lost["horizon"] < 1e-3 and lost["estimate"]["motion"] > 1e-3
+    with pytest.raises(SolveError) as caught:
+        solved(SPRING, method="RK4", step=4e-4)
+    assert caught.value.problems[0].code in ("not-a-number", "step-collapsed")
+    found = solved(SPRING, method="RK4", step=1e-5)
+    true = [1 + 0.01 * math.cos(OMEGA * t) for t in (0, 0.01, 0.1)]
+    off = float(np.abs(found.coordinates["guide"]["travel"] - true).max())
+    assert 1e-7 < off < found.accuracy["estimate"]["motion"] * 1.5 < 1e-4
 
 
 def test_heun_follows_it() -> None:
