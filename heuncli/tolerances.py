@@ -229,7 +229,6 @@ KERNEL: dict[str, float] = {
     "branch_step": 0.125,
     "branch_beside": 0.7,  # other steps, few more; what differs then is rounding, or the branch
     "branch_bend": 0.05,  # a sine's step is then two fifths of its period; extremes are looked for at four places in it
-    "varied": 2.0**-26,  # the root of EPS: rounding over it and what bends within it are alike, eight digits are left
     # -- charts of attitudes
     # cube root of EPS: rounding of W, EPS kappa, is there what the straight last way to the half turn leaves, kappa^-2
     "half_turn": EPS ** (1 / 3),

@@ -249,9 +249,36 @@ cdef struct Limits:
     double branch_step
     double branch_beside
     double branch_bend
-    double varied
     double half_turn
     double chart_turn
+
+cdef struct BodyAtState:
+    Sym3 inertia
+    Vec3 alpha
+    Vec3 a
+    Vec3 M
+    Vec3 f
+
+cdef struct BodyTangent:
+    int moves
+    int unused
+    Vec3 turn
+    Vec3 arm
+    Vec3 r
+    Vec3 spin
+    Vec3 omega
+    Vec3 v
+    Vec3 alpha
+    Vec3 a
+    Vec3 M
+    Vec3 f
+
+cdef struct FreedomTangent:
+    double q
+    double u
+    double udot
+    double load
+    Vec3 s
 
 cdef struct Scene:
     int body_count
@@ -314,3 +341,10 @@ cdef struct Scene:
     double *J                 # one island's rows of J on its freedoms, scaled
     double *y                 # a number an independent row
     double *own               # 1 - T of the lent inertias, and its Cholesky factor
+    BodyAtState *at_state     # what stands at the state whose directions are looked at
+    BodyTangent *tangents     # of the bodies, along one direction
+    FreedomTangent *freedom_tangents
+    double *multipliers       # at the state
+    double *slopes            # of the variables of the expressions, along the direction
+    int sloping               # some of them are not 0
+    double *along             # a direction of the state

@@ -10,7 +10,7 @@ kernel's own. World axes unless said otherwise; `a` is throughout the accelerati
 from __future__ import annotations
 
 from collections.abc import Iterable
-from typing import Any
+from typing import Any, Self
 
 from heuncli.kernel.algebra import Ldl3, Mat3, Sym3, Vec3
 from heuncli.kernel.structs import Fields, Program, Programs
@@ -22,7 +22,7 @@ TURN_DAMPER, SHIFT_DAMPER, TURN_FRICTION, SHIFT_FRICTION = range(7, 11)
 GUIDE, DOT, ROD, TURN = range(4)
 CARRIES, APART, LEANS = range(3)  # modes of closure rows
 
-VALUES = {"Vec3": Vec3, "Mat3": Mat3, "Sym3": Sym3, "Ldl3": Ldl3, "Program": Program}
+VALUES: dict[str, Any] = {"Vec3": Vec3, "Mat3": Mat3, "Sym3": Sym3, "Ldl3": Ldl3, "Program": Program}
 
 
 class Record(metaclass=Fields):
@@ -31,6 +31,12 @@ class Record(metaclass=Fields):
     def __init__(self, row: Iterable[Any]) -> None:
         for (name, kind), value in zip(type(self).__annotations__.items(), row, strict=True):
             setattr(self, name, VALUES[kind](*value) if kind in VALUES else value)
+
+    @classmethod
+    def blank(cls) -> Self:
+        """All of it zero."""
+        kinds = cls.__annotations__.values()
+        return cls((0.0,) * len(VALUES[kind].__slots__) if kind in VALUES else 0 for kind in kinds)
 
 
 class Body(Record):
@@ -318,9 +324,45 @@ class Limits(Record):
     branch_step: float  # of the least pivot: how far coordinates move in a step along a branch
     branch_beside: float  # of that, how far what begins beside the start
     branch_bend: float  # of a drive's acceleration in a step: by how much its middle may be off what the ends tell
-    varied: float  # of a number's size: what is small, and far above its rounding, for a derivative
     half_turn: float  # cosine of half a turn: where it is less, Rodrigues' numbers have come to a half turn
     chart_turn: float  # of the turn that leads out of a chart of attitudes: a longer step is none
+
+
+class BodyAtState(Record):
+    """What of a body stands at a state while directions from there are looked at (tangent.py)."""
+
+    inertia: Sym3  # about the joint point, world axes
+    alpha: Vec3
+    a: Vec3
+    M: Vec3  # load of the joint on the body
+    f: Vec3
+
+
+class BodyTangent(Record):
+    """What a body's motion and loads change by along a direction of the state, per unit of it; world axes."""
+
+    moves: int  # 0: nothing of its motion changes
+    unused: int
+    turn: Vec3  # its attitude, as a small turn: dR = turn x R
+    arm: Vec3
+    r: Vec3
+    spin: Vec3  # while its turns are taken one after the other: the angular velocity before the next one, itself
+    omega: Vec3
+    v: Vec3
+    alpha: Vec3  # at the accelerations of the freedoms that stand at the state
+    a: Vec3
+    M: Vec3  # what it asks of its joint: inertia less applied loads; with what its branches' arms change by
+    f: Vec3
+
+
+class FreedomTangent(Record):
+    """What a freedom changes by along a direction of the state."""
+
+    q: float
+    u: float
+    udot: float  # its acceleration at the state, itself
+    load: float  # ds . F: what the joint's load does along it, as its direction turns
+    s: Vec3
 
 
 class Scene(metaclass=Fields):
@@ -386,3 +428,10 @@ class Scene(metaclass=Fields):
     J: list[float]
     y: list[float]
     own: list[float]
+    at_state: list[BodyAtState]
+    tangents: list[BodyTangent]
+    freedom_tangents: list[FreedomTangent]
+    multipliers: list[float]
+    slopes: list[float]
+    sloping: int
+    along: list[float]

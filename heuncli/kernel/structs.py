@@ -114,6 +114,40 @@ class PointMotion:
         self.v = v
 
 
+class LoadTangent:
+    """What a load changes by along a direction of the state: its place, force and moment."""
+
+    __slots__ = ("at", "force", "moment")
+
+    def __init__(self, at: Vec3, force: Vec3, moment: Vec3) -> None:
+        self.at = at
+        self.force = force
+        self.moment = moment
+
+
+class RowTangent:
+    """What a closure row changes by along a direction of the state: place, unit load, rate, J Vdot + gamma."""
+
+    __slots__ = ("Q", "acceleration", "f", "m", "rate")
+
+    def __init__(self, Q: Vec3, f: Vec3, m: Vec3, rate: float, acceleration: float) -> None:
+        self.Q = Q
+        self.f = f
+        self.m = m
+        self.rate = rate
+        self.acceleration = acceleration
+
+
+class MotionTangent:
+    """What velocity and acceleration of a place that a body carries change by."""
+
+    __slots__ = ("a", "v")
+
+    def __init__(self, v: Vec3, a: Vec3) -> None:
+        self.v = v
+        self.a = a
+
+
 class Carried:
     """How a body carries a place with it: velocity, centripetal acceleration, and its angular velocity."""
 

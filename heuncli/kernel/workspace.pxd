@@ -11,7 +11,8 @@ from heuncli.kernel.memory cimport Memory
 from heuncli.kernel.orthogonal cimport doubt_multipliers
 from heuncli.kernel.response cimport configure, evaluate, must_choose_anew, settle
 from heuncli.kernel.scene cimport (
-    APART, Body, CARRIES, Closure, Contact, Counter, Freedom, Island, LEANS, Lent, Limits, Load, Scene, Variable, Watch,
+    APART, Body, BodyAtState, BodyTangent, CARRIES, Closure, Contact, Counter, Freedom, FreedomTangent, Island, LEANS,
+    Lent, Limits, Load, Scene, Variable, Watch,
 )
 from heuncli.kernel.selection cimport jacobian_row, order_all, select_independent_rows
 from heuncli.kernel.tree cimport balance, factor_tree, kinematics
@@ -51,3 +52,4 @@ cdef class Workspace:
     cdef int opening
     cpdef object take_tables(self, dict tables)
     cpdef object take_arrays(self, object indices, dict numbers)
+    cpdef object make_tangents(self)

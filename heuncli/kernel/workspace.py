@@ -34,10 +34,13 @@ if not cython.compiled:
         CARRIES,
         LEANS,
         Body,
+        BodyAtState,
+        BodyTangent,
         Closure,
         Contact,
         Counter,
         Freedom,
+        FreedomTangent,
         Island,
         Lent,
         Limits,
@@ -366,6 +369,34 @@ class Workspace:
         scene.least = self.memory.zeros(scene.variable_count)
         scene.most = self.memory.zeros(scene.variable_count)
         scene.own = self.memory.zeros(scene.lent_count * scene.lent_count)
+        self.make_tangents()
+
+    def make_tangents(self) -> None:
+        """Room for what the scene changes by along a direction of its state."""
+        scene: cython.pointer[Scene] = cython.address(self.scene)
+        n: cython.Py_ssize_t = 2 * scene.freedom_count + scene.counter_count + 1
+        i: cython.Py_ssize_t
+        for i in range(scene.body_count):
+            n += 7 * scene.bodies[i].ball
+        scene.along = self.memory.zeros(n)
+        scene.slopes = self.memory.zeros(scene.variable_count)
+        scene.multipliers = self.memory.zeros(scene.closure_count)
+        bodies: cython.Py_ssize_t = scene.body_count
+        freedoms: cython.Py_ssize_t = scene.freedom_count
+        if cython.compiled:
+            scene.at_state = cython.cast(
+                cython.pointer[BodyAtState], self.memory.zeros(bodies * cython.sizeof(BodyAtState) // 8)
+            )
+            scene.tangents = cython.cast(
+                cython.pointer[BodyTangent], self.memory.zeros(bodies * cython.sizeof(BodyTangent) // 8)
+            )
+            scene.freedom_tangents = cython.cast(
+                cython.pointer[FreedomTangent], self.memory.zeros(freedoms * cython.sizeof(FreedomTangent) // 8)
+            )
+        else:
+            scene.at_state = [BodyAtState.blank() for _ in range(bodies)]
+            scene.tangents = [BodyTangent.blank() for _ in range(bodies)]
+            scene.freedom_tangents = [FreedomTangent.blank() for _ in range(freedoms)]
 
     def hold(self, holding: Any) -> None:
         """Open and close the contacts, until the next call: of each 0 open, 1 closed, 2 closed by others."""

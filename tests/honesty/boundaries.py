@@ -900,7 +900,6 @@ EXEMPT = {
     "KERNEL.leaving_first": "how an event's own rounding is left behind",
     "KERNEL.leaving_last": "how an event's own rounding is left behind; what chatters is driven back at once",
     "KERNEL.least_load": "which loads are so small that doubles lose their digits",
-    "KERNEL.varied": "the digits of a tangent that an iteration contracts by: its end is told to its own digits",
     "KERNEL.chart_turn": "lengths of steps in a chart of attitudes; tests/closed_forms/test_half_turns.py: none jumps",
     "KERNEL.branch_bend": "lengths of steps along a branch, in which extremes are looked for: no number depends on it",
     "KERNEL.branch_beside": "lengths of the check run's steps along a branch, on which no number depends",

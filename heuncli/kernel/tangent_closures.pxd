@@ -1,0 +1,32 @@
+"""Signatures of tangent_closures.py for C."""
+
+from heuncli.kernel.algebra cimport Vec3, add, add_cross, add_scaled, centripetal, cross, dot, norm, scaled, sub
+from heuncli.kernel.closures cimport carried, place_of
+from heuncli.kernel.loads cimport omega_of
+from heuncli.kernel.scene cimport BodyAtState, Body, BodyTangent, Closure, DOT, GUIDE, Scene, TURN
+from heuncli.kernel.tangent_loads cimport LoadTangent, opposite, push_along
+from heuncli.kernel.tangent_motion cimport point_along, swung
+from heuncli.kernel.tree cimport direction_of
+
+cdef struct RowTangent:
+    Vec3 Q
+    Vec3 f
+    Vec3 m
+    double rate
+    double acceleration
+
+cdef struct MotionTangent:
+    Vec3 v
+    Vec3 a
+
+cdef void closures_along(Scene *scene) noexcept nogil
+cdef RowTangent row_along(Scene *scene, Closure *row) noexcept nogil
+cdef Vec3 acceleration_at(Scene *scene, int body, Vec3 x) noexcept nogil
+cdef MotionTangent carried_along(Scene *scene, int body, Vec3 x, Vec3 change) noexcept nogil
+cdef RowTangent guide_along(Scene *scene, Closure *row, Vec3 Q) noexcept nogil
+cdef RowTangent rod_along(Scene *scene, Closure *row, Vec3 Q) noexcept nogil
+cdef RowTangent dot_along(Scene *scene, Closure *row, Vec3 Q) noexcept nogil
+cdef RowTangent turn_row_along(Scene *scene, Closure *row, Vec3 Q) noexcept nogil
+cdef Vec3 omega_along(Scene *scene, int body) noexcept nogil
+cdef Vec3 alpha_at(Scene *scene, int body) noexcept nogil
+cdef Vec3 alpha_along(Scene *scene, int body) noexcept nogil
