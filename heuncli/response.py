@@ -31,10 +31,10 @@ from heuncli.tree.tables import (
 Workspace = workspace.Workspace
 
 
-def workspace_of(layout: Layout) -> workspace.Workspace:
-    """The kernel's copy of a scene, with its work arrays."""
+def workspace_of(layout: Layout, holding: Array | None = None) -> workspace.Workspace:
+    """The kernel's copy of a scene, with its work arrays; holding (contacts,): which are closed, none if not given."""
     made = workspace.Workspace(layout.tables, layout.indices, layout.pack.expressions, numbers_of(layout))
-    made.hold([0.0] * len(layout.contacts))
+    made.hold([0.0] * len(layout.contacts) if holding is None else holding.tolist())
     made.start(0.0, layout.y0)
     return made
 
@@ -192,6 +192,33 @@ def tangent(at: workspace.Workspace, t: float, state: Array) -> Array:
     out = np.zeros(n * n)
     at.jacobian(t, np.ascontiguousarray(state, dtype=float), out)
     return out.reshape(n, n)
+
+
+@record
+class Motions:
+    """A state's derivative and what it hangs on, along each direction of the state; n_b bodies, tree order.
+
+    turn (n_b, 3, n): of the attitude, as a small turn; r, omega, v likewise: of joint point and angular velocity.
+    """
+
+    derivative: Array  # (n,)
+    tangent: Array  # (n, n) d(ydot)/dy
+    turn: Array
+    r: Array
+    omega: Array
+    v: Array
+    rates: Array  # (rows, n) of the closure rows chosen
+
+
+def motions(at: workspace.Workspace, layout: Layout, t: float, state: Array) -> Motions:
+    """What the motion hangs on at a settled state."""
+    n, bodies, rows = len(state), len(layout.place), len(layout.rows)
+    out, derivative, flat = np.zeros(n * n), np.zeros(n), np.zeros(n * (12 * bodies + rows))
+    own = np.ascontiguousarray(state, dtype=float)
+    at.jacobian(t, own, out, {"derivative": derivative, "motions": flat})
+    table = flat.reshape(n, -1)
+    turn, r, omega, v = table[:, : 12 * bodies].reshape(n, bodies, 4, 3).transpose(2, 1, 3, 0)
+    return Motions(derivative, out.reshape(n, n), turn, r, omega, v, table[:, 12 * bodies :].T[at.chosen])
 
 
 def carried(at: workspace.Workspace, times: Array, states: Array, multipliers: Array, n_b: int) -> Array:

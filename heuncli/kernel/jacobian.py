@@ -12,10 +12,13 @@ except ImportError:
     from heuncli.kernel.shadow import cython
 
 if not cython.compiled:
-    from heuncli.kernel.scene import Scene
+    from heuncli.kernel.columns import put
+    from heuncli.kernel.scene import BodyTangent, Scene
     from heuncli.kernel.shadow import cython
     from heuncli.kernel.structs import Tangent
     from heuncli.kernel.tangent import change_along, stand_at
+    from heuncli.kernel.tangent_closures import row_along
+    from heuncli.kernel.tangent_motion import move_along
 
 
 def find_jacobian(
@@ -35,3 +38,30 @@ def find_jacobian(
         scene.along[j] = 0.0
         for i in range(n):
             tangent.J[n * i + j] = tangent.beside[i]
+
+
+def find_motions(
+    scene: cython.pointer[Scene], y: cython.p_double, n: cython.Py_ssize_t, out: cython.p_double
+) -> cython.void:
+    """What bodies and the rates of closure rows change by, a direction of the state that stands after the other.
+
+    Of each body turn, r, omega and v (of the joint point); then of each row its rate, 0 where it is not chosen.
+    """
+    i: cython.Py_ssize_t
+    j: cython.Py_ssize_t
+    at: cython.Py_ssize_t = 0
+    for j in range(n):
+        scene.along[j] = 0.0
+    for j in range(n):
+        scene.along[j] = 1.0
+        move_along(scene, y, scene.along)
+        scene.along[j] = 0.0
+        for i in range(scene.body_count):
+            d: cython.pointer[BodyTangent] = cython.address(scene.tangents[i])
+            at = put(out, put(out, at, d.turn), d.r)
+            at = put(out, put(out, at, d.omega), d.v)
+        for i in range(scene.closure_count):
+            out[at + i] = 0.0
+        for i in range(scene.selected_count):
+            out[at + scene.selected[i]] = row_along(scene, cython.address(scene.closures[scene.selected[i]])).rate
+        at += scene.closure_count

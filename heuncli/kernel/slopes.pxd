@@ -1,10 +1,11 @@
 """Signatures of slopes.py for C."""
 
 from heuncli.kernel.expressions cimport (
-    ABS, ATAN2, CONST, FREE, HELD, HOLD, INTEGRAL, JUMP, Jet, KNOT, LT, MAX, MIN, PERIODIC, Program, Programs, SQRT,
+    ABS, ATAN2, CONST, Expressions, FREE, HELD, HOLD, INTEGRAL, JUMP, Jet, KNOT, LT, MAX, MIN, PERIODIC, Program, Programs, SQRT,
     TABLE, Table, UNLESS, VAR, chain, compare, constant, integral, integrated, jet_of_angle, jet_of_one, jet_of_table,
     jet_of_two, on_branch, table_at, takes_two, value,
 )
+from heuncli.kernel.memory cimport Memory
 from libc.math cimport NAN, floor
 
 cdef double slope(Programs *programs, Program program, double *slopes) noexcept nogil

@@ -7,6 +7,8 @@ The operations are those of `jet` (expressions.py), of which the first derivativ
 
 from __future__ import annotations
 
+from collections.abc import Sequence
+
 try:
     import cython
 except ImportError:
@@ -33,6 +35,7 @@ if not cython.compiled:
         TABLE,
         UNLESS,
         VAR,
+        Expressions,
         chain,
         compare,
         constant,
@@ -48,10 +51,27 @@ if not cython.compiled:
         value,
     )
     from heuncli.kernel.libm import floor
+    from heuncli.kernel.memory import Memory
     from heuncli.kernel.shadow import cython
     from heuncli.kernel.structs import Jet, Program, Programs, Table
 
     NAN = nan
+
+
+def gradient(expressions: Expressions, start: cython.int, count: cython.int, x: Sequence[float]) -> list[float]:
+    """The derivatives of a program in all its variables, at x; the door from Python."""
+    i: cython.Py_ssize_t
+    memory: Memory = Memory()
+    expressions.check(start, count)
+    slopes: cython.p_double = memory.zeros(len(x))
+    found: list[float] = []
+    for i in range(len(x)):
+        expressions.programs.variables[i] = x[i]
+    for i in range(len(x)):
+        slopes[i] = 1.0
+        found.append(slope(cython.address(expressions.programs), Program(start, count), slopes))
+        slopes[i] = 0.0
+    return found
 
 
 def slope(

@@ -9,7 +9,7 @@ from heuncli.kernel.scene cimport (
 from heuncli.kernel.slopes cimport slope
 from heuncli.kernel.tangent_motion cimport point_along, swung
 from heuncli.kernel.tree cimport PointMotion, direction_of, point_of
-from libc.math cimport tanh
+from libc.math cimport NAN, tanh
 
 cdef struct LoadTangent:
     Vec3 at

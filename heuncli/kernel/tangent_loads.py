@@ -12,7 +12,7 @@ except ImportError:
     from heuncli.kernel.shadow import cython
 
 if not cython.compiled:
-    from math import tanh
+    from math import nan, tanh
 
     from heuncli.kernel.algebra import Vec3, add, add_cross, add_scaled, cross, dot, norm, scaled, sub
     from heuncli.kernel.loads import omega_of, sliding_in
@@ -36,6 +36,8 @@ if not cython.compiled:
     from heuncli.kernel.structs import LoadTangent, PointMotion
     from heuncli.kernel.tangent_motion import point_along, swung
     from heuncli.kernel.tree import direction_of, point_of
+
+    NAN = nan
 
 
 def loads_along(scene: cython.pointer[Scene]) -> cython.double:
@@ -218,7 +220,8 @@ def angle_along(scene: cython.pointer[Scene], load: cython.pointer[Load]) -> cyt
     dx: cython.double = dot(d_before, now) + dot(before, d_now)
     across: Vec3 = add_cross(cross(d_before, now), before, d_now)
     dy: cython.double = dot(swung(scene, load.a, n), cross(before, now)) + dot(n, across)
-    return (x * dy - y * dx) / (x * x + y * y)
+    square: cython.double = x * x + y * y
+    return (x * dy - y * dx) / square if square > 0.0 else NAN
 
 
 def resistance(load: cython.pointer[Load], speed: cython.double) -> cython.double:

@@ -6,7 +6,7 @@ from heuncli.kernel.closures cimport acceleration_of, measure_rows, push_closure
 from heuncli.kernel.columns cimport answer_blow, answer_causes, answer_column, measure_answers, put, unmet
 from heuncli.kernel.events cimport find_angles
 from heuncli.kernel.expressions cimport FREE, HELD, TAKEN, Expressions
-from heuncli.kernel.jacobian cimport Tangent, find_jacobian
+from heuncli.kernel.jacobian cimport Tangent, find_jacobian, find_motions
 from heuncli.kernel.memory cimport Memory
 from heuncli.kernel.orthogonal cimport doubt_multipliers
 from heuncli.kernel.response cimport configure, evaluate, must_choose_anew, settle
@@ -53,3 +53,4 @@ cdef class Workspace:
     cpdef object take_tables(self, dict tables)
     cpdef object take_arrays(self, object indices, dict numbers)
     cpdef object make_tangents(self)
+    cdef object put_motions(self, double *y, double *dy, dict more)

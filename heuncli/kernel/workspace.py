@@ -25,7 +25,7 @@ if not cython.compiled:
     from heuncli.kernel.columns import answer_blow, answer_causes, answer_column, measure_answers, put, unmet
     from heuncli.kernel.events import find_angles
     from heuncli.kernel.expressions import FREE, HELD, TAKEN, Expressions
-    from heuncli.kernel.jacobian import find_jacobian
+    from heuncli.kernel.jacobian import find_jacobian, find_motions
     from heuncli.kernel.memory import Memory
     from heuncli.kernel.orthogonal import doubt_multipliers
     from heuncli.kernel.response import configure, evaluate, must_choose_anew, settle
@@ -545,8 +545,11 @@ class Workspace:
                 put_jacobian(scene, answer)
                 out[width * j : width * j + width] = answer
 
-    def jacobian(self, t: cython.double, state: Any, out: Any) -> None:
-        """d(ydot)/dy at a state, which is not changed, flat by rows: rows and branches are those of the state."""
+    def jacobian(self, t: cython.double, state: Any, out: Any, more: Any = None) -> None:
+        """d(ydot)/dy at a state, which is not changed, flat by rows: rows and branches are those of the state.
+
+        more: flat arrays `derivative`, ydot itself, and `motions` (`find_motions`), a direction after the other.
+        """
         scene: cython.pointer[Scene] = cython.address(self.scene)
         memory: Memory = Memory()
         tangent: Tangent
@@ -566,6 +569,27 @@ class Workspace:
         scene.programs.holding = FREE
         if not cython.compiled:
             out[:] = tangent.J
+        if more is not None:
+            self.put_motions(y, tangent.at, more)
+
+    def put_motions(self, y: cython.p_double, dy: cython.p_double, more: dict[str, Any]) -> None:
+        """The derivative of a state that stands, and what bodies and rows change by along each of its directions."""
+        i: cython.Py_ssize_t
+        memory: Memory = Memory()
+        derivative, motions = more["derivative"], more["motions"]
+        n: cython.Py_ssize_t = len(derivative)
+        for i in range(n):
+            derivative[i] = dy[i]
+        to: cython.p_double = memory.over(motions, 1, len(motions))[0]
+        find_motions(cython.address(self.scene), y, n, to)
+        if not cython.compiled:
+            motions[:] = to
+
+    @property
+    def chosen(self) -> list[int]:
+        """The closure rows that were chosen last."""
+        scene: cython.pointer[Scene] = cython.address(self.scene)
+        return [scene.selected[i] for i in range(scene.selected_count)]
 
     def carried(self, times: Any, states: Any, multipliers: Any, out: Any) -> None:
         """Joint loads that hold closure multipliers at rest: flat, instants, columns, bodies, moment and force.

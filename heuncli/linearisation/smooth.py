@@ -1,7 +1,7 @@
 """Whether the laws of a scene have a slope in a state: where one jumps or bends, small oscillations are not linear.
 
 An expression in coordinates is looked at on either side, by so little that only a branch that begins there can differ;
-on the branches met its value and its slope must be those of the branches here (dual numbers give both). A force along
+on the branches met its value and its slope must be those of the branches here. A force along
 the line between two points has no direction where they coincide. A contact that touches and bears nothing is one-sided.
 """
 
@@ -13,8 +13,8 @@ from typing import Any
 import numpy as np
 
 from heuncli import tolerances
-from heuncli.linearisation.dual_kernel import dual_module
-from heuncli.linearisation.duals import Dual, gradient_of, value_of
+from heuncli.kernel.choose import expressions as evaluator
+from heuncli.kernel.choose import slopes
 from heuncli.linearisation.steady import Looked
 from heuncli.mechanism.model import PairLoad
 from heuncli.results import Array
@@ -63,11 +63,9 @@ def differing(programs: Any, here: Looked, variables: Array, own: list[float], m
 
 
 def expressions(here: Looked) -> Any:
-    """The scene's programs, on dual numbers."""
+    """The scene's programs, in a memory of their own."""
     pack = here.layout.pack
-    return dual_module("expressions").Expressions(
-        pack.code, pack.constants, len(pack.variables), pack.depth, pack.held
-    )
+    return evaluator.Expressions(pack.code, pack.constants, len(pack.variables), pack.depth, pack.held)
 
 
 def values(here: Looked) -> Array:
@@ -93,7 +91,7 @@ def programs_of(here: Looked) -> list[tuple[str, int, int]]:
 
 def branches(programs: Any, here: Looked, variables: Array) -> list[float]:
     """The branches on which the loads' expressions find these variables."""
-    programs.hold(dual_module("expressions").TAKEN)
+    programs.hold(evaluator.HOLDING["taken"])
     for _, start, count in programs_of(here):
         programs.evaluate(start, count, variables.tolist())
     return list(programs.branches())
@@ -101,12 +99,10 @@ def branches(programs: Any, here: Looked, variables: Array) -> list[float]:
 
 def on_branches(programs: Any, start: int, count: int, variables: Array, held: list[float]) -> tuple[float, Array]:
     """Value and slope of a program on branches that are held."""
-    programs.hold(dual_module("expressions").HELD)
+    programs.hold(evaluator.HOLDING["held"])
     programs.hold_branches(held)
-    n = len(variables)
-    moving = [Dual(x, row) for x, row in zip(variables.tolist(), np.eye(n), strict=True)]
-    found = programs.evaluate(start, count, moving)
-    return value_of(found), gradient_of(found, n)
+    x = variables.tolist()
+    return programs.evaluate(start, count, x), np.array(slopes.gradient(programs, start, count, x))
 
 
 def touching(here: Looked) -> Iterator[str]:

@@ -10,9 +10,9 @@ from typing import Any
 import numpy as np
 import pytest
 
-from heuncli.linearisation import duals
-from heuncli.linearisation.dual_kernel import dual_module
-from heuncli.linearisation.duals import Dual, value_of
+from tests.shared import duals
+from tests.shared.dual_kernel import dual_module
+from tests.shared.duals import Dual, value_of
 
 STEP = 1e-30  # of a complex step: it loses no digits
 ROUNDING = 4.0 * np.finfo(float).eps

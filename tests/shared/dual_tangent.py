@@ -6,20 +6,29 @@ from typing import Any
 
 import numpy as np
 
-from heuncli.linearisation.dual_kernel import dual_module
-from heuncli.linearisation.duals import Dual, gradient_of
-from heuncli.linearisation.linearise import DualKernel, unit
+from heuncli.response import numbers_of
 from heuncli.results import Array
 from heuncli.tree.layout import Layout
+from tests.shared.dual_kernel import dual_module
+from tests.shared.duals import Dual, gradient_of
 
 
 def dual_tangent(layout: Layout, t: float, state: Array) -> tuple[Array, Array]:
     """A state settled on the closures, and d(ydot)/dy there, (n, n); contacts open."""
-    kernel = DualKernel(layout, t, state, None)
-    y, n = list(kernel.state), len(state)
-    if kernel.scene.closure_count:
-        dual_module("chosen").choose_afresh(kernel.scene, t, list(y))
-    moving: list[Any] = [Dual(x, unit(n, k)) for k, x in enumerate(y)]
+    pack, n = layout.pack, len(state)
+    programs = dual_module("expressions").Expressions(
+        pack.code, pack.constants, len(pack.variables), pack.depth, pack.held
+    )
+    workspace = dual_module("workspace").Workspace(layout.tables, layout.indices, programs, numbers_of(layout))
+    workspace.hold([0.0] * len(layout.contacts))
+    workspace.start(0.0, layout.y0.tolist())
+    scene, kernel, chosen = workspace.scene, dual_module("response"), dual_module("chosen")
+    y: list[float] = np.asarray(state, dtype=float).tolist()
+    for _ in range(2):
+        if scene.closure_count:
+            chosen.choose_afresh(scene, t, y)
+        kernel.settle(scene, t, y)
+    moving: list[Any] = [Dual(x, row) for x, row in zip(y, np.eye(n), strict=True)]
     dy: list[Any] = [0.0] * n
-    kernel.evaluate(t, moving, dy)
+    kernel.evaluate(scene, t, moving, dy)
     return np.array(y), np.array([gradient_of(x, n) for x in dy]).reshape(n, n)

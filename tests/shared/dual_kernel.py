@@ -13,7 +13,7 @@ from types import ModuleType
 from typing import Any
 
 from heuncli.kernel.form import FOLDER, PACKAGE
-from heuncli.linearisation import duals
+from tests.shared import duals
 
 AS_THEY_ARE = frozenset({"modules", "shadow"})  # nothing is computed there
 loaded: dict[str, ModuleType] = {"math": duals, f"{PACKAGE}.libm": duals}
