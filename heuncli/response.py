@@ -159,7 +159,7 @@ class Jacobian:
     freedom: Array
     shape: tuple[int, int]  # how many rows and freedoms there are
 
-    def block(self, rows: Array, freedoms: Array) -> Array:
+    def block(self, rows: Array | Indices, freedoms: Array | Indices) -> Array:
         """Some rows on some freedoms, (n_t, rows, freedoms)."""
         at_row, at_freedom = (np.full(count, -1) for count in self.shape)
         at_row[rows], at_freedom[freedoms] = np.arange(len(rows)), np.arange(len(freedoms))

@@ -154,6 +154,10 @@ QUADRATURE = 1e-14  # of the scale: whole against halves; planes that graze thin
 STIFF = 0.5  # of the boundary of stability: where that holds steps short they are at it, else seldom beyond a third
 RADAU5 = 1e-6  # local tolerance above which three stages take less than five
 
+# -- what a motion comes near to
+GIMBAL = 1e-3  # rad from a lock of Euler angles: the condition of their matrix is 2e3, three digits are lost
+FASTER_THAN_TIME = 4.0  # over the second half of a run: what grows with the square of the time grows fourfold
+
 # -- rest
 REST_FIRST = 0.01  # rad, or of the size: the first step, short against any lever
 REST_FARTHEST = 0.5  # the same: a longer step may pass over what bends within half a turn

@@ -147,6 +147,20 @@ class Chart(NamedTuple):
     quiet: Annotated[bool, QUIET] = False
 
 
+class Probe(NamedTuple):
+    """Where a motion comes near to what methods cannot bear, with a verdict."""
+
+    spec: Annotated[str, SPEC]
+    format: Annotated[
+        str | None,
+        Option(("--format",), "How to write it. Default: by the name's end of -o FILE, else table.", "table|json"),
+    ] = None
+    output: Annotated[str | None, OUTPUT] = None
+    set: Annotated[tuple[str, ...], SET] = ()
+    time_limit: Annotated[float | None, Option(("--time-limit",), "Give up after that long.", "SECONDS")] = None
+    quiet: Annotated[bool, QUIET] = False
+
+
 class Check(NamedTuple):
     """Run specs, and folders of specs, against what they `expect`."""
 
@@ -174,12 +188,12 @@ class Methods(NamedTuple):
     output: Annotated[str | None, OUTPUT] = None
 
 
-Request = Run | Validate | Model | Modes | Chart | Check | Methods
+Request = Run | Validate | Model | Modes | Chart | Probe | Check | Methods
 COMMANDS: dict[str, type[Request]] = {
-    "run": Run, "validate": Validate, "model": Model, "modes": Modes, "chart": Chart, "check": Check,
+    "run": Run, "validate": Validate, "model": Model, "modes": Modes, "chart": Chart, "probe": Probe, "check": Check,
     "methods": Methods,
 }  # fmt: skip
-LATER_COMMANDS = ("balance", "probe", "lagrange", "schema", "explain", "new", "sweep", "plot")
+LATER_COMMANDS = ("balance", "lagrange", "schema", "explain", "new", "sweep", "plot")
 LATER_OPTIONS = ("golden", "update", "junit")
 
 

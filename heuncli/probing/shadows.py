@@ -12,6 +12,7 @@ from __future__ import annotations
 
 import math
 from collections.abc import Iterator
+from itertools import pairwise
 
 import numpy as np
 
@@ -19,11 +20,12 @@ from heuncli import tolerances
 from heuncli.integration.blows import schedule, strike
 from heuncli.integration.evaluator import Evaluator
 from heuncli.integration.loop import Integration, just_before
-from heuncli.integration.methods import DOP853, Method
+from heuncli.integration.methods.method import Method
+from heuncli.integration.moving import itself
 from heuncli.integration.runner import MORE, REACHED, Runner, Trajectory, check_deadline
 from heuncli.records import record
 from heuncli.response import jacobian
-from heuncli.rest.coordinates import Coordinates, coordinates_of
+from heuncli.rest.coordinates import coordinates_of
 from heuncli.results import Array
 from heuncli.shapes.rotations import quaternion_product
 from heuncli.tree.layout import Layout
@@ -31,6 +33,7 @@ from heuncli.tree.layout import Layout
 AWAY = 1e-8  # of a radian, or of the size: root of EPS, where the square of a disturbance is as much as its rounding
 K = 24  # directions; a few more than grow by themselves
 PIECE = 16  # steps of the run: some growth times of most motions, and few enough that what grows fast is set back
+FEWEST = 100  # pieces of a run, so that its growth is seen between
 FARTHEST = 1e4  # times AWAY: squares are then 1e-4 of the disturbance; a piece in which one grows more is halved
 CHUNK = 256  # steps at a time, for which there is room
 MOST_CHUNKS = 400  # of a piece
@@ -64,12 +67,19 @@ def pieces_of(run: Trajectory) -> Iterator[Piece]:
     for segment in run.segments:
         inside = run.ends[(run.ends > segment.begin) & (run.ends < min(segment.end, last))]
         begin = segment.begin
-        for end in inside[PIECE - 1 :: PIECE].tolist():
-            yield Piece(begin, just_before(end), end)
+        for end in [*inside[PIECE - 1 :: PIECE].tolist(), min(segment.end, last)]:
+            if end > begin:
+                yield from divided(Piece(begin, min(segment.before_end, just_before(end)), end), last / FEWEST)
             begin = end
-        if begin < last:
-            end = min(segment.end, last)
-            yield Piece(begin, min(segment.before_end, just_before(end)), end)
+
+
+def divided(piece: Piece, longest: float) -> Iterator[Piece]:
+    """A piece in equal parts that are no longer than that."""
+    count = math.ceil((piece.end - piece.begin) / longest * (1.0 - tolerances.SAME_INSTANT))
+    marks = np.linspace(piece.begin, piece.end, count + 1).tolist()
+    for begin, end in pairwise(marks[:-1]):
+        yield Piece(begin, just_before(end), end)
+    yield Piece(marks[-2], piece.before_end, piece.end)
 
 
 class Scale:
@@ -103,12 +113,14 @@ class Scale:
 
 
 class Shadows:
-    """Runs beside the run of a scene, which are done with what is integrated in its place."""
+    """Runs beside the run of a scene, done with what is integrated in its place, or (whole) with the scene itself."""
 
-    def __init__(self, runner: Runner, run: Trajectory, method: Method) -> None:
+    def __init__(self, runner: Runner, run: Trajectory, method: Method, *, whole: bool = False) -> None:
         self.runner, self.run, self.method = runner, run, method
-        self.layout, self.workspace = runner.moving.layout, runner.moving.workspace
-        self.scale = Scale(self.layout, largest_rate(runner, run))
+        self.moving = itself(Evaluator(runner.layout)) if whole else runner.moving
+        self.layout, self.workspace = self.moving.layout, self.moving.workspace
+        self.rate = largest_rate(runner, run)
+        self.scale = Scale(self.layout, self.rate)
         self.beside = Evaluator(self.layout) if self.layout.rows else None
         self.blows = schedule(runner.layout.mechanism, float(run.times[-1]))
 
@@ -119,11 +131,11 @@ class Shadows:
         return self.beside.recovered(np.full(len(states), t), states).states
 
     def forward(self, piece: Piece, state: Array) -> tuple[Array, int] | None:
-        """The state that one at the beginning of a piece comes to at its end, in how many steps; None if it does not."""
+        """The state that one at the beginning of a piece comes to at its end, and the steps; None if it does not."""
         run = Integration(
             self.layout, self.workspace, self.method, np.array([piece.end]),
-            most=CHUNK, state=state, tolerance=tolerances.LEAST_TOLERANCE,
-            rate=tolerances.LEAST_RATE / float(self.run.times[-1]), following=0, late=0,
+            most=CHUNK, state=state, local=tolerances.LEAST_TOLERANCE,
+            rate=self.rate, following=0, late=0,
         )  # fmt: skip
         run.loop.begin(piece.begin, piece.before_end, piece.end)
         for _ in range(MOST_CHUNKS):
@@ -134,7 +146,7 @@ class Shadows:
 
     def behind_blows(self, t: float, states: Array) -> Array:
         """States behind the blows that are given at an instant."""
-        moving = self.runner.moving
+        moving = self.moving
         for given in (one for one in self.blows if one.before <= t <= one.after):
             for k, state in enumerate(states):
                 jump = strike(self.runner, given, moving.state(t, state), t)
@@ -144,15 +156,16 @@ class Shadows:
 
     def passed(self, piece: Piece, base: Array, Q: Array) -> tuple[Array, int] | None:
         """What a piece makes of disturbances Q (2 n, k) of its begin, and its steps; None where one comes to no end."""
-        start = self.behind_blows(piece.begin, self.settled(piece.begin, np.vstack([base, self.scale.moved(base, AWAY * Q.T)])))
+        states = self.settled(piece.begin, np.vstack([base, self.scale.moved(base, AWAY * Q.T)]))
+        start = self.behind_blows(piece.begin, states)
         ends = []
         for state in start:
             found = self.forward(piece, state)
             if found is None:
                 return None
             ends.append(found)
-        states = np.array([state for state, _ in ends])
-        return self.scale.apart(states[0], states[1:]).T / AWAY, ends[0][1]
+        reached = np.array([state for state, _ in ends])
+        return self.scale.apart(reached[0], reached[1:]).T / AWAY, ends[0][1]
 
     def directions(self) -> Array:
         """All disturbances of the start that the closed chains admit, orthonormal (2 n, N)."""
@@ -168,34 +181,39 @@ class Shadows:
 
     def run_states(self, times: Array) -> Array:
         """The states of what is integrated at instants of the run."""
-        moving, states = self.runner.moving, self.runner.resample(self.run, times)
-        return np.array([moving.restrict(t, y) for t, y in zip(times.tolist(), states, strict=True)])
+        states = self.runner.resample(self.run, times)
+        return np.array([self.moving.restrict(t, y) for t, y in zip(times.tolist(), states, strict=True)])
 
     def growth(self, Q: Array | None = None, deadline: float | None = None) -> Growth:
         """How disturbances grow along the run: all, or those in the directions Q (2 n, N) of the start."""
-        Q = self.directions() if Q is None else Q
-        Q, factor = some_of(Q)
+        Q, factor = some_of(self.directions() if Q is None else Q)
         n, C, log = self.scale.n, np.eye(Q.shape[1]), 0.0
         found, steps = [(0.0, 0.0, 0.0)], 0
-        todo = list(pieces_of(self.run))[::-1] if Q.shape[1] else []
+        todo = self.pieces()[::-1] if Q.shape[1] else []
         while todo:
-            piece = todo.pop()
+            piece, base = todo.pop()
             check_deadline(deadline, f"at t = {piece.begin:.6g} s of the runs beside it")
-            base = self.run_states(np.array([piece.begin]))[0]
             made = self.passed(piece, base, Q)
             if made is None:
-                return growth_of(found, f"a run beside it comes to no end at t = {piece.end:.6g} s")
+                return growth_of(found, f"a run beside it does not come to t = {piece.end:.6g} s")
             D, done = made
             if np.abs(D).max() > FARTHEST and piece.before_end - piece.begin > AWAY * piece.end:
-                todo += piece.halves()[::-1]
+                first, second = piece.halves()
+                todo += [(second, self.run_states(np.array([second.begin]))[0]), (first, base)]
                 continue
             Q, R = np.linalg.qr(D)
             C, steps = R @ C, steps + done
             size = float(np.abs(C).max())
             C, log = C / size, log + math.log(size)
             G = factor * float(np.linalg.norm(Q[:n] @ C, 2))
-            found.append((piece.end, log + math.log(G), float(steps)))
+            found.append((piece.end, log + math.log(max(G, tolerances.EPS)), float(steps)))
         return growth_of(found, None)
+
+    def pieces(self) -> list[tuple[Piece, Array]]:
+        """The pieces of the run, and the states at which they begin."""
+        pieces = list(pieces_of(self.run))
+        states = self.run_states(np.array([piece.begin for piece in pieces]))
+        return list(zip(pieces, states, strict=True))
 
 
 def growth_of(found: list[tuple[float, float, float]], stopped: str | None) -> Growth:
@@ -214,9 +232,12 @@ def some_of(Q: Array) -> tuple[Array, float]:
 
 
 def largest_rate(runner: Runner, run: Trajectory) -> float:
-    """The fastest of the undriven rates over a run, turns by [rad/s], shifts by the scene's size [1/s]."""
+    """The fastest of the undriven rates over a run, turns by [rad/s], shifts by the scene's size [1/s].
+
+    No less than what gravity makes of a fall through the scene's size, and one turn in the run's time.
+    """
     layout = runner.layout
     own = coordinates_of(layout)
     rates = np.abs(run.states[:, own.rates] * own.weights)
-    slowest = tolerances.LEAST_RATE / float(run.times[-1])
-    return max(float(rates.max(initial=0.0)), slowest)
+    g = float(np.sqrt(np.sum(layout.mechanism.gravity**2)))
+    return max(float(rates.max(initial=0.0)), math.sqrt(g / layout.size), 1.0 / float(run.times[-1]))

@@ -23,7 +23,7 @@ from heuncli.tree.tables import vectors
 
 @record
 class Twists:
-    """Of all bodies in tree order at instants: turn, shift of the centre of mass (n_t, n_b, n, 3); centres, attitudes."""
+    """Of all bodies in tree order: turn, shift of the centre of mass (n_t, n_b, n, 3) by freedoms; where they are."""
 
     layout: Layout
     turn: Array

@@ -1,0 +1,118 @@
+"""What a motion comes near to, as a page: the verdict, growth and stiffness, conditions, attitudes, instants."""
+
+from __future__ import annotations
+
+import math
+from collections.abc import Iterator
+
+from heuncli.probing.model import Growing, Probe
+from heuncli.report.fit import fit
+from heuncli.report.table import WIDTH, Column, Table, plain, wrapped
+from heuncli.version import VERSION
+
+MOST = 30  # events that a table lists; JSON has more
+LABEL = 9
+GROWTH = "GROWTH  of a small disturbance, the largest of all directions that the joints leave free"
+STEPS = "STEPS  of explicit methods: what stability allows where it allows least, what accuracy asks for, about"
+CONDITION = "CONDITION  largest singular value over the smallest; shifts by the scene's size"
+ATTITUDES = "ATTITUDES  bodies whose turns are all free: half turns, largest condition of the matrices of Euler angles"
+EVENTS = "INSTANTS"
+NAMES = {"mass": "mass matrix", "closure": "closures"}
+
+
+def write(found: Probe) -> str:
+    """The page as text."""
+    head = "".join(line + "\n" for label, text in lines(found) for line in labelled(label, text))
+    return head + "".join("\n" + plain(part, WIDTH) for table in tables(found) for part in fit(table, WIDTH))
+
+
+def lines(found: Probe) -> Iterator[tuple[str, str]]:
+    """Label and text of the lines above the tables."""
+    yield "heun", f"{VERSION}  {found.title}"
+    span = f" over {found.duration:.6g} s" if found.duration else ", one instant"
+    yield "probe", f"{found.model['space']}, by {found.model['method']}{span}"
+    yield "verdict", found.verdict
+    yield from (("", text) for text in found.trouble[1:])
+    yield from (("beside" if k == 0 else "", text) for k, text in enumerate(found.others))
+    yield from (("unknown" if k == 0 else "", text) for k, text in enumerate(reasons(found)))
+
+
+def reasons(found: Probe) -> list[str]:
+    """Why something is not told, each reason once."""
+    by: dict[str, list[str]] = {}
+    for key, text in found.reasons.items():
+        by.setdefault(text, []).append(key.replace("_", " "))
+    return [f"{', '.join(keys)}: {text}" for text, keys in by.items()]
+
+
+def labelled(label: str, text: str) -> list[str]:
+    """A label and its text, which goes on below itself."""
+    first, *rest = wrapped(text, WIDTH - LABEL, 0)
+    return [label.ljust(LABEL) + first, *(" " * LABEL + line for line in rest)]
+
+
+def tables(found: Probe) -> Iterator[Table]:
+    """All tables that have something to show."""
+    if grown := tuple(growth_row(name, g) for name, g in growths(found) if g is not None):
+        heads = ("of", "e times every [s]", "times", "until [s]", "horizon of double precision [s]")
+        yield Table(GROWTH, columns(heads, 1), grown)
+    stiff = found.stiffness
+    if stiff is not None and stiff.steps:
+        steps = tuple((s.method, str(s.order), seconds(s.stability), seconds(s.accuracy)) for s in stiff.steps)
+        note = f"rates of the tangent: decay up to {stiff.decay:.3g} 1/s, oscillation up to {stiff.oscillation:.3g} 1/s"
+        yield Table(STEPS, columns(("method", "order", "stable [s]", "accurate [s]"), 1), steps, (note,))
+    if known := found.conditions():
+        own = tuple((NAMES[name], condition(at.value), f"{at.time:.6g}", at.where) for name, at in known)
+        yield Table(CONDITION, (*columns(("of", "condition", "t [s]"), 1), Column("in", "left")), own)
+    if found.attitudes:
+        sequences = tuple(found.attitudes[0].euler)
+        over = ("body", "half turns", *(f"{s} at [s]" if i else s for s in sequences for i in (0, 1)))
+        bodies = tuple(
+            (t.body, str(t.half_turns), *(x for k, at in t.euler.values() for x in (condition(k), f"{at:.6g}")))
+            for t in found.attitudes
+        )
+        yield Table(ATTITUDES, columns(over, 1), bodies)
+    if found.events:
+        yield events(found)
+
+
+def events(found: Probe) -> Table:
+    """The instants, the first ones of many."""
+    shown = [(f"{e.time:.6g}", e.kind, e.message) for e in found.events[:MOST]]
+    left = len(found.events) - len(shown) + sum(count for _, _, count in found.more)
+    notes = (f"{left} more; JSON lists a hundred of each kind and place",) if left else ()
+    heads = (Column("t [s]"), Column("what", "left"), Column("", "left"))
+    return Table(EVENTS, heads, tuple(shown), notes)
+
+
+def columns(heads: tuple[str, ...], words: int) -> tuple[Column, ...]:
+    """Columns, the first of them of words."""
+    return tuple(Column(head, "left") if k < words else Column(head) for k, head in enumerate(heads))
+
+
+def growths(found: Probe) -> tuple[tuple[str, Growing | None], ...]:
+    """The growths that are told, and of what."""
+    own = "motion in the plane" if found.across is not None else "motion"
+    return (own, found.growth), ("out of the plane", found.across)
+
+
+def growth_row(name: str, growth: Growing) -> tuple[str, ...]:
+    """A growth's cells."""
+    every = f"{1.0 / growth.rate:.3g}" if growth.exponential and growth.rate > 0.0 else "no faster than the time"
+    if growth.rate < 0.0 and growth.times < 0.0:
+        every = "fades"
+    horizon = f"{growth.horizon:.4g}" if growth.horizon is not None else "beyond the run"
+    if growth.expected is not None:
+        horizon += f", about {growth.expected:.2g} if it goes on so"
+    times = f"{math.exp(growth.times):.2g}" if growth.times < 700.0 else f"e^{growth.times:.0f}"
+    return name, every, times, f"{growth.until:.4g}", horizon
+
+
+def condition(value: float) -> str:
+    """A condition number in a cell."""
+    return f"{value:.3g}" if value < 1e15 else "singular"
+
+
+def seconds(value: float) -> str:
+    """A step in a cell."""
+    return f"{value:.2g}" if math.isfinite(value) else "any"

@@ -1,0 +1,246 @@
+"""Instants along a motion at which something is passed: half turns, gimbal locks, dead centres.
+
+What is looked at is a vector whose sign means nothing, a quaternion or the shares of a loop's coordinates: it is
+continued from instant to instant, which lie so close that no body turns far between them, and a component passes zero
+where its sign changes.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Callable, Sequence
+from typing import NamedTuple
+
+import numpy as np
+
+from heuncli import tolerances
+from heuncli.integration.evaluator import Recovered
+from heuncli.probing.attitudes import SEQUENCES, condition, off_upright, quaternions
+from heuncli.probing.model import DEAD_CENTRE, GIMBAL, HALF_TURN, Event, Turned
+from heuncli.probing.shares import Loop, continued, loops_of, motions
+from heuncli.results import Array, Indices, Mask
+from heuncli.study.history import resample, search_times
+from heuncli.study.solve import Study
+
+CHUNK = 200_000  # body-instants whose answers are kept at a time
+ROUNDS = 60  # of halving, and fewer where the false position serves
+NEWTON = 12  # steps towards the nearest approach
+Track = Callable[[Recovered], Array]  # of recovered instants the vector there, (n_t, d), of any sign
+
+
+class Along:
+    """The instants of a motion at which it is looked at, and the kernel's answers at any of it."""
+
+    def __init__(self, study: Study) -> None:
+        self.study, self.layout = study, study.setup.scene.layout
+        self.times = search_times(study.setup, study.history)[0] if study.history.checked else study.history.times
+        self.span = float(np.ptp(self.times))
+
+    def at(self, times: Array) -> Recovered:
+        """The answers at instants, ascending."""
+        return resample(self.study.setup.runner, self.study.history, times)
+
+    def parts(self) -> list[Recovered]:
+        """The answers at all instants, in parts that fit the memory."""
+        many = max(1, CHUNK // max(len(self.layout.place), 1))
+        return [self.at(self.times[i : i + many]) for i in range(0, len(self.times), many)]
+
+
+class Passed(NamedTuple):
+    """Where a component passes zero, or stays there: from, to [s]."""
+
+    begin: float
+    end: float
+
+
+def zeros(along: Along, track: Track, x: Array, component: int) -> list[Passed]:
+    """Where a component of a continued vector (n_t, d) is zero."""
+    h, times = x[:, component], along.times
+    still = np.abs(h) <= tolerances.GAP_ROUNDING  # of unit vectors
+    found = []
+    for run in np.split(np.flatnonzero(still), np.flatnonzero(np.diff(np.flatnonzero(still)) > 1) + 1):
+        if len(run):
+            found.append(Passed(float(times[run[0]]), float(times[run[-1]])))
+    k = np.flatnonzero((h[1:] * h[:-1] < 0.0) & ~still[1:] & ~still[:-1])
+    if len(k):
+        at = roots(along, track, x[k], (times[k], times[k + 1], h[k], h[k + 1], component))
+        found += [Passed(t, t) for t in at.tolist()]
+    return sorted(found)
+
+
+def roots(along: Along, track: Track, left: Array, of: tuple[Array, Array, Array, Array, int]) -> Array:
+    """The zeros in brackets, by false positions (Illinois): left (n, d): the vectors at their beginnings."""
+    a, b, f, g, component = (np.array(x) if isinstance(x, np.ndarray) else x for x in of)
+    for _ in range(ROUNDS):
+        wide = b - a > tolerances.EPS * 4.0 * np.abs(b) + tolerances.SIDE_BY_SIDE * 1e-2 * along.span
+        if not wide.any():
+            break
+        x = np.clip(b - g * (b - a) / (g - f), a, b)
+        instants, where = np.unique(x, return_inverse=True)
+        found = track(along.at(instants))[where]
+        found = found * np.where(np.sum(found * left, axis=1, keepdims=True) < 0.0, -1.0, 1.0)
+        h = found[:, component]
+        same = h * f > 0.0
+        a, b = np.where(same, x, a), np.where(same, b, x)
+        # the end that stays counts half
+        f, g = np.where(same, h, 0.5 * f), np.where(same, 0.5 * g, h)
+        done = h == 0.0
+        a, b = np.where(done, x, a), np.where(done, x, b)
+    return np.asarray(np.where(np.abs(f) < np.abs(g), a, b))
+
+
+def attitudes(along: Along) -> tuple[list[Event], list[Turned]]:
+    """Half turns and gimbal locks of the bodies whose turns are all free."""
+    layout = along.layout
+    balls = [k for k in range(len(layout.place)) if layout.bodies["ball"][k]]
+    if not balls:
+        return [], []
+    parts = [(part.bodies["R"][:, balls], part.bodies["omega"][:, balls]) for part in along.parts()]
+    R, omega = (np.concatenate([part[i] for part in parts]) for i in (0, 1))
+    events, rows = [], []
+    for i, k in enumerate(balls):
+        name = layout.mechanism.bodies[layout.spanning.hangs[k].body].name
+        passed = zeros(along, attitude_of(k), quaternions(R[:, i]), 0)
+        events += [half_turn(name, one, along) for one in passed]
+        euler = {}
+        for sequence, axis in SEQUENCES.items():
+            locks, worst = nearest_to_lock(along, k, axis, (R[:, i], omega[:, i]))
+            events += [locked(name, sequence, one, along) for one in locks]
+            euler[sequence] = worst
+        rows.append(Turned(name, len(passed), euler))
+    return events, rows
+
+
+def attitude_of(place: int) -> Track:
+    """The quaternion of a body at a place of the tree."""
+    return lambda at: quaternions(at.bodies["R"][:, place])
+
+
+def half_turn(name: str, passed: Passed, along: Along) -> Event:
+    """A half turn, or a stay there."""
+    what = "is turned by 180 deg against the drawing: its global Rodrigues parameters are without bound"
+    return Event(passed.begin, HALF_TURN, f"bodies.{name}", f"{name} {what}{until(passed, along)}")
+
+
+def until(passed: Passed, along: Along) -> str:
+    """How long it stays there."""
+    if passed.end - passed.begin <= tolerances.SAME_INSTANT * along.span:
+        return ""
+    return ", all the time" if passed.end - passed.begin >= along.span else f", until t = {passed.end:.6g} s"
+
+
+class Lock(NamedTuple):
+    """A nearest approach to a gimbal lock, or a stay there; sine of the angle that is left."""
+
+    passed: Passed
+    sine: float
+
+
+def nearest_to_lock(
+    along: Along, k: int, axis: int, known: tuple[Array, Array]
+) -> tuple[list[Lock], tuple[float, float]]:
+    """The approaches of a body to a lock within GIMBAL, and the largest condition of its angles with its instant."""
+    times = along.times
+    p, _ = off_upright(*known, axis)
+    s = np.sqrt(np.sum(p * p, axis=1))
+    stays = runs_of(s <= tolerances.GIMBAL)
+    locks = [Lock(Passed(float(times[i]), float(times[j])), float(s[i : j + 1].min())) for i, j in stays]
+    padded = np.concatenate([[np.inf], s, [np.inf]])
+    low = np.flatnonzero((s <= padded[:-2]) & (s < padded[2:]))
+    for i, j in stays:
+        low = low[(low < i) | (low > j)]
+    best = (float(s.min()), float(times[np.argmin(s)]))
+    if len(low):
+        at, found = approach(along, k, axis, low)
+        best = min(best, (float(found.min()), float(at[np.argmin(found)])))
+        passed = found <= tolerances.GIMBAL
+        locks += [Lock(Passed(t, t), x) for t, x in zip(at[passed].tolist(), found[passed].tolist(), strict=True)]
+    return locks, (float(condition(best[0])), best[1])
+
+
+def runs_of(held: Mask) -> list[tuple[int, int]]:
+    """The first and last places of stretches of more than one instant."""
+    places = np.flatnonzero(held)
+    stretches = np.split(places, np.flatnonzero(np.diff(places) > 1) + 1)
+    return [(int(run[0]), int(run[-1])) for run in stretches if len(run) > 1]
+
+
+def approach(along: Along, k: int, axis: int, low: Indices) -> tuple[Array, Array]:
+    """The nearest approaches about instants of the grid, and the sines there: p . p' = 0 by Gauss and Newton."""
+    times = along.times
+    first, last = times[np.maximum(low - 1, 0)], times[np.minimum(low + 1, len(times) - 1)]
+    t = times[low].copy()
+    best, least = t.copy(), np.full(len(t), np.inf)
+    for _ in range(NEWTON):
+        instants, where = np.unique(t, return_inverse=True)
+        rows = along.at(instants).bodies
+        p, rate = (x[where] for x in off_upright(rows["R"][:, k], rows["omega"][:, k], axis))
+        s = np.sqrt(np.sum(p * p, axis=1))
+        best, least = np.where(s < least, t, best), np.minimum(s, least)
+        square = np.sum(rate * rate, axis=1)
+        step = np.sum(p * rate, axis=1) / np.where(square > 0.0, square, np.inf)
+        t = np.clip(t - step, first, last)
+    return best, least
+
+
+def locked(name: str, sequence: str, lock: Lock, along: Along) -> Event:
+    """A lock, or a pose so near to it that digits are lost."""
+    k = float(condition(lock.sine))
+    how = f"condition {k:.2g} of its angle matrix" if np.isfinite(k) and k < 1.0 / tolerances.EPS else "locked"
+    what = f"{sequence} Euler angles of {name}: {how}{until(lock.passed, along)}"
+    return Event(lock.passed.begin, GIMBAL, f"bodies.{name}", what)
+
+
+def dead_centres(along: Along) -> tuple[list[Event], list[str]]:
+    """Dead centres of the closed chains; and of which loops none are looked for, why."""
+    loops = loops_of(along.layout)
+    if not loops:
+        return [], []
+    parts = along.parts()
+    events, left = [], []
+    for loop in loops:
+        found = [motions(along.layout, loop, part) for part in parts]
+        shares, count = (np.concatenate([part[i] for part in found]) for i in (0, 1))
+        if np.median(count) != 1:
+            left.append(several(along, loop, int(np.median(count))))
+            continue
+        events += of_loop(along, loop, continued(shares))
+    return events, left
+
+
+def several(along: Along, loop: Loop, count: int) -> str:
+    """Why no dead centre of a loop is looked for."""
+    names = named(along, loop)
+    if count == 0:
+        return f"the coordinates of {names} do not move"
+    return f"the coordinates of {names} take part in {count} motions at once: no single one is driven through another"
+
+
+def named(along: Along, loop: Loop) -> str:
+    """The joints of a loop."""
+    return ", ".join(dict.fromkeys(along.layout.mechanism.joints[k].name for k, _ in loop.coordinates))
+
+
+def of_loop(along: Along, loop: Loop, shares: Array) -> list[Event]:
+    """The dead centres of one loop."""
+    joints, events = along.layout.mechanism.joints, []
+    c = len(loop.coordinates)
+    most = np.nanmax(np.abs(shares[:, :c]), axis=0)
+    for i, (k, name) in enumerate(loop.coordinates):
+        if most[i] <= tolerances.MOVES:
+            continue  # it never moves
+        for one in zeros(along, lambda at: motions(along.layout, loop, at)[0], shares, i):
+            others = [f"{joints[j].name}.{what}" for j, what in loop.coordinates if (j, what) != (k, name)]
+            mine = f"{joints[k].name}.{name}"
+            message = f"{mine} stands while {' and '.join(others[:2])} move: nothing there drives the mechanism"
+            events.append(Event(one.begin, DEAD_CENTRE, f"joints.{joints[k].name}", message + until(one, along)))
+    return events
+
+
+def distinct_events(events: Sequence[Event], span: float) -> list[Event]:
+    """Events by time, each kind and place once at an instant."""
+    kept: list[Event] = []
+    for event in sorted(events):
+        same = [e for e in kept[-8:] if e[1:3] == event[1:3] and event.time - e.time <= tolerances.SAME_INSTANT * span]
+        if not same or same[-1].message != event.message:
+            kept.append(event)
+    return kept
