@@ -9,6 +9,7 @@ import math
 import time
 from bisect import bisect_right
 from collections.abc import Sequence
+from functools import cached_property
 from typing import TYPE_CHECKING, NamedTuple
 
 import numpy as np
@@ -100,7 +101,7 @@ class Trajectory:
         """The instants at which branches change that hang on coordinates."""
         return tuple(self.ends[self.turned > 0.0].tolist())
 
-    @property
+    @cached_property
     def after_blows(self) -> dict[int, Array]:
         """The records from which the steps after blows start."""
         at = {int(np.searchsorted(self.ends, blow.time, side="right")) for blow in self.blows}

@@ -17,12 +17,13 @@ from heuncli.integration.evaluator import Recovered
 from heuncli.probing.attitudes import SEQUENCES, condition, off_upright, quaternions
 from heuncli.probing.model import DEAD_CENTRE, GIMBAL, HALF_TURN, Event, Turned
 from heuncli.probing.shares import Loop, continued, loops_of, motions
+from heuncli.redundancy.neighbours import neighbours
 from heuncli.results import Array, Indices, Mask
+from heuncli.study.crossings import Bracket, roots
 from heuncli.study.history import resample, search_times
 from heuncli.study.solve import Study
 
 CHUNK = 200_000  # body-instants whose answers are kept at a time
-ROUNDS = 60  # of halving, and fewer where the false position serves
 NEWTON = 12  # steps towards the nearest approach
 Track = Callable[[Recovered], Array]  # of recovered instants the vector there, (n_t, d), of any sign
 
@@ -55,37 +56,24 @@ class Passed(NamedTuple):
 def zeros(along: Along, track: Track, x: Array, component: int) -> list[Passed]:
     """Where a component of a continued vector (n_t, d) is zero."""
     h, times = x[:, component], along.times
-    still = np.abs(h) <= tolerances.GAP_ROUNDING  # of unit vectors
+    # of unit vectors; a pose that is assembled is known to nine digits
+    still = np.abs(h) <= (tolerances.GAP_ROUNDING if len(times) > 1 else tolerances.RANK)
     found = []
     for run in np.split(np.flatnonzero(still), np.flatnonzero(np.diff(np.flatnonzero(still)) > 1) + 1):
         if len(run):
             found.append(Passed(float(times[run[0]]), float(times[run[-1]])))
     k = np.flatnonzero((h[1:] * h[:-1] < 0.0) & ~still[1:] & ~still[:-1])
     if len(k):
-        at = roots(along, track, x[k], (times[k], times[k + 1], h[k], h[k + 1], component))
+
+        def aligned(instants: Array) -> Array:
+            """The component at instants, with the sign that it has at the instant of the grid before."""
+            found = track(along.at(instants))
+            left = x[np.searchsorted(times, instants, side="right") - 1]
+            return np.asarray(found[:, component] * np.where(np.sum(found * left, axis=1) < 0.0, -1.0, 1.0))
+
+        at = roots(aligned, Bracket(times[k], times[k + 1], h[k], h[k + 1]), 0.0)
         found += [Passed(t, t) for t in at.tolist()]
     return sorted(found)
-
-
-def roots(along: Along, track: Track, left: Array, of: tuple[Array, Array, Array, Array, int]) -> Array:
-    """The zeros in brackets, by false positions (Illinois): left (n, d): the vectors at their beginnings."""
-    a, b, f, g, component = (np.array(x) if isinstance(x, np.ndarray) else x for x in of)
-    for _ in range(ROUNDS):
-        wide = b - a > tolerances.EPS * 4.0 * np.abs(b) + tolerances.SIDE_BY_SIDE * 1e-2 * along.span
-        if not wide.any():
-            break
-        x = np.clip(b - g * (b - a) / (g - f), a, b)
-        instants, where = np.unique(x, return_inverse=True)
-        found = track(along.at(instants))[where]
-        found = found * np.where(np.sum(found * left, axis=1, keepdims=True) < 0.0, -1.0, 1.0)
-        h = found[:, component]
-        same = h * f > 0.0
-        a, b = np.where(same, x, a), np.where(same, b, x)
-        # the end that stays counts half
-        f, g = np.where(same, h, 0.5 * f), np.where(same, 0.5 * g, h)
-        done = h == 0.0
-        a, b = np.where(done, x, a), np.where(done, x, b)
-    return np.asarray(np.where(np.abs(f) < np.abs(g), a, b))
 
 
 def attitudes(along: Along) -> tuple[list[Event], list[Turned]]:
@@ -197,13 +185,17 @@ def dead_centres(along: Along) -> tuple[list[Event], list[str]]:
         return [], []
     parts = along.parts()
     events, left = [], []
+    around = poses_around(along)
     for loop in loops:
         found = [motions(along.layout, loop, part) for part in parts]
         shares, count = (np.concatenate([part[i] for part in found]) for i in (0, 1))
+        beside = shares if around is None else motions(along.layout, loop, around)[0]
         if np.median(count) != 1:
             left.append(several(along, loop, int(np.median(count))))
             continue
-        events += of_loop(along, loop, continued(shares))
+        c = len(loop.coordinates)
+        largest = np.max(np.abs(np.nan_to_num(np.vstack([shares, beside])[:, :c])), axis=0)
+        events += of_loop(along, loop, continued(shares), largest > tolerances.MOVES)
     return events, left
 
 
@@ -220,14 +212,22 @@ def named(along: Along, loop: Loop) -> str:
     return ", ".join(dict.fromkeys(along.layout.mechanism.joints[k].name for k, _ in loop.coordinates))
 
 
-def of_loop(along: Along, loop: Loop, shares: Array) -> list[Event]:
-    """The dead centres of one loop."""
+def poses_around(along: Along) -> Recovered | None:
+    """Poses beside the only one of a scene, which tell what moves at all; None of a motion."""
+    if len(along.times) > 1:
+        return None
+    at = along.study.history.recovered
+    return neighbours(
+        along.study.setup.runner, float(at.times[0]), at.states[0], (tolerances.NEIGHBOUR,), holding=at.holding[0]
+    )
+
+
+def of_loop(along: Along, loop: Loop, shares: Array, moves: Mask) -> list[Event]:
+    """The dead centres of one loop; moves: which of its coordinates move at all."""
     joints, events = along.layout.mechanism.joints, []
-    c = len(loop.coordinates)
-    most = np.nanmax(np.abs(shares[:, :c]), axis=0)
     for i, (k, name) in enumerate(loop.coordinates):
-        if most[i] <= tolerances.MOVES:
-            continue  # it never moves
+        if not moves[i]:
+            continue
         for one in zeros(along, lambda at: motions(along.layout, loop, at)[0], shares, i):
             others = [f"{joints[j].name}.{what}" for j, what in loop.coordinates if (j, what) != (k, name)]
             mine = f"{joints[k].name}.{name}"

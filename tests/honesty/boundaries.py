@@ -28,6 +28,7 @@ from heuncli.linearisation.reduced import Reduced
 from heuncli.linearisation.steady import off_balance
 from heuncli.mechanism.build import build
 from heuncli.mechanism.model import Stop
+from heuncli.probing.shadows import Growth
 from heuncli.records import replace
 from heuncli.redundancy.certain_sums import relations, tidy
 from heuncli.redundancy.turning_sums import factors
@@ -42,6 +43,9 @@ from heuncli.study.beside import AMPLE, error, reached
 from heuncli.study.chart_reference import judged_instants
 from heuncli.study.expect import compare
 from heuncli.study.modes import modes
+from heuncli.study.probe import probe
+from heuncli.study.probe_growth import told
+from heuncli.study.solve import Options
 from heuncli.study.warnings import unbalanced
 from heuncli.tree.prepare import prepare
 from tests.closed_forms.test_stretched_chain import chain
@@ -64,6 +68,24 @@ class Row(NamedTuple):
     below: str
     above: str
     factors: tuple[float, ...] = FACTORS
+
+
+def tilted_by(x: float) -> str:
+    """A body whose z is x off the world's."""
+    body = f"{{mass: 1, center: [0, 0, 0], inertia: [1, 1, 1], orientation: {{axis: [1, 0, 0], angle: {x!r}}}}}"
+    found = probe(load("scene.yaml", f"heun: 1\nbodies: {{b: {body}}}\nanalysis: {{type: state}}\n"), Options())
+    wanted = 1.0 / math.tan(0.5 * x)
+    near(found.attitudes[0].euler["zxz"][0], wanted, wanted, 1e-7)
+    return found.events[0].kind if found.events else "none"
+
+
+def grown(x: float) -> str:
+    """A disturbance that grows x times over the second half of a run, and as evenly before."""
+    times = np.linspace(0.0, 1.0, 11)
+    growing, _ = told(Growth(times, 2.0 * math.log(x) * times, np.ones(11)), 1)
+    assert growing is not None
+    near(growing.rate, 2.0 * math.log(x), 1.0)
+    return "exponential" if growing.exponential else "with the time"
 
 
 # ---- what reading a spec says
@@ -765,6 +787,9 @@ ROWS = (
     Row("EXPECTED_ABSOLUTE", absolutely_off, "passed", "failed"),
     Row("LEAST_ASKED", tolerance, "refused: tolerance", "fine"),
     # same instant, place, direction
+    # what a motion comes near to
+    Row("GIMBAL", tilted_by, "gimbal lock", "none"),
+    Row("FASTER_THAN_TIME", grown, "with the time", "exponential"),
     Row("EIGENVALUE", soft_beside_stiff, "free", "oscillation"),
     Row("FREELY_PUSHED", pushed_freely, "rests", "falls"),
     Row("OFF_BALANCE", hanging, "fine", "refused: not-at-rest"),

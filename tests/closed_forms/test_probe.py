@@ -1,0 +1,203 @@
+"""`heun probe` against closed forms: growth, half turns, gimbal locks, dead centres, stability, condition."""
+
+from __future__ import annotations
+
+import math
+from pathlib import Path
+
+import numpy as np
+import pytest
+
+from heuncli.integration.methods.dop853 import DOP853
+from heuncli.integration.methods.method import Method
+from heuncli.probing.model import DEAD_CENTRE, GIMBAL, HALF_TURN, SINGULAR, Probe
+from heuncli.probing.stiffness import polynomial, reach
+from heuncli.spec.load import load
+from heuncli.study.probe import probe
+from heuncli.study.solve import Options
+from tests.shared.bars import HEAD, rods
+
+FLAT = Path(__file__).parents[2] / "specs" / "flat_four_bar.yaml"
+SHADOW = 3e-6  # of a growth: 3e-14 a step, of shadows 1e-8 away; squares of disturbances are less
+AXIS = """\
+heun: 1
+bodies: {{b: {{mass: 1, center: [0, 0, 0], inertia: [1, 2, 3], angular_velocity: {omega}}}}}
+analysis: {{duration: {duration}, samples: 5}}
+"""
+ROD = "{mass: 1, center: [0, 0, 0.5], inertia: [1/12, 1/12, 0.01], points: {a: [0, 0, 0]}}"
+CRANK = """\
+heun: 1
+ground: {points: {O: [0, 0, 0]}}
+bodies:
+  crank: {mass: 1, center: [0.05, 0, 0], inertia: [1e-3, 1e-3, 1e-3], points: {o: [0, 0, 0], a: [0.1, 0, 0]}}
+  rod: {mass: 1, center: [0.15, 0, 0], inertia: [1e-2, 1e-2, 1e-2], points: {a: [0, 0, 0], b: [0.3, 0, 0]},
+        near: {position: [0.1, 0, 0]}}
+  piston: {mass: 1, center: [0, 0, 0], inertia: [1e-3, 1e-3, 1e-3], points: {b: [0, 0, 0]},
+           near: {position: [0.4, 0, 0]}}
+joints:
+  main: {type: pin, axis: [0, 0, 1], from: ground.O, to: crank.o, INITIAL}
+  big: {type: pin, axis: [0, 0, 1], from: crank.a, to: rod.a}
+  small: {type: ball, from: rod.b, to: piston.b}
+  bore: {type: slide, axis: [1, 0, 0], from: ground.O, to: piston.b}
+ANALYSIS
+"""
+
+
+def probed(text: str, **options: bool) -> Probe:
+    return probe(load("scene.yaml", text), Options(**options))
+
+
+def instants(found: Probe, kind: str, where: str = "") -> list[float]:
+    return [event.time for event in found.events if event.kind == kind and event.where.startswith(where)]
+
+
+def test_a_spin_about_the_intermediate_axis_is_left_as_theory_says() -> None:
+    """Growth sqrt(1/3); heun solves it as a flat motion, in which nothing grows, and half turns come every 2 pi."""
+    found = probed(AXIS.format(omega="[0, 1, 0]", duration=40))
+    assert found.model["plane"] == "found"
+    assert found.across is not None and found.across.exponential
+    assert found.across.rate == pytest.approx(math.sqrt(1.0 / 3.0), rel=SHADOW)
+    assert found.growth is not None and not found.growth.exponential
+    assert found.verdict.startswith("unstable against leaving the plane")
+    turns = np.array(instants(found, HALF_TURN))
+    assert turns == pytest.approx(np.pi * (2 * np.arange(6) + 1), abs=1e-9)
+
+
+def test_the_same_in_space() -> None:
+    found = probed(AXIS.format(omega="[0, 1, 0]", duration=40), reduce=False)
+    assert found.growth is not None and found.growth.exponential
+    assert found.growth.rate == pytest.approx(math.sqrt(1.0 / 3.0), rel=SHADOW)
+    assert found.growth.directions == 12 and found.growth.horizon is None
+    # beyond the run: eps sqrt(n) e^(0.577 t) = 1e-3 at 46.8, 44.1, 42.8 s for 100, 2000, 10000 steps
+    assert found.growth.expected == pytest.approx(44.8, abs=2.0)
+
+
+@pytest.mark.parametrize(("joint", "across"), [("pin, axis: [0, 1, 0]", False), ("ball", True)])
+def test_an_upright_rod_falls(joint: str, across: bool) -> None:
+    """sqrt(1.5 g/L), in the plane and out of it."""
+    text = f"{HEAD}bodies: {{r: {ROD}}}\njoints: {{p: {{type: {joint}, from: ground.O, to: r.a}}}}\n"
+    found = probed(text + "analysis: {duration: 5, samples: 3}\n")
+    rate = math.sqrt(1.5 * 9.81)
+    assert found.growth is not None and found.growth.rate == pytest.approx(rate, rel=SHADOW)
+    assert found.growth.times == pytest.approx(math.log(math.cosh(5.0 * rate) ** 2) / 2.0, abs=1.0)
+    if across:
+        whole = probed(text + "analysis: {duration: 5, samples: 3}\n", reduce=False)
+        assert whole.growth is not None and whole.growth.rate == pytest.approx(rate, rel=SHADOW)
+
+
+def test_a_pendulum_forgets_nothing() -> None:
+    found = probed(rods([1.0], [0.0], "{duration: 20, samples: 3}"))
+    assert found.growth is not None and not found.growth.exponential and found.growth.horizon is None
+    assert found.verdict == "nothing in this motion troubles heun's default method"
+
+
+@pytest.mark.heavy
+@pytest.mark.parametrize(("joint", "whole"), [("pin", False), ("ball", True)])
+def test_the_horizon_of_the_double_pendulum(joint: str, whole: bool) -> None:
+    """theory.md section 3: no value beyond about 15 s is meaningful in double precision, in the plane and in space."""
+    text = rods([2.5, 2.5], [0.0, 0.0], "{duration: 25, samples: 26}")
+    if joint == "ball":
+        text = text.replace("type: pin", "type: ball").replace(", axis: [0, 0, 1]}", "}")
+    found = probed(text, reduce=not whole)
+    assert found.growth is not None and found.growth.horizon is not None
+    assert 13.0 < found.growth.horizon < 17.0
+    assert found.growth.rate == pytest.approx(1.65, abs=0.35)
+    assert found.verdict.startswith("chaos: ")
+
+
+@pytest.mark.parametrize("tilt", [1e-8, 1e-4, 1e-1])
+def test_the_condition_of_euler_angles(tilt: float) -> None:
+    """theory.md section 3: 2e8 at 1e-8, 2e4 at 1e-4, 20 at 1e-1: the cotangent of half the angle."""
+    body = f"{{mass: 1, center: [0, 0, 0], inertia: [1, 1, 1], orientation: {{axis: [1, 0, 0], angle: {tilt}}}}}"
+    found = probed(f"heun: 1\nbodies: {{b: {body}}}\nanalysis: {{type: state}}\n")
+    zxz, _ = found.attitudes[0].euler["zxz"]
+    assert zxz == pytest.approx(1.0 / math.tan(0.5 * tilt), rel=1e-7)
+    assert bool(instants(found, GIMBAL)) == (tilt < 1e-3)
+
+
+def test_nearest_approach_to_a_lock() -> None:
+    """A spin about x of a body whose z was tilted about y: its z is level's complement off z once a turn."""
+    tilt, omega = 3e-4, 2.0
+    turned = f"orientation: {{axis: [0, 1, 0], angle: {tilt}}}, angular_velocity: [{omega}, 0, 0]"
+    body = f"{{mass: 1, center: [0, 0, 0], inertia: [1, 1, 1], {turned}}}"
+    found = probed(f"heun: 1\nbodies: {{b: {body}}}\nanalysis: {{duration: 7, samples: 3}}\n")
+    zxz, _ = found.attitudes[0].euler["zxz"]
+    assert zxz == pytest.approx(1.0 / math.tan(0.5 * tilt), rel=1e-6)
+    locks = [e.time for e in found.events if e.kind == GIMBAL and e.message.startswith("zxz")]
+    assert locks == pytest.approx([k * np.pi / omega for k in range(5)], abs=1e-6)
+
+
+@pytest.mark.parametrize("driven", [True, False])
+def test_dead_centres_of_a_slider_crank(driven: bool) -> None:
+    """The bore stands at 0 and 180 degrees, driven or free; the crank can always be driven through."""
+    initial = "" if driven else ", initial: {angle: 1, rate: 20}"
+    text = CRANK.replace(", INITIAL", initial)
+    drive = "drives: {d: {joint: main, angle: 1 + 20*t}}\n" if driven else ""
+    found = probed(text.replace("ANALYSIS", drive + "analysis: {duration: 0.3, samples: 4}"))
+    assert {event.where for event in found.events if event.kind == DEAD_CENTRE} >= {"joints.bore"}
+    assert not instants(found, DEAD_CENTRE, "joints.main")
+    if driven:
+        times = instants(found, DEAD_CENTRE, "joints.bore")
+        assert times == pytest.approx([(np.pi - 1.0) / 20.0, (2.0 * np.pi - 1.0) / 20.0], abs=1e-9)
+
+
+def test_one_instant() -> None:
+    """At the dead centre, and beside it; what needs a motion is not told, with a reason."""
+    for angle, there in (("180 deg", True), ("179 deg", False)):
+        text = CRANK.replace(", INITIAL", f", initial: {{angle: {angle}, rate: 1}}")
+        found = probed(text.replace("ANALYSIS", "analysis: {type: state}"))
+        assert bool(instants(found, DEAD_CENTRE, "joints.bore")) == there
+        block = found.block()
+        assert block["growth_rate"] is None and block["horizon"] is None and "growth_rate" in block["not_told"]
+        assert block["condition"]["mass"] >= 1.0
+
+
+def test_a_flat_four_bar_is_told_as_singular() -> None:
+    found = probed(FLAT.read_text(encoding="utf-8"))
+    assert len(instants(found, SINGULAR)) == 2 and found.verdict.startswith("singular poses")
+
+
+def test_a_stiff_damper_bounds_explicit_steps() -> None:
+    """m x'' + c x' + k x = 0 falls apart into k/c and c/m: the faster decay allows steps of 6.4 m/c."""
+    text = """\
+heun: 1
+ground: {points: {O: [0, 0, 0]}}
+bodies: {b: {mass: 2, center: [0, 0, 0], inertia: [1, 1, 1], points: {c: [0, 0, 0]}}}
+joints: {s: {type: slide, axis: [1, 0, 0], from: ground.O, to: b.c, initial: {travel: 1}}}
+forces: {k: {type: torque, joint: s, value: -100*s.travel - 2000*s.speed}}
+analysis: {duration: 1, samples: 3, tolerance: 1e-6}
+"""
+    found = probed(text)
+    stiff = found.stiffness
+    assert stiff is not None
+    fast = 0.5 * (1e3 + math.sqrt(1e6 - 200.0))
+    assert stiff.decay == pytest.approx(fast, rel=1e-6)
+    row = next(step for step in stiff.steps if step.method == "DOP853")
+    assert row.stability == pytest.approx(reach(DOP853, -1.0 + 0j) / fast, rel=1e-6)
+    assert stiff.ratio > 10.0 and found.trouble[0].startswith("stiff")
+
+
+RK4 = Method(
+    name="RK4", order=4, nodes=(0.0, 0.5, 0.5, 1.0), stages=(((0, 0.5),), ((1, 0.5),), ((2, 1.0),)),
+    solution=((0, 1 / 6), (1, 1 / 3), (2, 1 / 3), (3, 1 / 6)),
+)  # fmt: skip
+
+
+def test_stability_polynomials() -> None:
+    """Of RK4 the exponential's series to z^4, stable to 2.785 on the real axis and to 2 sqrt 2 on the imaginary one."""
+    assert polynomial(RK4) == pytest.approx([1.0, 1.0, 1 / 2, 1 / 6, 1 / 24], rel=1e-15)
+    assert reach(RK4, -1.0 + 0j) == pytest.approx(2.785, abs=0.01)
+    assert reach(RK4, 1j) == pytest.approx(2.0 * math.sqrt(2.0), abs=0.01)
+    assert math.isinf(reach(RK4, 1.0 + 0j))
+    coefficients = polynomial(DOP853)
+    assert coefficients[:9] == pytest.approx([1.0 / math.factorial(k) for k in range(9)], rel=1e-13)
+
+
+def test_the_condition_of_a_mass_matrix() -> None:
+    """A free body of mass 2 and size 3 m: shifts count 2 * 9, turns their moments."""
+    body = "{mass: 2, center: [0, 0, 0], inertia: [1, 1.5, 2], points: {p: [3, 0, 0]}}"
+    found = probed(f"heun: 1\nbodies: {{b: {body}}}\nanalysis: {{type: state}}\n")
+    assert found.mass is not None
+    size = 3.0
+    assert found.mass.value == pytest.approx(2.0 * size * size / 1.0, rel=1e-12)
+    assert found.mass.where == "bodies.b"

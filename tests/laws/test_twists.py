@@ -1,0 +1,73 @@
+"""Twists by the freedoms of the tree: what the kernel's own velocities, closure rows and dual numbers say."""
+
+from __future__ import annotations
+
+from pathlib import Path
+
+import numpy as np
+import pytest
+
+from heuncli.integration.evaluator import Recovered
+from heuncli.linearisation.linearise import linearised
+from heuncli.probing.twists import closure_rows, mass_matrix, twists
+from heuncli.response import jacobian
+from heuncli.rest.coordinates import coordinates_of
+from heuncli.spec.load import load
+from heuncli.study.setup import Setup, set_up
+
+SPECS = Path(__file__).parents[2] / "specs"
+SCENES = ("bricard", "cardan", "crane", "double", "excavator", "lift", "slider_crank_pins", "spatial_crank", "swing")
+ROUNDED = 1e-13  # hundreds of roundings of sums whose terms are of the order of 1
+
+
+def moving(name: str) -> tuple[Setup, Recovered]:
+    """A scene with rates at random, and the kernel's answers."""
+    found = set_up(load(str(SPECS / f"{name}.yaml")), reduce=False)
+    layout = found.scene.layout
+    state = layout.y0.copy()
+    rates = coordinates_of(layout).rates
+    state[rates] += np.random.default_rng(1901).uniform(-1.0, 1.0, len(rates))
+    return found, found.runner.recovered(np.zeros(1), state[None])
+
+
+@pytest.mark.parametrize("name", SCENES)
+def test_velocities_are_twists_times_rates(name: str) -> None:
+    found, at = moving(name)
+    layout, bodies = found.scene.layout, at.bodies[0]
+    own = twists(layout, at)
+    rates = np.zeros(layout.answer_count)
+    for k in np.flatnonzero(layout.bodies["ball"]):
+        first = int(layout.bodies["answer_at"][k])
+        rates[first : first + 3] = bodies["omega"][k]
+    rates[layout.tables["freedoms"]["answer_at"]] = at.freedoms["u"][0]
+    omega = np.einsum("bni,n->bi", own.turn[0], rates)
+    v = np.einsum("bni,n->bi", own.shift[0], rates)
+    size = max(1.0, float(np.abs(bodies["v"]).max()), float(np.abs(bodies["omega"]).max()))
+    assert np.abs(omega - bodies["omega"]).max() <= ROUNDED * size
+    arm = own.centre[0] - bodies["r"]
+    assert np.abs(v - bodies["v"] - np.cross(bodies["omega"], arm)).max() <= ROUNDED * size
+
+
+@pytest.mark.parametrize("name", SCENES)
+def test_closure_rows_are_the_kernels(name: str) -> None:
+    """The kernel gives what is driven no entry."""
+    found, at = moving(name)
+    layout = found.scene.layout
+    if not layout.rows:
+        return
+    J = closure_rows(twists(layout, at), at)
+    freedoms = layout.tables["freedoms"]
+    J[:, :, freedoms["answer_at"][freedoms["driven"] == 1]] = 0.0
+    kernel = jacobian(found.runner.workspace, layout, at.times, at.states)
+    whole = kernel.block(np.arange(len(layout.rows)), np.arange(layout.answer_count))
+    assert np.abs(J - whole).max() <= ROUNDED * max(1.0, float(np.abs(whole).max()))
+
+
+@pytest.mark.parametrize("name", ["crane", "double", "spatial_crank", "swing"])
+def test_the_mass_matrix_is_that_of_dual_numbers(name: str) -> None:
+    found, at = moving(name)
+    layout = found.scene.layout
+    own = coordinates_of(layout).answers
+    M = mass_matrix(twists(layout, at))[0][np.ix_(own, own)]
+    wanted = linearised(layout, 0.0, at.states[0]).mass
+    assert np.abs(M - wanted).max() <= ROUNDED * float(np.abs(wanted).max())
