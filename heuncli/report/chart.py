@@ -7,7 +7,7 @@ import io
 from collections.abc import Iterator, Sequence
 from typing import Any
 
-from heuncli.integration.charted import COMPLETED, FAILED, KINDS, Chart, Charted, Row
+from heuncli.integration.charted import COMPLETED, FAILED, KINDS, UNFINISHED, Chart, Charted, Row
 from heuncli.method_rows import row_of
 from heuncli.report.chart_scale import power
 from heuncli.report.export import FORMAT
@@ -136,7 +136,7 @@ def remark(run: Charted) -> str:
     if run.status == FAILED:
         at = f" at t = {run.at:.6g} s" if run.at is not None else ""
         return f"fails{at}: {without_instant(run)}"
-    return f"not run: {run.reason}"
+    return run.reason if run.code == UNFINISHED else f"not run: {run.reason}"
 
 
 def block(chart: Chart) -> dict[str, Any]:

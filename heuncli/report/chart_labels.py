@@ -13,6 +13,7 @@ WIDE, HIGH = 0.7, 1.15  # of the size of letters: the mean width of one of a san
 GAP = 8.0  # between a point and its name
 ON_MARK, ON_LINE = 10.0, 3.0  # what it costs to stand over a marker, or over a line
 FROM_END = 1.0  # a point farther from the end of its line
+MOST_COST = 12.0  # a place that costs more is none
 CROWDED, CLOSE = 4.0, 16.0  # each other line's point so close to that which is named: whose name it is would be unclear
 ASIDE = 12.0  # between the field and the names beside it
 
@@ -67,7 +68,7 @@ def placed(
             if inside(box, field) and not any(box.meets(other) for other in full)
         ]  # fmt: skip
         best = min(((own[k] + cost(box, lines), n, box) for n, (k, box) in enumerate(free)), default=None)
-        if best is None:
+        if best is None or best[0] > MOST_COST:
             aside.append((text, points[-1]))
         else:
             found.append(Label(text, best[2]))

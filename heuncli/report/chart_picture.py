@@ -17,8 +17,8 @@ from heuncli.report.chart_scale import LOST, Scale, failures, points, power, sca
 from heuncli.report.picture import SHAPES, Line, Mark, Picture, Shape, Text
 from heuncli.report.table import wrapped
 
-WIDTH, FIELD = 960.0, 480.0  # pixels: of the whole, and how high the field is
-LEFT, RIGHT, BELOW = 84.0, 150.0, 56.0  # of the field
+WIDTH, FIELD = 986.0, 480.0  # pixels: of the whole, and how high the field is
+LEFT, RIGHT, BELOW = 84.0, 176.0, 56.0  # of the field
 TITLE, SMALL, NAME = 17.0, 11.0, 12.5  # sizes of letters
 LINE = 15.0  # of small text
 LETTER = 0.6  # of the size of letters: their mean width in a sentence

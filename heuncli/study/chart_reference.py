@@ -17,7 +17,7 @@ from heuncli.integration.charted import KINDS, Errors, Reference
 from heuncli.integration.checked import Runs, errors
 from heuncli.integration.methods.followed import FOLLOWED
 from heuncli.integration.methods.registry import method_of
-from heuncli.integration.runner import Trajectory
+from heuncli.integration.runner import Stiff, Trajectory
 from heuncli.method_rows import DEFAULT, row_of
 from heuncli.records import record
 from heuncli.results import Array
@@ -30,6 +30,7 @@ from heuncli.study.kinds import ESTIMATED
 PAIRS = (("Verner98", "DOP853"), ("Radau9", "Radau5"))
 FINEST = (tolerances.LEAST_TOLERANCE, 1e-12, 1e-10)  # local tolerances, the first by which the motion can be run
 SECONDS = 20.0  # that one of these runs may take
+NOTICED = 1e-8  # local tolerance of the run by which stiffness is noticed
 AGREED = 1e-9  # relative: two runs that agree so well need no other pair
 FEW = "the references agree up to t = {:.6g} s only, before the first asked instant: nothing can be judged"
 FEW_HINT = "more samples, or a shorter duration"
@@ -64,7 +65,8 @@ def refer(motion: Motion) -> Referred:
     """The reference of a motion. Raises what kept all pairs from it."""
     best: Pair | None = None
     failed: HeunError | None = None
-    for first, second in pairs(motion):
+    stiff = found_stiff(motion)
+    for first, second in pairs(motion, stiff is not None):
         try:
             found = pair(motion, first, second)
         except (SolveError, LimitError) as error:
@@ -77,17 +79,40 @@ def refer(motion: Motion) -> Referred:
             break
     if best is None:
         assert failed is not None
-        raise failed
+        raise no_reference(failed)
     require_followed(motion.setup.runner, best.first)
-    return referred(motion, best)
+    return referred(motion, best, (f"heun run would take {stiff.method.name}: {stiff.told}",) if stiff else ())
 
 
-def pairs(motion: Motion) -> Iterator[tuple[str, str]]:
-    """The pairs of methods that there are, by their names."""
+def no_reference(failed: HeunError) -> HeunError:
+    """Why there is none: what the motion fails by, or that it takes too long."""
+    if not isinstance(failed, LimitError):
+        return failed
+    message = f"no reference: {failed.problems[0].message}"
+    return LimitError(Problem("no-reference", message, hint="a shorter duration; heun run says how long a run takes"))
+
+
+def found_stiff(motion: Motion) -> Stiff | None:
+    """What tells that a motion is stiff, for which an explicit reference would only crawl."""
+    if motion.determined:
+        return None
+    runs = motion.runs(method_of(DEFAULT), SECONDS)
+    runs.watched = True
+    try:
+        runs.run(NOTICED)
+    except Stiff as stiff:
+        return stiff
+    except (SolveError, LimitError):
+        return None  # the reference tells
+    return None
+
+
+def pairs(motion: Motion, stiff: bool) -> Iterator[tuple[str, str]]:
+    """The pairs of methods that there are, by their names, those first that suit the motion."""
     if motion.determined:
         yield FOLLOWED.name, DEFAULT
     known = [names for names in PAIRS if all(row_of(name) for name in names)]
-    yield from known or [(DEFAULT, DEFAULT)]
+    yield from (known[::-1] if stiff else known) or [(DEFAULT, DEFAULT)]
 
 
 def pair(motion: Motion, first: str, second: str) -> Pair:
@@ -108,8 +133,10 @@ def finest(motion: Motion, name: str) -> tuple[Runs, Trajectory]:
         runs = motion.runs(method, SECONDS)
         try:
             return runs, runs.run(local)
-        except (SolveError, LimitError) as error:
+        except SolveError as error:
             failed = failed or error
+        except LimitError as error:  # a coarser one would take about as long
+            raise failed or error from None
     assert failed is not None
     raise failed
 
@@ -129,8 +156,10 @@ def beside(motion: Motion, name: str, a: Trajectory) -> Trajectory:
             for local in FINEST:
                 try:
                     return runs.run(max(local, a.local) * ratio, a.times, start)
-                except (SolveError, LimitError) as error:
+                except SolveError as error:
                     failed = failed or error
+                except LimitError as error:
+                    raise failed or error from None
     assert failed is not None
     raise failed
 
@@ -141,8 +170,8 @@ def common(a: Trajectory, b: Trajectory) -> int:
     return int(np.sum(a.times[:n] == b.times[:n]))
 
 
-def referred(motion: Motion, best: Pair) -> Referred:
-    """The reference as it is told, with what may be judged by it."""
+def referred(motion: Motion, best: Pair, more: tuple[str, ...]) -> Referred:
+    """The reference as it is told, with what may be judged by it; more: what else is worth knowing."""
     count, horizon = judged_instants(best)
     setup = motion.setup
     judge = judge_of(best.runs, setup, best.first, count)
@@ -150,7 +179,7 @@ def referred(motion: Motion, best: Pair) -> Referred:
     # nothing is told of a kind of which there is nothing: no joints, or none that carries anything
     own = {kind: known[kind] or None for kind in KINDS} | {"motion": float(best.error[:count].max())}
     until = float(judge.times[-1])
-    notes = (*([motion.ends] if motion.ends else []), *ended(best.first), *open_notes(judge))
+    notes = (*more, *([motion.ends] if motion.ends else []), *ended(best.first), *open_notes(judge))
     if horizon is not None:
         notes = (beyond(horizon, until, own["motion"]), *notes)
     reference = Reference(words(best, own), own, until, count, horizon, notes)

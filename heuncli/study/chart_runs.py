@@ -13,7 +13,7 @@ from collections.abc import Callable, Sequence
 
 from heuncli import tolerances
 from heuncli.errors import HeunError, LimitError, SolveError
-from heuncli.integration.charted import COMPLETED, FAILED, NOT_RUN, Charted, Row
+from heuncli.integration.charted import COMPLETED, FAILED, NOT_RUN, UNFINISHED, Charted, Row
 from heuncli.integration.checked import Runs
 from heuncli.integration.methods.followed import FOLLOWED
 from heuncli.integration.methods.registry import method_of
@@ -124,8 +124,8 @@ class Charting:
         problem = error.problems[0]
         if isinstance(error, LimitError):
             late = self.motion.late
-            reason = "the time limit was reached" if late else f"not done within {self.limit:.2g} s"
-            return Charted(row, NOT_RUN, seconds, code=problem.code, reason=f"{reason}{progress(problem.message)}")
+            reason = "the time limit was reached" if late else f"not finished within {self.limit:.2g} s"
+            return Charted(row, NOT_RUN, seconds, code=UNFINISHED, reason=f"{reason}:{progress(problem.message)}")
         status = FAILED if isinstance(error, SolveError) else NOT_RUN
         at = getattr(error, "reached", None)
         return Charted(row, status, seconds, at=at, code=problem.code, reason=problem.message)
