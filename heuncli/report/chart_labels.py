@@ -32,6 +32,10 @@ class Box(NamedTuple):
             self.left < other.right and other.left < self.right and self.top < other.bottom and other.top < self.bottom
         )
 
+    def wider(self, by: float) -> Box:
+        """The same with a margin."""
+        return Box(self.left - by, self.top - by, self.right + by, self.bottom + by)
+
     def holds(self, x: float, y: float) -> bool:
         """Whether a point lies in it."""
         return self.left < x < self.right and self.top < y < self.bottom
@@ -102,8 +106,7 @@ def crowded(point: tuple[float, float], own: str, lines: Sequence[tuple[str, Poi
 def cost(box: Box, lines: Sequence[tuple[str, Points]]) -> float:
     """What speaks against a place: markers and lines under it."""
     total = 0.0
-    margin = GAP - 3.0
-    wider = Box(box.left - margin, box.top - margin, box.right + margin, box.bottom + margin)
+    wider = box.wider(GAP - 3.0)
     for _, points in lines:
         total += ON_MARK * sum(wider.holds(x, y) for x, y in points)
         total += ON_LINE * sum(crosses(box, a, b) for a, b in pairwise(points) if may_cross(box, a, b))

@@ -116,10 +116,12 @@ def floor(chart: Chart, frame: Frame) -> tuple[list[Shape], list[Box]]:
     if not own:
         return [], []
     y, box, room = frame.y(own), frame.box, wide(text, SMALL)
-    lefts = (box.left + 6.0, box.right - room - 6.0, (box.left + box.right) / 2)
+    way = box.right - box.left - room - 12.0
+    lefts = [box.left + 6.0 + way * k / 8.0 for k in (0, 8, 1, 7, 2, 6, 3, 5, 4)]
     rooms = [Box(x, y + up - SMALL, x + room, y + up + 3.0) for up in (13.0, -5.0) for x in lefts]
     marks = [(frame.x(p.seconds), frame.y(p.error)) for p in points(chart.runs)]
-    best = min((each for each in rooms if inside(each, box)), key=lambda each: sum(each.holds(*mark) for mark in marks))
+    free = [each for each in rooms if inside(each, box)]
+    best = min(free, key=lambda each: sum(each.wider(5.0).holds(*mark) for mark in marks))
     name = Text(best.left, best.bottom - 3.0, text, SMALL, colour=GREY)
     return [Line(((box.left, y), (box.right, y)), GREY, 1.2, (1.5, 3.0)), name], [best]
 

@@ -6,6 +6,7 @@ Impure: looks at the clock.
 from __future__ import annotations
 
 import time
+from functools import cached_property
 
 import numpy as np
 
@@ -13,13 +14,16 @@ from heuncli.errors import LimitError, Problem, SolveError, SpecError
 from heuncli.integration.checked import Runs
 from heuncli.integration.following import BY_JOINTS
 from heuncli.integration.methods.method import Method
-from heuncli.method_rows import AUTO
+from heuncli.integration.methods.registry import method_of
+from heuncli.integration.runner import Stiff
+from heuncli.method_rows import AUTO, DEFAULT
 from heuncli.records import record
 from heuncli.results import Array
 from heuncli.spec.models import Spec
 from heuncli.study.history import begin
 from heuncli.study.setup import Setup, set_up
 
+NOTICED, PATIENCE = 1e-8, 10.0  # local tolerance of the run by which stiffness is noticed; seconds it may take
 NO_TIME = "the time limit was reached before a reference was found"
 NEEDS_MOTION = "a chart compares how a motion is integrated; ask for one: analysis: {duration: 2, samples: 201}"
 
@@ -50,6 +54,21 @@ class Motion:
             limits.append(time.monotonic() + seconds)
         at = self.times if times is None else times
         return Runs(self.setup.runner, at, self.jumps, min(limits, default=None), method)
+
+    @cached_property
+    def stiff(self) -> Stiff | None:
+        """What tells that the motion is stiff, so that an explicit method would only crawl; None where it is not."""
+        if self.determined:
+            return None
+        runs = self.runs(method_of(DEFAULT), PATIENCE)
+        runs.watched = True
+        try:
+            runs.run(NOTICED)
+        except Stiff as stiff:
+            return stiff
+        except (SolveError, LimitError):
+            return None  # the reference tells
+        return None
 
     @property
     def late(self) -> bool:

@@ -1,7 +1,7 @@
 """Which methods a chart runs, at which tolerances and with which steps.
 
-Steps that nobody names go down by a third from the mean step that the default takes at a coarse tolerance: where its
-error is near one, one of low order is far off.
+Steps that nobody names go down by thirds from the mean step that the default takes at a coarse tolerance, in a stiff
+motion from that of the stiff method: there those of low order are far off, and explicit ones beyond their bound.
 """
 
 from __future__ import annotations
@@ -88,7 +88,8 @@ def own_steps(motion: Motion) -> tuple[float, ...]:
     last = float(motion.times[-1])
     mean = last / 100.0
     with contextlib.suppress(SolveError, LimitError):  # the rows of the default tell why
-        mean = mean_step(motion.runs(method_of(DEFAULT), SECONDS).run(COARSE, motion.times), last)
+        method = motion.stiff.method if motion.stiff is not None else method_of(DEFAULT)
+        mean = mean_step(motion.runs(method, SECONDS).run(COARSE, motion.times), last)
     k = math.floor(2.0 * math.log10(mean))  # halves of decades
     return tuple(half_decade(k - i) for i in range(STEPS))
 

@@ -17,7 +17,7 @@ from heuncli.integration.charted import KINDS, Errors, Reference
 from heuncli.integration.checked import Runs, errors
 from heuncli.integration.methods.followed import FOLLOWED
 from heuncli.integration.methods.registry import method_of
-from heuncli.integration.runner import Stiff, Trajectory
+from heuncli.integration.runner import Trajectory
 from heuncli.method_rows import DEFAULT, row_of
 from heuncli.records import record
 from heuncli.results import Array
@@ -30,7 +30,6 @@ from heuncli.study.kinds import ESTIMATED
 PAIRS = (("Verner98", "DOP853"), ("Radau9", "Radau5"))
 FINEST = (tolerances.LEAST_TOLERANCE, 1e-12, 1e-10)  # local tolerances, the first by which the motion can be run
 SECONDS = 20.0  # that one of these runs may take
-NOTICED = 1e-8  # local tolerance of the run by which stiffness is noticed
 AGREED = 1e-9  # relative: two runs that agree so well need no other pair
 FEW = "the references agree up to t = {:.6g} s only, before the first asked instant: nothing can be judged"
 FEW_HINT = "more samples, or a shorter duration"
@@ -65,7 +64,7 @@ def refer(motion: Motion) -> Referred:
     """The reference of a motion. Raises what kept all pairs from it."""
     best: Pair | None = None
     failed: HeunError | None = None
-    stiff = found_stiff(motion)
+    stiff = motion.stiff
     for first, second in pairs(motion, stiff is not None):
         try:
             found = pair(motion, first, second)
@@ -90,21 +89,6 @@ def no_reference(failed: HeunError) -> HeunError:
         return failed
     message = f"no reference: {failed.problems[0].message}"
     return LimitError(Problem("no-reference", message, hint="a shorter duration; heun run says how long a run takes"))
-
-
-def found_stiff(motion: Motion) -> Stiff | None:
-    """What tells that a motion is stiff, for which an explicit reference would only crawl."""
-    if motion.determined:
-        return None
-    runs = motion.runs(method_of(DEFAULT), SECONDS)
-    runs.watched = True
-    try:
-        runs.run(NOTICED)
-    except Stiff as stiff:
-        return stiff
-    except (SolveError, LimitError):
-        return None  # the reference tells
-    return None
 
 
 def pairs(motion: Motion, stiff: bool) -> Iterator[tuple[str, str]]:
