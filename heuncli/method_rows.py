@@ -59,6 +59,22 @@ METHODS = (
         "DOP853-recentred", 8, "explicit", "adaptive", "recentred",
         "attitudes from each step's start: as good as quaternions", "charted.ANEW",
     ),
+    MethodRow(
+        "Gauss4", 4, "implicit", "fixed", "quaternion",
+        "long runs without damping: symmetric, no drift of the energy", "collocation.GAUSS4",
+    ),
+    MethodRow(
+        "Gauss6", 6, "implicit", "fixed", "quaternion",
+        "the same to more digits", "collocation.GAUSS6",
+    ),
+    MethodRow(
+        "Radau5", 5, "implicit", "adaptive", "quaternion",
+        "stiff motions to a few digits: hard springs, strong dampers, friction that sticks", "collocation.RADAU5",
+    ),
+    MethodRow(
+        "Radau9", 9, "implicit", "adaptive", "quaternion",
+        "stiff motions to six digits and more", "collocation.RADAU9",
+    ),
 )  # fmt: skip
 BY_NAME = {row.name.lower(): row for row in METHODS}
 NAMES = (AUTO, *(row.name for row in METHODS))

@@ -237,4 +237,8 @@ KERNEL: dict[str, float] = {
     # cube root of EPS: rounding of W, EPS kappa, is there what the straight last way to the half turn leaves, kappa^-2
     "half_turn": EPS ** (1 / 3),
     "chart_turn": 0.5,  # half the way there: no step passes it, and of what turns re-centred |kappa| stays below 1
+    "newton_ends": EPS,  # of the largest coordinate or rate: the next correction of the stages would be rounding
+    "newton_rounding": 1e3 * EPS,  # what the sums of a derivative leave of stages that are solved for
+    "newton_part": 0.1,  # of the local tolerance: what the stages may be left off by beside a step's own error
+    "newton_noise": 1e-10,  # the same where no tolerance is given: ten digits, for what is stiff loses some
 }

@@ -42,6 +42,7 @@ REACHED, MORE, ROPE_SLACK, CHATTERING, STRUCK, LET_GO, TURNED, STIFF, HALF_TURN 
     for name in ["reached", "more", "rope slack", "chattering", "struck", "let go", "turned", "stiff", "half turn"]
 )
 GOES_ON = (MORE, STRUCK, LET_GO, TURNED, STIFF)
+UNSOLVED = kernel.CODES["unsolved"]
 TROUBLE = {
     kernel.CODES["collapsed"]: (
         "step-collapsed",
@@ -57,6 +58,11 @@ TROUBLE = {
         "closure-lost",
         "the closed chains cannot be held together beyond this instant",
         "the mechanism locks or reaches the end of its range there",
+    ),
+    UNSOLVED: (
+        "stages-unsolved",
+        "the equations of an implicit step are not solved: Newton's iteration does not contract",
+        "a shorter step, or --method Radau9, which finds its own",
     ),
 }
 
@@ -444,7 +450,8 @@ class Runner(Evaluator):
                 loop.begin(begin, before_end, end)
             else:
                 loop.resume(t, before_end, end)
-            loop.advance(to + 1 - first, False, False)
+            if loop.advance(to + 1 - first, False, False) == UNSOLVED:
+                raise SolveError(Problem(TROUBLE[UNSOLVED][0], f"at t = {loop.t:.9g} s: {TROUBLE[UNSOLVED][1]}"))
             t = loop.t
             first = to + 1
         return replayed.states()

@@ -1,6 +1,7 @@
 """Structs and signatures of dense.py for C."""
 
 from heuncli.kernel.attitudes cimport chart_slopes, leave_chart, nearing
+from heuncli.kernel.jacobian cimport Tangent
 from heuncli.kernel.response cimport evaluate, settle
 from heuncli.kernel.scene cimport Freedom, Group, Scene
 
@@ -9,6 +10,36 @@ cdef enum:                    # what a step tried comes to
 
 cdef enum:
     MOST_LANDINGS = 6         # on one event: each finds its place to the square of the error of the one before
+
+cdef struct Collocation:      # an implicit method: its stages Z = T W, A^-1 = T L T^-1
+    int stages
+    int pair_count            # pairs of L
+    double real               # number of L; 0: it has none
+    double *parts             # real and imaginary part of each pair
+    double *into              # T^-1 by rows
+    double *back              # T by rows
+    double *end               # what of the stages makes the end of a step
+    double *error             # what of them makes the estimate
+
+cdef struct Factors:          # of a dense matrix A + i B, by rows
+    double *A
+    double *B
+    int *pivots
+
+cdef struct Newton:           # the iteration for the stages of a step
+    int solved                # 1: there are stages
+    int iterations
+    int elsewhere             # 1: the last that was evaluated is not the end of the step
+    double reach              # the largest coordinate
+    double rate               # and rate, by which corrections are measured
+    Tangent tangent           # at the start of the step
+    Factors real              # of L - h J
+    Factors pairs[2]
+    double **Z                # of each stage what its state is beyond the start
+    double **known            # the same from 1 on, then the first rows of the interpolating polynomial
+    double **W
+    double **step             # a correction of W
+    double *error
 
 cdef struct Method:
     int stages                # evaluations a step; the derivative at its end is one more, and the next step's first
@@ -24,6 +55,7 @@ cdef struct Method:
     int *stage                # which stages a row combines
     double *coefficient
     double *node
+    Collocation collocation   # of an implicit one
 
 cdef struct Course:           # of the coordinates over a stretch of time, for the expressions that hang on them
     int degree                # of their polynomials
@@ -118,6 +150,7 @@ cdef struct Run:
     double flurry_begin
     Course course
     Branch branch
+    Newton newton
     Group *groups
     double *weights           # of the components: 1, or 1 / size
     double *y
@@ -150,5 +183,6 @@ cdef void enter_slopes(Scene *scene, Method *method, Run *run, double *state, in
 cdef void hermite(Method *method, Run *run) noexcept nogil
 cdef void quintic(Scene *scene, Method *method, Run *run) noexcept nogil
 cdef void interpolant(Scene *scene, Method *method, Run *run) noexcept nogil
+cdef void through_stages(Method *method, Run *run) noexcept nogil
 cdef void need_interpolant(Scene *scene, Method *method, Run *run) noexcept nogil
 cdef void interpolate(Scene *scene, Method *method, Run *run, double x, double *out) noexcept nogil

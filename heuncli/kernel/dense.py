@@ -155,6 +155,15 @@ def interpolant(scene: cython.pointer[Scene], method: cython.pointer[Method], ru
             run.dense[3 + s][i] *= run.h
 
 
+def through_stages(method: cython.pointer[Method], run: cython.pointer[Run]) -> cython.void:
+    """The polynomial through the stages that were solved for, with the derivatives at both ends of the step."""
+    s: cython.int
+    hermite(method, run)
+    for s in range(method.dense_rows):
+        row: cython.int = method.stages + 1 + method.extra + method.estimates + s
+        combine(method, row, run.newton.known, run.n, run.dense[3 + s])
+
+
 def need_interpolant(
     scene: cython.pointer[Scene], method: cython.pointer[Method], run: cython.pointer[Run]
 ) -> cython.void:
@@ -162,6 +171,8 @@ def need_interpolant(
     if not run.has_interpolant:
         if run.determined:
             quintic(scene, method, run)
+        elif method.implicit:
+            through_stages(method, run)
         else:
             interpolant(scene, method, run)
         run.has_interpolant = 1

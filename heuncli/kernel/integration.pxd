@@ -1,7 +1,7 @@
 """The door to steps.py, for C."""
 
 from heuncli.kernel.chosen cimport chosen_width
-from heuncli.kernel.dense cimport Branch, Course, Method, Run, clipped
+from heuncli.kernel.dense cimport Branch, Collocation, Course, Factors, Method, Newton, Run, clipped
 from heuncli.kernel.events cimport PARTS, take_branches
 from heuncli.kernel.expressions cimport FREE, HELD
 from heuncli.kernel.following cimport stand_here
@@ -22,4 +22,5 @@ cdef class Integration:
     cpdef object make_chart(self, int n)
     cpdef object make_room(self)
     cpdef object make_branch(self)
+    cpdef object make_newton(self, dict method)
     cpdef object take_output(self, dict output)

@@ -23,7 +23,7 @@ if not cython.compiled:
     from heuncli.kernel.scene import SHIFT, Body, Freedom, Group, Scene
     from heuncli.kernel.shadow import cython
     from heuncli.kernel.steps import run_steps, take_record
-    from heuncli.kernel.structs import Branch, Course, Method, Run
+    from heuncli.kernel.structs import Branch, Collocation, Course, Factors, Method, Newton, Run, Tangent
     from heuncli.kernel.workspace import Workspace
 
 
@@ -44,7 +44,8 @@ class Integration:
         """
         if not cython.compiled:
             self.run, self.method = Run(), Method()
-            self.run.course, self.run.branch = Course(), Branch()
+            self.run.course, self.run.branch, self.run.newton = Course(), Branch(), Newton()
+            self.method.collocation = Collocation()
         self.workspace = workspace
         self.output = output
         self.memory = Memory()
@@ -52,6 +53,8 @@ class Integration:
         self.take_start(start)
         self.make_room()
         self.make_branch()
+        if method["implicit"]:
+            self.make_newton(method["collocation"])
         self.take_output(output)
 
     def take_method(self, method: dict[str, Any]) -> None:
@@ -89,6 +92,7 @@ class Integration:
         run.on_grid = 0
         run.stiff_after, run.easy_after, run.stable = start["stiff_after"], start["easy_after"], start["stable"]
         run.t = run.grid = run.proposed = run.energy_scale = run.gap = run.cut = run.flurry_begin = run.nearing = 0.0
+        run.newton.solved = run.newton.elsewhere = 0
         run.weights = self.memory.doubles(start["weights"])
         run.y = self.memory.doubles(start["state"])
         run.z = self.memory.zeros(n)
@@ -167,6 +171,43 @@ class Integration:
                 for k in range(on.first_freedom, on.end_freedom):
                     if scene.freedoms[k].driven:
                         branch.reach[k] = 0.0
+
+    def make_newton(self, method: dict[str, Any]) -> None:
+        """The numbers of an implicit method, and room for the iteration for its stages."""
+        k: cython.Py_ssize_t
+        n: cython.Py_ssize_t = self.run.n
+        of: cython.pointer[Collocation] = cython.address(self.method.collocation)
+        newton: cython.pointer[Newton] = cython.address(self.run.newton)
+        of.stages = len(method["end"])
+        of.pair_count = len(method["parts"]) // 2
+        of.real = method["real"]
+        of.parts = self.memory.doubles(method["parts"])
+        of.into = self.memory.doubles(method["into"])
+        of.back = self.memory.doubles(method["back"])
+        of.end = self.memory.doubles(method["end"])
+        of.error = self.memory.doubles(method["error"])
+        if not cython.compiled:
+            newton.tangent = Tangent()
+            newton.real, newton.pairs = Factors(), [Factors(), Factors()]
+        newton.tangent.n = n
+        newton.tangent.J = self.memory.zeros(n * n)
+        newton.tangent.at = self.memory.zeros(n)
+        newton.tangent.beside = self.memory.zeros(n)
+        newton.real.A = self.memory.zeros(n * n)
+        newton.real.pivots = self.memory.ints(bytes(4 * n))
+        for k in range(of.pair_count):
+            newton.pairs[k].A = self.memory.zeros(n * n)
+            newton.pairs[k].B = self.memory.zeros(n * n)
+            newton.pairs[k].pivots = self.memory.ints(bytes(4 * n))
+        newton.Z = self.memory.matrix(of.stages, n)
+        newton.known = self.memory.matrix(of.stages + 4, n)
+        for k in range(of.stages):
+            newton.known[k + 1] = newton.Z[k]
+        for k in range(3):
+            newton.known[of.stages + 1 + k] = self.run.dense[k]
+        newton.W = self.memory.matrix(of.stages, n)
+        newton.step = self.memory.matrix(of.stages, n)
+        newton.error = self.memory.zeros(n)
 
     def take_output(self, output: dict[str, Any]) -> None:
         """The asked instants, and where states at them and at the ends of the steps go."""

@@ -31,6 +31,8 @@ MODULES = (
     "following",
     "stages",
     "stiffness",
+    "linear",
+    "collocation",
     "steps",
     "integration",
 )

@@ -251,6 +251,10 @@ cdef struct Limits:
     double branch_bend
     double half_turn
     double chart_turn
+    double newton_ends
+    double newton_rounding
+    double newton_part
+    double newton_noise
 
 cdef struct BodyAtState:
     Sym3 inertia

@@ -326,6 +326,10 @@ class Limits(Record):
     branch_bend: float  # of a drive's acceleration in a step: by how much its middle may be off what the ends tell
     half_turn: float  # cosine of half a turn: where it is less, Rodrigues' numbers have come to a half turn
     chart_turn: float  # of the turn that leads out of a chart of attitudes: a longer step is none
+    newton_ends: float  # of the largest coordinate or rate: a correction of stages that is rounding
+    newton_rounding: float  # corrections that do not become smaller may be as large by rounding ...
+    newton_part: float  # ... or so large of the tolerance ...
+    newton_noise: float  # ... or, of a method of fixed step, so large
 
 
 class BodyAtState(Record):

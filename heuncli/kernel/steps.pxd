@@ -5,6 +5,7 @@ from heuncli.kernel.attitudes cimport (
     at_half_turn, drop_small_parts, enter_chart, leave_chart, measure_ways, nearing, weigh_in_chart,
 )
 from heuncli.kernel.chosen cimport choose_afresh, put_chosen, take_chosen
+from heuncli.kernel.collocation cimport collocate, collocate_to, estimate, estimate_again
 from heuncli.kernel.contacts cimport opened_by_others, pushed_at_once, start_contacts, turned_over
 from heuncli.kernel.dense cimport (
     AGAIN_TO, CHATTERS, Method, Run, STANDS, TURNS_OVER, clipped, combine, enter_slopes, interpolate,
@@ -24,7 +25,7 @@ from libc.math cimport fabs, pow, sqrt
 
 cdef enum:
     REACHED, MORE, COLLAPSED, NOT_A_NUMBER, CLOSURES_LOST, ROPE_SLACK, CHATTERING, STRUCK, LET_GO, TURNED, STIFF
-    HALF_TURN
+    HALF_TURN, UNSOLVED
     ACCEPTED, AGAIN
 
 cdef double step_error(Method *method, Run *run) noexcept nogil
@@ -45,7 +46,10 @@ cdef void leave(Scene *scene, Method *method, Run *run) noexcept nogil
 cdef bint leaves_chart(Scene *scene, Method *method, Run *run) noexcept nogil
 cdef bint turns_too_far(Scene *scene, Run *run) noexcept nogil
 cdef int judge(Scene *scene, Method *method, Run *run, int trouble) noexcept nogil
+cdef int judge_given(Method *method, Run *run, int trouble) noexcept nogil
 cdef bint takes_rates(Run *run) noexcept nogil
+cdef double explicit_error(Scene *scene, Method *method, Run *run) noexcept nogil
+cdef double implicit_error(Scene *scene, Method *method, Run *run) noexcept nogil
 cdef int dodge(Scene *scene, Run *run, double error, int trouble) noexcept nogil
 cdef double singular_noise(Scene *scene, Run *run) noexcept nogil
 cdef void sample(Scene *scene, Method *method, Run *run) noexcept nogil

@@ -27,6 +27,7 @@ if not cython.compiled:
         weigh_in_chart,
     )
     from heuncli.kernel.chosen import choose_afresh, put_chosen, take_chosen
+    from heuncli.kernel.collocation import collocate, collocate_to, estimate, estimate_again
     from heuncli.kernel.contacts import opened_by_others, pushed_at_once, start_contacts, turned_over
     from heuncli.kernel.dense import (
         AGAIN_TO,
@@ -54,7 +55,7 @@ if not cython.compiled:
 
     # What `advance` answers; for C these stand in steps.pxd, in the same order.
     REACHED, MORE, COLLAPSED, NOT_A_NUMBER, CLOSURES_LOST, ROPE_SLACK, CHATTERING = range(7)
-    STRUCK, LET_GO, TURNED, STIFF, HALF_TURN, ACCEPTED, AGAIN = range(7, 14)
+    STRUCK, LET_GO, TURNED, STIFF, HALF_TURN, UNSOLVED, ACCEPTED, AGAIN = range(7, 15)
 
 CODES = {
     "reached": REACHED,
@@ -69,6 +70,7 @@ CODES = {
     "turned": TURNED,
     "stiff": STIFF,
     "half turn": HALF_TURN,
+    "unsolved": UNSOLVED,
 }
 
 
@@ -301,6 +303,8 @@ def attempt(scene: cython.pointer[Scene], method: cython.pointer[Method], run: c
     change: cython.double
     if run.determined:
         return follow(scene, method, run)
+    if method.implicit:
+        return collocate(scene, method, run)
     run.has_interpolant = 0
     if run.seeing:
         begin_to_see(scene, run)
@@ -376,22 +380,14 @@ def judge(
     """ACCEPTED, AGAIN with another length, NOT_A_NUMBER, or CLOSURES_LOST."""
     error: cython.double
     noise: cython.double = 0.0
-    row: cython.int = method.stages + 1 + method.extra
     run.error = 0.0
     if run.following:
         return ACCEPTED
     if run.determined:
         return AGAIN if trouble < 0 else ACCEPTED
     if method.fixed:
-        if not takes_rates(run):
-            return NOT_A_NUMBER
-        return CLOSURES_LOST if trouble < 0 else ACCEPTED
-    combine(method, row, run.chart_K, run.n, run.coarse)
-    combine(method, row + method.estimates - 1, run.chart_K, run.n, run.fine)
-    if method.attitude:
-        weigh_in_chart(scene, method.attitude, run.chart_y, run.coarse)
-        weigh_in_chart(scene, method.attitude, run.chart_y, run.fine)
-    error = step_error(method, run)
+        return judge_given(method, run, trouble)
+    error = implicit_error(scene, method, run) if method.implicit else explicit_error(scene, method, run)
     if run.near:
         if dodge(scene, run, error, trouble):
             return AGAIN
@@ -416,6 +412,17 @@ def judge(
     return ACCEPTED
 
 
+def judge_given(
+    method: cython.pointer[Method], run: cython.pointer[Run], trouble: cython.int
+) -> cython.int:
+    """ACCEPTED, or why a step whose length is given cannot be taken."""
+    if method.implicit and not run.newton.solved:
+        return UNSOLVED
+    if not takes_rates(run):
+        return NOT_A_NUMBER
+    return CLOSURES_LOST if trouble < 0 else ACCEPTED
+
+
 def takes_rates(run: cython.pointer[Run]) -> cython.bint:
     """The rates of the groups at the end of a given step; whether all is finite there."""
     b: cython.int
@@ -427,6 +434,33 @@ def takes_rates(run: cython.pointer[Run]) -> cython.bint:
             group.trial = group.rate
         size += norm_of(run, run.z, group.coordinates, group.end)
     return size < 1e300  # neither infinite nor not a number
+
+
+def explicit_error(
+    scene: cython.pointer[Scene], method: cython.pointer[Method], run: cython.pointer[Run]
+) -> cython.double:
+    """Error of the step tried, 1 = just allowed."""
+    row: cython.int = method.stages + 1 + method.extra
+    combine(method, row, run.chart_K, run.n, run.coarse)
+    combine(method, row + method.estimates - 1, run.chart_K, run.n, run.fine)
+    if method.attitude:
+        weigh_in_chart(scene, method.attitude, run.chart_y, run.coarse)
+        weigh_in_chart(scene, method.attitude, run.chart_y, run.fine)
+    return step_error(method, run)
+
+
+def implicit_error(
+    scene: cython.pointer[Scene], method: cython.pointer[Method], run: cython.pointer[Run]
+) -> cython.double:
+    """The same of an implicit method; where no stages were found, what halves the step."""
+    if not run.newton.solved:
+        return pow(1.8, 1.0 / method.exponent)
+    estimate(method, run, run.K[0])
+    error: cython.double = step_error(method, run)
+    if not error <= 1.0:
+        estimate_again(scene, method, run)
+        error = step_error(method, run)
+    return error
 
 
 def dodge(
@@ -491,7 +525,10 @@ def sample_by_steps(
     run.seeing = 0
     run.has_interpolant = 1  # the scene does not stand at the step's end any more
     while run.next_sample < run.sample_count and run.times[run.next_sample] < run.stop:
-        step_to(scene, method, run, run.times[run.next_sample], run.samples[run.next_sample])
+        if method.implicit:
+            collocate_to(scene, method, run, run.times[run.next_sample], run.samples[run.next_sample])
+        else:
+            step_to(scene, method, run, run.times[run.next_sample], run.samples[run.next_sample])
         run.next_sample += 1
     run.seeing = seeing
 
@@ -561,6 +598,8 @@ def accept(scene: cython.pointer[Scene], method: cython.pointer[Method], run: cy
             run.K[0][i] = run.K[method.stages][i]
     if code == REACHED and run.determined:
         stand_here(scene, run)
+    if code == REACHED and method.implicit and not run.newton.solved:
+        code = UNSOLVED  # of an asked instant within the step
     if code == REACHED:
         sample_reached(run)
         if not run.following:
@@ -613,7 +652,7 @@ def land(scene: cython.pointer[Scene], run: cython.pointer[Run]) -> cython.int:
 
 def stands_at_end(scene: cython.pointer[Scene], run: cython.pointer[Run]) -> cython.bint:
     """Whether what `attempt` evaluated last, the end of the step, is what the scene was put to last."""
-    return not (run.has_interpolant or run.seeing or run.determined or scene.held_count)
+    return not (run.has_interpolant or run.seeing or run.determined or scene.held_count or run.newton.elsewhere)
 
 
 def jumped(scene: cython.pointer[Scene], run: cython.pointer[Run]) -> cython.bint:

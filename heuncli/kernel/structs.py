@@ -204,6 +204,45 @@ class Tangent(metaclass=Fields):
     beside: list[float]
 
 
+class Collocation(metaclass=Fields):
+    """An implicit method; dense.pxd says what the fields are."""
+
+    stages: int
+    pair_count: int
+    real: float
+    parts: list[float]
+    into: list[float]
+    back: list[float]
+    end: list[float]
+    error: list[float]
+
+
+class Factors(metaclass=Fields):
+    """Of a dense matrix; dense.pxd says what the fields are."""
+
+    A: list[float]
+    B: list[float]
+    pivots: list[int]
+
+
+class Newton(metaclass=Fields):
+    """The iteration for the stages of a step; dense.pxd says what the fields are."""
+
+    solved: int
+    iterations: int
+    elsewhere: int
+    reach: float
+    rate: float
+    tangent: Tangent
+    real: Factors
+    pairs: list[Factors]
+    Z: list[list[float]]
+    known: list[list[float]]
+    W: list[list[float]]
+    step: list[list[float]]
+    error: list[float]
+
+
 class Method(metaclass=Fields):
     """A Runge-Kutta method; dense.pxd says what the fields are."""
 
@@ -220,6 +259,7 @@ class Method(metaclass=Fields):
     stage: list[int]
     coefficient: list[float]
     node: list[float]
+    collocation: Collocation
 
 
 class Course(metaclass=Fields):
@@ -323,6 +363,7 @@ class Run(metaclass=Fields):
     flurry_begin: float
     course: Course
     branch: Branch
+    newton: Newton
     groups: list[Any]
     weights: list[float]
     y: list[float]

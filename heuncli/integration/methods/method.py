@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 from array import array
+from collections.abc import Mapping
 from functools import cached_property
 from typing import Any
 
@@ -23,8 +24,9 @@ class Method:
 
     fixed: steps are given and none is judged. by_step: no dense output of its own: an asked instant within a step is
     reached by a step of the same method from the step's start. implicit: the stages are solved for
-    (kernel/collocation.py). attitude: how it is held within a step. stable: of an explicit method, how large h lambda
-    may be of what decays exp(lambda t), lambda < 0, before the method lets it grow: |R(-x)| = 1.
+    (kernel/collocation.py), by the numbers in `collocation`; dense rows are then of what the stages are beyond the
+    start, from 1 on, and of the three. attitude: how it is held within a step. stable: of an explicit method, how large
+    h lambda may be of what decays exp(lambda t), lambda < 0, before the method lets it grow: |R(-x)| = 1.
     """
 
     name: str
@@ -42,6 +44,7 @@ class Method:
     implicit: bool = False
     attitude: int = QUATERNION
     stable: float = 0.0
+    collocation: Mapping[str, Any] | None = None
 
     @cached_property
     def arrays(self) -> dict[str, Any]:
@@ -65,4 +68,5 @@ class Method:
             "stage": array("i", [stage for row in rows for stage, _ in row]),
             "coefficient": array("d", [c for row in rows for _, c in row]),
             "node": array("d", self.nodes),
+            "collocation": self.collocation,
         }
