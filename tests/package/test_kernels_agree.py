@@ -134,10 +134,12 @@ def test_same_bits_of_the_one_linear_map(scene: str) -> None:
 WITHIN = """
 import json, sys
 import numpy as np
+from heuncli.integration.methods.registry import method_of
 from heuncli.spec.load import load
 from heuncli.study.setup import set_up
 setup = set_up(load(sys.argv[1]))
-run = setup.runner.trajectory(np.linspace(0.0, 0.8, 3), 1e-6, method=setup.method)
+method = setup.method if sys.argv[2] == "auto" else method_of(sys.argv[2])
+run = setup.runner.trajectory(np.linspace(0.0, 0.8, 3), 1e-6, method=method)
 times = np.unique(np.concatenate([np.linspace(0.0, 0.8, 17), run.ends, np.nextafter(run.ends[:-1], 1.0)]))
 states = setup.runner.resample(run, times)
 found = setup.runner.recovered(times, states)
@@ -150,11 +152,20 @@ print(json.dumps([run.ends.tolist(), run.settled.tolist(), states.tolist(), foun
 @pytest.mark.parametrize("scene", ["double", "flat_four_bar", "four_bar", "bricard"])
 def test_same_bits_between_the_samples(scene: str) -> None:
     """The steps done again, through a flat pose, too."""
-    told = {}
-    for kernel in ("compiled", "pure"):
-        command = [sys.executable, "-c", WITHIN, str(SPECS / f"{scene}.yaml")]
-        environment = {**os.environ, "HEUN_KERNEL": kernel, "PYTHONPATH": str(SPECS.parent)}
-        done = subprocess.run(command, capture_output=True, text=True, env=environment, check=True)
-        told[kernel] = json.loads(done.stdout)
+    told = {kernel: within(scene, "auto", kernel) for kernel in ("compiled", "pure")}
     assert told["compiled"] == told["pure"]
     assert any(told["pure"][1]) == (scene == "flat_four_bar")
+
+
+@pytest.mark.skipif(KERNEL == "pure", reason="there is no compiled kernel to compare with")
+@pytest.mark.parametrize(("scene", "method"), [("double", "Radau9"), ("friction", "Radau5"), ("door_closer", "Radau5")])
+def test_same_bits_by_collocation(scene: str, method: str) -> None:
+    """Dense equations, real and complex, Newton's iteration, and its steps done again."""
+    assert within(scene, method, "compiled") == within(scene, method, "pure")
+
+
+def within(scene: str, method: str, kernel: str) -> Any:
+    command = [sys.executable, "-c", WITHIN, str(SPECS / f"{scene}.yaml"), method]
+    environment = {**os.environ, "HEUN_KERNEL": kernel, "PYTHONPATH": str(SPECS.parent)}
+    done = subprocess.run(command, capture_output=True, text=True, env=environment, check=True)
+    return json.loads(done.stdout)
