@@ -138,28 +138,28 @@ def solve_stages(
     k: cython.int
     size: cython.double
     before: cython.double = 0.0
+    best: cython.double = 1.0
     ratio: cython.double
-    newton: cython.pointer[Newton] = cython.address(run.newton)
     begin_stages(method, run)
     for k in range(MOST_ITERATIONS):
         evaluate_stages(scene, method, run)
         size = correct(method, run)
-        newton.iterations = k + 1
         if size == 0.0 or size != size:
             return size == 0.0
         ratio = size / before if before > 0.0 else 0.5
-        if not ratio < 2.0:
-            return False
-        if ratio < 1.0:
-            if k > 0 and size * ratio <= (1.0 - ratio) * scene.limits.newton_ends:
-                return True
-            if k > 2 and size * pow(ratio, MOST_ITERATIONS - k) > scene.limits.newton_noise:
-                return False
-        elif is_noise(scene, method, run, size):
-            return True
-        elif k > 2:
-            return False
         before = size
+        if k == 0:
+            continue
+        if ratio < best:
+            best = ratio
+        if size * ratio <= (1.0 - ratio) * scene.limits.newton_ends:
+            return True
+        if size <= scene.limits.newton_rounding and ratio > 5.0 * best:
+            return True  # it contracted before: this is noise
+        if ratio >= 1.0 and (k > 2 or ratio > 2.0):
+            return is_noise(scene, method, run, size)
+        if k > 2 and ratio < 1.0 and size * pow(ratio, MOST_ITERATIONS - k) > scene.limits.newton_noise:
+            return False
     return False
 
 

@@ -28,7 +28,6 @@ cdef struct Factors:          # of a dense matrix A + i B, by rows
 
 cdef struct Newton:           # the iteration for the stages of a step
     int solved                # 1: there are stages
-    int iterations
     int elsewhere             # 1: the last that was evaluated is not the end of the step
     double reach              # the largest coordinate
     double rate               # and rate, by which corrections are measured

@@ -229,7 +229,6 @@ class Newton(metaclass=Fields):
     """The iteration for the stages of a step; dense.pxd says what the fields are."""
 
     solved: int
-    iterations: int
     elsewhere: int
     reach: float
     rate: float

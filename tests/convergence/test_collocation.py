@@ -12,7 +12,7 @@ from heuncli.integration.methods.method import Method
 from heuncli.integration.methods.registry import method_of
 from heuncli.results import Array, Results
 from tests.bench.stiff import STIFF_SCENES
-from tests.convergence.test_order import fitted, slope_of_pendulum
+from tests.convergence.test_order import fitted
 from tests.package.test_kernels_agree import EVENTS, SPECS
 from tests.shared.scenes import solved, study
 
@@ -67,6 +67,11 @@ def test_what_the_iteration_takes(method: Method) -> None:
     for k in range(1, s + 1):  # Z of the motion t^k, k t^(k-1) at the start
         assert float(k == 1) + of["error"] @ c**k == pytest.approx(0.0, abs=ROUNDING)
     assert abs(of["error"] @ c ** (s + 1)) > 1e-5
+
+
+def slope_of_pendulum(t: float, y: Array) -> Array:
+    """A pushed pendulum: smooth, not linear, and it knows the time."""
+    return np.array([y[1], -np.sin(y[0]) + 0.3 * np.cos(1.7 * t)])
 
 
 def fixed_steps(method: Method, count: int, until: float = 3.0) -> Array:

@@ -10,6 +10,7 @@ from fractions import Fraction
 import numpy as np
 import pytest
 
+from heuncli.errors import SolveError
 from heuncli.integration.methods.method import Method, Row
 from heuncli.integration.methods.registry import method_of
 from heuncli.integration.runner import Runner
@@ -47,7 +48,11 @@ def measured(name: str, end: float, at: Array) -> tuple[Array, Array]:
     for n in COUNTS.tolist():
         times = end - (1.0 - at) * (end / n)
         exact = runner.trajectory(times, 1e-15)
-        run = runner.trajectory(times, end / n, method=method)
+        try:
+            run = runner.trajectory(times, end / n, method=method)
+        except SolveError as refused:  # Newton's iteration for the stages of too long a step
+            assert refused.problems[0].code == "stages-unsolved"
+            continue
         assert run.steps == n
         error = float(np.abs(centres(runner, times, run.states) - centres(runner, times, exact.states)).max())
         if error < ROUNDED:
@@ -72,10 +77,15 @@ def test_order_in_given_steps(name: str) -> None:
 @pytest.mark.heavy
 @pytest.mark.parametrize("name", NAMES)
 def test_order_between_the_ends_of_steps(name: str) -> None:
-    """There the error falls at least as fast as one order below the method's."""
+    """There the error falls at least as fast as one order below the method's; that of stages with one more than they.
+
+    (The error of stages is what judges adaptive steps of implicit methods.)
+    """
     counts, errors = measured(name, 0.5, np.array([0.3, 0.5, 0.8]))
     assert len(counts) == POINTS
-    assert fitted(counts, errors) > method_of(name).order - 1.5
+    method = method_of(name)
+    by_stages = method.implicit and not method.by_step
+    assert fitted(counts, errors) > (len(method.stages) + 1 if by_stages else method.order) - 1.5
 
 
 # ---- tableaus: what their rows must fulfil, to the rounding of their numbers
