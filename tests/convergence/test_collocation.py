@@ -7,6 +7,7 @@ import math
 import numpy as np
 import pytest
 
+from heuncli.errors import SolveError
 from heuncli.integration.methods.collocation import GAUSS4, GAUSS6, RADAU5, RADAU9
 from heuncli.integration.methods.method import Method
 from heuncli.integration.methods.registry import method_of
@@ -14,6 +15,7 @@ from heuncli.results import Array, Results
 from tests.bench.stiff import STIFF_SCENES
 from tests.convergence.test_order import fitted
 from tests.package.test_kernels_agree import EVENTS, SPECS
+from tests.shared.bars import double
 from tests.shared.scenes import solved, study
 
 METHODS = [GAUSS4, GAUSS6, RADAU5, RADAU9]
@@ -39,7 +41,7 @@ def full(method: Method) -> tuple[Array, Array, Array]:
 
 @pytest.mark.parametrize("method", METHODS, ids=lambda m: m.name)
 def test_powers_are_integrated(method: Method) -> None:
-    """C(s) and B(p): sum a_ij c_j^(k-1) = c_i^k / k for k <= s, sum b_j c_j^(k-1) = 1 / k for k <= p, and not beyond."""
+    """C(s) and B(p): sum a_ij c_j^(k-1) = c_i^k / k for k <= s, sum b_j c_j^(k-1) = 1 / k for k <= p and no more."""
     c, A, b = full(method)
     for k in range(1, len(c) + 1):
         assert A @ c ** (k - 1) == pytest.approx(c**k / k, abs=1e-15)
@@ -168,3 +170,15 @@ def test_done_again_it_has_the_same_bits(method: str) -> None:
     assert few.ends.tolist() == many.ends.tolist()
     assert np.array_equal(runner.resample(few, times), many.states)
     assert np.array_equal(runner.resample(few, times[[17]]), many.states[[17]])
+
+
+@pytest.mark.parametrize(("step", "code"), [(0.02, None), (0.5, "stages-unsolved")])
+def test_too_long_a_given_step_is_refused(step: float, code: str | None) -> None:
+    """Newton's iteration contracts in short steps; where it does not, the run ends with its instant."""
+    text = double("{duration: 2, samples: 3}")
+    if code is None:
+        assert solved(text, method="Gauss6", step=step).status["code"] == "completed"
+    else:
+        with pytest.raises(SolveError) as refused:
+            solved(text, method="Gauss6", step=step)
+        assert refused.value.problems[0].code == code
