@@ -96,6 +96,18 @@ def test_same_bits_with_events(scene: str | int) -> None:
     assert compiled == plain
 
 
+@pytest.mark.skipif(KERNEL == "pure", reason="there is no compiled kernel to compare with")
+@pytest.mark.parametrize("method", ["DOP853-rodrigues", "DOP853-recentred"])
+def test_same_bits_in_charts_of_attitudes(method: str) -> None:
+    """A body that flies, and is caught by a rope: balls, a closure, a blow."""
+    text = EVENTS["catches"].replace("duration: 2", f"duration: 1, method: {method}")
+    compiled, plain = (results_of(text, ("bodies.ball.angular_velocity=[1, 2, 0.5]",), k) for k in ("compiled", "pure"))
+    for results in (compiled, plain):
+        del results["work"]["seconds"], results["work"]["kernel"]
+    assert compiled == plain
+    assert compiled["model"]["method"] == method
+
+
 MAPS = """
 import json, sys
 import numpy as np
