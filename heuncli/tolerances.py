@@ -143,6 +143,7 @@ LEAST_RATE = 1e-5  # of a radian, or of the size, in the time asked for: slower 
 BOUNDLESS = 1e3  # a value that grows so many times over within 2**-20 of the run is on its way to infinity; where steps
 # become too many, one that has grown so in the last three quarters of the time is what they follow
 MOST_STEPS = 20_000_000  # of a run: minutes of the smallest scene, and what is put down of them half a gigabyte
+MOST_SOLVED = 1_000  # numbers of a state whose dense equations are solved: a second a step, 50 million bytes
 CHECK_STEPS = 4  # steps of the check run for one given step: order 1 errs there by a quarter, and 2 |A - B| by 1.5 of A
 HOPELESS = 1.0  # times the most steps, over the root of their part done: what may be left of the steps projected
 INTEGRATED = 2.0 * EPS  # of a rate's size times the time: the rounding of one rule's sum, between whole and halves

@@ -36,6 +36,7 @@ if TYPE_CHECKING:  # loaded where a condition ends the run
     from heuncli.integration.conditions import Until
 
 CHUNK = 2_000  # body-steps between two looks at the clock
+DENSE_CHUNK = 2_000_000  # the same by the squares of a state's numbers, whose cube the equations of a step take
 
 REACHED, MORE, ROPE_SLACK, CHATTERING, STRUCK, LET_GO, TURNED, STIFF, HALF_TURN = (
     kernel.CODES[name]
@@ -136,6 +137,18 @@ def discontinuities_of(mechanism: Mechanism, t0: float, t1: float) -> list[float
     expressions = set(mechanism.expressions())
     blows = {blow.time for blow in mechanism.blows if t0 < blow.time < t1}
     return sorted({t for e in expressions if e.time_dependent for t in discontinuities(e, t0, t1)} | blows)
+
+
+def chunk_of(layout: Layout, method: Method) -> int:
+    """Steps between two looks at the clock. Raises LimitError where a method would have to solve too many equations."""
+    bodies, n = max(len(layout.mechanism.bodies), 1), layout.n_state
+    if not method.implicit:
+        return max(1, CHUNK // bodies)
+    if n > tolerances.MOST_SOLVED:
+        message = f"{method.name} solves dense equations for all {n} numbers of the state; it takes up to"
+        hint = "--method DOP853, which solves none; what is stiff then takes short steps"
+        raise LimitError(Problem("too-many-states", f"{message} {tolerances.MOST_SOLVED}", hint=hint))
+    return max(1, min(CHUNK // bodies, DENSE_CHUNK // n**2))
 
 
 def check_deadline(deadline: float | None, where: str) -> None:
@@ -251,7 +264,7 @@ class Runner(Evaluator):
         last = float(ts[-1]) if len(ts) else 0.0
         # at rest under a load like t**4 all rates and accelerations vanish at first: this rate then sets the scale
         rate = tolerances.LEAST_RATE / last if last > 0.0 else 0.0
-        most = max(1, CHUNK // max(len(moving.layout.mechanism.bodies), 1))
+        most = chunk_of(moving.layout, method)
         # what begins beside the scene's start is to show what rounding makes of a run, that of its events, too
         late = int(start is not None)
         start = moving.restrict(0.0, self.layout.y0 if start is None else start)

@@ -7,7 +7,8 @@ import math
 import numpy as np
 import pytest
 
-from heuncli.errors import SolveError
+from heuncli import tolerances
+from heuncli.errors import LimitError, SolveError
 from heuncli.integration.methods.collocation import GAUSS4, GAUSS6, RADAU5, RADAU9
 from heuncli.integration.methods.method import Method
 from heuncli.integration.methods.registry import method_of
@@ -182,3 +183,36 @@ def test_too_long_a_given_step_is_refused(step: float, code: str | None) -> None
         with pytest.raises(SolveError) as refused:
             solved(text, method="Gauss6", step=step)
         assert refused.value.problems[0].code == code
+
+
+def test_too_large_a_state_is_refused(monkeypatch: pytest.MonkeyPatch) -> None:
+    """Dense equations take the cube of its numbers; what solves none takes any."""
+    monkeypatch.setattr(tolerances, "MOST_SOLVED", 10)
+    text = double("{duration: 0.1, samples: 3}")
+    with pytest.raises(LimitError, match="too-many-states"):
+        solved(text, method="Radau9")
+    assert solved(text, method="DOP853").status["code"] == "completed"
+
+
+KEPLER = """
+heun: 1
+ground: {points: {O: [0, 0, 0]}}
+bodies:
+  ball: {mass: 1, center: [0, 0, 0], inertia: [1, 1, 1], position: [1, 0, 0], velocity: [0, 1.2, 0.3], points: {c: [0, 0, 0]}}
+forces: {pull: {type: spring, from: ground.O, to: ball.c, stiffness: 3, length: 0.5}}
+analysis: {duration: 200, samples: 401}
+"""
+
+
+@pytest.mark.heavy
+@pytest.mark.parametrize(("method", "swing"), [("Gauss4", 1e-4), ("Gauss6", 1e-6)])
+def test_long_runs_drift_nowhere(method: str, swing: float) -> None:
+    """Some 60 revolutions by steps of 1/30 of one: x x v, a quadratic invariant, to rounding; the energy only swings."""
+    found = solved(KEPLER, method=method, step=0.1)
+    x, v = found.bodies["ball"]["center"], found.bodies["ball"]["center_velocity"]
+    spin = np.cross(x, v)
+    assert np.abs(spin - spin[0]).max() <= 1e-12
+    energy = found.energy["kinetic"] + found.energy["potential"]
+    off = np.abs(energy - energy[0])
+    assert 0.0 < off.max() <= swing
+    assert off[-100:].max() <= 1.5 * off[:100].max()  # no drift

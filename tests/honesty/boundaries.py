@@ -925,6 +925,7 @@ EXEMPT = {
     "KERNEL.leaving_first": "how an event's own rounding is left behind",
     "KERNEL.leaving_last": "how an event's own rounding is left behind; what chatters is driven back at once",
     "KERNEL.least_load": "which loads are so small that doubles lose their digits",
+    "MOST_SOLVED": "time and memory; tests/convergence/test_collocation.py has a scene beyond",
     "KERNEL.newton_ends": "when an iteration ends that goes on to rounding: one more changes nothing but that",
     "KERNEL.newton_rounding": "when corrections of an iteration count as noise: what is left is rounding",
     "KERNEL.newton_part": "what an iteration that stalls may leave of a step whose error is judged besides",
