@@ -198,7 +198,9 @@ KEPLER = """
 heun: 1
 ground: {points: {O: [0, 0, 0]}}
 bodies:
-  ball: {mass: 1, center: [0, 0, 0], inertia: [1, 1, 1], position: [1, 0, 0], velocity: [0, 1.2, 0.3], points: {c: [0, 0, 0]}}
+  ball:
+    {mass: 1, center: [0, 0, 0], inertia: [1, 1, 1], position: [1, 0, 0], velocity: [0, 1.2, 0.3],
+     points: {c: [0, 0, 0]}}
 forces: {pull: {type: spring, from: ground.O, to: ball.c, stiffness: 3, length: 0.5}}
 analysis: {duration: 200, samples: 401}
 """
@@ -207,7 +209,7 @@ analysis: {duration: 200, samples: 401}
 @pytest.mark.heavy
 @pytest.mark.parametrize(("method", "swing"), [("Gauss4", 1e-4), ("Gauss6", 1e-6)])
 def test_long_runs_drift_nowhere(method: str, swing: float) -> None:
-    """Some 60 revolutions by steps of 1/30 of one: x x v, a quadratic invariant, to rounding; the energy only swings."""
+    """Some 60 revolutions by steps of 1/30 of one: x × v, quadratic, stays to rounding; the energy only swings."""
     found = solved(KEPLER, method=method, step=0.1)
     x, v = found.bodies["ball"]["center"], found.bodies["ball"]["center_velocity"]
     spin = np.cross(x, v)
