@@ -16,6 +16,7 @@ from tests.bench.peers.ways import Way
 
 FLAGS = '<flag contact="disable" warmstart="disable" {}/>'
 NO_CONSTRAINTS = 'constraint="disable"'
+mujoco.set_mju_user_warning(lambda _: None)  # of steps too coarse for the motion: else a file in the working folder
 
 
 def version() -> str:
