@@ -153,7 +153,7 @@ QUADRATURE = 1e-14  # of the scale: whole against halves; planes that graze thin
 
 # -- choice of the method
 STIFF = 0.5  # of the boundary of stability: where that holds steps short they are at it, else seldom beyond a third
-RADAU5 = 1e-6  # local tolerance above which three stages take less than five
+RADAU5 = 3e-6  # local tolerance above which three stages take less than five, with a check run at a thirtieth of it
 
 # -- what a motion comes near to
 GIMBAL = 1e-3  # rad from a lock of Euler angles: the condition of their matrix is 2e3, three digits are lost

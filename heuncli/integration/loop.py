@@ -13,6 +13,7 @@ from heuncli.expressions.discontinuities import one_sided_limits
 from heuncli.integration.methods.method import Method
 from heuncli.integration.pace import FIRST_LOOK
 from heuncli.kernel.choose import integration
+from heuncli.mechanism.model import Load
 from heuncli.response import Workspace
 from heuncli.results import Array
 from heuncli.tree.layout import Layout
@@ -20,7 +21,8 @@ from heuncli.tree.layout import Layout
 KEPT = 20_000_000  # numbers in the states kept for replays, at the ends of all steps or of every second, fourth, ...
 STIFF_AFTER = 15  # steps held short by stability, as in Hairer's DOP853 ...
 EASY_AFTER = 6  # ... and steps on end that were not, after which their count begins anew
-UNWATCHED = {"stiff_after": 0, "easy_after": 0, "stable": 0.0}
+LOOK_AFTER = 1_000  # steps; then each time that they have doubled
+UNWATCHED = {"stiff_after": 0, "easy_after": 0, "look_after": 0, "stable": 0.0}
 PER_STEP = ("ends", "settled", "pivots", "turned")  # what is put down of each step
 
 
@@ -33,7 +35,7 @@ class Integration:
         most, local = given.pop("most"), given.pop("local")
         self.local, self.rate = local, given["rate"]
         self.looked = 0  # steps after which it was looked at last whether another method takes less
-        given |= stiffness_of(method) if given.pop("watched", False) else UNWATCHED
+        given |= stiffness_of(method, layout) if given.pop("watched", False) else UNWATCHED
         given |= {"tolerance": 1.0, "step": local} if method.fixed else {"tolerance": local, "step": 0.0}
         self.width = integration.record_width(workspace, n)
         self.output = {name: np.zeros(most) for name in PER_STEP}
@@ -62,11 +64,18 @@ class Integration:
         return self.samples.reshape(self.count, self.n)
 
 
-def stiffness_of(method: Method) -> dict[str, float]:
+def stiffness_of(method: Method, layout: Layout) -> dict[str, float]:
     """By what the kernel's loop notices stiffness (kernel/stiffness.py); an implicit method is not held by it."""
     if method.stable == 0.0:
         return UNWATCHED
-    return {"stiff_after": STIFF_AFTER, "easy_after": EASY_AFTER, "stable": tolerances.STIFF * method.stable}
+    look = LOOK_AFTER if any(depends(load) for load in layout.mechanism.loads) else 0
+    stable = tolerances.STIFF * method.stable
+    return {"stiff_after": STIFF_AFTER, "easy_after": EASY_AFTER, "look_after": look, "stable": stable}
+
+
+def depends(load: Load) -> bool:
+    """Whether a load depends on where bodies are, or how fast: a spring, damper, friction, or by its expression."""
+    return not load.values or any(value.uses for value in load.values)
 
 
 class Segment(NamedTuple):

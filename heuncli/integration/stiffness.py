@@ -8,6 +8,7 @@ method as much. Counted in evaluations, not in seconds, so that a scene is alway
 
 from __future__ import annotations
 
+import math
 from typing import TYPE_CHECKING
 
 import numpy as np
@@ -17,25 +18,23 @@ from heuncli.integration.loop import Integration, Segment
 from heuncli.integration.methods.method import Method
 from heuncli.integration.methods.registry import method_of
 from heuncli.kernel.choose import steps as kernel
-from heuncli.method_rows import row_of
 from heuncli.response import workspace_of
-from heuncli.results import Array
 
 if TYPE_CHECKING:
     from heuncli.integration.runner import Going, Runner
 
-TRIED = (12, 12)  # steps of the implicit method: those in which it comes to its pace, and those that are counted
+TRIED = (8, 8)  # steps of the implicit method: those in which it comes to its pace, and those that are counted
+MOST_TRIED = 0.125  # of what is left of the run: what the trial may take of it
+CORRECTIONS = 8  # of the stages in a step, seldom more
 STARTING = 4.0  # times the evaluations of the run so far: what the implicit method takes of them, which were not stiff
-MOST_STATE = 300  # numbers: of larger tangents the factors alone take longer than short steps
 RECENT = 8  # steps of the run whose mean tells its pace
+FACTORS = 0.02  # n^2 of a stage: what its factors take, in evaluations of n numbers of state
 
 GOES_ON = (kernel.CODES["reached"], kernel.CODES["more"])
 
 
-def implicit_for(local: float) -> Method | None:
+def implicit_for(local: float) -> Method:
     """The stiff method for a local tolerance."""
-    if row_of("Radau5") is None:
-        return None
     return method_of("Radau5" if local > tolerances.RADAU5 else "Radau9")
 
 
@@ -45,46 +44,50 @@ def require_easy(runner: Runner, going: Going, segment: Segment) -> None:
     Looked at again when the run has taken twice as many steps.
     """
     steps, run = going.steps, going.run
-    if steps.count < 2 * run.looked:
+    if steps.count < max(2 * run.looked, RECENT + 1):
         return
     run.looked = steps.count
-    method, t = implicit_for(run.local), run.loop.t
-    if method is None or runner.moving.layout.n_state > MOST_STATE:
-        return
+    method, t, n = implicit_for(run.local), run.loop.t, runner.moving.layout.n_state
     ends = steps.column("ends")
     h = float(ends[-1] - ends[-1 - RECENT]) / RECENT
-    left = going.last - t
-    a_second = tried(runner, going, segment, method)
-    taken = run.loop.evaluations
-    explicit, whole = taken / run.loop.steps * left / h, STARTING * taken + a_second * left
-    if whole < explicit:
+    taken, left = run.loop.evaluations, going.last - t
+    explicit = taken / run.loop.steps * left / h
+    beside = n + FACTORS * n * n * (len(method.nodes) - 1)  # of a step: the tangent, by differences, and its factors
+    one = beside + CORRECTIONS * (len(method.nodes) - 1)
+    if sum(TRIED) * one > MOST_TRIED * explicit:
+        return
+    a_second, trial = tried(runner, going, segment, method, beside)
+    if STARTING * taken + a_second * left < explicit:
         from heuncli.integration.runner import Stiff
         from heuncli.integration.swift import swift
 
-        raise Stiff(method, swift(runner, t, runner.moving.state(t, state_of(run)), h))
+        # where the trial is: coarse explicit steps may be driven to and fro beside the slow motion
+        beyond = runner.moving.state(trial.loop.t, np.array(trial.loop.state()))
+        raise Stiff(method, swift(runner, trial.loop.t, beyond, h))
 
 
-def state_of(run: Integration) -> Array:
-    """The state that a run has reached."""
-    return np.array(run.loop.state())
+def tried(
+    runner: Runner, going: Going, segment: Segment, method: Method, beside: float
+) -> tuple[float, Integration]:
+    """Evaluations that an implicit method takes a second of motion, from the state that a run has reached; the trial.
 
-
-def tried(runner: Runner, going: Going, segment: Segment, method: Method) -> float:
-    """Evaluations that an implicit method takes a second of motion, from the state that a run has reached."""
+    beside: what a step takes beside those of its stages.
+    """
     layout, run, t = runner.moving.layout, going.run, going.run.loop.t
     workspace = workspace_of(layout)  # its own: the run goes on as if nothing had been tried
-    if len(going.steps.holdings):
+    if going.steps.holdings:
         workspace.hold(going.steps.holdings[-1][1])
     trial = Integration(
         layout, workspace, method, np.zeros(0),
-        most=sum(TRIED), state=state_of(run), local=run.local, rate=run.rate, following=0, late=0,
+        most=sum(TRIED), state=np.array(run.loop.state()), local=run.local, rate=run.rate, following=0, late=0,
     )  # fmt: skip
     trial.loop.begin(t, segment.before_end, segment.end)
-    first = trial.loop.advance(TRIED[0], False, False)
-    begun, before = trial.loop.t, trial.loop.evaluations
-    code = trial.loop.advance(TRIED[1], False, False) if first in GOES_ON else first
-    if code not in GOES_ON:
-        return np.inf
-    if trial.loop.t == begun:  # the first steps came to the end of the segment
-        begun, before = t, 0
-    return float((trial.loop.evaluations - before) / (trial.loop.t - begun))
+    if trial.loop.advance(TRIED[0], False, False) not in GOES_ON:
+        return math.inf, trial
+    begun, evaluations, steps = trial.loop.t, trial.loop.evaluations, trial.loop.steps
+    if begun == segment.end:  # sooner than it comes to its pace
+        return float((evaluations + beside * steps) / (begun - t)), trial
+    if trial.loop.advance(TRIED[1], False, False) not in GOES_ON:
+        return math.inf, trial
+    took = trial.loop.evaluations - evaluations + beside * (trial.loop.steps - steps)
+    return float(took / (trial.loop.t - begun)), trial

@@ -27,7 +27,7 @@ def swift(scene: Evaluator, t: float, state: Array, h: float) -> str:
     what = responsible(scene, t, state, vectors[:, k], abs(fastest))
     return (
         f"stiff: {what} {does} at {abs(fastest):.2g} 1/s where the motion goes at {max(omega, speed):.2g} 1/s: "
-        f"at t = {t:.3g} s stability would keep explicit steps at {h:.2g} s"
+        f"at t = {t:.3g} s it keeps explicit steps at {h:.2g} s"
     )
 
 

@@ -114,6 +114,7 @@ cdef struct Run:
     int flurry                # events since flurry_begin
     int stiff_after           # steps held short by stability after which the loop is left; 0: not looked at
     int easy_after            # steps on end that were not, after which their count begins anew
+    int look_after            # steps after which it is left in any case, twice as many the next time; 0: never
     int stiff_steps           # the counts
     int easy_steps
     int half_turn             # 1 + the body whose attitude has come to the end of its chart

@@ -93,6 +93,7 @@ class Integration:
         run.stiff_after, run.easy_after, run.stable = start["stiff_after"], start["easy_after"], start["stable"]
         run.t = run.grid = run.proposed = run.energy_scale = run.gap = run.cut = run.flurry_begin = run.nearing = 0.0
         run.newton.solved = run.newton.elsewhere = 0
+        run.look_after = start["look_after"]
         run.weights = self.memory.doubles(start["weights"])
         run.y = self.memory.doubles(start["state"])
         run.z = self.memory.zeros(n)

@@ -51,7 +51,14 @@ def estimate_swiftness(method: cython.pointer[Method], run: cython.pointer[Run])
 
 
 def is_held_short(run: cython.pointer[Run]) -> cython.bint:
-    """Whether so many of the steps done were at the boundary; some on end that were not begin the count anew."""
+    """Whether so many of the steps done were at the boundary; some on end that were not begin the count anew.
+
+    Where loads may be stiff, also after some steps, and each time that they have doubled: what saturates, as friction
+    does, is driven to and fro by a coarse tolerance, and no quotient tells.
+    """
+    if run.look_after and run.steps >= run.look_after:
+        run.look_after = 2 * run.steps
+        return True
     if run.near or run.last:
         return False  # its length says nothing
     if run.swiftness > run.stable:

@@ -327,6 +327,7 @@ class Run(metaclass=Fields):
     flurry: int
     stiff_after: int
     easy_after: int
+    look_after: int
     stiff_steps: int
     easy_steps: int
     half_turn: int

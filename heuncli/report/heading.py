@@ -16,6 +16,7 @@ from heuncli.results import Estimate, Results
 MOST_TOLD = 5
 MOST_MOVED = 3
 PLANAR = "; what points out of the xy plane does not exist and reads 0"
+STIFF = "stiff: "
 
 
 def heading(results: Results) -> list[tuple[str, str]]:
@@ -27,6 +28,7 @@ def heading(results: Results) -> list[tuple[str, str]]:
         *(("unseen", sentence) for sentence in results.model.get("cannot_tell", ())),
         *_moved(results.model.get("moved", ())),
         ("run", _run(results)),
+        *(("stiff", text.removeprefix(STIFF)) for text in results.model.get("reasons", ()) if text.startswith(STIFF)),
         *_labelled("rest", results.model.get("rest", ())),
         *(("until", sentence) for sentence in results.model.get("until", ())),
         ("accuracy", _errors(results)),

@@ -144,11 +144,15 @@ def begun_anew(runs: Runs, stiff: Stiff, method: Method, setup: Setup, tolerance
     """A stiff motion by an implicit method, or, where that does not come through, after all as it was begun."""
     try:
         checked = checked_run(runs, tolerance, Kinds(setup, by_cause))
+        return replace(checked, lost_seconds=checked.lost_seconds + stiff.seconds, begun_anew=stiff.told)
     except SolveError:
-        runs.method = method
-        checked = checked_run(runs, tolerance, Kinds(setup, by_cause))
-        return replace(checked, lost_seconds=checked.lost_seconds + stiff.seconds)
-    return replace(checked, lost_seconds=checked.lost_seconds + stiff.seconds, begun_anew=stiff.told)
+        pass
+    except LimitError as limit:
+        if limit.problems[0].code != "step-limit":
+            raise
+    runs.method = method
+    checked = checked_run(runs, tolerance, Kinds(setup, by_cause))
+    return replace(checked, lost_seconds=checked.lost_seconds + stiff.seconds)
 
 
 def state(setup: Setup, at: float, tolerance: float, by_cause: bool = False) -> History:

@@ -11,7 +11,8 @@ from contextlib import suppress
 import numpy as np
 
 from heuncli.errors import LimitError, SolveError
-from heuncli.integration.runner import Trajectory, discontinuities_of
+from heuncli.integration.loop import depends
+from heuncli.integration.runner import Stiff, Trajectory, discontinuities_of
 from heuncli.method_rows import row_of
 from heuncli.study.setup import Setup
 from heuncli.study.words import count
@@ -42,6 +43,21 @@ def outlook(setup: Setup) -> list[str]:
     return [sentence, *pace(setup, tolerance if setup.step is None else setup.step)]
 
 
+def noticed(setup: Setup) -> Stiff | None:
+    """Whether the beginning of the run is stiff, where the method was left to heun and loads may be."""
+    if not setup.auto or setup.method is None or setup.method.determined:
+        return None
+    if not any(depends(load) for load in setup.scene.mechanism.loads):
+        return None
+    last = float(setup.spec.analysis.times[-1])
+    with suppress(SolveError, LimitError):
+        try:
+            begun(setup, setup.spec.analysis.tolerance, last, watched=True)
+        except Stiff as stiff:
+            return stiff
+    return None
+
+
 def pace(setup: Setup, local: float) -> list[str]:
     """What the first part of the run takes; nothing is told where that cannot be solved: the run will say why."""
     last = PART * float(setup.spec.analysis.times[-1])
@@ -58,11 +74,11 @@ def pace(setup: Setup, local: float) -> list[str]:
     return []
 
 
-def begun(setup: Setup, local: float, last: float) -> Trajectory:
+def begun(setup: Setup, local: float, last: float, *, watched: bool = False) -> Trajectory:
     """The first part of the run."""
     jumps = tuple(discontinuities_of(setup.scene.mechanism, 0.0, last))
     assert setup.method is not None
     return setup.runner.trajectory(
         np.array([0.0, last]), local, discontinuities=jumps, deadline=time.monotonic() + PATIENCE,
-        most_steps=MOST_STEPS, method=setup.method,
+        most_steps=MOST_STEPS, method=setup.method, watched=watched,
     )  # fmt: skip

@@ -28,6 +28,8 @@ if TYPE_CHECKING:  # loaded where a scene has sections
     from heuncli.kinetostatics.cuts import Cuts
     from heuncli.study.resting import Rest
 
+WATCHED = "by {}, explicit; what turns out to be stiff is begun anew by an implicit method where that takes less"
+
 
 @record
 class Setup:
@@ -98,6 +100,7 @@ def set_up(
     note = model_note(scene, runner, chosen.name if chosen else "none") | told
     if chosen is not None:
         note["reasons"] += attitudes(chosen, runner.moving.layout)
+        note["reasons"] += [WATCHED.format(chosen.name)] if asked_method == AUTO and not chosen.determined else []
     step = spec.analysis.step if chosen is not None and chosen.fixed else None
     note |= {} if step is None else {"step": step}
     return Setup(spec, scene, cuts, runner, chosen, note, reduced, asked, auto=asked_method == AUTO, step=step)

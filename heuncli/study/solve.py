@@ -35,6 +35,7 @@ from heuncli.version import VERSION
 
 if TYPE_CHECKING:
     from heuncli.integration.conditions import Changes
+    from heuncli.integration.runner import Stiff
     from heuncli.study.impulses import Impulses
 
 MOST_SEARCHED = 1_000_000  # numbers to look at for the extremes of a whole report; one measure has no such bound
@@ -125,15 +126,24 @@ def blows(setup: Setup, history: History, least_norm: bool, by_cause: bool) -> I
 def describe(spec: Spec, *, reduce: bool = True) -> Block:
     """The block `model` of a scene, with its names, advice on what is redundant, and what a run of it will take."""
     from heuncli.redundancy.advice import advice  # runs give none
-    from heuncli.study.outlook import outlook
+    from heuncli.study.outlook import noticed, outlook
 
     asked = Options(wanted=None if spec.report is None else frozenset(spec.report)).asked
     setup = set_up(spec, reduce=reduce, asked=asked, looked_for=False)
     mechanism = setup.scene.mechanism
     names = {"bodies": [b.name for b in mechanism.bodies], "joints": {j.name: j.kind for j in mechanism.joints}}
+    stiff = noticed(setup)
+    if stiff is not None:
+        setup = by_stiff_method(setup, stiff)
     model = setup.model | {"names": names, "integrates": outlook(setup)}
     watched = [f"ends: until {c.text}" if c.ends else f"watched: {c.name} ({c.text})" for c in spec.analysis.conditions]
     return model | {"reasons": [*model["reasons"], *watched], "notes": model["notes"] + advice(setup.scene, model)}
+
+
+def by_stiff_method(setup: Setup, stiff: Stiff) -> Setup:
+    """The same with the method that a stiff motion is begun anew with."""
+    told = {"method": stiff.method.name, "reasons": [*setup.model["reasons"], stiff.told]}
+    return replace(setup, method=stiff.method, model=setup.model | told)
 
 
 def stepping(spec: Spec, options: Options) -> Spec:

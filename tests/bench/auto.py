@@ -1,4 +1,4 @@
-"""What `method: auto` takes beside every listed method: `python -m tests.bench auto [--scene PART ...]`.
+"""What `method: auto` takes beside every listed method: `python -m tests.bench auto [--only TEXT ...]`.
 
 Evaluations of the right-hand side that a run takes whose true error, against a much finer run, is just what was asked:
 each method's tolerance (or step) is tuned until it is, half a decade (a factor of the root of 2) at a time. auto's is
@@ -79,6 +79,8 @@ def prepared(name: str, text: str | None) -> Scene | None:
     if spec.analysis.type != "motion":
         return None
     setup = set_up(spec)
+    if any(condition.ends for condition in spec.analysis.conditions):
+        return None  # where it ends is no matter of the method
     if setup.method is None or setup.method.determined:
         return None
     times = np.array(spec.analysis.times)

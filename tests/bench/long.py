@@ -28,7 +28,7 @@ from heuncli.study.setup import set_up
 from tests.bench.chart import chart
 
 LISTED = [row.name for row in METHODS if row.kind != "SciPy"]
-EVALUATIONS = 120  # a period: 10 steps of DOP853, 30 of RK4
+EVALUATIONS = 240  # a period: 20 steps of DOP853, 60 of RK4
 TRIED = 40  # periods in which the pace is found
 
 PENDULUM = """

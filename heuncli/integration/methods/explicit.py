@@ -38,6 +38,7 @@ RK4 = Method(
 # Dormand and Prince, J. Comp. Appl. Math. 6 (1980) 19-26; dense output of order 4: Hairer, Norsett, Wanner, II.6.
 DOPRI5 = Method(
     name="DOPRI5",
+    stable=3.31,
     order=5,
     nodes=(0.0, 1 / 5, 3 / 10, 4 / 5, 8 / 9, 1.0),
     stages=(

@@ -11,6 +11,7 @@ from heuncli.integration.methods.method import Method
 
 VERNER98 = Method(
     name="Verner98",
+    stable=4.48,
     order=9,
     nodes=(
         0.0,
