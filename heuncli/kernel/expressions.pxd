@@ -72,15 +72,8 @@ cdef double piece_counted(double *c, Table table, double x) noexcept nogil
 cdef Program integrated(Programs *programs, Py_ssize_t at) noexcept nogil
 cdef Table summed_at(Programs *programs, Py_ssize_t at, Py_ssize_t k) noexcept nogil
 cdef double integral(Programs *programs, Py_ssize_t at, Py_ssize_t k, double t) noexcept nogil
-cdef double compare(int op, double a, double b) noexcept nogil
-cdef double on_branch(Programs *programs, Py_ssize_t at, double branch, double a, double b) noexcept nogil
 cdef Jet jet(Programs *programs, Program program, double t) noexcept nogil
-cdef Jet constant(double f) noexcept nogil
-cdef Jet chain(Jet u, double f, double df, double ddf) noexcept nogil
-cdef Jet jet_of_two(int op, Jet a, Jet b) noexcept nogil
-cdef Jet jet_of_angle(Jet a, Jet b) noexcept nogil
-cdef Jet jet_of_one(int op, Jet u, int n) noexcept nogil
-cdef Jet jet_of_table(int op, double *c, Table table, Jet u) noexcept nogil
+cdef double slope(Programs *programs, Program program, double *slopes) noexcept nogil
 
 cdef class Expressions:
     cdef Programs programs

@@ -35,7 +35,7 @@ integral is at each of them: from the last knot before t it is summed up by the 
 program itself.
 
 `jet` carries the first and second derivative in time along. They are those of the chosen branches; at a jump or kink
-they are those of the piece that begins there.
+they are those of the piece that begins there. `slope` is the first derivative along any direction of the variables.
 """
 
 from __future__ import annotations
@@ -597,6 +597,34 @@ def integral(
 @cython.exceptval(check=False)
 def jet(programs: cython.pointer[Programs], program: Program, t: cython.double) -> Jet:
     """Value, first and second derivative of a program in time alone; NaN when not computable."""
+    x: Jet = jet_along(programs, program, t, cython.NULL)
+    return x if x.value - x.value == 0.0 else Jet(NAN, NAN, NAN)
+
+
+@cython.cfunc
+@cython.nogil
+@cython.exceptval(check=False)
+def slope(programs: cython.pointer[Programs], program: Program, slopes: cython.p_double) -> cython.double:
+    """The derivative of a program along the slopes of its variables; NaN where it has no value, or none there."""
+    t: cython.double = programs.variables[0]
+    x: Jet = jet_along(programs, program, t, slopes)
+    if x.value - x.value != 0.0 and programs.holding == HELD:
+        programs.holding = FREE
+        x = jet_along(programs, program, t, slopes)
+        programs.holding = HELD
+    return x.rate if x.value - x.value == 0.0 else NAN
+
+
+@cython.cfunc
+@cython.nogil
+@cython.exceptval(check=False)
+def jet_along(
+    programs: cython.pointer[Programs], program: Program, t: cython.double, slopes: cython.p_double
+) -> Jet:
+    """Value and derivatives of a program as its variables move: the time alone, or all by their slopes.
+
+    Along slopes the first derivative counts, on the branches that `value` takes; in time alone no other has a value.
+    """
     jets: cython.pointer[Jet] = programs.jets  # what lies below x
     height: cython.Py_ssize_t = 0
     x: Jet = constant(NAN)  # the topmost
@@ -609,7 +637,7 @@ def jet(programs: cython.pointer[Programs], program: Program, t: cython.double) 
         if op <= VAR:
             jets[height] = x
             height += 1
-            x = constant(programs.constants[k]) if op == CONST else Jet(t if k == 0 else NAN, 1.0, 0.0)
+            x = constant(programs.constants[k]) if op == CONST else moving(programs, k, t, slopes)
         elif op <= MAX:
             height -= 1
             x = jet_of_two(op, jets[height], x)
@@ -628,17 +656,99 @@ def jet(programs: cython.pointer[Programs], program: Program, t: cython.double) 
             height -= 1
             x = jets[height]
         elif op == INTEGRAL:
-            first: Jet = jet(programs, integrated(programs, at), t)
-            x = Jet(integral(programs, at, k, t), first.value, first.rate)
+            x = jet_of_integral(programs, at, k, moving(programs, 0, t, slopes))
             at = end
-        elif op == HOLD:  # what hangs on coordinates has no derivatives here
-            pass
-        elif k == 1:
-            jets[height - 1] = constant(compare(op, jets[height - 1].value, x.value))
-        else:
-            height -= 1
-            x = constant(compare(op, jets[height].value, x.value))
-    return x if x.value - x.value == 0.0 else Jet(NAN, NAN, NAN)
+        elif op != HOLD:
+            f: Jet = constant(compare(op, jets[height - 1].value, x.value))
+            height -= 1 - k
+            if k == 1:  # the right operand stays above
+                jets[height - 1] = f
+            else:
+                x = f
+        elif slopes and programs.holding == HELD:
+            x = jet_held(programs, at, k, height, x)
+            op = programs.code[at].op
+            height -= takes_two(op) if op < LT or programs.code[at].argument == 0 else 0
+            at += 2 if op == TABLE or op == KNOT else 1
+    return x
+
+
+@cython.cfunc
+@cython.inline
+@cython.nogil
+@cython.exceptval(check=False)
+def moving(
+    programs: cython.pointer[Programs], k: cython.int, t: cython.double, slopes: cython.p_double
+) -> Jet:
+    """A variable as it moves: the time evenly where there are no slopes, others not at all."""
+    if slopes:
+        return Jet(t if k == 0 else programs.variables[k], slopes[k], 0.0)
+    return Jet(t if k == 0 else NAN, 1.0, 0.0)
+
+
+@cython.cfunc
+@cython.nogil
+@cython.exceptval(check=False)
+def jet_of_integral(programs: cython.pointer[Programs], at: cython.Py_ssize_t, k: cython.int, t: Jet) -> Jet:
+    """The integral up to a moving time; its derivative is what is integrated."""
+    first: Jet = jet(programs, integrated(programs, at), t.value)
+    return Jet(integral(programs, at, k, t.value), first.value * t.rate, first.rate * t.rate * t.rate)
+
+
+@cython.cfunc
+@cython.nogil
+@cython.exceptval(check=False)
+def jet_held(
+    programs: cython.pointer[Programs], at: cython.Py_ssize_t, k: cython.int, height: cython.Py_ssize_t, b: Jet
+) -> Jet:
+    """The operation at `at` on the branch held[k], with its first derivative; a right operand may stay above."""
+    op: cython.int = programs.code[at].op
+    f: Jet = jet_on_branch(programs, at, programs.held[k], programs.jets[height - 1], b)
+    if op >= LT and programs.code[at].argument == 1:
+        programs.jets[height - 1] = f
+        return b
+    return f
+
+
+@cython.cfunc
+@cython.nogil
+@cython.exceptval(check=False)
+def jet_on_branch(
+    programs: cython.pointer[Programs], at: cython.Py_ssize_t, branch: cython.double, a: Jet, b: Jet
+) -> Jet:
+    """The operation at `at` on a branch (`on_branch`), with its first derivative."""
+    op: cython.int = programs.code[at].op
+    f: cython.double = on_branch(programs, at, branch, a.value, b.value)
+    if f != f:
+        return constant(NAN)
+    if op == ABS:
+        return Jet(f, b.rate if branch > 0.0 else -b.rate, 0.0)
+    elif op == MIN or op == MAX:
+        return b if branch == 1.0 else a
+    elif op == ATAN2:
+        return Jet(f, jet_of_angle(a, b).rate, 0.0)
+    elif op == TABLE:
+        table: Table = table_at(programs, at + 1, programs.code[at].argument)
+        return chain(b, f, slope_of_piece(programs.constants, table, branch, b.value), 0.0)
+    return constant(f)
+
+
+@cython.cfunc
+@cython.nogil
+@cython.exceptval(check=False)
+def slope_of_piece(
+    c: cython.p_double, table: Table, counted: cython.double, x: cython.double
+) -> cython.double:
+    """The derivative of the cubic of a piece, by its counted number, at any x; none beyond ends that are held."""
+    n: cython.int = table.pieces
+    turns: cython.double = floor(counted / n) if table.outside == PERIODIC else 0.0
+    number: cython.double = counted - n * turns
+    if number < 0.0 or number >= n:
+        return 0.0
+    k: cython.Py_ssize_t = int(number)
+    h: cython.double = x - table.period * turns - c[table.knots + k]
+    i: cython.Py_ssize_t = table.coefficients + 4 * k
+    return (3.0 * c[i + 3] * h + 2.0 * c[i + 2]) * h + c[i + 1]
 
 
 @cython.cfunc
@@ -961,6 +1071,22 @@ class Expressions:
         for i in range(self.variables):
             self.programs.variables[i] = x[i]
         return value(cython.address(self.programs), Program(start, count))
+
+    def gradient(self, start: cython.int, count: cython.int, x: Sequence[float]) -> list[float]:
+        """Derivatives of one program in all its variables, at x; on the branches held, where they are."""
+        i: cython.Py_ssize_t
+        self.evaluate(start, count, x)
+        slopes = array("d", bytes(8 * self.variables))
+        found: list[float] = []
+        for i in range(self.variables):
+            slopes[i] = 1.0
+            if cython.compiled:
+                along: cython.p_double = cython.cast(cython.p_double, where(slopes))
+                found.append(slope(cython.address(self.programs), Program(start, count), along))
+            else:
+                found.append(slope(self.programs, Program(start, count), slopes))
+            slopes[i] = 0.0
+        return found
 
     def hold(self, holding: cython.int) -> None:
         """What becomes of branches in coordinates from now on: one of HOLDING."""

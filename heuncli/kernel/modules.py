@@ -15,7 +15,6 @@ MODULES = (
     "chosen",
     "response",
     "columns",
-    "slopes",
     "tangent_motion",
     "tangent_loads",
     "tangent_closures",

@@ -34,6 +34,7 @@ class _Block:
 
 class _Cython:
     compiled = False
+    NULL = None
     nogil = _Block()
 
     @staticmethod

@@ -1,12 +1,12 @@
 """Signatures of tangent_loads.py for C."""
 
 from heuncli.kernel.algebra cimport Vec3, add, add_cross, add_scaled, cross, dot, norm, scaled, sub
+from heuncli.kernel.expressions cimport slope
 from heuncli.kernel.loads cimport omega_of, sliding_in
 from heuncli.kernel.scene cimport (
     ACTUATOR, Body, BodyTangent, COUPLE, FORCE, Load, SHIFT_DAMPER, SHIFT_FRICTION, SPRING, Scene, THRUST,
     TURN_FRICTION, TURN_SPRING,
 )
-from heuncli.kernel.slopes cimport slope
 from heuncli.kernel.tangent_motion cimport point_along, swung
 from heuncli.kernel.tree cimport PointMotion, direction_of, point_of
 from libc.math cimport NAN, tanh

@@ -15,6 +15,7 @@ if not cython.compiled:
     from math import nan, tanh
 
     from heuncli.kernel.algebra import Vec3, add, add_cross, add_scaled, cross, dot, norm, scaled, sub
+    from heuncli.kernel.expressions import slope
     from heuncli.kernel.loads import omega_of, sliding_in
     from heuncli.kernel.scene import (
         ACTUATOR,
@@ -32,7 +33,6 @@ if not cython.compiled:
         Scene,
     )
     from heuncli.kernel.shadow import cython
-    from heuncli.kernel.slopes import slope
     from heuncli.kernel.structs import LoadTangent, PointMotion
     from heuncli.kernel.tangent_motion import point_along, swung
     from heuncli.kernel.tree import direction_of, point_of
