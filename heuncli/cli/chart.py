@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import math
+import shutil
 from collections.abc import Callable
 from pathlib import Path
 
@@ -26,6 +27,7 @@ from heuncli.study.chart_plan import Wanted
 
 FORMATS = ("table", "json", "csv")
 ENDINGS = {".json": "json", ".csv": "csv", ".txt": "table", "": "table"}
+LEAST_WIDTH = 60  # of a terminal that a chart is drawn for
 PICTURES = {".svg": "svg", ".png": "png", ".pdf": "pdf"}
 
 
@@ -59,14 +61,17 @@ def text(found: Chart, form: str, output: str | None) -> str:
     if form == "csv":
         return report.to_csv(found)
     from heuncli.cli import terminal
+    from heuncli.report.chart_text import WIDTH as FIELD
     from heuncli.report.chart_text import draw
 
     own = report.table(found)
     if output is None and terminal.present():
+        width = min(max(shutil.get_terminal_size().columns - 1, LEAST_WIDTH), WIDTH)
         rows = "".join(terminal.write([own]))
     else:
+        width = WIDTH
         rows = "".join(plain(part, WIDTH) for part in fit(own, WIDTH))
-    return f"{report.write_heading(found)}\n{rows}\n{draw(found)}"
+    return f"{report.write_heading(found, width)}\n{rows}\n{draw(found, min(width, FIELD))}"
 
 
 def picture_format(request: Request) -> Callable[[Chart], bytes] | None:

@@ -196,7 +196,7 @@ def beyond(horizon: float, until: float, own: float | None) -> str:
     """What is said of a motion whose references part."""
     return (
         f"the references differ by more than {tolerances.CLAIMED:.0e} at t = {horizon:.6g} s, from where on nobody can "
-        f"compare anything in double precision; judged up to t = {until:.6g} s, where they agree to {own:.0e}"
+        f"compare anything in double precision; run and judged up to t = {until:.6g} s, where they agree to {own:.0e}"
     )
 
 

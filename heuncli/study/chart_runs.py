@@ -109,8 +109,8 @@ class Charting:
         return self.motion.runs(FOLLOWED if row.method == chart_plan.FOLLOWED else method_of(row.method), self.limit)
 
     def run(self, row: Row, runs: Runs) -> Trajectory:
-        """The motion by a row's method, as far as the reference goes."""
-        return runs.run(row.local or LOCAL, self.referred.judge.reference.times)
+        """The motion by a row's method, as far as it is judged."""
+        return runs.run(row.local or LOCAL, self.referred.judge.times)
 
     def seconds(self, row: Row, runs: Runs) -> float:
         """Processor time of one more run, which has come to its end before."""
@@ -134,7 +134,7 @@ class Charting:
         """The row as one that is not run, where it would take longer than it may."""
         if self.motion.late:
             return Charted(row, NOT_RUN, code="time-limit", reason="the time limit was reached before")
-        last = float(self.motion.times[-1])
+        last = float(self.referred.judge.times[-1])
         if row.fixed and row.local > last:
             return Charted(row, NOT_RUN, code="step", reason=f"the step is longer than the run of {last:.6g} s")
         before = self.before.get(row.method)
@@ -154,7 +154,7 @@ class Charting:
     def projected(self, row: Row, before: Charted | None) -> float | None:
         """How many steps a row will take; None where nothing tells."""
         if row.fixed:
-            return float(math.ceil(self.motion.times[-1] / row.local))
+            return float(math.ceil(self.referred.judge.times[-1] / row.local))
         if before is None or not before.steps or row.method == chart_plan.FOLLOWED:
             return None
         return float(before.steps * (before.row.local / row.local) ** (1.0 / chart_plan.order_of(row.method)))

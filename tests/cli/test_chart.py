@@ -109,16 +109,19 @@ def test_what_cannot_move_is_refused(heun: Heun, folder: Path) -> None:
     assert done.returncode == 3 and "the joints leave no freedom" in done.stderr and done.stdout == ""
 
 
+@pytest.mark.heavy
 def test_what_is_driven_is_followed_and_integrated_beside(heun: Heun, folder: Path) -> None:
     drawn = SPECS["swinging"].replace("type: ball", "type: pin, axis: [0, 1, 0]")
     driven = drawn.replace(", orientation: {axis: [1, 0, 0], angle: 60 deg}", "")
     (folder / "driven.yaml").write_text(driven + "drives: {motor: {joint: pivot, angle: 't**2'}}\n")
-    found = json.loads(heun("chart", "driven.yaml", "--tolerances", "1e-6", "--format", "json").stdout)
+    few = ("--tolerances", "1e-6", "--steps", "0.1", "--format", "json")
+    found = json.loads(heun("chart", "driven.yaml", *few).stdout)
     assert found["runs"][0]["method"] == "followed" and found["runs"][0]["tolerance"] is None
     assert any("solves every instant by itself" in note for note in found["notes"])
     assert any(run["method"] == "DOP853" and run["status"] == "completed" for run in found["runs"])
 
 
+@pytest.mark.heavy
 def test_a_run_that_fails_is_that_error(heun: Heun, folder: Path) -> None:
     """No reference, no chart: what `heun run` would say."""
     (folder / "pole.yaml").write_text(
