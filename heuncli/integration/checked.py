@@ -170,14 +170,36 @@ class Runs:
         for local, start in (*tried, (a.local / most, None)):
             run = self.attempt(local, a, at, start)
             if run is not None:
-                return run
+                return self.apart(a, run, at, start)
         return self.run(a.local * most, at)
+
+    def apart(self, a: Trajectory, b: Trajectory, at: Array, start: Array | None) -> Trajectory:
+        """The check run, or one as fine as there is where it takes steps that A took: there both err alike.
+
+        So it does where what happens cuts steps and not the tolerance: the difference would show nothing.
+        """
+        if a.method.fixed or a.method.determined or not shared_steps(a.ends, b.ends):
+            return b
+        if b.local <= tolerances.LEAST_TOLERANCE:
+            return b
+        finest = self.attempt(tolerances.LEAST_TOLERANCE, a, at, start)
+        return b if finest is None else finest
 
     def beside(self, a: Trajectory, at: Array) -> Trajectory | None:
         """A run like A from the moved start, where rounding may matter; else None."""
         if a.method.determined or (not a.method.fixed and a.local >= tolerances.ROUNDING_MATTERS):
             return None
         return self.attempt(a.local, a, at, self.moved)
+
+
+def shared_steps(a: Array, b: Array) -> bool:
+    """Whether two runs, by the ends of their steps, have a step in common that counts among them: a long one."""
+    steps, others = (np.append(0.0, ends[:-1]) for ends in (a, b))
+    long = a - steps > tolerances.SHARED_STEP * np.max(a - steps, initial=0.0)
+    begin, end = steps[long], a[long]
+    near = tolerances.SAME_INSTANT * (end - begin)
+    k = np.minimum(np.searchsorted(others, begin - near), max(len(b) - 1, 0))
+    return bool(np.any((np.abs(others[k] - begin) <= near) & (np.abs(b[k] - end) <= near)))
 
 
 @record

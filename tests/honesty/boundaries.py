@@ -16,6 +16,7 @@ import pytest
 
 from heuncli import tolerances
 from heuncli.errors import HeunError
+from heuncli.integration.checked import shared_steps
 from heuncli.integration.complementarity import complementary
 from heuncli.integration.contacts import Touching, answerable, short_flights
 from heuncli.integration.pace import hopeless
@@ -106,6 +107,16 @@ def steady_pace(x: float) -> str:
 def steps_given(x: float) -> str:
     """A run whose check run goes in x steps, quarters of those given."""
     return read(bar(tail=f"analysis: {{duration: 1, method: RK4, step: {4.0 / x!r}}}\n"))
+
+
+def step_in_common(x: float) -> str:
+    """Of two runs of 1 s, of which the one has steps of 1 s and x s, and the other the latter alone of them."""
+    return "shared" if shared_steps(np.array([1.0, 1.0 + x]), np.array([0.4, 1.0, 1.0 + x])) else "apart"
+
+
+def step_beside(x: float) -> str:
+    """Of two runs of one step, x of it longer in the one."""
+    return "shared" if shared_steps(np.array([1.0]), np.array([1.0 + x])) else "apart"
 
 
 def start_beyond(x: float) -> str:
@@ -844,6 +855,8 @@ ROWS = (
     Row("TOLD_BESIDE", moved_by, "told", "not known"),
     Row("MOST_STEPS", steps_given, "fine", "refused: step"),
     Row("HOPELESS", steady_pace, "goes on", "told"),
+    Row("SHARED_STEP", step_in_common, "apart", "shared"),
+    Row("SAME_INSTANT", step_beside, "shared", "apart"),
     Row("KERNEL.half_turn", beside_a_half_turn, "refused: half-turn", "fine"),
     Row("KERNEL.unseen", unseen_pulse, "as seen", "looked into"),
     Row("UNBALANCED", lambda x: "warned" if unbalanced(x) else "fine", "fine", "warned"),
