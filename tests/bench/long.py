@@ -29,7 +29,7 @@ from tests.bench.chart import chart
 
 LISTED = [row.name for row in METHODS if row.kind != "SciPy"]
 EVALUATIONS = 240  # a period: 20 steps of DOP853, 60 of RK4
-TRIED = 40  # periods in which the pace is found
+TRIED = 20  # periods in which the pace is found
 
 PENDULUM = """
 heun: 1
@@ -145,7 +145,7 @@ def pace(known: Known, runner: Runner, method: Method, evaluations: float) -> fl
     """The step, or the local tolerance, with which a method takes so many evaluations a period."""
     least, most = (known.period / 1e4, known.period) if method.fixed else (1e-14, 0.3)
     low, high = math.log(least), math.log(most)
-    for _ in range(18):
+    for _ in range(14):
         middle = 0.5 * (low + high)
         taken = math.inf
         with suppress(HeunError):
