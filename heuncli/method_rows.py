@@ -75,6 +75,14 @@ METHODS = (
         "Radau9", 9, "implicit", "adaptive", "quaternion",
         "stiff motions to six digits and more", "collocation.RADAU9",
     ),
+    MethodRow(
+        "SciPy-Radau", 5, "SciPy", "adaptive", "quaternion", "an independent check of stiff motions", "foreign.RADAU"
+    ),
+    MethodRow("SciPy-BDF", 5, "SciPy", "adaptive", "quaternion", "the same, of orders 1 to 5", "foreign.BDF"),
+    MethodRow(
+        "SciPy-LSODA", 12, "SciPy", "adaptive", "quaternion", "the same, of orders 1 to 12; takes what it finds",
+        "foreign.LSODA",
+    ),
 )  # fmt: skip
 BY_NAME = {row.name.lower(): row for row in METHODS}
 NAMES = (AUTO, *(row.name for row in METHODS))

@@ -221,6 +221,12 @@ def motions(at: workspace.Workspace, layout: Layout, t: float, state: Array) -> 
     return Motions(derivative, out.reshape(n, n), turn, r, omega, v, table[:, 12 * bodies :].T[at.chosen])
 
 
+def slope(at: workspace.Workspace, t: float, state: Array) -> tuple[Array, float]:
+    """dy/dt (n,) at a state brought onto the closures, which is not changed itself; and the gap left there [m]."""
+    out = np.zeros(len(state))
+    return out, at.slope(t, np.ascontiguousarray(state, dtype=float), out)
+
+
 def carried(at: workspace.Workspace, times: Array, states: Array, multipliers: Array, n_b: int) -> Array:
     """Joint loads ON the bodies, moment about the joint point and force, that hold closure multipliers at rest.
 

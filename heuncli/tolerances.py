@@ -144,6 +144,7 @@ BOUNDLESS = 1e3  # a value that grows so many times over within 2**-20 of the ru
 # become too many, one that has grown so in the last three quarters of the time is what they follow
 MOST_STEPS = 20_000_000  # of a run: minutes of the smallest scene, and what is put down of them half a gigabyte
 MOST_SOLVED = 1_000  # numbers of a state whose dense equations are solved: a second a step, 50 million bytes
+MOST_FOREIGN = 200_000  # steps of SciPy's, which take a hundred times as long
 CHECK_STEPS = 4  # steps of the check run for one given step: order 1 errs there by a quarter, and 2 |A - B| by 1.5 of A
 SHARED_STEP = 1 / 3  # of a run's longest step: shorter ones err by 3**-5 of it and less, at any order from 5 on
 SAME_INSTANT = 1e-6  # of a step: events of a run from a moved start come so much earlier or later, and no more

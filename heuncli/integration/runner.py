@@ -8,7 +8,7 @@ from __future__ import annotations
 import math
 import time
 from bisect import bisect_right
-from collections.abc import Sequence
+from collections.abc import Callable, Sequence
 from functools import cached_property
 from typing import TYPE_CHECKING, NamedTuple
 
@@ -102,6 +102,7 @@ class Trajectory:
     blows: tuple[Jump, ...] = ()
     holding: Array = np.zeros((1, 0))  # (n_steps + 1, contacts): closed in each step, and behind the last one
     notes: tuple[str, ...] = ()  # what is told of contacts
+    within: Callable[[Array], Array] | None = None  # of steps that are not the kernel's: the states at instants
 
     @property
     def events(self) -> tuple[float, ...]:
@@ -261,6 +262,13 @@ class Runner(Evaluator):
         begun = time.perf_counter()
         moving = self.moving
         ts = np.ascontiguousarray(times, dtype=float)
+        if method.foreign:
+            from heuncli.integration import foreign  # SciPy is loaded where it is asked for
+
+            return foreign.trajectory(
+                self, ts, local, discontinuities=discontinuities, deadline=deadline, most_steps=most_steps,
+                method=method, start=start,
+            )  # fmt: skip
         last = float(ts[-1]) if len(ts) else 0.0
         # at rest under a load like t**4 all rates and accelerations vanish at first: this rate then sets the scale
         rate = tolerances.LEAST_RATE / last if last > 0.0 else 0.0
@@ -418,6 +426,8 @@ class Runner(Evaluator):
         the run did.
         """
         times = np.ascontiguousarray(times, dtype=float)
+        if run.within is not None:
+            return run.within(times)
         out = np.empty((len(times), self.layout.n_state))
         own = np.minimum(np.searchsorted(run.times, times), len(run.times) - 1)
         for blow in run.blows:  # its own instant shows the state behind it

@@ -591,6 +591,24 @@ class Workspace:
         scene: cython.pointer[Scene] = cython.address(self.scene)
         return [scene.selected[i] for i in range(scene.selected_count)]
 
+    def slope(self, t: cython.double, state: Any, out: Any) -> float:
+        """dy/dt at a state brought onto the closures, which itself is not changed; the gap left [m].
+
+        Branches of expressions are those of the state.
+        """
+        scene: cython.pointer[Scene] = cython.address(self.scene)
+        memory: Memory = Memory()
+        y: cython.p_double = memory.doubles(state)
+        rate: cython.p_double = memory.over(out, 1, len(state))[0]
+        gap: cython.double = settle(scene, t, y)
+        if scene.closure_count and must_choose_anew(scene, gap):
+            select_independent_rows(scene, t, y, False)
+            gap = settle(scene, t, y)
+        evaluate(scene, t, y, rate)
+        if not cython.compiled:
+            out[:] = rate
+        return gap
+
     def carried(self, times: Any, states: Any, multipliers: Any, out: Any) -> None:
         """Joint loads that hold closure multipliers at rest: flat, instants, columns, bodies, moment and force.
 

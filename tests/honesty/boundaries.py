@@ -884,6 +884,7 @@ ROWS = (
 EXEMPT = {
     "STIFF": "what is integrated by: either way the same motion, and its estimate",
     "RADAU5": "what is integrated by: either way the same motion, and its estimate",
+    "MOST_FOREIGN": "when an independent check is given up that does not get on: after minutes, or more of them",
     "CHECK_STEPS": "how much finer a check run goes: 2 |A - B| is no less than the error on either side of 4",
     "INTEGRATED": "whether a stretch is halved once more: the integral is right to rounding on either side",
     "UNSEEN_RATE": "whether a stretch is halved once more; tests/spec/test_integrals.py has pulses that hide",

@@ -25,7 +25,8 @@ class Method:
     fixed: steps are given and none is judged. by_step: no dense output of its own: an asked instant within a step is
     reached by a step of the same method from the step's start. implicit: the stages are solved for
     (kernel/collocation.py), by the numbers in `collocation`; dense rows are then of what the stages are beyond the
-    start, from 1 on, and of the three. attitude: how it is held within a step. stable: of an explicit method, how large
+    start, from 1 on, and of the three. attitude: how it is held within a step. foreign: its name in SciPy, where
+    its steps are taken (integration/foreign.py). stable: of an explicit method, how large
     h lambda may be of what decays exp(lambda t), lambda < 0, before the method lets it grow: |R(-x)| = 1.
     """
 
@@ -43,6 +44,7 @@ class Method:
     by_step: bool = False
     implicit: bool = False
     attitude: int = QUATERNION
+    foreign: str = ""
     stable: float = 0.0
     collocation: Mapping[str, Any] | None = None
 
