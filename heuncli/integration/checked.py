@@ -8,7 +8,8 @@ A method of given step has no tolerance: B goes in quarters of the step, |A - B|
 quarters at order 1, and A is not made again, for its step was asked for.
 
 At small tolerances the error of A may be no larger than what the moved start has grown to in B, and cancel it. There a
-third run M goes from the moved start as A goes from its own: |A - M| is what rounding grows to, and the larger counts.
+third run M goes from the moved start as A goes from its own: |A - M| is what rounding grows to, and the largest
+distance of any two counts, of the motion: what all three make of rounding may lie to one side of the truth.
 """
 
 from __future__ import annotations
@@ -361,14 +362,18 @@ def recovered_at(
 def motion_error(marks: Marks, several: Recovered, count: int, size: float) -> Array:
     """Estimated error of any point, relative to the size, (n,); the answers are those of so many runs."""
     far = np.abs(several.bodies[0::count]["r"]).max(axis=(1, 2)) / size
-    return known(2.0 * points_apart(marks, several, count, size) + tolerances.PLACE_ROUNDING * np.maximum(far, 1.0))
+    apart = np.max([points_apart(marks, several, count, size, k) for k in range(count - 1)], axis=0)
+    return known(2.0 * apart + tolerances.PLACE_ROUNDING * np.maximum(far, 1.0))
 
 
-def points_apart(marks: Marks, several: Recovered, count: int, size: float) -> Array:
-    """How far any point of the first of so many runs is from that of another one, relative to the size, (n,)."""
+def points_apart(marks: Marks, several: Recovered, count: int, size: float, first: int = 0) -> Array:
+    """How far any point of the first of so many runs is from that of another one, relative to the size, (n,).
+
+    first: of that run and of those behind it.
+    """
     bodies = several.bodies
-    own = bodies[0::count]
-    return np.asarray(np.max([marks.apart(own, bodies[k::count]) for k in range(1, count)], axis=0) / size)
+    own = bodies[first::count]
+    return np.asarray(np.max([marks.apart(own, bodies[k::count]) for k in range(first + 1, count)], axis=0) / size)
 
 
 def angle_error(layout: Layout, several: Recovered, count: int) -> tuple[Array, float]:
@@ -377,15 +382,21 @@ def angle_error(layout: Layout, several: Recovered, count: int) -> tuple[Array, 
     A small wheel's angle may err by far more than its points do.
     """
     apart, largest = angles_apart(layout, several, count)
+    for k in range(1, count - 1):
+        apart = np.maximum(apart, angles_apart(layout, several, count, k)[0])
     return known(2.0 * apart + tolerances.PLACE_ROUNDING * largest), float(largest.max(initial=1.0))
 
 
-def angles_apart(layout: Layout, several: Recovered, count: int) -> tuple[Array, Array]:
-    """How far any counted angle of the first of so many runs is from that of another one [rad], (n,); the largest."""
+def angles_apart(layout: Layout, several: Recovered, count: int, first: int = 0) -> tuple[Array, Array]:
+    """How far any counted angle of the first of so many runs is from that of another one [rad], (n,); the largest.
+
+    first: of that run and of those behind it.
+    """
     turning = [n for n, freedom in enumerate(layout.freedoms) if freedom.quantity == "angle"]
     angles = np.hstack([several.freedoms["q"][:, turning], several.states[:, list(layout.counters.values())]])
-    own = angles[0::count]
-    apart = np.max([np.abs(own - angles[k::count]).max(axis=1, initial=0.0) for k in range(1, count)], axis=0)
+    own = angles[first::count]
+    others = range(first + 1, count)
+    apart = np.max([np.abs(own - angles[k::count]).max(axis=1, initial=0.0) for k in others], axis=0)
     return np.asarray(apart), np.abs(own).max(axis=1, initial=1.0)
 
 
