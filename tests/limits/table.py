@@ -65,7 +65,8 @@ LIMITS = {
     },
     "explicit steps of fixed length": {
         "limits/test_time.py": ("explicit_steps_on_a_stiff_spring_have_a_bound", "heun_follows_it",
-                                 "heun_s_own_steps_of_given_length_own_up"),
+                                 "heun_s_own_steps_of_given_length_own_up",
+                                 "the_governor_s_struts_are_too_stiff_for_given_steps"),
         "references/test_governor.py": ("first_second",),
     },
     "s × M/s², 1/(N Q²)": {

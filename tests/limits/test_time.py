@@ -10,6 +10,7 @@ import pytest
 from heuncli.errors import SolveError
 from heuncli.results import Array
 from tests.limits.methods import rk4, stepped
+from tests.references.test_governor import SCENE as GOVERNOR
 from tests.shared.bars import rods
 from tests.shared.scenes import near, solved
 
@@ -127,3 +128,14 @@ def test_heun_follows_it() -> None:
     found = solved(SPRING)
     near(found.coordinates["guide"]["travel"], [1 + 0.01 * math.cos(OMEGA * t) for t in (0, 0.01, 0.1)], 1.0, 1e-9)
     assert found.accuracy["estimate"]["motion"] <= 1e-9
+
+
+# ---- A05, the stiff governor
+def test_the_governor_s_struts_are_too_stiff_for_given_steps() -> None:
+    """RK4 with 1e-3 s ends at once; auto takes an implicit method and has the ten seconds' digits."""
+    scene = GOVERNOR.replace("times: [0, 0.1, 0.2, 0.5, 1], tolerance: 1e-9", "times: [0, 2, 10], tolerance: 1e-8")
+    with pytest.raises(SolveError):
+        solved(scene, method="RK4", step=1e-3)
+    found = solved(scene)
+    assert found.model["method"].startswith("Radau")
+    near(found.coordinates["sleeve"]["travel"][1:], [0.50590929, 0.61962292], 1.0, 2e-8)
