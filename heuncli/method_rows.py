@@ -69,7 +69,7 @@ METHODS = (
     ),
     MethodRow(
         "Radau5", 5, "implicit", "adaptive", "quaternion",
-        "stiff motions to a few digits: hard springs, strong dampers, friction that sticks", "collocation.RADAU5",
+        "stiff motions to a few digits: hard springs, dry friction", "collocation.RADAU5",
     ),
     MethodRow(
         "Radau9", 9, "implicit", "adaptive", "quaternion",
