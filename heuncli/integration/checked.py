@@ -8,8 +8,8 @@ A method of given step has no tolerance: B goes in quarters of the step, |A - B|
 quarters at order 1, and A is not made again, for its step was asked for.
 
 At small tolerances the error of A may be no larger than what the moved start has grown to in B, and cancel it. There a
-third run M goes from the moved start as A goes from its own: |A - M| is what rounding grows to, and the largest
-distance of any two counts, of the motion: what all three make of rounding may lie to one side of the truth.
+further run M goes from the moved start as A goes from its own: |A - M| is what rounding grows to, and the largest
+distance of any two counts, of the motion: what all make of rounding may lie to one side of the truth.
 """
 
 from __future__ import annotations
@@ -159,8 +159,8 @@ class Runs:
                 return run
         return None
 
-    def check(self, a: Trajectory, at: Array) -> Trajectory:
-        """The check run of A.
+    def check(self, a: Trajectory, at: Array) -> tuple[Trajectory, ...]:
+        """The check run of A; behind it one more that was made on the way to it.
 
         Where rounding stands against a finer run, one that is less so serves; without any a coarser one: the estimate
         is larger, never too small. A start moved by rounding may set what A holds exactly at rest trembling so fast
@@ -172,19 +172,20 @@ class Runs:
             run = self.attempt(local, a, at, start)
             if run is not None:
                 return self.apart(a, run, at, start)
-        return self.run(a.local * most, at)
+        return (self.run(a.local * most, at),)
 
-    def apart(self, a: Trajectory, b: Trajectory, at: Array, start: Array | None) -> Trajectory:
-        """The check run, or one as fine as there is where it takes steps that A took: there both err alike.
+    def apart(self, a: Trajectory, b: Trajectory, at: Array, start: Array | None) -> tuple[Trajectory, ...]:
+        """The check run, before it one as fine as there is where it takes steps that A took: there both err alike.
 
-        So it does where what happens cuts steps and not the tolerance: the difference would show nothing.
+        So it does where what happens cuts steps and not the tolerance: the difference would show nothing. It counts as
+        well: in a short pulse each run errs by the rounding of its own instants, and two may agree by chance.
         """
         if a.method.fixed or a.method.determined or not shared_steps(a.ends, b.ends):
-            return b
+            return (b,)
         if b.local <= tolerances.LEAST_TOLERANCE:
-            return b
+            return (b,)
         finest = self.attempt(tolerances.LEAST_TOLERANCE, a, at, start)
-        return b if finest is None else finest
+        return (b,) if finest is None else (finest, b)
 
     def beside(self, a: Trajectory, at: Array) -> Trajectory | None:
         """A run like A from the moved start, where rounding may matter; else None."""
@@ -293,8 +294,8 @@ def compared(runs: Runs, a: Trajectory) -> Compared:
     """A with its check run, and the run beside it."""
     begun = time.perf_counter()
     at = instants_of(runs.runner, a)
-    b, m = runs.check(a, at.times), runs.beside(a, at.times)
-    others = [b] if m is None else [b, m]
+    m = runs.beside(a, at.times)
+    others = [*runs.check(a, at.times), *([] if m is None else [m])]
     n = len(at.times)
     if any(run.stopped for run in (a, *others)):
         # the runs end at instants of their own; the last of A is judged by the one before it

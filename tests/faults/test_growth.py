@@ -10,7 +10,7 @@ import pytest
 
 from heuncli.errors import HeunError, LimitError, Problem, SolveError
 from heuncli.integration.pace import FIRST_LOOK, projected_steps
-from heuncli.integration.runner import MOST_STEPS
+from heuncli.tolerances import MOST_STEPS
 from tests.shared.scenes import solved
 
 SCENE = """\
@@ -21,15 +21,19 @@ bodies:
   bar: {mass: 1, center: [0.5, 0, 0], inertia: [0.1, 0.1, 0.1], points: {a: [0, 0, 0]}}
 joints: {w: {type: JOINT, from: ground.O, to: bar.a, axis: [0, 1, 0]}}
 LOAD
-analysis: {duration: 2, samples: 5}
+analysis: {duration: 2, samples: 5, method: METHOD}
 """
 TORQUE = 'forces: {f: {type: torque, joint: w, value: "VALUE"}}'
 DRIVE = 'drives: {d: {joint: w, angle: "VALUE"}}'
 
 
-def told(joint: str, load: str) -> tuple[HeunError, Problem]:
+def scene(joint: str, load: str, method: str) -> str:
+    return SCENE.replace("JOINT", joint).replace("LOAD", load).replace("METHOD", method)
+
+
+def told(joint: str, load: str, method: str = "auto") -> tuple[HeunError, Problem]:
     with pytest.raises(HeunError) as raised:
-        solved(SCENE.replace("JOINT", joint).replace("LOAD", load))
+        solved(scene(joint, load, method))
     (problem,) = raised.value.problems
     return raised.value, problem
 
@@ -61,14 +65,25 @@ def test_what_grows_is_named(joint: str, load: str, value: str) -> None:
     assert problem.hint
 
 
+TOO_FAST = [
+    ("f: {type: friction, joint: w, force: 10, speed: 1e-12}, g: {type: torque, joint: w, value: 3}", math.atanh(0.3)),
+    ("f: {type: damper, joint: w, coefficient: 1e12}, g: {type: torque, joint: w, value: 3}", 3.0),
+]
+
+
+@pytest.mark.parametrize(("loads", "creeps"), TOO_FAST)
+def test_an_implicit_method_steps_over_what_is_too_fast(loads: str, creeps: float) -> None:
+    """The speed is at once that at which the resistance is 3 N: 1e-12 atanh(3/10), or 3e-12."""
+    found = solved(scene("slide", f"forces: {{{loads}}}", "auto")).coordinates["w"]
+    assert found["speed"][-1] == pytest.approx(1e-12 * creeps, rel=1e-6)
+    assert found["travel"][-1] == pytest.approx(2e-12 * creeps, rel=1e-6)
+
+
 @pytest.mark.heavy
-@pytest.mark.parametrize("loads", [
-    "f: {type: friction, joint: w, force: 10, speed: 1e-12}, g: {type: torque, joint: w, value: 3}",
-    "f: {type: damper, joint: w, coefficient: 1e12}, g: {type: torque, joint: w, value: 3}",
-])  # fmt: skip
+@pytest.mark.parametrize("loads", [loads for loads, _ in TOO_FAST])
 def test_what_is_too_fast_is_a_limit_at_once(loads: str) -> None:
     """Nothing grows: what would be needed is told after some thousands of the twenty million steps."""
-    error, problem = told("slide", f"forces: {{{loads}}}")
+    error, problem = told("slide", f"forces: {{{loads}}}", "DOP853")
     assert isinstance(error, LimitError)
     assert problem.code == "step-limit"
     found = re.match(r"(\d+) steps were done at t = .* for all of it about (\S+) would be needed", problem.message)
