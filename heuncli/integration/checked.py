@@ -199,7 +199,7 @@ def shared_steps(a: Array, b: Array) -> bool:
     steps, others = (np.append(0.0, ends[:-1]) for ends in (a, b))
     long = a - steps > tolerances.SHARED_STEP * np.max(a - steps, initial=0.0)
     begin, end = steps[long], a[long]
-    near = tolerances.SAME_INSTANT * (end - begin)
+    near = tolerances.SAME_STEP * (end - begin)
     k = np.minimum(np.searchsorted(others, begin - near), max(len(b) - 1, 0))
     return bool(np.any((np.abs(others[k] - begin) <= near) & (np.abs(b[k] - end) <= near)))
 

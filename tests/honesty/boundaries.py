@@ -856,7 +856,7 @@ ROWS = (
     Row("MOST_STEPS", steps_given, "fine", "refused: step"),
     Row("HOPELESS", steady_pace, "goes on", "told"),
     Row("SHARED_STEP", step_in_common, "apart", "shared"),
-    Row("SAME_INSTANT", step_beside, "shared", "apart"),
+    Row("SAME_STEP", step_beside, "shared", "apart"),
     Row("KERNEL.half_turn", beside_a_half_turn, "refused: half-turn", "fine"),
     Row("KERNEL.unseen", unseen_pulse, "as seen", "looked into"),
     Row("UNBALANCED", lambda x: "warned" if unbalanced(x) else "fine", "fine", "warned"),

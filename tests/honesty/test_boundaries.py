@@ -2,6 +2,9 @@
 
 from __future__ import annotations
 
+import ast
+import inspect
+
 import pytest
 
 from heuncli import tolerances
@@ -44,3 +47,14 @@ def test_each_threshold_has_its_row() -> None:
     assert not with_row & (EXEMPT.keys() | WANTED.keys())
     assert not EXEMPT.keys() & WANTED.keys()
     assert set(known) == with_row | EXEMPT.keys() | WANTED.keys()
+
+
+def test_each_threshold_is_named_once() -> None:
+    """A second one of the name would stand in for the first wherever that is used, and both rows would hold."""
+    statements = ast.parse(inspect.getsource(tolerances)).body
+    plain = [target for one in statements if isinstance(one, ast.Assign) for target in one.targets]
+    names = [target.id for target in plain if isinstance(target, ast.Name)]
+    table = next(one.value for one in statements if isinstance(one, ast.AnnAssign) and isinstance(one.value, ast.Dict))
+    keys = [key.value for key in table.keys if isinstance(key, ast.Constant)]
+    assert sorted(names) == sorted(set(names))
+    assert sorted(keys) == sorted(tolerances.KERNEL)
