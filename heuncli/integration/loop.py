@@ -30,6 +30,8 @@ class Integration:
     """The kernel's loop over the asked instants, at most `most` steps at a time, with the arrays it writes to."""
 
     def __init__(self, layout: Layout, workspace: Workspace, method: Method, times: Array, **given: Any) -> None:
+        if method.foreign:
+            raise ValueError(f"the kernel has no stages of {method.name}")
         n = self.n = layout.n_state
         self.method = method
         most, local = given.pop("most"), given.pop("local")

@@ -35,11 +35,6 @@ def quaternions(R: Array) -> Array:
     return np.asarray(q * sign[:, None])
 
 
-def scalar_rate(q: Array, omega: Array) -> Array:
-    """dw/dt of quaternions (n_t, 4) at angular velocities (n_t, 3)."""
-    return np.asarray(-0.5 * np.sum(q[:, 1:] * omega, axis=1))
-
-
 def off_upright(R: Array, omega: Array, axis: int) -> tuple[Array, Array]:
     """What a body's axis has across the world's z, (n_t, 2), and its rate; its length is sin delta."""
     c = R[:, :, axis]

@@ -11,6 +11,7 @@ from heuncli.integration.evaluator import Evaluator
 from heuncli.integration.methods.dop853 import DOP853
 from heuncli.integration.methods.method import QUATERNION, Method
 from heuncli.integration.runner import Trajectory
+from heuncli.integration.stiffness import implicit_for
 from heuncli.probing.model import Growing
 from heuncli.probing.shadows import Growth, Shadows
 from heuncli.probing.twists import twists
@@ -40,8 +41,13 @@ def growing(along: Along, deadline: float | None) -> tuple[Growing | None, str]:
 
 
 def method_beside(run: Trajectory) -> Method:
-    """The method of runs beside a run: its own where that judges its steps and keeps quaternions."""
+    """The method of runs beside a run: its own where that judges its steps and keeps quaternions.
+
+    SciPy's own is asked for where a motion may be stiff, and is none of the kernel's: its stiff one stands for it.
+    """
     own = run.method
+    if own.foreign:
+        return implicit_for(tolerances.LEAST_TOLERANCE)
     return own if not own.fixed and own.attitude == QUATERNION else DOP853
 
 

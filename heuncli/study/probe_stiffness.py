@@ -68,7 +68,7 @@ def of_instants(times: Array, values: list[Array], own: float, local: float) -> 
     asked = accurate_step(DOP853.order, local, own)
     ratio = 0.0 if math.isinf(stable[worst]) else asked / float(stable[worst])
     return Stiffness(
-        decay=max((float(-x.real.min(initial=0.0)) for x in values), default=0.0),
+        decay=max((float(np.abs(np.minimum(x.real, 0.0)).max(initial=0.0)) for x in values), default=0.0),
         oscillation=max((float(np.abs(x.imag).max(initial=0.0)) for x in values), default=0.0),
         time=float(times[worst]),
         own=own,

@@ -8,8 +8,10 @@ from pathlib import Path
 import numpy as np
 import pytest
 
+from heuncli.integration.loop import Integration
 from heuncli.integration.methods.dop853 import DOP853
 from heuncli.integration.methods.method import Method
+from heuncli.integration.methods.registry import method_of
 from heuncli.probing.model import DEAD_CENTRE, GIMBAL, HALF_TURN, SINGULAR, Probe
 from heuncli.probing.stiffness import polynomial, reach
 from heuncli.spec.load import load
@@ -83,6 +85,15 @@ def test_an_upright_rod_falls(joint: str, across: bool) -> None:
     if across:
         whole = probed(text + "analysis: {duration: 5, samples: 3}\n", reduce=False)
         assert whole.growth is not None and whole.growth.rate == pytest.approx(rate, rel=SHADOW)
+
+
+def test_beside_a_run_by_scipy_the_kernel_runs() -> None:
+    """It has no stages of such a method; its stiff one goes beside it, and finds what theory says."""
+    found = probed(AXIS.format(omega="[0, 1, 0]", duration=40).replace("samples", "method: SciPy-LSODA, samples"))
+    assert found.model["method"] == "SciPy-LSODA" and found.across is not None
+    assert found.across.rate == pytest.approx(math.sqrt(1.0 / 3.0), rel=SHADOW)
+    with pytest.raises(ValueError, match="no stages of SciPy-LSODA"):
+        Integration(None, None, method_of("SciPy-LSODA"), np.zeros(0))  # type: ignore[arg-type]
 
 
 def test_a_pendulum_forgets_nothing() -> None:
