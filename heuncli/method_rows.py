@@ -53,11 +53,11 @@ METHODS = (
     ),
     MethodRow(
         "DOP853-rodrigues", 8, "explicit", "adaptive", "rodrigues",
-        "Heun's no. 20: attitudes from the drawn one; ends at half turns", "charted.GLOBAL",
+        "Heun's no. 20: attitudes from the drawn one; ends at half turns", "rodrigues.DOP853_GLOBAL",
     ),
     MethodRow(
         "DOP853-recentred", 8, "explicit", "adaptive", "recentred",
-        "attitudes from each step's start: as good as quaternions", "charted.ANEW",
+        "attitudes from each step's start: as good as quaternions", "rodrigues.DOP853_RECENTRED",
     ),
     MethodRow(
         "Gauss4", 4, "implicit", "fixed", "quaternion",

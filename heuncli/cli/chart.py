@@ -7,6 +7,7 @@ import shutil
 from collections.abc import Callable
 from pathlib import Path
 
+from heuncli.charts import Chart
 from heuncli.cli.entry import UsageError
 from heuncli.cli.output import emit, save
 from heuncli.cli.progress import progress
@@ -14,7 +15,6 @@ from heuncli.cli.requests import Chart as Request
 from heuncli.cli.solving import overrides, positive, warn
 from heuncli.cli.target import format_of, keep, require_room
 from heuncli.errors import Problem
-from heuncli.integration.charted import Chart
 from heuncli.method_rows import AUTO, METHODS, row_of
 from heuncli.report import chart as report
 from heuncli.report.export import dump

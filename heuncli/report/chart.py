@@ -7,7 +7,7 @@ import io
 from collections.abc import Iterator, Sequence
 from typing import Any
 
-from heuncli.integration.charted import COMPLETED, FAILED, KINDS, UNFINISHED, Chart, Charted, Row
+from heuncli.charts import COMPLETED, FAILED, KINDS, UNFINISHED, Chart, Charted, Row
 from heuncli.method_rows import row_of
 from heuncli.report.chart_scale import power
 from heuncli.report.export import FORMAT

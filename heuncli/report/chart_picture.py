@@ -9,7 +9,7 @@ from __future__ import annotations
 from collections.abc import Sequence
 from typing import NamedTuple
 
-from heuncli.integration.charted import FAILED, Chart, Charted
+from heuncli.charts import FAILED, Chart, Charted
 from heuncli.method_rows import row_of
 from heuncli.report.chart import local, remark
 from heuncli.report.chart_labels import Box, inside, placed, wide

@@ -9,7 +9,7 @@ import math
 from collections.abc import Iterable
 from typing import NamedTuple
 
-from heuncli.integration.charted import COMPLETED, Chart, Charted
+from heuncli.charts import COMPLETED, Chart, Charted
 
 LOST = 10.0
 PAD = 0.08  # of a decade beside the fastest and the slowest run

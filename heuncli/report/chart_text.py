@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import string
 
-from heuncli.integration.charted import Chart
+from heuncli.charts import Chart
 from heuncli.report.chart_scale import failures, points, power, scales, seconds
 from heuncli.report.table import wrapped
 

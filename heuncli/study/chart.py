@@ -7,7 +7,7 @@ from __future__ import annotations
 
 import time
 
-from heuncli.integration.charted import Chart, with_front
+from heuncli.charts import Chart, with_front
 from heuncli.spec.models import Spec
 from heuncli.study.chart_motion import motion_of
 from heuncli.study.chart_plan import Wanted, plan

@@ -11,7 +11,7 @@ from typing import Any
 
 import numpy as np
 
-from heuncli.integration.charted import Errors
+from heuncli.charts import Errors
 from heuncli.integration.checked import Runs, angles_apart, known, points_apart, recovered_at, recovered_together
 from heuncli.integration.pairs import between_strikes
 from heuncli.integration.runner import Trajectory

@@ -10,8 +10,8 @@ import contextlib
 import math
 from collections.abc import Sequence
 
+from heuncli.charts import Row
 from heuncli.errors import LimitError, Problem, SolveError, SpecError
-from heuncli.integration.charted import Row
 from heuncli.integration.methods.registry import method_of
 from heuncli.integration.runner import Trajectory
 from heuncli.method_rows import DEFAULT, METHODS, MethodRow, row_of

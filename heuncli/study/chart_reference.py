@@ -12,8 +12,8 @@ from collections.abc import Iterator, Sequence
 import numpy as np
 
 from heuncli import tolerances
+from heuncli.charts import KINDS, Errors, Reference
 from heuncli.errors import HeunError, LimitError, Problem, SolveError
-from heuncli.integration.charted import KINDS, Errors, Reference
 from heuncli.integration.checked import Runs, errors
 from heuncli.integration.methods.followed import FOLLOWED
 from heuncli.integration.methods.registry import method_of

@@ -12,8 +12,8 @@ import time
 from collections.abc import Callable, Sequence
 
 from heuncli import tolerances
+from heuncli.charts import COMPLETED, FAILED, NOT_RUN, UNFINISHED, Charted, Row
 from heuncli.errors import HeunError, LimitError, SolveError
-from heuncli.integration.charted import COMPLETED, FAILED, NOT_RUN, UNFINISHED, Charted, Row
 from heuncli.integration.checked import Runs
 from heuncli.integration.methods.followed import FOLLOWED
 from heuncli.integration.methods.registry import method_of

@@ -8,7 +8,7 @@ from typing import TYPE_CHECKING
 import numpy as np
 
 from heuncli import tolerances
-from heuncli.integration.methods.method import QUATERNION, RECENTRED, RODRIGUES, Method
+from heuncli.integration.methods.method import GLOBAL, QUATERNION, RECENTRED, Method
 from heuncli.integration.runner import Runner
 from heuncli.joint_kinds import JOINTS
 from heuncli.mechanism.model import Mechanism
@@ -22,7 +22,7 @@ from heuncli.tree.prepare import PreparedScene
 if TYPE_CHECKING:  # loaded where a scene has closed chains
     from heuncli.redundancy.self_stress import SelfStress
 
-COUNTED_FROM = {RODRIGUES: "counted from the drawn ones: none can pass a half turn", RECENTRED: "anew in each step"}
+COUNTED_FROM = {GLOBAL: "counted from the drawn ones: none can pass a half turn", RECENTRED: "anew in each step"}
 
 
 def model_note(scene: PreparedScene, runner: Runner, method: str) -> Block:

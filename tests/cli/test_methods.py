@@ -6,6 +6,8 @@ import json
 
 import pytest
 
+from heuncli.integration.methods.method import GLOBAL, QUATERNION, RECENTRED
+from heuncli.integration.methods.registry import method_of
 from heuncli.method_rows import METHODS
 from heuncli.spec.methods import meant, unfit
 from heuncli.spec.words import METHOD_WORDS
@@ -26,6 +28,17 @@ def test_the_list_as_data(heun: Heun) -> None:
     assert found["default"] == "auto"
     assert [m["name"] for m in found["methods"]] == [row.name for row in METHODS]
     assert {"name", "order", "kind", "steps", "attitude", "purpose"} == set(found["methods"][0])
+
+
+def test_what_is_listed_is_what_is_run() -> None:
+    """The rows, which the spec reads, against the coefficients, which the kernel takes."""
+    held = {"quaternion": QUATERNION, "rodrigues": GLOBAL, "recentred": RECENTRED}
+    for row in METHODS:
+        method = method_of(row.name)
+        assert (method.name, method.order, method.attitude) == (row.name, row.order, held[row.attitude])
+        assert row.steps == ("fixed" if method.fixed else "adaptive")
+        assert row.kind == ("SciPy" if method.foreign else "implicit" if method.implicit else "explicit")
+        assert (method.foreign or row.name) == row.name.removeprefix("SciPy-")
 
 
 def test_a_word_too_many_is_bad_usage(heun: Heun) -> None:

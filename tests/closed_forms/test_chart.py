@@ -11,7 +11,7 @@ import numpy as np
 import pytest
 from scipy.special import ellipj, ellipk
 
-from heuncli.integration.charted import Chart, Charted, Row
+from heuncli.charts import Chart, Charted, Row
 from heuncli.integration.methods.dop853 import DOP853
 from heuncli.spec.load import load
 from heuncli.study.chart import chart

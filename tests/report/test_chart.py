@@ -9,7 +9,7 @@ import math
 
 import pytest
 
-from heuncli.integration.charted import (
+from heuncli.charts import (
     COMPLETED,
     FAILED,
     KINDS,

@@ -10,7 +10,7 @@ from typing import Any
 from heuncli.records import record
 
 Row = tuple[tuple[int, float], ...]
-QUATERNION, RODRIGUES, RECENTRED = range(3)  # how attitudes are held within a step (kernel/dense.pxd)
+QUATERNION, GLOBAL, RECENTRED = range(3)  # how attitudes are held within a step (kernel/dense.pxd)
 
 
 @record

@@ -7,8 +7,8 @@ from the start of each step, and the angular velocity.
 from __future__ import annotations
 
 from heuncli.integration.methods.dop853 import DOP853
-from heuncli.integration.methods.method import RECENTRED, RODRIGUES
+from heuncli.integration.methods.method import GLOBAL, RECENTRED
 from heuncli.records import replace
 
-GLOBAL = replace(DOP853, name="DOP853-rodrigues", attitude=RODRIGUES)
-ANEW = replace(DOP853, name="DOP853-recentred", attitude=RECENTRED)
+DOP853_GLOBAL = replace(DOP853, name="DOP853-rodrigues", attitude=GLOBAL)
+DOP853_RECENTRED = replace(DOP853, name="DOP853-recentred", attitude=RECENTRED)
