@@ -24,6 +24,7 @@ import numpy as np
 from heuncli import tolerances
 from heuncli.errors import LimitError, SolveError
 from heuncli.expressions.discontinuities import one_sided_limits
+from heuncli.integration.apart import Marks, angle_error, motion_error
 from heuncli.integration.blows import Jump
 from heuncli.integration.evaluator import Recovered
 from heuncli.integration.methods.dop853 import DOP853
@@ -32,8 +33,6 @@ from heuncli.integration.pairs import between_strikes, instants_of, interleaved,
 from heuncli.integration.runner import ClosuresLost, Runner, Trajectory
 from heuncli.records import record, replace
 from heuncli.results import Array, Estimate, Mask
-from heuncli.tree.layout import Layout
-from heuncli.tree.tables import Table
 
 if TYPE_CHECKING:  # loaded where there are conditions
     from heuncli.integration.conditions import Changes
@@ -358,77 +357,3 @@ def recovered_at(
     branches = run.branches_at(times) if run.branches.size else None
     found = runner.recovered(later, states, branches=branches, causes=causes, holding=run.holding_at(times))
     return replace(found, times=times)
-
-
-def motion_error(marks: Marks, several: Recovered, count: int, size: float) -> Array:
-    """Estimated error of any point, relative to the size, (n,); the answers are those of so many runs."""
-    far = np.abs(several.bodies[0::count]["r"]).max(axis=(1, 2)) / size
-    apart = np.max([points_apart(marks, several, count, size, k) for k in range(count - 1)], axis=0)
-    return known(2.0 * apart + tolerances.PLACE_ROUNDING * np.maximum(far, 1.0))
-
-
-def points_apart(marks: Marks, several: Recovered, count: int, size: float, first: int = 0) -> Array:
-    """How far any point of the first of so many runs is from that of another one, relative to the size, (n,).
-
-    first: of that run and of those behind it.
-    """
-    bodies = several.bodies
-    own = bodies[first::count]
-    return np.asarray(np.max([marks.apart(own, bodies[k::count]) for k in range(first + 1, count)], axis=0) / size)
-
-
-def angle_error(layout: Layout, several: Recovered, count: int) -> tuple[Array, float]:
-    """Estimated error of the angles that are counted over many turns [rad], (n,), and the largest of them, at least 1.
-
-    A small wheel's angle may err by far more than its points do.
-    """
-    apart, largest = angles_apart(layout, several, count)
-    for k in range(1, count - 1):
-        apart = np.maximum(apart, angles_apart(layout, several, count, k)[0])
-    return known(2.0 * apart + tolerances.PLACE_ROUNDING * largest), float(largest.max(initial=1.0))
-
-
-def angles_apart(layout: Layout, several: Recovered, count: int, first: int = 0) -> tuple[Array, Array]:
-    """How far any counted angle of the first of so many runs is from that of another one [rad], (n,); the largest.
-
-    first: of that run and of those behind it.
-    """
-    turning = [n for n, freedom in enumerate(layout.freedoms) if freedom.quantity == "angle"]
-    angles = np.hstack([several.freedoms["q"][:, turning], several.states[:, list(layout.counters.values())]])
-    own = angles[first::count]
-    others = range(first + 1, count)
-    apart = np.max([np.abs(own - angles[k::count]).max(axis=1, initial=0.0) for k in others], axis=0)
-    return np.asarray(apart), np.abs(own).max(axis=1, initial=1.0)
-
-
-def known(error: Array) -> Array:
-    """The errors; what is no number is unknown."""
-    return np.where(np.isfinite(error), error, tolerances.UNKNOWN)
-
-
-class Marks:
-    """Points by which the motion of the bodies is judged, tree order: named ones, centres, origins, and their extent.
-
-    The extent is that of the body's ellipsoid of inertia: a turn about a line through the other points is seen, too, by
-    as much as it moves the body's mass.
-    """
-
-    def __init__(self, layout: Layout) -> None:
-        bodies = layout.mechanism.bodies
-        mass, inertia = np.array([b.mass for b in bodies]), np.array([b.inertia for b in bodies])
-        # second moments about the centre by the mass: squares of the semi-axes, and their directions as columns
-        moments = 0.5 * np.trace(inertia, axis1=1, axis2=2)[:, None, None] * np.eye(3) - inertia
-        squares, axes = np.linalg.eigh(moments / mass[:, None, None])
-        reach = axes * np.sqrt(np.maximum(squares, 0.0))[:, None, :]
-        owner, arms = [], []
-        for i, body in enumerate(bodies):
-            points = [body.center, np.zeros(3), *body.points.values(), *(body.center + reach[i].T)]
-            owner += [layout.place[i]] * len(points)
-            arms += [p - layout.reference[layout.place[i]] for p in points]
-        self.owner, self.arms = np.array(owner), np.array(arms)
-
-    def apart(self, a: Table, b: Table) -> Array:
-        """Largest distance of any of the points between two sets of `Recovered.bodies`, (n_t,) [m]."""
-        dR, dr = b["R"] - a["R"], b["r"] - a["r"]
-        d = dr[:, self.owner] + (dR[:, self.owner] @ self.arms[:, :, None])[..., 0]
-        return np.asarray(np.sqrt(np.max(np.sum(d * d, axis=2), axis=1)))

@@ -12,7 +12,8 @@ from typing import Any
 import numpy as np
 
 from heuncli.charts import Errors
-from heuncli.integration.checked import Runs, angles_apart, known, points_apart, recovered_at, recovered_together
+from heuncli.integration.apart import angles_apart, known, points_apart
+from heuncli.integration.checked import Runs, recovered_at, recovered_together
 from heuncli.integration.pairs import between_strikes
 from heuncli.integration.runner import Trajectory
 from heuncli.kinetostatics.reactions import JointLoads

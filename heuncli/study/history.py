@@ -13,9 +13,10 @@ import numpy as np
 
 from heuncli.errors import LimitError, SolveError
 from heuncli.expressions.discontinuities import one_sided_limits
+from heuncli.integration.apart import Marks, motion_error
 from heuncli.integration.between import at_once
 from heuncli.integration.blows import Jump
-from heuncli.integration.checked import Checked, Marks, Runs, checked_run, motion_error, recovered_at
+from heuncli.integration.checked import Checked, Runs, checked_run, recovered_at
 from heuncli.integration.evaluator import Recovered
 from heuncli.integration.methods.method import Method
 from heuncli.integration.methods.registry import method_of

@@ -17,7 +17,8 @@ from typing import NamedTuple
 import numpy as np
 
 from heuncli.errors import HeunError
-from heuncli.integration.checked import Marks, motion_error, recovered_at
+from heuncli.integration.apart import Marks, motion_error
+from heuncli.integration.checked import recovered_at
 from heuncli.integration.methods.method import Method
 from heuncli.integration.methods.registry import method_of
 from heuncli.integration.pairs import interleaved

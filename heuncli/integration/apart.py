@@ -1,0 +1,84 @@
+"""How far runs of one motion are apart, seen at the same instants: their points, and the angles that they count.
+
+Points of all bodies, by the scene's size; angles over many turns apart, for a small wheel's may err by far more than
+its points. The estimated error is twice the largest distance of the first run from any other (checked.py), with what
+rounding makes of a place.
+"""
+
+from __future__ import annotations
+
+import numpy as np
+
+from heuncli import tolerances
+from heuncli.integration.evaluator import Recovered
+from heuncli.results import Array
+from heuncli.tree.layout import Layout
+from heuncli.tree.tables import Table
+
+
+def motion_error(marks: Marks, several: Recovered, count: int, size: float) -> Array:
+    """Estimated error of any point, relative to the size, (n,); the answers are those of so many runs."""
+    far = np.abs(several.bodies[0::count]["r"]).max(axis=(1, 2)) / size
+    apart = np.max([points_apart(marks, several, count, size, k) for k in range(count - 1)], axis=0)
+    return known(2.0 * apart + tolerances.PLACE_ROUNDING * np.maximum(far, 1.0))
+
+
+def points_apart(marks: Marks, several: Recovered, count: int, size: float, first: int = 0) -> Array:
+    """How far any point is, at most, in one of so many runs from where it is in a later one, by the size, (n,).
+
+    first: the number of the one.
+    """
+    bodies = several.bodies
+    own = bodies[first::count]
+    return np.asarray(np.max([marks.apart(own, bodies[k::count]) for k in range(first + 1, count)], axis=0) / size)
+
+
+def angle_error(layout: Layout, several: Recovered, count: int) -> tuple[Array, float]:
+    """Estimated error of the angles that are counted over many turns [rad], (n,), and the largest of them, at least 1."""
+    apart, largest = angles_apart(layout, several, count)
+    for k in range(1, count - 1):
+        apart = np.maximum(apart, angles_apart(layout, several, count, k)[0])
+    return known(2.0 * apart + tolerances.PLACE_ROUNDING * largest), float(largest.max(initial=1.0))
+
+
+def angles_apart(layout: Layout, several: Recovered, count: int, first: int = 0) -> tuple[Array, Array]:
+    """The same of the counted angles [rad], (n,); and the largest of them in the one, at least 1, (n,)."""
+    turning = [n for n, freedom in enumerate(layout.freedoms) if freedom.quantity == "angle"]
+    angles = np.hstack([several.freedoms["q"][:, turning], several.states[:, list(layout.counters.values())]])
+    own = angles[first::count]
+    others = range(first + 1, count)
+    apart = np.max([np.abs(own - angles[k::count]).max(axis=1, initial=0.0) for k in others], axis=0)
+    return np.asarray(apart), np.abs(own).max(axis=1, initial=1.0)
+
+
+def known(error: Array) -> Array:
+    """The errors; what is no number is unknown."""
+    return np.where(np.isfinite(error), error, tolerances.UNKNOWN)
+
+
+class Marks:
+    """Points by which the motion of the bodies is judged, tree order: named ones, centres, origins, and their extent.
+
+    The extent is that of the body's ellipsoid of inertia: a turn about a line through the other points is seen, too, by
+    as much as it moves the body's mass.
+    """
+
+    def __init__(self, layout: Layout) -> None:
+        bodies = layout.mechanism.bodies
+        mass, inertia = np.array([b.mass for b in bodies]), np.array([b.inertia for b in bodies])
+        # second moments about the centre by the mass: squares of the semi-axes, and their directions as columns
+        moments = 0.5 * np.trace(inertia, axis1=1, axis2=2)[:, None, None] * np.eye(3) - inertia
+        squares, axes = np.linalg.eigh(moments / mass[:, None, None])
+        reach = axes * np.sqrt(np.maximum(squares, 0.0))[:, None, :]
+        owner, arms = [], []
+        for i, body in enumerate(bodies):
+            points = [body.center, np.zeros(3), *body.points.values(), *(body.center + reach[i].T)]
+            owner += [layout.place[i]] * len(points)
+            arms += [p - layout.reference[layout.place[i]] for p in points]
+        self.owner, self.arms = np.array(owner), np.array(arms)
+
+    def apart(self, a: Table, b: Table) -> Array:
+        """Largest distance of any of the points between two sets of `Recovered.bodies`, (n_t,) [m]."""
+        dR, dr = b["R"] - a["R"], b["r"] - a["r"]
+        d = dr[:, self.owner] + (dR[:, self.owner] @ self.arms[:, :, None])[..., 0]
+        return np.asarray(np.sqrt(np.max(np.sum(d * d, axis=2), axis=1)))
