@@ -34,7 +34,7 @@ def points_apart(marks: Marks, several: Recovered, count: int, size: float, firs
 
 
 def angle_error(layout: Layout, several: Recovered, count: int) -> tuple[Array, float]:
-    """Estimated error of the angles that are counted over many turns [rad], (n,), and the largest of them, at least 1."""
+    """Estimated error of the angles that are counted over turns [rad], (n,), and the largest of them, at least 1."""
     apart, largest = angles_apart(layout, several, count)
     for k in range(1, count - 1):
         apart = np.maximum(apart, angles_apart(layout, several, count, k)[0])
