@@ -5,6 +5,7 @@ from __future__ import annotations
 import math
 from typing import Any, NamedTuple
 
+from heuncli.method_rows import row_of
 from heuncli.records import record
 
 HALF_TURN, GIMBAL, DEAD_CENTRE, SINGULAR, NO_MASS = (
@@ -109,10 +110,16 @@ class Probe:
     others: tuple[str, ...] = ()  # of other methods
 
     @property
+    def implicit(self) -> str | None:
+        """The method by which the run went, where that bears what is stiff; None of an explicit one."""
+        row = row_of(str(self.model.get("method")))
+        return row.name if row is not None and row.kind != "explicit" else None
+
+    @property
     def verdict(self) -> str:
         """One sentence at the top."""
         if not self.trouble:
-            return "nothing in this motion troubles heun's default method"
+            return f"nothing {'in this motion' if self.duration else 'at this instant'} troubles heun's default method"
         return self.trouble[0]
 
     def block(self) -> dict[str, Any]:

@@ -31,8 +31,10 @@ from heuncli.shapes.rotations import quaternion_product
 from heuncli.tree.layout import Layout
 
 AWAY = 1e-8  # of a radian, or of the size: root of EPS, where the square of a disturbance is as much as its rounding
+STIFF_LOCAL = 1e-12  # local tolerance of implicit steps: 1e-4 of AWAY; below, stages of large rates are rounding
 K = 24  # directions; a few more than grow by themselves
 PIECE = 16  # steps of the run: some growth times of most motions, and few enough that what grows fast is set back
+BESIDE = (0, -1, 1, -2, 2)  # steps about one, the nearest first, among which a long one is
 FEWEST = 100  # pieces of a run, so that its growth is seen between
 FARTHEST = 1e4  # times AWAY: squares are then 1e-4 of the disturbance; a piece in which one grows more is halved
 CHUNK = 256  # steps at a time, for which there is room
@@ -62,24 +64,37 @@ class Piece:
 
 
 def pieces_of(run: Trajectory) -> Iterator[Piece]:
-    """The pieces of a run: so many of its steps each, none across a discontinuity."""
+    """The pieces of a run: some of its steps each, none across a discontinuity in time."""
     last = float(run.times[-1])
     for segment in run.segments:
-        inside = run.ends[(run.ends > segment.begin) & (run.ends < min(segment.end, last))]
-        begin = segment.begin
-        for end in [*inside[PIECE - 1 :: PIECE].tolist(), min(segment.end, last)]:
-            if end > begin:
-                yield from divided(Piece(begin, min(segment.before_end, just_before(end)), end), last / FEWEST)
-            begin = end
+        end = min(segment.end, last)
+        ends = np.concatenate([[segment.begin], run.ends[(run.ends > segment.begin) & (run.ends < end)], [end]])
+        marks = [segment.begin, *within_steps(ends, marks_of(ends, last / FEWEST)).tolist(), end]
+        for begin, until in pairwise(marks):
+            if until > begin:
+                yield Piece(begin, min(segment.before_end, just_before(until)), until)
 
 
-def divided(piece: Piece, longest: float) -> Iterator[Piece]:
-    """A piece in equal parts that are no longer than that."""
-    count = math.ceil((piece.end - piece.begin) / longest * (1.0 - tolerances.SAME_INSTANT))
-    marks = np.linspace(piece.begin, piece.end, count + 1).tolist()
-    for begin, end in pairwise(marks[:-1]):
-        yield Piece(begin, just_before(end), end)
-    yield Piece(marks[-2], piece.before_end, piece.end)
+def marks_of(ends: Array, longest: float) -> Array:
+    """Instants that part a segment, of the steps between `ends`, into pieces of few steps that are not too long."""
+    coarse = np.unique(np.append(ends[::PIECE], ends[-1]))
+    counts = np.ceil(np.diff(coarse) / longest * (1.0 - tolerances.SAME_INSTANT)).astype(int)
+    parts = [np.linspace(*ab, n, endpoint=False) for ab, n in zip(pairwise(coarse), np.maximum(counts, 1), strict=True)]
+    return np.concatenate([*parts, np.zeros(0)])[1:]
+
+
+def within_steps(ends: Array, marks: Array) -> Array:
+    """The marks moved into the middle half of a step that is no short one, beside each.
+
+    Steps end where loads jump with a coordinate. There a disturbance counts by its sign, as it has crossed or not yet,
+    and what it grows to in the two pieces beside would not be the product.
+    """
+    lengths = np.diff(ends)
+    enough = np.minimum(lengths, np.median(lengths))
+    near = np.clip(np.searchsorted(ends[1:], marks)[:, None] + np.array(BESIDE), 0, len(lengths) - 1)
+    k = near[np.arange(len(marks)), np.argmax(enough[near], axis=1)]
+    quarter = 0.25 * lengths[k]
+    return np.asarray(np.maximum.accumulate(np.clip(marks, ends[k] + quarter, ends[k + 1] - quarter)))
 
 
 class Scale:
@@ -134,7 +149,7 @@ class Shadows:
         """The state that one at the beginning of a piece comes to at its end, and the steps; None if it does not."""
         run = Integration(
             self.layout, self.workspace, self.method, np.array([piece.end]),
-            most=CHUNK, state=state, local=tolerances.LEAST_TOLERANCE,
+            most=CHUNK, state=state, local=STIFF_LOCAL if self.method.implicit else tolerances.LEAST_TOLERANCE,
             rate=self.rate, following=0, late=0,
         )  # fmt: skip
         run.loop.begin(piece.begin, piece.before_end, piece.end)

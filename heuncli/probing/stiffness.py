@@ -42,9 +42,15 @@ def eigenvalues(beside: Evaluator, t: float, state: Array, holding: Array) -> Ar
         P = np.block([[T, np.zeros((n, f))], [S, T]])
         back = np.block([[T.T, np.zeros((f, n))], [-T.T @ S @ T.T, T.T]])
         A = back @ A @ P
-    values = np.linalg.eigvals(A) if A.size else np.zeros(0)
-    floor = math.sqrt(tolerances.EPS) * float(np.abs(A).max(initial=0.0)) ** 0.5  # of a double zero, from differences
-    return np.where(np.abs(values) > floor, values, 0.0)
+    values: Array = np.asarray(np.linalg.eigvals(A) if A.size else np.zeros(0))
+    return without_rounding(values, float(np.abs(A).max(initial=0.0)))
+
+
+def without_rounding(values: Array, largest: float) -> Array:
+    """Eigenvalues of a matrix of such entries: 0 where rounding makes as much of a double 0; likewise real parts."""
+    size = np.abs(values)
+    real = np.where(np.abs(values.real) > tolerances.INDIFFERENT * size, values.real, 0.0)
+    return np.where(size > math.sqrt(tolerances.INDIFFERENT * largest), real + 1j * values.imag, 0.0)
 
 
 def to_states(scale: Scale, state: Array) -> Array:

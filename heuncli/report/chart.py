@@ -5,6 +5,7 @@ from __future__ import annotations
 import csv
 import io
 from collections.abc import Iterator, Sequence
+from itertools import groupby
 from typing import Any
 
 from heuncli.charts import COMPLETED, FAILED, KINDS, UNFINISHED, Chart, Charted, Row
@@ -60,12 +61,23 @@ def table(chart: Chart) -> Table:
     rows: list[tuple[str, ...] | str] = []
     for name, runs in chart.by_method.items():
         rows.append(title(name))
-        rows += [(*cells(run, kinds), *([brief(run)] * remarks)) for run in runs]
+        rows += [
+            (*cells(run, kinds, same[-1]), *([brief(run)] * remarks)) for same in alike(runs) for run in same[:1]
+        ]
     notes = ["; ".join(OF[kind] for kind in kinds)]
     if any(run.bounded for run in chart.runs):
         notes.append(f"{AT_MOST}: the run differs from the reference by no more than that one may err itself")
     notes += reasons(chart)
     return Table(HEADING, tuple(columns), tuple(rows), tuple(notes))
+
+
+def alike(runs: Sequence[Charted]) -> Iterator[list[Charted]]:
+    """The runs of a method, those together one after the other of which nothing but the same remark is told."""
+    for remarks, group in groupby(runs, key=brief):
+        if remarks:
+            yield list(group)
+        else:
+            yield from ([run] for run in group)
 
 
 def title(name: str) -> str:
@@ -74,16 +86,22 @@ def title(name: str) -> str:
     return name if row is None else f"{row.name}  order {row.order}, {row.kind}, {row.steps}: {row.purpose}"
 
 
-def cells(run: Charted, kinds: Sequence[str]) -> Iterator[str]:
-    """A run's cells but for the remark."""
+def cells(run: Charted, kinds: Sequence[str], last: Charted) -> Iterator[str]:
+    """A run's cells but for the remark; last: of those that are told in one row."""
     known = run.status == COMPLETED
     yield "*" if run.front else ""
-    yield local(run.row)
-    yield f"{1e3 * run.seconds:.3g}" if known and run.seconds is not None else ""
+    yield local(run.row) if last is run else f"{local(run.row)} to {local(last.row)}"
+    yield milliseconds(run.seconds) if known and run.seconds is not None else ""
     yield str(run.steps) if known else ""
     yield str(run.evaluations) if known else ""
     for kind in kinds:
         yield error(run, kind)
+
+
+def milliseconds(seconds: float) -> str:
+    """Three digits, without a power of ten."""
+    value = float(f"{1e3 * seconds:.3g}")
+    return f"{value:.0f}" if value >= 100.0 else f"{value:.3g}"
 
 
 def local(row: Row) -> str:

@@ -5,15 +5,17 @@ from __future__ import annotations
 import math
 from collections.abc import Iterator
 
-from heuncli.probing.model import Growing, Probe
+from heuncli.probing.model import Growing, Probe, Stiffness
 from heuncli.report.fit import fit
 from heuncli.report.table import WIDTH, Column, Table, plain, wrapped
 from heuncli.version import VERSION
 
 MOST = 30  # events that a table lists; JSON has more
 LABEL = 9
+REST = "rest"  # as `model` names it instead of a method
 GROWTH = "GROWTH  of a small disturbance, the largest of all directions that the joints leave free"
 STEPS = "STEPS  of explicit methods: what stability allows where it allows least, what accuracy asks for, about"
+STEPS_HERE = "STEPS  of explicit methods: what stability allows here"
 CONDITION = "CONDITION  largest singular value over the smallest; shifts by the scene's size"
 ATTITUDES = "ATTITUDES  bodies whose turns are all free: half turns, largest condition of the matrices of Euler angles"
 EVENTS = "INSTANTS"
@@ -29,12 +31,19 @@ def write(found: Probe) -> str:
 def lines(found: Probe) -> Iterator[tuple[str, str]]:
     """Label and text of the lines above the tables."""
     yield "heun", f"{VERSION}  {found.title}"
-    span = f" over {found.duration:.6g} s" if found.duration else ", one instant"
-    yield "probe", f"{found.model['space']}, by {found.model['method']}{span}"
+    yield "probe", f"{found.model['space']}, {how(found)}"
     yield "verdict", found.verdict
     yield from (("", text) for text in found.trouble[1:])
     yield from (("beside" if k == 0 else "", text) for k, text in enumerate(found.others))
     yield from (("unknown" if k == 0 else "", text) for k, text in enumerate(reasons(found)))
+
+
+def how(found: Probe) -> str:
+    """By what the motion was found, and how long it is."""
+    none, colon, instead = str(found.model["method"]).partition(": ")
+    if not found.duration:
+        return "a rest pose" if none == REST else "one instant"
+    return f"{instead if colon else f'by {none}'} over {found.duration:.6g} s"
 
 
 def reasons(found: Probe) -> list[str]:
@@ -56,11 +65,8 @@ def tables(found: Probe) -> Iterator[Table]:
     if grown := tuple(growth_row(name, g) for name, g in growths(found) if g is not None):
         heads = ("of", "e times every [s]", "times", "until [s]", "horizon of double precision [s]")
         yield Table(GROWTH, columns(heads, 1), grown)
-    stiff = found.stiffness
-    if stiff is not None and stiff.steps:
-        steps = tuple((s.method, str(s.order), seconds(s.stability), seconds(s.accuracy)) for s in stiff.steps)
-        note = f"rates of the tangent: decay up to {stiff.decay:.3g} 1/s, oscillation up to {stiff.oscillation:.3g} 1/s"
-        yield Table(STEPS, columns(("method", "order", "stable [s]", "accurate [s]"), 1), steps, (note,))
+    if found.stiffness is not None and found.stiffness.steps:
+        yield steps(found.stiffness, found.duration)
     if known := found.conditions():
         own = tuple((NAMES[name], condition(at.value), f"{at.time:.6g}", at.where) for name, at in known)
         yield Table(CONDITION, (*columns(("of", "condition", "t [s]"), 1), Column("in", "left")), own)
@@ -74,6 +80,18 @@ def tables(found: Probe) -> Iterator[Table]:
         yield Table(ATTITUDES, columns(over, 1), bodies)
     if found.events:
         yield events(found)
+
+
+def steps(stiff: Stiffness, duration: float) -> Table:
+    """The steps of explicit methods, those that accuracy asks for of a motion alone; longer than the run is any."""
+    note = f"rates of the tangent: decay up to {stiff.decay:.3g} 1/s, oscillation up to {stiff.oscillation:.3g} 1/s"
+    if not duration:
+        rows = tuple((s.method, str(s.order), seconds(s.stability, math.inf)) for s in stiff.steps)
+        return Table(STEPS_HERE, columns(("method", "order", "stable [s]"), 1), rows, (note,))
+    both = tuple(
+        (s.method, str(s.order), *(seconds(x, duration) for x in (s.stability, s.accuracy))) for s in stiff.steps
+    )
+    return Table(STEPS, columns(("method", "order", "stable [s]", "accurate [s]"), 1), both, (note,))
 
 
 def events(found: Probe) -> Table:
@@ -101,7 +119,8 @@ def growth_row(name: str, growth: Growing) -> tuple[str, ...]:
     every = f"{1.0 / growth.rate:.3g}" if growth.exponential and growth.rate > 0.0 else "no faster than the time"
     if growth.rate < 0.0 and growth.times < 0.0:
         every = "fades"
-    horizon = f"{growth.horizon:.4g}" if growth.horizon is not None else "beyond the run"
+    beyond = "beyond the run" if growth.stopped is None else f"beyond {growth.until:.4g}"
+    horizon = f"{growth.horizon:.4g}" if growth.horizon is not None else beyond
     if growth.expected is not None:
         horizon += f", about {growth.expected:.2g} if it goes on so"
     times = f"{math.exp(growth.times):.2g}" if growth.times < 700.0 else f"e^{growth.times:.0f}"
@@ -113,6 +132,6 @@ def condition(value: float) -> str:
     return f"{value:.3g}" if value < 1e15 else "singular"
 
 
-def seconds(value: float) -> str:
-    """A step in a cell."""
-    return f"{value:.2g}" if math.isfinite(value) else "any"
+def seconds(value: float, longest: float) -> str:
+    """A step in a cell; any that is longer than the run."""
+    return f"{value:.2g}" if value <= longest and math.isfinite(value) else "any"

@@ -10,6 +10,7 @@ import math
 import statistics
 import time
 from collections.abc import Callable, Sequence
+from importlib import import_module
 
 from heuncli import tolerances
 from heuncli.charts import COMPLETED, FAILED, NOT_RUN, UNFINISHED, Charted, Row
@@ -25,6 +26,7 @@ from heuncli.study.chart_reference import Referred
 
 SECONDS = 1.0  # a run may take, or so many times what the reference took, if that is more
 TIMES = 5.0
+STARVED, MOST_PATIENCE = 0.5, 10.0  # of its seconds on the clock a run had the processor; then it may take longer
 REPEATS, REPEAT_SECONDS = (3, 25), 0.06  # of each run: least and most, and the time for them
 SPREAD = 0.03  # between the quartiles, of the median: then it is known
 LOCAL = 1e-9  # of what is followed: any, for nothing hangs on it
@@ -64,6 +66,7 @@ class Charting:
         self.motion, self.referred, self.tell = motion, referred, tell
         self.limit = max(SECONDS, TIMES * referred.seconds)
         self.before: dict[str, Charted] = {}  # of each method the last row that came to its end
+        self.unfinished: dict[str, Row] = {}  # and the first that did not within the limit
 
     def all(self, rows: Sequence[Row]) -> tuple[Charted, ...]:
         """The rows with what came of them."""
@@ -85,13 +88,25 @@ class Charting:
         too_long = self.too_long(row)
         if too_long is not None:
             return too_long
-        runs = self.runs(row)
         begun = time.process_time()
         try:
-            run = self.run(row, runs)
+            return self.judged(row, *self.first(row))
         except HeunError as error:
             return self.failed(row, error, time.process_time() - begun)
-        return self.judged(row, runs, run, time.process_time() - begun)
+
+    def first(self, row: Row) -> tuple[Runs, Trajectory, float]:
+        """The first run of a row and its time; once more where other work on the machine took the time it may take."""
+        patience = 1.0
+        while True:
+            runs = self.runs(row, patience)
+            begun = time.process_time()
+            try:
+                return runs, self.run(row, runs), time.process_time() - begun
+            except LimitError as error:
+                share = (time.process_time() - begun) / self.limit
+                if patience > 1.0 or share > STARVED or self.motion.late or error.problems[0].code != "time-limit":
+                    raise
+                patience = min(1.0 / max(share, 1e-3), MOST_PATIENCE)
 
     def judged(self, row: Row, runs: Runs, run: Trajectory, seconds: float) -> Charted | Timed:
         """A row that came to its end, or to where a rope would push."""
@@ -104,9 +119,12 @@ class Charting:
         error, bounded = self.referred.reference.judged(self.referred.judge.apart(run))
         return Timed(replace(charted, error=error, bounded=bounded), lambda: self.seconds(row, runs), [seconds])
 
-    def runs(self, row: Row) -> Runs:
-        """Runs by a row's method, with what is made ready once."""
-        return self.motion.runs(FOLLOWED if row.method == chart_plan.FOLLOWED else method_of(row.method), self.limit)
+    def runs(self, row: Row, patience: float) -> Runs:
+        """Runs by a row's method, with what is made ready once, and is no part of a run's time."""
+        method = FOLLOWED if row.method == chart_plan.FOLLOWED else method_of(row.method)
+        if method.foreign:
+            import_module("scipy.integrate")  # half a second, which a first run would take
+        return self.motion.runs(method, patience * self.limit)
 
     def run(self, row: Row, runs: Runs) -> Trajectory:
         """The motion by a row's method, as far as it is judged."""
@@ -124,6 +142,7 @@ class Charting:
         problem = error.problems[0]
         if isinstance(error, LimitError):
             late = self.motion.late
+            self.unfinished.setdefault(row.method, row)
             reason = "the time limit was reached" if late else f"not finished within {self.limit:.2g} s"
             return Charted(row, NOT_RUN, seconds, code=UNFINISHED, reason=f"{reason}:{progress(problem.message)}")
         status = FAILED if isinstance(error, SolveError) else NOT_RUN
@@ -137,6 +156,10 @@ class Charting:
         last = float(self.referred.judge.times[-1])
         if row.fixed and row.local > last:
             return Charted(row, NOT_RUN, code="step", reason=f"the step is longer than the run of {last:.6g} s")
+        longer = self.unfinished.get(row.method)
+        if longer is not None and row.local <= longer.local:
+            of = "step" if row.fixed else "tolerance"
+            return Charted(row, NOT_RUN, code="too-long", reason=f"a {of} of {longer.local:g} was not finished")
         before = self.before.get(row.method)
         steps = self.projected(row, before)
         if steps is None:

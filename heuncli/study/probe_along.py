@@ -231,7 +231,8 @@ def of_loop(along: Along, loop: Loop, shares: Array, moves: Mask) -> list[Event]
         for one in zeros(along, lambda at: motions(along.layout, loop, at)[0], shares, i):
             others = [f"{joints[j].name}.{what}" for j, what in loop.coordinates if (j, what) != (k, name)]
             mine = f"{joints[k].name}.{name}"
-            message = f"{mine} stands while {' and '.join(others[:2])} move: nothing there drives the mechanism"
+            move = f"{' and '.join(others[:2])} {'moves' if len(others) == 1 else 'move'}"
+            message = f"{mine} stands while {move}: nothing there drives the mechanism"
             events.append(Event(one.begin, DEAD_CENTRE, f"joints.{joints[k].name}", message + until(one, along)))
     return events
 

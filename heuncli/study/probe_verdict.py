@@ -17,13 +17,8 @@ def trouble(found: Probe) -> Iterator[str]:
     if found.status:
         yield found.status
     yield from horizons(found)
-    stiff = found.stiffness
-    if stiff is not None and stiff.ratio > 1.0:
-        yield (
-            f"stiff: rates up to {max(stiff.decay, stiff.oscillation):.3g} 1/s allow DOP853 steps of "
-            f"{step_of(found, 'DOP853'):.2g} s only, {stiff.ratio:.2g} times shorter than accuracy asks for, "
-            f"shortest at t = {stiff.time:.4g} s; an implicit method has no such bound"
-        )
+    if found.implicit is None:
+        yield from stiff(found)
     passed = [event for event in found.events if event.kind == SINGULAR]
     if passed:
         yield f"singular poses: closed chains lose rank at t = {instants(passed)} s; how they go on there is a choice"
@@ -41,6 +36,18 @@ def trouble(found: Probe) -> Iterator[str]:
         )
 
 
+def stiff(found: Probe) -> Iterator[str]:
+    """That stability bounds the steps of the explicit default."""
+    of = found.stiffness
+    if of is not None and of.ratio > 1.0:
+        free = f"{found.implicit}, by which this run goes, has" if found.implicit else "an implicit method has"
+        yield (
+            f"stiff: rates up to {max(of.decay, of.oscillation):.3g} 1/s allow DOP853 steps of "
+            f"{step_of(found, 'DOP853'):.2g} s only, {of.ratio:.2g} times shorter than accuracy asks for, "
+            f"shortest at t = {of.time:.4g} s; {free} no such bound"
+        )
+
+
 def horizons(found: Probe) -> Iterator[str]:
     """Sentences on the horizon of the run, and of double precision."""
     growth = found.growth
@@ -54,7 +61,9 @@ def horizons(found: Probe) -> Iterator[str]:
 
 
 def others(found: Probe) -> Iterator[str]:
-    """What troubles other methods."""
+    """What troubles other methods: explicit ones, too, where the run goes by an implicit one."""
+    if found.implicit is not None:
+        yield from stiff(found)
     by_kind = {kind: [e for e in found.events if e.kind == kind] for kind in (HALF_TURN, GIMBAL, DEAD_CENTRE, NO_MASS)}
     more = {kind: sum(n for k, _, n in found.more if k == kind) for kind in by_kind}
     if turns := by_kind[HALF_TURN]:

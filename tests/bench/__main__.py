@@ -196,7 +196,7 @@ if __name__ == "__main__":
     parts = [*PARTS, "auto", "long", "figures", "honesty"]
     parser.add_argument("parts", nargs="*", choices=[*parts, []], metavar="PART", help=", ".join(parts))
     parser.add_argument("--against", type=Path, metavar="PATH", help="another checkout, whose figures stand beside")
-    parser.add_argument("--only", nargs="*", default=[], metavar="TEXT", help="auto: scenes whose names hold it")
+    parser.add_argument("--only", nargs="*", default=[], metavar="TEXT", help="auto, long: scenes, methods so named")
     parser.add_argument("--periods", type=int, default=100_000, metavar="N", help="long: how many")
     parser.add_argument("--scenes", type=int, default=1000, metavar="N", help="honesty: how many")
     parser.add_argument("--seed", type=int, default=0, metavar="S", help="honesty: the first one's seed")
@@ -212,6 +212,6 @@ if __name__ == "__main__":
     if "auto" in asked.parts:
         table(asked.only)
     if "long" in asked.parts:
-        long(asked.periods)
+        long(asked.periods, asked.only)
     if "honesty" in asked.parts:
         honesty(asked.scenes, asked.seed, asked.jobs, asked.keep)

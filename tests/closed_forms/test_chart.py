@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import json
 import math
+import time
 from pathlib import Path
 from typing import Any
 
@@ -12,8 +13,11 @@ import pytest
 from scipy.special import ellipj, ellipk
 
 from heuncli.charts import Chart, Charted, Row
+from heuncli.integration.checked import Runs
 from heuncli.integration.methods.dop853 import DOP853
+from heuncli.integration.runner import Trajectory
 from heuncli.spec.load import load
+from heuncli.study import chart_runs
 from heuncli.study.chart import chart
 from heuncli.study.chart_motion import motion_of
 from heuncli.study.chart_plan import Wanted
@@ -173,3 +177,43 @@ def test_a_row_that_would_take_too_long_is_not_run() -> None:
     found = charting.one(Row("DOP853", "quaternion", True, 1e-9))
     assert isinstance(found, Charted) and found.status == "not run" and found.code == "too-long"
     assert found.reason.startswith("about 4e9 steps") and found.seconds is not None and found.seconds > 1.0
+
+
+def charting_of(text: str) -> Charting:
+    motion = motion_of(load("scene.yaml", text), None)
+    return Charting(motion, refer(motion), lambda done, of, what: None)
+
+
+def test_what_a_coarser_tolerance_did_not_finish_is_not_run_at_a_finer_one() -> None:
+    charting = charting_of(PENDULUM)
+    charting.limit = -1.0
+    first, second = (charting.one(Row("DOP853", "quaternion", False, local)) for local in (1e-4, 1e-6))
+    assert isinstance(first, Charted) and first.code == "unfinished"
+    assert isinstance(second, Charted) and second.code == "too-long" and "0.0001 was not finished" in second.reason
+
+
+def test_a_run_may_take_its_time_where_the_machine_does_other_work(monkeypatch: pytest.MonkeyPatch) -> None:
+    """Of a limit of 40 ms on the clock 80 ms are slept away: no part of it, so that the run is done once more."""
+    charting = charting_of(PENDULUM)
+    run, slept = Charting.run, []
+
+    def interrupted(self: Charting, row: Row, runs: Runs) -> Trajectory:
+        if not slept:
+            time.sleep(0.08)
+            slept.append(row)
+        return run(self, row, runs)
+
+    monkeypatch.setattr(Charting, "run", interrupted)
+    charting.limit = 0.04
+    found = charting.one(Row("DOP853", "quaternion", False, 1e-6))
+    assert slept and not isinstance(found, Charted) and found.charted.status == "completed"
+
+
+def test_no_import_is_in_the_time_of_a_run(monkeypatch: pytest.MonkeyPatch) -> None:
+    """What SciPy takes to load, half a second, would else be all of the first row's time."""
+    done: list[str] = []
+    monkeypatch.setattr(chart_runs, "import_module", lambda name: done.append(name))
+    run = Charting.run
+    monkeypatch.setattr(Charting, "run", lambda self, row, runs: done.append("run") or run(self, row, runs))
+    charting_of(PENDULUM).one(Row("SciPy-BDF", "quaternion", False, 1e-3))
+    assert done == ["scipy.integrate", "run"]

@@ -212,3 +212,65 @@ def test_the_condition_of_a_mass_matrix() -> None:
     size = 3.0
     assert found.mass.value == pytest.approx(2.0 * size * size / 1.0, rel=1e-12)
     assert found.mass.where == "bodies.b"
+
+
+def braked(angle: float, rate: float, t: float) -> tuple[float, float]:
+    """Angle and rate of a wheel braked by .5 where sin 4a > 0, else driven by it: pieces of steady acceleration."""
+    while True:
+        k = math.floor(angle / (0.25 * math.pi) + 1e-9)  # at an edge the piece behind it
+        a = -0.5 if k % 2 == 0 else 0.5
+        way = (k + 1) * 0.25 * math.pi - angle
+        behind = math.sqrt(rate * rate + 2.0 * a * way)
+        took = 2.0 * way / (rate + behind)
+        if took > t:
+            return angle + rate * t + 0.5 * a * t * t, rate + a * t
+        angle, rate, t = (k + 1) * 0.25 * math.pi, behind, t - took
+
+
+def test_growth_through_loads_that_jump_with_an_angle() -> None:
+    """Steps end where they jump; a disturbance has crossed there or not yet. It grows with the time, no faster."""
+    text = """\
+heun: 1
+ground: {points: {O: [0, 0, 0]}}
+bodies: {w: {mass: 1, center: [0, 0, 0], inertia: [1, 1, 1], points: {o: [0, 0, 0]}}}
+joints: {s: {type: pin, axis: [0, 0, 1], from: ground.O, to: w.o, initial: {angle: 0.1, rate: 2}}}
+forces: {b: {type: torque, joint: s, value: "-0.5 if sin(4*s.angle) > 0 else 0.5"}}
+analysis: {duration: 20, samples: 3}
+"""
+    found = probed(text).growth
+    rate = max(braked(0.1, 2.0, t)[1] for t in (0.0, 10.0, 20.0))  # disturbances of rates are counted by it
+    d = 1e-5
+    by_angle = (braked(0.1 + d, 2.0, 20.0)[0] - braked(0.1 - d, 2.0, 20.0)[0]) / (2.0 * d)
+    by_rate = (braked(0.1, 2.0 + d, 20.0)[0] - braked(0.1, 2.0 - d, 20.0)[0]) / (2.0 * d)
+    assert found is not None and not found.exponential
+    assert found.times == pytest.approx(math.log(math.hypot(by_angle, rate * by_rate)), abs=1e-4)
+
+
+def test_what_an_implicit_method_takes_troubles_the_others_alone() -> None:
+    """A strut of 8e5 N/m with 4e4 Ns/m, driven: c/m = 4e4/s, and k/c = 20/s, which the run follows."""
+    text = """\
+heun: 1
+ground: {points: {O: [0, 0, 0]}}
+bodies: {b: {mass: 1, center: [0, 0, 0], inertia: [1, 1, 1], points: {c: [0, 0, 0]}}}
+joints: {s: {type: slide, axis: [1, 0, 0], from: ground.O, to: b.c, initial: {travel: 0.1, speed: 0}}}
+forces: {k: {type: torque, joint: s, value: "-8e5*s.travel - 4e4*s.speed + 100*sin(t)"}}
+analysis: {duration: 10, samples: 3, tolerance: 1e-6}
+"""
+    found = probed(text)
+    assert found.implicit == "Radau9" and found.stiffness is not None and found.stiffness.ratio > 100.0
+    assert found.verdict == "nothing in this motion troubles heun's default method" and not found.trouble
+    assert any(words.startswith("stiff: ") and "Radau9" in words for words in found.others)
+    assert found.growth is not None and found.growth.stopped is None  # runs beside it come to the end
+    slow = 4e4 / 2.0 - math.sqrt(4e8 - 8e5)
+    assert found.growth.times == pytest.approx(-10.0 * slow, rel=0.02)
+    by_hand = probed(text.replace("tolerance", "method: SciPy-Radau, tolerance"))
+    assert by_hand.implicit == "SciPy-Radau" and not by_hand.trouble
+
+
+def test_what_is_free_neither_decays_nor_oscillates() -> None:
+    """A balanced arm on its spring: double zeros of the tangent, of which rounding makes 1e-7 a second."""
+    found = probed((FLAT.parent / "lamp.yaml").read_text(encoding="utf-8"))
+    assert found.stiffness is not None
+    assert (found.stiffness.decay, found.stiffness.oscillation) == (0.0, 0.0)
+    assert math.copysign(1.0, found.stiffness.decay) == 1.0
+    assert all(math.isinf(step.stability) for step in found.stiffness.steps)

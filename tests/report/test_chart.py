@@ -160,3 +160,18 @@ def test_scales_hold_their_values() -> None:
     assert scale.at(0.0) == 0.0 and scale.at(math.inf) == 1.0
     assert scale.decades == [1e-3, 1e-2, 1e-1, 1.0, 10.0] and scale.between == []
     assert Scale(-0.5, 0.5).between == [0.5, 0.7, 2.0, 3.0]
+
+
+def test_rows_of_a_method_that_tell_the_same_are_one() -> None:
+    refused = [replace(TOO_LONG, row=Row("BDF", "quaternion", False, local), code="method-scene", reason="no stops")
+               for local in (1e-4, 1e-6, 1e-8)]  # fmt: skip
+    text = plain(report.table(chart(run("A", 1e-3, 1e-6), *refused, FAILS)))
+    assert "     1e-4 to 1e-8 " in text and text.count("not run: no stops") == 1 and "1e-6 " in text
+    assert json.loads(dump(report.block(chart(*refused))))["runs"][2]["reason"] == "no stops"
+
+
+@pytest.mark.parametrize(
+    ("seconds", "told"), [(4.816e-4, "0.482"), (0.0123, "12.3"), (1.6349, "1630"), (0.99951, "1000"), (123.0, "123000")]
+)
+def test_times_have_three_digits_and_no_power_of_ten(seconds: float, told: str) -> None:
+    assert report.milliseconds(seconds) == told
