@@ -13,6 +13,7 @@ cdef enum:
 
 cdef int collocate(Scene *scene, Method *method, Run *run) noexcept nogil
 cdef void collocate_to(Scene *scene, Method *method, Run *run, double t, double *out) noexcept nogil
+cdef double change_of(Collocation *of, Run *run, Py_ssize_t i) noexcept nogil
 cdef bint factor_step(Scene *scene, Collocation *of, Run *run) noexcept nogil
 cdef bint solve_stages(Scene *scene, Method *method, Run *run) noexcept nogil
 cdef bint is_noise(Scene *scene, Method *method, Run *run, double size) noexcept nogil

@@ -40,7 +40,6 @@ def collocate(scene: cython.pointer[Scene], method: cython.pointer[Method], run:
     Where Newton's iteration finds none, newton.solved is 0.
     """
     i: cython.Py_ssize_t
-    k: cython.Py_ssize_t
     change: cython.double
     of: cython.pointer[Collocation] = cython.address(method.collocation)
     newton: cython.pointer[Newton] = cython.address(run.newton)
@@ -49,10 +48,7 @@ def collocate(scene: cython.pointer[Scene], method: cython.pointer[Method], run:
     run.evaluations += run.n + 1
     newton.solved = factor_step(scene, of, run) and solve_stages(scene, method, run)
     for i in range(run.n):
-        change = run.carry[i]
-        for k in range(of.stages):
-            if of.end[k] != 0.0:
-                change += of.end[k] * newton.Z[k][i]
+        change = change_of(of, run, i)
         run.z[i] = run.y[i] + change
         run.z_carry[i] = change - (run.z[i] - run.y[i])
     trouble: cython.int = evaluate(scene, clipped(run, run.stop), run.z, run.K[method.stages])
@@ -74,26 +70,30 @@ def collocate_to(
     What was solved for a longer step is for a shorter one; where it is not after all, newton.solved says so.
     """
     i: cython.Py_ssize_t
-    k: cython.Py_ssize_t
-    change: cython.double
     h: cython.double = run.h
     K: cython.pp_double = run.K
     of: cython.pointer[Collocation] = cython.address(method.collocation)
-    newton: cython.pointer[Newton] = cython.address(run.newton)
     for i in range(run.n):
         run.beside[0][i] = K[0][i]
     run.h = t - run.t
     run.K = run.beside
     run.evaluations += run.n + 1
     if not (factor_step(scene, of, run) and solve_stages(scene, method, run)):
-        newton.solved = 0
+        run.newton.solved = 0
     for i in range(run.n):
-        change = run.carry[i]
-        for k in range(of.stages):
-            change += of.end[k] * newton.Z[k][i]
-        out[i] = run.y[i] + change
+        out[i] = run.y[i] + change_of(of, run, i)
     run.h = h
     run.K = K
+
+
+def change_of(of: cython.pointer[Collocation], run: cython.pointer[Run], i: cython.Py_ssize_t) -> cython.double:
+    """sum_k d_k Z_k of a number of the state, with what its digits did not hold; d of Radau's methods is 0, ..., 1."""
+    k: cython.Py_ssize_t
+    change: cython.double = run.carry[i]
+    for k in range(of.stages):
+        if of.end[k] != 0.0:
+            change += of.end[k] * run.newton.Z[k][i]
+    return change
 
 
 def factor_step(

@@ -57,6 +57,9 @@ cdef void sample_by_steps(Scene *scene, Method *method, Run *run) noexcept nogil
 cdef void sample_reached(Run *run) noexcept nogil
 cdef double growth(Method *method, Run *run) noexcept nogil
 cdef int accept(Scene *scene, Method *method, Run *run) noexcept nogil
+cdef void keep_rates(Run *run) noexcept nogil
+cdef void propose_next(Method *method, Run *run) noexcept nogil
+cdef void put_down(Scene *scene, Run *run) noexcept nogil
 cdef bint turn_branches(Scene *scene, Run *run) noexcept nogil
 cdef int land(Scene *scene, Run *run) noexcept nogil
 cdef bint stands_at_end(Scene *scene, Run *run) noexcept nogil

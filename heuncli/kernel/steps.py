@@ -559,28 +559,20 @@ def growth(method: cython.pointer[Method], run: cython.pointer[Run]) -> cython.d
 def accept(scene: cython.pointer[Scene], method: cython.pointer[Method], run: cython.pointer[Run]) -> cython.int:
     """The step stands: samples, the new state with its derivative, the next length; CLOSURES_LOST, or REACHED."""
     i: cython.Py_ssize_t
-    b: cython.Py_ssize_t
     code: cython.int = REACHED
-    factor: cython.double = growth(method, run)
     run.dodges = 0
-    cut_short: cython.bint = run.last or run.has_cut
     sample(scene, method, run)
     for i in range(run.n):
         run.y[i] = run.z[i]
         run.carry[i] = run.z_carry[i]
     if not run.following:
-        for b in range(run.group_count):
-            run.groups[b].rate = run.groups[b].trial
-            if run.groups[b].rate > run.rate and b != run.energy_group:
-                run.rate = run.groups[b].rate
+        keep_rates(run)
     run.t = run.stop
     run.on_grid += 1
     if run.has_cut:
         run.grid = run.t
         run.on_grid = 0
-    if not cut_short or run.proposed < run.h * factor:
-        # a step cut short by an event or the end of the piece says nothing against a longer one after it
-        run.proposed = run.h * factor
+    propose_next(method, run)
     run.rejected_before = 0
     run.has_cut = run.landings = run.contact_landings = 0
     run.at_once = 0
@@ -603,12 +595,33 @@ def accept(scene: cython.pointer[Scene], method: cython.pointer[Method], run: cy
     if code == REACHED:
         sample_reached(run)
         if not run.following:
-            run.ends[run.done] = run.t
             run.pivots[run.done] = pivot
-            run.settled[run.done] = run.near
-            put_record(scene, run, run.passed[run.done])
+            put_down(scene, run)
         run.done += 1
     return code
+
+
+def keep_rates(run: cython.pointer[Run]) -> cython.void:
+    """The largest rates so far, of each group and of the scene; the work of drives is no motion."""
+    b: cython.Py_ssize_t
+    for b in range(run.group_count):
+        run.groups[b].rate = run.groups[b].trial
+        if run.groups[b].rate > run.rate and b != run.energy_group:
+            run.rate = run.groups[b].rate
+
+
+def propose_next(method: cython.pointer[Method], run: cython.pointer[Run]) -> cython.void:
+    """The next length by the error; a step cut short by an event or by its piece says nothing against a longer one."""
+    h: cython.double = run.h * growth(method, run)
+    if not (run.last or run.has_cut) or run.proposed < h:
+        run.proposed = h
+
+
+def put_down(scene: cython.pointer[Scene], run: cython.pointer[Run]) -> cython.void:
+    """The step by its end, whether its stages were settled, and what the next one starts from."""
+    run.ends[run.done] = run.t
+    run.settled[run.done] = run.near
+    put_record(scene, run, run.passed[run.done])
 
 
 def turn_branches(scene: cython.pointer[Scene], run: cython.pointer[Run]) -> cython.bint:

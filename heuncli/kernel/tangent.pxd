@@ -10,9 +10,9 @@ from heuncli.kernel.response cimport evaluate, find_taken
 from heuncli.kernel.scene cimport (
     BodyAtState, Body, BodyTangent, Closure, Counter, Freedom, FreedomTangent, Lent, SHIFT, Scene,
 )
-from heuncli.kernel.tangent_closures cimport closures_along, omega_along
+from heuncli.kernel.tangent_closures cimport closures_along
 from heuncli.kernel.tangent_loads cimport loads_along
-from heuncli.kernel.tangent_motion cimport move_along, swung
+from heuncli.kernel.tangent_motion cimport move_along, omega_along, swung
 from heuncli.kernel.tree cimport balance, direction_of, downward, load_along, push_lent
 
 cdef int stand_at(Scene *scene, double t, double *y, double *dy) noexcept nogil

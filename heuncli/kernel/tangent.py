@@ -47,9 +47,9 @@ if not cython.compiled:
         Scene,
     )
     from heuncli.kernel.shadow import cython
-    from heuncli.kernel.tangent_closures import closures_along, omega_along
+    from heuncli.kernel.tangent_closures import closures_along
     from heuncli.kernel.tangent_loads import loads_along
-    from heuncli.kernel.tangent_motion import move_along, swung
+    from heuncli.kernel.tangent_motion import move_along, omega_along, swung
     from heuncli.kernel.tree import balance, direction_of, downward, load_along, push_lent
 
 

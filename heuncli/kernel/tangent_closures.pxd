@@ -5,7 +5,7 @@ from heuncli.kernel.closures cimport carried, place_of
 from heuncli.kernel.loads cimport omega_of
 from heuncli.kernel.scene cimport BodyAtState, Body, BodyTangent, Closure, DOT, GUIDE, Scene, TURN
 from heuncli.kernel.tangent_loads cimport LoadTangent, opposite, push_along
-from heuncli.kernel.tangent_motion cimport point_along, swung
+from heuncli.kernel.tangent_motion cimport omega_along, point_along, swung
 from heuncli.kernel.tree cimport direction_of
 
 cdef struct RowTangent:
@@ -27,6 +27,5 @@ cdef RowTangent guide_along(Scene *scene, Closure *row, Vec3 Q) noexcept nogil
 cdef RowTangent rod_along(Scene *scene, Closure *row, Vec3 Q) noexcept nogil
 cdef RowTangent dot_along(Scene *scene, Closure *row, Vec3 Q) noexcept nogil
 cdef RowTangent turn_row_along(Scene *scene, Closure *row, Vec3 Q) noexcept nogil
-cdef Vec3 omega_along(Scene *scene, int body) noexcept nogil
 cdef Vec3 alpha_at(Scene *scene, int body) noexcept nogil
 cdef Vec3 alpha_along(Scene *scene, int body) noexcept nogil

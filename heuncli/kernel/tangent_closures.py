@@ -20,7 +20,7 @@ if not cython.compiled:
     from heuncli.kernel.shadow import cython
     from heuncli.kernel.structs import LoadTangent, MotionTangent, RowTangent
     from heuncli.kernel.tangent_loads import opposite, push_along
-    from heuncli.kernel.tangent_motion import point_along, swung
+    from heuncli.kernel.tangent_motion import omega_along, point_along, swung
     from heuncli.kernel.tree import direction_of
 
 
@@ -154,13 +154,6 @@ def turn_row_along(scene: cython.pointer[Scene], row: cython.pointer[Closure], Q
     return RowTangent(Q, zero, e, dot(e, turn) + dot(row.m, change), dot(e, A) + dot(row.m, dA) + bent)
 
 
-def omega_along(scene: cython.pointer[Scene], body: cython.int) -> Vec3:
-    """What a body's angular velocity changes by; the ground's does not."""
-    if body < 0:
-        return Vec3(0.0, 0.0, 0.0)
-    return scene.tangents[body].omega
-
-
 def alpha_at(scene: cython.pointer[Scene], body: cython.int) -> Vec3:
     """Angular acceleration of a body at the state; none of the ground's."""
     if body < 0:
@@ -169,7 +162,7 @@ def alpha_at(scene: cython.pointer[Scene], body: cython.int) -> Vec3:
 
 
 def alpha_along(scene: cython.pointer[Scene], body: cython.int) -> Vec3:
-    """And what it changes by."""
+    """And what that changes by."""
     if body < 0:
         return Vec3(0.0, 0.0, 0.0)
     return scene.tangents[body].alpha

@@ -7,7 +7,7 @@ from heuncli.kernel.scene cimport (
     ACTUATOR, Body, BodyTangent, COUPLE, FORCE, Load, SHIFT_DAMPER, SHIFT_FRICTION, SPRING, Scene, THRUST,
     TURN_FRICTION, TURN_SPRING,
 )
-from heuncli.kernel.tangent_motion cimport point_along, swung
+from heuncli.kernel.tangent_motion cimport omega_along, point_along, swung
 from heuncli.kernel.tree cimport PointMotion, direction_of, point_of
 from libc.math cimport NAN, tanh
 
@@ -23,7 +23,6 @@ cdef LoadTangent opposite(LoadTangent d) noexcept nogil
 cdef double outer_along(Scene *scene, Load *load, Vec3 given, PointMotion there) noexcept nogil
 cdef double pair_along(Scene *scene, Load *load, double given, PointMotion there) noexcept nogil
 cdef double joint_along(Scene *scene, Load *load, double given, PointMotion there) noexcept nogil
-cdef Vec3 turning_along(Scene *scene, Load *load) noexcept nogil
 cdef Vec3 sliding_along(Scene *scene, Load *load, PointMotion there) noexcept nogil
 cdef double angle_along(Scene *scene, Load *load) noexcept nogil
 cdef double resistance(Load *load, double speed) noexcept nogil

@@ -34,7 +34,7 @@ if not cython.compiled:
     )
     from heuncli.kernel.shadow import cython
     from heuncli.kernel.structs import LoadTangent, PointMotion
-    from heuncli.kernel.tangent_motion import point_along, swung
+    from heuncli.kernel.tangent_motion import omega_along, point_along, swung
     from heuncli.kernel.tree import direction_of, point_of
 
     NAN = nan
@@ -152,7 +152,7 @@ def joint_along(
     axis: Vec3 = direction_of(scene, load.a, load.axis)
     slides: cython.bint = load.kind == THRUST or load.kind == SHIFT_DAMPER or load.kind == SHIFT_FRICTION
     motion: Vec3 = sub(omega_of(scene, load.b), omega_of(scene, load.a))
-    change: Vec3 = turning_along(scene, load)
+    change: Vec3 = sub(omega_along(scene, load.b), omega_along(scene, load.a))
     if slides:
         motion = sliding_in(scene, load, point_of(scene, load.b, load.q).v)
         change = sliding_along(scene, load, there)
@@ -178,16 +178,6 @@ def joint_along(
     push_along(scene, load.b, load.at, load.force, d)
     push_along(scene, load.a, load.at, scaled(-1.0, load.force), opposite(d))
     return power
-
-
-def turning_along(scene: cython.pointer[Scene], load: cython.pointer[Load]) -> Vec3:
-    """Of the angular velocity of b against a."""
-    found: Vec3 = Vec3(0.0, 0.0, 0.0)
-    if load.b >= 0:
-        found = scene.tangents[load.b].omega
-    if load.a >= 0:
-        found = sub(found, scene.tangents[load.a].omega)
-    return found
 
 
 def sliding_along(scene: cython.pointer[Scene], load: cython.pointer[Load], there: PointMotion) -> Vec3:

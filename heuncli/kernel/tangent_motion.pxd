@@ -14,8 +14,9 @@ cdef void hang_along(Scene *scene, Body *body, BodyTangent *d) noexcept nogil
 cdef Vec3 sliding(Scene *scene, Body *body) noexcept nogil
 cdef void shift_along(Scene *scene, Body *body, BodyTangent *d) noexcept nogil
 cdef void orient_along(Scene *scene, Body *body, BodyTangent *d) noexcept nogil
-cdef void turn_along(Freedom *freedom, FreedomTangent *freedom_d, BodyTangent *d) noexcept nogil
+cdef void turn_along(Freedom *freedom, FreedomTangent *own, BodyTangent *d) noexcept nogil
 cdef void ball_along(Body *body, BodyTangent *d, double *y, double *along) noexcept nogil
 cdef void resist_along(Body *body, BodyAtState *at, BodyTangent *d) noexcept nogil
 cdef Vec3 swung(Scene *scene, int body, Vec3 a) noexcept nogil
+cdef Vec3 omega_along(Scene *scene, int body) noexcept nogil
 cdef PointMotion point_along(Scene *scene, int body, Vec3 q) noexcept nogil

@@ -161,7 +161,7 @@ def orient_along(
 ) -> cython.void:
     """Of attitude, angular velocity and acceleration of a body on single axes, in the order of its turns."""
     k: cython.Py_ssize_t
-    d.spin = d.turn
+    d.spin = Vec3(0.0, 0.0, 0.0)
     if body.parent >= 0:
         on: cython.pointer[BodyTangent] = cython.address(scene.tangents[body.parent])
         d.spin = scene.bodies[body.parent].omega
@@ -227,6 +227,13 @@ def swung(scene: cython.pointer[Scene], body: cython.int, a: Vec3) -> Vec3:
     if body < 0:
         return Vec3(0.0, 0.0, 0.0)
     return cross(scene.tangents[body].turn, a)
+
+
+def omega_along(scene: cython.pointer[Scene], body: cython.int) -> Vec3:
+    """What a body's angular velocity changes by; the ground's does not."""
+    if body < 0:
+        return Vec3(0.0, 0.0, 0.0)
+    return scene.tangents[body].omega
 
 
 def point_along(scene: cython.pointer[Scene], body: cython.int, q: Vec3) -> PointMotion:
