@@ -18,7 +18,7 @@ import numpy as np
 from heuncli import tolerances
 from heuncli.errors import Problem, SolveError
 from heuncli.integration.evaluator import Recovered
-from heuncli.integration.loop import Integration, just_after, just_before
+from heuncli.integration.loop import Integration, Start, just_after, just_before
 from heuncli.integration.methods.dop853 import DOP853
 from heuncli.integration.runner import REACHED, ClosuresLost, Runner, Trajectory
 from heuncli.records import record
@@ -120,11 +120,8 @@ def met(runner: Runner, answer: Recovered) -> bool:
 def forward(runner: Runner, good: State, t: float) -> State | None:
     """The state at a later instant if it is good: integrated, or at a lock brought there by its gaps alone."""
     begin, end = just_after(good.t), just_before(t)
-    piece = Integration(
-        runner.layout, runner.workspace, DOP853, np.array([t]),
-        most=MOST_STEPS, state=good.y, local=LOCAL, rate=tolerances.LEAST_RATE / (t - good.t), following=0,
-        late=0,
-    )  # fmt: skip
+    start = Start(good.y, LOCAL, tolerances.LEAST_RATE / (t - good.t))
+    piece = Integration(runner.layout, runner.workspace, DOP853, np.array([t]), MOST_STEPS, start)
     if begin < end:
         piece.loop.begin(begin, end, t)
         reached = piece.loop.advance(MOST_STEPS, False, False) == REACHED

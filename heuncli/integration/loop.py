@@ -14,6 +14,7 @@ from heuncli.integration.methods.method import Method
 from heuncli.integration.pace import FIRST_LOOK
 from heuncli.kernel.choose import integration
 from heuncli.mechanism.model import Load
+from heuncli.records import record
 from heuncli.response import Workspace
 from heuncli.results import Array
 from heuncli.tree.layout import Layout
@@ -26,30 +27,44 @@ UNWATCHED = {"stiff_after": 0, "easy_after": 0, "look_after": 0, "stable": 0.0}
 PER_STEP = ("ends", "settled", "pivots", "turned")  # what is put down of each step
 
 
+@record
+class Start:
+    """What a run sets out from, and what its steps are judged by.
+
+    local: the tolerance of a step, or of a method of given steps their length; rate [1/s]: slower ones are judged as if
+    that fast. following: its steps are given by their ends, and none is judged; late: events are met late by rounding,
+    to see what that makes of the run; watched: it is noticed where stability holds its steps short.
+    """
+
+    state: Array
+    local: float
+    rate: float = 0.0
+    following: bool = False
+    late: bool = False
+    watched: bool = False
+
+
 class Integration:
     """The kernel's loop over the asked instants, at most `most` steps at a time, with the arrays it writes to."""
 
-    def __init__(self, layout: Layout, workspace: Workspace, method: Method, times: Array, **given: Any) -> None:
+    def __init__(
+        self, layout: Layout, workspace: Workspace, method: Method, times: Array, most: int, start: Start
+    ) -> None:
         if method.foreign:
             raise ValueError(f"the kernel has no stages of {method.name}")
         n = self.n = layout.n_state
-        self.method = method
-        most, local = given.pop("most"), given.pop("local")
-        self.local, self.rate = local, given["rate"]
+        self.method, self.start = method, start
         self.looked = 0  # steps after which it was looked at last whether another method takes less
-        given |= stiffness_of(method, layout) if given.pop("watched", False) else UNWATCHED
-        given |= {"tolerance": 1.0, "step": local} if method.fixed else {"tolerance": local, "step": 0.0}
         self.width = integration.record_width(workspace, n)
         self.output = {name: np.zeros(most) for name in PER_STEP}
         self.held = layout.pack.held
         self.branches = np.zeros(most * self.held)
-        self.passed = np.zeros(0 if given["following"] else most * self.width)
+        self.passed = np.zeros(0 if start.following else most * self.width)
         self.count = len(times)
         self.samples = np.zeros(self.count * n)
-        start = {"groups": layout.tables["groups"], "energy_group": layout.energy_group, "weights": layout.weights}
         output = self.output | {"times": times, "samples": self.samples, "passed": self.passed}
         output["branches"] = self.branches
-        self.loop = integration.Integration(workspace, method.arrays, start | given, output)
+        self.loop = integration.Integration(workspace, method.arrays, begin_with(start, method, layout), output)
 
     def records(self, every: int, offset: int) -> Array:
         """What the steps after those just done start from: of every so many, (count, width); a copy."""
@@ -64,6 +79,22 @@ class Integration:
         """The states at the asked instants, (n_t, n)."""
         self.loop.fetch()
         return self.samples.reshape(self.count, self.n)
+
+
+def begin_with(start: Start, method: Method, layout: Layout) -> dict[str, Any]:
+    """A start as the kernel's loop takes it (kernel/integration.py): its tolerance, or the step in its place."""
+    return {
+        "groups": layout.tables["groups"],
+        "energy_group": layout.energy_group,
+        "weights": layout.weights,
+        "state": start.state,
+        "tolerance": 1.0 if method.fixed else start.local,
+        "step": start.local if method.fixed else 0.0,
+        "rate": start.rate,
+        "following": int(start.following),
+        "late": int(start.late),
+        **(stiffness_of(method, layout) if start.watched else UNWATCHED),
+    }
 
 
 def stiffness_of(method: Method, layout: Layout) -> dict[str, float]:

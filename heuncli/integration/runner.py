@@ -21,7 +21,7 @@ from heuncli.expressions.programs import Expression
 from heuncli.integration.between import Blows
 from heuncli.integration.blows import Jump
 from heuncli.integration.evaluator import Evaluator
-from heuncli.integration.loop import Integration, Segment, Steps, just_before, smooth_segments
+from heuncli.integration.loop import Integration, Segment, Start, Steps, just_before, smooth_segments
 from heuncli.integration.methods.dop853 import DOP853
 from heuncli.integration.methods.method import Method
 from heuncli.integration.moving import Moving, itself
@@ -248,10 +248,10 @@ class Runner(Evaluator):
         whole: bool = False,
         watched: bool = False,
     ) -> Trajectory:
-        """Integrate from the start at t = 0 over the asked instants (ascending); `local` is the local tolerance,
-        of a method of fixed step the step.
+        """Integrate from the start at t = 0 over the asked instants, ascending.
 
-        start: a state to start from instead of the scene's own.
+        local: the tolerance of a step, or of a method of given steps their length. start: a state beside the scene's
+        own, to see what rounding makes of a run; events are then late by rounding, too.
 
         Where a rope would have to push the run ends: the instants up to there, and that one. So it does where the
         condition that ends it becomes true, unless the whole of it is asked for.
@@ -272,16 +272,12 @@ class Runner(Evaluator):
         last = float(ts[-1]) if len(ts) else 0.0
         # at rest under a load like t**4 all rates and accelerations vanish at first: this rate then sets the scale
         rate = tolerances.LEAST_RATE / last if last > 0.0 else 0.0
-        most = chunk_of(moving.layout, method)
-        # what begins beside the scene's start is to show what rounding makes of a run, that of its events, too
-        late = int(start is not None)
-        start = moving.restrict(0.0, self.layout.y0 if start is None else start)
-        run = Integration(
-            moving.layout, moving.workspace, method, ts,
-            most=most, state=start, local=local, rate=rate, following=0, late=late,
-            watched=watched,
+        begin = Start(
+            moving.restrict(0.0, self.layout.y0 if start is None else start), local, rate,
+            late=start is not None, watched=watched,
         )  # fmt: skip
-        steps = Steps(start, run.width)
+        run = Integration(moving.layout, moving.workspace, method, ts, chunk_of(moving.layout, method), begin)
+        steps = Steps(begin.state, run.width)
         check_deadline(deadline, f"before the run of {last:.6g} s began")
         blows, until = Blows(self, moving, run, steps, last), None if whole else until_of(moving.layout)
         going = Going(run, steps, blows, last, deadline, most_steps, until)
@@ -293,11 +289,18 @@ class Runner(Evaluator):
         except Stiff as stiff:
             stiff.seconds = time.perf_counter() - begun
             raise
-        ts, states = (ts, run.states()) if ending is None else cut_short(ts, run, ending.told)
+        return self._trajectory(going, ts, pieces, ending, time.perf_counter() - begun)
+
+    def _trajectory(
+        self, going: Going, asked: Array, pieces: Sequence[Segment], ending: Ending | None, seconds: float
+    ) -> Trajectory:
+        """What a run that came to its end, or to its ending, leaves."""
+        run, steps, moving = going.run, going.steps, self.moving
+        times, states = (asked, run.states()) if ending is None else cut_short(asked, run, ending.told)
         return Trajectory(
-            times=ts, states=moving.embed(ts, states), ends=steps.column("ends"), steps=run.loop.steps,
-            evaluations=run.loop.evaluations, gap=run.loop.gap, local=local, method=method,
-            seconds=time.perf_counter() - begun, segments=tuple(pieces), kept=steps.records(),
+            times=times, states=moving.embed(times, states), ends=steps.column("ends"), steps=run.loop.steps,
+            evaluations=run.loop.evaluations, gap=run.loop.gap, local=run.start.local, method=run.method,
+            seconds=seconds, segments=tuple(pieces), kept=steps.records(),
             pivots=steps.column("pivots"), settled=steps.column("settled"), branches=steps.held_branches(),
             turned=steps.column("turned"), undecided=run.loop.undecided,
             stopped=ending.rope if ending is not None else None, ended=ending is not None and ending.rope is None,
@@ -454,10 +457,8 @@ class Runner(Evaluator):
         States are those of what is integrated.
         """
         layout, workspace = self.moving.layout, self.moving.workspace
-        replayed = Integration(
-            layout, workspace, run.method, times,
-            most=last - first + 1, state=layout.y0, local=math.inf, rate=0.0, following=1, late=0,
-        )  # fmt: skip
+        given = Start(layout.y0, math.inf, following=True)
+        replayed = Integration(layout, workspace, run.method, times, last - first + 1, given)
         loop, after = replayed.loop, run.after_blows
         loop.stand(record)
         t = float(run.ends[first - 1]) if first else 0.0

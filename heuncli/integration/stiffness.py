@@ -14,7 +14,7 @@ from typing import TYPE_CHECKING
 import numpy as np
 
 from heuncli import tolerances
-from heuncli.integration.loop import Integration, Segment
+from heuncli.integration.loop import Integration, Segment, Start
 from heuncli.integration.methods.method import Method
 from heuncli.integration.methods.registry import method_of
 from heuncli.kernel.choose import steps as kernel
@@ -47,7 +47,7 @@ def require_easy(runner: Runner, going: Going, segment: Segment) -> None:
     if steps.count < max(2 * run.looked, RECENT + 1):
         return
     run.looked = steps.count
-    method, t, n = implicit_for(run.local), run.loop.t, runner.moving.layout.n_state
+    method, t, n = implicit_for(run.start.local), run.loop.t, runner.moving.layout.n_state
     ends = steps.column("ends")
     h = float(ends[-1] - ends[-1 - RECENT]) / RECENT
     taken, left = run.loop.evaluations, going.last - t
@@ -77,10 +77,8 @@ def tried(
     workspace = workspace_of(layout)  # its own: the run goes on as if nothing had been tried
     if going.steps.holdings:
         workspace.hold(going.steps.holdings[-1][1])
-    trial = Integration(
-        layout, workspace, method, np.zeros(0),
-        most=sum(TRIED), state=np.array(run.loop.state()), local=run.local, rate=run.rate, following=0, late=0,
-    )  # fmt: skip
+    start = Start(np.array(run.loop.state()), run.start.local, run.start.rate)
+    trial = Integration(layout, workspace, method, np.zeros(0), sum(TRIED), start)
     trial.loop.begin(t, segment.before_end, segment.end)
     if trial.loop.advance(TRIED[0], False, False) not in GOES_ON:
         return math.inf, trial

@@ -19,7 +19,7 @@ import numpy as np
 from heuncli import tolerances
 from heuncli.integration.blows import schedule, strike
 from heuncli.integration.evaluator import Evaluator
-from heuncli.integration.loop import Integration, just_before
+from heuncli.integration.loop import Integration, Start, just_before
 from heuncli.integration.methods.method import Method
 from heuncli.integration.moving import itself
 from heuncli.integration.runner import MORE, REACHED, Runner, Trajectory, check_deadline
@@ -147,11 +147,8 @@ class Shadows:
 
     def forward(self, piece: Piece, state: Array) -> tuple[Array, int] | None:
         """The state that one at the beginning of a piece comes to at its end, and the steps; None if it does not."""
-        run = Integration(
-            self.layout, self.workspace, self.method, np.array([piece.end]),
-            most=CHUNK, state=state, local=STIFF_LOCAL if self.method.implicit else tolerances.LEAST_TOLERANCE,
-            rate=self.rate, following=0, late=0,
-        )  # fmt: skip
+        start = Start(state, STIFF_LOCAL if self.method.implicit else tolerances.LEAST_TOLERANCE, self.rate)
+        run = Integration(self.layout, self.workspace, self.method, np.array([piece.end]), CHUNK, start)
         run.loop.begin(piece.begin, piece.before_end, piece.end)
         for _ in range(MOST_CHUNKS):
             code = run.loop.advance(CHUNK, False, False)

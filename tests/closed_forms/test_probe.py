@@ -93,7 +93,7 @@ def test_beside_a_run_by_scipy_the_kernel_runs() -> None:
     assert found.model["method"] == "SciPy-LSODA" and found.across is not None
     assert found.across.rate == pytest.approx(math.sqrt(1.0 / 3.0), rel=SHADOW)
     with pytest.raises(ValueError, match="no stages of SciPy-LSODA"):
-        Integration(None, None, method_of("SciPy-LSODA"), np.zeros(0))  # type: ignore[arg-type]
+        Integration(None, None, method_of("SciPy-LSODA"), np.zeros(0), 1, None)  # type: ignore[arg-type]
 
 
 def test_a_pendulum_forgets_nothing() -> None:
