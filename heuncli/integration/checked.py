@@ -119,7 +119,7 @@ class Runs:
     def first(self, tolerance: float) -> Trajectory:
         """The run asked for; where it collapses at a singular pose, a coarser one that passes it."""
         if self.step is not None:
-            return self.run(self.step)
+            return self.given(self.step)
         local = max(tolerance * FIRST, tolerances.LEAST_TOLERANCE)
         try:
             return self.run(local)
@@ -138,6 +138,15 @@ class Runs:
                 lock.reached = error.reached
                 raise lock from None
             raise
+
+    def given(self, step: float) -> Trajectory:
+        """The run in steps of a given length."""
+        try:
+            return self.run(step)
+        except SolveError as error:
+            from heuncli.integration.given_steps import of_given_steps  # only on the way to an error
+
+            raise of_given_steps(self, error) from None
 
     def attempt(self, local: float, than: Trajectory, at: Array | None, start: Array | None) -> Trajectory | None:
         """A run of not many more steps than another; None where rounding lets it collapse, near a singular pose say."""

@@ -1,8 +1,8 @@
 """The instants at which a run is compared with its check run, and the start from which that one sets out.
 
 An estimate must hold for every instant of the run, asked or not. So the runs are compared at the asked instants, at the
-ends of the steps, and within steps: what the interpolation between the ends of a step errs by is largest in its middle
-and near its end, up to fifty times what the ends themselves err by.
+ends of the steps, and within steps where the method's interpolation errs most: up to fifty times what the ends
+themselves err by.
 """
 
 from __future__ import annotations
@@ -18,7 +18,6 @@ from heuncli.records import record
 from heuncli.results import Array, Indices, Mask
 from heuncli.tree.layout import Layout
 
-WITHIN = (0.5, 0.85)  # of a step: where interpolation errs most, measured on open and closed chains
 ENDS = 2_000  # ends of steps that are compared, in even numbers over a longer run; the horizon is then looked for again
 INSIDE = 2_000  # bodies times steps up to which all steps are looked into
 ENOUGH = 64  # steps in which asked instants lie, anywhere, show what interpolation errs by
@@ -46,7 +45,7 @@ def instants_of(runner: Runner, run: Trajectory) -> Instants:
     bounds = np.concatenate([[0.0], run.ends])
     seen = np.diff(np.searchsorted(asked, bounds)) if len(run.ends) else np.zeros(0, dtype=np.intp)
     ends, states = ends_of(runner, run, seen)
-    inner = np.zeros(0) if run.method.determined else within(bounds, seen, len(runner.layout.place))
+    inner = np.zeros(0) if run.method.determined else within(bounds, seen, len(runner.layout.place), run.method.within)
     times = np.concatenate([asked, ends, inner])
     states = np.concatenate([own, states, runner.resample(run, inner)])
     order = np.argsort(times, kind="stable")  # of equal instants the asked one comes first
@@ -64,8 +63,8 @@ def ends_of(runner: Runner, run: Trajectory, seen: Indices) -> tuple[Array, Arra
     return times, runner.moving.embed(times, np.array([state for _, state in kept]))
 
 
-def within(bounds: Array, seen: Indices, bodies: int) -> Array:
-    """Instants within steps: none where those asked for lie in enough of them, (n,) ascending."""
+def within(bounds: Array, seen: Indices, bodies: int, parts: tuple[float, ...]) -> Array:
+    """Instants at these parts of steps: none where those asked for lie in enough of them, (n,) ascending."""
     count = len(seen)
     if np.count_nonzero(seen) >= ENOUGH:
         return np.zeros(0)
@@ -73,7 +72,7 @@ def within(bounds: Array, seen: Indices, bodies: int) -> Array:
     if count * bodies > INSIDE and count > BLOCKS * BLOCK:
         first = np.linspace(0, count - BLOCK, BLOCKS).astype(int)
         steps = (first[:, None] + np.arange(BLOCK)).ravel()
-    inner: Array = bounds[steps, None] + np.diff(bounds)[steps, None] * np.array(WITHIN)
+    inner: Array = bounds[steps, None] + np.diff(bounds)[steps, None] * np.array(parts)
     return inner.ravel()
 
 

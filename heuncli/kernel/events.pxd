@@ -22,6 +22,7 @@ cdef enum:
     MOST_PARTS = 4000         # and in all
 
 cdef void forget(Scene *scene) noexcept nogil
+cdef void watch_afresh(Scene *scene) noexcept nogil
 cdef void see(Scene *scene) noexcept nogil
 cdef double watched(Scene *scene, Watch *watch) noexcept nogil
 cdef double largest_seen(Watch *watch) noexcept nogil

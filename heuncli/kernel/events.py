@@ -48,6 +48,13 @@ def forget(scene: cython.pointer[Scene]) -> cython.void:
         scene.watches[i].high = -INFINITY
 
 
+def watch_afresh(scene: cython.pointer[Scene]) -> cython.void:
+    """A run begins: it is to hang on its start alone, and on nothing that the run before it met."""
+    i: cython.Py_ssize_t
+    for i in range(scene.watch_count):
+        scene.watches[i].rounding = 0.0
+
+
 def see(scene: cython.pointer[Scene]) -> cython.void:
     """What a stage sees: the variables as they were evaluated last, and the watched programs there."""
     i: cython.Py_ssize_t

@@ -2,7 +2,7 @@
 
 from heuncli.kernel.chosen cimport chosen_width
 from heuncli.kernel.dense cimport Branch, Collocation, Course, Factors, Method, Newton, Run, clipped
-from heuncli.kernel.events cimport PARTS, take_branches
+from heuncli.kernel.events cimport PARTS, take_branches, watch_afresh
 from heuncli.kernel.expressions cimport FREE, HELD
 from heuncli.kernel.following cimport stand_here
 from heuncli.kernel.memory cimport Memory

@@ -15,7 +15,7 @@ except ImportError:
 if not cython.compiled:
     from heuncli.kernel.chosen import chosen_width
     from heuncli.kernel.dense import clipped
-    from heuncli.kernel.events import PARTS, take_branches
+    from heuncli.kernel.events import PARTS, take_branches, watch_afresh
     from heuncli.kernel.expressions import FREE, HELD
     from heuncli.kernel.following import stand_here
     from heuncli.kernel.memory import Memory
@@ -106,6 +106,7 @@ class Integration:
         run.beside = self.memory.matrix(self.method.stages if self.method.by_step else 0, n)
         run.dense = self.memory.matrix(3 + self.method.dense_rows, n)
         self.make_chart(n)
+        watch_afresh(cython.address(self.workspace.scene))
         run.group_count = len(start["groups"])
         if cython.compiled:
             groups: cython.p_void = self.memory.rows(start["groups"], cython.sizeof(Group))

@@ -56,7 +56,14 @@ def unfit_step(step: float, last: float | None) -> Iterator[Unfit]:
 
 def meant(method: str) -> str:
     """Which method may be meant by a word that is none."""
-    word = METHOD_WORDS.get(method.lower().replace("-", "").replace("_", "").replace(" ", ""))
+    word = METHOD_WORDS.get(bare(method))
     if word is not None and (word == AUTO or row_of(word) is not None):
         return f"here that is method: {word}"
-    return f"{did_you_mean(method, NAMES, 'methods')}; `heun methods` lists them"
+    same = next((name for name in NAMES if bare(name) == bare(method)), method)
+    hint = did_you_mean(same, NAMES, "methods") or ""
+    return f"{hint}{'' if hint.endswith('?') else ';'} `heun methods` lists them"
+
+
+def bare(name: str) -> str:
+    """A name in lower case, without hyphens and blanks."""
+    return "".join(x for x in name.lower() if x not in "-_ ")

@@ -299,7 +299,7 @@ class Condition(NamedTuple):
 class Analysis(NamedTuple):
     """What is solved: times are the instants asked for [s]; duration is the last of them in a motion.
 
-    step is for methods of fixed step.
+    step is for methods of fixed step. tolerance_given: whether somebody asked for it, or it is the default.
     """
 
     type: Literal["motion", "impulse", "state", "rest"]
@@ -309,6 +309,7 @@ class Analysis(NamedTuple):
     method: str
     step: float | None
     conditions: tuple[Condition, ...] = ()
+    tolerance_given: bool = False
 
 
 class Foundation(NamedTuple):

@@ -62,6 +62,7 @@ def resolve(document: f.Document, meaning: Meaning) -> m.Spec:
             analysis.tolerance if analysis.tolerance is not None else DEFAULT_TOLERANCE, canonical(analysis.method),
             analysis.step,
             r.conditions(analysis),
+            analysis.tolerance is not None,
         ),
         report=tuple(document.head.report) if document.head.report is not None else None,
         foundation=m.Foundation(r.about(document.foundation.about)),

@@ -93,11 +93,10 @@ def solved(spec: Spec, options: Options, deadline: float | None) -> Study:
     begun = time.perf_counter()
     conditions = spec.analysis.conditions
     asked = options.asked.with_all(needed_by(conditions, spec)) if conditions else options.asked
-    spec = stepping(spec, options)
+    spec = as_asked(spec, options)
     setup = set_up(spec, reduce=options.reduce, asked=asked, deadline=deadline)
     built = time.perf_counter()
-    tolerance = spec.analysis.tolerance if options.tolerance is None else options.tolerance
-    history = integrate(setup, tolerance, deadline, by_cause=SHARES in options.reports)
+    history = integrate(setup, spec.analysis.tolerance, deadline, by_cause=SHARES in options.reports)
     whole, setup = setup, replace(setup, asked=options.asked) if conditions else setup
     moved = time.perf_counter()
     recovery = recover(setup, history.recovered, options.least_norm)
@@ -146,19 +145,23 @@ def by_stiff_method(setup: Setup, stiff: Stiff) -> Setup:
     return replace(setup, method=stiff.method, model=setup.model | told)
 
 
-def stepping(spec: Spec, options: Options) -> Spec:
-    """The spec with the method and the step that are asked for; its own step goes with no method but one of fixed step.
+def as_asked(spec: Spec, options: Options) -> Spec:
+    """The spec with the tolerance, method and step of the options; its own step goes with methods of fixed step alone.
 
     Raises SpecError where they do not go together.
     """
-    method = options.method or spec.analysis.method
+    given = spec.analysis
+    method = given.method if options.method is None else options.method
     row = row_of(method)
     fixed = row is not None and row.steps == "fixed"
-    step = options.step if options.step is not None or not (fixed or options.method is None) else spec.analysis.step
-    wrong = [Problem(one.code, one.message, hint=one.hint) for one in unfit(method, step, spec.analysis.duration)]
+    step = options.step if options.step is not None or not (fixed or options.method is None) else given.step
+    wrong = [Problem(one.code, one.message, hint=one.hint) for one in unfit(method, step, given.duration)]
     if wrong:
         raise SpecError(*wrong)
-    return spec._replace(analysis=spec.analysis._replace(method=canonical(method), step=step))
+    given = given._replace(method=canonical(method), step=step)
+    if options.tolerance is not None:
+        given = given._replace(tolerance=options.tolerance, tolerance_given=True)
+    return spec._replace(analysis=given)
 
 
 def compose(

@@ -32,7 +32,7 @@ def warnings(setup: Setup, history: History, recovery: Recovery, joints: Block, 
     return (
         *unbalanced(residual),
         *(warning for cuts in setup.cuts for warning in cuts.warnings),
-        *(of_the_motion(history) if history.checked is not None else of_ropes(setup, joints)),
+        *(of_the_motion(setup, history) if history.checked is not None else of_ropes(setup, joints)),
         *singular,
     )
 
@@ -60,12 +60,16 @@ def unbalanced(residual: float) -> list[str]:
     return [wrong] if residual > tolerances.UNBALANCED else []
 
 
-def of_the_motion(history: History) -> list[str]:
-    """A tolerance that was missed, singular poses, an early end."""
+def of_the_motion(setup: Setup, history: History) -> list[str]:
+    """A tolerance that was missed, singular poses, an early end.
+
+    Given steps keep to no tolerance; they are held to one that was asked for beside them.
+    """
     assert history.checked is not None
     checked, tolerance = history.checked, history.tolerance
     lines = []
-    if (worst := checked.motion) > tolerance:
+    held = setup.step is None or setup.spec.analysis.tolerance_given
+    if (worst := checked.motion) > tolerance and held:
         missed = f"the tolerance {tolerance:.3g} was not reached"
         lines.append(f"{missed}: the motion is estimated to {worst:.2g} of the scene's size")
     if history.singular:

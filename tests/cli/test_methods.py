@@ -11,7 +11,7 @@ from heuncli.integration.methods.registry import method_of
 from heuncli.method_rows import METHODS
 from heuncli.spec.methods import meant, unfit
 from heuncli.spec.words import METHOD_WORDS
-from tests.cli.conftest import Heun
+from tests.cli.conftest import SPECS, Heun
 
 
 def test_every_method_is_listed(heun: Heun) -> None:
@@ -52,7 +52,13 @@ def test_a_word_too_many_is_bad_usage(heun: Heun) -> None:
         (["--step", "0.01"], "auto finds its own steps and takes none [fixed-step]"),
         (["--method", "DOP853", "--step", "0.01"], "[fixed-step]"),
         (["--method", "ode45"], "here that is method: DOPRI5"),
-        (["--method", "RK5"], "did you mean RK4?"),
+        (["--method", "RK5"], "did you mean RK4? `heun methods` lists them"),
+        (["--method", "gauss 4"], "did you mean Gauss4?"),
+        (["--method", ""], "'' is no method of integration [unknown-method]"),
+        (["--method", "auto", "--step", "0.01"], "auto finds its own steps and takes none [fixed-step]"),
+        (["--method", "RK4", "--step", "0"], "expected a positive number [bad-option]"),
+        (["--method", "RK4", "--step", "nan"], "expected a positive number [bad-option]"),
+        (["--method", "RK4", "--step", "1e-300"], "steps of 2e-07 s and more"),
         (["--method", "RK4", "--step", "2"], "the step of 2 s is longer than the run of 1 s [step]"),
         (["--method", "RK4", "--step", "1e-8"], "steps of 2e-07 s and more"),
         (["--method", "RK4", "--step", "-1"], "expected a positive number"),
@@ -86,3 +92,30 @@ def test_words_of_other_programs_lead_to_methods() -> None:
         assert word == word.lower() and name in known, word
         assert meant(word) == f"here that is method: {name}"
         assert [one.code for one in unfit(word, None, 1.0)] == ["unknown-method"]
+
+
+@pytest.mark.parametrize(
+    ("given", "told"),
+    [
+        ("method: [RK4]", ["analysis.method: expected a text, found a list [wrong-kind]"]),
+        ("method: 5", ["analysis.method: expected a text, found a number [wrong-kind]"]),
+        ("method: ''", ["analysis.method: '' is no method of integration [unknown-method]"]),
+        ("method: RK4, step: 0", ["analysis.step: step must be more than 0, not 0 [not-positive]"]),
+        ("method: RK4, step: .nan", ["analysis.step: nan is not a finite number [not-finite]"]),
+        ("method: RK4, step: 1 mm", ["analysis.step: '1 mm' is a length, expected a time [dimension]"]),
+        ("method: auto, step: 0.1", ["analysis.step: auto finds its own steps and takes none [fixed-step]"]),
+    ],
+)
+def test_a_spec_is_told_each_error_once_and_where(heun: Heun, given: str, told: list[str]) -> None:
+    """A step that could not be read is not missing beside that."""
+    done = heun("run", "-", text=SPECS["swinging"].replace("analysis: {", f"analysis: {{{given}, "))
+    assert (done.returncode, done.stdout) == (2, "")
+    lines = [line for line in done.stderr.splitlines() if not line.startswith("  hint: ")]
+    assert [line.partition(": ")[2] for line in lines] == told
+
+
+def test_given_steps_are_held_to_a_tolerance_that_was_asked_for(heun: Heun) -> None:
+    """Nobody asked for the default's: a step was."""
+    words = ("run", "swinging.yaml", "--method", "RK4", "--step", "0.05")
+    assert heun(*words).stderr == ""
+    assert "the tolerance 1e-12 was not reached" in heun(*words, "--tolerance", "1e-12").stderr

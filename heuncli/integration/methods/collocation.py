@@ -28,7 +28,7 @@ class Nodes:
     back: tuple[tuple[float, ...], ...]
 
 
-def method_by(name: str, order: int, of: Nodes, *, error_order: int) -> Method:
+def method_by(name: str, order: int, of: Nodes, *, error_order: int, within: tuple[float, ...] = ()) -> Method:
     """The method with these nodes; of Radau's steps are judged by an error of that order in h, of Gauss's given."""
     c = [Fraction(x) for x in of.nodes]
     A, b, fixed = integrals(c, c), integrals(c, [Fraction(1)])[0], not error_order
@@ -45,7 +45,7 @@ def method_by(name: str, order: int, of: Nodes, *, error_order: int) -> Method:
     return Method(
         name=name, order=order, nodes=(0.0, *of.nodes), stages=tuple(row_of([Fraction(0), *row]) for row in A),
         solution=row_of([Fraction(0), *b]), error_order=error_order or 1, dense=between(c), fixed=fixed,
-        by_step=fixed, implicit=True, collocation=collocation,
+        by_step=fixed, implicit=True, collocation=collocation, within=within,
     )  # fmt: skip
 
 
@@ -165,5 +165,5 @@ RADAU_5 = Nodes(
 )
 GAUSS4 = method_by("Gauss4", 4, GAUSS_2, error_order=0)
 GAUSS6 = method_by("Gauss6", 6, GAUSS_3, error_order=0)
-RADAU5 = method_by("Radau5", 5, RADAU_3, error_order=4)
-RADAU9 = method_by("Radau9", 9, RADAU_5, error_order=6)
+RADAU5 = method_by("Radau5", 5, RADAU_3, error_order=4, within=(0.3, 0.75))
+RADAU9 = method_by("Radau9", 9, RADAU_5, error_order=6, within=(0.125, 0.4, 0.675))

@@ -39,6 +39,7 @@ RK4 = Method(
 DOPRI5 = Method(
     name="DOPRI5",
     stable=3.31,
+    within=(0.3, 0.75),
     order=5,
     nodes=(0.0, 1 / 5, 3 / 10, 4 / 5, 8 / 9, 1.0),
     stages=(

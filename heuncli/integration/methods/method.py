@@ -27,7 +27,8 @@ class Method:
     (kernel/collocation.py), by the numbers in `collocation`; dense rows are then of what the stages are beyond the
     start, from 1 on, and of the three. attitude: how it is held within a step. foreign: its name in SciPy, where
     its steps are taken (integration/foreign.py). stable: of an explicit method, how large
-    h lambda may be of what decays exp(lambda t), lambda < 0, before the method lets it grow: |R(-x)| = 1.
+    h lambda may be of what decays exp(lambda t), lambda < 0, before the method lets it grow: |R(-x)| = 1. within: where
+    in a step its interpolation errs most, measured on open and closed chains (tests/convergence/test_between_ends.py).
     """
 
     name: str
@@ -46,6 +47,7 @@ class Method:
     attitude: int = QUATERNION
     foreign: str = ""
     stable: float = 0.0
+    within: tuple[float, ...] = (0.5, 0.85)
     collocation: Mapping[str, Any] | None = None
 
     @cached_property

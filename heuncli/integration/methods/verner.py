@@ -12,6 +12,7 @@ from heuncli.integration.methods.method import Method
 VERNER98 = Method(
     name="Verner98",
     stable=4.48,
+    within=(0.15, 0.25, 0.5, 0.875),
     order=9,
     nodes=(
         0.0,

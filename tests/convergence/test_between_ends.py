@@ -1,0 +1,54 @@
+"""What a method errs by between the ends of its steps is seen at the instants at which its runs are compared.
+
+An estimate of the ends alone, or of other parts of the steps, told half of what stiff methods erred by.
+"""
+
+from __future__ import annotations
+
+import numpy as np
+import pytest
+
+from heuncli.integration.methods.registry import method_of
+from heuncli.method_rows import METHODS
+from heuncli.results import Array
+from tests.closed_forms.test_theory_2j_motion import heavy_top
+from tests.shared.bars import chain, double
+from tests.shared.scenes import study
+
+pytestmark = pytest.mark.heavy
+
+NAMES = [row.name for row in METHODS if row.kind != "SciPy" and row.attitude != "rodrigues"]
+SCENES = {
+    "two balls": double("{times: [1]}"), "five balls": chain(5, "{times: [1]}"),
+    "top": heavy_top(8, "60 deg", "[1]"),
+}  # fmt: skip
+PARTS = np.linspace(0.0, 1.0, 41)[1:]  # of a step
+SEEN = 0.66  # of the largest error of any part of the step: twice the difference of the runs is then no less than it
+STEP, LOCAL = 0.02, 1e-5
+SOME = 6  # steps of a run
+ROUNDED = 1e-12  # of numbers of some units: below, it is rounding that errs
+
+
+def erred(name: str, scene: str) -> list[Array]:
+    """Of some steps the error at PARTS of them, against the motion that goes on from the step's start."""
+    runner = study(SCENES[scene]).setup.runner
+    method = method_of(name)
+    run = runner.trajectory(np.array([0.0, 0.8]), STEP if method.fixed else LOCAL, method=method)
+    ends = run.ends
+    found = []
+    for k in np.unique(np.linspace(1, len(ends) - 2, SOME).astype(int)).tolist():
+        inner = ends[k - 1] + PARTS * (ends[k] - ends[k - 1])
+        begin = runner.resample(run, ends[k - 1 : k])[0]
+        exact = runner.trajectory(inner - ends[k - 1], 1e-14, start=begin)
+        found.append(np.abs(runner.resample(run, inner) - exact.states).max(axis=1))
+    return [error for error in found if error.max() > ROUNDED]
+
+
+@pytest.mark.parametrize("scene", SCENES)
+@pytest.mark.parametrize("name", NAMES)
+def test_the_largest_error_is_seen(name: str, scene: str) -> None:
+    errors = erred(name, scene)
+    assert errors or name == "Gauss6"
+    parts = (*method_of(name).within, 1.0)
+    seen = [max(float(error[int(np.argmin(np.abs(PARTS - x)))]) for x in parts) for error in errors]
+    assert all(s >= SEEN * float(error.max()) for s, error in zip(seen, errors, strict=True))

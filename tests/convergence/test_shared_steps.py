@@ -1,0 +1,55 @@
+"""A check run that takes the very steps of the run it checks: in phase with jumps of a load, which end every step.
+
+x'' = -w^2 x + f on a slide, f = 0 up to the first jump, then 1 and -1 by turns: known piece by piece. Both runs take
+one step a piece, whatever their tolerance, and err alike; their difference would be rounding, 1e-15.
+"""
+
+from __future__ import annotations
+
+import math
+
+import pytest
+
+from heuncli.integration import checked
+from tests.shared.scenes import study
+
+CASES = [(10, 10), (10, 14), (10, 20), (20, 20), (20, 28), (30, 40)]  # w [1/s], jumps a second
+LOOSE = 1e-4
+
+
+def text(w: int, jumps: int) -> str:
+    return f"""
+heun: 1
+ground: {{points: {{O: [0, 0, 0]}}}}
+bodies: {{block: {{mass: 1, center: [0, 0, 0], inertia: [1, 1, 1], points: {{p: [0, 0, 0]}}}}}}
+joints: {{guide: {{type: slide, from: ground.O, to: block.p, axis: [1, 0, 0], initial: {{travel: 0, speed: 0}}}}}}
+forces:
+  push:
+    {{type: torque, joint: guide, value: "-{w**2}*guide.travel + (sign(sin({jumps}*pi*t)) if t > 1/{jumps} else 0)"}}
+analysis: {{duration: 1, samples: 11, tolerance: {LOOSE}}}
+"""
+
+
+def travel(w: int, jumps: int, t: float) -> float:
+    """Swings about f / w^2, piece by piece."""
+    x, v, begin = 0.0, 0.0, 0.0
+    for k in range(jumps):
+        end = min((k + 1) / jumps, t)
+        rest = (0.0 if k == 0 else 1.0 if k % 2 == 0 else -1.0) / w**2
+        c, s = math.cos(w * (end - begin)), math.sin(w * (end - begin))
+        x, v, begin = rest + (x - rest) * c + v / w * s, v * c - (x - rest) * w * s, end
+    return x
+
+
+@pytest.mark.parametrize(("w", "jumps"), CASES)
+def test_what_is_told_is_no_less_than_the_error(w: int, jumps: int, monkeypatch: pytest.MonkeyPatch) -> None:
+    s = study(text(w, jumps), method="DOP853")
+    found = s.results
+    assert found.work["steps"] == jumps
+    travels = found.coordinates["guide"]["travel"]
+    off = max(abs(x - travel(w, jumps, t)) for t, x in zip(found.time.tolist(), travels.tolist(), strict=True))
+    off /= s.setup.runner.layout.size
+    assert off > 1e-12  # more than rounding
+    assert off <= found.accuracy["estimate"]["motion"] <= LOOSE
+    monkeypatch.setattr(checked, "shared_steps", lambda *_: False)  # by the difference of the two alone
+    assert study(text(w, jumps), method="DOP853").results.accuracy["estimate"]["motion"] < 1e-3 * off

@@ -1,0 +1,66 @@
+"""Runs in given steps that come to no end: the step is named where it was too long, the lock where there is one."""
+
+from __future__ import annotations
+
+import math
+
+import pytest
+
+from heuncli.errors import Problem, SolveError
+from tests.bench.stiff import WIRE
+from tests.faults.test_locks import CRANK
+from tests.package.test_kernels_agree import SPECS
+from tests.shared.bars import double
+from tests.shared.scenes import solved
+
+FOUR_BAR = (SPECS / "four_bar.yaml").read_text().partition("\nexpect:")[0]
+STIFF = WIRE.replace("DAMPING", "2e4")
+ITS_OWN = "or --method auto, which finds its own and comes to the end"
+
+
+def problem_of(text: str, method: str, step: float) -> Problem:
+    with pytest.raises(SolveError) as caught:
+        solved(text, method=method, step=step)
+    assert caught.value.reached is not None
+    return caught.value.problems[0]
+
+
+@pytest.mark.parametrize("method", ["Euler", "Heun2", "Heun3", "RK4"])
+def test_a_stiff_spring_in_long_steps(method: str) -> None:
+    """k = 1e8 N/m, c = 2e4 Ns/m on 1 kg: a double root at 1e4 1/s; shorter steps than the hint's follow it."""
+    found = problem_of(STIFF, method, 1e-3)
+    assert found.code == "not-a-number"
+    assert "a motion in steps of 0.001 s has no finite acceleration beyond this instant" in found.message
+    assert found.hint == f"the fastest rate at the start is 1e+04 1/s: steps of 0.0002 s and less, {ITS_OWN}"
+    short = STIFF.replace("duration: 2", "duration: 0.02")
+    assert math.isfinite(solved(short, method=method, step=1e-4).accuracy["estimate"]["motion"])
+
+
+def test_a_loop_in_steps_too_long() -> None:
+    found = problem_of(FOUR_BAR, "RK4", 0.5)
+    assert found.code == "closure-lost"
+    assert found.message == "at t = 0.5 s: steps of 0.5 s cannot hold the closed chains together beyond this instant"
+    assert found.hint is not None and found.hint.endswith(ITS_OWN)
+    assert solved(FOUR_BAR, method="RK4", step=0.1).status["code"] == "completed"
+
+
+def test_stages_that_are_not_solved() -> None:
+    found = problem_of(double("{duration: 2, samples: 3}"), "Gauss4", 0.5)
+    assert (found.code, found.message.partition(": ")[2]) == (
+        "stages-unsolved", "the equations of a step of 0.5 s are not solved: Newton's iteration does not contract",
+    )  # fmt: skip
+    assert found.hint == f"a shorter step than 0.5 s, {ITS_OWN}"
+
+
+@pytest.mark.parametrize("method", ["Euler", "RK4", "Gauss4"])
+def test_a_lock_is_no_fault_of_the_step(method: str) -> None:
+    """The slider is drawn beyond the reach of crank and rod, 3 m, at 1 s: told as by a method that finds its steps."""
+    text = CRANK.replace("{DRIVES}", '{push: {joint: G, travel: "2.5 + 0.5*t"}}')
+    with pytest.raises(SolveError) as caught:
+        solved(text)
+    other = caught.value.problems[0]
+    found = problem_of(text, method, 1e-3)
+    assert found.code == other.code == "closure-lost"
+    assert found.hint is not None and other.hint is not None
+    assert found.hint.endswith(other.hint)
+    assert "the drive push asks for more than the loop can do" in (found.hint or "")

@@ -1,0 +1,92 @@
+"""Every method of the kernel's: which instants are asked for, and what ran before, changes no bit of a run.
+
+By steps of their own (Gauss), by dense output or by stages: at instants that nobody asked for a run is what it would
+have been, had they been asked for. Trees and loops at random, events, contacts, ropes, stiff scenes.
+"""
+
+from __future__ import annotations
+
+from functools import cache
+
+import numpy as np
+import pytest
+
+from heuncli.errors import SolveError
+from heuncli.integration.methods.method import Method
+from heuncli.integration.methods.registry import method_of
+from heuncli.integration.runner import Runner, Trajectory, discontinuities_of
+from heuncli.method_rows import METHODS
+from heuncli.results import Array
+from heuncli.spec.load import load
+from heuncli.study.setup import set_up
+from tests.bench.honesty import told
+from tests.bench.stiff import STIFF_SCENES
+from tests.honesty.chaotic import chaotic_scene
+from tests.oracle.values import to_yaml
+from tests.package.test_kernels_agree import EVENTS, SPECS
+
+pytestmark = pytest.mark.heavy  # with the compiled kernel, which has the same bits
+
+NAMES = [row.name for row in METHODS if row.kind != "SciPy"]
+COUNT = 150  # given steps of a run
+SOME = 20  # steps that are looked into
+STIFF = {name: STIFF_SCENES[name] for name in ("friction of 1e-6", "wire, damped")}
+SCENES = {
+    **EVENTS, **STIFF, "gas": (SPECS / "compressor.yaml").read_text(),
+    **{f"chaotic {seed}": to_yaml(chaotic_scene(seed)[1]) for seed in (0, 2, 3)},
+    **{f"random {seed}": to_yaml(told(seed).scene) for seed in (0, 1, 3, 6)},
+}  # fmt: skip
+ENDS_SOONER = ("half-turn", "stages-unsolved", "not-a-number", "closure-lost")  # of a coarse step, or of a chart
+
+
+@cache
+def runner_of(scene: str) -> tuple[Runner, float]:
+    """What integrates a scene, and the end of its run."""
+    setup = set_up(load("scene.yaml", SCENES[scene]))
+    return setup.runner, min(float(setup.spec.analysis.times[-1]), 2.0)
+
+
+def run_of(scene: str, method: Method, times: Array) -> Trajectory:
+    """A coarse run, whose steps are long."""
+    runner, end = runner_of(scene)
+    jumps = discontinuities_of(runner.layout.mechanism, 0.0, end)
+    return runner.trajectory(times, end / COUNT if method.fixed else 1e-5, discontinuities=jumps, method=method)
+
+
+def looked_at(run: Trajectory) -> Array:
+    """Ends of steps, instants within them and beside their ends, and the end of the run."""
+    ends, begins = run.ends, np.concatenate([[0.0], run.ends[:-1]])
+    chosen = np.unique(np.linspace(0, len(ends) - 1, SOME).astype(int))
+    inner = begins[chosen, None] + (ends - begins)[chosen, None] * np.array([0.13, 0.5, 0.98, 1.0])
+    beside = np.nextafter(ends[chosen], [[-np.inf], [np.inf]])
+    times = np.unique(np.concatenate([inner.ravel(), beside.ravel(), run.times]))
+    return times[times <= run.times[-1]]
+
+
+@pytest.mark.parametrize("scene", SCENES)
+@pytest.mark.parametrize("name", NAMES)
+def test_other_instants_are_the_runs_own(name: str, scene: str) -> None:
+    runner, end = runner_of(scene)
+    method = method_of(name)
+    try:
+        run = run_of(scene, method, np.array([0.0, end]))
+    except SolveError as error:
+        assert error.problems[0].code in ENDS_SOONER
+        return
+    times = looked_at(run)
+    whole = times if run.stopped is None else np.append(times[:-1], end)  # a rope ends it there again
+    direct = run_of(scene, method, whole)
+    assert direct.ends.tolist() == run.ends.tolist()
+    assert np.array_equal(direct.times, times)
+    shown, alone = runner.resample(run, times), runner.resample(run, times[::7])
+    assert np.array_equal(shown, direct.states)
+    assert np.array_equal(alone, direct.states[::7])
+
+
+def test_a_run_hangs_on_no_other() -> None:
+    """What an actuator was seen to do, to rounding, is forgotten with the run: the first has the bits of the last."""
+    setup = set_up(load("compressor.yaml", SCENES["gas"]))
+    end = float(setup.spec.analysis.times[-1])
+    runs = [setup.runner.trajectory([0.0, end], end / 4000, method=method_of("Euler")) for _ in range(2)]
+    assert runs[0].ends.tolist() == runs[1].ends.tolist()
+    assert np.array_equal(runs[0].states, runs[1].states)
