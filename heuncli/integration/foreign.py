@@ -78,8 +78,8 @@ def trajectory(
     state = moving.restrict(0.0, runner.layout.y0 if start is None else start)
     derivative = Derivative(moving)
     done = Solved([], [state], [], [])
+    goes = Solving(derivative, method, local, last, deadline, min(most_steps, tolerances.MOST_FOREIGN))
     for segment in smooth_segments(last, discontinuities):
-        goes = Piece(derivative, method, local, last, deadline, min(most_steps, tolerances.MOST_FOREIGN))
         done.pieces.append(segment)
         goes.run(segment, settled(moving.workspace, moving.layout, segment.begin, done.states[-1])[0], done)
     own = done.at(moving, times)
@@ -95,8 +95,8 @@ def trajectory(
 
 
 @record
-class Piece:
-    """How a segment is integrated."""
+class Solving:
+    """How SciPy integrates a run, a segment after the other."""
 
     derivative: Derivative
     method: Method

@@ -12,7 +12,7 @@ from heuncli.charts import COMPLETED, FAILED, KINDS, UNFINISHED, Chart, Charted,
 from heuncli.method_rows import row_of
 from heuncli.report.chart_scale import power
 from heuncli.report.export import FORMAT
-from heuncli.report.table import WIDTH, Column, Table, wrapped
+from heuncli.report.table import WIDTH, Column, Table, labelled
 from heuncli.version import VERSION
 
 HEADING = "RUNS  processor time of the integration alone, median; errors at the judged instants, * on the front"
@@ -42,13 +42,7 @@ def heading(chart: Chart) -> list[tuple[str, str]]:
 
 def write_heading(chart: Chart, width: int = WIDTH) -> str:
     """The same as text."""
-    lines = heading(chart)
-    indent = max(len(label) for label, _ in lines) + 2
-    found = []
-    for label, text in lines:
-        first, *rest = wrapped(text, width - indent, 0)
-        found += [label.ljust(indent) + first, *(" " * indent + line for line in rest)]
-    return "\n".join(found) + "\n"
+    return labelled(heading(chart), width)
 
 
 def table(chart: Chart) -> Table:

@@ -9,7 +9,7 @@ import numpy as np
 
 from heuncli import tolerances
 from heuncli.report.numbers import LOADS, rough
-from heuncli.report.table import WIDTH, wrapped
+from heuncli.report.table import labelled
 from heuncli.report.words import count
 from heuncli.results import Estimate, Results
 
@@ -51,11 +51,7 @@ def heading(results: Results) -> list[tuple[str, str]]:
 
 def write_heading(results: Results) -> str:
     """The heading as aligned text."""
-    lines = heading(results)
-    width = max(len(label) for label, _ in lines)
-    indent = " " * (width + 2)
-    texts = [f"\n{indent}".join(wrapped(text, WIDTH - len(indent), 0)) for _, text in lines]
-    return "".join(f"{label.ljust(width)}  {text}\n" for (label, _), text in zip(lines, texts, strict=True))
+    return labelled(heading(results))
 
 
 def write_heading_markdown(results: Results) -> str:

@@ -7,11 +7,10 @@ from collections.abc import Iterator
 
 from heuncli.probing.model import Growing, Probe, Stiffness
 from heuncli.report.fit import fit
-from heuncli.report.table import WIDTH, Column, Table, plain, wrapped
+from heuncli.report.table import WIDTH, Column, Table, labelled, plain
 from heuncli.version import VERSION
 
 MOST = 30  # events that a table lists; JSON has more
-LABEL = 9
 REST = "rest"  # as `model` names it instead of a method
 GROWTH = "GROWTH  of a small disturbance, the largest of all directions that the joints leave free"
 STEPS = "STEPS  of explicit methods: what stability allows where it allows least, what accuracy asks for, about"
@@ -24,8 +23,8 @@ NAMES = {"mass": "mass matrix", "closure": "closures"}
 
 def write(found: Probe) -> str:
     """The page as text."""
-    head = "".join(line + "\n" for label, text in lines(found) for line in labelled(label, text))
-    return head + "".join("\n" + plain(part, WIDTH) for table in tables(found) for part in fit(table, WIDTH))
+    parts = (part for table in tables(found) for part in fit(table, WIDTH))
+    return labelled(list(lines(found))) + "".join("\n" + plain(part, WIDTH) for part in parts)
 
 
 def lines(found: Probe) -> Iterator[tuple[str, str]]:
@@ -52,12 +51,6 @@ def reasons(found: Probe) -> list[str]:
     for key, text in found.reasons.items():
         by.setdefault(text, []).append(key.replace("_", " "))
     return [f"{', '.join(keys)}: {text}" for text, keys in by.items()]
-
-
-def labelled(label: str, text: str) -> list[str]:
-    """A label and its text, which goes on below itself."""
-    first, *rest = wrapped(text, WIDTH - LABEL, 0)
-    return [label.ljust(LABEL) + first, *(" " * LABEL + line for line in rest)]
 
 
 def tables(found: Probe) -> Iterator[Table]:

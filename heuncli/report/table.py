@@ -53,6 +53,16 @@ def plain(table: Table, width: int | None = None) -> str:
     return "\n".join([*lines, *notes, ""])
 
 
+def labelled(lines: Sequence[tuple[str, str]], width: int = WIDTH) -> str:
+    """Labels with a text behind each, which goes on below itself."""
+    indent = max(len(label) for label, _ in lines) + 2
+    found = []
+    for label, text in lines:
+        first, *rest = wrapped(text, width - indent, 0)
+        found += [label.ljust(indent) + first, *(" " * indent + line for line in rest)]
+    return "".join(line + "\n" for line in found)
+
+
 def wrapped(text: str, width: int | None, more: int = MORE) -> list[str]:
     """A text in lines no wider than that; `textwrap` would have to be imported for it, and knows no clauses."""
     lines = [text]

@@ -102,7 +102,7 @@ def expect_instants(draft: DraftDocument) -> Iterator[Violation]:
         if item.at is not None:
             nearest = min(instants, key=lambda t: abs(t - item.at))  # type: ignore[operator]
             if abs(nearest - item.at) > tolerances.SAME_INSTANT * max(instants[-1], abs(item.at)):
-                message = f"{item.at:g} s is not an instant of the output; the nearest is {nearest:g} s"
+                message = f"{item.at:.10g} s is not an instant of the output; the nearest is {nearest:.10g} s"
                 yield Violation((*path, "at"), message, "add it to analysis.times, or choose other samples")
                 continue
         if quantity is not None and item.is_ is not None and not item.is_bounded:
