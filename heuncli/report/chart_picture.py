@@ -7,6 +7,7 @@ front is a heavier line beneath; what failed is a cross above the field, with it
 from __future__ import annotations
 
 from collections.abc import Sequence
+from itertools import pairwise
 from typing import NamedTuple
 
 from heuncli.charts import FAILED, Chart, Charted
@@ -28,6 +29,9 @@ COLOURS = {"explicit": "#000000", "implicit": "#8c1515", "SciPy": "#555555"}
 FIXED = "#123f7a"  # explicit, with fixed steps
 DASHES: tuple[tuple[float, ...], ...] = ((), (7.0, 3.0), (2.0, 2.5), (9.0, 3.0, 2.0, 3.0), (4.0, 2.0), (12.0, 4.0))
 CROSS = 4.0
+APART = 30.0  # of two crosses in a line, with the number of a note between
+PLACES = 24  # in which the name of the reference's error may stand, those by the borders first
+ON_LINE = 8  # places looked at on each stretch of a line
 MOST_NOTES = 12
 
 
@@ -51,13 +55,15 @@ def picture(chart: Chart) -> Picture:
     """The drawing of a chart."""
     head = heading(chart)
     groups = failed(chart)
-    top = head[-1].y + 22.0 + (LINE * levels(groups) if groups else 0.0)
+    across, up = scales(chart)
+    levels = stacked([ends_of(group, across) for group in groups])
+    top = head[-1].y + 22.0 + LINE * (max(levels, default=-1) + 1)
     box = Box(LEFT, top, WIDTH - RIGHT, top + FIELD)
-    frame = Frame(box, *scales(chart))
+    frame = Frame(box, across, up)
     notes = foot(chart, groups, box.bottom + BELOW)
     bottom, taken = floor(chart, frame)
     shapes: list[Shape] = [*grid(frame), *bottom, *front(chart, frame), *curves(chart, frame, taken)]
-    shapes += [*head, *crosses(groups, frame), *notes]
+    shapes += [*head, *crosses(groups, levels, frame), *notes]
     height = max(text.y for text in notes) + 14.0
     return Picture(WIDTH, height, f"{chart.title}: speed against accuracy", chart.reference.words, shapes)
 
@@ -117,13 +123,21 @@ def floor(chart: Chart, frame: Frame) -> tuple[list[Shape], list[Box]]:
         return [], []
     y, box, room = frame.y(own), frame.box, wide(text, SMALL)
     way = box.right - box.left - room - 12.0
-    lefts = [box.left + 6.0 + way * k / 8.0 for k in (0, 8, 1, 7, 2, 6, 3, 5, 4)]
+    lefts = [box.left + 6.0 + way * k / PLACES for k in sorted(range(PLACES + 1), key=lambda k: min(k, PLACES - k))]
     rooms = [Box(x, y + up - SMALL, x + room, y + up + 3.0) for up in (13.0, -5.0) for x in lefts]
-    marks = [(frame.x(p.seconds), frame.y(p.error)) for p in points(chart.runs)]
+    marks = [mark for runs in chart.by_method.values() for mark in along(runs, frame)]
     free = [each for each in rooms if inside(each, box)]
     best = min(free, key=lambda each: sum(each.wider(5.0).holds(*mark) for mark in marks))
     name = Text(best.left, best.bottom - 3.0, text, SMALL, colour=GREY)
     return [Line(((box.left, y), (box.right, y)), GREY, 1.2, (1.5, 3.0)), name], [best]
+
+
+def along(runs: Sequence[Charted], frame: Frame) -> list[tuple[float, float]]:
+    """Places along the line of a method, its markers among them."""
+    ends = [(frame.x(p.seconds), frame.y(p.error)) for p in points(runs)]
+    parts = [k / ON_LINE for k in range(1, ON_LINE + 1)]
+    between = [(a + (c - a) * s, b + (d - b) * s) for (a, b), (c, d) in pairwise(ends) for s in parts]
+    return [*ends[:1], *between]
 
 
 def front(chart: Chart, frame: Frame) -> list[Shape]:
@@ -181,17 +195,32 @@ def failed(chart: Chart) -> list[Group]:
     return [Group(k + 1, tuple(runs)) for k, runs in enumerate(found.values())]
 
 
-def levels(groups: Sequence[Group]) -> int:
-    """In how many lines the crosses stand above the field, so that none hides another."""
-    return min(max(len(groups), 1), 4)
+def ends_of(group: Group, across: Scale) -> list[float]:
+    """Where the crosses of a group stand from left to right; what took no time that is known at the border."""
+    right = WIDTH - RIGHT
+    return sorted(LEFT + across.at(run.seconds) * (right - LEFT) if run.seconds else right for run in group.runs)
 
 
-def crosses(groups: Sequence[Group], frame: Frame) -> list[Shape]:
+def stacked(groups: Sequence[Sequence[float]]) -> list[int]:
+    """The line above the field, from 0 on, in which the crosses of each group stand so that none hides another."""
+    lines: list[list[float]] = []
+    found = []
+    for xs in groups:
+        free = (k for k, taken in enumerate(lines) if all(abs(x - other) > APART for x in xs for other in taken))
+        k = next(free, len(lines))
+        if k == len(lines):
+            lines.append([])
+        lines[k] += xs
+        found.append(k)
+    return found
+
+
+def crosses(groups: Sequence[Group], levels: Sequence[int], frame: Frame) -> list[Shape]:
     """A cross for each run that failed, above the field where its time ended; beside the first its note's number."""
     found: list[Shape] = []
-    for group in groups:
-        y = frame.box.top - 8.0 - LINE * ((group.number - 1) % levels(groups))
-        xs = sorted(frame.x(run.seconds) if run.seconds else frame.box.right for run in group.runs)
+    for group, level in zip(groups, levels, strict=True):
+        y = frame.box.top - 8.0 - LINE * level
+        xs = ends_of(group, frame.across)
         for x in xs:
             for up in (-CROSS, CROSS):
                 found.append(Line(((x - CROSS, y - up), (x + CROSS, y + up)), colour_of(group.runs[0].row.method), 1.6))

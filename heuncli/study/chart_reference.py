@@ -33,6 +33,7 @@ SECONDS = 20.0  # that one of these runs may take
 AGREED = 1e-9  # relative: two runs that agree so well need no other pair
 FEW = "the references agree up to t = {:.6g} s only, before the first asked instant: nothing can be judged"
 FEW_HINT = "more samples, or a shorter duration"
+ITSELF = "every instant solved by itself"  # as a run that is followed
 WORDS = {"motion": "motion to {} of the scene's size", "reactions": "reactions to {}", "sections": "sections to {}"}
 
 
@@ -187,7 +188,7 @@ def judged_instants(best: Pair) -> tuple[int, float | None]:
 def words(best: Pair, own: Errors) -> str:
     """Which runs agree how well."""
     a, b = best.first, best.second
-    names = [f"{run.method.name}{'' if run.method.determined else f' at {run.local:.0e}'}" for run in (a, b)]
+    names = [ITSELF if run.method.determined else f"{run.method.name} at {run.local:.0e}" for run in (a, b)]
     found = [WORDS[kind].format(f"{error:.1e}") for kind, error in own.items() if error is not None]
     return f"{names[0]} and {names[1]} agree: {', '.join(found)}"
 

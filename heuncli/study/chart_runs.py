@@ -17,6 +17,7 @@ from heuncli.charts import COMPLETED, FAILED, NOT_RUN, UNFINISHED, Charted, Row
 from heuncli.errors import HeunError, LimitError, SolveError
 from heuncli.integration.checked import Runs
 from heuncli.integration.methods.followed import FOLLOWED
+from heuncli.integration.methods.method import Method
 from heuncli.integration.methods.registry import method_of
 from heuncli.integration.runner import Trajectory
 from heuncli.records import record, replace
@@ -88,6 +89,7 @@ class Charting:
         too_long = self.too_long(row)
         if too_long is not None:
             return too_long
+        ready(row)
         begun = time.process_time()
         try:
             return self.judged(row, *self.first(row))
@@ -120,11 +122,8 @@ class Charting:
         return Timed(replace(charted, error=error, bounded=bounded), lambda: self.seconds(row, runs), [seconds])
 
     def runs(self, row: Row, patience: float) -> Runs:
-        """Runs by a row's method, with what is made ready once, and is no part of a run's time."""
-        method = FOLLOWED if row.method == chart_plan.FOLLOWED else method_of(row.method)
-        if method.foreign:
-            import_module("scipy.integrate")  # half a second, which a first run would take
-        return self.motion.runs(method, patience * self.limit)
+        """Runs by a row's method, with what is made ready once."""
+        return self.motion.runs(method_by(row), patience * self.limit)
 
     def run(self, row: Row, runs: Runs) -> Trajectory:
         """The motion by a row's method, as far as it is judged."""
@@ -181,6 +180,17 @@ class Charting:
         if before is None or not before.steps or row.method == chart_plan.FOLLOWED:
             return None
         return float(before.steps * (before.row.local / row.local) ** (1.0 / chart_plan.order_of(row.method)))
+
+
+def method_by(row: Row) -> Method:
+    """A row's method."""
+    return FOLLOWED if row.method == chart_plan.FOLLOWED else method_of(row.method)
+
+
+def ready(row: Row) -> None:
+    """Load what is no part of a run's time: SciPy takes half a second, which the first run by it would have."""
+    if method_by(row).foreign:
+        import_module("scipy.integrate")
 
 
 def progress(message: str) -> str:

@@ -12,7 +12,7 @@ from heuncli.errors import HeunError
 from heuncli.records import replace
 from heuncli.report import picture_plot
 from heuncli.report.chart_labels import Box, crosses, inside, placed
-from heuncli.report.chart_picture import picture
+from heuncli.report.chart_picture import picture, stacked
 from heuncli.report.picture import Line, Mark, Picture, Text, svg
 from tests.report.test_chart import FAILS, TOO_LONG, chart, run
 
@@ -140,3 +140,8 @@ def test_with_its_extra_it_is_drawn_the_same_every_time(form: str, begins: bytes
     pytest.importorskip("matplotlib")
     first, second = (picture_plot.rendered(picture(MANY), form) for _ in range(2))
     assert first.startswith(begins) and first == second
+
+
+def test_crosses_that_would_hide_each_other_stand_above_each_other() -> None:
+    assert stacked([[100.0], [200.0, 300.0], [120.0], [310.0], [125.0]]) == [0, 0, 1, 1, 2]
+    assert stacked([]) == []
