@@ -17,6 +17,7 @@ import numpy as np
 
 from heuncli import tolerances
 from heuncli.errors import LimitError, Problem, SolveError, SpecError
+from heuncli.integration.blows import rate_jumps
 from heuncli.integration.loop import Segment, smooth_segments
 from heuncli.integration.methods.method import Method
 from heuncli.integration.moving import Moving
@@ -73,8 +74,8 @@ def trajectory(
     """
     begun = time.perf_counter()
     moving = runner.moving
-    require_smooth(runner.layout, method)
     last = float(times[-1]) if len(times) else 0.0
+    require_smooth(runner.layout, method, last)
     state = moving.restrict(0.0, runner.layout.y0 if start is None else start)
     derivative = Derivative(moving)
     done = Solved([], [state], [], [])
@@ -160,13 +161,15 @@ def scales(derivative: Derivative, t: float, state: Array, last: float) -> Array
     return np.where(rates, unit * np.nan_to_num(max(largest), nan=1.0), unit)
 
 
-def require_smooth(layout: Layout, method: Method) -> None:
-    """Raise SpecError for what only the kernel's own methods run, each by name."""
+def require_smooth(layout: Layout, method: Method, last: float) -> None:
+    """Raise SpecError for what of a run up to `last` only the kernel's own methods do, each by name."""
     mechanism = layout.mechanism
     named = [f"the stop {stop.name}" for stop in mechanism.stops]
     named += [f"the rope {joint.name}, which may go slack" for joint in mechanism.joints if joint.tension_only]
     named += [f"the impulse {blow.name}" for blow in mechanism.blows]
     named += [f"the condition {condition.name}" for condition in mechanism.conditions]
+    drives = [joint.drive for joint in mechanism.joints if joint.drive is not None]
+    named += [f"the drive {drive.name}, whose rate jumps" for drive in drives if rate_jumps(drive.value, last)]
     problems = [Problem("method-scene", f"{method.name} does not run {name}", hint=HINT) for name in named]
     for expression in mechanism.expressions():
         if expression.uses and expression.held:

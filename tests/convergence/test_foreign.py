@@ -91,6 +91,7 @@ def test_between_the_asked_instants(method: str) -> None:
         ("stops: {buffer: {joint: pivot, angle: [-1, 1]}}", "the stop buffer"),
         ("impulses: {blow: {on: bar.end, vector: [1, 0, 0], time: 0.5}}", "the impulse blow"),
         ("forces: {push: {type: torque, joint: pivot, value: 'sign(pivot.rate)'}}", "sign(pivot.rate)"),
+        ("drives: {turn: {joint: pivot, rate: '1 if t < 0.5 else 2'}}", "the drive turn, whose rate jumps"),
     ],
 )
 def test_what_they_do_not_run_is_refused_by_name(more: str, told: str) -> None:
