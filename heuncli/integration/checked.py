@@ -5,7 +5,8 @@ rounding, both seen at the same instants (integration/pairs.py). Tried on free, 
 to 1.1 of the true error; a coarser check run would give 3 to 100 times it.
 
 A method of given step has no tolerance: B goes in quarters of the step, |A - B| is then 1 - 4^-p of A's error, three
-quarters at order 1, and A is not made again, for its step was asked for.
+quarters at order 1, and A is not made again, for its step was asked for. Where a step is too long for what decays in
+it, Gauss's methods keep that alive at any step: there B goes by Radau's (`Method.check`).
 
 At small tolerances the error of A may be no larger than what the moved start has grown to in B, and cancel it. There a
 further run M goes from the moved start as A goes from its own: |A - M| is what rounding grows to, and the largest
@@ -104,15 +105,16 @@ class Runs:
         self.moved, self.marks = moved_start(runner.layout), Marks(runner.layout)
 
     def run(
-        self, local: float, at: Array | None = None, start: Array | None = None, most_steps: int = tolerances.MOST_STEPS
-    ) -> Trajectory:
-        """A run from the start, or from one beside it, seen at the asked instants or at others.
+        self, local: float, at: Array | None = None, start: Array | None = None,
+        most_steps: int = tolerances.MOST_STEPS, by: Method | None = None,
+    ) -> Trajectory:  # fmt: skip
+        """A run from the start, or from one beside it, seen at the asked instants or at others; by: another method.
 
         At others: a check run, which goes as far as the run that it checks.
         """
         return self.runner.trajectory(
             self.times if at is None else at, local, discontinuities=self.jumps, deadline=self.deadline,
-            most_steps=most_steps, method=self.method, start=start, whole=at is not None,
+            most_steps=most_steps, method=by or self.method, start=start, whole=at is not None,
             watched=self.watched and at is None,
         )  # fmt: skip
 
@@ -148,10 +150,12 @@ class Runs:
 
             raise of_given_steps(self, error) from None
 
-    def attempt(self, local: float, than: Trajectory, at: Array | None, start: Array | None) -> Trajectory | None:
+    def attempt(
+        self, local: float, than: Trajectory, at: Array | None, start: Array | None, by: Method | None = None
+    ) -> Trajectory | None:
         """A run of not many more steps than another; None where rounding lets it collapse, near a singular pose say."""
         try:
-            return self.run(local, at, start, FUTILE * than.steps + 1000)
+            return self.run(local, at, start, FUTILE * than.steps + 1000, by)
         except SolveError:
             return None
         except LimitError:
@@ -177,10 +181,10 @@ class Runs:
         most, least = (RATIO, LEAST_RATIO) if not a.method.fixed else (float(tolerances.CHECK_STEPS), LEAST_HALVING)
         tried = [(a.local / ratio, self.moved) for ratio in (most, least, 1.0 / most)]
         for local, start in (*tried, (a.local / most, None)):
-            run = self.attempt(local, a, at, start)
+            run = self.attempt(local, a, at, start, a.method.check)
             if run is not None:
                 return self.apart(a, run, at, start)
-        return (self.run(a.local * most, at),)
+        return (self.run(a.local * most, at, by=a.method.check),)
 
     def apart(self, a: Trajectory, b: Trajectory, at: Array, start: Array | None) -> tuple[Trajectory, ...]:
         """The check run, before it one as fine as there is where it takes steps that A took: there both err alike.

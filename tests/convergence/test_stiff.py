@@ -91,3 +91,27 @@ def test_watching_changes_no_bit(name: str) -> None:
     runs = [s.setup.runner.trajectory(s.results.time, 1e-9, watched=watched) for watched in (False, True)]
     assert np.array_equal(runs[0].states, runs[1].states)
     assert np.array_equal(runs[0].ends, runs[1].ends)
+
+
+DRAGGED = """
+heun: 1
+ground: {points: {O: [0, 0, 0]}}
+bodies: {block: {mass: 1, center: [0, 0, 0], inertia: [1, 1, 1], points: {c: [0, 0, 0]}}}
+joints: {guide: {type: slide, from: ground.O, to: block.c, axis: [1, 0, 0], initial: {travel: 0, speed: 1}}}
+forces: {oil: {type: damper, joint: guide, coefficient: 1e6}}
+analysis: {duration: 1, samples: 11}
+"""
+
+
+@pytest.mark.parametrize("method", ["Gauss4", "Gauss6"])
+@pytest.mark.parametrize("step", [0.1, 0.01])
+def test_what_gauss_keeps_alive_is_told_as_an_error(method: str, step: float) -> None:
+    """A block is stopped within a microsecond, x = (1 - exp(-c t)) / c, and Gauss's methods let it go on at any step:
+    the energy that they tell is no more than its error, which quarters of the step alone do not show."""
+    found = study(DRAGGED, method=method, step=step).results
+    told, energy = found.accuracy["estimate"], found.energy["kinetic"]
+    assert energy[1] > 0.3  # of 0.5 J, where nothing is left
+    assert told["energy"] * energy.max() > energy[1:].max()
+    assert told["foundation"] > 1.0
+    off = np.abs(found.bodies["block"]["center"][1:, 0] - 1e-6).max()
+    assert off <= told["motion"] * study(DRAGGED).setup.runner.size

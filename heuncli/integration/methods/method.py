@@ -29,6 +29,7 @@ class Method:
     its steps are taken (integration/foreign.py). stable: of an explicit method, how large
     h lambda may be of what decays exp(lambda t), lambda < 0, before the method lets it grow: |R(-x)| = 1. within: where
     in a step its interpolation errs most, measured on open and closed chains (tests/convergence/test_between_ends.py).
+    check: the method of its check run, where that is another one.
     """
 
     name: str
@@ -49,6 +50,7 @@ class Method:
     stable: float = 0.0
     within: tuple[float, ...] = (0.5, 0.85)
     collocation: Mapping[str, Any] | None = None
+    check: Method | None = None
 
     @cached_property
     def arrays(self) -> dict[str, Any]:
