@@ -65,4 +65,6 @@ cdef int land(Scene *scene, Run *run) noexcept nogil
 cdef bint stands_at_end(Scene *scene, Run *run) noexcept nogil
 cdef bint jumped(Scene *scene, Run *run) noexcept nogil
 cdef int verdict(Scene *scene, Run *run) noexcept nogil
+cdef int try_step(Scene *scene, Method *method, Run *run) noexcept nogil
+cdef int leave_for(Scene *scene, Run *run, int met) noexcept nogil
 cdef int run_steps(Scene *scene, Method *method, Run *run) noexcept nogil

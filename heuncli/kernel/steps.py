@@ -702,6 +702,51 @@ def verdict(scene: cython.pointer[Scene], run: cython.pointer[Run]) -> cython.in
     return STRUCK if found == 1 else LET_GO
 
 
+def try_step(scene: cython.pointer[Scene], method: cython.pointer[Method], run: cython.pointer[Run]) -> cython.int:
+    """One attempt at a step: REACHED, also where another length is to be tried; or why the loop is left."""
+    code: cython.int
+    met: cython.int = STANDS
+    if method.attitude and not run.following and leaves_chart(scene, method, run):
+        return HALF_TURN
+    propose(run)
+    code = blocked(scene, run)
+    if code != REACHED:
+        return code
+    run.near = near_singular(scene, run)
+    scene.pivot_of_step = 1.0
+    trouble: cython.int = attempt(scene, method, run)
+    code = judge(scene, method, run, trouble)
+    if code == AGAIN:
+        run.has_cut = run.landings = run.contact_landings = 0
+        return REACHED
+    if code != ACCEPTED:
+        return code
+    if run.seeing:
+        met = meet(scene, method, run)
+        if met == CHATTERS:
+            return CHATTERING
+        if met == AGAIN_TO:
+            run.has_cut = run.cut > run.t
+            return TURNED if run.halting and not run.has_cut else REACHED  # they turned at once
+        if met == TURNS_OVER and run.stop <= run.t:
+            return verdict(scene, run)
+    code = accept(scene, method, run)
+    return leave_for(scene, run, met) if code == REACHED else code
+
+
+def leave_for(scene: cython.pointer[Scene], run: cython.pointer[Run], met: cython.int) -> cython.int:
+    """What the loop is left for behind a step that stands; else REACHED."""
+    if met == TURNS_OVER:
+        return verdict(scene, run)
+    if run.watching and opened_by_others(scene, run):
+        return LET_GO
+    if run.halting and run.turns:
+        return TURNED
+    if run.stiff_after and is_held_short(run):
+        return STIFF
+    return REACHED
+
+
 def run_steps(scene: cython.pointer[Scene], method: cython.pointer[Method], run: cython.pointer[Run]) -> cython.int:
     """Up to `most` accepted steps towards the end of the piece: REACHED, MORE to do, or why it cannot be continued.
 
@@ -709,8 +754,6 @@ def run_steps(scene: cython.pointer[Scene], method: cython.pointer[Method], run:
     branches turn. STIFF where stability keeps the steps short, if that is looked at.
     """
     code: cython.int
-    trouble: cython.int
-    met: cython.int = STANDS
     run.done = 0
     run.dodges = 0
     run.watching = run.watching and not run.following and scene.contact_count > 0
@@ -728,42 +771,7 @@ def run_steps(scene: cython.pointer[Scene], method: cython.pointer[Method], run:
         attempts += 1
         if run.done >= run.most or attempts > 100 * run.most:  # also where none stands: the clock is looked at
             return MORE
-        if method.attitude and not run.following and leaves_chart(scene, method, run):
-            return HALF_TURN
-        propose(run)
-        code = blocked(scene, run)
+        code = try_step(scene, method, run)
         if code != REACHED:
-            return code
-        run.near = near_singular(scene, run)
-        scene.pivot_of_step = 1.0
-        trouble = attempt(scene, method, run)
-        code = judge(scene, method, run, trouble)
-        met = STANDS
-        if code == AGAIN:
-            run.has_cut = run.landings = run.contact_landings = 0
-        if code == ACCEPTED and run.seeing:
-            met = meet(scene, method, run)
-            if met == CHATTERS:
-                return CHATTERING
-            if met == AGAIN_TO:
-                run.has_cut = run.cut > run.t
-                if run.halting and not run.has_cut:  # they turned at once
-                    return TURNED
-                continue
-            if met == TURNS_OVER and run.stop <= run.t:
-                return verdict(scene, run)
-        if code == ACCEPTED:
-            code = accept(scene, method, run)
-            if code != REACHED:
-                return code
-            if met == TURNS_OVER:
-                return verdict(scene, run)
-            if run.watching and opened_by_others(scene, run):
-                return LET_GO
-            if run.halting and run.turns:
-                return TURNED
-            if run.stiff_after and is_held_short(run):
-                return STIFF
-        elif code != AGAIN:
             return code
     return REACHED
