@@ -55,7 +55,7 @@ def horizons(found: Probe) -> Iterator[str]:
     if growth is not None and growth.rate > 0.0:
         rate = f": disturbances grow e times every {1.0 / growth.rate:.3g} s"
     if growth is not None and growth.horizon is not None:
-        yield f"chaos: no run in double precision is right beyond t = {growth.horizon:.4g} s{rate}"
+        yield f"chaos: no run in double precision can be relied on beyond t = {growth.horizon:.4g} s{rate}"
     if found.run_horizon is not None:
         yield f"beyond t = {found.run_horizon:.4g} s this run claims nothing"
 
