@@ -1,8 +1,8 @@
 """What a chart of speed against accuracy holds: runs of one motion by several methods, each against a reference.
 
 Errors are differences from the reference, at the asked instants up to where it is judged. The reference errs by at most
-`own`, as two runs by different methods show; below twice that a difference tells nothing of its own: the error is then
-bounded, not known.
+`own`, as two runs by different methods show. A run that is no farther from it errs by at most twice that, a bound and
+no error of its own; from twice that on a difference is the run's error within half of it; between, twice `own` is told.
 """
 
 from __future__ import annotations
@@ -21,7 +21,7 @@ FAILED: Status = "failed"
 NOT_RUN: Status = "not run"  # or not to its end
 UNFINISHED = "unfinished"  # the code of what was begun, and ended by a limit
 NOT_KNOWN: Errors = MappingProxyType(dict.fromkeys(KINDS))
-DOUBTED = 2.0  # times the reference's own error: a difference is then the run's error within half of it
+DOUBTED = 2.0  # times the reference's own error: a larger difference is the run's error within half of it
 SHOWN = 2  # digits of seconds and errors that are compared: those that tables show
 
 
