@@ -213,3 +213,15 @@ def test_a_start_at_a_half_turn_is_refused_at_once() -> None:
     with pytest.raises(HeunError, match="t = 0 s"):
         solved(spinner("[1]", start=upright), method=GLOBAL, reduce=False)
     solved(spinner("[1]", start=upright), method=ANEW, reduce=False)
+
+
+@pytest.mark.parametrize("tolerance", [1e-1, 1e-2, 1e-3])
+def test_steps_that_the_chart_bounds_err_by_no_more_than_is_said(tolerance: float) -> None:
+    """45 turns: a finer run in the same chart takes the same steps, and errs alike."""
+    scene = spinner("[0, 0.5, 1, 1.5, 2]", omega="[90, 10, 110]")
+    run, right = study(scene, method=ANEW, tolerance=tolerance), solved(scene)
+    found, size = run.results, run.setup.runner.size
+    known = found.time < (found.accuracy["horizon"] or math.inf)
+    p = [1.0, 0.0, 0.0]
+    off = np.linalg.norm((found.bodies["wheel"]["rotation"] - right.bodies["wheel"]["rotation"]) @ p, axis=1)[known]
+    assert off.max() <= min(found.accuracy["estimate"]["motion"], 1e-3 if not known.all() else 1.0) * size
