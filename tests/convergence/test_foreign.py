@@ -108,3 +108,18 @@ def test_what_grows_without_bound_is_no_result(method: str, capfd: pytest.Captur
     with pytest.raises((SolveError, LimitError)):
         solve(spec, Options(method=method, tolerance=1e-5, time_limit=10))
     assert capfd.readouterr().out == ""
+
+
+@pytest.mark.heavy
+@pytest.mark.parametrize("method", METHODS)
+def test_a_pulse_that_they_pass_over_is_told_as_an_error(method: str) -> None:
+    """A blow of 1 N s within a hundredth of a second: SciPy's steps are longer by then, and see nothing of it."""
+    push = "1/(0.01*sqrt(pi))*exp(-((t - 0.5123)/0.01)**2)"
+    text = BAR.format(more=f"forces: {{push: {{type: torque, joint: pivot, value: {push}}}}}").replace("-9.81", "0")
+    spec = load("scene.yaml", text)
+    right, run = solve(spec, Options(tolerance=1e-12)).results, solve(spec, Options(method=method))
+    found, size = run.results, run.setup.runner.size
+    known = found.time < (found.accuracy["horizon"] or np.inf)
+    off = np.linalg.norm(found.bodies["bar"]["center"] - right.bodies["bar"]["center"], axis=1)
+    told = found.accuracy["estimate"]["motion"] + right.accuracy["estimate"]["motion"]
+    assert np.all(off[known] <= min(told, 1e-3) * size)
