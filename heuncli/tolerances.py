@@ -156,6 +156,9 @@ QUADRATURE = 1e-14  # of the scale: whole against halves; planes that graze thin
 
 # -- choice of the method
 STIFF = 0.5  # of the boundary of stability: where that holds steps short they are at it, else seldom beyond a third
+EVENTFUL = 1 / 4  # of the steps: a step that an event ends costs three, so that half the stages are spent on events
+EVENTS_RARE = 1 / 8  # of the steps of a method of few stages: it takes several between events where order 8 takes one
+VERNER98 = 1e-11  # tolerance: from there on order 9 misses it in 2 of 23 scenes, order 8 in 7, for as many evaluations
 RADAU5 = 3e-6  # local tolerance above which three stages take less than five, with a check run at a thirtieth of it
 
 # -- what a motion comes near to

@@ -102,6 +102,7 @@ class Runs:
         """step: of a method of given step. watched: the runs to be told are left where another takes less (Stiff)."""
         self.runner, self.times, self.jumps, self.step = runner, times, jumps, step
         self.deadline, self.method, self.watched = deadline, method, watched
+        self.eventful = False  # whether the same runs are left where events end their steps, or cease to (Eventful)
         self.moved, self.marks = moved_start(runner.layout), Marks(runner.layout)
 
     def run(
@@ -115,7 +116,7 @@ class Runs:
         return self.runner.trajectory(
             self.times if at is None else at, local, discontinuities=self.jumps, deadline=self.deadline,
             most_steps=most_steps, method=by or self.method, start=start, whole=at is not None,
-            watched=self.watched and at is None,
+            watched=self.watched and at is None, eventful=self.eventful and at is None,
         )  # fmt: skip
 
     def first(self, tolerance: float) -> Trajectory:

@@ -25,6 +25,9 @@ class Determined:
         return block | ({key: [*block.get(key, ()), *self.told]} if self.told else {})
 
 
+NOT_DETERMINED = Determined(False, ())
+
+
 def determined(moving: Moving) -> Determined:
     """Whether a motion can be followed from its start.
 
@@ -33,10 +36,10 @@ def determined(moving: Moving) -> Determined:
     layout = moving.layout
     free = sum(1 for f in layout.freedoms if f.q >= 0) + 3 * int(layout.bodies["ball"].sum())
     if free > len(layout.rows):
-        return Determined(False, ())
+        return NOT_DETERMINED
     left = free - moving.workspace.chosen_count(0.0, layout.y0) if layout.rows else free
     if left:
-        return Determined(False, ())
+        return NOT_DETERMINED
     if len(layout.tables["contacts"]):
         return Determined(False, (CONTACTS,))
     return Determined(True, (BY_DRIVES if layout.driven else BY_JOINTS,))

@@ -23,6 +23,7 @@ KEPT = 20_000_000  # numbers in the states kept for replays, at the ends of all 
 STIFF_AFTER = 15  # steps held short by stability, as in Hairer's DOP853 ...
 EASY_AFTER = 6  # ... and steps on end that were not, after which their count begins anew
 LOOK_AFTER = 1_000  # steps; then each time that they have doubled
+EVENTS_AFTER = 16  # steps; then likewise: fewer are no pattern
 UNWATCHED = {"stiff_after": 0, "easy_after": 0, "look_after": 0, "stable": 0.0}
 PER_STEP = ("ends", "settled", "pivots", "turned")  # what is put down of each step
 
@@ -131,6 +132,7 @@ class Steps:
         self.every, self.room = 1, max(2, KEPT // max(width, 1))
         self.after: dict[int, Array] = {}  # of the steps after blows, which are kept in any case
         self.look = FIRST_LOOK
+        self.looked = self.cut_before = 0  # steps when it was last looked at how many events ended, and those
         self.holdings: list[tuple[int, Array]] = []  # from which step on which contacts are closed
 
     def hold(self, holding: Array) -> None:

@@ -21,7 +21,7 @@ from heuncli.expressions.programs import Expression
 from heuncli.integration.between import Blows
 from heuncli.integration.blows import Jump
 from heuncli.integration.evaluator import Evaluator
-from heuncli.integration.loop import Integration, Segment, Start, Steps, just_before, smooth_segments
+from heuncli.integration.loop import EVENTS_AFTER, Integration, Segment, Start, Steps, just_before, smooth_segments
 from heuncli.integration.methods.dop853 import DOP853
 from heuncli.integration.methods.method import Method
 from heuncli.integration.moving import Moving, itself
@@ -185,9 +185,26 @@ class Stiff(Exception):
         self.method, self.told, self.seconds = method, told, 0.0
 
 
+class Eventful(Exception):
+    """A run that was left, for so many of its steps end at events that another method may take less, or no more do.
+
+    steps: done; cut: by events; reached [s], in so many evaluations and seconds, at a local tolerance. told: why
+    another one takes less, in a sentence.
+    """
+
+    def __init__(self, steps: int, cut: int) -> None:
+        super().__init__(f"{cut} of {steps} steps end at events")
+        self.steps, self.cut = steps, cut
+        self.reached = self.seconds = self.local = 0.0
+        self.evaluations, self.told = 0, ""
+
+
 @record
 class Going:
-    """A run under way: the kernel's loop, what is put down of it, its blows, its end; its limits."""
+    """A run under way: the kernel's loop, what is put down of it, its blows, its end; its limits.
+
+    eventful: whether it is left where events end its steps (Eventful).
+    """
 
     run: Integration
     steps: Steps
@@ -196,6 +213,7 @@ class Going:
     deadline: float | None
     most_steps: int
     until: Until | None
+    eventful: bool
 
 
 class Ending(NamedTuple):
@@ -247,6 +265,7 @@ class Runner(Evaluator):
         start: Array | None = None,
         whole: bool = False,
         watched: bool = False,
+        eventful: bool = False,
     ) -> Trajectory:
         """Integrate from the start at t = 0 over the asked instants, ascending.
 
@@ -257,7 +276,8 @@ class Runner(Evaluator):
         condition that ends it becomes true, unless the whole of it is asked for.
 
         Raises SolveError where the motion cannot be continued, LimitError past the deadline (time.monotonic()); and if
-        it is watched Stiff where an implicit method takes less (integration/stiffness.py).
+        it is watched Stiff where an implicit method takes less (integration/stiffness.py); Eventful, if that is looked
+        at, where events end most steps, or those of a method for such no more (integration/eventful.py).
         """
         begun = time.perf_counter()
         moving = self.moving
@@ -280,14 +300,20 @@ class Runner(Evaluator):
         steps = Steps(begin.state, run.width)
         check_deadline(deadline, f"before the run of {last:.6g} s began")
         blows, until = Blows(self, moving, run, steps, last), None if whole else until_of(moving.layout)
-        going = Going(run, steps, blows, last, deadline, most_steps, until)
+        segments = smooth_segments(last, discontinuities)
+        eventful = eventful and (run.held > 0 or len(self.layout.contacts) > 0 or len(segments) > 1)
+        going = Going(run, steps, blows, last, deadline, most_steps, until, eventful)
         try:
-            pieces, ending = self._pass(going, smooth_segments(last, discontinuities))
+            pieces, ending = self._pass(going, segments)
         except SolveError as error:
             error.reached = run.loop.t if error.reached is None else error.reached
             raise
         except Stiff as stiff:
             stiff.seconds = time.perf_counter() - begun
+            raise
+        except Eventful as left:
+            left.reached, left.evaluations, left.local = run.loop.t, run.loop.evaluations, local
+            left.seconds = time.perf_counter() - begun
             raise
         return self._trajectory(going, ts, pieces, ending, time.perf_counter() - begun)
 
@@ -340,7 +366,8 @@ class Runner(Evaluator):
         code, begin = MORE, segment.begin
         going.blows.begin(segment)
         while code in GOES_ON:
-            code = run.loop.advance(most, True, going.until is not None)
+            few = most if not going.eventful else min(most, max(EVENTS_AFTER - going.steps.count, 1))
+            code = run.loop.advance(few, True, going.until is not None)
             going.steps.add(run)
             if code == TURNED and going.until is not None and going.until.ends(run.loop.t, np.array(run.loop.state())):
                 break
@@ -348,6 +375,10 @@ class Runner(Evaluator):
                 check_deadline(going.deadline, f"at t = {run.loop.t:.6g} s of {going.last:.6g} s")
             if code in GOES_ON:
                 self._require_progress(going)
+                if going.eventful and going.steps.count >= max(EVENTS_AFTER, 2 * going.steps.looked):
+                    from heuncli.integration.eventful import require_as_before  # few scenes have so many
+
+                    require_as_before(going.steps, run.method, len(pieces))
             if code == STIFF:
                 from heuncli.integration.stiffness import require_easy  # few scenes are
 

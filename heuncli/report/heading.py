@@ -16,7 +16,7 @@ from heuncli.results import Estimate, Results
 MOST_TOLD = 5
 MOST_MOVED = 3
 PLANAR = "; what points out of the xy plane does not exist and reads 0"
-STIFF = "stiff: "
+ANEW = ("stiff", "events")  # how the reasons begin for which a run was begun anew by another method
 
 
 def heading(results: Results) -> list[tuple[str, str]]:
@@ -28,7 +28,7 @@ def heading(results: Results) -> list[tuple[str, str]]:
         *(("unseen", sentence) for sentence in results.model.get("cannot_tell", ())),
         *_moved(results.model.get("moved", ())),
         ("run", _run(results)),
-        *(("stiff", text.removeprefix(STIFF)) for text in results.model.get("reasons", ()) if text.startswith(STIFF)),
+        *_anew(results.model.get("reasons", ())),
         *_labelled("rest", results.model.get("rest", ())),
         *(("until", sentence) for sentence in results.model.get("until", ())),
         ("accuracy", _errors(results)),
@@ -85,6 +85,11 @@ def _contacts(sentences: Sequence[str]) -> list[tuple[str, str]]:
     if len(sentences) > MOST_TOLD:
         shown.append(f"{len(sentences) - MOST_TOLD} more in --format json, model.contacts")
     return _labelled("contacts", shown)
+
+
+def _anew(reasons: Sequence[str]) -> list[tuple[str, str]]:
+    """Why the run was begun anew by another method, if it was."""
+    return [(word, text.removeprefix(f"{word}: ")) for text in reasons for word in ANEW if text.startswith(f"{word}: ")]
 
 
 def _model(results: Results) -> str:

@@ -21,7 +21,7 @@ from heuncli.integration.evaluator import Recovered
 from heuncli.integration.methods.method import Method
 from heuncli.integration.methods.registry import method_of
 from heuncli.integration.pairs import interleaved, moved_start
-from heuncli.integration.runner import Runner, Stiff, Trajectory, check_deadline, discontinuities_of
+from heuncli.integration.runner import Eventful, Runner, Stiff, Trajectory, check_deadline, discontinuities_of
 from heuncli.integration.singular import singular_poses
 from heuncli.integration.solvable import Asked, require_start
 from heuncli.mechanism.model import Mechanism
@@ -135,25 +135,46 @@ def checked_motion(
             method = method_of(AUTO)  # towards a singular pose steps along a branch become ever shorter
     try:
         runs = Runs(setup.runner, times, jumps, deadline, method, step=setup.step, watched=setup.auto)
-        return checked_run(runs, tolerance, Kinds(setup, by_cause))
+        return checked_between_events(runs, setup, tolerance, by_cause)
     except Stiff as stiff:
         runs = Runs(setup.runner, times, jumps, deadline, stiff.method)
         return begun_anew(runs, stiff, method, setup, tolerance, by_cause)
 
 
-def begun_anew(runs: Runs, stiff: Stiff, method: Method, setup: Setup, tolerance: float, by_cause: bool) -> Checked:
-    """A stiff motion by an implicit method, or, where that does not come through, after all as it was begun."""
+def checked_between_events(runs: Runs, setup: Setup, tolerance: float, by_cause: bool) -> Checked:
+    """A motion with its check run, by a method of few stages where events end most steps and that takes less."""
+    method, runs.eventful = runs.method, setup.auto
+    try:
+        return checked_run(runs, tolerance, Kinds(setup, by_cause))
+    except Eventful as left:
+        from heuncli.integration.eventful import try_fewer_stages  # few scenes have so many
+
+        runs.eventful = try_fewer_stages(runs, left)
+        return begun_anew(runs, left, method, setup, tolerance, by_cause)
+
+
+def begun_anew(
+    runs: Runs, left: Stiff | Eventful, method: Method, setup: Setup, tolerance: float, by_cause: bool
+) -> Checked:
+    """A motion by the method of the runs, another than a run was left with, or, if need be, as it was begun after all.
+
+    That is where the other one does not come through, or events become rare.
+    """
+    lost, why = left.seconds, None if runs.method is method else left.told
     try:
         checked = checked_run(runs, tolerance, Kinds(setup, by_cause))
-        return replace(checked, lost_seconds=checked.lost_seconds + stiff.seconds, begun_anew=stiff.told)
+        return replace(checked, lost_seconds=checked.lost_seconds + lost, begun_anew=why)
+    except Eventful as again:
+        lost += again.seconds
     except SolveError:
-        pass
-    except LimitError as limit:
-        if limit.problems[0].code != "step-limit":
+        if runs.method is method:
             raise
-    runs.method = method
+    except LimitError as limit:
+        if runs.method is method or limit.problems[0].code != "step-limit":
+            raise
+    runs.method, runs.eventful = method, False
     checked = checked_run(runs, tolerance, Kinds(setup, by_cause))
-    return replace(checked, lost_seconds=checked.lost_seconds + stiff.seconds)
+    return replace(checked, lost_seconds=checked.lost_seconds + lost)
 
 
 def state(setup: Setup, at: float, tolerance: float, by_cause: bool = False) -> History:

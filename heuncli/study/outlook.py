@@ -11,9 +11,13 @@ from contextlib import suppress
 import numpy as np
 
 from heuncli.errors import LimitError, SolveError
+from heuncli.integration.checked import Runs
+from heuncli.integration.eventful import try_fewer_stages
 from heuncli.integration.loop import depends
-from heuncli.integration.runner import Stiff, Trajectory, discontinuities_of
+from heuncli.integration.methods.method import Method
+from heuncli.integration.runner import Eventful, Stiff, Trajectory, discontinuities_of
 from heuncli.method_rows import row_of
+from heuncli.study.choice import is_smooth
 from heuncli.study.setup import Setup
 from heuncli.study.words import count
 
@@ -43,18 +47,22 @@ def outlook(setup: Setup) -> list[str]:
     return [sentence, *pace(setup, tolerance if setup.step is None else setup.step)]
 
 
-def noticed(setup: Setup) -> Stiff | None:
-    """Whether the beginning of the run is stiff, where the method was left to heun and loads may be."""
+def noticed(setup: Setup) -> tuple[Method, str] | None:
+    """By which method the run would be begun anew, and why: where its beginning is stiff, or events end its steps."""
     if not setup.auto or setup.method is None or setup.method.determined:
         return None
-    if not any(depends(load) for load in setup.scene.mechanism.loads):
+    mechanism, last = setup.scene.mechanism, float(setup.spec.analysis.times[-1])
+    if not (any(depends(load) for load in mechanism.loads) or not is_smooth(setup.runner.moving.layout)):
         return None
-    last = float(setup.spec.analysis.times[-1])
     with suppress(SolveError, LimitError):
         try:
             begun(setup, setup.spec.analysis.tolerance, last, watched=True)
         except Stiff as stiff:
-            return stiff
+            return stiff.method, stiff.told
+        except Eventful as left:
+            jumps = discontinuities_of(mechanism, 0.0, left.reached)
+            runs = Runs(setup.runner, np.array([left.reached]), jumps, None, setup.method)
+            return (runs.method, left.told) if try_fewer_stages(runs, left) else None
     return None
 
 
@@ -80,5 +88,5 @@ def begun(setup: Setup, local: float, last: float, *, watched: bool = False) -> 
     assert setup.method is not None
     return setup.runner.trajectory(
         np.array([0.0, last]), local, discontinuities=jumps, deadline=time.monotonic() + PATIENCE,
-        most_steps=MOST_STEPS, method=setup.method, watched=watched,
+        most_steps=MOST_STEPS, method=setup.method, watched=watched, eventful=watched,
     )  # fmt: skip

@@ -5,7 +5,7 @@ from __future__ import annotations
 from functools import cached_property
 from typing import TYPE_CHECKING
 
-from heuncli.integration.following import determined
+from heuncli.integration.following import NOT_DETERMINED, determined
 from heuncli.integration.methods.followed import FOLLOWED
 from heuncli.integration.methods.method import Method
 from heuncli.integration.methods.registry import method_of
@@ -21,14 +21,13 @@ from heuncli.reduction.model import Reduced
 from heuncli.results import Array, Block
 from heuncli.spec.models import Spec
 from heuncli.study.asked import EVERYTHING, Asked
+from heuncli.study.choice import first_choice, why
 from heuncli.study.model_note import attitudes, model_note, reductions, rested
 from heuncli.tree.prepare import PreparedScene, prepare
 
 if TYPE_CHECKING:  # loaded where a scene has sections
     from heuncli.kinetostatics.cuts import Cuts
     from heuncli.study.resting import Rest
-
-WATCHED = "by {}, explicit; what turns out to be stiff is begun anew by an implicit method where that takes less"
 
 
 @record
@@ -89,21 +88,23 @@ def set_up(
     if spec.analysis.type == "rest":
         return set_up_at_rest(Setup(spec, scene, cuts, runner, None, {}, None, asked), left_out, looked_for, deadline)
     asked_method = method or spec.analysis.method
+    auto = asked_method.lower() == AUTO
     chosen = method_of(asked_method) if spec.analysis.type == "motion" else None
     reduced = None
     if chosen is not None and reduce:
         reduced, runner = reduced_runner(scene, runner)
     told = reductions(left_out, scene, reduced)
-    if chosen is not None and reduce and asked_method == AUTO:
-        follows = determined(runner.moving)
-        chosen, told = FOLLOWED if follows.is_so else chosen, follows.beside(told)
+    if chosen is not None and auto:
+        follows = determined(runner.moving) if reduce else NOT_DETERMINED
+        chosen, told = FOLLOWED if follows.is_so else first_choice(runner.moving.layout, spec), follows.beside(told)
     note = model_note(scene, runner, chosen.name if chosen else "none") | told
     if chosen is not None:
         note["reasons"] += attitudes(chosen, runner.moving.layout)
-        note["reasons"] += [WATCHED.format(chosen.name)] if asked_method == AUTO and not chosen.determined else []
+        if auto and not chosen.determined:
+            note["reasons"] += why(chosen, runner.moving.layout, spec)
     step = spec.analysis.step if chosen is not None and chosen.fixed else None
     note |= {} if step is None else {"step": step}
-    return Setup(spec, scene, cuts, runner, chosen, note, reduced, asked, auto=asked_method == AUTO, step=step)
+    return Setup(spec, scene, cuts, runner, chosen, note, reduced, asked, auto=auto, step=step)
 
 
 def set_up_at_rest(setup: Setup, left_out: tuple[str, ...], looked_for: bool, deadline: float | None) -> Setup:

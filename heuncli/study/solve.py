@@ -35,7 +35,7 @@ from heuncli.version import VERSION
 
 if TYPE_CHECKING:
     from heuncli.integration.conditions import Changes
-    from heuncli.integration.runner import Stiff
+    from heuncli.integration.methods.method import Method
     from heuncli.study.impulses import Impulses
 
 MOST_SEARCHED = 1_000_000  # numbers to look at for the extremes of a whole report; one measure has no such bound
@@ -131,18 +131,23 @@ def describe(spec: Spec, *, reduce: bool = True) -> Block:
     setup = set_up(spec, reduce=reduce, asked=asked, looked_for=False)
     mechanism = setup.scene.mechanism
     names = {"bodies": [b.name for b in mechanism.bodies], "joints": {j.name: j.kind for j in mechanism.joints}}
-    stiff = noticed(setup)
-    if stiff is not None:
-        setup = by_stiff_method(setup, stiff)
+    found = noticed(setup)
+    if found is not None:
+        setup = by_another_method(setup, *found)
     model = setup.model | {"names": names, "integrates": outlook(setup)}
     watched = [f"ends: until {c.text}" if c.ends else f"watched: {c.name} ({c.text})" for c in spec.analysis.conditions]
     return model | {"reasons": [*model["reasons"], *watched], "notes": model["notes"] + advice(setup.scene, model)}
 
 
-def by_stiff_method(setup: Setup, stiff: Stiff) -> Setup:
-    """The same with the method that a stiff motion is begun anew with."""
-    told = {"method": stiff.method.name, "reasons": [*setup.model["reasons"], stiff.told]}
-    return replace(setup, method=stiff.method, model=setup.model | told)
+def by_another_method(setup: Setup, method: Method, why: str) -> Setup:
+    """The same with the method that a motion is begun anew with, stiff or full of events."""
+    told = {"method": method.name, "reasons": [*setup.model["reasons"], anew(why, method)]}
+    return replace(setup, method=method, model=setup.model | told)
+
+
+def anew(why: str, method: Method) -> str:
+    """Why a run was begun anew, and by which method."""
+    return f"{why}; begun anew by {method.name}"
 
 
 def as_asked(spec: Spec, options: Options) -> Spec:
@@ -234,7 +239,7 @@ def integrated(setup: Setup, history: History) -> Block:
     if setup.method.determined:
         told |= integrated_after_all(setup.model)
     if checked.begun_anew is not None:
-        told |= {"reasons": [*setup.model["reasons"], checked.begun_anew]}
+        told |= {"reasons": [*setup.model["reasons"], anew(checked.begun_anew, checked.run.method)]}
     return told
 
 

@@ -883,6 +883,9 @@ ROWS = (
 # Those that decide no verdict: on either side the same numbers, to their digits.
 EXEMPT = {
     "STIFF": "what is integrated by: either way the same motion, and its estimate",
+    "EVENTFUL": "what is integrated by: either way the same motion, and its estimate",
+    "EVENTS_RARE": "what is integrated by: either way the same motion, and its estimate",
+    "VERNER98": "what is integrated by: either way the same motion, and its estimate",
     "RADAU5": "what is integrated by: either way the same motion, and its estimate",
     "MOST_FOREIGN": "when an independent check is given up that does not get on: after minutes, or more of them",
     "CHECK_STEPS": "how much finer a check run goes: 2 |A - B| is no less than the error on either side of 4",
