@@ -20,7 +20,6 @@ from heuncli.tree.layout import Layout
 
 ENDS = 2_000  # ends of steps that are compared, in even numbers over a longer run; the horizon is then looked for again
 INSIDE = 2_000  # bodies times steps up to which all steps are looked into
-ENOUGH = 64  # steps in which asked instants lie, anywhere, show what interpolation errs by
 SOLVED = 64  # asked instants that are compared of a run that is followed
 BLOCKS, BLOCK = 8, 16  # else so many stretches of so many steps, spread over the run
 
@@ -45,7 +44,7 @@ def instants_of(runner: Runner, run: Trajectory) -> Instants:
     bounds = np.concatenate([[0.0], run.ends])
     seen = np.diff(np.searchsorted(asked, bounds)) if len(run.ends) else np.zeros(0, dtype=np.intp)
     ends, states = ends_of(runner, run, seen)
-    inner = np.zeros(0) if run.method.determined else within(bounds, seen, len(runner.layout.place), run.method.within)
+    inner = np.zeros(0) if run.method.determined else within(bounds, len(runner.layout.place), run.method.within)
     times = np.concatenate([asked, ends, inner])
     states = np.concatenate([own, states, runner.resample(run, inner)])
     order = np.argsort(times, kind="stable")  # of equal instants the asked one comes first
@@ -63,11 +62,12 @@ def ends_of(runner: Runner, run: Trajectory, seen: Indices) -> tuple[Array, Arra
     return times, runner.moving.embed(times, np.array([state for _, state in kept]))
 
 
-def within(bounds: Array, seen: Indices, bodies: int, parts: tuple[float, ...]) -> Array:
-    """Instants at these parts of steps: none where those asked for lie in enough of them, (n,) ascending."""
-    count = len(seen)
-    if np.count_nonzero(seen) >= ENOUGH:
-        return np.zeros(0)
+def within(bounds: Array, bodies: int, parts: tuple[float, ...]) -> Array:
+    """Instants at these parts of steps, (n,) ascending; of a long run in some stretches of steps.
+
+    However many instants are asked for: they need not lie where a step errs most, and told half of it by chance.
+    """
+    count = len(bounds) - 1
     steps = np.arange(count)
     if count * bodies > INSIDE and count > BLOCKS * BLOCK:
         first = np.linspace(0, count - BLOCK, BLOCKS).astype(int)

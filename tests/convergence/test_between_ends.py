@@ -52,3 +52,20 @@ def test_the_largest_error_is_seen(name: str, scene: str) -> None:
     parts = (*method_of(name).within, 1.0)
     seen = [max(float(error[int(np.argmin(np.abs(PARTS - x)))]) for x in parts) for error in errors]
     assert all(s >= SEEN * float(error.max()) for s, error in zip(seen, errors, strict=True))
+
+
+TOLERANCES = 10.0 ** np.arange(-11.5, -7.5, 0.3)
+
+
+@pytest.mark.parametrize("samples", [2, 101, 201])
+@pytest.mark.parametrize("name", ["DOP853", "DOP853-recentred"])
+def test_what_is_told_holds_between_the_asked_instants(name: str, samples: int) -> None:
+    """Several instants asked for in each step need not lie where it errs most: it is told."""
+    text = double(f"{{duration: 1.5, samples: {samples}}}")
+    times = np.linspace(0.0, 1.5, 400)
+    exact = study(text, method="Verner98", tolerance=1e-14, reduce=False).resample(times)
+    for tolerance in TOLERANCES.tolist():
+        one = study(text, method=name, tolerance=tolerance, reduce=False)
+        found, size = one.resample(times), one.setup.runner.layout.size
+        off = max(float(np.abs(found.bodies[b]["center"] - exact.bodies[b]["center"]).max()) for b in exact.bodies)
+        assert off / size <= found.accuracy["estimate"]["motion"]
