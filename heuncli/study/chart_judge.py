@@ -35,6 +35,12 @@ class CertainKinds(Kinds):
         super().__init__(setup, weights=weights)
         self.certain = certain
 
+    def take(
+        self, name: tuple[str, str], values: Array, rounding: Array, terms: Array, more: Array | None = None
+    ) -> None:
+        """Terms are the reference's: beside those of a run that is lost its own loads would count as rounding."""
+        super().take(name, values, rounding, np.repeat(terms[0::2], 2), more)
+
     def add_joints(self, joints: Sequence[JointLoads], terms: Terms) -> None:
         """Those of the joints of which something is certain."""
         kept = []

@@ -217,3 +217,19 @@ def test_no_import_is_in_the_time_of_a_run(monkeypatch: pytest.MonkeyPatch) -> N
     monkeypatch.setattr(Charting, "run", lambda self, row, runs: done.append("run") or run(self, row, runs))
     charting_of(PENDULUM).one(Row("SciPy-BDF", "quaternion", False, 1e-3))
     assert done[:2] == ["scipy.integrate", "run"]
+
+
+def test_a_run_that_is_lost_has_lost_its_reactions() -> None:
+    """RK4 in steps of 9e4 time constants ends 1e122 sizes off: what its joint would carry then is no rounding."""
+    scene = """
+heun: 1
+ground: {points: {O: [0, 0, 0]}}
+bodies: {bar: {mass: 1, center: [0, 0, -0.5], inertia: [0.1, 0.1, 0.01], points: {top: [0, 0, 0]}}}
+joints: {pivot: {type: pin, from: ground.O, to: bar.top, axis: [0, 1, 0], initial: {angle: 1.2, rate: 1}}}
+forces: {oil: {type: damper, joint: pivot, coefficient: 1e5}}
+analysis: {duration: 2, samples: 21}
+"""
+    found = chart(load("scene.yaml", scene), Wanted(methods=("RK4",), steps=(0.3,)))
+    (run,) = found.runs
+    assert run.error["motion"] is not None and run.error["motion"] > 1.0
+    assert run.error["reactions"] is not None and run.error["reactions"] > 1.0
