@@ -218,7 +218,12 @@ KERNEL: dict[str, float] = {
     # -- rates that the closures change at the end of a step, of the largest
     "jump": 1e-2,  # coarse runs err by 1e-3, a blow changes rates by their own size
     "jump_of_error": 100.0,  # an accepted step errs by the tolerance, the rows' rates by some of it, over their pivot
+    # of a rate of the scene's size: a step of half a radian turns it by that much; beyond, a blow changes rates so
+    "jump_of_given": 0.5,
     # -- steps
+    "slow_rate": 0.01,  # of the largest: by its own rate alone what hardly moves would be followed for nothing
+    "held_rate": 0.1,  # of sqrt(acceleration / size): a tenth of the time of fall, in which what is let go is in motion
+    "given_end": 1e-6,  # of a given step: 10 million steps know their ends to 1e-8 of one, typed durations to 1e-9
     "least_step": 1e-14,  # of the time: fewer than 50 roundings of t; what lies nearer together is one instant
     "dodge": 0.87,
     "pivot_rounding": 1e-16,  # a rounding of the closures, amplified by 1 / pivot
@@ -248,4 +253,6 @@ KERNEL: dict[str, float] = {
     "newton_rounding": 1e3 * EPS,  # what the sums of a derivative leave of stages that are solved for
     "newton_part": 0.1,  # of the local tolerance: what the stages may be left off by beside a step's own error
     "newton_noise": 1e-10,  # the same where no tolerance is given: ten digits, for what is stiff loses some
+    "newton_stalls": 5.0,  # contraction of a simplified iteration is steady: five times the best is no contraction
+    "newton_diverges": 2.0,  # the first ratio may pass 1 while the stiff parts turn in; what doubles is repelled
 }

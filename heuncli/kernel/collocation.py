@@ -154,9 +154,9 @@ def solve_stages(
             best = ratio
         if size * ratio <= (1.0 - ratio) * scene.limits.newton_ends:
             return True
-        if size <= scene.limits.newton_rounding and ratio > 5.0 * best:
+        if size <= scene.limits.newton_rounding and ratio > scene.limits.newton_stalls * best:
             return True  # it contracted before: this is noise
-        if ratio >= 1.0 and (k > 2 or ratio > 2.0):
+        if ratio >= 1.0 and (k > 2 or ratio > scene.limits.newton_diverges):
             return is_noise(scene, method, run, size)
         if k > 2 and ratio < 1.0 and size * pow(ratio, MOST_ITERATIONS - k) > scene.limits.newton_noise:
             return False

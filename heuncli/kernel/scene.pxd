@@ -231,7 +231,11 @@ cdef struct Limits:
     double lost
     double jump
     double jump_of_error
+    double jump_of_given
+    double slow_rate
+    double held_rate
     double least_step
+    double given_end
     double dodge
     double pivot_rounding
     double one_instant
@@ -255,6 +259,8 @@ cdef struct Limits:
     double newton_rounding
     double newton_part
     double newton_noise
+    double newton_stalls
+    double newton_diverges
 
 cdef struct BodyAtState:
     Sym3 inertia

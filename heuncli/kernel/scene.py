@@ -306,7 +306,11 @@ class Limits(Record):
     lost: float  # the closures cannot be held
     jump: float  # of the largest rate: a larger change of rates by the closures is no rounding of the step
     jump_of_error: float  # the same of the local tolerance, by the root of the pivot
+    jump_of_given: float  # and the same at most of what a given step turns the scene by
+    slow_rate: float  # of the scene's largest rate: a slower body is judged as if that fast
+    held_rate: float  # of the rate that the loads could cause: what is held at rest is judged as if that fast
     least_step: float  # of the time: rounding
+    given_end: float  # of a given step: what is left of a piece beyond its last step, if less, is taken into it
     dodge: float  # ratio of the lengths tried
     pivot_rounding: float  # what rounding makes of the closures, times h rate / pivot
     one_instant: float  # of the time: rounding of an instant
@@ -330,6 +334,8 @@ class Limits(Record):
     newton_rounding: float  # corrections that do not become smaller may be as large by rounding ...
     newton_part: float  # ... or so large of the tolerance ...
     newton_noise: float  # ... or, of a method of fixed step, so large
+    newton_stalls: float  # times the best contraction so far: corrections of that size do not contract, but tremble
+    newton_diverges: float  # a ratio of two corrections, the first ones, beyond which the iteration will not turn round
 
 
 class BodyAtState(Record):

@@ -28,8 +28,8 @@ cdef enum:
     HALF_TURN, UNSOLVED
     ACCEPTED, AGAIN
 
-cdef double step_error(Method *method, Run *run) noexcept nogil
-cdef double group_error(Method *method, Run *run, int b) noexcept nogil
+cdef double step_error(Scene *scene, Method *method, Run *run) noexcept nogil
+cdef double group_error(Scene *scene, Method *method, Run *run, int b) noexcept nogil
 cdef double norm_of(Run *run, double *x, int begin, int end) noexcept nogil
 cdef double first_step(Scene *scene, Method *method, Run *run) noexcept nogil
 cdef double manhattan(Vec3 a) noexcept nogil
@@ -37,7 +37,7 @@ cdef double load_rate(Scene *scene, Run *run) noexcept nogil
 cdef int begin_piece(Scene *scene, Method *method, Run *run) noexcept nogil
 cdef void put_record(Scene *scene, Run *run, double *out) noexcept nogil
 cdef void take_record(Scene *scene, Run *run, double *record) noexcept nogil
-cdef void propose(Run *run) noexcept nogil
+cdef void propose(Scene *scene, Run *run) noexcept nogil
 cdef int blocked(Scene *scene, Run *run) noexcept nogil
 cdef bint near_singular(Scene *scene, Run *run) noexcept nogil
 cdef int attempt(Scene *scene, Method *method, Run *run) noexcept nogil

@@ -85,13 +85,15 @@ def norm_of(run: cython.pointer[Run], x: cython.p_double, begin: cython.int, end
     return sqrt(square)
 
 
-def step_error(method: cython.pointer[Method], run: cython.pointer[Run]) -> cython.double:
+def step_error(
+    scene: cython.pointer[Scene], method: cython.pointer[Method], run: cython.pointer[Run]
+) -> cython.double:
     """Largest error over the groups, 1 = just allowed; not a number where one is not."""
     b: cython.int
     error: cython.double
     worst: cython.double = 0.0
     for b in range(run.group_count):
-        error = group_error(method, run, b)
+        error = group_error(scene, method, run, b)
         if error != error:
             return error
         if error > worst:
@@ -99,7 +101,9 @@ def step_error(method: cython.pointer[Method], run: cython.pointer[Run]) -> cyth
     return worst
 
 
-def group_error(method: cython.pointer[Method], run: cython.pointer[Run], b: cython.int) -> cython.double:
+def group_error(
+    scene: cython.pointer[Scene], method: cython.pointer[Method], run: cython.pointer[Run], b: cython.int
+) -> cython.double:
     """Error of a group, h e5 / sqrt(1 + 0.01 (e3 / e5)^2) of the two estimates, or h e of one."""
     group: cython.pointer[Group] = cython.address(run.groups[b])
     i: cython.Py_ssize_t
@@ -111,10 +115,10 @@ def group_error(method: cython.pointer[Method], run: cython.pointer[Run], b: cyt
     if rate < group.rate:
         rate = group.rate
     group.trial = rate
-    floor: cython.double = 0.01 * run.rate
+    floor: cython.double = scene.limits.slow_rate * run.rate
     if b == run.energy_group:
         # energy, against the largest work so far or a part of what the bodies may have of it
-        floor = 0.01 * run.energy_scale * run.rate * run.rate
+        floor = scene.limits.slow_rate * run.energy_scale * run.rate * run.rate
     scale: cython.double = 1.0 / run.tolerance
     for i in range(group.coordinates, group.end):
         if i == group.rates:
@@ -217,7 +221,7 @@ def load_rate(scene: cython.pointer[Scene], run: cython.pointer[Run]) -> cython.
         u = (manhattan(body.f_applied) + manhattan(body.M_applied) / scene.size) / g
         if u > largest:
             largest = u
-    return 0.1 * sqrt(largest)
+    return scene.limits.held_rate * sqrt(largest)
 
 
 def manhattan(a: Vec3) -> cython.double:
@@ -246,7 +250,7 @@ def take_record(scene: cython.pointer[Scene], run: cython.pointer[Run], record: 
     take_chosen(scene, record, 2 * run.n)
 
 
-def propose(run: cython.pointer[Run]) -> cython.void:
+def propose(scene: cython.pointer[Scene], run: cython.pointer[Run]) -> cython.void:
     """Where the next step ends; the last of a piece ends it, the one before is halved with it.
 
     Given steps are counted from where the piece, or the last event in it, began: the last one is shorter.
@@ -262,9 +266,8 @@ def propose(run: cython.pointer[Run]) -> cython.void:
         run.stop = run.cut
         run.last = 0
     elif run.step > 0.0:
-        # some millions of steps know their ends to 1e-8 of one
         run.stop = run.grid + (run.on_grid + 1) * run.step
-        run.last = run.stop + 1e-6 * run.step >= run.end
+        run.last = run.stop + scene.limits.given_end * run.step >= run.end
         if run.last:
             run.stop = run.end
     elif run.last:
@@ -446,7 +449,7 @@ def explicit_error(
     if method.attitude:
         weigh_in_chart(scene, method.attitude, run.chart_y, run.coarse)
         weigh_in_chart(scene, method.attitude, run.chart_y, run.fine)
-    return step_error(method, run)
+    return step_error(scene, method, run)
 
 
 def implicit_error(
@@ -456,10 +459,10 @@ def implicit_error(
     if not run.newton.solved:
         return pow(1.8, 1.0 / method.exponent)
     estimate(method, run, run.K[0])
-    error: cython.double = step_error(method, run)
+    error: cython.double = step_error(scene, method, run)
     if not error <= 1.0:
         estimate_again(scene, method, run)
-        error = step_error(method, run)
+        error = step_error(scene, method, run)
     return error
 
 
@@ -679,7 +682,8 @@ def jumped(scene: cython.pointer[Scene], run: cython.pointer[Run]) -> cython.bin
     explained: cython.double = scene.limits.jump
     if run.step > 0.0:
         # what a step may turn the scene by, its rates may be off by: Euler's are, by half of it
-        explained += run.h * run.rate if run.h * run.rate < 0.5 else 0.5
+        most: cython.double = scene.limits.jump_of_given
+        explained += run.h * run.rate if run.h * run.rate < most else most
     elif scene.pivot > 0.0:
         explained += scene.limits.jump_of_error * run.tolerance / sqrt(scene.pivot)
     if run.following or run.determined:
@@ -708,7 +712,7 @@ def try_step(scene: cython.pointer[Scene], method: cython.pointer[Method], run: 
     met: cython.int = STANDS
     if method.attitude and not run.following and leaves_chart(scene, method, run):
         return HALF_TURN
-    propose(run)
+    propose(scene, run)
     code = blocked(scene, run)
     if code != REACHED:
         return code

@@ -204,6 +204,17 @@ def expected_at(x: float) -> str:
     return read(bar(tail=f"analysis: {{duration: 1, samples: 3}}\n{expect}"))
 
 
+def beyond_its_steps(x: float) -> str:
+    """A fall of ten given steps and x of one more, into which the last one goes or which is a step by itself."""
+    fall = {
+        "gravity": [0, 0, -9.81], "bodies": {"b": {"mass": 1, "center": [0, 0, 0], "inertia": [1, 1, 1]}},
+        "analysis": {"times": [0.0, 1.0 + 0.1 * x], "method": "RK4", "step": 0.1},
+    }  # fmt: skip
+    found = solved(fall, reduce=False)
+    near(found.bodies["b"]["position"][-1][2], -0.5 * 9.81 * found.time[-1] ** 2, 5.0, 1e-14)
+    return f"{found.work['steps']} steps"
+
+
 def tolerance(x: float) -> str:
     return read(bar(tail=f"analysis: {{duration: 1, samples: 3, tolerance: {x!r}}}"))
 
@@ -798,6 +809,8 @@ ROWS = (
     Row("EXPECTED_ABSOLUTE", absolutely_off, "passed", "failed"),
     Row("LEAST_ASKED", tolerance, "refused: tolerance", "fine"),
     # same instant, place, direction
+    # given steps
+    Row("KERNEL.given_end", beyond_its_steps, "10 steps", "11 steps"),
     # what a motion comes near to
     Row("GIMBAL", tilted_by, "gimbal lock", "none"),
     Row("FASTER_THAN_TIME", grown, "with the time", "exponential"),
@@ -947,6 +960,10 @@ EXEMPT = {
     "KERNEL.newton_rounding": "when corrections of an iteration count as noise: what is left is rounding",
     "KERNEL.newton_part": "what an iteration that stalls may leave of a step whose error is judged besides",
     "KERNEL.newton_noise": "the same of a given step; tests/convergence/test_collocation.py has steps on both sides",
+    "KERNEL.newton_stalls": "when corrections count as noise; what they may be as noise newton_rounding decides",
+    "KERNEL.newton_diverges": "how soon an iteration is given up that does not contract; it is at its third step",
+    "KERNEL.slow_rate": "lengths of steps where one body is slow beside others: the estimate says what they are worth",
+    "KERNEL.held_rate": "lengths of the first steps from rest: the estimate says what they are worth",
     "KERNEL.chart_turn": "lengths of steps in a chart of attitudes; tests/closed_forms/test_half_turns.py: none jumps",
     "KERNEL.branch_bend": "lengths of steps along a branch, in which extremes are looked for: no number depends on it",
     "KERNEL.branch_beside": "lengths of the check run's steps along a branch, on which no number depends",
@@ -983,6 +1000,7 @@ WANTED = {
     "KERNEL.passing_of_start": "the same in a scene that begins beside one",
     "KERNEL.jump": "whether rates that the closures change are a blow",
     "KERNEL.jump_of_error": "the same at a coarse tolerance",
+    "KERNEL.jump_of_given": "the same in a given step",
     "KERNEL.locked": "whether a step that collapsed is a lock",
     "KERNEL.locked_step": "whether a step that collapsed is a lock",
     "KERNEL.reopened": "when a row that was left out is taken in again",
