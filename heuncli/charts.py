@@ -11,6 +11,7 @@ from collections.abc import Mapping, Sequence
 from types import MappingProxyType
 from typing import Literal
 
+from heuncli import tolerances
 from heuncli.records import record, replace
 
 KINDS = ("motion", "reactions", "sections")  # whose errors are told, the first decides the front
@@ -120,9 +121,10 @@ def with_front(runs: Sequence[Charted]) -> tuple[Charted, ...]:
     """The runs, those marked that no other one beats: at least as fast, at least as accurate, and better in one.
 
     Seconds are measured and errors estimated: both are compared with the digits that are shown. Of runs that are equal
-    in both the one with fewer evaluations counts as faster, and of those the first.
+    in both the one with fewer evaluations counts as faster, and of those the first. A run that is lost is no result,
+    however fast it was.
     """
-    known = [run for run in runs if run.status == COMPLETED and run.error["motion"] is not None]
+    known = [run for run in runs if run.status == COMPLETED and is_near(run)]
     merits = {id(run): merit(run) for run in known}
     order = sorted(known, key=lambda run: merits[id(run)])
     best, front = float("inf"), set()
@@ -132,6 +134,12 @@ def with_front(runs: Sequence[Charted]) -> tuple[Charted, ...]:
             best = error
             front.add(id(run))
     return tuple(replace(run, front=id(run) in front) for run in runs)
+
+
+def is_near(run: Charted) -> bool:
+    """Whether the motion is known to be no more than the scene's size away."""
+    error = run.error["motion"]
+    return error is not None and error < tolerances.LOST
 
 
 def merit(run: Charted) -> tuple[float, float, int]:

@@ -14,9 +14,10 @@ from heuncli.charts import FAILED, Chart, Charted
 from heuncli.method_rows import row_of
 from heuncli.report.chart import local, remark
 from heuncli.report.chart_labels import Box, inside, placed, wide
-from heuncli.report.chart_scale import LOST, Scale, failures, points, power, scales, seconds
+from heuncli.report.chart_scale import Scale, failures, points, power, scales, seconds
 from heuncli.report.picture import SHAPES, Line, Mark, Picture, Shape, Text
 from heuncli.report.table import wrapped
+from heuncli.tolerances import LOST
 
 WIDTH, FIELD = 986.0, 480.0  # pixels: of the whole, and how high the field is
 LEFT, RIGHT, BELOW = 84.0, 176.0, 56.0  # of the field

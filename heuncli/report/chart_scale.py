@@ -1,6 +1,6 @@
 """The logarithmic scales of a chart, and what its points are: seconds to the right, errors of the motion upwards.
 
-An error above `LOST` of the scene's size tells no more than that all is lost: it stands at the border.
+An error of `LOST` of the scene's size or more tells no more than that all is lost: it stands at the border.
 """
 
 from __future__ import annotations
@@ -10,8 +10,8 @@ from collections.abc import Iterable
 from typing import NamedTuple
 
 from heuncli.charts import COMPLETED, Chart, Charted
+from heuncli.tolerances import LOST
 
-LOST = 10.0
 PAD = 0.08  # of a decade beside the fastest and the slowest run
 MINOR = ((2.5, (2, 5)), (1.0, (2, 3, 5, 7)))  # named between decades where there are no more than so many of these
 

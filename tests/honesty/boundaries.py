@@ -15,6 +15,8 @@ import numpy as np
 import pytest
 
 from heuncli import tolerances
+from heuncli.charts import COMPLETED, Charted, with_front
+from heuncli.charts import Row as RowOfChart
 from heuncli.errors import HeunError
 from heuncli.integration.checked import shared_steps
 from heuncli.integration.complementarity import complementary
@@ -141,6 +143,13 @@ def judged(x: float) -> str:
     error = np.array([0.0, 1e-14, x, 1.0])
     pair: Any = SimpleNamespace(error=error, first=SimpleNamespace(times=np.arange(4.0)))
     return {2: "not judged", 3: "judged"}[judged_instants(pair)[0]]
+
+
+def off_by(x: float) -> str:
+    """A run that came to its end, alone in its chart."""
+    row = RowOfChart("RK4", "quaternion", True, 0.1)
+    (run,) = with_front([Charted(row, COMPLETED, 1.0, 1, 10, 40, {"motion": x, "reactions": x, "sections": None})])
+    return "on the front" if run.front else "lost"
 
 
 def bar(more: str = "", tail: str = "", inertia: str = "[0.08, 0.08, 0.001]", kind: str = "ball") -> str:
@@ -865,6 +874,7 @@ ROWS = (
     Row("NO_LOAD", carried_by_nothing, "none", "judged"),
     Row("NO_ENERGY", drift, "at rest", "a drift"),
     Row("JUDGED", judged, "judged", "not judged"),
+    Row("LOST", off_by, "on the front", "lost"),
     Row("TOLD_BESIDE", moved_by, "told", "not known"),
     Row("MOST_STEPS", steps_given, "fine", "refused: step"),
     Row("HOPELESS", steady_pace, "goes on", "told"),

@@ -23,11 +23,12 @@ from heuncli.charts import (
 )  # fmt: skip
 from heuncli.records import replace
 from heuncli.report import chart as report
-from heuncli.report.chart_scale import LOST, Scale, scales
+from heuncli.report.chart_scale import Scale, scales
 from heuncli.report.chart_text import draw, letters
 from heuncli.report.export import dump
 from heuncli.report.fit import fit
 from heuncli.report.table import WIDTH, plain
+from heuncli.tolerances import LOST
 
 OWN = {"motion": 1e-13, "reactions": 2e-13, "sections": None}
 REFERENCE = Reference("A at 3e-14 and B at 3e-14 agree: motion to 1e-13 of the scene's size", OWN, 2.0, 201)
@@ -78,8 +79,13 @@ def test_times_and_errors_that_read_the_same_are_ties_decided_by_evaluations() -
     assert front(run("A", 1.0, 1e-6), run("B", 1.0, 1e-6)) == [True, False]  # equal in all: the first
 
 
+def test_a_run_that_is_lost_is_never_on_the_front() -> None:
+    assert front(run("A", 0.1, 2e122), run("B", 1.0, 1e-3)) == [False, True]
+    assert front(run("A", 0.1, 1.0)) == [False]
+
+
 def test_a_single_run_is_the_front() -> None:
-    assert front(run("A", 1.0, 1.0)) == [True]
+    assert front(run("A", 1.0, 0.5)) == [True]
 
 
 def test_what_the_reference_does_not_tell_apart_is_a_bound() -> None:
@@ -146,7 +152,7 @@ def test_points_of_several_methods_in_one_place_are_told() -> None:
 def test_what_is_lost_stands_at_the_border(error: float) -> None:
     made = chart(run("A", 1e-3, error), run("A", 1e-2, 1e-8))
     assert scales(made)[1].high == math.log10(LOST)
-    assert draw(made, 80).splitlines()[0].split("|")[0].strip() == "1e1"
+    assert draw(made, 80).splitlines()[0].split("|")[0].strip() == "1"
 
 
 def test_a_chart_of_failures_alone_can_be_drawn() -> None:
