@@ -16,7 +16,7 @@ from heuncli.results import Estimate, Results
 MOST_TOLD = 5
 MOST_MOVED = 3
 PLANAR = "; what points out of the xy plane does not exist and reads 0"
-ANEW = ("stiff", "events")  # how the reasons begin for which a run was begun anew by another method
+STIFF = "stiff: "  # how the reason begins for which a run was begun anew by an implicit method
 
 
 def heading(results: Results) -> list[tuple[str, str]]:
@@ -88,8 +88,11 @@ def _contacts(sentences: Sequence[str]) -> list[tuple[str, str]]:
 
 
 def _anew(reasons: Sequence[str]) -> list[tuple[str, str]]:
-    """Why the run was begun anew by another method, if it was."""
-    return [(word, text.removeprefix(f"{word}: ")) for text in reasons for word in ANEW if text.startswith(f"{word}: ")]
+    """Why the run was begun anew by an implicit method, if it was: the scene is another one than was meant, perhaps.
+
+    That one of fewer stages took over where events end the steps is nothing to know of it: `heun model` tells it.
+    """
+    return [("stiff", text.removeprefix(STIFF)) for text in reasons if text.startswith(STIFF)]
 
 
 def _model(results: Results) -> str:
