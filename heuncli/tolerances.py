@@ -253,7 +253,7 @@ KERNEL: dict[str, float] = {
     "newton_ends": EPS,  # of the largest coordinate or rate: the next correction of the stages would be rounding
     "newton_rounding": 1e3 * EPS,  # what the sums of a derivative leave of stages that are solved for
     "newton_part": 0.1,  # of the local tolerance: what the stages may be left off by beside a step's own error
-    "newton_noise": 1e-10,  # the same where no tolerance is given: ten digits, for what is stiff loses some
+    "newton_noise": 1e-9,  # the same where no tolerance is given: nine digits, for what is stiff loses some
     "newton_stalls": 5.0,  # contraction of a simplified iteration is steady: five times the best is no contraction
     "newton_diverges": 2.0,  # the first ratio may pass 1 while the stiff parts turn in; what doubles is repelled
 }

@@ -169,6 +169,8 @@ def is_noise(
     """Whether corrections that do not become smaller any more are so small that they may be rounding."""
     if size <= scene.limits.newton_noise and (run.following or method.fixed):
         return True
+    if method.fixed:
+        return False  # there is no tolerance to be a part of
     return size <= scene.limits.newton_part * run.tolerance or size <= scene.limits.newton_rounding
 
 

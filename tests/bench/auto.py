@@ -56,7 +56,7 @@ class Scene(NamedTuple):
         with suppress(HeunError):
             run = self.runner.trajectory(
                 self.exact.times, local, discontinuities=self.jumps, method=method,
-                most_steps=most // (len(method.nodes) - 1) + 10,
+                most_steps=most // max(len(method.nodes) - 1, 1) + 10,
             )  # fmt: skip
             return run.evaluations, self.error(run)
         return most, math.inf
