@@ -18,6 +18,7 @@ from heuncli.kernel.form import FOLDER
 from heuncli.results import Array
 from heuncli.spec.load import load
 from heuncli.study.setup import set_up
+from heuncli.tolerances import EPS
 from tests.shared.bars import double
 from tests.shared.scenes import near
 
@@ -65,13 +66,10 @@ def spin(kappa: Array, rate: Array) -> Array:
     return 2.0 / (1.0 + kappa @ kappa) * (rate + np.cross(kappa, rate))
 
 
-RANDOM = np.random.default_rng(20)
-
-
-@pytest.mark.parametrize("_", range(5))
-def test_composition(_: int) -> None:
+@pytest.mark.parametrize("case", range(5))
+def test_composition(case: int) -> None:
     """kappa of R(b) R(a) is (b + a + b x a) / (1 - a . b); counted from a it is b."""
-    a, b = RANDOM.normal(size=(2, 3))
+    a, b = np.random.default_rng(case).normal(size=(2, 3))
     turned = CHART.turned_by(vector(b), quaternion_of(a))
     near(np.linalg.norm(numbers(turned)), 1.0, 1.0, 1e-15)
     none = CHART.Quaternion(1.0, 0.0, 0.0, 0.0)
@@ -81,10 +79,10 @@ def test_composition(_: int) -> None:
     near(numbers(CHART.kappa_of(turned, quaternion_of(a))), b, 1.0, 1e-14 * (1.0 + b @ b))
 
 
-@pytest.mark.parametrize("_", range(5))
-def test_rates(_: int) -> None:
+@pytest.mark.parametrize("case", range(5))
+def test_rates(case: int) -> None:
     """W^-1 undoes W, and the second derivative is that of a motion kappa(t): by complex steps."""
-    kappa, rate, second = RANDOM.normal(size=(3, 3))
+    kappa, rate, second = np.random.default_rng(case).normal(size=(3, 3))
     sigma = spin(kappa, rate)
     near(numbers(CHART.spin_of(vector(kappa), vector(rate))), sigma, 1.0, 1e-14)
     near(numbers(CHART.rate_of(vector(kappa), vector(sigma))), rate, 1.0, 1e-13)
@@ -116,8 +114,11 @@ def energies(q: Array, rates: Array) -> tuple[complex, complex]:
     return kinetic, potential
 
 
-def lagrange(q: Array, rates: Array) -> Array:
-    """kappaddot by d/dt dE/dkappadot - dE/dkappa = -dV/dkappa; E is quadratic in the rates, so eps = its matrix."""
+def lagrange(q: Array, rates: Array) -> tuple[Array, float]:
+    """kappaddot by d/dt dE/dkappadot - dE/dkappa = -dV/dkappa; E is quadratic in the rates, so eps = its matrix.
+
+    With it the condition of eps, by which its rounding grows: far from the drawn attitude kappa moves little.
+    """
     six = np.eye(6)
 
     def energy(x: Array, u: Array) -> complex:
@@ -129,15 +130,16 @@ def lagrange(q: Array, rates: Array) -> Array:
     eps = np.array([momenta(q, e) for e in six])
     change = momenta(q + 1j * STEP * rates, rates).imag / STEP
     forces = by_complex_steps(lambda x: np.array([energies(x, rates)[0] - energies(x, rates)[1]]), q)[0]
-    return np.linalg.solve(eps, forces - change)
+    return np.linalg.solve(eps, forces - change), float(np.linalg.cond(eps))
 
 
 def test_lagrange_form_against_the_kernel() -> None:
     """Two bars on balls at random: the kernel's accelerations, carried to kappa, are Lagrange's of no. 20."""
     runner = set_up(load("double.yaml", double("{duration: 1}"))).runner
     layout = runner.layout
+    random = np.random.default_rng(20)
     for _ in range(4):
-        q, rates = RANDOM.normal(size=(2, 6))
+        q, rates = random.normal(size=(2, 6))
         y = layout.y0.copy()
         for k, row in enumerate(layout.tables["bodies"]):
             y[row["attitude_at"] :][:4] = numbers(quaternion_of(q[3 * k :][:3]))
@@ -147,5 +149,5 @@ def test_lagrange_form_against_the_kernel() -> None:
             numbers(CHART.second_of(vector(q[3 * k :][:3]), vector(rates[3 * k :][:3]), vector(alpha[k])))
             for k in range(2)
         ]
-        wanted = lagrange(q, rates)
-        near(np.concatenate(found), wanted, float(np.abs(wanted).max()), 1e-12)
+        wanted, condition = lagrange(q, rates)
+        near(np.concatenate(found), wanted, float(np.abs(wanted).max()), 8.0 * EPS * condition)
