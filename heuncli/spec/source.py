@@ -9,18 +9,17 @@ from __future__ import annotations
 
 import hashlib
 import re
-import sys
 from collections.abc import Iterator
-from pathlib import Path
 from typing import Any
 
 import yaml
 from yaml import events
 
-from heuncli.errors import Problem, SourceLocation, SpecError
+from heuncli.errors import Finding, Problem, SourceLocation, SpecError
 from heuncli.records import record
+from heuncli.spec.reading import read_bytes
 
-LARGEST = 64_000_000  # characters; a scene of 100,000 bodies has about 40 million
+LARGEST = 64_000_000  # bytes, and characters; a scene of 100,000 bodies has about 40 million
 DEEPEST = 64
 
 SMALLEST = "{heun: 1, bodies: {ball: {mass: 1, center: [0, 0, 0], inertia: [0, 0, 0]}}}"
@@ -78,9 +77,12 @@ def read(path: str, text: str | None) -> Source:
     file = "<stdin>" if path == "-" else path
     if text is None:
         try:
-            raw = sys.stdin.buffer.read() if path == "-" else Path(path).read_bytes()
-        except (OSError, ValueError) as error:
-            raise SpecError(unreadable(path, error)) from None
+            raw: bytes | bytearray = read_bytes(path, LARGEST)
+        except Finding as finding:
+            hint = finding.hint
+            if hint is None and finding.code == "unreadable":
+                hint = "paths are relative to where heun was started"
+            raise SpecError(Problem(finding.code, finding.message, SourceLocation(file, 1, 1), hint)) from None
         try:
             text = raw.decode("utf-8-sig")
         except UnicodeDecodeError as error:
@@ -101,18 +103,6 @@ def read(path: str, text: str | None) -> Source:
             ) from None
         text = text.removeprefix("\ufeff")
     return parse(file, text, hashlib.sha256(raw).hexdigest())
-
-
-def unreadable(path: str, error: Exception) -> Problem:
-    """Why a file cannot be read, in words."""
-    location = SourceLocation(path, 1, 1)
-    if isinstance(error, FileNotFoundError):
-        return Problem("unreadable", "there is no such file", location, "paths are relative to where heun was started")
-    if isinstance(error, IsADirectoryError):
-        return Problem("unreadable", "this is a folder, not a spec", location, "for folders of specs: heun check")
-    if isinstance(error, PermissionError):
-        return Problem("unreadable", "the file may not be read", location, "look at its permissions")
-    return Problem("unreadable", f"the file cannot be read: {getattr(error, 'strerror', None) or error}", location)
 
 
 def position(text: str, index: int) -> tuple[int, int]:

@@ -16,8 +16,11 @@ from heuncli.nearest import nearest
 from heuncli.records import record, replace
 from heuncli.spec.format import Table as Entry
 from heuncli.spec.quantity import Scope, number
+from heuncli.spec.reading import read_bytes
 
 MOST_ROWS = 2_000_000
+LARGEST = 200_000_000  # bytes: that many rows of a hundred characters
+RELATIVE = "a path is relative to the spec's folder"
 
 
 @record
@@ -141,15 +144,9 @@ def from_file(entry: Entry, file: str, folder: Path, wrong: list[Wrong]) -> list
     """The two columns of a CSV file, as they stand there."""
     path = folder / file
     try:
-        text = path.read_bytes().decode("utf-8-sig")
-    except (OSError, ValueError) as error:
-        reason = (
-            "it is not UTF-8"
-            if isinstance(error, UnicodeDecodeError)
-            else getattr(error, "strerror", None) or str(error)
-        )
-        hint = "a path is relative to the spec's folder"
-        wrong.append(Wrong(("file",), Finding("table-file", f"the file '{path}' cannot be read: {reason}", hint)))
+        text = text_of(path)
+    except Finding as finding:
+        wrong.append(Wrong(("file",), finding))
         return None
     try:
         return columns_of(text, entry.x if entry.x is not None else 1, entry.y if entry.y is not None else 2)
@@ -162,6 +159,19 @@ def from_file(entry: Entry, file: str, folder: Path, wrong: list[Wrong]) -> list
     except CsvError as error:
         wrong.append(Wrong(("file",), error.finding, SourceLocation(str(path), error.line, error.column)))
         return None
+
+
+def text_of(path: Path) -> str:
+    """The text of a file of a table. Raises Finding."""
+    try:
+        return read_bytes(str(path), LARGEST).decode("utf-8-sig")
+    except UnicodeDecodeError:
+        reason, code, hint = "it is not UTF-8", "table-file", "save it as CSV in UTF-8"
+    except Finding as refused:
+        is_large = refused.code == "too-large"
+        reason, code = refused.message, refused.code if is_large else "table-file"
+        hint = "a table of fewer points, or of these two columns alone" if is_large else RELATIVE
+    raise Finding(code, f"the file '{path}' cannot be read: {reason}", hint)
 
 
 def columns_of(text: str, *wanted: object) -> list[list[float]]:
