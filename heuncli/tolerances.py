@@ -181,6 +181,12 @@ INDIFFERENT = 1024.0 * EPS  # of the terms of an eigenvalue: exact slopes, of a 
 NEARLY_DEFECTIVE = 1e-6  # of unit eigenvectors, across each other: apart by more they keep ten digits, as a block all
 NOT_HELD = 1e-6  # of the terms of an acceleration: a rest leaves rounding of them, loads that jump leave their part
 
+# -- the range of what is computed with, SI: the largest products are of four quantities (m L^2 of an inertia is one of
+# three, and the square of a moment F L one of four), 1e240; their sums over 10,000 bodies stay below the end of double
+# precision, 1.8e308, and what is divided by them above its other end, 2.2e-308
+LEAST_MAGNITUDE = 1e-60
+MOST_MAGNITUDE = 1e60
+
 # -- what is typed in a spec
 UNIT_TYPED = 1e-2  # a unit quaternion or rotation matrix may be this far off: two digits at least
 UNIT_EXACT = 1e-14  # some dozen roundings: nearer to a rotation, a matrix is taken as it stands

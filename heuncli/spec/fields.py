@@ -15,6 +15,7 @@ from heuncli.errors import Finding
 from heuncli.expressions import units as u
 from heuncli.expressions.grammar import NONE
 from heuncli.expressions.programs import Expression
+from heuncli.number_range import is_in_range
 from heuncli.records import record
 from heuncli.spec.quantity import Scope, condition, in_time, kind_of, number, unit_in
 from heuncli.spec.words import FORMS
@@ -61,7 +62,7 @@ class Si(Value):
     """A number of a dimension, in SI."""
 
     def read(self, value: Any, info: Any) -> float:
-        if type(value) is float and value - value == 0.0:
+        if type(value) is float and is_in_range(value):
             return value
         return number(value, self.dimension, info.context.load)
 

@@ -10,6 +10,7 @@ from heuncli.errors import Finding
 from heuncli.expressions.grammar import RESERVED, WORDS, Follows, Scope, compile_expression, told_of
 from heuncli.expressions.programs import Expression
 from heuncli.expressions.units import Dimension, describe, in_si, parse_unit, si_unit, spelled
+from heuncli.number_range import is_in_range, out_of_range
 from heuncli.records import replace
 
 # A number and then something that begins like a unit; "2 if t < 1 else 3" is an expression all the same.
@@ -25,7 +26,7 @@ NOT_A_NUMBER = re.compile(r"[+-]?\.?(?:inf|nan)(?:inity)?\Z", re.IGNORECASE)
 def number(value: Any, dimension: Dimension | None, scope: Scope) -> float:
     """The SI value of what stands in a spec; dimension None takes any."""
     if type(value) is float or type(value) is int:
-        return finite(value)
+        return in_range(finite(value))
     expression = in_time(value, dimension, scope)
     assert expression.constant is not None  # a scope out of time knows no variables
     return expression.constant
@@ -33,6 +34,14 @@ def number(value: Any, dimension: Dimension | None, scope: Scope) -> float:
 
 def in_time(value: Any, dimension: Dimension | None, scope: Scope) -> Expression:
     """The expression that stands in a spec, in SI; its dimension is known where it has a unit."""
+    expression = as_written(value, dimension, scope)
+    if expression.constant is not None:
+        in_range(expression.constant)
+    return expression
+
+
+def as_written(value: Any, dimension: Dimension | None, scope: Scope) -> Expression:
+    """The same, of any magnitude."""
     if type(value) is float or type(value) is int:
         return Expression.of(finite(value))
     if type(value) is not str:
@@ -146,6 +155,13 @@ def finite(value: float) -> float:
     if not math.isfinite(result):
         raise Finding("not-finite", f"{value if isinstance(value, float) else 'the number'} is not a finite number")
     return result
+
+
+def in_range(value: float) -> float:
+    """The number, unless it is too small or too large to be computed with."""
+    if not is_in_range(value):
+        raise out_of_range(value)
+    return value
 
 
 def kind_of(value: Any) -> str:

@@ -13,6 +13,7 @@ from heuncli.expressions.curves import fit
 from heuncli.expressions.programs import Table
 from heuncli.expressions.units import Dimension, parse_unit
 from heuncli.nearest import nearest
+from heuncli.number_range import is_in_range, out_of_range
 from heuncli.records import record, replace
 from heuncli.spec.format import Table as Entry
 from heuncli.spec.quantity import Scope, number
@@ -70,7 +71,8 @@ def build_table(name: str, entry: Entry, scope: Scope, folder: Path) -> tuple[Ta
     if columns is None or wrong:
         return None, wrong
     x, y = columns
-    wrong += shape_of(x, y, entry)
+    wrong += too_small_or_large(columns, entry)
+    wrong += shape_of(x, y, entry) if not wrong else ()
     if wrong:
         return None, wrong
     if entry.period is not None:
@@ -106,6 +108,16 @@ def read(item: object, size: float, scope: Scope, keys: tuple[str | int, ...], w
         wrong.append(Wrong(keys, finding))
         return None
     return value if isinstance(item, str) else value * size
+
+
+def too_small_or_large(columns: list[list[float]], entry: Entry) -> Iterator[Wrong]:
+    """The first number of each column that is not computed with."""
+    for key, column in zip(("x", "y"), columns, strict=True):
+        sizes = [*map(abs, column)]
+        if not is_in_range(max(sizes, default=0.0)) or not is_in_range(min(filter(None, sizes), default=0.0)):
+            i = next(i for i, value in enumerate(column) if not is_in_range(value))
+            in_file = entry.file is not None
+            yield Wrong(("file",) if in_file else (key, i), out_of_range(column[i], f"number {i + 1} of {key} (SI)"))
 
 
 def shape_of(x: list[float], y: list[float], entry: Entry) -> Iterator[Wrong]:

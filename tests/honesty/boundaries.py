@@ -777,6 +777,23 @@ def pushed_freely(x: float) -> str:
     return "falls" if np.isinf(off_balance(here)) else "rests"  # type: ignore[arg-type]
 
 
+def heavy(x: float) -> str:
+    """A bar of so much mass hangs: refused when it is read, or its weight."""
+    text = f"""
+heun: 1
+gravity: [0, 0, -10]
+ground: {{points: {{O: [0, 0, 0]}}}}
+bodies: {{bar: {{mass: {x!r}, center: [0, 0, 0], inertia: [0, 0, 0], points: {{a: [0, 0, 0]}}}}}}
+joints: {{pivot: {{type: ball, from: ground.O, to: bar.a}}}}
+"""
+    try:
+        found = solved(text)
+    except HeunError as error:
+        return f"refused: {error.problems[0].code}"
+    near(found.joints["pivot"]["force"][0, 2], 10.0 * x, 10.0 * x, 1e-12)
+    return "fine"
+
+
 def hanging(x: float, law: str = "0") -> str:
     """Modes of a pendulum drawn askew by x, with a torque: refused, or the right frequency."""
     text = f"""
@@ -893,6 +910,9 @@ ROWS = (
     # in the plane
     *(Row("FLAT", leaving(part), "flat", "not flat") for part in PARTS),
     Row("NEARLY_FLAT", drawn_askew, "told", "in space"),
+    # range
+    Row("LEAST_MAGNITUDE", heavy, "refused: magnitude", "fine"),
+    Row("MOST_MAGNITUDE", heavy, "fine", "refused: magnitude"),
     # rest
     Row("RUN_AWAY", rest.far_away, "rests", "refused"),
     Row("TURNS_ON", rest.wound_up, "rests", "refused"),

@@ -179,7 +179,9 @@ def test_a_table_from_a_file(tmp_path: Path) -> None:
     ("{x: [0, 1], y: [1, 2], period: 1}", "table-period", "tables.f.period", "agree"),
     ("{x: [0, 1], y: [1, 2], x_unit: degs}", "unknown-unit", "tables.f.x_unit", "deg"),
     ("{x: [0, 1], y: [1, 2], interpolation: spline}", "unknown-word", "tables.f.interpolation", "cubic"),
-    ("{x: [0, 1e-320], y: [1, 2]}", "table-shape", "tables.f", "slope"),
+    ("{x: [0, 1e-320], y: [1, 2]}", "magnitude", "tables.f.x.1", "1e-60"),
+    ("{x: [0, 1e-55], x_unit: mm, y: [0, 1e60], y_unit: kN}", "magnitude", "tables.f.y.1", "1e60"),
+    ("{x: [0, 1e-58], x_unit: mm, y: [0, 1]}", "magnitude", "tables.f.x.1", "1e-60"),
     ("{x: [0, 1], y: [1, 2], z: 3}", "unknown-key", "tables.f.z", "z"),
     ("{file: none.csv}", "table-file", "tables.f.file", "none.csv"),
     ("{file: .}", "table-file", "tables.f.file", "cannot be read"),
@@ -202,6 +204,16 @@ def test_an_accident_in_a_file_is_told_in_that_file(tmp_path: Path) -> None:
         load(spec)
     (problem,) = caught.value.problems
     assert str(problem.location) == f"{tmp_path / 'gas.csv'}:3:1"
+
+
+def test_a_number_of_a_file_is_told_by_its_row(tmp_path: Path) -> None:
+    (tmp_path / "gas.csv").write_text("a,b\n0,1\n1,1e70\n")
+    (tmp_path / "engine.yaml").write_text(BODY + "tables: {f: {file: gas.csv, x: a, y: b}}\n")
+    with pytest.raises(SpecError) as caught:
+        load(tmp_path / "engine.yaml")
+    (problem,) = caught.value.problems
+    assert (problem.code, problem.location and problem.location.path) == ("magnitude", "tables.f.file")
+    assert problem.message.startswith("number 2 of y (SI) is 1e+70, too large")
 
 
 def test_units_inside_lists() -> None:

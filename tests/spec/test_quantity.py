@@ -85,6 +85,14 @@ def test_plain_numbers_and_expressions(text: object, value: float) -> None:
     ("-.inf", "not-finite", "inf"),
     ("1e400 m", "not-finite", "inf"),
     ("1e300 km^9", "not-finite", "inf"),
+    (1e-61, "magnitude", "too small"),
+    (-1e61, "magnitude", "too large"),
+    (10**61, "magnitude", "1e60"),
+    (5e-324, "magnitude", "written 0"),
+    ("1e-58 mm", "magnitude", "unit"),
+    ("1e58 km", "magnitude", "unit"),
+    ("L*1e-70", "magnitude", "1e-60"),
+    ("1e40*1e40", "magnitude", "1e60"),
     ("1,5 m", "expression-syntax", "point: 1.5"),
     ("2*1,25", "expression-syntax", "point: 1.25"),
     ("sin(1,5)", "function-arguments", "point: 1.5"),
@@ -101,6 +109,11 @@ def test_refusals(value: object, code: str, words: str) -> None:
         number(value, u.LENGTH, SCOPE)
     assert caught.value.code == code
     assert words in f"{caught.value.message} {caught.value.hint}"
+
+
+@pytest.mark.parametrize("value", [0, 0.0, -0.0, 1e-60, -1e60, "0 mm", "1e-30*1e-30"])
+def test_what_is_just_computed_with(value: object) -> None:
+    assert number(value, u.LENGTH, SCOPE) == in_time(value, u.LENGTH, SCOPE).constant
 
 
 def test_in_time_a_multiple_of_time_is_meant() -> None:

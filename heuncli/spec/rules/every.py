@@ -13,6 +13,7 @@ from heuncli.spec.rules import (
     naming,
     not_yet,
     plane,
+    products,
     references,
     sections,
     stops,
@@ -20,7 +21,8 @@ from heuncli.spec.rules import (
 from heuncli.spec.rules.registry import RULES, DraftDocument, Rule, Violation, violations
 
 MODULES = (
-    naming, references, bodies, joints, plane, loads, stops, sections, analysis, methods, conditions, expect, not_yet,
+    naming, references, bodies, products, joints, plane, loads, stops, sections, analysis, methods, conditions,
+    expect, not_yet,
 )  # fmt: skip
 
 __all__ = ["MODULES", "RULES", "DraftDocument", "Rule", "Violation", "violations"]

@@ -1,0 +1,63 @@
+"""Products of a spec's quantities are refused where they are too small or too large to be computed with."""
+
+from __future__ import annotations
+
+import pytest
+
+from heuncli.errors import SpecError
+from heuncli.spec.load import load
+
+SCENE = """\
+heun: 1
+ground: {points: {O: [0, 0, 0]}}
+bodies:
+  bar: {BODY, points: {a: [0, 0, 0]}}
+  other: {mass: 1, center: [0, 0, 0], inertia: [1, 1, 1], points: {a: [0, 0, 0]}}
+joints: {p: {type: ball, from: ground.O, to: bar.a}, q: {type: ball, from: bar.a, to: other.a}}
+"""
+LARGE = "radius: 1e25, density: 1e10"
+
+
+@pytest.mark.parametrize(("body", "path", "words"), [
+    (f"shapes: [{{type: sphere, center: [0, 0, 0], {LARGE}}}]", "shapes.0", "its density times its volume, is 4.18"),
+    ("shapes: [{type: sphere, center: [0, 0, 0], radius: 1e-25, density: 1}]", "shapes.0", "too small"),
+    (f"shapes: [{{type: cylinder, from: [0, 0, 0], to: [0, 0, 1e25], {LARGE}}}]", "shapes.0", "too large"),
+    (f"shapes: [{{type: cone, from: [0, 0, 0], to: [0, 0, 1e25], to_radius: 0, {LARGE}}}]", "shapes.0", "too large"),
+    ("shapes: [{type: box, center: [0, 0, 0], size: [1e-20, 1e-20, 1e-20], density: 0.1}]", "shapes.0", "too small"),
+    ("shapes: [{type: rod, from: [0, 0, 0], to: [1e40, 0, 0], line_density: 1e40}]", "shapes.0", "is 1e+80"),
+    ("shapes: [{type: point, at: [1e20, 0, 0], mass: 1e30}]", "", "1e+30 kg times the square of 1e+20 m, is 1e+70"),
+    ("shapes: [{type: box, center: [0, 0, 0], size: [1, 1, 1e40], mass: 1}]", "", "the inertia of this body"),
+    ("mass: 1, center: [0, 1e31, 0], inertia: [0, 0, 0]", "", "1e+62"),
+    ("mass: 1e-50, center: [0, 1e-6, 0], inertia: [0, 0, 0]", "", "1e-62, too small"),
+    ("mass: 1, center: [0, 0, 0], inertia: [1, 1, 1], position: [0, 0, 1e31]", "", "about the origin"),
+])  # fmt: skip
+def test_products_out_of_range(body: str, path: str, words: str) -> None:
+    with pytest.raises(SpecError) as caught:
+        load("x.yaml", text=SCENE.replace("BODY", body))
+    problem = caught.value.problems[0]
+    assert problem.location is not None
+    assert (problem.code, problem.location.path) == ("magnitude", f"bodies.bar.{path}".rstrip("."))
+    assert words in problem.message
+    assert problem.hint
+
+
+@pytest.mark.parametrize("body", [
+    "shapes: [{type: point, at: [0, 0, 0], mass: 1e-60}]",
+    "shapes: [{type: sphere, center: [0, 0, 0], radius: 1e-8, density: 1e-10}]",
+    "shapes: [{type: cylinder, from: [0, 0, 0], to: [0, 0, 1e18], radius: 2e-60, inner_radius: 1e-60, mass: 1e10}]",
+    "mass: 1e-40, center: [1e40, 0, 0], inertia: [1e-30, 1e-30, 1e-30]",
+])  # fmt: skip
+def test_products_in_range(body: str) -> None:
+    load("x.yaml", text=SCENE.replace("BODY", body))
+
+
+def test_all_are_told_at_once() -> None:
+    body = "mass: 1e99, center: [0, 0, 0], inertia: [1e99, 1, 1]"
+    text = SCENE.replace("BODY", body).replace("mass: 1, center", "mass: 1e50, position: [1e9, 0, 0], center")
+    with pytest.raises(SpecError) as caught:
+        load("x.yaml", text=text)
+    assert [p.location and p.location.path for p in caught.value.problems] == [
+        "bodies.bar.mass",
+        "bodies.bar.inertia.0",
+        "bodies.other",
+    ]
