@@ -8,14 +8,16 @@ from collections.abc import Callable
 from pathlib import Path
 
 from heuncli.charts import Chart
+from heuncli.cli import alarm
 from heuncli.cli.entry import UsageError
 from heuncli.cli.output import emit, save
 from heuncli.cli.progress import progress
 from heuncli.cli.requests import Chart as Request
-from heuncli.cli.solving import overrides, positive, warn
+from heuncli.cli.solving import overrides, warn
 from heuncli.cli.target import format_of, keep, require_room
 from heuncli.errors import Problem
 from heuncli.method_rows import AUTO, METHODS, row_of
+from heuncli.records import replace
 from heuncli.report import chart as report
 from heuncli.report.export import dump
 from heuncli.report.fit import fit
@@ -40,16 +42,15 @@ def main(request: Request) -> int:
         methods(request.methods),
         numbers("--tolerances", request.tolerances, 1.0),
         numbers("--steps", request.steps, math.inf),
-        positive("--time-limit", request.time_limit),
     )
     spec = load(request.spec, overrides=overrides(request.set), checking=False)
     keep(request.output, [request.spec, *spec.files])
     keep(request.save, [request.spec, *spec.files], "--save")
     with progress(request.quiet) as tell:
-        found = chart(spec, wanted, tell)
+        found = chart(spec, replace(wanted, time_limit=alarm.left()), tell)
     if drawn is not None and request.save is not None:
         save(drawn(found), request.save)
-    emit(text(found, form, request.output), request.output)
+    emit(text(found, form, request.output), request.output, late=True)
     warn(spec, None, request.quiet)
     return 0
 

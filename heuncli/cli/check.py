@@ -8,6 +8,7 @@ from typing import Any
 
 import numpy as np
 
+from heuncli.cli import alarm
 from heuncli.cli.entry import UsageError, report_problems, worst
 from heuncli.cli.output import emit
 from heuncli.cli.requests import Check
@@ -58,7 +59,7 @@ def main(request: Check) -> int:
     for path in paths:
         keep(request.output, [path])
     form = format_of(request.format, request.output, ENDINGS, FORMATS)
-    checked = [_check(path, request.quiet) for path in paths]
+    checked = [_check(path, request.quiet, request.time_limit_each) for path in paths]
     for one in checked:
         keep(request.output, [one.path, *one.tables])
     if any(one.error is None for one in checked):  # with errors alone there is no result
@@ -81,17 +82,22 @@ def _files(argument: str, skipped: list[str]) -> Iterator[str]:
             yield str(entry)
 
 
-def _check(path: str, quiet: bool) -> Checked:
+def _check(path: str, quiet: bool, limit: float | None) -> Checked:
     try:
-        spec = load(path)
-        asked = asked_by([item.of for item in spec.expect], spec) if spec.expect else EVERYTHING
-        study = solve(spec, Options(wanted=asked.reports, entries=asked.entries))
-        cases = tuple(compare(study, item) for item in spec.expect)
-        warn(spec, study.results, quiet, f"heun: {path}", study.later)
-        return Checked(path, cases, tables=spec.files)
+        return alarm.limited(lambda: _compared(path, quiet), limit)
     except HeunError as error:
         report_problems(error.problems, label="" if _placed(error) else f"{path}: ")
         return Checked(path, (), error)
+
+
+def _compared(path: str, quiet: bool) -> Checked:
+    spec = load(path)
+    asked = asked_by([item.of for item in spec.expect], spec) if spec.expect else EVERYTHING
+    study = solve(spec, Options(wanted=asked.reports, entries=asked.entries, time_limit=alarm.left()))
+    cases = tuple(compare(study, item) for item in spec.expect)
+    alarm.off()
+    warn(spec, study.results, quiet, f"heun: {path}", study.later)
+    return Checked(path, cases, tables=spec.files)
 
 
 def _placed(error: HeunError) -> bool:

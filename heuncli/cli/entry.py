@@ -6,14 +6,15 @@ Results go to standard output, everything else to standard error; a command that
 from __future__ import annotations
 
 import importlib
+import math
 import os
 import sys
 from collections.abc import Sequence
 from pathlib import Path
 
-from heuncli.cli import plain
+from heuncli.cli import alarm, plain
 from heuncli.cli.output import ReaderGone, emit, say
-from heuncli.cli.requests import COMMANDS, LATER_COMMANDS, LATER_OPTIONS, Request
+from heuncli.cli.requests import COMMANDS, GRACES, LATER_COMMANDS, LATER_OPTIONS, Request
 from heuncli.errors import HeunError, LimitError, Problem
 from heuncli.version import VERSION
 
@@ -84,8 +85,17 @@ def _command(argv: list[str]) -> int:
     for name in LATER_OPTIONS:
         if getattr(request, name, None):
             raise UsageError(Problem("not-yet", f"--{name.replace('_', '-')}: not in this version yet"))
+    _require_positive(getattr(request, "time_limit", None), getattr(request, "time_limit_each", None))
     module = importlib.import_module(f"heuncli.cli.{type(request).__name__.lower()}")
-    return int(module.main(request))
+    grace = GRACES.get(type(request), alarm.GRACE)
+    return int(alarm.limited(lambda: module.main(request), getattr(request, "time_limit", None), grace))
+
+
+def _require_positive(*limits: float | None) -> None:
+    """Raise UsageError where a time limit is none that can be kept."""
+    for limit in limits:
+        if limit is not None and not (math.isfinite(limit) and limit > 0.0):
+            raise UsageError(Problem("bad-option", f"--time-limit {limit}: expected a positive number"))
 
 
 def _through_typer(argv: list[str]) -> Request | int:

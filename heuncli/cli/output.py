@@ -11,6 +11,7 @@ import stat
 import sys
 from pathlib import Path
 
+from heuncli.cli import alarm
 from heuncli.errors import HeunError, OutputError, Problem
 
 NEW_FILE_MODE = 0o666
@@ -22,8 +23,12 @@ class ReaderGone(HeunError):
     exit_code = 141
 
 
-def emit(text: str, target: str | None = None) -> None:
-    """Write the text to a file, or to standard output for None and `-`."""
+def emit(text: str, target: str | None = None, *, late: bool = False) -> None:
+    """Write the text to a file, or to standard output for None and `-`; no time limit interrupts that.
+
+    late: also where the time limit is past; else LimitError is raised, and nothing is written.
+    """
+    alarm.off(late=late)
     if target is None or target == "-":
         _to_standard_output(text)
     else:
@@ -31,7 +36,8 @@ def emit(text: str, target: str | None = None) -> None:
 
 
 def save(content: bytes, target: str) -> None:
-    """Write what is no text to a file."""
+    """Write what is no text to a file, however late."""
+    alarm.off(late=True)
     _to_file(content, Path(target))
 
 

@@ -2,9 +2,10 @@
 
 from __future__ import annotations
 
+from heuncli.cli import alarm
 from heuncli.cli.output import emit
 from heuncli.cli.requests import Probe
-from heuncli.cli.solving import overrides, positive, warn
+from heuncli.cli.solving import overrides, warn
 from heuncli.cli.target import format_of, keep
 from heuncli.report import probe as report
 from heuncli.report.export import dump
@@ -20,10 +21,9 @@ def main(request: Probe) -> int:
     """Run the command; returns the exit code."""
     keep(request.output, [request.spec])
     form = format_of(request.format, request.output, ENDINGS, FORMATS)
-    options = Options(time_limit=positive("--time-limit", request.time_limit))
     spec = load(request.spec, overrides=overrides(request.set), checking=False)
     keep(request.output, [request.spec, *spec.files])
-    found = probe(spec, options)
+    found = probe(spec, Options(time_limit=alarm.left()))
     emit(dump(found.block()) if form == "json" else report.write(found), request.output)
     warn(spec, None, request.quiet)
     return 0

@@ -21,6 +21,8 @@ class Option(NamedTuple):
 SET = Option(("--set",), "Set a parameter, or a dotted key of the spec. May be repeated.", "NAME=VALUE")
 OUTPUT = Option(("--output", "-o"), "Write there, whole or not at all.", "FILE")
 QUIET = Option(("--quiet", "-q"), "No warnings on standard error.")
+TIME_LIMIT = Option(("--time-limit",), "Give up after that long.", "SECONDS")
+TIME_LIMIT_EACH = Option(("--time-limit",), "Give up on a spec after that long; the others go on.", "SECONDS")
 NO_REDUCE = Option(("--no-reduce",), "Solve all of the scene, in full.")
 SPEC = Option((), "The scene's YAML file; - reads standard input.", "SPEC")
 
@@ -79,7 +81,7 @@ class Run(NamedTuple):
         Option(("--units",), "Units of tables, such as kN,mm,deg,rpm; JSON, CSV and --measure stay SI.", "UNIT,..."),
     ] = None
     strict: Annotated[bool, Option(("--strict",), "Leave with 1 if there are warnings or open reactions.")] = False
-    time_limit: Annotated[float | None, Option(("--time-limit",), "Give up after that long.", "SECONDS")] = None
+    time_limit: Annotated[float | None, TIME_LIMIT] = None
     quiet: Annotated[bool, QUIET] = False
     verbose: Annotated[bool, Option(("--verbose", "-v"), "Tell on standard error where the time went.")] = False
 
@@ -88,6 +90,7 @@ class Validate(NamedTuple):
     """Read specs and report every error of every file."""
 
     specs: Annotated[tuple[str, ...], Option((), "YAML files; - reads standard input.", "SPEC...")]
+    time_limit_each: Annotated[float | None, TIME_LIMIT_EACH] = None
     quiet: Annotated[bool, Option(("--quiet", "-q"), "Nothing but errors.")] = False
 
 
@@ -99,6 +102,7 @@ class Model(NamedTuple):
     output: Annotated[str | None, OUTPUT] = None
     set: Annotated[tuple[str, ...], SET] = ()
     no_reduce: Annotated[bool, NO_REDUCE] = False
+    time_limit: Annotated[float | None, TIME_LIMIT] = None
     quiet: Annotated[bool, QUIET] = False
 
 
@@ -116,6 +120,7 @@ class Modes(NamedTuple):
     ] = None
     output: Annotated[str | None, OUTPUT] = None
     set: Annotated[tuple[str, ...], SET] = ()
+    time_limit: Annotated[float | None, TIME_LIMIT] = None
     quiet: Annotated[bool, QUIET] = False
 
 
@@ -157,7 +162,7 @@ class Probe(NamedTuple):
     ] = None
     output: Annotated[str | None, OUTPUT] = None
     set: Annotated[tuple[str, ...], SET] = ()
-    time_limit: Annotated[float | None, Option(("--time-limit",), "Give up after that long.", "SECONDS")] = None
+    time_limit: Annotated[float | None, TIME_LIMIT] = None
     quiet: Annotated[bool, QUIET] = False
 
 
@@ -175,6 +180,7 @@ class Check(NamedTuple):
     )
     update: Annotated[bool, Option(("--update",), "Write the kept results anew.")] = False
     junit: Annotated[str | None, Option(("--junit",), "Write a JUnit report.", "FILE")] = None
+    time_limit_each: Annotated[float | None, TIME_LIMIT_EACH] = None
     quiet: Annotated[bool, QUIET] = False
 
 
@@ -193,6 +199,8 @@ COMMANDS: dict[str, type[Request]] = {
     "run": Run, "validate": Validate, "model": Model, "modes": Modes, "chart": Chart, "probe": Probe, "check": Check,
     "methods": Methods,
 }  # fmt: skip
+# seconds that a command may go on beyond its limit, to tell what it has by then; others have nothing
+GRACES: dict[type[Request], float] = {Chart: 0.8}
 LATER_COMMANDS = ("balance", "lagrange", "schema", "explain", "new", "sweep", "plot")
 LATER_OPTIONS = ("golden", "update", "junit")
 

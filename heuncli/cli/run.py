@@ -8,7 +8,7 @@ from typing import Any
 
 import numpy as np
 
-from heuncli.cli import searches
+from heuncli.cli import alarm, searches
 from heuncli.cli.entry import UsageError
 from heuncli.cli.output import emit, say
 from heuncli.cli.requests import FORMATS, Run
@@ -56,12 +56,11 @@ def main(request: Run) -> int:
         least_norm=request.least_norm,
         reduce=not request.no_reduce,
         axes="world" if request.axes is None else choice("--axes", request.axes, JOINT_AXES),
-        time_limit=positive("--time-limit", request.time_limit),
     )
     begun = time.perf_counter()
     spec = load(request.spec, overrides=overrides(request.set), checking=False)
     keep(request.output, [request.spec, *spec.files])
-    options = replace(options, load_seconds=time.perf_counter() - begun)
+    options = replace(options, load_seconds=time.perf_counter() - begun, time_limit=alarm.left())
     if asked:
         measure.check(asked, spec)
     what = asked_by([each.path for each in asked], spec) if asked else _asked(request, only, spec, form)

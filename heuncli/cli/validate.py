@@ -2,10 +2,13 @@
 
 from __future__ import annotations
 
+from functools import partial
+
+from heuncli.cli import alarm
 from heuncli.cli.entry import report_problems, worst
 from heuncli.cli.output import emit, say
 from heuncli.cli.requests import Validate
-from heuncli.errors import SpecError
+from heuncli.errors import LimitError, SpecError
 from heuncli.report.words import count
 from heuncli.spec.load import load
 from heuncli.spec.models import Spec
@@ -16,10 +19,9 @@ def main(request: Validate) -> int:
     codes, lines = [0], []
     for path in request.specs:
         try:
-            spec = load(path)
-            warnings = [*map(str, spec.warnings), *_of_cuts(spec)]
-        except SpecError as error:
-            report_problems(error.problems)
+            spec, warnings = alarm.limited(partial(_judged, path), request.time_limit_each)
+        except (SpecError, LimitError) as error:
+            report_problems(error.problems, "" if isinstance(error, SpecError) else f"{path}: ")
             codes.append(error.exit_code)
             continue
         if not request.quiet:
@@ -30,6 +32,14 @@ def main(request: Validate) -> int:
     if code == 0 and not request.quiet:
         emit("".join(lines))
     return code
+
+
+def _judged(path: str) -> tuple[Spec, list[str]]:
+    """A spec that is fine, and its warnings. Raises SpecError, LimitError."""
+    spec = load(path)
+    warnings = [*map(str, spec.warnings), *_of_cuts(spec)]
+    alarm.off()
+    return spec, warnings
 
 
 def _of_cuts(spec: Spec) -> list[str]:

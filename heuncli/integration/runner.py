@@ -298,7 +298,6 @@ class Runner(Evaluator):
         )  # fmt: skip
         run = Integration(moving.layout, moving.workspace, method, ts, chunk_of(moving.layout, method), begin)
         steps = Steps(begin.state, run.width)
-        check_deadline(deadline, f"before the run of {last:.6g} s began")
         blows, until = Blows(self, moving, run, steps, last), None if whole else until_of(moving.layout)
         segments = smooth_segments(last, discontinuities)
         eventful = eventful and (run.held > 0 or len(self.layout.contacts) > 0 or len(segments) > 1)

@@ -22,7 +22,7 @@ from heuncli.integration.evaluator import Evaluator
 from heuncli.integration.loop import Integration, Start, just_before
 from heuncli.integration.methods.method import Method
 from heuncli.integration.moving import itself
-from heuncli.integration.runner import MORE, REACHED, Runner, Trajectory, check_deadline
+from heuncli.integration.runner import MORE, REACHED, Runner, Trajectory
 from heuncli.records import record
 from heuncli.response import jacobian
 from heuncli.rest.coordinates import coordinates_of
@@ -196,7 +196,7 @@ class Shadows:
         states = self.runner.resample(self.run, times)
         return np.array([self.moving.restrict(t, y) for t, y in zip(times.tolist(), states, strict=True)])
 
-    def growth(self, Q: Array | None = None, deadline: float | None = None) -> Growth:
+    def growth(self, Q: Array | None = None) -> Growth:
         """How disturbances grow along the run: all, or those in the directions Q (2 n, N) of the start."""
         Q, factor = some_of(self.directions() if Q is None else Q)
         n, C, log = self.scale.n, np.eye(Q.shape[1]), 0.0
@@ -204,7 +204,6 @@ class Shadows:
         todo = self.pieces()[::-1] if Q.shape[1] else []
         while todo:
             piece, base = todo.pop()
-            check_deadline(deadline, f"at t = {piece.begin:.6g} s of the runs beside it")
             made = self.passed(piece, base, Q)
             if made is None:
                 return growth_of(found, f"a run beside it does not come to t = {piece.end:.6g} s")

@@ -10,13 +10,12 @@ pushes is left alone, as that motion leaves it alone. Contacts close where their
 
 from __future__ import annotations
 
-import time
 from collections.abc import Callable
 
 import numpy as np
 
 from heuncli import tolerances
-from heuncli.errors import LimitError, Problem, SolveError
+from heuncli.errors import Problem, SolveError
 from heuncli.integration.evaluator import Evaluator
 from heuncli.kinetostatics.bodies import body_states
 from heuncli.kinetostatics.coordinates import coordinates as joint_coordinates
@@ -46,10 +45,10 @@ class Found:
 
 
 class Search:
-    """A search under way. Changes with every step; looks at the clock where a time limit is set."""
+    """A search under way. Changes with every step."""
 
-    def __init__(self, evaluator: Evaluator, t: float, deadline: float | None = None) -> None:
-        self.evaluator, self.t, self.deadline = evaluator, t, deadline
+    def __init__(self, evaluator: Evaluator, t: float) -> None:
+        self.evaluator, self.t = evaluator, t
         self.coordinates = coordinates_of(evaluator.layout)
         self.start = evaluator.layout.y0
         self.passed = np.zeros(self.coordinates.count)
@@ -57,7 +56,7 @@ class Search:
         self.h = self.most = 0.0
 
     def found(self) -> Found:
-        """The rest pose. Raises SolveError [no-rest-pose], LimitError past the deadline."""
+        """The rest pose. Raises SolveError [no-rest-pose]."""
         at = self.begun()
         while True:
             own = slopes(self.evaluator, self.coordinates, at)
@@ -85,7 +84,7 @@ class Search:
             raise SolveError(self.lost_rank(at) or jumps(self.coordinates, at, shape))
 
     def check(self, at: Pose, own: Slopes) -> None:
-        """Raise what ends a search: something runs away, the steps or the time are used up."""
+        """Raise what ends a search: something runs away, the steps are used up."""
         self.most = max(self.most, float(own.summed.max(initial=0.0)) / tolerances.SUM_ROUNDING)
         far = np.abs(self.passed) * self.coordinates.weights
         limit = np.where(self.coordinates.shifts, tolerances.RUN_AWAY, tolerances.TURNS_ON)
@@ -93,9 +92,6 @@ class Search:
             raise SolveError(run_away(self.coordinates, self.passed, far / limit))
         if self.steps >= MOST_STEPS:
             raise SolveError(self.lost_rank(at) or endless(self.coordinates, at, self.steps))
-        if self.deadline is not None and time.monotonic() > self.deadline:
-            message = f"the time limit was reached after {self.steps} steps towards the rest pose"
-            raise LimitError(Problem("time-limit", message, hint="a longer --time-limit"))
 
     def advanced(self, at: Pose, own: Slopes) -> Pose:
         """One step further."""

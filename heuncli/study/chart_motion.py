@@ -83,7 +83,7 @@ def motion_of(spec: Spec, deadline: float | None) -> Motion:
         message = f"{what.get(spec.analysis.type, 'a state is one instant')}: no method has anything to integrate"
         raise SpecError(Problem("nothing-to-chart", message, hint=NEEDS_MOTION))
     spec, ends = up_to_its_end(spec, deadline)
-    setup = set_up(spec, AUTO, deadline=deadline)
+    setup = set_up(spec, AUTO)
     if BY_JOINTS in setup.model.get("reduced", ()):
         raise SolveError(Problem("nothing-to-chart", BY_JOINTS, hint="free a joint, or drive one"))
     jumps = begin(setup)

@@ -21,7 +21,7 @@ from heuncli.integration.evaluator import Recovered
 from heuncli.integration.methods.method import Method
 from heuncli.integration.methods.registry import method_of
 from heuncli.integration.pairs import interleaved, moved_start
-from heuncli.integration.runner import Eventful, Runner, Stiff, Trajectory, check_deadline, discontinuities_of
+from heuncli.integration.runner import Eventful, Runner, Stiff, Trajectory, discontinuities_of
 from heuncli.integration.singular import singular_poses
 from heuncli.integration.solvable import Asked, require_start
 from heuncli.mechanism.model import Mechanism
@@ -87,7 +87,6 @@ def integrate(setup: Setup, tolerance: float, deadline: float | None, *, by_caus
     """
     times, runner = np.array(setup.spec.analysis.times, dtype=float), setup.runner
     if setup.method is None:
-        check_deadline(deadline, "before the loads were computed")
         return state(setup, float(times[0]), tolerance, by_cause)
     jumps = begin(setup)
     checked = checked_motion(setup, tolerance, jumps, deadline, by_cause)
@@ -96,7 +95,6 @@ def integrate(setup: Setup, tolerance: float, deadline: float | None, *, by_caus
     seconds = {"integrate": checked.run.seconds, "check": checked.check_seconds}
     if checked.lost_seconds:
         seconds["lost"] = checked.lost_seconds
-    check_deadline(deadline, "before the loads were computed")
     singular = tuple(singular_poses(runner, checked.run))
     estimate, beside = Estimate(motion=checked.motion, **checked.loads), checked.beside
     return History(

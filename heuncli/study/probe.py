@@ -5,7 +5,6 @@ Impure: integrating looks at the clock.
 
 from __future__ import annotations
 
-import time
 from collections import Counter
 from collections.abc import Sequence
 
@@ -24,15 +23,14 @@ MOST_EVENTS = 100  # that are listed of one kind and place
 
 def probe(spec: Spec, options: Options) -> Probe:
     """Probe the motion of a spec, or its state. Raises what solving it raises."""
-    deadline = time.monotonic() + options.time_limit if options.time_limit else None
     study = solve(spec, replace(options, wanted=frozenset({"motion"})))
     along = Along(study)
     turns, turned = attitudes(along)
     centres, left = dead_centres(along)
     mass, closure, why = conditions_of(along)
-    stiffness, no_stiffness = stiffness_of(along, deadline)
-    growth, no_growth = growing(along, deadline)
-    across, no_across = across_plane(along, deadline)
+    stiffness, no_stiffness = stiffness_of(along)
+    growth, no_growth = growing(along)
+    across, no_across = across_plane(along)
     listed, more = most_of(distinct_events([*turns, *centres, *singular_events(along, mass)], along.span))
     checked, results = study.history.checked, study.results
     reasons = {

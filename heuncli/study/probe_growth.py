@@ -24,7 +24,7 @@ ONE_INSTANT = "one instant: nothing goes on; heun modes tells what grows about a
 FOLLOWED = "nothing is integrated: drives and joints leave no freedom"
 
 
-def growing(along: Along, deadline: float | None) -> tuple[Growing | None, str]:
+def growing(along: Along) -> tuple[Growing | None, str]:
     """The growth of disturbances of what is integrated; or why it is not told."""
     checked, runner = along.study.history.checked, along.study.setup.runner
     if checked is None:
@@ -37,7 +37,7 @@ def growing(along: Along, deadline: float | None) -> tuple[Growing | None, str]:
     Q = shadows.directions()
     if not Q.shape[1]:
         return None, "nothing is free to move"
-    return told(shadows.growth(Q, deadline), Q.shape[1])
+    return told(shadows.growth(Q), Q.shape[1])
 
 
 def method_beside(run: Trajectory) -> Method:
@@ -51,7 +51,7 @@ def method_beside(run: Trajectory) -> Method:
     return own if not own.fixed and own.attitude == QUATERNION else DOP853
 
 
-def across_plane(along: Along, deadline: float | None) -> tuple[Growing | None, str]:
+def across_plane(along: Along) -> tuple[Growing | None, str]:
     """The growth out of the plane that the scene was found to stay in; or why there is none."""
     study = along.study
     checked, layout = study.history.checked, along.layout
@@ -67,7 +67,7 @@ def across_plane(along: Along, deadline: float | None) -> tuple[Growing | None, 
     Q = across(shadows)
     if Q is None or not Q.shape[1]:
         return None, "no joint lets a body leave the plane"
-    return told(shadows.growth(Q, deadline), Q.shape[1])
+    return told(shadows.growth(Q), Q.shape[1])
 
 
 def across(shadows: Shadows) -> Array | None:

@@ -15,7 +15,7 @@ from heuncli import tolerances
 from heuncli.integration.evaluator import Evaluator
 from heuncli.integration.methods.dop853 import DOP853
 from heuncli.integration.methods.registry import method_of
-from heuncli.integration.runner import Trajectory, check_deadline
+from heuncli.integration.runner import Trajectory
 from heuncli.method_rows import row_of
 from heuncli.probing.model import Step, Stiffness
 from heuncli.probing.shadows import Scale
@@ -29,7 +29,7 @@ MOST_STATE = 600  # numbers of state, of a matrix that is formed
 WINDOWS = 100  # of the run, over which the speeds change
 
 
-def stiffness_of(along: Along, deadline: float | None) -> tuple[Stiffness | None, str]:
+def stiffness_of(along: Along) -> tuple[Stiffness | None, str]:
     """The stiffness of a motion or a state, or why there is none."""
     study = along.study
     runner, checked = study.setup.runner, study.history.checked
@@ -46,7 +46,7 @@ def stiffness_of(along: Along, deadline: float | None) -> tuple[Stiffness | None
         return of_instants(at.times, [values], math.nan, along.study.spec.analysis.tolerance), ""
     run = checked.run
     times = looked_at(run)
-    values_at = spectra(along, times, deadline)
+    values_at = spectra(along, times)
     stable = np.array([stable_step(DOP853, values) for values in values_at])
     grows = max(float(values.real.max(initial=0.0)) for values in values_at)  # what grows is followed, too
     own = max(own_rate(along, run, times, stable), grows)
@@ -85,7 +85,7 @@ def looked_at(run: Trajectory) -> Array:
     return np.unique(marks[np.linspace(0, len(marks) - 1, min(LOOKS, len(marks))).astype(int)])
 
 
-def spectra(along: Along, times: Array, deadline: float | None) -> list[Array]:
+def spectra(along: Along, times: Array) -> list[Array]:
     """Eigenvalues of what is integrated, at instants."""
     runner, checked = along.study.setup.runner, along.study.history.checked
     assert checked is not None
@@ -93,7 +93,6 @@ def spectra(along: Along, times: Array, deadline: float | None) -> list[Array]:
     states, holding = runner.resample(checked.run, times), checked.run.holding_at(times)
     found = []
     for t, state, closed in zip(times.tolist(), states, holding, strict=True):
-        check_deadline(deadline, f"before the stiffness at t = {t:.6g} s was known")
         found.append(eigenvalues(beside, t, moving.restrict(t, state), closed))
     return found
 

@@ -39,13 +39,13 @@ class Rest:
         return {"code": "completed", "message": f"at rest after {count(self.steps, 'step')} from the start"}
 
 
-def at_rest(scene: PreparedScene, runner: Runner, deadline: float | None) -> tuple[PreparedScene, Runner, Rest]:
-    """The scene with its rest pose as the start. Raises SolveError [no-rest-pose], LimitError past the deadline."""
+def at_rest(scene: PreparedScene, runner: Runner) -> tuple[PreparedScene, Runner, Rest]:
+    """The scene with its rest pose as the start. Raises SolveError [no-rest-pose]."""
     begun = time.perf_counter()
     require_constant(scene.mechanism)
     first = runner.recovered(np.zeros(1), runner.layout.y0[None, :])
     require_solvable(scene, first, Asked("accelerations of the start"))
-    search = Search(runner, 0.0, deadline)
+    search = Search(runner, 0.0)
     require_together(runner, search.coordinates, search.begun())
     found = search.found()
     require_steady(runner, found.coordinates, found.pose, found.slopes)

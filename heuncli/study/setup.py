@@ -64,12 +64,11 @@ class Setup:
 
 
 def set_up(
-    spec: Spec, method: str | None = None, *, reduce: bool = True, asked: Asked = EVERYTHING,
-    looked_for: bool = True, deadline: float | None = None,
-) -> Setup:  # fmt: skip
+    spec: Spec, method: str | None = None, *, reduce: bool = True, asked: Asked = EVERYTHING, looked_for: bool = True
+) -> Setup:
     """Build, cut, assemble, lay out; `method` stands for the one in the spec; reduce: a smaller scene may move for it.
 
-    looked_for: a rest pose that is asked for is found, before the deadline (time.monotonic()).
+    looked_for: a rest pose that is asked for is found.
     asked: what is not asked for, and what nothing asked for depends on, is left out. Raises SpecError for a section
     that cannot be cut, SolveError where the scene does not close.
     """
@@ -86,7 +85,7 @@ def set_up(
         prepared = replace(prepared, layout=replace(prepared.layout, flat=False))
     scene, runner = ready(prepared)
     if spec.analysis.type == "rest":
-        return set_up_at_rest(Setup(spec, scene, cuts, runner, None, {}, None, asked), left_out, looked_for, deadline)
+        return set_up_at_rest(Setup(spec, scene, cuts, runner, None, {}, None, asked), left_out, looked_for)
     asked_method = method or spec.analysis.method
     auto = asked_method.lower() == AUTO
     chosen = method_of(asked_method) if spec.analysis.type == "motion" else None
@@ -107,13 +106,13 @@ def set_up(
     return Setup(spec, scene, cuts, runner, chosen, note, reduced, asked, auto=auto, step=step)
 
 
-def set_up_at_rest(setup: Setup, left_out: tuple[str, ...], looked_for: bool, deadline: float | None) -> Setup:
+def set_up_at_rest(setup: Setup, left_out: tuple[str, ...], looked_for: bool) -> Setup:
     """The same at its rest pose, unless that is not looked for."""
     from heuncli.study.resting import at_rest  # few scenes ask for it
 
     scene, runner, rest = setup.scene, setup.runner, None
     if looked_for:
-        scene, runner, rest = at_rest(scene, runner, deadline)
+        scene, runner, rest = at_rest(scene, runner)
     note = model_note(scene, runner, "rest") | reductions(left_out, scene, None)
     return replace(setup, scene=scene, runner=runner, rest=rest, model=rested(note, rest.told if rest else ()))
 

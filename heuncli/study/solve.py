@@ -94,7 +94,7 @@ def solved(spec: Spec, options: Options, deadline: float | None) -> Study:
     conditions = spec.analysis.conditions
     asked = options.asked.with_all(needed_by(conditions, spec)) if conditions else options.asked
     spec = as_asked(spec, options)
-    setup = set_up(spec, reduce=options.reduce, asked=asked, deadline=deadline)
+    setup = set_up(spec, reduce=options.reduce, asked=asked)
     built = time.perf_counter()
     history = integrate(setup, spec.analysis.tolerance, deadline, by_cause=SHARES in options.reports)
     whole, setup = setup, replace(setup, asked=options.asked) if conditions else setup

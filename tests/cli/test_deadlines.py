@@ -1,0 +1,112 @@
+"""One time limit over all that a command does, not over its loops alone; and nothing of it is left behind."""
+
+from __future__ import annotations
+
+import contextlib
+import os
+import signal
+import threading
+import time
+from pathlib import Path
+from typing import Any
+
+import pytest
+
+from heuncli.cli import output
+from tests.cli.conftest import HANGING, Heun
+
+ENOUGH = 5.0  # seconds in which a command of a tenth of a second is given up, on a machine that does much else
+REST = HANGING + "analysis: {type: rest}\n"
+DRIVEN = HANGING + """\
+forces: {push: {type: couple, on: bar, vector: ["step(t - 0.05)", 0, 0]}}
+analysis: {duration: 0.1, samples: 3}
+"""
+
+pytestmark = pytest.mark.skipif(not hasattr(signal, "setitimer"), reason="no timer that interrupts")
+
+
+def forever(*_: Any, **__: Any) -> Any:
+    """What takes too long, and handles every error on its way."""
+    while True:
+        with contextlib.suppress(Exception):
+            time.sleep(60.0)
+
+
+@pytest.mark.parametrize(
+    ("slow", "words", "phase"),
+    [
+        ("heuncli.spec.load.read", "run hanging.yaml", "while the spec was read"),
+        ("heuncli.spec.load.read", "validate hanging.yaml", "while the spec was read"),
+        ("heuncli.study.setup.prepare", "run hanging.yaml", "while the scene was set up"),
+        ("heuncli.study.setup.prepare", "model hanging.yaml", "while the scene was set up"),
+        ("heuncli.study.setup.prepare", "modes hanging.yaml", "while the scene was set up"),
+        ("heuncli.rest.search.slopes", "run rest.yaml", "on the way to the rest pose"),
+        ("heuncli.expressions.discontinuities._changes", "run driven.yaml", "while jumps in time were searched"),
+        ("heuncli.integration.checked.instants_of", "run swinging.yaml", "while the motion was integrated and checked"),
+        ("heuncli.integration.checked.instants_of", "check swinging.yaml", "swinging.yaml: the time limit"),
+        ("heuncli.study.recover.body_states", "run swinging.yaml", "while loads were computed"),
+        ("heuncli.study.extremes.highest", "run swinging.yaml", "while extremes between the samples were searched"),
+        ("heuncli.cli.run._report", "run swinging.yaml", "before the work was done"),
+        ("heuncli.study.probe.growing", "probe swinging.yaml", "before the work was done"),
+    ],
+)
+def test_whatever_takes_too_long_is_ended(
+    heun: Heun, folder: Path, monkeypatch: pytest.MonkeyPatch, slow: str, words: str, phase: str
+) -> None:
+    (folder / "rest.yaml").write_text(REST)
+    (folder / "driven.yaml").write_text(DRIVEN)
+    monkeypatch.setattr(slow, forever)
+    begun = time.monotonic()
+    done = heun(*words.split(), "--time-limit", "0.1")
+    assert time.monotonic() - begun < ENOUGH
+    assert (done.returncode, done.stdout) == (4, "")
+    assert "[time-limit]" in done.stderr and phase in done.stderr
+    assert signal.getitimer(signal.ITIMER_REAL) == (0.0, 0.0)
+
+
+def test_each_spec_has_its_own_limit(heun: Heun, folder: Path, monkeypatch: pytest.MonkeyPatch) -> None:
+    """The others are checked all the same."""
+    (folder / "rest.yaml").write_text(REST)
+    monkeypatch.setattr("heuncli.rest.search.slopes", forever)
+    done = heun("check", "rest.yaml", "expecting.yaml", "--time-limit", "1")
+    assert done.returncode == 4
+    assert "1 passed, 0 failed, 1 spec not solved" in done.stdout
+    assert "rest.yaml: the time limit of 1 s was reached on the way to the rest pose" in done.stderr
+    done = heun("validate", "hanging.yaml", "expecting.yaml", "--time-limit", "10")
+    assert done.returncode == 0
+
+
+def test_what_goes_out_goes_out_whole(heun: Heun, folder: Path, monkeypatch: pytest.MonkeyPatch) -> None:
+    """The limit passes while the file is being written."""
+    replace = output._replace
+
+    def slowly(content: bytes, target: Path) -> None:
+        time.sleep(2.0)
+        replace(content, target)
+
+    monkeypatch.setattr("heuncli.cli.output._replace", slowly)
+    done = heun("run", "hanging.yaml", "-o", "out.json", "--time-limit", "1.5")
+    assert (done.returncode, done.stderr) == (0, "")
+    assert (folder / "out.json").read_text().endswith("}\n")
+
+
+def test_a_fifo_without_a_writer_is_given_up(heun: Heun, folder: Path) -> None:
+    os.mkfifo(folder / "pipe.yaml")
+    done = heun("run", "pipe.yaml", "--time-limit", "0.2")
+    assert done.returncode == 4 and "while the spec was read" in done.stderr
+
+
+@pytest.mark.parametrize("words", ["run hanging.yaml", "validate hanging.yaml", "check hanging.yaml"])
+@pytest.mark.parametrize("limit", ["0", "-1", "nan", "inf"])
+def test_limits_that_are_none(heun: Heun, words: str, limit: str) -> None:
+    done = heun(*words.split(), f"--time-limit={limit}")
+    assert done.returncode == 2 and "expected a positive number" in done.stderr
+
+
+def test_a_huge_limit_and_another_thread(heun: Heun) -> None:
+    """The timer takes no limit of a thousand years, and interrupts the first thread alone."""
+    codes = [heun("run", "hanging.yaml", "--time-limit", "1e300").returncode]
+    other = threading.Thread(target=lambda: codes.append(heun("run", "hanging.yaml", "--time-limit", "60").returncode))
+    other.start()
+    other.join()
+    assert codes == [0, 0]
