@@ -16,7 +16,7 @@ from heuncli import tolerances
 from heuncli.errors import LimitError, Problem, SpecError
 from heuncli.expressions.discontinuities import discontinuities
 from heuncli.expressions.programs import CONST, INTEGRAL, OPS, VAR, Code, Expression
-from heuncli.kernel.choose import enclosure, expressions
+from heuncli.kernel.choose import enclosure, expressions, jets
 from heuncli.records import replace
 
 # Abramowitz and Stegun 25.4.30, n = 8, on [-1, 1]: nodes beside the middle, and their weights.
@@ -146,7 +146,7 @@ class Fineness:
             return True
         if not math.isfinite(largest - least):
             return False
-        bends = [self.programs.derivatives(0, self.rate.count, t)[2] for t in nodes]
+        bends = [jets.derivatives(self.programs, 0, self.rate.count, t)[2] for t in nodes]
         lowest, highest = min(bends), max(bends)
         beyond = max(largest - highest, lowest - least)
         felt = beyond * (0.1 * (b - a)) ** 2 / 32.0

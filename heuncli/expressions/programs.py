@@ -11,7 +11,7 @@ from collections.abc import Sequence
 from functools import cached_property
 
 from heuncli.errors import SourceLocation
-from heuncli.kernel.choose import enclosure, expressions
+from heuncli.kernel.choose import enclosure, expressions, jets
 from heuncli.records import record, replace
 
 OPS = expressions.OPERATIONS
@@ -202,7 +202,7 @@ class Pack:
 
     def derivatives(self, start: int, count: int, t: float) -> tuple[float, float, float]:
         """Value, first and second time derivative of one program in time alone."""
-        value, rate, second = self.expressions.derivatives(start, count, t)
+        value, rate, second = jets.derivatives(self.expressions, start, count, t)
         return value, rate, second
 
     def sample(self, start: int, count: int, times: Sequence[float]) -> array[float]:

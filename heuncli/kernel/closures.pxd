@@ -3,7 +3,8 @@
 from heuncli.kernel.algebra cimport (
     Vec3, add, add_cross, add_scaled, centripetal, cross, dot, norm, rotate, rotate_back, scaled, sub,
 )
-from heuncli.kernel.expressions cimport Jet, jet
+from heuncli.kernel.expressions cimport Jet
+from heuncli.kernel.jets cimport jet
 from heuncli.kernel.plane_rows cimport demanded_in_plane, measure_in_plane
 from heuncli.kernel.scene cimport Body, Closure, Counter, DOT, GUIDE, Scene, TURN
 from heuncli.kernel.tree cimport answered, direction_of, push

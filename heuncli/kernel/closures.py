@@ -29,7 +29,7 @@ if not cython.compiled:
         scaled,
         sub,
     )
-    from heuncli.kernel.expressions import jet
+    from heuncli.kernel.jets import jet
     from heuncli.kernel.plane_rows import demanded_in_plane, measure_in_plane
     from heuncli.kernel.scene import DOT, GUIDE, TURN, Body, Closure, Counter, Scene
     from heuncli.kernel.shadow import cython

@@ -2,7 +2,8 @@
 
 from heuncli.kernel.dense cimport Course, Method, Run, clipped
 from heuncli.kernel.enclosure cimport enclose
-from heuncli.kernel.expressions cimport Bounds, Jet, Programs, Span, jet
+from heuncli.kernel.expressions cimport Bounds, Jet, Programs, Span
+from heuncli.kernel.jets cimport jet
 from heuncli.kernel.intervals cimport anything
 from heuncli.kernel.scene cimport Freedom, Scene
 

@@ -17,8 +17,8 @@ except ImportError:
 if not cython.compiled:
     from heuncli.kernel.dense import clipped
     from heuncli.kernel.enclosure import enclose
-    from heuncli.kernel.expressions import jet
     from heuncli.kernel.intervals import anything
+    from heuncli.kernel.jets import jet
     from heuncli.kernel.scene import Freedom, Scene
     from heuncli.kernel.shadow import cython
     from heuncli.kernel.structs import Bounds, Course, Jet, Method, Programs, Run, Span

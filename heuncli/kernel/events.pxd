@@ -3,7 +3,8 @@
 from heuncli.kernel.course cimport derivatives_over, instant, range_over, set_time, stand_at
 from heuncli.kernel.dense cimport Course
 from heuncli.kernel.enclosure cimport enclose, enclose_closely
-from heuncli.kernel.expressions cimport ATAN2, Bounds, HELD, HOLD, Program, Programs, Span, TAKEN, jet, value
+from heuncli.kernel.expressions cimport ATAN2, Bounds, HELD, HOLD, Program, Programs, Span, TAKEN, value
+from heuncli.kernel.jets cimport jet
 from heuncli.kernel.intervals cimport anything, magnitude
 from heuncli.kernel.scene cimport Scene, Watch
 from libc.math cimport INFINITY, fabs

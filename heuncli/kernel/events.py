@@ -20,8 +20,9 @@ if not cython.compiled:
 
     from heuncli.kernel.course import derivatives_over, instant, range_over, set_time, stand_at
     from heuncli.kernel.enclosure import enclose, enclose_closely
-    from heuncli.kernel.expressions import ATAN2, HELD, HOLD, TAKEN, jet, value
+    from heuncli.kernel.expressions import ATAN2, HELD, HOLD, TAKEN, value
     from heuncli.kernel.intervals import anything, magnitude
+    from heuncli.kernel.jets import jet
     from heuncli.kernel.scene import Scene, Watch
     from heuncli.kernel.shadow import cython
     from heuncli.kernel.structs import Bounds, Course, Program, Programs, Span

@@ -62,18 +62,24 @@ cdef struct Programs:
     Span *spans
 
 cdef double value(Programs *programs, Program program) noexcept nogil
+cdef double compare(int op, double a, double b) noexcept nogil
+cdef double piecewise(int op, double a, int n) noexcept nogil
+cdef double trigonometric(int op, double a) noexcept nogil
+cdef double exponential(int op, double a) noexcept nogil
+cdef double power(double x, int n) noexcept nogil
+cdef double real_power(double x, double y) noexcept nogil
 cdef double length(double a, double b) noexcept nogil
 cdef int takes_two(int op) noexcept nogil
+cdef double on_branch(Programs *programs, Py_ssize_t at, double branch, double a, double b) noexcept nogil
 cdef double angle_on(double branch, double y, double x) noexcept nogil
 cdef double side_of_cut(double y) noexcept nogil
 cdef Table table_at(Programs *programs, Py_ssize_t at, Py_ssize_t k) noexcept nogil
+cdef double in_range(double *c, Table table, double x) noexcept nogil
 cdef int piece(double *c, Table table, double x) noexcept nogil
 cdef double piece_counted(double *c, Table table, double x) noexcept nogil
 cdef Program integrated(Programs *programs, Py_ssize_t at) noexcept nogil
 cdef Table summed_at(Programs *programs, Py_ssize_t at, Py_ssize_t k) noexcept nogil
 cdef double integral(Programs *programs, Py_ssize_t at, Py_ssize_t k, double t) noexcept nogil
-cdef Jet jet(Programs *programs, Program program, double t) noexcept nogil
-cdef double slope(Programs *programs, Program program, double *slopes) noexcept nogil
 
 cdef class Expressions:
     cdef Programs programs
@@ -81,3 +87,5 @@ cdef class Expressions:
     cdef Py_ssize_t instructions
     cdef Py_ssize_t variables
     cdef Py_ssize_t held
+
+cdef size_t where(object memory)

@@ -9,7 +9,8 @@ from heuncli.kernel.course cimport set_time
 from heuncli.kernel.dense cimport Branch, Method, Run, clipped, interpolate, need_interpolant
 from heuncli.kernel.enclosure cimport enclose
 from heuncli.kernel.events cimport see
-from heuncli.kernel.expressions cimport Bounds, Jet, Program, jet
+from heuncli.kernel.expressions cimport Bounds, Jet, Program
+from heuncli.kernel.jets cimport jet
 from heuncli.kernel.landing cimport begin_to_see, see_stage
 from heuncli.kernel.loads cimport turned_by
 from heuncli.kernel.response cimport evaluate, respond, settle

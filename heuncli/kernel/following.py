@@ -42,7 +42,7 @@ if not cython.compiled:
     from heuncli.kernel.dense import clipped, interpolate, need_interpolant
     from heuncli.kernel.enclosure import enclose
     from heuncli.kernel.events import see
-    from heuncli.kernel.expressions import jet
+    from heuncli.kernel.jets import jet
     from heuncli.kernel.landing import begin_to_see, see_stage
     from heuncli.kernel.loads import turned_by
     from heuncli.kernel.response import evaluate, respond, settle

@@ -3,6 +3,7 @@
 MODULES = (
     "memory",
     "expressions",
+    "jets",
     "intervals",
     "enclosure",
     "plane",

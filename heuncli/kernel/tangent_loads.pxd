@@ -1,7 +1,7 @@
 """Signatures of tangent_loads.py for C."""
 
 from heuncli.kernel.algebra cimport Vec3, add, add_cross, add_scaled, cross, dot, norm, scaled, sub
-from heuncli.kernel.expressions cimport slope
+from heuncli.kernel.jets cimport slope
 from heuncli.kernel.loads cimport omega_of, sliding_in
 from heuncli.kernel.scene cimport (
     ACTUATOR, Body, BodyTangent, COUPLE, FORCE, Load, SHIFT_DAMPER, SHIFT_FRICTION, SPRING, Scene, THRUST,

@@ -15,7 +15,7 @@ if not cython.compiled:
     from math import nan, tanh
 
     from heuncli.kernel.algebra import Vec3, add, add_cross, add_scaled, cross, dot, norm, scaled, sub
-    from heuncli.kernel.expressions import slope
+    from heuncli.kernel.jets import slope
     from heuncli.kernel.loads import omega_of, sliding_in
     from heuncli.kernel.scene import (
         ACTUATOR,

@@ -6,7 +6,8 @@ from heuncli.kernel.algebra cimport (
     rotate, rotate_back, rotation, scaled, skew, solve, solve_columns, sub, sub_dyad, sub_product, sub_square,
     trace, transform, turned, unit_matrix,
 )
-from heuncli.kernel.expressions cimport Jet, jet
+from heuncli.kernel.expressions cimport Jet
+from heuncli.kernel.jets cimport jet
 from heuncli.kernel.plane cimport (
     add_zeros_in_plane, balance_in_plane, downward_in_plane, factor_in_plane, load_all_in_plane, load_in_plane,
     move_in_plane, upward_in_plane,

@@ -56,7 +56,7 @@ if not cython.compiled:
         turned,
         unit_matrix,
     )
-    from heuncli.kernel.expressions import jet
+    from heuncli.kernel.jets import jet
     from heuncli.kernel.plane import (
         add_zeros_in_plane,
         balance_in_plane,

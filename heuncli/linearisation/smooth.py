@@ -14,6 +14,7 @@ import numpy as np
 
 from heuncli import tolerances
 from heuncli.kernel.choose import expressions as evaluator
+from heuncli.kernel.choose import jets
 from heuncli.linearisation.steady import Looked
 from heuncli.mechanism.model import PairLoad
 from heuncli.results import Array
@@ -101,7 +102,7 @@ def on_branches(programs: Any, start: int, count: int, variables: Array, held: l
     programs.hold(evaluator.HOLDING["held"])
     programs.hold_branches(held)
     x = variables.tolist()
-    return programs.evaluate(start, count, x), np.array(programs.gradient(start, count, x))
+    return programs.evaluate(start, count, x), np.array(jets.gradient(programs, start, count, x))
 
 
 def touching(here: Looked) -> Iterator[str]:

@@ -2,13 +2,10 @@
 
 from __future__ import annotations
 
-import importlib.util
 import math
 import re
 from array import array
-from pathlib import Path
 from random import Random
-from types import ModuleType
 from typing import Any
 
 import pytest
@@ -17,6 +14,7 @@ from heuncli.expressions.curves import fit
 from heuncli.expressions.grammar import Scope, compile_expression
 from heuncli.expressions.programs import OPS, Expression, Pack
 from heuncli.kernel.choose import expressions
+from tests.shared.plain_kernel import plain_module
 from tests.shared.random_programs import VARIABLES, random_program
 
 FREE, HELD, TAKEN = (expressions.HOLDING[name] for name in ("free", "held", "taken"))
@@ -181,19 +179,7 @@ def test_a_pack_knows_whose_branches_it_holds() -> None:
     assert pack.expressions.branches() == [1.0, 1.0, -1.0, -1.0, 1.0]
 
 
-@pytest.fixture(scope="module")
-def plain() -> ModuleType:
-    """The evaluator as a plain Python file, whatever runs otherwise."""
-    path = Path(__file__).parents[2] / "heuncli" / "kernel" / "expressions.py"
-    spec = importlib.util.spec_from_file_location("plain_held", path)
-    assert spec is not None
-    assert spec.loader is not None
-    module = importlib.util.module_from_spec(spec)
-    spec.loader.exec_module(module)
-    return module
-
-
-def test_held_branches_change_no_bits(plain: ModuleType) -> None:
+def test_held_branches_change_no_bits() -> None:
     """Random programs: taken and held where they were taken as without, in either form of the kernel."""
     random = Random(11)
     held_values = moved = 0
@@ -204,7 +190,7 @@ def test_held_branches_change_no_bits(plain: ModuleType) -> None:
         code = holding.numbered(OPS)
         x, beyond = ([random.uniform(-3.0, 3.0) for _ in range(VARIABLES)] for _ in range(2))
         found = []
-        for form in (expressions, plain):
+        for form in (expressions, plain_module("expressions")):
             programs = form.Expressions(code, constants, VARIABLES, form.stack_depth(code), len(held))
             without = form.Expressions(bare, constants, VARIABLES, form.stack_depth(bare))
             span = (0, len(code) // 2)

@@ -3,13 +3,10 @@
 from __future__ import annotations
 
 import cmath
-import importlib.util
 import math
 from array import array
 from collections.abc import Iterable, Sequence
-from pathlib import Path
 from random import Random
-from types import ModuleType
 from typing import Any
 
 import pytest
@@ -19,7 +16,8 @@ from hypothesis import strategies as st
 from heuncli.expressions.discontinuities import discontinuities
 from heuncli.expressions.grammar import Scope, compile_expression
 from heuncli.expressions.programs import Expression, Pack
-from heuncli.kernel.choose import expressions
+from heuncli.kernel.choose import expressions, jets
+from tests.shared.plain_kernel import plain_module
 from tests.shared.random_programs import VARIABLES, random_program
 
 IN_TIME = Scope(parameters={"L": 1.5}, joints={"shaft": "pin", "guide": "slide"}, in_time=True)
@@ -189,44 +187,34 @@ def test_constants_need_no_program_run() -> None:
     assert list(read("t*t").sample([1.0, 2.0, 3.0])) == [1.0, 4.0, 9.0]
 
 
-@pytest.fixture(scope="module")
-def plain() -> ModuleType:
-    return plain_evaluator()
+Form = tuple[Any, Any]  # evaluator and derivatives
+COMPILED: Form = expressions, jets
+PLAIN: Form = plain_module("expressions"), plain_module("jets")  # as plain Python files, whatever runs otherwise
 
 
-def plain_evaluator() -> ModuleType:
-    """The evaluator as a plain Python file, whatever runs otherwise."""
-    path = Path(__file__).parents[2] / "heuncli" / "kernel" / "expressions.py"
-    spec = importlib.util.spec_from_file_location("plain_expressions", path)
-    assert spec is not None
-    assert spec.loader is not None
-    module = importlib.util.module_from_spec(spec)
-    spec.loader.exec_module(module)
-    return module
-
-
-def answers(form: ModuleType, pack: Pack, count: int, x: Sequence[float]) -> list[str]:
+def answers(form: Form, pack: Pack, count: int, x: Sequence[float]) -> list[str]:
     """Value, and value with derivatives in time alone, of the pack's first program, to the last bit."""
-    programs = form.Expressions(pack.code, pack.constants, len(pack.variables), pack.depth)
-    return bits([programs.evaluate(0, count, x), *programs.derivatives(0, count, x[0])])
+    evaluator, derived = form
+    programs = evaluator.Expressions(pack.code, pack.constants, len(pack.variables), pack.depth)
+    return bits([programs.evaluate(0, count, x), *derived.derivatives(programs, 0, count, x[0])])
 
 
 @pytest.mark.skipif(not expressions.COMPILED, reason="there is only the plain form")
 @given(text=EXPRESSIONS, t=st.floats(-5.0, 5.0))
 @settings(max_examples=EXAMPLES, deadline=None, derandomize=True)
-def test_compiled_and_plain_give_the_same_bits(plain: ModuleType, text: str, t: float) -> None:
+def test_compiled_and_plain_give_the_same_bits(text: str, t: float) -> None:
     try:
         expression = read(text)
     except ValueError:
         return
-    compiled = answers(expressions, expression.pack, expression.count, [t])
-    assert compiled == answers(plain, expression.pack, expression.count, [t])
+    compiled = answers(COMPILED, expression.pack, expression.count, [t])
+    assert compiled == answers(PLAIN, expression.pack, expression.count, [t])
     if "nan" not in compiled:
         assert compiled[0] == compiled[1]
 
 
 @pytest.mark.skipif(not expressions.COMPILED, reason="there is only the plain form")
-def test_any_program_gives_the_same_bits_compiled_and_plain(plain: ModuleType) -> None:
+def test_any_program_gives_the_same_bits_compiled_and_plain() -> None:
     """All operations on numbers of all sizes, infinite and none; about three in four have a value."""
     random = Random(5)
     have_value, seen = 0, set()
@@ -235,10 +223,10 @@ def test_any_program_gives_the_same_bits_compiled_and_plain(plain: ModuleType) -
         code, constants = program.numbered(expressions.OPERATIONS), array("d", program.constants)
         x = [random.uniform(-3.0, 3.0) for _ in range(VARIABLES)]
         found = []
-        for form in (expressions, plain):
-            programs = form.Expressions(code, constants, VARIABLES, form.stack_depth(code))
+        for evaluator, derived in (COMPILED, PLAIN):
+            programs = evaluator.Expressions(code, constants, VARIABLES, evaluator.stack_depth(code))
             count = len(program.code)
-            found.append(bits([programs.evaluate(0, count, x), *programs.derivatives(0, count, x[0])]))
+            found.append(bits([programs.evaluate(0, count, x), *derived.derivatives(programs, 0, count, x[0])]))
         assert found[0] == found[1], program
         have_value += found[0][0] != "nan"
         seen |= {op for op, _ in program.code if isinstance(op, str)}
@@ -256,7 +244,8 @@ class Watched(list[Any]):
         super().__setitem__(i, x)
 
 
-def test_no_program_needs_more_stack_than_was_counted(plain: ModuleType) -> None:
+def test_no_program_needs_more_stack_than_was_counted() -> None:
+    plain, derived = PLAIN
     random = Random(6)
     exact = 0
     for _ in range(1000):
@@ -266,7 +255,7 @@ def test_no_program_needs_more_stack_than_was_counted(plain: ModuleType) -> None
         programs = plain.Expressions(code, array("d", program.constants), VARIABLES, depth)
         programs.programs.stack, programs.programs.jets = Watched([0.0] * (depth + 8)), Watched([None] * (depth + 4))
         programs.evaluate(0, len(program.code), [1.0] * VARIABLES)
-        programs.derivatives(0, len(program.code), 1.0)
+        derived.derivatives(programs, 0, len(program.code), 1.0)
         assert max(programs.programs.stack.top, programs.programs.jets.top) <= depth
         exact += programs.programs.stack.top == depth
     assert exact > 700  # the others leave out a branch
@@ -300,7 +289,7 @@ def test_what_is_no_program_is_not_run(start: int, count: int) -> None:
     programs = read("2*t").pack.expressions
     for run in (
         lambda: programs.evaluate(start, count, [1.0]),
-        lambda: programs.derivatives(start, count, 1.0),
+        lambda: jets.derivatives(programs, start, count, 1.0),
         lambda: programs.sample(start, count, array("d", [1.0]), array("d", [0.0])),
     ):
         with pytest.raises(ValueError, match="no program"):

@@ -1,0 +1,508 @@
+"""Programs with their derivatives: what an expression's value changes by as the time, or a coordinate, moves.
+
+A program runs on jets (value, first and second derivative) as expressions.py runs it on numbers, by the chain rule of
+each operation. `jet` carries the derivatives in time along: those of the chosen branches; at a jump or kink they are
+those of the piece that begins there. `slope` is the first derivative along any direction of the variables.
+"""
+
+from __future__ import annotations
+
+try:
+    import cython
+except ImportError:
+    from heuncli.kernel.shadow import cython
+
+from array import array
+from collections.abc import Sequence
+
+if not cython.compiled:
+    from math import atan2, log, nan, sqrt
+
+    from heuncli.kernel.expressions import (
+        ABS,
+        ADD,
+        ASIN,
+        ATAN,
+        ATAN2,
+        CONST,
+        COS,
+        COSH,
+        DIV,
+        EXP,
+        EXTENDED,
+        FREE,
+        HELD,
+        HOLD,
+        HYPOT,
+        INTEGRAL,
+        JUMP,
+        KNOT,
+        LOG,
+        LT,
+        MAX,
+        MIN,
+        MUL,
+        NEG,
+        PERIODIC,
+        POW,
+        POWER,
+        SIN,
+        SINH,
+        SQRT,
+        STEP,
+        SUB,
+        TABLE,
+        TAN,
+        TANH,
+        UNLESS,
+        VAR,
+        Expressions,
+        compare,
+        exponential,
+        in_range,
+        integral,
+        integrated,
+        length,
+        on_branch,
+        piece,
+        piece_counted,
+        piecewise,
+        power,
+        real_power,
+        table_at,
+        takes_two,
+        trigonometric,
+        where,
+    )
+    from heuncli.kernel.libm import cos, cosh, floor, sin, sinh
+    from heuncli.kernel.shadow import cython
+    from heuncli.kernel.structs import Jet, Program, Programs, Table
+
+    NAN = nan
+
+
+# Programs
+
+
+def jet(programs: cython.pointer[Programs], program: Program, t: cython.double) -> Jet:
+    """Value, first and second derivative of a program in time alone; NaN when not computable."""
+    x: Jet = jet_along(programs, program, t, cython.NULL)
+    return x if x.value - x.value == 0.0 else Jet(NAN, NAN, NAN)
+
+
+def slope(programs: cython.pointer[Programs], program: Program, slopes: cython.p_double) -> cython.double:
+    """The derivative of a program along the slopes of its variables; NaN where it has no value, or none there."""
+    t: cython.double = programs.variables[0]
+    x: Jet = jet_along(programs, program, t, slopes)
+    if x.value - x.value != 0.0 and programs.holding == HELD:
+        programs.holding = FREE
+        x = jet_along(programs, program, t, slopes)
+        programs.holding = HELD
+    return x.rate if x.value - x.value == 0.0 else NAN
+
+
+@cython.cfunc
+@cython.nogil
+@cython.exceptval(check=False)
+def jet_along(
+    programs: cython.pointer[Programs], program: Program, t: cython.double, slopes: cython.p_double
+) -> Jet:
+    """Value and derivatives of a program as its variables move: the time alone, or all by their slopes.
+
+    Along slopes the first derivative counts, on the branches that `value` takes; in time alone no other has a value.
+    """
+    jets: cython.pointer[Jet] = programs.jets  # what lies below x
+    height: cython.Py_ssize_t = 0
+    x: Jet = constant(NAN)  # the topmost
+    at: cython.Py_ssize_t = program.start
+    end: cython.Py_ssize_t = at + program.count
+    while at < end:
+        op: cython.int = programs.code[at].op
+        k: cython.int = programs.code[at].argument
+        at += 1
+        if op <= VAR:
+            jets[height] = x
+            height += 1
+            x = constant(programs.constants[k]) if op == CONST else moving(programs, k, t, slopes)
+        elif op <= MAX:
+            height -= 1
+            x = jet_of_two(op, jets[height], x)
+        elif op <= SQRT:
+            x = jet_of_one(op, x, k)
+        elif op <= KNOT:
+            x = jet_of_table(op, programs.constants, table_at(programs, at, k), x)
+            at += 1
+        elif op == JUMP:
+            at += k
+        elif op == UNLESS:
+            if x.value == 0.0:
+                at += k
+            elif x.value != x.value:
+                return Jet(NAN, NAN, NAN)
+            height -= 1
+            x = jets[height]
+        elif op == INTEGRAL:
+            x = jet_of_integral(programs, at, k, moving(programs, 0, t, slopes))
+            at = end
+        elif op != HOLD:
+            f: Jet = constant(compare(op, jets[height - 1].value, x.value))
+            height -= 1 - k
+            if k == 1:  # the right operand stays above
+                jets[height - 1] = f
+            else:
+                x = f
+        elif slopes and programs.holding == HELD:
+            x = jet_held(programs, at, k, height, x)
+            op = programs.code[at].op
+            height -= takes_two(op) if op < LT or programs.code[at].argument == 0 else 0
+            at += 2 if op == TABLE or op == KNOT else 1
+    return x
+
+
+@cython.cfunc
+@cython.inline
+@cython.nogil
+@cython.exceptval(check=False)
+def moving(
+    programs: cython.pointer[Programs], k: cython.int, t: cython.double, slopes: cython.p_double
+) -> Jet:
+    """A variable as it moves: the time evenly where there are no slopes, others not at all."""
+    if slopes:
+        return Jet(t if k == 0 else programs.variables[k], slopes[k], 0.0)
+    return Jet(t if k == 0 else NAN, 1.0, 0.0)
+
+
+@cython.cfunc
+@cython.nogil
+@cython.exceptval(check=False)
+def jet_of_integral(programs: cython.pointer[Programs], at: cython.Py_ssize_t, k: cython.int, t: Jet) -> Jet:
+    """The integral up to a moving time; its derivative is what is integrated."""
+    first: Jet = jet(programs, integrated(programs, at), t.value)
+    return Jet(integral(programs, at, k, t.value), first.value * t.rate, first.rate * t.rate * t.rate)
+
+
+@cython.cfunc
+@cython.nogil
+@cython.exceptval(check=False)
+def jet_held(
+    programs: cython.pointer[Programs], at: cython.Py_ssize_t, k: cython.int, height: cython.Py_ssize_t, b: Jet
+) -> Jet:
+    """The operation at `at` on the branch held[k], with its first derivative; a right operand may stay above."""
+    op: cython.int = programs.code[at].op
+    f: Jet = jet_on_branch(programs, at, programs.held[k], programs.jets[height - 1], b)
+    if op >= LT and programs.code[at].argument == 1:
+        programs.jets[height - 1] = f
+        return b
+    return f
+
+
+@cython.cfunc
+@cython.nogil
+@cython.exceptval(check=False)
+def jet_on_branch(
+    programs: cython.pointer[Programs], at: cython.Py_ssize_t, branch: cython.double, a: Jet, b: Jet
+) -> Jet:
+    """The operation at `at` on a branch (`on_branch`), with its first derivative."""
+    op: cython.int = programs.code[at].op
+    f: cython.double = on_branch(programs, at, branch, a.value, b.value)
+    if f != f:
+        return constant(NAN)
+    if op == ABS:
+        return Jet(f, b.rate if branch > 0.0 else -b.rate, 0.0)
+    elif op == MIN or op == MAX:
+        return b if branch == 1.0 else a
+    elif op == ATAN2:
+        return Jet(f, jet_of_angle(a, b).rate, 0.0)
+    elif op == TABLE:
+        table: Table = table_at(programs, at + 1, programs.code[at].argument)
+        return chain(b, f, slope_of_piece(programs.constants, table, branch, b.value), 0.0)
+    return constant(f)
+
+
+@cython.cfunc
+@cython.nogil
+@cython.exceptval(check=False)
+def slope_of_piece(
+    c: cython.p_double, table: Table, counted: cython.double, x: cython.double
+) -> cython.double:
+    """The derivative of the cubic of a piece, by its counted number, at any x; none beyond ends that are held."""
+    n: cython.int = table.pieces
+    turns: cython.double = floor(counted / n) if table.outside == PERIODIC else 0.0
+    number: cython.double = counted - n * turns
+    if number < 0.0 or number >= n:
+        return 0.0
+    k: cython.Py_ssize_t = int(number)
+    h: cython.double = x - table.period * turns - c[table.knots + k]
+    i: cython.Py_ssize_t = table.coefficients + 4 * k
+    return (3.0 * c[i + 3] * h + 2.0 * c[i + 2]) * h + c[i + 1]
+
+
+# Operations
+
+
+@cython.cfunc
+@cython.inline
+@cython.nogil
+@cython.exceptval(check=False)
+def constant(f: cython.double) -> Jet:
+    """What stands still at f, for a while at least."""
+    return Jet(f, 0.0, 0.0)
+
+
+@cython.cfunc
+@cython.inline
+@cython.nogil
+@cython.exceptval(check=False)
+def chain(u: Jet, f: cython.double, df: cython.double, ddf: cython.double) -> Jet:
+    """f(u), given f and its derivatives in u there; where u stands still so does f(u), whatever f' is."""
+    if u.rate == 0.0 and u.second == 0.0:
+        return Jet(f, u.rate, u.second)
+    return Jet(f, df * u.rate, ddf * u.rate * u.rate + df * u.second)
+
+
+@cython.cfunc
+@cython.inline
+@cython.nogil
+@cython.exceptval(check=False)
+def jet_of_two(op: cython.int, a: Jet, b: Jet) -> Jet:
+    """An operation on two jets."""
+    if op == ADD:
+        return Jet(a.value + b.value, a.rate + b.rate, a.second + b.second)
+    elif op == SUB:
+        return Jet(a.value - b.value, a.rate - b.rate, a.second - b.second)
+    elif op == MUL:
+        return jet_of_product(a, b)
+    elif op == DIV:
+        return jet_of_quotient(a, b)
+    elif op == POW:
+        return jet_of_power(a, b)
+    elif op == ATAN2:
+        return jet_of_angle(a, b)
+    elif op == HYPOT:
+        return jet_of_length(a, b)
+    is_b: cython.bint = b.value < a.value if op == MIN else b.value > a.value
+    if is_b or b.value != b.value:
+        return b
+    return a
+
+
+@cython.cfunc
+@cython.inline
+@cython.nogil
+@cython.exceptval(check=False)
+def jet_of_product(a: Jet, b: Jet) -> Jet:
+    """(a b)' = a' b + a b',  (a b)'' = a'' b + 2 a' b' + a b''."""
+    return Jet(
+        a.value * b.value,
+        a.rate * b.value + a.value * b.rate,
+        a.second * b.value + 2.0 * a.rate * b.rate + a.value * b.second,
+    )
+
+
+@cython.cfunc
+@cython.inline
+@cython.nogil
+@cython.exceptval(check=False)
+def jet_of_quotient(a: Jet, b: Jet) -> Jet:
+    """q = a/b from a = q b:  q' = (a' - q b')/b,  q'' = (a'' - 2 q' b' - q b'')/b."""
+    if b.value == 0.0:
+        return constant(NAN)
+    q: cython.double = a.value / b.value
+    rate: cython.double = (a.rate - q * b.rate) / b.value
+    return Jet(q, rate, (a.second - 2.0 * rate * b.rate - q * b.second) / b.value)
+
+
+@cython.cfunc
+@cython.inline
+@cython.nogil
+@cython.exceptval(check=False)
+def jet_of_power(a: Jet, b: Jet) -> Jet:
+    """y = a**b; where b moves, by y = exp(w), w = b log a, so that a must be positive there."""
+    x: cython.double = a.value
+    n: cython.double = b.value
+    y: cython.double = real_power(x, n)
+    if b.rate == 0.0 and b.second == 0.0:
+        return chain(a, y, scaled_power(n, x, n - 1.0), scaled_power(n * (n - 1.0), x, n - 2.0))
+    rate: cython.double = NAN
+    second: cython.double = NAN
+    if x > 0.0:
+        rate = b.rate * log(x) + n * a.rate / x
+        second = b.second * log(x) + 2.0 * b.rate * a.rate / x + n * (a.second - a.rate * a.rate / x) / x
+    return Jet(y, y * rate, y * (rate * rate + second))
+
+
+@cython.cfunc
+@cython.inline
+@cython.nogil
+@cython.exceptval(check=False)
+def scaled_power(c: cython.double, x: cython.double, y: cython.double) -> cython.double:
+    """c x**y, and 0 for c = 0 also where x**y is not a number."""
+    return c * real_power(x, y) if c != 0.0 else 0.0
+
+
+@cython.cfunc
+@cython.inline
+@cython.nogil
+@cython.exceptval(check=False)
+def jet_of_angle(a: Jet, b: Jet) -> Jet:
+    """The angle φ of (b, a), r² = a² + b²:  r² φ' = b a' - a b',  r² φ'' = b a'' - a b'' - 2 φ' (a a' + b b')."""
+    x: cython.double = b.value
+    y: cython.double = a.value
+    square: cython.double = y * y + x * x
+    if not square > 0.0:
+        return Jet(atan2(y, x), NAN, NAN)
+    rate: cython.double = (x * a.rate - y * b.rate) / square
+    second: cython.double = (x * a.second - y * b.second - 2.0 * rate * (y * a.rate + x * b.rate)) / square
+    return Jet(atan2(y, x), rate, second)
+
+
+@cython.cfunc
+@cython.inline
+@cython.nogil
+@cython.exceptval(check=False)
+def jet_of_length(a: Jet, b: Jet) -> Jet:
+    """r² = a² + b²:  r r' = a a' + b b',  r r'' = a'² + b'² + a a'' + b b'' - r'²."""
+    r: cython.double = length(a.value, b.value)
+    if not r > 0.0:
+        return Jet(r, NAN, NAN)
+    rate: cython.double = (a.value * a.rate + b.value * b.rate) / r
+    square: cython.double = a.rate * a.rate + b.rate * b.rate + a.value * a.second + b.value * b.second
+    return Jet(r, rate, (square - rate * rate) / r)
+
+
+@cython.cfunc
+@cython.inline
+@cython.nogil
+@cython.exceptval(check=False)
+def jet_of_one(op: cython.int, u: Jet, n: cython.int) -> Jet:
+    """An operation on one jet; n: the exponent of a whole power."""
+    if op <= STEP:
+        return jet_of_piecewise(op, u, n)
+    elif op <= ATAN:
+        return jet_of_trigonometric(op, u)
+    else:
+        return jet_of_exponential(op, u)
+
+
+@cython.cfunc
+@cython.inline
+@cython.nogil
+@cython.exceptval(check=False)
+def jet_of_piecewise(op: cython.int, u: Jet, n: cython.int) -> Jet:
+    """-u, the whole power n, |u|, and its jumps, between which it stands still."""
+    a: cython.double = u.value
+    if op == POWER:
+        return chain(u, power(a, n), n * power(a, n - 1), n * (n - 1) * power(a, n - 2))
+    elif op == NEG or (op == ABS and a < 0.0):
+        return Jet(-a, -u.rate, -u.second)
+    elif op == ABS:
+        return u
+    else:
+        return constant(piecewise(op, a, n))
+
+
+@cython.cfunc
+@cython.inline
+@cython.nogil
+@cython.exceptval(check=False)
+def jet_of_trigonometric(op: cython.int, u: Jet) -> Jet:
+    """The functions of the circle and their inverses; asin and acos have no derivatives at -1 and 1."""
+    a: cython.double = u.value
+    f: cython.double
+    df: cython.double
+    if op == SIN:
+        f = sin(a)
+        return chain(u, f, cos(a), -f)
+    elif op == COS:
+        f = cos(a)
+        return chain(u, f, -sin(a), -f)
+    f = trigonometric(op, a)
+    if op == TAN:
+        df = 1.0 + f * f
+        return chain(u, f, df, 2.0 * f * df)
+    elif op == ATAN:
+        df = 1.0 / (1.0 + a * a)
+        return chain(u, f, df, -2.0 * a * df * df)
+    elif f != f:
+        return constant(NAN)
+    root: cython.double = sqrt((1.0 - a) * (1.0 + a))
+    df = 1.0 / root if root > 0.0 else NAN
+    if op == ASIN:
+        return chain(u, f, df, a * df * df * df)
+    return chain(u, f, -df, -a * df * df * df)
+
+
+@cython.cfunc
+@cython.inline
+@cython.nogil
+@cython.exceptval(check=False)
+def jet_of_exponential(op: cython.int, u: Jet) -> Jet:
+    """The functions of the hyperbola, the exponential, and what undoes powers."""
+    a: cython.double = u.value
+    f: cython.double = exponential(op, a)
+    df: cython.double
+    if op == SINH:
+        return chain(u, f, cosh(a), f)
+    elif op == COSH:
+        return chain(u, f, sinh(a), f)
+    elif op == TANH:
+        df = 1.0 - f * f
+        return chain(u, f, df, -2.0 * f * df)
+    elif op == EXP:
+        return chain(u, f, f, f)
+    elif f != f:
+        return constant(NAN)
+    elif op == LOG:
+        df = 1.0 / a
+        return chain(u, f, df, -df * df)
+    df = 0.5 / f if f > 0.0 else NAN
+    return chain(u, f, df, -df * df / f if f > 0.0 else NAN)
+
+
+@cython.cfunc
+@cython.inline
+@cython.nogil
+@cython.exceptval(check=False)
+def jet_of_table(op: cython.int, c: cython.p_double, table: Table, u: Jet) -> Jet:
+    """The table at u, or the number of its piece there; beyond ends that are held it stands still."""
+    if op == KNOT:
+        return constant(piece_counted(c, table, u.value))
+    inside: cython.double = in_range(c, table, u.value)
+    if inside != inside:
+        return constant(NAN)
+    number: cython.int = piece(c, table, inside)
+    h: cython.double = inside - c[table.knots + number]
+    i: cython.Py_ssize_t = table.coefficients + 4 * number
+    f: cython.double = ((c[i + 3] * h + c[i + 2]) * h + c[i + 1]) * h + c[i]
+    if table.outside == EXTENDED and inside != u.value:
+        return constant(f)
+    return chain(u, f, (3.0 * c[i + 3] * h + 2.0 * c[i + 2]) * h + c[i + 1], 6.0 * c[i + 3] * h + 2.0 * c[i + 2])
+
+
+# The door
+
+
+def derivatives(
+    expressions: Expressions, start: cython.int, count: cython.int, t: cython.double
+) -> tuple[float, float, float]:
+    """Value, first and second time derivative of one program in time alone."""
+    expressions.check(start, count)
+    found: Jet = jet(cython.address(expressions.programs), Program(start, count), t)
+    return found.value, found.rate, found.second
+
+
+def gradient(expressions: Expressions, start: cython.int, count: cython.int, x: Sequence[float]) -> list[float]:
+    """Derivatives of one program in all its variables, at x; on the branches held, where they are."""
+    i: cython.Py_ssize_t
+    expressions.evaluate(start, count, x)
+    slopes = array("d", bytes(8 * expressions.variables))
+    found: list[float] = []
+    for i in range(expressions.variables):
+        slopes[i] = 1.0
+        if cython.compiled:
+            along: cython.p_double = cython.cast(cython.p_double, where(slopes))
+            found.append(slope(cython.address(expressions.programs), Program(start, count), along))
+        else:
+            found.append(slope(expressions.programs, Program(start, count), slopes))
+        slopes[i] = 0.0
+    return found
