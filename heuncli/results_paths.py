@@ -15,7 +15,18 @@ import numpy as np
 from heuncli.errors import Problem, SpecError
 from heuncli.nearest import nearest
 from heuncli.results import Array, Results
-from heuncli.results_schema import INDEX, INSTANT, SPACE, Axis, Quantity, Shape, leading_key, quantity, unknown_key
+from heuncli.results_schema import (
+    INDEX,
+    INSTANT,
+    SPACE,
+    Axis,
+    Quantity,
+    Shape,
+    is_no_number,
+    leading_key,
+    quantity,
+    unknown_key,
+)  # fmt: skip
 
 MOST_NAMES = 12  # of the known names an error lists
 
@@ -68,6 +79,8 @@ def _leads(results: Results, words: Sequence[str]) -> bool:
 
 def _found(results: Results, path: str) -> Numbers:
     keys, node, rest = _walk(results, path)
+    if is_no_number(keys):
+        raise _unknown(path, keys, "", [])
     values = _numbers(path, keys, node)
     row = quantity(keys)
     # a blow has one instant, and no axis for it
@@ -130,7 +143,7 @@ def _index(path: str, keys: Sequence[str], word: str, axis: Axis, size: int) -> 
     index = axis.index_of(word, size)
     if index is None:
         known = [*axis.letters] or ["0" if size == 1 else f"0 ... {size - 1}"] if size else []
-        raise _unknown(path, keys, word, known)
+        raise _unknown(path, keys, word, known, None if size else "there is none in this run")
     return index
 
 
@@ -141,11 +154,21 @@ def _numbers(path: str, keys: Sequence[str], node: Any) -> Array:
         raise _unknown(path, keys, "", []) from None
 
 
-def _unknown(path: str, keys: Sequence[str], word: str, known: Collection[str]) -> SpecError:
+def _unknown(
+    path: str, keys: Sequence[str], word: str, known: Collection[str], empty: str | None = None
+) -> SpecError:
     names = list(known)
     at = ".".join(keys) or "the results"
     what = f"{at} has no '{word}'" if word else f"{at} is not a number"
     listed = ", ".join(names[:MOST_NAMES]) + (", ..." if len(names) > MOST_NAMES else "")
-    near = nearest(word, names)
-    hint = f"did you mean {near}?" if near else None
+    hint = empty if empty is not None else _hint(".".join(keys), word, names)
     return SpecError(Problem("unknown-path", f"{path}: {what}" + (f"; known: {listed}" if names else ""), hint=hint))
+
+
+def _hint(at: str, word: str, known: Sequence[str]) -> str:
+    """Where a path leads on, or that it ends before the word."""
+    if near := nearest(word, known):
+        return f"did you mean {near}?"
+    if known:
+        return f"a path that leads on: {at}.{known[0].partition(' ')[0]}" if at else f"it begins with {known[0]}, say"
+    return f"leave .{word} out: the path ends before it" if word else "name a number, as energy.kinetic"

@@ -25,7 +25,7 @@ class Axis(NamedTuple):
 
     def index_of(self, word: str, size: int | None = None) -> int | None:
         """The place that a word of a path names, on an axis of this size if it is known; None: there is no such."""
-        index = self.letters.index(word) if word in self.letters else int(word) if word.isdecimal() else None
+        index = self.letters.index(word) if word in self.letters else counted(word)
         most = self.size if size is None else size
         return index if index is not None and (most is None or index < most) else None
 
@@ -34,6 +34,12 @@ class Axis(NamedTuple):
         return self.letters or tuple(map(str, range(size)))
 
 
+def counted(word: str) -> int | None:
+    """The place in a list that a word of a path gives by its number, from 0; None where it is no such number."""
+    return int(word) if word.isascii() and word.isdecimal() and len(word) <= MOST_DIGITS else None
+
+
+MOST_DIGITS = 12  # of a place in a list: none is as long, and Python reads no more than 4300
 SPACE = Axis("space", ("x", "y", "z"))
 QUATERNION = Axis("quaternion", ("w", "x", "y", "z"))
 CUT = Axis("cut")  # only in runs of cuts
@@ -46,7 +52,8 @@ Shape: TypeAlias = tuple[Axis, ...]
 class Quantity(NamedTuple):
     """One quantity: its path, SI unit, shape at one instant, meaning, and whether it runs over the instants.
 
-    Of two units the first holds where the joint or force slides, the second where it turns. Without a unit it is words.
+    Of two units the first holds where the joint or force slides, the second where it turns. Without a unit it is words,
+    or a block of its own form (own_form), in which there may be numbers.
     """
 
     path: str
@@ -54,6 +61,12 @@ class Quantity(NamedTuple):
     shape: Shape
     meaning: str
     timed: bool = True
+    own_form: bool = False
+
+    @property
+    def is_words(self) -> bool:
+        """Whether there is no number in it."""
+        return not self.units and not self.own_form
 
     def unit(self, turning: bool = False) -> str:
         """The unit of the one that slides or of the one that turns."""
@@ -90,8 +103,13 @@ def cut_vector(name: str, unit: str) -> Quantity:
 
 
 def words(name: str) -> Quantity:
-    """Text, names, or a block of its own form: no number that runs over the instants."""
+    """Text, or names."""
     return Quantity(name, (), (), "", timed=False)
+
+
+def own_form(name: str) -> Quantity:
+    """A block that these rows do not describe: of words, and of numbers that do not run over the instants."""
+    return Quantity(name, (), (), "", timed=False, own_form=True)
 
 
 def shares(place: str, *quantities: Quantity) -> tuple[Quantity, ...]:
@@ -105,7 +123,7 @@ DIRECT = "of it the load itself, where it stands on the piece; of the foundation
 OPEN = "the components that are open at some instant, and those that a chosen split gives"
 NOT_YET = "not yet"
 ROWS: tuple[Quantity, ...] = (
-    *at("", "what was solved, as `heun model` tells it", words("model")),
+    *at("", "what was solved, as `heun model` tells it", own_form("model")),
     *at("", "completed or stopped, and a message", words("status")),
     *at("", "the instants", scalar("time", "s")),
     *at("bodies.BODY", "of the body's origin", vector("position", "m"), vector("velocity", "m/s")),
@@ -186,19 +204,19 @@ ROWS: tuple[Quantity, ...] = (
     *at("events.EVENT", "the instants at which it changes, and their errors",
         scalar("time", "s", (INDEX,), timed=False), scalar("error", "s", (INDEX,), timed=False)),
     *at("events.EVENT", "what it becomes there: 1 true, 0 not", scalar("to", "1", (INDEX,), timed=False)),
-    *at("certain_sums.NUMBER", "the factor of each open component", words("terms")),
+    *at("certain_sums.NUMBER", "the factor of each open component", own_form("terms")),
     *at("certain_sums.NUMBER", "of the open components in `terms`, each times its factor", scalar("value", "N | N·m")),
     *at("accuracy", "drift, gap and residual; nothing is claimed after the horizon (null: none)",
         scalar("energy_drift", "1", timed=False), scalar("constraint_gap", "m", timed=False),
         scalar("balance_residual", "1", timed=False), scalar("horizon", "s", timed=False)),
-    *at("accuracy", "instants beside singular poses: numbers that rounding reaches are null there", words("unknown")),
+    *at("accuracy", "instants beside singular poses: what rounding reaches is null there", own_form("unknown")),
     *at("accuracy.estimate", "error of any point at any instant, of the scene's size",
         scalar("motion", "1", timed=False)),
     *at("accuracy.estimate", "the same of each kind, of its own largest; 0 where there is none",
         scalar("reactions", "1", timed=False), scalar("drives", "1", timed=False),
         scalar("foundation", "1", timed=False), scalar("sections", "1", timed=False),
         scalar("energy", "1", timed=False)),
-    *at("", "kernel, steps, evaluations, seconds", words("work")),
+    *at("", "kernel, steps, evaluations, seconds", own_form("work")),
     *at("", "as in the spec", words("title")),
 )  # fmt: skip
 
@@ -269,14 +287,40 @@ def below(node: Node, key: str) -> Node | Quantity | None:
     return next((node[name] for name in NAMES if name in node), None)
 
 
-def quantity(keys: Iterable[str]) -> Quantity | None:
-    """The row of what stands in the results under these keys; None where there is none."""
+def under(keys: Iterable[str]) -> Node | Quantity | None:
+    """What stands in the results under these keys: a row, or those of a block; None where there is none."""
     node: Node | Quantity | None = TREE
     for key in keys:
         if not isinstance(node, dict):
             return None
         node = below(node, key)
+    return node
+
+
+def quantity(keys: Iterable[str]) -> Quantity | None:
+    """The row of what stands in the results under these keys; None where there is none."""
+    node = under(keys)
     return node if isinstance(node, Quantity) else None
+
+
+def is_no_number(keys: Sequence[str]) -> bool:
+    """Whether what stands under these keys is a block, or words, be it empty."""
+    rows = (quantity(keys[:n]) for n in range(1, len(keys) + 1))
+    return isinstance(under(keys), dict) or any(row is not None and row.is_words for row in rows)
+
+
+def beside_magnitudes(axes: Shape) -> Shape:
+    """The axes beside which numbers have no extreme: a vector counts by its magnitude, a run of cuts as a whole.
+
+    One number for an attitude, by its quaternion or its rows, would mean nothing.
+    """
+    left = tuple(axis for axis in axes if axis is not CUT)
+    return left[:-1] if left[-1:] == (SPACE,) else left
+
+
+def spelled_first(axes: Shape) -> str:
+    """The words that name the first number of what has these axes: `.x`, `.0.x`."""
+    return "".join(f".{axis.labels(1)[0]}" for axis in axes)
 
 
 def with_shared(wanted: frozenset[str]) -> frozenset[str]:

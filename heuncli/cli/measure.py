@@ -115,7 +115,8 @@ def measured(asked: Measure, study: Study) -> tuple[Peak, float | None]:
     try:
         return value(asked, study), lost_from(asked, study)
     except NotOneNumber as error:
-        raise UsageError(Problem("bad-option", f"--measure: {error.problems[0].message}", hint=HINT)) from None
+        (problem,) = error.problems
+        raise UsageError(problem._replace(message=f"--measure: {problem.message}")) from None
 
 
 def all_or_errors(calls: Sequence[Callable[[], T]]) -> list[T]:

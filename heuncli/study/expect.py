@@ -54,7 +54,8 @@ def compare(study: Study, item: Expect) -> Case:
             return _bounded(case, study, item)
         found = _found(study, item)
     except HeunError as error:
-        return replace(case, failure=error.problems[0].message)
+        (problem,) = error.problems
+        return replace(case, failure=problem.message + (f" ({problem.hint})" if problem.hint else ""))
     return replace(case, found=found, failure=_failure(expected, found, tolerance))
 
 
@@ -88,19 +89,23 @@ def _instant(times: Array, at: float) -> int:
     location = int(np.argmin(np.abs(times - at)))
     if abs(times[location] - at) > tolerances.SAME_INSTANT * max(float(np.ptp(times)), abs(at)):
         message = f"t = {at:.6g} s is not an instant of the output; the nearest is {times[location]:.6g} s"
-        raise HeunError(Problem("no-such-instant", message))
+        raise HeunError(Problem("no-such-instant", message, hint="the run ended before it, or others are asked for"))
     return location
 
 
 def _failure(expected: Array, found: Array, tolerance: float) -> str | None:
     if found.shape != expected.shape:
         if expected.ndim == 0 and np.isnan(expected):
+            if not found.size:
+                return "expected open, there is none"
             expected = np.full(found.shape, np.nan)
         else:
             return f"{_size(expected)} expected, {_size(found)} found (give at, peak, or a component)"
     open_expected, open_found = np.isnan(expected), np.isnan(found)
     if (open_expected & ~open_found).any():
-        return "expected open, found a number"
+        known = int((open_expected & ~open_found).sum())
+        some = f"{known} of them {'a number' if known == 1 else 'numbers'}" if found.size > 1 else "a number"
+        return f"expected open, found {some}"
     if (open_found & ~open_expected).any():
         return "open"
     if not open_expected.all():

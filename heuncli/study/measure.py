@@ -12,7 +12,18 @@ from heuncli import results_schema, tolerances
 from heuncli.errors import HeunError, Problem
 from heuncli.results import Array, Place, Results
 from heuncli.results_paths import Numbers, find
-from heuncli.results_schema import BLOWS, CUT, EVENTS, MAGNITUDES, SHARES, kind_of_error, quantity
+from heuncli.results_schema import (
+    BLOWS,
+    CUT,
+    EVENTS,
+    MAGNITUDES,
+    SHARES,
+    SPACE,
+    beside_magnitudes,
+    kind_of_error,
+    quantity,
+    spelled_first,
+)  # fmt: skip
 from heuncli.study.extremes import Searched
 from heuncli.study.solve import Study
 
@@ -24,8 +35,8 @@ class NotOneNumber(HeunError):
 
     exit_code = 2
 
-    def __init__(self, message: str) -> None:
-        super().__init__(Problem("bad-option", message))
+    def __init__(self, message: str, hint: str) -> None:
+        super().__init__(Problem("bad-option", message, hint=hint))
 
 
 class Measure(NamedTuple):
@@ -53,20 +64,21 @@ def value(asked: Measure, study: Study) -> Peak:
         return of_event(asked, there)
     if not there.timed:
         if asked.how:
-            raise NotOneNumber(f"{path} has no instants: give the path alone")
+            raise NotOneNumber(f"{path} has no instants", f"give the path alone: {path}")
         if there.values.size != 1:
-            raise NotOneNumber(f"{path} is {there.values.size} numbers: say which, as .x or .0")
+            raise several(path, there)
         return Peak(float(there.values.reshape(())), None)
     if asked.how in ("max", "min", "abs"):
         return peak(study, path, asked.how)
     if asked.how == "at":
         at = instant_of(asked, results.time)
         there = find(study.resample(np.array([at])), path)
-        return Peak(one_number(path, there.values[0], there.of_vectors), at)
+        return Peak(one_number(path, there, 0), at)
     if asked.how or len(results.time) == 1:
         k = -1 if asked.how == "final" else 0
-        return Peak(one_number(path, there.values[k], there.of_vectors), float(results.time[k]))
-    raise NotOneNumber(f"{path} runs over {len(results.time)} instants: say max, min, max abs, first, final or at T")
+        return Peak(one_number(path, there, k), float(results.time[k]))
+    message = f"{path} runs over {len(results.time)} instants: say max, min, max abs, first, final or at T"
+    raise NotOneNumber(message, f"such as 'max abs {path}', or 'at {results.time[-1]:.6g} {path}'")
 
 
 def lost_from(asked: Measure, study: Study) -> float | None:
@@ -90,10 +102,13 @@ def lost_from(asked: Measure, study: Study) -> float | None:
 
 def of_event(asked: Measure, there: Numbers) -> Peak:
     """The first or last of what is told of an event."""
-    if asked.how not in ("first", "final") or not there.axes:
-        raise NotOneNumber(f"{asked.path} is told of an event: say first or final, or give its place: {asked.path}.0")
+    if not there.axes:
+        raise NotOneNumber(f"{asked.path} has no instants", f"give the path alone: {asked.path}")
+    if asked.how not in ("first", "final"):
+        hint = f"'first {asked.path}', 'final {asked.path}', or its place: {asked.path}.0"
+        raise NotOneNumber(f"{asked.path} is told of an event, once for each change", hint)
     if not there.values.size:
-        raise NotOneNumber(f"{asked.path}: the event does not happen in this run")
+        raise NotOneNumber(f"{asked.path}: the event does not happen in this run", "run longer, or set another limit")
     return Peak(float(there.values[0 if asked.how == "first" else -1]), None)
 
 
@@ -101,12 +116,13 @@ def struck(asked: Measure, there: Numbers, study: Study) -> Peak:
     """A number of one blow, with its instant; of a run of cuts the largest. A vector counts by its magnitude."""
     path, at = asked.path, time_of_blow(study.results, there)
     if asked.how in ("first", "final", "at"):
-        raise NotOneNumber(f"{path} has one instant, that of the blow")
+        raise NotOneNumber(f"{path} has one instant, that of the blow", f"give the path alone, or 'max abs {path}'")
+    require_extreme(path, there)
     if CUT in there.axes and asked.how:
         return struck_along(asked, there, study)
     values = np.sqrt(np.sum(np.square(there.values), axis=-1)) if there.of_vectors else there.values
     if values.size > 1 and not asked.how:
-        raise NotOneNumber(f"{path} is {values.size} numbers: say which, as .0, or max, min, max abs")
+        raise several(path, there)
     result = float(np.abs(values).max() if asked.how == "abs" else values.min() if asked.how == "min" else values.max())
     return Peak(result + 0.0, at)
 
@@ -149,6 +165,9 @@ def peak(study: Study, path: str, how: str, times: Array | None = None) -> Peak:
     A vector counts by its magnitude, a run of cuts over its whole stretch. times: of these instants alone.
     """
     asked = find(study.results, path)
+    if not asked.timed:
+        raise NotOneNumber(f"{path} has no instants, of which one could be the largest", f"give the path alone: {path}")
+    require_extreme(path, asked)
     even = asked.of_vectors or asked.keys[-1] in MAGNITUDES
     open_at: list[float] = []
 
@@ -192,13 +211,27 @@ def stated_error(study: Study, keys: Sequence[str]) -> float:
     return min(map(max, known)) or np.nan
 
 
-def one_number(path: str, values: Array, of_vectors: bool) -> float:
-    """A number, or the magnitude of a vector. Raises NotOneNumber."""
+def one_number(path: str, there: Numbers, k: int) -> float:
+    """The number at an instant, or the magnitude of the vector. Raises NotOneNumber."""
+    values = there.values[k]
     if values.size == 1:
         return float(values.reshape(()))
-    if of_vectors and values.ndim == 1:
+    if there.axes == (SPACE,):
         return float(np.linalg.norm(values))
-    raise NotOneNumber(f"{path} is {values.size} numbers: say which, as .x or .0")
+    raise several(path, there)
+
+
+def require_extreme(path: str, there: Numbers) -> None:
+    """Raise NotOneNumber for lists of which no one number counts, as of a vector its magnitude does."""
+    if beside_magnitudes(there.axes):
+        raise several(path, there)
+
+
+def several(path: str, there: Numbers) -> NotOneNumber:
+    """The error of a path that leads to several numbers."""
+    count = int(np.prod(there.values.shape[1 if there.timed else 0 :]))
+    hint = f"name one of them: {path}{spelled_first(there.axes)}" if count else "there is none in this run"
+    return NotOneNumber(f"{path} is {count} numbers: say which", hint)
 
 
 def instant_of(asked: Measure, times: Array) -> float:
@@ -206,5 +239,6 @@ def instant_of(asked: Measure, times: Array) -> float:
     at = float(asked.at or 0.0)
     slack = tolerances.SAME_INSTANT * float(np.ptp(times))
     if not times[0] - slack <= at <= times[-1] + slack:
-        raise NotOneNumber(f"{asked.path} at {at:.6g}: the run goes from {times[0]:.6g} to {times[-1]:.6g} s")
+        hint = f"such as 'at {times[-1]:.6g} {asked.path}'"
+        raise NotOneNumber(f"{asked.path} at {at:.6g}: the run goes from {times[0]:.6g} to {times[-1]:.6g} s", hint)
     return float(np.clip(at, times[0], times[-1]))

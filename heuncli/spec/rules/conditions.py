@@ -5,13 +5,14 @@ from __future__ import annotations
 from collections.abc import Iterator
 from typing import TYPE_CHECKING
 
+from heuncli.results_schema import AFTER_THE_RUN, beside_magnitudes, spelled_first
 from heuncli.spec import format as f
 from heuncli.spec.names import UNTIL, is_name
 from heuncli.spec.rules.registry import DraftDocument, Path_, Violation, rule
 from heuncli.spec.semantics import type_of
 
 if TYPE_CHECKING:
-    from heuncli.spec.rules.outcome import Outcome, UnknownWord
+    from heuncli.spec.rules.outcome import Result
 
 
 def conditions(draft: DraftDocument) -> Iterator[tuple[Path_, object]]:
@@ -23,7 +24,7 @@ def conditions(draft: DraftDocument) -> Iterator[tuple[Path_, object]]:
         yield ("analysis", "events", name), given
 
 
-def on_results(draft: DraftDocument) -> Iterator[tuple[Path_, f.OfResults, Outcome | UnknownWord | None]]:
+def on_results(draft: DraftDocument) -> Iterator[tuple[Path_, f.OfResults, Result]]:
     """Those on numbers of the results, with what their paths lead to; None where only the run can tell."""
     for path, given in conditions(draft):
         if isinstance(given, f.OfResults):
@@ -64,14 +65,15 @@ def event_path(draft: DraftDocument) -> Iterator[Violation]:
         where = (*path, "of")
         if (wrong := wrong_path(given.of, draft.names, runs_of(draft))) is not None:
             yield Violation(where, *wrong)
-        elif not isinstance(found, Outcome):
+        elif not isinstance(found, Outcome) or not found.known or given.of.split(".")[0] in AFTER_THE_RUN:
             if given.of.split(".")[0] not in draft.unread:
                 message = f"'{given.of}': only the run can tell what that is"
                 yield Violation(where, message, "name a number of joints, sections, coordinates, energy, ...")
         elif not found.timed:
             yield Violation(where, f"'{given.of}' does not run over the instants", "name a number that changes in time")
-        elif [axis.name for axis in found.axes].count("space") > 1:
-            yield Violation(where, f"'{given.of}' is several numbers", f"name one of them, as {given.of}.x.x")
+        elif beside_magnitudes(found.axes):
+            hint = f"name one of them, as {given.of}{spelled_first(found.axes)}"
+            yield Violation(where, f"'{given.of}' is several numbers", hint)
 
 
 @rule("event-limit")

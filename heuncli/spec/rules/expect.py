@@ -8,7 +8,7 @@ from typing import TYPE_CHECKING, Any
 from heuncli import tolerances
 from heuncli.expressions import units as u
 from heuncli.expressions.programs import Expression
-from heuncli.results_schema import CUT
+from heuncli.results_schema import INDEX, INSTANT, beside_magnitudes, spelled_first
 from heuncli.spec import format as f
 from heuncli.spec.rules.registry import DraftDocument, Path_, Violation, rule
 from heuncli.spec.semantics import instants_of, type_of
@@ -22,7 +22,7 @@ Lengths = tuple[int | None, ...]  # of nested lists, the outer first; None: not 
 
 
 def outcomes(draft: DraftDocument) -> Iterator[tuple[Path_, f.Expect, Outcome | None]]:
-    """Every expectation with the quantity at its path; None where there is none, or only the run can tell."""
+    """Every expectation with the quantity at its path; None where there is none."""
     if draft.document.expect:
         from heuncli.spec.rules.outcome import Outcome, outcome  # a run of a scene without expectations starts faster
 
@@ -52,31 +52,42 @@ def expect_form(draft: DraftDocument) -> Iterator[Violation]:
             )
         if RAGGED in lengths_of(item.is_):
             yield Violation((*path, "is"), "lists of different lengths", "[1, 2, 3], or [[1, 0], [0, 1]]")
-        yield from bounds(path, item, quantity)
+        if item.rel is not None and item.rel >= 1.0:
+            message = f"rel {item.rel:g} is not below 1: 0 would pass for anything"
+            yield Violation((*path, "rel"), message, "it is a share of the number expected: rel: 1e-6; or give abs")
+        yield from bounds(path, item)
         if quantity is not None:
-            for key in ("at", "peak") if not quantity.timed else ():
-                if getattr(item, key) is not None:
-                    message = f"{item.of} does not run over the instants"
-                    yield Violation((*path, key), message, f"leave {key} out", key=True)
+            yield from over_instants(path, item, quantity)
             yield from dimensions((*path, "is"), item.is_, quantity.dimensions)
             for key in ("abs", "below", "above"):
                 yield from dimensions((*path, key), getattr(item, key), quantity.dimensions)
 
 
-def bounds(path: Path_, item: f.Expect, quantity: Outcome | None) -> Iterator[Violation]:
-    """Bounds stand alone, leave room between them, and bound what has a magnitude."""
+def over_instants(path: Path_, item: f.Expect, quantity: Outcome) -> Iterator[Violation]:
+    """Only what runs over the instants is one at one of them or has a peak, and only one number has an extreme."""
+    for key in ("at", "peak") if not quantity.timed else ():
+        if getattr(item, key) is not None:
+            yield Violation((*path, key), f"{item.of} does not run over the instants", f"leave {key} out", key=True)
+    if item.peak is not None or item.is_bounded:
+        several = beside_magnitudes(quantity.axes)
+        if several and several != (INDEX,):  # of a list all its numbers are bounded
+            hint = f"name one of its numbers, as {item.of}{spelled_first(quantity.axes)}"
+            yield Violation((*path, "of"), f"{item.of} is {described(tuple(x.size for x in quantity.axes))}", hint)
+
+
+def bounds(path: Path_, item: f.Expect) -> Iterator[Violation]:
+    """Bounds stand alone and leave room between them."""
     if not item.is_bounded:
         return
     first = "below" if item.below is not None else "above"
     for key in ("is", "rel", "abs"):
         if (key if key != "is" else "is_") in item.model_fields_set:
             hint = "is: beside rel: and abs:, or below: and above: alone" if key == "is" else "put it into the bound"
-            yield Violation((*path, key), f"{key} beside {first}", hint, key=True)
+            yield Violation((*path, key), f"'{key}' beside '{first}'", hint, key=True)
     low, high = (None if x is None else x.constant for x in (item.above, item.below))
     if low is not None and high is not None and low >= high:
-        yield Violation((*path, "above"), f"nothing is above {low:g} and below {high:g}", key=True)
-    if quantity is not None and sum(axis is not CUT for axis in quantity.axes) > 1:
-        yield Violation((*path, "of"), f"{item.of} is a list of lists", f"name one of its numbers, as {item.of}.0.0")
+        hint = "what lies between two numbers is above the lower and below the higher one"
+        yield Violation((*path, "above"), f"nothing is above {low:g} and below {high:g}", hint, key=True)
 
 
 def dimensions(path: Path_, value: Any, known: tuple[u.Dimension, ...]) -> Iterator[Violation]:
@@ -98,21 +109,34 @@ def expect_instants(draft: DraftDocument) -> Iterator[Violation]:
     instants = instants_of(document) if type_of(document) == "motion" else (0.0,)
     if not instants or document.analysis.type == "impulse" or "analysis" in draft.unread:
         return
+    count = output_instants(draft, len(instants))
     for path, item, quantity in outcomes(draft):
-        if item.at is not None:
+        if quantity is None or not quantity.known:
+            continue
+        if quantity.instant is not None and quantity.instant >= len(instants):
+            message = f"{item.of} is of instant {quantity.instant}, but the output has {count_of(len(instants))}"
+            yield Violation((*path, "of"), message, "they count from 0; or leave the number out, and give at: a time")
+            continue
+        if item.at is not None and quantity.timed:
             nearest = min(instants, key=lambda t: abs(t - item.at))  # type: ignore[operator]
             if abs(nearest - item.at) > tolerances.SAME_INSTANT * max(instants[-1], abs(item.at)):
                 message = f"{item.at:.10g} s is not an instant of the output; the nearest is {nearest:.10g} s"
                 yield Violation((*path, "at"), message, "add it to analysis.times, or choose other samples")
                 continue
-        if quantity is not None and item.is_ is not None and not item.is_bounded:
-            yield from sizes((*path, "is"), item, quantity, output_instants(draft, len(instants)))
+        if item.is_ is not None and not item.is_bounded:
+            yield from sizes((*path, "is"), item, quantity, count)
+
+
+def count_of(instants: int) -> str:
+    """A number of instants in words."""
+    return "one alone, 0" if instants == 1 else f"{instants}, 0 to {instants - 1}"
 
 
 def output_instants(draft: DraftDocument, asked: int) -> int | None:
-    """How many instants the output will have; None where a rope may end the run before."""
+    """How many instants the output will have; None where a rope or a condition may end the run before."""
     rods = [joint for joint in draft.document.joints.values() if isinstance(joint, f.RodJoint)]
     may_stop = any(rod.tension_only and rod.restitution is None for rod in rods)
+    may_stop |= draft.document.analysis.until is not None
     return None if may_stop and asked > 1 else asked
 
 
@@ -128,8 +152,8 @@ def sizes(path: Path_, item: f.Expect, quantity: Outcome, instants: int | None) 
     if over_instants and fits(given, at_one):
         yield Violation(path, f"{described(given)} for {item.of} at all instants", "give at: an instant, or peak: max")
     else:
-        letters = axes[-1].letters if axes else ()
-        hint = f"name one of its numbers, as {item.of}.{letters[0] if letters else 0}" if lengths else None
+        one = spelled_first((INSTANT, *axes) if over_instants else axes)
+        hint = f"name one of its numbers, as {item.of}{one}" if lengths else None
         message = f"{described(given)} for {item.of}, which is {described(lengths)}"
         yield Violation(path, message, hint or "give one number")
 

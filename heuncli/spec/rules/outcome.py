@@ -3,13 +3,12 @@
 from __future__ import annotations
 
 from collections.abc import Mapping
-from typing import NamedTuple
+from typing import NamedTuple, TypeAlias
 
 from heuncli.expressions import units as u
 from heuncli.joint_kinds import RATES, TYPES
 from heuncli.nearest import did_you_mean, nearest
 from heuncli.results_schema import (
-    AFTER_THE_RUN,
     BLOWS,
     INSTANT,
     TREE,
@@ -17,6 +16,7 @@ from heuncli.results_schema import (
     Quantity,
     Shape,
     below,
+    counted,
     leading_key,
     unknown_key,
 )  # fmt: skip
@@ -28,11 +28,16 @@ NUMBER = "NUMBER"
 
 
 class Outcome(NamedTuple):
-    """Numbers: the dimensions they may have, the axes of one instant, and whether they run over the instants."""
+    """Numbers: the dimensions they may have, the axes of one instant, and whether they run over the instants.
+
+    instant: the number of the instant that the path names. known: whether dimensions and axes are, before the run.
+    """
 
     dimensions: tuple[u.Dimension, ...]
     axes: Shape
     timed: bool
+    instant: int | None = None
+    known: bool = True
 
 
 class UnknownWord(NamedTuple):
@@ -40,6 +45,14 @@ class UnknownWord(NamedTuple):
 
     word: str
     known: list[str]
+
+
+class Words(NamedTuple):
+    """What stands there is text, or names: no number."""
+
+
+Result: TypeAlias = Outcome | UnknownWord | Words | None  # None: of what could not be read
+ONLY_THE_RUN_TELLS = Outcome((), (), timed=False, known=False)
 
 
 class Reached(NamedTuple):
@@ -50,8 +63,8 @@ class Reached(NamedTuple):
     rest: list[str]
 
 
-def outcome(path: str, draft: DraftDocument) -> Outcome | UnknownWord | None:
-    """What a path leads to; None where that is seen only after the run."""
+def outcome(path: str, draft: DraftDocument) -> Result:
+    """What a path leads to."""
     return result(path.split("."), draft.names, runs_of(draft))
 
 
@@ -60,11 +73,13 @@ def runs_of(draft: DraftDocument) -> dict[str, bool]:
     return {name: is_run(section) for name, section in draft.document.sections.items()}
 
 
-def result(path: list[str], names: Names, runs: Mapping[str, bool]) -> Outcome | UnknownWord | None:
+def result(path: list[str], names: Names, runs: Mapping[str, bool]) -> Result:
     """What the words of a path lead to; runs: of the sections, whether they are runs of cuts."""
     reached = follow(path, names)
     if not isinstance(reached, Reached):
         return reached
+    if not reached.quantity.units:
+        return Words() if reached.quantity.is_words else ONLY_THE_RUN_TELLS
     run, at_a_blow = False, reached.keys[0] == BLOWS
     keys = reached.keys[2:] if at_a_blow else reached.keys
     if keys[0] == "sections":
@@ -84,15 +99,13 @@ def follow(path: list[str], names: Names) -> Reached | UnknownWord | None:
     while isinstance(node, dict):
         known = keys_in(node, keys, names)
         key, behind = leading_key(known, rest)
-        if NUMBER in node and rest[:1] and rest[0].isdecimal():  # how many there are, only the run tells
+        if NUMBER in node and rest[:1] and counted(rest[0]) is not None:  # how many there are, only the run tells
             key, behind = rest[0], rest[1:]
         if key is None:
             return UnknownWord(unknown_key(known, rest) if rest else "", known)
-        if key in AFTER_THE_RUN:
-            return None
         node, rest = below(node, key), behind
         keys.append(key)
-    return Reached(node, keys, rest) if node is not None and node.units else None
+    return Reached(node, keys, rest) if node is not None else None
 
 
 def keys_in(node: Node, above: list[str], names: Names) -> list[str]:
@@ -117,15 +130,25 @@ def has_coordinate(joint: list[str], key: str, names: Names) -> bool:
 def wrong_path(path: str, names: Names, runs: Mapping[str, bool]) -> tuple[str, str | None] | None:
     """What is wrong with a path into the results, and a hint; None: nothing, or only the run can tell."""
     reached = result(path.split("."), names, runs)
+    if isinstance(reached, Words):
+        return f"'{path}' is words, not a number", words_hint(path)
     if not isinstance(reached, UnknownWord):
         return None
     from heuncli.path_hints import meant  # only on the way to an error
 
-    likely = meant(path, lambda words: isinstance(result(words, names, runs), Outcome))
+    likely = meant(path, lambda words: isinstance(found := result(words, names, runs), Outcome) and found.known)
     what = f"'{path}': '{reached.word}' is not a result" if reached.word else f"'{path}' is not a number"
     if likely is not None:
         return what, f"did you mean {likely}?"
     return what, names_hint(path.split("."), reached, names)
+
+
+def words_hint(path: str) -> str:
+    """What to name in place of words: of those that tell what is open, a component."""
+    block, _, last = path.rpartition(".")
+    if last == "open":
+        return f"that a component is open is expected of itself: {{of: {block}.force.z, is: null}}"
+    return "name a number: joints.NAME.force.z, sections.NAME.N, energy.kinetic, ..."
 
 
 def names_hint(path: list[str], reached: UnknownWord, names: Names) -> str:
@@ -134,13 +157,18 @@ def names_hint(path: list[str], reached: UnknownWord, names: Names) -> str:
     if not reached.word:
         return f"it goes on with one of {', '.join(reached.known)}"
     if not reached.known:
-        return "the path ends before it" if names.entries.get(block) or not rest else f"the scene has no {block}"
+        of_scene = block in names.entries and not names.entries[block]
+        return f"the scene has no {block}" if of_scene and rest else "leave it out: the path ends before it"
+    if reached.word.startswith("-"):
+        return f"places are counted from 0, from the first on: {', '.join(reached.known)}"
     if reached.word == block and nearest(block, reached.known) is None:
         known = {name: kind for kind, own in names.entries.items() for name in own if kind in TREE}
         if block in known:
             whole = f"{known[block]}.{block}"
             return f"{block} is one of the {known[block]}; {whole} has {', '.join(keys_behind(whole, names))}"
-        return did_you_mean(block, known, "names") or ""
+        told = did_you_mean(block, known, "names") or ""
+        begin = [key for key, row in TREE.items() if not (isinstance(row, Quantity) and row.is_words)]
+        return told if nearest(block, known) else f"{told}; a path begins with one of {', '.join(begin)}"
     return did_you_mean(reached.word, reached.known, "words here") or ""
 
 
@@ -180,12 +208,12 @@ def named(word: str, names: Names) -> list[str]:
 
 def part(whole: Outcome, words: list[str]) -> Outcome | UnknownWord:
     """What is left of a quantity where indices are given: along its axes, or along the instants first."""
-    axes, timed = whole.axes, whole.timed
+    axes, timed, instant = whole.axes, whole.timed, None
     if timed and len(words) == len(axes) + 1:
-        axes, timed = (INSTANT, *axes), False
+        axes, timed, instant = (INSTANT, *axes), False, counted(words[0])
     if len(words) > len(axes):
         return UnknownWord(words[len(axes)], [])
     for word, axis in zip(words, axes, strict=False):
         if axis.index_of(word) is None:
             return UnknownWord(word, list(axis.letters) or ["0, 1, 2, ..."])
-    return whole._replace(axes=axes[len(words) :], timed=timed)
+    return whole._replace(axes=axes[len(words) :], timed=timed, instant=instant)
