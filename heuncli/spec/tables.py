@@ -164,9 +164,9 @@ def from_file(entry: Entry, file: str, folder: Path, wrong: list[Wrong]) -> list
         return columns_of(text, entry.x if entry.x is not None else 1, entry.y if entry.y is not None else 2)
     except NoColumn as error:
         key = ("x", "y")[error.number]
-        finding = error.finding
-        message = f"{finding.message} in '{path}'"
-        wrong.append(Wrong((key,), Finding(finding.code, message, finding.hint)))
+        absent = error.finding
+        message = f"{absent.message} in '{path}'"
+        wrong.append(Wrong((key,), Finding(absent.code, message, absent.hint)))
         return None
     except CsvError as error:
         wrong.append(Wrong(("file",), error.finding, SourceLocation(str(path), error.line, error.column)))
