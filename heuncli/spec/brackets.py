@@ -43,7 +43,7 @@ def mismatches(text: str, until: int) -> list[Mismatch]:
     """Brackets and quotes of the text that are not matched, in order; none if none is before the index `until`."""
     found: list[Mismatch] = []
     at = 0
-    while at < (len(text) if found else until) and len(found) < MOST:
+    while at < (len(text) if found else min(until, len(text))) and len(found) < MOST:
         try:
             at = next_line(text, block_line(text, at))
         except Unreadable as trouble:

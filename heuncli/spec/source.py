@@ -112,6 +112,8 @@ def position(text: str, index: int) -> tuple[int, int]:
 
 def parse(file: str, text: str, sha256: str) -> Source:
     """The data in a text. Raises SpecError for what cannot be read on; what can be is in the source's problems."""
+    if "\r" in text:  # an end of a line to YAML, alone too: so that all count the same lines
+        text = text.replace("\r\n", "\n").replace("\r", "\n")
     if len(text) > LARGEST:
         raise SpecError(
             Problem("too-large", f"{len(text)} characters; at most {LARGEST} are read", SourceLocation(file, 1, 1))

@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import hashlib
 import io
+import re
 import sys
 from pathlib import Path
 from typing import Any
@@ -161,7 +162,15 @@ def test_standard_input(monkeypatch: pytest.MonkeyPatch) -> None:
     assert (source.file, source.data) == ("<stdin>", {"a": 1})
 
 
-@given(st.text(alphabet=st.sampled_from("ab:-[]{}'\"#&*!|>%@`,? \n\t0.1é\u2028\x00~<"), max_size=60))
+@pytest.mark.parametrize("end", ["\n", "\r\n", "\r"])
+def test_lines_count_the_same_however_they_end(end: str) -> None:
+    """A \r alone ends a line to YAML: places are those, and what looks for an open bracket comes to the file's end."""
+    assert codes(end.join(("a: 1", "b: {x: 1, x: 2}", "a: 2", ""))) == [("duplicate-key", 2, 11), ("duplicate-key", 3, 1)]
+    assert codes(end.join(("# " + "a" * 30, "a: 1", "b: 1", "  c: 2", "d: 3"))) == [("not-yaml", 4, 4)]
+    assert codes(end.join(("a: 1", "b: [1", "d: 3"))) == [("not-yaml", 2, 4)]
+
+
+@given(st.text(alphabet=st.sampled_from("ab:-[]{}'\"#&*!|>%@`,? \n\r\t0.1é\u2028\x00~<"), max_size=60))
 @settings(max_examples=400, deadline=None, derandomize=True)
 def test_any_text_is_a_source_or_an_error(text: str) -> None:
     try:
@@ -171,7 +180,7 @@ def test_any_text_is_a_source_or_an_error(text: str) -> None:
     else:
         assert isinstance(source, Source)
         problems = source.problems
-    lines = text.split("\n")
+    lines = re.split("\r\n?|\n", text)
     for problem in problems:
         assert problem.location is not None
         assert 1 <= problem.location.line <= len(lines) + 1
