@@ -68,8 +68,8 @@ def contradiction(runner: Runner, passed: Sequence[tuple[float, Array]], failed:
 def unfollowed(runner: Runner, run: Trajectory) -> Problem | None:
     """Where several drives of one loop contradict each other between or at the ends of a run's steps."""
     layout = runner.layout
-    if all(len(drives_of(layout, island)) < 2 for island in layout.islands):
-        return None
+    if not len(run.ends) or all(len(drives_of(layout, island)) < 2 for island in layout.islands):
+        return None  # a run that a rope ends at its start has no steps
     marks = np.concatenate([[0.0], run.ends])
     inner = marks[:-1, None] + np.diff(marks)[:, None] * (np.arange(LOOKS) / LOOKS)
     times = np.minimum(np.append(inner.ravel(), run.ends[-1]), run.times[-1])

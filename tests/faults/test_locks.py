@@ -126,3 +126,20 @@ def test_a_rod_drawn_beyond_reach(speed: float) -> None:
     assert t == pytest.approx(1.0 / speed, abs=2e-9)
     assert "in the loop at joint R (rod)" in problem.message
     assert "the drive draw" in (problem.hint or "")
+
+
+def test_two_driven_ropes_that_end_the_run_at_its_start() -> None:
+    """There is no step to look along for where the drives part."""
+    found = solved("""\
+heun: 1
+gravity: [0, 0, 9.81]
+ground: {points: {A: [-1, 0, 0], B: [1, 0, 0]}}
+bodies: {load: {mass: 1, center: [0, 0, -2], inertia: [0.1, 0.1, 0.1], points: {a: [-0.5, 0, -2], b: [0.5, 0, -2]}}}
+joints:
+  a: {type: rod, from: ground.A, to: load.a, tension_only: true}
+  b: {type: rod, from: ground.B, to: load.b, tension_only: true}
+drives: {up: {joint: a, length: "hypot(2, 0.5) - 0.1*t"}, down: {joint: b, length: "hypot(2, 0.5) - 0.1*t"}}
+analysis: {duration: 1, samples: 3}
+""")
+    assert found.time.tolist() == [0.0]
+    assert "would have to push" in found.status["message"]
