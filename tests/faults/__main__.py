@@ -8,11 +8,18 @@ import time
 from collections import Counter, defaultdict
 from collections.abc import Iterator, Sequence
 
-from tests.faults.cases import KINDS, case
+from tests.faults.cases import case
 from tests.faults.pool import Judged, judged
 from tests.faults.worker import LAWS
 
-SHARES = {"spec": 10, "bytes": 4, "expressions": 3, "expectations": 2, "commands": 4, LAWS: 0}  # of the cases, in parts
+SHARES = {
+    "spec": 10,
+    "bytes": 4,
+    "expressions": 3,
+    "expectations": 2,
+    "commands": 4,
+    LAWS: 0,
+}  # of the cases, in parts
 EVERY = 1000  # cases between two lines of progress
 
 
@@ -33,7 +40,11 @@ def main(words: Sequence[str]) -> int:
     for k, one in enumerate(judged(drawn(asked.cases, asked.seed, asked.kind), asked.jobs), 1):
         table.add(one)
         if k % EVERY == 0 and not asked.quick:
-            print(f"{k} of {asked.cases}: {table.wrong} with violations, {time.strftime('%H:%M:%S')}", file=sys.stderr, flush=True)
+            print(
+                f"{k} of {asked.cases}: {table.wrong} with violations, {time.strftime('%H:%M:%S')}",
+                file=sys.stderr,
+                flush=True,
+            )
     print(table)
     return int(table.wrong > 0)
 
@@ -79,15 +90,25 @@ class Tally:
                 print(f"--replay {one.kind}:{one.seed}  ({one.command})  {what}", flush=True)
 
     def __str__(self) -> str:
-        codes = sorted({code for of in self.codes.values() for code in of}, key=lambda code: -1 if code is None else code)
-        heads = ["kind", "cases", *(f"exit {'none' if code is None else code}" for code in codes), "longest", "largest"]
+        codes = sorted(
+            {code for of in self.codes.values() for code in of}, key=lambda code: -1 if code is None else code
+        )
+        heads = [
+            "kind",
+            "cases",
+            *(f"exit {'none' if code is None else code}" for code in codes),
+            "longest",
+            "largest",
+        ]
         rows = [heads]
         for kind, of in self.codes.items():
             (seconds, slow), (memory, large) = self.seconds[kind], self.memory[kind]
             worst = [f"{seconds:.2f} s ({slow})", f"{memory:.0f} MB ({large})"]
             rows.append([kind, str(of.total()), *(str(of[code]) for code in codes), *worst])
         widths = [max(len(row[k]) for row in rows) for k in range(len(heads))]
-        lines = ["  ".join(cell.ljust(width) for cell, width in zip(row, widths, strict=True)).rstrip() for row in rows]
+        lines = [
+            "  ".join(cell.ljust(width) for cell, width in zip(row, widths, strict=True)).rstrip() for row in rows
+        ]
         return "\n".join([*lines, f"cases with violations: {self.wrong}"])
 
 

@@ -15,12 +15,12 @@ RUN = ("run", SPEC, "--time-limit", LIMIT)
 AS_JSON = (*RUN, "--format", "json")
 # What follows where `validate` found nothing: most often all of a run, as JSON, where every number is judged.
 FOLLOWING = (
-    AS_JSON, AS_JSON, AS_JSON, AS_JSON, AS_JSON, RUN, RUN, (*RUN, "--format", "csv"), (*RUN, "--format", "markdown", "--all"),
-    (*AS_JSON, "--by-cause"), (*RUN, "--by-cause"), (*AS_JSON, "--least-norm", "--axes", "from"), (*AS_JSON, "--no-reduce"),
+    AS_JSON, AS_JSON, AS_JSON, AS_JSON, AS_JSON, RUN, RUN,
+    (*RUN, "--format", "csv"), (*RUN, "--format", "markdown", "--all"), (*RUN, "--by-cause"),
+    (*AS_JSON, "--by-cause"), (*AS_JSON, "--least-norm", "--axes", "from"), (*AS_JSON, "--no-reduce"),
     ("model", SPEC, "--format", "json"), ("model", SPEC), ("modes", SPEC, "--format", "json"),
     ("probe", SPEC, "--time-limit", LIMIT, "--format", "json"),
 )  # fmt: skip
-JUST_RUNS = ("run", "model")  # what these cannot do with a spec, `validate` has seen
 
 
 class Case(NamedTuple):
@@ -84,5 +84,6 @@ def validated(random: Random, content: bytes) -> Case:
 
 
 KINDS: dict[str, Callable[[Random], Case]] = {
-    "spec": of_spec, "bytes": of_bytes, "expressions": of_expressions, "expectations": of_expectations, "commands": of_commands,
+    "spec": of_spec, "bytes": of_bytes, "expressions": of_expressions, "expectations": of_expectations,
+    "commands": of_commands,
 }  # fmt: skip

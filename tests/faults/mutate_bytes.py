@@ -8,10 +8,14 @@ from random import Random
 from tests.faults import sources
 
 INSERTED = (
-    b"\0", b"\x07", b"\x1b[2J", b"\r", b"\r\n", b"\n", b"\t", b" ", b"\x7f", b"\x80", b"\xff", b"\xfe\xff", b"\xef\xbb\xbf",
-    b"\xc2\x85", b"\xe2\x80\xa8", b"\xe2\x80\xae", b"\xe2\x80\x8b", b"\xed\xa0\x80", b"\xf0\x9f\x98\x80", b"\xc2\xa0", b"\xc2\xb2",
-    b"&a ", b"*a", b"!!python/object:os.system ", b"!x ", b"<<: ", b"? ", b": ", b"- ", b"---\n", b"...\n", b"%YAML 1.1\n", b"#",
-    b" #", b"|\n", b">\n", b"{", b"}", b"[", b"]", b",", b"'", b'"', b"\\", b"@", b"`", b"{{{{{{{{", b"[" * 2000, b"- " * 2000,
+    b"\0", b"\x07", b"\x1b[2J", b"\r", b"\r\n", b"\n", b"\t", b" ", b"\x7f", b"\x80", b"\xff", b"\xfe\xff",
+    b"\xef\xbb\xbf",
+    b"\xc2\x85", b"\xe2\x80\xa8", b"\xe2\x80\xae", b"\xe2\x80\x8b", b"\xed\xa0\x80", b"\xf0\x9f\x98\x80", b"\xc2\xa0",
+    b"\xc2\xb2",
+    b"&a ", b"*a", b"!!python/object:os.system ", b"!x ", b"<<: ", b"? ", b": ", b"- ", b"---\n", b"...\n",
+    b"%YAML 1.1\n", b"#",
+    b" #", b"|\n", b">\n", b"{", b"}", b"[", b"]", b",", b"'", b'"', b"\\", b"@", b"`", b"{{{{{{{{", b"[" * 2000,
+    b"- " * 2000,
     b"9" * 3000, b"a" * 70000, b"1e", b"=", b"~", b"null", b"0x", b"0o", b".inf", b".nan", b"e400", b"**", b"t", b"-",
 )  # fmt: skip
 

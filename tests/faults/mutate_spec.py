@@ -1,4 +1,4 @@
-"""Mutations of a spec that know its structure: one to four changes of a tree, each as a slip or a malice would make it."""
+"""Mutations of a spec that know its structure: one to four changes of a tree, as a slip or malice would make them."""
 
 from __future__ import annotations
 
@@ -14,26 +14,34 @@ from tests.faults.random_expressions import random_expression
 from tests.faults.sources import Spot, Tree
 
 EXTREMES: tuple[Any, ...] = (
-    0, -1, 1, 2, -0.0, 1e-300, 1e-61, 1e-60, 1e-12, 1e12, 1e60, 1e61, 1e200, 1e300, 1e308, -1e308, 5e-324, math.inf, -math.inf,
-    math.nan, 2**31, 2**63, 2**64, -(2**63), 10**30, 10**400, "1e999", "-1e999", "1e-999", "0x1F", "1_000", "٣", "²", ".5", "1e5",
+    0, -1, 1, 2, -0.0, 1e-300, 1e-61, 1e-60, 1e-12, 1e12, 1e60, 1e61, 1e200, 1e300, 1e308, -1e308, 5e-324, math.inf,
+    -math.inf,
+    math.nan, 2**31, 2**63, 2**64, -(2**63), 10**30, 10**400, "1e999", "-1e999", "1e-999", "0x1F", "1_000", "٣", "²",
+    ".5", "1e5",
 )  # fmt: skip
 COUNTS = (0, 1, 2, 3, 4, 1000, 10**5, 10**6, 10**7, 10**9, 10**18, 10**30, -1, 1.5, 1e9, "100000000")
 UNITS = (
-    "m", "mm", "kg", "s", "deg", "rad", "rpm", "N", "kN", "Nm", "N*m", "bar", "Pa", "m/s", "m/s^2", "kg/m^3", "1/s", "N/m", "J",
+    "m", "mm", "kg", "s", "deg", "rad", "rpm", "N", "kN", "Nm", "N*m", "bar", "Pa", "m/s", "m/s^2", "kg/m^3", "1/s",
+    "N/m", "J",
     "N*s", "in", "lb", "furlong", "m^^2", "m/", "/s", "m m", "m^99", "m^-1", "kg*m^2", "%", "°", "m²", "l", "\u200b",
 )  # fmt: skip
 OTHER_TYPES: tuple[Any, ...] = (
-    None, True, False, "", " ", "x", [], {}, [[]], [{}], {"": ""}, [None], [0, 0, 0], {"x": 1}, "null", "~", "on", "yes", "- 1",
-    "a: 1", "#", "&a", "*a", "!!x", "|", ">", "%", "@", "`", "{", "[", "é", "\u202e", "\x85", "\ufeff", "😀", "a" * 300, "a.b",
+    None, True, False, "", " ", "x", [], {}, [[]], [{}], {"": ""}, [None], [0, 0, 0], {"x": 1}, "null", "~", "on",
+    "yes", "- 1",
+    "a: 1", "#", "&a", "*a", "!!x", "|", ">", "%", "@", "`", "{", "[", "é", "\u202e", "\x85", "\ufeff", "😀", "a" * 300,
+    "a.b",
     "a.b.c", ".", "..", "ground", "ground.O", "t", "pi",
 )  # fmt: skip
 STRANGE_NAMES = (
-    "", " ", "é", "1", "a b", "a.b", "t", "pi", "ground", "gravity", "drives", "motion", "x" * 80, "__class__", "<<", "=", "null",
+    "", " ", "é", "1", "a b", "a.b", "t", "pi", "ground", "gravity", "drives", "motion", "x" * 80, "__class__", "<<",
+    "=", "null",
     "a\nb", "a\tb", "\x1b[31m", "on", "sin", "-", "?", "\u202e", "ß", "A-1", "0x1", "1e5", "true",
 )  # fmt: skip
 KINDS = {
-    "joints": ("ball", "pin", "slide", "cylinder", "universal", "weld", "line", "plane", "rod", "curve", "hinge", "fixed"),
-    "forces": ("force", "couple", "torque", "actuator", "spring", "damper", "friction", "distributed", "turn_spring", "motor"),
+    "joints": ("ball", "pin", "slide", "cylinder", "universal", "weld", "line", "plane", "rod", "curve", "hinge",
+    "fixed"),
+    "forces": ("force", "couple", "torque", "actuator", "spring", "damper", "friction", "distributed", "turn_spring",
+    "motor"),
     "shapes": ("rod", "cylinder", "cone", "box", "sphere", "point", "mesh", "ball"),
     "analysis": ("motion", "state", "impulse", "rest", "modes"),
 }  # fmt: skip
@@ -42,10 +50,11 @@ Mutation = Callable[[Random, Tree], None]
 
 
 def mutated(random: Random, most: int = 4) -> Tree:
-    """Some spec, changed once to `most` times."""
+    """Some spec, changed once to `most` times; every other one by changes after which most specs are scenes still."""
     tree = sources.tree(random.choice(sources.names()))
+    mutations = random.choice((MILD, MUTATIONS))
     for _ in range(random.choice(range(1, most + 1))):
-        random.choice(MUTATIONS)(random, tree)
+        random.choice(mutations)(random, tree)
     return tree
 
 
@@ -62,7 +71,9 @@ def is_number(value: Any) -> bool:
     return isinstance(value, int | float) and not isinstance(value, bool)
 
 
-def change(random: Random, tree: Tree, new: Callable[[Any], Any], fits: Callable[[Any], bool] = lambda _: True) -> None:
+def change(
+    random: Random, tree: Tree, new: Callable[[Any], Any], fits: Callable[[Any], bool] = lambda _: True
+) -> None:
     """Another value at some place whose value fits."""
     if (place := spot(random, tree, fits)) is not None:
         box, key = place
@@ -103,7 +114,8 @@ def misspelt(random: Random, word: str) -> str:
         return "x"
     i = random.randrange(len(word))
     return random.choice((
-        word[:i] + word[i + 1 :], word[:i] + word[i] + word[i:], word[:i] + "x" + word[i + 1 :], word.upper(), word + "s",
+        word[:i] + word[i + 1 :], word[:i] + word[i] + word[i:], word[:i] + "x" + word[i + 1 :], word.upper(),
+        word + "s",
     ))  # fmt: skip
 
 
@@ -129,7 +141,45 @@ def extreme(random: Random, tree: Tree) -> None:
 def scaled(random: Random, tree: Tree) -> None:
     """A number many times or a little larger, or negative: mostly still a scene."""
     factor = random.choice((-1.0, 1e-9, 1e-6, 1e-3, 0.1, 0.5, 0.999999999, 1.000000001, 1.1, 2.0, 10.0, 1e3, 1e6, 1e9))
-    change(random, tree, lambda old: factor * old if abs(old) < 1e300 else old, lambda v: is_number(v) and not isinstance(v, str))
+    change(
+        random,
+        tree,
+        lambda old: factor * old if abs(old) < 1e300 else old,
+        lambda v: is_number(v) and not isinstance(v, str),
+    )
+
+
+def moved(random: Random, tree: Tree) -> None:
+    """A number a bit more or less: what was in line, in a plane or at rest no longer is."""
+    by = random.choice((1e-15, 1e-12, 1e-9, 1e-6, 1e-3, 0.1, 1.0)) * random.uniform(-1.0, 1.0)
+    change(
+        random,
+        tree,
+        lambda old: old + by if abs(old) < 1e300 else old,
+        lambda v: is_number(v) and not isinstance(v, str),
+    )
+
+
+def drop_entry(random: Random, tree: Tree) -> None:
+    """A joint, force, section, drive or the like is missing; nothing else of it."""
+    named = (
+        [value for key, value in tree.items() if isinstance(value, dict) and key != "bodies"]
+        if isinstance(tree, dict)
+        else []
+    )
+    if boxes := [value for value in named if value]:
+        box = random.choice(boxes)
+        del box[random.choice(list(box))]
+
+
+def whole_block(random: Random, tree: Tree) -> None:
+    """Forces, an analysis, sections or the like of another spec in place of those that there are."""
+    donor = sources.tree(random.choice(sources.names()))
+    if isinstance(tree, dict):
+        key = random.choice(list(donor))
+        if key != "parameters":
+            tree[key] = donor[key]
+        tree["parameters"] = {**donor.get("parameters", {}), **(tree.get("parameters") or {})}
 
 
 def with_unit(random: Random, tree: Tree) -> None:
@@ -158,7 +208,9 @@ def length(random: Random, tree: Tree) -> None:
     """A list shorter, longer, empty, nested or turned round."""
 
     def new(old: list[Any]) -> list[Any]:
-        return copy.deepcopy(random.choice((old[:-1], old[1:], [*old, 0], [], [old], old[::-1], old * 2, old * 50, old[:1])))
+        return copy.deepcopy(
+            random.choice((old[:-1], old[1:], [*old, 0], [], [old], old[::-1], old * 2, old * 50, old[:1]))
+        )
 
     change(random, tree, new, lambda v: isinstance(v, list))
 
@@ -194,7 +246,9 @@ def variables(tree: Tree) -> tuple[str, ...]:
         names += [str(name) for name in parameters] if isinstance(parameters, dict) else []
         for name, joint in joints.items() if isinstance(joints, dict) else ():
             kind = joint.get("type") if isinstance(joint, dict) else None
-            names += [f"{name}.{of}" for of in {"pin": ("angle", "rate"), "slide": ("travel", "speed")}.get(str(kind), ())]
+            names += [
+                f"{name}.{of}" for of in {"pin": ("angle", "rate"), "slide": ("travel", "speed")}.get(str(kind), ())
+            ]
     return tuple(names)
 
 
@@ -207,7 +261,9 @@ def count(random: Random, tree: Tree) -> None:
     if runs and random.random() < 0.5:
         random.choice(runs)["count"] = random.choice(COUNTS)
     elif isinstance(analysis, dict):
-        analysis[random.choice(("samples", "duration", "tolerance", "step", "times"))] = random.choice((*COUNTS, *EXTREMES))
+        analysis[random.choice(("samples", "duration", "tolerance", "step", "times"))] = random.choice(
+            (*COUNTS, *EXTREMES)
+        )
 
 
 def kind(random: Random, tree: Tree) -> None:
@@ -218,14 +274,18 @@ def kind(random: Random, tree: Tree) -> None:
     boxes = [tree["analysis"]] if of == "analysis" and isinstance(tree.get("analysis"), dict) else _entries(tree, of)
     if of == "shapes":
         shapes = [body.get("shapes") for body in _entries(tree, "bodies")]
-        boxes = [shape for several in shapes if isinstance(several, list) for shape in several if isinstance(shape, dict)]
+        boxes = [
+            shape for several in shapes if isinstance(several, list) for shape in several if isinstance(shape, dict)
+        ]
     if boxes:
         random.choice(boxes)["type"] = random.choice(KINDS[of])
 
 
 def key_added(random: Random, tree: Tree) -> None:
     """A key that stands somewhere in some spec, with its value there, put anywhere."""
-    box, key = random.choice([s for s in sources.spots(sources.tree(random.choice(sources.names()))) if isinstance(s[1], str)])
+    box, key = random.choice(
+        [s for s in sources.spots(sources.tree(random.choice(sources.names()))) if isinstance(s[1], str)]
+    )
     place = spot(random, tree, lambda v: isinstance(v, dict))
     if place is not None:
         place[0][place[1]][key] = box[key]
@@ -244,6 +304,20 @@ def vocabulary() -> tuple[str, ...]:
 
 
 MUTATIONS: tuple[Mutation, ...] = (
-    drop, duplicate, rename, swap, other_type, extreme, scaled, scaled, scaled, with_unit, other_name, other_name, length, block,
+    drop, duplicate, rename, swap, other_type, extreme, scaled, scaled, scaled, with_unit, other_name, other_name,
+    length, block,
     block, expression, expression, count, kind, kind, key_added,
 )  # fmt: skip
+MILD: tuple[Mutation, ...] = (
+    scaled,
+    scaled,
+    scaled,
+    scaled,
+    moved,
+    moved,
+    kind,
+    count,
+    whole_block,
+    drop_entry,
+    expression,
+)

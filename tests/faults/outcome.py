@@ -18,7 +18,7 @@ MEGABYTE = 2**20
 
 
 class Outcome(NamedTuple):
-    """seconds: of the processor. memory: the most that this process held meanwhile [MB]. noise: what came past Python."""
+    """seconds: of the processor. memory: the most that was held meanwhile [MB]. noise: what came past Python."""
 
     argv: tuple[str, ...]
     code: int

@@ -16,21 +16,41 @@ QUICK = ("run", "run", "run", "run", "validate", "model", "model", "modes", "pro
 # of chart one cheap curve; all of them would take a minute a case
 CHEAP = {"chart": ("--methods", "RK4", "--steps", "0.01", "--time-limit", LIMIT)}
 NUMBERS = (
-    "0", "1", "0.1", "0.25", "1e-6", "-1", "nan", "inf", "1e300", "1e-300", "1e999", "", " ", "x", "0,1", "1_0", "٣", "0x1", "1e3",
+    "0", "1", "0.1", "0.25", "1e-6", "-1", "nan", "inf", "1e300", "1e-300", "1e999", "", " ", "x", "0,1", "1_0", "٣",
+    "0x1", "1e3",
 )  # fmt: skip
 WORDS = (
-    "", "-", "--", "x", "é", "\x1b[31m", "a\nb", "\udc80", "\u202e", "null", ".", "..", "a" * 300, "%s", "{}", "$x", "=", ",", ",,",
+    "", "-", "--", "x", "é", "\x1b[31m", "a\nb", "\udc80", "\u202e", "null", ".", "..", "a" * 300, "%s", "{}", "$x",
+    "=", ",", ",,",
 )  # fmt: skip
 FILES = (
-    "out.json", "out.csv", "out.txt", "out.md", "out", "out.xyz", "-", "", SPEC, "./" + SPEC, "no/such/out", "/dev/full", "/dev/null",
+    "out.json", "out.csv", "out.txt", "out.md", "out", "out.xyz", "-", "", SPEC, "./" + SPEC, "no/such/out",
+    "/dev/full", "/dev/null",
     ".", "a" * 300, "é.json", "engine.csv", "\udc80.json", "x\n.json", "/dev/stdout", "out.svg",
 )  # fmt: skip
 HOWS = ("", "max", "min", "max abs", "abs", "first", "final", "at 0.1", "at 1e9", "at nan", "mean", "max max", "at")
 BLOCKS = (
-    "motion", "points", "foundation", "joints", "sections", "forces", "energy", "impulses", "events", "shares", "stops", "bodies",
+    "motion", "points", "foundation", "joints", "sections", "forces", "energy", "impulses", "events", "shares",
+    "stops", "bodies",
     "coordinates", "accuracy", "work", "status", "title", "certain_sums",
 )  # fmt: skip
-COMPONENTS = ("force", "moment", "force.z", "N", "M2", "position", "kinetic", "drive", "x", "0", "-1", "99", "s", "time", "value")
+COMPONENTS = (
+    "force",
+    "moment",
+    "force.z",
+    "N",
+    "M2",
+    "position",
+    "kinetic",
+    "drive",
+    "x",
+    "0",
+    "-1",
+    "99",
+    "s",
+    "time",
+    "value",
+)
 
 
 def random_command(random: Random, tree: sources.Tree) -> tuple[str, ...]:
@@ -39,7 +59,11 @@ def random_command(random: Random, tree: sources.Tree) -> tuple[str, ...]:
     words = [command]
     options = rows(COMMANDS[command])
     if any(not row.option.words for row in options):
-        words += [SPEC] if random.random() < 0.96 else random.choices((SPEC, "no.yaml", "", "-", ".", *WORDS), k=random.randrange(3))
+        words += (
+            [SPEC]
+            if random.random() < 0.96
+            else random.choices((SPEC, "no.yaml", "", "-", ".", *WORDS), k=random.randrange(3))
+        )
     words += CHEAP.get(command, ())
     named = [row for row in options if row.option.words]
     for row in random.choices(named, k=random.choice((0, 1, 1, 2, 2, 3, 5))) if named else ():
@@ -47,7 +71,9 @@ def random_command(random: Random, tree: sources.Tree) -> tuple[str, ...]:
     if any(row.name == "time_limit" for row in named) and "--time-limit" not in words:
         words += ["--time-limit", LIMIT]
     if random.random() < 0.05:
-        words.insert(random.randrange(len(words)), random.choice(("--help", "--version", "--", "-x", "--no-such", *WORDS)))
+        words.insert(
+            random.randrange(len(words)), random.choice(("--help", "--version", "--", "-x", "--no-such", *WORDS))
+        )
     if random.random() < 0.02:
         random.shuffle(words)
     return tuple(words)
@@ -74,9 +100,12 @@ def time_limit(random: Random, _: sources.Tree) -> str:
 
 def setting(random: Random, tree: sources.Tree) -> str:
     """`NAME=VALUE` of a parameter, of a dotted key that there is, or of neither."""
-    name = random.choice((*tree.get("parameters", ("x",)), dotted(random, tree), random.choice(vocabulary()), random.choice(WORDS)))
+    name = random.choice(
+        (*tree.get("parameters", ("x",)), dotted(random, tree), random.choice(vocabulary()), random.choice(WORDS))
+    )
     value = random.choice((
-        *NUMBERS, f"1 {random.choice(UNITS)}", random_expression(random), "[0, 0, 1]", "{a: 1}", "[", "²", "null", "true", *WORDS,
+        *NUMBERS, f"1 {random.choice(UNITS)}", random_expression(random), "[0, 0, 1]", "{a: 1}", "[", "²", "null",
+        "true", *WORDS,
     ))  # fmt: skip
     return f"{name}={value}" if random.random() < 0.95 else random.choice((name, value))
 
@@ -123,8 +152,10 @@ def file(random: Random, _: sources.Tree) -> str:
 
 
 VALUES: dict[str, Callable[[Random, sources.Tree], str]] = {
-    "format": chosen("table", "json", "csv", "markdown", "text"), "output": file, "save": file, "junit": file, "golden": file,
+    "format": chosen("table", "json", "csv", "markdown", "text"), "output": file, "save": file, "junit": file,
+    "golden": file,
     "only": several, "set": setting, "measure": measure, "units": units, "axes": chosen("world", "from", "to"),
-    "method": chosen("auto", "DOP853", "RK4", "Radau5", "LSODA", "Gauss4", "Euler"), "methods": chosen("RK4", "DOP853", "RK4,Euler"),
+    "method": chosen("auto", "DOP853", "RK4", "Radau5", "LSODA", "Gauss4", "Euler"), "methods": chosen("RK4", "DOP853",
+    "RK4,Euler"),
     "time_limit": time_limit, "steps": chosen("0.01", "0.1,0.01"), "tolerances": chosen("1e-6", "1e-4,1e-6"),
 }  # fmt: skip

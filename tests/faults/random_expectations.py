@@ -16,7 +16,19 @@ from tests.faults import sources
 from tests.faults.mutate_spec import EXTREMES, OTHER_TYPES, misspelt
 from tests.faults.random_expressions import random_expression
 
-NO_NUMBERS = ("heun", "title", "spec", "version", "model", "status", "work", "warnings", "accuracy", "time", "certain_sums")
+NO_NUMBERS = (
+    "heun",
+    "title",
+    "spec",
+    "version",
+    "model",
+    "status",
+    "work",
+    "warnings",
+    "accuracy",
+    "time",
+    "certain_sums",
+)
 OFF = 1e-3  # of what is told: no rounding, and no error of these motions, is as large
 
 
@@ -102,8 +114,10 @@ def _absurd(random: Random, name: str) -> dict[str, Any]:
     """An expectation that somebody may have written all the same."""
     path, values = random.choice(numbers(name))
     path = random.choice((
-        path, path, f"{path}.x", f"{path}.0", f"{path}.99", f"{path}.-1", f"{path}.0.0.0", misspelt(random, path), path.split(".")[0],
-        "impulses.0.time", "impulses.99.energy_jump", "events.x.time", "certain_sums.0.value", "accuracy.horizon", "time", "work.steps",
+        path, path, f"{path}.x", f"{path}.0", f"{path}.99", f"{path}.-1", f"{path}.0.0.0", misspelt(random, path),
+        path.split(".")[0],
+        "impulses.0.time", "impulses.99.energy_jump", "events.x.time", "certain_sums.0.value", "accuracy.horizon",
+        "time", "work.steps",
         "model.freedoms", "title", "", ".", "..", "0", path.rpartition(".")[0], path.upper(), f"{path}.", f" {path}",
     ))  # fmt: skip
     item: dict[str, Any] = {"of": path}
@@ -116,5 +130,22 @@ def _absurd(random: Random, name: str) -> dict[str, Any]:
 def _value(random: Random, key: str, values: Any) -> Any:
     if key == "peak":
         return random.choice(("max", "min", "abs", "mean", True, 0))
-    usual: tuple[Any, ...] = (0, 0.1, 0.2, 1, -1, 1e9, values, values[0], values[:1], None, [0, 0, 0], [[0], [0, 1]], "1 N", "1 mm")
-    return random.choice((*usual, *usual, random.choice(EXTREMES), random.choice(OTHER_TYPES), random_expression(random)))
+    usual: tuple[Any, ...] = (
+        0,
+        0.1,
+        0.2,
+        1,
+        -1,
+        1e9,
+        values,
+        values[0],
+        values[:1],
+        None,
+        [0, 0, 0],
+        [[0], [0, 1]],
+        "1 N",
+        "1 mm",
+    )
+    return random.choice(
+        (*usual, *usual, random.choice(EXTREMES), random.choice(OTHER_TYPES), random_expression(random))
+    )

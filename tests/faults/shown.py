@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import os
 import tempfile
+from pathlib import Path
 
 from tests.faults.cases import Case
 from tests.faults.worker import executed
@@ -13,7 +14,7 @@ MOST = 3000  # characters of an output
 
 def show(of: Case) -> None:
     """Print what a case's command lines left behind."""
-    here = os.getcwd()
+    here = Path.cwd()
     with tempfile.TemporaryDirectory() as folder:
         os.chdir(folder)
         try:

@@ -1,4 +1,4 @@
-"""What is mutated: the specs of the repository, as texts and as trees, with motions short enough for thousands of runs."""
+"""What is mutated: the specs of the repository, as texts and as trees, with motions short enough for many runs."""
 
 from __future__ import annotations
 
