@@ -164,8 +164,9 @@ def test_standard_input(monkeypatch: pytest.MonkeyPatch) -> None:
 
 @pytest.mark.parametrize("end", ["\n", "\r\n", "\r"])
 def test_lines_count_the_same_however_they_end(end: str) -> None:
-    """A \r alone ends a line to YAML: places are those, and what looks for an open bracket comes to the file's end."""
-    assert codes(end.join(("a: 1", "b: {x: 1, x: 2}", "a: 2", ""))) == [("duplicate-key", 2, 11), ("duplicate-key", 3, 1)]
+    r"""A \r alone ends a line to YAML: places are those, and what looks for an open bracket comes to the file's end."""
+    twice = ("a: 1", "b: {x: 1, x: 2}", "a: 2", "")
+    assert codes(end.join(twice)) == [("duplicate-key", 2, 11), ("duplicate-key", 3, 1)]
     assert codes(end.join(("# " + "a" * 30, "a: 1", "b: 1", "  c: 2", "d: 3"))) == [("not-yaml", 4, 4)]
     assert codes(end.join(("a: 1", "b: [1", "d: 3"))) == [("not-yaml", 2, 4)]
 
