@@ -7,6 +7,8 @@ from __future__ import annotations
 
 from typing import NamedTuple
 
+from heuncli.foreign_text import shown
+
 
 class SourceLocation(NamedTuple):
     """Where in a file: 1-based line and column, and the dotted path of the value."""
@@ -17,7 +19,7 @@ class SourceLocation(NamedTuple):
     path: str = ""
 
     def __str__(self) -> str:
-        return f"{self.file}:{self.line}:{self.column}"
+        return f"{shown(self.file)}:{self.line}:{self.column}"
 
 
 class Problem(NamedTuple):
@@ -29,10 +31,10 @@ class Problem(NamedTuple):
     hint: str | None = None
 
     def __str__(self) -> str:
-        path = f"{self.location.path}: " if self.location and self.location.path else ""
+        path = f"{shown(self.location.path)}: " if self.location and self.location.path else ""
         where = f"{self.location}: {path}" if self.location else ""
-        hint = f"\n  hint: {self.hint}" if self.hint else ""
-        return f"{where}{self.message} [{self.code}]{hint}"
+        hint = f"\n  hint: {shown(self.hint)}" if self.hint else ""
+        return f"{where}{shown(self.message)} [{self.code}]{hint}"
 
 
 class Finding(ValueError):

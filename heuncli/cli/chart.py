@@ -3,7 +3,6 @@
 from __future__ import annotations
 
 import math
-import shutil
 from collections.abc import Callable
 from pathlib import Path
 
@@ -67,7 +66,7 @@ def text(found: Chart, form: str, output: str | None) -> str:
 
     own = report.table(found)
     if output is None and terminal.present():
-        width = min(max(shutil.get_terminal_size().columns - 1, LEAST_WIDTH), WIDTH)
+        width = min(max(terminal.width() - 1, LEAST_WIDTH), WIDTH)
         rows = "".join(terminal.write([own]))
     else:
         width = WIDTH

@@ -15,6 +15,7 @@ from heuncli.cli.requests import Check
 from heuncli.cli.solving import warn
 from heuncli.cli.target import format_of, keep
 from heuncli.errors import HeunError, Problem
+from heuncli.foreign_text import shown
 from heuncli.records import record
 from heuncli.report.export import dump
 from heuncli.report.numbers import OPEN
@@ -126,7 +127,7 @@ def _table(checked: Sequence[Checked], skipped: Sequence[str]) -> str:
     parts = [count(len(checked), "spec"), f"{sum(case.passed for case in cases)} passed", f"{len(rows)} failed"]
     parts += [f"{count(errors, 'spec')} not solved"] if errors else []
     parts += [f"{count(silent, 'spec')} ran with nothing expected"] if silent else []
-    parts += [f"{folder} passed by" for folder in skipped]
+    parts += [f"{shown(folder)} passed by" for folder in skipped]
     return (plain(failures) + "\n" if rows else "") + ", ".join(parts) + "\n"
 
 

@@ -16,6 +16,7 @@ from heuncli.cli import alarm, plain
 from heuncli.cli.output import ReaderGone, emit, say
 from heuncli.cli.requests import COMMANDS, GRACES, LATER_COMMANDS, LATER_OPTIONS, Request
 from heuncli.errors import HeunError, LimitError, Problem
+from heuncli.foreign_text import shown
 from heuncli.version import VERSION
 
 INTERRUPTED = 130
@@ -54,7 +55,7 @@ def enter(argv: Sequence[str]) -> int:
 def report_problems(problems: Sequence[Problem], label: str = "") -> None:
     """Every problem on standard error, as place, finding, code and hint."""
     for problem in problems:
-        say(f"{'' if problem.location else 'heun: '}{label}{problem}")
+        say(f"{'' if problem.location else 'heun: '}{shown(label)}{problem}")
 
 
 def worst(codes: Sequence[int]) -> int:
@@ -104,9 +105,13 @@ def _through_typer(argv: list[str]) -> Request | int:
 
     from heuncli.cli import app
 
-    answers = io.StringIO()
-    with contextlib.redirect_stdout(answers):
-        answer = app.read(argv)
+    answers, complaints = io.StringIO(), io.StringIO()  # where standard error is closed typer complains to the other
+    with contextlib.redirect_stdout(answers), contextlib.redirect_stderr(complaints):
+        answer = app.read(list(map(shown, argv)))  # a complaint quotes what it does not understand
+        if not isinstance(answer, int):
+            answer = app.read(argv)
+    if text := complaints.getvalue():
+        say(text.removesuffix("\n"))
     if text := answers.getvalue():
         emit(text)
     return answer
@@ -126,7 +131,7 @@ def _bug_report(bug: Exception, argv: Sequence[str]) -> str:
         location = location.tb_next
     where = f" at {Path(location.tb_frame.f_code.co_filename).name}:{location.tb_lineno}" if location else ""
     return (
-        f"heun: this is a bug in heun: {type(bug).__name__}: {bug}{where}\n"
-        f"  please report it with the spec, this line, and: heun {' '.join(argv)} (version {VERSION})\n"
+        f"heun: this is a bug in heun: {type(bug).__name__}: {shown(str(bug))}{where}\n"
+        f"  please report it with the spec, this line, and: heun {shown(' '.join(argv))} (version {VERSION})\n"
         "  HEUN_DEBUG=1 shows the traceback"
     )

@@ -5,6 +5,7 @@ Whatever keeps output from arriving is an OutputError (exit 5), but for a reader
 
 from __future__ import annotations
 
+import codecs
 import contextlib
 import os
 import stat
@@ -13,8 +14,10 @@ from pathlib import Path
 
 from heuncli.cli import alarm
 from heuncli.errors import HeunError, OutputError, Problem
+from heuncli.foreign_text import escaped, shown_lines
 
 NEW_FILE_MODE = 0o666
+ESCAPED = "heun.escaped"
 
 
 class ReaderGone(HeunError):
@@ -32,7 +35,23 @@ def emit(text: str, target: str | None = None, *, late: bool = False) -> None:
     if target is None or target == "-":
         _to_standard_output(text)
     else:
-        _to_file(text.encode(), Path(target))
+        _to_file(as_bytes(text), Path(target))
+
+
+def as_bytes(text: str, encoding: str = "utf-8") -> bytes:
+    """The text in UTF-8 wherever programs read it, whatever the locale says: two names never become one.
+
+    On a terminal that shows another encoding, what that lacks is escaped as in JSON, and so are halves of pairs
+    everywhere (of file names that are not UTF-8).
+    """
+    codecs.register_error(ESCAPED, _escape)
+    return text.encode(encoding, ESCAPED)
+
+
+def _escape(error: UnicodeError) -> tuple[str, int]:
+    if not isinstance(error, UnicodeEncodeError):
+        raise error
+    return escaped(error.object[error.start : error.end]), error.end
 
 
 def save(content: bytes, target: str) -> None:
@@ -45,15 +64,14 @@ def say(text: str) -> None:
     """A line to standard error, if anybody can read it."""
     with contextlib.suppress(OSError, ValueError):
         if sys.stderr is not None:
-            print(text, file=sys.stderr, flush=True)
+            print(shown_lines(text), file=sys.stderr, flush=True)
 
 
 def _to_standard_output(text: str) -> None:
     if sys.stdout is None:
         raise OutputError(Problem("output-closed", "standard output is closed"))
     try:
-        encoding = sys.stdout.encoding or "utf-8"
-        left = memoryview(text.encode(encoding, "replace"))
+        left = memoryview(as_bytes(text, sys.stdout.encoding if sys.stdout.isatty() else "utf-8"))
         while left:  # unbuffered (PYTHONUNBUFFERED) a write may take a part only
             left = left[sys.stdout.buffer.write(left) or 0 :]
         sys.stdout.buffer.flush()

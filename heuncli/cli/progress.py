@@ -8,6 +8,8 @@ from collections.abc import Callable, Iterator
 from contextlib import contextmanager
 from typing import Any
 
+from heuncli.cli.terminal import styled
+
 PATIENCE = 1.5  # seconds before it shows
 Tell = Callable[[int, int, str], None]
 
@@ -15,7 +17,7 @@ Tell = Callable[[int, int, str], None]
 @contextmanager
 def progress(quiet: bool) -> Iterator[Tell]:
     """What work calls with how much is done of how much, and what is under way."""
-    bar = None if quiet or sys.stderr is None or not sys.stderr.isatty() else Bar()
+    bar = None if quiet or sys.stderr is None or not sys.stderr.isatty() or not styled() else Bar()
     try:
         yield bar.tell if bar is not None else _silent
     finally:

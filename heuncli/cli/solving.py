@@ -12,6 +12,7 @@ from heuncli import tolerances
 from heuncli.cli.entry import UsageError
 from heuncli.cli.output import say
 from heuncli.errors import Problem
+from heuncli.foreign_text import shown
 from heuncli.results import Array, Results
 from heuncli.spec.models import Spec
 
@@ -66,7 +67,7 @@ def warn(
     solved = [text for text in results.warnings if text not in known] if results else []
     solved += later
     if not quiet:
-        for text in read + [f"{place}: {text}" for text in solved]:
+        for text in read + [shown(f"{place}: {text}") for text in solved]:
             say(f"warning: {text}")
     return read + solved
 

@@ -2,12 +2,17 @@
 
 from __future__ import annotations
 
-import io
+import os
+import shutil
 import sys
 from collections.abc import Sequence
 
 from heuncli.report.fit import fit
 from heuncli.report.table import Table, plain, wrapped
+
+LEAST_WIDTH = 40  # below it words stand one to a line, and nothing can be read across
+BOLD, CYAN, END = "\x1b[1m", "\x1b[36m", "\x1b[0m"
+PLAIN = ("", "dumb", "unknown")  # terminals that know no escape codes
 
 
 def present() -> bool:
@@ -15,21 +20,30 @@ def present() -> bool:
     return sys.stdout is not None and sys.stdout.isatty()
 
 
+def styled() -> bool:
+    """Whether escape codes may go to a terminal: it knows them, and nobody has said NO_COLOR."""
+    return not os.environ.get("NO_COLOR") and os.environ.get("TERM", "") not in PLAIN
+
+
+def width() -> int:
+    """Its columns; of what tells none, or nonsense, 80."""
+    return max(shutil.get_terminal_size().columns, LEAST_WIDTH)
+
+
 def write(tables: Sequence[Table]) -> list[str]:
     """The tables as text for the terminal at hand, in its width and with its colours (or none: NO_COLOR)."""
-    from rich.console import Console
-    from rich.text import Text
+    room, codes = width(), styled()
+    return [_part(part, room, codes) for table in tables for part in fit(table, room)]
 
-    console = Console(file=io.StringIO(), force_terminal=True, highlight=False)
-    texts, width = [], Console().width
-    for table in tables:
-        for part in fit(table, width):
-            lines = plain(part, width).splitlines()
-            across = {line for row in part.rows if isinstance(row, str) for line in wrapped(row, width)}
-            with console.capture() as captured:
-                for number, line in enumerate(lines):
-                    heads = bool(part.heading) and number < len(wrapped(part.heading, width))
-                    style = "bold" if heads else "cyan" if line in across else ""
-                    console.print(Text(line, style=style), soft_wrap=True)
-            texts.append(captured.get())
-    return texts
+
+def _part(part: Table, room: int, codes: bool) -> str:
+    text = plain(part, room)
+    if not codes:
+        return text
+    lines = text.splitlines()
+    heads = len(wrapped(part.heading, room)) if part.heading else 0
+    across = {line for row in part.rows if isinstance(row, str) for line in wrapped(row, room)}
+    for number, line in enumerate(lines):
+        if number < heads or line in across:
+            lines[number] = f"{BOLD if number < heads else CYAN}{line}{END}"
+    return "".join(f"{line}\n" for line in lines)

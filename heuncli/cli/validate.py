@@ -9,6 +9,7 @@ from heuncli.cli.entry import report_problems, worst
 from heuncli.cli.output import emit, say
 from heuncli.cli.requests import Validate
 from heuncli.errors import LimitError, SpecError
+from heuncli.foreign_text import shown
 from heuncli.report.words import count
 from heuncli.spec.load import load
 from heuncli.spec.models import Spec
@@ -27,7 +28,7 @@ def main(request: Validate) -> int:
         if not request.quiet:
             for warning in warnings:
                 say(f"warning: {warning}")
-        lines.append(f"{path}: fine ({_summary(spec, len(warnings))})\n")
+        lines.append(f"{shown(path)}: fine ({_summary(spec, len(warnings))})\n")
     code = worst(codes)
     if code == 0 and not request.quiet:
         emit("".join(lines))
@@ -48,7 +49,7 @@ def _of_cuts(spec: Spec) -> list[str]:
         return []
     from heuncli.study.setup import draw  # with NumPy, which other specs are judged without
 
-    return [f"{spec.path}: {warning}" for cut in draw(spec)[1] for warning in cut.warnings]
+    return [f"{shown(spec.path)}: {warning}" for cut in draw(spec)[1] for warning in cut.warnings]
 
 
 def _summary(spec: Spec, warnings: int) -> str:

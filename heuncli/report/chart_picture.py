@@ -11,6 +11,7 @@ from itertools import pairwise
 from typing import NamedTuple
 
 from heuncli.charts import FAILED, Chart, Charted
+from heuncli.foreign_text import shown
 from heuncli.method_rows import row_of
 from heuncli.report.chart import local, remark
 from heuncli.report.chart_labels import Box, inside, placed, wide
@@ -66,7 +67,7 @@ def picture(chart: Chart) -> Picture:
     shapes: list[Shape] = [*grid(frame), *bottom, *front(chart, frame), *curves(chart, frame, taken)]
     shapes += [*head, *crosses(groups, levels, frame), *notes]
     height = max(text.y for text in notes) + 14.0
-    return Picture(WIDTH, height, f"{chart.title}: speed against accuracy", chart.reference.words, shapes)
+    return Picture(WIDTH, height, f"{shown(chart.title)}: speed against accuracy", chart.reference.words, shapes)
 
 
 def heading(chart: Chart) -> list[Text]:
@@ -85,7 +86,7 @@ def heading(chart: Chart) -> list[Text]:
 
 def lines_of(text: str, size: float) -> list[str]:
     """A text in lines that fit the drawing."""
-    return wrapped(text, int((WIDTH - 40.0) / (LETTER * size)), 0)
+    return wrapped(shown(text), int((WIDTH - 40.0) / (LETTER * size)), 0)
 
 
 def grid(frame: Frame) -> list[Shape]:

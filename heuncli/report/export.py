@@ -13,6 +13,7 @@ from typing import Any, NamedTuple
 import numpy as np
 
 from heuncli.errors import LimitError, Problem
+from heuncli.foreign_text import shown
 from heuncli.report.labels import Labels
 from heuncli.report.quantities import Series, walk, walk_impulse
 from heuncli.results import Block, Results
@@ -126,7 +127,7 @@ def _text(value: Any) -> str:
         value = value.item()
     if isinstance(value, float) and not np.isfinite(value):
         value = None
-    return json.dumps(value, ensure_ascii=False, allow_nan=False, default=_plain)
+    return shown(json.dumps(value, ensure_ascii=False, allow_nan=False, default=_plain))
 
 
 def _plain(values: Any) -> Any:

@@ -8,6 +8,7 @@ from collections.abc import Sequence
 import numpy as np
 
 from heuncli import tolerances
+from heuncli.foreign_text import shown
 from heuncli.report.numbers import LOADS, rough
 from heuncli.report.table import labelled
 from heuncli.report.words import count
@@ -57,8 +58,8 @@ def write_heading(results: Results) -> str:
 def write_heading_markdown(results: Results) -> str:
     """The heading as markdown."""
     lines = heading(results)
-    body = "".join(f"- {label + ': ' if label else ''}{text}\n" for label, text in lines[1:])
-    return f"## {results.title}\n\n- heun: {results.version}\n{body}\n"
+    body = "".join(f"- {label + ': ' if label else ''}{shown(text)}\n" for label, text in lines[1:])
+    return f"## {shown(results.title)}\n\n- heun: {results.version}\n{body}\n"
 
 
 def _reduced(sentences: Sequence[str]) -> list[tuple[str, str]]:
@@ -74,17 +75,17 @@ def _labelled(label: str, sentences: Sequence[str]) -> list[tuple[str, str]]:
 
 def _moved(ways: Sequence[str]) -> list[tuple[str, str]]:
     """Which bodies had to leave their place in the drawing, those that moved most first."""
-    shown = ", ".join(ways[:MOST_MOVED])
+    named = ", ".join(ways[:MOST_MOVED])
     more = f" and {len(ways) - MOST_MOVED} more" if len(ways) > MOST_MOVED else ""
-    return [("moved", f"to close the joints: {shown}{more}; heun model lists it")] if ways else []
+    return [("moved", f"to close the joints: {named}{more}; heun model lists it")] if ways else []
 
 
 def _contacts(sentences: Sequence[str]) -> list[tuple[str, str]]:
     """What is told of contacts, the first of it."""
-    shown = list(sentences[:MOST_TOLD])
+    told = list(sentences[:MOST_TOLD])
     if len(sentences) > MOST_TOLD:
-        shown.append(f"{len(sentences) - MOST_TOLD} more in --format json, model.contacts")
-    return _labelled("contacts", shown)
+        told.append(f"{len(sentences) - MOST_TOLD} more in --format json, model.contacts")
+    return _labelled("contacts", told)
 
 
 def _anew(reasons: Sequence[str]) -> list[tuple[str, str]]:

@@ -5,6 +5,7 @@ from __future__ import annotations
 import math
 from collections.abc import Iterator
 
+from heuncli.foreign_text import shown
 from heuncli.linearisation.modes import Modes, is_length
 from heuncli.linearisation.oscillations import Mode
 from heuncli.report.fit import fit
@@ -45,7 +46,7 @@ def page(found: Modes) -> list[tuple[str, str]]:
 def write(found: Modes) -> str:
     """The page as text."""
     lines = page(found)
-    head = "".join(f"{label.ljust(5)}  {text}\n" for label, text in lines)
+    head = "".join(f"{label.ljust(5)}  {shown(text)}\n" for label, text in lines)
     return head + ("\n" + "".join(plain(part, WIDTH) for part in fit(table(found), WIDTH)) if found.modes else "")
 
 

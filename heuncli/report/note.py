@@ -6,6 +6,7 @@ import textwrap
 from collections.abc import Mapping, Sequence
 from typing import Any
 
+from heuncli.foreign_text import shown
 from heuncli.report.words import count
 
 WIDTH = 110
@@ -25,7 +26,7 @@ LISTS = (
 
 def note(title: str, model: Mapping[str, Any]) -> str:
     """The model block as text."""
-    lines = [title or "untitled", ""]
+    lines = [shown(title) or "untitled", ""]
     facts = [(key, text) for key, text in _facts(model) if text]
     width = max(len(key) for key, _ in facts)
     lines += [f"  {key.ljust(width)}  {text}" for key, text in facts]
@@ -34,7 +35,7 @@ def note(title: str, model: Mapping[str, Any]) -> str:
         if sentences:
             lines += ["", heading]
             for sentence in sentences:
-                lines += textwrap.wrap(str(sentence), WIDTH, initial_indent="  - ", subsequent_indent="    ")
+                lines += textwrap.wrap(shown(str(sentence)), WIDTH, initial_indent="  - ", subsequent_indent="    ")
     return "\n".join(lines) + "\n"
 
 

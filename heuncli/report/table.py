@@ -5,6 +5,8 @@ from __future__ import annotations
 from collections.abc import Iterable, Sequence
 from typing import Literal, NamedTuple
 
+from heuncli.foreign_text import shown
+
 GAP = "  "
 INDENT = "  "
 WIDTH = 120  # of tables that no terminal sets one for
@@ -41,15 +43,15 @@ def head(label: str, unit: str) -> str:
 def plain(table: Table, width: int | None = None) -> str:
     """The table as aligned text; ends with a newline. Headings, titles and notes go on in more lines, if of a width."""
     indent = INDENT if any(isinstance(row, str) for row in table.rows) else ""
-    lines = wrapped(table.heading, width) if table.heading else []
+    lines = wrapped(shown(table.heading), width) if table.heading else []
     if table.columns:
         cells = aligned(table)
         widths = [max(map(len, column)) for column in zip(*cells, strict=True)]
         texts = iter(_line(row, widths, table.columns, indent) for row in cells)
         lines += [head for head in [next(texts)] if head]
         for row in table.rows:
-            lines += wrapped(row, width) if isinstance(row, str) else [next(texts)]
-    notes = [line for note in table.notes for line in wrapped(indent + note, width)]
+            lines += wrapped(shown(row), width) if isinstance(row, str) else [next(texts)]
+    notes = [line for note in table.notes for line in wrapped(indent + shown(note), width)]
     return "\n".join([*lines, *notes, ""])
 
 
@@ -58,7 +60,7 @@ def labelled(lines: Sequence[tuple[str, str]], width: int = WIDTH) -> str:
     indent = max(len(label) for label, _ in lines) + 2
     found = []
     for label, text in lines:
-        first, *rest = wrapped(text, width - indent, 0)
+        first, *rest = wrapped(shown(text), width - indent, 0)
         found += [label.ljust(indent) + first, *(" " * indent + line for line in rest)]
     return "".join(line + "\n" for line in found)
 
@@ -72,6 +74,8 @@ def wrapped(text: str, width: int | None, more: int = MORE) -> list[str]:
         if cut < 0:
             break  # one long word
         lead = " " * (start if len(lines) > 1 else start + more)
+        if cut <= len(lead):
+            break  # what goes on below would be no shorter
         lines[-1:] = [line[:cut].rstrip(), lead + line[cut:].lstrip()]
     return lines
 
@@ -104,7 +108,7 @@ def aligned(table: Table) -> list[tuple[str, ...]]:
     rows = [row for row in table.rows if not isinstance(row, str)]
     columns = []
     for index, column in enumerate(table.columns):
-        cells = [row[index] for row in rows]
+        cells = [shown(row[index]) for row in rows]
         columns.append([column.head, *(_pad(cells) if column.align == "point" else cells)])
     return list(zip(*columns, strict=True))
 
@@ -140,4 +144,4 @@ def _markdown_row(cells: Iterable[str]) -> str:
 
 
 def _escape(text: str) -> str:
-    return text.replace("|", "\\|")
+    return shown(text).replace("|", "\\|")

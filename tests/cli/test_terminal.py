@@ -2,10 +2,13 @@
 
 from __future__ import annotations
 
+import sys
+
 import pytest
 
-from heuncli.cli.terminal import write
+from heuncli.cli.terminal import LEAST_WIDTH, width, write
 from heuncli.report.table import Column, Table
+from tests.cli.conftest import Heun
 
 WIDE = Table(
     "JOINTS",
@@ -24,3 +27,24 @@ def test_no_color_is_honoured(monkeypatch: pytest.MonkeyPatch) -> None:
     plainly = write([WIDE])[0]
     assert "\x1b[3" not in plainly
     assert "pivot" in plainly
+
+
+@pytest.mark.parametrize("setting", [{"NO_COLOR": "1"}, {"TERM": "dumb"}, {"TERM": ""}])
+def test_no_escape_code_where_none_is_wanted(setting: dict[str, str], monkeypatch: pytest.MonkeyPatch) -> None:
+    monkeypatch.setenv("TERM", "xterm")
+    for name, value in setting.items():
+        monkeypatch.setenv(name, value)
+    assert "\x1b" not in write([WIDE])[0]
+
+
+@pytest.mark.parametrize("columns", ["0", "1", "-5", "x", "9" * 30])
+def test_whatever_the_width_is_said_to_be(columns: str, monkeypatch: pytest.MonkeyPatch) -> None:
+    monkeypatch.setenv("COLUMNS", columns)
+    assert "pivot" in "".join(write([WIDE]))
+    assert LEAST_WIDTH <= width()
+
+
+def test_a_usage_error_stays_off_standard_output(heun: Heun, monkeypatch: pytest.MonkeyPatch) -> None:
+    """Where standard error is closed typer wrote it to the other."""
+    monkeypatch.setattr(sys, "stderr", None)
+    assert heun("run", "hanging.yaml", "--nosuch")[:2] == (2, "")

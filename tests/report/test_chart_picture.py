@@ -9,6 +9,7 @@ from random import Random
 import pytest
 
 from heuncli.errors import HeunError
+from heuncli.foreign_text import shown
 from heuncli.records import replace
 from heuncli.report import picture_plot
 from heuncli.report.chart_labels import Box, crosses, inside, placed
@@ -53,7 +54,7 @@ def test_any_title_is_held(title: str) -> None:
     made = replace(MANY, title=title)
     root = parsed(svg(picture(made)))
     told = root.findtext(f"{SVG}title") or ""
-    assert told.startswith(title.replace("\x07", " "))
+    assert told.startswith(shown(title))
 
 
 def test_all_shapes_lie_in_the_drawing() -> None:
