@@ -9,7 +9,7 @@ from typing import Any
 import numpy as np
 
 from heuncli.cli import alarm
-from heuncli.cli.entry import UsageError, report_problems, worst
+from heuncli.cli.entry import UsageError, contained, report_problems, worst
 from heuncli.cli.output import emit
 from heuncli.cli.requests import Check
 from heuncli.cli.solving import warn
@@ -85,10 +85,10 @@ def _files(argument: str, skipped: list[str]) -> Iterator[str]:
 
 def _check(path: str, quiet: bool, limit: float | None) -> Checked:
     try:
-        return alarm.limited(lambda: _compared(path, quiet), limit)
+        return contained(lambda: alarm.limited(lambda: _compared(path, quiet), limit), ("check", path))
     except HeunError as error:
         report_problems(error.problems, label="" if _placed(error) else f"{path}: ")
-        return Checked(path, (), error)
+        return Checked(path, (), error.with_traceback(None))  # whose frames hold all that was solved
 
 
 def _compared(path: str, quiet: bool) -> Checked:

@@ -9,8 +9,9 @@ import importlib
 import math
 import os
 import sys
-from collections.abc import Sequence
+from collections.abc import Callable, Sequence
 from pathlib import Path
+from typing import TypeVar
 
 from heuncli.cli import alarm, plain
 from heuncli.cli.output import ReaderGone, emit, say
@@ -20,8 +21,15 @@ from heuncli.foreign_text import shown
 from heuncli.version import VERSION
 
 INTERRUPTED = 130
+Given = TypeVar("Given")
 BUG = 70
 OF_SEVERAL = (BUG, 5, 2, 3, 4, 1)  # contract section 4: which exit code stands for several files
+
+
+class Bug(HeunError):
+    """What heun does not know how to name: its own mistake."""
+
+    exit_code = BUG
 
 
 class UsageError(HeunError):
@@ -33,7 +41,7 @@ class UsageError(HeunError):
 def enter(argv: Sequence[str]) -> int:
     """Run one command line; returns its exit code."""
     try:
-        return _command(list(argv))
+        return contained(lambda: _command(list(argv)), argv)
     except ReaderGone as gone:
         return gone.exit_code
     except HeunError as error:
@@ -43,13 +51,24 @@ def enter(argv: Sequence[str]) -> int:
     except KeyboardInterrupt:
         say("heun: interrupted")
         return INTERRUPTED
+
+
+def contained(work: Callable[[], Given], argv: Sequence[str]) -> Given:
+    """What the work of these words gives. Raises HeunError whatever goes wrong: Bug, LimitError where memory ends.
+
+    It is raised once what was thrown is let go of, with all the memory that its frames hold.
+    """
+    error: HeunError
+    try:
+        return work()
+    except HeunError:
+        raise
     except MemoryError:
-        report_problems([Problem("out-of-memory", "the memory does not suffice", hint="fewer samples, or --only")])
-        return LimitError.exit_code
-    except Exception as bug:
+        error = LimitError(Problem("out-of-memory", "the memory does not suffice", hint="fewer samples, or --only"))
+    except Exception as mishap:
         _debug()
-        say(_bug_report(bug, argv))
-        return BUG
+        error = Bug(_bug_report(mishap, argv))
+    raise error
 
 
 def report_problems(problems: Sequence[Problem], label: str = "") -> None:
@@ -125,13 +144,11 @@ def _debug() -> None:
         traceback.print_exc()
 
 
-def _bug_report(bug: Exception, argv: Sequence[str]) -> str:
+def _bug_report(bug: Exception, argv: Sequence[str]) -> Problem:
     location = bug.__traceback__
     while location is not None and location.tb_next is not None:
         location = location.tb_next
     where = f" at {Path(location.tb_frame.f_code.co_filename).name}:{location.tb_lineno}" if location else ""
-    return (
-        f"heun: this is a bug in heun: {type(bug).__name__}: {shown(str(bug))}{where}\n"
-        f"  please report it with the spec, this line, and: heun {shown(' '.join(argv))} (version {VERSION})\n"
-        "  HEUN_DEBUG=1 shows the traceback"
-    )
+    line = f"heun {' '.join(argv)} (version {VERSION})"
+    hint = f"please report it with the spec, this line, and: {line}; HEUN_DEBUG=1 shows the traceback"
+    return Problem("bug", f"this is a bug in heun: {type(bug).__name__}: {bug}{where}", hint=hint)

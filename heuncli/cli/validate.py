@@ -5,10 +5,10 @@ from __future__ import annotations
 from functools import partial
 
 from heuncli.cli import alarm
-from heuncli.cli.entry import report_problems, worst
+from heuncli.cli.entry import contained, report_problems, worst
 from heuncli.cli.output import emit, say
 from heuncli.cli.requests import Validate
-from heuncli.errors import LimitError, SpecError
+from heuncli.errors import HeunError, SpecError
 from heuncli.foreign_text import shown
 from heuncli.report.words import count
 from heuncli.spec.load import load
@@ -20,8 +20,9 @@ def main(request: Validate) -> int:
     codes, lines = [0], []
     for path in request.specs:
         try:
-            spec, warnings = alarm.limited(partial(_judged, path), request.time_limit_each)
-        except (SpecError, LimitError) as error:
+            work = partial(alarm.limited, partial(_judged, path), request.time_limit_each)
+            spec, warnings = contained(work, ("validate", path))
+        except HeunError as error:
             report_problems(error.problems, "" if isinstance(error, SpecError) else f"{path}: ")
             codes.append(error.exit_code)
             continue

@@ -6,11 +6,13 @@ import csv
 import itertools
 import json
 from pathlib import Path
+from typing import Any
 
 import pytest
 
 from heuncli.cli.entry import enter
 from heuncli.errors import SpecError
+from heuncli.spec.load import load
 from tests.cli.conftest import HANGING, SPECS, Heun
 
 
@@ -317,6 +319,35 @@ def test_no_trouble_reaches_a_user_as_a_traceback(
     assert (done.returncode, done.stdout) == (code, "")
     assert told in done.stderr
     assert "Traceback" not in done.stderr
+
+
+@pytest.mark.parametrize(
+    ("trouble", "code", "told"),
+    [
+        (ZeroDivisionError("float"), 70, "this is a bug in heun: ZeroDivisionError: float at test_commands.py:"),
+        (RecursionError("too deep"), 70, "this is a bug in heun: RecursionError: too deep at "),
+        (MemoryError(), 4, "the memory does not suffice"),
+    ],
+)
+@pytest.mark.parametrize("command", ["check", "validate"])
+def test_what_goes_wrong_in_one_file_is_told_of_it_alone(
+    heun: Heun, monkeypatch: pytest.MonkeyPatch, command: str, trouble: Exception, code: int, told: str
+) -> None:
+    def fail_once(path: str, **words: Any) -> Any:
+        if path == "swinging.yaml":
+            raise trouble
+        return load(path, **words)
+
+    monkeypatch.setattr(f"heuncli.cli.{command}.load", fail_once)
+    monkeypatch.delenv("HEUN_DEBUG", raising=False)
+    done = heun(command, "expecting.yaml", "swinging.yaml", "failing.yaml", "wrong.yaml")
+    assert done.returncode == (code if code == 70 else 2)
+    assert f"heun: swinging.yaml: {told}" in done.stderr and "wrong.yaml:" in done.stderr
+    if command == "check":
+        assert "4 specs, 1 passed, 1 failed, 2 specs not solved" in done.stdout
+        found = json.loads(heun(command, "expecting.yaml", "swinging.yaml", "--format", "json").stdout)
+        assert [(case["passed"], case.get("exit")) for case in found["cases"]] == [(True, None), (False, code)]
+        assert told in found["cases"][1]["message"]
 
 
 def test_validate_cuts_the_sections(tmp_path: Path, capsys: pytest.CaptureFixture[str]) -> None:
