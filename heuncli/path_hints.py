@@ -7,10 +7,10 @@ as other programs spell them. The first that leads to a number is what was meant
 from __future__ import annotations
 
 import re
-from collections.abc import Callable, Iterator, Sequence
+from collections.abc import Callable, Iterable, Iterator, Sequence
 from itertools import islice, product
 
-from heuncli.nearest import nearest
+from heuncli.nearest import afford, nearest
 from heuncli.results_schema import AFTER_THE_RUN, BLOWS, NAMES, ROWS, XYZ
 
 COMMON = ("joints", "coordinates", "sections", "bodies", "points", "forces")  # tried first
@@ -42,11 +42,15 @@ INNER = ("stress", "axis", "mass_effect", "supports", "elements", "line")
 COMPONENT = re.compile(r"(.+?)_?([xyz])\Z", re.IGNORECASE)
 BALANCE = "system_vector"  # few ask for it, and none by a short name
 MOST = 5000  # readings that are tried
+MOST_WORDS = 8  # of a path; no path into the results has more, and each may be read in several ways
+EFFORT_HERE = 500_000  # of nearest.EFFORT: some thirty paths of a file are read in other words
 
 
 def meant(path: str, leads: Callable[[list[str]], bool]) -> str | None:
     """The path that was meant, if there is one like it that leads to a number."""
     words = path.split(".")
+    if len(words) > MOST_WORDS or not afford(EFFORT_HERE):
+        return None
     tried = (reading for reading in islice(readings(words), MOST) if reading != words)
     return next((".".join(reading) for reading in tried if leads(reading)), None)
 
@@ -55,7 +59,7 @@ def readings(words: Sequence[str]) -> Iterator[list[str]]:
     """The path in other words, the likeliest first."""
     if len(words) > 1 and words[-1].lower() in MAGNITUDE:  # a vector counts by its magnitude
         yield from readings_behind_blocks([words[:-1]], BLOCKS)
-    spelled = [[part for parts in each for part in parts] for each in product(*map(spellings, words))]
+    spelled = ([part for parts in each for part in parts] for each in product(*map(spellings, words)))
     yield from readings_behind_blocks(spelled, BLOCKS)
     if len(words) > 1 and words[-1].lower() in MAGNITUDE:
         words = words[:-1]
@@ -63,7 +67,7 @@ def readings(words: Sequence[str]) -> Iterator[list[str]]:
 
 
 def readings_behind_blocks(
-    several: Sequence[Sequence[str]], blocks: Sequence[tuple[str, ...]]
+    several: Iterable[Sequence[str]], blocks: Sequence[tuple[str, ...]]
 ) -> Iterator[list[str]]:
     """Each as it is, behind a block, and with a block in place of one."""
     for words in several:

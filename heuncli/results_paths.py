@@ -13,7 +13,7 @@ from typing import Any, NamedTuple
 import numpy as np
 
 from heuncli.errors import Problem, SpecError
-from heuncli.nearest import nearest
+from heuncli.nearest import begin_file, nearest
 from heuncli.results import Array, Results
 from heuncli.results_schema import (
     INDEX,
@@ -61,6 +61,7 @@ def find(results: Results, path: str) -> Numbers:
     except SpecError as error:
         from heuncli.path_hints import meant  # only on the way to an error
 
+        begin_file()  # the spec's own problems are behind
         (problem,) = error.problems
         likely = meant(path, lambda words: _leads(results, words)) if problem.code == "unknown-path" else None
         if likely is None:

@@ -10,6 +10,7 @@ import pytest
 
 from heuncli.kernel import choose
 from heuncli.kernel.form import FOLDER, KERNEL, MODULES
+from heuncli.nearest import begin_file
 
 # Folders that judge numbers: the plain kernel gives the same bits, a hundred times slower (test_kernels_agree.py).
 SPARED = {"closed_forms", "convergence", "honesty", "limits"}
@@ -25,6 +26,12 @@ def sources(name: str) -> set[Path]:
         neighbours = {near for path in new for near in imports.findall(path.read_text(encoding="utf-8"))}
         new = {FOLDER / f"{near}.pxd" for near in neighbours} - found
     return found
+
+
+@pytest.fixture(autouse=True)
+def suggestions() -> None:
+    """Suggestions are limited file by file; a test that reads none is a file of its own."""
+    begin_file()
 
 
 def pytest_configure() -> None:

@@ -70,7 +70,7 @@ OTHER_NAMES = {  # what people write who come from elsewhere
 LIBRARIES = frozenset({"math", "np", "numpy", "sp", "Math"})  # whose functions are written with a dot elsewhere
 
 TOKEN = re.compile(
-    r"\s*(?:(?P<number>(?:\d+\.?\d*|\.\d+)(?:[eE][+-]?\d+)?)|(?P<name>[^\W\d]\w*)|(?P<mark>\*\*|[<>=!]=|//|&&|\|\||\S))"
+    r"\s*+(?:(?P<number>(?:\d+\.?\d*|\.\d+)(?:[eE][+-]?\d+)?)|(?P<name>[^\W\d]\w*)|(?P<mark>\*\*|[<>=!]=|//|&&|\|\||\S))"
 )
 
 
@@ -112,14 +112,20 @@ class Follows(Finding):
 
 def compile_expression(text: str, scope: Scope) -> Expression:
     """The expression a text means. Raises Finding."""
-    if len(text) > LONGEST:
-        raise Finding("expression-limit", f"an expression of {len(text)} characters; at most {LONGEST} are read")
+    require_length(text)
     try:
         return _Parser(text, scope).parse()
     except Finding as finding:
         if finding.code != "wrong-dimension":
             raise
         raise Finding(finding.code, f"'{text.strip()}' {finding.message}", told_of(text, scope)) from None
+
+
+def require_length(text: str) -> None:
+    """Refuse what is too long to be an expression, or a number with a unit. Raises Finding."""
+    if len(text) > LONGEST:
+        hint = "parts of it may have names under parameters; many points are a table"
+        raise Finding("expression-limit", f"an expression of {len(text)} characters; at most {LONGEST} are read", hint)
 
 
 def told_of(text: str, scope: Scope) -> str | None:
@@ -367,7 +373,7 @@ class _Parser:
         if name in self.scope.tables:
             raise Finding("unknown-name", f"'{name}' is a table, not a function", f"write table({name}, ...)")
         if name not in ARITY:
-            raise self.unknown(name, ARITY, "function")
+            raise self.unknown(name, "function")
         if name == "table":
             return self.table()
         parts: list[Part] = []
@@ -402,8 +408,8 @@ class _Parser:
         if not self.scope.in_time:
             raise Finding("not-in-time", "a table may stand only in a value in time (forces, drives)")
         if name not in self.scope.tables:
-            known = sorted(self.scope.tables)
-            raise Finding("unknown-table", f"'{name}' is not a table", did_you_mean(name, known, "tables"))
+            hint = did_you_mean(name, self.scope.tables, "tables")
+            raise Finding("unknown-table", f"'{name}' is not a table", hint)
         table = self.scope.tables[name]
         if table is None:
             raise Follows
@@ -446,19 +452,20 @@ class _Parser:
             return self.codegen.time()
         if name in ARITY:
             raise Finding("function-arguments", f"{name} is a function: write {name}(...)")
-        raise self.unknown(name, [*self.scope.parameters, *RESERVED], "parameter")
+        raise self.unknown(name, "parameter")
 
-    def unknown(self, name: str, known: Mapping[str, object] | list[str], kind: str) -> Finding:
+    def unknown(self, name: str, kind: str) -> Finding:
         if name in OTHER_NAMES:
             return Finding("unknown-name", f"'{name}' is not a {kind}", f"write {OTHER_NAMES[name]}")
         if kind == "parameter" and name in self.scope.joints:
             words = COORDINATES.get(self.scope.joints[name])
             hint = f"write {name}.{words[0]} or {name}.{words[1]}" if words else None
             return Finding("unknown-name", f"'{name}' is a joint, not a number", hint)
-        message, near = f"'{name}' is not a {kind}", nearest(name, known)
+        known = (self.scope.parameters, RESERVED) if kind == "parameter" else (ARITY,)
+        message, near = f"'{name}' is not a {kind}", nearest(name, *known)
         is_near = near is not None and near.lower() == name.lower()
         if not is_near and kind == "parameter" and (hint := in_si("", name)) is not None:
             return Finding("unknown-name", message, hint)
-        listed = list(self.scope.parameters) if kind == "parameter" else sorted(known)
+        listed = self.scope.parameters if kind == "parameter" else sorted(ARITY)
         hint = f"did you mean {near}?" if near else did_you_mean(name, listed, f"{kind}s")
         return Finding("unknown-name", message, hint)

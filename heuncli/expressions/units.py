@@ -11,6 +11,7 @@ from collections.abc import Iterator
 from math import pi
 
 from heuncli.errors import Finding
+from heuncli.nearest import nearest
 
 Dimension = tuple[int, int, int]
 
@@ -175,7 +176,11 @@ def spelled(unit: str) -> str | None:
 def parse_unit(text: str) -> tuple[float, Dimension]:
     """Size in SI and dimension of a unit such as 'kg/m^3', 'N m', 'N/(m/s)'. Raises Finding."""
     reader = _Reader(text)
-    size, dimension = reader.product()
+    try:
+        size, dimension = reader.product()
+    except ArithmeticError:  # powers of powers: larger or smaller than any double
+        hint = "a power is a small whole number, as in m^2"
+        raise Finding("unknown-unit", f"'{text}' is not a unit: its size is beyond all numbers", hint) from None
     if reader.token is not None:
         raise Finding("unknown-unit", f"'{text}' is not a unit: '{reader.token}' is not expected")
     return size, dimension
@@ -259,11 +264,7 @@ class _Reader:
 
 def nearest_unit(symbol: str) -> str:
     """A hint that names the unit meant, or the common ones."""
-    import difflib  # only on the way to an error
-
-    fitting = [name for name in UNITS if name.lower() == symbol.lower()] or difflib.get_close_matches(
-        symbol, UNITS, 1, 0.7
-    )
-    if fitting:
-        return f"did you mean {fitting[0]}?"
+    meant = nearest(symbol, UNITS)
+    if meant is not None:
+        return f"did you mean {meant}?"
     return "units are kg, g, m, mm, s, ms, rad, deg, rpm, N, kN, Pa, bar, ... and products such as N*m, kg/m^3, m/s^2"

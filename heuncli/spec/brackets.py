@@ -18,7 +18,8 @@ BLOCK_TEXT = re.compile(r"[|>][-+0-9]*[ \t]*(?:#[^\n]*)?(?=\n|\Z)")
 WORD = re.compile(r"[^\s'\"\[\]{}]+")
 GAP = re.compile(r"[ \t]*(?:(?<=[ \t])#[^\n]*)?")
 BLANK = re.compile(r"[ \t]*(?:#[^\n]*)?(?=\n|\Z)")
-QUOTED = {"'": re.compile(r"'(?:[^']|'')*'"), '"': re.compile(r'"(?:[^"\\]|\\.)*"', re.DOTALL)}
+# possessive: what is taken is not given back, so that a quote left open takes no memory for every letter after it
+QUOTED = {"'": re.compile(r"'(?:[^']++|'')*+'"), '"': re.compile(r'"(?:[^"\\]++|\\.)*+"', re.DOTALL)}
 OPEN_STILL = ",:[{"  # after one of these a value or a key may begin in the next line
 MOST = 20  # that are told together
 

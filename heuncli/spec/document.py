@@ -54,11 +54,11 @@ class Reader:
 
     def follows(self, path: Path_) -> bool:
         """Whether a violation at this path may be a mere consequence of keys that were left out as wrong."""
-        return any(
-            path[: len(entry)] == entry and (len(path) == len(entry) or path[len(entry)] not in kept)
-            for entry, kept in self.partial.items()
-            if entry
-        )
+        for depth in range(1, len(path) + 1):
+            kept = self.partial.get(path[:depth])
+            if kept is not None and (depth == len(path) or path[depth] not in kept):
+                return True
+        return False
 
     def typed(self, path: Path_, data: Any, models: Mapping[str, type[Model]], block: str) -> Any:
         """One model of those that the key `type` chooses from."""

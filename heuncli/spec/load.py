@@ -9,6 +9,7 @@ from typing import Any
 from heuncli.errors import Problem, SourceLocation, SpecError
 from heuncli.expressions.grammar import Given
 from heuncli.expressions.programs import Table
+from heuncli.nearest import begin_file
 from heuncli.spec import format as f
 from heuncli.spec.document import Reader
 from heuncli.spec.fields import Context
@@ -36,6 +37,7 @@ def load(
     for, which may have been overridden. Raises SpecError with all problems, in the order of the lines.
     """
     path = str(path)
+    begin_file()
     return Loading(path, read(path, text), overrides or {}, checking).spec()
 
 

@@ -9,6 +9,8 @@ from heuncli.expressions.grammar import Given
 from heuncli.records import record
 from heuncli.spec.quantity import Follows, Scope, in_time
 
+MOST_TOLD = 12  # names of a circle
+
 
 class _Needed(Exception):
     """A parameter that has to be known first."""
@@ -48,11 +50,11 @@ def evaluate_parameters(given: dict[str, Any]) -> Parameters:
     scope = Scope(parameters=values, given=written)
     findings: list[tuple[str, Finding]] = []
     for first in given:
-        waiting = [first]
+        waiting = {first: None}  # in the order in which they were asked for
         while waiting:
-            name = waiting[-1]
+            name = next(reversed(waiting))
             if name in values.keys():  # noqa: SIM118  # `in values` asks whether it is given
-                waiting.pop()
+                waiting.popitem()
                 continue
             try:
                 expression = in_time(given[name], None, scope)
@@ -61,15 +63,22 @@ def evaluate_parameters(given: dict[str, Any]) -> Parameters:
                     written[name] = Given(expression.dimension, expression.source.strip())
             except _Needed as needed:
                 if needed.name in waiting:
-                    circle = [*waiting[waiting.index(needed.name) :], needed.name]
-                    message = f"parameters refer to each other in a circle: {' -> '.join(circle)}"
+                    asked = list(waiting)
+                    circle = [*asked[asked.index(needed.name) :], needed.name]
+                    message = f"parameters refer to each other in a circle: {' -> '.join(shortened(circle))}"
                     findings.append((needed.name, Finding("parameter-circle", message)))
                     values.update(dict.fromkeys(circle))
                 else:
-                    waiting.append(needed.name)
+                    waiting[needed.name] = None
             except Follows:
                 values[name] = None
             except Finding as finding:
                 values[name] = None
                 findings.append((name, finding))
     return Parameters({name: values[name] for name in given}, written, findings)
+
+
+def shortened(names: list[str]) -> list[str]:
+    """A long row of names by its ends."""
+    left_out = len(names) - MOST_TOLD
+    return names if left_out <= 0 else [*names[: MOST_TOLD - 2], f"({left_out} more)", *names[-2:]]

@@ -7,7 +7,7 @@ import re
 from typing import Any
 
 from heuncli.errors import Finding
-from heuncli.expressions.grammar import RESERVED, WORDS, Follows, Scope, compile_expression, told_of
+from heuncli.expressions.grammar import RESERVED, WORDS, Follows, Scope, compile_expression, require_length, told_of
 from heuncli.expressions.programs import Expression
 from heuncli.expressions.units import Dimension, describe, in_si, parse_unit, si_unit, spelled
 from heuncli.number_range import is_in_range, out_of_range
@@ -15,9 +15,11 @@ from heuncli.records import replace
 
 # A number and then something that begins like a unit; "2 if t < 1 else 3" is an expression all the same.
 # The 1 of 1/s stands apart from it: 21/s is no 2 of 1/s, nor 9.81/2 a 9.8 of 1/2.
-WITH_UNIT = re.compile(r"\s*([+-]?\s*(?:\d+\.?\d*|\.\d+)(?:[eE][+-]?\d+)?+)\s*((?:[^\W\d_]|°|(?<=\s)1/)[^,]*)\s*\Z")
+# Possessive (++, *+, ?+): what is taken is not given back, so that a text is read once whatever does not follow.
+FIGURE = r"\s*+([+-]?\s*+(?:\d++\.?\d*+|\.\d++)(?:[eE][+-]?\d++)?+)\s*+"
+WITH_UNIT = re.compile(rf"{FIGURE}((?:[^\W\d_]|°|(?<=\s)1/)[^,]*+)\Z")
 WHOLE_NUMBER = re.compile(r"(?<![\w.*])\d(?![\w.])|(?<=[^*]\*)\d(?![\w.])")
-OVER_UNIT = re.compile(r"\s*([+-]?\s*(?:\d+\.?\d*|\.\d+)(?:[eE][+-]?\d+)?)\s*/\s*([^\W\d]+)\s*\Z")
+OVER_UNIT = re.compile(rf"{FIGURE}/\s*+([^\W\d]++)\s*\Z")
 TIME_IN_IT = re.compile(r"(?<![\w.])t(?![\w.])")
 CONDITIONS = "such as guide.travel > 0.2, shaft.rate < 0 and t > 1, or {of: joints.wall.force.x, below: 0}"
 NOT_A_NUMBER = re.compile(r"[+-]?\.?(?:inf|nan)(?:inity)?\Z", re.IGNORECASE)
@@ -46,6 +48,7 @@ def as_written(value: Any, dimension: Dimension | None, scope: Scope) -> Express
         return Expression.of(finite(value))
     if type(value) is not str:
         raise Finding("wrong-kind", f"expected a number, found {kind_of(value)}", hint_for(value))
+    require_length(value)
     if NOT_A_NUMBER.match(value.strip()):
         raise Finding("not-finite", f"'{value.strip()}' is not a finite number")
     with_unit = unit_in(value)
@@ -133,7 +136,7 @@ def measure(figure: str, unit: str, scope: Scope) -> tuple[float, Dimension]:
 def product_hint(figure: str, unit: str, scope: Scope) -> str | None:
     """For '2 L' with a parameter L, or '2 t': a product was meant."""
     name = re.split(r"\W", unit, maxsplit=1)[0]
-    if re.search(r"[+-]\s*\d*\s*[^\W\d]", unit):
+    if re.search(r"[+-]\s*+(?:\d++\s*+)?[^\W\d]", unit):
         return "units do not stand inside expressions: give the quantity a name under parameters, or write it in SI"
     if name in scope.parameters or name in RESERVED:
         return f"for a product write {figure.strip()}*{unit}"

@@ -10,6 +10,7 @@ import numpy as np
 import pytest
 
 from heuncli.errors import SpecError
+from heuncli.nearest import begin_file
 from heuncli.report.export import to_json
 from heuncli.report.quantities import walk
 from heuncli.results_paths import find
@@ -158,6 +159,7 @@ def test_what_is_proposed_is_there(spec: Spec) -> None:
              "z", "mag", "angle", "3", "", "supports", "M1", "shares", "gravity", "impulses", "nonsense"]  # fmt: skip
     draw, proposed = random.Random(1), 0
     for _ in range(150):
+        begin_file()
         path = ".".join(draw.choice(words) for _ in range(draw.randint(1, 4)))
         hint = (wrong_path(path, names, runs) or ("", ""))[1] or ""
         if hint.startswith("did you mean ") and "." in hint:

@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Iterable, Iterator
+from collections.abc import Collection, Iterator
 
 from heuncli.nearest import did_you_mean
 from heuncli.spec import format as f
@@ -73,10 +73,10 @@ def bodies_spoken_of(draft: DraftDocument) -> Iterator[tuple[Path_, str, bool]]:
 @rule("unknown-body")
 def unknown_body(draft: DraftDocument) -> Iterator[Violation]:
     """Bodies exist."""
-    bodies = draft.names.entries["bodies"]
+    bodies = dict.fromkeys([*draft.names.entries["bodies"], GROUND])
     for path, body, _ in bodies_spoken_of(draft):
-        if body != GROUND and body not in bodies:
-            yield Violation(path, f"'{body}' is not a body", did_you_mean(body, [*bodies, GROUND], "bodies"))
+        if body not in bodies:
+            yield Violation(path, f"'{body}' is not a body", did_you_mean(body, bodies, "bodies"))
 
 
 @rule("ground-cannot")
@@ -122,7 +122,7 @@ def may_be_whole(draft: DraftDocument, path: Path_) -> bool:
     return path[0] == "forces"
 
 
-def absent(path: Path_, body: str, point: str, points: Iterable[str]) -> Violation:
+def absent(path: Path_, body: str, point: str, points: Collection[str]) -> Violation:
     """A point that its body does not have."""
     owner = "the ground" if body == GROUND else f"body {body}"
     own = point.removeprefix(f"{body}.")
