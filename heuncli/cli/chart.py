@@ -9,11 +9,12 @@ from pathlib import Path
 from heuncli.charts import Chart
 from heuncli.cli import alarm
 from heuncli.cli.entry import UsageError
+from heuncli.cli.guard import keep, same
 from heuncli.cli.output import emit, save
 from heuncli.cli.progress import progress
 from heuncli.cli.requests import Chart as Request
 from heuncli.cli.solving import overrides, warn
-from heuncli.cli.target import format_of, keep, require_room
+from heuncli.cli.target import format_of, require_room
 from heuncli.errors import Problem
 from heuncli.method_rows import AUTO, METHODS, row_of
 from heuncli.records import replace
@@ -43,8 +44,9 @@ def main(request: Request) -> int:
         numbers("--steps", request.steps, math.inf),
     )
     spec = load(request.spec, overrides=overrides(request.set), checking=False)
-    keep(request.output, [request.spec, *spec.files])
-    keep(request.save, [request.spec, *spec.files], "--save")
+    keep(request.output, [request.spec])
+    if request.save is not None:
+        keep(request.save, [request.spec], "--save")
     with progress(request.quiet) as tell:
         found = chart(spec, replace(wanted, time_limit=alarm.left()), tell)
     if drawn is not None and request.save is not None:
@@ -83,7 +85,7 @@ def picture_format(request: Request) -> Callable[[Chart], bytes] | None:
         hint = f"known endings: {', '.join(PICTURES)}"
         raise UsageError(Problem("bad-option", f"--save {request.save}: no picture is known by that ending", hint=hint))
     require_room(request.save, "--save")
-    if request.output is not None and Path(request.output).resolve() == Path(request.save).resolve():
+    if same(request.output, request.save):
         message = f"--save {request.save}: that is what -o writes"
         raise UsageError(Problem("bad-option", message, hint="name another file"))
     if form == "svg":

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Iterator, Sequence
+from functools import partial
 from pathlib import Path
 from typing import Any
 
@@ -10,10 +11,11 @@ import numpy as np
 
 from heuncli.cli import alarm
 from heuncli.cli.entry import UsageError, contained, report_problems, worst
+from heuncli.cli.guard import keep
 from heuncli.cli.output import emit
 from heuncli.cli.requests import Check
 from heuncli.cli.solving import warn
-from heuncli.cli.target import format_of, keep
+from heuncli.cli.target import format_of
 from heuncli.errors import HeunError, Problem
 from heuncli.foreign_text import shown
 from heuncli.records import record
@@ -41,7 +43,6 @@ class Checked:
     path: str
     cases: tuple[Case, ...]
     error: HeunError | None = None
-    tables: tuple[str, ...] = ()  # the files of its tables
 
     @property
     def exit_code(self) -> int:
@@ -57,12 +58,10 @@ def main(request: Check) -> int:
     paths = [path for argument in request.paths for path in _files(argument, skipped)]
     if not paths:
         raise UsageError(Problem("nothing-to-check", f"no *.yaml in {', '.join(request.paths)}"))
-    for path in paths:
-        keep(request.output, [path])
+    keep(request.output, paths)
     form = format_of(request.format, request.output, ENDINGS, FORMATS)
-    checked = [_check(path, request.quiet, request.time_limit_each) for path in paths]
-    for one in checked:
-        keep(request.output, [one.path, *one.tables])
+    checked = [_check(path, request) for path in paths]
+    keep(request.output, paths)  # the tables of specs that are wrong, too
     if any(one.error is None for one in checked):  # with errors alone there is no result
         emit(_json(checked) if form == "json" else _table(checked, skipped), request.output)
     return worst([one.exit_code for one in checked])
@@ -83,22 +82,26 @@ def _files(argument: str, skipped: list[str]) -> Iterator[str]:
             yield str(entry)
 
 
-def _check(path: str, quiet: bool, limit: float | None) -> Checked:
+def _check(path: str, request: Check) -> Checked:
     try:
-        return contained(lambda: alarm.limited(lambda: _compared(path, quiet), limit), ("check", path))
+        work = partial(alarm.limited, partial(_compared, path, request), request.time_limit_each)
+        return contained(work, ("check", path))
+    except UsageError:
+        raise
     except HeunError as error:
         report_problems(error.problems, label="" if _placed(error) else f"{path}: ")
         return Checked(path, (), error.with_traceback(None))  # whose frames hold all that was solved
 
 
-def _compared(path: str, quiet: bool) -> Checked:
+def _compared(path: str, request: Check) -> Checked:
     spec = load(path)
+    keep(request.output, [path])
     asked = asked_by([item.of for item in spec.expect], spec) if spec.expect else EVERYTHING
     study = solve(spec, Options(wanted=asked.reports, entries=asked.entries, time_limit=alarm.left()))
     cases = tuple(compare(study, item) for item in spec.expect)
     alarm.off()
-    warn(spec, study.results, quiet, f"heun: {path}", study.later)
-    return Checked(path, cases, tables=spec.files)
+    warn(spec, study.results, request.quiet, f"heun: {path}", study.later)
+    return Checked(path, cases)
 
 
 def _placed(error: HeunError) -> bool:

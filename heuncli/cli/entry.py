@@ -13,6 +13,7 @@ from collections.abc import Callable, Sequence
 from pathlib import Path
 from typing import TypeVar
 
+from heuncli import files_read
 from heuncli.cli import alarm, plain
 from heuncli.cli.output import ReaderGone, emit, say
 from heuncli.cli.requests import COMMANDS, GRACES, LATER_COMMANDS, LATER_OPTIONS, Request
@@ -40,6 +41,7 @@ class UsageError(HeunError):
 
 def enter(argv: Sequence[str]) -> int:
     """Run one command line; returns its exit code."""
+    files_read.forget()
     try:
         return contained(lambda: _command(list(argv)), argv)
     except ReaderGone as gone:

@@ -5,10 +5,11 @@ from __future__ import annotations
 from collections.abc import Mapping
 from typing import Any
 
+from heuncli.cli.guard import keep
 from heuncli.cli.output import emit
 from heuncli.cli.requests import Model
 from heuncli.cli.solving import overrides, warn
-from heuncli.cli.target import format_of, keep
+from heuncli.cli.target import format_of
 from heuncli.report.export import dump
 from heuncli.report.note import note
 from heuncli.spec.load import load
@@ -23,7 +24,7 @@ def main(request: Model) -> int:
     keep(request.output, [request.spec])
     form = format_of(request.format, request.output, ENDINGS, FORMATS)
     spec = load(request.spec, overrides=overrides(request.set), checking=False)
-    keep(request.output, [request.spec, *spec.files])
+    keep(request.output, [request.spec])
     model: Mapping[str, Any] = describe(spec, reduce=not request.no_reduce)
     emit(dump(dict(model)) if form == "json" else note(spec.title, model), request.output)
     warn(spec, None, request.quiet)

@@ -2,10 +2,11 @@
 
 from __future__ import annotations
 
+from heuncli.cli.guard import keep
 from heuncli.cli.output import emit
 from heuncli.cli.requests import Modes
 from heuncli.cli.solving import overrides, warn
-from heuncli.cli.target import format_of, keep
+from heuncli.cli.target import format_of
 from heuncli.report import modes as report
 from heuncli.report.export import dump
 from heuncli.spec.load import load
@@ -20,7 +21,7 @@ def main(request: Modes) -> int:
     keep(request.output, [request.spec])
     form = format_of(request.format, request.output, ENDINGS, FORMATS)
     spec = load(request.spec, overrides=overrides(request.set), checking=False)
-    keep(request.output, [request.spec, *spec.files])
+    keep(request.output, [request.spec])
     found = modes(spec)
     if form == "json":
         text = dump(found.block())

@@ -3,10 +3,11 @@
 from __future__ import annotations
 
 from heuncli.cli import alarm
+from heuncli.cli.guard import keep
 from heuncli.cli.output import emit
 from heuncli.cli.requests import Probe
 from heuncli.cli.solving import overrides, warn
-from heuncli.cli.target import format_of, keep
+from heuncli.cli.target import format_of
 from heuncli.report import probe as report
 from heuncli.report.export import dump
 from heuncli.spec.load import load
@@ -22,7 +23,7 @@ def main(request: Probe) -> int:
     keep(request.output, [request.spec])
     form = format_of(request.format, request.output, ENDINGS, FORMATS)
     spec = load(request.spec, overrides=overrides(request.set), checking=False)
-    keep(request.output, [request.spec, *spec.files])
+    keep(request.output, [request.spec])
     found = probe(spec, Options(time_limit=alarm.left()))
     emit(dump(found.block()) if form == "json" else report.write(found), request.output)
     warn(spec, None, request.quiet)

@@ -10,10 +10,11 @@ import numpy as np
 
 from heuncli.cli import alarm, searches
 from heuncli.cli.entry import UsageError
+from heuncli.cli.guard import keep
 from heuncli.cli.output import emit, say
 from heuncli.cli.requests import FORMATS, Run
 from heuncli.cli.solving import choice, instants, overrides, positive, timings, warn
-from heuncli.cli.target import format_of, keep
+from heuncli.cli.target import format_of
 from heuncli.errors import Finding, Problem
 from heuncli.kinetostatics.joint_axes import JOINT_AXES
 from heuncli.nearest import did_you_mean, nearest
@@ -59,7 +60,7 @@ def main(request: Run) -> int:
     )
     begun = time.perf_counter()
     spec = load(request.spec, overrides=overrides(request.set), checking=False)
-    keep(request.output, [request.spec, *spec.files])
+    keep(request.output, [request.spec])
     options = replace(options, load_seconds=time.perf_counter() - begun, time_limit=alarm.left())
     if asked:
         measure.check(asked, spec)

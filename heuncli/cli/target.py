@@ -1,4 +1,4 @@
-"""`-o FILE`: the format its name asks for, and the files it must not take the place of. Impure: looks at the files."""
+"""`-o FILE`: the format its name asks for, and what would keep it from being written. Impure: looks at the files."""
 
 from __future__ import annotations
 
@@ -6,10 +6,9 @@ from collections.abc import Mapping, Sequence
 from pathlib import Path
 
 from heuncli.cli.entry import UsageError
+from heuncli.cli.guard import STDOUT
 from heuncli.cli.solving import choice
 from heuncli.errors import OutputError, Problem
-
-STDOUT = "-"
 
 
 def format_of(asked: str | None, output: str | None, endings: Mapping[str, str], formats: Sequence[str]) -> str:
@@ -44,13 +43,3 @@ def require_room(output: str, option: str = "-o") -> None:
     if not path.parent.is_dir():
         hint = "make it first, or name another place"
         raise OutputError(Problem("output-failed", f"{output}: there is no folder {path.parent}", hint=hint))
-
-
-def keep(output: str | None, read: Sequence[str], option: str = "-o") -> None:
-    """The output must not take the place of what the results are made from: the spec, and the files of its tables."""
-    if output is None or output == STDOUT:
-        return
-    for number, file in enumerate(read):
-        if file != STDOUT and Path(output).resolve() == Path(file).resolve():
-            what = "a table of the spec" if number else "the spec itself"
-            raise UsageError(Problem("bad-option", f"{option} {output}: that is {what}", hint="name another file"))

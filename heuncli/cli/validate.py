@@ -6,6 +6,7 @@ from functools import partial
 
 from heuncli.cli import alarm
 from heuncli.cli.entry import contained, report_problems, worst
+from heuncli.cli.guard import keep
 from heuncli.cli.output import emit, say
 from heuncli.cli.requests import Validate
 from heuncli.errors import HeunError, SpecError
@@ -30,6 +31,7 @@ def main(request: Validate) -> int:
             for warning in warnings:
                 say(f"warning: {warning}")
         lines.append(f"{shown(path)}: fine ({_summary(spec, len(warnings))})\n")
+    keep(None, request.specs)
     code = worst(codes)
     if code == 0 and not request.quiet:
         emit("".join(lines))

@@ -13,6 +13,7 @@ import sys
 from pathlib import Path
 from typing import BinaryIO
 
+from heuncli import files_read
 from heuncli.errors import Finding
 
 STANDARD_INPUT = "-"
@@ -41,7 +42,7 @@ def read_bytes(path: str, most: int) -> bytearray:
             return _of_standard_input(most)
         number = os.open(path, os.O_RDONLY | getattr(os, "O_NOCTTY", 0) | getattr(os, "O_BINARY", 0))
         try:
-            _guard(number, most)
+            _guard(number, path, most)
         except BaseException:
             os.close(number)
             raise
@@ -63,13 +64,14 @@ def _of_standard_input(most: int) -> bytearray:
         number = sys.stdin.buffer.fileno()
     except (OSError, ValueError):  # one that is none of the system's
         return _bounded(sys.stdin.buffer, most)
-    _guard(number, most)
+    _guard(number, STANDARD_INPUT, most)
     return _bounded(sys.stdin.buffer, most)
 
 
-def _guard(number: int, most: int) -> None:
+def _guard(number: int, path: str, most: int) -> None:
     """Refuse what is of a kind that is not read, or too large, before reading; number: of an open file."""
     state = os.fstat(number)
+    files_read.remember(state, path)
     kind = next((words for is_kind, words in FILE_KINDS if is_kind(state.st_mode)), None)
     if kind is not None and not (stat.S_ISCHR(state.st_mode) and _ends(number)):
         hint = "for folders of specs: heun check" if kind == "a folder" else "give a file, or - for standard input"

@@ -1,0 +1,56 @@
+"""What a command reads is not written over: refused before anything is solved. Impure: looks at the files."""
+
+from __future__ import annotations
+
+import os
+import sys
+from collections.abc import Sequence
+from pathlib import Path
+
+from heuncli import files_read
+from heuncli.cli.entry import UsageError
+from heuncli.errors import Problem
+
+STDOUT = "-"
+
+
+def keep(output: str | None, specs: Sequence[str], option: str = "-o") -> None:
+    """The output must not go into what the results are made from: the specs, and all that has been read so far.
+
+    For None and `-` that is standard output, which a shell may have led to the end of a spec (`>>`).
+    """
+    to_stdout = output is None or output == STDOUT
+    state = _of_standard_output() if to_stdout else _state(output)
+    if state is None:
+        return
+    name = files_read.name_of(state)
+    itself = name in specs or (not to_stdout and any(same(output, spec) for spec in specs))
+    if itself or name is not None:
+        what = "the spec itself" if itself else "a table of the spec"
+        where = "standard output" if to_stdout else f"{option} {output}"
+        raise UsageError(Problem("bad-option", f"{where}: that is {what}", hint="name another file"))
+
+
+def same(one: str | None, other: str | None) -> bool:
+    """Whether two names are of one file, or would be."""
+    states = _state(one), _state(other)
+    if states[0] is not None and states[1] is not None:
+        return os.path.samestat(states[0], states[1])
+    return None not in (one, other) and os.path.realpath(str(one)) == os.path.realpath(str(other))
+
+
+def _state(name: str | None) -> os.stat_result | None:
+    """What stands under a name; None where nothing does, or for standard output."""
+    if name is None or name == STDOUT:
+        return None
+    try:
+        return Path(name).stat()
+    except (OSError, ValueError):
+        return None
+
+
+def _of_standard_output() -> os.stat_result | None:
+    try:
+        return os.fstat(sys.stdout.fileno()) if sys.stdout is not None else None
+    except (OSError, ValueError):  # one that is none of the system's
+        return None
