@@ -13,6 +13,7 @@ from heuncli.results import Array, Indices, Mask
 from heuncli.tree.layout import Layout
 from heuncli.tree.tables import Table, parts
 
+AT_ONCE, ROWS = 20_000, 10  # body-states to a call of the kernel, some ten milliseconds; closure rows cost their square
 CAUSES = ("motion", "drives", "gravity")  # beside the loads: velocity terms, what is prescribed, weight
 
 
@@ -87,22 +88,40 @@ class Evaluator:
         n_c = len(layout.tables["loads"]) + len(CAUSES) if causes else 0
         width = own + n_c * self.workspace.column_width
         at = np.ascontiguousarray(times, dtype=float)
-        settled = np.array(states, dtype=float).reshape(n_t, layout.n_state)
-        flat, out = settled.ravel(), np.zeros(n_t * width)
-        held = np.zeros(0) if branches is None else np.ascontiguousarray(branches, dtype=float).ravel()
+        settled = np.array(states, dtype=float, order="C").reshape(n_t, layout.n_state)
+        out = np.zeros((n_t, width))
+        held = np.zeros((n_t, 0)) if branches is None else np.ascontiguousarray(branches, dtype=float)
         closed = np.zeros((n_t, len(layout.contacts)))
         # what others close is closed as much: which of all carry is a matter of rank here, and of verdicts
         closed[:] = (self.start_holding if holding is None else holding) > 0.0
-        arrays = {"times": at, "states": flat, "branches": held, "holding": closed.ravel(), "out": out}
-        self.workspace.recover(arrays, not hold_rows, causes)
-        bodies, freedoms, loads, rows, whole = parts(out.reshape(n_t, width), sizes)
-        columns = out.reshape(n_t, width)[:, own:].reshape(n_t, n_c, -1) if causes else None
+        arrays = {"times": at, "states": settled, "branches": held, "holding": closed, "out": out}
+        self._recover(arrays, hold_rows, causes)
+        bodies, freedoms, loads, rows, whole = parts(out, sizes)
+        columns = out[:, own:].reshape(n_t, n_c, -1) if causes else None
         # behind a blow that ends all motion rates are left by rounding, and what their squares ask for is nothing
         still = rows["terms"].max(axis=1, initial=0.0) <= tolerances.STILL
         return Recovered(
-            times=at, states=flat.reshape(settled.shape), bodies=bodies, freedoms=freedoms, loads=loads, rows=rows,
+            times=at, states=settled, bodies=bodies, freedoms=freedoms, loads=loads, rows=rows,
             gap=whole["gap"][:, 0], idle=whole["idle"][:, 0], pivot=whole["pivot"][:, 0],
             residual=np.where(still, 0.0, whole["residual"][:, 0]), may_stay=self.may_stay(whole["gap"][:, 0]),
             holding=closed,
             causes=columns_of(columns, len(layout.place), len(layout.freedoms)) if columns is not None else None,
         )  # fmt: skip
+
+    def _recover(self, arrays: dict[str, Array], hold_rows: bool, causes: bool) -> None:
+        """The kernel's calls for arrays by instants, in which the states and what goes out are replaced.
+
+        Each is so short that an alarm or an interrupt is heard soon: they wait for a call to end.
+        """
+        count, work = len(arrays["out"]), len(self.layout.place) + len(self.layout.rows) ** 2 // ROWS
+        many = max(1, AT_ONCE // max(work, 1))
+        for begin in range(0, count, many):
+            part = {name: values[begin : begin + many] for name, values in arrays.items()}
+            first = hold_rows and begin > 0  # the rows are chosen there, once more
+            if first:
+                part = {name: np.concatenate([arrays[name][:1], values]) for name, values in part.items()}
+            flat = {name: values.reshape(-1) for name, values in part.items()}
+            self.workspace.recover(flat, not hold_rows, causes)
+            if first:
+                for name in ("states", "out"):
+                    arrays[name][begin : begin + many] = part[name][1:]

@@ -123,7 +123,7 @@ def known_to(own: Directions, terms: Array, spin: float) -> Array:
     |y' dA x| of directions y, x; where k directions fall together with another one, dA to the power 1 / (k + 1), times
     |A| to what is left (Elsner).
     """
-    known = tolerances.INDIFFERENT * np.einsum("ij,jk,ki->i", np.abs(own.inverse), terms, np.abs(own.X))
+    known = tolerances.INDIFFERENT * ((np.abs(own.inverse) @ terms) * np.abs(own.X).T).sum(axis=1)
     # centrifugal terms cancel before they are seen
     known = np.maximum(known, tolerances.EPS * terms.max(initial=0.0)) + tolerances.INDIFFERENT * spin * spin
     if own.lost:
