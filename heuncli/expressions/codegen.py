@@ -128,7 +128,7 @@ class Codegen:
         if table is not None:
             code = (*code[:-3], len(numbers), *code[-2:])
             numbers.extend(table.numbers)
-        programs = expressions.Expressions(array("i", code), numbers, 0, expressions.stack_depth(code))
+        programs = expressions.Expressions(array("i", code), numbers, 0)
         return float(programs.evaluate(0, len(code) // 2, ()))
 
     def apply(self, name: str, *parts: Part, argument: int = 0, text: str = "") -> Part:

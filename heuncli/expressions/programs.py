@@ -122,7 +122,7 @@ class Expression:
 
 
 class Pack:
-    """Programs side by side: code (int pairs), constants and tables, variables, and the depth of the deepest.
+    """Programs side by side: code (int pairs), constants and tables, variables, and where each begins.
 
     `variables[0]` is "t", the others are (joint, quantity) in the order in which the kernel takes them. `branches` are
     the branches in coordinates, in the order in which the kernel holds them: of which expression, and which of its own.
@@ -131,7 +131,7 @@ class Pack:
     def __init__(self) -> None:
         self.code = array("i")
         self.constants = array("d", [0.0])  # never empty, so that the kernel may take its address
-        self.depth = 1
+        self.starts: list[int] = []
         self.variables: list[Variable] = [TIME]
         self.branches: list[tuple[Expression, int]] = []
         self._places: dict[Variable, int] = {TIME: 0}
@@ -143,7 +143,7 @@ class Pack:
         """The programs as the kernel runs them; made anew only where programs were added since."""
         if self._expressions is None:
             self._expressions = expressions.Expressions(
-                self.code, self.constants, len(self.variables), self.depth, self.held
+                self.code, self.constants, len(self.variables), self.held, self.starts
             )
         return self._expressions
 
@@ -181,7 +181,7 @@ class Pack:
             elif op == HOLD:
                 argument += held
             self.code.extend((op, argument))
-        self.depth = max(self.depth, expressions.stack_depth(code))
+        self.starts.append(start)
         return start, len(code) // 2
 
     def _table(self, table: Table) -> int:

@@ -84,7 +84,7 @@ cdef double integral(Programs *programs, Py_ssize_t at, Py_ssize_t k, double t) 
 cdef class Expressions:
     cdef Programs programs
     cdef tuple memory
-    cdef Py_ssize_t instructions
+    cdef dict counts
     cdef Py_ssize_t variables
     cdef Py_ssize_t held
 

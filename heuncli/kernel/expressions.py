@@ -592,22 +592,51 @@ def integral(
 
 
 def stack_depth(code: Sequence[int]) -> int:
-    """How many numbers a program has on its stack at most; code: pairs (operation, argument), one after another."""
-    height = deepest = 0
-    is_data = False
-    for op, argument in zip(code[::2], code[1::2], strict=True):
-        if is_data:
-            is_data = False
-        elif op <= VAR:
-            height += 1
-        elif op <= MAX or (LT <= op <= NE and argument == 0):
-            height -= 1
-        elif op in (TABLE, KNOT, INTEGRAL):
-            is_data = True
-        elif op in (JUMP, UNLESS):  # after JUMP the other branch begins, where this one's result is not there
-            height -= 1
+    """How many numbers a program has on its stack at most; code: pairs (operation, argument), one after another.
+
+    Walked along every way through its branches. Raises ValueError for what is no program: where an operation lacks an
+    operand, a jump leaves the code, two ways meet with different heights, or not one number is left.
+    """
+    count = len(code) // 2
+    deepest = 0
+    heights: dict[int, int] = {0: 0}  # before an instruction that is met on some way; never before one that is data
+    for at in range(count):
+        if at not in heights:
+            continue
+        op, argument = code[2 * at], code[2 * at + 1]
+        takes, leaves = operands(op, argument)
+        height = heights[at] - takes + leaves
         deepest = max(deepest, height)
+        for onward in followers(op, argument, at):
+            if takes > heights[at] or not at < onward <= count or heights.setdefault(onward, height) != height:
+                raise ValueError(f"no program: instruction {at} is ({op}, {argument}) at height {heights[at]}")
+    if len(code) % 2 or heights.get(count) != 1:
+        raise ValueError(f"no program: {count} instructions leave {heights.get(count, 'no way to the end')}, not 1")
     return deepest
+
+
+def operands(op: int, argument: int) -> tuple[int, int]:
+    """How many numbers an instruction takes from the stack, and how many it leaves there."""
+    if op <= VAR:
+        return 0, 1
+    if op <= MAX:
+        return 2, 1
+    if op <= KNOT:
+        return 1, 1
+    if op == UNLESS:
+        return 1, 0
+    if op == JUMP or op >= HOLD:
+        return 0, 0  # what an integral is over is a program of its own, its number that of the integral
+    return 2, 1 + argument
+
+
+def followers(op: int, argument: int, at: int) -> tuple[int, ...]:
+    """The instructions that may be run after the one at `at`."""
+    if op == JUMP:
+        return (at + 1 + argument,)
+    if op == UNLESS:
+        return at + 1, at + 1 + argument
+    return (at + 2 if op in (TABLE, KNOT, INTEGRAL) else at + 1,)
 
 
 @cython.cclass
@@ -615,11 +644,18 @@ class Expressions:
     """Programs side by side, with the memory they run in: the door from Python, and what the kernel's scene holds.
 
     code: pairs (operation, argument); constants: what CONST and TABLE point into; variables: their number, t included;
-    depth: the greatest stack_depth of the programs; held: how many branches they hold. What is given is copied.
+    held: how many branches the programs hold; starts: where they begin, one behind the other. What is given is copied.
+    The stacks are as high as the code asks for. Raises ValueError where it is none.
     """
 
-    def __init__(self, code: array[int], constants: array[float], variables: int, depth: int, held: int = 0) -> None:
-        self.instructions = len(code) // 2
+    def __init__(
+        self, code: array[int], constants: array[float], variables: int, held: int = 0, starts: Sequence[int] = (0,)
+    ) -> None:
+        ends: list[int] = [*starts[1:], len(code) // 2]
+        self.counts = {start: end - start for start, end in zip(starts, ends, strict=False)}
+        depth = 1
+        for start, count in self.counts.items():
+            depth = max(depth, stack_depth(code[2 * start : 2 * (start + count)]))
         self.variables = variables
         self.held = held
         if not cython.compiled:
@@ -627,26 +663,26 @@ class Expressions:
             self.programs.code = [Instruction(*pair) for pair in zip(code[::2], code[1::2], strict=True)]
             self.programs.constants = list(constants)
             self.programs.variables = [0.0] * max(variables, 1)
-            self.programs.stack = [0.0] * (depth + 8)
-            self.programs.jets = [Jet(0.0, 0.0, 0.0)] * (depth + 4)
+            self.programs.stack = [0.0] * depth
+            self.programs.jets = [Jet(0.0, 0.0, 0.0)] * depth
             self.programs.held = [0.0] * held
             self.programs.doubt = [0] * held
             nothing = Bounds(NAN, NAN)
             self.programs.ranges = [Span(nothing, nothing, nothing)] * max(variables, 1)
             self.programs.middles = list(self.programs.ranges)
-            self.programs.spans = [self.programs.ranges[0]] * (depth + 4)
+            self.programs.spans = [self.programs.ranges[0]] * depth
         else:
             self.memory = (
                 array("i", code),
                 array("d", constants),
                 array("d", bytes(8 * max(variables, 1))),
-                array("d", bytes(8 * (depth + 8))),
-                array("d", bytes(24 * (depth + 4))),
+                array("d", bytes(8 * depth)),
+                array("d", bytes(24 * depth)),
                 array("d", bytes(8 * max(held, 1))),
                 array("i", bytes(4 * max(held, 1))),
                 array("d", bytes(48 * max(variables, 1))),
                 array("d", bytes(48 * max(variables, 1))),
-                array("d", bytes(48 * (depth + 4))),
+                array("d", bytes(48 * depth)),
             )
             self.programs.code = cython.cast(cython.pointer[Instruction], where(self.memory[0]))
             self.programs.constants = cython.cast(cython.p_double, where(self.memory[1]))
@@ -710,8 +746,8 @@ class Expressions:
 
     def check(self, start: cython.Py_ssize_t, count: cython.Py_ssize_t) -> None:
         """Raise where there is no such program."""
-        if start < 0 or count < 1 or start + count > self.instructions:
-            raise ValueError(f"no program of {count} instructions from {start}: there are {self.instructions}")
+        if self.counts.get(start) != count:
+            raise ValueError(f"no program of {count} instructions begins at {start}; there are {len(self.counts)}")
 
 
 @cython.cfunc

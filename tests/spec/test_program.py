@@ -175,7 +175,7 @@ def test_a_pack_holds_programs_side_by_side() -> None:
     assert pack.variables == ["t", ("guide", "travel"), ("shaft", "angle")]
     x = [0.25, 3.0, 10.0]
     assert [pack.value(*span, x) for span in spans] == [6.0, 10.25, 7.0, -7.0]
-    assert pack.depth >= 2
+    assert pack.starts == [start for start, _ in spans]
     with pytest.raises(ValueError, match="3 variables"):
         pack.value(*spans[0], [1.0])
 
@@ -195,7 +195,7 @@ PLAIN: Form = plain_module("expressions"), plain_module("jets")  # as plain Pyth
 def answers(form: Form, pack: Pack, count: int, x: Sequence[float]) -> list[str]:
     """Value, and value with derivatives in time alone, of the pack's first program, to the last bit."""
     evaluator, derived = form
-    programs = evaluator.Expressions(pack.code, pack.constants, len(pack.variables), pack.depth)
+    programs = evaluator.Expressions(pack.code, pack.constants, len(pack.variables), 0, pack.starts)
     return bits([programs.evaluate(0, count, x), *derived.derivatives(programs, 0, count, x[0])])
 
 
@@ -224,7 +224,7 @@ def test_any_program_gives_the_same_bits_compiled_and_plain() -> None:
         x = [random.uniform(-3.0, 3.0) for _ in range(VARIABLES)]
         found = []
         for evaluator, derived in (COMPILED, PLAIN):
-            programs = evaluator.Expressions(code, constants, VARIABLES, evaluator.stack_depth(code))
+            programs = evaluator.Expressions(code, constants, VARIABLES)
             count = len(program.code)
             found.append(bits([programs.evaluate(0, count, x), *derived.derivatives(programs, 0, count, x[0])]))
         assert found[0] == found[1], program
@@ -244,32 +244,65 @@ class Watched(list[Any]):
         super().__setitem__(i, x)
 
 
-def test_no_program_needs_more_stack_than_was_counted() -> None:
+@pytest.mark.parametrize("holds", [False, True], ids=["free", "held"])
+def test_the_depth_counted_is_the_largest_seen_on_every_stack(holds: bool) -> None:
+    """Values, derivatives in time and along coordinates, and bounds, of random programs; none goes higher, ever."""
     plain, derived = PLAIN
+    bounds = plain_module("enclosure")
     random = Random(6)
-    exact = 0
-    for _ in range(1000):
-        program = random_program(random)
-        code = program.numbered(plain.OPERATIONS)
+    branchless = exact = 0
+    for _ in range(400):
+        program, held = (lambda p: p.holding() if holds else (p, []))(random_program(random))
+        code, span = program.numbered(plain.OPERATIONS), (0, len(program.code))
         depth = plain.stack_depth(code)
-        programs = plain.Expressions(code, array("d", program.constants), VARIABLES, depth)
-        programs.programs.stack, programs.programs.jets = Watched([0.0] * (depth + 8)), Watched([None] * (depth + 4))
-        programs.evaluate(0, len(program.code), [1.0] * VARIABLES)
-        derived.derivatives(programs, 0, len(program.code), 1.0)
-        assert max(programs.programs.stack.top, programs.programs.jets.top) <= depth
-        exact += programs.programs.stack.top == depth
-    assert exact > 700  # the others leave out a branch
+        programs = plain.Expressions(code, array("d", program.constants), VARIABLES, len(held))
+        memory = programs.programs
+        assert len(memory.stack) == len(memory.jets) == len(memory.spans) == depth
+        memory.stack, memory.jets, memory.spans = (Watched(x) for x in (memory.stack, memory.jets, memory.spans))
+        for holding in ("taken", "held") if holds else ("free",):
+            programs.hold(plain.HOLDING[holding])
+            derived.gradient(programs, *span, [1.0] * VARIABLES)
+        bounds.span_of(programs, *span, [(-9.0, 9.0, -9.0, 9.0, -9.0, 9.0)] * VARIABLES)
+        if not holds:
+            derived.derivatives(programs, *span, 1.0)
+        tops = [stack.top for stack in (memory.stack, memory.jets, memory.spans)]
+        assert max(tops) <= depth, program
+        if not any(op == "unless" for op, _ in program.code):
+            assert tops == [depth] * 3, program
+            branchless += 1
+        exact += max(tops) == depth
+    assert branchless > 150 and exact > 320  # the others leave out a branch, on every way to run them
 
 
 @pytest.mark.parametrize(("text", "depth"), [
     ("min(100*t, 5)", 3), ("max(100*t, 5, 7)", 3), ("t", 1), ("1 + t", 2), ("t < 1 < 2*t", 4), ("t*t if t else 1", 2),
 ])  # fmt: skip
-def test_a_pack_counts_its_depth_from_the_code(text: str, depth: int) -> None:
-    """Of the switches, too: where the branches of min change is found by min's operands in the other order."""
-    expression, pack = read(text), Pack()
-    for code in (expression.code, *(switch.decision for switch in expression.switches)):
-        pack.add_code(expression, code)
-    assert pack.depth == depth
+def test_depth_of_an_expression_and_its_switches(text: str, depth: int) -> None:
+    """Where the branches of min change is found by min's operands in the other order."""
+    expression = read(text)
+    codes = (expression.code, *(switch.decision for switch in expression.switches))
+    assert max(expressions.stack_depth(code) for code in codes) == depth
+
+
+OPS = expressions.OPERATIONS
+T, ADD, TABLE = (OPS["var"], 0), (OPS["add"], 0), (OPS["table"], 0)
+NOT_PROGRAMS = {
+    "nothing": [],
+    "an operand missing": [T, ADD],
+    "two numbers left": [T, T],
+    "a jump out of it": [T, (OPS["jump"], 1)],
+    "a jump back": [T, (OPS["jump"], -1)],
+    "branches that leave different numbers": [T, (OPS["unless"], 2), T, (OPS["jump"], 2), T, T],
+    "a table without its data": [T, TABLE],
+}
+
+
+@pytest.mark.parametrize("pairs", NOT_PROGRAMS.values(), ids=NOT_PROGRAMS)
+def test_code_that_is_no_program_is_refused(pairs: list[tuple[int, int]]) -> None:
+    """Before it is run: the compiled evaluator would read and write beside its stack."""
+    code = array("i", [x for pair in pairs for x in pair])
+    with pytest.raises(ValueError, match="no program"):
+        expressions.Expressions(code, array("d", [0.0]), 1)
 
 
 def test_a_switch_deeper_than_its_expression_is_met() -> None:
