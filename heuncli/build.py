@@ -6,9 +6,11 @@ The kernel's modules stand in pyproject.toml (`tool.setuptools.ext-modules`). HE
     require    a failed compilation fails the build
     pure       compile nothing
 
+`python -m heuncli.build` compiles in place, in a checkout; with --sanitize so that every access to memory and all
+arithmetic is checked as it runs, for tests (tests/sanitized.py).
+
 A compiled kernel asks for nothing but Python's stable interface (PEP 384), so that one wheel serves the oldest Python
-that heun runs on and all that follow. `python -m heuncli.build` compiles in place, in a checkout. Impure: reads
-HEUN_KERNEL, writes the build tree.
+that heun runs on and all that follow. Impure: reads HEUN_KERNEL, writes the build tree.
 """
 
 from __future__ import annotations
@@ -24,6 +26,8 @@ from setuptools.command.bdist_wheel import bdist_wheel
 from setuptools.command.build_ext import build_ext
 from setuptools.command.sdist import sdist
 
+from heuncli.kernel.sources import KEEPER, digest
+
 # The kernel validates before it enters the loops and guards its divisors itself.
 DIRECTIVES = {
     "language_level": 3,
@@ -36,6 +40,12 @@ DIRECTIVES = {
 # vector: a struct's numbers are written one by one and read soon after, and such a read waits until all are in memory.
 # No error numbers from sqrt: nobody reads them, and the call that would set one stands in the way of its loop.
 GNU_FLAGS = ("-O3", "-ffp-contract=off", "-fno-tree-slp-vectorize", "-fno-math-errno")
+# What would be memory of another, or has no meaning in C (as NaN made a whole number), ends the process with its place.
+SANITIZED_FLAGS = (
+    "-O1", "-g", "-fno-omit-frame-pointer", "-ffp-contract=off", "-fno-wrapv",
+    "-fsanitize=address,undefined,float-cast-overflow", "-fno-sanitize-recover=all",
+)  # fmt: skip
+CHECKED = {"boundscheck": True, "initializedcheck": True}
 MSVC_FLAGS = ("/O2", "/fp:precise")
 # Builds of CPython without the global lock have no stable interface yet, other Pythons none at all.
 STABLE = sys.implementation.name == "cpython" and not sysconfig.get_config_var("Py_GIL_DISABLED")
@@ -49,6 +59,8 @@ def oldest(distribution: Distribution) -> int:
 class BuildKernel(build_ext):
     """build_ext with the kernel's flags and the meaning of HEUN_KERNEL."""
 
+    sanitized = False
+
     def finalize_options(self) -> None:
         limit = ("Py_LIMITED_API", f"0x03{oldest(self.distribution):02X}0000")
         for extension in self.distribution.ext_modules or []:
@@ -58,7 +70,7 @@ class BuildKernel(build_ext):
         self.kernel = os.environ.get("HEUN_KERNEL", "")
         if self.kernel not in ("", "require", "compiled", "pure"):
             raise SystemExit(f"HEUN_KERNEL={self.kernel}: known: require, compiled, pure")
-        self.cython_directives = DIRECTIVES
+        self.cython_directives = DIRECTIVES | (CHECKED if self.sanitized else {})
         self.cython_c_in_temp = True
         self.folders = [Path(self.build_lib, "heuncli", "kernel")]
         if self.inplace:
@@ -80,11 +92,17 @@ class BuildKernel(build_ext):
                     file.unlink()
 
     def build_extensions(self) -> None:
-        flags = MSVC_FLAGS if self.compiler.compiler_type == "msvc" else GNU_FLAGS
+        flags: tuple[str, ...] = MSVC_FLAGS if self.compiler.compiler_type == "msvc" else GNU_FLAGS
+        if self.sanitized:
+            flags = SANITIZED_FLAGS
         for extension in self.extensions:
             extension.extra_compile_args = list(flags)
+            extension.extra_link_args = [flag for flag in flags if flag.startswith("-fsanitize=")]
             extension.optional = self.kernel not in ("require", "compiled")
             self.forget(extension, but=Path(self.get_ext_fullpath(extension.name)).name)
+            if extension.name.endswith(f".{KEEPER}"):
+                extension.define_macros.append(("HEUN_SOURCES", digest(Path("heuncli", "kernel"))))
+                self.forget(extension)  # whatever was edited, it holds the digest of it all
         super().build_extensions()
         if not self.is_compiled():  # compiled modules call each other as C functions: all of them, or none
             for extension in self.extensions:
@@ -132,5 +150,14 @@ class Source(sdist):
         super().make_release_tree(base_dir, sorted({*files, *more}))
 
 
-if __name__ == "__main__":
+def main(words: list[str]) -> None:
+    """Compile in place; a failure is one, unless HEUN_KERNEL says otherwise."""
+    os.environ.setdefault("HEUN_KERNEL", "require")
+    BuildKernel.sanitized = "--sanitize" in words
     setup(script_args=["build_ext", "--inplace"])
+
+
+if __name__ == "__main__":
+    from heuncli import build  # the module whose commands setup() takes
+
+    build.main(sys.argv[1:])

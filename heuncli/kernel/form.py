@@ -21,13 +21,16 @@ from typing import Literal
 
 from heuncli.errors import HeunError, Problem
 from heuncli.kernel.modules import MODULES
+from heuncli.kernel.sources import digest, newer_than_compiled
 
 PACKAGE = __package__ or "heuncli.kernel"
 FOLDER = Path(__file__).parent
+FILES = frozenset(os.listdir(FOLDER))  # noqa: PTH208 (names alone)
+MOST_NAMED = 5  # files in a message: a line's worth
 
 
 class KernelError(HeunError):
-    """HEUN_KERNEL asks for what is not there."""
+    """HEUN_KERNEL asks for what is not there, or what is there is out of date."""
 
     exit_code = 2
 
@@ -44,7 +47,24 @@ class PlainFiles:
 
 def is_built(name: str) -> bool:
     """Whether a compiled form of the kernel's module lies beside its source."""
-    return any((FOLDER / f"{name}{suffix}").exists() for suffix in EXTENSION_SUFFIXES)
+    return any(f"{name}{suffix}" in FILES for suffix in EXTENSION_SUFFIXES)
+
+
+def edited_since_compiled() -> list[str]:
+    """Names of sources that were edited since the kernel was compiled; none where only their times look like it.
+
+    Only a checkout is looked at: what is installed is not edited, and the times of its files mean nothing.
+    """
+    if not (FOLDER.parents[1] / "pyproject.toml").exists():
+        return []
+    newer = newer_than_compiled(FOLDER, FILES)
+    if not newer:
+        return []
+    try:
+        from heuncli.kernel.memory import compiled_from  # it needs no other module of the kernel
+    except ImportError:  # compiled before there were digests
+        return newer
+    return newer if compiled_from() != digest(FOLDER) else []
 
 
 def choose(wish: str) -> Literal["compiled", "pure"]:
@@ -60,7 +80,14 @@ def choose(wish: str) -> Literal["compiled", "pure"]:
         message = f"HEUN_KERNEL={wish}, but this heun has no compiled kernel (missing: {', '.join(missing)})"
         hint = "install again where a C compiler is at hand, or unset HEUN_KERNEL to run the slower plain one"
         raise KernelError(Problem("kernel-not-compiled", message, hint=hint))
-    return "pure" if missing or wish == "pure" else "compiled"
+    if missing or wish == "pure":
+        return "pure"
+    if edited := edited_since_compiled():
+        more = f" and {len(edited) - MOST_NAMED} more" if len(edited) > MOST_NAMED else ""
+        message = f"the compiled kernel is older than its text: {', '.join(edited[:MOST_NAMED])}{more} changed since"
+        hint = "compile it again with: python -m heuncli.build; or run the slower plain one: HEUN_KERNEL=pure"
+        raise KernelError(Problem("stale-kernel", message, hint=hint))
+    return "compiled"
 
 
 KERNEL = choose(os.environ.get("HEUN_KERNEL", ""))

@@ -4,8 +4,10 @@ from __future__ import annotations
 
 import json
 import os
+import shutil
 import subprocess
 import sys
+import time
 from pathlib import Path
 
 import pytest
@@ -60,7 +62,42 @@ def test_one_module_missing_makes_all_of_them_plain(monkeypatch: pytest.MonkeyPa
 
 def test_all_there(monkeypatch: pytest.MonkeyPatch) -> None:
     monkeypatch.setattr(form, "is_built", lambda name: True)
+    monkeypatch.setattr(form, "edited_since_compiled", list)
     assert [form.choose(wish) for wish in ("", "compiled", "require", "pure")] == ["compiled"] * 3 + ["pure"]
+
+
+def version_of(checkout: Path) -> subprocess.CompletedProcess[str]:
+    """`heun --version` in a copy of the package."""
+    env = {**os.environ, "PYTHONPATH": str(checkout), "HEUN_KERNEL": "require"}
+    command = [sys.executable, "-m", "heuncli", "--version"]
+    return subprocess.run(command, capture_output=True, text=True, cwd=checkout, env=env)
+
+
+@pytest.mark.skipif(form.KERNEL == "pure", reason="nothing is compiled")
+def test_a_kernel_compiled_from_older_text_is_not_run(tmp_path: Path) -> None:
+    """What decides is the text, in a checkout alone: times of files may be anything."""
+    shutil.copytree(ROOT / "heuncli", tmp_path / "heuncli", ignore=shutil.ignore_patterns("__pycache__"))
+    (tmp_path / "pyproject.toml").touch()
+    source = tmp_path / "heuncli" / "kernel" / "tree.py"
+    tomorrow = time.time() + 86400.0
+    os.utime(source, (tomorrow, tomorrow))
+    assert version_of(tmp_path).returncode == 0
+    source.write_text(source.read_text(encoding="utf-8") + "# edited\n", encoding="utf-8")
+    os.utime(source, (tomorrow, tomorrow))
+    run = version_of(tmp_path)
+    assert (run.returncode, run.stdout) == (2, "")
+    assert "the compiled kernel is older than its text: tree.py changed since [stale-kernel]" in run.stderr
+    assert "python -m heuncli.build" in run.stderr and "HEUN_KERNEL=pure" in run.stderr
+    (tmp_path / "pyproject.toml").unlink()  # as it is where heun is installed
+    assert version_of(tmp_path).returncode == 0
+
+
+def test_a_message_names_some_of_what_was_edited(monkeypatch: pytest.MonkeyPatch) -> None:
+    monkeypatch.setattr(form, "is_built", lambda name: True)
+    monkeypatch.setattr(form, "edited_since_compiled", lambda: [f"{name}.py" for name in "abcdefg"])
+    with pytest.raises(form.KernelError, match=r"a\.py, b\.py, c\.py, d\.py, e\.py and 2 more changed since"):
+        form.choose("")
+    assert form.choose("pure") == "pure"
 
 
 def test_an_unknown_wish_is_an_error() -> None:
