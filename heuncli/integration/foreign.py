@@ -18,6 +18,7 @@ import numpy as np
 from heuncli import tolerances
 from heuncli.errors import LimitError, Problem, SolveError, SpecError
 from heuncli.integration.blows import rate_jumps
+from heuncli.integration.kept import Kept
 from heuncli.integration.loop import Segment, smooth_segments
 from heuncli.integration.methods.method import Method
 from heuncli.integration.moving import Moving
@@ -85,11 +86,11 @@ def trajectory(
         goes.run(segment, settled(moving.workspace, moving.layout, segment.begin, done.states[-1])[0], done)
     own = done.at(moving, times)
     steps = len(done.ends)
-    kept = [(k, state) for k, state in enumerate(done.states)]
+    kept = Kept(np.arange(len(done.states)), np.array(done.states))
     return Trajectory(
         times=times, states=own, ends=np.array(done.ends), steps=steps, evaluations=derivative.count,
         gap=derivative.gap, local=local, method=method, seconds=time.perf_counter() - begun,
-        segments=tuple(done.pieces), kept=tuple(kept), pivots=np.ones(steps), settled=np.ones(steps),
+        segments=tuple(done.pieces), kept=kept, pivots=np.ones(steps), settled=np.ones(steps),
         branches=np.zeros((steps, 0)), turned=np.zeros(steps), holding=np.zeros((steps + 1, 0)),
         within=lambda at: done.at(moving, at),
     )  # fmt: skip

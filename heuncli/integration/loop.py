@@ -10,6 +10,7 @@ import numpy as np
 
 from heuncli import tolerances
 from heuncli.expressions.discontinuities import one_sided_limits
+from heuncli.integration.kept import Growing, Kept
 from heuncli.integration.methods.method import Method
 from heuncli.integration.pace import FIRST_LOOK
 from heuncli.kernel.choose import integration
@@ -20,6 +21,7 @@ from heuncli.results import Array
 from heuncli.tree.layout import Layout
 
 KEPT = 20_000_000  # numbers in the states kept for replays, at the ends of all steps or of every second, fourth, ...
+PASSED = 100_000  # of these states, at most, on the way to an error
 STIFF_AFTER = 15  # steps held short by stability, as in Hairer's DOP853 ...
 EASY_AFTER = 6  # ... and steps on end that were not, after which their count begins anew
 LOOK_AFTER = 1_000  # steps; then each time that they have doubled
@@ -68,13 +70,13 @@ class Integration:
         self.loop = integration.Integration(workspace, method.arrays, begin_with(start, method, layout), output)
 
     def records(self, every: int, offset: int) -> Array:
-        """What the steps after those just done start from: of every so many, (count, width); a copy."""
+        """What the steps after those just done start from: of every so many, (count, width); a view."""
         done = self.loop.done
-        return self.passed[: done * self.width].reshape(done, self.width)[offset::every].copy()
+        return self.passed[: done * self.width].reshape(done, self.width)[offset::every]
 
     def held_branches(self) -> Array:
-        """The branches that the steps just done held, (count, n); a copy."""
-        return self.branches[: self.loop.done * self.held].reshape(-1, self.held).copy()
+        """The branches that the steps just done held, (count, n); a view."""
+        return self.branches[: self.loop.done * self.held].reshape(-1, self.held)
 
     def states(self) -> Array:
         """The states at the asked instants, (n_t, n)."""
@@ -124,16 +126,20 @@ class Steps:
     """The steps done: of each its end, its least pivot, whether its stages were settled; for replays some records."""
 
     def __init__(self, start: Array, width: int) -> None:
-        self.rows: dict[str, list[Array]] = {name: [np.zeros(0)] for name in PER_STEP}
-        self.branches: list[Array] = []
-        self.count = 0
-        # number of a step, and what it starts from; the first is a segment's, of which the state alone counts
-        self.kept: list[tuple[int, Array]] = [(0, np.concatenate([start, np.zeros(width - len(start))]))]
+        self.rows, self.count = Growing(len(PER_STEP)), 0
+        self.branches: Growing | None = None
+        # what steps 0, every, 2 every, ... start from; the first is a segment's, of which the state alone counts
+        self.kept, self.width = Growing(width), width
+        self.kept.add(self.whole(start))
         self.every, self.room = 1, max(2, KEPT // max(width, 1))
         self.after: dict[int, Array] = {}  # of the steps after blows, which are kept in any case
         self.look = FIRST_LOOK
         self.looked = self.cut_before = 0  # steps when it was last looked at how many events ended, and those
         self.holdings: list[tuple[int, Array]] = []  # from which step on which contacts are closed
+
+    def whole(self, state: Array) -> Array:
+        """The record of a state that no step has reached, (1, width)."""
+        return np.concatenate([state, np.zeros(self.width - len(state))])[None, :]
 
     def hold(self, holding: Array) -> None:
         """From the next step on other contacts are closed."""
@@ -142,30 +148,37 @@ class Steps:
     def holding(self, contacts: int) -> Array:
         """The contacts closed in each step, and behind the last one, (n_steps + 1, contacts)."""
         found = np.zeros((self.count + 1, contacts))
-        for first, holding in self.holdings:
-            found[first:] = holding
+        bounds = [*(first for first, _ in self.holdings), self.count + 1]
+        for (first, holding), end in zip(self.holdings, bounds[1:], strict=True):
+            found[first:end] = holding
         return found
 
     def stand(self, state: Array) -> None:
         """The next step starts from another state than the last one reached."""
-        self.after[self.count] = np.concatenate([state, np.zeros(len(self.kept[0][1]) - len(state))])
+        self.after[self.count] = self.whole(state)[0]
 
-    def records(self) -> tuple[tuple[int, Array], ...]:
+    def records(self) -> Kept:
         """Records by their steps, those after blows among them."""
-        return tuple(sorted({**dict(self.kept), **self.after}.items()))
+        return self.every_so_many.with_others(self.after)
+
+    @property
+    def every_so_many(self) -> Kept:
+        """The records of every so many steps."""
+        return Kept(self.every * np.arange(self.kept.count), self.kept.rows)
 
     def add(self, run: Integration) -> None:
         """Add the steps of the last call; while there are too many records, every second of them is dropped."""
-        for name, arrays in self.rows.items():
-            arrays.append(run.output[name][: run.loop.done].copy())
+        done = run.loop.done
+        self.rows.add(np.column_stack([run.output[name][:done] for name in PER_STEP]))
         if run.held:
-            self.branches.append(run.held_branches())
+            self.branches = self.branches or Growing(run.held)
+            self.branches.add(run.held_branches())
         first = self.count // self.every * self.every + self.every  # the next number of which one is kept
-        self.kept += enumerate_by(first, self.every, run.records(self.every, first - self.count - 1))
-        self.count += run.loop.done
-        while len(self.kept) > self.room:
+        self.kept.add(run.records(self.every, first - self.count - 1))
+        self.count += done
+        while self.kept.count > self.room:
             self.every *= 2
-            self.kept = [(k, record.copy()) for k, record in self.kept if k % self.every == 0]
+            self.kept.thin()
 
     def doubled(self) -> bool:
         """Whether there are twice as many as when this was last so."""
@@ -175,22 +188,19 @@ class Steps:
         return True
 
     def passed(self, n: int) -> list[tuple[float, Array]]:
-        """Instants and states (n,) of which records were kept, ascending."""
-        ends = self.column("ends")
-        return [(float(ends[k - 1]) if k else 0.0, record[:n]) for k, record in self.kept]
+        """Instants and states (n,) of some steps of which records were kept, ascending."""
+        ends, kept = self.column("ends"), self.every_so_many
+        some = slice(None, None, -(-len(kept) // PASSED))
+        instants = np.append(0.0, ends)[kept.steps[some]]
+        return list(zip(instants.tolist(), kept.records[some, :n], strict=True))
 
     def column(self, name: str) -> Array:
         """Ends, least pivots, or which were settled, (n_steps,)."""
-        return np.concatenate(self.rows[name])
+        return self.rows.rows[:, PER_STEP.index(name)].copy()
 
     def held_branches(self) -> Array:
         """The branches that the steps held, (n_steps, n)."""
-        return np.concatenate(self.branches) if self.branches else np.zeros((0, 0))
-
-
-def enumerate_by(first: int, step: int, rows: Array) -> list[tuple[int, Array]]:
-    """Rows numbered from the first on."""
-    return [(first + step * k, row) for k, row in enumerate(rows)]
+        return self.branches.rows if self.branches is not None else np.zeros((0, 0))
 
 
 def smooth_segments(last: float, jumps: Sequence[float]) -> list[Segment]:

@@ -56,10 +56,10 @@ def instants_of(runner: Runner, run: Trajectory) -> Instants:
 def ends_of(runner: Runner, run: Trajectory, seen: Indices) -> tuple[Array, Array]:
     """Ends of steps with fewer than two asked instants (seen: how many), as far as their states were kept."""
     n = runner.moving.layout.n_state  # a record begins with the state
-    kept = [(k, record[:n]) for k, record in run.kept if k == 0 or seen[k - 1] < 2]
+    kept = np.flatnonzero(np.append(0, seen)[run.kept.steps] < 2)
     kept = kept[:: -(-len(kept) // ENDS)]
-    times = np.array([run.ends[k - 1] if k else 0.0 for k, _ in kept])
-    return times, runner.moving.embed(times, np.array([state for _, state in kept]))
+    times = np.append(0.0, run.ends)[run.kept.steps[kept]]
+    return times, runner.moving.embed(times, run.kept.records[kept, :n])
 
 
 def within(bounds: Array, bodies: int, parts: tuple[float, ...]) -> Array:

@@ -21,6 +21,7 @@ from heuncli.expressions.programs import Expression
 from heuncli.integration.between import Blows
 from heuncli.integration.blows import Jump
 from heuncli.integration.evaluator import Evaluator
+from heuncli.integration.kept import NOTHING_KEPT, Kept
 from heuncli.integration.loop import EVENTS_AFTER, Integration, Segment, Start, Steps, just_before, smooth_segments
 from heuncli.integration.methods.dop853 import DOP853
 from heuncli.integration.methods.method import Method
@@ -90,7 +91,7 @@ class Trajectory:
     seconds: float
     segments: tuple[Segment, ...] = ()  # without discontinuities, events of contacts or blows
     # of the first, of some other steps and of those after blows: number, record of where it starts
-    kept: tuple[tuple[int, Array], ...] = ()
+    kept: Kept = NOTHING_KEPT
     pivots: Array = np.zeros(0)  # least pivot of the closures in each step
     settled: Array = np.zeros(0)  # of each step whether its stages were settled on the closures
     branches: Array = np.zeros((0, 0))
@@ -113,7 +114,8 @@ class Trajectory:
     def after_blows(self) -> dict[int, Array]:
         """The records from which the steps after blows start."""
         at = {int(np.searchsorted(self.ends, blow.time, side="right")) for blow in self.blows}
-        return {k: record for k, record in self.kept if k in at}
+        own = np.isin(self.kept.steps, list(at))
+        return dict(zip(self.kept.steps[own].tolist(), self.kept.records[own], strict=True))
 
     @property
     def jumps(self) -> tuple[float, ...]:
@@ -469,13 +471,12 @@ class Runner(Evaluator):
         out[asked] = run.states[own[asked]]
         others = np.flatnonzero(~(asked | np.isin(times, [blow.time for blow in run.blows])))
         step = np.searchsorted(run.ends, times[others])  # the step in which an instant lies
-        starts = np.array([k for k, _ in run.kept])
-        base = np.searchsorted(starts, step, side="right") - 1
+        base = np.searchsorted(run.kept.steps, step, side="right") - 1
         # consecutive steps are replayed together
         breaks = np.flatnonzero((np.diff(step) > 1) & (np.diff(base) > 0)) + 1
         for group in np.split(np.arange(len(others)), breaks):
             if len(group):
-                first, record = run.kept[base[group[0]]]
+                first, record = int(run.kept.steps[base[group[0]]]), run.kept.records[base[group[0]]]
                 to = others[group]
                 states = self.replay(run, first, int(step[group[-1]]), record, times[to])
                 out[to] = self.moving.embed(times[to], states)

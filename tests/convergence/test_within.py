@@ -124,7 +124,7 @@ def test_the_run_itself(name: str, kept: int, monkeypatch: pytest.MonkeyPatch) -
     setup = scene(name)
     times = asked(setup)
     run, bare = trajectory(setup, times), trajectory(setup, times[[0, -1]])
-    assert len(run.kept) <= max(2, kept // len(run.kept[0][1])) + len(run.blows)  # what follows a blow is kept
+    assert len(run.kept) <= max(2, kept // run.kept.records.shape[1]) + len(run.blows)  # what follows a blow is kept
     more = others(setup, run)
     whole = trajectory(setup, np.unique(np.concatenate([more, times])))
     for one in (run, whole):
