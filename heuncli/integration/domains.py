@@ -9,6 +9,7 @@ from heuncli import tolerances
 from heuncli.errors import Problem
 from heuncli.expressions.programs import KNOT, TABLE, Expression, Table, outside
 from heuncli.mechanism.model import Mechanism
+from heuncli.number_range import out_of_range
 from heuncli.records import replace
 from heuncli.tree.layout import Layout
 from heuncli.tree.tables import Table as Rows
@@ -68,6 +69,17 @@ def grown(mechanism: Mechanism, now: tuple[float, Moving], before: tuple[float, 
         if size > tolerances.BOUNDLESS * abs(expression.value(before[0], _values(expression, 0.0, before[1]))) > 0.0:
             problem = _problem(expression, now[0], values, "")
             problems.append(problem._replace(message=f"{problem.message}, where it is {size:.3g}"))
+    return problems
+
+
+def large_values(mechanism: Mechanism, t: float, coordinates: Moving) -> list[Problem]:
+    """The expressions whose value at an instant is finite, and yet too large to be computed with."""
+    problems = []
+    for expression, _ in _in_time(mechanism):
+        value = expression.value(t, _values(expression, 0.0, coordinates))
+        if abs(value) > tolerances.MOST_MAGNITUDE:
+            found = out_of_range(value, f"at t = {t:.9g} s '{expression.source.strip()}'")
+            problems.append(Problem(found.code, found.message, expression.location, found.hint))
     return problems
 
 

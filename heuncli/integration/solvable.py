@@ -9,9 +9,16 @@ from heuncli.errors import Problem, SolveError
 from heuncli.integration.evaluator import Recovered
 from heuncli.integration.runner import Runner
 from heuncli.mechanism.model import PairLoad
+from heuncli.number_range import out_of_range
 from heuncli.records import record
 from heuncli.results import Array
 from heuncli.tree.prepare import PreparedScene, lacking_inertia
+
+QUANTITIES = {  # of a body, in the kernel's answer
+    "r": "coordinate of", "v": "speed of", "a": "acceleration of", "omega": "rate of turning of",
+    "alpha": "angular acceleration of", "joint_force": "force on", "joint_moment": "moment on",
+}  # fmt: skip
+LARGE = "look at the units of loads, masses and lengths nearby"
 
 
 def ready(scene: PreparedScene) -> tuple[PreparedScene, Runner]:
@@ -39,6 +46,7 @@ def require_solvable(scene: PreparedScene, recovered: Recovered, asked: Asked = 
     finite = np.isfinite(recovered.bodies.view(np.float64)).all(axis=1)
     if not finite.all():
         raise SolveError(*not_finite(scene, recovered, int(np.flatnonzero(~finite)[0])))
+    require_range(scene, recovered)
     for k in np.flatnonzero(recovered.idle > 0).tolist():
         from heuncli.integration.inertialess import is_idle
 
@@ -70,23 +78,54 @@ def require_solvable(scene: PreparedScene, recovered: Recovered, asked: Asked = 
             raise SolveError(Problem("no-inertia", message, hint=hint))
 
 
-def require_start(scene: PreparedScene, start: Recovered, asked: Asked = Asked()) -> None:  # noqa: B008
-    """Raise SolveError where there are no accelerations at the start, or forces along lines that have no length there.
+def require_range(scene: PreparedScene, recovered: Recovered) -> None:
+    """Raise SolveError for motions of bodies and for loads that are too large to be computed with: squares are next.
 
-    A spring that is relaxed without length needs no direction: it is as strong there as it is long.
+    What is small passes: it is on its way through 0.
     """
-    require_solvable(scene, start, asked)
-    problems = []
-    for load, rows in scene.mechanism.load_rows():
-        if not isinstance(load, PairLoad) or start.loads[0, rows]["span"][0] > tolerances.NO_LENGTH * scene.layout.size:
-            continue
-        if load.stiffness * load.length != 0.0 if load.value is None else load.value.constant != 0.0:
-            t = float(start.times[0])
-            message = f"at t = {t:.6g} s the points of forces.{load.name} coincide: its force has no direction"
-            hint = "in a pin or slide use type: torque; else let its points be apart from the start"
-            problems.append(Problem("no-direction", message, hint=hint))
+    moved, loads = np.abs(recovered.bodies.view(np.float64)), np.abs(recovered.loads["value"])
+    large = np.maximum(moved.max(axis=1, initial=0.0), loads.max(axis=1, initial=0.0)) > tolerances.MOST_MAGNITUDE
+    if large.any():
+        raise SolveError(*too_large(scene, recovered, int(np.argmax(large))))
+
+
+def too_large(scene: PreparedScene, recovered: Recovered, instant: int) -> list[Problem]:
+    """The problems of values in time that are too large there, else the one of the largest load, or of the motion."""
+    from heuncli.integration.domains import joint_coordinates, large_values  # only on the way to an error
+
+    t, mechanism = float(recovered.times[instant]), scene.mechanism
+    problems = large_values(mechanism, t, joint_coordinates(scene.layout, recovered.freedoms[instant]))
     if problems:
-        raise SolveError(*problems)
+        return problems
+    sizes = np.abs(recovered.loads[instant]["value"])
+    values = [(float(sizes[rows].max()), load) for load, rows in mechanism.load_rows()]
+    value, load = max(values, key=lambda pair: pair[0], default=(0.0, None))
+    if load is not None and value > tolerances.MOST_MAGNITUDE:
+        what = f"at t = {t:.9g} s the value of forces.{load.name}"
+    else:
+        bodies = recovered.bodies[instant]
+        largest = {name: np.abs(bodies[name]).max(axis=-1) for name in QUANTITIES}
+        name = max(largest, key=lambda key: float(largest[key].max()))
+        place = int(np.argmax(largest[name]))
+        body = mechanism.bodies[scene.layout.spanning.hangs[place].body].name
+        value, what = float(largest[name][place]), f"at t = {t:.9g} s the {QUANTITIES[name]} bodies.{body}"
+    found = out_of_range(value, what)
+    return [Problem(found.code, found.message, hint=LARGE)]
+
+
+def require_start(scene: PreparedScene, start: Recovered, asked: Asked = Asked()) -> None:  # noqa: B008
+    """Raise SolveError where there are no accelerations at the start, or loads push between points that coincide."""
+    require_solvable(scene, start, asked)
+    require_directions(scene, start, begins=True)
+
+
+def require_directions(scene: PreparedScene, recovered: Recovered, begins: bool = False) -> None:
+    """Raise SolveError for actuators and springs that push between points that coincide; begins: or are about to."""
+    if any(isinstance(load, PairLoad) for load in scene.mechanism.loads):
+        from heuncli.integration.lines import without_direction  # few scenes have them
+
+        if problems := without_direction(scene.layout, recovered, begins):
+            raise SolveError(*problems)
 
 
 def unmet_rows(recovered: Recovered, instant: int, asked: Asked) -> Problem:

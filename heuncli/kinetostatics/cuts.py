@@ -15,7 +15,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from heuncli import tolerances
-from heuncli.errors import Problem, SpecError
+from heuncli.errors import Finding, Problem, SpecError
 from heuncli.joint_kinds import JOINTS
 from heuncli.kinetostatics.section_axes import first_axis
 from heuncli.mechanism.model import GROUND, Mechanism, PointLoad
@@ -28,6 +28,7 @@ if TYPE_CHECKING:
     from heuncli.kinetostatics.auto_properties import Cutting, Found
 
 BEFORE, BEYOND = 1.0, -1.0
+TOLD_APART = 4.0  # times what counts as in a plane: the corners of a run are told apart by as much (stretch.py)
 
 
 @record
@@ -133,6 +134,9 @@ def lay_cuts(mechanism: Mechanism, spec: Any, forms: dict[str, Form]) -> tuple[C
             cuts.append(_lay(mechanism, spec, name, section, index, forms.get(section.body)))
         except SpecError as error:
             problems += error.problems
+        except Finding as finding:
+            place = spec.location(f"sections.{name}")
+            problems.append(Problem(finding.code, f"{section.body}: {finding.message}", place, finding.hint))
     if problems:
         raise SpecError(*problems)
     return tuple(cuts)
@@ -165,6 +169,9 @@ def _lay(mechanism: Mechanism, spec: Any, name: str, section: Any, index: dict[s
         # kept also where nothing lies in the plane: joints may move into it during the run
         side = np.array([{"before": BEFORE, "beyond": BEYOND, None: 0.0}[section.side]])
     else:
+        if s[-1] <= TOLD_APART * near:
+            message = f"the run is {s[-1]:.3g} m long, but cuts of a body of this size are told apart by {near:.3g} m"
+            raise SpecError(Problem("short-run", message, location, hint="is the body's largest coordinate right?"))
         take, side = _sides_of_run(jumps)
         points, s, d = points[take], s[take], d[take]
     reach = (float(heights.min(initial=np.inf)) - near, float(heights.max(initial=-np.inf)) + near)

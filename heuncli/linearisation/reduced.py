@@ -12,6 +12,7 @@ from __future__ import annotations
 import numpy as np
 
 from heuncli import tolerances
+from heuncli.errors import Problem, SolveError
 from heuncli.integration.evaluator import Recovered
 from heuncli.linearisation.linearise import Linearised
 from heuncli.records import record
@@ -51,7 +52,12 @@ def reduced(scene: PreparedScene, found: Linearised, at: Recovered) -> Reduced:
     idle = idle_spins(scene, found)
     kept = complement(np.array([spin.along for spin in idle]), found.tangent.shape[1])
     T = found.tangent @ kept
-    back = np.linalg.inv(np.linalg.cholesky(T.T @ found.mass @ T)).T
+    try:
+        back = np.linalg.inv(np.linalg.cholesky(T.T @ found.mass @ T)).T
+    except np.linalg.LinAlgError:
+        message = "the inertias of some motions are so small beside those of others that rounding hides them"
+        hint = "look at the largest and the smallest masses and lengths; leave out, or weld, what hardly matters"
+        raise SolveError(Problem("mass-ratios", message, hint=hint)) from None
     T, S = T @ back, found.drift @ kept @ back
     for spin in idle:
         S = S - np.outer(found.tangent @ spin.along, spin.gained(found, T))

@@ -160,7 +160,7 @@ def in_motion(search: Search, island: Island, held: Mask, kept: dict[int, str]) 
     basis = without_spins(search, bodies)
     _, sigma, Vt = np.linalg.svd(A @ basis, full_matrices=True)
     sigma = np.concatenate([sigma, np.zeros(len(Vt) - len(sigma))])
-    largest = max(float(sigma[0]), 1.0)
+    largest = max(float(sigma.max(initial=0.0)), 1.0)
     loose = sigma <= tolerances.NEARLY_SINGULAR * largest
     share = np.abs(Vt[loose] @ basis.T).max(axis=0, initial=0.0)
     owner = np.repeat(np.array(list(bodies)), [len(free) for free in bodies.values()])

@@ -12,6 +12,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from heuncli import tolerances
+from heuncli.errors import Finding
 from heuncli.results import Array
 
 Owners = NDArray[np.intp]
@@ -23,6 +24,7 @@ SMALL = {
 }
 NODES = 16
 DEEPEST = 48
+MOST_HALVES = 1000  # of an integral that are open at once: square roots ask for some dozen, rounding alone for all
 
 
 @cache
@@ -53,7 +55,7 @@ def adaptive(f: Callable[[Array, Owners], Array], low: Array, high: Array, break
 
     f(z, owner) takes z (i, n) and the integrals they belong to (i,), and gives (i, n, m). At the breaks (k, j) f
     may have square roots: z = start + length sin^2(psi/2) makes them smooth in psi, in which intervals are halved until
-    two halves agree with their whole.
+    two halves agree with their whole. Raises Finding where rounding does not let them.
     """
     x, w = gauss(NODES)
 
@@ -83,5 +85,8 @@ def adaptive(f: Callable[[Array, Owners], Array], low: Array, high: Array, break
         done = np.all(np.abs(both - whole) <= limit[owner], axis=-1) | (depth == DEEPEST - 1)
         np.add.at(total, owner[done], both[done])
         open_ = np.repeat(~done, 2)
+        if open_.sum() > MOST_HALVES * len(low):
+            message = "a shape is so thin against its size that rounding decides what a cut takes of it"
+            raise Finding("thin-shape", message, "give it its thickness, or leave it out of the body that is cut")
         interval, owner, whole = halves[open_], owners[open_], parts[open_]
     return total

@@ -24,7 +24,7 @@ from heuncli.integration.pairs import interleaved, moved_start
 from heuncli.integration.runner import Eventful, Runner, Stiff, Trajectory, discontinuities_of
 from heuncli.integration.singular import singular_poses
 from heuncli.integration.solvable import Asked, require_start
-from heuncli.mechanism.model import Mechanism
+from heuncli.mechanism.model import Mechanism, PairLoad
 from heuncli.method_rows import AUTO
 from heuncli.records import record, replace
 from heuncli.results import Array, Estimate
@@ -92,6 +92,7 @@ def integrate(setup: Setup, tolerance: float, deadline: float | None, *, by_caus
     checked = checked_motion(setup, tolerance, jumps, deadline, by_cause)
     jumps = tuple(sorted({*jumps, *checked.run.jumps}))
     require_followed(runner, checked.run)
+    require_apart(runner, checked.run)
     seconds = {"integrate": checked.run.seconds, "check": checked.check_seconds}
     if checked.lost_seconds:
         seconds["lost"] = checked.lost_seconds
@@ -219,6 +220,16 @@ def require_followed(runner: Runner, run: Trajectory) -> None:
         from heuncli.integration.lock import unfollowed  # few scenes need it
 
         problem = unfollowed(runner, run)
+        if problem is not None:
+            raise SolveError(problem)
+
+
+def require_apart(runner: Runner, run: Trajectory) -> None:
+    """Raise SolveError where the points of an actuator or spring come together within the run."""
+    if any(isinstance(load, PairLoad) for load in runner.layout.mechanism.loads):
+        from heuncli.integration.lines import comes_together  # few scenes have them
+
+        problem = comes_together(runner, run)
         if problem is not None:
             raise SolveError(problem)
 

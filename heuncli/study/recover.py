@@ -12,7 +12,7 @@ from typing import TYPE_CHECKING, Any
 import numpy as np
 
 from heuncli.integration.evaluator import Recovered
-from heuncli.integration.solvable import require_solvable
+from heuncli.integration.solvable import require_directions, require_solvable
 from heuncli.kinetostatics.actions import Action, AppliedLoad, applied_loads, joint_actions, whole_joint_actions
 from heuncli.kinetostatics.balance import balance_residual
 from heuncli.kinetostatics.bodies import BodyStates, body_states
@@ -145,6 +145,7 @@ class Recovery:
 def recover(setup: Setup, recovered: Recovered, least_norm: bool) -> Recovery:
     """What follows from the kernel's answers. Raises SolveError where no acceleration exists."""
     require_solvable(setup.scene, recovered)
+    require_directions(setup.scene, recovered)
     return Recovery(setup, recovered, least_norm)
 
 

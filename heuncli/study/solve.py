@@ -26,6 +26,7 @@ from heuncli.spec.models import Spec
 from heuncli.study import extremes
 from heuncli.study.asked import Asked, Entry, needed_by, sums_among
 from heuncli.study.extremes import Searched
+from heuncli.study.finite import finite
 from heuncli.study.history import History, integrate, resample, search_times
 from heuncli.study.recover import Recovery, accuracy, asked_blocks, certain_sums, recover
 from heuncli.study.sampled import Sampled
@@ -172,7 +173,10 @@ def as_asked(spec: Spec, options: Options) -> Spec:
 def compose(
     setup: Setup, history: History, recovery: Recovery, wanted: frozenset[str], struck: Impulses | None
 ) -> Results:
-    """The results at the instants of `recovery`, which are the history's own or others within it; and the blows."""
+    """The results at the instants of `recovery`, which are the history's own or others within it; and the blows.
+
+    Raises SolveError where something is neither finite nor open.
+    """
     shown, unknown = blocks_of(history, recovery, wanted)
     split = recovery.decided.words if recovery.verdicts and recovery.decided is not None else ()
     checked = history.checked
@@ -184,7 +188,7 @@ def compose(
     if struck is not None:
         balance["balance_residual"] = max(balance["balance_residual"], struck.residual)
     gap = checked.run.gap if checked is not None else setup.scene.start.gap
-    return Results(
+    results = Results(
         title=setup.spec.title,
         spec={"path": setup.spec.path, "sha256": setup.spec.sha256},
         version=VERSION,
@@ -218,6 +222,7 @@ def compose(
             *(rest.warnings if rest is not None else ()),
         ),
     )
+    return finite(results)
 
 
 def not_at_rest(recovery: Recovery) -> Block:
@@ -339,7 +344,8 @@ class Study:
         shown, unknown = blocks_of(self.history, recovery, wanted)
         accuracy: Accuracy = {"unknown": unknown.tolist()} if len(unknown) else {}
         times = recovery.recovered.times
-        return Results(own.title, own.spec, own.version, own.model, own.status, times, accuracy=accuracy, **shown)
+        results = Results(own.title, own.spec, own.version, own.model, own.status, times, accuracy=accuracy, **shown)
+        return finite(results)
 
     def at(self, times: Array) -> Results:
         """Loads by cause at other instants of the same run."""

@@ -1,0 +1,87 @@
+"""What is not finite in the results, and not open: an error in place of a number that is none.
+
+`nan` stands for what no law decides (and is `null` in JSON): loads of joints and sections that are open, axes and lines
+that a wrench does not have, and what rounding reaches beside a singular pose. Everything else is a number.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Iterator, Mapping
+from typing import Any
+
+import numpy as np
+
+from heuncli.errors import Problem, SolveError
+from heuncli.results import Array, Mask, Results
+from heuncli.results_schema import BLOWS, REPORT_OF, SPACE, Quantity, quantity
+
+# where a number may be none: loads that supports leave open, the axis or line of a wrench that has none
+MAY_BE_NONE = (
+    "joints.JOINT.", "stops.", "sections.", "foundation.supports.", "foundation.elements.", "foundation.axis.",
+)  # fmt: skip
+BLOCKS = ("time", *REPORT_OF, BLOWS, "events", "certain_sums", "accuracy")  # causes before what follows from them
+Numbers = Iterator[tuple[tuple[str, ...], Any, Mapping[str, Any]]]
+
+
+def finite(results: Results) -> Results:
+    """The results, if all that is not open in them is finite. Raises SolveError with the first path that is not."""
+    at = np.asarray(results.accuracy.get("unknown", ()), dtype=float)
+    known = ~np.isin(results.time, at)
+    for keys, value, block in numbers({name: getattr(results, name) for name in BLOCKS}, (), {}):
+        if wrong(keys, value, block, known):
+            instant = at_instant(keys, value, results.time, known)
+            message = f"{'.'.join(keys)} is not finite{instant}: there is no such number"
+            hint = "look at very large and very small values nearby, and at points that coincide"
+            raise SolveError(Problem("not-finite-result", message, hint=hint))
+    return results
+
+
+def numbers(node: Any, keys: tuple[str, ...], block: Mapping[str, Any]) -> Numbers:
+    """The arrays and numbers below a node of the results: their path, their value, the block they stand in."""
+    if isinstance(node, Mapping):
+        for name, member in node.items():
+            yield from numbers(member, (*keys, name), node)
+    elif isinstance(node, np.ndarray | float):
+        yield keys, node, block
+    elif isinstance(node, list | tuple) and node and not isinstance(node[0], str):
+        for i, member in enumerate(node):
+            yield from numbers(member, (*keys, str(i)), block)
+
+
+def wrong(keys: tuple[str, ...], value: Array | float, block: Mapping[str, Any], known: Mask) -> bool:
+    """Whether a number is neither finite nor open."""
+    array = np.asarray(value)
+    if array.dtype.kind != "f" or np.isfinite(array).all():
+        return False
+    if np.isinf(array).any():
+        return True
+    row = quantity(keys)
+    if row is None:
+        return True
+    path = row.path.removeprefix("impulses.NUMBER.")
+    if row.timed and keys[0] != BLOWS and len(array) == len(known):
+        array = array[known]
+    if not path.startswith(MAY_BE_NONE):
+        return bool(np.isnan(array).any())
+    return "open" in block and path.startswith("joints.") and bool((nan_in(array, row) & ~told(row, block)).any())
+
+
+def nan_in(array: Array, row: Quantity) -> Mask:
+    """Of each component whether it is nan at some instant: (3,) of a vector, else (1,)."""
+    return np.asarray(np.isnan(array).reshape(-1, 3 if row.shape == (SPACE,) else 1).any(axis=0))
+
+
+def told(row: Quantity, block: Mapping[str, Any]) -> Mask:
+    """Of each component of a joint's load whether it is told to be open."""
+    name = row.path.rpartition(".")[2]
+    names = [f"{name}.{c}" for c in SPACE.letters] if row.shape == (SPACE,) else [name]
+    return np.array([name in block["open"] for name in names])
+
+
+def at_instant(keys: tuple[str, ...], value: Array | float, times: Array, known: Mask) -> str:
+    """The first instant at which a number is not finite, in words; nothing of what does not run over the instants."""
+    row = quantity(keys)
+    if row is None or not row.timed or keys[0] == BLOWS or not isinstance(value, np.ndarray):
+        return ""
+    off = ~np.isfinite(value).reshape(len(value), -1).all(axis=1) & known
+    return f" at t = {times[int(np.argmax(off))]:.6g} s" if off.any() else ""

@@ -1,0 +1,127 @@
+"""What is neither finite nor open is no result: every kind of number is refused with its path, by every command."""
+
+from __future__ import annotations
+
+from collections.abc import Iterator
+from functools import cache
+from pathlib import Path
+from typing import Any
+
+import numpy as np
+import pytest
+
+from heuncli.errors import SolveError
+from heuncli.report.export import to_json
+from heuncli.results import Results
+from heuncli.results_schema import REPORTS, ROWS, SHARES, quantity
+from heuncli.spec.load import load
+from heuncli.study import recover
+from heuncli.study.finite import finite, numbers
+from heuncli.study.solve import Options, solve
+from tests.cli.conftest import Heun, folder, heun  # noqa: F401  # fixtures
+
+ROOT = Path(__file__).parents[2]
+# together they hold every quantity
+SCENES = ("door", "table", "percussion", "ladder", "door_closer", "swing", "jib", "crane", "cardan", "sprung")
+NOT_FLOATS = {"events.EVENT.begins", "events.EVENT.to", "accuracy.horizon"}
+SPRUNG = """\
+heun: 1
+gravity: [0, 0, -9.81]
+ground: {points: {O: [0, 0, 0], wall: [1, 0, 0]}}
+bodies:
+  bar: {shapes: [{type: rod, from: [0, 0, 0], to: [0, 0, -1], mass: 1}], points: {top: [0, 0, 0], end: [0, 0, -1]}}
+  block: {mass: 1, center: [0, 0, 0], inertia: [1, 1, 1], points: {c: [0, 0, 0]}, position: [1, 0, 0]}
+joints:
+  pivot: {type: pin, from: ground.O, to: bar.top, axis: [0, 1, 0], initial: {angle: 0.5}}
+  guide: {type: slide, from: ground.wall, to: block.c, axis: [0, 0, 1]}
+forces: {coil: {type: spring, from: ground.wall, to: bar.end, stiffness: 10, length: 1}}
+stops: {buffer: {joint: pivot, angle: [0.1, null]}, floor: {joint: guide, travel: [0, null]}}
+sections: {cut: {body: bar, at: [0, 0, -0.5], normal: [0, 0, -1], reduce_to: line}}
+analysis: {duration: 0.5, samples: 3}
+"""
+BLOCKS = {row.path.partition(".")[0] for row in ROWS if row.units}
+
+
+@cache
+def results(name: str) -> Results:
+    """All that a spec's run tells."""
+    spec = load("sprung.yaml", text=SPRUNG) if name == "sprung" else load(ROOT / "specs" / f"{name}.yaml")
+    return solve(spec, Options(wanted=frozenset({*REPORTS, SHARES}))).results
+
+
+def places(found: Results) -> Iterator[tuple[tuple[str, ...], Any, Any]]:
+    """Every array and number of results: path, value, and the block in which it can be replaced."""
+    for block in sorted(BLOCKS):
+        for keys, value, owner in numbers(getattr(found, block), (block,), {}):
+            if isinstance(owner, dict) and keys[-1] in owner:
+                yield keys, value, owner
+
+
+def put(found: Results, keys: tuple[str, ...], value: Any, owner: Any, bad: float) -> str:
+    """What is told of results in which the last of these numbers is bad; empty: nothing."""
+    spoilt = np.array(value, dtype=float, order="C")
+    spoilt.reshape(-1)[-1] = bad
+    owner[keys[-1]] = spoilt if isinstance(value, np.ndarray) else bad
+    try:
+        finite(found)
+    except SolveError as error:
+        (problem,) = error.problems
+        assert problem.code == "not-finite-result"
+        assert problem.hint
+        return problem.message
+    finally:
+        owner[keys[-1]] = value
+    return ""
+
+
+@pytest.mark.parametrize("name", SCENES)
+def test_what_is_infinite_is_refused_by_its_path(name: str) -> None:
+    found = finite(results(name))
+    for keys, value, owner in places(found):
+        if np.size(value):
+            assert put(found, keys, value, owner, np.inf).startswith(f"{'.'.join(keys)} is not finite"), keys
+
+
+@pytest.mark.parametrize("name", SCENES)
+def test_nan_stands_only_for_what_may_be_open(name: str) -> None:
+    found = results(name)
+    for keys, value, owner in places(found):
+        if np.size(value) and not np.isnan(value).any():
+            told = put(found, keys, value, owner, np.nan)
+            may = {"sections", "supports", "elements", "stops", "axis", "joints"} & {*keys}
+            assert told or may, keys
+            if keys[0] == "joints" and "shares" not in keys:
+                assert told, keys
+
+
+def test_all_kinds_are_among_them() -> None:
+    seen = {row.path for name in SCENES for keys, _, _ in places(results(name)) if (row := quantity(keys)) is not None}
+    assert {row.path for row in ROWS if row.units} - seen == NOT_FLOATS | {"time"}
+
+
+def test_what_is_open_is_null_and_nothing_else_is() -> None:
+    text = to_json(results("door"))
+    assert "null" in text
+    assert "NaN" not in text and "Infinity" not in text
+
+
+@pytest.mark.parametrize("words", [
+    ("run", "swinging.yaml", "--format", "json"), ("run", "swinging.yaml", "--format", "csv"),
+    ("run", "swinging.yaml"), ("run", "swinging.yaml", "--format", "markdown", "--all"),
+    ("run", "swinging.yaml", "--measure", "max energy.kinetic"), ("run", "swinging.yaml", "--at", "0.5"),
+    ("check", "swinging.yaml"),
+])  # fmt: skip
+def test_every_command_refuses_it(heun: Heun, words: tuple[str, ...], monkeypatch: pytest.MonkeyPatch) -> None:  # noqa: F811
+    energy = recover.energy
+
+    def broken(*given: Any) -> Any:
+        block = energy(*given)
+        return block | {"kinetic": block["kinetic"] + np.where(np.arange(len(block["kinetic"])) == 3, np.inf, 0.0)}
+
+    monkeypatch.setattr(recover, "energy", broken)
+    with Path("swinging.yaml").open("a") as spec:
+        spec.write("expect: [{of: energy.kinetic, peak: max, is: 1}]\n")
+    done = heun(*words)
+    assert done.returncode == 3
+    assert "energy.kinetic is not finite" in done.stdout + done.stderr
+    assert "[not-finite-result]" in done.stdout + done.stderr
