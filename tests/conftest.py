@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import os
 from pathlib import Path
 
 import pytest
@@ -18,6 +19,11 @@ SHARE = 4  # of every other family of cases so many, spread over it: enough to s
 def suggestions() -> None:
     """Suggestions are limited file by file; a test that reads none is a file of its own."""
     begin_file()
+
+
+def pytest_configure() -> None:
+    """Warnings are errors in processes that tests start, too."""
+    os.environ.setdefault("PYTHONWARNINGS", "error::RuntimeWarning")  # NumPy's; of these users would see the paths
 
 
 def pytest_report_header() -> str:

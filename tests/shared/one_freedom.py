@@ -128,12 +128,13 @@ class Passage:
         return np.sqrt(self.scene.rate**2 + 2.0 / self.scene.inertia * self.work(x))
 
     def lasts(self, k: int, x: float) -> float:
-        """The time from a mark to x behind it and before the next."""
+        """The time from a mark to x behind it and before the next; none where it turns back before."""
         a = self.marks[k]
         half = 0.5 * (x - a)
         places = a + half * (1.0 + NODES)
         work = self.works[k] + self.part(a, places)
-        return float(half * np.sum(WEIGHTS / np.sqrt(self.scene.rate**2 + 2.0 / self.scene.inertia * work)))
+        squares = self.scene.rate**2 + 2.0 / self.scene.inertia * work
+        return float(half * np.sum(WEIGHTS / np.sqrt(squares))) if squares.min() > 0.0 else np.inf
 
     def time(self, x: Array) -> Array:
         """When x is reached."""
