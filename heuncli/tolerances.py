@@ -131,7 +131,10 @@ BEFORE_FAILURE = (1e-9, 1e-6, 1e-3, 1e-2, 0.1)
 CLAIMED = 1e-3  # of the whole: the contract's error at the horizon, beyond which nothing is claimed
 JUDGED = 1e-8  # of the whole: up to where a chart is judged if its references part; half the digits are left to compare
 LOST = 1.0  # of the whole: a motion off by as much tells nothing of where anything is; charts show no more of its error
-LEAST_ASKED = 1e-15  # a tolerance must be above the rounding of one number
+# a tolerance that is asked for: the rounding of a state's numbers, 8 EPS, shows as its five-fold in the difference of
+# two runs; where what is told may err by more than a tenth of the scene, nothing is where it is told
+LEAST_ASKED = 1e-14
+MOST_ASKED = 0.1
 LEAST_TOLERANCE = 3e-14  # local tolerance: a thirtieth of it, of the check run, is 5 EPS; below, steps chase rounding
 COARSEST_RETRY = 1e-6  # local tolerance beyond which a run that collapsed is not tried again: three digits are left
 PLACE_ROUNDING = 2.0 * EPS  # of the size, or of the farthest coordinate: rounding of a place; no estimate is below

@@ -34,6 +34,7 @@ ENDINGS = {".json": "json", ".txt": "table", "": "table"}
 SPECS = frozenset({".yaml", ".yml"})
 SKIPPED = "broken"  # folders of specs that are wrong on purpose
 FAILED = 1
+NAMED = "name a folder of specs, or the files themselves; folders named broken and hidden ones are passed by"
 
 
 @record
@@ -57,7 +58,7 @@ def main(request: Check) -> int:
     skipped: list[str] = []
     paths = [path for argument in request.paths for path in _files(argument, skipped)]
     if not paths:
-        raise UsageError(Problem("nothing-to-check", f"no *.yaml in {', '.join(request.paths)}"))
+        raise UsageError(Problem("nothing-to-check", f"no *.yaml in {', '.join(request.paths)}", hint=NAMED))
     keep(request.output, paths)
     form = format_of(request.format, request.output, ENDINGS, FORMATS)
     checked = [_check(path, request) for path in paths]

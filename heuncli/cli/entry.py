@@ -106,18 +106,20 @@ def _command(argv: list[str]) -> int:
         request = answer
     for name in LATER_OPTIONS:
         if getattr(request, name, None):
-            raise UsageError(Problem("not-yet", f"--{name.replace('_', '-')}: not in this version yet"))
-    _require_positive(getattr(request, "time_limit", None), getattr(request, "time_limit_each", None))
+            message = f"--{name.replace('_', '-')}: not in this version yet"
+            raise UsageError(Problem("not-yet", message, hint="leave it out"))
+    for name in ("time_limit", "time_limit_each"):
+        _require_limit(f"--{name.replace('_', '-')}", getattr(request, name, None))
     module = importlib.import_module(f"heuncli.cli.{type(request).__name__.lower()}")
     grace = GRACES.get(type(request), alarm.GRACE)
     return int(alarm.limited(lambda: module.main(request), getattr(request, "time_limit", None), grace))
 
 
-def _require_positive(*limits: float | None) -> None:
+def _require_limit(option: str, limit: float | None) -> None:
     """Raise UsageError where a time limit is none that can be kept."""
-    for limit in limits:
-        if limit is not None and not (math.isfinite(limit) and limit > 0.0):
-            raise UsageError(Problem("bad-option", f"--time-limit {limit}: expected a positive number"))
+    if limit is not None and not 0.0 < limit < math.inf:
+        hint = f"such as {option} 60, in s; without it there is none"
+        raise UsageError(Problem("bad-option", f"{option} {limit:g}: expected a positive number", hint=hint))
 
 
 def _through_typer(argv: list[str]) -> Request | int:

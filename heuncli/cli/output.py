@@ -17,6 +17,8 @@ from heuncli.errors import HeunError, OutputError, Problem
 from heuncli.foreign_text import escaped, shown_lines
 
 NEW_FILE_MODE = 0o666
+TO_FILE = "write to a file: -o FILE"
+TO_OTHER = "make room there, or name a file that can be written: -o FILE"
 ESCAPED = "heun.escaped"
 
 
@@ -69,7 +71,7 @@ def say(text: str) -> None:
 
 def _to_standard_output(text: str) -> None:
     if sys.stdout is None:
-        raise OutputError(Problem("output-closed", "standard output is closed"))
+        raise OutputError(Problem("output-closed", "standard output is closed", hint=TO_FILE))
     try:
         left = memoryview(as_bytes(text, sys.stdout.encoding if sys.stdout.isatty() else "utf-8"))
         while left:  # unbuffered (PYTHONUNBUFFERED) a write may take a part only
@@ -80,7 +82,8 @@ def _to_standard_output(text: str) -> None:
         raise ReaderGone from None
     except OSError as reason:
         _silence()
-        raise OutputError(Problem("output-failed", f"standard output: {reason.strerror or reason}")) from reason
+        message = f"standard output: {reason.strerror or reason}"
+        raise OutputError(Problem("output-failed", message, hint=TO_FILE)) from reason
 
 
 def _silence() -> None:
@@ -99,7 +102,7 @@ def _to_file(content: bytes, path: Path) -> None:
         else:
             _replace(content, target)
     except OSError as reason:
-        raise OutputError(Problem("output-failed", f"{path}: {reason.strerror or reason}")) from reason
+        raise OutputError(Problem("output-failed", f"{path}: {reason.strerror or reason}", hint=TO_OTHER)) from reason
 
 
 def _replace(content: bytes, target: Path) -> None:

@@ -13,7 +13,7 @@ from heuncli.cli.entry import UsageError
 from heuncli.cli.guard import keep
 from heuncli.cli.output import emit, say
 from heuncli.cli.requests import FORMATS, Run
-from heuncli.cli.solving import choice, instants, overrides, positive, timings, warn
+from heuncli.cli.solving import choice, instants, overrides, positive, timings, tolerance, warn
 from heuncli.cli.target import format_of
 from heuncli.errors import Finding, Problem
 from heuncli.kinetostatics.joint_axes import JOINT_AXES
@@ -51,7 +51,7 @@ def main(request: Run) -> int:
     only = _only(request.only) if request.only is not None else None
     shown = Units() if request.units is None else _units(request.units)
     options = Options(
-        tolerance=positive("--tolerance", request.tolerance),
+        tolerance=tolerance(request.tolerance),
         method=request.method,
         step=positive("--step", request.step),
         least_norm=request.least_norm,

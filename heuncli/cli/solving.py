@@ -13,14 +13,17 @@ from heuncli.cli.entry import UsageError
 from heuncli.cli.output import say
 from heuncli.errors import Problem
 from heuncli.foreign_text import shown
+from heuncli.nearest import did_you_mean
 from heuncli.results import Array, Results
+from heuncli.spec.methods import unfit_tolerance
 from heuncli.spec.models import Spec
 
 
 def choice(option: str, value: str, known: Sequence[str]) -> str:
     """The value if it is one of the known ones, else a UsageError that lists them."""
     if value not in known:
-        raise UsageError(Problem("bad-option", f"{option} {value}: known: {', '.join(known)}"))
+        hint = did_you_mean(value, known, "values")
+        raise UsageError(Problem("bad-option", f"{option} {value}: known: {', '.join(known)}", hint=hint))
     return value
 
 
@@ -38,7 +41,16 @@ def overrides(words: Sequence[str]) -> dict[str, str]:
 def positive(option: str, value: float | None) -> float | None:
     """The value if it is a positive number or not given."""
     if value is not None and not (math.isfinite(value) and value > 0.0):
-        raise UsageError(Problem("bad-option", f"{option} {value}: expected a positive number"))
+        message = f"{option} {value}: expected a positive number"
+        raise UsageError(Problem("bad-option", message, hint=f"such as {option} 0.001, in s"))
+    return value
+
+
+def tolerance(value: float | None) -> float | None:
+    """The value of --tolerance if it is one that can be met, as in a spec, or not given."""
+    found = unfit_tolerance(value) if value is not None else None
+    if found is not None:
+        raise UsageError(Problem("bad-option", f"--{found.message}", hint=found.hint))
     return value
 
 
@@ -53,7 +65,8 @@ def instants(words: str, times: Array) -> Array:
         if not times[0] - slack <= t <= times[-1] + slack:
             span = f"the run goes from {times[0]:.6g} to {times[-1]:.6g} s"
             message = span if len(times) > 1 else f"there is one instant, t = {times[0]:.6g} s"
-            raise UsageError(Problem("bad-option", f"--at {t:.6g}: {message}"))
+            hint = "leave --at out" if len(times) == 1 else f"such as --at {times[-1]:.6g}, or a longer duration"
+            raise UsageError(Problem("bad-option", f"--at {t:.6g}: {message}", hint=hint))
     within: Array = np.clip(np.array(asked), times[0], times[-1])
     return within
 

@@ -119,7 +119,8 @@ class Codegen:
     def counted(self, part: Part) -> Part:
         self.nodes += 1
         if self.nodes > MOST_NODES:
-            raise Finding("expression-limit", f"an expression of more than {MOST_NODES} parts")
+            message = f"an expression of more than {MOST_NODES} parts"
+            raise Finding("expression-limit", message, "put its values in a table: tables: {gas: {file: ...}}")
         return part
 
     def run(self, code: Code, table: Table | None = None) -> float:

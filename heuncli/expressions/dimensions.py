@@ -85,7 +85,7 @@ def alike(name: str, a: Measure, b: Measure) -> Measure:
     literal, moving = a.literal or b.literal, a.moving or b.moving
     if a.kind == "known" and b.kind == "known" and a.dimension != b.dimension:
         message = f"{SUMS[name]} {describe(a.dimension)} and {describe(b.dimension)}"
-        raise Finding("wrong-dimension", message)
+        raise Finding("wrong-dimension", message, "multiply or divide one of them by what it lacks")
     for one in (a, b):
         if one.kind == "known":
             return Measure("known", one.dimension, literal, moving)
@@ -116,7 +116,8 @@ def product(a: Measure, b: Measure, sign: int) -> Measure:
 def raised(base: Measure, exponent: float | None, measure: Measure = FREE) -> Measure:
     """Of a power; exponent: None where it is no number written out, then its measure counts."""
     if measure.kind == "known" and measure.dimension != NUMBER:
-        raise Finding("wrong-dimension", f"has an exponent that is {describe(measure.dimension)}")
+        message = f"has an exponent that is {describe(measure.dimension)}"
+        raise Finding("wrong-dimension", message, "an exponent is a plain number: divide it by a reference of its own")
     if base.kind in ("free", "factor"):
         return base._replace(literal=True) if base.kind == "factor" else FREE
     if exponent is None or abs(exponent) > LARGEST_POWER:
@@ -131,7 +132,8 @@ def raised(base: Measure, exponent: float | None, measure: Measure = FREE) -> Me
 def of_function(name: str, argument: Measure) -> Measure:
     """Of a function of numbers and angles."""
     if argument.kind == "known" and argument.dimension != NUMBER:
-        raise Finding("wrong-dimension", f"takes {name} of {describe(argument.dimension)}")
+        message = f"takes {name} of {describe(argument.dimension)}"
+        raise Finding("wrong-dimension", message, "divide it by a reference of its own: sin(t/T), exp(x/L)")
     return FACTOR
 
 
@@ -140,5 +142,5 @@ def looked_up(name: str, dimensions: tuple[Dimension | None, Dimension | None], 
     x, y = dimensions
     if x is not None and argument.kind == "known" and argument.dimension != x:
         message = f"looks up {describe(argument.dimension)} in the table {name}, whose x is {describe(x)}"
-        raise Finding("wrong-dimension", message)
+        raise Finding("wrong-dimension", message, f"look up {describe(x)}, or give the table another x_unit")
     return FREE if y is None or y == NUMBER else Measure("known", y, moving=True)

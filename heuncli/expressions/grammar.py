@@ -92,6 +92,9 @@ class Scope:
     given: Mapping[str, Given] = NONE
 
 
+FIXED = "this one is read once, before the run: give it as a number or by parameters"
+
+
 class Given(NamedTuple):
     """A parameter with a dimension, as it is written."""
 
@@ -118,7 +121,8 @@ def compile_expression(text: str, scope: Scope) -> Expression:
     except Finding as finding:
         if finding.code != "wrong-dimension":
             raise
-        raise Finding(finding.code, f"'{text.strip()}' {finding.message}", told_of(text, scope)) from None
+        hint = "; ".join(filter(None, [told_of(text, scope), finding.hint]))
+        raise Finding(finding.code, f"'{text.strip()}' {finding.message}", hint) from None
 
 
 def require_length(text: str) -> None:
@@ -132,6 +136,12 @@ def told_of(text: str, scope: Scope) -> str | None:
     """The dimensions of the parameters in a text, in words: a hint."""
     names = dict.fromkeys(found[0] for found in re.finditer(r"[^\W\d]\w*", text) if found[0] in scope.given)
     return ", ".join(scope.given[name].told(name) for name in names) or None
+
+
+def too_deep() -> Finding:
+    """The error of an expression with too many parentheses within each other."""
+    message = f"an expression nested more than {DEEPEST} deep"
+    return Finding("expression-limit", message, "name its inner parts under parameters, or write it as a sum")
 
 
 class _Parser:
@@ -148,7 +158,7 @@ class _Parser:
 
     def parse(self) -> Expression:
         if not self.tokens:
-            raise Finding("expression-syntax", "an empty expression")
+            raise Finding("expression-syntax", "an empty expression", "write a number, or leave the key out")
         part = self.expression()
         if self.at < len(self.tokens):
             raise self.unexpected()
@@ -247,7 +257,7 @@ class _Parser:
         """A value, perhaps by cases."""
         self.nested += 1
         if self.nested > DEEPEST:
-            raise Finding("expression-limit", f"an expression nested more than {DEEPEST} deep")
+            raise too_deep()
         part = self.disjunction()
         if self.take("if"):
             begin = self.at
@@ -331,7 +341,7 @@ class _Parser:
             return part
         self.nested += 1
         if self.nested > DEEPEST:
-            raise Finding("expression-limit", f"an expression nested more than {DEEPEST} deep")
+            raise too_deep()
         exponent = self.unary()  # binds to the right: 2**-3**2
         self.nested -= 1
         n = exponent.constant
@@ -351,7 +361,7 @@ class _Parser:
                 raise self.unexpected()
             value = float(token)
             if not math.isfinite(value):
-                raise Finding("not-computable", f"{token} is too large a number")
+                raise Finding("not-computable", f"{token} is too large a number", "numbers go up to 1.8e308")
             return self.codegen.number(value, of_literal(token))
         if kind == "name" and token not in WORDS:
             self.at += 1
@@ -406,7 +416,7 @@ class _Parser:
         argument = self.expression()
         self.expect(")", "to close table(...)")
         if not self.scope.in_time:
-            raise Finding("not-in-time", "a table may stand only in a value in time (forces, drives)")
+            raise Finding("not-in-time", "a table may stand only in a value in time (forces, drives)", FIXED)
         if name not in self.scope.tables:
             hint = did_you_mean(name, self.scope.tables, "tables")
             raise Finding("unknown-table", f"'{name}' is not a table", hint)
@@ -423,7 +433,8 @@ class _Parser:
         self.at += 1
         joints = self.scope.joints
         if not self.scope.in_time:
-            raise Finding("not-in-time", f"{joint}.{quantity} may stand only in a value in time (forces, drives)")
+            message = f"{joint}.{quantity} may stand only in a value in time (forces, drives)"
+            raise Finding("not-in-time", message, FIXED)
         if joint not in joints:
             hint = f"write {quantity}" if joint in LIBRARIES else did_you_mean(joint, joints, "joints")
             if joint in REPORT_OF:
@@ -448,10 +459,11 @@ class _Parser:
             return self.codegen.number(CONSTANTS[name], loose(RATE) if name == "rpm" else FACTOR)
         if name == "t":
             if not self.scope.in_time:
-                raise Finding("not-in-time", "the time t may stand only in a value in time (forces, drives)")
+                raise Finding("not-in-time", "the time t may stand only in a value in time (forces, drives)", FIXED)
             return self.codegen.time()
         if name in ARITY:
-            raise Finding("function-arguments", f"{name} is a function: write {name}(...)")
+            arguments = "a, b" if ARITY[name][0] > 1 else "t"
+            raise Finding("function-arguments", f"{name} is a function", f"write {name}(...), as {name}({arguments})")
         raise self.unknown(name, "parameter")
 
     def unknown(self, name: str, kind: str) -> Finding:

@@ -182,8 +182,11 @@ def parse_unit(text: str) -> tuple[float, Dimension]:
         hint = "a power is a small whole number, as in m^2"
         raise Finding("unknown-unit", f"'{text}' is not a unit: its size is beyond all numbers", hint) from None
     if reader.token is not None:
-        raise Finding("unknown-unit", f"'{text}' is not a unit: '{reader.token}' is not expected")
+        raise Finding("unknown-unit", f"'{text}' is not a unit: '{reader.token}' is not expected", FORM)
     return size, dimension
+
+
+FORM = "units are joined by *, / or a space, with whole powers: kg/m^3, N*m, N/(m/s)"
 
 
 class _Reader:
@@ -200,7 +203,8 @@ class _Reader:
         while at < len(text):
             found = TOKEN.match(text, at)
             if found is None:
-                raise Finding("unknown-unit", f"'{text}' is not a unit: '{text[at:].strip()[0]}' is not expected")
+                message = f"'{text}' is not a unit: '{text[at:].strip()[0]}' is not expected"
+                raise Finding("unknown-unit", message, FORM)
             at = found.end()
             yield found[0].strip()
 
@@ -225,9 +229,8 @@ class _Reader:
         if self.token in ("^", "**"):
             self.advance()
             if self.token is None or not self.token.lstrip("+-").isdigit() or len(self.token) > 2:
-                raise Finding(
-                    "unknown-unit", f"'{self.text}' is not a unit: a power is a small whole number, as in m^2"
-                )
+                message = f"'{self.text}' is not a unit: a power is a small whole number"
+                raise Finding("unknown-unit", message, "as in m^2")
             exponent = int(self.token)
             self.advance()
         elif self.token in SUPERSCRIPTS:
@@ -246,7 +249,7 @@ class _Reader:
             self.depth += 1
             size, dimension = self.product()
             if self.token != ")":
-                raise Finding("unknown-unit", f"'{self.text}' is not a unit: a parenthesis is not closed")
+                raise Finding("unknown-unit", f"'{self.text}' is not a unit: a parenthesis is not closed", FORM)
             self.advance()
             self.depth -= 1
             return size, dimension
@@ -256,9 +259,9 @@ class _Reader:
         if symbol in UNITS:
             return UNITS[symbol]
         if token is None:
-            raise Finding("unknown-unit", f"'{self.text}' is not a unit: it ends too early")
+            raise Finding("unknown-unit", f"'{self.text}' is not a unit: it ends too early", FORM)
         if not token[0].isalpha():
-            raise Finding("unknown-unit", f"'{self.text}' is not a unit: '{token}' is not expected")
+            raise Finding("unknown-unit", f"'{self.text}' is not a unit: '{token}' is not expected", FORM)
         raise Finding("unknown-unit", f"'{token}' is not a unit", HINTS.get(token) or nearest_unit(token))
 
 

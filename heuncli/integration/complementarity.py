@@ -40,7 +40,7 @@ def complementary(A: Array, q: Array, noise: Array) -> Pivots:
             break
         drive(A, q, z, bears, done, int(waiting[np.argmin(w[waiting])]))
     else:
-        raise SolveError(Problem("contacts-undecided", "which of the contacts that touch bear is not decided"))
+        raise undecided("which of the contacts that touch bear is not decided")
     w = q + A @ z
     small = z <= noise  # A's diagonal is 1: what bears less than rounding bears nothing
     z[small], bears = 0.0, bears & ~small
@@ -75,7 +75,7 @@ def drive(A: Array, q: Array, z: Array, bears: Mask, done: Mask, i: int) -> None
             if j != i and dw[j] < -tolerances.CONTACT_DEPENDS
         ]
         if not limits:
-            raise SolveError(Problem("contacts-undecided", "no impulse or force of the contacts holds them apart"))
+            raise undecided("no impulse or force of the contacts holds them apart")
         step, what, j = min(limits)
         z += step * dz
         if what == 1:
@@ -84,4 +84,10 @@ def drive(A: Array, q: Array, z: Array, bears: Mask, done: Mask, i: int) -> None
         bears[j] = what == 3
         if what == 2:
             z[j] = 0.0
-    raise SolveError(Problem("contacts-undecided", "which of the contacts that touch bear is not decided"))
+    raise undecided("which of the contacts that touch bear is not decided")
+
+
+def undecided(message: str) -> SolveError:
+    """The error of contacts that find no balance."""
+    hint = "stops or ropes that hold the same: let one of them out, or a little more room to one"
+    return SolveError(Problem("contacts-undecided", message, hint=hint))

@@ -403,7 +403,8 @@ class Runner(Evaluator):
         run, steps, last = going.run, going.steps, going.last
         done = f"steps were done at t = {run.loop.t:.6g} s of {last:.6g} s"
         if steps.count > going.most_steps:
-            raise LimitError(Problem("step-limit", f"{going.most_steps} {done}"))
+            hint = "a shorter duration, a coarser tolerance, or a stiff method: --method Radau9"
+            raise LimitError(Problem("step-limit", f"{going.most_steps} {done}", hint=hint))
         projected = None
         if steps.doubled():
             projected = hopeless(steps.column("ends"), last, tolerances.MOST_STEPS, irregular=not run.method.determined)
@@ -506,7 +507,8 @@ class Runner(Evaluator):
             else:
                 loop.resume(t, before_end, end)
             if loop.advance(to + 1 - first, False, False) == UNSOLVED:
-                raise SolveError(Problem(TROUBLE[UNSOLVED][0], f"at t = {loop.t:.9g} s: {TROUBLE[UNSOLVED][1]}"))
+                code, message, hint = TROUBLE[UNSOLVED]
+                raise SolveError(Problem(code, f"at t = {loop.t:.9g} s: {message}", hint=hint))
             t = loop.t
             first = to + 1
         return replayed.states()

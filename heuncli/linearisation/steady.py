@@ -55,7 +55,10 @@ def look(scene: PreparedScene, runner: Runner, t: float, state: Array, holding: 
     found, at = equations(runner, t, state, holding)
     if not (np.isfinite(found.by_place).all() and np.isfinite(found.by_rate).all()):
         message = "a load has no slope there (a root at 0, an angle of a point that lies on the axis)"
-        raise SolveError(Problem("no-modes", f"{message}: oscillations about it are not linear, however small"))
+        hint = "start a little beside it, or give the load a slope there: sqrt(x**2 + 1e-6) for abs(x)"
+        raise SolveError(
+            Problem("no-modes", f"{message}: oscillations about it are not linear, however small", hint=hint)
+        )
     return Looked(scene, runner, t, holding, found, at, reduced(scene, found, at))
 
 

@@ -5,6 +5,7 @@ Each reads by way of the validation's context, in which the parameters, joints a
 
 from __future__ import annotations
 
+import math
 from collections.abc import Collection, Mapping
 from typing import Annotated, Any
 
@@ -111,7 +112,7 @@ class Whole(Value):
     def read(self, value: Any, info: Any) -> int:
         count = number(value, u.NUMBER, info.context.load)
         if count != int(count):
-            raise Finding("wrong-kind", f"expected a whole number, found {count:g}")
+            raise Finding("wrong-kind", f"expected a whole number, found {count:g}", f"{math.floor(count)}, say")
         return int(count)
 
 
@@ -133,7 +134,8 @@ class NumbersOrOpen(Value):
             return None
         if type(value) is list:
             if not value:
-                raise Finding("wrong-kind", "expected a number, a list of numbers, or null for what must be open")
+                raise Finding("wrong-kind", "expected a number, a list of numbers, or null, found an empty list",
+                              "null is for what must be open")  # fmt: skip
             return tuple(self.read(member, info) for member in value)
         return in_time(value, None, info.context.load)
 

@@ -9,7 +9,7 @@ from typing import Any
 from heuncli.nearest import did_you_mean, nearest
 from heuncli.spec import format as f
 from heuncli.spec.fields import keys_of
-from heuncli.spec.words import ELSEWHERE, FORMS, KEY_WORDS, MISSING, SEVERAL, WORDS
+from heuncli.spec.words import ELSEWHERE, FORMS, FORMS_OF_KINDS, KEY_WORDS, MISSING, SEVERAL, WORDS
 
 AXES = {"x": "[1, 0, 0]", "y": "[0, 1, 0]", "z": "[0, 0, 1]"}
 COORDINATES = frozenset({"angle", "rate", "travel", "speed"})
@@ -58,13 +58,13 @@ def elsewhere(word: str) -> str | None:
     return ELSEWHERE.get(word) or (ELSEWHERE["stops"] if KEY_WORDS.get(word) == "stops" else None)
 
 
-def of_missing(key: str, present: Collection[str]) -> str | None:
+def of_missing(key: str, present: Collection[str]) -> str:
     """What a missing key is, or which one stands for it."""
     other = next((name for name in present if called(name, [key])), None)
-    return f"'{other}' is called {key} here" if other is not None else MISSING.get(key)
+    return f"'{other}' is called {key} here" if other is not None else MISSING.get(key, f"add {key}: ...")
 
 
-def of_form(key: str, found: Any, wanted: str) -> str | None:
+def of_form(key: str, found: Any, wanted: str) -> str:
     """What a value should look like; wanted: "a list", "a mapping", ... as it is told."""
     if wanted == "a list" and key in FORMS:
         return FORMS[key]
@@ -75,10 +75,10 @@ def of_form(key: str, found: Any, wanted: str) -> str | None:
         return "a list has a dash before each of its entries, or [ ] around them"
     if wanted == "a list":
         return "three components, as [0, 0, 1]" if not isinstance(found, str) else f"a list is [{found}, ...]"
-    return FORMS.get(key)
+    return FORMS.get(key) or FORMS_OF_KINDS.get(wanted) or f"write {wanted} behind {key or 'it'}:"
 
 
-def of_word(word: str, known: Collection[str]) -> str | None:
+def of_word(word: str, known: Collection[str]) -> str:
     """Which of the allowed words was meant."""
     near = next((name for name in WORDS.get(word.lower(), ()) if name in known), None) or nearest(word, known)
-    return f"did you mean {near}?" if near is not None else None
+    return f"did you mean {near}?" if near is not None else f"write one of them, as {next(iter(known))}"

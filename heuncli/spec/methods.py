@@ -40,6 +40,19 @@ def unfit(method: str, step: float | None, last: float | None) -> Iterator[Unfit
         yield from unfit_step(step, last)
 
 
+def unfit_tolerance(tolerance: float) -> Unfit | None:
+    """What speaks against a tolerance; None: nothing. One range for specs and for options."""
+    low, high = tolerances.LEAST_ASKED, tolerances.MOST_ASKED
+    if low <= tolerance <= high:
+        return None
+    hint = "the default is 1e-9"
+    if tolerance > high:
+        hint += "; for a quick look 1e-3 is coarse enough"
+    elif tolerance > 0.0:
+        hint += "; beyond that rounding is all that is left"
+    return Unfit("tolerance", "tolerance", f"tolerance {tolerance:g} is not between {low:g} and {high:g}", hint)
+
+
 def unfit_step(step: float, last: float | None) -> Iterator[Unfit]:
     """What speaks against the length of a step."""
     most, times = tolerances.MOST_STEPS, tolerances.CHECK_STEPS

@@ -10,6 +10,7 @@ from heuncli.records import record
 from heuncli.spec.quantity import Follows, Scope, in_time
 
 MOST_TOLD = 12  # names of a circle
+CUT = "give one of them as a number"
 
 
 class _Needed(Exception):
@@ -66,7 +67,7 @@ def evaluate_parameters(given: dict[str, Any]) -> Parameters:
                     asked = list(waiting)
                     circle = [*asked[asked.index(needed.name) :], needed.name]
                     message = f"parameters refer to each other in a circle: {' -> '.join(shortened(circle))}"
-                    findings.append((needed.name, Finding("parameter-circle", message)))
+                    findings.append((needed.name, Finding("parameter-circle", message, CUT)))
                     values.update(dict.fromkeys(circle))
                 else:
                     waiting[needed.name] = None

@@ -50,7 +50,7 @@ def as_written(value: Any, dimension: Dimension | None, scope: Scope) -> Express
         raise Finding("wrong-kind", f"expected a number, found {kind_of(value)}", hint_for(value))
     require_length(value)
     if NOT_A_NUMBER.match(value.strip()):
-        raise Finding("not-finite", f"'{value.strip()}' is not a finite number")
+        raise Finding("not-finite", f"'{value.strip()}' is not a finite number", FINITE)
     with_unit = unit_in(value)
     if with_unit is None:
         return fitting(compiled(value, scope), dimension, scope)
@@ -156,7 +156,8 @@ def finite(value: float) -> float:
     except OverflowError:
         result = math.inf
     if not math.isfinite(result):
-        raise Finding("not-finite", f"{value if isinstance(value, float) else 'the number'} is not a finite number")
+        what = value if isinstance(value, float) else "the number"
+        raise Finding("not-finite", f"{what} is not a finite number", FINITE)
     return result
 
 
@@ -178,11 +179,17 @@ def kind_of(value: Any) -> str:
     return "a list" if type(value) is list else "a mapping" if type(value) is dict else "a number"
 
 
-def hint_for(value: Any) -> str | None:
+def hint_for(value: Any) -> str:
     """What to do about it."""
     if type(value) is dict and len(value) == 1 and next(iter(value.values())) is None:
         return "an expression with { } is written without them"
-    return None
+    if value is None:
+        return "write a number behind the colon, or leave the key out"
+    if type(value) is list and len(value) == 1:
+        return "one number stands without [ ]"
+    return "as 0.5, \"12 mm\" or \"2*L\""
 
+
+FINITE = "where there is no limit leave the key out; in [low, high] write null"
 
 __all__ = ["Follows", "Scope", "in_time", "kind_of", "number"]

@@ -99,7 +99,7 @@ def read(path: str, text: str | None) -> Source:
         except UnicodeEncodeError as error:
             line, column = position(text, error.start)
             raise SpecError(
-                Problem("not-utf8", "a character is not Unicode", SourceLocation(file, line, column))
+                Problem("not-utf8", "a character is not Unicode", SourceLocation(file, line, column), "delete it")
             ) from None
         text = text.removeprefix("\ufeff")
     return parse(file, text, hashlib.sha256(raw).hexdigest())
@@ -115,9 +115,9 @@ def parse(file: str, text: str, sha256: str) -> Source:
     if "\r" in text:  # an end of a line to YAML, alone too: so that all count the same lines
         text = text.replace("\r\n", "\n").replace("\r", "\n")
     if len(text) > LARGEST:
-        raise SpecError(
-            Problem("too-large", f"{len(text)} characters; at most {LARGEST} are read", SourceLocation(file, 1, 1))
-        )
+        message = f"{len(text)} characters; at most {LARGEST} are read"
+        hint = "put lists of numbers into files of their own: tables: {NAME: {file: NAME.csv}}"
+        raise SpecError(Problem("too-large", message, SourceLocation(file, 1, 1), hint))
     if unseen := re.search(UNSEEN if text.isascii() else f"{UNSEEN}|{UNSEEN_BEYOND_ASCII}", text):
         name = f"U+{ord(unseen[0]):04X}" + (f" ({UNSEEN_NAMES[unseen[0]]})" if unseen[0] in UNSEEN_NAMES else "")
         message = f"the character {name} may not stand in a spec"
@@ -245,7 +245,12 @@ class Builder:
         elif kind is events.DocumentStartEvent:
             self.documents += 1
             if self.documents > 1:
-                raise SpecError(*self.problems, self.problem("several-documents", "a file holds one spec only", event))
+                raise SpecError(*self.problems, self.several(event))
+
+    def several(self, event: Any) -> Problem:
+        """The error of a second document."""
+        hint = "what stands behind the line --- belongs into a file of its own"
+        return self.problem("several-documents", "a file holds one spec only", event, hint=hint)
 
     def check(self, event: Any) -> None:
         """No anchors, no tags."""
@@ -276,7 +281,8 @@ class Builder:
         elif key in top.container:
             line, _ = self.keys[path]
             message = f"'{key}' is given twice, first in line {line + 1}"
-            self.problems.append(self.problem("duplicate-key", message, event, path))
+            hint = "give the two names of their own, or keep one"
+            self.problems.append(self.problem("duplicate-key", message, event, path, hint))
             top.skipped = True
         else:
             self.keys[path] = (event.start_mark.line, event.start_mark.column)
@@ -294,7 +300,9 @@ class Builder:
         path = self.put(container, event)
         self.stack.append(Frame(container, path))
         if len(self.stack) > DEEPEST:
-            raise SpecError(*self.problems, self.problem("too-deep", f"nested more than {DEEPEST} levels deep", event))
+            hint = "no value of a spec is: is a bracket too many open?"
+            problem = self.problem("too-deep", f"nested more than {DEEPEST} levels deep", event, hint=hint)
+            raise SpecError(*self.problems, problem)
 
     def put(self, value: Any, event: Any) -> Path_:
         """Store a value where it belongs; gives its path."""

@@ -22,6 +22,13 @@ from heuncli.spec.reading import read_bytes
 MOST_ROWS = 2_000_000
 LARGEST = 200_000_000  # bytes: that many rows of a hundred characters
 RELATIVE = "a path is relative to the spec's folder"
+# what to do about it
+SLOPES = "keep x and y within some ten powers of ten, in units of their own: x_unit, y_unit"
+CONSTANT = "a value that does not change is a parameter"
+ROWS = "each row has its numbers between commas, as 0.5, 12"
+FEWER = "keep the points that matter: between them the table interpolates"
+NUMBERS = "one number a cell, with a point; lines of words begin with #"
+QUOTES = "quotes come in pairs; plain numbers need none"
 
 
 @record
@@ -81,7 +88,7 @@ def build_table(name: str, entry: Entry, scope: Scope, folder: Path) -> tuple[Ta
     table = replace(table, dimensions=(dimension_of(entry.x_unit), dimension_of(entry.y_unit)))
     if not all(map(math.isfinite, table.numbers)):
         return None, [
-            Wrong((), Finding("table-shape", "its points lie too close together or too far apart for a slope"))
+            Wrong((), Finding("table-shape", "its points lie too close together or too far apart for a slope", SLOPES))
         ]
     return table, []
 
@@ -124,10 +131,10 @@ def shape_of(x: list[float], y: list[float], entry: Entry) -> Iterator[Wrong]:
     """What keeps points from being a function."""
     at = () if entry.file is None else ("file",)
     if len(x) != len(y):
-        yield Wrong(at, Finding("table-shape", f"{len(x)} values of x and {len(y)} of y"))
+        yield Wrong(at, Finding("table-shape", f"{len(x)} values of x and {len(y)} of y", "each x has its y"))
         return
     if len(x) < 2:
-        yield Wrong(at, Finding("table-shape", "a table needs two points at least"))
+        yield Wrong(at, Finding("table-shape", "a table needs two points at least", CONSTANT))
         return
     for i in range(1, len(x)):
         if x[i] <= x[i - 1]:
@@ -196,9 +203,9 @@ def columns_of(text: str, *wanted: object) -> list[list[float]]:
         (n, line) for n, line in enumerate(text.splitlines(), 1) if line.strip() and not line.lstrip().startswith("#")
     ]
     if not lines:
-        raise CsvError(1, 1, Finding("table-file", "the file holds no rows"))
+        raise CsvError(1, 1, Finding("table-file", "the file holds no rows", ROWS))
     if len(lines) > MOST_ROWS:
-        raise CsvError(1, 1, Finding("table-file", f"{len(lines)} rows; at most {MOST_ROWS} are read"))
+        raise CsvError(1, 1, Finding("table-file", f"{len(lines)} rows; at most {MOST_ROWS} are read", FEWER))
     mark = next((m for m in (";", "\t", ",") if m in lines[0][1]), None)
     rows = [(n, cells(n, line, mark)) for n, line in lines]
     header = [cell.strip() for cell in rows[0][1]]
@@ -209,14 +216,12 @@ def columns_of(text: str, *wanted: object) -> list[list[float]]:
     for n, row in body:
         for index, values in zip(indices, columns, strict=True):
             if index >= len(row):
-                raise CsvError(
-                    n, 1, Finding("table-file", f"the row has {len(row)} cells, column {index + 1} is missing")
-                )
+                message = f"the row has {len(row)} cells, column {index + 1} is missing"
+                raise CsvError(n, 1, Finding("table-file", message, ROWS))
             value = as_number(row[index], mark)
             if value is None:
-                raise CsvError(
-                    n, 1, Finding("table-file", f"'{row[index].strip()}' in column {index + 1} is not a number")
-                )
+                message = f"'{row[index].strip()}' in column {index + 1} is not a number"
+                raise CsvError(n, 1, Finding("table-file", message, NUMBERS))
             values.append(value)
     return columns
 
@@ -228,7 +233,7 @@ def cells(n: int, line: str, mark: str | None) -> list[str]:
     try:
         return next(csv.reader([line], delimiter=mark, strict=True))
     except csv.Error as error:
-        raise CsvError(n, 1, Finding("table-file", f"the row cannot be read: {error}")) from None
+        raise CsvError(n, 1, Finding("table-file", f"the row cannot be read: {error}", QUOTES)) from None
 
 
 def as_number(cell: str, mark: str | None) -> float | None:

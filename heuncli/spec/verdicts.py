@@ -37,8 +37,9 @@ def verdicts(error: ValidationError, data: Any, model: type[Model]) -> Iterator[
             if path not in short:
                 short.add(path)
                 value = at(data, path)
-                message, hint = f"{len(value)} values instead of {needed(item['loc'])}", None
-                if (len(value), needed(item["loc"])) == (2, 3):
+                count = needed(item["loc"])
+                message, hint = f"{len(value)} values instead of {count}", as_many(path, count)
+                if (len(value), count) == (2, 3):
                     hint = "two components are for a scene in the xy plane: space: planar"
                 yield "wrong-length", Violation(path, message, hint)
         elif kind == "missing":
@@ -48,7 +49,8 @@ def verdicts(error: ValidationError, data: Any, model: type[Model]) -> Iterator[
         elif kind == "too_long":
             message = f"{context['actual_length']} values instead of {context['max_length']}"
             cut = any(isinstance(part, str) and part.count("(") > part.count(")") for part in item["input"])
-            hint = "inside [ ] an expression with a comma is written in quotes" if cut else None
+            hint = "inside [ ] an expression with a comma is written in quotes"
+            hint = hint if cut else as_many(path, context["max_length"])
             if path[-1:] == ("inertia",):
                 hint = "the products of inertia stand beside it: deviation: [D1, D2, D3], D1 = sum of m*a2*a3"
             yield "wrong-length", Violation(path, message, hint)
@@ -90,6 +92,13 @@ def needed(location: tuple[str | int, ...]) -> int:
     return 4 if "quaternion" in location else 3
 
 
+def as_many(path: Path_, count: int) -> str:
+    """What a list of so many numbers looks like."""
+    named = {"quaternion": "[w, x, y, z]", "size": "[along x, along y, along z]", "euler": "[a, b, c]"}
+    key = next((str(part) for part in reversed(path) if isinstance(part, str)), "")
+    return f"{key}: {named.get(key, '[x, y, z]' if count == 3 else f'{count} values')}"
+
+
 def missing(path: Path_, key: str, owner: dict[str, Any]) -> tuple[str, Violation]:
     """A key that must be there."""
     if key == "heun":
@@ -112,7 +121,7 @@ def unknown_key(path: Path_, known: list[str]) -> tuple[str, Violation]:
     """A key that means nothing here."""
     key = str(path[-1])
     if ("keys", key) in LATER:
-        return "not-yet", Violation(path, f"not yet: {key}", key=True)
+        return "not-yet", Violation(path, f"not yet: {key}", "leave it out: a later version has it", key=True)
     return "unknown-key", Violation(path, f"'{key}' is not known here", of_key(key, known), key=True)
 
 
@@ -121,14 +130,14 @@ def unknown_type(entry: Any, block: str, known: list[str]) -> tuple[str, Violati
     code, what, words = TYPES[block]
     listed = ", ".join(known)
     if type(entry) is not dict:
-        return "wrong-kind", Violation((), f"expected a mapping, found {kind_of(entry)}")
+        return "wrong-kind", Violation((), f"expected a mapping, found {kind_of(entry)}", f"{{type: {known[0]}, ...}}")
     if "type" not in entry:
         return "missing-key", Violation((), "'type' is missing", f"known: {listed}", key=True)
     tag = entry["type"]
     if type(tag) is not str:
         return "wrong-kind", Violation(("type",), f"expected {what}, found {kind_of(tag)}", f"known: {listed}")
     if (block, tag) in LATER:
-        return "not-yet", Violation(("type",), f"not yet: {what.removeprefix('a ')} {tag}")
+        return "not-yet", Violation(("type",), f"not yet: {what.removeprefix('a ')} {tag}", f"there are: {listed}")
     word = words.get(tag.lower().replace("-", "_"))
     hint = f"{article(tag)} {tag} is type: {word}" if word else elsewhere(tag) or did_you_mean(tag, known, "types")
     return code, Violation(("type",), f"'{tag}' is not {what}; known: {listed}", hint)
@@ -150,7 +159,8 @@ def wrong_word(path: Path_, word: Any, expected: str) -> tuple[str, Violation]:
     """A word that is not one of those allowed here."""
     known = [word.strip(" '") for word in expected.replace(" or ", ", ").split(",")]
     if not isinstance(word, str):
-        return "wrong-kind", Violation(path, f"expected one of {', '.join(known)}, found {kind_of(word)}")
+        message = f"expected one of {', '.join(known)}, found {kind_of(word)}"
+        return "wrong-kind", Violation(path, message, f"as {path[-1]}: {known[0]}")
     message = f"'{word}' is not known here; known: {', '.join(known)}"
     return "unknown-word", Violation(path, message, of_word(word, known))
 

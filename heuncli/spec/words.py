@@ -79,13 +79,29 @@ FORMS = {  # what the values of some keys look like
     "shapes": "one shape is a list, too: [{type: cylinder, ...}]", "times": "as [0, 0.5, 1]",
     "points": "by their names: {top: [0, 0, 0]}", "events": "by their names: {falls: pivot.angle > 1}",
     "rectangle": "as {width: 0.1, height: 0.2}", "circle": "as {radius: 0.1}",
-    "tube": "as {radius: 0.1, inner_radius: 0.09}",
+    "tube": "as {radius: 0.1, inner_radius: 0.09}", "ground": "as {points: {O: [0, 0, 0]}}",
+    "analysis": "as {duration: 2, samples: 201}", "initial": "as {angle: 30 deg, rate: 0}",
+    "stiffness": "one number, or {force: 2e8, moment: 1e5}", "near": "as {position: [0, 0, 1]}",
+    "foundation": "as {about: [0, 0, 0]}", "properties": "auto, or as {circle: {radius: 0.01}}",
+    "piece": "as {mass: 1, center: [0, 0, 0], inertia: [0, 0, 0]}", "title": "write a text, in quotes where it holds :",
+    "of": "the path of a result: joints.NAME.force.z", "until": "a condition, as guide.travel > 0.2",
+}  # fmt: skip
+FORMS_OF_KINDS = {  # what values look like of which only the kind is known
+    "a mapping": "keys with their values, as {key: value}", "a text": "write a name, or a text in quotes",
+    "true or false": "true or false, without quotes", "a number": "as 0.5, \"12 mm\" or \"2*L\"",
 }  # fmt: skip
 MISSING = {  # what a key is that must be there
     "length": "the length at which it exerts no force", "vector": "three components, as [0, 0, -10]",
     "on": "the point at which it acts: body.point", "speed": "the rate at which friction is nearly full, as 0.01",
     "axis": "a direction, as [0, 0, 1]", "joint": "the name of the joint in which it acts",
-    "of": "the path of a result: joints.NAME.force.z",
+    "of": "the path of a result: joints.NAME.force.z", "body": "the name of the body",
+    "from": "one end: body.point, ground.point", "to": "the other end: body.point, ground.point",
+    "mass": "in kg, as 1.5", "center": "its centre: [x, y, z]", "inertia": "about its centre of mass: [A1, A2, A3]",
+    "radius": "in m, or with a unit: 10 mm", "to_radius": "the radius at its other end, 0 for a tip",
+    "inner_radius": "in m, or with a unit: 9 mm", "size": "its three edges: [x, y, z]", "at": "the point: [x, y, z]",
+    "stiffness": "N/m, of a turn_spring N*m/rad", "value": "a number or an expression in time, as 5*sin(t)",
+    "to_axis": "the axis fixed in the to body, as [0, 1, 0]", "normal": "a direction, as [0, 0, 1]",
+    "angle": "the angle at which it exerts no torque", "width": "along e1, in m", "height": "along e2, in m",
 }  # fmt: skip
 ELSEWHERE = {  # keys that stand in another place than the one where they were written
     "stops": "limits of coordinates are a block of their own: stops: {buffer: {joint: guide, travel: [0, 0.2]}}",

@@ -23,6 +23,7 @@ from heuncli.spec.models import Spec
 from heuncli.study.setup import Setup, set_up
 
 REST_HINT = "analysis: {type: rest} looks for the pose that rests"
+NEARLY = "look for it from nearer by: draw the scene closer to where it rests"
 MOVING_HINT = "leave out the velocities, or run a motion: modes are those about a pose, or a steady motion"
 
 
@@ -71,7 +72,7 @@ def state_of(setup: Setup) -> tuple[Looked, Literal["rest", "state"]]:
     if kind in ("state", "rest"):
         what = "state is not at rest" if kind == "state" else "pose found is not quite at rest"
         hint = MOVING_HINT if moves(here) else REST_HINT
-        raise SolveError(Problem("not-at-rest", f"the {what}: {reason}", hint=hint if kind == "state" else None))
+        raise SolveError(Problem("not-at-rest", f"the {what}: {reason}", hint=hint if kind == "state" else NEARLY))
     return state_of(at_rest(setup.spec))
 
 
@@ -128,4 +129,5 @@ def require_slopes(here: Looked) -> None:
         sentences.append("closed chains are stretched, folded or flat there, and give way to the first order only")
     if sentences:
         so = "oscillations about it are not linear, however small"
-        raise SolveError(*(Problem("no-modes", f"{sentence}: {so}") for sentence in sentences))
+        hint = "take modes a little beside it, by type: state; or run a motion, which shows how it moves there"
+        raise SolveError(*(Problem("no-modes", f"{sentence}: {so}", hint=hint) for sentence in sentences))

@@ -834,6 +834,7 @@ ROWS = (
     Row("EXPECTED_RELATIVE", relatively_off, "passed", "failed"),
     Row("EXPECTED_ABSOLUTE", absolutely_off, "passed", "failed"),
     Row("LEAST_ASKED", tolerance, "refused: tolerance", "fine"),
+    Row("MOST_ASKED", tolerance, "fine", "refused: tolerance"),
     # same instant, place, direction
     # given steps
     Row("KERNEL.given_end", beyond_its_steps, "10 steps", "11 steps"),

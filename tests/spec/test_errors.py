@@ -27,6 +27,7 @@ def problems(text: str) -> list[str]:
     with pytest.raises(SpecError) as caught:
         load("x.yaml", text=text)
     assert caught.value.exit_code == 2
+    assert [str(p) for p in caught.value.problems if not p.hint] == []
     return [
         f"{p.location.line}:{p.location.column} {p.location.path} {p.code}" for p in caught.value.problems if p.location
     ]
@@ -448,6 +449,7 @@ def found_in(text: str) -> list[str]:
     try:
         assert isinstance(load("x.yaml", text="\n".join(lines)), Spec)
     except SpecError as error:
+        assert [str(p) for p in error.problems if not p.hint] == []
         return [f"{p.location.line} {p.location.path} {p.code}" for p in error.problems if p.location]
     return []
 

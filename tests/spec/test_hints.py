@@ -2,13 +2,18 @@
 
 from __future__ import annotations
 
+import ast
 import json
+from collections.abc import Iterator
+from pathlib import Path
 
 import pytest
 
+import heuncli
 from heuncli.errors import SpecError
 from heuncli.spec.load import load
 
+PACKAGE = Path(heuncli.__file__).parent
 ANALYSIS = "analysis: {duration: 2, samples: 11}\n"
 LUMP = "{mass: 1 kg, center: [0, 0, 0], inertia: [1, 1, 1], points: {p: [0, 0, 0]}}"
 SCENE = f"""\
@@ -148,3 +153,25 @@ def test_json_is_read() -> None:
 def test_units_that_are_understood() -> None:
     text = SCENE.replace("axis: [0, 1, 0]}", "axis: [0, 1, 0], initial: {angle: 60°}, stiffness: {moment: 5 Nm/rad}}")
     assert load("x.yaml", text).joints["pivot"].stiffness is not None
+
+
+NEEDS_NONE: dict[str, str] = {}  # codes whose messages themselves say what to do, and why that is enough
+PLACE_OF_HINT = {"Problem": 3, "Finding": 2, "Violation": 2}
+
+
+def without_hint(path: Path) -> Iterator[str]:
+    """The errors that a module constructs without a word on what to do next."""
+    for node in ast.walk(ast.parse(path.read_text(encoding="utf-8"))):
+        name = getattr(node.func, "id", getattr(node.func, "attr", "")) if isinstance(node, ast.Call) else ""
+        if not isinstance(node, ast.Call) or name not in PLACE_OF_HINT:
+            continue
+        if any(repr(code) in ast.unparse(node) for code in NEEDS_NONE):
+            continue
+        given = [keyword.value for keyword in node.keywords if keyword.arg == "hint"] + node.args[PLACE_OF_HINT[name] :]
+        given += [argument for argument in node.args if isinstance(argument, ast.Starred)]  # with its hint
+        if not given or (isinstance(given[0], ast.Constant) and not given[0].value):
+            yield f"{path.name}:{node.lineno} {ast.unparse(node)}"
+
+
+def test_every_error_says_what_to_do_next() -> None:
+    assert [found for path in sorted(PACKAGE.rglob("*.py")) for found in without_hint(path)] == []

@@ -4,10 +4,14 @@ from __future__ import annotations
 
 from collections.abc import Iterator
 
-from heuncli import tolerances
+from heuncli.spec.methods import unfit_tolerance
 from heuncli.spec.rules.registry import DraftDocument, Violation, rule
 
 MOST_SAMPLES = 10_000_000
+START = "shift all times, and t in loads with them"
+SMALLEST = "2 are the start and the end; for the start alone: {type: state}"
+LONGEST = 1e15  # seconds: thirty million years, in which no run counts a second any more
+ASCEND = "sort them, and give each once"
 
 
 @rule("times")
@@ -20,24 +24,30 @@ def times(draft: DraftDocument) -> Iterator[Violation]:
             if getattr(analysis, key) is not None:
                 yield Violation((*path, key), f"{key} beside times", "the last of the times is the end", key=True)
         if not analysis.times:
-            yield Violation((*path, "times"), "times is an empty list")
+            yield Violation((*path, "times"), "times is an empty list", "list the instants: [0, 0.5, 1]")
         for i, t in enumerate(analysis.times):
             if t < 0.0:
-                yield Violation((*path, "times", i), f"the run starts at 0; {t:g} s lies before it")
+                yield Violation((*path, "times", i), f"the run starts at 0; {t:g} s lies before it", START)
             elif i and t <= analysis.times[i - 1]:
-                yield Violation((*path, "times", i), f"times ascend, but {t:g} follows {analysis.times[i - 1]:g}")
+                message = f"times ascend, but {t:g} follows {analysis.times[i - 1]:g}"
+                yield Violation((*path, "times", i), message, ASCEND)
         if analysis.times == [0.0] and analysis.type in (None, "motion"):
             yield Violation((*path, "times"), "a motion that ends when it starts",
                             "for the start alone: analysis: {type: state}")  # fmt: skip
     elif analysis.samples is not None:
-        if analysis.duration is None:
+        if analysis.duration is None and "analysis" not in draft.unread:
             yield Violation(
                 (*path, "samples"), "samples without a duration", "analysis: {duration: 2, samples: 201}", key=True
             )
         if not 2 <= analysis.samples <= MOST_SAMPLES:
-            yield Violation(
-                (*path, "samples"), f"samples counts both ends: 2 to {MOST_SAMPLES}, not {analysis.samples}"
-            )
+            message = f"samples counts both ends: 2 to {MOST_SAMPLES}, not {analysis.samples}"
+            hint = "extremes are searched between the samples, too" if analysis.samples > 2 else SMALLEST
+            yield Violation((*path, "samples"), message, hint)
+    last = max([analysis.duration or 0.0, *(analysis.times or [])])
+    if last > LONGEST:
+        key = "duration" if analysis.times is None else "times"
+        message = f"a run of {last:g} s; at most {LONGEST:g} s are run"
+        yield Violation((*path, key), message, "is its unit right? what goes on as it is needs no run: type: state")
 
 
 @rule("analysis-type")
@@ -86,7 +96,6 @@ def rest_start(draft: DraftDocument) -> Iterator[Violation]:
 def tolerance(draft: DraftDocument) -> Iterator[Violation]:
     """A tolerance is between rounding and the whole."""
     value = draft.document.analysis.tolerance
-    if value is not None and not tolerances.LEAST_ASKED < value < 1.0:
-        yield Violation(
-            ("analysis", "tolerance"), f"tolerance {value:g} is not between 1e-15 and 1", "the default is 1e-9"
-        )
+    found = unfit_tolerance(value) if value is not None else None
+    if found is not None:
+        yield Violation(("analysis", found.key), found.message, found.hint)

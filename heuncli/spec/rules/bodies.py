@@ -11,6 +11,18 @@ from heuncli.spec.rules.registry import DraftDocument, Path_, Violation, rule
 from heuncli.spec.semantics import body_axes, tensor
 from heuncli.spec.turns import principal
 
+# what to do about numbers that are too small
+SIZES = "give it above 0, in SI or with its unit"
+EDGES = "its three edges, in m"
+FULL = "the rate at which friction is nearly full, small beside those of the motion: 0.01"
+LEAST = {
+    "mass": "what has no mass is no body: a rod is a massless bar, a spring stands between points",
+    "duration": "for one instant leave duration and samples out", "step": "in s, as 1 ms",
+    "inner_radius": "a full one has no inner_radius", "length": "leave it out for the length as assembled; 0 is a ball",
+    "strength": "in Pa, as 235 MPa", "density": "in kg/m^3: 7850 is steel",
+}  # fmt: skip
+TURN_ROUND = {"torque": "it resists either way: give its size", "force": "it resists either way: give its size"}
+
 
 @rule("no-bodies")
 def no_bodies(draft: DraftDocument) -> Iterator[Violation]:
@@ -57,9 +69,10 @@ def not_positive(draft: DraftDocument) -> Iterator[Violation]:
             if not isinstance(shape, f.Cone):
                 yield from positive(at, shape, "radius", "inner_radius")
             elif min(shape.radius, shape.to_radius) < 0.0 or max(shape.radius, shape.to_radius) == 0.0:
-                yield Violation((*at, "radius"), "a cone's radii must not be negative, nor both 0")
+                message = "a cone's radii must not be negative, nor both 0"
+                yield Violation((*at, "radius"), message, "to_radius: 0 is a tip")
             if isinstance(shape, f.Box) and min(shape.size) <= 0.0:
-                yield Violation((*at, "size"), f"a size must be more than 0, not {min(shape.size):g}")
+                yield Violation((*at, "size"), f"a size must be more than 0, not {min(shape.size):g}", EDGES)
     for name, joint in draft.document.joints.items():
         path = ("joints", name)
         yield from positive(path, joint, "length")
@@ -74,7 +87,7 @@ def not_positive(draft: DraftDocument) -> Iterator[Violation]:
     for name, load in draft.document.forces.items():
         path = ("forces", name)
         if isinstance(load, f.Friction) and load.speed.constant is not None and load.speed.constant <= 0.0:
-            yield Violation((*path, "speed"), f"speed must be more than 0, not {load.speed.constant:g}")
+            yield Violation((*path, "speed"), f"speed must be more than 0, not {load.speed.constant:g}", FULL)
     for name, section in draft.document.sections.items():
         path = ("sections", name)
         yield from positive(path, section, "strength")
@@ -94,7 +107,7 @@ def positive(path: Path_, owner: object, *keys: str) -> Iterator[Violation]:
     for key in keys:
         value = getattr(owner, key, None)
         if isinstance(value, float) and value <= 0.0:
-            yield Violation((*path, key), f"{key} must be more than 0, not {value:g}")
+            yield Violation((*path, key), f"{key} must be more than 0, not {value:g}", LEAST.get(key, SIZES))
 
 
 @rule("negative")
@@ -105,13 +118,15 @@ def negative(draft: DraftDocument) -> Iterator[Violation]:
             value = getattr(load, key, None)
             value = getattr(value, "constant", value)
             if isinstance(value, float) and value < 0.0:
-                yield Violation(("forces", name, key), f"{key} must not be negative, but is {value:g}")
+                hint = TURN_ROUND.get(key, "it resists with a number above 0; what drives is a torque, force or drive")
+                yield Violation(("forces", name, key), f"{key} must not be negative, but is {value:g}", hint)
     for i, item in draft.document.expect.items():
         for key in ("rel", "abs"):
             value = getattr(item, key)
             value = getattr(value, "constant", value)
             if value is not None and value < 0.0:
-                yield Violation(("expect", i, key), f"{key} must not be negative, but is {value:g}")
+                hint = "it is how far what is found may be off, to either side"
+                yield Violation(("expect", i, key), f"{key} must not be negative, but is {value:g}", hint)
 
 
 @rule("shape-form")
@@ -127,10 +142,10 @@ def shape_form(draft: DraftDocument) -> Iterator[Violation]:
                     what = "both mass and" if given else "neither mass nor"
                     yield Violation(path, f"{what} {density}", "give one of the two")
             if isinstance(shape, f.Rod | f.Cylinder | f.Cone) and shape.from_ == shape.to:
-                yield Violation((*path, "to"), "from and to are the same point")
+                yield Violation((*path, "to"), "from and to are the same point", "without a length it is type: point")
             if isinstance(shape, f.Cylinder) and shape.inner_radius is not None and shape.inner_radius >= shape.radius:
                 message = f"inner_radius {shape.inner_radius:g} is not less than radius {shape.radius:g}"
-                yield Violation((*path, "inner_radius"), message)
+                yield Violation((*path, "inner_radius"), message, "a full one has no inner_radius")
 
 
 def tensors(draft: DraftDocument) -> Iterator[tuple[Path_, f.Body | f.Piece]]:
@@ -166,7 +181,8 @@ def inertia_form(draft: DraftDocument) -> Iterator[Violation]:
             for i, j in ((0, 1), (0, 2), (1, 2)):
                 if abs(inertia[i][j] - inertia[j][i]) > tolerances.INERTIA_TYPED * size:
                     message = f"the tensor is not symmetric: {inertia[i][j]:g} and {inertia[j][i]:g}"
-                    yield Violation((*path, "inertia"), message)
+                    hint = "give both the same; or the moments and deviation: [D1, D2, D3]"
+                    yield Violation((*path, "inertia"), message, hint)
                     break
 
 
@@ -208,8 +224,9 @@ def inertia_rounded(draft: DraftDocument) -> Iterator[Violation]:
     for path, moments, broken in triangle(draft):
         if broken <= tolerances.INERTIA_REFUSED:
             yield Violation(
-                path, f"the principal moments {moments} break A1 + A2 >= A3 by {broken:.1e}; taken as they are"
-            )
+                path, f"the principal moments {moments} break A1 + A2 >= A3 by {broken:.1e}; taken as they are",
+                "give them with more digits",
+            )  # fmt: skip
 
 
 @rule("orientation")

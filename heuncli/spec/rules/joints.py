@@ -13,6 +13,8 @@ from heuncli.spec.fields import End
 from heuncli.spec.rules.registry import DraftDocument, Path_, Violation, rule
 from heuncli.spec.semantics import DRIVEN, Driven, drive_of, driven_keys, point_in, span_of
 
+ONCE = "one drive a joint: add the two up in one expression"
+
 
 def directions(draft: DraftDocument) -> Iterator[tuple[Path_, tuple[float, float, float]]]:
     """Every direction in the document."""
@@ -78,7 +80,8 @@ def duplicate_joint(draft: DraftDocument) -> Iterator[Violation]:
         ends = frozenset((end_key(joint.from_), end_key(joint.to)))
         key = joint.type, ends, getattr(joint, "axis", None), getattr(joint, "normal", None)
         if key in seen:
-            yield Violation(("joints", name), f"the same joint as {seen[key]}: their reactions are open", key=True)
+            message = f"the same joint as {seen[key]}: their reactions are open"
+            yield Violation(("joints", name), message, "keep one", key=True)
         seen.setdefault(key, name)
 
 
@@ -111,7 +114,8 @@ def drive_form(draft: DraftDocument) -> Iterator[Violation]:
             joint, coordinate = value.uses[0]
             yield Violation((*path, quantity), f"a drive follows time alone, not {joint}.{coordinate}", "use t")
         if drive.joint in driven:
-            yield Violation((*path, "joint"), f"the joint {drive.joint} is driven by {driven[drive.joint]} already")
+            message = f"the joint {drive.joint} is driven by {driven[drive.joint]} already"
+            yield Violation((*path, "joint"), message, ONCE)
         driven.setdefault(drive.joint, name)
 
 

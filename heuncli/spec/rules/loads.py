@@ -55,7 +55,7 @@ def load_joint(draft: DraftDocument) -> Iterator[Violation]:
             fitting = [FRICTION[motion] for motion in kind.motions]
             if not kind.takes("friction"):
                 message = f"friction acts in a {named(taking('friction'), 'or')}, not in a {kind.name}"
-                yield Violation((*path, "joint"), message)
+                yield Violation((*path, "joint"), message, "between two points use a spring with damping")
             elif len(given) != 1:
                 what = "both torque and force" if given else "neither torque nor force"
                 yield Violation(path, f"friction of {what}", f"a {kind.name} takes {' or '.join(fitting)}", key=True)
@@ -122,7 +122,8 @@ def zero_impulse(draft: DraftDocument) -> Iterator[Violation]:
     for name, blow in draft.document.impulses.items():
         for key in ("vector", "couple"):
             if getattr(blow, key) == (0.0, 0.0, 0.0):
-                yield Violation(("impulses", name, key), f"{key} is [0, 0, 0]: the blow changes nothing")
+                message = f"{key} is [0, 0, 0]: the blow changes nothing"
+                yield Violation(("impulses", name, key), message, "leave it out")
 
 
 @rule("impulse-time")
@@ -133,7 +134,7 @@ def impulse_time(draft: DraftDocument) -> Iterator[Violation]:
     for name, blow in draft.document.impulses.items():
         path = ("impulses", name, "time")
         if blow.time < 0.0:
-            yield Violation(path, f"a blow before the start, at {blow.time:g} s")
+            yield Violation(path, f"a blow before the start, at {blow.time:g} s", "the run starts at 0")
         elif blow.time > duration and "analysis" not in draft.unread:
             hint = (
                 "give analysis a longer duration"

@@ -29,4 +29,4 @@ def not_yet(draft: DraftDocument) -> Iterator[Violation]:
     """Refuse what stands in the table."""
     for feature, where in NOT_YET:
         for path in where(draft):
-            yield Violation(path, f"not yet: {feature}", key=path[-1] != "type")
+            yield Violation(path, f"not yet: {feature}", "leave it out: a later version has it", key=path[-1] != "type")

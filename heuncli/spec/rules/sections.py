@@ -12,6 +12,8 @@ from heuncli.spec.turns import cross, length, unit
 
 GENERAL = ("area", "I1", "I2", "J", "c1", "c2")
 REDUCED_TO = ("at", "centroid", "line")
+MOST_CUTS = 100_000  # of a run: more are not told apart by any reader, and take a second an instant
+EVENLY = "1 is a stress that is spread evenly; of a rectangle it is 1.5, of a circle 4/3"
 
 
 def is_run(section: f.Section) -> bool:
@@ -53,8 +55,9 @@ def section_form(draft: DraftDocument) -> Iterator[Violation]:
 def run_of_cuts(draft: DraftDocument, name: str, section: f.Section) -> Iterator[Violation]:
     """A run has two ends, two cuts at least, and decides the sides by itself."""
     path = ("sections", name)
-    if section.count is not None and not 2 <= section.count <= 100_000:
-        yield Violation((*path, "count"), f"a run has 2 to 100000 cuts, not {section.count}")
+    if section.count is not None and not 2 <= section.count <= MOST_CUTS:
+        hint = "one cut is {body, at, normal}" if section.count < 2 else "extremes are searched between the cuts, too"
+        yield Violation((*path, "count"), f"a run has 2 to {MOST_CUTS} cuts, not {section.count}", hint)
     body = draft.document.bodies.get(section.body)
     if body is not None:
         ends = [point_in(body, end) for end in (section.from_, section.to)]
@@ -134,6 +137,7 @@ def properties_form(draft: DraftDocument) -> Iterator[Violation]:
             yield Violation(
                 (*path, "properties", "tube"),
                 f"inner_radius {tube.inner_radius:g} is not less than radius {tube.radius:g}",
+                "a full one is a circle",
             )
 
 
@@ -146,4 +150,4 @@ def shear_factor(properties: f.Properties, path: tuple[str, ...]) -> Iterator[Vi
         hint = f"it goes with {', '.join(GENERAL)}"
         yield Violation(path, "the shape itself says how its shear stresses are spread", hint, key=True)
     elif factor < 1.0:
-        yield Violation(path, f"the largest shear stress over the mean is 1 at least, not {factor:g}")
+        yield Violation(path, f"the largest shear stress over the mean is 1 at least, not {factor:g}", EVENLY)
