@@ -35,6 +35,9 @@ class Along:
         self.study, self.layout = study, study.setup.scene.layout
         self.times = search_times(study.setup, study.history)[0] if study.history.checked else study.history.times
         self.span = float(np.ptp(self.times))
+        found = study.history.checked
+        # None of one instant, and of a motion that a slack rope ends at its start
+        self.checked = found if found is not None and len(found.run.ends) else None
 
     def at(self, times: Array) -> Recovered:
         """The answers at instants, ascending."""

@@ -26,7 +26,7 @@ FOLLOWED = "nothing is integrated: drives and joints leave no freedom"
 
 def growing(along: Along) -> tuple[Growing | None, str]:
     """The growth of disturbances of what is integrated; or why it is not told."""
-    checked, runner = along.study.history.checked, along.study.setup.runner
+    checked, runner = along.checked, along.study.setup.runner
     if checked is None:
         return None, ONE_INSTANT
     if checked.run.method.determined:
@@ -54,7 +54,7 @@ def method_beside(run: Trajectory) -> Method:
 def across_plane(along: Along) -> tuple[Growing | None, str]:
     """The growth out of the plane that the scene was found to stay in; or why there is none."""
     study = along.study
-    checked, layout = study.history.checked, along.layout
+    checked, layout = along.checked, along.layout
     if checked is None or study.setup.model.get("plane") is None:
         return None, ""
     if study.setup.model["plane"] == "declared":

@@ -32,7 +32,7 @@ WINDOWS = 100  # of the run, over which the speeds change
 def stiffness_of(along: Along) -> tuple[Stiffness | None, str]:
     """The stiffness of a motion or a state, or why there is none."""
     study = along.study
-    runner, checked = study.setup.runner, study.history.checked
+    runner, checked = study.setup.runner, along.checked
     n = runner.moving.layout.n_state
     if checked is not None and checked.run.method.determined:
         return None, "nothing is integrated: drives and joints leave no freedom"
