@@ -26,6 +26,7 @@ from setuptools.command.bdist_wheel import bdist_wheel
 from setuptools.command.build_ext import build_ext
 from setuptools.command.sdist import sdist
 
+sys.path.insert(0, str(Path(__file__).parents[1]))  # installers load this file alone, where no package can be imported
 from heuncli.kernel.sources import KEEPER, digest
 
 # The kernel validates before it enters the loops and guards its divisors itself.
