@@ -215,6 +215,8 @@ class Shadows:
             Q, R = np.linalg.qr(D)
             C, steps = R @ C, steps + done
             size = float(np.abs(C).max())
+            if size == 0.0:
+                return growth_of(found, f"a disturbance dies out to nothing by t = {piece.end:.6g} s")
             C, log = C / size, log + math.log(size)
             G = factor * float(np.linalg.norm(Q[:n] @ C, 2))
             found.append((piece.end, log + math.log(max(G, tolerances.EPS)), float(steps)))

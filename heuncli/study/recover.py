@@ -89,8 +89,19 @@ class Recovery:
 
     @cached_property
     def loads(self) -> list[AppliedLoad]:
-        """The applied loads."""
-        return applied_loads(self.setup.scene.mechanism, self.recovered)
+        """The applied loads; of a spring whose points coincide the rate at which they part: its line begins there."""
+        found = applied_loads(self.setup.scene.mechanism, self.recovered)
+        if not any(isinstance(own.load, PairLoad) and (own.length == 0.0).any() for own in found):
+            return found
+        from heuncli.integration.lines import parting  # hardly any scene needs it
+
+        layout, recovered = self.setup.scene.layout, self.recovered
+        return [
+            replace(own, rate=np.where(own.length == 0.0, speed(parting(layout, own.load, recovered)), own.rate))
+            if isinstance(own.load, PairLoad)
+            else own
+            for own in found
+        ]
 
     @cached_property
     def shares(self) -> Shares:
@@ -140,6 +151,11 @@ class Recovery:
     def indeterminate(self) -> SelfStress | None:
         """The self-stresses that no split has resolved."""
         return self.decided.left if self.decided is not None else None
+
+
+def speed(velocities: Array) -> Array:
+    """The magnitudes of vectors (n_t, 3)."""
+    return np.asarray(np.sqrt(np.sum(velocities**2, axis=-1)))
 
 
 def recover(setup: Setup, recovered: Recovered, least_norm: bool) -> Recovery:
