@@ -34,9 +34,9 @@ class Table:
     name: str
     pieces: int
     kind: int
-    numbers: tuple[float, ...]
-    x: tuple[float, ...] = ()
-    y: tuple[float, ...] = ()
+    numbers: array[float]
+    x: array[float]
+    y: array[float]
     interpolation: str = "linear"
     dimensions: tuple[tuple[int, int, int] | None, tuple[int, int, int] | None] = (None, None)
 

@@ -228,7 +228,7 @@ class _Reader:
         exponent = 1
         if self.token in ("^", "**"):
             self.advance()
-            if self.token is None or not self.token.lstrip("+-").isdigit() or len(self.token) > 2:
+            if self.token is None or not self.token.lstrip("+-").isdecimal() or len(self.token) > 2:
                 message = f"'{self.text}' is not a unit: a power is a small whole number"
                 raise Finding("unknown-unit", message, "as in m^2")
             exponent = int(self.token)
@@ -236,7 +236,7 @@ class _Reader:
         elif self.token in SUPERSCRIPTS:
             exponent = SUPERSCRIPTS[self.token]
             self.advance()
-        elif self.token is not None and self.token.lstrip("+-").isdigit():
+        elif self.token is not None and self.token.lstrip("+-").isdecimal():
             raise Finding(
                 "unknown-unit", f"'{self.text}' is not a unit: '{self.token}' is not expected", "a power is m^2"
             )

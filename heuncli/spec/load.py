@@ -52,7 +52,8 @@ class Loading:
         self.unread: set[str] = set()
         self.files: list[str] = []
         if type(source.data) is not dict:
-            message = f"a spec is a mapping, this is {kind_of(source.data)}"
+            kind = kind_of(source.data) if type(source.data) is not str else "a text"  # of whatever file: not told
+            message = f"a spec is a mapping, this is {kind}"
             raise SpecError(
                 *self.problems, Problem("not-a-scene", message, source.location(()), "it starts with 'heun: 1'")
             )

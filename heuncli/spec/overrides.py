@@ -8,6 +8,7 @@ from typing import Any
 
 from heuncli.errors import Finding, Problem, SourceLocation, SpecError
 from heuncli.nearest import did_you_mean
+from heuncli.results_schema import counted
 from heuncli.spec.names import NAMED, mapping
 from heuncli.spec.source import Path_, parse
 
@@ -76,7 +77,8 @@ def path_of(key: str, data: dict[str, Any]) -> Path_:
     path: list[str | int] = []
     node: Any = data
     for word in key.split("."):
-        part: str | int = int(word) if type(node) is list and word.isdigit() else word
+        place = counted(word) if type(node) is list else None
+        part: str | int = word if place is None else place
         node = below(node, part)
         path.append(part)
     return tuple(path)

@@ -2,33 +2,29 @@
 
 from __future__ import annotations
 
-import csv
-import math
+from array import array
 from collections.abc import Iterator
 from pathlib import Path
+
+import numpy as np
 
 from heuncli import tolerances
 from heuncli.errors import Finding, SourceLocation
 from heuncli.expressions.curves import fit
 from heuncli.expressions.programs import Table
 from heuncli.expressions.units import Dimension, parse_unit
-from heuncli.nearest import nearest
-from heuncli.number_range import is_in_range, out_of_range
+from heuncli.number_range import out_of_range
 from heuncli.records import record, replace
+from heuncli.spec.columns import Columns, CsvError, NoColumn, columns_of
 from heuncli.spec.format import Table as Entry
 from heuncli.spec.quantity import Scope, number
 from heuncli.spec.reading import read_bytes
 
-MOST_ROWS = 2_000_000
-LARGEST = 200_000_000  # bytes: that many rows of a hundred characters
+LARGEST = 200_000_000  # bytes: two million rows of a hundred characters
 RELATIVE = "a path is relative to the spec's folder"
 # what to do about it
 SLOPES = "keep x and y within some ten powers of ten, in units of their own: x_unit, y_unit"
 CONSTANT = "a value that does not change is a parameter"
-ROWS = "each row has its numbers between commas, as 0.5, 12"
-FEWER = "keep the points that matter: between them the table interpolates"
-NUMBERS = "one number a cell, with a point; lines of words begin with #"
-QUOTES = "quotes come in pairs; plain numbers need none"
 
 
 @record
@@ -40,22 +36,6 @@ class Wrong:
     location: SourceLocation | None = None
 
 
-class NoColumn(Exception):
-    """A column that the file does not have: which of those wanted, and the finding."""
-
-    def __init__(self, number: int, finding: Finding) -> None:
-        super().__init__(finding.message)
-        self.number, self.finding = number, finding
-
-
-class CsvError(Exception):
-    """Line and column in a CSV file, and what is wrong there."""
-
-    def __init__(self, line: int, column: int, finding: Finding) -> None:
-        super().__init__(finding.message)
-        self.line, self.column, self.finding = line, column, finding
-
-
 def build_table(name: str, entry: Entry, scope: Scope, folder: Path) -> tuple[Table | None, list[Wrong]]:
     """The table of an entry, or what is wrong with it."""
     wrong: list[Wrong] = []
@@ -65,13 +45,15 @@ def build_table(name: str, entry: Entry, scope: Scope, folder: Path) -> tuple[Ta
             hint = "with a file, x and y name its columns"
             return None, [*wrong, Wrong((), Finding("table-form", "both a file and lists of numbers", hint))]
         columns = from_file(entry, entry.file, folder, wrong)
-        if columns is not None:
-            columns = [[v * size for v in column] for column, size in zip(columns, sizes, strict=True)]
+        for column, size in zip(columns or (), sizes, strict=False):
+            values = np.frombuffer(column)  # the same memory
+            with np.errstate(over="ignore"):  # judged below, with its place
+                values *= size
     elif isinstance(entry.x, list) and isinstance(entry.y, list):
-        columns = [
-            [v for i, item in enumerate(items) if (v := read(item, size, scope, (key, i), wrong)) is not None]
-            for key, items, size in (("x", entry.x, sizes[0]), ("y", entry.y, sizes[1]))
-        ]
+        given = (("x", entry.x, sizes[0]), ("y", entry.y, sizes[1]))
+        read_items = ([read(item, size, scope, (key, i), wrong) for i, item in enumerate(items)]
+                      for key, items, size in given)  # fmt: skip
+        columns = [array("d", [value for value in values if value is not None]) for values in read_items]
     else:
         hint = "give {file, x, y} with columns by name or number, or the lists {x: [...], y: [...]}"
         return None, [*wrong, Wrong((), Finding("table-form", "neither a file nor lists of numbers x and y", hint))]
@@ -86,7 +68,7 @@ def build_table(name: str, entry: Entry, scope: Scope, folder: Path) -> tuple[Ta
         x[-1], y[-1] = x[0] + entry.period, y[0]
     table = fit(name, x, y, entry.interpolation, entry.outside, entry.period)
     table = replace(table, dimensions=(dimension_of(entry.x_unit), dimension_of(entry.y_unit)))
-    if not all(map(math.isfinite, table.numbers)):
+    if not np.isfinite(np.frombuffer(table.numbers)).all():
         return None, [
             Wrong((), Finding("table-shape", "its points lie too close together or too far apart for a slope", SLOPES))
         ]
@@ -117,17 +99,18 @@ def read(item: object, size: float, scope: Scope, keys: tuple[str | int, ...], w
     return value if isinstance(item, str) else value * size
 
 
-def too_small_or_large(columns: list[list[float]], entry: Entry) -> Iterator[Wrong]:
+def too_small_or_large(columns: Columns, entry: Entry) -> Iterator[Wrong]:
     """The first number of each column that is not computed with."""
     for key, column in zip(("x", "y"), columns, strict=True):
-        sizes = [*map(abs, column)]
-        if not is_in_range(max(sizes, default=0.0)) or not is_in_range(min(filter(None, sizes), default=0.0)):
-            i = next(i for i, value in enumerate(column) if not is_in_range(value))
+        sizes = np.abs(np.frombuffer(column))
+        beyond = (sizes > tolerances.MOST_MAGNITUDE) | ((sizes < tolerances.LEAST_MAGNITUDE) & (sizes != 0.0))
+        if beyond.any():
+            i = int(beyond.argmax())
             in_file = entry.file is not None
             yield Wrong(("file",) if in_file else (key, i), out_of_range(column[i], f"number {i + 1} of {key} (SI)"))
 
 
-def shape_of(x: list[float], y: list[float], entry: Entry) -> Iterator[Wrong]:
+def shape_of(x: array[float], y: array[float], entry: Entry) -> Iterator[Wrong]:
     """What keeps points from being a function."""
     at = () if entry.file is None else ("file",)
     if len(x) != len(y):
@@ -136,13 +119,15 @@ def shape_of(x: list[float], y: list[float], entry: Entry) -> Iterator[Wrong]:
     if len(x) < 2:
         yield Wrong(at, Finding("table-shape", "a table needs two points at least", CONSTANT))
         return
-    for i in range(1, len(x)):
-        if x[i] <= x[i - 1]:
-            message = f"x must ascend, but {x[i]:.9g} follows {x[i - 1]:.9g} (SI)"
-            keys = ("x", i) if entry.file is None else at
-            hint = "for a jump let x grow by a little" if x[i] == x[i - 1] else "sort the points by x"
-            yield Wrong(keys, Finding("table-shape", message, hint))
-            return
+    points = np.frombuffer(x)
+    falls = points[1:] <= points[:-1]
+    if falls.any():
+        i = int(falls.argmax()) + 1
+        message = f"x must ascend, but {x[i]:.9g} follows {x[i - 1]:.9g} (SI)"
+        keys = ("x", i) if entry.file is None else at
+        hint = "for a jump let x grow by a little" if x[i] == x[i - 1] else "sort the points by x"
+        yield Wrong(keys, Finding("table-shape", message, hint))
+        return
     if entry.period is None:
         return
     if entry.outside is not None:
@@ -159,7 +144,7 @@ def shape_of(x: list[float], y: list[float], entry: Entry) -> Iterator[Wrong]:
         yield Wrong(("period",), Finding("table-period", message, "the last point repeats the first, one period on"))
 
 
-def from_file(entry: Entry, file: str, folder: Path, wrong: list[Wrong]) -> list[list[float]] | None:
+def from_file(entry: Entry, file: str, folder: Path, wrong: list[Wrong]) -> Columns | None:
     """The two columns of a CSV file, as they stand there."""
     path = folder / file
     try:
@@ -191,74 +176,3 @@ def text_of(path: Path) -> str:
         reason, code = refused.message, refused.code if is_large else "table-file"
         hint = "a table of fewer points, or of these two columns alone" if is_large else RELATIVE
     raise Finding(code, f"the file '{path}' cannot be read: {reason}", hint)
-
-
-def columns_of(text: str, *wanted: object) -> list[list[float]]:
-    """Columns of CSV text, by their names in the first row or their numbers from 1. Raises CsvError, NoColumn.
-
-    Commas, semicolons (then with decimal commas, too), tabs or spaces separate; empty lines and lines that begin with #
-    do not count.
-    """
-    lines = [
-        (n, line) for n, line in enumerate(text.splitlines(), 1) if line.strip() and not line.lstrip().startswith("#")
-    ]
-    if not lines:
-        raise CsvError(1, 1, Finding("table-file", "the file holds no rows", ROWS))
-    if len(lines) > MOST_ROWS:
-        raise CsvError(1, 1, Finding("table-file", f"{len(lines)} rows; at most {MOST_ROWS} are read", FEWER))
-    mark = next((m for m in (";", "\t", ",") if m in lines[0][1]), None)
-    rows = [(n, cells(n, line, mark)) for n, line in lines]
-    header = [cell.strip() for cell in rows[0][1]]
-    is_header = not all(as_number(cell, mark) is not None for cell in header)
-    body = rows[1:] if is_header else rows
-    indices = [column(i, key, header if is_header else [], len(header)) for i, key in enumerate(wanted)]
-    columns: list[list[float]] = [[] for _ in wanted]
-    for n, row in body:
-        for index, values in zip(indices, columns, strict=True):
-            if index >= len(row):
-                message = f"the row has {len(row)} cells, column {index + 1} is missing"
-                raise CsvError(n, 1, Finding("table-file", message, ROWS))
-            value = as_number(row[index], mark)
-            if value is None:
-                message = f"'{row[index].strip()}' in column {index + 1} is not a number"
-                raise CsvError(n, 1, Finding("table-file", message, NUMBERS))
-            values.append(value)
-    return columns
-
-
-def cells(n: int, line: str, mark: str | None) -> list[str]:
-    """The cells of a row."""
-    if mark is None:
-        return line.split()
-    try:
-        return next(csv.reader([line], delimiter=mark, strict=True))
-    except csv.Error as error:
-        raise CsvError(n, 1, Finding("table-file", f"the row cannot be read: {error}", QUOTES)) from None
-
-
-def as_number(cell: str, mark: str | None) -> float | None:
-    """The finite number in a cell, if there is one."""
-    cell = cell.strip()
-    if mark == ";" and "." not in cell:
-        cell = cell.replace(",", ".")
-    try:
-        value = float(cell)
-    except ValueError:
-        return None
-    return value if math.isfinite(value) and "_" not in cell else None
-
-
-def column(number: int, key: object, header: list[str], count: int) -> int:
-    """Index of a column, from 0; number: which of those wanted."""
-    if isinstance(key, str) and not key.isdigit():
-        if key in header:
-            return header.index(key)
-        hint = f"the first row is: {', '.join(header)}" if header else "the first row holds numbers"
-        near = nearest(key, header)
-        hint = f"did you mean {near}? {hint}" if near else f"{hint}; columns may be named by 1, 2, ..., too"
-        raise NoColumn(number, Finding("table-file", f"there is no column '{key}'", hint))
-    index = int(str(key)) if str(key).isdigit() else 0
-    if not 1 <= index <= count:
-        finding = Finding("table-file", f"there is no column {key}", f"columns are counted from 1 to {count}")
-        raise NoColumn(number, finding)
-    return index - 1

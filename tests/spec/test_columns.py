@@ -1,0 +1,163 @@
+"""CSV files: what is read at once and what cell by cell is the same, and what no message tells."""
+
+from __future__ import annotations
+
+import os
+import random
+import subprocess
+import sys
+from pathlib import Path
+
+import pytest
+
+from heuncli.errors import SpecError
+from heuncli.spec import columns
+from heuncli.spec.columns import CsvError, NoColumn, columns_of
+from heuncli.spec.load import load
+
+BODY = "heun: 1\nbodies: {b: {mass: 1, center: [0, 0, 0], inertia: [1, 1, 1]}}\n"
+CELLS = [
+    "1", "-2.5", "+3", "4e-3", ".5", "6.", " 7 ", "1,5", "0x1", "1_0", "nan", "inf", "1e999", "", "a", '"8"', '"9',
+    "1 2", "²", "٣", "1e", "-", "1-2", "\x0b", "1d5", "1j", "1e5,", "00012", "1E+05", "  ", "1.5.2", "+-1", "1e400",
+    "5e-324", "123456789012345678901234567890.1", "2.2250738585072011e-308", "9007199254740993", "0.1",
+]  # fmt: skip
+EXTRA = ["", "   ", "# half way", "  # 1,2", "\t", "1"]
+
+
+def outcome(text: str) -> object:
+    try:
+        return [list(column) for column in columns_of(text, 1, 2)]
+    except (CsvError, NoColumn) as error:
+        return type(error), str(error), getattr(error, "line", None), error.finding.hint
+
+
+def random_text(draw: random.Random) -> str:
+    mark = draw.choice([",", ";", "\t", " ", ", ", " ; "])
+    plain = draw.random() < 0.6
+    cells = CELLS[:7] if plain else CELLS
+    lines = [mark.join(draw.choice(cells) for _ in range(draw.choice([2, 2, 2, 3]))) for _ in range(draw.randint(1, 6))]
+    if draw.random() < 0.5:
+        lines.insert(0, mark.join(["x", "y", "z"][: draw.randint(2, 3)]))
+    for _ in range(draw.choice([0, 0, 1, 2])):
+        lines.insert(draw.randint(0, len(lines)), draw.choice(EXTRA))
+    return draw.choice(["\n", "\n", "\r\n", "\r"]).join(lines) + draw.choice(["", "\n"])
+
+
+@pytest.mark.parametrize("seed", range(4))
+def test_numpy_reads_what_is_read_cell_by_cell(seed: int, monkeypatch: pytest.MonkeyPatch) -> None:
+    draw = random.Random(seed)
+    texts = [random_text(draw) for _ in range(500)]
+    monkeypatch.setattr(columns, "PIECE", 8)  # several pieces in a few lines
+    found = [outcome(text) for text in texts]
+    assert sum(isinstance(result, list) for result in found) > 50
+    monkeypatch.setattr(columns, "read_plain", lambda *_: False)
+    for text, result in zip(texts, found, strict=True):
+        assert outcome(text) == result, repr(text)
+
+
+def test_two_million_rows(tmp_path: Path) -> None:
+    rows = "\n".join(map("%d,1".__mod__, range(2_000_000)))
+    (tmp_path / "large.csv").write_text(f"x,y\n{rows}\n")
+    (tmp_path / "spec.yaml").write_text(BODY + "tables: {f: {file: large.csv, x: x, y: y}}\n")
+    code = (
+        "import time\nfrom pathlib import Path\nfrom heuncli.cli.entry import enter\n"
+        "assert enter(['validate', 'spec.yaml']) == 0\nstatus = Path('/proc/self/status').read_text().split()\n"
+        "print(time.process_time(), status[status.index('VmHWM:') + 1])"
+    )
+    path = os.pathsep.join([str(Path(__file__).parents[2]), os.environ.get("PYTHONPATH", "")])
+    run = subprocess.run([sys.executable, "-c", code], cwd=tmp_path, env={**os.environ, "PYTHONPATH": path},
+                         capture_output=True, text=True, check=True)  # fmt: skip
+    seconds, kilobytes = map(float, run.stdout.splitlines()[-1].split())
+    assert kilobytes < 220_000  # 170 MB where it was measured; as lists of Python's numbers 900
+    assert seconds < 20.0  # 1 s where it was measured
+
+
+def test_more_rows_are_too_many(monkeypatch: pytest.MonkeyPatch) -> None:
+    monkeypatch.setattr(columns, "MOST_ROWS", 10)
+    assert len(columns_of("1,2\n" * 10, 1)[0]) == 10
+    with pytest.raises(CsvError) as caught:
+        columns_of("1,2\n" * 11, 1)
+    assert caught.value.finding.code == "too-large"
+
+
+@pytest.mark.parametrize("interpolation", ["linear", "cubic", "pchip"])
+def test_points_that_have_no_slope_are_told_without_a_warning(interpolation: str) -> None:
+    text = f"tables: {{f: {{x: [0, 1e-60, 1], y: [0, 1e60, -1e60], interpolation: {interpolation}}}}}\n"
+    try:
+        load("spec.yaml", BODY + text)
+    except SpecError as error:
+        assert [problem.code for problem in error.problems] == ["table-shape"]
+
+
+@pytest.mark.parametrize(("wanted", "words"), [
+    (("a", "b"), "there are 2 columns 'a'"),
+    (("b", "c"), "there is no column 'c'"),
+    (("²", "b"), "there is no column '²'"),
+    (("٣", "b"), "there is no column '٣'"),
+    (("9" * 5000, "b"), "there is no column '999"),
+    ((1.5, "b"), "there is no column 1.5"),
+])  # fmt: skip
+def test_columns_are_named_as_they_are(wanted: tuple[object, ...], words: str) -> None:
+    with pytest.raises(NoColumn) as caught:
+        columns_of("a,b,a\n1,2,3\n4,5,6\n", *wanted)
+    assert words in caught.value.finding.message
+
+
+def test_a_column_that_is_there_twice_is_named_by_its_number() -> None:
+    text = "a,b,a\n1,2,3\n4,5,6\n"
+    assert [*map(list, columns_of(text, "b", 3))] == [[2.0, 5.0], [3.0, 6.0]]
+    with pytest.raises(NoColumn) as caught:
+        columns_of(text, "a", "b")
+    assert caught.value.finding.hint == "name it by its number: 1 or 3"
+    assert list(columns_of("²,b\n1,2\n", "²")[0]) == [1.0]
+
+
+@pytest.mark.parametrize("word", ["tables.f.x=²", "tables.f.x.²=1", f"tables.f.x.{'9' * 5000}=1", "expect.²=1"])
+def test_strange_digits_on_the_command_line_are_words(word: str) -> None:
+    key, _, value = word.partition("=")
+    with pytest.raises(SpecError):
+        load("spec.yaml", BODY + "tables: {f: {x: [0, 1], y: [0, 1]}}\nexpect: []\n", {key: value})
+
+
+@pytest.mark.parametrize("unit", ["m^²", "m**²", "m ²²", "m^٣"])
+def test_strange_digits_in_units_are_words(unit: str) -> None:
+    with pytest.raises(SpecError) as caught:
+        load("spec.yaml", BODY.replace("mass: 1", f"mass: 1 {unit}"))
+    assert caught.value.problems[0].code in ("unknown-unit", "dimension")
+
+
+SECRETS = [
+    "root:x:0:0:root:/root:/bin/bash\ndaemon:x:1:1:daemon:/usr/sbin:/usr/sbin/nologin\n",
+    "root:$6$salt$hash\n",
+    "-----BEGIN KEY-----\nc2VjcmV0LXNlY3JldA==\nroot\n-----END KEY-----\n",
+    "PASSWORD,root\nhunter2,root\n",
+    "root\thunter2\n5\tx\n",
+    '"root" hunter2\n"root\n',
+    "root;hunter2\nroot;1\n1;2\n",
+    "1root-2,3\n",
+]
+
+
+@pytest.mark.parametrize("secret", SECRETS)
+@pytest.mark.parametrize("wanted", ["x: a, y: b", "x: 1, y: 2", "x: 2, y: 1", "x: 1, y: 1", "x: roots, y: rooz"])
+def test_no_message_tells_what_stands_in_a_file_that_is_no_table(wanted: str, secret: str, tmp_path: Path) -> None:
+    (tmp_path / "secret").write_text(secret)
+    with pytest.raises(SpecError) as caught:
+        load(tmp_path / "spec.yaml", BODY + f"tables: {{f: {{file: secret, {wanted}}}}}\n")
+    told = str(caught.value).replace("'roots'", "").replace(str(tmp_path), "")
+    assert not any(word in told for word in ("root", "hunter2", "PASSWORD", "KEY", "c2V"))
+
+
+def test_a_wrong_cell_among_numbers_is_told() -> None:
+    with pytest.raises(CsvError) as caught:
+        columns_of("a,b,c\n1,2,z\n3,four,z\n", "a", "b")
+    assert (caught.value.line, caught.value.finding.message) == (3, "'four' in column 2 is not a number")
+    with pytest.raises(NoColumn) as other:
+        columns_of("a,b\n1,2\n", "d")
+    assert other.value.finding.hint == "columns are: a, b; columns may be named by 1, 2, ..., too"
+
+
+def test_a_file_that_is_no_spec_is_not_told_either() -> None:
+    with pytest.raises(SpecError) as caught:
+        load("spec.yaml", "hunter2\n")
+    assert "hunter2" not in str(caught.value)
