@@ -2,9 +2,14 @@
 
 from __future__ import annotations
 
+import os
 import re
+import subprocess
+import sys
 import tomllib
 from pathlib import Path
+
+import pytest
 
 from heuncli.kernel.form import FOLDER, MODULES
 
@@ -34,3 +39,17 @@ def test_the_readme_has_one_command_to_run_and_one_to_test() -> None:
     tests = [line for line in lines if re.match(r"pip install .*&& pytest$", line)]
     assert (len(runs), len(tests)) == (1, 1)
     assert (ROOT / runs[0].split()[-1]).exists()
+
+
+def test_installers_can_load_the_build_by_itself(tmp_path: Path) -> None:
+    """They run it from its file, where the package cannot be imported."""
+    pytest.importorskip("setuptools")
+    code = (
+        "import os, runpy, sys\n"
+        "sys.path = [folder for folder in sys.path if not os.path.exists(os.path.join(folder, 'heuncli'))]\n"
+        "sys.meta_path = [finder for finder in sys.meta_path if 'editable' not in str(finder)]\n"
+        f"print(runpy.run_path({str(ROOT / 'heuncli' / 'build.py')!r})['BuildKernel'].__name__)\n"
+    )
+    env = {key: value for key, value in os.environ.items() if key != "PYTHONPATH"}
+    run = subprocess.run([sys.executable, "-P", "-c", code], capture_output=True, text=True, cwd=tmp_path, env=env)
+    assert (run.stdout, run.returncode) == ("BuildKernel\n", 0), run.stderr
