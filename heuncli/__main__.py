@@ -1,15 +1,23 @@
 """The command `heun`, and `python -m heuncli`.
 
-Impure: sets OPENBLAS_NUM_THREADS before NumPy can be imported (threads cost more to start than they save here), and
-how often Python looks for cycles of dead objects, and whether Python's own warnings are shown.
+Impure: listens to signals before anything else is imported, sets OPENBLAS_NUM_THREADS before NumPy can be (threads cost
+more to start than they save here), how often Python looks for cycles of dead objects, and whether its own warnings are
+shown.
 """
 
 from __future__ import annotations
+
+import _signal  # type: ignore[import-not-found]
+
+if _signal.getsignal(_signal.SIGINT) is _signal.default_int_handler:
+    _signal.signal(_signal.SIGINT, _signal.SIG_DFL)  # ends without a word until `listen` can say one
 
 import gc
 import os
 import sys
 import warnings
+
+from heuncli import leaving
 
 os.environ.setdefault("OPENBLAS_NUM_THREADS", "1")
 MANY = 500_000  # objects made between two searches for dead cycles; 700 by default: 20 ms while modules are loaded
@@ -17,14 +25,29 @@ MANY = 500_000  # objects made between two searches for dead cycles; 700 by defa
 
 def main() -> None:
     """Run the command line and leave with its exit code."""
+    leaving.listen()
     gc.set_threshold(MANY)
+    fill_gaps()
     if not sys.warnoptions and os.environ.get("HEUN_DEBUG") != "1":
         warnings.simplefilter("ignore")  # a net: what warns is mended where it arises, and is an error in tests
     from heuncli.cli.entry import enter  # after the environment is set
 
     code = enter(sys.argv[1:])
+    leaving.deafen()
     gc.freeze()  # all memory goes with the process: the search at its end would take 30 ms
     sys.exit(code)
+
+
+def fill_gaps() -> None:
+    """Stand in for standard streams that are closed: else the next file opened is taken for one of them.
+
+    What reads from the one or writes to the others is refused, as before.
+    """
+    for number, mode in enumerate((os.O_WRONLY, os.O_RDONLY, os.O_RDONLY)):
+        try:
+            os.fstat(number)
+        except OSError:
+            os.open(os.devnull, mode)
 
 
 if __name__ == "__main__":

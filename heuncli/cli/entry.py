@@ -15,7 +15,8 @@ from typing import TypeVar
 
 from heuncli import files_read
 from heuncli.cli import alarm, plain
-from heuncli.cli.output import ReaderGone, emit, say
+from heuncli.cli.files import ReaderGone
+from heuncli.cli.output import emit, say
 from heuncli.cli.requests import COMMANDS, GRACES, LATER_COMMANDS, LATER_OPTIONS, Request
 from heuncli.errors import HeunError, LimitError, Problem
 from heuncli.foreign_text import shown

@@ -7,25 +7,15 @@ from __future__ import annotations
 
 import codecs
 import contextlib
-import os
-import stat
 import sys
-from pathlib import Path
+from typing import TextIO
 
-from heuncli.cli import alarm
-from heuncli.errors import HeunError, OutputError, Problem
+from heuncli.cli import alarm, files
+from heuncli.cli.files import ReaderGone
+from heuncli.errors import OutputError, Problem
 from heuncli.foreign_text import escaped, shown_lines
 
-NEW_FILE_MODE = 0o666
-TO_FILE = "write to a file: -o FILE"
-TO_OTHER = "make room there, or name a file that can be written: -o FILE"
 ESCAPED = "heun.escaped"
-
-
-class ReaderGone(HeunError):
-    """Nobody reads standard output any more; nothing needs saying."""
-
-    exit_code = 141
 
 
 def emit(text: str, target: str | None = None, *, late: bool = False) -> None:
@@ -37,7 +27,7 @@ def emit(text: str, target: str | None = None, *, late: bool = False) -> None:
     if target is None or target == "-":
         _to_standard_output(text)
     else:
-        _to_file(as_bytes(text), Path(target))
+        files.write(as_bytes(text), target)
 
 
 def as_bytes(text: str, encoding: str = "utf-8") -> bytes:
@@ -59,7 +49,7 @@ def _escape(error: UnicodeError) -> tuple[str, int]:
 def save(content: bytes, target: str) -> None:
     """Write what is no text to a file, however late."""
     alarm.off(late=True)
-    _to_file(content, Path(target))
+    files.write(content, target)
 
 
 def say(text: str) -> None:
@@ -71,59 +61,24 @@ def say(text: str) -> None:
 
 def _to_standard_output(text: str) -> None:
     if sys.stdout is None:
-        raise OutputError(Problem("output-closed", "standard output is closed", hint=TO_FILE))
+        raise OutputError(Problem("output-closed", "standard output is closed", hint="write to a file: -o FILE"))
     try:
-        left = memoryview(as_bytes(text, sys.stdout.encoding if sys.stdout.isatty() else "utf-8"))
-        while left:  # unbuffered (PYTHONUNBUFFERED) a write may take a part only
-            left = left[sys.stdout.buffer.write(left) or 0 :]
-        sys.stdout.buffer.flush()
+        content = as_bytes(text, sys.stdout.encoding if sys.stdout.isatty() else "utf-8")
+        number = _number(sys.stdout)
+        if number is None:
+            sys.stdout.buffer.write(content)
+        else:  # past Python's buffer, which would complain at its end once more
+            sys.stdout.flush()
+            files.write_all(number, content)
     except BrokenPipeError:
-        _silence()
         raise ReaderGone from None
     except OSError as reason:
-        _silence()
-        message = f"standard output: {reason.strerror or reason}"
-        raise OutputError(Problem("output-failed", message, hint=TO_FILE)) from reason
+        raise OutputError(files.failed("standard output", reason)) from None
 
 
-def _silence() -> None:
-    """Send what Python would still flush at exit to nowhere, so that it does not complain once more."""
-    with contextlib.suppress(OSError, ValueError):
-        nowhere = os.open(os.devnull, os.O_WRONLY)
-        os.dup2(nowhere, sys.stdout.fileno())
-        os.close(nowhere)
-
-
-def _to_file(content: bytes, path: Path) -> None:
+def _number(stream: TextIO) -> int | None:
+    """The descriptor of a stream, if it has one of the system's."""
     try:
-        target = path.resolve()
-        if target.exists() and not target.is_file():
-            target.write_bytes(content)  # a pipe or a device has no "whole"
-        else:
-            _replace(content, target)
-    except OSError as reason:
-        raise OutputError(Problem("output-failed", f"{path}: {reason.strerror or reason}", hint=TO_OTHER)) from reason
-
-
-def _replace(content: bytes, target: Path) -> None:
-    """Write beside the target, then rename over it: at every moment the old content or the new one stands there."""
-    import tempfile  # 4 ms that only files need
-
-    mode = stat.S_IMODE(target.stat().st_mode) if target.exists() else NEW_FILE_MODE & ~_umask()
-    handle, name = tempfile.mkstemp(prefix=f".{target.name}.", dir=target.parent)
-    try:
-        with os.fdopen(handle, "wb") as file:
-            file.write(content)
-            file.flush()
-            os.fsync(file.fileno())
-        Path(name).chmod(mode)
-        Path(name).replace(target)
-    except BaseException:
-        Path(name).unlink(missing_ok=True)
-        raise
-
-
-def _umask() -> int:
-    mask = os.umask(0)
-    os.umask(mask)
-    return mask
+        return stream.fileno()
+    except (OSError, ValueError):
+        return None

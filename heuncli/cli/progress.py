@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import os
 import sys
 import time
 from collections.abc import Callable, Iterator
@@ -9,8 +10,10 @@ from contextlib import contextmanager
 from typing import Any
 
 from heuncli.cli.terminal import styled
+from heuncli.leaving import Undoing
 
 PATIENCE = 1.5  # seconds before it shows
+WIPE = b"\r\x1b[2K\x1b[?25h"  # clears the line and shows the cursor, which the bar hides
 Tell = Callable[[int, int, str], None]
 
 
@@ -18,11 +21,14 @@ Tell = Callable[[int, int, str], None]
 def progress(quiet: bool) -> Iterator[Tell]:
     """What work calls with how much is done of how much, and what is under way."""
     bar = None if quiet or sys.stderr is None or not sys.stderr.isatty() or not styled() else Bar()
+    if bar is None:
+        yield _silent
+        return
     try:
-        yield bar.tell if bar is not None else _silent
+        with Undoing(bar.wipe):
+            yield bar.tell
     finally:
-        if bar is not None:
-            bar.close()
+        bar.close()
 
 
 def _silent(done: int, of: int, what: str) -> None:
@@ -50,6 +56,11 @@ class Bar:
             self.shown.start()
             self.task = self.shown.add_task(what, total=of)
         self.shown.update(self.task, completed=done, total=of, description=what)
+
+    def wipe(self) -> None:
+        """Take it away at once, where a signal leaves no time to."""
+        if self.shown is not None:
+            os.write(2, WIPE)
 
     def close(self) -> None:
         """Take it away."""

@@ -6,9 +6,10 @@ from collections.abc import Mapping, Sequence
 from pathlib import Path
 
 from heuncli.cli.entry import UsageError
+from heuncli.cli.files import place_of
 from heuncli.cli.guard import STDOUT
 from heuncli.cli.solving import choice
-from heuncli.errors import OutputError, Problem
+from heuncli.errors import Problem
 
 
 def format_of(asked: str | None, output: str | None, endings: Mapping[str, str], formats: Sequence[str]) -> str:
@@ -36,10 +37,4 @@ def require_room(output: str, option: str = "-o") -> None:
     if not output:
         hint = f"such as {option} results.json" if option == "-o" else None
         raise UsageError(Problem("bad-option", f"{option}: expected the name of a file", hint=hint))
-    path = Path(output)
-    if path.is_dir():
-        hint = "name a file in it"
-        raise OutputError(Problem("output-failed", f"{output}: this is a folder", hint=hint))
-    if not path.parent.is_dir():
-        hint = "make it first, or name another place"
-        raise OutputError(Problem("output-failed", f"{output}: there is no folder {path.parent}", hint=hint))
+    place_of(output)

@@ -12,7 +12,7 @@ from typing import Any
 
 import pytest
 
-from heuncli.cli import output
+from heuncli.cli import files
 from tests.cli.conftest import HANGING, Heun
 
 ENOUGH = 5.0  # seconds in which a command of a tenth of a second is given up, on a machine that does much else
@@ -78,13 +78,13 @@ def test_each_spec_has_its_own_limit(heun: Heun, folder: Path, monkeypatch: pyte
 
 def test_what_goes_out_goes_out_whole(heun: Heun, folder: Path, monkeypatch: pytest.MonkeyPatch) -> None:
     """The limit passes while the file is being written."""
-    replace = output._replace
+    replace = files.replace
 
-    def slowly(content: bytes, target: Path) -> None:
+    def slowly(content: bytes, place: files.Place) -> None:
         time.sleep(2.0)
-        replace(content, target)
+        replace(content, place)
 
-    monkeypatch.setattr("heuncli.cli.output._replace", slowly)
+    monkeypatch.setattr("heuncli.cli.files.replace", slowly)
     done = heun("run", "hanging.yaml", "-o", "out.json", "--time-limit", "1.5")
     assert (done.returncode, done.stderr) == (0, "")
     assert (folder / "out.json").read_text().endswith("}\n")

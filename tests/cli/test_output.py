@@ -5,10 +5,12 @@ from __future__ import annotations
 import os
 import stat
 import threading
+from collections.abc import Callable
 from pathlib import Path
 
 import pytest
 
+from heuncli.cli.files import ReaderGone, place_of
 from heuncli.cli.output import emit
 from heuncli.errors import OutputError
 
@@ -76,3 +78,135 @@ def test_a_pipe_is_written_straight(tmp_path: Path) -> None:
     reader.join(timeout=10)
     assert found == ["through"]
     assert pipe.is_fifo()
+
+
+def loop(folder: Path) -> str:
+    (folder / "a").symlink_to("b")
+    (folder / "b").symlink_to("a")
+    return "a"
+
+
+def loop_above(folder: Path) -> str:
+    return f"{loop(folder)}/out"
+
+
+def gone(folder: Path) -> str:
+    (folder / "gone").mkdir()
+    os.chdir(folder / "gone")
+    (folder / "gone").rmdir()
+    return "out"
+
+
+def link_to_nowhere(folder: Path) -> str:
+    (folder / "link").symlink_to("nowhere/out")
+    return "link"
+
+
+def file_taken_for_a_folder(folder: Path) -> str:
+    (folder / "file").write_text("old")
+    return "file/."
+
+
+def read_only(folder: Path) -> str:
+    (folder / "file").write_text("old")
+    return f"/dev/fd/{os.open(folder / 'file', os.O_RDONLY)}"
+
+
+def fixed(name: str) -> Callable[[Path], str]:
+    return lambda _: name
+
+
+@pytest.mark.parametrize(
+    ("named", "told"),
+    [
+        (loop, "Too many levels of symbolic links"),
+        (loop_above, "Too many levels of symbolic links"),
+        (gone, "No such file or directory"),
+        (link_to_nowhere, "there is no folder .*nowhere"),
+        (file_taken_for_a_folder, "this is the name of a folder"),
+        (read_only, "Bad file descriptor"),
+        (fixed("new/"), "this is the name of a folder"),
+        (fixed("./"), "this is a folder"),
+        (fixed(".."), "this is a folder"),
+        (fixed("/dev/fd/987"), "Bad file descriptor"),
+        (fixed("x" * 256), "File name too long"),
+        (fixed("x/" * 3000), "File name too long"),
+        (fixed("a\0b"), "NUL"),
+        (fixed("/proc/out"), "."),
+    ],
+)
+def test_where_nothing_can_be_written(
+    named: Callable[[Path], str], told: str, tmp_path: Path, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    monkeypatch.chdir(tmp_path)
+    target = named(tmp_path)
+    before = {path: path.read_text() for path in tmp_path.rglob("*") if path.is_file()}
+    with pytest.raises(OutputError, match=told) as caught:
+        emit("x", target)
+    assert all(problem.hint for problem in caught.value.problems)
+    assert before == {path: path.read_text() for path in tmp_path.rglob("*") if path.is_file()}
+
+
+@pytest.mark.parametrize("name", ["x" * 255, "-o", "--", " ", "a\nb", "ü" * 127, os.fsdecode(b"\xff")])
+def test_any_name_that_the_system_takes(name: str, tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
+    monkeypatch.chdir(tmp_path)
+    emit("x", name)
+    emit("y", name)
+    assert (tmp_path / name).read_text() == "y"
+    assert list(tmp_path.iterdir()) == [tmp_path / name]
+
+
+@pytest.mark.parametrize(("denied", "told"), [("file", "the file may not"), ("", "the folder . may not be written")])
+def test_rights_are_asked_for_before_the_work(
+    denied: str, told: str, tmp_path: Path, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    """By what the system says of them: for its administrator nothing is denied."""
+    monkeypatch.chdir(tmp_path)
+    (tmp_path / "file").write_text("old")
+    monkeypatch.setattr(os, "access", lambda path, _: Path(path) != tmp_path / denied)
+    with pytest.raises(OutputError, match=told):
+        place_of("file")
+
+
+@pytest.mark.parametrize("linked", [False, True])
+def test_an_open_descriptor_is_written_where_it_stands(linked: bool, tmp_path: Path) -> None:
+    """As `3> file` opens it: what was written before stays, and what comes after follows."""
+    number = os.open(tmp_path / "file", os.O_WRONLY | os.O_CREAT)
+    name = f"/dev/fd/{number}"
+    if linked:
+        (tmp_path / "link").symlink_to(name)
+        name = str(tmp_path / "link")
+    os.write(number, b"before ")
+    emit("out", name)
+    os.write(number, b" after")
+    os.close(number)
+    assert (tmp_path / "file").read_text() == "before out after"
+
+
+def test_a_descriptor_that_takes_none_for_a_while(tmp_path: Path) -> None:
+    """A pipe that does not block, as some programs hand on, and a reader that is slow."""
+    out, number = os.pipe()
+    os.set_blocking(number, False)
+    found: list[bytes] = []
+
+    def read() -> None:
+        while part := os.read(out, 1 << 16):
+            found.append(part)
+
+    reader = threading.Thread(target=read)
+    threading.Timer(0.2, reader.start).start()
+    emit("x" * 300_000, f"/dev/fd/{number}")
+    os.close(number)
+    while not reader.ident:
+        pass
+    reader.join(timeout=10)
+    assert b"".join(found) == b"x" * 300_000
+    os.close(out)
+
+
+def test_a_reader_of_a_pipe_that_goes_away(tmp_path: Path) -> None:
+    out, number = os.pipe()
+    os.close(out)
+    with pytest.raises(ReaderGone):
+        emit("x", f"/dev/fd/{number}")
+    os.close(number)

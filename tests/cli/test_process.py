@@ -34,7 +34,34 @@ def test_the_module_runs_as_the_command_does(folder: Path) -> None:
 def test_a_full_disk_is_5(folder: Path, words: str) -> None:
     done = shell(f"heun {words} > /dev/full", folder)
     assert done.returncode == 5
-    assert done.stderr == "heun: standard output: No space left on device [output-failed]\n"
+    assert done.stderr.startswith("heun: standard output: No space left on device [output-failed]\n  hint: ")
+
+
+@pytest.mark.parametrize(
+    ("line", "code", "kept"),
+    [
+        ("heun run hanging.yaml --only joints -o /dev/stdout > kept", 0, True),
+        ("heun run hanging.yaml --only joints -o /dev/stderr 2> kept", 0, True),
+        ("heun run hanging.yaml --only joints -o /dev/fd/3 3> kept", 0, True),
+        ("heun run hanging.yaml --only joints -o >(cat > kept); wait $!", 0, True),
+        ("heun run hanging.yaml --format json -o kept 2>&- >&- <&-", 0, True),
+        ("heun run hanging.yaml --format json >&- 2>&- 5> kept", 5, False),
+        ("heun run hanging.yaml -o /dev/stdout --format json >&-", 5, False),
+        ("heun run - <&- -o kept", 2, False),
+        ("heun run hanging.yaml --nosuch 2>&- > kept", 2, False),
+        ("ulimit -f 1; heun run swinging.yaml --format json -o kept", 5, False),
+        ("ulimit -f 1; heun run swinging.yaml --format json > kept", 5, None),
+    ],
+)
+def test_wherever_it_is_told_to_go(folder: Path, line: str, code: int, kept: bool | None) -> None:
+    """None: what a shell has opened may hold a part."""
+    names = {path.name for path in folder.iterdir()}
+    done = shell(line, folder)
+    assert done.returncode == code
+    assert {path.name for path in folder.iterdir()} - names <= {"kept"}
+    assert kept is None or bool((folder / "kept").exists() and (folder / "kept").read_text()) == kept
+    if kept:
+        assert "pivot" in (folder / "kept").read_text()
 
 
 def test_a_closed_output_is_5(folder: Path) -> None:

@@ -1,0 +1,178 @@
+"""A file that is written whole or not at all, and what stands for one: pipes, devices, open descriptors. Impure.
+
+An ordinary file is written beside its place and renamed into it: at every moment the old content or the new one stands
+there, and no signal leaves anything else. Where that cannot be, it is said before the work.
+"""
+
+from __future__ import annotations
+
+import errno
+import os
+import stat
+from functools import partial
+from pathlib import Path
+from typing import NamedTuple
+
+from heuncli.errors import HeunError, OutputError, Problem
+from heuncli.leaving import Undoing
+
+MOST_LINKS = 40  # that lead to one file; the system follows no more
+HINTS = {
+    errno.ENOSPC: "make room, or name a place on another disk",
+    errno.EDQUOT: "make room, or name a place on another disk",
+    errno.EFBIG: "raise the limit on the size of files (ulimit -f), or ask for less: --only, fewer samples",
+    errno.EACCES: "look at the permissions, or name another place",
+    errno.EPERM: "look at the permissions, or name another place",
+    errno.EROFS: "name a place that may be written",
+    errno.ENAMETOOLONG: "name it shorter",
+    errno.ELOOP: "look where its links lead: ls -l",
+    errno.ENOENT: "name a folder that exists",
+    errno.ENOTDIR: "name a folder that exists",
+    errno.EBADF: "open it for writing, such as: heun run scene.yaml -o /dev/fd/3 3> results",
+}
+NO_NAMES = ("", ".", "..")  # behind the last / of what is a folder
+OTHER_HINT = "name another file"
+
+
+class ReaderGone(HeunError):
+    """Nobody reads any more what is written; nothing needs saying."""
+
+    exit_code = 141
+
+
+class Place(NamedTuple):
+    """Where content goes: an open descriptor, else a file by its path, with what stands there (None: nothing yet)."""
+
+    path: str
+    state: os.stat_result | None
+    descriptor: int | None = None
+
+    @property
+    def ordinary(self) -> bool:
+        """Whether it can be replaced as a whole."""
+        return self.descriptor is None and (self.state is None or stat.S_ISREG(self.state.st_mode))
+
+
+def write(content: bytes, name: str) -> None:
+    """Write to a file, or to what stands for one. Raises OutputError, ReaderGone."""
+    place = place_of(name)
+    try:
+        if place.descriptor is not None:
+            write_all(place.descriptor, content)
+        elif place.ordinary:
+            replace(content, place)
+        else:
+            _into(content, place.path)
+    except BrokenPipeError:
+        raise ReaderGone from None
+    except OSError as reason:
+        raise OutputError(failed(name, reason)) from None
+
+
+def place_of(name: str) -> Place:
+    """Where a name leads. Raises OutputError where nothing could be written there, as far as that is seen before."""
+    try:
+        place = _place(name)
+        if place.state is not None and stat.S_ISDIR(place.state.st_mode):
+            raise OutputError(Problem("output-failed", f"{name}: this is a folder", hint="name a file in it"))
+        if place.ordinary:
+            _require_room(name, place)
+    except OSError as reason:
+        raise OutputError(failed(name, reason)) from None
+    except ValueError:
+        raise OutputError(Problem("output-failed", f"{name}: a name holds no NUL", hint=OTHER_HINT)) from None
+    return place
+
+
+def failed(name: str, reason: OSError) -> Problem:
+    """Why something could not be written, in the system's words."""
+    hint = HINTS.get(reason.errno or 0, OTHER_HINT)
+    return Problem("output-failed", f"{name}: {reason.strerror or reason}", hint=hint)
+
+
+def write_all(number: int, content: bytes) -> None:
+    """Write to an open descriptor, which may take a part at a time, or none while its reader rests."""
+    left = memoryview(content)
+    while left:
+        try:
+            left = left[os.write(number, left) :]
+        except BlockingIOError:
+            import select
+
+            select.select([], [number], [])
+
+
+def replace(content: bytes, place: Place) -> None:
+    """Write beside the place, then rename into it."""
+    temporary = str(Path(place.path).with_name(f".heun-{os.urandom(8).hex()}"))
+    remove = partial(Path(temporary).unlink, missing_ok=True)
+    with Undoing(remove):
+        try:
+            _fill(temporary, content, place.state)
+            Path(temporary).replace(place.path)
+        except BaseException:
+            remove()
+            raise
+
+
+def _fill(temporary: str, content: bytes, old: os.stat_result | None) -> None:
+    """A new file with the content and, from the start, no more rights than the old one; of a new one, the usual."""
+    new = os.O_WRONLY | os.O_CREAT | os.O_EXCL | getattr(os, "O_BINARY", 0)
+    number = os.open(temporary, new, 0o600 if old is not None else 0o666)
+    try:
+        write_all(number, content)
+        os.fsync(number)
+    finally:
+        os.close(number)
+    if old is not None:
+        Path(temporary).chmod(stat.S_IMODE(old.st_mode))
+
+
+def _into(content: bytes, path: str) -> None:
+    """Write into what has no whole: a pipe, a device."""
+    number = os.open(path, os.O_WRONLY | getattr(os, "O_NOCTTY", 0))
+    try:
+        write_all(number, content)
+    finally:
+        os.close(number)
+
+
+def _place(name: str) -> Place:
+    number = _descriptor(name)
+    if number is not None:
+        return Place(name, os.fstat(number), number)
+    try:
+        state = Path(name).stat()
+    except FileNotFoundError:
+        state = None
+    return Place(name if state is not None and not stat.S_ISREG(state.st_mode) else os.path.realpath(name), state)
+
+
+def _descriptor(name: str) -> int | None:
+    """The number of the open descriptor that a name stands for (/dev/stdout, /dev/fd/3), also through links."""
+    own = {os.path.realpath(folder) for folder in ("/dev/fd", "/proc/self/fd")}
+    path = Path(name)
+    for _ in range(MOST_LINKS):
+        if path.name.isascii() and path.name.isdecimal() and os.path.realpath(path.parent) in own:
+            return int(path.name)
+        if not path.is_symlink():
+            break
+        path = path.parent / path.readlink()
+    return None
+
+
+def _require_room(name: str, place: Place) -> None:
+    """Refuse what could not be replaced as a whole."""
+    path = Path(place.path)
+    shown = (path if Path(name).is_symlink() else Path(name)).parent
+    if not path.parent.is_dir():
+        hint = "make it first, or name another place"
+        raise OutputError(Problem("output-failed", f"{name}: there is no folder {shown}", hint=hint))
+    if os.path.split(name)[1] in NO_NAMES:
+        raise OutputError(Problem("output-failed", f"{name}: this is the name of a folder", hint="name a file in it"))
+    if place.state is not None and not os.access(path, os.W_OK):
+        raise OutputError(Problem("output-failed", f"{name}: the file may not be written", hint=HINTS[errno.EACCES]))
+    if not os.access(path.parent, os.W_OK | os.X_OK):
+        message = f"{name}: the folder {shown} may not be written, where a file is made before it gets its name"
+        hint = f"name a file elsewhere, or > {name} in place of -o, which writes as it goes"
+        raise OutputError(Problem("output-failed", message, hint=hint))

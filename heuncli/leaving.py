@@ -1,0 +1,59 @@
+"""How the process ends by a signal: one line at most, no half of a file left behind, and 128 + the signal's number.
+
+The handler does not raise: what a signal raises while something is imported, or while an object is destroyed, Python
+turns into a traceback or forgets. Nothing is imported here that takes time, for a signal may come while it does; of
+`signal` only the C part, without its enumerations. Impure: the process's signals, and its end.
+"""
+
+from __future__ import annotations
+
+import _signal  # type: ignore[import-not-found]
+import os
+import sys
+
+TYPE_CHECKING = False
+if TYPE_CHECKING:
+    from collections.abc import Callable
+    from types import FrameType
+
+LINES = {"SIGINT": b"heun: interrupted\n", "SIGTERM": b"heun: terminated\n", "SIGHUP": b""}  # whose terminal is gone
+_undone: list[Callable[[], None]] = []  # what a signal has to do away with
+
+
+def listen() -> None:
+    """End by these signals as told above, but for those that whoever started the process wants ignored (nohup, &)."""
+    for name in LINES:
+        number = getattr(_signal, name, None)  # there is no SIGHUP on Windows
+        if number is not None and _signal.getsignal(number) not in (_signal.SIG_IGN, None):
+            _signal.signal(number, _leave)
+
+
+def deafen() -> None:
+    """No signal interrupts what is left to do."""
+    for name in LINES:
+        if hasattr(_signal, name):
+            _signal.signal(getattr(_signal, name), _signal.SIG_IGN)
+
+
+class Undoing:
+    """While this is under way a signal that ends the process calls `undo`, which must bear it at any instant."""
+
+    def __init__(self, undo: Callable[[], None]) -> None:
+        self.undo = undo
+
+    def __enter__(self) -> None:
+        _undone.append(self.undo)
+
+    def __exit__(self, *_: object) -> None:
+        _undone.remove(self.undo)
+
+
+def _leave(number: int, frame: FrameType | None) -> None:
+    deafen()
+    try:
+        for undo in reversed(_undone):
+            undo()
+        if sys.stderr is not None:  # else its number may have become that of another file
+            os.write(2, next(LINES[name] for name in LINES if getattr(_signal, name, None) == number))
+    finally:
+        os._exit(128 + number)
