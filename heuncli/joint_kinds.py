@@ -154,8 +154,8 @@ class Kind(NamedTuple):
 
     @property
     def has_one_axis(self) -> bool:
-        """Whether its loads act about or along its axis, and not on the whole relative motion."""
-        return self.has_axis and self.turn is not ABOUT_TWO
+        """Whether its loads act about or along its axis, and not on the whole motion: about two, or in a plane."""
+        return self.axis_key == "axis" and self.to_axis != "required"
 
     @property
     def wanders(self) -> bool:

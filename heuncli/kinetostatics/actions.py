@@ -76,8 +76,8 @@ class AppliedLoad:
     """An applied load at the asked instants: its action, value, length [m], rate and power [W] (n_t,).
 
     value: the force or moment of a load between two bodies, the magnitude of one from outside, of a distributed one
-    that of its resultant; length and rate: of the line between its points, or of the turning or sliding of its joint
-    (of which a turn spring's angle is the length, other loads have none).
+    that of its resultant; length and rate: of the line between its points, or of the turning or sliding of its joint,
+    the magnitude where that has no one axis (of which a turn spring's angle is the length, other loads have none).
     """
 
     load: Load
@@ -104,6 +104,9 @@ def applied_loads(mechanism: Mechanism, recovered: Recovered) -> list[AppliedLoa
         to, from_ = _ends(mechanism, load, joint, rows["at"][:, 0], rows["from_at"][:, 0])
         action = Action("load", load.name, to, from_, force, moment)
         value, span, rate = (rows[name][:, 0] for name in ("value", "span", "rate"))
+        if joint is not None and not JOINTS[joint.kind].has_one_axis:
+            # resisted in any direction: how fast, told by the power; what resists nothing has none
+            rate = np.divide(rows["power"][:, 0], value, out=np.zeros_like(value), where=value != 0.0)
         loads.append(AppliedLoad(load, action, value, span, rate, rows["power"].sum(axis=1)))
     return loads
 

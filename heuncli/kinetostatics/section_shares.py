@@ -34,6 +34,8 @@ def section_shares(
     direct = direct_loads(cuts, layout.mechanism.gravity, states, shares)
     force, moment = loads_by_cause(cuts, layout, states, shares)
     for cause, (F, M) in direct.items():
+        if cause not in shares.causes:
+            continue  # a load of nothing
         force[:, shares.place(cause)] += F
         moment[:, shares.place(cause)] += M
     if layout.mechanism.planar:

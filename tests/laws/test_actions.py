@@ -51,6 +51,16 @@ def test_actions_enter_at_the_points_of_their_bodies(of: tuple[object, int]) -> 
 
 
 @pytest.mark.parametrize("of", CASES)
+def test_the_power_of_what_acts_in_a_joint_is_its_value_times_its_rate(of: tuple[object, int]) -> None:
+    """In balls and planes, too, where the rate has no axis: it is how fast they turn, or slide, at all."""
+    c, _ = recovery(*of)
+    for name, load in c.scene["forces"].items():
+        if "joint" in load and c.scene["joints"][load["joint"]]["type"] != "cylinder":  # which may do both
+            told = c.found.forces[name]
+            assert told["value"] * told["rate"] == pytest.approx(told["power"], rel=1e-12, abs=1e-12)
+
+
+@pytest.mark.parametrize("of", CASES)
 def test_what_comes_from_outside_ends_in_the_ground(of: tuple[object, int]) -> None:
     """Supports, drives and loads between ground and body carry what acts from outside, less the inertia."""
     c, r = recovery(*of)

@@ -404,3 +404,20 @@ def test_what_bears_in_a_blow_is_a_cause_by_its_name() -> None:
     ground = block["foundation"]["elements"]["rest"]["shares"]
     near(ground["rest"]["moment"], (0.0, H * x, 0.0), 1.0, ROUNDING)
     near(ground["down"]["moment"], 0.0, 1.0, ROUNDING)
+
+
+def test_a_load_of_nothing_is_a_cause_of_nothing() -> None:
+    """Beside others, in a body that is cut."""
+    scene = {
+        "gravity": [0.0, 0.0, -9.81],
+        "ground": {"points": {"O": [0.0, 0.0, 0.0]}},
+        "bodies": {"bar": {"shapes": [{"type": "rod", "from": [0, 0, 0], "to": [1, 0, 0], "mass": 1}],
+                           "points": {"a": [0, 0, 0], "b": [1, 0, 0]}}},
+        "joints": {"A": {"type": "weld", "from": "ground.O", "to": "bar.a"}},
+        "forces": {"none": {"type": "force", "on": "bar.b", "vector": [0, 0, 0]}},
+        "sections": {"middle": {"body": "bar", "at": [0.5, 0, 0], "normal": [1, 0, 0]}},
+    }  # fmt: skip
+    own = solved(scene, wanted=WANTED).sections["middle"]["shares"]
+    assert own["gravity"]["N"].tolist() == [0.0]
+    assert own["gravity"]["Q2"] == pytest.approx([-4.905])
+    assert not own["none"]["direct_force"].any() and not own["none"]["force"].any()

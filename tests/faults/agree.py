@@ -1,0 +1,170 @@
+"""Whether two runs that should say the same do so, within the errors that they state of themselves."""
+
+from __future__ import annotations
+
+import math
+from collections.abc import Callable, Iterator
+from typing import Any, NamedTuple
+
+import numpy as np
+
+from heuncli.results import Array, Block
+from heuncli.results_schema import ESTIMATES, KIND_OF, SPACE, TREE, Node, Quantity, below
+from heuncli.study.solve import Study
+
+TIMES = 10.0  # the stated errors
+FLOOR = 1e-7  # of the largest of a unit: what is hunted here are wrong numbers, not last digits
+BLOCKS = ("bodies", "points", "coordinates", "foundation", "joints", "stops", "sections", "forces", "energy")
+SKIPPED = frozenset({"quaternion", "axis", "line", "shares", "about", "pitch", "elements"})  # undefined somewhere
+LEAST = {"rad": 1.0, "1": 1.0, "Pa": 1e3}  # numbers far below these are rounding of what is 0
+# powers of time in units
+RATES = {
+    "m/s": 1, "m/s²": 2, "rad/s": 1, "rad/s²": 2, "N": 2, "N·m": 2, "J": 2, "W": 3, "N·m/s": 3, "Pa": 2, "s": -1, "N·s": 1,
+    "N·m·s": 1,
+}  # fmt: skip
+
+
+class Apart(NamedTuple):
+    """Two numbers that are not the same: where, how far apart, and how far they may be."""
+
+    path: str
+    off: float
+    allowed: float
+
+    def __str__(self) -> str:
+        return f"{self.path} off by {self.off:.3g} where {self.allowed:.3g} is stated"
+
+
+Change = Callable[[Array, Quantity], Array]
+
+
+def apart(first: Study, second: Study, change: Change, *, same_open: bool = True, skipped: frozenset[str] = frozenset(),
+          begin: int = 0) -> list[Apart]:  # fmt: skip
+    """What the second run says otherwise than the first, changed as the telling wants it; the worst of each block.
+
+    same_open: the same components are open in both. begin: the instant of the first at which the second starts.
+    """
+    found: list[Apart] = []
+    sizes = sizes_of(first, second)
+    horizons = [one.results.accuracy.get("horizon") for one in (first, second)]
+    count = min(len(first.results.time) - begin, len(second.results.time))
+    known = [np.ones(count, dtype=bool)]
+    for one, start, horizon in zip((first, second), (begin, 0), horizons, strict=True):
+        times = one.results.time[start : start + count]
+        known += [times < horizon] if horizon is not None else []
+        known += [~np.isin(times, one.results.accuracy.get("unknown", []))]
+    at = np.flatnonzero(np.logical_and.reduce(known))
+    if not len(at):
+        return []
+    for block in BLOCKS:
+        pairs = _pairs(block, getattr(first.results, block), getattr(second.results, block), TREE[block], ())
+        worst: list[Apart] = []
+        for path, one, other, row in pairs:
+            if row is None:
+                worst.append(Apart(path, math.inf, 0.0))
+                continue
+            if not row.timed or set(path.split(".")) & (SKIPPED | skipped):
+                continue
+            wanted = change(np.asarray(one, dtype=float)[begin:][at], row)
+            told = np.asarray(other, dtype=float)[at]
+            worst += _compared(path, wanted, told, row, first, second, same_open, sizes)
+        if worst:
+            found.append(max(worst, key=lambda one: one.off / max(one.allowed, 1e-300)))
+    return found
+
+
+def _pairs(path: str, one: Any, other: Any, node: Node | Quantity | None, keys: tuple[str, ...]
+           ) -> Iterator[tuple[str, Any, Any, Quantity | None]]:  # fmt: skip
+    if isinstance(node, Quantity):
+        if node.units and one is not None and other is not None:
+            yield path, one, other, node
+        return
+    if not isinstance(one, dict) or not isinstance(other, dict) or node is None:
+        return
+    for key in dict.fromkeys((*one, *other)):
+        if key in SKIPPED:
+            continue
+        if key not in one or key not in other:
+            yield f"{path}.{key}", None, None, None
+        else:
+            yield from _pairs(f"{path}.{key}", one[key], other[key], below(node, key), (*keys, key))
+
+
+def _compared(path: str, wanted: Array, told: Array, row: Quantity, first: Study, second: Study, same_open: bool,
+              sizes: dict[str, float]) -> Iterator[Apart]:  # fmt: skip
+    if wanted.shape != told.shape:
+        yield Apart(f"{path} {wanted.shape} {told.shape}", math.inf, 0.0)
+        return
+    openly = np.isnan(wanted) != np.isnan(told)
+    if same_open and openly.any():
+        yield Apart(f"{path} (open)", math.inf, 0.0)
+        return
+    off = np.abs(wanted - told)[~(np.isnan(wanted) | np.isnan(told))]
+    if not off.size:
+        return
+    unit = row.unit(turning=True)
+    size = max(_size(one, units, sizes) for one in (first, second) for units in row.units)
+    error = sum(stated(one, path) for one in (first, second))
+    allowed = (TIMES * error + FLOOR) * size
+    if not float(off.max()) <= allowed:
+        yield Apart(f"{path} [{unit}]", float(off.max()), allowed)
+
+
+def _size(study: Study, unit: str, sizes: dict[str, float]) -> float:
+    """What numbers of a unit are summed from, or the largest of them, if that is more."""
+    return max(sizes.get(unit, 0.0), study.magnitudes.by_unit.get(unit, 0.0), LEAST.get(unit, 0.0))
+
+
+def sizes_of(*studies: Study) -> dict[str, float]:
+    """The largest number of each unit in any of the runs."""
+    sizes: dict[str, float] = {}
+    for study in studies:
+        for block in BLOCKS:
+            told = getattr(study.results, block)
+            for _, value, _, row in _pairs(block, told, told, TREE[block], ()):
+                if row is not None:
+                    numbers = np.abs(np.asarray(value, dtype=float))
+                    largest = float(np.max(numbers, initial=0.0, where=np.isfinite(numbers)))
+                    for unit in row.units:
+                        sizes[unit] = max(sizes.get(unit, 0.0), largest)
+    return sizes
+
+
+def stated(study: Study, path: str) -> float:
+    """The error that a run states of what stands at a path."""
+    estimate = study.results.accuracy.get("estimate", {})
+    first, *_, last = path.split(".")
+    kind = "drives" if last == "drive" else ESTIMATES.get(first, KIND_OF.get(first, "motion"))
+    return max(float(estimate.get(kind, 0.0)), float(estimate.get("motion", 0.0)))
+
+
+def kept(value: Array, _: Quantity) -> Array:
+    """Told in the same numbers."""
+    return value
+
+
+def turning(Q: Array) -> Change:
+    """Vectors turn, tensors too, scalars stay."""
+
+    def change(value: Array, row: Quantity) -> Array:
+        axes = row.shape
+        if axes[-2:] == (SPACE, SPACE):
+            return np.asarray(Q @ value @ Q.T)
+        return np.asarray(value @ Q.T) if axes[-1:] == (SPACE,) else value
+
+    return change
+
+
+def growing(c: float) -> Change:
+    """Rates c times, loads c² times as large."""
+
+    def change(value: Array, row: Quantity) -> Array:
+        return np.asarray(value * c ** RATES.get(row.units[0], 0))
+
+    return change
+
+
+def state_at(bodies: Block, k: int) -> dict[str, dict[str, Any]]:
+    """The state of all bodies at an instant, as a spec gives it."""
+    keys = ("position", "velocity", "angular_velocity", "quaternion")
+    return {name: {key: np.asarray(body[key])[k].tolist() for key in keys} for name, body in bodies.items()}

@@ -1,0 +1,148 @@
+"""Wrong numbers with exit code 0, hunted by laws: a mutated scene that runs fine, told otherwise, must say the same.
+
+The world turned; everything faster (Heun: k -> c² k with σ -> c σ makes all reactions c² times as large); another order
+in the file; begun anew at a later instant; nothing reduced; another method.
+"""
+
+from __future__ import annotations
+
+import time
+from collections.abc import Callable
+from random import Random
+from typing import Any, NamedTuple
+
+import numpy as np
+
+from heuncli.errors import HeunError
+from heuncli.spec.load import load
+from heuncli.study.solve import Options, Study, solve
+from tests.faults import mild, retell, sources
+from tests.faults.agree import apart, growing, kept, state_at, turning
+from tests.faults.outcome import peak
+from tests.faults.retell import NotTold
+from tests.faults.sources import Tree
+
+LIMIT = 5.0  # seconds of a run
+SEVERAL = 0.3  # of the scenes so many are random ones, the others the repository's
+OTHER_METHODS = ("DOP853", "Radau5", "Radau9", "Verner98", "DOPRI5", "DOP853-recentred")
+
+
+class Twins(NamedTuple):
+    """A scene, its twin, what that does to the numbers, and what it leaves alone."""
+
+    first: Tree
+    second: Tree
+    apart: Callable[[Study, Study], list[Any]]
+    options: dict[str, Any] = {}  # noqa: RUF012 (of a named tuple: never changed)
+
+
+def scene(random: Random) -> Tree:
+    """A scene of the repository, or a random one, changed mildly or not at all."""
+    if random.random() < SEVERAL:
+        return mild.changed(random, random_scene(random), mild.OF_HELD)
+    return mild.changed(random, sources.tree(random.choice(sources.names())))
+
+
+def random_scene(random: Random) -> Tree:
+    """A tree or a closed chain with all its values in time, as the oracle makes them."""
+    from tests.oracle.values import to_yaml
+    from tests.shared.loops import loop_scene
+    from tests.shared.trees import tree_scene
+
+    seed = random.randrange(100_000)
+    made = random.choice((tree_scene, lambda seed: loop_scene(seed % 1000 + random.choice((0, 1000)))))(seed)[0]
+    analysis = {"times": [0.0, 0.05, 0.1, 0.2]}
+    told: Tree = sources.parsed(to_yaml({**made, "analysis": analysis}))
+    return told
+
+
+def judged(seed: int) -> dict[str, Any]:
+    """The verdict on a case: code 0 if both ran, 1 if the first was refused or the law does not apply."""
+    random = Random(f"laws {seed}")
+    begun = time.process_time()
+    law = random.choice(list(LAWS))
+    found: list[str] = []
+    code = 0
+    try:
+        tree = retell.plain(scene(random))
+        first = solved(tree)
+        twins = LAWS[law](random, tree, first)
+        if twins.first is not tree:
+            first = solved(twins.first)
+    except (HeunError, NotTold, KeyError, TypeError, AttributeError, ValueError, IndexError):
+        code = 1  # mostly no scene: what it is told for is judged elsewhere
+    else:
+        try:
+            second = solved(twins.second, **twins.options)
+            found = [str(one) for one in twins.apart(first, second)]
+        except HeunError as error:
+            found = refused(error)
+    told = [f"{law}: {what}" for what in found]
+    return {
+        "code": code, "seconds": time.process_time() - begun, "memory": peak(), "violations": told, "command": law,
+    }  # fmt: skip
+
+
+# What a run may be refused for in one telling and not in another: limits, and steps of methods that were asked for.
+OF_ITS_OWN = {"time-limit", "step-limit", "stages-unsolved", "method-scene", "half-turn", "too-many-states"}
+
+
+def refused(error: HeunError) -> list[str]:
+    """A twin that is refused; not where that is the other method's own affair."""
+    codes = {problem.code for problem in error.problems}
+    return [] if codes <= OF_ITS_OWN else [f"refused: {error.problems[0]}"]
+
+
+def solved(tree: Tree, **options: Any) -> Study:
+    """A tree solved, with all that it may report."""
+    tree = {key: value for key, value in tree.items() if key != "report"}
+    spec = load("spec.yaml", sources.text(tree).decode())
+    return solve(spec, Options(time_limit=LIMIT, **options))
+
+
+def turned(random: Random, tree: Tree, _: Study) -> Twins:
+    Q = retell.turn_of(random)
+    first = retell.with_first_axes(tree)
+    return Twins(first, retell.turned(first, Q), lambda a, b: apart(a, b, turning(Q), same_open=False))
+
+
+def faster(random: Random, tree: Tree, _: Study) -> Twins:
+    c = random.choice((0.5, 2.0, 1.7, 10.0))
+    return Twins(tree, retell.faster(tree, c), lambda a, b: apart(a, b, growing(c)))
+
+
+def reordered(random: Random, tree: Tree, _: Study) -> Twins:
+    return Twins(tree, retell.reordered(tree, random), lambda a, b: apart(a, b, kept))
+
+
+def later(random: Random, tree: Tree, study: Study) -> Twins:
+    found = study.results
+    times = found.time
+    if len(times) < 3 or found.accuracy.get("horizon") is not None or found.status["code"] != "completed":
+        raise NotTold("too short")
+    turns = [np.abs(block["angle"]).max() for block in found.coordinates.values() if "angle" in block]
+    if max(turns, default=0.0) > 3.0:
+        raise NotTold("turns are counted")
+    k = random.randrange(1, len(times) - 1)
+    tree = {**tree, "analysis": {**tree["analysis"], "times": times.tolist()}}
+    for key in ("duration", "samples"):
+        tree["analysis"].pop(key, None)
+    twin = retell.later(tree, float(times[k]), state_at(found.bodies, k))
+    return Twins(tree, twin, lambda a, b: apart(a, b, kept, skipped=frozenset({"work"}), begin=k))
+
+
+def unreduced(_: Random, tree: Tree, __: Study) -> Twins:
+    return Twins(tree, tree, lambda a, b: apart(a, b, kept), {"reduce": False})
+
+
+def another_method(random: Random, tree: Tree, _: Study) -> Twins:
+    if "analysis" not in tree or {"method", "step"} & set(tree["analysis"]):
+        raise NotTold("a method of its own")
+    options = {"method": random.choice(OTHER_METHODS)}
+    return Twins(tree, tree, lambda a, b: apart(a, b, kept), options)
+
+
+LAWS: dict[str, Callable[[Random, Tree, Study], Twins]] = {
+    "turned": turned, "faster": faster, "reordered": reordered, "later": later, "unreduced": unreduced,
+    "another method": another_method,
+}  # fmt: skip

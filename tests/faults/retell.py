@@ -1,0 +1,308 @@
+"""A spec told otherwise, as a tree of text and numbers: the world turned, everything faster, another order, later.
+
+What a way of telling does not know how to tell raises NotTold. Numbers with units become parameters, so that they may
+stand in expressions.
+"""
+
+from __future__ import annotations
+
+import copy
+import re
+from collections.abc import Callable, Iterator, Mapping
+from random import Random
+from typing import Any
+
+import numpy as np
+
+from tests.faults.sources import Tree
+from tests.oracle.turns import Array
+
+WITH_UNIT = re.compile(r"\s*[-+]?(\d+\.?\d*|\.\d+)([eE][-+]?\d+)?\s*[A-Za-z°µ%].*\Z")
+TIME = re.compile(r"(?<![\w.])t(?![\w.])")
+RATES = re.compile(r"(?<![\w.])([A-Za-z]\w*\.(?:rate|speed))(?!\w)")
+E1 = [0.36, -0.48, 0.8]  # e1 of sections that leave it to the body's axes, which turn
+
+
+class NotTold(Exception):
+    """This spec is not told in this way."""
+
+
+def plain(tree: Tree) -> Tree:
+    """The spec with its numbers with units as parameters, and nothing expected of it."""
+    tree = copy.deepcopy(tree)
+    if not isinstance(tree, dict) or any(not isinstance(tree.get(key, {}), dict) for key in BLOCKS):
+        raise NotTold("no scene")
+    tree.pop("expect", None)
+    parameters = tree.setdefault("parameters", {})
+    for block in BLOCKS:
+        for box, key in _leaves(tree.get(block, {})):
+            word = box[key]
+            if isinstance(word, str) and WITH_UNIT.match(word) and "(" not in word and "*" not in word.split(" ")[0]:
+                name = f"quantity{len(parameters)}"
+                parameters[name] = word
+                box[key] = name
+    return tree
+
+
+BLOCKS = (
+    "ground", "bodies", "joints", "drives", "forces", "impulses", "stops", "sections", "analysis",
+    "foundation",
+)  # fmt: skip
+
+
+def _leaves(value: Tree) -> Iterator[tuple[Any, Any]]:
+    for key in list(value) if isinstance(value, dict) else range(len(value)):
+        if isinstance(value[key], dict | list):
+            yield from _leaves(value[key])
+        else:
+            yield value, key
+
+
+def entries(tree: Tree, block: str) -> Iterator[tuple[str, dict[str, Any]]]:
+    """The named entries of a block."""
+    for name, entry in (tree.get(block) or {}).items():
+        if not isinstance(entry, dict):
+            raise NotTold(f"{block}.{name}")
+        yield name, entry
+
+
+def times(factor: float, value: Any) -> Any:
+    """A number or expression, many times."""
+    if isinstance(value, str):
+        return value if factor == 1.0 else f"({factor!r})*({value})"
+    if isinstance(value, bool) or not isinstance(value, int | float):
+        raise NotTold(f"{value!r} is no number")
+    return factor * value
+
+
+def plus(parts: list[Any]) -> Any:
+    """A sum of numbers and expressions."""
+    if all(not isinstance(part, str) for part in parts):
+        return sum(parts)
+    return " + ".join(f"({part})" if isinstance(part, str) else repr(float(part)) for part in parts)
+
+
+def combined(Q: Array, v: Any) -> list[Any]:
+    """Q v."""
+    if not isinstance(v, list) or len(v) != 3:
+        raise NotTold(f"{v!r} is no vector")
+    rows = [[times(float(q), c) for q, c in zip(row, v, strict=True) if q != 0.0] for row in Q]
+    return [plus(row) for row in rows]
+
+
+def conjugated(Q: Array, M: Any) -> list[list[Any]]:
+    """Q M Qᵀ."""
+    if not isinstance(M, list) or len(M) != 3:
+        raise NotTold("no matrix")
+    left = [combined(Q, [M[i][j] for i in range(3)]) for j in range(3)]  # columns of Q M
+    return [combined(Q, [left[k][i] for k in range(3)]) for i in range(3)]
+
+
+def turned(tree: Tree, Q: Array) -> Tree:
+    """World and bodies' axes turned by Q: every vector v is Q v, every attitude R is Q R Qᵀ."""
+    tree = copy.deepcopy(tree)
+    if tree.get("space", "auto") == "planar":
+        raise NotTold("planar")
+
+    def turn(box: Any, *keys: str) -> None:
+        for key in keys:
+            if isinstance(box.get(key), list):
+                box[key] = combined(Q, box[key])
+            elif isinstance(box.get(key), dict) and "vector" in box[key]:
+                box[key]["vector"] = combined(Q, box[key]["vector"])
+            elif isinstance(box.get(key), dict) and "at" in box[key]:
+                turn(box[key], "at")
+
+    turn(tree, "gravity")
+    for _, body in [("ground", tree.get("ground", {})), *entries(tree, "bodies")]:
+        turn(body, "center", "position", "velocity", "angular_velocity")
+        turn(body.get("points", {}), *body.get("points", {}))
+        _turn_mass(body, Q, turn)
+        for pose in (body, body.get("near", {})):
+            turn(pose, "position") if pose is not body else None
+            if "orientation" in pose:
+                pose["orientation"] = turned_attitude(Q, pose["orientation"])
+        for shape in body.get("shapes", []):
+            turn(shape, "from", "to", "center", "at")
+            if shape.get("type") == "box":
+                if "orientation" in shape:
+                    raise NotTold("a box that is turned")
+                shape["orientation"] = {"matrix": Q.tolist()}
+    for _, joint in entries(tree, "joints"):
+        turn(joint, "from", "to", "axis", "to_axis", "normal")
+        if isinstance(joint.get("stiffness"), dict) and any(isinstance(s, list) for s in joint["stiffness"].values()):
+            raise NotTold("stiffness by direction")
+    for block in ("forces", "impulses"):
+        for _, load in entries(tree, block):
+            turn(load, "from", "to", "on", "vector", "to_vector", "couple")
+    for _, cut in entries(tree, "sections"):
+        turn(cut, "at", "from", "to", "normal", "first_axis", "reduce_to")
+        if "piece" in cut:
+            turn(cut["piece"], "center")
+            _turn_mass(cut["piece"], Q, turn)
+    turn(tree.get("foundation", {}), "about")
+    return tree
+
+
+def _turn_mass(body: dict[str, Any], Q: Array, turn: Callable[..., None]) -> None:
+    inertia = body.get("inertia")
+    if inertia is None:
+        return
+    if "deviation" in body or not isinstance(inertia, list):
+        raise NotTold("deviation")
+    if not isinstance(inertia[0], list):
+        inertia = [[inertia[i] if i == j else 0 for j in range(3)] for i in range(3)]
+    body["inertia"] = conjugated(Q, inertia)
+
+
+def turned_attitude(Q: Array, told: Mapping[str, Any]) -> dict[str, Any]:
+    """Q R Qᵀ of an attitude."""
+    match dict(told):
+        case {"axis": axis, "angle": angle}:
+            return {"axis": combined(Q, axis), "angle": angle}
+        case {"quaternion": [w, *v]}:
+            return {"quaternion": [w, *combined(Q, v)]}
+        case {"rodrigues": v}:
+            return {"rodrigues": combined(Q, v)}
+        case {"matrix": M}:
+            return {"matrix": conjugated(Q, M)}
+    raise NotTold("Euler's angles")
+
+
+def with_first_axes(tree: Tree) -> Tree:
+    """The spec with e1 of every section stated."""
+    tree = copy.deepcopy(tree)
+    for _, cut in entries(tree, "sections"):
+        cut.setdefault("first_axis", list(E1))
+    return tree
+
+
+# powers of c by which numbers grow where everything goes c times as fast: Heun's k -> c² k with σ -> c σ
+FASTER: dict[str, dict[str, int]] = {
+    "force": {"vector": 2}, "couple": {"vector": 2}, "torque": {"value": 2}, "actuator": {"value": 2},
+    "spring": {"stiffness": 2, "damping": 1}, "turn_spring": {"stiffness": 2, "damping": 1},
+    "damper": {"coefficient": 1, "sliding": 1}, "friction": {"torque": 2, "force": 2, "speed": 1},
+    "distributed": {"vector": 2, "to_vector": 2},
+}  # fmt: skip
+
+
+def faster(tree: Tree, c: float) -> Tree:
+    """Everything c times as fast, and loads c² times as large."""
+    tree = copy.deepcopy(tree)
+
+    def grow(box: Any, power: int, *keys: str) -> None:
+        for key in keys:
+            value = box.get(key)
+            if isinstance(value, dict) and "vector" in value:
+                grow(value, power, "vector")
+            elif value is not None:
+                box[key] = [times(c**power, v) for v in value] if isinstance(value, list) else times(c**power, value)
+
+    in_expressions(tree, lambda word: TIME.sub(f"({c!r}*t)", RATES.sub(rf"(\1/{c!r})", word)))
+    grow(tree, 2, "gravity")
+    for _, body in entries(tree, "bodies"):
+        grow(body, 1, "velocity", "angular_velocity")
+    for _, joint in entries(tree, "joints"):
+        grow(joint.get("initial", {}), 1, "rate", "speed")
+    for _, drive in entries(tree, "drives"):
+        grow(drive, 1, "rate", "speed")
+    for _, load in entries(tree, "forces"):
+        for key, power in FASTER.get(str(load.get("type")), {}).items():
+            grow(load, power, key)
+    for _, blow in entries(tree, "impulses"):
+        grow(blow, 1, "vector", "couple")
+        grow(blow, -1, "time")
+    for _, cut in entries(tree, "sections"):
+        cut.pop("strength", None)
+    if any(isinstance(value, dict) and "of" in value for value in _conditions(tree)):
+        raise NotTold("a condition on results")
+    grow(tree.get("analysis", {}), -1, "duration", "times", "step")
+    return tree
+
+
+def later(tree: Tree, by: float, state: Mapping[str, Mapping[str, Any]]) -> Tree:
+    """What follows from the state at an instant `by`, as a spec of its own that starts there.
+
+    state: position, quaternion, velocity and angular velocity of every body at that instant.
+    """
+    tree = copy.deepcopy(tree)
+    if tree.get("impulses") or tree.get("stops") or any(True for _ in _conditions(tree)):
+        raise NotTold("what depends on the past")
+    for _, joint in entries(tree, "joints"):
+        if joint.get("tension_only") or "to_axis" in joint and joint.get("type") != "universal":
+            raise NotTold("what depends on the start")
+        joint.pop("initial", None)
+    for _, drive in entries(tree, "drives"):
+        if {"zero", "rate", "speed"} & set(drive):
+            raise NotTold("what depends on the start")
+    in_expressions(tree, lambda word: TIME.sub(f"(t + {by!r})", word))
+    for name, body in entries(tree, "bodies"):
+        now = state[name]
+        body.pop("near", None)
+        body["orientation"] = {"quaternion": now["quaternion"]}
+        for key in ("position", "velocity", "angular_velocity"):
+            body[key] = now[key]
+    analysis = tree["analysis"]
+    if "times" in analysis:
+        analysis["times"] = [t - by for t in analysis["times"] if t >= by]
+    return tree
+
+
+def _conditions(tree: Tree) -> Iterator[Any]:
+    analysis = tree.get("analysis") or {}
+    if "until" in analysis:
+        yield analysis["until"]
+    yield from (analysis.get("events") or {}).values()
+
+
+def in_expressions(tree: Tree, change: Callable[[str], str]) -> None:
+    """Rewrite every text that may be an expression in time."""
+    for block, keys in IN_TIME.items():
+        boxes = [tree.get(block, {})] if block == "analysis" else [entry for _, entry in entries(tree, block)]
+        for box in boxes:
+            for key in keys & set(box):
+                box[key] = _rewritten(box[key], change)
+
+
+IN_TIME = {
+    "drives": {"angle", "travel", "length", "rate", "speed"},
+    "forces": {"vector", "to_vector", "value", "stiffness", "damping", "coefficient", "torque", "force"},
+    "analysis": {"until", "events"},
+}  # fmt: skip
+
+
+def _rewritten(value: Any, change: Callable[[str], str]) -> Any:
+    if isinstance(value, list):
+        return [_rewritten(v, change) for v in value]
+    if isinstance(value, dict):
+        return {key: _rewritten(v, change) if key != "of" else v for key, v in value.items()}
+    return change(value) if isinstance(value, str) else value
+
+
+def reordered(tree: Tree, random: Random) -> Tree:
+    """The entries of all blocks, and the shapes of bodies, in another order."""
+    tree = copy.deepcopy(tree)
+    for block in ("parameters", "bodies", "joints", "drives", "forces", "impulses", "stops", "sections", "tables"):
+        if isinstance(tree.get(block), dict):
+            tree[block] = _shuffled(random, tree[block])
+    for _, body in entries(tree, "bodies"):
+        if isinstance(body.get("shapes"), list):
+            random.shuffle(body["shapes"])
+        if isinstance(body.get("points"), dict):
+            body["points"] = _shuffled(random, body["points"])
+    return _shuffled(random, tree)
+
+
+def _shuffled(random: Random, box: dict[str, Any]) -> dict[str, Any]:
+    keys = list(box)
+    random.shuffle(keys)
+    return {key: box[key] for key in keys}
+
+
+def turn_of(random: Random) -> Array:
+    """A turn: a quarter or two about the axes, or any."""
+    from tests.oracle.turns import random_rotation
+
+    if random.random() < 0.3:
+        return np.array(random.choice(([[0, -1, 0], [1, 0, 0], [0, 0, 1]], [[0, 0, 1], [1, 0, 0], [0, 1, 0]])), dtype=float)
+    return random_rotation(np.random.default_rng(random.randrange(2**32)))
