@@ -209,11 +209,13 @@ class Runs:
 
 def shared_steps(a: Array, b: Array) -> bool:
     """Whether two runs, by the ends of their steps, have a step in common that counts among them: a long one."""
+    if not len(b):
+        return False  # it was ended at its start
     steps, others = (np.append(0.0, ends[:-1]) for ends in (a, b))
     long = a - steps > tolerances.SHARED_STEP * np.max(a - steps, initial=0.0)
     begin, end = steps[long], a[long]
     near = tolerances.SAME_STEP * (end - begin)
-    k = np.minimum(np.searchsorted(others, begin - near), max(len(b) - 1, 0))
+    k = np.minimum(np.searchsorted(others, begin - near), len(b) - 1)
     return bool(np.any((np.abs(others[k] - begin) <= near) & (np.abs(b[k] - end) <= near)))
 
 

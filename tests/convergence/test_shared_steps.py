@@ -8,6 +8,7 @@ from __future__ import annotations
 
 import math
 
+import numpy as np
 import pytest
 
 from heuncli.integration import checked
@@ -53,3 +54,8 @@ def test_what_is_told_is_no_less_than_the_error(w: int, jumps: int, monkeypatch:
     assert off <= found.accuracy["estimate"]["motion"] <= LOOSE
     monkeypatch.setattr(checked, "shared_steps", lambda *_: False)  # by the difference of the two alone
     assert study(text(w, jumps), method="DOP853").results.accuracy["estimate"]["motion"] < 1e-3 * off
+
+
+def test_a_run_that_ends_at_its_start_shares_no_step() -> None:
+    """As where a rope would have to push at once, in a start moved by rounding alone."""
+    assert not checked.shared_steps(np.array([0.1, 0.2]), np.zeros(0))

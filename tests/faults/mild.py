@@ -11,7 +11,18 @@ from tests.faults.sources import Tree, spots
 
 DIRECTED = {"pin": "axis", "slide": "axis", "cylinder": "axis", "line": "axis", "plane": "normal"}
 KINDS = (*DIRECTED, "ball", "weld", "rod")
-NOT_RESIZED = ("orientation", "inertia", "axis", "to_axis", "normal", "heun", "samples", "count", "tolerance", "matrix")
+NOT_RESIZED = (
+    "orientation",
+    "inertia",
+    "axis",
+    "to_axis",
+    "normal",
+    "heun",
+    "samples",
+    "count",
+    "tolerance",
+    "matrix",
+)
 DIRECTIONS = ([1, 0, 0], [0, 1, 0], [0, 0, 1], [0, 0, -1], [1, 1, 0], [0.6, 0, 0.8], [0.3, -0.5, 0.7], [0, 1, 1e-7])
 
 
@@ -20,7 +31,9 @@ def resized(random: Random, tree: Tree) -> None:
     found = [(box, key) for box, key in _free(tree) if is_number(box[key]) and not isinstance(box[key], str)]
     if found:
         box, key = random.choice(found)
-        box[key] = box[key] * random.uniform(0.5, 2.0) if random.random() < 0.7 else box[key] + random.uniform(-0.1, 0.1)
+        box[key] = (
+            box[key] * random.uniform(0.5, 2.0) if random.random() < 0.7 else box[key] + random.uniform(-0.1, 0.1)
+        )
 
 
 def _free(tree: Tree) -> list[tuple[Any, Any]]:
@@ -36,7 +49,9 @@ def other_joint(random: Random, tree: Tree) -> None:
     """A joint of another kind between the same points, with a direction of its own."""
     joints = [joint for joint in (tree.get("joints") or {}).values() if isinstance(joint, dict)]
     used = str(tree.get("drives", "")) + str(tree.get("stops", "")) + str(tree.get("forces", ""))
-    joints = [joint for name, joint in (tree.get("joints") or {}).items() if isinstance(joint, dict) and name not in used]
+    joints = [
+        joint for name, joint in (tree.get("joints") or {}).items() if isinstance(joint, dict) and name not in used
+    ]
     if joints:
         joint = random.choice(joints)
         for key in ("axis", "normal", "to_axis", "initial", "length", "tension_only", "restitution"):
@@ -49,7 +64,12 @@ def other_joint(random: Random, tree: Tree) -> None:
 def points(tree: Tree) -> list[str]:
     """Named points of bodies."""
     bodies = tree.get("bodies") or {}
-    return [f"{name}.{point}" for name, body in bodies.items() if isinstance(body, dict) for point in body.get("points") or ()]
+    return [
+        f"{name}.{point}"
+        for name, body in bodies.items()
+        if isinstance(body, dict)
+        for point in body.get("points") or ()
+    ]
 
 
 def load_added(random: Random, tree: Tree) -> None:
@@ -64,7 +84,13 @@ def load_added(random: Random, tree: Tree) -> None:
     loads: list[dict[str, Any]] = [
         {"type": "force", "on": random.choice(ends), "vector": vector, "frame": random.choice(("world", "body"))},
         {"type": "couple", "on": random.choice(ends), "vector": vector, "frame": random.choice(("world", "body"))},
-        {"type": "spring", **pair, "stiffness": random.uniform(1, 500), "length": random.choice((0.5, 0)), "damping": 1},
+        {
+            "type": "spring",
+            **pair,
+            "stiffness": random.uniform(1, 500),
+            "length": random.choice((0.5, 0)),
+            "damping": 1,
+        },
         {"type": "actuator", **pair, "value": random.choice((3, "2*cos(5*t)", "-4 if t > 0.2 else 4"))},
     ]
     for name, kind in joints:
@@ -95,13 +121,20 @@ def moving(random: Random, tree: Tree) -> None:
 
 def weight(random: Random, tree: Tree) -> None:
     """A mass and its inertia many times as large, or none of it about an axis."""
-    bodies = [b for b in (tree.get("bodies") or {}).values() if isinstance(b, dict) and isinstance(b.get("inertia"), list)]
+    bodies = [
+        b for b in (tree.get("bodies") or {}).values() if isinstance(b, dict) and isinstance(b.get("inertia"), list)
+    ]
     if bodies:
         body = random.choice(bodies)
         if random.random() < 0.5:
             body["inertia"] = random.choice(([0, 0, 0], [0, 1, 1], [1, 1, 0], [0.1, 0.1, 0.1]))
         else:
-            change(random, body, lambda old: old * random.choice((1e-3, 30.0)), lambda v: v is body.get("mass") and not isinstance(v, str))
+            change(
+                random,
+                body,
+                lambda old: old * random.choice((1e-3, 30.0)),
+                lambda v: v is body.get("mass") and not isinstance(v, str),
+            )
 
 
 def loop_closed(random: Random, tree: Tree) -> None:

@@ -229,7 +229,7 @@ def later(tree: Tree, by: float, state: Mapping[str, Mapping[str, Any]]) -> Tree
     if tree.get("impulses") or tree.get("stops") or any(True for _ in _conditions(tree)):
         raise NotTold("what depends on the past")
     for _, joint in entries(tree, "joints"):
-        if joint.get("tension_only") or "to_axis" in joint and joint.get("type") != "universal":
+        if joint.get("tension_only") or ("to_axis" in joint and joint.get("type") != "universal"):
             raise NotTold("what depends on the start")
         joint.pop("initial", None)
     for _, drive in entries(tree, "drives"):
@@ -304,5 +304,7 @@ def turn_of(random: Random) -> Array:
     from tests.oracle.turns import random_rotation
 
     if random.random() < 0.3:
-        return np.array(random.choice(([[0, -1, 0], [1, 0, 0], [0, 0, 1]], [[0, 0, 1], [1, 0, 0], [0, 1, 0]])), dtype=float)
+        return np.array(
+            random.choice(([[0, -1, 0], [1, 0, 0], [0, 0, 1]], [[0, 0, 1], [1, 0, 0], [0, 1, 0]])), dtype=float
+        )
     return random_rotation(np.random.default_rng(random.randrange(2**32)))

@@ -1,0 +1,32 @@
+"""Whatever stands in a spec or on a command line ends as documented: some 2,000 cases of `python -m tests.faults`."""
+
+from __future__ import annotations
+
+import pytest
+
+from tests.faults.__main__ import drawn
+from tests.faults.pool import judged
+from tests.faults.worker import LAWS
+
+CASES = 1920
+BATCHES = 8  # a process each
+LAW_CASES = 56
+
+
+@pytest.mark.parametrize("batch", range(BATCHES))
+def test_every_case_ends_as_documented(batch: int) -> None:
+    """Exit codes, forms of errors, numbers, time and memory: invariant.py; --replay KIND:SEED shows a case."""
+    cases = drawn(CASES // BATCHES, batch * CASES // BATCHES, None)
+    wrong = [f"{one.kind}:{one.seed} {what}" for one in judged(cases) for what in one.violations]
+    assert not wrong, "\n".join(wrong)
+
+
+@pytest.mark.heavy
+@pytest.mark.parametrize("batch", range(2))
+def test_what_is_told_otherwise_says_the_same(batch: int) -> None:
+    """Scenes that run, turned, faster, reordered, begun later, not reduced, by another method: laws.py."""
+    cases = drawn(LAW_CASES // 2, batch * LAW_CASES // 2, LAWS)
+    done = list(judged(cases))
+    wrong = [f"{one.kind}:{one.seed} {what}" for one in done for what in one.violations]
+    assert not wrong, "\n".join(wrong)
+    assert sum(one.code == 0 for one in done) > LAW_CASES // 4
