@@ -25,6 +25,7 @@ class MethodRow(NamedTuple):
 
 
 AUTO, DEFAULT = "auto", "DOP853"
+SMOOTH_ONLY = "method: auto does, and every method that is not SciPy's"  # a hint, where these are refused a scene
 METHODS = (
     MethodRow(
         "Euler", 1, "explicit", "fixed", "quaternion",

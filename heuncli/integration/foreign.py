@@ -23,6 +23,7 @@ from heuncli.integration.loop import Segment, smooth_segments
 from heuncli.integration.methods.method import Method
 from heuncli.integration.moving import Moving
 from heuncli.integration.runner import Trajectory, check_deadline
+from heuncli.method_rows import SMOOTH_ONLY
 from heuncli.records import record
 from heuncli.response import settled, slope
 from heuncli.results import Array
@@ -171,17 +172,14 @@ def require_smooth(layout: Layout, method: Method, last: float) -> None:
     named += [f"the condition {condition.name}" for condition in mechanism.conditions]
     drives = [joint.drive for joint in mechanism.joints if joint.drive is not None]
     named += [f"the drive {drive.name}, whose rate jumps" for drive in drives if rate_jumps(drive.value, last)]
-    problems = [Problem("method-scene", f"{method.name} does not run {name}", hint=HINT) for name in named]
+    problems = [Problem("method-scene", f"{method.name} does not run {name}", hint=SMOOTH_ONLY) for name in named]
     for expression in mechanism.expressions():
         if expression.uses and expression.held:
             source = expression.source.strip()
             message = f"{method.name} does not run '{source}', which jumps or bends with a coordinate"
-            problems.append(Problem("method-scene", message, expression.location, HINT))
+            problems.append(Problem("method-scene", message, expression.location, SMOOTH_ONLY))
     if problems:
         raise SpecError(*problems)
-
-
-HINT = "method: auto does, and every method that is not SciPy's"
 
 
 def gave_up(method: Method, t: float, why: str) -> SolveError:

@@ -128,6 +128,9 @@ def type_of(document: f.Document) -> Literal["motion", "impulse", "state", "rest
     return "impulse" if document.impulses else "state"
 
 
+MOST_SAMPLES = 3_000_000  # 100 MB while a spec is read; of the least of scenes results of 200 million numbers
+
+
 def instants_of(document: f.Document) -> tuple[float, ...]:
     """The instants asked for, [s]; empty where they are in error."""
     analysis = document.analysis
@@ -136,7 +139,7 @@ def instants_of(document: f.Document) -> tuple[float, ...]:
     if analysis.times is not None:
         return tuple(analysis.times)
     count = analysis.samples if analysis.samples is not None else DEFAULT_SAMPLES
-    if analysis.duration is None or not math.isfinite(analysis.duration) or not 2 <= count <= 10_000_000:
+    if analysis.duration is None or not math.isfinite(analysis.duration) or not 2 <= count <= MOST_SAMPLES:
         return ()
     return (*evenly(analysis.duration, count), analysis.duration)
 

@@ -7,7 +7,7 @@ import tempfile
 from pathlib import Path
 
 from tests.faults.cases import Case
-from tests.faults.worker import executed
+from tests.faults.worker import executed, inner
 
 MOST = 3000  # characters of an output
 
@@ -16,7 +16,7 @@ def show(of: Case) -> None:
     """Print what a case's command lines left behind."""
     here = Path.cwd()
     with tempfile.TemporaryDirectory() as folder:
-        os.chdir(folder)
+        os.chdir(inner(folder))
         try:
             done = executed(of)
         finally:

@@ -74,6 +74,13 @@ def without_seconds(out: bytes) -> bytes:
     return out if begin < 0 else out[:begin] + out[out.find(b"}", begin) :]
 
 
+def inner(folder: str) -> Path:
+    """A folder in it, so that `..` is nobody else's."""
+    path = Path(folder) / "here"
+    path.mkdir()
+    return path
+
+
 def _lay_out(of: Case) -> None:
     """The files of a case in this folder, and nothing else."""
     for path in Path().iterdir():
@@ -88,7 +95,7 @@ def main() -> None:
     os.dup2(os.open(os.devnull, os.O_RDONLY), 0)
     resource.setrlimit(resource.RLIMIT_AS, (MOST_MEMORY, MOST_MEMORY))
     with tempfile.TemporaryDirectory() as folder, tempfile.TemporaryDirectory() as beside:
-        os.chdir(folder)
+        os.chdir(inner(folder))
         noise = Noise(Path(beside) / "noise")
         for line in requests:
             kind, seed = line.strip().split(":")

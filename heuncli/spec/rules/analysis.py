@@ -6,8 +6,8 @@ from collections.abc import Iterator
 
 from heuncli.spec.methods import unfit_tolerance
 from heuncli.spec.rules.registry import DraftDocument, Violation, rule
+from heuncli.spec.semantics import MOST_SAMPLES
 
-MOST_SAMPLES = 10_000_000
 START = "shift all times, and t in loads with them"
 SMALLEST = "2 are the start and the end; for the start alone: {type: state}"
 LONGEST = 1e15  # seconds: thirty million years, in which no run counts a second any more

@@ -4,8 +4,13 @@ from __future__ import annotations
 
 from collections.abc import Iterator
 
+from heuncli.expressions.programs import Expression
+from heuncli.method_rows import SMOOTH_ONLY, row_of
+from heuncli.spec.format import RodJoint
 from heuncli.spec.methods import unfit
-from heuncli.spec.rules.registry import DraftDocument, Violation, rule
+from heuncli.spec.rules.conditions import conditions
+from heuncli.spec.rules.registry import DraftDocument, Path_, Violation, rule
+from heuncli.spec.semantics import type_of
 
 
 def among(draft: DraftDocument, code: str) -> Iterator[Violation]:
@@ -35,3 +40,38 @@ def fixed_step(draft: DraftDocument) -> Iterator[Violation]:
 def step(draft: DraftDocument) -> Iterator[Violation]:
     """A step is positive, no longer than the run, and not so short that it needs too many."""
     yield from among(draft, "step")
+
+
+@rule("method-scene")
+def method_scene(draft: DraftDocument) -> Iterator[Violation]:
+    """SciPy's methods run what is smooth: what strikes, ends or jumps by the state is refused by name.
+
+    A drive whose rate jumps is refused, too, when its jumps are looked for: integration/foreign.py.
+    """
+    row = row_of(draft.document.analysis.method)
+    if row is None or row.kind != "SciPy" or type_of(draft.document) != "motion":
+        return
+    for path, what in not_smooth(draft):
+        yield Violation(path, f"{row.name} does not run {what}", SMOOTH_ONLY, key=True)
+
+
+def not_smooth(draft: DraftDocument) -> Iterator[tuple[Path_, str]]:
+    """Stops, ropes, blows, conditions in time and state, and loads that jump or bend with a coordinate."""
+    document = draft.document
+    for name in document.stops:
+        yield ("stops", name), f"the stop {name}"
+    for name, joint in document.joints.items():
+        if isinstance(joint, RodJoint) and joint.tension_only:
+            yield ("joints", name), f"the rope {name}, which may go slack"
+    for name in document.impulses:
+        yield ("impulses", name), f"the impulse {name}"
+    for path, given in conditions(draft):
+        if isinstance(given, Expression):
+            yield path, f"the condition {path[-1]}"
+    for block, entries in (("drives", document.drives), ("forces", document.forces)):
+        for name, entry in entries.items():
+            for field, value in entry:
+                for part in value if isinstance(value, tuple) else (value,):
+                    if isinstance(part, Expression) and part.uses and part.held:
+                        source = part.source.strip()
+                        yield (block, name, field), f"'{source}', which jumps or bends with a coordinate"
