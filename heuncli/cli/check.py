@@ -2,21 +2,21 @@
 
 from __future__ import annotations
 
-from collections.abc import Iterator, Sequence
+from collections.abc import Sequence
 from functools import partial
-from pathlib import Path
 from typing import Any
 
 import numpy as np
 
 from heuncli.cli import alarm
 from heuncli.cli.entry import UsageError, contained, report_problems, worst
+from heuncli.cli.folders import Found, PassedBy, specs_below
 from heuncli.cli.guard import keep
-from heuncli.cli.output import emit
+from heuncli.cli.output import emit, say
 from heuncli.cli.requests import Check
 from heuncli.cli.solving import warn
 from heuncli.cli.target import format_of
-from heuncli.errors import HeunError, Problem
+from heuncli.errors import HeunError, Problem, SpecError
 from heuncli.foreign_text import shown
 from heuncli.records import record
 from heuncli.report.export import dump
@@ -31,8 +31,6 @@ from heuncli.study.solve import Options, solve
 
 FORMATS = ("table", "json")
 ENDINGS = {".json": "json", ".txt": "table", "": "table"}
-SPECS = frozenset({".yaml", ".yml"})
-SKIPPED = "broken"  # folders of specs that are wrong on purpose
 FAILED = 1
 NAMED = "name a folder of specs, or the files themselves; folders named broken and hidden ones are passed by"
 
@@ -55,36 +53,28 @@ class Checked:
 
 def main(request: Check) -> int:
     """Run the command; returns the exit code."""
-    skipped: list[str] = []
-    paths = [path for argument in request.paths for path in _files(argument, skipped)]
+    skipped: list[PassedBy] = []
+    found = [one for argument in request.paths for one in specs_below(argument, skipped)]
+    paths = [one.path for one in found]
+    for folder in skipped if not request.quiet else ():
+        if folder.reason:
+            say(f"heun: {shown(folder.path)} passed by: {shown(folder.reason)}")
     if not paths:
         raise UsageError(Problem("nothing-to-check", f"no *.yaml in {', '.join(request.paths)}", hint=NAMED))
     keep(request.output, paths)
     form = format_of(request.format, request.output, ENDINGS, FORMATS)
-    checked = [_check(path, request) for path in paths]
+    checked = [_check(one, request) for one in found]
     keep(request.output, paths)  # the tables of specs that are wrong, too
     if any(one.error is None for one in checked):  # with errors alone there is no result
         emit(_json(checked) if form == "json" else _table(checked, skipped), request.output)
     return worst([one.exit_code for one in checked])
 
 
-def _files(argument: str, skipped: list[str]) -> Iterator[str]:
-    """The file itself, or every spec in the folder and below it, sorted; not in hidden folders and `broken` ones."""
-    if argument == "-" or not Path(argument).is_dir():
-        yield argument
-        return
-    for entry in sorted(Path(argument).iterdir()):
-        if entry.is_dir():
-            if entry.name == SKIPPED:
-                skipped.append(str(entry))
-            elif not entry.name.startswith("."):
-                yield from _files(str(entry), skipped)
-        elif entry.suffix in SPECS:
-            yield str(entry)
-
-
-def _check(path: str, request: Check) -> Checked:
+def _check(found: Found, request: Check) -> Checked:
+    path = found.path
     try:
+        if found.problem is not None:
+            raise SpecError(found.problem)
         work = partial(alarm.limited, partial(_compared, path, request), request.time_limit_each)
         return contained(work, ("check", path))
     except UsageError:
@@ -109,7 +99,7 @@ def _placed(error: HeunError) -> bool:
     return all(problem.location for problem in error.problems)
 
 
-def _table(checked: Sequence[Checked], skipped: Sequence[str]) -> str:
+def _table(checked: Sequence[Checked], skipped: Sequence[PassedBy]) -> str:
     cases = [case for one in checked for case in one.cases]
     rows = tuple(
         (
@@ -131,7 +121,7 @@ def _table(checked: Sequence[Checked], skipped: Sequence[str]) -> str:
     parts = [count(len(checked), "spec"), f"{sum(case.passed for case in cases)} passed", f"{len(rows)} failed"]
     parts += [f"{count(errors, 'spec')} not solved"] if errors else []
     parts += [f"{count(silent, 'spec')} ran with nothing expected"] if silent else []
-    parts += [f"{shown(folder)} passed by" for folder in skipped]
+    parts += [f"{shown(folder.path)} passed by" for folder in skipped]
     return (plain(failures) + "\n" if rows else "") + ", ".join(parts) + "\n"
 
 
