@@ -23,12 +23,16 @@ class SourceLocation(NamedTuple):
 
 
 class Problem(NamedTuple):
-    """One thing wrong: a sentence and its code, and, where known, the location and what to do next."""
+    """One thing wrong: a sentence and its code, and, where known, the location and what to do next.
+
+    about: the path in a spec of the entry at fault, `joints.elbow`, where who finds it knows names, but no places.
+    """
 
     code: str
     message: str
     location: SourceLocation | None = None
     hint: str | None = None
+    about: str = ""
 
     def __str__(self) -> str:
         path = f"{shown(self.location.path)}: " if self.location and self.location.path else ""
@@ -53,6 +57,10 @@ class HeunError(Exception):
     def __init__(self, *problems: Problem) -> None:
         super().__init__("\n".join(str(p) for p in problems))
         self.problems = problems
+
+    def tell(self, *problems: Problem) -> None:
+        """Tell these problems instead."""
+        self.args, self.problems = ("\n".join(map(str, problems)),), problems
 
 
 class SpecError(HeunError):

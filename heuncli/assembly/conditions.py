@@ -88,7 +88,8 @@ def _condition_of(mechanism: Mechanism, k: int, joint: Joint, t0: float, problem
         stretch = jet.rate, jet.acceleration
     if length is not None and length <= 0.0:
         message = f"joint {joint.name} (rod): its length is {length:.6g} m at the start"
-        problems.append(Problem("no-length", message, hint="give a length above zero; for zero take a ball"))
+        hint = "give a length above zero; for zero take a ball"
+        problems.append(Problem("no-length", message, hint=hint, about=f"joints.{joint.name}"))
 
     kind = JOINTS[joint.kind]
     hold, turn = kind.hold.asks, kind.turn.asks
@@ -164,7 +165,8 @@ def _compare(joint: Joint, given: Given, driven: float) -> list[Problem]:
         f"joint {joint.name}: initial {what} {held:.6g} {unit} contradicts drive {joint.drive.name}, "
         f"which asks for {driven:.6g} {unit} at the start"
     )
-    return [Problem("held-conflict", message, hint=f"leave out the initial {what}; the drive sets it")]
+    return [Problem("held-conflict", message, hint=f"leave out the initial {what}; the drive sets it",
+                    about=f"joints.{joint.name}")]  # fmt: skip
 
 
 def _not_zero(joint: Joint, given: Given, value: float) -> Problem:
@@ -172,5 +174,5 @@ def _not_zero(joint: Joint, given: Given, value: float) -> Problem:
     return Problem(
         "held-conflict",
         f"joint {joint.name}: {what} {value:.6g} {unit} at the start, but it is counted from the assembled start",
-        hint="let it be zero there, or leave out to_axis and zero: assembled",
+        hint="let it be zero there, or leave out to_axis and zero: assembled", about=f"joints.{joint.name}",
     )

@@ -28,12 +28,12 @@ def does_not_fit(mechanism: Mechanism, distance: Array, angle: Array, size: floa
         what = "position" if apart else "orientation"
         return SolveError(Problem(
             "held-conflict", f"joint {joint.name} ({joint.kind}): {gap}; both are held",
-            hint=f"leave out the {what} of one of them" + _else(mechanism, k, joints),
+            hint=f"leave out the {what} of one of them" + _else(mechanism, k, joints), about=f"joints.{joint.name}",
         ))  # fmt: skip
     return SolveError(Problem(
         "does-not-fit", f"joint {joint.name} ({joint.kind}) cannot be closed: {gap}",
         hint="check the points and lengths; hold fewer values; or draw the bodies nearer with near:"
-        + _else(mechanism, k, joints),
+        + _else(mechanism, k, joints), about=f"joints.{joint.name}",
     ))  # fmt: skip
 
 
@@ -49,6 +49,7 @@ def rates_do_not_fit(mechanism: Mechanism, speed: Array, spin: Array, size: floa
     return SolveError(Problem(
         "rates-do-not-fit", message,
         hint="hold fewer velocities; what is left out follows the joints" + _drives(mechanism, joints),
+        about=f"joints.{joint.name}",
     ))  # fmt: skip
 
 
@@ -56,16 +57,19 @@ def no_length(mechanism: Mechanism, joint: int) -> SolveError:
     """A rod whose points coincide."""
     name = mechanism.joints[joint].name
     message = f"joint {name} (rod): its two points coincide at the start, so that it has no direction"
-    return SolveError(Problem("no-length", message, hint="give its length, or move one of the points"))
+    hint = "give its length, or move one of the points"
+    return SolveError(Problem("no-length", message, hint=hint, about=f"joints.{name}"))
 
 
 def too_many(mechanism: Mechanism, island: Island, what: str) -> SolveError:
     """An island beyond what is fitted at once."""
+    name = mechanism.joints[(island.closures or island.via)[0]].name
     message = (
-        f"the loop at joint {mechanism.joints[(island.closures or island.via)[0]].name} ties {len(island.members):,} "
+        f"the loop at joint {name} ties {len(island.members):,} "
         f"bodies together whose start {what} do not fit yet: more than are fitted at once"
     )
-    return SolveError(Problem("too-many-together", message, hint=f"give the {what} of more of its bodies"))
+    return SolveError(Problem("too-many-together", message, hint=f"give the {what} of more of its bodies",
+                              about=f"joints.{name}"))  # fmt: skip
 
 
 def singular_pose(mechanism: Mechanism, joint: int, joints: Sequence[int]) -> SolveError:
@@ -75,7 +79,8 @@ def singular_pose(mechanism: Mechanism, joint: int, joints: Sequence[int]) -> So
         "in which no acceleration belongs to its start velocities"
     )
     hint = "give the rate of one more joint of the loop; together they must be those of a motion through this pose"
-    return SolveError(Problem("singular-pose", message, hint=hint + _drives(mechanism, joints)))
+    hint += _drives(mechanism, joints)
+    return SolveError(Problem("singular-pose", message, hint=hint, about=f"joints.{mechanism.joints[joint].name}"))
 
 
 def _name(mechanism: Mechanism, body: int) -> str:

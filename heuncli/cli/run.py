@@ -32,6 +32,7 @@ from heuncli.results_schema import BLOWS, REPORT_OF, REPORTS, SHARES, with_share
 from heuncli.spec.load import load
 from heuncli.spec.models import Spec
 from heuncli.study.asked import Asked, Entry, asked_by, entries_of, entry_at
+from heuncli.study.places import placed
 from heuncli.study.solve import Options, Study, solve
 
 ENDINGS = {".json": "json", ".csv": "csv", ".md": "markdown", ".txt": "table", "": "table"}
@@ -65,11 +66,12 @@ def main(request: Run) -> int:
     if asked:
         measure.check(asked, spec)
     what = asked_by([each.path for each in asked], spec) if asked else _asked(request, only, spec, form)
-    study = solve(spec, replace(options, wanted=what.reports, entries=what.entries))
-    if asked:
-        text = measure.write(asked, study, form)
-    else:
-        text = _report(request, form, study, replace(labels_of(spec), units=shown), what.reports)
+    with placed(spec):
+        study = solve(spec, replace(options, wanted=what.reports, entries=what.entries))
+        if asked:
+            text = measure.write(asked, study, form)
+        else:
+            text = _report(request, form, study, replace(labels_of(spec), units=shown), what.reports)
     emit(text, request.output)
     if request.units is not None and not request.quiet and (asked or form not in TABLES):
         say(f"heun: --units is of tables: {'--measure' if asked else form} stays in SI")

@@ -136,4 +136,4 @@ def require_pull(rope: str | None) -> None:
     if rope is not None:
         message = f"in the blow at t = 0 s the rod {rope} would have to push (tension_only)"
         hint = "with restitution: 0 (to 1) it goes slack, and catches again"
-        raise SolveError(Problem("rope-pushes", message, hint=hint))
+        raise SolveError(Problem("rope-pushes", message, hint=hint, about=f"joints.{rope}"))

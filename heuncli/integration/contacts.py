@@ -265,7 +265,8 @@ def short_flights(touch: Touching, rate: Array, acceleration: Array, instant: fl
     return np.asarray(falls & ((rate * rate <= 2.0 * a * touch.reach) | (2.0 * rate <= a * instant)))
 
 
-def undecided(t: float) -> SolveError:
-    """The problem of contacts that follow each other at one instant without an end."""
+def undecided(t: float, name: str) -> SolveError:
+    """The problem of contacts that follow each other at one instant without an end; name: of the one most struck."""
     message = f"at t = {t:.9g} s stops and ropes strike and let go again and again without the time going on"
-    return SolveError(Problem("chattering", message, hint="contacts that work against each other: loosen one of them"))
+    hint = "contacts that work against each other: loosen one of them"
+    return SolveError(Problem("chattering", message, hint=hint, about=name))

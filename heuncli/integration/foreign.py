@@ -185,7 +185,8 @@ def require_smooth(layout: Layout, method: Method, last: float) -> None:
 def gave_up(method: Method, t: float, why: str) -> SolveError:
     """The error of a run that SciPy does not continue."""
     hint = "method: auto tells more of what happens there"
-    error = SolveError(Problem("step-collapsed", f"at t = {t:.9g} s: {method.name} gave up: {why.strip()}", hint=hint))
+    message = f"at t = {t:.9g} s: {method.name} gave up: {why.strip()}"
+    error = SolveError(Problem("step-collapsed", message, hint=hint, about="analysis.method"))
     error.reached = t
     return error
 

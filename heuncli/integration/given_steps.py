@@ -40,7 +40,7 @@ def of_given_steps(runs: Runs, error: SolveError) -> SolveError:
     elif end is not None:
         hint += f"; but that ends {other.problems[0].message}"
         hint += f": {other.problems[0].hint}" if other.problems[0].hint else ""
-    found = SolveError(Problem(problem.code, message, hint=hint))
+    found = SolveError(Problem(problem.code, message, hint=hint, about="analysis.step"))
     found.reached = t
     return found
 

@@ -29,6 +29,6 @@ def half_turn(moving: Moving, body: int, t: float, state: Array, *, itself: bool
     hint = "DOP853 and DOP853-recentred have no such place"
     if not itself:
         hint += "; it is the body as it is integrated, with --no-reduce the one drawn"
-    error = SolveError(Problem("half-turn", f"{where}: there the global chart ends", hint=hint))
+    error = SolveError(Problem("half-turn", f"{where}: there the global chart ends", None, hint, f"bodies.{name}"))
     error.reached = t + left
     return error

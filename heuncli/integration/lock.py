@@ -149,7 +149,7 @@ def told(runner: Runner, good: State, bad: float, last: float) -> Problem:
     else:
         names = f"{', '.join(drives[:-1])} and {drives[-1]}"
         hint = f"the drives {names} ask there for what does not go together, or for more than the loop can do"
-    return Problem("closure-lost", message, hint=hint)
+    return Problem("closure-lost", message, hint=hint, about=f"joints.{joint.name}")
 
 
 def drives_of(layout: Layout, island: Island) -> list[str]:

@@ -69,7 +69,8 @@ def require_energy(jump: Jump, terms: float) -> None:
     size = max(before, after, abs(jump.work), tolerances.UNBALANCED * terms)
     if not abs(after - before - jump.work) <= tolerances.UNBALANCED * size:
         message = f"at t = {jump.time:.9g} s the energies of the blow on {', '.join(jump.names)} do not add up"
-        raise SolveError(Problem("blow-unbalanced", message, hint="a singular pose, or contacts that hardly differ"))
+        raise SolveError(Problem("blow-unbalanced", message, None,
+                                 "a singular pose, or contacts that hardly differ", jump.names[0]))
 
 
 @record
@@ -98,7 +99,7 @@ class Contacts:
         self.at_once = self.at_once + 1 if t - self.since <= near else 0
         self.since = t
         if self.at_once > AT_ONCE + 4 * len(self.holding):
-            raise undecided(t)
+            raise undecided(t, max(self.strikes, key=lambda name: self.strikes[name], default=""))
 
     def meet(self, given: Given, state: Array, time: float, row: int | None) -> Jump | None:
         """The blow at an instant, where there is one; row: of the contact that closed or opened there."""

@@ -13,6 +13,7 @@ from heuncli.study.chart_motion import motion_of
 from heuncli.study.chart_plan import Wanted, plan
 from heuncli.study.chart_reference import refer
 from heuncli.study.chart_runs import Charting, Tell
+from heuncli.study.places import placed
 
 DRIVEN = (
     "the drives leave no freedom: heun run solves every instant by itself (followed) and integrates nothing; the other "
@@ -22,6 +23,12 @@ DRIVEN = (
 
 def chart(spec: Spec, wanted: Wanted, tell: Tell = lambda done, of, what: None) -> Chart:
     """The chart of a spec. Raises SpecError, SolveError, LimitError where there is none."""
+    with placed(spec):
+        return charted(spec, wanted, tell)
+
+
+def charted(spec: Spec, wanted: Wanted, tell: Tell) -> Chart:
+    """The same, with errors that have names in place of places."""
     deadline = None if wanted.time_limit is None else time.monotonic() + wanted.time_limit
     motion = motion_of(spec, deadline)
     rows = plan(motion, wanted)

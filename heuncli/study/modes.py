@@ -20,6 +20,7 @@ from heuncli.linearisation.smooth import without_slope
 from heuncli.linearisation.steady import Looked, fastest, goes_on_as_it_is, look, off_balance
 from heuncli.redundancy.neighbours import neighbours
 from heuncli.spec.models import Spec
+from heuncli.study.places import placed
 from heuncli.study.setup import Setup, set_up
 
 REST_HINT = "analysis: {type: rest} looks for the pose that rests"
@@ -29,6 +30,12 @@ MOVING_HINT = "leave out the velocities, or run a motion: modes are those about 
 
 def modes(spec: Spec) -> Modes:
     """The modes of a spec. Raises SolveError where there is no state to oscillate about."""
+    with placed(spec):
+        return found_in(spec)
+
+
+def found_in(spec: Spec) -> Modes:
+    """The same, with errors that have names in place of places."""
     setup = set_up(spec, reduce=False)
     require_no_time(setup)
     here, at = state_of(setup)

@@ -11,6 +11,7 @@ from collections.abc import Sequence
 from heuncli.probing.model import Event, Probe
 from heuncli.records import replace
 from heuncli.spec.models import Spec
+from heuncli.study.places import placed
 from heuncli.study.probe_along import Along, attitudes, dead_centres, distinct_events
 from heuncli.study.probe_conditions import conditions_of, singular_events
 from heuncli.study.probe_growth import across_plane, growing
@@ -23,6 +24,12 @@ MOST_EVENTS = 100  # that are listed of one kind and place
 
 def probe(spec: Spec, options: Options) -> Probe:
     """Probe the motion of a spec, or its state. Raises what solving it raises."""
+    with placed(spec):
+        return probed(spec, options)
+
+
+def probed(spec: Spec, options: Options) -> Probe:
+    """The same, with errors that have names in place of places."""
     study = solve(spec, replace(options, wanted=frozenset({"motion"})))
     along = Along(study)
     turns, turned = attitudes(along)

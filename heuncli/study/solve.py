@@ -28,6 +28,7 @@ from heuncli.study.asked import Asked, Entry, needed_by, sums_among
 from heuncli.study.extremes import Searched
 from heuncli.study.finite import finite
 from heuncli.study.history import History, integrate, resample, search_times
+from heuncli.study.places import placed
 from heuncli.study.recover import Recovery, accuracy, asked_blocks, certain_sums, recover
 from heuncli.study.sampled import Sampled
 from heuncli.study.setup import Setup, set_up
@@ -77,7 +78,12 @@ class Options:
 
 def solve(spec: Spec, options: Options | None = None) -> Study:
     """Solve a spec. Raises SpecError, SolveError, LimitError."""
-    options = options or Options()
+    with placed(spec):
+        return begun(spec, options or Options())
+
+
+def begun(spec: Spec, options: Options) -> Study:
+    """The same, with errors that have names in place of places."""
     deadline = time.monotonic() + options.time_limit if options.time_limit else None
     try:
         return solved(spec, options, deadline)
@@ -125,6 +131,12 @@ def blows(setup: Setup, history: History, least_norm: bool, by_cause: bool) -> I
 
 def describe(spec: Spec, *, reduce: bool = True) -> Block:
     """The block `model` of a scene, with its names, advice on what is redundant, and what a run of it will take."""
+    with placed(spec):
+        return described(spec, reduce)
+
+
+def described(spec: Spec, reduce: bool) -> Block:
+    """The same, with errors that have names in place of places."""
     from heuncli.redundancy.advice import advice  # runs give none
     from heuncli.study.outlook import noticed, outlook
 

@@ -68,4 +68,5 @@ def _beyond(mechanism: Mechanism, stop: Stop, value: float, limit: float, side: 
     unit = "rad" if stop.quantity == "angle" else "m"
     starts = f"{joint}.{stop.quantity} starts at {value:.9g} {unit}"
     message = f"{starts}, {side} the limit {limit:.9g} {unit} of stop {stop.name}"
-    return Problem("beyond-stop", message, hint=f"start the joint {joint} within its limits, or change the limits")
+    return Problem("beyond-stop", message, hint=f"start the joint {joint} within its limits, or change the limits",
+                   about=f"stops.{stop.name}")  # fmt: skip
