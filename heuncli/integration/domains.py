@@ -73,12 +73,15 @@ def grown(mechanism: Mechanism, now: tuple[float, Moving], before: tuple[float, 
 
 
 def large_values(mechanism: Mechanism, t: float, coordinates: Moving) -> list[Problem]:
-    """The expressions whose value at an instant is finite, and yet too large to be computed with."""
+    """The expressions whose value, or of drives rate or acceleration, is at an instant too large to compute with."""
     problems = []
-    for expression, _ in _in_time(mechanism):
-        value = expression.value(t, _values(expression, 0.0, coordinates))
+    for expression, driven in _in_time(mechanism):
+        values = _values(expression, 0.0, coordinates)
+        jet = expression.derivatives(t) if driven else (expression.value(t, values),)
+        of, value = max(zip(DERIVATIVES, jet, strict=False), key=lambda pair: abs(pair[1]))
         if abs(value) > tolerances.MOST_MAGNITUDE:
-            found = out_of_range(value, f"at t = {t:.9g} s '{expression.source.strip()}'")
+            what = "" if of == "value" else f"the {of} of "
+            found = out_of_range(value, f"at t = {t:.9g} s {what}'{expression.source.strip()}'")
             problems.append(Problem(found.code, found.message, expression.location, found.hint))
     return problems
 

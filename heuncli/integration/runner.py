@@ -151,7 +151,7 @@ def chunk_of(layout: Layout, method: Method) -> int:
         message = f"{method.name} solves dense equations for all {n} numbers of the state; it takes up to"
         hint = "--method DOP853, which solves none; what is stiff then takes short steps"
         raise LimitError(Problem("too-many-states", f"{message} {tolerances.MOST_SOLVED}", hint=hint))
-    return max(1, min(CHUNK // bodies, DENSE_CHUNK // n**2))
+    return max(1, min(CHUNK // bodies, DENSE_CHUNK // max(n, 1) ** 2))
 
 
 def check_deadline(deadline: float | None, where: str) -> None:

@@ -260,7 +260,8 @@ def search_times(setup: Setup, history: History) -> tuple[Array, bool]:
     grid = np.concatenate([inner, [t for pair in one_sided_limits(history.jumps) if pair[0] > 0.0 for t in pair]])
     grid = distinct(np.concatenate([times, grid[(grid > times[0]) & (grid < times[-1])]]))
     grid = distinct(np.concatenate([grid, *own_extremes(setup.scene.mechanism, grid)]))
-    parts = np.maximum(1, np.ceil(turned_between(setup, history, grid) / TURNED)).astype(int)
+    turns = np.ceil(turned_between(setup, history, grid) / TURNED)
+    parts = np.clip(turns, 1, MOST_SEARCHED + 1).astype(int)  # what turns faster is not searched to its turns
     enough = per_step == len(WITHIN_STEP) and int(parts.sum()) <= MOST_SEARCHED
     parts = np.minimum(parts, max(1, MOST_SEARCHED // len(grid))) if not enough else parts
     first = np.repeat(np.arange(len(parts)), parts)

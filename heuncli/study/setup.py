@@ -5,6 +5,8 @@ from __future__ import annotations
 from functools import cached_property
 from typing import TYPE_CHECKING
 
+from heuncli import tolerances
+from heuncli.errors import SolveError
 from heuncli.integration.following import NOT_DETERMINED, determined
 from heuncli.integration.methods.followed import FOLLOWED
 from heuncli.integration.methods.method import Method
@@ -76,6 +78,7 @@ def set_up(
     mechanism, cuts = draw(spec)
     if spec.analysis.type == "rest":
         mechanism = with_slack_ropes(mechanism)
+    require_drives(mechanism, spec.analysis.times[0] if spec.analysis.times else 0.0)
     prepared = prepare(mechanism, spec.analysis.times[0] if spec.analysis.type == "state" else 0.0)
     if any(drive.by_rate for drive in spec.drives.values()):
         from heuncli.tree.driven_starts import require_lengths  # few scenes have them
@@ -104,6 +107,15 @@ def set_up(
     step = spec.analysis.step if chosen is not None and chosen.fixed else None
     note |= {} if step is None else {"step": step}
     return Setup(spec, scene, cuts, runner, chosen, note, reduced, asked, auto=auto, step=step)
+
+
+def require_drives(mechanism: Mechanism, t: float) -> None:
+    """Raise SolveError for drives that begin with what is too large to be computed with: the assembly squares it."""
+    jets = [joint.drive.value.derivatives(t) for joint in mechanism.joints if joint.drive is not None]
+    if any(abs(value) > tolerances.MOST_MAGNITUDE for jet in jets for value in jet):
+        from heuncli.integration.domains import large_values  # only on the way to an error
+
+        raise SolveError(*large_values(mechanism, t, {}))
 
 
 def set_up_at_rest(setup: Setup, left_out: tuple[str, ...], looked_for: bool) -> Setup:

@@ -75,6 +75,11 @@ forces: {f: {type: torque, joint: p, value: "LOAD"}}
 """
 
 
+WELDED = PUSHED.replace("type: rod", "type: weld").replace(", tension_only: true", "").replace(", 0, -1]", ", 0, 0]")
+STUCK = WELDED.replace("samples: 3", "samples: 3, method: Radau5")
+DRIVEN = BEAM.replace("0.1*(1 -", "2e256*(1 -")
+
+
 @pytest.mark.parametrize(("command", "text", "code", "word"), [
     ("validate", SHORT_RUN, 2, "[short-run]"),
     ("run", SHORT_RUN, 2, "[short-run]"),
@@ -82,6 +87,8 @@ forces: {f: {type: torque, joint: p, value: "LOAD"}}
     ("modes", RODS, 3, "[mass-ratios]"),
     ("run", BEAM, 3, "[no-inertia]"),
     ("probe", PUSHED, 0, ""),
+    ("run", STUCK, 0, ""),
+    ("run", DRIVEN, 3, "<stdin>:12:40: drives.screw.travel: at t = 0 s the acceleration of '2e256*(1"),
     ("run", GROWING.replace("LOAD", "1e55"), 3, "angular acceleration of bodies.a is 5e+64, too large"),
     ("run", GROWING.replace("LOAD", "1e40*1e30*(1 + t)"), 3, "<stdin>:5:45: forces.f.value: at t = 0 s '1e40*1e30"),
 ])  # fmt: skip
