@@ -114,7 +114,7 @@ class Loading:
         entries = self.block("tables")
         if not entries:
             return {}
-        from heuncli.spec.tables import build_table  # with csv 2 ms that few scenes need
+        from heuncli.spec.tables import build_table, outside_folder  # with csv 2 ms that few scenes need
 
         folder = Path() if self.path == "-" else Path(self.path).parent
         reader = Reader(self.data, Context(scope, scope), self.report)
@@ -125,6 +125,8 @@ class Loading:
             if entry is not None and entry.file is not None:
                 self.files.append(str(folder / entry.file))
             tables[name], wrong = build_table(name, entry, scope, folder) if entry is not None else (None, [])
+            if entry is not None and entry.file is not None and (told := outside_folder(folder, entry.file)):
+                self.warnings.append(Problem(told.code, told.message, self.location((*path, "file")), told.hint))
             for item in wrong:
                 finding = item.finding
                 if item.location is not None:

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import os
 from array import array
 from collections.abc import Iterator
 from pathlib import Path
@@ -163,6 +164,20 @@ def from_file(entry: Entry, file: str, folder: Path, wrong: list[Wrong]) -> Colu
     except CsvError as error:
         wrong.append(Wrong(("file",), error.finding, SourceLocation(str(path), error.line, error.column)))
         return None
+
+
+def outside_folder(folder: Path, file: str) -> Finding | None:
+    """What to say of a file that does not stand in the spec's folder, or below it; links count by where they lead."""
+    try:
+        home, given = os.path.realpath(folder), os.path.abspath(folder / file)  # noqa: PTH100  # Path's loop in circles
+        leads_to = os.path.realpath(given)
+    except (OSError, ValueError):  # no working folder, no name of a file: told where it is read
+        return None
+    if Path(leads_to).is_relative_to(home):
+        return None
+    led = f", which is {leads_to}" if Path(given).is_relative_to(home) else ""
+    hint = "copy it beside the spec: whoever runs that then knows what is read"
+    return Finding("outside-folder", f"reads a file outside the spec's folder: {file}{led}", hint)
 
 
 def text_of(path: Path) -> str:

@@ -261,6 +261,17 @@ def test_check_of_folders_passes_by_what_is_broken_on_purpose(heun: Heun, folder
     assert heun("check", "specs/.hidden").returncode == 1
 
 
+def test_a_table_outside_the_folder_is_named_by_model_and_fails_under_strict(heun: Heun, folder: Path) -> None:
+    (folder / "data.csv").write_text("0,1\n1,2\n")
+    (folder / "below").mkdir()
+    (folder / "below" / "spec.yaml").write_text(SPECS["hanging"] + "tables: {f: {file: ../data.csv}}\n")
+    told = "tables.f.file: reads a file outside the spec's folder: ../data.csv [outside-folder]"
+    for words, code in ((["model"], 0), (["run"], 0), (["run", "--strict"], 1)):
+        done = heun(words[0], "below/spec.yaml", *words[1:])
+        assert done.returncode == code
+        assert told in done.stderr
+
+
 def test_strict_fails_on_warnings_but_prints(heun: Heun) -> None:
     done = heun("run", "unsound.yaml", "--strict")
     assert done.returncode == 1

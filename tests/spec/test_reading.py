@@ -142,3 +142,36 @@ def test_tables_are_read_by_the_same_rule(file: str, code: str, words: str, tmp_
     (problem,) = caught.value.problems
     assert problem.code == code
     assert words in problem.message
+
+
+@pytest.mark.parametrize(
+    ("file", "told"),
+    [
+        ("in.csv", None),
+        ("below/in.csv", None),
+        ("../specs/in.csv", None),
+        ("inner.csv", None),
+        ("../out.csv", "../out.csv"),
+        ("ABSOLUTE/out.csv", "ABSOLUTE/out.csv"),
+        ("link.csv", "link.csv, which is ABSOLUTE/out.csv"),
+        ("linked/out.csv", "linked/out.csv, which is ABSOLUTE/out.csv"),
+    ],
+)
+@pytest.mark.parametrize("path", ["specs/spec.yaml", "spec.yaml", "-"])
+def test_tables_outside_the_specs_folder_are_warned_of(
+    path: str, file: str, told: str | None, tmp_path: Path, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    tmp_path = tmp_path.resolve()
+    home = tmp_path / "specs"
+    (home / "below").mkdir(parents=True)
+    for name in ("out.csv", "specs/in.csv", "specs/below/in.csv"):
+        (tmp_path / name).write_text("0,1\n1,2\n")
+    (home / "link.csv").symlink_to("../out.csv")
+    (home / "linked").symlink_to("..")
+    (home / "inner.csv").symlink_to("below/in.csv")
+    monkeypatch.chdir(tmp_path if path.startswith("specs") else home)
+    spec = load(path, f"{SPEC}tables: {{f: {{file: {file.replace('ABSOLUTE', str(tmp_path))}}}}}\n")
+    message = f"reads a file outside the spec's folder: {told}".replace("ABSOLUTE", str(tmp_path))
+    found = [(problem.code, problem.message) for problem in spec.warnings]
+    assert found == ([("outside-folder", message)] if told else [])
+    assert all(problem.location and problem.location.path == "tables.f.file" for problem in spec.warnings)
