@@ -9,7 +9,7 @@ from pathlib import Path
 from heuncli.charts import Chart
 from heuncli.cli import alarm
 from heuncli.cli.entry import UsageError
-from heuncli.cli.guard import keep, same
+from heuncli.cli.guard import STDOUT, keep, same
 from heuncli.cli.output import emit, save
 from heuncli.cli.progress import progress
 from heuncli.cli.requests import Chart as Request
@@ -85,8 +85,8 @@ def picture_format(request: Request) -> Callable[[Chart], bytes] | None:
         hint = f"known endings: {', '.join(PICTURES)}"
         raise UsageError(Problem("bad-option", f"--save {request.save}: no picture is known by that ending", hint=hint))
     require_room(request.save, "--save")
-    if same(request.output, request.save):
-        message = f"--save {request.save}: that is what -o writes"
+    if same("/dev/stdout" if request.output in (None, STDOUT) else request.output, request.save):
+        message = f"--save {request.save}: that is where the table goes"
         raise UsageError(Problem("bad-option", message, hint="name another file"))
     if form == "svg":
         return _svg

@@ -146,7 +146,7 @@ def _debug() -> None:
     if os.environ.get("HEUN_DEBUG") == "1":
         import traceback
 
-        traceback.print_exc()
+        say(traceback.format_exc())
 
 
 def _bug_report(bug: Exception, argv: Sequence[str]) -> Problem:

@@ -36,7 +36,15 @@ def same(one: str | None, other: str | None) -> bool:
     states = _state(one), _state(other)
     if states[0] is not None and states[1] is not None:
         return os.path.samestat(states[0], states[1])
-    return None not in (one, other) and os.path.realpath(str(one)) == os.path.realpath(str(other))
+    return one is not None and other is not None and _led_to(one) == _led_to(other)
+
+
+def _led_to(name: str) -> str:
+    """The path that a name leads to; in a folder that is gone, the name."""
+    try:
+        return os.path.realpath(name)
+    except (OSError, ValueError):
+        return name
 
 
 def _state(name: str | None) -> os.stat_result | None:

@@ -81,7 +81,7 @@ def test_what_is_refused_before_the_work(heun: Heun, words: tuple[str, ...], tol
 
 def test_one_file_is_not_written_twice(heun: Heun) -> None:
     done = heun("chart", "swinging.yaml", "--save", "a.svg", "-o", "a.svg", "--format", "json")
-    assert done.returncode == 2 and "that is what -o writes" in done.stderr
+    assert done.returncode == 2 and "that is where the table goes" in done.stderr
 
 
 def test_a_missing_extra_is_told_before_the_work(heun: Heun, monkeypatch: pytest.MonkeyPatch) -> None:

@@ -141,3 +141,9 @@ def test_a_terminal_that_lacks_a_letter_shows_its_number() -> None:
 def test_words_are_wrapped_at_any_width(width: int) -> None:
     lines = wrapped("  what from exerts on to (drive apart), in world axes", width)
     assert " ".join(" ".join(lines).split()) == "what from exerts on to (drive apart), in world axes"
+
+
+def test_a_traceback_that_was_asked_for_steers_nothing(heun: Heun, monkeypatch: pytest.MonkeyPatch) -> None:
+    monkeypatch.setenv("HEUN_DEBUG", "1")
+    done = heun("run", EVIL.replace("\n", ""))
+    assert "Traceback" in done.stderr and unseen(done.stderr) == ""

@@ -13,6 +13,7 @@ import pytest
 from heuncli.cli.files import ReaderGone, place_of
 from heuncli.cli.output import emit
 from heuncli.errors import OutputError
+from tests.cli.conftest import Heun
 
 
 def test_a_file_is_written_and_keeps_its_mode(tmp_path: Path) -> None:
@@ -210,3 +211,12 @@ def test_a_reader_of_a_pipe_that_goes_away(tmp_path: Path) -> None:
     with pytest.raises(ReaderGone):
         emit("x", f"/dev/fd/{number}")
     os.close(number)
+
+
+@pytest.mark.parametrize(
+    "words", ["run {} -o o.json", "model {} -o o.txt", "chart {} -o o.json --save a.svg", "check {} -o o"]
+)
+def test_a_folder_that_is_gone_is_5(words: str, folder: Path, heun: Heun) -> None:
+    gone(folder)
+    done = heun(*words.format(folder / "hanging.yaml").split())
+    assert (done.returncode, done.stdout) == (5, "") and "No such file or directory" in done.stderr
