@@ -8,7 +8,7 @@ from typing import Any
 
 import numpy as np
 
-from heuncli.cli import alarm
+from heuncli.cli import alarm, memory
 from heuncli.cli.entry import UsageError, contained, report_problems, worst
 from heuncli.cli.folders import Found, PassedBy, specs_below
 from heuncli.cli.guard import keep
@@ -27,6 +27,7 @@ from heuncli.results import Array
 from heuncli.spec.load import load
 from heuncli.study.asked import EVERYTHING, asked_by
 from heuncli.study.expect import Case, compare
+from heuncli.study.room import Room
 from heuncli.study.solve import Options, solve
 
 FORMATS = ("table", "json")
@@ -88,7 +89,9 @@ def _compared(path: str, request: Check) -> Checked:
     spec = load(path)
     keep(request.output, [path])
     asked = asked_by([item.of for item in spec.expect], spec) if spec.expect else EVERYTHING
-    study = solve(spec, Options(wanted=asked.reports, entries=asked.entries, time_limit=alarm.left()))
+    room = Room(*memory.room("table"))
+    options = Options(wanted=asked.reports, entries=asked.entries, time_limit=alarm.left(), room=room)
+    study = solve(spec, options)
     cases = tuple(compare(study, item) for item in spec.expect)
     alarm.off()
     warn(spec, study.results, request.quiet, f"heun: {path}", study.later)

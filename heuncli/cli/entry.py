@@ -14,7 +14,7 @@ from pathlib import Path
 from typing import TypeVar
 
 from heuncli import files_read
-from heuncli.cli import alarm, plain
+from heuncli.cli import alarm, memory, plain
 from heuncli.cli.files import ReaderGone
 from heuncli.cli.output import emit, say
 from heuncli.cli.requests import COMMANDS, GRACES, LATER_COMMANDS, LATER_OPTIONS, Request
@@ -26,6 +26,7 @@ INTERRUPTED = 130
 Given = TypeVar("Given")
 BUG = 70
 OF_SEVERAL = (BUG, 5, 2, 3, 4, 1)  # contract section 4: which exit code stands for several files
+OUT_OF_MEMORY = Problem("out-of-memory", "the memory does not suffice", hint="fewer samples, or --only")
 
 
 class Bug(HeunError):
@@ -67,10 +68,10 @@ def contained(work: Callable[[], Given], argv: Sequence[str]) -> Given:
     except HeunError:
         raise
     except MemoryError:
-        error = LimitError(Problem("out-of-memory", "the memory does not suffice", hint="fewer samples, or --only"))
+        error = LimitError(OUT_OF_MEMORY)
     except Exception as mishap:
         _debug()
-        error = Bug(_bug_report(mishap, argv))
+        error = LimitError(OUT_OF_MEMORY) if memory.ended(mishap) else Bug(_bug_report(mishap, argv))
     raise error
 
 
@@ -111,6 +112,7 @@ def _command(argv: list[str]) -> int:
             raise UsageError(Problem("not-yet", message, hint="leave it out"))
     for name in ("time_limit", "time_limit_each"):
         _require_limit(f"--{name.replace('_', '-')}", getattr(request, name, None))
+    memory.require_some()
     module = importlib.import_module(f"heuncli.cli.{type(request).__name__.lower()}")
     grace = GRACES.get(type(request), alarm.GRACE)
     return int(alarm.limited(lambda: module.main(request), getattr(request, "time_limit", None), grace))

@@ -8,7 +8,7 @@ from typing import Any
 
 import numpy as np
 
-from heuncli.cli import alarm, searches
+from heuncli.cli import alarm, memory, searches
 from heuncli.cli.entry import UsageError
 from heuncli.cli.guard import keep
 from heuncli.cli.output import emit, say
@@ -33,6 +33,7 @@ from heuncli.spec.load import load
 from heuncli.spec.models import Spec
 from heuncli.study.asked import Asked, Entry, asked_by, entries_of, entry_at
 from heuncli.study.places import placed
+from heuncli.study.room import Room
 from heuncli.study.solve import Options, Study, solve
 
 ENDINGS = {".json": "json", ".csv": "csv", ".md": "markdown", ".txt": "table", "": "table"}
@@ -63,6 +64,7 @@ def main(request: Run) -> int:
     spec = load(request.spec, overrides=overrides(request.set), checking=False)
     keep(request.output, [request.spec])
     options = replace(options, load_seconds=time.perf_counter() - begun, time_limit=alarm.left())
+    options = replace(options, room=Room(*memory.room("table" if asked else form)))
     if asked:
         measure.check(asked, spec)
     what = asked_by([each.path for each in asked], spec) if asked else _asked(request, only, spec, form)

@@ -61,7 +61,8 @@ def to_csv(results: Results, labels: Labels) -> str:
     lines = [",".join([*CSV_COLUMNS, *["cause"] * by_cause, *CUT_COLUMNS * cut]) + "\n"]
     for row in rows:
         ends = _cuts(row) if cut else [""] * len(row.series.components)
-        lines += _lines(row, [f",{row.series.cause}{end}" if by_cause else end for end in ends])
+        # one text a series: of a short one a line, Python's own share is half of it
+        lines.append("".join(_lines(row, [f",{row.series.cause}{end}" if by_cause else end for end in ends])))
     if results.events:
         from heuncli.report.events import csv_lines  # where there are conditions
 

@@ -30,6 +30,7 @@ from heuncli.study.finite import finite
 from heuncli.study.history import History, integrate, resample, search_times
 from heuncli.study.places import placed
 from heuncli.study.recover import Recovery, accuracy, asked_blocks, certain_sums, recover
+from heuncli.study.room import Room, require_room
 from heuncli.study.sampled import Sampled
 from heuncli.study.setup import Setup, set_up
 from heuncli.study.warnings import beside_singular_poses, left_out, status, warnings
@@ -63,6 +64,7 @@ class Options:
     time_limit: float | None = None
     least_norm: bool = False
     reduce: bool = True  # whether less than the whole scene may be solved, where that changes nothing
+    room: Room | None = None  # that results may take; None: as much as they want
     load_seconds: float = 0.0  # what reading the spec took, for the block `work`
 
     @property
@@ -102,6 +104,8 @@ def solved(spec: Spec, options: Options, deadline: float | None) -> Study:
     asked = options.asked.with_all(needed_by(conditions, spec)) if conditions else options.asked
     spec = as_asked(spec, options)
     setup = set_up(spec, reduce=options.reduce, asked=asked)
+    if options.room is not None:
+        require_room(setup, options.room)
     built = time.perf_counter()
     history = integrate(setup, spec.analysis.tolerance, deadline, by_cause=SHARES in options.reports)
     whole, setup = setup, replace(setup, asked=options.asked) if conditions else setup
