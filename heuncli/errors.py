@@ -44,7 +44,7 @@ class Problem(NamedTuple):
 class Finding(ValueError):
     """A problem in a value, raised by code that does not know where the value stands; the caller adds the location."""
 
-    def __init__(self, code: str, message: str, hint: str | None = None) -> None:
+    def __init__(self, code: str, message: str, hint: str) -> None:
         super().__init__(message)
         self.code, self.message, self.hint = code, message, hint
 

@@ -63,7 +63,7 @@ def misspelt(data: Mapping[str, Any], known: Collection[str]) -> dict[str, Any]:
     return {word: value for word, value in by_known_key.items() if word not in data}
 
 
-def did_you_mean(word: str, known: Collection[str], kind: str) -> str | None:
+def did_you_mean(word: str, known: Collection[str], kind: str) -> str:
     """'did you mean x?', or the list of what is known, or that there is none."""
     meant = nearest(word, known)
     if meant is not None:

@@ -35,6 +35,6 @@ def format_of(asked: str | None, output: str | None, endings: Mapping[str, str],
 def require_room(output: str, option: str = "-o") -> None:
     """Say before the work what would keep a file from being written after it."""
     if not output:
-        hint = f"such as {option} results.json" if option == "-o" else None
+        hint = f"such as {option} {'results.json' if option == '-o' else 'chart.svg'}"
         raise UsageError(Problem("bad-option", f"{option}: expected the name of a file", hint=hint))
     place_of(output)

@@ -95,6 +95,9 @@ class Scope:
 FIXED = "this one is read once, before the run: give it as a number or by parameters"
 
 
+NO_COORDINATE = "only a pin and a slide have coordinates: shaft.angle, guide.travel"
+
+
 class Given(NamedTuple):
     """A parameter with a dimension, as it is written."""
 
@@ -110,7 +113,7 @@ class Follows(Finding):
     """Something this value depends on is in error; that error is reported, this one is not."""
 
     def __init__(self) -> None:
-        super().__init__("follows", "depends on something that is in error")
+        super().__init__("follows", "depends on something that is in error", "mend that first")
 
 
 def compile_expression(text: str, scope: Scope) -> Expression:
@@ -184,10 +187,10 @@ class _Parser:
     def expect(self, token: str, where: str) -> None:
         if not self.take(token):
             found = f", found '{self.token}'" if self.token else ""
-            hint = None if found else "inside { } and [ ] an expression with a comma needs quotes"
+            hint = f"put '{token}' before it" if found else "inside { } and [ ] an expression with a comma needs quotes"
             raise self.syntax(f"expected '{token}' {where}{found}", hint)
 
-    def syntax(self, message: str, hint: str | None = None) -> Finding:
+    def syntax(self, message: str, hint: str) -> Finding:
         place = self.tokens[self.at][2] - len(self.token) + 1 if self.at < len(self.tokens) else len(self.text) + 1
         return Finding("expression-syntax", f"'{self.text.strip()}' at character {place}: {message}", hint)
 
@@ -196,12 +199,12 @@ class _Parser:
         hints = {
             "^": "a power is written **", "%": "write x - n*y; there is no remainder", "//": "write /",
             "&&": "write and", "||": "write or", "&": "write and", "|": "write or", "!": "write not",
-            "=": "compare with ==",
+            "=": "compare with > or <, in a choice with ==",
             ":": "a value by cases is: a if c else b", "?": "a value by cases is: a if c else b",
             "×": "write *", "·": "write *", "÷": "write /", "−": "write the plain minus sign -",
         }  # fmt: skip
         if not self.token:
-            return self.syntax("it ends too early")
+            return self.syntax("it ends too early", "a value is missing: as 2*L, or 5*sin(t)")
         hint = hints.get(self.token)
         if self.token == "%" and self.at == len(self.tokens) - 1:
             hint = "a part of a hundred is written as 0.5 for 50 %"
@@ -225,7 +228,8 @@ class _Parser:
             hint = "a value by cases is: a if c else b"
         if hint is None and self.token == "." and self.at and self.tokens[self.at - 1][1] == ")":
             hint = "only a joint has coordinates: shaft.angle, guide.travel"
-        return self.syntax(f"'{self.token}' is not expected here", hint)
+        plain = "an expression is of numbers, names, + - * / ** and ( )"
+        return self.syntax(f"'{self.token}' is not expected here", hint or plain)
 
     def product_hint(self) -> str | None:
         """A hint for 2(t + 1), and for a unit behind an expression."""
@@ -397,7 +401,10 @@ class _Parser:
         if not least <= len(parts) <= most:
             count = f"{least}" if least == most else f"{least} or more"
             message = f"{name}() takes {count} argument{'s' if count != '1' else ''}, not {len(parts)}"
-            hint = "log is the natural logarithm; to the base b: log(x)/log(b)" if name == "log" else decimal
+            arguments = ", ".join("xyz"[:least]) + (", ..." if most > least else "")
+            hint = decimal or f"as {name}({arguments})"
+            if name == "log":
+                hint = "log is the natural logarithm; to the base b: log(x)/log(b)"
             raise Finding("function-arguments", message, hint)
         text = self.written(begin)
         part = self.codegen.apply(name, *parts[:2], text=text)
@@ -410,7 +417,8 @@ class _Parser:
         begin, name = self.at - 2, self.token if self.kind == "name" else ""
         self.at += 1
         if not name or not self.take(","):
-            hint = "the name without quotes" if self.tokens[self.at - 1][1] in ("'", '"') else None
+            quoted = self.tokens[self.at - 1][1] in ("'", '"')
+            hint = "the name without quotes" if quoted else "inside { } and [ ] an expression with a comma needs quotes"
             message = "table() takes a table's name and a value: table(gas, shaft.angle)"
             raise Finding("function-arguments", message, hint)
         argument = self.expression()
@@ -471,13 +479,13 @@ class _Parser:
             return Finding("unknown-name", f"'{name}' is not a {kind}", f"write {OTHER_NAMES[name]}")
         if kind == "parameter" and name in self.scope.joints:
             words = COORDINATES.get(self.scope.joints[name])
-            hint = f"write {name}.{words[0]} or {name}.{words[1]}" if words else None
+            hint = f"write {name}.{words[0]} or {name}.{words[1]}" if words else NO_COORDINATE
             return Finding("unknown-name", f"'{name}' is a joint, not a number", hint)
         known = (self.scope.parameters, RESERVED) if kind == "parameter" else (ARITY,)
         message, near = f"'{name}' is not a {kind}", nearest(name, *known)
         is_near = near is not None and near.lower() == name.lower()
-        if not is_near and kind == "parameter" and (hint := in_si("", name)) is not None:
-            return Finding("unknown-name", message, hint)
+        if not is_near and kind == "parameter" and (unit := in_si("", name)) is not None:
+            return Finding("unknown-name", message, unit)
         listed = self.scope.parameters if kind == "parameter" else sorted(ARITY)
         hint = f"did you mean {near}?" if near else did_you_mean(name, listed, f"{kind}s")
         return Finding("unknown-name", message, hint)

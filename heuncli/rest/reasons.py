@@ -15,7 +15,7 @@ MOST_NAMES = 3
 HOLDS = "hold it by a joint, a spring or a stop, or leave it out"
 
 
-def no_rest(message: str, hint: str | None = None) -> Problem:
+def no_rest(message: str, hint: str) -> Problem:
     """A problem of this kind."""
     return Problem(CODE, f"no rest pose: {message}", hint=hint)
 

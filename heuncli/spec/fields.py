@@ -222,6 +222,8 @@ def in_brackets(values: list[Any]) -> str:
 def end_hint(word: str, points: Mapping[str, Collection[str]]) -> str:
     """Which ends a word may stand for: the points of a body, or the point of that name."""
     own = [f"{word}.{point}" for point in points.get(word, ())]
+    if word in ("origin", "world", "base"):
+        own += [f"ground.{point}" for point in points.get("ground", ())]
     own += [f"{body}.{word}" for body, names in points.items() if word in names]
     if own:
         return f"did you mean {', or '.join(own[:4])}?"

@@ -12,6 +12,7 @@ from heuncli.spec.fields import keys_of
 from heuncli.spec.words import ELSEWHERE, FORMS, FORMS_OF_KINDS, KEY_WORDS, MISSING, SEVERAL, WORDS
 
 AXES = {"x": "[1, 0, 0]", "y": "[0, 1, 0]", "z": "[0, 0, 1]"}
+DIRECTIONS = frozenset({"axis", "to_axis", "normal", "first_axis"})
 COORDINATES = frozenset({"angle", "rate", "travel", "speed"})
 
 
@@ -21,10 +22,12 @@ def called(key: str, known: Collection[str]) -> str | None:
     return next((name for name in (KEY_WORDS.get(word), *SEVERAL.get(word, ())) if name in known), None)
 
 
-def of_key(key: str, known: Collection[str]) -> str | None:
+def of_key(key: str, known: Collection[str]) -> str:
     """What to write in place of an unknown key."""
     if key[:1].isdigit():
         return "a decimal is written with a point, as 1.5; a comma ends the value"
+    if key.count(")") > key.count("("):
+        return "inside { } an expression with a comma is written in quotes"
     word = called(key, known)
     if word is not None:
         return f"it is called {word} here"
@@ -71,6 +74,8 @@ def of_form(key: str, found: Any, wanted: str) -> str:
     if wanted == "a list" and isinstance(found, str) and re.fullmatch(r"[+-]?[xyzXYZ]", found.strip()):
         axis = AXES[found.strip()[-1].lower()]
         return f"the {found.strip()[-1].lower()} axis is {axis.replace('1', '-1') if found.strip()[0] == '-' else axis}"
+    if key in DIRECTIONS:
+        return "a direction, as [0, 0, 1]"
     if wanted == "a list" and isinstance(found, dict):
         return "a list has a dash before each of its entries, or [ ] around them"
     if wanted == "a list":

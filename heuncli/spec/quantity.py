@@ -136,6 +136,9 @@ def measure(figure: str, unit: str, scope: Scope) -> tuple[float, Dimension]:
 def product_hint(figure: str, unit: str, scope: Scope) -> str | None:
     """For '2 L' with a parameter L, or '2 t': a product was meant."""
     name = re.split(r"\W", unit, maxsplit=1)[0]
+    if name == "t" and re.fullmatch(r"t\s*/\s*m(\^|\*\*)?[3³]", unit):
+        whole = f"tonne{unit[1:]}"
+        return f"t is the time; a thousand kilograms are a tonne: {figure.strip()} {spelled(whole) or whole}"
     if re.search(r"[+-]\s*+(?:\d++\s*+)?[^\W\d]", unit):
         return "units do not stand inside expressions: give the quantity a name under parameters, or write it in SI"
     if name in scope.parameters or name in RESERVED:

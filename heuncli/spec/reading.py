@@ -98,6 +98,7 @@ def _bounded(file: BinaryIO, most: int) -> bytearray:
 def _unreadable(error: OSError) -> Finding:
     """Why something cannot be read, in words."""
     message, hint = REASONS.get(error.errno or 0, (None, None))
+    hint = hint or "paths are relative to where heun was started"
     return Finding("unreadable", message or f"it cannot be read: {error.strerror or error}", hint)
 
 

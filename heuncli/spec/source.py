@@ -79,10 +79,7 @@ def read(path: str, text: str | None) -> Source:
         try:
             raw: bytes | bytearray = read_bytes(path, LARGEST)
         except Finding as finding:
-            hint = finding.hint
-            if hint is None and finding.code == "unreadable":
-                hint = "paths are relative to where heun was started"
-            raise SpecError(Problem(finding.code, finding.message, SourceLocation(file, 1, 1), hint)) from None
+            raise SpecError(Problem(finding.code, finding.message, SourceLocation(file, 1, 1), finding.hint)) from None
         try:
             text = raw.decode("utf-8-sig")
         except UnicodeDecodeError as error:
@@ -168,7 +165,7 @@ def not_yaml(file: str, text: str, error: yaml.MarkedYAMLError) -> list[Problem]
     return [Problem("not-yaml", f"not YAML: {what}", SourceLocation(file, line, column), yaml_hint(text, line, what))]
 
 
-def yaml_hint(text: str, line: int, what: str) -> str | None:
+def yaml_hint(text: str, line: int, what: str) -> str:
     """What probably went wrong, for the usual accidents."""
     lines = text.split("\n")
     shown = lines[line - 1] if 0 < line <= len(lines) else ""
@@ -190,7 +187,7 @@ def yaml_hint(text: str, line: int, what: str) -> str | None:
         return "look for a comma or a colon too many before this place"
     if "alphabetic or numeric" in what or "alias" in what or "anchor" in what:
         return "a text that starts with * or & is written in quotes"
-    return None
+    return "look at this line and the one before it: brackets, colons, quotes, indentation"
 
 
 ALIAS = (
@@ -220,7 +217,7 @@ class Builder:
         self.documents = 0
         self.stack: list[Frame] = []
 
-    def problem(self, code: str, message: str, event: Any, path: Path_ = (), hint: str | None = None) -> Problem:
+    def problem(self, code: str, message: str, event: Any, path: Path_ = (), *, hint: str) -> Problem:
         mark = event.start_mark
         return Problem(code, message, SourceLocation(self.file, mark.line + 1, mark.column + 1, dotted(path)), hint)
 
@@ -276,13 +273,13 @@ class Builder:
         path = (*top.path, key)
         if key == "<<" and event.implicit[0]:
             hint = "write the keys out, with their common values under parameters"
-            self.problems.append(self.problem("alias", "merge keys (<<) are not read", event, path, hint))
+            self.problems.append(self.problem("alias", "merge keys (<<) are not read", event, path, hint=hint))
             top.skipped = True
         elif key in top.container:
             line, _ = self.keys[path]
             message = f"'{key}' is given twice, first in line {line + 1}"
             hint = "give the two names of their own, or keep one"
-            self.problems.append(self.problem("duplicate-key", message, event, path, hint))
+            self.problems.append(self.problem("duplicate-key", message, event, path, hint=hint))
             top.skipped = True
         else:
             self.keys[path] = (event.start_mark.line, event.start_mark.column)
@@ -294,8 +291,9 @@ class Builder:
             self.check(event)
         top = self.stack[-1] if self.stack else None
         if top is not None and top.key is None and type(top.container) is dict:
-            problem = self.problem("not-yaml", "not YAML as specs use it: a key is a plain word", event, top.path,
-                                   "an expression or a text that starts with { or [ is written in quotes")  # fmt: skip
+            hint = "an expression or a text that starts with { or [ is written in quotes"
+            message = "not YAML as specs use it: a key is a plain word"
+            problem = self.problem("not-yaml", message, event, top.path, hint=hint)
             raise SpecError(*self.problems, problem)
         path = self.put(container, event)
         self.stack.append(Frame(container, path))

@@ -11,7 +11,7 @@ from pydantic import ValidationError
 from heuncli.errors import Finding
 from heuncli.nearest import did_you_mean
 from heuncli.spec.fields import Model
-from heuncli.spec.hints import elsewhere, of_form, of_key, of_missing, of_word
+from heuncli.spec.hints import called, elsewhere, of_form, of_key, of_missing, of_word
 from heuncli.spec.quantity import Follows, kind_of
 from heuncli.spec.rules.registry import Path_, Violation
 from heuncli.spec.words import LATER, TYPES
@@ -132,7 +132,9 @@ def unknown_type(entry: Any, block: str, known: list[str]) -> tuple[str, Violati
     if type(entry) is not dict:
         return "wrong-kind", Violation((), f"expected a mapping, found {kind_of(entry)}", f"{{type: {known[0]}, ...}}")
     if "type" not in entry:
-        return "missing-key", Violation((), "'type' is missing", f"known: {listed}", key=True)
+        other = next((name for name in entry if called(name, ["type"])), None)
+        hint = f"known: {listed}" if other is None else f"'{other}' is called type here"
+        return "missing-key", Violation((), "'type' is missing", hint, key=True)
     tag = entry["type"]
     if type(tag) is not str:
         return "wrong-kind", Violation(("type",), f"expected {what}, found {kind_of(tag)}", f"known: {listed}")

@@ -30,6 +30,8 @@ KEY_WORDS = {
     "blows": "impulses", "blow": "impulses", "impulse": "impulses", "hits": "impulses", "shocks": "impulses",
     "e": "restitution", "cor": "restitution", "bounce": "restitution", "rebound": "restitution", "mu": "friction",
     "position": "travel", "displacement": "travel", "distance": "length", "moment": "couple", "torque": "couple",
+    "body": "bodies", "parts": "bodies", "members": "bodies", "bars": "bodies", "kind": "type", "joint": "joints",
+    "rho": "density",
     "when": "time", "instant": "time", "t": "time", "point": "on", "one_sided": "tension_only", "slack": "tension_only",
 }  # fmt: skip
 SEVERAL = {  # words that mean one thing here and another there, the likeliest first
@@ -56,6 +58,10 @@ WORDS = {  # of `type` under analysis, and the like
     **dict.fromkeys(("static", "statics", "equilibrium", "steady"), ("rest", "state")),
     "2d": ("planar",), "plane": ("planar",), "3d": ("spatial",), "space": ("spatial",), "local": ("body",),
     "global": ("world",), "shock": ("impulse",),
+    **dict.fromkeys(("stress", "stresses", "shear", "bending", "cuts", "internal"), ("sections",)),
+    **dict.fromkeys(("reactions", "reaction", "constraints", "bearings"), ("joints",)),
+    **dict.fromkeys(("positions", "velocities", "accelerations", "bodies", "coordinates"), ("motion",)),
+    **dict.fromkeys(("supports", "ground", "base"), ("foundation",)), "loads": ("forces",), "blows": ("impulses",),
 }  # fmt: skip
 METHOD_WORDS = {  # of methods, in lower case, without hyphens
     "forwardeuler": "Euler", "expliciteuler": "Euler", "improvedeuler": "Heun2", "heun": "Heun2", "midpoint": "Heun2",
@@ -114,6 +120,7 @@ ELSEWHERE = {  # keys that stand in another place than the one where they were w
     "dt": "steps are chosen by the tolerance; samples is the number of instants told, times lists them",
     "units": "units stand with the numbers, as 12 mm; plain numbers are SI; for tables: --units",
     "mu": "friction takes the torque or force itself, as a number: mu times the load that presses",
+    "motor": "a pin or slide that is driven: drives: {motor: {joint: NAME, rate: 1500 rpm}}, or a force of type torque",
     "material": "a shape takes density: 7850 kg/m^3", "color": "shapes have no looks", "colour": "shapes have no looks",
 }
 JOINT_WORDS = SYNONYMS | dict.fromkeys(("cable", "rope", "string", "tether"), "rod, with tension_only: true")

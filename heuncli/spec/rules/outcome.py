@@ -127,7 +127,7 @@ def has_coordinate(joint: list[str], key: str, names: Names) -> bool:
     return key in {word for quantity in own for word in (quantity, RATES[quantity], "acceleration")}
 
 
-def wrong_path(path: str, names: Names, runs: Mapping[str, bool]) -> tuple[str, str | None] | None:
+def wrong_path(path: str, names: Names, runs: Mapping[str, bool]) -> tuple[str, str] | None:
     """What is wrong with a path into the results, and a hint; None: nothing, or only the run can tell."""
     reached = result(path.split("."), names, runs)
     if isinstance(reached, Words):

@@ -70,13 +70,19 @@ def bodies_spoken_of(draft: DraftDocument) -> Iterator[tuple[Path_, str, bool]]:
             yield ("impulses", name, "body"), blow.body, False
 
 
+FIXED = frozenset({"world", "base", "frame", "earth", "fixed", "origin", "inertial"})  # the ground, elsewhere
+BLOCK_OF = {GROUND: GROUND}  # of points: where they stand
+
+
 @rule("unknown-body")
 def unknown_body(draft: DraftDocument) -> Iterator[Violation]:
     """Bodies exist."""
     bodies = dict.fromkeys([*draft.names.entries["bodies"], GROUND])
-    for path, body, _ in bodies_spoken_of(draft):
+    for path, body, may_be_ground in bodies_spoken_of(draft):
         if body not in bodies:
-            yield Violation(path, f"'{body}' is not a body", did_you_mean(body, bodies, "bodies"))
+            known = [name for name in bodies if name != GROUND or may_be_ground]
+            hint = "what does not move is the ground: ground.O" if body.lower() in FIXED else None
+            yield Violation(path, f"'{body}' is not a body", hint or did_you_mean(body, known, "bodies"))
 
 
 @rule("ground-cannot")
@@ -96,6 +102,8 @@ def unknown_point(draft: DraftDocument) -> Iterator[Violation]:
     points = draft.names.points
     for path, end in ends(draft):
         if isinstance(end.at, str) and end.body in points and end.at not in points[end.body]:
+            if not points[end.body] and BLOCK_OF.get(end.body, "bodies") in draft.unread:
+                continue  # they could not be read, which is told
             yield absent(path, end.body, end.at, points[end.body])
         elif end.at is None and not may_be_whole(draft, path) and end.body in points:
             yield Violation(path, "a point is missing", "write body.point, or {body: name, at: [x, y, z]}")

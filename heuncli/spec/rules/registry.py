@@ -16,7 +16,7 @@ class Violation(NamedTuple):
 
     path: Path_
     message: str
-    hint: str | None = None
+    hint: str
     key: bool = False
 
 

@@ -42,7 +42,8 @@ def section_form(draft: DraftDocument) -> Iterator[Violation]:
             )
         elif run and len(run) < 3:
             missing = [key for key in ("from", "to", "count") if key not in run]
-            yield Violation(path, f"{' and '.join(missing)} missing", "a run of cuts has from, to and count", key=True)
+            hint = "a run of cuts has from, to and count: 21"
+            yield Violation(path, f"{' and '.join(missing)} missing", hint, key=True)
         elif run:
             yield from run_of_cuts(draft, name, section)
         if section.reduce_to not in REDUCED_TO and isinstance(section.reduce_to, str) and "." not in section.reduce_to:
