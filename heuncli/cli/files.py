@@ -173,6 +173,7 @@ def _require_room(name: str, place: Place) -> None:
     if place.state is not None and not os.access(path, os.W_OK):
         raise OutputError(Problem("output-failed", f"{name}: the file may not be written", hint=HINTS[errno.EACCES]))
     if not os.access(path.parent, os.W_OK | os.X_OK):
-        message = f"{name}: the folder {shown} may not be written, where a file is made before it gets its name"
-        hint = f"name a file elsewhere, or > {name} in place of -o, which writes as it goes"
-        raise OutputError(Problem("output-failed", message, hint=hint))
+        hint = HINTS[errno.EACCES]
+        if place.state is not None:  # which could be written, but not replaced as a whole
+            hint = f"name a file elsewhere, or > {name} in place of -o, which writes as it goes"
+        raise OutputError(Problem("output-failed", f"{name}: the folder {shown} may not be written", hint=hint))

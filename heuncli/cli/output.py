@@ -15,6 +15,7 @@ from heuncli.cli.files import ReaderGone
 from heuncli.errors import OutputError, Problem
 from heuncli.foreign_text import escaped, shown_lines
 
+STDOUT = 1
 ESCAPED = "heun.escaped"
 
 
@@ -24,7 +25,7 @@ def emit(text: str, target: str | None = None, *, late: bool = False) -> None:
     late: also where the time limit is past; else LimitError is raised, and nothing is written.
     """
     alarm.off(late=late)
-    if target is None or target == "-":
+    if target is None or target == "-" or files.place_of(target).descriptor == STDOUT:  # /dev/stdout
         _to_standard_output(text)
     else:
         files.write(as_bytes(text), target)
