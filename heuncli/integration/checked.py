@@ -159,8 +159,8 @@ class Runs:
             return self.run(local, at, start, FUTILE * than.steps + 1000, by)
         except SolveError:
             return None
-        except LimitError:
-            if self.deadline is not None and time.monotonic() > self.deadline:
+        except LimitError as limit:
+            if limit.problems[0].code == "time-limit":
                 raise
             return None
 

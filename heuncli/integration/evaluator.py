@@ -42,6 +42,11 @@ class Recovered:
         return Recovered(**{name: values[which] for name, values in own.items()}, causes=causes and causes.at(which))
 
 
+def work_of(layout: Layout) -> int:
+    """What a scene takes to be answered at a state, in bodies."""
+    return len(layout.place) + len(layout.rows) ** 2 // ROWS
+
+
 class Evaluator:
     """A laid-out scene with the kernel's work arrays; every call starts from what it is given."""
 
@@ -113,8 +118,7 @@ class Evaluator:
 
         Each is so short that an alarm or an interrupt is heard soon: they wait for a call to end.
         """
-        count, work = len(arrays["out"]), len(self.layout.place) + len(self.layout.rows) ** 2 // ROWS
-        many = max(1, AT_ONCE // max(work, 1))
+        count, many = len(arrays["out"]), max(1, AT_ONCE // max(work_of(self.layout), 1))
         for begin in range(0, count, many):
             part = {name: values[begin : begin + many] for name, values in arrays.items()}
             first = hold_rows and begin > 0  # the rows are chosen there, once more

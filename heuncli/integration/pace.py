@@ -54,3 +54,13 @@ def hopeless(ends: Array, last: float, most: int, *, irregular: bool = True) -> 
     else:
         steps = len(ends) * (1.0 + float((last - ends[-1]) / took[-1]) / PARTS)
     return steps if steps > tolerances.HOPELESS * most * math.sqrt(most / len(ends)) else None
+
+
+def in_words(ends: Array, last: float, took: float) -> str:
+    """What a run that was given up would have taken, at the pace of its last steps; took: those done [s]."""
+    n = len(ends)
+    if n < FIRST_LOOK:
+        return ""
+    begun = float(ends[-1] - ends[-1 - n // PARTS])
+    left = float(last - ends[-1]) / begun * took / PARTS if begun > 0.0 else math.inf
+    return f"; at the pace of its last steps the rest would take about {left:.1g} s" if left < math.inf else ""

@@ -20,13 +20,13 @@ from heuncli.expressions.discontinuities import discontinuities
 from heuncli.expressions.programs import Expression
 from heuncli.integration.between import Blows
 from heuncli.integration.blows import Jump
-from heuncli.integration.evaluator import Evaluator
+from heuncli.integration.evaluator import Evaluator, work_of
 from heuncli.integration.kept import NOTHING_KEPT, Kept
 from heuncli.integration.loop import EVENTS_AFTER, Integration, Segment, Start, Steps, just_before, smooth_segments
 from heuncli.integration.methods.dop853 import DOP853
 from heuncli.integration.methods.method import Method
 from heuncli.integration.moving import Moving, itself
-from heuncli.integration.pace import hopeless
+from heuncli.integration.pace import hopeless, in_words
 from heuncli.kernel.choose import steps as kernel
 from heuncli.mechanism.model import Mechanism
 from heuncli.records import record
@@ -144,7 +144,7 @@ def discontinuities_of(mechanism: Mechanism, t0: float, t1: float) -> list[float
 
 def chunk_of(layout: Layout, method: Method) -> int:
     """Steps between two looks at the clock. Raises LimitError where a method would have to solve too many equations."""
-    bodies, n = max(len(layout.mechanism.bodies), 1), layout.n_state
+    bodies, n = max(work_of(layout), 1), layout.n_state
     if not method.implicit:
         return max(1, CHUNK // bodies)
     if n > tolerances.MOST_SOLVED:
@@ -216,6 +216,7 @@ class Going:
     most_steps: int
     until: Until | None
     eventful: bool
+    begun: float  # time.monotonic()
 
 
 class Ending(NamedTuple):
@@ -303,7 +304,7 @@ class Runner(Evaluator):
         blows, until = Blows(self, moving, run, steps, last), None if whole else until_of(moving.layout)
         segments = smooth_segments(last, discontinuities)
         eventful = eventful and (run.held > 0 or len(self.layout.contacts) > 0 or len(segments) > 1)
-        going = Going(run, steps, blows, last, deadline, most_steps, until, eventful)
+        going = Going(run, steps, blows, last, deadline, most_steps, until, eventful, time.monotonic())
         try:
             pieces, ending = self._pass(going, segments)
         except SolveError as error:
@@ -373,7 +374,7 @@ class Runner(Evaluator):
             if code == TURNED and going.until is not None and going.until.ends(run.loop.t, np.array(run.loop.state())):
                 break
             if code == REACHED or code in GOES_ON:
-                check_deadline(going.deadline, f"at t = {run.loop.t:.6g} s of {going.last:.6g} s")
+                self._require_time(going)
             if code in GOES_ON:
                 self._require_progress(going)
                 if going.eventful and going.steps.count >= max(EVENTS_AFTER, 2 * going.steps.looked):
@@ -394,6 +395,13 @@ class Runner(Evaluator):
         if code not in (REACHED, ROPE_SLACK, TURNED):
             raise self._failed(code, going)
         return code
+
+    def _require_time(self, going: Going) -> None:
+        """Raise LimitError past the deadline, with how far the run has come, and at which pace."""
+        if going.deadline is not None and time.monotonic() > going.deadline:
+            took = time.monotonic() - going.begun
+            pace = in_words(going.steps.column("ends"), going.last, took)
+            check_deadline(going.deadline, f"at t = {going.run.loop.t:.6g} s of {going.last:.6g} s{pace}")
 
     def _require_progress(self, going: Going) -> None:
         """Raise LimitError beyond the most steps, and where they become so short that the run cannot come to its end.

@@ -110,3 +110,13 @@ def test_the_steps_projected(instants, last: float, steps: float) -> None:  # ty
     """Paces in closed form, told from their first 2,000 steps."""
     ends = instants(np.arange(1.0, FIRST_LOOK + 1.0))
     assert projected_steps(ends, last) == pytest.approx(steps, rel=1e-6)
+
+
+def test_a_limit_that_is_reached_tells_the_pace() -> None:
+    with pytest.raises(LimitError) as raised:
+        solved(scene("pin", "", "DOP853").replace("duration: 2,", "duration: 2e6,"), time_limit=0.5)
+    (problem,) = raised.value.problems
+    assert problem.code == "time-limit"
+    found = re.search(r"reached at t = (\S+) s of 2e\+06 s; .* the rest would take about (\S+) s$", problem.message)
+    assert found is not None
+    assert 0.1 < float(found[2]) * float(found[1]) / 2e6 / 0.5 < 10.0  # it swings on at one pace
