@@ -13,6 +13,7 @@ from heuncli.results_schema import ESTIMATES, KIND_OF, SPACE, TREE, Node, Quanti
 from heuncli.study.solve import Study
 
 TIMES = 10.0  # the stated errors
+SAME = 1e-9  # of the last instant
 FLOOR = 1e-7  # of the largest of a unit: what is hunted here are wrong numbers, not last digits
 BLOCKS = ("bodies", "points", "coordinates", "foundation", "joints", "stops", "sections", "forces", "energy")
 # not everywhere defined, told elsewhere, or of a strength that is not told otherwise
@@ -41,41 +42,63 @@ Change = Callable[[Array, Quantity], Array]
 
 
 def apart(first: Study, second: Study, change: Change, *, same_open: bool = True, skipped: frozenset[str] = frozenset(),
-          begin: int = 0) -> list[Apart]:  # fmt: skip
+          clock: Callable[[Array], Array] = lambda t: t, more: bool = False) -> list[Apart]:  # fmt: skip
     """What the second run says otherwise than the first, changed as the telling wants it; the worst of each block.
 
-    same_open: the same components are open in both. begin: the instant of the first at which the second starts.
+    same_open: the same components are open in both. skipped: names of what is not compared. clock: the second's time at
+    an instant of the first. more: the second may have entries that the first has not.
     """
-    found: list[Apart] = []
     sizes = sizes_of(first, second)
-    horizons = [one.results.accuracy.get("horizon") for one in (first, second)]
-    count = min(len(first.results.time) - begin, len(second.results.time))
-    known = [np.ones(count, dtype=bool)]
-    for one, start, horizon in zip((first, second), (begin, 0), horizons, strict=True):
-        times = one.results.time[start : start + count]
-        known += [times < horizon] if horizon is not None else []
-        known += [~np.isin(times, one.results.accuracy.get("unknown", []))]
-    at = np.flatnonzero(np.logical_and.reduce(known))
-    if not len(at):
-        return []
-    for block in BLOCKS:
-        pairs = _pairs(block, getattr(first.results, block), getattr(second.results, block), TREE[block], ())
+    here, there = instants_of_both(first, second, clock)
+    found: list[Apart] = []
+    for block in BLOCKS if len(here) else ():
+        pairs = _pairs(block, getattr(first.results, block), getattr(second.results, block), TREE[block])
         worst: list[Apart] = []
         for path, one, other, row in pairs:
+            if set(path.split(".")) & (SKIPPED | skipped):
+                continue
             if row is None:
-                worst.append(Apart(path, math.inf, 0.0))
-                continue
-            if not row.timed or set(path.split(".")) & (SKIPPED | skipped):
-                continue
-            wanted = change(np.asarray(one, dtype=float)[begin:][at], row)
-            told = np.asarray(other, dtype=float)[at]
-            worst += _compared(path, wanted, told, row, first, second, same_open, sizes)
+                worst += [] if more and one is None else [Apart(path, math.inf, 0.0)]
+            elif row.timed:
+                wanted, told = change(np.asarray(one, dtype=float)[here], row), np.asarray(other, dtype=float)[there]
+                worst += _compared(path, wanted, told, row, first, second, same_open, sizes)
         if worst:
             found.append(max(worst, key=lambda one: one.off / max(one.allowed, 1e-300)))
+    return found + (struck_apart(first, second, change, same_open, skipped) if not found else [])
+
+
+def instants_of_both(first: Study, second: Study, clock: Callable[[Array], Array]) -> tuple[Array, Array]:
+    """The places of instants that both runs tell, where both stand behind what they tell."""
+    told, wanted = second.results.time, clock(first.results.time)
+    place = np.minimum(np.searchsorted(told, wanted - SAME * told[-1]), len(told) - 1)
+    here = np.flatnonzero(np.abs(told[place] - wanted) <= SAME * max(told[-1], 1e-300))
+    there = place[here]
+    known = np.ones(len(here), dtype=bool)
+    for one, at in ((first, here), (second, there)):
+        times, horizon = one.results.time[at], one.results.accuracy.get("horizon")
+        known &= times < horizon if horizon is not None else True
+        known &= ~np.isin(times, one.results.accuracy.get("unknown", []))
+    return here[known], there[known]
+
+
+def struck_apart(first: Study, second: Study, change: Change, same_open: bool, skipped: frozenset[str]) -> list[Apart]:
+    """The same of the first blows."""
+    blows = [one.results.impulses[:1] for one in (first, second)]
+    if [bool(one) for one in blows] != [True, True]:
+        return []
+    found: list[Apart] = []
+    one, other = (of[0] for of in blows)
+    for path, a, b, row in _pairs("impulses.0", one, other, TREE["impulses"]["NUMBER"]):
+        if row is None or set(path.split(".")) & (SKIPPED | skipped) or not row.units:
+            continue
+        wanted, told = change(np.asarray(a, dtype=float), row), np.asarray(b, dtype=float)
+        own = {unit: float(np.nanmax(np.abs(told), initial=0.0)) if told.size else 0.0 for unit in row.units}
+        if not path.endswith("time"):
+            found += _compared(path, wanted, told, row, first, second, same_open, own)
     return found
 
 
-def _pairs(path: str, one: Any, other: Any, node: Node | Quantity | None, keys: tuple[str, ...]
+def _pairs(path: str, one: Any, other: Any, node: Node | Quantity | None
            ) -> Iterator[tuple[str, Any, Any, Quantity | None]]:  # fmt: skip
     if isinstance(node, Quantity):
         if node.units and one is not None and other is not None:
@@ -87,9 +110,9 @@ def _pairs(path: str, one: Any, other: Any, node: Node | Quantity | None, keys: 
         if key in SKIPPED:
             continue
         if key not in one or key not in other:
-            yield f"{path}.{key}", None, None, None
+            yield f"{path}.{key}", one.get(key), other.get(key), None
         else:
-            yield from _pairs(f"{path}.{key}", one[key], other[key], below(node, key), (*keys, key))
+            yield from _pairs(f"{path}.{key}", one[key], other[key], below(node, key))
 
 
 def _compared(path: str, wanted: Array, told: Array, row: Quantity, first: Study, second: Study, same_open: bool,
@@ -123,7 +146,7 @@ def sizes_of(*studies: Study) -> dict[str, float]:
     for study in studies:
         for block in BLOCKS:
             told = getattr(study.results, block)
-            for _, value, _, row in _pairs(block, told, told, TREE[block], ()):
+            for _, value, _, row in _pairs(block, told, told, TREE[block]):
                 if row is not None:
                     numbers = np.abs(np.asarray(value, dtype=float))
                     largest = float(np.max(numbers, initial=0.0, where=np.isfinite(numbers)))

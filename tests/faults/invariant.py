@@ -43,7 +43,7 @@ def _violations(done: Outcome, code_of_validate: int | None, codes: frozenset[in
         yield f"traceback: {_line(err, 'Traceback')}"
     if re.search(r"\w+Warning\b", err):
         yield f"warning of Python: {_line(err, 'Warning')}"
-    if done.noise:
+    if done.noise and not any("/dev/stdout" in word for word in done.argv):
         yield f"past Python: {done.noise[:200]!r}"
     if code_of_validate == 0 and done.code == 2:
         yield f"validate is fine, and {done.argv[0]} ends with 2: {_line(err, '[')}"

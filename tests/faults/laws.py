@@ -1,7 +1,8 @@
 """Wrong numbers with exit code 0, hunted by laws: a mutated scene that runs fine, told otherwise, must say the same.
 
 The world turned; everything faster (Heun: k -> c² k with σ -> c σ makes all reactions c² times as large); another order
-in the file; begun anew at a later instant; nothing reduced; another method.
+in the file; begun anew at a later instant; nothing reduced; another method; other instants; a body in two halves that
+are welded; a joint from its other end.
 """
 
 from __future__ import annotations
@@ -57,30 +58,50 @@ def random_scene(random: Random) -> Tree:
 
 
 def judged(seed: int) -> dict[str, Any]:
-    """The verdict on a case: code 0 if both ran, 1 if the first was refused or the law does not apply."""
+    """The verdict on a case: code 0 if both ran, 1 if the scene was refused."""
     random = Random(f"laws {seed}")
     begun = time.process_time()
-    law = random.choice(list(LAWS))
-    found: list[str] = []
-    code = 0
+    law, code, found = "none", 0, list[str]()
     try:
         tree = retell.plain(scene(random))
-        first = solved(tree)
-        twins = LAWS[law](random, tree, first)
-        if twins.first is not tree:
-            first = solved(twins.first)
-    except (HeunError, NotTold, KeyError, TypeError, AttributeError, ValueError, IndexError):
-        code = 1  # mostly no scene: what it is told for is judged elsewhere
-    else:
-        try:
-            second = solved(twins.second, **twins.options)
-            found = [str(one) for one in twins.apart(first, second)]
-        except HeunError as error:
-            found = refused(error)
+        law, twins = told_otherwise(random, tree, solved(tree))
+        first = solved(twins.first)
+        found = compared(twins, first)
+    except SCENE_AT_FAULT:
+        code = 1
+    except Broken as bug:
+        code, found = 70, [f"a bug in heun: {bug}"]
     told = [f"{law}: {what}" for what in found]
     return {
         "code": code, "seconds": time.process_time() - begun, "memory": peak(), "violations": told, "command": law,
     }  # fmt: skip
+
+
+def compared(twins: Twins, first: Study) -> list[str]:
+    """What the twin says otherwise."""
+    try:
+        second = solved(twins.second, **twins.options)
+    except HeunError as error:
+        return refused(error)
+    return [str(one) for one in twins.apart(first, second)]
+
+
+class Broken(Exception):
+    """A bug in what is judged."""
+
+
+# A mutated tree may be no scene; what heun says of it is judged by the other kinds of cases.
+SCENE_AT_FAULT = (HeunError, NotTold, KeyError, TypeError, AttributeError, ValueError, IndexError)
+
+
+def told_otherwise(random: Random, tree: Tree, study: Study) -> tuple[str, Twins]:
+    """The first of the laws, in a random order, that applies to a scene."""
+    for law in random.sample(list(LAWS), len(LAWS)):
+        try:
+            return law, LAWS[law](random, tree, study)
+        except NotTold:
+            continue
+    raise NotTold("no law applies")
 
 
 # What a run may be refused for in one telling and not in another: limits, and steps of methods that were asked for.
@@ -96,8 +117,12 @@ def refused(error: HeunError) -> list[str]:
 def solved(tree: Tree, **options: Any) -> Study:
     """A tree solved, with all that it may report."""
     tree = {key: value for key, value in tree.items() if key != "report"}
-    spec = load("spec.yaml", sources.text(tree).decode())
-    return solve(spec, Options(time_limit=LIMIT, **options))
+    try:
+        return solve(load("spec.yaml", sources.text(tree).decode()), Options(time_limit=LIMIT, **options))
+    except HeunError:
+        raise
+    except Exception as bug:
+        raise Broken(f"{type(bug).__name__}: {bug}") from bug
 
 
 def turned(random: Random, tree: Tree, _: Study) -> Twins:
@@ -108,7 +133,7 @@ def turned(random: Random, tree: Tree, _: Study) -> Twins:
 
 def faster(random: Random, tree: Tree, _: Study) -> Twins:
     c = random.choice((0.5, 2.0, 1.7, 10.0))
-    return Twins(tree, retell.faster(tree, c), lambda a, b: apart(a, b, growing(c)))
+    return Twins(tree, retell.faster(tree, c), lambda a, b: apart(a, b, growing(c), clock=lambda t: t / c))
 
 
 def reordered(random: Random, tree: Tree, _: Study) -> Twins:
@@ -128,7 +153,8 @@ def later(random: Random, tree: Tree, study: Study) -> Twins:
     for key in ("duration", "samples"):
         tree["analysis"].pop(key, None)
     twin = retell.later(tree, float(times[k]), state_at(found.bodies, k))
-    return Twins(tree, twin, lambda a, b: apart(a, b, kept, skipped=frozenset({"work"}), begin=k))
+    begin, skipped = float(times[k]), frozenset({"work"})
+    return Twins(tree, twin, lambda a, b: apart(a, b, kept, skipped=skipped, clock=lambda t: t - begin))
 
 
 def unreduced(_: Random, tree: Tree, __: Study) -> Twins:
@@ -142,7 +168,29 @@ def another_method(random: Random, tree: Tree, _: Study) -> Twins:
     return Twins(tree, tree, lambda a, b: apart(a, b, kept), options)
 
 
+def otherwise_sampled(random: Random, tree: Tree, study: Study) -> Twins:
+    times = study.results.time.tolist()
+    if len(times) < 3 or (tree.get("analysis") or {}).get("until"):
+        raise NotTold("one instant")
+    kept_ones = [0.0, *(t for t in times[1:-1] if random.random() < 0.5), times[-1]]
+    others = [random.uniform(0.0, times[-1]) for _ in range(random.choice((0, 3, 40)))]
+    analysis = {key: value for key, value in tree["analysis"].items() if key not in ("duration", "samples")}
+    twin = {**tree, "analysis": {**analysis, "times": sorted({*kept_ones, *others})}}
+    return Twins(tree, twin, lambda a, b: apart(a, b, kept))
+
+
+def in_halves(random: Random, tree: Tree, _: Study) -> Twins:
+    twin = retell.in_halves(tree, random)
+    return Twins(tree, twin, lambda a, b: apart(a, b, kept, more=True, same_open=False))
+
+
+def from_the_other_end(random: Random, tree: Tree, _: Study) -> Twins:
+    twin, name = retell.from_the_other_end(tree, random)
+    return Twins(tree, twin, lambda a, b: apart(a, b, kept, skipped=frozenset({name})))
+
+
 LAWS: dict[str, Callable[[Random, Tree, Study], Twins]] = {
     "turned": turned, "faster": faster, "reordered": reordered, "later": later, "unreduced": unreduced,
-    "another method": another_method,
+    "another method": another_method, "otherwise sampled": otherwise_sampled, "in halves": in_halves,
+    "from the other end": from_the_other_end,
 }  # fmt: skip

@@ -308,3 +308,49 @@ def turn_of(random: Random) -> Array:
             random.choice(([[0, -1, 0], [1, 0, 0], [0, 0, 1]], [[0, 0, 1], [1, 0, 0], [0, 1, 0]])), dtype=float
         )
     return random_rotation(np.random.default_rng(random.randrange(2**32)))
+
+
+def in_halves(tree: Tree, random: Random) -> Tree:
+    """One body as two of half its mass, welded together."""
+    tree = copy.deepcopy(tree)
+    cut = {entry.get("body") for _, entry in entries(tree, "sections")}
+    whole = [
+        (name, body) for name, body in entries(tree, "bodies") if {"mass", "shapes"} & set(body) and name not in cut
+    ]
+    if not whole:
+        raise NotTold("all bodies are cut")
+    name, body = random.choice(whole)
+    for box in (body, *body.get("shapes", [])):
+        for key in HALVED & set(box):
+            box[key] = _halved(box[key])
+    at = copy.deepcopy(body.get("center", [0, 0, 0]))
+    own = {key: copy.deepcopy(body[key]) for key in OF_MASS & set(body)}
+    tree["bodies"]["half"] = {**own, "points": {"c": at}}
+    for key in {"near", "position", "orientation"} & set(body):
+        tree["bodies"]["half"][key] = copy.deepcopy(body[key])
+    tree.setdefault("joints", {})["seam"] = {"type": "weld", "from": {"body": name, "at": at}, "to": "half.c"}
+    return tree
+
+
+HALVED = {"mass", "inertia", "deviation", "density", "line_density"}
+OF_MASS = {"mass", "center", "inertia", "deviation", "shapes"}
+
+
+def _halved(value: Any) -> Any:
+    return [_halved(v) for v in value] if isinstance(value, list) else times(0.5, value)
+
+
+def from_the_other_end(tree: Tree, random: Random) -> tuple[Tree, str]:
+    """A joint whose ends change places, and its name."""
+    tree = copy.deepcopy(tree)
+    planar = tree.get("space", "auto") == "planar"
+    ends = [
+        (n, j)
+        for n, j in entries(tree, "joints")
+        if j.get("type") in ("rod", "weld") or (j.get("type") == "ball" and not planar)
+    ]
+    if not ends:
+        raise NotTold("no joint that may be")
+    name, joint = random.choice(ends)
+    joint["from"], joint["to"] = joint["to"], joint["from"]
+    return tree, name
