@@ -26,7 +26,7 @@ WORDS = (
 FILES = (
     "out.json", "out.csv", "out.txt", "out.md", "out", "out.xyz", "-", "", SPEC, "./" + SPEC, "no/such/out",
     "/dev/full", "/dev/null",
-    ".", "a" * 200, "é.json", "engine.csv", "\udc80.json", "x\n.json", "/dev/stdout", "out.svg",
+    ".", "a" * 300, "é.json", "engine.csv", "\udc80.json", "x\n.json", "/dev/stdout", "out.svg",
 )  # fmt: skip
 HOWS = ("", "max", "min", "max abs", "abs", "first", "final", "at 0.1", "at 1e9", "at nan", "mean", "max max", "at")
 BLOCKS = (
