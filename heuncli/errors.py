@@ -23,7 +23,7 @@ class SourceLocation(NamedTuple):
 
 
 class Problem(NamedTuple):
-    """One thing wrong: a sentence and its code, and, where known, the location and what to do next.
+    """One thing wrong: a sentence and its code, what to do next, and, where known, the location.
 
     about: the path in a spec of the entry at fault, `joints.elbow`, where who finds it knows names, but no places.
     """
@@ -31,7 +31,7 @@ class Problem(NamedTuple):
     code: str
     message: str
     location: SourceLocation | None = None
-    hint: str | None = None
+    hint: str = ""
     about: str = ""
 
     def __str__(self) -> str:

@@ -125,7 +125,7 @@ def _entry(path: str, spec: Spec) -> Entry:
     if entry is not None and not rest:
         return entry
     names = [".".join((*block, name)) for block, own in known.items() if block[0] == words[0] for name in own]
-    message, hint = f"--only {path}: not an entry of the results", None
+    message = f"--only {path}: not an entry of the results"
     if entry is not None:
         hint = f"say {'.'.join(entry)}; --measure prints single numbers"
     elif words[0] not in REPORT_OF:
@@ -136,7 +136,7 @@ def _entry(path: str, spec: Spec) -> Entry:
     raise UsageError(Problem("bad-option", message, hint=hint))
 
 
-def _meant(path: str, known: Mapping[Entry, Mapping[str, Any]]) -> str | None:
+def _meant(path: str, known: Mapping[Entry, Mapping[str, Any]]) -> str:
     """What may be meant by a path of `--only` that begins with no block."""
     from heuncli.path_hints import meant  # only on the way to an error
 
@@ -144,7 +144,7 @@ def _meant(path: str, known: Mapping[Entry, Mapping[str, Any]]) -> str | None:
     if entry is not None:
         return f"did you mean {'.'.join(entry_at(entry.split('.'), known)[0] or ())}?"
     near = nearest(path, (*REPORTS, SHARES))
-    return f"did you mean {near}?" if near else None
+    return f"did you mean {near}?" if near else "such as --only foundation,joints.NAME"
 
 
 def _report(request: Run, form: str, study: Study, labels: Labels, wanted: frozenset[str]) -> str:

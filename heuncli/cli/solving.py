@@ -65,7 +65,8 @@ def instants(words: str, times: Array) -> Array:
         if not times[0] - slack <= t <= times[-1] + slack:
             span = f"the run goes from {times[0]:.6g} to {times[-1]:.6g} s"
             message = span if len(times) > 1 else f"there is one instant, t = {times[0]:.6g} s"
-            hint = "leave --at out" if len(times) == 1 else f"such as --at {times[-1]:.6g}, or a longer duration"
+            hint = "leave --at out" if len(times) == 1 else f"such as --at {times[-1]:.6g}"
+            hint += ", or a longer duration" if times[-1] < t < math.inf else ""
             raise UsageError(Problem("bad-option", f"--at {t:.6g}: {message}", hint=hint))
     within: Array = np.clip(np.array(asked), times[0], times[-1])
     return within

@@ -95,7 +95,7 @@ def in_list(node: list[Any], part: str | int) -> bool:
     return isinstance(part, int) and part < len(node)
 
 
-def put(data: dict[str, Any], path: Path_, value: Any) -> tuple[str, str | None] | None:
+def put(data: dict[str, Any], path: Path_, value: Any) -> tuple[str, str] | None:
     """Store a value; or return why it cannot be stored, with a hint.
 
     What users name (a parameter, a body, a point) must be there; other keys may be new: the format judges them.
@@ -110,7 +110,8 @@ def put(data: dict[str, Any], path: Path_, value: Any) -> tuple[str, str | None]
                     f"entries are counted from 0 to {len(node) - 1}",
                 )
         elif type(node) is not dict:
-            return f"'{'.'.join(map(str, path[:depth]))}' is a value without keys", None
+            whole = ".".join(map(str, path[:depth]))
+            return f"'{whole}' is a value without keys", f"set it as a whole: --set {whole}=..."
         elif part not in node:
             if (depth == 1 and above in NAMED) or above == "points":
                 kind = {"bodies": "body", "points": "point"}.get(str(above), str(above).removesuffix("s"))
