@@ -50,7 +50,6 @@ class Loading:
         self.problems = list(source.problems)
         self.warnings: list[Problem] = []
         self.unread: set[str] = set()
-        self.files: list[str] = []
         if type(source.data) is not dict:
             kind = kind_of(source.data) if type(source.data) is not str else "a text"  # of whatever file: not told
             message = f"a spec is a mapping, this is {kind}"
@@ -98,8 +97,8 @@ class Loading:
         values = {name: value for name, value in parameters.items() if value is not None}
         built = {name: table for name, table in tables.items() if table is not None}
         warnings = tuple(in_order(self.warnings))
-        source, files = self.source, tuple(self.files)
-        meaning = Meaning(source.file, source.sha256, values, built, warnings, self.locations(), files)
+        source = self.source
+        meaning = Meaning(source.file, source.sha256, values, built, warnings, self.locations())
         return resolve(draft.document, meaning)
 
     def parameters(self) -> tuple[dict[str, float | None], dict[str, Given]]:
@@ -122,8 +121,6 @@ class Loading:
         for name, data in entries.items():
             path = ("tables", name)
             entry = reader.model(path, data, f.Table)
-            if entry is not None and entry.file is not None:
-                self.files.append(str(folder / entry.file))
             tables[name], wrong = build_table(name, entry, scope, folder) if entry is not None else (None, [])
             if entry is not None and entry.file is not None and (told := outside_folder(folder, entry.file)):
                 self.warnings.append(Problem(told.code, told.message, self.location((*path, "file")), told.hint))

@@ -356,7 +356,6 @@ class Spec(NamedTuple):
     expect: tuple[Expect, ...]
     warnings: tuple[Problem, ...]
     locations: Mapping[str, SourceLocation] = NOWHERE
-    files: tuple[str, ...] = ()  # of its tables
 
     def location(self, path: str) -> SourceLocation:
         """Where a dotted path stands, or the nearest thing around it that does."""

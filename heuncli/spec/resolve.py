@@ -32,7 +32,6 @@ class Meaning:
     tables: Mapping[str, Table]
     warnings: tuple[Problem, ...]
     locations: Mapping[str, SourceLocation]
-    files: tuple[str, ...]  # of the tables
 
 
 def resolve(document: f.Document, meaning: Meaning) -> m.Spec:
@@ -69,7 +68,6 @@ def resolve(document: f.Document, meaning: Meaning) -> m.Spec:
         expect=tuple(r.expect(i, item) for i, item in document.expect.items()),
         warnings=meaning.warnings,
         locations=meaning.locations,
-        files=meaning.files,
     )  # fmt: skip
 
 
