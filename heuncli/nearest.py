@@ -70,5 +70,9 @@ def did_you_mean(word: str, known: Collection[str], kind: str) -> str:
         return f"did you mean {meant}?"
     if not known:
         return f"there are no {kind}"
-    listed = ", ".join(islice(known, MOST_LISTED))
-    return f"known {kind}: {listed}" + (", ..." if len(known) > MOST_LISTED else "")
+    return f"known {kind}: {listed(known)}"
+
+
+def listed(known: Collection[str]) -> str:
+    """The first words of some."""
+    return ", ".join(islice(known, MOST_LISTED)) + (", ..." if len(known) > MOST_LISTED else "")

@@ -17,7 +17,7 @@ from typing import NamedTuple
 import numpy as np
 
 from heuncli.errors import Finding
-from heuncli.nearest import LONGEST, MOST_LISTED, nearest
+from heuncli.nearest import LONGEST, listed, nearest
 from heuncli.results_schema import counted
 
 MOST_ROWS = 2_000_000
@@ -217,8 +217,7 @@ def known_columns(key: str, layout: Layout, text: str) -> str:
     if not names:
         return f"its rows are no numbers under names; {by_number}"
     near = nearest(key, names)
-    listed = ", ".join(names[:MOST_LISTED]) + (", ..." if len(names) > MOST_LISTED else "")
-    hint = f"columns are: {listed}"
+    hint = f"columns are: {listed(names)}"
     return f"did you mean {near}? {hint}" if near else f"{hint}; {by_number}"
 
 

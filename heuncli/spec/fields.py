@@ -7,6 +7,7 @@ from __future__ import annotations
 
 import math
 from collections.abc import Collection, Mapping
+from itertools import chain, islice
 from typing import Annotated, Any
 
 from pydantic import BaseModel, BeforeValidator, ConfigDict, Discriminator, Tag
@@ -16,6 +17,7 @@ from heuncli.errors import Finding
 from heuncli.expressions import units as u
 from heuncli.expressions.grammar import NONE
 from heuncli.expressions.programs import Expression
+from heuncli.nearest import afford
 from heuncli.number_range import is_in_range
 from heuncli.records import record
 from heuncli.spec.quantity import Scope, condition, in_time, kind_of, number, unit_in
@@ -221,12 +223,11 @@ def in_brackets(values: list[Any]) -> str:
 
 def end_hint(word: str, points: Mapping[str, Collection[str]]) -> str:
     """Which ends a word may stand for: the points of a body, or the point of that name."""
-    own = [f"{word}.{point}" for point in points.get(word, ())]
-    if word in ("origin", "world", "base"):
-        own += [f"ground.{point}" for point in points.get("ground", ())]
-    own += [f"{body}.{word}" for body, names in points.items() if word in names]
-    if own:
-        return f"did you mean {', or '.join(own[:4])}?"
+    of_body = (f"{word}.{point}" for point in points.get(word, ()))
+    of_ground = (f"ground.{point}" for point in points.get("ground", ()) if word in ("origin", "world", "base"))
+    of_point = (f"{body}.{word}" for body, names in points.items() if word in names)
+    if afford(len(points)) and (own := [*islice(chain(of_body, of_ground, of_point), 4)]):
+        return f"did you mean {', or '.join(own)}?"
     if word in points:
         return f"name a point under {'ground' if word == 'ground' else f'bodies: {word}'}: points: {{top: [0, 0, 0]}}"
     return "an end is body.point, ground.point or {body: name, at: [x, y, z]}"

@@ -31,7 +31,10 @@ WRONG = {
     "unknown-point": f"{HEAD}ground:\n  {each('points', '  pN: [0, 0, 0]')}"
     + each("joints", "jN: {type: ball, from: ground.qN, to: one.p}"),
     "unknown-name": HEAD + each("parameters", "pN: qN + 1"),
-    "expect-path": HEAD + each("expect", "- {of: bodies.bN.center.x, is: 0}"),
+    "expect-path": f"heun: 1\n{each('bodies', f'bN: {{{BALL}}}')}"
+    + each("expect", "- {of: bodies.cN.center.x, is: 0}"),
+    "end": f"heun: 1\n{each('bodies', f'bN: {{{BALL}}}')}ground: {{points: {{O: [0, 0, 0]}}}}\n"
+    + each("joints", "jN: {type: ball, from: ground.O, to: pN}"),
     "wrong-length": f"heun: 1\n{each('bodies', f'bN: {{{BALL[:-4]}]}}')}",
     "unknown-unit": f"heun: 1\n{each('bodies', 'bN: {mass: 1 kgm, center: [0, 0, 0], inertia: [1, 1, 1]}')}",
 }
@@ -44,6 +47,21 @@ def test_thousands_of_problems_are_all_told_in_time(code: str) -> None:
         load("spec.yaml", WRONG[code])
     assert time.process_time() - begun < SECONDS
     assert [problem.code for problem in caught.value.problems] == [code] * MANY
+
+
+def test_a_list_of_thousands_is_told_by_its_first() -> None:
+    with pytest.raises(SpecError) as caught:
+        load("spec.yaml", f"heun: 1\n{each('bodies', f'bN: {{{BALL}}}')}expect: [{{of: bodies, is: 0}}]\n")
+    assert (caught.value.problems[0].hint or "").endswith("b18, b19, ...")
+
+
+def test_thousands_of_expectations_on_thousands_of_points() -> None:
+    text = f"heun: 1\nanalysis: {{duration: 1, samples: {MANY}}}\n"
+    text += each("bodies", f"bN: {{{BALL}, points: {{p: [0, 0, 0]}}}}")
+    text += each("expect", "- {of: points.bN.p.position.x, at: 0, is: 0, abs: 1}")
+    begun = time.process_time()
+    assert len(load("spec.yaml", text).expect) == MANY
+    assert time.process_time() - begun < SECONDS
 
 
 def test_the_first_dozens_get_suggestions_and_the_next_file_again() -> None:

@@ -26,11 +26,12 @@ def conditions(draft: DraftDocument) -> Iterator[tuple[Path_, object]]:
 
 def on_results(draft: DraftDocument) -> Iterator[tuple[Path_, f.OfResults, Result]]:
     """Those on numbers of the results, with what their paths lead to; None where only the run can tell."""
-    for path, given in conditions(draft):
-        if isinstance(given, f.OfResults):
-            from heuncli.spec.rules.outcome import outcome  # a run without any starts faster
+    on_paths = [(path, given) for path, given in conditions(draft) if isinstance(given, f.OfResults)]
+    if on_paths:
+        from heuncli.spec.rules.outcome import result, runs_of  # a run without any starts faster
 
-            yield path, given, outcome(given.of, draft)
+        runs = runs_of(draft)
+        yield from ((path, given, result(given.of.split("."), draft.names, runs)) for path, given in on_paths)
 
 
 @rule("event-name")
@@ -59,11 +60,13 @@ def event_motion(draft: DraftDocument) -> Iterator[Violation]:
 @rule("event-path")
 def event_path(draft: DraftDocument) -> Iterator[Violation]:
     """`of` leads to a number at each instant: of a vector its magnitude counts, of a run of cuts its whole stretch."""
+    runs: dict[str, bool] | None = None
     for path, given, found in on_results(draft):
         from heuncli.spec.rules.outcome import Outcome, runs_of, wrong_path
 
         where = (*path, "of")
-        if (wrong := wrong_path(given.of, draft.names, runs_of(draft))) is not None:
+        runs = runs if runs is not None else runs_of(draft)
+        if (wrong := wrong_path(given.of, draft.names, runs)) is not None:
             yield Violation(where, *wrong)
         elif not isinstance(found, Outcome) or not found.known or given.of.split(".")[0] in AFTER_THE_RUN:
             if given.of.split(".")[0] not in draft.unread:

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+from bisect import bisect_left
 from collections.abc import Iterator
 from typing import TYPE_CHECKING, Any
 
@@ -24,11 +25,12 @@ Lengths = tuple[int | None, ...]  # of nested lists, the outer first; None: not 
 def outcomes(draft: DraftDocument) -> Iterator[tuple[Path_, f.Expect, Outcome | None]]:
     """Every expectation with the quantity at its path; None where there is none."""
     if draft.document.expect:
-        from heuncli.spec.rules.outcome import Outcome, outcome  # a run of a scene without expectations starts faster
+        from heuncli.spec.rules.outcome import Outcome, result, runs_of  # a run without expectations starts faster
 
+        runs = runs_of(draft)
         for i, item in draft.document.expect.items():
-            result = outcome(item.of, draft)
-            yield ("expect", i), item, result if isinstance(result, Outcome) else None
+            found = result(item.of.split("."), draft.names, runs)
+            yield ("expect", i), item, found if isinstance(found, Outcome) else None
 
 
 @rule("expect-path")
@@ -37,8 +39,9 @@ def expect_path(draft: DraftDocument) -> Iterator[Violation]:
     if draft.document.expect:
         from heuncli.spec.rules.outcome import runs_of, wrong_path  # as in outcomes
 
+        runs = runs_of(draft)
         for i, item in draft.document.expect.items():
-            if (wrong := wrong_path(item.of, draft.names, runs_of(draft))) is not None:
+            if (wrong := wrong_path(item.of, draft.names, runs)) is not None:
                 yield Violation(("expect", i, "of"), *wrong)
 
 
@@ -109,7 +112,7 @@ def expect_instants(draft: DraftDocument) -> Iterator[Violation]:
     instants = instants_of(document) if type_of(document) == "motion" else (0.0,)
     if not instants or document.analysis.type == "impulse" or "analysis" in draft.unread:
         return
-    count = output_instants(draft, len(instants))
+    count, ascending = output_instants(draft, len(instants)), sorted(instants)
     for path, item, quantity in outcomes(draft):
         if quantity is None or not quantity.known:
             continue
@@ -118,13 +121,19 @@ def expect_instants(draft: DraftDocument) -> Iterator[Violation]:
             yield Violation((*path, "of"), message, "they count from 0; or leave the number out, and give at: a time")
             continue
         if item.at is not None and quantity.timed:
-            nearest = min(instants, key=lambda t: abs(t - item.at))  # type: ignore[operator]
+            nearest = nearest_of(ascending, item.at)
             if abs(nearest - item.at) > tolerances.SAME_INSTANT * max(instants[-1], abs(item.at)):
                 message = f"{item.at:.10g} s is not an instant of the output; the nearest is {nearest:.10g} s"
                 yield Violation((*path, "at"), message, "add it to analysis.times, or choose other samples")
                 continue
         if item.is_ is not None and not item.is_bounded:
             yield from sizes((*path, "is"), item, quantity, count)
+
+
+def nearest_of(ascending: list[float], t: float) -> float:
+    """The instant nearest to a time, of those in ascending order; the earlier of two as near."""
+    place = bisect_left(ascending, t)
+    return min(ascending[max(place - 1, 0) : place + 1], key=lambda instant: abs(instant - t))
 
 
 def count_of(instants: int) -> str:

@@ -2,12 +2,12 @@
 
 from __future__ import annotations
 
-from collections.abc import Mapping
+from collections.abc import Collection, Mapping
 from typing import NamedTuple, TypeAlias
 
 from heuncli.expressions import units as u
 from heuncli.joint_kinds import RATES, TYPES
-from heuncli.nearest import did_you_mean, nearest
+from heuncli.nearest import did_you_mean, listed, nearest
 from heuncli.results_schema import (
     BLOWS,
     INSTANT,
@@ -18,13 +18,13 @@ from heuncli.results_schema import (
     below,
     counted,
     leading_key,
-    unknown_key,
 )  # fmt: skip
 from heuncli.spec.names import GROUND, Names
 from heuncli.spec.rules.registry import DraftDocument
 from heuncli.spec.rules.sections import is_run
 
 NUMBER = "NUMBER"
+IN_TWO_WORDS, EVERYWHERE = ".", ".."  # places of keys that no path has
 
 
 class Outcome(NamedTuple):
@@ -44,7 +44,7 @@ class UnknownWord(NamedTuple):
     """The word of a path that leads nowhere (empty: it ends too early), with those that would lead on."""
 
     word: str
-    known: list[str]
+    known: Collection[str]
 
 
 class Words(NamedTuple):
@@ -61,11 +61,6 @@ class Reached(NamedTuple):
     quantity: Quantity
     keys: list[str]
     rest: list[str]
-
-
-def outcome(path: str, draft: DraftDocument) -> Result:
-    """What a path leads to."""
-    return result(path.split("."), draft.names, runs_of(draft))
 
 
 def runs_of(draft: DraftDocument) -> dict[str, bool]:
@@ -102,18 +97,32 @@ def follow(path: list[str], names: Names) -> Reached | UnknownWord | None:
         if NUMBER in node and rest[:1] and counted(rest[0]) is not None:  # how many there are, only the run tells
             key, behind = rest[0], rest[1:]
         if key is None:
-            return UnknownWord(unknown_key(known, rest) if rest else "", known)
+            return UnknownWord(unknown_word(rest, keys, names) if rest else "", known)
         node, rest = below(node, key), behind
         keys.append(key)
     return Reached(node, keys, rest) if node is not None else None
 
 
-def keys_in(node: Node, above: list[str], names: Names) -> list[str]:
-    """The keys that the results will have there: words of the schema, and names of the scene; above: where it is."""
-    known = [key for word in node for key in named(word, names)]
-    if above[:1] == ["coordinates"]:
-        return [key for key in known if has_coordinate(above[1:], key, names)]
-    return known
+def keys_in(node: Node, above: list[str], names: Names) -> Collection[str]:
+    """The keys that the results will have there: words of the schema, and names of the scene; above: where it is.
+
+    They are gathered once: thousands of expectations ask for those of thousands of bodies.
+    """
+    place = tuple(above)
+    if place not in names.keys:
+        known = [key for word in node for key in named(word, names)]
+        if above[:1] == ["coordinates"]:
+            known = [key for key in known if has_coordinate(above[1:], key, names)]
+        names.keys[place] = dict.fromkeys(known)
+    return names.keys[place]
+
+
+def unknown_word(path: list[str], above: list[str], names: Names) -> str:
+    """The leading words of a path that spell no key: two of them where keys in two words begin with the first."""
+    place = (*above, IN_TWO_WORDS)
+    if place not in names.keys:
+        names.keys[place] = dict.fromkeys(key.partition(".")[0] for key in names.keys[tuple(above)] if "." in key)
+    return ".".join(path[: 2 if path[0] in names.keys[place] else 1])
 
 
 def has_coordinate(joint: list[str], key: str, names: Names) -> bool:
@@ -155,17 +164,21 @@ def names_hint(path: list[str], reached: UnknownWord, names: Names) -> str:
     """What may stand at the place where a path leads nowhere."""
     block, *rest = path
     if not reached.word:
-        return f"it goes on with one of {', '.join(reached.known)}"
+        return f"it goes on with one of {listed(reached.known)}"
     if not reached.known:
         of_scene = block in names.entries and not names.entries[block]
         return f"the scene has no {block}" if of_scene and rest else "leave it out: the path ends before it"
     if reached.word.startswith("-"):
         return f"places are counted from 0, from the first on: {', '.join(reached.known)}"
     if reached.word == block and nearest(block, reached.known) is None:
-        known = {name: kind for kind, own in names.entries.items() for name in own if kind in TREE}
-        if block in known:
-            whole = f"{known[block]}.{block}"
-            return f"{block} is one of the {known[block]}; {whole} has {', '.join(keys_behind(whole, names))}"
+        kinds = [kind for kind, own in names.entries.items() if kind in TREE and block in own]
+        if kinds:
+            whole = f"{kinds[-1]}.{block}"
+            return f"{block} is one of the {kinds[-1]}; {whole} has {', '.join(keys_behind(whole, names))}"
+        if (EVERYWHERE,) not in names.keys:
+            every = (own for kind, own in names.entries.items() if kind in TREE)
+            names.keys[EVERYWHERE,] = dict.fromkeys(name for own in every for name in own)
+        known = names.keys[EVERYWHERE,]
         told = did_you_mean(block, known, "names") or ""
         begin = [key for key, row in TREE.items() if not (isinstance(row, Quantity) and row.is_words)]
         return told if nearest(block, known) else f"{told}; a path begins with one of {', '.join(begin)}"
@@ -175,7 +188,7 @@ def names_hint(path: list[str], reached: UnknownWord, names: Names) -> str:
 def keys_behind(path: str, names: Names) -> list[str]:
     """The keys with which a path that is too short goes on."""
     reached = follow(path.split("."), names)
-    return reached.known if isinstance(reached, UnknownWord) else []
+    return list(reached.known) if isinstance(reached, UnknownWord) else []
 
 
 def named(word: str, names: Names) -> list[str]:
