@@ -42,6 +42,8 @@ def verdicts(error: ValidationError, data: Any, model: type[Model]) -> Iterator[
                 if (len(value), count) == (2, 3):
                     hint = "two components are for a scene in the xy plane: space: planar"
                 yield "wrong-length", Violation(path, message, hint)
+        elif kind == "missing" and is_there_as_another(str(item["loc"][-1]), at(data, path), model, path):
+            continue  # told of the key by which it is called
         elif kind == "missing":
             yield missing(path, str(item["loc"][-1]), at(data, path))
         elif kind == "extra_forbidden":
@@ -97,6 +99,12 @@ def as_many(path: Path_, count: int) -> str:
     named = {"quaternion": "[w, x, y, z]", "size": "[along x, along y, along z]", "euler": "[a, b, c]"}
     key = next((str(part) for part in reversed(path) if isinstance(part, str)), "")
     return f"{key}: {named.get(key, '[x, y, z]' if count == 3 else f'{count} values')}"
+
+
+def is_there_as_another(key: str, owner: dict[str, Any], model: type[Model], path: Path_) -> bool:
+    """Whether an unknown key beside it stands for a missing one."""
+    known = keys_known(path, owner, model) if not path else []
+    return any(name not in known and called(str(name), known) == key for name in owner)
 
 
 def missing(path: Path_, key: str, owner: dict[str, Any]) -> tuple[str, Violation]:

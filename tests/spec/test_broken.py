@@ -19,6 +19,7 @@ WITHOUT_A_FILE = {
     "unreadable": "there is no file",
     "too-large": "64 MB",
     "too-many-jumps": "found when the run is prepared",
+    "outside-folder": "a file outside the folder of the spec",
 }
 
 
