@@ -269,7 +269,8 @@ def checked_run(runs: Runs, tolerance: float, loads: Loads) -> Checked:
     kept = ~between_strikes(best.runs, best.times)
     at, asked = best.times[kept], best.asked[kept]
     for part, several in answers_of(runs, best, kept, loads.by_cause):
-        loads.add(several, asked[part], at[part] < (np.inf if best.horizon is None else best.horizon))
+        with np.errstate(over="ignore", invalid="ignore"):  # given steps that run away: errors without bound
+            loads.add(several, asked[part], at[part] < (np.inf if best.horizon is None else best.horizon))
     recovered = told_of(runs, best, loads.by_cause)
     seconds = best.seconds + time.perf_counter() - begun
     told = best.motion, loads.estimate(), loads.errors(), best.horizon, loads.kinetic()
@@ -339,8 +340,9 @@ def errors(
     places, angles, largest = np.zeros(len(times)), np.zeros(len(times)), 1.0
     several = None
     for part, several in recovered_together(runs, a, times, states):
-        places[part] = motion_error(runs.marks, several, len(states), layout.size)
-        angles[part], turned = angle_error(layout, several, len(states))
+        with np.errstate(over="ignore", invalid="ignore"):  # the same
+            places[part] = motion_error(runs.marks, several, len(states), layout.size)
+            angles[part], turned = angle_error(layout, several, len(states))
         largest = max(largest, turned)
     whole = several if several is not None and len(several.times) == len(states) * len(times) else None
     return np.maximum(places, angles / largest), whole

@@ -92,10 +92,10 @@ def test_what_is_too_fast_is_a_limit_at_once(loads: str) -> None:
 
 
 def test_a_load_beyond_all_measure_is_named() -> None:
-    error, problem = told("pin", TORQUE.replace("VALUE", "1e300"))
+    error, problem = told("pin", TORQUE.replace("VALUE", "1e59"))
     assert isinstance(error, SolveError)
     assert problem.code == "step-collapsed"
-    assert "the largest load is forces.f, 1e+300" in (problem.hint or "")
+    assert "the largest load is forces.f, 1e+59" in (problem.hint or "")
 
 
 @pytest.mark.parametrize(("instants", "last", "steps"), [

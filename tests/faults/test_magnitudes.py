@@ -78,6 +78,14 @@ forces: {f: {type: torque, joint: p, value: "LOAD"}}
 WELDED = PUSHED.replace("type: rod", "type: weld").replace(", tension_only: true", "").replace(", 0, -1]", ", 0, 0]")
 STUCK = WELDED.replace("samples: 3", "samples: 3, method: Radau5")
 DRIVEN = BEAM.replace("0.1*(1 -", "2e256*(1 -")
+UNSTABLE = """\
+heun: 1
+ground: {points: {O: [0, 0, 0]}}
+bodies: {bar: {mass: 1, center: [0.5, 0, 0], inertia: [0.1, 0.1, 0.1], points: {top: [0, 0, 0]}}}
+joints: {pivot: {type: pin, from: ground.O, to: bar.top, axis: [0, 1, 0]}}
+forces: {k: {type: turn_spring, joint: pivot, stiffness: 1e9, angle: 1}}
+analysis: {duration: 1, samples: 3, method: RK4, step: 0.1}
+"""
 
 
 @pytest.mark.parametrize(("command", "text", "code", "word"), [
@@ -88,6 +96,7 @@ DRIVEN = BEAM.replace("0.1*(1 -", "2e256*(1 -")
     ("run", BEAM, 3, "[no-inertia]"),
     ("probe", PUSHED, 0, ""),
     ("run", STUCK, 0, ""),
+    ("run", UNSTABLE, 3, "too large to be computed with"),
     ("run", DRIVEN, 3, "<stdin>:12:40: drives.screw.travel: at t = 0 s the acceleration of '2e256*(1"),
     ("run", GROWING.replace("LOAD", "1e55"), 3, "angular acceleration of bodies.a is 5e+64, too large"),
     ("run", GROWING.replace("LOAD", "1e40*1e30*(1 + t)"), 3, "<stdin>:5:45: forces.f.value: at t = 0 s '1e40*1e30"),
