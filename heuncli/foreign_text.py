@@ -6,11 +6,9 @@ right-to-left mark turn a number round. The same notation serves JSON, where it 
 
 from __future__ import annotations
 
-import re
-
 # Controls, line and paragraph separators, marks without width or that turn the direction of reading, halves of pairs
 # (bytes of a file name that are not UTF-8), tags, and what is no character.
-UNSEEN = re.compile(
+UNSEEN = (
     "[\x00-\x1f\x7f-\x9f\u00ad\u061c\u180e\u200b-\u200f\u2028-\u202e\u2060-\u206f\ud800-\udfff\ufeff\ufff9-\ufffb\ufffe"
     "\uffff\U000e0000-\U000e007f]"
 )
@@ -19,7 +17,11 @@ SHORT = {"\n": "\\n", "\r": "\\r", "\t": "\\t", "\b": "\\b", "\f": "\\f"}
 
 def shown(text: str) -> str:
     """The text on one line, with what is unseen escaped."""
-    return text if text.isprintable() else UNSEEN.sub(lambda found: escaped(found[0]), text)
+    if text.isprintable():
+        return text
+    import re  # nearly all text is printable, and most commands begin without
+
+    return re.sub(UNSEEN, lambda found: escaped(found[0]), text)
 
 
 def shown_lines(text: str) -> str:

@@ -74,8 +74,6 @@ def wrapped(text: str, width: int | None, more: int = MORE) -> list[str]:
         if cut < 0:
             break  # one long word
         lead = " " * (start if len(lines) > 1 else start + more)
-        if cut <= len(lead):
-            break  # what goes on below would be no shorter
         lines[-1:] = [line[:cut].rstrip(), lead + line[cut:].lstrip()]
     return lines
 
@@ -85,7 +83,7 @@ def _end_of_line(line: str, start: int, width: int) -> int:
     blanks = [i for i in range(start + 1, min(width + 1, len(line))) if line[i] == " "]
     late = [i for i in blanks if line[i - 1] in ",;" and 3 * i > 2 * width]
     ends = [i for i in late if line.count("(", 0, i) == line.count(")", 0, i)]
-    return max(ends or blanks, default=line.find(" ", width))
+    return max(ends or blanks, default=line.find(" ", max(width, start + 1)))
 
 
 def markdown(table: Table) -> str:
