@@ -37,14 +37,14 @@ def main(words: Sequence[str]) -> int:
         kind, _, seed = asked.replay.partition(":")
         return replay(kind, int(seed))
     table = Tally()
-    for k, one in enumerate(judged(drawn(asked.cases, asked.seed, asked.kind), asked.jobs), 1):
-        table.add(one)
-        if k % EVERY == 0 and not asked.quick:
-            print(
-                f"{k} of {asked.cases}: {table.wrong} with violations, {time.strftime('%H:%M:%S')}",
-                file=sys.stderr,
-                flush=True,
-            )
+    try:
+        for k, one in enumerate(judged(drawn(asked.cases, asked.seed, asked.kind), asked.jobs), 1):
+            table.add(one)
+            if k % EVERY == 0 and not asked.quick:
+                told = f"{k} of {asked.cases}: {table.wrong} with violations, {time.strftime('%H:%M:%S')}"
+                print(told, file=sys.stderr, flush=True)
+    except KeyboardInterrupt:
+        print("interrupted")  # what was found until then stands
     print(table)
     return int(table.wrong > 0)
 
