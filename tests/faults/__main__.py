@@ -12,14 +12,8 @@ from tests.faults.cases import case
 from tests.faults.pool import Judged, judged
 from tests.faults.worker import LAWS
 
-SHARES = {
-    "spec": 10,
-    "bytes": 4,
-    "expressions": 3,
-    "expectations": 2,
-    "commands": 4,
-    LAWS: 0,
-}  # of the cases, in parts
+# of the cases, in parts
+SHARES = {"spec": 10, "bytes": 4, "expressions": 3, "expectations": 2, "commands": 4, LAWS: 0}
 EVERY = 1000  # cases between two lines of progress
 
 
