@@ -77,10 +77,11 @@ BLOCK_OF = {GROUND: GROUND}  # of points: where they stand
 @rule("unknown-body")
 def unknown_body(draft: DraftDocument) -> Iterator[Violation]:
     """Bodies exist."""
-    bodies = dict.fromkeys([*draft.names.entries["bodies"], GROUND])
+    bodies = draft.names.entries["bodies"]
+    with_ground = dict.fromkeys([*bodies, GROUND])  # gathered once, however many are unknown
     for path, body, may_be_ground in bodies_spoken_of(draft):
-        if body not in bodies:
-            known = [name for name in bodies if name != GROUND or may_be_ground]
+        if body not in with_ground:
+            known = with_ground if may_be_ground else bodies
             hint = "what does not move is the ground: ground.O" if body.lower() in FIXED else None
             yield Violation(path, f"'{body}' is not a body", hint or did_you_mean(body, known, "bodies"))
 
