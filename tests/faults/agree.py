@@ -4,12 +4,14 @@ from __future__ import annotations
 
 import math
 from collections.abc import Callable, Iterator
+from random import Random
 from typing import Any, NamedTuple
 
 import numpy as np
 
 from heuncli.results import Array, Block
 from heuncli.results_schema import ESTIMATES, KIND_OF, SPACE, TREE, Node, Quantity, below
+from heuncli.study.measure import peak
 from heuncli.study.solve import Study
 
 TIMES = 10.0  # the stated errors
@@ -193,3 +195,34 @@ def state_at(bodies: Block, k: int) -> dict[str, dict[str, Any]]:
     """The state of all bodies at an instant, as a spec gives it."""
     keys = ("position", "velocity", "angular_velocity", "quaternion")
     return {name: {key: np.asarray(body[key])[k].tolist() for key in keys} for name, body in bodies.items()}
+
+
+def beyond_peaks(study: Study, dense: Study, random: Random, most: int = 8) -> list[Apart]:
+    """Where a run, densely sampled, goes beyond the extremes that are told of it, of some of its numbers."""
+    sizes = sizes_of(study, dense)
+    found: list[Apart] = []
+    rows = [
+        (path, np.asarray(value, dtype=float), row)
+        for block in BLOCKS
+        for path, value, _, row in _pairs(
+            block, getattr(dense.results, block), getattr(dense.results, block), TREE[block]
+        )
+        if row is not None and row.timed and row.shape in ((), (SPACE,)) and not set(path.split(".")) & SKIPPED
+    ]
+    horizon = min((one.results.accuracy.get("horizon") or math.inf for one in (study, dense)), default=math.inf)
+    inside = dense.results.time < horizon
+    for path, values, row in random.sample(rows, min(most, len(rows))):
+        i = random.randrange(3)
+        path, values = (f"{path}.{'xyz'[i]}", values[:, i]) if row.shape else (path, values)
+        if not np.isfinite(values[inside]).any():
+            continue
+        size = max(_size(one, units, sizes) for one in (study, dense) for units in row.units)
+        allowed = (TIMES * sum(stated(one, path) for one in (study, dense)) + FLOOR) * size
+        for how, sign in (("max", 1.0), ("min", -1.0)):
+            told = peak(study, path, how).value
+            most_seen = sign * float(np.nanmax(sign * values[inside]))
+            if not math.isnan(told) and not sign * (most_seen - told) <= allowed:
+                found.append(
+                    Apart(f"{how} {path} is {told:.9g}, seen {most_seen:.9g},", sign * (most_seen - told), allowed)
+                )
+    return found

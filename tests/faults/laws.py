@@ -18,7 +18,7 @@ from heuncli.errors import HeunError
 from heuncli.spec.load import load
 from heuncli.study.solve import Options, Study, solve
 from tests.faults import mild, retell, sources
-from tests.faults.agree import apart, growing, kept, state_at, turning
+from tests.faults.agree import apart, beyond_peaks, growing, kept, state_at, turning
 from tests.faults.outcome import peak
 from tests.faults.retell import NotTold
 from tests.faults.sources import Tree
@@ -184,6 +184,15 @@ def otherwise_sampled(random: Random, tree: Tree, study: Study) -> Twins:
     return Twins(tree, twin, lambda a, b: apart(a, b, kept))
 
 
+def within_extremes(random: Random, tree: Tree, study: Study) -> Twins:
+    times = study.results.time
+    if len(times) < 2 or (tree.get("analysis") or {}).get("until"):
+        raise NotTold("one instant")
+    analysis = {key: value for key, value in tree["analysis"].items() if key not in ("times", "samples")}
+    dense = {**tree, "analysis": {**analysis, "duration": float(times[-1]), "samples": 401}}
+    return Twins(tree, dense, lambda a, b: beyond_peaks(a, b, random))
+
+
 def in_halves(random: Random, tree: Tree, _: Study) -> Twins:
     twin = retell.in_halves(tree, random)
     return Twins(tree, twin, lambda a, b: apart(a, b, kept, more=True, same_open=False))
@@ -198,4 +207,5 @@ LAWS: dict[str, Callable[[Random, Tree, Study], Twins]] = {
     "turned": turned, "faster": faster, "reordered": reordered, "later": later, "unreduced": unreduced,
     "another method": another_method, "otherwise sampled": otherwise_sampled, "in halves": in_halves,
     "from the other end": from_the_other_end,
+    "within extremes": within_extremes,
 }  # fmt: skip
