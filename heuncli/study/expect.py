@@ -104,8 +104,8 @@ def _failure(expected: Array, found: Array, tolerance: float) -> str | None:
     open_expected, open_found = np.isnan(expected), np.isnan(found)
     if (open_expected & ~open_found).any():
         known = int((open_expected & ~open_found).sum())
-        some = f"{known} of them {'a number' if known == 1 else 'numbers'}" if found.size > 1 else "a number"
-        return f"expected open, found {some}"
+        hint = "is: null is all of it; in a list null is one place"
+        return "expected open, found a number" if found.size == 1 else f"{known} of {found.size} are not open ({hint})"
     if (open_found & ~open_expected).any():
         return "open"
     if not open_expected.all():
