@@ -10,6 +10,7 @@ FORMATS = (["--format", "json"], ["--format", "table"], ["--format", "csv", "--b
 SEEDS, EACH = 40, 10
 
 
+@pytest.mark.heavy
 @pytest.mark.parametrize("first", range(0, SEEDS, EACH))
 def test_specs_with_numbers_of_any_magnitude(first: int) -> None:
     for seed in range(first, first + EACH):

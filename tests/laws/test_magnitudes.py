@@ -58,6 +58,7 @@ def numbers(found: Results, l: float, m: float, t: float) -> dict[str, Array]:
     }  # fmt: skip
 
 
+@pytest.mark.heavy
 @pytest.mark.parametrize("loop", [CLOSED, DRIVEN], ids=["closed", "driven"])
 @pytest.mark.parametrize(("l", "m", "t"), [
     (1e-20, 1.0, 1.0), (1e20, 1e-9, 1.0), (1.0, 1e-30, 1e-12), (1e9, 1e20, 1e12), (1e-9, 1e-12, 1e-15),

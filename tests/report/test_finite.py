@@ -94,6 +94,7 @@ def test_nan_stands_only_for_what_may_be_open(name: str) -> None:
                 assert told, keys
 
 
+@pytest.mark.heavy
 def test_all_kinds_are_among_them() -> None:
     seen = {row.path for name in SCENES for keys, _, _ in places(results(name)) if (row := quantity(keys)) is not None}
     assert {row.path for row in ROWS if row.units} - seen == NOT_FLOATS | {"time"}
