@@ -9,6 +9,8 @@ from typing import NamedTuple
 
 from heuncli.foreign_text import shown
 
+LONGEST = 5000  # characters of a message that are told: an expression of the longest, twice, and what is said of it
+
 
 class SourceLocation(NamedTuple):
     """Where in a file: 1-based line and column, and the dotted path of the value."""
@@ -35,10 +37,18 @@ class Problem(NamedTuple):
     about: str = ""
 
     def __str__(self) -> str:
-        path = f"{shown(self.location.path)}: " if self.location and self.location.path else ""
+        path = f"{told(self.location.path)}: " if self.location and self.location.path else ""
         where = f"{self.location}: {path}" if self.location else ""
-        hint = f"\n  hint: {shown(self.hint)}" if self.hint else ""
-        return f"{where}{shown(self.message)} [{self.code}]{hint}"
+        hint = f"\n  hint: {told(self.hint)}" if self.hint else ""
+        return f"{where}{told(self.message)} [{self.code}]{hint}"
+
+
+def told(text: str) -> str:
+    """A part of a problem on one line; of a word of a million letters its ends."""
+    left_out = len(text) - LONGEST
+    if left_out <= 0:
+        return shown(text)
+    return f"{shown(text[: LONGEST // 2])} ... ({left_out} characters more) ... {shown(text[-LONGEST // 2 :])}"
 
 
 class Finding(ValueError):

@@ -64,6 +64,15 @@ def test_thousands_of_expectations_on_thousands_of_points() -> None:
     assert time.process_time() - begun < SECONDS
 
 
+@pytest.mark.parametrize("name", ["k" * 300_000, "é" * 300_000, "\u202e" * 300_000])
+def test_of_a_long_word_the_ends_are_told(name: str) -> None:
+    with pytest.raises(SpecError) as caught:
+        load("spec.yaml", f"{HEAD}space: '{name}'\n")
+    (problem,) = caught.value.problems
+    assert len(str(problem)) < 40_000
+    assert "characters more) ... " in str(problem)
+
+
 def test_the_first_dozens_get_suggestions_and_the_next_file_again() -> None:
     for _ in range(2):
         with pytest.raises(SpecError) as caught:
