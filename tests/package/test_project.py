@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import os
 import re
+import shutil
 import subprocess
 import sys
 import tomllib
@@ -53,3 +54,20 @@ def test_installers_can_load_the_build_by_itself(tmp_path: Path) -> None:
     env = {key: value for key, value in os.environ.items() if key != "PYTHONPATH"}
     run = subprocess.run([sys.executable, "-P", "-c", code], capture_output=True, text=True, cwd=tmp_path, env=env)
     assert (run.stdout, run.returncode) == ("BuildKernel\n", 0), run.stderr
+
+
+def test_a_failed_build_is_an_error_and_leaves_nothing_among_the_sources(tmp_path: Path) -> None:
+    """Where there is no compiler: an error here, the plain files where it is installed (.ci/run)."""
+    pytest.importorskip("setuptools")
+    pytest.importorskip("Cython")
+    unwanted = shutil.ignore_patterns("__pycache__", "*.so", "*.pyd")
+    shutil.copytree(ROOT / "heuncli", tmp_path / "heuncli", ignore=unwanted)
+    for name in ("pyproject.toml", "README.md"):
+        shutil.copy(ROOT / name, tmp_path)
+    before = sorted(tmp_path.glob("heuncli/**/*.*"))
+    env = {key: value for key, value in os.environ.items() if key != "HEUN_KERNEL"}
+    env |= {"PYTHONPATH": str(tmp_path), "CC": "false", "PYTHONDONTWRITEBYTECODE": "1"}
+    command = [sys.executable, "-m", "heuncli.build"]
+    run = subprocess.run(command, capture_output=True, text=True, cwd=tmp_path, env=env)
+    assert run.returncode == 1 and "'false'" in run.stderr
+    assert sorted(tmp_path.glob("heuncli/**/*.*")) == before
