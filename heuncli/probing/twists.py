@@ -88,8 +88,14 @@ def mass_matrix(found: Twists) -> Array:
     bodies = [found.layout.mechanism.bodies[hang.body] for hang in found.layout.spanning.hangs]
     mass, inertia = np.array([b.mass for b in bodies]), np.array([b.inertia for b in bodies]).reshape(-1, 3, 3)
     own = np.einsum("tbki,tbij->tbkj", found.turn, found.R)
-    M = np.einsum("b,tbki,tbli->tkl", mass, found.shift, found.shift)
-    return np.asarray(M + np.einsum("tbki,bij,tblj->tkl", own, inertia, own))
+    M = of_all_bodies(mass[:, None, None] * found.shift) @ of_all_bodies(found.shift).transpose(0, 2, 1)
+    return np.asarray(M + of_all_bodies(own @ inertia) @ of_all_bodies(own).transpose(0, 2, 1))
+
+
+def of_all_bodies(rates: Array) -> Array:
+    """Vectors by body and freedom, (n_t, n_b, n, 3), with those of all bodies side by side, (n_t, n, 3 n_b)."""
+    n_t, n_b, n, _ = rates.shape
+    return rates.transpose(0, 2, 1, 3).reshape(n_t, n, 3 * n_b)
 
 
 def closure_rows(found: Twists, at: Recovered) -> Array:
