@@ -79,12 +79,13 @@ def coincide(name: str, t: float) -> Problem:
                    hint=HINT)  # fmt: skip
 
 
-def comes_together(runner: Runner, run: Trajectory) -> Problem | None:
-    """The first load whose points meet within a run; None where none do."""
+def comes_together(runner: Runner, run: Trajectory, horizon: float | None) -> Problem | None:
+    """The first load whose points meet within a run, before its horizon, if it has one; None where none do."""
     loads = pushing(runner.layout.mechanism)
     if not loads or not len(run.ends):
         return None
     marks = np.concatenate([[0.0], run.ends])
+    marks = marks[marks < (np.inf if horizon is None else horizon)]
     for first in range(0, len(marks), AT_ONCE):
         times = marks[first : first + AT_ONCE + 1]
         spans = lines(runner, run, times, loads)

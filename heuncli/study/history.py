@@ -92,7 +92,7 @@ def integrate(setup: Setup, tolerance: float, deadline: float | None, *, by_caus
     checked = checked_motion(setup, tolerance, jumps, deadline, by_cause)
     jumps = tuple(sorted({*jumps, *checked.run.jumps}))
     require_followed(runner, checked.run)
-    require_apart(runner, checked.run)
+    require_apart(runner, checked)
     seconds = {"integrate": checked.run.seconds, "check": checked.check_seconds}
     if checked.lost_seconds:
         seconds["lost"] = checked.lost_seconds
@@ -224,12 +224,12 @@ def require_followed(runner: Runner, run: Trajectory) -> None:
             raise SolveError(problem)
 
 
-def require_apart(runner: Runner, run: Trajectory) -> None:
-    """Raise SolveError where the points of an actuator or spring come together within the run."""
+def require_apart(runner: Runner, checked: Checked) -> None:
+    """Raise SolveError where the points of an actuator or spring come together within a motion, before its horizon."""
     if any(isinstance(load, PairLoad) for load in runner.layout.mechanism.loads):
         from heuncli.integration.lines import comes_together  # few scenes have them
 
-        problem = comes_together(runner, run)
+        problem = comes_together(runner, checked.run, checked.horizon)
         if problem is not None:
             raise SolveError(problem)
 
