@@ -33,12 +33,18 @@ TESTS = (
 
 
 def copy() -> None:
-    """The sources of this checkout, to be compiled otherwise; what was compiled there before stays, newer or not."""
+    """The sources of this checkout, to be compiled otherwise; what was compiled there from the same text stays."""
     compiled = shutil.ignore_patterns("*.so", "*.pyd", "__pycache__")
-    shutil.copytree(CHECKOUT / "heuncli", COPY / "heuncli", dirs_exist_ok=True, ignore=compiled)
+    shutil.copytree(CHECKOUT / "heuncli", COPY / "heuncli", dirs_exist_ok=True, ignore=compiled, copy_function=renew)
     for name in LINKED:
         if not (COPY / name).is_symlink():
             (COPY / name).symlink_to(CHECKOUT / name)
+
+
+def renew(source: str, target: str) -> None:
+    """Copy a file whose text is another; its time is now, so that it is compiled again, whichever was older."""
+    if not Path(target).exists() or Path(target).read_bytes() != Path(source).read_bytes():
+        shutil.copyfile(source, target)
 
 
 def library(name: str) -> str:
@@ -70,7 +76,8 @@ def main(words: list[str]) -> int:
     if built.returncode:
         print(built.stdout + built.stderr, file=sys.stderr)
         return built.returncode
-    command = [sys.executable, "-m", "pytest", "-q", "-p", "no:cacheprovider", *(words or TESTS)]
+    # --capture=sys: what a sanitizer says as it ends the process is seen
+    command = [sys.executable, "-m", "pytest", "-q", "-p", "no:cacheprovider", "--capture=sys", *(words or TESTS)]
     return subprocess.run(command, cwd=COPY, env=environment()).returncode
 
 

@@ -114,9 +114,8 @@ def test_a_folder_that_is_gone(tmp_path: Path) -> None:
         "import os, sys\nos.mkdir('gone')\nos.chdir('gone')\nos.rmdir('../gone')\n"
         "from heuncli.cli.entry import enter\nsys.exit(enter(['run', 'spec.yaml']))"
     )
-    root = str(Path(__file__).parents[2])
-    path = os.pathsep.join([root, os.environ.get("PYTHONPATH", "")])
-    run = subprocess.run([sys.executable, "-c", code], cwd=tmp_path, env={**os.environ, "PYTHONPATH": path},
+    path = str(Path(__file__).parents[2])  # and no empty one: NumPy cannot be imported by way of a folder that is gone
+    run = subprocess.run([sys.executable, "-P", "-c", code], cwd=tmp_path, env={**os.environ, "PYTHONPATH": path},
                          capture_output=True, text=True, check=False)  # fmt: skip
     assert run.returncode == 2
     assert "no such file" in run.stderr
