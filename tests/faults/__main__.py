@@ -13,7 +13,7 @@ from tests.faults.pool import Judged, judged
 from tests.faults.worker import LAWS
 
 # of the cases, in parts
-SHARES = {"spec": 10, "bytes": 4, "expressions": 3, "expectations": 2, "commands": 4, LAWS: 0}
+SHARES = {"spec": 10, "bytes": 4, "expressions": 3, "expectations": 2, "commands": 4, "magnitudes": 2, LAWS: 0}
 EVERY = 1000  # cases between two lines of progress
 
 

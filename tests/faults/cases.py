@@ -6,7 +6,7 @@ from collections.abc import Callable
 from random import Random
 from typing import NamedTuple
 
-from tests.faults import mutate_bytes, mutate_spec, sources
+from tests.faults import mutate_bytes, mutate_magnitudes, mutate_spec, sources
 from tests.faults.random_commands import LIMIT, SPEC, random_command
 from tests.faults.random_expectations import random_expectation
 from tests.faults.random_expressions import random_expression
@@ -66,6 +66,11 @@ def of_expressions(random: Random) -> Case:
     return validated(random, sources.text(tree))
 
 
+def of_magnitudes(random: Random) -> Case:
+    """Numbers of a spec of any magnitude."""
+    return validated(random, mutate_magnitudes.mutant(random.randrange(2**32)).text.encode())
+
+
 def of_expectations(random: Random) -> Case:
     """What a spec expects of its results."""
     tree, codes = random_expectation(random)
@@ -85,5 +90,5 @@ def validated(random: Random, content: bytes) -> Case:
 
 KINDS: dict[str, Callable[[Random], Case]] = {
     "spec": of_spec, "bytes": of_bytes, "expressions": of_expressions, "expectations": of_expectations,
-    "commands": of_commands,
+    "commands": of_commands, "magnitudes": of_magnitudes,
 }  # fmt: skip
