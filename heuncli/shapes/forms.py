@@ -7,7 +7,7 @@ both.
 
 from __future__ import annotations
 
-from collections.abc import Callable, Iterable
+from collections.abc import Callable, Iterable, Iterator
 from typing import TypeVar
 
 import numpy as np
@@ -23,6 +23,7 @@ from heuncli.shapes.solids import Ball, Point, Rod, Solid
 from heuncli.spec.models import Shape, Vec
 
 Value = TypeVar("Value")
+AT_ONCE = 2_000  # planes: those of a long run of cuts together take a gigabyte through a box
 
 
 def given(value: Value | None) -> Value:
@@ -100,6 +101,11 @@ class CrossSections:
     regions: NDArray[np.intp]
 
 
+def shares(count: int) -> Iterator[slice]:
+    """The planes a share at a time; one if there is none."""
+    return (slice(begin, begin + AT_ONCE) for begin in range(0, max(count, 1), AT_ONCE))
+
+
 @record
 class Form:
     """The shapes of a body; `near` [m] is how far off a plane still counts as in it."""
@@ -113,7 +119,10 @@ class Form:
 
     def pieces(self, n: Array, d: Array, side: Array) -> Array:
         """Pseudo-inertia of the pieces about the body's origin, (k, 4, 4)."""
-        return np.asarray(np.sum([part.beyond(n, d, side, self.near) for part in self.parts], axis=0))
+        own = [
+            np.sum([part.beyond(n, d[at], side[at], self.near) for part in self.parts], axis=0) for at in shares(len(d))
+        ]
+        return np.concatenate(own)
 
     def extent(self, n: Array) -> tuple[float, float]:
         """Least and largest n.x of the body [m]."""
@@ -138,6 +147,12 @@ class Form:
 
     def cross_sections(self, n: Array, d: Array, side: Array) -> CrossSections:
         """Where the planes meet the body: limits from the given side, so that end faces and shoulders count."""
+        own = [self.limits(n, d[at], side[at]) for at in shares(len(d))]
+        area, centroid, regions = (np.concatenate(rows) for rows in zip(*own, strict=True))
+        return CrossSections(area, centroid, regions)
+
+    def limits(self, n: Array, d: Array, side: Array) -> tuple[Array, Array, NDArray[np.intp]]:
+        """Areas, centroids and numbers of regions of some planes at once."""
         limits = self.cross_sections_at(n, np.concatenate([d - self.near, d + self.near]))
         count, centroids = limits.regions.reshape(2, -1), limits.centroid.reshape(2, -1, 3)
         share = np.array([0.5 * (1.0 + side), 0.5 * (1.0 - side)]) * (count > 0)
@@ -147,7 +162,7 @@ class Form:
         with np.errstate(invalid="ignore"):
             area = areas.sum(axis=0) / share.sum(axis=0)
             centroid = moment.sum(axis=0) / weight.sum(axis=0)[:, None]
-        return CrossSections(area, centroid, np.where(share > 0.0, count, 0).max(axis=0))
+        return area, centroid, np.where(share > 0.0, count, 0).max(axis=0)
 
     def cross_sections_at(self, n: Array, d: Array) -> CrossSections:
         """Where exactly these planes meet the body; for a plane in an end face the result depends on rounding."""
