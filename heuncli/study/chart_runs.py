@@ -80,6 +80,8 @@ class Charting:
         while waiting and not self.motion.late:
             self.tell(2 * len(rows) - len(rows) * len(waiting) // many, 2 * len(rows), "times")
             for each in waiting:
+                if self.motion.late:  # between two of a round, too: a round of many runs would outlast the limit
+                    break
                 each.seconds.append(each.again())
             waiting = [each for each in waiting if not each.settled]
         return tuple(each.done if isinstance(each, Timed) else each for each in found)

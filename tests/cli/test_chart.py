@@ -8,10 +8,14 @@ import json
 import os
 import xml.etree.ElementTree as tree
 from pathlib import Path
+from types import SimpleNamespace
+from typing import Any, cast
 
 import pytest
 
+from heuncli.charts import COMPLETED, Charted, Row
 from heuncli.report import picture_plot
+from heuncli.study.chart_runs import Charting, Timed
 from tests.cli.conftest import HANGING, SPECS, TURNED, Heun
 
 FEW = ("--methods", "DOP853", "--tolerances", "1e-4,1e-8")
@@ -154,3 +158,19 @@ def test_no_bar_shows_where_nobody_looks(heun: Heun) -> None:
 def test_a_full_disk_is_exit_5(heun: Heun) -> None:
     done = heun("chart", "swinging.yaml", *FEW, "-o", "/dev/full", "--format", "json")
     assert done.returncode == 5 and done.stdout == ""
+
+
+def test_no_run_is_timed_again_beyond_the_limit(monkeypatch: pytest.MonkeyPatch) -> None:
+    """The limit passes with the second run of a round of four."""
+    again: list[int] = []
+    motion = SimpleNamespace(late=False)
+
+    def run() -> float:
+        again.append(1)
+        motion.late = len(again) == 2
+        return 0.01
+
+    runs = Charting(cast(Any, motion), cast(Any, SimpleNamespace(seconds=1.0)), lambda done, of, what: None)
+    rows = [Row("RK4", "quaternion", True, 1e-3)] * 4
+    monkeypatch.setattr(runs, "one", lambda row: Timed(Charted(row, COMPLETED, 0.01), run, [0.01]))
+    assert len(runs.all(rows)) == 4 and len(again) == 2
