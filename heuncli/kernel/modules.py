@@ -33,6 +33,7 @@ MODULES = (
     "stiffness",
     "linear",
     "collocation",
+    "judging",
     "steps",
     "integration",
 )

@@ -1,11 +1,9 @@
-"""Structs and signatures of steps.py for C."""
+"""Signatures of steps.py for C."""
 
 from heuncli.kernel.algebra cimport Vec3, norm
-from heuncli.kernel.attitudes cimport (
-    at_half_turn, drop_small_parts, enter_chart, leave_chart, measure_ways, nearing, weigh_in_chart,
-)
+from heuncli.kernel.attitudes cimport at_half_turn, drop_small_parts, enter_chart, leave_chart, measure_ways, nearing
 from heuncli.kernel.chosen cimport choose_afresh, put_chosen, take_chosen
-from heuncli.kernel.collocation cimport collocate, collocate_to, estimate, estimate_again
+from heuncli.kernel.collocation cimport collocate, collocate_to
 from heuncli.kernel.contacts cimport opened_by_others, pushed_at_once, start_contacts, turned_over
 from heuncli.kernel.dense cimport (
     AGAIN_TO, CHATTERS, Method, Run, STANDS, TURNS_OVER, clipped, combine, enter_slopes, interpolate,
@@ -14,6 +12,10 @@ from heuncli.kernel.dense cimport (
 from heuncli.kernel.events cimport follow_angles, take_branches
 from heuncli.kernel.expressions cimport HELD, TAKEN, value
 from heuncli.kernel.following cimport find_between, follow, is_determined, stand_here
+from heuncli.kernel.judging cimport (
+    ACCEPTED, AGAIN, CHATTERING, CLOSURES_LOST, COLLAPSED, HALF_TURN, LET_GO, MORE, NOT_A_NUMBER, REACHED, ROPE_SLACK,
+    STIFF, STRUCK, TURNED, UNSOLVED, growth, judge, norm_of,
+)
 from heuncli.kernel.landing cimport begin_to_see, in_flurry, meet, see_stage
 from heuncli.kernel.response cimport evaluate, evaluate_settled, must_choose_anew, settle, settle_evaluated
 from heuncli.kernel.scene cimport Body, Group, Scene
@@ -23,14 +25,6 @@ from heuncli.kernel.stiffness cimport estimate_swiftness, is_held_short
 from heuncli.kernel.tree cimport coordinates
 from libc.math cimport fabs, pow, sqrt
 
-cdef enum:
-    REACHED, MORE, COLLAPSED, NOT_A_NUMBER, CLOSURES_LOST, ROPE_SLACK, CHATTERING, STRUCK, LET_GO, TURNED, STIFF
-    HALF_TURN, UNSOLVED
-    ACCEPTED, AGAIN
-
-cdef double step_error(Scene *scene, Method *method, Run *run) noexcept nogil
-cdef double group_error(Scene *scene, Method *method, Run *run, int b) noexcept nogil
-cdef double norm_of(Run *run, double *x, int begin, int end) noexcept nogil
 cdef double first_step(Scene *scene, Method *method, Run *run) noexcept nogil
 cdef double manhattan(Vec3 a) noexcept nogil
 cdef double load_rate(Scene *scene, Run *run) noexcept nogil
@@ -44,18 +38,9 @@ cdef int attempt(Scene *scene, Method *method, Run *run) noexcept nogil
 cdef void enter(Scene *scene, Method *method, Run *run) noexcept nogil
 cdef void leave(Scene *scene, Method *method, Run *run) noexcept nogil
 cdef bint leaves_chart(Scene *scene, Method *method, Run *run) noexcept nogil
-cdef bint turns_too_far(Scene *scene, Run *run) noexcept nogil
-cdef int judge(Scene *scene, Method *method, Run *run, int trouble) noexcept nogil
-cdef int judge_given(Method *method, Run *run, int trouble) noexcept nogil
-cdef bint takes_rates(Run *run) noexcept nogil
-cdef double explicit_error(Scene *scene, Method *method, Run *run) noexcept nogil
-cdef double implicit_error(Scene *scene, Method *method, Run *run) noexcept nogil
-cdef int dodge(Scene *scene, Run *run, double error, int trouble) noexcept nogil
-cdef double singular_noise(Scene *scene, Run *run) noexcept nogil
 cdef void sample(Scene *scene, Method *method, Run *run) noexcept nogil
 cdef void sample_by_steps(Scene *scene, Method *method, Run *run) noexcept nogil
 cdef void sample_reached(Run *run) noexcept nogil
-cdef double growth(Method *method, Run *run) noexcept nogil
 cdef int accept(Scene *scene, Method *method, Run *run) noexcept nogil
 cdef void keep_rates(Run *run) noexcept nogil
 cdef void propose_next(Method *method, Run *run) noexcept nogil

@@ -1,0 +1,246 @@
+"""The judging of a step that was tried: accepted, tried again with another length, or beyond what can be solved.
+
+Of a given step nothing is judged but that it has an end. The error of another is measured body by body and the largest
+counts, for a resting neighbour must not dilute it: coordinates against tol (angles) and tol * size (shifts), rates
+against tol * the largest rate the body has had. Hairer, Norsett, Wanner, Solving Ordinary Differential Equations I
+(1993), II.4.
+"""
+
+from __future__ import annotations
+
+try:
+    import cython
+except ImportError:
+    from heuncli.kernel.shadow import cython
+
+if not cython.compiled:
+    from math import fabs, pow, sqrt
+
+    from heuncli.kernel.attitudes import weigh_in_chart
+    from heuncli.kernel.collocation import estimate, estimate_again
+    from heuncli.kernel.dense import combine
+    from heuncli.kernel.scene import Group, Scene
+    from heuncli.kernel.shadow import cython
+    from heuncli.kernel.structs import Method, Run
+
+    # What `advance` answers (steps.py), and what a step is judged; for C these stand in judging.pxd, in the same order.
+    REACHED, MORE, COLLAPSED, NOT_A_NUMBER, CLOSURES_LOST, ROPE_SLACK, CHATTERING = range(7)
+    STRUCK, LET_GO, TURNED, STIFF, HALF_TURN, UNSOLVED, ACCEPTED, AGAIN = range(7, 15)
+
+# Hairer, Norsett and Wanner, II.4: the length that would just be allowed is undershot a little, for a step rejected
+# costs a whole one, and no step changes the length by more than what an estimate far from its asymptotics is good for.
+SAFETY = 0.9
+LEAST_FACTOR = 0.2  # shorter after a rejection
+MOST_FACTOR = 6.0  # longer after what was accepted
+OUT_OF_REACH = 0.1  # shorter where a stage has no value at all
+COARSE_SHARE = 0.01  # of the square of the coarser of two estimates (II.10): what damps the finer one where it vanishes
+UNSOLVED_ERROR = 1.8  # of stages not found, to the method's order: 0.9/1.8, half the step
+
+
+def norm_of(run: cython.pointer[Run], x: cython.p_double, begin: cython.int, end: cython.int) -> cython.double:
+    """Weighted norm of some components."""
+    i: cython.Py_ssize_t
+    g: cython.double
+    square: cython.double = 0.0
+    for i in range(begin, end):
+        g = x[i] * run.weights[i]
+        square += g * g
+    return sqrt(square)
+
+
+def step_error(
+    scene: cython.pointer[Scene], method: cython.pointer[Method], run: cython.pointer[Run]
+) -> cython.double:
+    """Largest error over the groups, 1 = just allowed; not a number where one is not."""
+    b: cython.int
+    error: cython.double
+    worst: cython.double = 0.0
+    for b in range(run.group_count):
+        error = group_error(scene, method, run, b)
+        if error != error:
+            return error
+        if error > worst:
+            worst = error
+    return worst
+
+
+def group_error(
+    scene: cython.pointer[Scene], method: cython.pointer[Method], run: cython.pointer[Run], b: cython.int
+) -> cython.double:
+    """Error of a group, h e5 / sqrt(1 + 0.01 (e3 / e5)^2) of the two estimates, or h e of one."""
+    group: cython.pointer[Group] = cython.address(run.groups[b])
+    i: cython.Py_ssize_t
+    e: cython.double
+    g: cython.double
+    fine: cython.double = 0.0
+    coarse: cython.double = 0.0
+    rate: cython.double = norm_of(run, run.z, group.rates, group.end)
+    if rate < group.rate:
+        rate = group.rate
+    group.trial = rate
+    floor: cython.double = scene.limits.slow_rate * run.rate
+    if b == run.energy_group:
+        # energy, against the largest work so far or a part of what the bodies may have of it
+        floor = scene.limits.slow_rate * run.energy_scale * run.rate * run.rate
+    scale: cython.double = 1.0 / run.tolerance
+    for i in range(group.coordinates, group.end):
+        if i == group.rates:
+            scale = 1.0 / (run.tolerance * (rate + floor + 1e-200))
+        g = run.weights[i] * scale
+        e = run.fine[i] * g
+        fine += e * e
+        if method.estimates == 2:
+            e = run.coarse[i] * g
+            coarse += e * e
+    if fine > 0.0:
+        return run.h * fine / sqrt(fine + COARSE_SHARE * coarse)
+    return fine  # 0, or not a number
+
+
+def turns_too_far(scene: cython.pointer[Scene], run: cython.pointer[Run]) -> cython.bint:
+    """Whether a stage turned so fast that the step may have passed the end of the chart: a shorter one, then."""
+    part: cython.double
+    if not run.nearing * run.h > scene.limits.chart_turn:
+        return False
+    part = 0.9 * scene.limits.chart_turn / (run.nearing * run.h)
+    run.proposed = run.h * (part if part > 0.2 else 0.2)
+    run.rejected += 1
+    run.rejected_before = 1
+    return True
+
+
+def judge(
+    scene: cython.pointer[Scene], method: cython.pointer[Method], run: cython.pointer[Run], trouble: cython.int
+) -> cython.int:
+    """ACCEPTED, AGAIN with another length, NOT_A_NUMBER, or CLOSURES_LOST."""
+    error: cython.double
+    noise: cython.double = 0.0
+    run.error = 0.0
+    if run.following:
+        return ACCEPTED
+    if run.determined:
+        return AGAIN if trouble < 0 else ACCEPTED
+    if method.fixed:
+        return judge_given(method, run, trouble)
+    error = implicit_error(scene, method, run) if method.implicit else explicit_error(scene, method, run)
+    if run.near:
+        if dodge(scene, run, error, trouble):
+            return AGAIN
+        noise = singular_noise(scene, run)
+    if error != error or trouble < 0:
+        # outside what the scene can do: a much smaller step, or the end of it
+        run.proposed = OUT_OF_REACH * run.h
+        run.rejected += 1
+        run.rejected_before = 1
+        if run.proposed < scene.limits.least_step * (run.end - run.t) or run.proposed <= 1e-15 * fabs(run.t):
+            return NOT_A_NUMBER
+        return AGAIN
+    if error > 1.0 + noise:
+        factor: cython.double = SAFETY * pow(error, -method.exponent)
+        run.proposed = run.h * (factor if factor > LEAST_FACTOR else LEAST_FACTOR)
+        run.rejected += 1
+        run.rejected_before = 1
+        return AGAIN
+    if method.attitude and turns_too_far(scene, run):
+        return AGAIN
+    run.error = error
+    return ACCEPTED
+
+
+def judge_given(
+    method: cython.pointer[Method], run: cython.pointer[Run], trouble: cython.int
+) -> cython.int:
+    """ACCEPTED, or why a step whose length is given cannot be taken."""
+    if method.implicit and not run.newton.solved:
+        return UNSOLVED
+    if not takes_rates(run):
+        return NOT_A_NUMBER
+    return CLOSURES_LOST if trouble < 0 else ACCEPTED
+
+
+def takes_rates(run: cython.pointer[Run]) -> cython.bint:
+    """The rates of the groups at the end of a given step; whether all is finite there."""
+    b: cython.int
+    size: cython.double = 0.0
+    for b in range(run.group_count):
+        group: cython.pointer[Group] = cython.address(run.groups[b])
+        group.trial = norm_of(run, run.z, group.rates, group.end)
+        if group.trial < group.rate:
+            group.trial = group.rate
+        size += norm_of(run, run.z, group.coordinates, group.end)
+    return size < 1e300  # neither infinite nor not a number
+
+
+def explicit_error(
+    scene: cython.pointer[Scene], method: cython.pointer[Method], run: cython.pointer[Run]
+) -> cython.double:
+    """Error of the step tried, 1 = just allowed."""
+    row: cython.int = method.stages + 1 + method.extra
+    combine(method, row, run.chart_K, run.n, run.coarse)
+    combine(method, row + method.estimates - 1, run.chart_K, run.n, run.fine)
+    if method.attitude:
+        weigh_in_chart(scene, method.attitude, run.chart_y, run.coarse)
+        weigh_in_chart(scene, method.attitude, run.chart_y, run.fine)
+    return step_error(scene, method, run)
+
+
+def implicit_error(
+    scene: cython.pointer[Scene], method: cython.pointer[Method], run: cython.pointer[Run]
+) -> cython.double:
+    """The same of an implicit method; where no stages were found, what halves the step."""
+    if not run.newton.solved:
+        return pow(UNSOLVED_ERROR, 1.0 / method.exponent)
+    estimate(method, run, run.K[0])
+    error: cython.double = step_error(scene, method, run)
+    if not error <= 1.0:
+        estimate_again(scene, method, run)
+        error = step_error(scene, method, run)
+    return error
+
+
+def dodge(
+    scene: cython.pointer[Scene], run: cython.pointer[Run], error: cython.double, trouble: cython.int
+) -> cython.int:
+    """Whether to try another length that may keep the stages off a singular pose; at last the best of those tried."""
+    noise: cython.double = 1e300  # what rounding makes of the closures at the worst of the stages, by the tolerance
+    if scene.pivot_of_step > 0.0:
+        noise = scene.limits.pivot_rounding * run.h * run.rate / (scene.pivot_of_step * run.tolerance)
+    broken: cython.bint = error != error or trouble < 0
+    if run.dodges >= scene.limits.dodges or run.last:
+        return 0
+    if not (noise > 0.1 or broken or (error > 1.0 and run.dodges > 0)):
+        return 0
+    worse: cython.double = error if error > noise else noise
+    if broken:
+        worse = 1e300
+    if run.dodges == 0 or worse < run.best:
+        run.best = worse
+        run.best_h = run.h
+    run.dodges += 1
+    run.proposed = run.best_h if run.dodges == scene.limits.dodges else scene.limits.dodge * run.h
+    run.rejected += 1
+    return 1
+
+
+def singular_noise(scene: cython.pointer[Scene], run: cython.pointer[Run]) -> cython.double:
+    """What a step that found no better way may be off by, also by what its start makes of the rounding."""
+    pivot: cython.double = scene.pivot_of_step
+    if run.pivot_at_start < pivot:
+        pivot = run.pivot_at_start
+    if pivot > 0.0 and run.dodges == scene.limits.dodges:
+        return scene.limits.pivot_noise * run.h * run.rate / (pivot * run.tolerance)
+    return 0.0
+
+
+def growth(method: cython.pointer[Method], run: cython.pointer[Run]) -> cython.double:
+    """By what factor the next step may be longer; none after a rejection."""
+    factor: cython.double = MOST_FACTOR
+    if run.error > 1.0:
+        factor = 1.0
+    elif run.error > 0.0:
+        factor = SAFETY * pow(run.error, -method.exponent)
+        if factor > MOST_FACTOR:
+            factor = MOST_FACTOR
+    if run.rejected_before and factor > 1.0:
+        factor = 1.0
+    return factor
