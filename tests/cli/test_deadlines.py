@@ -10,11 +10,16 @@ import time
 from pathlib import Path
 from typing import Any
 
+import numpy as np
 import pytest
 
 from heuncli.cli import files
+from heuncli.integration import evaluator
+from heuncli.spec.load import load
+from heuncli.study.solve import solve
 from tests.cli.conftest import HANGING, Heun
 
+SPECS = Path(__file__).parents[2] / "specs"
 ENOUGH = 5.0  # seconds in which a command of a tenth of a second is given up, on a machine that does much else
 REST = HANGING + "analysis: {type: rest}\n"
 DRIVEN = HANGING + """\
@@ -110,3 +115,21 @@ def test_a_huge_limit_and_another_thread(heun: Heun) -> None:
     other.start()
     other.join()
     assert codes == [0, 0]
+
+
+@pytest.mark.parametrize("name", ["double", "four_bar"])
+@pytest.mark.parametrize("hold_rows", [False, True])
+def test_states_are_recovered_alike_in_short_calls(
+    monkeypatch: pytest.MonkeyPatch, name: str, hold_rows: bool
+) -> None:
+    """One state to a call of the kernel, or all."""
+    study = solve(load(str(SPECS / f"{name}.yaml")))
+    runner, times = study.setup.runner, study.results.time[::20]
+    states = study.history.recovered.states[::20]
+    whole = runner.recovered(times, states, hold_rows=hold_rows)
+    monkeypatch.setattr(evaluator, "AT_ONCE", 1)
+    single = runner.recovered(times, states, hold_rows=hold_rows)
+    for field in ("alpha", "a"):
+        np.testing.assert_allclose(single.bodies[field], whole.bodies[field], rtol=1e-12, atol=1e-12)
+    np.testing.assert_allclose(single.pivot, whole.pivot, rtol=1e-9)
+    np.testing.assert_allclose(single.states, whole.states, rtol=1e-14, atol=1e-14)
