@@ -9,6 +9,7 @@ from collections.abc import Iterable
 
 import numpy as np
 
+from heuncli import tolerances
 from heuncli.kernel.choose import scene as kernel
 from heuncli.mechanism.model import GROUND
 from heuncli.records import replace
@@ -79,9 +80,12 @@ def _island(layout: Layout, rows: Array, bodies: list[int]) -> Island:
 
 
 def mean_lever(layout: Layout, joints: Iterable[int]) -> float:
-    """Mean distance of the joints' points from the centres of their bodies [m]; without any, the scene's size."""
+    """Mean distance of the joints' points from the centres of their bodies [m]; without any, the scene's size.
+
+    Points on one axis, seen along it, are apart by rounding: measured by that, rounding of their rows held a turn.
+    """
     bodies = layout.mechanism.bodies
     of = [layout.mechanism.joints[k] for k in joints]
     arms = [p - bodies[b].center for j in of for b, p in ((j.a, j.p), (j.b, j.q)) if b != GROUND]
     mean = float(np.mean([np.sqrt(a @ a) for a in arms])) if arms else 0.0
-    return mean or layout.size
+    return mean if mean > tolerances.GAP_ROUNDING * layout.size else layout.size

@@ -7,6 +7,7 @@ from __future__ import annotations
 import math
 from typing import NamedTuple
 
+import numpy as np
 import pytest
 
 from heuncli.errors import SolveError
@@ -17,7 +18,7 @@ from heuncli.study.solve import Options, solve
 from tests.oracle.values import to_yaml
 from tests.shared.reduced import pair, same
 from tests.shared.reducible import driven
-from tests.shared.scenes import moving, near
+from tests.shared.scenes import moving, near, solved
 
 PLANE = "solved in the plane"
 
@@ -266,3 +267,23 @@ def test_a_lock_is_told_alike() -> None:
         told.append(error.value.problems[0])
     assert [problem.code for problem in told] == ["closure-lost"] * 2
     assert "0.18033" in told[0].message and "0.18033" in told[1].message
+
+
+@pytest.mark.parametrize("axis", [(1.0, 0.0, 0.0), (0.9164473465668924, -0.1543267025528435, -0.36919849654307685)])
+def test_bearings_in_line_let_a_shaft_turn_whatever_its_direction(axis: tuple[float, ...]) -> None:
+    """Seen along an oblique shaft, their points are apart by rounding, which holds no turn: it stood still once."""
+    n = np.array(axis)
+    places = {f"b{k}": (0.1 * k * n).tolist() for k in range(4)}
+    bearing = {"type": "line", "axis": list(axis)}
+    first = {"type": "ball", "from": "ground.b0", "to": "shaft.b0"}
+    others = {name: bearing | {"from": f"ground.{name}", "to": f"shaft.{name}"} for name in list(places)[1:]}
+    across = np.eye(3) - np.outer(n, n)
+    found = solved({
+        "ground": {"points": places},
+        "bodies": {"shaft": {"mass": 3.0, "center": (0.2 * n).tolist(), "points": places,
+                             "inertia": (0.5 * np.outer(n, n) + 0.7 * across).tolist()}},
+        "joints": {"b0": first, **others},
+        "forces": {"motor": {"type": "couple", "on": "shaft", "vector": (2.0 * n).tolist()}},
+        "analysis": {"times": [0.0, 0.5, 1.0]},
+    })  # fmt: skip
+    assert found.bodies["shaft"]["angular_velocity"] @ n == pytest.approx([0.0, 2.0, 4.0], abs=1e-9)
