@@ -17,7 +17,7 @@ import os
 import sys
 import warnings
 
-from heuncli import leaving
+from heuncli.cli import leaving
 
 os.environ.setdefault("OPENBLAS_NUM_THREADS", "1")
 MANY = 500_000  # objects made between two searches for dead cycles; 700 by default: 20 ms while modules are loaded

@@ -13,13 +13,13 @@ from collections.abc import Callable, Sequence
 from pathlib import Path
 from typing import TypeVar
 
-from heuncli import files_read
 from heuncli.cli import alarm, memory, plain
 from heuncli.cli.files import ReaderGone
 from heuncli.cli.output import emit, say
 from heuncli.cli.requests import COMMANDS, GRACES, LATER_COMMANDS, LATER_OPTIONS, Request
 from heuncli.errors import HeunError, LimitError, Problem
 from heuncli.foreign_text import shown
+from heuncli.spec.reading import forget
 from heuncli.version import VERSION
 
 INTERRUPTED = 130
@@ -43,7 +43,7 @@ class UsageError(HeunError):
 
 def enter(argv: Sequence[str]) -> int:
     """Run one command line; returns its exit code."""
-    files_read.forget()
+    forget()
     try:
         return contained(lambda: _command(list(argv)), argv)
     except ReaderGone as gone:

@@ -13,8 +13,8 @@ from functools import partial
 from pathlib import Path
 from typing import NamedTuple
 
+from heuncli.cli.leaving import Undoing
 from heuncli.errors import HeunError, OutputError, Problem
-from heuncli.leaving import Undoing
 
 MOST_LINKS = 40  # that lead to one file; the system follows no more
 HINTS = {

@@ -7,9 +7,9 @@ import sys
 from collections.abc import Sequence
 from pathlib import Path
 
-from heuncli import files_read
 from heuncli.cli.entry import UsageError
 from heuncli.errors import Problem
+from heuncli.spec.reading import name_of
 
 STDOUT = "-"
 
@@ -23,7 +23,7 @@ def keep(output: str | None, specs: Sequence[str], option: str = "-o") -> None:
     state = _of_standard_output() if to_stdout else _state(output)
     if state is None:
         return
-    name = files_read.name_of(state)
+    name = name_of(state)
     itself = name in specs or (not to_stdout and any(same(output, spec) for spec in specs))
     if itself or name is not None:
         what = "the spec itself" if itself else "a table of the spec"

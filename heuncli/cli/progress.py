@@ -9,8 +9,8 @@ from collections.abc import Callable, Iterator
 from contextlib import contextmanager
 from typing import Any
 
+from heuncli.cli.leaving import Undoing
 from heuncli.cli.terminal import styled
-from heuncli.leaving import Undoing
 
 PATIENCE = 1.5  # seconds before it shows
 WIPE = b"\r\x1b[2K\x1b[?25h"  # clears the line and shows the cursor, which the bar hides

@@ -2,6 +2,9 @@
 
 Ordinary files are judged by their size before a byte is read. Pipes, `<(command)` and `/dev/fd/N` are read until they
 end or pass the limit. Devices are refused unread, but for a terminal and for what is always empty: they never end.
+
+Which files a command has read is remembered, by what they are and not by what they are called, for none of them is
+written over: a link, a hard link, another spelling or `/dev/fd/3` is the same file.
 """
 
 from __future__ import annotations
@@ -13,7 +16,6 @@ import sys
 from pathlib import Path
 from typing import BinaryIO
 
-from heuncli import files_read
 from heuncli.errors import Finding
 
 STANDARD_INPUT = "-"
@@ -33,6 +35,17 @@ REASONS = {  # why a file cannot be opened, and what to do
     errno.ENAMETOOLONG: ("the name is too long for a file", None),
     errno.ENXIO: ("this is a socket, not a file", "give a file, or - for standard input"),
 }
+_READ: dict[tuple[int, int], str] = {}  # device and number of each file -> the name it was read by
+
+
+def forget() -> None:
+    """Another command begins: nothing was read yet."""
+    _READ.clear()
+
+
+def name_of(state: os.stat_result) -> str | None:
+    """By what name an ordinary file was read, if it was; a pipe or a device is no content that could be lost."""
+    return _READ.get((state.st_dev, state.st_ino)) if stat.S_ISREG(state.st_mode) else None
 
 
 def read_bytes(path: str, most: int) -> bytearray:
@@ -71,7 +84,8 @@ def _of_standard_input(most: int) -> bytearray:
 def _guard(number: int, path: str, most: int) -> None:
     """Refuse what is of a kind that is not read, or too large, before reading; number: of an open file."""
     state = os.fstat(number)
-    files_read.remember(state, path)
+    if stat.S_ISREG(state.st_mode):
+        _READ.setdefault((state.st_dev, state.st_ino), path)
     kind = next((words for is_kind, words in FILE_KINDS if is_kind(state.st_mode)), None)
     if kind is not None and not (stat.S_ISCHR(state.st_mode) and _ends(number)):
         hint = "for folders of specs: heun check" if kind == "a folder" else "give a file, or - for standard input"
