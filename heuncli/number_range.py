@@ -2,8 +2,13 @@
 
 from __future__ import annotations
 
+from typing import TYPE_CHECKING
+
 from heuncli import tolerances
 from heuncli.errors import Finding
+
+if TYPE_CHECKING:
+    from heuncli.results import Array, Mask
 
 ACCEPTED = f"0, or {tolerances.LEAST_MAGNITUDE:.0e} to {tolerances.MOST_MAGNITUDE:.0e} in SI units".replace("+", "")
 TOO_SMALL = "look at its unit; what is meant to be nothing is written 0"
@@ -13,6 +18,13 @@ TOO_LARGE = "look at its unit; what has no bound is left out"
 def is_in_range(value: float) -> bool:
     """Whether a number is 0, or of a magnitude that is computed with; nan and inf are not."""
     return value == 0.0 or tolerances.LEAST_MAGNITUDE <= abs(value) <= tolerances.MOST_MAGNITUDE
+
+
+def are_in_range(values: Array) -> Mask:
+    """The same of many numbers at once."""
+    sizes = abs(values)
+    fits: Mask = (values == 0.0) | ((sizes >= tolerances.LEAST_MAGNITUDE) & (sizes <= tolerances.MOST_MAGNITUDE))
+    return fits
 
 
 def out_of_range(value: float, what: str = "") -> Finding:

@@ -14,7 +14,7 @@ from heuncli.errors import Finding, SourceLocation
 from heuncli.expressions.curves import fit
 from heuncli.expressions.programs import Table
 from heuncli.expressions.units import Dimension, parse_unit
-from heuncli.number_range import out_of_range
+from heuncli.number_range import are_in_range, out_of_range
 from heuncli.records import record, replace
 from heuncli.spec.columns import Columns, CsvError, NoColumn, columns_of
 from heuncli.spec.format import Table as Entry
@@ -103,8 +103,7 @@ def read(item: object, size: float, scope: Scope, keys: tuple[str | int, ...], w
 def too_small_or_large(columns: Columns, entry: Entry) -> Iterator[Wrong]:
     """The first number of each column that is not computed with."""
     for key, column in zip(("x", "y"), columns, strict=True):
-        sizes = np.abs(np.frombuffer(column))
-        beyond = (sizes > tolerances.MOST_MAGNITUDE) | ((sizes < tolerances.LEAST_MAGNITUDE) & (sizes != 0.0))
+        beyond = ~are_in_range(np.frombuffer(column))
         if beyond.any():
             i = int(beyond.argmax())
             in_file = entry.file is not None

@@ -1,6 +1,7 @@
 """Products of a spec's quantities: what a body's mass and inertia come to is computed with, too.
 
 An inertia is judged by what it cannot exceed, m l^2 with the largest coordinate l of the body, and its own moments.
+Volumes are those of shapes/, which stands above the spec and takes NumPy; a test holds the two together.
 """
 
 from __future__ import annotations
@@ -79,7 +80,7 @@ def extent(shape: f.Shape) -> tuple[float, ...]:
             return (*shape.center, *shape.size)
         case f.Sphere():
             return (*shape.center, shape.radius)
-        case _:
+        case f.Point():
             return shape.at
 
 
@@ -104,5 +105,5 @@ def volume(shape: f.Cylinder | f.Cone | f.Box | f.Sphere) -> float:
             return math.pi / 3.0 * (a * a + a * b + b * b) * math.dist(shape.from_, shape.to)
         case f.Box():
             return math.prod(shape.size)
-        case _:
+        case f.Sphere():
             return 4.0 / 3.0 * math.pi * shape.radius**3
