@@ -55,7 +55,7 @@ class Reduced:
         pieces = [self._pull_back([(step.before, step.rest)], step.lack) for step in self.steps if len(step.lack)]
         for k in island.closures:
             d = found[k]
-            J_a, J_b, c = _blocks(d, rows[k], size)
+            J_a, J_b, c = _blocks(rows[k], size)
             pieces.append(self._pull_back([(place.get(d.a, -1), J_a), (place.get(d.b, -1), J_b)], c))
         self.C = np.concatenate([C for C, _ in pieces] or [np.zeros((0, self.count))])
         self.e = np.concatenate([e for _, e in pieces] or [np.zeros(0)])
@@ -110,7 +110,7 @@ class Reduced:
         return Q / weight, np.linalg.solve(R.T, self.C.T).T
 
 
-def _blocks(d: Condition, row: Rows, size: float) -> tuple[Array, Array, Array]:
+def _blocks(row: Rows, size: float) -> tuple[Array, Array, Array]:
     """Rows on (turn, shift/L) of `from` and of `to`, (h+k, 6) each, and the right side, lengths by L."""
     h, k = len(row.F), len(row.T)
     J_a, J_b = np.zeros((h + k, 6)), np.zeros((h + k, 6))
@@ -122,7 +122,7 @@ def _blocks(d: Condition, row: Rows, size: float) -> tuple[Array, Array, Array]:
 
 
 def _step(body: int, d: Condition, row: Rows, place: Mapping[int, int], may: tuple[bool, bool], size: float) -> Step:
-    J_a, J_b, c = _blocks(d, row, size)
+    J_a, J_b, c = _blocks(row, size)
     J, J_before, before = (J_b, J_a, d.a) if body == d.b else (J_a, J_b, d.b)
     E = _root(may).N
     U, S, V = np.linalg.svd(J @ E)

@@ -62,7 +62,6 @@ def build(spec: Any, forms: dict[str, Form]) -> Mechanism:
         title=spec.title,
         planar=planar,
         gravity=np.array(spec.gravity),
-        ground_points=vectors(spec.ground.points),
         bodies=bodies,
         joints=made,
         loads=loads,

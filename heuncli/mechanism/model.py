@@ -263,7 +263,6 @@ class Mechanism:
     title: str
     planar: bool
     gravity: Array
-    ground_points: dict[str, Array]
     bodies: tuple[Body, ...]
     joints: tuple[Joint, ...]
     loads: tuple[Load, ...]

@@ -201,7 +201,7 @@ class Flat:
         """All parts. Raises NotTold."""
         of = self.scene.mechanism
         return Mechanism(
-            title=of.title, planar=True, gravity=_in_plane(self.seen.E @ of.gravity), ground_points={},
+            title=of.title, planar=True, gravity=_in_plane(self.seen.E @ of.gravity),
             bodies=tuple(self.body(i) for i in range(len(of.bodies))),
             joints=tuple(self.joint(k) for k in range(len(of.joints))),
             loads=tuple(self.load(load) for load in of.loads), blows=tuple(self.blow(blow) for blow in of.blows),

@@ -67,7 +67,7 @@ def open_joint(
         tilting = stress.reaches(M - n[:, :, None] * about, stress.length)
         parts["tilting"] = np.asarray(tilting.any(axis=1))
         if load.drive is not None and load.joint.drive is not None:
-            parts["drive"] = open_along(load, load.joint.drive.quantity, free, stress)
+            parts["drive"] = open_along(load.joint.drive.quantity, free, stress)
     if load.tension is not None:
         parts["drive"] = parts["tension"] = np.asarray(force.any(axis=1))
     for own in (block, *block.get("shares", {}).values()):
@@ -76,7 +76,7 @@ def open_joint(
     block["open"] = names_of({name: is_open for name, is_open in parts.items() if name in block})
 
 
-def open_along(load: JointLoads, quantity: str, free: Array, stress: SelfStress) -> Mask:
+def open_along(quantity: str, free: Array, stress: SelfStress) -> Mask:
     """Whether what a drive or a stop exerts along a coordinate is open, (n_t,); its share is free of the constraint."""
     part, scale = (free[:, 3:], stress.length) if quantity == "angle" else (free[:, :3], 1.0)
     return np.asarray(stress.reaches(part, scale).any(axis=1))

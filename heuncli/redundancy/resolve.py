@@ -125,7 +125,7 @@ def put_verdicts(
                 open_support(elements[stop.name], of_quantity(free, stop.quantity), stress)
             if stop.name in shown.get("stops", {}):
                 block = shown["stops"][stop.name]
-                is_open = open_along(load, stop.quantity, free, stress)
+                is_open = open_along(stop.quantity, free, stress)
                 block |= {name: opened(value, is_open) for name, value in block.items()}
         if drive is not None and load.drive is not None and load.axis is not None:
             key = f"drives.{drive.name}" if f"drives.{drive.name}" in elements else drive.name

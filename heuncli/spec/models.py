@@ -268,7 +268,6 @@ class Section:
     body: str
     normal: Vec
     at: Vec | None = None
-    at_name: str | None = None
     from_: Vec | None = None
     to: Vec | None = None
     count: int = 1

@@ -212,9 +212,9 @@ class Resolver:
         point = end_of(section.reduce_to)
         reduce_to: Any = self.end(point) if point is not None else section.reduce_to
         return m.Section(
-            body=section.body, normal=normal, at=at, at_name=section.at if isinstance(section.at, str) else None,
-            from_=start, to=end, count=section.count or 1, first_axis=section.first_axis, reduce_to=reduce_to,
-            side=section.side, properties=properties(section.properties), strength=section.strength,
+            body=section.body, normal=normal, at=at, from_=start, to=end, count=section.count or 1,
+            first_axis=section.first_axis, reduce_to=reduce_to, side=section.side,
+            properties=properties(section.properties), strength=section.strength,
             piece=self.piece(section.piece or (body.piece if at is not None else None)),
         )  # fmt: skip
 

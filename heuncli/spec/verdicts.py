@@ -47,7 +47,7 @@ def verdicts(error: ValidationError, data: Any, model: type[Model]) -> Iterator[
         elif kind == "missing":
             yield missing(path, str(item["loc"][-1]), at(data, path))
         elif kind == "extra_forbidden":
-            yield unknown_key(path, keys_known(path[:-1], data, model))
+            yield unknown_key(path, keys_known(path[:-1], model))
         elif kind == "too_long":
             message = f"{context['actual_length']} values instead of {context['max_length']}"
             cut = any(isinstance(part, str) and part.count("(") > part.count(")") for part in item["input"])
@@ -103,7 +103,7 @@ def as_many(path: Path_, count: int) -> str:
 
 def is_there_as_another(key: str, owner: dict[str, Any], model: type[Model], path: Path_) -> bool:
     """Whether an unknown key beside it stands for a missing one."""
-    known = keys_known(path, owner, model) if not path else []
+    known = keys_known(path, model) if not path else []
     return any(name not in known and called(str(name), known) == key for name in owner)
 
 
@@ -189,8 +189,8 @@ def models_in(annotation: Any) -> tuple[int, list[type[Model]]]:
     return 0, [annotation] if isinstance(annotation, type) and issubclass(annotation, Model) else []
 
 
-def keys_known(path: Path_, data: Any, model: type[Model]) -> list[str]:
-    """The keys of the mapping at a path within data that a model reads."""
+def keys_known(path: Path_, model: type[Model]) -> list[str]:
+    """The keys of the mapping at a path below what a model reads."""
     owner: type[Model] | None = model
     between = 0
     for part in path:

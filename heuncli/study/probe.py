@@ -38,7 +38,7 @@ def probed(spec: Spec, options: Options) -> Probe:
     stiffness, no_stiffness = stiffness_of(along)
     growth, no_growth = growing(along)
     across, no_across = across_plane(along)
-    listed, more = most_of(distinct_events([*turns, *centres, *singular_events(along, mass)], along.span))
+    listed, more = most_of(distinct_events([*turns, *centres, *singular_events(along)], along.span))
     checked, results = study.history.checked, study.results
     reasons = {
         "stiffness": no_stiffness, "growth_rate": no_growth, "condition": why, "out_of_plane": no_across,

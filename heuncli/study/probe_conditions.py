@@ -39,7 +39,7 @@ def lightest(own: Coordinates, found: Conditions, k: int) -> str:
     return own.owner(int(np.argmax(np.abs(found.light[k]))))[0]
 
 
-def singular_events(along: Along, mass: Largest | None) -> list[Event]:
+def singular_events(along: Along) -> list[Event]:
     """Singular poses that the motion passes or begins in, and bodies without inertia about an axis."""
     study = along.study
     loops = f"joints.{study.setup.scene.mechanism.joints[along.layout.rows[0]].name}" if along.layout.rows else ""

@@ -82,7 +82,7 @@ def scene(bodies: list[Body], joints: list[dict[str, Any]], planar: bool = False
             Drive("motor", drive[0], drive[1], len(drive) > 2) if drive else None,
         )
 
-    return Mechanism("scene", planar, np.zeros(3), {}, tuple(bodies), tuple(made(j) for j in joints), ())
+    return Mechanism("scene", planar, np.zeros(3), tuple(bodies), tuple(made(j) for j in joints), ())
 
 
 def pose(scene: Mechanism, a: Assembly, body: int) -> tuple[Any, Any]:

@@ -278,7 +278,7 @@ def test_sections() -> None:
     named = section("{body: b, at: q, normal: [1, 0, 0], side: before, first_axis: [0, 1, 0], reduce_to: centroid, "
                     "properties: {circle: {radius: 10 mm}}, strength: 200 MPa}")  # fmt: skip
     assert fields(named) == fields(m.Section(
-        "b", x, at=(2.0, 0.0, 0.0), at_name="q", side="before", first_axis=(0.0, 1.0, 0.0), reduce_to="centroid",
+        "b", x, at=(2.0, 0.0, 0.0), side="before", first_axis=(0.0, 1.0, 0.0), reduce_to="centroid",
         properties=m.Properties("circle", {"radius": 0.01}), strength=2e8,
     ))  # fmt: skip
     run = section("{body: b, from: p, to: [1, 0, 0], count: 5, reduce_to: b.q}")
