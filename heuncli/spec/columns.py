@@ -66,6 +66,8 @@ def columns_of(text: str, *wanted: object) -> Columns:
     """Columns of a text, by their names in the first row or their numbers from 1. Raises CsvError, NoColumn."""
     layout = layout_of(text)
     indices = [column(number, key, layout, text) for number, key in enumerate(wanted)]
+    if all(counted(str(key)) is not None for key in wanted) and begins_at_once(layout, indices, text):
+        layout = Layout(layout.mark, [], layout.width, layout.before - 1)
     columns: Columns = [array("d") for _ in wanted]
     for line, lines in numbered(text, layout.before):
         if not read_plain(lines, layout.mark, indices, columns):
@@ -108,6 +110,20 @@ def layout_of(text: str) -> Layout:
     if all(as_number(cell, mark) is not None for cell in first):
         return Layout(mark, [], len(first), n - 1)
     return Layout(mark, first, len(first), n)
+
+
+def begins_at_once(layout: Layout, indices: Sequence[int], text: str) -> bool:
+    """Whether what was taken for names is the first point of columns named by number: "0,1,start", "0,1,", "0,NaN".
+
+    Its x is a number then. Numbers do serve as names, beside a name or an empty cell where the rows have numbers, too.
+    """
+    first = layout.names
+    if not first or not first[0] or not is_like_number(first[indices[0]], layout.mark):
+        return False
+    words = {i for i, cell in enumerate(first) if cell and not is_like_number(cell, layout.mark)} - set(indices)
+    n, line = next(islice(rows_of(text), 1, 2), (0, ""))
+    second = cells(n, line, layout.mark) if n else []
+    return not any(as_number(cell, layout.mark) is not None for i, cell in enumerate(second) if i in words)
 
 
 def read_plain(lines: list[str], mark: str | None, indices: Sequence[int], columns: Columns) -> bool:
@@ -171,6 +187,15 @@ def as_number(cell: str, mark: str | None) -> float | None:
     except ValueError:
         return None
     return value if math.isfinite(value) and "_" not in cell else None
+
+
+def is_like_number(cell: str, mark: str | None) -> bool:
+    """Whether a cell was written as a number, be it one that is not read: nan, 1e400."""
+    try:
+        float(cell.replace(",", ".") if mark == ";" else cell)
+    except ValueError:
+        return False
+    return True
 
 
 def quoted(cell: str, among_numbers: bool) -> str:

@@ -55,6 +55,27 @@ def test_numpy_reads_what_is_read_cell_by_cell(seed: int, monkeypatch: pytest.Mo
         assert outcome(text) == result, repr(text)
 
 
+FIRST = [  # a text; the first column by number, or what is said
+    ("0,1,\n1,2,\n2,3,\n", [0, 1, 2]),
+    ("0,1,start\n1,2,\n2,3,end\n", [0, 1, 2]),
+    ("0;1,5;\n1;2,5;\n", [0, 1]),
+    ("0,1,start\n1,2,7\n", [1]),  # names that are numbers, beside one that is a word
+    ("t,1000,1500\n0,1,2\n1,3,4\n", [0, 1]),
+    (",0,1\n0,1.5,2.5\n1,2,3\n", [0, 1]),
+    ("0,NaN\n1,2\n2,3\n", "'NaN' in column 2 is not a number"),
+    ("0,--\n1,2\n2,3\n", "'--' in column 2 is not a number"),
+    ("1e400,2\n3,4\n5,6\n", "'1e400' in column 1 is not a number"),
+    ("0 1 #a\n1 2\n", [0, 1]),
+    ("0,1 # a\n1,2\n2,3\n", "what stands in column 2 is not a number"),
+]
+
+
+@pytest.mark.parametrize(("text", "expected"), FIRST)
+def test_a_first_row_of_numbers_is_a_point(text: str, expected: object) -> None:
+    found = outcome(text)
+    assert (found[0] if isinstance(found, list) else found[1]) == expected  # type: ignore[index]
+
+
 def test_two_million_rows(tmp_path: Path) -> None:
     rows = "\n".join(map("%d,1".__mod__, range(2_000_000)))
     (tmp_path / "large.csv").write_text(f"x,y\n{rows}\n")
