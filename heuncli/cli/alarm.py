@@ -15,7 +15,7 @@ from typing import TypeVar
 from heuncli.errors import LimitError, Problem
 
 GRACE = 0.2  # seconds beyond the limit: the loops, which know more, speak first
-AGAIN = 0.1  # seconds from one alarm to the next: a destructor may swallow one
+REPEAT = 0.1  # seconds from one alarm to the next: a destructor may swallow one
 LONGEST = 1e8  # seconds that the timer is set to at most, three years; the system's clocks end somewhere
 HINT = "a longer --time-limit, fewer samples, --only what is needed, or a shorter duration"
 # What is being done, by the modules at work: the first row that has one of them tells.
@@ -76,12 +76,12 @@ def _at_work(work: Callable[[], Answer]) -> Answer:
     return work()
 
 
-def left() -> float | None:
+def remaining() -> float | None:
     """How much of the limit is left [s], more than nothing; None where there is none."""
     return None if _Clock.deadline is None else max(_Clock.deadline - time.monotonic(), 1e-9)
 
 
-def off(*, late: bool = False) -> None:
+def disarm(*, late: bool = False) -> None:
     """No alarm from here on: what goes out goes out whole. Raises LimitError where it comes too late, unless it may."""
     deadline, _Clock.deadline = _Clock.deadline, None
     if deadline is not None and time.monotonic() > deadline and not late:
@@ -100,7 +100,7 @@ def _timer(seconds: float) -> Callable[[], None]:
     if not hasattr(signal, "setitimer") or threading.current_thread() is not threading.main_thread():
         return lambda: None
     before = signal.signal(signal.SIGALRM, _ring)
-    signal.setitimer(signal.ITIMER_REAL, seconds, AGAIN)
+    signal.setitimer(signal.ITIMER_REAL, seconds, REPEAT)
 
     def undo() -> None:
         signal.setitimer(signal.ITIMER_REAL, 0.0)

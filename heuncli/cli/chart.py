@@ -9,7 +9,7 @@ from pathlib import Path
 from heuncli.charts import Chart
 from heuncli.cli import alarm
 from heuncli.cli.entry import UsageError
-from heuncli.cli.guard import STDOUT, keep, same
+from heuncli.cli.guard import STDOUT, require_other_file, same_file
 from heuncli.cli.output import emit, save
 from heuncli.cli.progress import progress
 from heuncli.cli.requests import Chart as Request
@@ -35,7 +35,7 @@ PICTURES = {".svg": "svg", ".png": "png", ".pdf": "pdf"}
 
 def main(request: Request) -> int:
     """Run the command; returns the exit code."""
-    keep(request.output, [request.spec])
+    require_other_file(request.output, [request.spec])
     form = format_of(request.format, request.output, ENDINGS, FORMATS)
     drawn = picture_format(request)
     wanted = Wanted(
@@ -44,11 +44,11 @@ def main(request: Request) -> int:
         numbers("--steps", request.steps, math.inf),
     )
     spec = load(request.spec, overrides=overrides(request.set), checking=False)
-    keep(request.output, [request.spec])
+    require_other_file(request.output, [request.spec])
     if request.save is not None:
-        keep(request.save, [request.spec], "--save")
+        require_other_file(request.save, [request.spec], "--save")
     with progress(request.quiet) as tell:
-        found = chart(spec, replace(wanted, time_limit=alarm.left()), tell)
+        found = chart(spec, replace(wanted, time_limit=alarm.remaining()), tell)
     if drawn is not None and request.save is not None:
         save(drawn(found), request.save)
     emit(text(found, form, request.output), request.output, late=True)
@@ -85,7 +85,7 @@ def picture_format(request: Request) -> Callable[[Chart], bytes] | None:
         hint = f"known endings: {', '.join(PICTURES)}"
         raise UsageError(Problem("bad-option", f"--save {request.save}: no picture is known by that ending", hint=hint))
     require_room(request.save, "--save")
-    if same("/dev/stdout" if request.output in (None, STDOUT) else request.output, request.save):
+    if same_file("/dev/stdout" if request.output in (None, STDOUT) else request.output, request.save):
         message = f"--save {request.save}: that is where the table goes"
         raise UsageError(Problem("bad-option", message, hint="name another file"))
     if form == "svg":

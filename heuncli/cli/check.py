@@ -11,7 +11,7 @@ import numpy as np
 from heuncli.cli import alarm, memory
 from heuncli.cli.entry import UsageError, contained, report_problems, worst
 from heuncli.cli.folders import Found, PassedBy, specs_below
-from heuncli.cli.guard import keep
+from heuncli.cli.guard import require_other_file
 from heuncli.cli.output import emit, say
 from heuncli.cli.requests import Check
 from heuncli.cli.solving import warn
@@ -62,10 +62,10 @@ def main(request: Check) -> int:
             say(f"heun: {shown(folder.path)} passed by: {shown(folder.reason)}")
     if not paths:
         raise UsageError(Problem("nothing-to-check", f"no *.yaml in {', '.join(request.paths)}", hint=NAMED))
-    keep(request.output, paths)
+    require_other_file(request.output, paths)
     form = format_of(request.format, request.output, ENDINGS, FORMATS)
     checked = [_check(one, request) for one in found]
-    keep(request.output, paths)  # the tables of specs that are wrong, too
+    require_other_file(request.output, paths)  # the tables of specs that are wrong, too
     if any(one.error is None for one in checked):  # with errors alone there is no result
         emit(_json(checked) if form == "json" else _table(checked, skipped), request.output)
     return worst([one.exit_code for one in checked])
@@ -87,13 +87,13 @@ def _check(found: Found, request: Check) -> Checked:
 
 def _compared(path: str, request: Check) -> Checked:
     spec = load(path)
-    keep(request.output, [path])
+    require_other_file(request.output, [path])
     asked = asked_by([item.of for item in spec.expect], spec) if spec.expect else EVERYTHING
     room = Room(*memory.room("table"))
-    options = Options(wanted=asked.reports, entries=asked.entries, time_limit=alarm.left(), room=room)
+    options = Options(wanted=asked.reports, entries=asked.entries, time_limit=alarm.remaining(), room=room)
     study = solve(spec, options)
     cases = tuple(compare(study, item) for item in spec.expect)
-    alarm.off()
+    alarm.disarm()
     warn(spec, study.results, request.quiet, f"heun: {path}", study.later)
     return Checked(path, cases)
 

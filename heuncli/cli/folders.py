@@ -47,14 +47,14 @@ def specs_below(argument: str, passed_by: list[PassedBy]) -> Iterator[Found]:
             state = Path(path).stat()
             known = seen.setdefault((state.st_dev, state.st_ino), path)
             if known == path:
-                waiting += reversed(wanted(path, passed_by))
+                waiting += reversed(entries_of(path, passed_by))
             else:
                 passed_by.append(PassedBy(path, f"it is the folder {known} once more"))
         except OSError as error:
-            yield Found(path, closed(path, error))
+            yield Found(path, cannot_look_into(path, error))
 
 
-def wanted(folder: str, passed_by: list[PassedBy]) -> list[tuple[str, bool]]:
+def entries_of(folder: str, passed_by: list[PassedBy]) -> list[tuple[str, bool]]:
     """Specs, and folders to be looked into, sorted; and whether it is a folder. Raises OSError."""
     with os.scandir(folder) as entries:
         found = sorted((entry.path, entry.name, leads_to_folder(entry)) for entry in entries)
@@ -74,7 +74,7 @@ def leads_to_folder(entry: os.DirEntry[str]) -> bool:
         return False
 
 
-def closed(path: str, error: OSError) -> Problem:
+def cannot_look_into(path: str, error: OSError) -> Problem:
     """Why a folder cannot be looked into."""
     hint = "look at its permissions, or name the folders beside it; the others are checked"
     message = f"the folder cannot be looked into: {error.strerror or error}"

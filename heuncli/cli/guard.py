@@ -14,7 +14,7 @@ from heuncli.spec.reading import name_of
 STDOUT = "-"
 
 
-def keep(output: str | None, specs: Sequence[str], option: str = "-o") -> None:
+def require_other_file(output: str | None, specs: Sequence[str], option: str = "-o") -> None:
     """The output must not go into what the results are made from: the specs, and all that has been read so far.
 
     For None and `-` that is standard output, which a shell may have led to the end of a spec (`>>`).
@@ -24,14 +24,14 @@ def keep(output: str | None, specs: Sequence[str], option: str = "-o") -> None:
     if state is None:
         return
     name = name_of(state)
-    itself = name in specs or (not to_stdout and any(same(output, spec) for spec in specs))
+    itself = name in specs or (not to_stdout and any(same_file(output, spec) for spec in specs))
     if itself or name is not None:
         what = "the spec itself" if itself else "a table of the spec"
         where = "standard output" if to_stdout else f"{option} {output}"
         raise UsageError(Problem("bad-option", f"{where}: that is {what}", hint="name another file"))
 
 
-def same(one: str | None, other: str | None) -> bool:
+def same_file(one: str | None, other: str | None) -> bool:
     """Whether two names are of one file, or would be."""
     states = _state(one), _state(other)
     if states[0] is not None and states[1] is not None:

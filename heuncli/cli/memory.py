@@ -10,10 +10,10 @@ from heuncli.errors import LimitError, Problem
 
 SHARE = 0.5  # of what is available: sizes are estimated, steps are not, and others are at work beside
 UNKNOWN = 4e9  # bytes that are taken to be there where the system does not tell
-A_NUMBER = {"json": 40.0, "csv": 135.0}  # bytes of a number until it is written: an object, its digits, its line ...
+A_NUMBER = {"json": 40.0, "csv": 135.0}  # bytes of a number until it is written: an object, its digits, its line
+IN_TABLES = 28.0  # bytes of one of which tables show little: itself, and what it is made of
 LEAST = 160e6  # bytes of addresses that Python's modules, NumPy's and the kernel's take
 UNMAPPED = ("failed to map segment", "cannot allocate memory", "Cannot allocate memory")  # as loaders say it
-IN_TABLES = 28.0  # ... and where it is not: itself, and what it is made of
 
 
 def room(form: str) -> tuple[float, float]:

@@ -5,7 +5,7 @@ from __future__ import annotations
 from collections.abc import Mapping
 from typing import Any
 
-from heuncli.cli.guard import keep
+from heuncli.cli.guard import require_other_file
 from heuncli.cli.output import emit
 from heuncli.cli.requests import Model
 from heuncli.cli.solving import overrides, warn
@@ -21,10 +21,10 @@ ENDINGS = {".json": "json", ".txt": "text", "": "text"}
 
 def main(request: Model) -> int:
     """Run the command; returns the exit code."""
-    keep(request.output, [request.spec])
+    require_other_file(request.output, [request.spec])
     form = format_of(request.format, request.output, ENDINGS, FORMATS)
     spec = load(request.spec, overrides=overrides(request.set), checking=False)
-    keep(request.output, [request.spec])
+    require_other_file(request.output, [request.spec])
     model: Mapping[str, Any] = describe(spec, reduce=not request.no_reduce)
     emit(dump(dict(model)) if form == "json" else note(spec.title, model), request.output)
     warn(spec, None, request.quiet)

@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from heuncli.cli.guard import keep
+from heuncli.cli.guard import require_other_file
 from heuncli.cli.output import emit
 from heuncli.cli.requests import Modes
 from heuncli.cli.solving import overrides, warn
@@ -18,10 +18,10 @@ ENDINGS = {".json": "json", ".csv": "csv", ".txt": "table", "": "table"}
 
 def main(request: Modes) -> int:
     """Run the command; returns the exit code."""
-    keep(request.output, [request.spec])
+    require_other_file(request.output, [request.spec])
     form = format_of(request.format, request.output, ENDINGS, FORMATS)
     spec = load(request.spec, overrides=overrides(request.set), checking=False)
-    keep(request.output, [request.spec])
+    require_other_file(request.output, [request.spec])
     found = modes(spec)
     if form == "json":
         text = dump(found.block())

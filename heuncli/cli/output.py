@@ -24,7 +24,7 @@ def emit(text: str, target: str | None = None, *, late: bool = False) -> None:
 
     late: also where the time limit is past; else LimitError is raised, and nothing is written.
     """
-    alarm.off(late=late)
+    alarm.disarm(late=late)
     if target is None or target == "-" or files.place_of(target).descriptor == STDOUT:  # /dev/stdout
         _to_standard_output(text)
     else:
@@ -49,7 +49,7 @@ def _escape(error: UnicodeError) -> tuple[str, int]:
 
 def save(content: bytes, target: str) -> None:
     """Write what is no text to a file, however late."""
-    alarm.off(late=True)
+    alarm.disarm(late=True)
     files.write(content, target)
 
 

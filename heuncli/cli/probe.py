@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 from heuncli.cli import alarm
-from heuncli.cli.guard import keep
+from heuncli.cli.guard import require_other_file
 from heuncli.cli.output import emit
 from heuncli.cli.requests import Probe
 from heuncli.cli.solving import overrides, warn
@@ -20,11 +20,11 @@ ENDINGS = {".json": "json", ".txt": "table", "": "table"}
 
 def main(request: Probe) -> int:
     """Run the command; returns the exit code."""
-    keep(request.output, [request.spec])
+    require_other_file(request.output, [request.spec])
     form = format_of(request.format, request.output, ENDINGS, FORMATS)
     spec = load(request.spec, overrides=overrides(request.set), checking=False)
-    keep(request.output, [request.spec])
-    found = probe(spec, Options(time_limit=alarm.left()))
+    require_other_file(request.output, [request.spec])
+    found = probe(spec, Options(time_limit=alarm.remaining()))
     emit(dump(found.block()) if form == "json" else report.write(found), request.output)
     warn(spec, None, request.quiet)
     return 0

@@ -10,7 +10,7 @@ import numpy as np
 
 from heuncli.cli import alarm, memory, searches
 from heuncli.cli.entry import UsageError
-from heuncli.cli.guard import keep
+from heuncli.cli.guard import require_other_file
 from heuncli.cli.output import emit, say
 from heuncli.cli.requests import FORMATS, Run
 from heuncli.cli.solving import choice, instants, overrides, positive, timings, tolerance, warn
@@ -43,7 +43,7 @@ TABLES = ("table", "markdown")
 
 def main(request: Run) -> int:
     """Run the command; returns the exit code."""
-    keep(request.output, [request.spec])
+    require_other_file(request.output, [request.spec])
     form = format_of(request.format, request.output, ENDINGS, FORMATS)
     asked = []
     if request.measure:
@@ -62,8 +62,8 @@ def main(request: Run) -> int:
     )
     begun = time.perf_counter()
     spec = load(request.spec, overrides=overrides(request.set), checking=False)
-    keep(request.output, [request.spec])
-    options = replace(options, load_seconds=time.perf_counter() - begun, time_limit=alarm.left())
+    require_other_file(request.output, [request.spec])
+    options = replace(options, load_seconds=time.perf_counter() - begun, time_limit=alarm.remaining())
     options = replace(options, room=Room(*memory.room("table" if asked else form)))
     if asked:
         measure.check(asked, spec)

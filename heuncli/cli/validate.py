@@ -6,7 +6,7 @@ from functools import partial
 
 from heuncli.cli import alarm
 from heuncli.cli.entry import contained, report_problems, worst
-from heuncli.cli.guard import keep
+from heuncli.cli.guard import require_other_file
 from heuncli.cli.output import emit, say
 from heuncli.cli.requests import Validate
 from heuncli.errors import HeunError, SpecError
@@ -31,7 +31,7 @@ def main(request: Validate) -> int:
             for warning in warnings:
                 say(f"warning: {warning}")
         lines.append(f"{shown(path)}: fine ({_summary(spec, len(warnings))})\n")
-    keep(None, request.specs)
+    require_other_file(None, request.specs)
     code = worst(codes)
     if code == 0 and not request.quiet:
         emit("".join(lines))
@@ -42,7 +42,7 @@ def _judged(path: str) -> tuple[Spec, list[str]]:
     """A spec that is fine, and its warnings. Raises SpecError, LimitError."""
     spec = load(path)
     warnings = [*map(str, spec.warnings), *_of_cuts(spec)]
-    alarm.off()
+    alarm.disarm()
     return spec, warnings
 
 

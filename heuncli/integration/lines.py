@@ -88,9 +88,10 @@ def comes_together(runner: Runner, run: Trajectory, horizon: float | None) -> Pr
     marks = marks[marks < (np.inf if horizon is None else horizon)]
     for first in range(0, len(marks), AT_ONCE):
         times = marks[first : first + AT_ONCE + 1]
-        spans = lines(runner, run, times, loads)
+        spans = separations(runner, run, times, loads)
         turned = np.sum(spans[1:] * spans[:-1], axis=2) < 0.0
-        found = [met(runner, run, own, times[:-1][at], times[1:][at]) for own, at in zip(loads, turned.T, strict=True)]
+        found = (meeting(runner, run, own, times[:-1][at], times[1:][at])
+                 for own, at in zip(loads, turned.T, strict=True))  # fmt: skip
         instants = [one for one in found if one is not None]
         if instants:
             t, name = min(instants)
@@ -98,18 +99,18 @@ def comes_together(runner: Runner, run: Trajectory, horizon: float | None) -> Pr
     return None
 
 
-def answered(runner: Runner, run: Trajectory, times: Array) -> Recovered:
+def answers_at(runner: Runner, run: Trajectory, times: Array) -> Recovered:
     """The kernel's answers at instants of a run."""
     return runner.recovered(times, runner.resample(run, times), holding=run.holding_at(times))
 
 
-def lines(runner: Runner, run: Trajectory, times: Array, loads: Sequence[tuple[PairLoad, slice]]) -> Array:
+def separations(runner: Runner, run: Trajectory, times: Array, loads: Sequence[tuple[PairLoad, slice]]) -> Array:
     """From the one point to the other, of each load, (n_t, loads, 3) [m]."""
-    rows = answered(runner, run, times).loads[:, [own.start for _, own in loads]]
+    rows = answers_at(runner, run, times).loads[:, [own.start for _, own in loads]]
     return np.asarray(rows["at"] - rows["from_at"])
 
 
-def met(
+def meeting(
     runner: Runner, run: Trajectory, load: tuple[PairLoad, slice], begins: Array, ends: Array
 ) -> tuple[float, str] | None:
     """The first instant at which a load pushes along no line, in steps within which that turns round, and its name.
@@ -121,9 +122,9 @@ def met(
     low, high = begins.copy(), ends.copy()
     for _ in range(HALVINGS):
         middle = 0.5 * (low + high)
-        nearing = answered(runner, run, middle).loads[:, load[1].start]["rate"] < 0.0
+        nearing = answers_at(runner, run, middle).loads[:, load[1].start]["rate"] < 0.0
         low, high = np.where(nearing, middle, low), np.where(nearing, high, middle)
-    sides = [answered(runner, run, at).loads[:, load[1].start] for at in (low, high)]
+    sides = [answers_at(runner, run, at).loads[:, load[1].start] for at in (low, high)]
     close = np.minimum(sides[0]["span"], sides[1]["span"]) <= tolerances.NO_LENGTH * runner.layout.size
     close &= (sides[0]["value"] != 0.0) | (sides[1]["value"] != 0.0)
     return (float(high[close][0]), load[0].name) if close.any() else None

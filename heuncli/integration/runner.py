@@ -157,8 +157,13 @@ def chunk_of(layout: Layout, method: Method) -> int:
 def check_deadline(deadline: float | None, where: str) -> None:
     """Raise LimitError past the deadline (time.monotonic()); `where`: how far the work has come."""
     if deadline is not None and time.monotonic() > deadline:
-        hint = "a longer --time-limit, a coarser --tolerance, or a shorter duration"
-        raise LimitError(Problem("time-limit", f"the time limit was reached {where}", hint=hint))
+        raise time_up(where)
+
+
+def time_up(where: str) -> LimitError:
+    """The error of a deadline that is past; `where`: how far the work has come."""
+    hint = "a longer --time-limit, a coarser --tolerance, or a shorter duration"
+    return LimitError(Problem("time-limit", f"the time limit was reached {where}", hint=hint))
 
 
 def chattering(t: float, expression: Expression, branch: int) -> Problem:
@@ -401,7 +406,7 @@ class Runner(Evaluator):
         if going.deadline is not None and time.monotonic() > going.deadline:
             took = time.monotonic() - going.begun
             pace = in_words(going.steps.column("ends"), going.last, took)
-            check_deadline(going.deadline, f"at t = {going.run.loop.t:.6g} s of {going.last:.6g} s{pace}")
+            raise time_up(f"at t = {going.run.loop.t:.6g} s of {going.last:.6g} s{pace}")
 
     def _require_progress(self, going: Going) -> None:
         """Raise LimitError beyond the most steps, and where they become so short that the run cannot come to its end.

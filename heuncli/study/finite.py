@@ -23,12 +23,12 @@ BLOCKS = ("time", *REPORT_OF, BLOWS, "events", "certain_sums", "accuracy")  # ca
 Numbers = Iterator[tuple[tuple[str, ...], Any, Mapping[str, Any]]]
 
 
-def finite(results: Results) -> Results:
+def require_finite(results: Results) -> Results:
     """The results, if all that is not open in them is finite. Raises SolveError with the first path that is not."""
     at = np.asarray(results.accuracy.get("unknown", ()), dtype=float)
     known = ~np.isin(results.time, at)
-    for keys, value, block in numbers({name: getattr(results, name) for name in BLOCKS}, (), {}):
-        if wrong(keys, value, block, known):
+    for keys, value, block in leaves({name: getattr(results, name) for name in BLOCKS}, (), {}):
+        if is_wrong(keys, value, block, known):
             instant = at_instant(keys, value, results.time, known)
             message = f"{'.'.join(keys)} is not finite{instant}: there is no such number"
             hint = "look at very large and very small values nearby, and at points that coincide"
@@ -36,19 +36,19 @@ def finite(results: Results) -> Results:
     return results
 
 
-def numbers(node: Any, keys: tuple[str, ...], block: Mapping[str, Any]) -> Numbers:
+def leaves(node: Any, keys: tuple[str, ...], block: Mapping[str, Any]) -> Numbers:
     """The arrays and numbers below a node of the results: their path, their value, the block they stand in."""
     if isinstance(node, Mapping):
         for name, member in node.items():
-            yield from numbers(member, (*keys, name), node)
+            yield from leaves(member, (*keys, name), node)
     elif isinstance(node, np.ndarray | float):
         yield keys, node, block
     elif isinstance(node, list | tuple) and node and not isinstance(node[0], str):
         for i, member in enumerate(node):
-            yield from numbers(member, (*keys, str(i)), block)
+            yield from leaves(member, (*keys, str(i)), block)
 
 
-def wrong(keys: tuple[str, ...], value: Array | float, block: Mapping[str, Any], known: Mask) -> bool:
+def is_wrong(keys: tuple[str, ...], value: Array | float, block: Mapping[str, Any], known: Mask) -> bool:
     """Whether a number is neither finite nor open."""
     array = np.asarray(value)
     if array.dtype.kind != "f" or np.isfinite(array).all():
@@ -63,7 +63,7 @@ def wrong(keys: tuple[str, ...], value: Array | float, block: Mapping[str, Any],
         array = array[known]
     if not path.startswith(MAY_BE_NONE):
         return bool(np.isnan(array).any())
-    return "open" in block and path.startswith("joints.") and bool((nan_in(array, row) & ~told(row, block)).any())
+    return "open" in block and path.startswith("joints.") and bool((nan_in(array, row) & ~named_open(row, block)).any())
 
 
 def nan_in(array: Array, row: Quantity) -> Mask:
@@ -71,7 +71,7 @@ def nan_in(array: Array, row: Quantity) -> Mask:
     return np.asarray(np.isnan(array).reshape(-1, 3 if row.shape == (SPACE,) else 1).any(axis=0))
 
 
-def told(row: Quantity, block: Mapping[str, Any]) -> Mask:
+def named_open(row: Quantity, block: Mapping[str, Any]) -> Mask:
     """Of each component of a joint's load whether it is told to be open."""
     name = row.path.rpartition(".")[2]
     names = [f"{name}.{c}" for c in SPACE.letters] if row.shape == (SPACE,) else [name]

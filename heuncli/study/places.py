@@ -9,7 +9,7 @@ from contextlib import contextmanager
 from heuncli.errors import Problem, SolveError, SourceLocation
 from heuncli.spec.models import Spec
 
-TOLD = re.compile(r"\b(?:joints|bodies|drives|forces|stops|impulses|sections|analysis)\.\w+")
+NAMED = re.compile(r"\b(?:joints|bodies|drives|forces|stops|impulses|sections|analysis)\.\w+")
 ACTING = ("impulses", "stops", "joints", "drives")  # what takes part in a blow is told by its bare name
 WHERE = {"contacts-undecided": "stops"}  # where nothing at fault has a name
 RUN = "analysis"  # what is asked for: where nothing else is at fault
@@ -21,14 +21,14 @@ def placed(spec: Spec) -> Iterator[None]:
     try:
         yield
     except SolveError as error:
-        error.tell(*(problem._replace(location=place(problem, spec)) for problem in error.problems))
+        error.tell(*(problem._replace(location=location_of(problem, spec)) for problem in error.problems))
         raise
 
 
-def place(problem: Problem, spec: Spec) -> SourceLocation:
+def location_of(problem: Problem, spec: Spec) -> SourceLocation:
     """Of the entry that it is about, or the first that its words name; else of the analysis, or of the bodies."""
     if problem.location is not None:
         return problem.location
     about = (problem.about, *(f"{block}.{problem.about}" for block in ACTING), WHERE.get(problem.code, ""))
-    named = (*about, *TOLD.findall(f"{problem.message} {problem.hint}"), RUN)
+    named = (*about, *NAMED.findall(f"{problem.message} {problem.hint}"), RUN)
     return spec.location(next((path for path in named if path in spec.locations), "bodies"))

@@ -16,7 +16,7 @@ from heuncli.results_schema import CUT, REPORT_OF, ROWS, SHARES, Quantity, is_sh
 from heuncli.study.setup import Setup
 
 ANSWERS = 3.0  # times the kernel's answers at an instant: those of both runs, and what is made of them beside
-HIDDEN = 3  # causes beside the loads: gravity, drives, motion
+BESIDE_LOADS = 3  # causes beside the loads: gravity, drives, motion
 UNITS = ((1e9, "GB"), (1e6, "MB"))
 
 
@@ -31,16 +31,16 @@ class Room:
 def require_room(setup: Setup, room: Room) -> None:
     """Raise LimitError [too-much-memory] where the results take more than there is, with what would fit."""
     instants = len(setup.spec.analysis.times)
-    blocks = {block: count * room.a_number for block, count in numbers(setup)}
-    answers = ANSWERS * 8.0 * answered(setup)
+    blocks = {block: count * room.a_number for block, count in numbers_by_block(setup)}
+    answers = ANSWERS * 8.0 * answer_count(setup)
     an_instant = sum(blocks.values()) + answers
     if instants * an_instant <= room.memory:
         return
-    fit = int(rounded(room.memory / an_instant))
+    fit = int(two_digits(room.memory / an_instant))
     largest = max(blocks, key=lambda block: blocks[block], default="")
     message = (
-        f"the results at {instants:,} instants would take about {told(instants * an_instant)} of memory; "
-        f"{told(room.memory)} may be taken"
+        f"the results at {instants:,} instants would take about {in_words(instants * an_instant)} of memory; "
+        f"{in_words(room.memory)} may be taken"
     )
     hint = f"{fit:,} instants would fit (analysis.samples)" if fit >= 2 else "not even two instants would fit"
     if largest and blocks[largest] > 0.1 * an_instant:
@@ -50,27 +50,27 @@ def require_room(setup: Setup, room: Room) -> None:
     raise LimitError(Problem("too-much-memory", message, hint=hint))
 
 
-def told(size: float) -> str:
+def in_words(size: float) -> str:
     """A size in bytes, in words."""
     unit, name = next(((unit, name) for unit, name in UNITS if size >= unit), UNITS[-1])
-    return f"{rounded(size / unit):,g} {name}"
+    return f"{two_digits(size / unit):,g} {name}"
 
 
-def rounded(value: float) -> float:
+def two_digits(value: float) -> float:
     """A value with its first two digits, the rest cut off."""
     whole = max(-1, math.floor(math.log10(value)) - 1) if value >= 1.0 else -1
     return math.floor(round(value / 10.0**whole, 6)) * 10.0**whole
 
 
-def answered(setup: Setup) -> float:
+def answer_count(setup: Setup) -> float:
     """How many numbers the kernel answers at an instant."""
     layout = setup.scene.layout
     own = sum(kind.itemsize // 8 * count for kind, count in answer_sizes(layout))
-    causes = len(layout.tables["loads"]) + HIDDEN if SHARES in setup.asked.reports else 0
+    causes = len(layout.tables["loads"]) + BESIDE_LOADS if SHARES in setup.asked.reports else 0
     return float(own + layout.n_state + causes * setup.runner.workspace.column_width)
 
 
-def numbers(setup: Setup) -> Iterator[tuple[str, int]]:
+def numbers_by_block(setup: Setup) -> Iterator[tuple[str, int]]:
     """How many numbers of each block, if it is asked for as a whole, are told of an instant."""
     found: dict[str, int] = {}
     for row in ROWS:
@@ -100,7 +100,7 @@ def count(row: Quantity, setup: Setup) -> int:
         "STOP": len(mechanism.stops),
         "SECTION": sum(len(cuts.side) for cuts in setup.cuts) if CUT in row.shape else len(setup.cuts),
         "FORCE": len(mechanism.loads),
-        "CAUSE": len(mechanism.loads) + HIDDEN,
+        "CAUSE": len(mechanism.loads) + BESIDE_LOADS,
     }
     whole = 1
     for axis in row.shape:

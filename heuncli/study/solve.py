@@ -26,7 +26,7 @@ from heuncli.spec.models import Spec
 from heuncli.study import extremes
 from heuncli.study.asked import Asked, Entry, needed_by, sums_among
 from heuncli.study.extremes import Searched
-from heuncli.study.finite import finite
+from heuncli.study.finite import require_finite
 from heuncli.study.history import History, integrate, resample, search_times
 from heuncli.study.places import placed
 from heuncli.study.recover import Recovery, accuracy, asked_blocks, certain_sums, recover
@@ -86,7 +86,7 @@ def solve(spec: Spec, options: Options | None = None) -> Study:
 
 def begun(spec: Spec, options: Options) -> Study:
     """The same, with errors that have names in place of places."""
-    deadline = time.monotonic() + options.time_limit if options.time_limit else None
+    deadline = time.monotonic() + options.time_limit if options.time_limit is not None else None
     try:
         return solved(spec, options, deadline)
     except SolveError as error:
@@ -238,7 +238,7 @@ def compose(
             *(rest.warnings if rest is not None else ()),
         ),
     )
-    return finite(results)
+    return require_finite(results)
 
 
 def not_at_rest(recovery: Recovery) -> Block:
@@ -361,7 +361,7 @@ class Study:
         accuracy: Accuracy = {"unknown": unknown.tolist()} if len(unknown) else {}
         times = recovery.recovered.times
         results = Results(own.title, own.spec, own.version, own.model, own.status, times, accuracy=accuracy, **shown)
-        return finite(results)
+        return require_finite(results)
 
     def at(self, times: Array) -> Results:
         """Loads by cause at other instants of the same run."""

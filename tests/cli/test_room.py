@@ -15,7 +15,7 @@ from heuncli.integration.kept import Growing, Kept
 from heuncli.results_schema import REPORT_OF, REPORTS, SHARES
 from heuncli.spec.load import load
 from heuncli.study.asked import Asked
-from heuncli.study.room import numbers, rounded, told
+from heuncli.study.room import in_words, numbers_by_block, two_digits
 from heuncli.study.setup import set_up
 from heuncli.study.solve import Options, solve
 from tests.cli.conftest import Heun
@@ -48,7 +48,7 @@ def test_the_estimate_counts_what_is_told(name: str, shares: bool) -> None:
     """No less, and no more than a few times as much: not every joint has all that a joint may have."""
     asked = Asked(frozenset((*REPORTS, SHARES) if shares else REPORTS))
     spec = load(str(SPECS / f"{name}.yaml"))
-    estimated = dict(numbers(set_up(spec, asked=asked)))
+    estimated = dict(numbers_by_block(set_up(spec, asked=asked)))
     results = solve(spec, Options(wanted=asked.reports)).results
     for block in REPORT_OF:
         there = counted(getattr(results, block), len(results.time)) / len(results.time)
@@ -65,8 +65,8 @@ def counted(block: Any, instants: int) -> int:
     ("size", "text"), [(3e5, "0.3 MB"), (8.34e6, "8.3 MB"), (8.39e7, "83 MB"), (7.4e8, "740 MB"), (1.43e12, "1,400 GB")]
 )
 def test_sizes_in_words(size: float, text: str) -> None:
-    assert told(size) == text
-    assert rounded(1675.9) == 1600.0
+    assert in_words(size) == text
+    assert two_digits(1675.9) == 1600.0
 
 
 @pytest.mark.skipif(sys.platform != "linux", reason="no limit on addresses")

@@ -16,7 +16,7 @@ from heuncli.results import Results
 from heuncli.results_schema import REPORTS, ROWS, SHARES, quantity
 from heuncli.spec.load import load
 from heuncli.study import recover
-from heuncli.study.finite import finite, numbers
+from heuncli.study.finite import leaves, require_finite
 from heuncli.study.solve import Options, solve
 from tests.cli.conftest import Heun, folder, heun  # noqa: F401  # fixtures
 
@@ -52,7 +52,7 @@ def results(name: str) -> Results:
 def places(found: Results) -> Iterator[tuple[tuple[str, ...], Any, Any]]:
     """Every array and number of results: path, value, and the block in which it can be replaced."""
     for block in sorted(BLOCKS):
-        for keys, value, owner in numbers(getattr(found, block), (block,), {}):
+        for keys, value, owner in leaves(getattr(found, block), (block,), {}):
             if isinstance(owner, dict) and keys[-1] in owner:
                 yield keys, value, owner
 
@@ -63,7 +63,7 @@ def put(found: Results, keys: tuple[str, ...], value: Any, owner: Any, bad: floa
     spoilt.reshape(-1)[-1] = bad
     owner[keys[-1]] = spoilt if isinstance(value, np.ndarray) else bad
     try:
-        finite(found)
+        require_finite(found)
     except SolveError as error:
         (problem,) = error.problems
         assert problem.code == "not-finite-result"
@@ -76,7 +76,7 @@ def put(found: Results, keys: tuple[str, ...], value: Any, owner: Any, bad: floa
 
 @pytest.mark.parametrize("name", SCENES)
 def test_what_is_infinite_is_refused_by_its_path(name: str) -> None:
-    found = finite(results(name))
+    found = require_finite(results(name))
     for keys, value, owner in places(found):
         if np.size(value):
             assert put(found, keys, value, owner, np.inf).startswith(f"{'.'.join(keys)} is not finite"), keys
