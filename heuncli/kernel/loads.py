@@ -134,12 +134,14 @@ def joint_load(scene: cython.pointer[Scene], load: cython.pointer[Load], given: 
         acts = scaled(load.value, axis)
     else:
         speed: cython.double = norm(motion)
+        if not load.in_body:
+            load.rate = speed  # of motions about or along no one axis: how fast
         against: cython.double = load.coefficient
         if load.kind >= TURN_FRICTION:
             against = load.coefficient / load.speed  # what it comes to at rest, as a slope
             if speed > 0.0:
                 against = load.coefficient * tanh(speed / load.speed) / speed
-        load.value = -against * load.rate if load.in_body else -against * speed
+        load.value = -against * load.rate
         load.power = -against * speed * speed
         acts = scaled(-against, motion)
     if slides:

@@ -104,9 +104,6 @@ def applied_loads(mechanism: Mechanism, recovered: Recovered) -> list[AppliedLoa
         to, from_ = _ends(mechanism, load, joint, rows["at"][:, 0], rows["from_at"][:, 0])
         action = Action("load", load.name, to, from_, force, moment)
         value, span, rate = (rows[name][:, 0] for name in ("value", "span", "rate"))
-        if joint is not None and not JOINTS[joint.kind].has_one_axis:
-            # resisted in any direction: how fast, told by the power; what resists nothing has none
-            rate = np.divide(rows["power"][:, 0], value, out=np.zeros_like(value), where=value != 0.0)
         loads.append(AppliedLoad(load, action, value, span, rate, rows["power"].sum(axis=1)))
     return loads
 

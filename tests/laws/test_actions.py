@@ -16,6 +16,7 @@ from heuncli.study.recover import Recovery, recover
 from tests.oracle.turns import Array, cross
 from tests.shared import doubles
 from tests.shared.loops import loop
+from tests.shared.scenes import solved
 from tests.shared.seeds import spared
 from tests.shared.trees import TIMES, Case, tree
 
@@ -58,6 +59,19 @@ def test_the_power_of_what_acts_in_a_joint_is_its_value_times_its_rate(of: tuple
         if "joint" in load and c.scene["joints"][load["joint"]]["type"] != "cylinder":  # which may do both
             told = c.found.forces[name]
             assert told["value"] * told["rate"] == pytest.approx(told["power"], rel=1e-12, abs=1e-12)
+
+
+def test_what_resists_nothing_tells_how_fast_its_joint_turns() -> None:
+    """A ball's rate is how fast it turns about whatever axis."""
+    scene = {
+        "ground": {"points": {"O": [0.0, 0.0, 0.0]}},
+        "bodies": {"disc": {"mass": 1.0, "center": [0, 0, 0], "inertia": [1.0, 1.0, 1.5], "points": {"o": [0, 0, 0]},
+                            "angular_velocity": [1.0, 2.0, 2.0]}},
+        "joints": {"ball": {"type": "ball", "from": "ground.O", "to": "disc.o"}},
+        "forces": {"none": {"type": "damper", "joint": "ball", "coefficient": 0}},
+    }  # fmt: skip
+    told = solved(scene).forces["none"]
+    assert told["rate"] == pytest.approx([3.0]) and told["value"].tolist() == [0.0]
 
 
 @pytest.mark.parametrize("of", CASES)
