@@ -125,11 +125,10 @@ class Codegen:
 
     def run(self, code: Code, table: Table | None = None) -> float:
         """The number that constant code gives; a table of it is the one given."""
-        numbers = array("d", self.constants)
+        tables: tuple[array[float], ...] = ()
         if table is not None:
-            code = (*code[:-3], len(numbers), *code[-2:])
-            numbers.extend(table.numbers)
-        programs = expressions.Expressions(array("i", code), numbers, 0)
+            code, tables = (*code[:-3], 0, *code[-2:]), (table.numbers,)
+        programs = expressions.Expressions(array("i", code), array("d", self.constants), 0, tables=tables)
         return float(programs.evaluate(0, len(code) // 2, ()))
 
     def apply(self, name: str, *parts: Part, argument: int = 0, text: str = "") -> Part:

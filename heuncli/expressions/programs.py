@@ -122,7 +122,7 @@ class Expression:
 
 
 class Pack:
-    """Programs side by side: code (int pairs), constants and tables, variables, and where each begins.
+    """Programs side by side: code (int pairs), constants, variables, the numbers of tables, and where each begins.
 
     `variables[0]` is "t", the others are (joint, quantity) in the order in which the kernel takes them. `branches` are
     the branches in coordinates, in the order in which the kernel holds them: of which expression, and which of its own.
@@ -135,7 +135,8 @@ class Pack:
         self.variables: list[Variable] = [TIME]
         self.branches: list[tuple[Expression, int]] = []
         self._places: dict[Variable, int] = {TIME: 0}
-        self._tables: dict[int, tuple[int, Table]] = {}
+        self.tables: list[array[float]] = []  # those of the tables themselves, which all packs share
+        self._tables: dict[int, int] = {}
         self._expressions: expressions.Expressions | None = None
 
     @property
@@ -143,7 +144,7 @@ class Pack:
         """The programs as the kernel runs them; made anew only where programs were added since."""
         if self._expressions is None:
             self._expressions = expressions.Expressions(
-                self.code, self.constants, len(self.variables), self.held, self.starts
+                self.code, self.constants, len(self.variables), self.held, self.starts, self.tables
             )
         return self._expressions
 
@@ -185,10 +186,10 @@ class Pack:
         return start, len(code) // 2
 
     def _table(self, table: Table) -> int:
-        if id(table) not in self._tables:
-            self._tables[id(table)] = len(self.constants), table
-            self.constants.extend(table.numbers)
-        return self._tables[id(table)][0]
+        if id(table.numbers) not in self._tables:
+            self._tables[id(table.numbers)] = len(self.tables)
+            self.tables.append(table.numbers)
+        return self._tables[id(table.numbers)]
 
     def _variable(self, use: Variable) -> int:
         if use not in self._places:

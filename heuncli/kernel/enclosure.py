@@ -175,7 +175,7 @@ def run_on(
         elif op <= SQRT:
             x = span_of_one(op, x, k)
         elif op <= KNOT:
-            x = span_of_table(op, programs.constants, table_at(programs, at, k), x)
+            x = span_of_table(op, programs.tables[k], table_at(programs, at, k), x)
             at += 1
         elif op == JUMP:
             at += k
@@ -677,7 +677,8 @@ def span_on_branch(programs: cython.pointer[Programs], k: cython.int, at: cython
     elif op == ATAN2:
         return turned(angle_above(turned(a), b)) if branch == 0.0 else angle_above(a, b)
     elif op == TABLE:
-        return span_of_piece(programs.constants, table_at(programs, at + 1, programs.code[at].argument), branch, b)
+        number: cython.int = programs.code[at].argument
+        return span_of_piece(programs.tables[number], table_at(programs, at + 1, number), branch, b)
     return still(point(branch))
 
 
@@ -693,9 +694,10 @@ def may_change(
     elif op == ATAN2:  # the angle jumps behind the origin only
         return b.low < 0.0 and (a.low < 0.0 if branch == 1.0 else side_of_cut(a.high) == 1.0)
     elif op == TABLE or op == KNOT:
-        table: Table = table_at(programs, at + 1, programs.code[at].argument)
-        low: cython.double = piece_counted(programs.constants, table, b.low)
-        return low != branch or piece_counted(programs.constants, table, b.high) != branch
+        k: cython.int = programs.code[at].argument
+        table: Table = table_at(programs, at + 1, k)
+        low: cython.double = piece_counted(programs.tables[k], table, b.low)
+        return low != branch or piece_counted(programs.tables[k], table, b.high) != branch
     elif op == SIGN and branch == 0.0:
         return not is_zero(b)
     elif op == SIGN and branch == 1.0:

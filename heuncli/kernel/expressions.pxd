@@ -51,6 +51,7 @@ cdef struct Span:
 cdef struct Programs:
     Instruction *code
     double *constants
+    double **tables
     double *variables
     double *stack
     Jet *jets

@@ -6,8 +6,8 @@ An instruction takes its operands from the top of a stack and leaves its result 
     CONST k, VAR k     put constants[k] or variables[k] on the stack; variable 0 is the time t, the others coordinates
     ADD ... MAX        two operands, one result
     NEG ... SQRT       one operand; POWER n is the whole power n
-    TABLE k, KNOT k    the table that stands in the constants from k, as (period, knots, coefficients), at the operand:
-                       its value, or the number of its piece. An instruction follows that is data: (pieces, outside).
+    TABLE k, KNOT k    tables[k], its numbers (period, knots, coefficients), at the operand: its value, or the number of
+                       its piece. An instruction follows that is data: (pieces, outside).
     JUMP k, UNLESS k   skip k instructions, UNLESS only where the number it takes off the stack is 0: only one of the
                        two branches of a condition is run, so the other may be NaN
     LT ... NE          1 or 0; with the argument 1 the right operand stays above the result, for 0 < t < 1
@@ -133,7 +133,7 @@ def value(programs: cython.pointer[Programs], program: Program) -> cython.double
         elif op <= SQRT:
             x = of_one(op, x, k)
         elif op <= KNOT:
-            x = of_table(op, programs.constants, table_at(programs, at, k), x)
+            x = of_table(op, programs.tables[k], table_at(programs, at, k), x)
             at += 1
         elif op == JUMP:
             at += k
@@ -378,7 +378,8 @@ def take_branch(
     elif op == ABS:
         met = 1.0 if b >= 0.0 else -1.0
     elif op == TABLE or op == KNOT:
-        met = piece_counted(programs.constants, table_at(programs, at + 1, programs.code[at].argument), b)
+        number: cython.int = programs.code[at].argument
+        met = piece_counted(programs.tables[number], table_at(programs, at + 1, number), b)
     else:
         met = piecewise(op, b, 0)
     programs.held[k] = met
@@ -401,7 +402,8 @@ def on_branch(
     elif op == ATAN2:
         return angle_on(branch, a, b)
     elif op == TABLE:
-        return of_piece(programs.constants, table_at(programs, at + 1, programs.code[at].argument), branch, b)
+        k: cython.int = programs.code[at].argument
+        return of_piece(programs.tables[k], table_at(programs, at + 1, k), branch, b)
     return branch
 
 
@@ -436,9 +438,9 @@ def side_of_cut(y: cython.double) -> cython.double:
 @cython.nogil
 @cython.exceptval(check=False)
 def table_at(programs: cython.pointer[Programs], at: cython.Py_ssize_t, k: cython.Py_ssize_t) -> Table:
-    """The table that stands in the constants from k; its data are the instruction at `at`."""
+    """Where the parts of table k stand in its numbers; its data are the instruction at `at`."""
     data: Instruction = programs.code[at]
-    return Table(data.op, data.argument, programs.constants[k], k + 1, k + 2 + data.op)
+    return Table(data.op, data.argument, programs.tables[k][0], 1, 2 + data.op)
 
 
 @cython.cfunc
@@ -643,14 +645,17 @@ def followers(op: int, argument: int, at: int) -> tuple[int, ...]:
 class Expressions:
     """Programs side by side, with the memory they run in: the door from Python, and what the kernel's scene holds.
 
-    code: pairs (operation, argument); constants: what CONST and TABLE point into; variables: their number, t included;
-    held: how many branches the programs hold; starts: where they begin, one behind the other. What is given is copied.
-    The stacks are as high as the code asks for. Raises ValueError where it is none.
+    code: pairs (operation, argument); constants: what CONST points into; variables: their number, t included; held: how
+    many branches the programs hold; starts: where they begin, one behind the other; tables: what TABLE counts, each as
+    (period, knots, coefficients). What is given is copied but for the tables: they may have millions of numbers, and
+    are read where they stand, by however many programs; none can change its length meanwhile. The stacks are as high as
+    the code asks for. Raises ValueError where it is none.
     """
 
     def __init__(
-        self, code: array[int], constants: array[float], variables: int, held: int = 0, starts: Sequence[int] = (0,)
-    ) -> None:
+        self, code: array[int], constants: array[float], variables: int, held: int = 0, starts: Sequence[int] = (0,),
+        tables: Sequence[array[float]] = (),
+    ) -> None:  # fmt: skip
         ends: list[int] = [*starts[1:], len(code) // 2]
         self.counts = {start: end - start for start, end in zip(starts, ends, strict=False)}
         depth = 1
@@ -662,6 +667,7 @@ class Expressions:
             self.programs = Programs()
             self.programs.code = [Instruction(*pair) for pair in zip(code[::2], code[1::2], strict=True)]
             self.programs.constants = list(constants)
+            self.programs.tables = list(tables)
             self.programs.variables = [0.0] * max(variables, 1)
             self.programs.stack = [0.0] * depth
             self.programs.jets = [Jet(0.0, 0.0, 0.0)] * depth
@@ -672,6 +678,7 @@ class Expressions:
             self.programs.middles = list(self.programs.ranges)
             self.programs.spans = [self.programs.ranges[0]] * depth
         else:
+            wide: bool = cython.sizeof(cython.p_double) == 8
             self.memory = (
                 array("i", code),
                 array("d", constants),
@@ -683,6 +690,8 @@ class Expressions:
                 array("d", bytes(48 * max(variables, 1))),
                 array("d", bytes(48 * max(variables, 1))),
                 array("d", bytes(48 * depth)),
+                array("Q" if wide else "L", [where(table) for table in tables]),
+                tuple([memoryview(table) for table in tables]),
             )
             self.programs.code = cython.cast(cython.pointer[Instruction], where(self.memory[0]))
             self.programs.constants = cython.cast(cython.p_double, where(self.memory[1]))
@@ -694,6 +703,7 @@ class Expressions:
             self.programs.ranges = cython.cast(cython.pointer[Span], where(self.memory[7]))
             self.programs.middles = cython.cast(cython.pointer[Span], where(self.memory[8]))
             self.programs.spans = cython.cast(cython.pointer[Span], where(self.memory[9]))
+            self.programs.tables = cython.cast(cython.pointer[cython.p_double], where(self.memory[10]))
         self.programs.holding = FREE
 
     def evaluate(self, start: cython.int, count: cython.int, x: Sequence[float]) -> float:

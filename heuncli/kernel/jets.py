@@ -130,7 +130,7 @@ def jet_along(
         elif op <= SQRT:
             x = jet_of_one(op, x, k)
         elif op <= KNOT:
-            x = jet_of_table(op, programs.constants, table_at(programs, at, k), x)
+            x = jet_of_table(op, programs.tables[k], table_at(programs, at, k), x)
             at += 1
         elif op == JUMP:
             at += k
@@ -214,8 +214,8 @@ def jet_on_branch(
     elif op == ATAN2:
         return Jet(f, jet_of_angle(a, b).rate, 0.0)
     elif op == TABLE:
-        table: Table = table_at(programs, at + 1, programs.code[at].argument)
-        return chain(b, f, slope_of_piece(programs.constants, table, branch, b.value), 0.0)
+        k: cython.int = programs.code[at].argument
+        return chain(b, f, slope_of_piece(programs.tables[k], table_at(programs, at + 1, k), branch, b.value), 0.0)
     return constant(f)
 
 

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+from array import array
 from typing import Any
 
 from heuncli.kernel.algebra import Vec3
@@ -88,11 +89,13 @@ class Programs:
     """
 
     __slots__ = (
-        "code", "constants", "doubt", "held", "holding", "jets", "middles", "ranges", "spans", "stack", "variables",
+        "code", "constants", "doubt", "held", "holding", "jets", "middles", "ranges", "spans", "stack", "tables",
+        "variables",
     )  # fmt: skip
 
     code: list[Instruction]
     constants: list[float]
+    tables: list[array[float]]
     variables: list[float]
     stack: list[float]
     jets: list[Jet]

@@ -65,7 +65,7 @@ def differing(programs: Any, here: Looked, variables: Array, own: list[float], m
 def expressions(here: Looked) -> Any:
     """The scene's programs, in a memory of their own."""
     pack = here.layout.pack
-    return evaluator.Expressions(pack.code, pack.constants, len(pack.variables), pack.held, pack.starts)
+    return evaluator.Expressions(pack.code, pack.constants, len(pack.variables), pack.held, pack.starts, pack.tables)
 
 
 def values(here: Looked) -> Array:

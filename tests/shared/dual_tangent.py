@@ -17,7 +17,7 @@ def dual_tangent(layout: Layout, t: float, state: Array) -> tuple[Array, Array]:
     """A state settled on the closures, and d(ydot)/dy there, (n, n); contacts open."""
     pack, n = layout.pack, len(state)
     programs = dual_module("expressions").Expressions(
-        pack.code, pack.constants, len(pack.variables), pack.held, pack.starts
+        pack.code, pack.constants, len(pack.variables), pack.held, pack.starts, pack.tables
     )
     workspace = dual_module("workspace").Workspace(layout.tables, layout.indices, programs, numbers_of(layout))
     workspace.hold([0.0] * len(layout.contacts))

@@ -23,10 +23,11 @@ VARIABLES = 3
 
 @dataclass
 class Program:
-    """Code as (name or number of pieces, argument), with the constants it points into."""
+    """Code as (name or number of pieces, argument), with the constants it points into and the tables it counts."""
 
     code: list[tuple[str | int, int]] = field(default_factory=list)
     constants: list[float] = field(default_factory=list)
+    tables: list[array[float]] = field(default_factory=list)
 
     def numbered(self, operations: dict[str, int]) -> array[int]:
         """The code as an evaluator with these numbers of operations takes it."""
@@ -34,7 +35,7 @@ class Program:
 
     def in_time(self) -> Program:
         """The same with the time in place of all other variables."""
-        return Program([(op, 0 if op == "var" else k) for op, k in self.code], self.constants)
+        return Program([(op, 0 if op == "var" else k) for op, k in self.code], self.constants, self.tables)
 
     def holding(self) -> tuple[Program, list[str]]:
         """The same with all its branches held, and what these are branches of. Jumps go as far as before."""
@@ -47,7 +48,7 @@ class Program:
                 code.append(("hold", len(held)))
                 held.append(str(op))
             code.append((op, k + sum(branches[i + 1 : i + 1 + k]) if op in ("jump", "unless") else k))
-        return Program(code, self.constants), held
+        return Program(code, self.constants, self.tables), held
 
 
 def random_program(random: Random) -> Program:
@@ -109,7 +110,6 @@ def _table(program: Program, random: Random, deep: int) -> None:
     _part(program, random, deep - 1)
     pieces, outside = random.choice((1, 2, 3, 8)), random.choice((0, 1, 2))
     knots = sorted(random.choice((0.0, -0.0, random.uniform(-3.0, 3.0))) + 0.01 * k for k in range(pieces + 1))
-    at = len(program.constants)
-    program.constants += [knots[-1] - knots[0], *knots]
-    program.constants += [random.uniform(-2.0, 2.0) for _ in range(4 * pieces)]
-    program.code += [(random.choice(("table", "table", "knot")), at), (pieces, outside)]
+    coefficients = [random.uniform(-2.0, 2.0) for _ in range(4 * pieces)]
+    program.tables.append(array("d", [knots[-1] - knots[0], *knots, *coefficients]))
+    program.code += [(random.choice(("table", "table", "knot")), len(program.tables) - 1), (pieces, outside)]

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import math
+import tracemalloc
 from pathlib import Path
 
 import numpy as np
@@ -11,8 +12,10 @@ from scipy.interpolate import CubicSpline, PchipInterpolator
 
 from heuncli.errors import SpecError
 from heuncli.expressions.curves import fit
+from heuncli.expressions.discontinuities import discontinuities
 from heuncli.expressions.grammar import Scope, compile_expression
-from heuncli.expressions.programs import Expression, Table
+from heuncli.expressions.programs import Expression, Pack, Table
+from heuncli.kernel.choose import expressions
 from heuncli.spec.columns import CsvError, NoColumn, columns_of
 from heuncli.spec.load import load
 
@@ -221,3 +224,35 @@ def test_units_inside_lists() -> None:
                  "tables: {f: {x: [0, 90, 180 deg, 2*pi], x_unit: deg, y: [0, 1 bar, w, '2*w']}}\n")  # fmt: skip
     assert scene.tables["f"].x == pytest.approx([0.0, math.pi / 2, math.pi, 2 * math.pi])
     assert list(scene.tables["f"].y) == [0.0, 1e5, 5.0, 10.0]
+
+
+def test_the_numbers_of_a_table_stand_once_however_many_expressions_use_it() -> None:
+    """Values, bounds and jumps of a hundred expressions, one of them at a constant: no copy of the table is made."""
+    many = 20_000
+    table = fit("f", [0.001 * i for i in range(many)], [0.0] * many, "linear", "hold", None)
+    scope = Scope(tables={"f": table}, in_time=True)
+    size = 8 * len(table.numbers)
+    tracemalloc.start()
+    try:
+        made = [compile_expression(f"{i} + table(f, {'t' if i else '0.5'})", scope) for i in range(100)]
+        assert [e.value(0.25) for e in made] == list(range(100))
+        assert [e.bounds([0.0], [1.0])[1][0] for e in made[1:]] == list(range(1, 100))
+        assert discontinuities(made[1], 0.0, 0.0025) == pytest.approx([0.001, 0.002])
+        pack = Pack()
+        for e in made:
+            pack.add(e)
+        _, most = tracemalloc.get_traced_memory()
+    finally:
+        tracemalloc.stop()
+    assert len(pack.tables) == 1
+    assert pack.tables[0] is table.numbers
+    assert most < 2 * size + 500_000  # packs of their own took 200 times its size
+
+
+@pytest.mark.skipif(not expressions.COMPILED, reason="only there it is read by its address")
+def test_numbers_that_the_kernel_reads_keep_their_place() -> None:
+    table = fit("f", [0.0, 1.0], [0.0, 1.0], "linear", "hold", None)
+    pack = compile_expression("table(f, t)", Scope(tables={"f": table}, in_time=True)).pack
+    assert pack.expressions is not None
+    with pytest.raises(BufferError):
+        table.numbers.append(0.0)

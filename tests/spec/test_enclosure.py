@@ -44,7 +44,7 @@ def read(text: str) -> Expression:
 
 def programs_of(program: Program, held: int = 0) -> Any:
     code = program.numbered(OPS)
-    return expressions.Expressions(code, array("d", program.constants), VARIABLES, held)
+    return expressions.Expressions(code, array("d", program.constants), VARIABLES, held, tables=program.tables)
 
 
 def some_stretch(random: Random, shortest: float = -9.0) -> tuple[float, float]:

@@ -191,8 +191,8 @@ def test_held_branches_change_no_bits() -> None:
         x, beyond = ([random.uniform(-3.0, 3.0) for _ in range(VARIABLES)] for _ in range(2))
         found = []
         for form in (expressions, plain_module("expressions")):
-            programs = form.Expressions(code, constants, VARIABLES, len(held))
-            without = form.Expressions(bare, constants, VARIABLES)
+            programs = form.Expressions(code, constants, VARIABLES, len(held), tables=program.tables)
+            without = form.Expressions(bare, constants, VARIABLES, tables=program.tables)
             span = (0, len(code) // 2)
             value = bits(without.evaluate(0, len(bare) // 2, x))
             for mode in (FREE, TAKEN):

@@ -195,7 +195,7 @@ PLAIN: Form = plain_module("expressions"), plain_module("jets")  # as plain Pyth
 def answers(form: Form, pack: Pack, count: int, x: Sequence[float]) -> list[str]:
     """Value, and value with derivatives in time alone, of the pack's first program, to the last bit."""
     evaluator, derived = form
-    programs = evaluator.Expressions(pack.code, pack.constants, len(pack.variables), 0, pack.starts)
+    programs = evaluator.Expressions(pack.code, pack.constants, len(pack.variables), 0, pack.starts, pack.tables)
     return bits([programs.evaluate(0, count, x), *derived.derivatives(programs, 0, count, x[0])])
 
 
@@ -224,7 +224,7 @@ def test_any_program_gives_the_same_bits_compiled_and_plain() -> None:
         x = [random.uniform(-3.0, 3.0) for _ in range(VARIABLES)]
         found = []
         for evaluator, derived in (COMPILED, PLAIN):
-            programs = evaluator.Expressions(code, constants, VARIABLES)
+            programs = evaluator.Expressions(code, constants, VARIABLES, tables=program.tables)
             count = len(program.code)
             found.append(bits([programs.evaluate(0, count, x), *derived.derivatives(programs, 0, count, x[0])]))
         assert found[0] == found[1], program
@@ -255,7 +255,9 @@ def test_the_depth_counted_is_the_largest_seen_on_every_stack(holds: bool) -> No
         program, held = (lambda p: p.holding() if holds else (p, []))(random_program(random))
         code, span = program.numbered(plain.OPERATIONS), (0, len(program.code))
         depth = plain.stack_depth(code)
-        programs = plain.Expressions(code, array("d", program.constants), VARIABLES, len(held))
+        programs = plain.Expressions(
+            code, array("d", program.constants), VARIABLES, len(held), tables=program.tables
+        )
         memory = programs.programs
         assert len(memory.stack) == len(memory.jets) == len(memory.spans) == depth
         memory.stack, memory.jets, memory.spans = (Watched(x) for x in (memory.stack, memory.jets, memory.spans))
