@@ -8,12 +8,10 @@ import time
 from collections import Counter, defaultdict
 from collections.abc import Iterator, Sequence
 
-from tests.faults.cases import case
+from tests.faults.cases import KINDS, case
 from tests.faults.pool import Judged, judged
 from tests.faults.worker import LAWS
 
-# of the cases, in parts
-SHARES = {"spec": 10, "bytes": 4, "expressions": 3, "expectations": 2, "commands": 4, "magnitudes": 2, LAWS: 0}
 EVERY = 1000  # cases between two lines of progress
 
 
@@ -23,7 +21,7 @@ def main(words: Sequence[str]) -> int:
     parser.add_argument("--cases", type=int, default=100_000)
     parser.add_argument("--seed", type=int, default=0, help="of the first case; the others count on from it")
     parser.add_argument("--jobs", type=int, default=1)
-    parser.add_argument("--kind", choices=SHARES, help="this alone")
+    parser.add_argument("--kind", choices=(*KINDS, LAWS), help="this alone; laws are not among the others")
     parser.add_argument("--replay", metavar="KIND:SEED", help="run one case, with its files and all that it says")
     parser.add_argument("--quick", action="store_true", help="no progress")
     asked = parser.parse_args(words)
@@ -45,7 +43,7 @@ def main(words: Sequence[str]) -> int:
 
 def drawn(cases: int, seed: int, kind: str | None) -> Iterator[tuple[str, int]]:
     """The kinds in turn, by their shares."""
-    kinds = [kind] if kind else [name for name, share in SHARES.items() for _ in range(share)]
+    kinds = [kind] if kind else [name for name, of in KINDS.items() for _ in range(of.share)]
     for k in range(cases):
         yield kinds[k % len(kinds)], seed + k
 
@@ -84,16 +82,10 @@ class Tally:
                 print(f"--replay {one.kind}:{one.seed}  ({one.command})  {what}", flush=True)
 
     def __str__(self) -> str:
-        codes = sorted(
-            {code for of in self.codes.values() for code in of}, key=lambda code: -1 if code is None else code
-        )
-        heads = [
-            "kind",
-            "cases",
-            *(f"exit {'none' if code is None else code}" for code in codes),
-            "longest",
-            "largest",
-        ]
+        found = {code for of in self.codes.values() for code in of}
+        codes = sorted(found, key=lambda code: -1 if code is None else code)
+        exits = [f"exit {'none' if code is None else code}" for code in codes]
+        heads = ["kind", "cases", *exits, "longest", "largest"]
         rows = [heads]
         for kind, of in self.codes.items():
             (seconds, slow), (memory, large) = self.seconds[kind], self.memory[kind]

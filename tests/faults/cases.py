@@ -38,7 +38,7 @@ class Case(NamedTuple):
 
 def case(kind: str, seed: int) -> Case:
     """The case of a kind and a seed."""
-    return KINDS[kind](Random(f"{kind} {seed}"))
+    return KINDS[kind].make(Random(f"{kind} {seed}"))
 
 
 def of_spec(random: Random) -> Case:
@@ -68,7 +68,7 @@ def of_expressions(random: Random) -> Case:
 
 def of_magnitudes(random: Random) -> Case:
     """Numbers of a spec of any magnitude."""
-    return validated(random, mutate_magnitudes.mutant(random.randrange(2**32)).text.encode())
+    return validated(random, mutate_magnitudes.mutated(Random(random.randrange(2**32))).encode())
 
 
 def of_expectations(random: Random) -> Case:
@@ -88,7 +88,18 @@ def validated(random: Random, content: bytes) -> Case:
     return Case({SPEC: content, **sources.tables()}, (("validate", SPEC), random.choice(FOLLOWING)))
 
 
-KINDS: dict[str, Callable[[Random], Case]] = {
-    "spec": of_spec, "bytes": of_bytes, "expressions": of_expressions, "expectations": of_expectations,
-    "commands": of_commands, "magnitudes": of_magnitudes,
-}  # fmt: skip
+class Kind(NamedTuple):
+    """How a case is made, and how many of its kind are among the others."""
+
+    make: Callable[[Random], Case]
+    share: int
+
+
+KINDS = {
+    "spec": Kind(of_spec, 10),
+    "bytes": Kind(of_bytes, 4),
+    "expressions": Kind(of_expressions, 3),
+    "expectations": Kind(of_expectations, 2),
+    "commands": Kind(of_commands, 4),
+    "magnitudes": Kind(of_magnitudes, 2),
+}

@@ -114,9 +114,9 @@ def _json(text: str, warned: bool) -> Iterator[str]:
     except ValueError as reason:
         yield f"no JSON: {reason}"
         return
-    residual = told.get("accuracy", {}).get("balance_residual") if isinstance(told, dict) else None
-    if residual is not None and residual > UNBALANCED and not warned:
-        yield f"forces balance to {residual:.1e} only, and nothing is said of it"
+    residual = told.get("accuracy", {}).get("balance_residual", 0.0) if isinstance(told, dict) else 0.0
+    if (residual is None or residual > UNBALANCED) and not warned:
+        yield f"forces balance to {residual} only, and nothing is said of it"
 
 
 def _csv(text: str) -> Iterator[str]:

@@ -47,7 +47,6 @@ def _free(tree: Tree) -> list[tuple[Any, Any]]:
 
 def other_joint(random: Random, tree: Tree) -> None:
     """A joint of another kind between the same points, with a direction of its own."""
-    joints = [joint for joint in (tree.get("joints") or {}).values() if isinstance(joint, dict)]
     used = str(tree.get("drives", "")) + str(tree.get("stops", "")) + str(tree.get("forces", ""))
     joints = [
         joint for name, joint in (tree.get("joints") or {}).items() if isinstance(joint, dict) and name not in used

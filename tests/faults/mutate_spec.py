@@ -303,21 +303,11 @@ def vocabulary() -> tuple[str, ...]:
     return tuple(sorted(keys))
 
 
+# as often as it stands here
 MUTATIONS: tuple[Mutation, ...] = (
     drop, duplicate, rename, swap, other_type, extreme, scaled, scaled, scaled, with_unit, other_name, other_name,
-    length, block,
-    block, expression, expression, count, kind, kind, key_added,
+    length, block, block, expression, expression, count, kind, kind, key_added,
 )  # fmt: skip
 MILD: tuple[Mutation, ...] = (
-    scaled,
-    scaled,
-    scaled,
-    scaled,
-    moved,
-    moved,
-    kind,
-    count,
-    whole_block,
-    drop_entry,
-    expression,
-)
+    scaled, scaled, scaled, scaled, moved, moved, kind, count, whole_block, drop_entry, expression,
+)  # fmt: skip
