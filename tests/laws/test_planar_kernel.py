@@ -27,6 +27,7 @@ from tests.shared.scenes import near
 SEEDS = (0, 6, 14)
 MORE = [2, 5, *range(7, 10), *range(11, 14), *range(17, 31)]
 ROUNDING = 1e-12  # of the largest of a field; of what the closures amplify, by the root of the pivot
+LANDING = 1e-4  # of the run: shorter steps only meet an event
 
 
 class Both:
@@ -102,11 +103,17 @@ def nothing_across(found: Recovered) -> None:
 
 @heavy
 def test_runs(seed: int) -> None:
-    """The same motion, the same stops and blows, as many steps but for a hair."""
+    """The same motion, the same stops and blows, as many steps but for a hair.
+
+    Those that land on a strike do not count: whether a strike is met by one or three of them rounding decides.
+    """
     scene = both(seed)
     space = scene.space.trajectory(scene.times, 1e-6)
     near(scene.run.states, space.states, max(1.0, float(np.abs(space.states).max())), 1e-7)
-    assert abs(scene.run.steps - space.steps) <= 0.1 * space.steps
+    plane_steps, space_steps = (
+        np.count_nonzero(np.diff(run.ends, prepend=0.0) > LANDING * scene.times[-1]) for run in (scene.run, space)
+    )
+    assert abs(plane_steps - space_steps) <= 0.1 * space_steps
 
 
 @some
