@@ -9,7 +9,8 @@ from pathlib import Path
 from heuncli.charts import Chart
 from heuncli.cli import alarm
 from heuncli.cli.entry import UsageError
-from heuncli.cli.guard import STDOUT, require_other_file, same_file
+from heuncli.cli.files import STDOUT
+from heuncli.cli.guard import require_other_file, same_file
 from heuncli.cli.output import emit, save
 from heuncli.cli.progress import progress
 from heuncli.cli.requests import Chart as Request

@@ -16,6 +16,7 @@ from typing import NamedTuple
 from heuncli.cli.leaving import Undoing
 from heuncli.errors import HeunError, OutputError, Problem
 
+STDOUT = "-"  # what stands for standard output where a file is named
 MOST_LINKS = 40  # that lead to one file; the system follows no more
 HINTS = {
     errno.ENOSPC: "make room, or name a place on another disk",

@@ -12,6 +12,7 @@ from pathlib import Path
 from typing import NamedTuple
 
 from heuncli.errors import Problem, SourceLocation
+from heuncli.spec.reading import STANDARD_INPUT
 
 SPECS = frozenset({".yaml", ".yml"})
 SKIPPED = "broken"  # folders of specs that are wrong on purpose
@@ -33,7 +34,7 @@ class PassedBy(NamedTuple):
 
 def specs_below(argument: str, passed_by: list[PassedBy]) -> Iterator[Found]:
     """The file itself, or every spec in the folder and below it, sorted; not in hidden folders and `broken` ones."""
-    if argument == "-" or not os.path.isdir(argument):  # noqa: PTH112  # Path's raises where the way there is closed
+    if argument == STANDARD_INPUT or not os.path.isdir(argument):  # noqa: PTH112  # Path's raises where the way there is closed
         yield Found(argument)
         return
     seen: dict[tuple[int, int], str] = {}

@@ -8,10 +8,9 @@ from collections.abc import Sequence
 from pathlib import Path
 
 from heuncli.cli.entry import UsageError
+from heuncli.cli.files import STDOUT
 from heuncli.errors import Problem
 from heuncli.spec.reading import name_of
-
-STDOUT = "-"
 
 
 def require_other_file(output: str | None, specs: Sequence[str], option: str = "-o") -> None:

@@ -15,7 +15,7 @@ from heuncli.cli.files import ReaderGone
 from heuncli.errors import OutputError, Problem
 from heuncli.foreign_text import escaped, shown_lines
 
-STDOUT = 1
+DESCRIPTOR = 1  # of standard output
 ESCAPED = "heun.escaped"
 
 
@@ -25,7 +25,7 @@ def emit(text: str, target: str | None = None, *, late: bool = False) -> None:
     late: also where the time limit is past; else LimitError is raised, and nothing is written.
     """
     alarm.disarm(late=late)
-    if target is None or target == "-" or files.place_of(target).descriptor == STDOUT:  # /dev/stdout
+    if target is None or target == files.STDOUT or files.place_of(target).descriptor == DESCRIPTOR:  # /dev/stdout
         _to_standard_output(text)
     else:
         files.write(as_bytes(text), target)

@@ -2,14 +2,12 @@
 
 from __future__ import annotations
 
-import numpy as np
-
 from heuncli.report.along import Numbers, OfRun, at_cuts, stresses_along
 from heuncli.report.page import Page
 from heuncli.report.runs import Run, runs_of
-from heuncli.results import Array, Extremes, Results
+from heuncli.results import Extremes
 from heuncli.results_schema import SHARES
-from heuncli.study.extremes import Searched
+from heuncli.study.extremes import Searched, no_columns
 from heuncli.study.solve import Study
 
 SECTIONS = frozenset({"sections"})
@@ -32,7 +30,7 @@ def of_run(run: Run, page: Page, study: Study) -> OfRun:
     stresses = cuts = None
     if run.stresses:
         own = stresses_along(run, page.labels)
-        searched = Searched(none, [], own.errors(page.certain), own.even, own.along, bent=True)
+        searched = Searched(no_columns, [], own.errors(page.certain), own.even, own.along, bent=True)
         stresses = own.roots(study.extremes(searched, SECTIONS))
     if len(page.results.time) > 1:
         cuts = extremes_at_cuts(at_cuts(run, page.labels), page, study)
@@ -43,8 +41,3 @@ def extremes_at_cuts(own: Numbers, page: Page, study: Study) -> Extremes:
     """Those of the quantities at each cut."""
     searched = Searched(own.columns, own.groups, own.errors(page.certain), own.even)
     return own.roots(study.extremes(searched, SECTIONS, whole=True))
-
-
-def none(results: Results) -> Array:
-    """No columns beside those along the run."""
-    return np.zeros((len(results.time), 0))

@@ -6,8 +6,7 @@ from collections.abc import Mapping, Sequence
 from pathlib import Path
 
 from heuncli.cli.entry import UsageError
-from heuncli.cli.files import place_of
-from heuncli.cli.guard import STDOUT
+from heuncli.cli.files import STDOUT, place_of
 from heuncli.cli.solving import choice
 from heuncli.errors import Problem
 

@@ -19,6 +19,7 @@ from heuncli.spec.overrides import override, taken_in_si
 from heuncli.spec.parameters import evaluate_parameters
 from heuncli.spec.planar import in_the_plane
 from heuncli.spec.quantity import Scope, kind_of
+from heuncli.spec.reading import STANDARD_INPUT
 from heuncli.spec.resolve import Meaning, resolve
 from heuncli.spec.rules.every import RULES, DraftDocument, Violation, violations
 from heuncli.spec.source import Path_, Source, dotted, read
@@ -115,7 +116,7 @@ class Loading:
             return {}
         from heuncli.spec.tables import build_table, outside_folder  # with csv 2 ms that few scenes need
 
-        folder = Path() if self.path == "-" else Path(self.path).parent
+        folder = Path() if self.path == STANDARD_INPUT else Path(self.path).parent
         reader = Reader(self.data, Context(scope, scope), self.report)
         tables: dict[str, Table | None] = {}
         for name, data in entries.items():

@@ -19,6 +19,7 @@ from typing import BinaryIO
 from heuncli.errors import Finding
 
 STANDARD_INPUT = "-"
+GIVE = "give a file, or - for standard input"
 CHUNK = 1 << 20  # bytes at a time: few calls, and beyond the limit no more than this is kept
 FILE_KINDS = (
     (stat.S_ISDIR, "a folder"),
@@ -33,7 +34,7 @@ REASONS = {  # why a file cannot be opened, and what to do
     errno.EPERM: ("the file may not be read", "look at its permissions"),
     errno.ELOOP: ("its links lead in a circle", "look where they lead: ls -l"),
     errno.ENAMETOOLONG: ("the name is too long for a file", None),
-    errno.ENXIO: ("this is a socket, not a file", "give a file, or - for standard input"),
+    errno.ENXIO: ("this is a socket, not a file", GIVE),
 }
 _READ: dict[tuple[int, int], str] = {}  # device and number of each file -> the name it was read by
 
@@ -88,7 +89,7 @@ def _guard(number: int, path: str, most: int) -> None:
         _READ.setdefault((state.st_dev, state.st_ino), path)
     kind = next((words for is_kind, words in FILE_KINDS if is_kind(state.st_mode)), None)
     if kind is not None and not (stat.S_ISCHR(state.st_mode) and _ends(number)):
-        hint = "for folders of specs: heun check" if kind == "a folder" else "give a file, or - for standard input"
+        hint = "for folders of specs: heun check" if kind == "a folder" else GIVE
         raise Finding("unreadable", f"this is {kind}, not a file", hint)
     if stat.S_ISREG(state.st_mode) and state.st_size > most:
         raise _too_large(_megabytes(state.st_size), most)

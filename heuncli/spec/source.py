@@ -17,7 +17,7 @@ from yaml import events
 
 from heuncli.errors import Finding, Problem, SourceLocation, SpecError
 from heuncli.records import record
-from heuncli.spec.reading import read_bytes
+from heuncli.spec.reading import STANDARD_INPUT, read_bytes
 
 LARGEST = 64_000_000  # bytes, and characters; a scene of 100,000 bodies has about 40 million
 DEEPEST = 64
@@ -74,7 +74,7 @@ def dotted(path: Path_) -> str:
 
 def read(path: str, text: str | None) -> Source:
     """The content of a file ("-" is standard input), or of a text that stands for it. Raises SpecError."""
-    file = "<stdin>" if path == "-" else path
+    file = "<stdin>" if path == STANDARD_INPUT else path
     if text is None:
         try:
             raw: bytes | bytearray = read_bytes(path, LARGEST)

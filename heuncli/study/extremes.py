@@ -45,6 +45,11 @@ class Searched(NamedTuple):
     bent: bool = False
 
 
+def no_columns(results: Results) -> Array:
+    """No columns beside what is searched along runs, (n_t, 0)."""
+    return np.zeros((len(results.time), 0))
+
+
 class Asked(NamedTuple):
     """What is searched for, 2n targets: the lowest values of n groups of columns, then the highest, as heights.
 

@@ -24,7 +24,7 @@ from heuncli.results_schema import (
     quantity,
     spelled_first,
 )  # fmt: skip
-from heuncli.study.extremes import Searched
+from heuncli.study.extremes import Searched, no_columns
 from heuncli.study.solve import Study
 
 NOT_CLAIMED = "from t = {:.4g} s on nothing is claimed"
@@ -182,15 +182,14 @@ def peak(study: Study, path: str, how: str, times: Array | None = None) -> Peak:
             values = values * values
         return values.reshape(len(values), -1)
 
-    def none(results: Results) -> Array:
-        return np.zeros((len(results.time), 0))
-
     error = np.array([stated_error(study, asked.keys)])
     n = columns(study.results).shape[1]
     searched = Searched(columns, [list(range(n))], error, np.array([even]))
     if CUT in asked.axes:
         name = asked.keys[1]
-        searched = Searched(none, [], error, np.array([even]), lambda results: [(name, columns(results))], asked.bent)
+        searched = searched._replace(
+            columns=no_columns, groups=[], along=lambda results: [(name, columns(results))], bent=asked.bent
+        )
     bounds = study.extremes(searched, report_of(path), times=times)
     low, high = float(bounds.low[0]), float(bounds.high[0])
     if how == "abs" and abs(low) > abs(high):

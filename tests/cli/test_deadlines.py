@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import contextlib
+import importlib.util
 import os
 import signal
 import threading
@@ -13,7 +14,7 @@ from typing import Any
 import numpy as np
 import pytest
 
-from heuncli.cli import files
+from heuncli.cli import alarm, files
 from heuncli.integration import evaluator
 from heuncli.spec.load import load
 from heuncli.study.solve import solve
@@ -28,6 +29,10 @@ analysis: {duration: 0.1, samples: 3}
 """
 
 pytestmark = pytest.mark.skipif(not hasattr(signal, "setitimer"), reason="no timer that interrupts")
+
+
+def test_modules_at_work_that_a_limit_names_are_there() -> None:
+    assert all(importlib.util.find_spec(prefix) for prefix, _ in alarm.PHASES)
 
 
 def forever(*_: Any, **__: Any) -> Any:
