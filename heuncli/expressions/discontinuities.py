@@ -8,10 +8,11 @@ the stretch is halved, down to neighbouring doubles.
 from __future__ import annotations
 
 import math
+from bisect import bisect_left, bisect_right
 from collections.abc import Callable, Sequence
 
 from heuncli.errors import LimitError, Problem
-from heuncli.expressions.programs import OPS, Code, Expression, Pack, Switch
+from heuncli.expressions.programs import KNOT, OPS, VAR, Code, Expression, Pack, Switch, Table
 from heuncli.records import record
 
 COARSEST, FINEST = 1 << 12, 1 << 20  # cells of the grids on which branches are looked for
@@ -20,6 +21,8 @@ FIRST_CELLS = 256  # of a stretch looked at first
 MOST_EQUAL = 4  # doubles before a change of branch at which rounding makes the operands equal
 LOOKED_AT = 1000  # equal parts of a run, at whose ends the sign of a value is looked at
 MOST_OPEN = 1 << 13  # stretches open at once; margins that are zero but for rounding have as many as there are doubles
+OF_TIME = (VAR, 0)  # the program that is the time itself
+PERIODIC = 2  # kind of a table that is
 RISING = frozenset(OPS[name] for name in ("sign", "step", "lt", "le", "gt", "ge"))  # rise or fall with their margin
 Decide = Callable[[list[float]], list[float]]
 Enclose = Callable[[list[float], list[float]], Sequence[Sequence[float]]]
@@ -66,9 +69,21 @@ def first_not_positive(value: Expression, last: float) -> float | None:
 
 def _changes(expression: Expression, switch: Switch, t0: float, t1: float) -> list[float]:
     """Where one switch changes, decided; where that has no end, as seen on a grid, too."""
+    if switch.decision[:2] == OF_TIME and switch.decision[2] == KNOT and switch.decision[5] != PERIODIC:
+        return _knots(expression.tables[switch.decision[3]], t0, t1)
     found = Search(expression, switch, Grid(t0, t1, COARSEST)).changes()
     found = _seen(expression, switch, t0, t1) if found is None else found
     return [t for t in (*found, *_edges(expression, switch, found)) if t0 < t < t1]
+
+
+def _knots(table: Table, t0: float, t1: float) -> list[float]:
+    """Where a table of the time itself goes from piece to piece: at its points; the last one belongs to the last piece.
+
+    These are the doubles that a search finds, to the last bit; of a million of them it takes minutes.
+    """
+    inner = table.x[bisect_right(table.x, t0) : bisect_left(table.x, t1)]
+    ends = {math.nextafter(table.x[-1], math.inf)}
+    return [t for t in (*(t for t in inner if t < table.x[-1]), *ends) if t0 < t < t1]
 
 
 def _edges(expression: Expression, switch: Switch, changes: Sequence[float]) -> list[float]:
@@ -114,6 +129,7 @@ class Search:
         self.margins = _over_stretches(expression, margin) if rises else None
         self.branch: dict[float, float] = {}
         self.found: list[float] = []
+        self.cells: list[tuple[float, float]] = []  # with changes, at whose ends the branches tell of all
 
     def changes(self) -> list[float] | None:
         """The first double of each new branch; None where too many stretches stay open."""
@@ -126,7 +142,7 @@ class Search:
                 return None
             self.look_at({t for stretch in stretches for t in stretch[2:]})
             stretches = [half for stretch in self.undecided(stretches) for half in self.halves(*stretch)]
-        return self.found
+        return self.found + _between(self.decide, self.cells)
 
     def look_at(self, instants: set[float]) -> None:
         """The branches at instants."""
@@ -144,7 +160,7 @@ class Search:
             if before == after and (low == high == before or (low != low and before == math.inf)):
                 continue
             if (slow > 0.0 or fast < 0.0) and (before != after or before < math.inf):
-                self.found += self.between(*stretch)
+                self.cells += self.between(*stretch)
             else:
                 open_still.append(stretch)
         return open_still
@@ -161,18 +177,18 @@ class Search:
             self.found.append(end)
         return []
 
-    def between(self, i: int, j: int, begin: float, end: float) -> list[float]:
-        """Changes in a stretch through which the margin rises or falls, cell by cell of the grid."""
+    def between(self, i: int, j: int, begin: float, end: float) -> list[tuple[float, float]]:
+        """The cells of the grid with changes in a stretch through which the margin rises or falls."""
         if j - i <= 1:
-            return _between(self.decide, begin, end)
+            return [(begin, end)]
         k = (i + j) // 2
         middle = self.grid[k]
         self.look_at({middle})
         return [
-            t
+            cell
             for half in ((i, k, begin, middle), (k, j, middle, end))
             if self.branch[half[2]] != self.branch[half[3]]
-            for t in self.between(*half)
+            for cell in self.between(*half)
         ]
 
 
@@ -202,7 +218,7 @@ def _seen(expression: Expression, switch: Switch, t0: float, t1: float) -> list[
     spans = [(grid[i], grid[i + 1]) for i in changed]
     if switch.margin is not None:
         spans += _near_zeros(_at_instants(expression, switch.margin), grid, branches, decide)
-    return [t for low, high in spans for t in _between(decide, low, high)]
+    return _between(decide, spans)
 
 
 def _at_instants(expression: Expression, code: Code) -> Decide:
@@ -216,20 +232,31 @@ def _at_instants(expression: Expression, code: Code) -> Decide:
     return values
 
 
-def _between(decide: Decide, low: float, high: float) -> list[float]:
-    """Changes of branch in (low, high], from left to right, each found to the last bit."""
+def _between(decide: Decide, spans: Sequence[tuple[float, float]]) -> list[float]:
+    """Changes of branch in each (low, high], from left to right, each found to the last bit; all spans together."""
     instants: list[float] = []
-    branch, end = decide([low, high])
-    while branch != end:
-        a, b = low, high
-        while a < (middle := a + 0.5 * (b - a)) < b:
-            if decide([middle])[0] == branch:
-                a = middle
-            else:
-                b = middle
-        instants.append(b)
-        low, branch = b, decide([b])[0]
+    rows = list(zip(spans, decide([low for low, _ in spans]), decide([high for _, high in spans]), strict=True))
+    while rows := [row for row in rows if row[1] != row[2]]:
+        firsts = _first_changes(decide, [span for span, _, _ in rows], [branch for _, branch, _ in rows])
+        instants += firsts
+        rows = [((t, span[1]), b, end) for (span, _, end), t, b in zip(rows, firsts, decide(firsts), strict=True)]
     return instants
+
+
+def _first_changes(decide: Decide, spans: Sequence[tuple[float, float]], branches: Sequence[float]) -> list[float]:
+    """Of spans that begin on a branch and end on another the first double of that, by halving."""
+    lows, highs = [low for low, _ in spans], [high for _, high in spans]
+    wide = list(range(len(spans)))
+    while wide:
+        middles = [lows[i] + 0.5 * (highs[i] - lows[i]) for i in wide]
+        halved = [(i, t) for i, t in zip(wide, middles, strict=True) if lows[i] < t < highs[i]]
+        for (i, t), branch in zip(halved, decide([t for _, t in halved]), strict=True):
+            if branch == branches[i]:
+                lows[i] = t
+            else:
+                highs[i] = t
+        wide = [i for i, _ in halved]
+    return highs
 
 
 def _near_zeros(

@@ -24,10 +24,10 @@ import numpy as np
 
 from heuncli import tolerances
 from heuncli.errors import LimitError, SolveError
-from heuncli.expressions.discontinuities import one_sided_limits
 from heuncli.integration.apart import Marks, angle_error, motion_error
 from heuncli.integration.blows import Jump
 from heuncli.integration.evaluator import Recovered
+from heuncli.integration.loop import limits_of
 from heuncli.integration.methods.dop853 import DOP853
 from heuncli.integration.methods.method import Method
 from heuncli.integration.pairs import between_strikes, instants_of, interleaved, moved_start, passed_between
@@ -369,9 +369,9 @@ def recovered_at(
     runner: Runner, run: Trajectory, times: Array, states: Array, jumps: Sequence[float], *, causes: bool = False
 ) -> Recovered:
     """Accelerations and loads of states like those of a run; at a discontinuity the right limits."""
-    later = times.copy()
-    for before, after in one_sided_limits(jumps):
-        later[(times > before) & (times < after)] = after
+    before, after = limits_of(jumps)
+    next_ = np.minimum(np.searchsorted(after, times, side="right"), len(after) - 1)
+    later = np.where((times > before[next_]) & (times < after[next_]), after[next_], times) if len(after) else times
     branches = run.branches_at(times) if run.branches.size else None
     found = runner.recovered(later, states, branches=branches, causes=causes, holding=run.holding_at(times))
     return replace(found, times=times)

@@ -187,7 +187,7 @@ def stretches(run: Trajectory) -> tuple[Array, Array, Array]:
     bounds = np.concatenate([[0.0], run.ends])
     count = len(run.ends)
     rows = np.vstack([run.branches.reshape(count, -1), run.behind[None, :]])
-    fresh = np.isin(bounds, [segment.end for segment in run.segments])
+    fresh = np.isin(bounds, run.segments.ends)
     fresh[1:] |= (rows[1:] != rows[:-1]).any(axis=1)
     fresh[0] = fresh[count] = True
     # a jump in time alone may end a run one double behind its last step, where the condition is true

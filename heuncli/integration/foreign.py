@@ -19,7 +19,7 @@ from heuncli import tolerances
 from heuncli.errors import LimitError, Problem, SolveError, SpecError
 from heuncli.integration.blows import rate_jumps
 from heuncli.integration.kept import Kept
-from heuncli.integration.loop import Segment, smooth_segments
+from heuncli.integration.loop import Segment, Segments, smooth_segments
 from heuncli.integration.methods.method import Method
 from heuncli.integration.moving import Moving
 from heuncli.integration.runner import Trajectory, check_deadline
@@ -91,7 +91,7 @@ def trajectory(
     return Trajectory(
         times=times, states=own, ends=np.array(done.ends), steps=steps, evaluations=derivative.count,
         gap=derivative.gap, local=local, method=method, seconds=time.perf_counter() - begun,
-        segments=tuple(done.pieces), kept=kept, pivots=np.ones(steps), settled=np.ones(steps),
+        segments=Segments(np.array(done.pieces)), kept=kept, pivots=np.ones(steps), settled=np.ones(steps),
         branches=np.zeros((steps, 0)), turned=np.zeros(steps), holding=np.zeros((steps + 1, 0)),
         within=lambda at: done.at(moving, at),
     )  # fmt: skip

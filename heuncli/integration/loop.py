@@ -3,13 +3,13 @@
 from __future__ import annotations
 
 import math
-from collections.abc import Sequence
+from collections.abc import Iterator, Sequence
+from functools import cached_property
 from typing import Any, NamedTuple
 
 import numpy as np
 
 from heuncli import tolerances
-from heuncli.expressions.discontinuities import one_sided_limits
 from heuncli.integration.kept import Growing, Kept
 from heuncli.integration.methods.method import Method
 from heuncli.integration.pace import FIRST_LOOK
@@ -122,6 +122,31 @@ class Segment(NamedTuple):
     end: float
 
 
+@record
+class Segments:
+    """The segments of a run, (n, 3): begin, before_end, end. A table met point by point makes a million of them."""
+
+    rows: Array
+
+    def __len__(self) -> int:
+        return len(self.rows)
+
+    def __iter__(self) -> Iterator[Segment]:
+        return (Segment(*map(float, row)) for row in self.rows)
+
+    @cached_property
+    def ends(self) -> Array:
+        """Where they end, (n,)."""
+        return self.rows[:, 2].copy()
+
+    def at(self, t: float) -> Segment:
+        """The one that an instant lies in; at an end the one behind it."""
+        return Segment(*map(float, self.rows[np.searchsorted(self.ends, t, side="right")]))
+
+
+NO_SEGMENTS = Segments(np.zeros((0, 3)))
+
+
 class Steps:
     """The steps done: of each its end, its least pivot, whether its stages were settled; for replays some records."""
 
@@ -203,18 +228,28 @@ class Steps:
         return self.branches.rows if self.branches is not None else np.zeros((0, 0))
 
 
-def smooth_segments(last: float, jumps: Sequence[float]) -> list[Segment]:
+def smooth_segments(last: float, jumps: Sequence[float]) -> Segments:
     """The segments of (0, last) without discontinuities, which are at `jumps`.
 
     Each ends with the left limits of what jumps, the next one begins with the right limits.
     """
-    limits = one_sided_limits([t for t in jumps if 0.0 < t < last])
-    begins, ends = [0.0, *(t for _, t in limits)], [*(t for t, _ in limits), just_before(last)]
+    within = np.asarray(jumps, dtype=float)
+    left, right = limits_of(within[(within > 0.0) & (within < last)])
+    begins, ends = np.append(0.0, right), np.append(left, just_before(last))
+    segments = np.column_stack([begins, ends, np.nextafter(ends, np.inf)])
     # a discontinuity at t = 0 makes a first segment without length
-    segments = [Segment(t0, t1, just_after(t1)) for t0, t1 in zip(begins, ends, strict=True)]
-    kept = [segment for segment in segments if segment.before_end > segment.begin] or segments[-1:]
+    kept = segments[ends > begins] if (ends > begins).any() else segments[-1:]
     # where a discontinuity is the double before the last instant, no segment is left behind it
-    return [*kept[:-1], kept[-1]._replace(end=last)] if kept[-1].end < last else kept
+    kept[-1, 2] = max(kept[-1, 2], last)
+    return Segments(kept)
+
+
+def limits_of(jumps: Sequence[float] | Array) -> tuple[Array, Array]:
+    """The last instants before discontinuities, ascending, and the first after them, as `one_sided_limits` has them."""
+    instants = np.asarray(jumps, dtype=float)
+    before = np.nextafter(instants, -np.inf)
+    fresh = np.append(True, instants[:-1] < before[1:])[: len(instants)]  # neighbouring doubles are one discontinuity
+    return before[fresh], instants[np.append(fresh[1:], True)[: len(instants)]]
 
 
 def just_before(t: float) -> float:

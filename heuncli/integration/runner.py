@@ -7,7 +7,6 @@ from __future__ import annotations
 
 import math
 import time
-from bisect import bisect_right
 from collections.abc import Callable, Sequence
 from functools import cached_property
 from typing import TYPE_CHECKING, NamedTuple
@@ -21,8 +20,18 @@ from heuncli.expressions.programs import Expression
 from heuncli.integration.between import Blows
 from heuncli.integration.blows import Jump
 from heuncli.integration.evaluator import Evaluator, work_of
-from heuncli.integration.kept import NOTHING_KEPT, Kept
-from heuncli.integration.loop import EVENTS_AFTER, Integration, Segment, Start, Steps, just_before, smooth_segments
+from heuncli.integration.kept import NOTHING_KEPT, Growing, Kept
+from heuncli.integration.loop import (
+    EVENTS_AFTER,
+    NO_SEGMENTS,
+    Integration,
+    Segment,
+    Segments,
+    Start,
+    Steps,
+    just_before,
+    smooth_segments,
+)
 from heuncli.integration.methods.dop853 import DOP853
 from heuncli.integration.methods.method import Method
 from heuncli.integration.moving import Moving, itself
@@ -89,7 +98,7 @@ class Trajectory:
     local: float  # its local tolerance; of a method of fixed step, the step
     method: Method
     seconds: float
-    segments: tuple[Segment, ...] = ()  # without discontinuities, events of contacts or blows
+    segments: Segments = NO_SEGMENTS  # without discontinuities, events of contacts or blows
     # of the first, of some other steps and of those after blows: number, record of where it starts
     kept: Kept = NOTHING_KEPT
     pivots: Array = np.zeros(0)  # least pivot of the closures in each step
@@ -325,7 +334,7 @@ class Runner(Evaluator):
         return self._trajectory(going, ts, pieces, ending, time.perf_counter() - begun)
 
     def _trajectory(
-        self, going: Going, asked: Array, pieces: Sequence[Segment], ending: Ending | None, seconds: float
+        self, going: Going, asked: Array, pieces: Growing, ending: Ending | None, seconds: float
     ) -> Trajectory:
         """What a run that came to its end, or to its ending, leaves."""
         run, steps, moving = going.run, going.steps, self.moving
@@ -333,7 +342,7 @@ class Runner(Evaluator):
         return Trajectory(
             times=times, states=moving.embed(times, states), ends=steps.column("ends"), steps=run.loop.steps,
             evaluations=run.loop.evaluations, gap=run.loop.gap, local=run.start.local, method=run.method,
-            seconds=seconds, segments=tuple(pieces), kept=steps.records(),
+            seconds=seconds, segments=Segments(pieces.rows), kept=steps.records(),
             pivots=steps.column("pivots"), settled=steps.column("settled"), branches=steps.held_branches(),
             turned=steps.column("turned"), undecided=run.loop.undecided,
             stopped=ending.rope if ending is not None else None, ended=ending is not None and ending.rope is None,
@@ -341,12 +350,12 @@ class Runner(Evaluator):
             holding=steps.holding(len(self.layout.contacts)), notes=going.blows.notes,
         )  # fmt: skip
 
-    def _pass(self, going: Going, segments: Sequence[Segment]) -> tuple[list[Segment], Ending | None]:
+    def _pass(self, going: Going, segments: Segments) -> tuple[Growing, Ending | None]:
         """One segment after the other, blows between them: its pieces; where it ends, if before its time.
 
-        Where a rope is slack by a jump or a blow, what held before it is told.
+        Pieces are rows as those of Segments. Where a rope is slack by a jump or a blow, what held before it is told.
         """
-        pieces: list[Segment] = []
+        pieces = Growing(3)
         reached = 0.0
         for segment in segments:
             stopped = going.blows.until(segment.begin, reached)
@@ -359,12 +368,12 @@ class Runner(Evaluator):
                 if code == TURNED:
                     return pieces, Ending(None, t)
                 rope = self.moving.rope(going.run.loop.contact)
-                return pieces, Ending(rope, just_before(t) if t == pieces[-1].begin > 0.0 else t)
+                return pieces, Ending(rope, just_before(t) if t == pieces.rows[-1, 0] > 0.0 else t)
             reached = segment.end
         stopped = going.blows.until(going.last, reached)
         return pieces, None if stopped is None else Ending(stopped, just_before(reached))
 
-    def _piece(self, going: Going, segment: Segment, pieces: list[Segment]) -> int:
+    def _piece(self, going: Going, segment: Segment, pieces: Growing) -> int:
         """Steps to the end of a segment, from one event of contacts to the next: REACHED.
 
         ROPE_SLACK where a rope would push, TURNED where the condition that ends the run became true.
@@ -385,18 +394,19 @@ class Runner(Evaluator):
                 if going.eventful and going.steps.count >= max(EVENTS_AFTER, 2 * going.steps.looked):
                     from heuncli.integration.eventful import require_as_before  # few scenes have so many
 
-                    require_as_before(going.steps, run.method, len(pieces))
+                    require_as_before(going.steps, run.method, pieces.count)
             if code == STIFF:
                 from heuncli.integration.stiffness import require_easy  # few scenes are
 
                 require_easy(self, going, segment)
             if code in (STRUCK, LET_GO):
                 t = run.loop.t
-                pieces += [Segment(begin, segment.before_end, t)] if t > begin else []
+                if t > begin:
+                    pieces.add(np.array([[begin, segment.before_end, t]]))
                 begin = t
                 going.blows.settle(t, run.loop.contact)
                 going.blows.begin(Segment(t, segment.before_end, segment.end))
-        pieces.append(Segment(begin, segment.before_end, segment.end))
+        pieces.add(np.array([[begin, segment.before_end, segment.end]]))
         if code not in (REACHED, ROPE_SLACK, TURNED):
             raise self._failed(code, going)
         return code
@@ -508,7 +518,7 @@ class Runner(Evaluator):
         loop.stand(record)
         t = float(run.ends[first - 1]) if first else 0.0
         while first <= last:
-            begin, before_end, end = run.segments[bisect_right(run.segments, t, key=lambda segment: segment.end)]
+            begin, before_end, end = run.segments.at(t)
             to = min(last, int(np.searchsorted(run.ends, end)))  # a segment ends with a step
             steps = slice(first, to + 1)
             loop.follow(run.ends[steps], run.settled[steps], run.branches[steps])

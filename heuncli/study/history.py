@@ -12,12 +12,12 @@ from typing import TYPE_CHECKING
 import numpy as np
 
 from heuncli.errors import LimitError, SolveError
-from heuncli.expressions.discontinuities import one_sided_limits
 from heuncli.integration.apart import Marks, motion_error
 from heuncli.integration.between import at_once
 from heuncli.integration.blows import Jump
 from heuncli.integration.checked import Checked, Runs, checked_run, recovered_at
 from heuncli.integration.evaluator import Recovered
+from heuncli.integration.loop import limits_of
 from heuncli.integration.methods.method import Method
 from heuncli.integration.methods.registry import method_of
 from heuncli.integration.pairs import interleaved, moved_start
@@ -257,7 +257,8 @@ def search_times(setup: Setup, history: History) -> tuple[Array, bool]:
     per_step = max(1, min(len(WITHIN_STEP), MOST_SEARCHED // max(len(marks), 1)))
     inner = (marks[:-1, None] + np.diff(marks)[:, None] * np.array(WITHIN_STEP[:per_step])).ravel()
     # a jump has a value on either side of it
-    grid = np.concatenate([inner, [t for pair in one_sided_limits(history.jumps) if pair[0] > 0.0 for t in pair]])
+    before, after = limits_of(history.jumps)
+    grid = np.concatenate([inner, before[before > 0.0], after[before > 0.0]])
     grid = distinct(np.concatenate([times, grid[(grid > times[0]) & (grid < times[-1])]]))
     grid = distinct(np.concatenate([grid, *own_extremes(setup.scene.mechanism, grid)]))
     turns = np.ceil(turned_between(setup, history, grid) / TURNED)

@@ -133,7 +133,7 @@ def test_a_plastic_strike_rests_and_is_let_go() -> None:
     """A floor on which a ball stays until a force lifts it: 3 t = 2 g at 20/3 s."""
     text = BALL.format(at=1, speed=0, floor=0, e=0).replace("analysis: {duration: 6", "analysis: {duration: 9")
     run = motion(text + 'forces: {lift: {type: torque, joint: guide, value: "3*t"}}\n', 9.0)
-    changes = [segment.end for segment in run.segments[:-1]]
+    changes = run.segments.ends[:-1]
     assert len(run.blows) == 1 and run.blows[0].kinetic[1] == pytest.approx(0.0, abs=1e-25)
     assert changes[-1] == pytest.approx(20.0 / 3.0, rel=1e-9)
     t = 9.0 - 20.0 / 3.0

@@ -12,6 +12,7 @@ from heuncli.expressions.curves import fit
 from heuncli.expressions.discontinuities import discontinuities, one_sided_limits
 from heuncli.expressions.grammar import Scope, compile_expression
 from heuncli.expressions.programs import Expression, Table
+from heuncli.integration.loop import limits_of
 
 TRIANGLE = fit("triangle", [0.0, 0.25, 0.5], [0.0, 1.0, 0.0], "linear", None, 0.5)
 RAMP = fit("ramp", [1.0, 2.0, 4.0], [0.0, 1.0, 5.0], "linear", "hold", None)
@@ -136,3 +137,32 @@ def test_crests_between_the_points_of_a_grid_are_found() -> None:
 def test_what_cannot_be_decided_is_seen_to_stay(text: str) -> None:
     """A margin that is zero, or touches it."""
     assert discontinuities(read(text), 0.0, 2.0) == []
+
+
+@pytest.mark.parametrize("outside", ["hold", None])
+def test_the_points_of_a_table_of_the_time_are_what_a_search_finds(outside: str | None) -> None:
+    """To the last bit, also of many points between neighbouring instants of the search's grid, and of the ends."""
+    random = Random(3)
+    x = sorted({0.5, *(random.uniform(0.5, 1.5) for _ in range(3_000)), 1.5, after(1.5)})
+    table = fit("f", x, [0.0] * len(x), "linear", outside, None)
+    scope = Scope(tables={"f": table}, in_time=True)
+    for t0, t1 in ((0.0, 2.0), (0.75, x[2_000]), (x[10], after(1.5))):
+        known, found = (
+            discontinuities(compile_expression(f"table(f, {text})", scope), t0, t1) for text in ("t", "1*t")
+        )
+        assert known == found
+        assert len(known) > 1_000
+
+
+def test_limits_of_many_jumps_are_those_of_each() -> None:
+    """With neighbouring doubles among them, up to four in a row, and none at all."""
+    random = Random(4)
+    for count in (0, 1, 2, 50):
+        instants: list[float] = []
+        for _ in range(count):
+            instants.append(random.choice((0.0, random.random())))
+            for _ in range(random.choice((0, 0, 1, 3))):
+                instants.append(after(instants[-1]))
+        ascending = sorted(set(instants))
+        before, behind = limits_of(ascending)
+        assert list(zip(before.tolist(), behind.tolist(), strict=True)) == one_sided_limits(ascending)
