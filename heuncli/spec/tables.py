@@ -40,24 +40,7 @@ class Wrong:
 def build_table(name: str, entry: Entry, scope: Scope, folder: Path) -> tuple[Table | None, list[Wrong]]:
     """The table of an entry, or what is wrong with it."""
     wrong: list[Wrong] = []
-    sizes = [unit_size(key, getattr(entry, key), wrong) for key in ("x_unit", "y_unit")]
-    if entry.file is not None:
-        if isinstance(entry.x, list) or isinstance(entry.y, list):
-            hint = "with a file, x and y name its columns"
-            return None, [*wrong, Wrong((), Finding("table-form", "both a file and lists of numbers", hint))]
-        columns = from_file(entry, entry.file, folder, wrong)
-        for column, size in zip(columns or (), sizes, strict=False):
-            values = np.frombuffer(column)  # the same memory
-            with np.errstate(over="ignore"):  # judged below, with its place
-                values *= size
-    elif isinstance(entry.x, list) and isinstance(entry.y, list):
-        given = (("x", entry.x, sizes[0]), ("y", entry.y, sizes[1]))
-        read_items = ([read(item, size, scope, (key, i), wrong) for i, item in enumerate(items)]
-                      for key, items, size in given)  # fmt: skip
-        columns = [array("d", [value for value in values if value is not None]) for values in read_items]
-    else:
-        hint = "give {file, x, y} with columns by name or number, or the lists {x: [...], y: [...]}"
-        return None, [*wrong, Wrong((), Finding("table-form", "neither a file nor lists of numbers x and y", hint))]
+    columns = in_si(entry, scope, folder, wrong)
     if columns is None or wrong:
         return None, wrong
     x, y = columns
@@ -74,6 +57,30 @@ def build_table(name: str, entry: Entry, scope: Scope, folder: Path) -> tuple[Ta
             Wrong((), Finding("table-shape", "its points lie too close together or too far apart for a slope", SLOPES))
         ]
     return table, []
+
+
+def in_si(entry: Entry, scope: Scope, folder: Path, wrong: list[Wrong]) -> Columns | None:
+    """The columns x and y of an entry in SI, from its file or its lists; what is wrong is added."""
+    sizes = [unit_size(key, getattr(entry, key), wrong) for key in ("x_unit", "y_unit")]
+    if entry.file is not None:
+        if isinstance(entry.x, list) or isinstance(entry.y, list):
+            hint = "with a file, x and y name its columns"
+            wrong.append(Wrong((), Finding("table-form", "both a file and lists of numbers", hint)))
+            return None
+        columns = from_file(entry, entry.file, folder, wrong)
+        for column, size in zip(columns or (), sizes, strict=False):
+            values = np.frombuffer(column)  # the same memory
+            with np.errstate(over="ignore"):  # judged below, with its place
+                values *= size
+        return columns
+    if isinstance(entry.x, list) and isinstance(entry.y, list):
+        given = (("x", entry.x, sizes[0]), ("y", entry.y, sizes[1]))
+        read_items = ([read(item, size, scope, (key, i), wrong) for i, item in enumerate(items)]
+                      for key, items, size in given)  # fmt: skip
+        return [array("d", [value for value in values if value is not None]) for values in read_items]
+    hint = "give {file, x, y} with columns by name or number, or the lists {x: [...], y: [...]}"
+    wrong.append(Wrong((), Finding("table-form", "neither a file nor lists of numbers x and y", hint)))
+    return None
 
 
 def dimension_of(unit: str | None) -> Dimension | None:
