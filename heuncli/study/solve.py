@@ -194,38 +194,20 @@ def compose(
     Raises SolveError where something is neither finite nor open.
     """
     shown, unknown = blocks_of(history, recovery, wanted)
-    split = recovery.decided.words if recovery.verdicts and recovery.decided is not None else ()
-    checked = history.checked
     rest = setup.rest
-    done = checked.run if checked is not None else rest
-    struck_freely = sum(met_freely(setup.scene.layout, jump.impulses) for jump in history.blows)
-    kinetic = checked.kinetic if checked is not None else 0.0
-    balance = accuracy(recovery, kinetic, struck_freely, history.followed_for)
-    if struck is not None:
-        balance["balance_residual"] = max(balance["balance_residual"], struck.residual)
-    gap = checked.run.gap if checked is not None else setup.scene.start.gap
+    done = history.checked.run if history.checked is not None else rest
+    known = accuracy_of(setup, history, recovery, struck)
     results = Results(
         title=setup.spec.title,
         spec={"path": setup.spec.path, "sha256": setup.spec.sha256},
         version=VERSION,
-        model=setup.model
-        | ({"split": "; ".join(split)} if split else {})
-        | not_at_rest(recovery)
-        | ({"axes": setup.asked.axes} if setup.asked.axes != "world" else {})
-        | contacts_of(history)
-        | integrated(setup, history),
+        model=model_of(setup, history, recovery),
         status=status(history) if rest is None else rest.status,
         time=recovery.recovered.times,
         **shown,
         impulses=struck.blocks() if struck is not None and BLOWS in wanted else [],
         certain_sums=sums_among(certain_sums(recovery), setup.asked) if "joints" in wanted else [],
-        accuracy=balance
-        | {
-            "constraint_gap": max(balance["constraint_gap"], gap),
-            "horizon": checked.horizon if checked is not None else None,
-            "estimate": history.estimate,
-        }
-        | ({"unknown": unknown.tolist()} if len(unknown) else {}),
+        accuracy=known | ({"unknown": unknown.tolist()} if len(unknown) else {}),
         work={
             "kernel": KERNEL,
             "steps": done.steps if done is not None else 0,
@@ -233,12 +215,40 @@ def compose(
             "seconds": {},
         },
         warnings=(
-            *warnings(setup, history, recovery, shown.get("joints", {}), balance["balance_residual"]),
+            *warnings(setup, history, recovery, shown.get("joints", {}), known["balance_residual"]),
             *beside_singular_poses(unknown),
             *(rest.warnings if rest is not None else ()),
         ),
     )
     return require_finite(results)
+
+
+def model_of(setup: Setup, history: History, recovery: Recovery) -> Block:
+    """What the results say of the model, that of the run with what only the run shows."""
+    split = recovery.decided.words if recovery.verdicts and recovery.decided is not None else ()
+    return (
+        setup.model
+        | ({"split": "; ".join(split)} if split else {})
+        | not_at_rest(recovery)
+        | ({"axes": setup.asked.axes} if setup.asked.axes != "world" else {})
+        | contacts_of(history)
+        | integrated(setup, history)
+    )
+
+
+def accuracy_of(setup: Setup, history: History, recovery: Recovery, struck: Impulses | None) -> Accuracy:
+    """How well the results are known: balance of bodies and blows, gaps, the horizon, estimated errors."""
+    checked = history.checked
+    struck_freely = sum(met_freely(setup.scene.layout, jump.impulses) for jump in history.blows)
+    known = accuracy(recovery, checked.kinetic if checked is not None else 0.0, struck_freely, history.followed_for)
+    if struck is not None:
+        known["balance_residual"] = max(known["balance_residual"], struck.residual)
+    gap = checked.run.gap if checked is not None else setup.scene.start.gap
+    return known | {
+        "constraint_gap": max(known["constraint_gap"], gap),
+        "horizon": checked.horizon if checked is not None else None,
+        "estimate": history.estimate,
+    }
 
 
 def not_at_rest(recovery: Recovery) -> Block:
