@@ -10,11 +10,12 @@ from tests.faults.worker import LAWS
 
 CASES = 1920
 BATCHES = 8  # a process each
-SPARED = [batch if batch < 2 else pytest.param(batch, marks=pytest.mark.heavy) for batch in range(BATCHES)]
 LAW_CASES = 56
 
+pytestmark = pytest.mark.heavy  # cases are judged by the time they take, too
 
-@pytest.mark.parametrize("batch", SPARED)
+
+@pytest.mark.parametrize("batch", range(BATCHES))
 def test_every_case_ends_as_documented(batch: int) -> None:
     """Exit codes, forms of errors, numbers, time and memory: invariant.py; --replay KIND:SEED shows a case."""
     cases = drawn(CASES // BATCHES, batch * CASES // BATCHES, None)
@@ -22,7 +23,6 @@ def test_every_case_ends_as_documented(batch: int) -> None:
     assert not wrong, "\n".join(wrong)
 
 
-@pytest.mark.heavy
 @pytest.mark.parametrize("batch", range(2))
 def test_what_is_told_otherwise_says_the_same(batch: int) -> None:
     """Scenes that run, turned, faster, reordered, begun later, not reduced, by another method: laws.py."""

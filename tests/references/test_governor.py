@@ -82,6 +82,7 @@ LATER = {2.0: 0.50590929, 3.0: 0.51324608, 4.0: 0.52322337, 5.0: 0.5355631, 6.0:
          10.0: 0.61962292}  # fmt: skip
 
 
+@pytest.mark.heavy
 @pytest.mark.parametrize("method", ["auto", "Radau5", "Radau9"])
 def test_ten_seconds(method: str) -> None:
     """All of the table, by what heun chooses and by its stiff methods, at the order's tolerance of 1e-6 and finer."""

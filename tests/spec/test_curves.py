@@ -226,6 +226,7 @@ def test_units_inside_lists() -> None:
     assert list(scene.tables["f"].y) == [0.0, 1e5, 5.0, 10.0]
 
 
+@pytest.mark.heavy
 def test_the_numbers_of_a_table_stand_once_however_many_expressions_use_it() -> None:
     """Values, bounds and jumps of a hundred expressions, one of them at a constant: no copy of the table is made."""
     many = 20_000
