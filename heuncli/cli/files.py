@@ -146,7 +146,12 @@ def _place(name: str) -> Place:
         state = Path(name).stat()
     except FileNotFoundError:
         state = None
-    return Place(name if state is not None and not stat.S_ISREG(state.st_mode) else os.path.realpath(name), state)
+    if state is not None and not stat.S_ISREG(state.st_mode):
+        return Place(name, state)
+    path = os.path.realpath(name)  # which takes gone/../scene.yaml for scene.yaml; the system does not, nor the guard
+    if state is None and Path(path).exists():
+        raise FileNotFoundError(errno.ENOENT, os.strerror(errno.ENOENT))
+    return Place(path, state)
 
 
 def _descriptor(name: str) -> int | None:

@@ -80,14 +80,15 @@ def edge_normals(corners: Array) -> Array:
     return np.stack([edge[..., 1], -edge[..., 0]], axis=-1) / np.where(length > 0.0, length, 1.0)
 
 
-def apart(A: Array, B: Array, gap: float) -> bool:
-    """Whether a line along an edge of one of two convex polygons (m, 2) keeps them more than the gap apart."""
+def apart(A: Array, B: Array, gap: Array) -> NDArray[np.bool_]:
+    """Whether a line along an edge of one of two convex polygons (k, m, 2) keeps them more than the gap (k,) apart."""
+    found = np.zeros(len(gap), dtype=bool)
     for corners in (A, B):
-        normals = edge_normals(corners)
-        a, b = A @ normals.T, B @ normals.T
-        if bool(np.any((a.min(axis=0) > b.max(axis=0) + gap) | (b.min(axis=0) > a.max(axis=0) + gap))):
-            return True
-    return False
+        normals = np.swapaxes(edge_normals(corners), -1, -2)
+        a, b = A @ normals, B @ normals
+        beyond = (a.min(axis=1) > b.max(axis=1) + gap[:, None]) | (b.min(axis=1) > a.max(axis=1) + gap[:, None])
+        found |= beyond.any(axis=1)
+    return found
 
 
 def lies_in_hole(A: Array, hole: Array, gap: float) -> bool:
@@ -123,17 +124,19 @@ def count_joined(outlines: Sequence[Outline], planes: Planes, n: Array, near: fl
 
     for i, A in enumerate(shadows):
         for j, B in enumerate(shadows[:i]):
+            one = met[:, i] & met[:, j] & (label[:, i] != label[:, j])  # what is joined by others needs no look
+            if not one.any():
+                continue
             distance = np.sqrt(((A.center - B.center) ** 2).sum(axis=1))
             gap = tolerances.OUTLINES_APART * (A.outer + B.outer) + near
-            one = met[:, i] & met[:, j] & (distance <= A.outer + B.outer + gap)
+            one &= distance <= A.outer + B.outer + gap
             full = holes[i] is None and holes[j] is None
-            unsure = one & (distance > A.inner + B.inner) if full else one
-            for cut in np.flatnonzero(unsure).tolist():
-                one[cut] = not (
-                    apart(A.corners[cut], B.corners[cut], gap[cut])
-                    or in_hole(i, j, cut, gap[cut])
-                    or in_hole(j, i, cut, gap[cut])
-                )
-            low, high = np.minimum(label[:, i], label[:, j]), np.maximum(label[:, i], label[:, j])
-            label = np.where(one[:, None] & (label == high[:, None]), low[:, None], label)
+            unsure = np.flatnonzero(one & (distance > A.inner + B.inner) if full else one)
+            if len(unsure):
+                one[unsure] = ~apart(A.corners[unsure], B.corners[unsure], gap[unsure])
+            for cut in [] if full else unsure[one[unsure]].tolist():
+                one[cut] = not (in_hole(i, j, cut, gap[cut]) or in_hole(j, i, cut, gap[cut]))
+            joined = label[one]
+            low, high = np.sort(joined[:, [i, j]], axis=1).T[:, :, None]
+            label[one] = np.where(joined == high, low, joined)
     return np.asarray((met & (label == np.arange(len(outlines)))).sum(axis=1))

@@ -89,6 +89,18 @@ def test_standard_output_at_the_end_of_the_spec(
         assert (scene / read).read_bytes() == before
 
 
+@pytest.mark.parametrize("name", ["gone/../scene.yaml", "link.yaml"])
+@pytest.mark.parametrize("command", ["run", "model", "check"])
+def test_a_way_through_a_folder_that_is_gone_leads_nowhere(scene: Path, heun: Heun, command: str, name: str) -> None:
+    """The system finds no file there, and so no guard does; without the folder the path is that of the spec."""
+    (scene / "link.yaml").symlink_to("gone/../scene.yaml")
+    before = (scene / "scene.yaml").read_bytes()
+    done = heun(command, "scene.yaml", "-o", name, "--format", "json")
+    assert (done.returncode, done.stdout) == (5, "")
+    assert "[output-failed]" in done.stderr
+    assert (scene / "scene.yaml").read_bytes() == before
+
+
 def test_standard_input_that_is_the_output(scene: Path, monkeypatch: pytest.MonkeyPatch) -> None:
     monkeypatch.chdir(scene)
     with (scene / "scene.yaml").open() as spec:
