@@ -54,7 +54,7 @@ def compare(study: Study, item: Expect) -> Case:
             return _bounded(case, study, item)
         found = _found(study, item)
     except HeunError as error:
-        (problem,) = error.problems
+        problem = error.problems[0]  # what cannot be computed between the samples may have several
         return replace(case, failure=problem.message + (f" ({problem.hint})" if problem.hint else ""))
     return replace(case, found=found, failure=_failure(expected, found, tolerance))
 

@@ -8,7 +8,8 @@ from typing import Any
 import numpy as np
 import pytest
 
-from heuncli.errors import SourceLocation
+from heuncli.errors import Problem, SolveError, SourceLocation
+from heuncli.study import expect
 from heuncli.study.expect import compare
 from tests.shared.fakes import ACCURATE, FakeStudy, pendulum
 
@@ -165,3 +166,11 @@ def test_no_bound_is_met_by_what_is_open_or_beyond_the_horizon() -> None:
     lost = compare(LOST, expectation(FX, None, below=1e9))
     assert (lost.failure, lost.found) == ("from t = 1.25 s on nothing is claimed", None)
     assert compare(LOST, expectation(FX, None, below=3.0, at=1.0)).passed
+
+
+def test_several_problems_at_once_fail_one_expectation(monkeypatch: pytest.MonkeyPatch) -> None:
+    def found(*_: Any) -> Any:
+        raise SolveError(Problem("outside", "one", hint="a hint"), Problem("outside", "two", hint="a hint"))
+
+    monkeypatch.setattr(expect, "_found", found)
+    assert compare(STUDY, expectation(FX, 3.0, peak="max")).failure == "one (a hint)"
