@@ -11,6 +11,7 @@ import math
 from bisect import bisect_left, bisect_right
 from collections.abc import Callable, Sequence
 
+from heuncli import tolerances
 from heuncli.errors import LimitError, Problem
 from heuncli.expressions.programs import KNOT, OPS, VAR, Code, Expression, Pack, Switch, Table
 from heuncli.records import record
@@ -121,7 +122,7 @@ class Search:
     """The search for the changes of one switch over a run."""
 
     def __init__(self, expression: Expression, switch: Switch, grid: Grid) -> None:
-        self.grid = grid
+        self.expression, self.switch, self.grid = expression, switch, grid
         self.decide = _at_instants(expression, switch.decision)
         self.decisions = _over_stretches(expression, switch.decision)
         margin = switch.margin or switch.decision[:-4]  # of a table, the argument
@@ -142,7 +143,20 @@ class Search:
                 return None
             self.look_at({t for stretch in stretches for t in stretch[2:]})
             stretches = [half for stretch in self.undecided(stretches) for half in self.halves(*stretch)]
+        self.require_few()
         return self.found + _between(self.decide, self.cells)
+
+    def require_few(self) -> None:
+        """Raise LimitError where the points of a table are too many, which its pieces tell before any is looked for."""
+        if self.switch.margin is not None:
+            return
+        passed = [abs(self.branch[end] - self.branch[begin]) for begin, end in self.cells]
+        count = sum(number for number in passed if number < math.inf)  # beyond a table that ends there are none
+        if count > tolerances.MOST_STEPS:
+            where = f"between {self.grid.t0:g} and {self.grid.t1:g} s"
+            message = f"'{self.expression.source}' passes {count:,.0f} points of its table {where}, each a step's end"
+            hint = f"at most {tolerances.MOST_STEPS:,} steps are taken: a shorter duration, or a table of fewer points"
+            raise LimitError(Problem("too-many-jumps", message, self.expression.location, hint))
 
     def look_at(self, instants: set[float]) -> None:
         """The branches at instants."""

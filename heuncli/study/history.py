@@ -11,7 +11,8 @@ from typing import TYPE_CHECKING
 
 import numpy as np
 
-from heuncli.errors import LimitError, SolveError
+from heuncli import tolerances
+from heuncli.errors import LimitError, Problem, SolveError
 from heuncli.integration.apart import Marks, motion_error
 from heuncli.integration.between import at_once
 from heuncli.integration.blows import Jump
@@ -105,11 +106,30 @@ def integrate(setup: Setup, tolerance: float, deadline: float | None, *, by_caus
 
 
 def begin(setup: Setup) -> tuple[float, ...]:
-    """The discontinuities in time of a motion that can begin. Raises SolveError: before a long run, not after it."""
+    """The discontinuities in time of a motion that can begin.
+
+    Raises SolveError, LimitError where they are more than steps may be: before a long run, not after it.
+    """
     first = setup.runner.recovered(np.zeros(1), setup.scene.layout.y0[None, :])
     require_start(setup.scene, first)
     require_motion(setup.scene.layout, first)
-    return tuple(discontinuities_of(setup.scene.mechanism, 0.0, float(setup.spec.analysis.times[-1])))
+    jumps = tuple(discontinuities_of(setup.scene.mechanism, 0.0, float(setup.spec.analysis.times[-1])))
+    require_steps(len(jumps) + 1, setup.method)
+    return jumps
+
+
+def require_steps(segments: int, method: Method | None) -> None:
+    """Raise LimitError [step-limit] where a run takes more steps than it may, were it one to a segment."""
+    foreign = method is not None and method.foreign
+    most = tolerances.MOST_FOREIGN if foreign else tolerances.MOST_STEPS
+    if segments <= most:
+        return
+    message = (
+        f"loads and drives jump or bend at {segments - 1:,} instants, each the end of a step: "
+        f"the run takes at least {segments:,} steps, and {most:,} is the most"
+    )
+    hint = "a shorter duration, or tables of fewer points" + ("; or method: auto" if foreign else "")
+    raise LimitError(Problem("step-limit", message, hint=hint))
 
 
 def checked_motion(

@@ -7,12 +7,16 @@ from random import Random
 
 import pytest
 
+from heuncli import tolerances
 from heuncli.errors import LimitError
 from heuncli.expressions.curves import fit
 from heuncli.expressions.discontinuities import discontinuities, one_sided_limits
 from heuncli.expressions.grammar import Scope, compile_expression
 from heuncli.expressions.programs import Expression, Table
 from heuncli.integration.loop import limits_of
+from heuncli.integration.methods.dop853 import DOP853
+from heuncli.integration.methods.registry import method_of
+from heuncli.study.history import require_steps
 
 TRIANGLE = fit("triangle", [0.0, 0.25, 0.5], [0.0, 1.0, 0.0], "linear", None, 0.5)
 RAMP = fit("ramp", [1.0, 2.0, 4.0], [0.0, 1.0, 5.0], "linear", "hold", None)
@@ -166,3 +170,24 @@ def test_limits_of_many_jumps_are_those_of_each() -> None:
         ascending = sorted(set(instants))
         before, behind = limits_of(ascending)
         assert list(zip(before.tolist(), behind.tolist(), strict=True)) == one_sided_limits(ascending)
+
+
+@pytest.mark.parametrize("text", ["table(f, t)", "table(f, 1e9*t)", "table(f, -t) + t"])
+def test_points_without_end_are_refused_before_any_is_looked_for(text: str) -> None:
+    """A table that repeats itself a billion times in the run: nobody waits until all its points are found."""
+    table = fit("f", [0.0, 5e-10, 1e-9], [0.0, 1.0, 0.0], "linear", None, 1e-9)
+    expression = compile_expression(text, Scope(tables={"f": table}, in_time=True))
+    with pytest.raises(LimitError) as caught:
+        discontinuities(expression, 0.0, 1.0)
+    (problem,) = caught.value.problems
+    assert problem.code == "too-many-jumps"
+    assert "points of its table between 0 and 1 s" in problem.message
+
+
+def test_a_run_takes_a_step_to_a_segment_at_least() -> None:
+    require_steps(tolerances.MOST_STEPS, DOP853)
+    foreign = method_of("SciPy-LSODA")
+    for segments, method in ((tolerances.MOST_STEPS + 1, DOP853), (tolerances.MOST_FOREIGN + 1, foreign)):
+        with pytest.raises(LimitError) as caught:
+            require_steps(segments, method)
+        assert caught.value.problems[0].code == "step-limit"
