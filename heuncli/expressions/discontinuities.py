@@ -61,6 +61,16 @@ def changes(value: Expression, last: float) -> list[tuple[float, float]]:
     return [(before, after) for before, after in one_sided_limits(instants) if before > 0.0]
 
 
+def jumps(value: Expression, last: float, order: int = 0) -> list[tuple[float, float, float, float]]:
+    """Where a value jumps within the run, or its derivative of an order: the instants before and behind, and limits."""
+    found = []
+    for before, after in changes(value, last):
+        first, then = value.derivatives(before)[order], value.derivatives(after)[order]
+        if abs(then - first) > tolerances.SAME_VALUE * max(abs(first), abs(then), 1.0):
+            found.append((before, after, first, then))
+    return found
+
+
 def first_not_positive(value: Expression, last: float) -> float | None:
     """The first of many instants of a run, those beside jumps and kinks among them, at which a value is not above 0."""
     grid = {last * k / LOOKED_AT for k in range(LOOKED_AT + 1)}

@@ -11,8 +11,7 @@ from collections.abc import Sequence
 
 import numpy as np
 
-from heuncli import tolerances
-from heuncli.expressions.discontinuities import discontinuities, one_sided_limits
+from heuncli.expressions.discontinuities import jumps
 from heuncli.expressions.programs import Expression
 from heuncli.integration.evaluator import Evaluator, Recovered
 from heuncli.integration.loop import just_after, just_before
@@ -79,13 +78,7 @@ class Jump:
 
 def rate_jumps(value: Expression, last: float) -> list[tuple[float, float, float, float]]:
     """Where within (0, last] the rate of a drive jumps: the instants before and behind, and the rates there."""
-    found = []
-    instants = discontinuities(value, 0.0, just_after(last)) if last > 0.0 and value.time_dependent else []
-    for before, after in one_sided_limits(instants):
-        first, then = value.derivatives(before)[1], value.derivatives(after)[1]
-        if before > 0.0 and abs(then - first) > tolerances.SAME_VALUE * max(abs(first), abs(then), 1.0):
-            found.append((before, after, first, then))
-    return found
+    return jumps(value, just_after(last), order=1) if value.time_dependent else []
 
 
 def schedule(mechanism: Mechanism, last: float) -> list[Given]:

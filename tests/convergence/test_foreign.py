@@ -95,9 +95,15 @@ def test_between_the_asked_instants(method: str) -> None:
     ],
 )
 def test_what_they_do_not_run_is_refused_by_name(more: str, told: str) -> None:
+    """By an option before anything moves; written in the spec by its place, where validate sees it."""
+    text = BAR.format(more=more)
     with pytest.raises(SpecError, match="SciPy-BDF does not run") as caught:
-        solve(load("scene.yaml", BAR.format(more=more)), Options(method="scipy-bdf"))
+        solve(load("scene.yaml", text), Options(method="scipy-bdf"))
     assert told in caught.value.problems[0].message
+    with pytest.raises(SpecError, match="SciPy-BDF does not run") as read:
+        load("scene.yaml", text.replace("analysis: {", "analysis: {method: SciPy-BDF, "))
+    assert told in read.value.problems[0].message
+    assert read.value.problems[0].location is not None
 
 
 @pytest.mark.heavy

@@ -6,7 +6,7 @@ import math
 from collections.abc import Iterator
 
 from heuncli import tolerances
-from heuncli.expressions.discontinuities import changes, first_not_positive
+from heuncli.expressions.discontinuities import first_not_positive, jumps
 from heuncli.joint_kinds import RATES, TYPES, named
 from heuncli.spec import format as f
 from heuncli.spec.fields import End
@@ -164,12 +164,9 @@ def drive_jumps(draft: DraftDocument) -> Iterator[Violation]:
         if math.isnan(value.value(0.0)):
             yield Violation(path, "the drive has no value at t = 0", "look at the domains of its functions and tables")
             continue
-        for last, t in changes(value, duration) if not driven.by_rate else ():
-            before, after = value.value(last), value.value(t)
-            if abs(after - before) > tolerances.SAME_VALUE * max(abs(before), abs(after), 1.0):
-                message = f"the drive jumps from {before:g} to {after:g} at t = {t:g} s"
-                yield Violation(path, message, "a body cannot jump: let the value run over a short time")
-                break
+        for _, t, before, after in jumps(value, duration)[:1] if not driven.by_rate else ():
+            message = f"the drive jumps from {before:g} to {after:g} at t = {t:g} s"
+            yield Violation(path, message, "a body cannot jump: let the value run over a short time")
 
 
 @rule("drive-length")

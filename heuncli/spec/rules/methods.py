@@ -2,15 +2,18 @@
 
 from __future__ import annotations
 
+import math
 from collections.abc import Iterator
 
+from heuncli.expressions.discontinuities import jumps
 from heuncli.expressions.programs import Expression
 from heuncli.method_rows import SMOOTH_ONLY, row_of
 from heuncli.spec.format import RodJoint
 from heuncli.spec.methods import unfit
 from heuncli.spec.rules.conditions import conditions
+from heuncli.spec.rules.joints import drives
 from heuncli.spec.rules.registry import DraftDocument, Path_, Violation, rule
-from heuncli.spec.semantics import type_of
+from heuncli.spec.semantics import span_of, type_of
 
 
 def among(draft: DraftDocument, code: str) -> Iterator[Violation]:
@@ -44,10 +47,7 @@ def step(draft: DraftDocument) -> Iterator[Violation]:
 
 @rule("method-scene")
 def method_scene(draft: DraftDocument) -> Iterator[Violation]:
-    """SciPy's methods run what is smooth: what strikes, ends or jumps by the state is refused by name.
-
-    A drive whose rate jumps is refused, too, when its jumps are looked for: integration/foreign.py.
-    """
+    """SciPy's methods run what is smooth: what strikes, ends or jumps by the state is refused by name."""
     row = row_of(draft.document.analysis.method)
     if row is None or row.kind != "SciPy" or type_of(draft.document) != "motion":
         return
@@ -56,7 +56,7 @@ def method_scene(draft: DraftDocument) -> Iterator[Violation]:
 
 
 def not_smooth(draft: DraftDocument) -> Iterator[tuple[Path_, str]]:
-    """Stops, ropes, blows, conditions in time and state, and loads that jump or bend with a coordinate."""
+    """Stops, ropes, blows, conditions in time and state, drives whose rates jump, loads that jump with a coordinate."""
     document = draft.document
     for name in document.stops:
         yield ("stops", name), f"the stop {name}"
@@ -68,6 +68,10 @@ def not_smooth(draft: DraftDocument) -> Iterator[tuple[Path_, str]]:
     for path, given in conditions(draft):
         if isinstance(given, Expression):
             yield path, f"the condition {path[-1]}"
+    end = math.nextafter(span_of(document.analysis), math.inf)  # a jump at the very end is one
+    for name, _, driven in drives(draft):
+        if jumps(driven.value, end, order=0 if driven.by_rate else 1):
+            yield ("drives", name), f"the drive {name}, whose rate jumps"
     for block, entries in (("drives", document.drives), ("forces", document.forces)):
         for name, entry in entries.items():
             for field, value in entry:
