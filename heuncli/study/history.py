@@ -32,6 +32,7 @@ from heuncli.results import Array, Estimate
 from heuncli.study.at_rest import require_motion
 from heuncli.study.extremes import distinct
 from heuncli.study.kinds import Kinds
+from heuncli.study.room import Room, require_room_for_steps
 from heuncli.study.setup import Setup
 
 if TYPE_CHECKING:  # loaded where there are conditions
@@ -81,15 +82,20 @@ class History:
         return self.recovered.times
 
 
-def integrate(setup: Setup, tolerance: float, deadline: float | None, *, by_cause: bool = False) -> History:
+def integrate(
+    setup: Setup, tolerance: float, deadline: float | None, *, by_cause: bool = False, room: Room | None = None
+) -> History:
     """The history that the analysis asks for, with a column a cause where asked; nothing moves in a state.
 
+    room: in which its steps must fit, as far as they are known before.
     Raises SolveError where no acceleration exists or the motion cannot be continued, LimitError past the deadline.
     """
     times, runner = np.array(setup.spec.analysis.times, dtype=float), setup.runner
     if setup.method is None:
         return state(setup, float(times[0]), tolerance, by_cause)
     jumps = begin(setup)
+    if room is not None:
+        require_room_for_steps(setup, len(jumps) + 1, room)
     checked = checked_motion(setup, tolerance, jumps, deadline, by_cause)
     jumps = tuple(sorted({*jumps, *checked.run.jumps}))
     require_followed(runner, checked.run)

@@ -1,7 +1,8 @@
 """How much memory the results of a run will take, before anything moves, and whether there is as much.
 
 What is told of an instant is counted by the schema of results; what a number takes on its way out, and what the
-kernel answers do, was measured (`Room`, ANSWERS). Steps are not counted: nobody knows them before the run.
+kernel answers do, was measured (`Room`, ANSWERS). Of the steps nobody knows how many they will be, but that each jump
+or kink in time ends one.
 """
 
 from __future__ import annotations
@@ -10,12 +11,15 @@ import math
 from collections.abc import Iterator
 
 from heuncli.errors import LimitError, Problem
+from heuncli.integration.loop import KEPT
 from heuncli.records import record
 from heuncli.response import answer_sizes
 from heuncli.results_schema import CUT, REPORT_OF, ROWS, SHARES, Quantity, is_share
 from heuncli.study.setup import Setup
 
 ANSWERS = 3.0  # times the kernel's answers at an instant: those of both runs, and what is made of them beside
+RUNS = 3  # whose steps are held at once: the run that is told, its check run, the one from a moved start
+A_STEP = 150.0  # bytes of a step beside what it starts from: its end, its segment, its place among the jumps
 BESIDE_LOADS = 3  # causes beside the loads: gravity, drives, motion
 UNITS = ((1e9, "GB"), (1e6, "MB"))
 
@@ -48,6 +52,19 @@ def require_room(setup: Setup, room: Room) -> None:
         hint += f"; {share:.0f} % are {largest}: --only leaves out what is not needed"
         hint += ", and runs of cuts may have a smaller count" if largest == "sections" else ""
     raise LimitError(Problem("too-much-memory", message, hint=hint))
+
+
+def require_room_for_steps(setup: Setup, least: int, room: Room) -> None:
+    """Raise LimitError [too-much-memory] where so many steps, the least of the run, take more than there is."""
+    width = 2 * setup.runner.moving.layout.n_state
+    takes = RUNS * (A_STEP * least + 2.0 * 8.0 * min(width * least, KEPT))  # twice: an array that grows is copied
+    if takes <= room.memory:
+        return
+    message = (
+        f"loads and drives jump or bend at {least - 1:,} instants, each the end of a step; so many steps would take "
+        f"about {in_words(takes)} of memory; {in_words(room.memory)} may be taken"
+    )
+    raise LimitError(Problem("too-much-memory", message, hint="a shorter duration, or tables of fewer points"))
 
 
 def in_words(size: float) -> str:

@@ -107,7 +107,7 @@ def solved(spec: Spec, options: Options, deadline: float | None) -> Study:
     if options.room is not None:
         require_room(setup, options.room)
     built = time.perf_counter()
-    history = integrate(setup, spec.analysis.tolerance, deadline, by_cause=SHARES in options.reports)
+    history = integrate(setup, spec.analysis.tolerance, deadline, by_cause=SHARES in options.reports, room=options.room)
     whole, setup = setup, replace(setup, asked=options.asked) if conditions else setup
     moved = time.perf_counter()
     recovery = recover(setup, history.recovered, options.least_norm)

@@ -42,6 +42,25 @@ def test_what_would_not_fit_is_refused_with_what_would(
     assert heun(*words.split(), "many.yaml").returncode == 0
 
 
+def test_steps_that_are_known_before_are_counted(
+    heun: Heun, folder: Path, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    """A table whose 10,000 points in the run each end a step; with little memory it is refused before it moves."""
+    scene = (
+        "heun: 1\nbodies: {b: {mass: 1, center: [0, 0, 0], inertia: [1, 1, 1], points: {p: [0, 0, 0]}}}\n"
+        "tables: {f: {x: [0, 0.0001, 0.0002], y: [0, 1, 0], period: 0.0002}}\n"
+        "forces: {f: {type: force, on: b.p, vector: ['table(f, t)', 0, 0]}}\nanalysis: {duration: 1, samples: 3}\n"
+    )
+    (folder / "dense.yaml").write_text(scene)
+    monkeypatch.setattr(memory, "_left", lambda: iter([8e6]))
+    done = heun("run", "dense.yaml")
+    assert (done.returncode, done.stdout) == (4, "")
+    assert "loads and drives jump or bend at 9,999 instants" in done.stderr and "[too-much-memory]" in done.stderr
+    assert "hint: a shorter duration, or tables of fewer points" in done.stderr
+    monkeypatch.setattr(memory, "_left", lambda: iter([8e8]))
+    assert heun("run", "dense.yaml", "--quiet").returncode == 0
+
+
 @pytest.mark.parametrize("name", ["double", "overhang", "door"])
 @pytest.mark.parametrize("shares", [False, True])
 def test_the_estimate_counts_what_is_told(name: str, shares: bool) -> None:
