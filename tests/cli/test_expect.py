@@ -8,9 +8,11 @@ from typing import Any
 import numpy as np
 import pytest
 
-from heuncli.errors import Problem, SolveError, SourceLocation
+from heuncli.errors import Problem, SolveError, SourceLocation, SpecError
+from heuncli.spec.load import load
 from heuncli.study import expect
 from heuncli.study.expect import compare
+from heuncli.study.solve import Options, solve
 from tests.shared.fakes import ACCURATE, FakeStudy, pendulum
 
 STUDY = FakeStudy(np.linspace(0.0, 2.0, 21))
@@ -174,3 +176,32 @@ def test_several_problems_at_once_fail_one_expectation(monkeypatch: pytest.Monke
 
     monkeypatch.setattr(expect, "_found", found)
     assert compare(STUDY, expectation(FX, 3.0, peak="max")).failure == "one (a hint)"
+
+
+FALLING = """\
+heun: 1
+gravity: [0, 0, -9.81]
+bodies: {ball: {mass: 1, center: [0, 0, 0], inertia: [1, 1, 1]}}
+analysis: {duration: 1, samples: 5, until: t > 0.3}
+expect:
+"""
+
+
+@pytest.mark.parametrize(
+    ("at", "failure"), [(0.3, None), (0.25, "off by"), (0.4, "not an instant of the output; the nearest is 0.3 s")]
+)
+def test_where_a_run_ends_is_known_after_it(at: float, failure: str | None) -> None:
+    """The instant at which a condition ends it is one of the output: what is expected there is compared."""
+    item = f"  - {{of: bodies.ball.velocity.z, at: {at}, is: {-0.3 * 9.81}}}\n"
+    spec = load("falling.yaml", FALLING + item)
+    told = compare(solve(spec, Options()), spec.expect[0]).failure
+    assert told is None if failure is None else told is not None and failure in told
+
+
+def test_beyond_the_longest_run_nothing_is_expected() -> None:
+    """Nor between the samples of a run that nothing ends."""
+    with pytest.raises(SpecError, match="is not an instant"):
+        load("falling.yaml", FALLING + "  - {of: bodies.ball.velocity.z, at: 1.2, is: 0}\n")
+    with pytest.raises(SpecError, match="is not an instant"):
+        text = FALLING.replace(", until: t > 0.3", "")
+        load("falling.yaml", text + "  - {of: bodies.ball.velocity.z, at: 0.3, is: 0}\n")

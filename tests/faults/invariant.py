@@ -91,8 +91,14 @@ def _output(done: Outcome) -> Iterator[str]:
         yield from _json(text, b"warning" in done.err or "--quiet" in done.argv or "-q" in done.argv)
     elif form == "csv" and done.argv[0] == "run" and not any(word.startswith("--measure") for word in done.argv):
         yield from _csv(text)
-    elif found_there := NOT_NUMBERS.search(re.sub(rb'"[^"]*"', b"", done.out)):
+    elif (found_there := NOT_NUMBERS.search(re.sub(rb'"[^"]*"', b"", done.out))) and not _asked(done, found_there[0]):
         yield f"{found_there[0].decode()} on standard output"
+
+
+def _asked(done: Outcome, word: bytes) -> bool:
+    """Whether a word that is no number stands on the command line itself, as a title may."""
+    alone = rf"(?<![\w.]){word.decode()}(?![\w.])"
+    return any(re.search(alone, each) for each in done.argv)
 
 
 def _format(argv: tuple[str, ...]) -> str:
