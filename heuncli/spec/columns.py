@@ -9,6 +9,7 @@ from __future__ import annotations
 
 import csv
 import math
+import re
 from array import array
 from collections.abc import Iterator, Sequence
 from itertools import islice
@@ -27,6 +28,7 @@ LONGEST_NUMBER = 24  # characters; a double has 24 at most
 PLAIN = b"0123456789+-.eE \t\r\n"
 NUMERIC = frozenset("0123456789+-.,eE_% ")
 NOT_FINITE = frozenset({"nan", "inf", "infinity"})
+BEGINS_AS_NUMBER = re.compile(r"[-+]?[.,]?[0-9]")
 # what to do about it
 ROWS = "each row has its numbers between commas, as 0.5, 12"
 FEWER = "keep the points that matter: between them the table interpolates"
@@ -115,11 +117,14 @@ def layout_of(text: str) -> Layout:
 def begins_at_once(layout: Layout, indices: Sequence[int], text: str) -> bool:
     """Whether what was taken for names is the first point of columns named by number: "0,1,start", "0,1,", "0,NaN".
 
-    Its x is a number then. Numbers do serve as names, beside a name or an empty cell where the rows have numbers, too.
+    Its x is a number then, or all that is wanted begins as one: "0 s,1 N", which is no point, and no names either.
+    Numbers do serve as names, beside a name or an empty cell where the rows have numbers, too.
     """
     first = layout.names
-    if not first or not first[0] or not is_like_number(first[indices[0]], layout.mark):
+    if not first or not first[0]:
         return False
+    if not is_like_number(first[indices[0]], layout.mark):
+        return all(BEGINS_AS_NUMBER.match(first[i]) for i in indices)
     words = {i for i, cell in enumerate(first) if cell and not is_like_number(cell, layout.mark)} - set(indices)
     n, line = next(islice(rows_of(text), 1, 2), (0, ""))
     second = cells(n, line, layout.mark) if n else []
