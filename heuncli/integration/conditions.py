@@ -210,7 +210,7 @@ def errors(runner: Runner, runs: Sequence[Trajectory], number: int, own: Changes
         return found
     conditions, last = Conditions(runner.layout), float(runs[0].times[-1])
     for run in runs[1:]:
-        at = np.minimum(own.times, run.ends[-1])
+        at = np.minimum(own.times, run.reached)
         coordinates = coordinates_at(runner, at, runner.resample(run, at))
         struck = blows_apart(runs[0].blows, run.blows)
         for i, (t, to, there) in enumerate(zip(own.times.tolist(), own.to.tolist(), coordinates, strict=True)):

@@ -78,7 +78,7 @@ def within(bounds: Array, bodies: int, parts: tuple[float, ...]) -> Array:
 
 def passed_between(runner: Runner, runs: Sequence[Trajectory], begin: float, end: float) -> tuple[Array, list[Array]]:
     """The ends of the first run's steps between two instants, and the states of all runs there."""
-    last = min(run.ends[-1] for run in runs)
+    last = min(run.reached for run in runs)
     ends = runs[0].ends[(runs[0].ends > begin) & (runs[0].ends < end) & (runs[0].ends <= last)]
     ends = ends[:: max(1, -(-len(ends) // ENDS))]
     return ends, [runner.resample(run, ends) for run in runs]

@@ -115,6 +115,11 @@ class Trajectory:
     within: Callable[[Array], Array] | None = None  # of steps that are not the kernel's: the states at instants
 
     @property
+    def reached(self) -> float:
+        """The end of its last step [s]; the start where a rope ends it there, before any step."""
+        return float(self.ends[-1]) if len(self.ends) else 0.0
+
+    @property
     def events(self) -> tuple[float, ...]:
         """The instants at which branches change that hang on coordinates."""
         return tuple(self.ends[self.turned > 0.0].tolist())

@@ -59,3 +59,25 @@ def test_what_is_told_is_no_less_than_the_error(w: int, jumps: int, monkeypatch:
 def test_a_run_that_ends_at_its_start_shares_no_step() -> None:
     """As where a rope would have to push at once, in a start moved by rounding alone."""
     assert not checked.shared_steps(np.array([0.1, 0.2]), np.zeros(0))
+
+
+WIDE = """
+heun: 1
+gravity: [0, 0, -9.81]
+parameters: {out: 12 + 6*sin(4*deg), w: sqrt(9.81*tan(4*deg)/out)}
+ground: {points: {mast: [0, 0, 0]}}
+bodies:
+  jib: {shapes: [{type: box, center: [6, 0, 0], size: [12, 0.2, 0.3], mass: 900}],
+    points: {root: [0, 0, 0], tip: [12, 1.229e-14, 0]}}
+  load: {shapes: [{type: sphere, center: [0, 0, 0], radius: 1.432e17, mass: 2000}], points: {hook: [0, 0, 0]},
+    position: [out, 0, -6*cos(4*deg)], velocity: [0, w*out, 0]}
+joints:
+  slew: {type: pin, from: ground.mast, to: jib.root, axis: [0, 0, 1], initial: {angle: 0, rate: w}}
+  rope: {type: rod, from: jib.tip, to: load.hook, length: 6, tension_only: true}
+analysis: {duration: 2*pi/w, samples: 101}
+"""
+
+
+def test_beside_a_run_that_ends_at_its_start_nothing_is_claimed() -> None:
+    """Rounding decides whether the rope pulls a load of 1.4e17 m: one of the runs has no steps."""
+    assert study(WIDE).results.accuracy["horizon"] == 0.0
