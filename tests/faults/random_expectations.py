@@ -29,6 +29,7 @@ NO_NUMBERS = (
     "time",
     "certain_sums",
 )
+NOTHING = 1e-45  # in SI: what is smaller, or a part of it, may be smaller than what a spec may hold
 OFF = 1e-3  # of what is told: no rounding, and no error of these motions, is as large
 
 
@@ -80,7 +81,7 @@ def random_expectation(random: Random) -> tuple[sources.Tree, frozenset[int] | N
 
 
 def _item(random: Random, name: str, right: bool) -> dict[str, Any]:
-    """An expectation at an instant that holds, or does not; {} where a number there is open or zero."""
+    """An expectation at an instant that holds, or does not; {} where a number there is open, or rounding."""
     path, values = random.choice(numbers(name))
     instants = results(name)["time"]
     k = random.randrange(len(instants))
@@ -89,7 +90,7 @@ def _item(random: Random, name: str, right: bool) -> dict[str, Any]:
         i = random.randrange(len(value))
         path, value = f"{path}.{i}", value[i]
     flat = list(_flat(value))
-    if not flat or None in flat or max(map(abs, flat)) == 0.0:
+    if not flat or None in flat or any(0.0 < abs(number) < NOTHING for number in flat) or not any(flat):
         return {}
     size = max(map(abs, flat))
     at = {"at": instants[k]} if len(instants) > 1 else {}
