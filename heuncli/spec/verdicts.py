@@ -9,7 +9,7 @@ from typing import Annotated, Any, Union, get_args, get_origin
 from pydantic import ValidationError
 
 from heuncli.errors import Finding
-from heuncli.nearest import did_you_mean
+from heuncli.nearest import did_you_mean, nearest
 from heuncli.spec.fields import Model
 from heuncli.spec.hints import called, elsewhere, of_form, of_key, of_missing, of_word
 from heuncli.spec.quantity import Follows, kind_of
@@ -141,7 +141,9 @@ def unknown_type(entry: Any, block: str, known: list[str]) -> tuple[str, Violati
         return "wrong-kind", Violation((), f"expected a mapping, found {kind_of(entry)}", f"{{type: {known[0]}, ...}}")
     if "type" not in entry:
         other = next((name for name in entry if called(name, ["type"])), None)
-        hint = f"known: {listed}" if other is None else f"'{other}' is called type here"
+        hint = f"'{other}' is called type here" if other is not None else f"known: {listed}"
+        if other is None and (like := nearest("type", [str(name) for name in entry])) is not None:
+            hint = f"did you mean type where '{like}' stands? {hint}"
         return "missing-key", Violation((), "'type' is missing", hint, key=True)
     tag = entry["type"]
     if type(tag) is not str:

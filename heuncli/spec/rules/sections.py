@@ -12,7 +12,7 @@ from heuncli.spec.turns import cross, length, unit
 
 GENERAL = ("area", "I1", "I2", "J", "c1", "c2")
 REDUCED_TO = ("at", "centroid", "line")
-MOST_CUTS = 100_000  # of a run: more are not told apart by any reader, and take a second an instant
+MOST_CUTS = 50_000  # of a run: no reader tells more apart, and validate cuts these in a second
 EVENLY = "1 is a stress that is spread evenly; of a rectangle it is 1.5, of a circle 4/3"
 
 
