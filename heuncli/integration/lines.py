@@ -99,14 +99,9 @@ def comes_together(runner: Runner, run: Trajectory, horizon: float | None) -> Pr
     return None
 
 
-def answers_at(runner: Runner, run: Trajectory, times: Array) -> Recovered:
-    """The kernel's answers at instants of a run."""
-    return runner.recovered(times, runner.resample(run, times), holding=run.holding_at(times))
-
-
 def separations(runner: Runner, run: Trajectory, times: Array, loads: Sequence[tuple[PairLoad, slice]]) -> Array:
     """From the one point to the other, of each load, (n_t, loads, 3) [m]."""
-    rows = answers_at(runner, run, times).loads[:, [own.start for _, own in loads]]
+    rows = runner.answers_at(run, times).loads[:, [own.start for _, own in loads]]
     return np.asarray(rows["at"] - rows["from_at"])
 
 
@@ -122,9 +117,9 @@ def meeting(
     low, high = begins.copy(), ends.copy()
     for _ in range(HALVINGS):
         middle = 0.5 * (low + high)
-        nearing = answers_at(runner, run, middle).loads[:, load[1].start]["rate"] < 0.0
+        nearing = runner.answers_at(run, middle).loads[:, load[1].start]["rate"] < 0.0
         low, high = np.where(nearing, middle, low), np.where(nearing, high, middle)
-    sides = [answers_at(runner, run, at).loads[:, load[1].start] for at in (low, high)]
+    sides = [runner.answers_at(run, at).loads[:, load[1].start] for at in (low, high)]
     close = np.minimum(sides[0]["span"], sides[1]["span"]) <= tolerances.NO_LENGTH * runner.layout.size
     close &= (sides[0]["value"] != 0.0) | (sides[1]["value"] != 0.0)
     return (float(high[close][0]), load[0].name) if close.any() else None

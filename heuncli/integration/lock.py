@@ -73,7 +73,7 @@ def unfollowed(runner: Runner, run: Trajectory) -> Problem | None:
     marks = np.concatenate([[0.0], run.ends])
     inner = marks[:-1, None] + np.diff(marks)[:, None] * (np.arange(LOOKS) / LOOKS)
     times = np.minimum(np.append(inner.ravel(), run.ends[-1]), run.times[-1])
-    answer = runner.recovered(times, runner.resample(run, times), holding=run.holding_at(times))
+    answer = runner.answers_at(run, times)
     lost = (answer.gap > tolerances.KERNEL["lost"] * runner.size) | (answer.residual > answer.may_stay)
     if not lost.any():
         return None

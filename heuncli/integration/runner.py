@@ -19,7 +19,7 @@ from heuncli.expressions.discontinuities import discontinuities
 from heuncli.expressions.programs import Expression
 from heuncli.integration.between import Blows
 from heuncli.integration.blows import Jump
-from heuncli.integration.evaluator import Evaluator, work_of
+from heuncli.integration.evaluator import Evaluator, Recovered, work_of
 from heuncli.integration.kept import NOTHING_KEPT, Growing, Kept
 from heuncli.integration.loop import (
     EVENTS_AFTER,
@@ -481,6 +481,10 @@ class Runner(Evaluator):
         passed = going.steps.passed(going.run.n)
         times = [t for t, _ in passed]
         return list(zip(times, self.moving.embed(np.array(times), np.array([y for _, y in passed])), strict=True))
+
+    def answers_at(self, run: Trajectory, times: Array) -> Recovered:
+        """Accelerations and loads at instants of a run (ascending, within it), by what held there."""
+        return self.recovered(times, self.resample(run, times), holding=run.holding_at(times))
 
     def resample(self, run: Trajectory, times: Array) -> Array:
         """States (n_t, n) of a run at other instants (ascending, within it), by replaying its own steps.
