@@ -66,9 +66,7 @@ def readings(words: Sequence[str]) -> Iterator[list[str]]:
     yield from readings_behind_blocks(completed(words), [(block,) for block in COMMON])
 
 
-def readings_behind_blocks(
-    several: Iterable[Sequence[str]], blocks: Sequence[tuple[str, ...]]
-) -> Iterator[list[str]]:
+def readings_behind_blocks(several: Iterable[Sequence[str]], blocks: Sequence[tuple[str, ...]]) -> Iterator[list[str]]:
     """Each as it is, behind a block, and with a block in place of one."""
     for words in several:
         yield list(words)

@@ -155,9 +155,7 @@ def _numbers(path: str, keys: Sequence[str], node: Any) -> Array:
         raise _unknown(path, keys, "", []) from None
 
 
-def _unknown(
-    path: str, keys: Sequence[str], word: str, known: Collection[str], empty: str | None = None
-) -> SpecError:
+def _unknown(path: str, keys: Sequence[str], word: str, known: Collection[str], empty: str | None = None) -> SpecError:
     names = list(known)
     at = ".".join(keys) or "the results"
     what = f"{at} has no '{word}'" if word else f"{at} is not a number"

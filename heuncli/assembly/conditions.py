@@ -174,5 +174,6 @@ def _not_zero(joint: Joint, given: Given, value: float) -> Problem:
     return Problem(
         "held-conflict",
         f"joint {joint.name}: {what} {value:.6g} {unit} at the start, but it is counted from the assembled start",
-        hint="let it be zero there, or leave out to_axis and zero: assembled", about=f"joints.{joint.name}",
+        hint="let it be zero there, or leave out to_axis and zero: assembled",
+        about=f"joints.{joint.name}",
     )

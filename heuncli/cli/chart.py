@@ -140,6 +140,11 @@ def numbers(option: str, words: str | None, below: float) -> tuple[float, ...] |
     for value in found:
         if not (0.0 < value < below and math.isfinite(value)):
             limit = "" if below == math.inf else f" below {below:g}"
-            raise UsageError(Problem("bad-option", f"{option} {value:g}: expected positive numbers{limit}",
-                                     hint=f"such as {option} 1e-4,1e-6"))
+            raise UsageError(
+                Problem(
+                    "bad-option",
+                    f"{option} {value:g}: expected positive numbers{limit}",
+                    hint=f"such as {option} 1e-4,1e-6",
+                )
+            )
     return tuple(found)

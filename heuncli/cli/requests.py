@@ -175,9 +175,7 @@ class Check(NamedTuple):
     ]
     format: Annotated[str | None, Option(("--format",), "How to write it. Default: table.", "table|json")] = None
     output: Annotated[str | None, OUTPUT] = None
-    golden: Annotated[str | None, Option(("--golden",), "Compare with whole results kept there.", "DIR")] = (
-        None
-    )
+    golden: Annotated[str | None, Option(("--golden",), "Compare with whole results kept there.", "DIR")] = None
     update: Annotated[bool, Option(("--update",), "Write the kept results anew.")] = False
     junit: Annotated[str | None, Option(("--junit",), "Write a JUnit report.", "FILE")] = None
     time_limit_each: Annotated[float | None, TIME_LIMIT_EACH] = None

@@ -72,9 +72,7 @@ def instants(words: str, times: Array) -> Array:
     return within
 
 
-def warn(
-    spec: Spec, results: Results | None, quiet: bool, place: str = "heun", later: Iterable[str] = ()
-) -> list[str]:
+def warn(spec: Spec, results: Results | None, quiet: bool, place: str = "heun", later: Iterable[str] = ()) -> list[str]:
     """Tell the warnings of reading, of solving (of which `place`) and of what came later, once each; returns them."""
     read = [str(problem) for problem in spec.warnings]
     known = {problem.message for problem in spec.warnings}

@@ -92,9 +92,7 @@ def schedule(mechanism: Mechanism, last: float) -> list[Given]:
     for i, blow in enumerate(mechanism.blows):
         with_drive = next((t for t, before in befores.items() if before < blow.time <= t), blow.time)
         at.setdefault(with_drive, ([], {}))[0].append(i)
-    return [
-        Given(befores.get(t, just_before(t) if t > 0.0 else 0.0), t, tuple(at[t][0]), at[t][1]) for t in sorted(at)
-    ]
+    return [Given(befores.get(t, just_before(t) if t > 0.0 else 0.0), t, tuple(at[t][0]), at[t][1]) for t in sorted(at)]
 
 
 @record

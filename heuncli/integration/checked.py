@@ -329,9 +329,7 @@ def compared(runs: Runs, a: Trajectory) -> Compared:
     return Compared((a, *others), times, states, at.asked[:n], error, horizon, seconds, several)
 
 
-def errors(
-    runs: Runs, a: Trajectory, times: Array, states: Sequence[Array]
-) -> tuple[Array, Recovered | None]:
+def errors(runs: Runs, a: Trajectory, times: Array, states: Sequence[Array]) -> tuple[Array, Recovered | None]:
     """Estimated errors of the motion at the instants, (n,), and the answers there, where one part holds them all.
 
     states: of A and of the other runs.

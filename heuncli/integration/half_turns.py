@@ -1,6 +1,6 @@
 """The end of a run in the global chart of Rodrigues' numbers, at a half turn. Imported only for an error.
 
-    cos(theta / 2) = w,  2 wdot = -sigma . v        of the quaternion (w, v): so long is the last way to w = 0
+cos(theta / 2) = w,  2 wdot = -sigma . v        of the quaternion (w, v): so long is the last way to w = 0
 """
 
 from __future__ import annotations

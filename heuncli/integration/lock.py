@@ -82,9 +82,7 @@ def unfollowed(runner: Runner, run: Trajectory) -> Problem | None:
     return contradiction(runner, passed, float(times[first]), float(run.times[-1]))
 
 
-def bracket(
-    runner: Runner, passed: Sequence[State], failed: float, last: float
-) -> tuple[State | None, float | None]:
+def bracket(runner: Runner, passed: Sequence[State], failed: float, last: float) -> tuple[State | None, float | None]:
     """The last good state of a run, and an instant behind it that is none, as near as the run's own steps tell."""
     if not holds(runner, passed[0]):
         return None, None

@@ -69,8 +69,9 @@ def require_energy(jump: Jump, terms: float) -> None:
     size = max(before, after, abs(jump.work), tolerances.UNBALANCED * terms)
     if not abs(after - before - jump.work) <= tolerances.UNBALANCED * size:
         message = f"at t = {jump.time:.9g} s the energies of the blow on {', '.join(jump.names)} do not add up"
-        raise SolveError(Problem("blow-unbalanced", message, None,
-                                 "a singular pose, or contacts that hardly differ", jump.names[0]))
+        raise SolveError(
+            Problem("blow-unbalanced", message, None, "a singular pose, or contacts that hardly differ", jump.names[0])
+        )
 
 
 @record

@@ -78,7 +78,6 @@ TROUBLE = {
 }
 
 
-
 @record
 class Trajectory:
     """The state at the asked instants.
@@ -544,4 +543,3 @@ class Runner(Evaluator):
             t = loop.t
             first = to + 1
         return replayed.states()
-

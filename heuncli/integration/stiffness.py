@@ -66,9 +66,7 @@ def require_easy(runner: Runner, going: Going, segment: Segment) -> None:
         raise Stiff(method, swift(runner, trial.loop.t, beyond, h))
 
 
-def tried(
-    runner: Runner, going: Going, segment: Segment, method: Method, beside: float
-) -> tuple[float, Integration]:
+def tried(runner: Runner, going: Going, segment: Segment, method: Method, beside: float) -> tuple[float, Integration]:
     """Evaluations that an implicit method takes a second of motion, from the state that a run has reached; the trial.
 
     beside: what a step takes beside those of its stages.

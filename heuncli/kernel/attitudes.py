@@ -80,9 +80,7 @@ def put_vector(x: cython.p_double, at: cython.Py_ssize_t, a: Vec3) -> cython.voi
     x[at + 2] = a.z
 
 
-def kappa_at(
-    attitude: cython.int, y: cython.p_double, state: cython.p_double, at: cython.Py_ssize_t
-) -> Vec3:
+def kappa_at(attitude: cython.int, y: cython.p_double, state: cython.p_double, at: cython.Py_ssize_t) -> Vec3:
     """Rodrigues' numbers of a body's attitude in a state."""
     return kappa_of(Quaternion(state[at], state[at + 1], state[at + 2], state[at + 3]), centre(attitude, y, at))
 
@@ -125,9 +123,7 @@ def leave_chart(
                 put_vector(x, body.rate_at, spin_of(kappa, vector_at(x, body.rate_at)))
 
 
-def drop_small_parts(
-    scene: cython.pointer[Scene], attitude: cython.int, carry: cython.p_double
-) -> cython.void:
+def drop_small_parts(scene: cython.pointer[Scene], attitude: cython.int, carry: cython.p_double) -> cython.void:
     """The parts that digits of the chart's numbers did not hold are none of the state's."""
     i: cython.Py_ssize_t
     zero: Vec3 = Vec3(0.0, 0.0, 0.0)

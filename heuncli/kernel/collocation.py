@@ -96,9 +96,7 @@ def change_of(of: cython.pointer[Collocation], run: cython.pointer[Run], i: cyth
     return change
 
 
-def factor_step(
-    scene: cython.pointer[Scene], of: cython.pointer[Collocation], run: cython.pointer[Run]
-) -> cython.bint:
+def factor_step(scene: cython.pointer[Scene], of: cython.pointer[Collocation], run: cython.pointer[Run]) -> cython.bint:
     """The tangent at the start, and the factors of L - h J; False where there are none."""
     i: cython.Py_ssize_t
     k: cython.Py_ssize_t
@@ -128,9 +126,7 @@ def factor_step(
 # Newton's iteration
 
 
-def solve_stages(
-    scene: cython.pointer[Scene], method: cython.pointer[Method], run: cython.pointer[Run]
-) -> cython.bint:
+def solve_stages(scene: cython.pointer[Scene], method: cython.pointer[Method], run: cython.pointer[Run]) -> cython.bint:
     """Z and W, and the derivatives at the stages; False where the iteration does not contract.
 
     It ends where its next correction would be rounding, or where corrections do not become smaller any more.

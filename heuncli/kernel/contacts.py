@@ -194,9 +194,7 @@ def stand_within(
     measure_open(scene, t)
 
 
-def meet_contacts(
-    scene: cython.pointer[Scene], method: cython.pointer[Method], run: cython.pointer[Run]
-) -> cython.int:
+def meet_contacts(scene: cython.pointer[Scene], method: cython.pointer[Method], run: cython.pointer[Run]) -> cython.int:
     """Where within a step tried a contact would close, or open, for the first time: the step ends there."""
     x: cython.double
     at: cython.double

@@ -43,18 +43,14 @@ def raise_by_rest(b: cython.p_double, n: cython.int) -> cython.void:
     b[n + 1] = 0.0
 
 
-def differentiate(
-    value: cython.p_double, rate: cython.p_double, n: cython.int, length: cython.double
-) -> cython.void:
+def differentiate(value: cython.p_double, rate: cython.p_double, n: cython.int, length: cython.double) -> cython.void:
     """The rate of a polynomial of degree n over a stretch of time of some length."""
     k: cython.int
     for k in range(n):
         rate[k] = n * (value[k + 1] - value[k]) / length
 
 
-def range_of(
-    b: cython.p_double, n: cython.int, x0: cython.double, x1: cython.double, work: cython.p_double
-) -> Bounds:
+def range_of(b: cython.p_double, n: cython.int, x0: cython.double, x1: cython.double, work: cython.p_double) -> Bounds:
     """Bounds of a polynomial of degree n between x0 and x1: its coefficients over that part (de Casteljau)."""
     i: cython.int
     k: cython.int
@@ -108,9 +104,7 @@ def lay_course(scene: cython.pointer[Scene], run: cython.pointer[Run], rows: cyt
             differentiate(course.rate[i], course.second[i], rows - 1, run.h)
 
 
-def lay_component(
-    run: cython.pointer[Run], c: cython.int, rows: cython.int, b: cython.p_double
-) -> cython.void:
+def lay_component(run: cython.pointer[Run], c: cython.int, rows: cython.int, b: cython.p_double) -> cython.void:
     """One component of the state over the step: y + x (F0 + (1 - x) (F1 + x (F2 + ...)))."""
     k: cython.int
     i: cython.int

@@ -740,9 +740,7 @@ class Expressions:
             self.programs.doubt[k] = 0
         return doubts
 
-    def sample(
-        self, start: cython.int, count: cython.int, times: cython.double[::1], out: cython.double[::1]
-    ) -> None:
+    def sample(self, start: cython.int, count: cython.int, times: cython.double[::1], out: cython.double[::1]) -> None:
         """Values of one program in time alone at instants, into out, as long as times; coordinates are NaN."""
         i: cython.Py_ssize_t
         self.check(start, count)

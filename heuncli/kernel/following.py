@@ -110,9 +110,7 @@ def measure_reach(scene: cython.pointer[Scene], branch: cython.pointer[Branch]) 
     scene.gravity = gravity
 
 
-def farthest(
-    scene: cython.pointer[Scene], branch: cython.pointer[Branch], found: cython.double
-) -> cython.double:
+def farthest(scene: cython.pointer[Scene], branch: cython.pointer[Branch], found: cython.double) -> cython.double:
     """The largest of the coordinates' changes in the answer found, or what is given."""
     i: cython.Py_ssize_t
     x: cython.double

@@ -104,9 +104,7 @@ def slope(programs: cython.pointer[Programs], program: Program, slopes: cython.p
 @cython.cfunc
 @cython.nogil
 @cython.exceptval(check=False)
-def jet_along(
-    programs: cython.pointer[Programs], program: Program, t: cython.double, slopes: cython.p_double
-) -> Jet:
+def jet_along(programs: cython.pointer[Programs], program: Program, t: cython.double, slopes: cython.p_double) -> Jet:
     """Value and derivatives of a program as its variables move: the time alone, or all by their slopes.
 
     Along slopes the first derivative counts, on the branches that `value` takes; in time alone no other has a value.
@@ -163,9 +161,7 @@ def jet_along(
 @cython.inline
 @cython.nogil
 @cython.exceptval(check=False)
-def moving(
-    programs: cython.pointer[Programs], k: cython.int, t: cython.double, slopes: cython.p_double
-) -> Jet:
+def moving(programs: cython.pointer[Programs], k: cython.int, t: cython.double, slopes: cython.p_double) -> Jet:
     """A variable as it moves: the time evenly where there are no slopes, others not at all."""
     if slopes:
         return Jet(t if k == 0 else programs.variables[k], slopes[k], 0.0)
@@ -222,9 +218,7 @@ def jet_on_branch(
 @cython.cfunc
 @cython.nogil
 @cython.exceptval(check=False)
-def slope_of_piece(
-    c: cython.p_double, table: Table, counted: cython.double, x: cython.double
-) -> cython.double:
+def slope_of_piece(c: cython.p_double, table: Table, counted: cython.double, x: cython.double) -> cython.double:
     """The derivative of the cubic of a piece, by its counted number, at any x; none beyond ends that are held."""
     n: cython.int = table.pieces
     turns: cython.double = floor(counted / n) if table.outside == PERIODIC else 0.0

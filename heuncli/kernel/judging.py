@@ -48,9 +48,7 @@ def norm_of(run: cython.pointer[Run], x: cython.p_double, begin: cython.int, end
     return sqrt(square)
 
 
-def step_error(
-    scene: cython.pointer[Scene], method: cython.pointer[Method], run: cython.pointer[Run]
-) -> cython.double:
+def step_error(scene: cython.pointer[Scene], method: cython.pointer[Method], run: cython.pointer[Run]) -> cython.double:
     """Largest error over the groups, 1 = just allowed; not a number where one is not."""
     b: cython.int
     error: cython.double
@@ -147,9 +145,7 @@ def judge(
     return ACCEPTED
 
 
-def judge_given(
-    method: cython.pointer[Method], run: cython.pointer[Run], trouble: cython.int
-) -> cython.int:
+def judge_given(method: cython.pointer[Method], run: cython.pointer[Run], trouble: cython.int) -> cython.int:
     """ACCEPTED, or why a step whose length is given cannot be taken."""
     if method.implicit and not run.newton.solved:
         return UNSOLVED

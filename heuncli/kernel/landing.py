@@ -90,9 +90,7 @@ def meet(scene: cython.pointer[Scene], method: cython.pointer[Method], run: cyth
     return code
 
 
-def meet_branches(
-    scene: cython.pointer[Scene], method: cython.pointer[Method], run: cython.pointer[Run]
-) -> cython.int:
+def meet_branches(scene: cython.pointer[Scene], method: cython.pointer[Method], run: cython.pointer[Run]) -> cython.int:
     """Turns of branches, and what no stage has seen, within a step tried."""
     found: cython.int
     course: cython.pointer[Course] = cython.address(run.course)

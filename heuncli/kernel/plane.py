@@ -152,9 +152,7 @@ def factor_in_plane(scene: cython.pointer[Scene]) -> cython.int:
     return idle
 
 
-def give_way_to_turn(
-    body: cython.pointer[Body], freedom: cython.pointer[Freedom], least: cython.double
-) -> cython.int:
+def give_way_to_turn(body: cython.pointer[Body], freedom: cython.pointer[Freedom], least: cython.double) -> cython.int:
     """U = I s, D = s . U, I <- I - U U' / D of a turn; 1 where it moves no more than `least`."""
     turn: cython.double = body.A.xx
     x: cython.double = body.A.xy
@@ -170,9 +168,7 @@ def give_way_to_turn(
     return 0
 
 
-def give_way_to_shift(
-    body: cython.pointer[Body], freedom: cython.pointer[Freedom], least: cython.double
-) -> cython.int:
+def give_way_to_shift(body: cython.pointer[Body], freedom: cython.pointer[Freedom], least: cython.double) -> cython.int:
     """The same of a shift."""
     sx: cython.double = freedom.s.x
     sy: cython.double = freedom.s.y
@@ -249,9 +245,7 @@ def load_all_in_plane(scene: cython.pointer[Scene]) -> cython.void:
         )
 
 
-def turning_load(
-    body: cython.pointer[Body], alpha: cython.double, x: cython.double, y: cython.double
-) -> cython.double:
+def turning_load(body: cython.pointer[Body], alpha: cython.double, x: cython.double, y: cython.double) -> cython.double:
     """J alpha + m c x a, less the applied moment."""
     return body.inertia.zz * alpha + (body.mc.x * y - body.mc.y * x) - body.M_applied.z
 

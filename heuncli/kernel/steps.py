@@ -296,9 +296,7 @@ def leave(scene: cython.pointer[Scene], method: cython.pointer[Method], run: cyt
     drop_small_parts(scene, method.attitude, run.z_carry)
 
 
-def leaves_chart(
-    scene: cython.pointer[Scene], method: cython.pointer[Method], run: cython.pointer[Run]
-) -> cython.bint:
+def leaves_chart(scene: cython.pointer[Scene], method: cython.pointer[Method], run: cython.pointer[Run]) -> cython.bint:
     """Whether an attitude is at the end of its chart; else the step is held to a part of the way there.
 
     So no step jumps over a half turn, however well its ends may fit.

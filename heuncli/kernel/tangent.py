@@ -53,9 +53,7 @@ if not cython.compiled:
     from heuncli.kernel.tree import balance, direction_of, downward, load_along, push_lent
 
 
-def stand_at(
-    scene: cython.pointer[Scene], t: cython.double, y: cython.p_double, dy: cython.p_double
-) -> cython.int:
+def stand_at(scene: cython.pointer[Scene], t: cython.double, y: cython.p_double, dy: cython.p_double) -> cython.int:
     """Evaluate the state from which directions are looked at, and keep what stands there; as `evaluate` gives."""
     i: cython.Py_ssize_t
     idle: cython.int = evaluate(scene, t, y, dy)
@@ -183,9 +181,7 @@ def upward_along(scene: cython.pointer[Scene]) -> cython.void:
             parent.f_branch = add(parent.f_branch, body.f_branch)
 
 
-def answered_along(
-    body: cython.pointer[Body], freedom: cython.pointer[Freedom], load: cython.double
-) -> cython.double:
+def answered_along(body: cython.pointer[Body], freedom: cython.pointer[Freedom], load: cython.double) -> cython.double:
     """The load e = -s . dF - ds . F that a freedom answers; what it gives way to goes on, as in `answered`."""
     if freedom.driven:
         return 0.0
@@ -226,9 +222,7 @@ def rates_along(
         if body.ball:
             k = body.attitude_at
             q: Quaternion = quaternion_rate(Quaternion(y[k], y[k + 1], y[k + 2], y[k + 3]), scene.tangents[i].omega)
-            dq: Quaternion = quaternion_rate(
-                Quaternion(along[k], along[k + 1], along[k + 2], along[k + 3]), body.omega
-            )
+            dq: Quaternion = quaternion_rate(Quaternion(along[k], along[k + 1], along[k + 2], along[k + 3]), body.omega)
             out[k] = q.w + dq.w
             out[k + 1] = q.x + dq.x
             out[k + 2] = q.y + dq.y

@@ -73,9 +73,7 @@ def given_along(scene: cython.pointer[Scene], load: cython.pointer[Load]) -> Vec
     )
 
 
-def push_along(
-    scene: cython.pointer[Scene], body: cython.int, at: Vec3, force: Vec3, d: LoadTangent
-) -> cython.void:
+def push_along(scene: cython.pointer[Scene], body: cython.int, at: Vec3, force: Vec3, d: LoadTangent) -> cython.void:
     """Put what a force at a place, and a moment, change by on a body; the ground takes them silently."""
     if body >= 0:
         on: cython.pointer[BodyTangent] = cython.address(scene.tangents[body])

@@ -102,9 +102,7 @@ def stand(d: cython.pointer[BodyTangent]) -> cython.void:
     d.f = zero
 
 
-def hang_along(
-    scene: cython.pointer[Scene], body: cython.pointer[Body], d: cython.pointer[BodyTangent]
-) -> cython.void:
+def hang_along(scene: cython.pointer[Scene], body: cython.pointer[Body], d: cython.pointer[BodyTangent]) -> cython.void:
     """Of the joint point, its velocity and its acceleration, from the parent and the shifts of the joint.
 
     r = r_p + l,  v = v_p + omega_p x l + w,  a = a_p + alpha_p x l + omega_p x (omega_p x l + 2 w) + sum udot s

@@ -193,9 +193,7 @@ def is_point_symmetric(off: Array, size: Array, near: float) -> bool:
     return bool(same.any(axis=1).all())
 
 
-def stress_block(
-    found: Found, cuts: tuple[int, ...], loads: Mapping[str, Array], strength: float | None
-) -> Block:
+def stress_block(found: Found, cuts: tuple[int, ...], loads: Mapping[str, Array], strength: float | None) -> Block:
     """The stresses of cuts by their groups, (n_t, k), nan where properties are not known; cuts: (k,) or (n_t, k)."""
     shape = loads["N"].shape
     block: Block = {}

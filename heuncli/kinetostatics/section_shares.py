@@ -63,9 +63,7 @@ def loads_by_cause(cuts: Cuts, layout: Layout, states: BodyStates, shares: Share
     return piece_loads(cuts, acceleration_matrix_by_cause(cuts.body, layout, states, shares), joints)
 
 
-def direct_loads(
-    cuts: Cuts, gravity: Array, states: BodyStates, shares: Shares
-) -> dict[str, tuple[Array, Array]]:
+def direct_loads(cuts: Cuts, gravity: Array, states: BodyStates, shares: Shares) -> dict[str, tuple[Array, Array]]:
     """By cause the weight of the pieces, and each load that stands on the body where it stands on them, (3, n_t, k)."""
     none = np.zeros((len(states.x), 3))
     weight = accelerations_as_matrix(none, none, in_body_axes(states.R[:, cuts.body], none - gravity))

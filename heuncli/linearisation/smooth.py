@@ -72,9 +72,7 @@ def values(here: Looked) -> Array:
     """What the expressions' variables are: t, then coordinates and rates."""
     freedoms = here.at.freedoms
     table = here.layout.tables["variables"][1:]
-    return np.array(
-        [here.t, *(freedoms["u" if row["is_rate"] else "q"][0, row["freedom"]] for row in table)]
-    )
+    return np.array([here.t, *(freedoms["u" if row["is_rate"] else "q"][0, row["freedom"]] for row in table)])
 
 
 def programs_of(here: Looked) -> list[tuple[str, int, int]]:

@@ -161,9 +161,7 @@ def spun(joint: Joint, bodies: tuple[Body, ...]) -> Joint:
     return joint
 
 
-def parts_of(
-    name: str, f: Any, index: dict[str, int], joints: dict[str, tuple[int, Kind]]
-) -> tuple[Load, ...]:
+def parts_of(name: str, f: Any, index: dict[str, int], joints: dict[str, tuple[int, Kind]]) -> tuple[Load, ...]:
     """An applied load: of a distributed one the parts that grow towards its one end and its other."""
     if f.type != "distributed":
         return (load(name, f, index, joints),)

@@ -70,5 +70,3 @@ def _direction(seen: View) -> str:
         if np.count_nonzero(n) == 1 and n[k] != 0.0:
             return name
     return "({})".format(", ".join(f"{0.0 if abs(x) <= tolerances.FLAT else x:.6g}" for x in n))
-
-

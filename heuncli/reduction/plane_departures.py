@@ -176,5 +176,3 @@ def _still(seen: View) -> Iterator[Departure]:
         for name, quantity in dict.fromkeys(use for e in load.values for use in e.uses):
             if seen.still(numbers[name], base.get(quantity, quantity)):
                 yield Departure(f"forces.{load.name} names {name}.{quantity}, a coordinate out of it", 1.0, True)
-
-

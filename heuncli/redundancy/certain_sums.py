@@ -76,9 +76,7 @@ def in_few_axes(rows: Array) -> Array:
     return rows if K <= n else np.asarray(np.linalg.qr(rows.T, mode="r")).T
 
 
-def echelon(
-    names: Sequence[str], rows: Array, scale: Mapping[str, float]
-) -> tuple[list[dict[str, float]], list[str]]:
+def echelon(names: Sequence[str], rows: Array, scale: Mapping[str, float]) -> tuple[list[dict[str, float]], list[str]]:
     """Each row (of unit length) that depends on those before it, by an independent set of them; and that set."""
     sums: list[dict[str, float]] = []
     free: list[int] = []

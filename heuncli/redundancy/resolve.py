@@ -106,9 +106,7 @@ def singular_poses(stress: SelfStress, times: Array, redundant: Array) -> list[s
     return sentences
 
 
-def put_verdicts(
-    stress: SelfStress, joints: Sequence[JointLoads], states: BodyStates, shown: Block, axes: str
-) -> None:
+def put_verdicts(stress: SelfStress, joints: Sequence[JointLoads], states: BodyStates, shown: Block, axes: str) -> None:
     """Make the open components of joints, stops and what stands on the ground visible, in place."""
     base = shown.get("foundation", {})
     supports, elements = base.get("supports", {}), base.get("elements", {})
@@ -145,9 +143,7 @@ def mark_chosen(
             reactions[load.joint.name]["chosen"] = names
 
 
-def sums_of(
-    runner: Runner, recovered: Recovered, joints: Sequence[JointLoads], stress: SelfStress
-) -> list[CertainSum]:
+def sums_of(runner: Runner, recovered: Recovered, joints: Sequence[JointLoads], stress: SelfStress) -> list[CertainSum]:
     """Certain sums of the joints' open components, true at the asked instants and in neighbouring poses."""
     pick = np.unique(np.linspace(0, len(recovered.times) - 1, SUMS_FROM).astype(int))
     near = neighbours(

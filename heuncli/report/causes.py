@@ -323,9 +323,7 @@ def run_instants_table(run: Run, results: Results, horizon: float | None, certai
     return of_run(run, lines, certain)
 
 
-def line_of_run(
-    results: Results, name: str, load: Along, label: str, at: tuple[int, int], where: str
-) -> Line:
+def line_of_run(results: Results, name: str, load: Along, label: str, at: tuple[int, int], where: str) -> Line:
     """The line of a resultant of a run at an instant and a cut."""
     quantity, unit = load.name, load.unit
     section = results.sections[name]

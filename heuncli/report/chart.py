@@ -55,9 +55,7 @@ def table(chart: Chart) -> Table:
     rows: list[tuple[str, ...] | str] = []
     for name, runs in chart.by_method.items():
         rows.append(title(name))
-        rows += [
-            (*cells(run, kinds, same[-1]), *([brief(run)] * remarks)) for same in alike(runs) for run in same[:1]
-        ]
+        rows += [(*cells(run, kinds, same[-1]), *([brief(run)] * remarks)) for same in alike(runs) for run in same[:1]]
     notes = ["; ".join(OF[kind] for kind in kinds)]
     if any(run.bounded for run in chart.runs):
         notes.append(f"{AT_MOST}: the run differs from the reference by no more than that one may err itself")

@@ -57,9 +57,7 @@ def wide(text: str, size: float) -> float:
     return WIDE * size * len(text)
 
 
-def placed(
-    lines: Sequence[tuple[str, Points]], field: Box, size: float, taken: Sequence[Box] = ()
-) -> list[Label]:
+def placed(lines: Sequence[tuple[str, Points]], field: Box, size: float, taken: Sequence[Box] = ()) -> list[Label]:
     """A name for each line of points, within the field or at its right; taken: where something stands already."""
     found: list[Label] = []
     aside: list[tuple[str, tuple[float, float]]] = []

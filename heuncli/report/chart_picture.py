@@ -253,5 +253,3 @@ def note(group: Group) -> str:
     values = ", ".join(local(run.row) for run in group.runs)
     others = " (the first)" if len(group.runs) > 1 and first.status == FAILED else ""
     return f"× {group.number}  {first.row.method}, {kind} {values}{others}: {remark(first)}"
-
-

@@ -55,8 +55,7 @@ def in_units(series: Iterable[Series], units: Units) -> list[Series]:
     """The same as tables show them."""
     shown = [(item, *units.of(item.unit)) for item in series]
     return [
-        item._replace(unit=unit, values=size * item.values) if unit != item.unit else item
-        for item, unit, size in shown
+        item._replace(unit=unit, values=size * item.values) if unit != item.unit else item for item, unit, size in shown
     ]
 
 

@@ -190,7 +190,7 @@ def hint_for(value: Any) -> str:
         return "write a number behind the colon, or leave the key out"
     if type(value) is list and len(value) == 1:
         return "one number stands without [ ]"
-    return "as 0.5, \"12 mm\" or \"2*L\""
+    return 'as 0.5, "12 mm" or "2*L"'
 
 
 FINITE = "where there is no limit leave the key out; in [low, high] write null"

@@ -90,9 +90,7 @@ class Resolver:
     def placed(self, value: Expression, path: str) -> Expression:
         return value.at(self.locations[path]) if path in self.locations else value
 
-    def vector(
-        self, values: tuple[Expression, Expression, Expression], path: str, key: str = "vector"
-    ) -> m.Vector:
+    def vector(self, values: tuple[Expression, Expression, Expression], path: str, key: str = "vector") -> m.Vector:
         x, y, z = (self.placed(value, f"{path}.{key}.{i}") for i, value in enumerate(values))
         return x, y, z
 

@@ -113,7 +113,8 @@ ELSEWHERE = {  # keys that stand in another place than the one where they were w
     "stops": "limits of coordinates are a block of their own: stops: {buffer: {joint: guide, travel: [0, 0.2]}}",
     "restitution": "it stands at a rod with tension_only, or at a stop",
     "tension_only": "it stands at a joint of type rod",
-    "diameter": "write the radius, half of it", "length": "its ends are from and to",
+    "diameter": "write the radius, half of it",
+    "length": "its ends are from and to",
     "height": "its ends are from and to",
     "torque": "a torque is a force of type torque; a drive prescribes the motion, and its torque comes out",
     "on": "a torque acts in a joint; what acts on a body is a couple, type: couple",
@@ -121,7 +122,9 @@ ELSEWHERE = {  # keys that stand in another place than the one where they were w
     "units": "units stand with the numbers, as 12 mm; plain numbers are SI; for tables: --units",
     "mu": "friction takes the torque or force itself, as a number: mu times the load that presses",
     "motor": "a pin or slide that is driven: drives: {motor: {joint: NAME, rate: 1500 rpm}}, or a force of type torque",
-    "material": "a shape takes density: 7850 kg/m^3", "color": "shapes have no looks", "colour": "shapes have no looks",
+    "material": "a shape takes density: 7850 kg/m^3",
+    "color": "shapes have no looks",
+    "colour": "shapes have no looks",
 }
 JOINT_WORDS = SYNONYMS | dict.fromkeys(("cable", "rope", "string", "tether"), "rod, with tension_only: true")
 LATER = {  # of the format, but of a later version: (block or key, word)

@@ -47,7 +47,6 @@ class Asked:
         """The names of a block's entries that are asked for."""
         return {entry[1] for entry in self.entries if entry[0] == block}
 
-
     def with_all(self, other: Asked) -> Asked:
         """What either of the two asks for."""
         whole = {report for one in (self, other) for report in one.reports if one.whole(report)}

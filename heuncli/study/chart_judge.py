@@ -117,5 +117,3 @@ def _certain(block: Mapping[str, Any] | None) -> tuple[Mask, Mask]:
         return np.ones(3, dtype=bool), np.ones(3, dtype=bool)
     force, moment = (~np.isnan(block[key]).any(axis=0) for key in ("force", "moment"))
     return force, moment
-
-

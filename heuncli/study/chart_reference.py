@@ -220,5 +220,3 @@ def open_notes(judge: Judge) -> Sequence[str]:
     if judge.setup.cuts and not judge.sections:
         notes.append("open, and so not judged: sections")
     return notes
-
-

@@ -34,9 +34,7 @@ class Sampled:
     setup: with runs of cuts as whole stretches, of which each quantity is two columns, its lowest and its highest.
     """
 
-    def __init__(
-        self, study: Sampleable, searched: Searched, wanted: frozenset[str], setup: Setup | None
-    ) -> None:
+    def __init__(self, study: Sampleable, searched: Searched, wanted: frozenset[str], setup: Setup | None) -> None:
         self.study, self.searched, self.wanted, self.setup = study, searched, wanted, setup
         self.unknown: list[float] = []
         first = sum(map(len, searched.groups))

@@ -124,8 +124,10 @@ def as_asked(scene: Scene, spec: Spec, method: Method, asked: float, most: float
 
 def table(only: list[str]) -> None:
     """Scene by scene and accuracy by accuracy."""
-    print(f"{'scene':28} {'asked':>6}  {'auto':16}{'evals':>8} {'true':>7}  {'best tuned':>22} {'ratio':>6}  "
-          f"{'auto tuned':>10} {'ratio':>6}  {'best as asked':>22} {'ratio':>6}")
+    print(
+        f"{'scene':28} {'asked':>6}  {'auto':16}{'evals':>8} {'true':>7}  {'best tuned':>22} {'ratio':>6}  "
+        f"{'auto tuned':>10} {'ratio':>6}  {'best as asked':>22} {'ratio':>6}"
+    )
     worst = dict.fromkeys(ASKED, 0.0)
     for name, text in scenes():
         if only and not any(part in name for part in only):

@@ -138,9 +138,7 @@ def errors(known: Known, runner: Runner, method: Method, local: float, periods: 
     found = runner.recovered(run.times, run.states)
     energy, momentum = known.off(found)
     phase = np.unwrap(known.phase(found), period=1.0)
-    return Errors(
-        energy[1:], momentum[1:], np.abs(phase[1:] - phase[0]), seconds / periods, run.evaluations / periods
-    )
+    return Errors(energy[1:], momentum[1:], np.abs(phase[1:] - phase[0]), seconds / periods, run.evaluations / periods)
 
 
 def pace(known: Known, runner: Runner, method: Method, evaluations: float) -> float:
@@ -197,7 +195,8 @@ def long(periods: int, only: Sequence[str] = ()) -> None:
             letters[letter] = [(n, max(off, 1e-14)) for n, off in zip(held, shown, strict=True)]
             cells = [f"{off:.0e}" for off in shown] + ["lost"] * (len(decades) - len(shown))
             print(
-                f"{letter} {method.name:17}" + "".join(f"{cell:>9}" for cell in cells)
+                f"{letter} {method.name:17}"
+                + "".join(f"{cell:>9}" for cell in cells)
                 + f"{found.energy.max():9.0e} {found.momentum.max():9.0e} {local:9.1e} {found.evaluations:7.0f}"
                 f" {1e6 * found.seconds:12.0f}",
                 flush=True,

@@ -77,9 +77,7 @@ def cost(row: Row, reduce: bool, repeats: int) -> Cost:
     asked = asked_by(row.asked, spec) if row.asked else EVERYTHING
     setup = set_up(spec, reduce=reduce, asked=asked)
     assert setup.method is not None
-    run = partial(
-        setup.runner.trajectory, np.array(spec.analysis.times), spec.analysis.tolerance, method=setup.method
-    )
+    run = partial(setup.runner.trajectory, np.array(spec.analysis.times), spec.analysis.tolerance, method=setup.method)
     whole = partial(solve, spec, Options(wanted=asked.reports, entries=asked.entries, reduce=reduce))
     return Cost(median_ms(run, repeats), median_ms(whole, repeats))
 

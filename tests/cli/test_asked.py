@@ -47,7 +47,9 @@ def pendulums(n: int, more: str = "", joint: str = "") -> Spec:
     if joint:
         joints["coupler"] = joint
     named = {kind: "".join(f"  {k}: {v}\n" for k, v in own.items()) for kind, own in (("b", bodies), ("j", joints))}
-    return load("scene.yaml", f"""heun: 1
+    return load(
+        "scene.yaml",
+        f"""heun: 1
 gravity: [0, 0, -9.81]
 bodies:
 {named["b"]}joints:
@@ -55,7 +57,8 @@ bodies:
   root: {{body: b0, at: [0, 0, -0.1], normal: [0, 0, -1]}}
   along: {{body: b0, from: top, to: end, count: 5}}
 {more}analysis: {{duration: 0.5, samples: 11}}
-""")
+""",
+    )
 
 
 def asked(spec: Spec, paths: Iterable[str], **options: Any) -> Study:
@@ -181,7 +184,9 @@ def test_what_is_about_all_bodies_needs_all(report: str) -> None:
 
 
 def test_a_rope_elsewhere_does_not_end_the_run() -> None:
-    spec = load("scene.yaml", """heun: 1
+    spec = load(
+        "scene.yaml",
+        """heun: 1
 gravity: [0, 0, -9.81]
 bodies:
   ball: {mass: 1, center: [0, 0, 0], inertia: [0, 0, 0], points: {c: [0, 0, 0]}, position: [0, 9, 1]}
@@ -190,7 +195,8 @@ joints:
   rope: {type: rod, from: {body: ground, at: [0, 9, 0]}, to: ball.c, tension_only: true}
   pin: {type: pin, from: {body: ground, at: [0, 0, 0]}, to: bar.top, axis: [0, 1, 0], initial: {angle: 1}}
 analysis: {duration: 1, samples: 3}
-""")
+""",
+    )
     assert asked(spec, ["joints.pin.force"], reduce=False).results.status["code"] == "stopped"
     found = asked(spec, ["joints.pin.force"]).results
     assert found.status["code"] == "completed" and len(found.time) == 3

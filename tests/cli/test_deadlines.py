@@ -23,10 +23,13 @@ from tests.cli.conftest import HANGING, Heun
 SPECS = Path(__file__).parents[2] / "specs"
 ENOUGH = 5.0  # seconds in which a command of a tenth of a second is given up, on a machine that does much else
 REST = HANGING + "analysis: {type: rest}\n"
-DRIVEN = HANGING + """\
+DRIVEN = (
+    HANGING
+    + """\
 forces: {push: {type: couple, on: bar, vector: ["step(t - 0.05)", 0, 0]}}
 analysis: {duration: 0.1, samples: 3}
 """
+)
 
 pytestmark = pytest.mark.skipif(not hasattr(signal, "setitimer"), reason="no timer that interrupts")
 
@@ -124,9 +127,7 @@ def test_a_huge_limit_and_another_thread(heun: Heun) -> None:
 
 @pytest.mark.parametrize("name", ["double", "four_bar"])
 @pytest.mark.parametrize("hold_rows", [False, True])
-def test_states_are_recovered_alike_in_short_calls(
-    monkeypatch: pytest.MonkeyPatch, name: str, hold_rows: bool
-) -> None:
+def test_states_are_recovered_alike_in_short_calls(monkeypatch: pytest.MonkeyPatch, name: str, hold_rows: bool) -> None:
     """One state to a call of the kernel, or all."""
     study = solve(load(str(SPECS / f"{name}.yaml")))
     runner, times = study.setup.runner, study.results.time[::20]

@@ -23,8 +23,18 @@ FX_AT_1 = 3.0 * np.sin(2.0)
 
 def expectation(of: str, is_: Any, **more: Any) -> Any:
     return SimpleNamespace(
-        **{"of": of, "is_": is_, "at": None, "peak": None, "rel": None, "abs": None, "below": None, "above": None,
-           "location": PLACE, **more}
+        **{
+            "of": of,
+            "is_": is_,
+            "at": None,
+            "peak": None,
+            "rel": None,
+            "abs": None,
+            "below": None,
+            "above": None,
+            "location": PLACE,
+            **more,
+        }
     )
 
 

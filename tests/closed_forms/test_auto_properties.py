@@ -101,7 +101,10 @@ def test_what_is_not_known_is_refused(shapes: str, where: str, more: str, why: s
 
 def test_without_shapes_there_is_nothing_to_take() -> None:
     text: Any = BAR.format(shapes=ROUND, properties="auto", where=AT, more="")
-    text = text.replace(f"shapes: [{ROUND}]", "mass: 1\n    center: [1, 0, 0]\n    inertia: [1, 1, 1]\n"
-                        "    piece: {mass: 1, center: [1, 0, 0], inertia: [1, 1, 1]}")
+    text = text.replace(
+        f"shapes: [{ROUND}]",
+        "mass: 1\n    center: [1, 0, 0]\n    inertia: [1, 1, 1]\n"
+        "    piece: {mass: 1, center: [1, 0, 0], inertia: [1, 1, 1]}",
+    )
     with pytest.raises(SpecError, match="no shapes to take them from"):
         study(text)

@@ -31,7 +31,9 @@ def blow(scene: str | dict[str, Any]) -> Block:
 
 # ---- 6: a hinged rod
 def hinged(h: object, more: str = "") -> str:
-    return HEAD + f"""
+    return (
+        HEAD
+        + f"""
 bodies:
   rod:
     shapes: [{{type: rod, from: [0, 0, 0], to: [1, 0, 0], mass: 1}}]
@@ -39,6 +41,7 @@ bodies:
 joints: {{hinge: {{type: pin, from: ground.O, to: rod.a, axis: [0, 0, 1]}}}}
 impulses: {{blow: {{on: rod.h, vector: [0, 1, 0]}}}}
 {more}"""
+    )
 
 
 @pytest.mark.parametrize(("h", "value"), [("2/3", 0.0), (0.5, 0.25), (1, -0.5), (0.25, 0.625)])
@@ -190,7 +193,9 @@ def test_12_at_the_dead_centre(told: str) -> None:
 
 
 # ---- 13: a ladder
-LADDER = HEAD + """
+LADDER = (
+    HEAD
+    + """
 parameters: {tilt: 0.9}
 bodies:
   ladder:
@@ -203,6 +208,7 @@ joints:
   wall: {type: plane, from: ground.O, to: ladder.head, normal: [1, 0, 0]}
 impulses: {blow: {on: ladder.middle, vector: [1, 0, 0]}}
 """
+)
 
 
 def test_13_a_ladder() -> None:
@@ -278,12 +284,15 @@ def test_several_at_one_instant_are_one_blow() -> None:
 
 def test_a_blow_in_the_body_frame_turns_with_it() -> None:
     """A wheel that has turned a quarter by its instant."""
-    scene = HEAD + """
+    scene = (
+        HEAD
+        + """
 bodies: {w: {mass: 1, center: [0, 0, 0], inertia: [1, 1, 2], points: {o: [0, 0, 0], rim: [1, 0, 0]}}}
 joints: {shaft: {type: pin, from: ground.O, to: w.o, axis: [0, 0, 1], initial: {rate: "pi"}}}
 impulses: {blow: {on: w.rim, vector: [1, 4, 0], frame: body, time: 0.5}}
 analysis: {duration: 1, samples: 3}
 """
+    )
     run = solved(scene)
     (found,) = run.impulses
     near(found["bodies"]["w"]["angular_velocity_jump"], (0, 0, 2), 1.0, 1e-9)
@@ -294,11 +303,14 @@ analysis: {duration: 1, samples: 3}
 
 # ---- drives
 def wheel(angle: str) -> str:
-    return HEAD + f"""
+    return (
+        HEAD
+        + f"""
 bodies: {{w: {{mass: 3, center: [0.1, 0, 0], inertia: [1, 1, 2], points: {{o: [0, 0, 0], rim: [1, 0, 0]}}}}}}
 joints: {{shaft: {{type: pin, from: ground.O, to: w.o, axis: [0, 0, 1]}}}}
 drives: {{motor: {{joint: shaft, angle: "{angle}"}}}}
 """
+    )
 
 
 def test_a_drive_whose_rate_jumps_is_a_blow() -> None:
@@ -371,13 +383,16 @@ def test_a_rate_that_jumps_as_the_run_ends() -> None:
 def hung(at: np.ndarray, blow: np.ndarray, analysis: str = "type: impulse") -> str:
     """2 kg on a rope from the origin, struck."""
     small = "center: [0, 0, 0], inertia: [0.1, 0.1, 0.1], points: {c: [0, 0, 0]}"
-    return HEAD + f"""
+    return (
+        HEAD
+        + f"""
 gravity: [0, 0, -9.81]
 bodies: {{b: {{mass: 2, {small}, position: {at.tolist()}}}}}
 joints: {{rope: {{type: rod, from: ground.O, to: b.c, tension_only: true}}}}
 impulses: {{hit: {{on: b.c, vector: {blow.tolist()}, time: {0.05 if "times" in analysis else 0}}}}}
 analysis: {{{analysis}}}
 """
+    )
 
 
 def test_a_rope_pulls_in_a_blow() -> None:
@@ -413,7 +428,9 @@ def test_struck_across_a_rope_neither_pulls_nor_pushes(seed: int) -> None:
 
 
 # ---- what redundant supports leave open
-DOOR = HEAD + """
+DOOR = (
+    HEAD
+    + """
 bodies:
   door:
     mass: 5
@@ -425,6 +442,7 @@ joints:
   bottom: {type: ball, from: {body: ground, at: [0, 0, -0.7]}, to: door.bottom}
 impulses: {ram: {on: door.knob, vector: [3, 2, 7]}}
 """
+)
 
 
 def test_a_door_on_two_balls() -> None:
@@ -489,10 +507,13 @@ impulses: {blow: {on: l.c, vector: [0, 0, 1]}}
 
 def test_free_bodies_and_thin_rods() -> None:
     """A free block, eccentrically: v = h/m, ω = J⁻¹ (r × h); a blow along a thin rod's axis is no twist."""
-    free = blow(HEAD + """
+    free = blow(
+        HEAD
+        + """
 bodies: {b: {mass: 2, center: [0, 0, 0], inertia: [1, 2, 3], points: {p: [0, 1, 2]}}}
 impulses: {blow: {on: b.p, vector: [1, -1, 4]}}
-""")
+"""
+    )
     near(free["bodies"]["b"]["center_velocity_jump"], (0.5, -0.5, 2), 2.0, EXACT)
     near(free["bodies"]["b"]["angular_velocity_jump"], (6 / 1, 2 / 2, -1 / 3), 6.0, EXACT)
     near(free["foundation"]["force"], np.zeros(3), 1.0, EXACT)

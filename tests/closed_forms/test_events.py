@@ -150,9 +150,7 @@ def test_gas_for_five_degrees_of_a_turn(kind: str, analysis: str) -> None:
     """A flywheel's energy is the gas's work, turn by turn, at every angle."""
     degrees, y = WAVE if kind == "cubic" else GAS
     x = [math.radians(d) for d in degrees]
-    tables = (
-        f"tables: {{gas: {{x: {degrees}, y: {y}, x_unit: deg, period: 360 deg, interpolation: {kind}}}}}"
-    )
+    tables = f"tables: {{gas: {{x: {degrees}, y: {y}, x_unit: deg, period: 360 deg, interpolation: {kind}}}}}"
     scene = One(0.5, {"gas": "table(gas, shaft.angle)"}, 0.0, 20.0, analysis, True, tables)
     found = passes(scene, turning(law_of(kind, x, y, True)), knots(x, 25))
     assert found.x[-1] > 2 * math.pi * 9

@@ -133,6 +133,7 @@ def shrinking(times: np.ndarray, rate: float) -> tuple[np.ndarray, np.ndarray]:
     xs, us = np.empty_like(times), np.empty_like(times)
     t, side, w = 0.0, 1.0, rate
     while True:
+
         def flight(s: np.ndarray | float, w: float = w) -> tuple[np.ndarray, np.ndarray]:
             fall = -np.expm1(-np.asarray(s) / 10)
             return 10 * (w + 40) * fall - 40 * np.asarray(s), (w + 40) * (1 - fall) - 40

@@ -49,11 +49,14 @@ def test_the_driven_shaft_in_two_bearings() -> None:
 
 def test_shares_blows_and_sections() -> None:
     """Of a kick at the rotor and a jump of the rate the bearings take their parts, and a cut what its part leaves."""
-    text = DRIVEN.replace(f"rate: {OMEGA}", "rate: '0 if t < 0.01 else 2'") + f"""
+    text = (
+        DRIVEN.replace(f"rate: {OMEGA}", "rate: '0 if t < 0.01 else 2'")
+        + f"""
 impulses: {{kick: {{on: rotor.q, vector: [0, {KICK}, 0], time: 0}}}}
 sections: {{cut: {{body: rotor, at: [0.3, 0, 0], normal: [1, 0, 0], first_axis: [0, 1, 0]}}}}
 analysis: {{times: [0, 0.005]}}
 """
+    )
     wanted = frozenset({"joints", "sections", "impulses", "shares"})
     found = solved(text.replace("time: 0}", "time: 0.002}"), wanted=wanted)
     kick = found.impulses[0]["joints"]

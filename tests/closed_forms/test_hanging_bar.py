@@ -14,7 +14,9 @@ EXACT = 1e-14
 
 def bar(support: str = "ball") -> Results:
     axis = ", axis: [0, 0, 1]" if support == "pin" else ""
-    return solved(HEAD + f"""
+    return solved(
+        HEAD
+        + f"""
 bodies:
   bar:
     shapes: [{{type: cylinder, from: [0, 0, 0], to: [0, 0, -2], radius: 0.01, mass: 1}}]
@@ -23,7 +25,8 @@ joints: {{pivot: {{type: {support}, from: ground.O, to: bar.top{axis}}}}}
 sections:
   along: {{body: bar, from: top, to: end, count: 5}}
   root: {{body: bar, at: top, normal: [0, 0, -1], side: beyond}}
-""")
+"""
+    )
 
 
 @pytest.mark.parametrize("support", ["ball", "pin", "weld"])

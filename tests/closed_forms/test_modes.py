@@ -194,9 +194,10 @@ def test_sleeping_top(spin: float) -> None:
     assert all(mode.growth == 0.0 for mode in told.modes) is stable
     if stable:  # it goes round: x and y a quarter of a turn apart
         shape = told.shapes[-1]
-        assert abs(abs(shape["tip.x"]) - 1.0) <= 1e-9 and abs(shape["tip.x"] / shape["tip.y"] - 1j) * abs(
-            shape["tip.x"] / shape["tip.y"] + 1j
-        ) <= 1e-8
+        assert (
+            abs(abs(shape["tip.x"]) - 1.0) <= 1e-9
+            and abs(shape["tip.x"] / shape["tip.y"] - 1j) * abs(shape["tip.x"] / shape["tip.y"] + 1j) <= 1e-8
+        )
 
 
 def test_free_gyroscope() -> None:

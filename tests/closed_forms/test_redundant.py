@@ -17,8 +17,11 @@ ROUNDING = 1e-12
 
 # ---- a door on two ball hinges
 def door() -> dict[str, Any]:
-    return held({"top": [-0.4, 0, 0.9], "bottom": [-0.4, 0, -0.7]}, {"type": "ball"},
-                {"position": [0.4, 0, 0], "velocity": [0, 0.4 * 2.3, 0], "angular_velocity": [0, 0, 2.3]})
+    return held(
+        {"top": [-0.4, 0, 0.9], "bottom": [-0.4, 0, -0.7]},
+        {"type": "ball"},
+        {"position": [0.4, 0, 0], "velocity": [0, 0.4 * 2.3, 0], "angular_velocity": [0, 0, 2.3]},
+    )
 
 
 def test_door() -> None:
@@ -59,9 +62,15 @@ def test_door_split_by_least_norm_and_by_stiffness() -> None:
 
 
 # ---- a support told twice
-@pytest.mark.parametrize(("again", "twice", "is_open"), [
-    ({"type": "plane", "normal": [1, 2, 2]}, 1, "xyz"), ({"type": "plane", "normal": [3, 0, 4]}, 1, "xz"),
-    ({"type": "line", "axis": [0, 4, 3]}, 2, "xyz"), ({"type": "ball"}, 3, "xyz")])
+@pytest.mark.parametrize(
+    ("again", "twice", "is_open"),
+    [
+        ({"type": "plane", "normal": [1, 2, 2]}, 1, "xyz"),
+        ({"type": "plane", "normal": [3, 0, 4]}, 1, "xz"),
+        ({"type": "line", "axis": [0, 4, 3]}, 2, "xyz"),
+        ({"type": "ball"}, 3, "xyz"),
+    ],
+)
 def test_a_point_held_twice(again: dict[str, Any], twice: int, is_open: str) -> None:
     """Every row of the closure is told by the tree: none of them moves anything."""
     turned = {"orientation": {"axis": [1, 2, 3], "angle": 0.7}, "angular_velocity": [0.3, -1.0, 2.0]}
@@ -94,9 +103,13 @@ def test_three_balls() -> None:
     near([v for t, v in sums(found)], 0.0, 49.05, ROUNDING)
 
 
-@pytest.mark.parametrize(("stiffness", "split"), [
-    (None, (3.714285714286, 3.428571428571, 2.857142857143)),
-    ((1e6, 2e6, 1e6), (2.631578947368, 5.052631578947, 2.315789473684))])
+@pytest.mark.parametrize(
+    ("stiffness", "split"),
+    [
+        (None, (3.714285714286, 3.428571428571, 2.857142857143)),
+        ((1e6, 2e6, 1e6), (2.631578947368, 5.052631578947, 2.315789473684)),
+    ],
+)
 def test_beam_on_three_supports(stiffness: tuple[float, ...] | None, split: tuple[float, ...]) -> None:
     scene = beam()
     if stiffness is not None:
@@ -249,8 +262,13 @@ def crankshaft(kinds: tuple[str, str], stiffness: tuple[float, ...] | None = Non
         for k, value in enumerate(stiffness):
             joints[f"m{k}"]["stiffness"] = {"force": value}
     body = {"shapes": shapes, "points": {**points, "push": [0, 0, 0.05]}, "angular_velocity": [0, 0, 100.0]}
-    return {"gravity": [0, -9.81, 0], "ground": {"points": points}, "bodies": {"shaft": body}, "joints": joints,
-            "forces": {"gas": {"type": "force", "on": "shaft.push", "vector": [0, -1000.0, 0]}}}
+    return {
+        "gravity": [0, -9.81, 0],
+        "ground": {"points": points},
+        "bodies": {"shaft": body},
+        "joints": joints,
+        "forces": {"gas": {"type": "force", "on": "shaft.push", "vector": [0, -1000.0, 0]}},
+    }
 
 
 @pytest.mark.parametrize("kinds", [TIGHT, NARROW])

@@ -216,7 +216,7 @@ def test_a_soft_pose_shows_no_false_digits(soft: float) -> None:
     """A torque that takes back all but a trace of the weight's moment: what rounding makes of the pose is told."""
     all_but = 0.5 * G * (1.0 - soft)
     left = 0.5 * G - all_but
-    load = f"forces: {{k: {{type: torque, joint: p, value: \"{all_but!r}*sin(p.angle) + {1e-3 * left!r}\"}}}}"
+    load = f'forces: {{k: {{type: torque, joint: p, value: "{all_but!r}*sin(p.angle) + {1e-3 * left!r}"}}}}'
     found = solved(pendulum("0.01", load))
     error = abs(found.coordinates["p"]["angle"][0] - math.asin(1e-3))
     assert error <= found.accuracy["estimate"]["motion"] * 1.25 <= 1e3 * 2.0**-52 / soft + 1e-15

@@ -58,13 +58,16 @@ def goes_on(run: Study, *ropes: str) -> None:
 
 def pendulum(speed: float, duration: float, samples: int = 2, tolerance: float = 1e-9) -> Study:
     """A mass of 2 kg on 1 m of rope, hit at the bottom."""
-    return study(HEAD + f"""
+    return study(
+        HEAD
+        + f"""
 ground: {{points: {{O: [0, 0, 0]}}}}
 bodies: {{b: {{mass: 2, center: [0, 0, 0], {SMALL}, points: {{c: [0, 0, 0]}},
   position: [0, 0, -1], velocity: [{speed!r}, 0, 0]}}}}
 joints: {{rope: {{type: rod, from: ground.O, to: b.c, tension_only: true}}}}
 analysis: {{duration: {duration!r}, samples: {samples}, tolerance: {tolerance!r}}}
-""")
+"""
+    )
 
 
 def slack_of_pendulum(speed: float) -> float:
@@ -109,7 +112,9 @@ def test_no_push_at_ten_thousand_instants(ratio: float, last: float) -> None:
 
 def hoist(jerk: str, duration: float = 3.0, samples: int = 2) -> Study:
     """Two tonnes under a driven trolley, 5 m of rope; the drive moves it up and down."""
-    return study(HEAD + f"""
+    return study(
+        HEAD
+        + f"""
 ground: {{points: {{O: [0, 0, 0]}}}}
 bodies:
   drum: {{mass: 50, center: [0, 0, 0], {SMALL}, points: {{c: [0, 0, 0]}}}}
@@ -119,7 +124,8 @@ joints:
   rope: {{type: rod, from: drum.c, to: load.c, tension_only: true}}
 drives: {{winch: {{joint: guide, travel: "{jerk}"}}}}
 analysis: {{duration: {duration!r}, samples: {samples}}}
-""")
+"""
+    )
 
 
 def bell(ratio: float, width: float) -> tuple[float, str]:
@@ -163,7 +169,9 @@ def test_a_hoist_that_trembles(factor: float) -> None:
 
 def between_two(push: str, duration: float = 3.0) -> Study:
     """A kilogram at rest on two ropes, 1 m down and 0.5 m from either; pushed across, the one behind gets slack."""
-    return study(HEAD + f"""
+    return study(
+        HEAD
+        + f"""
 ground: {{points: {{A: [-0.5, 0, 0], B: [0.5, 0, 0]}}}}
 bodies: {{b: {{mass: 1, center: [0, 0, -1], {SMALL}, points: {{c: [0, 0, -1]}}}}}}
 joints:
@@ -171,7 +179,8 @@ joints:
   right: {{type: rod, from: ground.B, to: b.c, tension_only: true}}
 forces: {{push: {{type: force, on: b.c, vector: ["{push}", 0, 0]}}}}
 analysis: {{duration: {duration!r}, samples: 7}}
-""")
+"""
+    )
 
 
 MOST = G / 2  # what may push across: the weight by the ropes' slope
@@ -268,13 +277,16 @@ def test_slack_from_the_start() -> None:
 
 def whirl(a: float, b: float, va: float, vb: float, duration: float) -> Study:
     """A bar on a pin, and a mass on a rope at its end; angles from below about -y, their rates."""
+
     def turn(angle: float) -> str:
         return f"orientation: {{axis: [0, 1, 0], angle: {-angle!r}}}"
 
     x, z = math.sin(a) + 0.8 * math.sin(b), -math.cos(a) - 0.8 * math.cos(b)
     vx = math.cos(a) * va + 0.8 * math.cos(b) * vb
     vz = math.sin(a) * va + 0.8 * math.sin(b) * vb
-    return study(HEAD + f"""
+    return study(
+        HEAD
+        + f"""
 ground: {{points: {{O: [0, 0, 0]}}}}
 bodies:
   bar: {{mass: 1.5, center: [0, 0, -0.5], inertia: [0.125, 0.125, 0.01], {turn(a)},
@@ -285,7 +297,8 @@ joints:
   pivot: {{type: pin, from: ground.O, to: bar.top, axis: [0, -1, 0], initial: {{rate: {va!r}}}}}
   rope: {{type: rod, from: bar.end, to: ball.c, tension_only: true}}
 analysis: {{duration: {duration!r}, samples: 21, tolerance: 1e-11}}
-""")
+"""
+    )
 
 
 def first_slack(a: float, b: float, va: float, vb: float, duration: float) -> float | None:
@@ -321,8 +334,6 @@ def test_a_ball_on_a_bar(start: tuple[float, float, float, float]) -> None:
         goes_on(run, "rope")
     else:
         stops(run, at, "rope", 10.0)
-
-
 
 
 STRUCK = """

@@ -40,12 +40,15 @@ def energy_never_grows(run: Study, at_one: bool = False) -> None:
 # ---- a ball on the floor
 def ball(e: float, duration: float, h: float = 1.0, speed: float = 0.0, mass: float = 2.0, samples: int = 2) -> Study:
     start = f"{{travel: {h!r}, speed: {speed!r}}}"
-    return study(HEAD + f"""
+    return study(
+        HEAD
+        + f"""
 bodies: {{b: {{mass: {mass}, {SMALL}}}}}
 joints: {{guide: {{type: slide, from: ground.O, to: b.c, axis: [0, 0, 1], initial: {start}}}}}
 stops: {{floor: {{joint: guide, travel: [0, null], restitution: {e!r}}}}}
 analysis: {{duration: {duration!r}, samples: {samples}}}
-""")
+"""
+    )
 
 
 @pytest.mark.parametrize("e", [0.9, 0.5, 0.2])
@@ -146,11 +149,14 @@ def test_thrown_into_the_floor_at_the_start() -> None:
 # ---- a mass on a rope
 def thrown(e: float, speed: float, duration: float) -> Study:
     """Hung on 2 m of rope, thrown up."""
-    return study(HEAD + f"""
+    return study(
+        HEAD
+        + f"""
 bodies: {{b: {{mass: 3, {SMALL}, position: [0, 0, -2], velocity: [0, 0, {speed!r}]}}}}
 joints: {{rope: {{type: rod, from: ground.O, to: b.c, tension_only: true, restitution: {e!r}}}}}
 analysis: {{duration: {duration!r}, samples: 2}}
-""")
+"""
+    )
 
 
 @pytest.mark.parametrize("e", [0.0, 0.3, 1.0])
@@ -175,11 +181,14 @@ def test_a_mass_thrown_up_on_a_rope(e: float) -> None:
 
 def test_a_throw_caught_aslant() -> None:
     """Along the rope the speed turns round times e, across it stays."""
-    run = study(HEAD + f"""
+    run = study(
+        HEAD
+        + f"""
 bodies: {{b: {{mass: 3, {SMALL}, position: [0.5, 0, -0.2], velocity: [2, 1, 3]}}}}
 joints: {{rope: {{type: rod, from: ground.O, to: b.c, length: 1.5, tension_only: true, restitution: 0.4}}}}
 analysis: {{duration: 2, samples: 2}}
-""")
+"""
+    )
     x0, v0, g = np.array([0.5, 0, -0.2]), np.array([2.0, 1, 3]), np.array([0, 0, -G])
 
     def place(t: float) -> np.ndarray:
@@ -198,11 +207,14 @@ analysis: {{duration: 2, samples: 2}}
 
 def test_it_comes_taut_without_a_blow_where_it_swings_in() -> None:
     """A pendulum out of its circle flies and is caught: the rope's length is never exceeded."""
-    run = study(HEAD + f"""
+    run = study(
+        HEAD
+        + f"""
 bodies: {{b: {{mass: 2, {SMALL}, position: [0, 0, -1], velocity: [{math.sqrt(3.5 * G)!r}, 0, 0]}}}}
 joints: {{rope: {{type: rod, from: ground.O, to: b.c, tension_only: true, restitution: 0.2}}}}
 analysis: {{duration: 5, samples: 2}}
-""")
+"""
+    )
     found = run.resample(np.linspace(0, 5, 2001))
     assert np.linalg.norm(found.bodies["b"]["center"], axis=1).max() <= 1 + 1e-9
     assert found.joints["rope"]["tension"].min() >= -1e-9
@@ -258,7 +270,9 @@ analysis: {times: [0, 0.5, 1, 2, 3]}
 def test_a_shaken_table_throws_its_block() -> None:
     """A sin ωt shakes a block off where A ω² sin ωt = g; it flies, lands (e = 0), and is thrown again."""
     A, w = 0.05, 20.0
-    run = study(HEAD + f"""
+    run = study(
+        HEAD
+        + f"""
 bodies: {{table: {{mass: 10, {SMALL}}}, b: {{mass: 2, {SMALL}}}}}
 joints:
   shaker: {{type: slide, from: ground.O, to: table.c, axis: [0, 0, 1]}}
@@ -266,7 +280,8 @@ joints:
 drives: {{shake: {{joint: shaker, travel: "{A}*sin({w}*t)"}}}}
 stops: {{lie: {{joint: on, travel: [0, null], restitution: 0}}}}
 analysis: {{duration: 0.5, samples: 2}}
-""")
+"""
+    )
     off = math.asin(G / (A * w * w)) / w
     z0, v0 = A * math.sin(w * off), A * w * math.cos(w * off)
 
@@ -288,7 +303,9 @@ analysis: {{duration: 0.5, samples: 2}}
 # ---- several
 def test_two_at_one_instant() -> None:
     """Two blocks fall from the same height, each on its own floor: each with its own impulse."""
-    run = study(HEAD + f"""
+    run = study(
+        HEAD
+        + f"""
 bodies: {{a: {{mass: 2, {SMALL}}}, b: {{mass: 5, {SMALL}}}}}
 joints:
   one: {{type: slide, from: ground.O, to: a.c, axis: [0, 0, 1], initial: {{travel: 1}}}}
@@ -297,7 +314,8 @@ stops:
   p: {{joint: one, travel: [0, null], restitution: 0.5}}
   q: {{joint: two, travel: [0, null], restitution: 0.25}}
 analysis: {{duration: 0.6, samples: 2}}
-""")
+"""
+    )
     v = math.sqrt(2 * G)
     first = run.results.impulses[0]
     near(strikes(run)[0], v / G, 1.0, INSTANT)
@@ -409,7 +427,9 @@ def test_a_strike_on_what_rests(swapped: bool) -> None:
     """
     ends = "from: b.c, to: a.c" if swapped else "from: a.c, to: b.c"
     limits, start = ("[null, 0]", -0.5) if swapped else ("[0, null]", 0.5)
-    run = study(HEAD + f"""
+    run = study(
+        HEAD
+        + f"""
 bodies: {{a: {{mass: 3, {SMALL}}}, b: {{mass: 2, {SMALL}}}}}
 joints:
   low: {{type: slide, from: ground.O, to: a.c, axis: [0, 0, 1], initial: {{travel: 0}}}}
@@ -418,7 +438,8 @@ stops:
   floor: {{joint: low, travel: [0, null], restitution: 0.7}}
   top: {{joint: on, travel: {limits}, restitution: 0.4}}
 analysis: {{duration: 1.6, samples: 2}}
-""")
+"""
+    )
     v = math.sqrt(G)
     near(strikes(run)[0], 1 / v, 1.6, INSTANT)
     for n in range(5):
@@ -434,13 +455,16 @@ analysis: {{duration: 1.6, samples: 2}}
 
 # ---- given blows on what rests
 def hit_on_the_floor(impulse: float, analysis: str = "duration: 1.5, samples: 2", time: float = 0.5) -> Study:
-    return study(HEAD + f"""
+    return study(
+        HEAD
+        + f"""
 bodies: {{b: {{mass: 2, {SMALL}}}}}
 joints: {{guide: {{type: slide, from: ground.O, to: b.c, axis: [0, 0, 1], initial: {{travel: 0}}}}}}
 stops: {{floor: {{joint: guide, travel: [0, null], restitution: 0.5}}}}
 impulses: {{hammer: {{on: b.c, vector: [0, 0, {impulse}], time: {time}}}}}
 analysis: {{{analysis}}}
-""")
+"""
+    )
 
 
 @pytest.mark.parametrize("analysis", ["duration: 1.5, samples: 2", "type: impulse"])
@@ -468,13 +492,16 @@ def test_a_blow_at_the_instant_of_a_strike() -> None:
     """Given for the instant at which the ball comes: both together, the ball is met by e v once."""
     fall, v = math.sqrt(2 / G), math.sqrt(2 * G)
     for dt in (-1e-9, 0.0, 1e-9):
-        run = study(HEAD + f"""
+        run = study(
+            HEAD
+            + f"""
 bodies: {{b: {{mass: 2, {SMALL}}}}}
 joints: {{guide: {{type: slide, from: ground.O, to: b.c, axis: [0, 0, 1], initial: {{travel: 1}}}}}}
 stops: {{floor: {{joint: guide, travel: [0, null], restitution: 0.5}}}}
 impulses: {{hammer: {{on: b.c, vector: [0, 0, -3], time: {fall + dt!r}}}}}
 analysis: {{times: [0, {fall + 1e-3!r}], tolerance: 1e-12}}
-""")
+"""
+        )
         total = sum(b["bodies"]["b"]["center_velocity_jump"][2] for b in run.results.impulses)
         # before it comes faster; at it the floor bears both; behind it is slowed, or struck anew
         allowed = [0.5 * (v + 1.5), 0.5 * v, 0.5 * v - 1.5, 0.5 * abs(0.5 * v - 1.5)]
@@ -487,13 +514,16 @@ analysis: {{times: [0, {fall + 1e-3!r}], tolerance: 1e-12}}
 # ---- a run of cuts in what is struck
 def test_a_cut_in_a_ball_that_strikes() -> None:
     """A bar falls end on: N at a cut is the momentum of what is above it, which is pressed."""
-    run = study(HEAD + """
+    run = study(
+        HEAD
+        + """
 bodies: {b: {shapes: [{type: rod, from: [0, 0, 0], to: [0, 0, 1], mass: 2}], points: {c: [0, 0, 0], d: [0, 0, 1]}}}
 joints: {guide: {type: slide, from: ground.O, to: b.c, axis: [0, 0, 1], initial: {travel: 0.5}}}
 stops: {floor: {joint: guide, travel: [0, null], restitution: 0.2}}
 sections: {run: {body: b, from: c, to: d, count: 5}}
 analysis: {duration: 1.0, samples: 2}
-""")
+"""
+    )
     v = math.sqrt(G)
     block = run.results.impulses[0]
     s = np.asarray(block["sections"]["run"]["s"], dtype=float)

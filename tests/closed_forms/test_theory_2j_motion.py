@@ -45,7 +45,9 @@ def test_case_1_free_top(joint: bool) -> None:
 
 def heavy_top(spin: float, tilt: str, times: str) -> str:
     """A = 1 about the tip, C = .5, m g l = 1: 1 kg at 0.1 m under g = 10."""
-    return HEAD.replace("-9.81", "-10") + f"""
+    return (
+        HEAD.replace("-9.81", "-10")
+        + f"""
 bodies:
   top:
     mass: 1
@@ -57,6 +59,7 @@ bodies:
 joints: {{tip: {{type: ball, from: ground.O, to: top.tip}}}}
 analysis: {{times: {times}, tolerance: 1e-13}}
 """
+    )
 
 
 PERIOD = 1.660594261039426  # of nutation
@@ -154,7 +157,9 @@ def test_case_10_frequencies_of_the_rods() -> None:
 def test_case_11_conical_rod() -> None:
     """A uniform rod of 1 m at 40° on a ball goes round at Ω = √(3 g / (2 L cos 40°)) = 4.382815107043016."""
     turn = 2 * math.pi / 4.382815107043016
-    found = solved(HEAD + f"""
+    found = solved(
+        HEAD
+        + f"""
 bodies:
   rod:
     shapes: [{{type: rod, from: [0, 0, 0], to: [0, 0, -1], mass: 1}}]
@@ -163,7 +168,8 @@ bodies:
     angular_velocity: [0, 0, 4.382815107043016]
 joints: {{pivot: {{type: ball, from: ground.O, to: rod.top}}}}
 analysis: {{times: [0, {turn / 4}, {turn / 2}, {turn}], tolerance: 1e-13}}
-""")
+"""
+    )
     r, z = math.sin(math.radians(40)), math.cos(math.radians(40))
     near(found.points["rod.tip"]["position"], [[-r, 0, -z], [0, -r, -z], [r, 0, -z], [-r, 0, -z]], 1.0, 1e-12)
     inward = 4.382815107043016**2 * r / 2

@@ -21,7 +21,9 @@ POWER = -41.43487548934319
 EXCESS = 2.6468565  # [W] by which the printed (49) breaks the energy balance
 EXACT = 1e-13
 
-SCENE = HEAD + """
+SCENE = (
+    HEAD
+    + """
 bodies:
   one: {mass: 2, center: [0.5, 0.1, -0.05], inertia: [0.2, 0.5, 0.6], points: {base: [0, 0, 0], joint: [1, 0.2, 0.1]},
         orientation: {rodrigues: [0.1, 0.2, 0.3]}, angular_velocity: [1, -2, 0.5]}
@@ -31,6 +33,7 @@ joints:
   fixed: {type: ball, from: ground.O, to: one.base}
   link: {type: ball, from: one.joint, to: two.base}
 """
+)
 
 
 def hat(a: Array) -> Array:

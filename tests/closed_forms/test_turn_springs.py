@@ -57,8 +57,11 @@ def test_a_universal_about_its_axis(turn: float) -> None:
     """The outer ring of a gimbal: the angle is that of its second axis, as drawn 0."""
     c, s = np.cos(turn), np.sin(turn)
     more = ", to_axis: [1, 0, 0]"
-    text = pendulum("universal", more=more).replace("center: [0.1, 0, 0]", "center: [0, 0, 0]").replace(
-        "points: {o", f"orientation: {{matrix: [[{c}, {-s}, 0], [{s}, {c}, 0], [0, 0, 1]]}}, points: {{o")
+    text = (
+        pendulum("universal", more=more)
+        .replace("center: [0.1, 0, 0]", "center: [0, 0, 0]")
+        .replace("points: {o", f"orientation: {{matrix: [[{c}, {-s}, 0], [{s}, {c}, 0], [0, 0, 1]]}}, points: {{o")
+    )
     found = solved(text)
     near(found.forces["spring"]["angle"], 0.3 + (turn - 0.3) * np.cos(np.sqrt(5 / 0.3) * found.time), 3.2, 1e-9)
 

@@ -15,7 +15,9 @@ HEAD = "heun: 1\nground: {points: {O: [0, 0, 0], A: [0, 0, -0.25], B: [0, 0, 0.2
 
 def whirl(rate: float, torque: float) -> Results:
     """2 kg, 1.5 m along body x on a pin about z, with a couple about it; cuts along, and at 0, L/2."""
-    return solved(HEAD + f"""
+    return solved(
+        HEAD
+        + f"""
 bodies:
   rod:
     shapes: [{{type: rod, from: [0, 0, 0], to: [1.5, 0, 0], mass: 2}}]
@@ -23,7 +25,8 @@ bodies:
 joints: {{hub: {{type: pin, from: ground.O, to: rod.root, axis: [0, 0, 1], initial: {{angle: 0.7, rate: {rate}}}}}}}
 forces: {{motor: {{type: torque, joint: hub, value: {torque}}}}}
 sections: {{run: {{body: rod, from: root, to: tip, count: 31}}}}
-""")
+"""
+    )
 
 
 def test_theory_2j_5() -> None:
@@ -59,7 +62,9 @@ def skew(mass: float, length: float, degrees: float, rate: float, bearings: bool
     if bearings:
         joints = "a: {type: ball, from: ground.A, to: rod.a}, "
         joints += "b: {type: line, from: ground.B, to: rod.b, axis: [0, 0, 1]}"
-    return solved(HEAD + f"""
+    return solved(
+        HEAD
+        + f"""
 bodies:
   rod:
     shapes: [{{type: rod, from: {other}, to: {half}, mass: {mass}}}]
@@ -67,7 +72,8 @@ bodies:
     angular_velocity: [0, 0, {rate}]
 joints: {{{joints}}}
 sections: {{run: {{body: rod, from: c, to: tip, count: 21}}}}
-""")
+"""
+    )
 
 
 def test_theory_2j_9() -> None:

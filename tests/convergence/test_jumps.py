@@ -1,7 +1,7 @@
 """Jumps and kinks in time are met exactly: a flywheel with a damper under torques that switch, against its closed form.
 
-    I w. = M(t) - c w,  M = a + b s on each piece, s the time since its start:
-    w = (w0 - A) exp(-k s) + A + B s,   k = c/I,  B = b/(I k),  A = a/(I k) - B/k
+I w. = M(t) - c w,  M = a + b s on each piece, s the time since its start:
+w = (w0 - A) exp(-k s) + A + B s,   k = c/I,  B = b/(I k),  A = a/(I k) - B/k
 """
 
 from __future__ import annotations
@@ -48,7 +48,9 @@ def flywheel(torque: str, times: Sequence[float], tables: str = "") -> Results:
 
 def scene(torque: str, times: Sequence[float], tables: str = "") -> str:
     """A flywheel under a torque in time and a damper."""
-    return HEAD + f"""
+    return (
+        HEAD
+        + f"""
 {tables}
 bodies:
   wheel: {{mass: 3, center: [0, 0, 0], inertia: [0.3, 0.3, {I}], points: {{hub: [0, 0, 0]}}}}
@@ -59,6 +61,7 @@ forces:
   drag: {{type: damper, joint: shaft, coefficient: {C}}}
 analysis: {{times: {[float(t) for t in times]}, tolerance: 1e-13}}
 """
+    )
 
 
 def compare(found: Results, pieces: Pieces, tolerance: float = 1e-12) -> None:

@@ -92,9 +92,7 @@ class Tally:
             worst = [f"{seconds:.2f} s ({slow})", f"{memory:.0f} MB ({large})"]
             rows.append([kind, str(of.total()), *(str(of[code]) for code in codes), *worst])
         widths = [max(len(row[k]) for row in rows) for k in range(len(heads))]
-        lines = [
-            "  ".join(cell.ljust(width) for cell, width in zip(row, widths, strict=True)).rstrip() for row in rows
-        ]
+        lines = ["  ".join(cell.ljust(width) for cell, width in zip(row, widths, strict=True)).rstrip() for row in rows]
         return "\n".join([*lines, f"cases with violations: {self.wrong}"])
 
 

@@ -71,9 +71,7 @@ def is_number(value: Any) -> bool:
     return isinstance(value, int | float) and not isinstance(value, bool)
 
 
-def change(
-    random: Random, tree: Tree, new: Callable[[Any], Any], fits: Callable[[Any], bool] = lambda _: True
-) -> None:
+def change(random: Random, tree: Tree, new: Callable[[Any], Any], fits: Callable[[Any], bool] = lambda _: True) -> None:
     """Another value at some place whose value fits."""
     if (place := spot(random, tree, fits)) is not None:
         box, key = place

@@ -55,9 +55,7 @@ class Worker:
             seconds = self._used() - used
             if seconds > PROCESSOR or time.monotonic() - begun > PATIENCE:
                 self.end()
-                return Judged(
-                    kind, seed, None, seconds, 0.0, [f"hangs: killed after {seconds:.0f} s of the processor"]
-                )
+                return Judged(kind, seed, None, seconds, 0.0, [f"hangs: killed after {seconds:.0f} s of the processor"])
         answer = self.process.stdout.readline()
         if not answer:
             return Judged(kind, seed, None, 0.0, 0.0, [f"the process died: {self._reason()}"])

@@ -241,7 +241,6 @@ def absolutely_off(x: float) -> str:
     return expectation(f"{{of: joints.pivot.force.x, is: {x!r}}}")
 
 
-
 def beside_a_half_turn(x: float) -> str:
     """A free body that starts 2 x before a half turn, in the global chart, and turns back: its angle after 1 s."""
     scene = f"""
@@ -557,9 +556,7 @@ def rates_at_flat(more: float) -> str:
     """
     faster = f"t: [2.0, 0.0, 0]}}, angular_velocity: [0, 0, {1 + more!r}]"
     text = four_bar((1, 0), (2, 0), ", angular_velocity: [0, 0, 1]").replace("t: [2.0, 0.0, 0]}", faster)
-    return verdict(
-        text, lambda found: near(found.bodies["right"]["angular_acceleration"][0, 2], -1.2 * WEIGHT, WEIGHT)
-    )
+    return verdict(text, lambda found: near(found.bodies["right"]["angular_acceleration"][0, 2], -1.2 * WEIGHT, WEIGHT))
 
 
 def inclined(x: float) -> str:
@@ -641,7 +638,8 @@ def whole(x: float) -> str:
 
 def left_of(x: float) -> str:
     """The table's word for the force in a weld that is left of 1 N by 1 - x N."""
-    run = study(f"""
+    run = study(
+        f"""
 heun: 1
 ground: {{points: {{O: [0, 0, 0]}}}}
 bodies: {{b: {{mass: 1, center: [0, 0, 0], inertia: [1, 1, 1], points: {{o: [0, 0, 0]}}}}}}
@@ -649,11 +647,12 @@ joints: {{w: {{type: weld, from: ground.O, to: b.o}}}}
 forces:
   one: {{type: force, on: b.o, vector: [1, 0, 0]}}
   other: {{type: force, on: b.o, vector: [{x - 1.0!r}, 0, 0]}}
-""", wanted=frozenset({"joints"}))
+""",
+        wanted=frozenset({"joints"}),
+    )
     near(run.results.joints["w"]["force"], [[-x, 0.0, 0.0]], 1.0, 1e-15)
     (table,) = page_of(run.results, labels_of(run.spec), run.magnitudes).instants(run.results)
     return "0" if table.notes == ("0 throughout",) else "a number"
-
 
 
 def axis_of(x: float) -> str:

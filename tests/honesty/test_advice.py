@@ -90,9 +90,15 @@ def tried(text: str) -> str:
     return note
 
 
-@pytest.mark.parametrize(("name", "said"), [
-    ("door", "top as line (axis [0, 0, 1])"), ("slider_crank_pins", "big as line"), ("flat_four_bar", "C as line"),
-    ("bricard", "P1 as universal (to_axis [1, 0, 0])")])
+@pytest.mark.parametrize(
+    ("name", "said"),
+    [
+        ("door", "top as line (axis [0, 0, 1])"),
+        ("slider_crank_pins", "big as line"),
+        ("flat_four_bar", "C as line"),
+        ("bricard", "P1 as universal (to_axis [1, 0, 0])"),
+    ],
+)
 def test_of_the_specs(name: str, said: str) -> None:
     note = tried(start_of(name))
     assert note == f"determinate with {said}: the same motion, and no reaction is open"
@@ -162,10 +168,14 @@ def with_(joint: Mapping[str, Any], **more: Any) -> dict[str, Any]:
     return {**scene, **more}
 
 
-@pytest.mark.parametrize(("joint", "more"), [
-    ({"B": {"initial": {"rate": 0.5}}}, {}),
-    ({}, {"forces": {"worn": {"type": "damper", "joint": "B", "coefficient": 0.1}}}),
-    ({}, {"forces": {"push": {"type": "force", "on": "crank.end", "vector": ["B.angle", 0, 0]}}})])
+@pytest.mark.parametrize(
+    ("joint", "more"),
+    [
+        ({"B": {"initial": {"rate": 0.5}}}, {}),
+        ({}, {"forces": {"worn": {"type": "damper", "joint": "B", "coefficient": 0.1}}}),
+        ({}, {"forces": {"push": {"type": "force", "on": "crank.end", "vector": ["B.angle", 0, 0]}}}),
+    ],
+)
 def test_a_joint_in_use_keeps_its_kind(joint: dict[str, Any], more: dict[str, Any]) -> None:
     """B would be advised, but for the start value, damper or expression that needs it as a pin."""
     assert tried(to_yaml(with_({}))).startswith("determinate with B")

@@ -124,9 +124,7 @@ def test_what_is_joined_is_not_compared_again(monkeypatch: pytest.MonkeyPatch) -
         return apart(*given)
 
     monkeypatch.setattr(outlines, "apart", counted)
-    boxes = ", ".join(
-        f"{{type: box, center: [{i / 40}, 0, 0], size: [0.4, 0.1, 0.1], density: 1}}" for i in range(40)
-    )
+    boxes = ", ".join(f"{{type: box, center: [{i / 40}, 0, 0], size: [0.4, 0.1, 0.1], density: 1}}" for i in range(40))
     found = solved(
         "heun: 1\nground: {points: {O: [0, 0, 0]}}\nbodies:\n"
         f"  b: {{shapes: [{boxes}, {{type: box, center: [0.5, 1, 0], size: [1, 0.1, 0.1], density: 1}}]}}\n"

@@ -75,9 +75,7 @@ def carried(*held: str, more: str = "") -> str:
 
 BALL = "b1: {type: ball, from: ground.O, to: {body: k, at: [0, 0, 0]}}"
 ENDS = ("[0, 2, 1]", "top"), ("[2, 0, 2]", "top"), ("[-1, 2, 0]", "a"), ("[1, -2, 0]", "b")
-RODS = tuple(
-    f"r{i}: {{type: rod, from: {{body: ground, at: {at}}}, to: k.{end}}}" for i, (at, end) in enumerate(ENDS)
-)
+RODS = tuple(f"r{i}: {{type: rod, from: {{body: ground, at: {at}}}, to: k.{end}}}" for i, (at, end) in enumerate(ENDS))
 
 
 @pytest.mark.parametrize(("count", "held"), [(2, False), (3, True), (4, True)])
@@ -109,8 +107,11 @@ def test_a_frame_that_is_driven_in_time() -> None:
 def test_a_slider_at_its_dead_centre_is_not_held() -> None:
     """It does not move at first, as the crank stands in line with the rod."""
     piston = "mass: 1, center: [0, 0, 0], inertia: [0.1, 0.1, 0.1], points: {c: [0, 0, 0]}, position: [2, 0, 0]"
-    text = HEAD + bodies(f"crank: {{{BAR}, angular_velocity: [0, 3, 0]}}", f"link: {{{BAR}, position: [1, 0, 0]}}",
-                         f"piston: {{{piston}}}")
+    text = HEAD + bodies(
+        f"crank: {{{BAR}, angular_velocity: [0, 3, 0]}}",
+        f"link: {{{BAR}, position: [1, 0, 0]}}",
+        f"piston: {{{piston}}}",
+    )
     text += joints("main: {type: pin, axis: [0, 1, 0], from: ground.O, to: crank.a}",
                    "pin: {type: pin, axis: [0, 1, 0], from: crank.b, to: link.a}",
                    "guide: {type: slide, axis: [1, 0, 0], from: ground.O, to: piston.c}",

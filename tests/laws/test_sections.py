@@ -28,7 +28,9 @@ def matrix(R: Array) -> str:
 
 def test_a_whole_free_body_carries_nothing_at_its_ends() -> None:
     """Thrown and spinning, no joint, no load but its weight: zero at both ends of a run, not between."""
-    found = solved(HEAD + f"""
+    found = solved(
+        HEAD
+        + f"""
 bodies:
   bar:
     shapes:
@@ -40,7 +42,8 @@ bodies:
     angular_velocity: [4, -3, 6]
 sections: {{along: {{body: bar, from: a, to: b, count: 11}}}}
 analysis: {{duration: 0.5, samples: 6}}
-""").sections["along"]
+"""
+    ).sections["along"]
     assert found["side"] == [None] * 11
     for part, least in (("force", 10.0), ("moment", 0.01)):
         assert np.abs(found[part][:, 5]).max() > least
@@ -52,7 +55,9 @@ def beam(rng: np.random.Generator, loads: str, support: str) -> str:
     """A bar of 2 m along its own x in any attitude, at rest on supports at its root; a run of 41 cuts, h = 0.05 m."""
     R = random_rotation(rng)
     axes = f", axis: [1, 2, -1], to_axis: {(R.T @ [1.0, 2.0, -1.0]).tolist()}" if support == "pin" else ""
-    return HEAD + f"""
+    return (
+        HEAD
+        + f"""
 bodies:
   beam:
     shapes: [{{type: box, center: [1, 0, 0], size: [2, 0.1, 0.2], density: 500}}]
@@ -63,6 +68,7 @@ joints: {{wall: {{type: {support}, from: ground.O, to: beam.root{axes}}}}}
 forces: {loads}
 sections: {{run: {{body: beam, from: root, to: tip, count: 41, first_axis: [0, 1, 0.3]}}}}
 """
+    )
 
 
 LOADS = """
@@ -125,7 +131,9 @@ def test_beside_a_joint_the_section_is_minus_its_reaction(seed: int, support: st
 
 def test_a_cut_between_two_joints_from_both_sides() -> None:
     """A bar in a chain: just inside its lower joint the section is what the rest of the chain exerts."""
-    found = solved(HEAD + """
+    found = solved(
+        HEAD
+        + """
 bodies:
   upper:
     shapes: [{type: cylinder, from: [0, 0, 0], to: [0, 0, -1], radius: 0.02, density: 3000}]
@@ -141,7 +149,8 @@ joints:
   elbow: {type: ball, from: upper.end, to: lower.top}
 sections: {run: {body: upper, from: top, to: end, count: 3}}
 analysis: {duration: 1, samples: 11}
-""")
+"""
+    )
     run, size = found.sections["run"], float(np.abs(found.joints["pivot"]["force"]).max())
     near(run["force"][:, 0], -found.joints["pivot"]["force"], size, 1e-12)
     near(run["force"][:, -1], -found.joints["elbow"]["force"], size, 1e-12)
@@ -149,7 +158,9 @@ analysis: {duration: 1, samples: 11}
     assert run["side"] == ["beyond", None, "before"]
 
 
-DOUBLE = HEAD + """
+DOUBLE = (
+    HEAD
+    + """
 bodies:
   upper:
     shapes: [{type: cylinder, from: [0, 0, 0], to: [0, 0, -1], radius: 0.05, inner_radius: 0.02, density: 800}]
@@ -169,6 +180,7 @@ sections:
   low: {body: lower, from: top, to: end, count: 6}
 analysis: {duration: 2, samples: 21}
 """
+)
 BARS = {"up": ("upper", 1.0, 0.05, 0.02, 800.0), "low": ("lower", 0.8, 0.04, 0.0, 900.0)}
 
 
@@ -297,7 +309,9 @@ def test_reduction_line(seed: int) -> None:
         near((c - p) @ Q / np.linalg.norm(Q), 0.0, max(1.0, np.linalg.norm(c)), 1e-11)
 
 
-LEVEL = HEAD + """
+LEVEL = (
+    HEAD
+    + """
 bodies:
   bar:
     shapes: [{type: box, center: [1, 0, 0], size: [2, 0.1, 0.1], density: 500}]
@@ -305,6 +319,7 @@ bodies:
 joints: {wall: {type: weld, from: ground.O, to: bar.a}}
 sections: {cut: {body: bar, at: [1, 0, 0], normal: NORMAL, reduce_to: line}}
 """
+)
 
 
 @pytest.mark.parametrize(("gravity", "none", "kind"), [

@@ -189,8 +189,12 @@ def ring(kinds: tuple[str, ...]) -> dict[str, Any]:
     bodies: dict[str, Any] = {}
     for k in range(1, n):
         middle = (corners[k - 1] + corners[k]) / 2
-        bodies[f"b{k}"] = {"mass": 1.0 + 0.2 * k, "center": middle.tolist(), "inertia": [0.11, 0.12, 0.13],
-                           "points": {"O": [0, 0, 0]}}
+        bodies[f"b{k}"] = {
+            "mass": 1.0 + 0.2 * k,
+            "center": middle.tolist(),
+            "inertia": [0.11, 0.12, 0.13],
+            "points": {"O": [0, 0, 0]},
+        }
     joints = {}
     for k, kind in enumerate(kinds):
         a, b = ("ground", "b1") if k == 0 else (f"b{k}", f"b{k + 1}") if k < n - 1 else (f"b{n - 1}", "ground")

@@ -16,8 +16,14 @@ SEEDS = range(12)
 def some_scene(seed: int, **more: object) -> tuple[dict, dict[str, Placed]]:
     """Trees, free bodies, loops and drives, every third of each."""
     rng = np.random.default_rng(seed)
-    settings = {"n_bodies": int(rng.integers(2, 6)), "free": 0.1, "roots": 0.2, "loops": seed % 3, "drives": seed % 2,
-                "masses": ("given", "shapes")[seed // 2 % 2]}
+    settings = {
+        "n_bodies": int(rng.integers(2, 6)),
+        "free": 0.1,
+        "roots": 0.2,
+        "loops": seed % 3,
+        "drives": seed % 2,
+        "masses": ("given", "shapes")[seed // 2 % 2],
+    }
     return random_scene(rng, **{**settings, **more})  # type: ignore[arg-type]
 
 

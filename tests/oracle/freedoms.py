@@ -40,11 +40,14 @@ def head(gravity: float = 0.0) -> str:
 def wheel(r: Random) -> Machine:
     """A wheel on a shaft."""
     inertia, x, u = 10 ** r.uniform(-1, 2), r.uniform(-1, 1), r.choice([-1, 1]) * 10 ** r.uniform(-0.5, 1)
-    text = head() + f"""bodies:
+    text = (
+        head()
+        + f"""bodies:
   b0: {{mass: 1, center: [0, 0, 0], inertia: [{inertia!r}, {inertia!r}, {inertia!r}], points: {{o: [0, 0, 0]}}}}
 joints:
   j0: {{type: pin, from: ground.O, to: b0.o, axis: [0, 0, 1], initial: {{angle: {x!r}, rate: {u!r}}}}}
 """
+    )
     return Machine("wheel", text, (("j0", "angle", "rate"),), (np.array([x]), np.array([u])),
                    lambda t, x, u, Q: Q / inertia, np.array([inertia]))  # fmt: skip
 
@@ -66,9 +69,7 @@ def blocks(r: Random, count: int) -> Machine:
         return plain
     k = 10 ** r.uniform(0, 2)
     springs = (f"{k!r}*(j1.travel - j0.travel)", f"{k!r}*(j0.travel - j1.travel)")
-    return plain._replace(
-        name="two blocks", springs=springs, forces=lambda x: k * np.array([x[1] - x[0], x[0] - x[1]])
-    )
+    return plain._replace(name="two blocks", springs=springs, forces=lambda x: k * np.array([x[1] - x[0], x[0] - x[1]]))
 
 
 class Bar(NamedTuple):

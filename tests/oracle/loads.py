@@ -29,14 +29,20 @@ class Push(NamedTuple):
     def power(self, state: State) -> float:
         """Force times speed of the body's own point there, couple times turning."""
         on = placed(state, self.body)
-        return float(self.force @ (on.velocity + cross(on.angular_velocity, self.place - on.position))
-                     + self.couple @ on.angular_velocity)
+        return float(
+            self.force @ (on.velocity + cross(on.angular_velocity, self.place - on.position))
+            + self.couple @ on.angular_velocity
+        )
 
 
 def pushes(scene: Model, state: State, t: float) -> dict[str, list[Push]]:
     """All applied loads by name; the weight is called `gravity`."""
-    found = {"gravity": [Push(name, state[name].point(m.center), m.mass * scene.gravity, np.zeros(3))
-                         for name, m in scene.masses.items()]}
+    found = {
+        "gravity": [
+            Push(name, state[name].point(m.center), m.mass * scene.gravity, np.zeros(3))
+            for name, m in scene.masses.items()
+        ]
+    }
     for name, spec in scene.loads.items():
         found[name] = KINDS_OF_LOAD[spec["type"]](scene, state, t, spec)
     return found
@@ -88,8 +94,10 @@ def slip(joint: Joint, state: State) -> tuple[Array, Array]:
     """Velocity of the `to` point and angular velocity of `to`, both seen from `from`."""
     A, B = placed(state, joint.a.body), placed(state, joint.b.body)
     P = B.point(joint.b.point)
-    return (B.speed(joint.b.point) - A.velocity - cross(A.angular_velocity, P - A.position),
-            B.angular_velocity - A.angular_velocity)
+    return (
+        B.speed(joint.b.point) - A.velocity - cross(A.angular_velocity, P - A.position),
+        B.angular_velocity - A.angular_velocity,
+    )
 
 
 def joint_named(scene: Model, name: str) -> Joint:
@@ -103,7 +111,7 @@ def slides(kind: str) -> bool:
 
 def torque(scene: Model, state: State, t: float, spec: Spec) -> list[Push]:
     joint = joint_named(scene, spec["joint"])
-    (axis, _), = directions("along", joint, state)
+    ((axis, _),) = directions("along", joint, state)
     value = at_time(spec["value"], t) * axis
     zero = np.zeros(3)
     return in_joint(joint, state, value, zero) if slides(joint.kind) else in_joint(joint, state, zero, value)
@@ -122,8 +130,12 @@ def friction(scene: Model, state: State, t: float, spec: Spec) -> list[Push]:
     joint = joint_named(scene, spec["joint"])
     sliding, turning = slip(joint, state)
     speed = float(spec["speed"])
-    return in_joint(joint, state, opposing(sliding, float(spec.get("force", 0.0)), speed),
-                    opposing(turning, float(spec.get("torque", 0.0)), speed))
+    return in_joint(
+        joint,
+        state,
+        opposing(sliding, float(spec.get("force", 0.0)), speed),
+        opposing(turning, float(spec.get("torque", 0.0)), speed),
+    )
 
 
 def opposing(rate: Array, size: float, speed: float) -> Array:
@@ -140,8 +152,10 @@ def distributed(scene: Model, state: State, t: float, spec: Spec) -> list[Push]:
     first, last = (turn @ vector_at(spec.get(key, spec["vector"]), t) for key in ("vector", "to_vector"))
     places = [0.25 + 0.5 * half + side * 0.25 / np.sqrt(3.0) for half in (0, 1) for side in (-1.0, 1.0)]
     length = float(np.linalg.norm(b - a))
-    return [Push(spec["on"], me.point(a + x * (b - a)), 0.25 * length * ((1.0 - x) * first + x * last), np.zeros(3))
-            for x in places]
+    return [
+        Push(spec["on"], me.point(a + x * (b - a)), 0.25 * length * ((1.0 - x) * first + x * last), np.zeros(3))
+        for x in places
+    ]
 
 
 def turn_spring(scene: Model, state: State, t: float, spec: Spec) -> list[Push]:
@@ -167,8 +181,15 @@ def turned_by(joint: Joint, state: State) -> float:
 
 
 KINDS_OF_LOAD: dict[str, Callable[[Model, State, float, Spec], list[Push]]] = {
-    "force": force, "couple": couple, "torque": torque, "actuator": actuator, "spring": spring, "damper": damper,
-    "friction": friction, "distributed": distributed, "turn_spring": turn_spring,
+    "force": force,
+    "couple": couple,
+    "torque": torque,
+    "actuator": actuator,
+    "spring": spring,
+    "damper": damper,
+    "friction": friction,
+    "distributed": distributed,
+    "turn_spring": turn_spring,
 }
 
 
@@ -178,6 +199,6 @@ def gathered(scene: Model, state: State, loads: Mapping[str, list[Push]]) -> Arr
     place = {name: 6 * k for k, name in enumerate(scene.names)}
     for push in (p for parts in loads.values() for p in parts if p.body != GROUND):
         k = place[push.body]
-        total[k:k + 3] += push.force
-        total[k + 3:k + 6] += push.about(state[push.body].point(scene.masses[push.body].center))
+        total[k : k + 3] += push.force
+        total[k + 3 : k + 6] += push.about(state[push.body].point(scene.masses[push.body].center))
     return total

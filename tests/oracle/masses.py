@@ -230,5 +230,9 @@ def turned(
 
 
 VOLUMES: dict[str, Callable[[Mapping[str, Any], Plane | None], Cloud]] = {
-    "rod": rod, "box": box, "sphere": sphere, "cylinder": cylinder, "cone": cone,
+    "rod": rod,
+    "box": box,
+    "sphere": sphere,
+    "cylinder": cylinder,
+    "cone": cone,
 }

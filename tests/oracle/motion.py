@@ -28,9 +28,9 @@ def motion(scene: Scene, state: State, times: Sequence[float], rtol: float = 1e-
 
     def slope(t: float, y: Array) -> Array:
         now = unpacked(read, y)
-        V = y[7 * n:].reshape(n, 6)
+        V = y[7 * n :].reshape(n, 6)
         V_dot = accelerations(read, now, t, pushes(read, now, t), size).V_dot
-        turning = [quaternion_rate(q, s) for q, s in zip(y[3 * n:7 * n].reshape(n, 4), V[:, 3:], strict=True)]
+        turning = [quaternion_rate(q, s) for q, s in zip(y[3 * n : 7 * n].reshape(n, 4), V[:, 3:], strict=True)]
         return np.concatenate([V[:, :3].ravel(), *turning, V_dot])
 
     found = [packed(read, state)]
@@ -58,10 +58,10 @@ def packed(scene: Model, state: State) -> Array:
 def unpacked(scene: Model, y: Array) -> dict[str, Placed]:
     """The state of origins behind packed numbers."""
     n = len(scene.names)
-    V = y[7 * n:].reshape(n, 6)
+    V = y[7 * n :].reshape(n, 6)
     state = {}
     for k, name in enumerate(scene.names):
-        R = Rotation.from_quat(y[3 * n + 4 * k:3 * n + 4 * k + 4]).as_matrix()
+        R = Rotation.from_quat(y[3 * n + 4 * k : 3 * n + 4 * k + 4]).as_matrix()
         arm = R @ scene.masses[name].center
-        state[name] = Placed(y[3 * k:3 * k + 3] - arm, R, V[k, :3] - cross(V[k, 3:], arm), V[k, 3:])
+        state[name] = Placed(y[3 * k : 3 * k + 3] - arm, R, V[k, :3] - cross(V[k, 3:], arm), V[k, 3:])
     return state

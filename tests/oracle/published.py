@@ -20,20 +20,56 @@ ANDREWS = {
 }
 ANDREWS_GROUND = {"O": (0, 0), "A": (-0.06934, -0.00227), "B": (-0.03635, 0.03273), "C": (0.014, 0.072)}
 ANDREWS_PINS = {  # name: first, second body, point, and which of the second is placed by it
-    "O": ("ground", "K1", "O"), "F": ("K1", "K2", "F"), "B": ("ground", "K3", "B"), "A5": ("ground", "K5", "A"),
-    "A7": ("ground", "K7", "A"), "G": ("K5", "K4", "G"), "H": ("K7", "K6", "H"), "E2": ("K2", "K3", "E"),
-    "E4": ("K4", "K3", "E"), "E6": ("K6", "K3", "E")}
-START = {"b": -0.0617138900142764496, "Th": 0.0, "g": 0.455279819163070380, "Ph": 0.222668390165885885,
-         "de": 0.487364979543842550, "Om": -0.222668390165885885, "ep": 1.23054744454982119}
-END = {"b": 15.81077119629904, "Th": -15.75637105984298, "g": 0.04082224013073101, "Ph": -0.5347301163226948,
-       "de": 0.5244099658805304, "Om": 0.5347301163226948, "ep": 1.048080741042263}
-END_RATES = {"b": 1139.920302151208, "Th": -1424.379294994111, "g": 11.03291221937134, "Ph": 19.29337464421385,
-             "de": 0.5735699284790808, "Om": -19.29337464421385, "ep": 0.3231791658026955}
+    "O": ("ground", "K1", "O"),
+    "F": ("K1", "K2", "F"),
+    "B": ("ground", "K3", "B"),
+    "A5": ("ground", "K5", "A"),
+    "A7": ("ground", "K7", "A"),
+    "G": ("K5", "K4", "G"),
+    "H": ("K7", "K6", "H"),
+    "E2": ("K2", "K3", "E"),
+    "E4": ("K4", "K3", "E"),
+    "E6": ("K6", "K3", "E"),
+}
+START = {
+    "b": -0.0617138900142764496,
+    "Th": 0.0,
+    "g": 0.455279819163070380,
+    "Ph": 0.222668390165885885,
+    "de": 0.487364979543842550,
+    "Om": -0.222668390165885885,
+    "ep": 1.23054744454982119,
+}
+END = {
+    "b": 15.81077119629904,
+    "Th": -15.75637105984298,
+    "g": 0.04082224013073101,
+    "Ph": -0.5347301163226948,
+    "de": 0.5244099658805304,
+    "Om": 0.5347301163226948,
+    "ep": 1.048080741042263,
+}
+END_RATES = {
+    "b": 1139.920302151208,
+    "Th": -1424.379294994111,
+    "g": 11.03291221937134,
+    "Ph": 19.29337464421385,
+    "de": 0.5735699284790808,
+    "Om": -19.29337464421385,
+    "ep": 0.3231791658026955,
+}
 
 
 def andrews_angles(q: dict[str, float]) -> dict[str, float]:
-    return {"K1": q["b"], "K2": q["b"] + q["Th"], "K3": q["g"], "K4": q["Ph"] + q["de"], "K5": q["de"],
-            "K6": q["Om"] + q["ep"], "K7": q["ep"]}
+    return {
+        "K1": q["b"],
+        "K2": q["b"] + q["Th"],
+        "K3": q["g"],
+        "K4": q["Ph"] + q["de"],
+        "K5": q["de"],
+        "K6": q["Om"] + q["ep"],
+        "K7": q["ep"],
+    }
 
 
 def andrews(q: dict[str, float], rates: dict[str, float]) -> dict:
@@ -51,16 +87,30 @@ def andrews(q: dict[str, float], rates: dict[str, float]) -> dict:
         mass, inertia, center, points = ANDREWS[second]
         own = turn @ np.array([*points[point], 0.0])
         places[second] = (at - own, turn, speed - spins[second] * np.cross(Z, own), spins[second])
-        bodies[second] = {"mass": mass, "inertia": [inertia] * 3, "center": [*center, 0.0],
-                          "points": {k: [*c, 0.0] for k, c in points.items()}, "position": list(at - own),
-                          "orientation": {"matrix": turn.tolist()}, "velocity": list(places[second][2]),
-                          "angular_velocity": [0, 0, spins[second]]}
-    joints = {name: {"type": "pin", "axis": [0, 0, 1], "from": f"{a}.{p}", "to": f"{b}.{p}"}
-              for name, (a, b, p) in ANDREWS_PINS.items()}
-    forces = {"spring": {"type": "spring", "from": "ground.C", "to": "K3.D", "stiffness": 4530.0, "length": 0.07785},
-              "motor": {"type": "torque", "joint": "O", "value": 0.033}}
-    return {"ground": {"points": {k: list(p) for k, p in flat.items()}}, "bodies": bodies, "joints": joints,
-            "forces": forces}
+        bodies[second] = {
+            "mass": mass,
+            "inertia": [inertia] * 3,
+            "center": [*center, 0.0],
+            "points": {k: [*c, 0.0] for k, c in points.items()},
+            "position": list(at - own),
+            "orientation": {"matrix": turn.tolist()},
+            "velocity": list(places[second][2]),
+            "angular_velocity": [0, 0, spins[second]],
+        }
+    joints = {
+        name: {"type": "pin", "axis": [0, 0, 1], "from": f"{a}.{p}", "to": f"{b}.{p}"}
+        for name, (a, b, p) in ANDREWS_PINS.items()
+    }
+    forces = {
+        "spring": {"type": "spring", "from": "ground.C", "to": "K3.D", "stiffness": 4530.0, "length": 0.07785},
+        "motor": {"type": "torque", "joint": "O", "value": 0.033},
+    }
+    return {
+        "ground": {"points": {k: list(p) for k, p in flat.items()}},
+        "bodies": bodies,
+        "joints": joints,
+        "forces": forces,
+    }
 
 
 # ---- A02, N-four-bar
@@ -71,10 +121,14 @@ def windows(n: int, tilt: float, rate: float) -> dict:
     pin = {"type": "pin", "axis": [0, 0, 1]}
 
     def bar(along: Array, at: Array, speed: Array, spin: float) -> dict:
-        return {"shapes": [{"type": "rod", "from": [0, 0, 0], "to": [1, 0, 0], "mass": 1.0}],
-                "points": {"root": [0, 0, 0], "end": [1, 0, 0]}, "position": list(at), "velocity": list(speed),
-                "orientation": {"matrix": np.column_stack([along, np.cross(Z, along), Z]).tolist()},
-                "angular_velocity": [0, 0, spin]}
+        return {
+            "shapes": [{"type": "rod", "from": [0, 0, 0], "to": [1, 0, 0], "mass": 1.0}],
+            "points": {"root": [0, 0, 0], "end": [1, 0, 0]},
+            "position": list(at),
+            "velocity": list(speed),
+            "orientation": {"matrix": np.column_stack([along, np.cross(Z, along), Z]).tolist()},
+            "angular_velocity": [0, 0, spin],
+        }
 
     bodies, joints = {}, {}
     for i in range(n + 1):
@@ -104,8 +158,12 @@ def bricard() -> dict:
     owners = ["ground", *bodies, "ground"]
     for k in range(6):
         a, b = (owners[k], owners[k + 1]) if k < 5 else (owners[6], owners[5])
-        joints[f"P{k}"] = {"type": "pin", "axis": list(BRICARD_AXES[k]), "from": {"body": a, "at": list(P[k])},
-                           "to": {"body": b, "at": list(P[k])}}
+        joints[f"P{k}"] = {
+            "type": "pin",
+            "axis": list(BRICARD_AXES[k]),
+            "from": {"body": a, "at": list(P[k])},
+            "to": {"body": b, "at": list(P[k])},
+        }
     return {"gravity": [0, -9.81, 0], "bodies": bodies, "joints": joints}
 
 
@@ -117,9 +175,15 @@ def held(points: dict, kind: dict, body: dict | None = None, **more: object) -> 
     """One body on joints of one kind to the ground, at the body's points in the world's axes."""
     body = {**BRICK, **(body or {}), "points": points}
     at = np.array(body.get("position", [0, 0, 0]))
-    return {"gravity": [0, 0, -9.81], "bodies": {"body": body}, **more,
-            "joints": {name: {**kind, "from": {"body": "ground", "at": list(at + np.array(p))}, "to": f"body.{name}"}
-                       for name, p in points.items()}}
+    return {
+        "gravity": [0, 0, -9.81],
+        "bodies": {"body": body},
+        **more,
+        "joints": {
+            name: {**kind, "from": {"body": "ground", "at": list(at + np.array(p))}, "to": f"body.{name}"}
+            for name, p in points.items()
+        },
+    }
 
 
 def four_bar(phi: float, theta: float, psi: float, lengths: tuple[float, ...], rates: tuple[float, ...]) -> dict:
@@ -128,20 +192,34 @@ def four_bar(phi: float, theta: float, psi: float, lengths: tuple[float, ...], r
     B = crank * np.array([np.cos(phi), np.sin(phi), 0])
 
     def bar(length: float, angle: float, at: np.ndarray, rate: float, v: np.ndarray) -> dict:
-        return {"mass": length, "center": [length / 2, 0, 0], "inertia": [0.01, length**3 / 12, length**3 / 12],
-                "points": {"root": [0, 0, 0], "end": [length, 0, 0]}, "position": list(at), "velocity": list(v),
-                "orientation": {"matrix": about(Z, angle).tolist()}, "angular_velocity": [0, 0, rate]}
+        return {
+            "mass": length,
+            "center": [length / 2, 0, 0],
+            "inertia": [0.01, length**3 / 12, length**3 / 12],
+            "points": {"root": [0, 0, 0], "end": [length, 0, 0]},
+            "position": list(at),
+            "velocity": list(v),
+            "orientation": {"matrix": about(Z, angle).tolist()},
+            "angular_velocity": [0, 0, rate],
+        }
 
     pin = {"type": "pin", "axis": [0, 0, 1]}
     zero = np.zeros(3)
-    return {"gravity": [0, -9.81, 0], "ground": {"points": {"A": [0, 0, 0], "D": [base, 0, 0]}},
-            "bodies": {"crank": bar(crank, phi, zero, rates[0], zero),
-                       "coupler": bar(coupler, theta, B, rates[1], rates[0] * np.cross(Z, B)),
-                       "rocker": bar(rocker, psi, base * np.array([1.0, 0, 0]), rates[2], zero)},
-            "joints": {"A": {**pin, "from": "ground.A", "to": "crank.root"},
-                       "B": {**pin, "from": "crank.end", "to": "coupler.root"},
-                       "C": {**pin, "from": "coupler.end", "to": "rocker.end"},
-                       "D": {**pin, "from": "ground.D", "to": "rocker.root"}}}
+    return {
+        "gravity": [0, -9.81, 0],
+        "ground": {"points": {"A": [0, 0, 0], "D": [base, 0, 0]}},
+        "bodies": {
+            "crank": bar(crank, phi, zero, rates[0], zero),
+            "coupler": bar(coupler, theta, B, rates[1], rates[0] * np.cross(Z, B)),
+            "rocker": bar(rocker, psi, base * np.array([1.0, 0, 0]), rates[2], zero),
+        },
+        "joints": {
+            "A": {**pin, "from": "ground.A", "to": "crank.root"},
+            "B": {**pin, "from": "crank.end", "to": "coupler.root"},
+            "C": {**pin, "from": "coupler.end", "to": "rocker.end"},
+            "D": {**pin, "from": "ground.D", "to": "rocker.root"},
+        },
+    }
 
 
 def beam() -> dict:

@@ -84,8 +84,14 @@ def model(scene: Scene) -> Model:
     bodies = scene["bodies"]
     drives = {d["joint"]: d for d in (scene.get("drives") or {}).values()}
     joints = tuple(joint(scene, name, j, drives.get(name)) for name, j in (scene.get("joints") or {}).items())
-    return Model(scene, tuple(bodies), {name: mass_of(body) for name, body in bodies.items()}, joints,
-                 scene.get("forces") or {}, np.array(scene.get("gravity", [0.0, 0.0, 0.0]), dtype=float))
+    return Model(
+        scene,
+        tuple(bodies),
+        {name: mass_of(body) for name, body in bodies.items()},
+        joints,
+        scene.get("forces") or {},
+        np.array(scene.get("gravity", [0.0, 0.0, 0.0]), dtype=float),
+    )
 
 
 def joint(scene: Scene, name: str, spec: Mapping[str, Any], drive: Mapping[str, Any] | None) -> Joint:
@@ -104,8 +110,18 @@ def joint(scene: Scene, name: str, spec: Mapping[str, Any], drive: Mapping[str, 
     if drive is not None:
         quantity = next(q for q in ("angle", "travel", "length") if q in drive)
         prescribed = (quantity, tuple(drive[quantity]))
-    return Joint(name, spec["type"], a, b, axis, unit(spec.get("to_axis", axis)), length, relative,
-                 drawn if assembled else np.eye(3), prescribed)
+    return Joint(
+        name,
+        spec["type"],
+        a,
+        b,
+        axis,
+        unit(spec.get("to_axis", axis)),
+        length,
+        relative,
+        drawn if assembled else np.eye(3),
+        prescribed,
+    )
 
 
 def end(scene: Scene, value: str | Mapping[str, Any]) -> End:
@@ -135,8 +151,12 @@ def start_state(scene: Scene) -> dict[str, Placed]:
     state = {}
     for name, body in scene["bodies"].items():
         R = attitude(body.get("orientation"))
-        state[name] = Placed(np.array(body.get("position", [0, 0, 0]), dtype=float), R,
-                             directed(body.get("velocity"), R), directed(body.get("angular_velocity"), R))
+        state[name] = Placed(
+            np.array(body.get("position", [0, 0, 0]), dtype=float),
+            R,
+            directed(body.get("velocity"), R),
+            directed(body.get("angular_velocity"), R),
+        )
     return state
 
 

@@ -82,7 +82,7 @@ def joint_rows(joint: Joint, state: State, t: float) -> list[Row]:
     given = float(first(t)), float(second(t))
     if quantity == "length":  # the rod's own row, its length now moving
         return [row._replace(drive=True, rate=given[0], acceleration=given[1]) for row in rows]
-    (d, d_rate), = directions("along", joint, state)
+    ((d, d_rate),) = directions("along", joint, state)
     wrench = (zero, zero, d, d_rate) if quantity == "angle" else (d, d_rate, zero, zero)
     return [*rows, Row(joint.name, True, wrench[0], wrench[1], wrench[2], wrench[3], *given)]
 
@@ -105,8 +105,10 @@ def assemble(scene: Model, state: State, t: float) -> Rows:
     gamma: list[float] = []
     for joint in scene.joints:
         A, B = placed(state, joint.a.body), placed(state, joint.b.body)
-        center = {e.body: placed(state, e.body).point(scene.masses[e.body].center) if e.body != GROUND else np.zeros(3)
-                  for e in (joint.a, joint.b)}
+        center = {
+            e.body: placed(state, e.body).point(scene.masses[e.body].center) if e.body != GROUND else np.zeros(3)
+            for e in (joint.a, joint.b)
+        }
         v_a = A.speed(scene.masses[joint.a.body].center) if joint.a.body != GROUND else np.zeros(3)
         P, P_rate = B.point(joint.b.point), B.speed(joint.b.point)
         u, w = P - center[joint.b.body], P - center[joint.a.body]
@@ -118,20 +120,26 @@ def assemble(scene: Model, state: State, t: float) -> Rows:
             for body, arm, sign in ((joint.b.body, u, 1.0), (joint.a.body, w, -1.0)):
                 if body != GROUND:
                     k = place[body]
-                    line[k:k + 3] += sign * row.force
-                    line[k + 3:k + 6] += sign * (cross(arm, row.force) + row.moment)
+                    line[k : k + 3] += sign * row.force
+                    line[k + 3 : k + 6] += sign * (cross(arm, row.force) + row.moment)
             rows.append(row)
             J.append(line)
             gamma.append(float(row.force @ bias + row.force_rate @ slip + row.moment_rate @ turning))
     shape = (len(rows), 6 * len(scene.names))
-    return Rows(np.array(J).reshape(shape), np.array(gamma), np.array([r.rate for r in rows]),
-                np.array([r.acceleration for r in rows]), rows)
+    return Rows(
+        np.array(J).reshape(shape),
+        np.array(gamma),
+        np.array([r.rate for r in rows]),
+        np.array([r.acceleration for r in rows]),
+        rows,
+    )
 
 
 def velocities(scene: Model, state: State) -> Array:
     """(v of the centre, σ) body by body, (6n,)."""
-    return np.concatenate([np.concatenate([state[b].speed(scene.masses[b].center), state[b].angular_velocity])
-                           for b in scene.names])
+    return np.concatenate(
+        [np.concatenate([state[b].speed(scene.masses[b].center), state[b].angular_velocity]) for b in scene.names]
+    )
 
 
 def rates(scene: Model | Scene, state: State, t: float = 0.0) -> dict[str, Array]:

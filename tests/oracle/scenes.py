@@ -65,8 +65,13 @@ class Maker:
         self.rng, self.masses = rng, masses
         self.names: list[str] = []
         self.state: dict[str, Placed] = {}
-        self.scene: dict[str, Any] = {"title": "random", "gravity": (rng.standard_normal(3) * 5).tolist(),
-                                      "ground": {"points": {"O": [0.0, 0.0, 0.0]}}, "bodies": {}, "joints": {}}
+        self.scene: dict[str, Any] = {
+            "title": "random",
+            "gravity": (rng.standard_normal(3) * 5).tolist(),
+            "ground": {"points": {"O": [0.0, 0.0, 0.0]}},
+            "bodies": {},
+            "joints": {},
+        }
 
     def body(self, name: str, kinds: Sequence[str], branching: float, roots: float, free: float) -> None:
         """A new body on a joint to an earlier one or the ground, or free."""
@@ -131,12 +136,29 @@ class Maker:
             radius = float(rng.uniform(0.05, 0.2))
             several = [
                 {"type": "rod", "from": a, "to": b, "line_density": float(rng.uniform(0.5, 2))},
-                {"type": "cylinder", "from": a, "to": b, "radius": radius, "inner_radius": 0.4 * radius,
-                 "density": float(rng.uniform(5, 20))},
-                {"type": "cone", "from": a, "to": b, "radius": radius, "to_radius": 0.3 * radius,
-                 "mass": float(rng.uniform(0.5, 2))},
-                {"type": "box", "center": a, "size": rng.uniform(0.1, 0.6, 3).tolist(),
-                 "density": float(rng.uniform(5, 20)), "orientation": {"matrix": random_rotation(rng).tolist()}},
+                {
+                    "type": "cylinder",
+                    "from": a,
+                    "to": b,
+                    "radius": radius,
+                    "inner_radius": 0.4 * radius,
+                    "density": float(rng.uniform(5, 20)),
+                },
+                {
+                    "type": "cone",
+                    "from": a,
+                    "to": b,
+                    "radius": radius,
+                    "to_radius": 0.3 * radius,
+                    "mass": float(rng.uniform(0.5, 2)),
+                },
+                {
+                    "type": "box",
+                    "center": a,
+                    "size": rng.uniform(0.1, 0.6, 3).tolist(),
+                    "density": float(rng.uniform(5, 20)),
+                    "orientation": {"matrix": random_rotation(rng).tolist()},
+                },
                 {"type": "sphere", "center": b, "radius": radius, "mass": float(rng.uniform(0.5, 2))},
                 {"type": "point", "at": b, "mass": float(rng.uniform(0.1, 0.5))},
             ]
@@ -171,13 +193,15 @@ class Maker:
         """Random velocities, less what the joints do not allow."""
         rng, scene = self.rng, model(self.scene)
         J = assemble(scene, self.state, 0.0).J
-        moving = {n: s._replace(velocity=rng.standard_normal(3), angular_velocity=rng.standard_normal(3))
-                  for n, s in self.state.items()}
+        moving = {
+            n: s._replace(velocity=rng.standard_normal(3), angular_velocity=rng.standard_normal(3))
+            for n, s in self.state.items()
+        }
         V = velocities(scene, moving)
         for _ in range(2):  # the second pass takes away the rounding of the first
             V = V - np.linalg.lstsq(J, J @ V, rcond=1e-10)[0] if len(J) else V
         for k, name in enumerate(scene.names):
-            v, spin = V[6 * k:6 * k + 3], V[6 * k + 3:6 * k + 6]
+            v, spin = V[6 * k : 6 * k + 3], V[6 * k + 3 : 6 * k + 6]
             origin = v - cross(spin, self.state[name].rotation @ scene.masses[name].center)
             self.state[name] = self.state[name]._replace(velocity=origin, angular_velocity=spin)
             body = self.scene["bodies"][name]
@@ -261,8 +285,13 @@ class Maker:
     def load_distributed(self, in_time: bool) -> dict[str, Any]:
         """Linear or uniform along a line of a body; of a thin one along its axis."""
         on = self.some()
-        spec = {"on": on, "from": self.spot(on).tolist(), "to": self.spot(on).tolist(), "frame": "world",
-                "vector": [self.value(4, in_time) for _ in range(3)]}
+        spec = {
+            "on": on,
+            "from": self.spot(on).tolist(),
+            "to": self.spot(on).tolist(),
+            "frame": "world",
+            "vector": [self.value(4, in_time) for _ in range(3)],
+        }
         if self.rng.random() < 0.7:
             spec["to_vector"] = [self.value(4, in_time) for _ in range(3)]
         return spec | ({"frame": "body"} if self.rng.random() < 0.5 else {})
@@ -333,8 +362,13 @@ def place_rod(rng: np.random.Generator) -> Placing:
 PLACE: dict[str, Callable[[np.random.Generator], Placing]] = {
     "ball": lambda rng: ({}, np.zeros(3), random_rotation(rng)),
     "weld": lambda rng: ({}, np.zeros(3), random_rotation(rng)),
-    "pin": turning, "cylinder": place_cylinder, "slide": place_slide, "line": place_slide, "universal": place_universal,
-    "plane": place_plane, "rod": place_rod,
+    "pin": turning,
+    "cylinder": place_cylinder,
+    "slide": place_slide,
+    "line": place_slide,
+    "universal": place_universal,
+    "plane": place_plane,
+    "rod": place_rod,
 }
 
 

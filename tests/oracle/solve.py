@@ -161,9 +161,18 @@ def answer(
     return Solution(
         acceleration={b: V_dot[k, :3] for k, b in enumerate(read.names)},
         angular_acceleration={b: V_dot[k, 3:] for k, b in enumerate(read.names)},
-        reactions=reactions, loads=loads, foundation_force=s, foundation_moment=M_s,
-        rows=rows, rank=found.rank, freedoms=6 * n - found.rank, grubler=6 * n - rows,
-        loose=found.loose, residual=found.residual, unbalanced=found.unbalanced, length=size,
+        reactions=reactions,
+        loads=loads,
+        foundation_force=s,
+        foundation_moment=M_s,
+        rows=rows,
+        rank=found.rank,
+        freedoms=6 * n - found.rank,
+        grubler=6 * n - rows,
+        loose=found.loose,
+        residual=found.residual,
+        unbalanced=found.unbalanced,
+        length=size,
     )
 
 
@@ -200,7 +209,12 @@ def moved(rows: Rows, wanted: Array, M: Array, push: Array, size: float, terms: 
     loose = N @ vectors[:, ~heavy]
     load = np.linalg.norm(push_) + np.linalg.norm(needed)
     return Motion(
-        V_ / scale, rows, rank, U[:, rank:] / norms[:, None], least, loose / scale[:, None],
+        V_ / scale,
+        rows,
+        rank,
+        U[:, rank:] / norms[:, None],
+        least,
+        loose / scale[:, None],
         residual=float(np.linalg.norm(missing) / asked) if asked > 0.0 else 0.0,
         unbalanced=float(np.linalg.norm(drive[~heavy]) / load) if load > 0.0 else 0.0,
     )
@@ -213,9 +227,9 @@ def inertia(scene: Model, state: State) -> tuple[Array, Array]:
     for k, name in enumerate(scene.names):
         R, s = state[name].rotation, state[name].angular_velocity
         I_world = R @ scene.masses[name].inertia @ R.T
-        M[6 * k:6 * k + 3, 6 * k:6 * k + 3] = scene.masses[name].mass * np.eye(3)
-        M[6 * k + 3:6 * k + 6, 6 * k + 3:6 * k + 6] = I_world
-        b[6 * k + 3:6 * k + 6] = cross(s, I_world @ s)
+        M[6 * k : 6 * k + 3, 6 * k : 6 * k + 3] = scene.masses[name].mass * np.eye(3)
+        M[6 * k + 3 : 6 * k + 6, 6 * k + 3 : 6 * k + 6] = I_world
+        b[6 * k + 3 : 6 * k + 6] = cross(s, I_world @ s)
     return M, b
 
 
@@ -237,8 +251,9 @@ def weight_of(joint: Joint, length: float) -> Array:
     return np.array([1.0, 1, 1, *[1 / length] * 3, drive])
 
 
-def chosen(scene: Model, state: State, found: Motion, maps: Mapping[str, Array],
-           stiffness: Stiffness | None, length: float) -> Array:
+def chosen(
+    scene: Model, state: State, found: Motion, maps: Mapping[str, Array], stiffness: Stiffness | None, length: float
+) -> Array:
     """Multipliers with the least cost among all that fit."""
     Z, lam = found.self_stress, found.least
     if Z.shape[1] == 0:
@@ -259,8 +274,9 @@ def chosen(scene: Model, state: State, found: Motion, maps: Mapping[str, Array],
     return lam
 
 
-def reactions_of(scene: Model, state: State, found: Motion, maps: Mapping[str, Array], lam: Array,
-                 size: float) -> dict[str, Reaction]:
+def reactions_of(
+    scene: Model, state: State, found: Motion, maps: Mapping[str, Array], lam: Array, size: float
+) -> dict[str, Reaction]:
     """Each joint's wrench, and which of its components are certain."""
     shares = {j.name: (weight_of(j, size), maps[j.name] @ found.self_stress) for j in scene.joints}
     largest = largest_part(shares.values())

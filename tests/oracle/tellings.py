@@ -48,8 +48,12 @@ def unchanged(_: str, v: Array, place: bool) -> Array:
     return v
 
 
-def with_cuts(scene: Scene, told: Scene, change: Callable[[str, Array, bool], Array] = unchanged,
-              names: Mapping[str, str] | None = None) -> Scene:
+def with_cuts(
+    scene: Scene,
+    told: Scene,
+    change: Callable[[str, Array, bool], Array] = unchanged,
+    names: Mapping[str, str] | None = None,
+) -> Scene:
     """The scene as told, its sections told alike: change(body, vector, whether it is a place)."""
     if "sections" not in scene:
         return told

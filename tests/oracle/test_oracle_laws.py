@@ -39,11 +39,15 @@ def pushed(state: State, a: Array, h: float) -> dict[str, Placed]:
     """Where a state is after h at acceleration a of origins and turning, to second order."""
     moved = {}
     for k, (name, s) in enumerate(state.items()):
-        v, w = a[6 * k:6 * k + 3], a[6 * k + 3:6 * k + 6]
+        v, w = a[6 * k : 6 * k + 3], a[6 * k + 3 : 6 * k + 6]
         turn = h * s.angular_velocity + h**2 / 2 * w
         angle = float(np.linalg.norm(turn))
-        moved[name] = Placed(s.position + h * s.velocity + h**2 / 2 * v, about(turn / angle, angle) @ s.rotation,
-                             s.velocity + h * v, s.angular_velocity + h * w)
+        moved[name] = Placed(
+            s.position + h * s.velocity + h**2 / 2 * v,
+            about(turn / angle, angle) @ s.rotation,
+            s.velocity + h * v,
+            s.angular_velocity + h * w,
+        )
     return moved
 
 
@@ -59,7 +63,7 @@ def test_rows_against_finite_differences(kind: str) -> None:
         for k, name in enumerate(read.names):
             s, r = state[name], state[name].rotation @ read.masses[name].center
             spin = s.angular_velocity
-            V_dot[6 * k:6 * k + 3] += cross(a[6 * k + 3:6 * k + 6], r) + cross(spin, cross(spin, r))
+            V_dot[6 * k : 6 * k + 3] += cross(a[6 * k + 3 : 6 * k + 6], r) + cross(spin, cross(spin, r))
         h = 1e-4
         ahead, behind = pushed(state, a, h), pushed(state, a, -h)
         opening = [(g(read, ahead, h), g(read, behind, -h)) for g in (gaps, rates)]

@@ -40,10 +40,15 @@ def test_a_damper_takes_its_coefficient_times_the_rate_squared(kind: str) -> Non
     turning = b.rotation.T @ (b.angular_velocity - a.angular_velocity)
     sliding = b.speed(j.b.point) - a.speed(a.rotation.T @ (b.point(j.b.point) - a.position))
     coordinate = coordinates(j, state)
-    squares = {"pin": 0.7 * coordinate.get("rate", 0.0) ** 2, "slide": 0.7 * coordinate.get("speed", 0.0) ** 2,
-               "cylinder": 0.7 * coordinate.get("rate", 0.0) ** 2 + 0.4 * coordinate.get("speed", 0.0) ** 2,
-               "ball": 0.7 * turning @ turning, "universal": 0.7 * turning @ turning,
-               "line": 0.7 * sliding @ sliding, "plane": 0.7 * sliding @ sliding}
+    squares = {
+        "pin": 0.7 * coordinate.get("rate", 0.0) ** 2,
+        "slide": 0.7 * coordinate.get("speed", 0.0) ** 2,
+        "cylinder": 0.7 * coordinate.get("rate", 0.0) ** 2 + 0.4 * coordinate.get("speed", 0.0) ** 2,
+        "ball": 0.7 * turning @ turning,
+        "universal": 0.7 * turning @ turning,
+        "line": 0.7 * sliding @ sliding,
+        "plane": 0.7 * sliding @ sliding,
+    }
     assert squares[kind] > 1e-3
     assert total_power(state, parts) == pytest.approx(-squares[kind], rel=1e-12)
 

@@ -12,13 +12,30 @@ PI = np.pi
 ROUND = {"type": "cylinder", "from": [0, 0, 0], "to": [0, 0, 0.8], "radius": 0.3, "inner_radius": 0.1, "density": 2.0}
 SHAPES = {
     "rod": {"type": "rod", "from": [0.1, -0.2, 0.3], "to": [1.0, 0.4, -0.2], "line_density": 3.0},
-    "tube": {"type": "cylinder", "from": [0.1, 0, 0.2], "to": [0.9, 0.5, -0.3], "radius": 0.3, "inner_radius": 0.1,
-             "density": 2.0},
-    "cone": {"type": "cone", "from": [0.1, 0, 0.2], "to": [0.9, 0.5, -0.3], "radius": 0.3, "to_radius": 0.0,
-             "mass": 2.0},
+    "tube": {
+        "type": "cylinder",
+        "from": [0.1, 0, 0.2],
+        "to": [0.9, 0.5, -0.3],
+        "radius": 0.3,
+        "inner_radius": 0.1,
+        "density": 2.0,
+    },
+    "cone": {
+        "type": "cone",
+        "from": [0.1, 0, 0.2],
+        "to": [0.9, 0.5, -0.3],
+        "radius": 0.3,
+        "to_radius": 0.0,
+        "mass": 2.0,
+    },
     "frustum": {"type": "cone", "from": [0, 0, 0], "to": [0, 0, 1.0], "radius": 0.1, "to_radius": 0.5, "density": 2.0},
-    "box": {"type": "box", "center": [0.1, 0.2, 0.3], "size": [1, 0.5, 0.2], "density": 7.0,
-            "orientation": {"axis": [1, 2, 3], "angle": 0.7}},
+    "box": {
+        "type": "box",
+        "center": [0.1, 0.2, 0.3],
+        "size": [1, 0.5, 0.2],
+        "density": 7.0,
+        "orientation": {"axis": [1, 2, 3], "angle": 0.7},
+    },
     "sphere": {"type": "sphere", "center": [0.1, 0.2, 0.3], "radius": 0.4, "mass": 5.0},
 }
 

@@ -12,8 +12,11 @@ from tests.oracle.solve import solve
 
 
 def test_door_on_two_balls() -> None:
-    s = held({"top": [-0.4, 0, 0.9], "bottom": [-0.4, 0, -0.7]}, {"type": "ball"},
-             {"position": [0.4, 0, 0], "velocity": [0, 0.4 * 2.3, 0], "angular_velocity": [0, 0, 2.3]})
+    s = held(
+        {"top": [-0.4, 0, 0.9], "bottom": [-0.4, 0, -0.7]},
+        {"type": "ball"},
+        {"position": [0.4, 0, 0], "velocity": [0, 0.4 * 2.3, 0], "angular_velocity": [0, 0, 2.3]},
+    )
     found = solve(s, start_state(s))
     assert (found.rank, found.rows, found.freedoms, found.grubler) == (5, 6, 1, 0)
     for name in ("top", "bottom"):
@@ -57,9 +60,13 @@ def test_flat_parallelogram(rates: tuple[float, float], residual: float) -> None
         assert reaction.unique[:2].tolist() == [False, True]
 
 
-@pytest.mark.parametrize(("stiffness", "split"), [
-    (None, (3.714285714286, 3.428571428571, 2.857142857143)),
-    ((1.0, 2.0, 1.0), (2.631578947368, 5.052631578947, 2.315789473684))])
+@pytest.mark.parametrize(
+    ("stiffness", "split"),
+    [
+        (None, (3.714285714286, 3.428571428571, 2.857142857143)),
+        ((1.0, 2.0, 1.0), (2.631578947368, 5.052631578947, 2.315789473684)),
+    ],
+)
 def test_beam_on_three_supports(stiffness: tuple[float, ...] | None, split: tuple[float, ...]) -> None:
     s = beam()
     weights = None if stiffness is None else dict(zip("abc", ((k, 1.0) for k in stiffness), strict=True))
@@ -72,9 +79,12 @@ def test_beam_on_three_supports(stiffness: tuple[float, ...] | None, split: tupl
 def test_a_moment_about_a_thin_rod_is_told() -> None:
     """Theory 3: a couple about the axis of a rod without inertia there has no acceleration."""
     rod = {"shapes": [{"type": "rod", "from": [0, 0, 0], "to": [1, 0, 0], "mass": 1.0}], "points": {"root": [0, 0, 0]}}
-    s = {"ground": {"points": {"O": [0, 0, 0]}}, "bodies": {"rod": rod},
-         "joints": {"root": {"type": "ball", "from": "ground.O", "to": "rod.root"}},
-         "forces": {"twist": {"type": "couple", "on": "rod", "vector": [1.0, 0, 0]}}}
+    s = {
+        "ground": {"points": {"O": [0, 0, 0]}},
+        "bodies": {"rod": rod},
+        "joints": {"root": {"type": "ball", "from": "ground.O", "to": "rod.root"}},
+        "forces": {"twist": {"type": "couple", "on": "rod", "vector": [1.0, 0, 0]}},
+    }
     assert solve(s, start_state(s)).unbalanced > 0.1
     s["forces"]["twist"]["vector"] = [0.0, 1.0, 0]
     assert solve(s, start_state(s)).unbalanced < 1e-14

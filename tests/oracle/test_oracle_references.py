@@ -18,8 +18,15 @@ X = np.eye(3)[0]
 # ---- A03, Andrews' squeezer
 def accelerations_of(found: Solution) -> dict[str, float]:
     spin = {name: a[2] for name, a in found.angular_acceleration.items()}
-    return {"b": spin["K1"], "Th": spin["K2"] - spin["K1"], "g": spin["K3"], "Ph": spin["K4"] - spin["K5"],
-            "de": spin["K5"], "Om": spin["K6"] - spin["K7"], "ep": spin["K7"]}
+    return {
+        "b": spin["K1"],
+        "Th": spin["K2"] - spin["K1"],
+        "g": spin["K3"],
+        "Ph": spin["K4"] - spin["K5"],
+        "de": spin["K5"],
+        "Om": spin["K6"] - spin["K7"],
+        "ep": spin["K7"],
+    }
 
 
 def open_gap(s: dict) -> float:
@@ -34,8 +41,15 @@ def test_andrews_start() -> None:
     assert a["b"] == pytest.approx(14222.4439199541, rel=1e-11)
     assert a["Th"] == pytest.approx(-10666.8329399656, rel=1e-11)
     assert max(abs(a[k]) for k in ("g", "Ph", "de", "Om", "ep")) < 1e-8 * abs(a["b"])
-    expected = {"O": (98.61497962, -5.34412560), "F": (98.58007722, -5.90895932), "B": (-45.57577242, 107.11901952),
-                "E2": (98.5668703962410896, -6.12268834425566265), "A5": (0, 0), "G": (0, 0), "H": (0, 0)}
+    expected = {
+        "O": (98.61497962, -5.34412560),
+        "F": (98.58007722, -5.90895932),
+        "B": (-45.57577242, 107.11901952),
+        "E2": (98.5668703962410896, -6.12268834425566265),
+        "A5": (0, 0),
+        "G": (0, 0),
+        "H": (0, 0),
+    }
     for name, force in expected.items():
         assert found.reactions[name].unique[:2].all() and not found.reactions[name].unique[2]
         np.testing.assert_allclose(found.reactions[name].force[:2], force, rtol=0, atol=6e-9)
@@ -50,13 +64,25 @@ def test_andrews_end() -> None:
     assert open_gap(s) < 1e-13
     found = solve(s, start_state(s))
     a = accelerations_of(found)
-    expected = {"b": -24631.76316945196, "Th": 51850.37701610329, "g": 324102.5686413781, "Ph": 566749.3645176213,
-                "de": 16743.62929479361, "ep": 9826.520791458422}
+    expected = {
+        "b": -24631.76316945196,
+        "Th": 51850.37701610329,
+        "g": 324102.5686413781,
+        "Ph": 566749.3645176213,
+        "de": 16743.62929479361,
+        "ep": 9826.520791458422,
+    }
     for name, value in expected.items():
         assert a[name] == pytest.approx(value, abs=1.1e-7 * 566749.3645176213)
-    forces = {"O": (332.628491, 22.673054), "F": (281.298222, 16.391924), "B": (-28.770274, 172.413297),
-              "E2": (244.884387, 13.314808), "A5": (-24.584871, -9.421043), "G": (-1.583571, -27.589789),
-              "H": (1.506954, -8.954126)}
+    forces = {
+        "O": (332.628491, 22.673054),
+        "F": (281.298222, 16.391924),
+        "B": (-28.770274, 172.413297),
+        "E2": (244.884387, 13.314808),
+        "A5": (-24.584871, -9.421043),
+        "G": (-1.583571, -27.589789),
+        "H": (1.506954, -8.954126),
+    }
     for name, force in forces.items():
         np.testing.assert_allclose(found.reactions[name].force[:2], force, rtol=0, atol=6e-7)
     l1, l2, l3 = 199.1753333731910, -29.75531228015052, 23.06654119098399
@@ -113,8 +139,14 @@ def test_bricard_self_stress() -> None:
     s = bricard()
     found = solve(s, start_state(s))
     forces = {f"P{k}": (1, 1, 1) for k in range(5)} | {"P5": (-1, -1, -1)}
-    moments = {"P0": (-1, 0, 1), "P1": (-1, 1, 0), "P2": (0, 1, -1), "P3": (1, 0, -1), "P4": (1, -1, 0),
-               "P5": (0, 1, -1)}
+    moments = {
+        "P0": (-1, 0, 1),
+        "P1": (-1, 1, 0),
+        "P2": (0, 1, -1),
+        "P3": (1, 0, -1),
+        "P4": (1, -1, 0),
+        "P5": (0, 1, -1),
+    }
     scale = found.reactions["P0"].share[0, 0]
     for name, reaction in found.reactions.items():
         np.testing.assert_allclose(reaction.share[:3, 0] / scale, forces[name], rtol=0, atol=1e-13)
@@ -130,11 +162,18 @@ def test_bricard_self_stress() -> None:
 # ---- textbook bars
 def turning_rod(spin: float, push: float) -> dict:
     """m = 2, L = 1.5 about its end, with the couple that gives it the angular acceleration `push`."""
-    return {"ground": {"points": {"O": [0, 0, 0]}},
-            "bodies": {"rod": {"shapes": [{"type": "rod", "from": [0, 0, 0], "to": [1.5, 0, 0], "mass": 2.0}],
-                               "points": {"root": [0, 0, 0]}, "angular_velocity": [0, 0, spin]}},
-            "joints": {"hub": {"type": "pin", "from": "ground.O", "to": "rod.root", "axis": [0, 0, 1]}},
-            "forces": {"motor": {"type": "torque", "joint": "hub", "value": push * 2.0 * 1.5**2 / 3}}}
+    return {
+        "ground": {"points": {"O": [0, 0, 0]}},
+        "bodies": {
+            "rod": {
+                "shapes": [{"type": "rod", "from": [0, 0, 0], "to": [1.5, 0, 0], "mass": 2.0}],
+                "points": {"root": [0, 0, 0]},
+                "angular_velocity": [0, 0, spin],
+            }
+        },
+        "joints": {"hub": {"type": "pin", "from": "ground.O", "to": "rod.root", "axis": [0, 0, 1]}},
+        "forces": {"motor": {"type": "torque", "joint": "hub", "value": push * 2.0 * 1.5**2 / 3}},
+    }
 
 
 @pytest.mark.parametrize(("r", "N", "V", "M"), [(0.0, 150, 7.5, 7.5), (0.75, 112.5, 5.625, 2.34375)])
@@ -151,10 +190,17 @@ def test_skew_rod_sections(s_over_h: float, M: float, N: float | None) -> None:
     m, L, spin, slant = 2.0, 1.5, 10.0, np.radians(30)
     along = np.array([np.sin(slant), 0, np.cos(slant)])
     half = L / 2 * along
-    s = {"ground": {"points": {"O": [0, 0, 0]}},
-         "bodies": {"rod": {"shapes": [{"type": "rod", "from": list(-half), "to": list(half), "mass": m}],
-                            "points": {"O": [0, 0, 0]}, "angular_velocity": [0, 0, spin]}},
-         "joints": {"shaft": {"type": "pin", "from": "ground.O", "to": "rod.O", "axis": [0, 0, 1]}}}
+    s = {
+        "ground": {"points": {"O": [0, 0, 0]}},
+        "bodies": {
+            "rod": {
+                "shapes": [{"type": "rod", "from": list(-half), "to": list(half), "mass": m}],
+                "points": {"O": [0, 0, 0]},
+                "angular_velocity": [0, 0, spin],
+            }
+        },
+        "joints": {"shaft": {"type": "pin", "from": "ground.O", "to": "rod.O", "axis": [0, 0, 1]}},
+    }
     cut = section(s, start_state(s), 0.0, "rod", s_over_h * L / 2 * along, along, side="beyond")
     assert np.linalg.norm(solve(s, start_state(s)).foundation_moment) == pytest.approx(16.23797632, abs=6e-9)
     assert np.linalg.norm(cut.moment) == pytest.approx(M, abs=6e-9)

@@ -22,18 +22,28 @@ def close(a: object, b: object, tolerance: float = 1e-12) -> None:
     np.testing.assert_allclose(np.asarray(a), b, rtol=0, atol=tolerance * (np.abs(b).max() or 1.0))
 
 
-def bar(length: float, mass: float, R: Array, spin: Array | None = None, at: Array | None = None,
-        v: Array | None = None) -> dict:
+def bar(
+    length: float, mass: float, R: Array, spin: Array | None = None, at: Array | None = None, v: Array | None = None
+) -> dict:
     """A uniform rod along its body's x from its origin."""
-    return {"shapes": [{"type": "rod", "from": [0, 0, 0], "to": [length, 0, 0], "mass": mass}],
-            "points": {"root": [0, 0, 0], "end": [length, 0, 0]}, "orientation": {"matrix": R.tolist()},
-            "position": list(np.zeros(3) if at is None else at), "velocity": list(np.zeros(3) if v is None else v),
-            "angular_velocity": list(np.zeros(3) if spin is None else spin)}
+    return {
+        "shapes": [{"type": "rod", "from": [0, 0, 0], "to": [length, 0, 0], "mass": mass}],
+        "points": {"root": [0, 0, 0], "end": [length, 0, 0]},
+        "orientation": {"matrix": R.tolist()},
+        "position": list(np.zeros(3) if at is None else at),
+        "velocity": list(np.zeros(3) if v is None else v),
+        "angular_velocity": list(np.zeros(3) if spin is None else spin),
+    }
 
 
 def scene(bodies: dict, joints: dict, gravity: Array | None = None, **more: object) -> dict:
-    return {"gravity": list(np.zeros(3) if gravity is None else gravity), "ground": {"points": {"O": [0, 0, 0]}},
-            "bodies": bodies, "joints": joints, **more}
+    return {
+        "gravity": list(np.zeros(3) if gravity is None else gravity),
+        "ground": {"points": {"O": [0, 0, 0]}},
+        "bodies": bodies,
+        "joints": joints,
+        **more,
+    }
 
 
 def solved(s: dict, fits: float = 1e-13) -> Solution:
@@ -57,10 +67,20 @@ def test_1_free_top() -> None:
 def test_2_heavy_top() -> None:
     lever = 1 / G
     R = about(X, np.pi / 3)
-    s = scene({"top": {"mass": 1.0, "center": [0, 0, lever], "inertia": [1 - lever**2, 1 - lever**2, 0.5],
-                       "points": {"tip": [0, 0, 0]}, "orientation": {"matrix": R.tolist()},
-                       "angular_velocity": {"vector": [0, 0, 8.0], "frame": "body"}}},
-              {"tip": {"type": "ball", "from": "ground.O", "to": "top.tip"}}, -G * Z)
+    s = scene(
+        {
+            "top": {
+                "mass": 1.0,
+                "center": [0, 0, lever],
+                "inertia": [1 - lever**2, 1 - lever**2, 0.5],
+                "points": {"tip": [0, 0, 0]},
+                "orientation": {"matrix": R.tolist()},
+                "angular_velocity": {"vector": [0, 0, 8.0], "frame": "body"},
+            }
+        },
+        {"tip": {"type": "ball", "from": "ground.O", "to": "top.tip"}},
+        -G * Z,
+    )
     period = 1.660594261039426
     states = motion(s, start_state(s), [0.0, period / 2, 1.0, period])
     high = [x["top"].rotation[2, 2] for x in states]
@@ -71,13 +91,22 @@ def test_2_heavy_top() -> None:
     close(turned, 0.4259411370822, 1e-11)
 
 
-@pytest.mark.parametrize(("degrees", "period"),
-                         [(10, 2.009892627298601), (90, 2.367841947576237), (170, 4.893524274105486)])
+@pytest.mark.parametrize(
+    ("degrees", "period"), [(10, 2.009892627298601), (90, 2.367841947576237), (170, 4.893524274105486)]
+)
 def test_3_pendulum_periods(degrees: float, period: float) -> None:
     R = about(Y, -np.radians(degrees))
-    s = scene({"bob": {"shapes": [{"type": "point", "at": [0, 0, -1], "mass": 1.0}], "points": {"top": [0, 0, 0]},
-                       "orientation": {"matrix": R.tolist()}}},
-              {"hinge": {"type": "pin", "from": "ground.O", "to": "bob.top", "axis": [0, 1, 0]}}, -G * Z)
+    s = scene(
+        {
+            "bob": {
+                "shapes": [{"type": "point", "at": [0, 0, -1], "mass": 1.0}],
+                "points": {"top": [0, 0, 0]},
+                "orientation": {"matrix": R.tolist()},
+            }
+        },
+        {"hinge": {"type": "pin", "from": "ground.O", "to": "bob.top", "axis": [0, 1, 0]}},
+        -G * Z,
+    )
     states = motion(s, start_state(s), [0.0, period / 4, period / 2])
     close(states[1]["bob"].rotation @ -Z, -Z, 1e-11)
     close(states[2]["bob"].rotation @ -Z, about(Y, np.radians(degrees)) @ -Z, 1e-10)
@@ -92,8 +121,9 @@ def falling_rod(tilt: float) -> tuple[dict, Array, Array]:
     return scene({"rod": bar(1.0, 1.0, R, spin)}, {"hinge": hinge}, -G * Z), along, growing
 
 
-@pytest.mark.parametrize(("tilt", "pull", "push"),
-                         [(60, 12.2625, -2.123927302781336), (0, 24.525, 0.0), (90, 0.0, -2.4525)])
+@pytest.mark.parametrize(
+    ("tilt", "pull", "push"), [(60, 12.2625, -2.123927302781336), (0, 24.525, 0.0), (90, 0.0, -2.4525)]
+)
 def test_3_uniform_rod_let_go_level(tilt: float, pull: float, push: float) -> None:
     s, along, growing = falling_rod(np.radians(tilt))
     found = solved(s)
@@ -101,19 +131,25 @@ def test_3_uniform_rod_let_go_level(tilt: float, pull: float, push: float) -> No
     close(found.reactions["hinge"].force, -found.foundation_force, 1e-14)
 
 
-@pytest.mark.parametrize(("xi", "M", "Q", "N"), [
-    (0.5, -4598.4375, -306.5625, -2769.277468078683),
-    (0.1, -2979.7875, 772.5375, -5694.416468533943),
-    (0.8, -1177.2, -343.35, -989.4248162327539),
-    (1 / 3, -5450.0, 0.0, None),
-])
+@pytest.mark.parametrize(
+    ("xi", "M", "Q", "N"),
+    [
+        (0.5, -4598.4375, -306.5625, -2769.277468078683),
+        (0.1, -2979.7875, 772.5375, -5694.416468533943),
+        (0.8, -1177.2, -343.35, -989.4248162327539),
+        (1 / 3, -5450.0, 0.0, None),
+    ],
+)
 def test_4_falling_chimney(xi: float, M: float, Q: float, N: float | None) -> None:
     """Foot up along body x, falling towards +x: M about the horizontal axis of the fall, Q along growing tilt."""
     tilt, L = np.radians(30), 30.0
     along, growing = np.array([np.sin(tilt), 0, np.cos(tilt)]), np.array([np.cos(tilt), 0, -np.sin(tilt)])
     R = np.column_stack([along, Y, np.cross(along, Y)])
-    s = scene({"rod": bar(L, 1000.0, R, np.sqrt(3 * G * (1 - np.cos(tilt)) / L) * Y)},
-              {"foot": {"type": "pin", "from": "ground.O", "to": "rod.root", "axis": [0, 1, 0]}}, -G * Z)
+    s = scene(
+        {"rod": bar(L, 1000.0, R, np.sqrt(3 * G * (1 - np.cos(tilt)) / L) * Y)},
+        {"foot": {"type": "pin", "from": "ground.O", "to": "rod.root", "axis": [0, 1, 0]}},
+        -G * Z,
+    )
     cut = section(s, start_state(s), 0.0, "rod", [xi * L, 0, 0], [1, 0, 0])
     close([cut.moment @ Y, cut.force @ growing], [M, Q], 1e-12)
     assert cut.unique.all()
@@ -123,16 +159,23 @@ def test_4_falling_chimney(xi: float, M: float, Q: float, N: float | None) -> No
 
 @pytest.mark.parametrize(("xi", "N"), [(0.0, 600.0), (0.5, 450.0), (1.0, 0.0)])
 def test_5_whirling_rod(xi: float, N: float) -> None:
-    s = scene({"rod": bar(1.5, 2.0, np.eye(3), 20 * Z)},
-              {"hub": {"type": "pin", "from": "ground.O", "to": "rod.root", "axis": [0, 0, 1]}})
+    s = scene(
+        {"rod": bar(1.5, 2.0, np.eye(3), 20 * Z)},
+        {"hub": {"type": "pin", "from": "ground.O", "to": "rod.root", "axis": [0, 0, 1]}},
+    )
     cut = section(s, start_state(s), 0.0, "rod", [1.5 * xi, 0, 0], [1, 0, 0], side="beyond")
     close(cut.force, [N, 0, 0], 1e-12)
 
 
 def test_8_two_rods_level_let_go() -> None:
-    s = scene({"inner": bar(1.0, 1.0, np.eye(3)), "outer": bar(1.0, 1.0, np.eye(3), at=X)},
-              {"a": {"type": "pin", "from": "ground.O", "to": "inner.root", "axis": [0, 1, 0]},
-               "b": {"type": "pin", "from": "inner.end", "to": "outer.root", "axis": [0, 1, 0]}}, -G * Z)
+    s = scene(
+        {"inner": bar(1.0, 1.0, np.eye(3)), "outer": bar(1.0, 1.0, np.eye(3), at=X)},
+        {
+            "a": {"type": "pin", "from": "ground.O", "to": "inner.root", "axis": [0, 1, 0]},
+            "b": {"type": "pin", "from": "inner.end", "to": "outer.root", "axis": [0, 1, 0]},
+        },
+        -G * Z,
+    )
     found = solved(s)
     close([found.angular_acceleration[b] @ Y for b in ("inner", "outer")], np.array([9 / 7, -3 / 7]) * G, 1e-14)
     close([found.reactions[j].force[2] for j in "ab"], np.array([2 / 7, -1 / 14]) * G, 1e-14)
@@ -143,19 +186,29 @@ def test_9_skew_rod() -> None:
     D = m * L**2 / 12 * np.sin(slant) * np.cos(slant)
     assert abs(D - 0.07878462024097664) < 1e-16
     half = L / 2 * np.array([np.sin(slant), 0, np.cos(slant)])
-    rod = {"shapes": [{"type": "rod", "from": list(-half), "to": list(half), "mass": m}],
-           "points": {"low": [0, 0, -span / 2], "high": [0, 0, span / 2]}, "angular_velocity": [0, 0, spin]}
+    rod = {
+        "shapes": [{"type": "rod", "from": list(-half), "to": list(half), "mass": m}],
+        "points": {"low": [0, 0, -span / 2], "high": [0, 0, span / 2]},
+        "angular_velocity": [0, 0, spin],
+    }
     low, high = ({"body": "ground", "at": [0, 0, z]} for z in (-span / 2, span / 2))
-    s = scene({"rod": rod}, {"low": {"type": "ball", "from": low, "to": "rod.low"},
-                             "high": {"type": "line", "from": high, "to": "rod.high", "axis": [0, 0, 1]}})
+    s = scene(
+        {"rod": rod},
+        {
+            "low": {"type": "ball", "from": low, "to": "rod.low"},
+            "high": {"type": "line", "from": high, "to": "rod.high", "axis": [0, 0, 1]},
+        },
+    )
     found = solved(s)
     close(np.linalg.norm(found.foundation_moment), 196.9615506024416, 1e-14)
     for name in ("low", "high"):
         assert np.linalg.norm(found.reactions[name].force) == pytest.approx(393.9231012048832, rel=1e-14)
 
 
-@pytest.mark.parametrize(("shape", "squares"), [
-    ("point", (0.585786437626905, 3.414213562373095)), ("rod", (0.7322131619446366, 5.267786838055363))])
+@pytest.mark.parametrize(
+    ("shape", "squares"),
+    [("point", (0.585786437626905, 3.414213562373095)), ("rod", (0.7322131619446366, 5.267786838055363))],
+)
 def test_10_double_pendulum_frequencies(shape: str, squares: tuple[float, float]) -> None:
     def slopes(angles: Array) -> Array:
         bodies, at = {}, np.zeros(3)
@@ -165,8 +218,14 @@ def test_10_double_pendulum_frequencies(shape: str, squares: tuple[float, float]
             if shape == "point":
                 bodies[name]["shapes"] = [{"type": "point", "at": [1, 0, 0], "mass": 1.0}]
             at = at + R @ X
-        s = scene(bodies, {"a": {"type": "pin", "from": "ground.O", "to": "upper.root", "axis": [0, 1, 0]},
-                           "b": {"type": "pin", "from": "upper.end", "to": "lower.root", "axis": [0, 1, 0]}}, -G * Z)
+        s = scene(
+            bodies,
+            {
+                "a": {"type": "pin", "from": "ground.O", "to": "upper.root", "axis": [0, 1, 0]},
+                "b": {"type": "pin", "from": "upper.end", "to": "lower.root", "axis": [0, 1, 0]},
+            },
+            -G * Z,
+        )
         found = solved(s)
         return np.array([-found.angular_acceleration[b] @ Y for b in ("upper", "lower")])
 
@@ -181,8 +240,11 @@ def test_10_double_pendulum_frequencies(shape: str, squares: tuple[float, float]
 def test_11_conical_rod() -> None:
     tilt = np.radians(40)
     along = np.array([np.sin(tilt), 0, -np.cos(tilt)])
-    s = scene({"rod": bar(1.0, 1.0, np.column_stack([along, Y, np.cross(along, Y)]), 4.382815107043016 * Z)},
-              {"top": {"type": "ball", "from": "ground.O", "to": "rod.root"}}, -G * Z)
+    s = scene(
+        {"rod": bar(1.0, 1.0, np.column_stack([along, Y, np.cross(along, Y)]), 4.382815107043016 * Z)},
+        {"top": {"type": "ball", "from": "ground.O", "to": "rod.root"}},
+        -G * Z,
+    )
     found = solved(s)
     close(found.angular_acceleration["rod"], np.zeros(3), 1e-13)
     assert found.loose.shape == (6, 1)  # the spin about the rod
@@ -196,14 +258,25 @@ def slider_crank(phi: float, omega: float, **more: object) -> dict:
     pin = r * np.array([np.cos(phi), np.sin(phi), 0])
     v = omega * np.cross(Z, pin)
     wrist = pin + length * np.array([np.cos(psi), np.sin(psi), 0])
-    slider = {"mass": 1.5, "center": [0, 0, 0], "inertia": [0.01, 0.01, 0.01], "points": {"pin": [0, 0, 0]},
-              "position": [wrist[0], 0, 0], "velocity": list(v + psi_rate * np.cross(Z, wrist - pin))}
+    slider = {
+        "mass": 1.5,
+        "center": [0, 0, 0],
+        "inertia": [0.01, 0.01, 0.01],
+        "points": {"pin": [0, 0, 0]},
+        "position": [wrist[0], 0, 0],
+        "velocity": list(v + psi_rate * np.cross(Z, wrist - pin)),
+    }
     crank, rod = bar(r, 1.0, about(Z, phi), omega * Z), bar(length, 0.8, about(Z, psi), psi_rate * Z, pin, v)
-    return scene({"crank": crank, "rod": rod, "slider": slider},
-                 {"base": {"type": "pin", "from": "ground.O", "to": "crank.root", "axis": [0, 0, 1]},
-                  "crankpin": {"type": "pin", "from": "crank.end", "to": "rod.root", "axis": [0, 0, 1]},
-                  "wrist": {"type": "pin", "from": "rod.end", "to": "slider.pin", "axis": [0, 0, 1]},
-                  "guide": {"type": "slide", "from": "ground.O", "to": "slider.pin", "axis": [1, 0, 0]}}, **more)
+    return scene(
+        {"crank": crank, "rod": rod, "slider": slider},
+        {
+            "base": {"type": "pin", "from": "ground.O", "to": "crank.root", "axis": [0, 0, 1]},
+            "crankpin": {"type": "pin", "from": "crank.end", "to": "rod.root", "axis": [0, 0, 1]},
+            "wrist": {"type": "pin", "from": "rod.end", "to": "slider.pin", "axis": [0, 0, 1]},
+            "guide": {"type": "slide", "from": "ground.O", "to": "slider.pin", "axis": [1, 0, 0]},
+        },
+        **more,
+    )
 
 
 def test_12_driven_slider_crank() -> None:
@@ -241,10 +314,18 @@ def test_13_ladder() -> None:
     rate = np.sqrt(3 * G * (np.cos(start) - np.cos(tilt)))
     foot, head = np.array([np.sin(tilt), 0, 0]), np.array([0, 0, np.cos(tilt)])
     along = head - foot
-    s = scene({"ladder": bar(1.0, 1.0, np.column_stack([along, Y, np.cross(along, Y)]), -rate * Y, foot,
-                             rate * np.cos(tilt) * X)},
-              {"floor": {"type": "plane", "from": "ground.O", "to": "ladder.root", "normal": [0, 0, 1]},
-               "wall": {"type": "plane", "from": "ground.O", "to": "ladder.end", "normal": [1, 0, 0]}}, -G * Z)
+    s = scene(
+        {
+            "ladder": bar(
+                1.0, 1.0, np.column_stack([along, Y, np.cross(along, Y)]), -rate * Y, foot, rate * np.cos(tilt) * X
+            )
+        },
+        {
+            "floor": {"type": "plane", "from": "ground.O", "to": "ladder.root", "normal": [0, 0, 1]},
+            "wall": {"type": "plane", "from": "ground.O", "to": "ladder.end", "normal": [1, 0, 0]},
+        },
+        -G * Z,
+    )
     found = solved(s)
     assert -found.angular_acceleration["ladder"] @ Y == pytest.approx(11.526655475168418, rel=1e-14)
     assert found.reactions["floor"].force[2] == pytest.approx(2.242836917183334, rel=1e-13)
@@ -252,11 +333,23 @@ def test_13_ladder() -> None:
 
 
 GOLDEN_A = {
-    "first": {"mass": 2.0, "center": [0.5, 0.1, -0.05], "inertia": [0.2, 0.5, 0.6],
-              "points": {"root": [0, 0, 0], "end": [1, 0.2, 0.1]}, "orientation": {"rodrigues": [0.1, 0.2, 0.3]},
-              "position": [0, 0, 0], "angular_velocity": [1, -2, 0.5]},
-    "second": {"mass": 1.5, "center": [0.4, -0.1, 0.2], "inertia": [0.1, 0.3, 0.35], "points": {"root": [0, 0, 0]},
-               "orientation": {"rodrigues": [-0.2, 0.4, 0.1]}, "angular_velocity": [-0.5, 1.5, 2]},
+    "first": {
+        "mass": 2.0,
+        "center": [0.5, 0.1, -0.05],
+        "inertia": [0.2, 0.5, 0.6],
+        "points": {"root": [0, 0, 0], "end": [1, 0.2, 0.1]},
+        "orientation": {"rodrigues": [0.1, 0.2, 0.3]},
+        "position": [0, 0, 0],
+        "angular_velocity": [1, -2, 0.5],
+    },
+    "second": {
+        "mass": 1.5,
+        "center": [0.4, -0.1, 0.2],
+        "inertia": [0.1, 0.3, 0.35],
+        "points": {"root": [0, 0, 0]},
+        "orientation": {"rodrigues": [-0.2, 0.4, 0.1]},
+        "angular_velocity": [-0.5, 1.5, 2],
+    },
 }
 
 
@@ -264,8 +357,14 @@ def golden_a() -> dict:
     first = start_state({"bodies": GOLDEN_A})["first"]
     end = np.array(GOLDEN_A["first"]["points"]["end"])
     second = {**GOLDEN_A["second"], "position": list(first.point(end)), "velocity": list(first.speed(end))}
-    return scene({**GOLDEN_A, "second": second}, {"base": {"type": "ball", "from": "ground.O", "to": "first.root"},
-                          "elbow": {"type": "ball", "from": "first.end", "to": "second.root"}}, -G * Z)
+    return scene(
+        {**GOLDEN_A, "second": second},
+        {
+            "base": {"type": "ball", "from": "ground.O", "to": "first.root"},
+            "elbow": {"type": "ball", "from": "first.end", "to": "second.root"},
+        },
+        -G * Z,
+    )
 
 
 def test_15_golden_a() -> None:
@@ -286,8 +385,11 @@ def test_15_golden_a_energy_and_power() -> None:
 
 
 def test_16_golden_box() -> None:
-    box = {"shapes": [{"type": "box", "center": [1, 0, 0], "size": [2, 1, 0.6], "density": 1.0}],
-           "points": {"O": [0, 0, 0]}, "angular_velocity": [1, 2, -0.5]}
+    box = {
+        "shapes": [{"type": "box", "center": [1, 0, 0], "size": [2, 1, 0.6], "density": 1.0}],
+        "points": {"O": [0, 0, 0]},
+        "angular_velocity": [1, 2, -0.5],
+    }
     s = scene({"box": box}, {"O": {"type": "ball", "from": "ground.O", "to": "box.O"}}, np.array([-3, 2, -9.0]))
     cut = section(s, start_state(s), 0.0, "box", [0.7, 0, 0], [1, 0, 0])
     close(solved(s).angular_acceleration["box"], (0.470588235294116, 6.123471882640587, -0.352941176470588), 1e-14)

@@ -44,7 +44,7 @@ def elements(scene: Scene, state: State, solution: Solution, about: Array) -> di
         if j.drive is None or j.kind == "rod" or GROUND not in (j.a.body, j.b.body):
             continue
         r = solution.reactions[j.name]
-        (axis, _), = directions("along", j, state)
+        ((axis, _),) = directions("along", j, state)
         value = (-r.drive if j.a.body == GROUND else r.drive) * axis
         turns = j.drive[0] == "angle"
         found[names[j.name]] = Wrench(np.zeros(3), value) if turns else Wrench(value, cross(r.point - about, value))
@@ -111,6 +111,9 @@ def system_vector(scene: Scene, state: State, solution: Solution) -> dict[str, A
         I_world = body.rotation @ m.inertia @ body.rotation.T
         s, s_dot = body.angular_velocity, solution.angular_acceleration[name]
         T = 0.5 * np.trace(I_world) * np.eye(3) - I_world
-        found[name] = (m.mass * cross(body.speed(m.center), solution.acceleration[name]) + float(s @ I_world @ s) * s
-                       + T @ cross(s, s_dot))
+        found[name] = (
+            m.mass * cross(body.speed(m.center), solution.acceleration[name])
+            + float(s @ I_world @ s) * s
+            + T @ cross(s, s_dot)
+        )
     return found

@@ -58,11 +58,14 @@ def turned(scene: Scene, Q: Array) -> Scene:
         return {**spec, **{key: way(spec[key]) for key in ("vector", "to_vector") if key in spec}}
 
     ends = ends_mapped(scene, lambda _, at: (Q @ at).tolist())
-    return {**ends, "gravity": polar(scene["gravity"]),
-            "ground": {"points": {k: polar(p) for k, p in scene["ground"]["points"].items()}},
-            "bodies": {k: body(b) for k, b in scene["bodies"].items()},
-            "joints": {k: joint(j) for k, j in ends["joints"].items()},
-            **({"forces": {k: force(f) for k, f in ends["forces"].items()}} if "forces" in scene else {})}
+    return {
+        **ends,
+        "gravity": polar(scene["gravity"]),
+        "ground": {"points": {k: polar(p) for k, p in scene["ground"]["points"].items()}},
+        "bodies": {k: body(b) for k, b in scene["bodies"].items()},
+        "joints": {k: joint(j) for k, j in ends["joints"].items()},
+        **({"forces": {k: force(f) for k, f in ends["forces"].items()}} if "forces" in scene else {}),
+    }
 
 
 def combined(Q: Array, v: Sequence[InTime]) -> list[Any]:
@@ -106,11 +109,29 @@ def shape_moved(shape: Spec, Q: Array, shift: Array, det: float = 1.0) -> dict[s
 def units_changed(scene: Scene, length: float = 1.0, mass: float = 1.0, time: float = 1.0) -> Scene:
     """All numbers in other units: a length of 1 becomes `length`, and so on."""
     force, moment = mass * length / time**2, mass * length**2 / time**2
-    scale = {"position": length, "velocity": length / time, "angular_velocity": 1 / time, "points": length,
-             "mass": mass, "center": length, "inertia": mass * length**2, "deviation": mass * length**2}
-    shape_scale = {"from": length, "to": length, "center": length, "at": length, "size": length, "radius": length,
-                   "inner_radius": length, "to_radius": length, "mass": mass, "density": mass / length**3,
-                   "line_density": mass / length}
+    scale = {
+        "position": length,
+        "velocity": length / time,
+        "angular_velocity": 1 / time,
+        "points": length,
+        "mass": mass,
+        "center": length,
+        "inertia": mass * length**2,
+        "deviation": mass * length**2,
+    }
+    shape_scale = {
+        "from": length,
+        "to": length,
+        "center": length,
+        "at": length,
+        "size": length,
+        "radius": length,
+        "inner_radius": length,
+        "to_radius": length,
+        "mass": mass,
+        "density": mass / length**3,
+        "line_density": mass / length,
+    }
 
     def shape(spec: Spec) -> Spec:
         return {k: times(v, shape_scale[k]) if k in shape_scale else v for k, v in spec.items()}
@@ -125,13 +146,17 @@ def units_changed(scene: Scene, length: float = 1.0, mass: float = 1.0, time: fl
         new = dict(spec)
         sliding = "joint" in spec and scene["joints"][spec["joint"]]["type"] in ("slide", "line", "plane")
         speed = length / time if sliding else 1 / time
-        factors = {"force": {"vector": force}, "couple": {"vector": moment}, "actuator": {"value": force},
-                   "torque": {"value": force if sliding else moment},
-                   "spring": {"stiffness": mass / time**2, "length": length, "damping": mass / time},
-                   "damper": {"coefficient": mass / time if sliding else moment * time, "sliding": mass / time},
-                   "distributed": {"vector": force / length, "to_vector": force / length},
-                   "turn_spring": {"stiffness": moment, "damping": moment * time},
-                   "friction": {"torque": moment, "force": force, "speed": speed}}[spec["type"]]
+        factors = {
+            "force": {"vector": force},
+            "couple": {"vector": moment},
+            "actuator": {"value": force},
+            "torque": {"value": force if sliding else moment},
+            "spring": {"stiffness": mass / time**2, "length": length, "damping": mass / time},
+            "damper": {"coefficient": mass / time if sliding else moment * time, "sliding": mass / time},
+            "distributed": {"vector": force / length, "to_vector": force / length},
+            "turn_spring": {"stiffness": moment, "damping": moment * time},
+            "friction": {"torque": moment, "force": force, "speed": speed},
+        }[spec["type"]]
         for key, factor in factors.items():
             if key in spec:
                 new[key] = times(spec[key], factor, time)
@@ -191,8 +216,11 @@ def renamed(scene: Scene, rng: np.random.Generator) -> tuple[Scene, dict[str, st
         new = {k: name(v) if k in ("from", "to", "on") else v for k, v in entry.items()}
         return {**new, **({"joint": joint_names[entry["joint"]]} if "joint" in entry else {})}
 
-    new = {**scene, "bodies": {body_names[b]: scene["bodies"][b] for b in rng.permutation(bodies)},
-           "joints": {joint_names[j]: spec(scene["joints"][j]) for j in rng.permutation(joints)}}
+    new = {
+        **scene,
+        "bodies": {body_names[b]: scene["bodies"][b] for b in rng.permutation(bodies)},
+        "joints": {joint_names[j]: spec(scene["joints"][j]) for j in rng.permutation(joints)},
+    }
     for part in ("forces", "drives"):
         if part in scene:
             new[part] = {k: spec(v) for k, v in scene[part].items()}
@@ -243,9 +271,16 @@ def ends_mapped(scene: Scene, change: Callable[[str, Array], list[float]]) -> Sc
         return value
 
     parts = [part for part in ("joints", "forces") if part in scene]
-    return {**scene, **{part: {name: {k: end(v, spec.get("on")) if k in ("from", "to", "on") else v
-                                    for k, v in spec.items()} for name, spec in scene[part].items()}
-                        for part in parts}}
+    return {
+        **scene,
+        **{
+            part: {
+                name: {k: end(v, spec.get("on")) if k in ("from", "to", "on") else v for k, v in spec.items()}
+                for name, spec in scene[part].items()
+            }
+            for part in parts
+        },
+    }
 
 
 def without_mass(body: Spec) -> dict[str, Any]:

@@ -33,8 +33,9 @@ class Harmonic:
     @property
     def source(self) -> str:
         """The same as an expression of a spec, digits exact."""
-        return (f"({self.offset!r}) + ({self.slope!r})*t"
-                f" + ({self.amplitude!r})*sin(({self.omega!r})*t + ({self.phase!r}))")
+        return (
+            f"({self.offset!r}) + ({self.slope!r})*t + ({self.amplitude!r})*sin(({self.omega!r})*t + ({self.phase!r}))"
+        )
 
     def drive(self) -> tuple[Callable[[float], float], Callable[[float], float], Callable[[float], float]]:
         """Value, first and second derivative, as a drive wants them."""
@@ -42,8 +43,9 @@ class Harmonic:
 
     def scaled(self, factor: float, time: float = 1.0) -> Harmonic:
         """factor·f(t / time)."""
-        return Harmonic(factor * self.offset, factor * self.slope / time, factor * self.amplitude, self.omega / time,
-                        self.phase)
+        return Harmonic(
+            factor * self.offset, factor * self.slope / time, factor * self.amplitude, self.omega / time, self.phase
+        )
 
     @staticmethod
     def random(rng: np.random.Generator, size: float) -> Harmonic:

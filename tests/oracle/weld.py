@@ -37,8 +37,16 @@ class Section(NamedTuple):
         return self.moment + cross(self.point - point, self.force)
 
 
-def section(scene: Scene, state: State, t: float, body: str, point: str | Sequence[float] | Array,
-            normal: Sequence[float] | Array, side: str | None = None, piece: Mass | None = None) -> Section:
+def section(
+    scene: Scene,
+    state: State,
+    t: float,
+    body: str,
+    point: str | Sequence[float] | Array,
+    normal: Sequence[float] | Array,
+    side: str | None = None,
+    piece: Mass | None = None,
+) -> Section:
     """Section load at a plane of a body; `point` (or a point's name) and `normal` in body axes.
 
     `side` ("before": to the piece, "beyond": to the remainder) for what lies in the plane; `piece` for a body without
@@ -50,8 +58,15 @@ def section(scene: Scene, state: State, t: float, body: str, point: str | Sequen
     return Section(weld.point, state[body].rotation @ unit(normal), weld.force, weld.moment, weld.unique[:6], solution)
 
 
-def saw(scene: Scene, state: State, body: str, point: str | Sequence[float] | Array, normal: Sequence[float] | Array,
-        side: str | None = None, piece: Mass | None = None) -> dict[str, Any]:
+def saw(
+    scene: Scene,
+    state: State,
+    body: str,
+    point: str | Sequence[float] | Array,
+    normal: Sequence[float] | Array,
+    side: str | None = None,
+    piece: Mass | None = None,
+) -> dict[str, Any]:
     """The scene with the body in two parts, welded at the plane."""
     whole = scene["bodies"][body]
     at = np.array(whole["points"][point] if isinstance(point, str) else point, dtype=float)
@@ -80,10 +95,15 @@ def saw(scene: Scene, state: State, body: str, point: str | Sequence[float] | Ar
     kept = {k: v for k, v in whole.items() if k in pose}
     bodies = dict(scene["bodies"])
     bodies[body], bodies[body + PIECE] = {**kept, **given(remainder)}, {**kept, **given(cut_off)}
-    joints = {name: {**spec, "from": own(spec["from"], touched(spec)), "to": own(spec["to"])}
-              for name, spec in (scene.get("joints") or {}).items()}
-    joints[SAW] = {"type": "weld", "from": {"body": body + PIECE, "at": at.tolist()},
-                   "to": {"body": body, "at": at.tolist()}}
+    joints = {
+        name: {**spec, "from": own(spec["from"], touched(spec)), "to": own(spec["to"])}
+        for name, spec in (scene.get("joints") or {}).items()
+    }
+    joints[SAW] = {
+        "type": "weld",
+        "from": {"body": body + PIECE, "at": at.tolist()},
+        "to": {"body": body, "at": at.tolist()},
+    }
     forces = {}
     for name, spec in (scene.get("forces") or {}).items():
         if spec["type"] == "distributed":
@@ -110,8 +130,10 @@ def divided(name: str, spec: Mapping[str, Any], plane: Plane, body: str) -> dict
         return {name: {**spec, "on": owner[h > 0.0]}}
     x = h / (h - k)
     between, there = [Between(x, p, q) for p, q in zip(first, last, strict=True)], (a + x * (b - a)).tolist()
-    return {f"{name}_1": {**spec, "on": owner[h > 0.0], "to": there, "vector": first, "to_vector": between},
-            f"{name}_2": {**spec, "on": owner[k > 0.0], "from": there, "vector": between, "to_vector": last}}
+    return {
+        f"{name}_1": {**spec, "on": owner[h > 0.0], "to": there, "vector": first, "to_vector": between},
+        f"{name}_2": {**spec, "on": owner[k > 0.0], "from": there, "vector": between, "to_vector": last},
+    }
 
 
 class Between(NamedTuple):

@@ -23,7 +23,9 @@ def chimney(degrees: float, mass: float, height: float, sections: str, analysis:
     """The rod along body z, falling towards world x; at a tilt, with the rate it has there."""
     tilt = math.radians(degrees)
     rate = math.sqrt(3 * G * (1 - math.cos(tilt)) / height)
-    return solved(HEAD + f"""
+    return solved(
+        HEAD
+        + f"""
 bodies:
   chimney:
     shapes: [{{type: rod, from: [0, 0, 0], to: [0, 0, {height}], mass: {mass}}}]
@@ -32,7 +34,8 @@ joints:
   foot: {{type: pin, from: ground.O, to: chimney.foot, axis: [0, 1, 0], initial: {{angle: {tilt}, rate: {rate}}}}}
 sections: {sections}
 analysis: {analysis}
-""")
+"""
+    )
 
 
 def cuts(places: dict[str, float], height: float) -> str:

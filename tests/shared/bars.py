@@ -10,7 +10,9 @@ HEAD = "heun: 1\ngravity: [0, 0, -9.81]\nground: {points: {O: [0, 0, 0]}}\n"
 
 def double(analysis: str) -> str:
     """Two bars on ball joints, in space."""
-    return HEAD + f"""
+    return (
+        HEAD
+        + f"""
 bodies:
   upper:
     mass: 1.0
@@ -31,11 +33,14 @@ joints:
   elbow: {{type: ball, from: upper.end, to: lower.top}}
 analysis: {analysis}
 """
+    )
 
 
 def top(analysis: str) -> str:
     """A heavy symmetric top."""
-    return HEAD + f"""
+    return (
+        HEAD
+        + f"""
 bodies:
   top:
     mass: 1.0
@@ -48,6 +53,7 @@ joints:
   tip: {{type: ball, from: ground.O, to: top.tip}}
 analysis: {analysis}
 """
+    )
 
 
 def chain(count: int, analysis: str) -> str:

@@ -80,7 +80,7 @@ def same_parts(c: Case) -> None:
 
 
 def axis_between(j: Joint, state: State) -> Array:
-    (n, _), = directions("between", j, state)
+    ((n, _),) = directions("between", j, state)
     return n
 
 

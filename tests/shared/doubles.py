@@ -158,8 +158,16 @@ def held(scene: dict[str, Any], state: dict[str, Placed], name: str) -> Held:
     spec = scene["joints"][name]
     a, b = end(scene, spec["from"]), end(scene, spec["to"])
     axis = unit(spec.get("axis", spec.get("normal", [1.0, 0.0, 0.0])))
-    return Held(a.body, a.point, axis, b.body, b.point, unit(spec.get("to_axis", axis)), placed(state, a.body),
-                placed(state, b.body))
+    return Held(
+        a.body,
+        a.point,
+        axis,
+        b.body,
+        b.point,
+        unit(spec.get("to_axis", axis)),
+        placed(state, a.body),
+        placed(state, b.body),
+    )
 
 
 def with_doubles(

@@ -72,7 +72,6 @@ class Flat:
         self.joints[name], self.kinds[name] = joint, kind
         self.starts[name] = {"slide": float(shift), "rod": float(np.hypot(shift, high - low))}.get(kind, 0.0)
 
-
     def driven(self, joint: str) -> dict[str, Any]:
         """A coordinate's course in time, from where it starts at rest."""
         start, key = self.starts[joint], {"pin": "angle", "slide": "travel", "rod": "length"}[self.kinds[joint]]

@@ -156,12 +156,17 @@ class FlatMaker(Maker):
         a, b = self.flat(0.6), self.flat(0.6)
         if self.masses == "shapes":
             radius = float(rng.uniform(0.05, 0.2))
-            box = (about(Z, float(rng.uniform(-3, 3))) if self.mode == "mirror" else random_rotation(rng))
+            box = about(Z, float(rng.uniform(-3, 3))) if self.mode == "mirror" else random_rotation(rng)
             ends = {"from": (F.T @ a).tolist(), "to": (F.T @ b).tolist()}
             several = [
                 {"type": "cylinder", **ends, "radius": radius, "density": float(rng.uniform(5, 20))},
-                {"type": "box", "center": (F.T @ a).tolist(), "size": rng.uniform(0.1, 0.6, 3).tolist(),
-                 "density": float(rng.uniform(5, 20)), "orientation": {"matrix": (F.T @ box).tolist()}},
+                {
+                    "type": "box",
+                    "center": (F.T @ a).tolist(),
+                    "size": rng.uniform(0.1, 0.6, 3).tolist(),
+                    "density": float(rng.uniform(5, 20)),
+                    "orientation": {"matrix": (F.T @ box).tolist()},
+                },
                 {"type": "cone", **ends, "radius": radius, "to_radius": 0.3 * radius, "mass": 1.0},
                 {"type": "rod", **ends, "mass": float(rng.uniform(0.5, 2))},
                 {"type": "point", "at": (F.T @ b).tolist(), "mass": float(rng.uniform(0.1, 0.5))},

@@ -42,7 +42,7 @@ class One(NamedTuple):
         joint, kind, place, rate = names
         mass, I = (1.0, self.inertia) if self.turns else (self.inertia, 1.0)
         forces = "\n".join(
-            f"  {name}: {{type: torque, joint: {joint}, value: \"{value}\"}}" for name, value in self.loads.items()
+            f'  {name}: {{type: torque, joint: {joint}, value: "{value}"}}' for name, value in self.loads.items()
         )
         return f"""
 heun: 1

@@ -123,8 +123,10 @@ def blamed(results: Results) -> set[str]:
 
 def numeric(value: Any) -> bool:
     """Whether a list is one of numbers."""
-    return not isinstance(value, str) and np.asarray(value, dtype=object).size > 0 and not any(
-        isinstance(x, str) for x in np.asarray(value, dtype=object).ravel()
+    return (
+        not isinstance(value, str)
+        and np.asarray(value, dtype=object).size > 0
+        and not any(isinstance(x, str) for x in np.asarray(value, dtype=object).ravel())
     )
 
 

@@ -69,8 +69,13 @@ def round_scene(seed: int) -> Scene:
             break
     scene = maker.scene
     if seed % 5 == 4:  # a couple, which may turn them about their axes
-        scene = {**scene, "forces": {**scene["forces"], "c": {
-            "type": "couple", "on": maker.some(), "vector": rng.standard_normal(3).tolist(), "frame": "body"}}}
+        scene = {
+            **scene,
+            "forces": {
+                **scene["forces"],
+                "c": {"type": "couple", "on": maker.some(), "vector": rng.standard_normal(3).tolist(), "frame": "body"},
+            },
+        }
     return struck(scene, seed, couples=seed % 2 == 0, thin=seed % 6 == 0)
 
 

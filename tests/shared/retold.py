@@ -47,8 +47,15 @@ def as_told(told: Telling, value: Array, kind: str, dimension: tuple[int, int, i
     return scaled * (det if kind in (SECOND, THIRD) else 1.0)
 
 
-def same(told: Telling, first: Block, second: Block, table: Mapping[str, Meaning], tolerance: float, force: float,
-         length: float) -> float:
+def same(
+    told: Telling,
+    first: Block,
+    second: Block,
+    table: Mapping[str, Meaning],
+    tolerance: float,
+    force: float,
+    length: float,
+) -> float:
     """Assert that two blocks say the same; the largest deviation. force, length: sizes of the second."""
     worst = 0.0
     for name, (kind, dimension) in table.items():

@@ -27,9 +27,7 @@ DIMENSIONS = {name: parse_unit(text.partition(" ")[2])[1] for name, text in WRIT
 GIVEN = {name: Given(DIMENSIONS[name], text) for name, text in WRITTEN.items()}
 VALUES = {name: 0.7 + 0.13 * i for i, name in enumerate(WRITTEN)}
 GAS = replace(fit("gas", [0.0, 1.0], [2.0, 3.0], "linear", "hold", None), dimensions=(NUMBER, parse_unit("bar")[1]))
-SCOPE = Scope(
-    {**VALUES, "q": 3.0}, {"pin": "pin", "guide": "slide"}, {"gas": GAS}, in_time=True, given=GIVEN
-)
+SCOPE = Scope({**VALUES, "q": 3.0}, {"pin": "pin", "guide": "slide"}, {"gas": GAS}, in_time=True, given=GIVEN)
 
 
 def dimension(text: str) -> Dimension | None:
@@ -124,7 +122,7 @@ def drawn(draw: random.Random, depth: int) -> str:
 def value(text: str, units: tuple[float, float, float]) -> float:
     """In units of so many kilograms, metres and seconds; of what is constant its number, not finite: nan."""
     kg, m, s = units
-    sizes = {name: kg**d[0] * m**d[1] * s**d[2] for name, d in DIMENSIONS.items()}
+    sizes = {name: kg ** d[0] * m ** d[1] * s ** d[2] for name, d in DIMENSIONS.items()}
     values = {name: number / sizes[name] for name, number in VALUES.items()}
     try:
         found: Expression = compile_expression(text, Scope(values))  # without dimensions: the kernel's number alone

@@ -96,8 +96,11 @@ def test_a_line_more(line: str, path: str, said: str) -> None:
         ("density: 7850 kg/m^3", "density: 7.85 t/m3", "7.85 tonne/m^3"),
         ("points: {top: [0, 0, 0], end: [0, 0, -1]}", "points: [top, end]", "by their names"),
         (ANALYSIS, ANALYSIS + "report: [stresses]\n", "did you mean sections?"),
-        (ANALYSIS, ANALYSIS + "forces: {f: {type: spring, from: ground.O, to: bar.end, k: 100, length: 1}}\n",
-         "it is called stiffness here"),
+        (
+            ANALYSIS,
+            ANALYSIS + "forces: {f: {type: spring, from: ground.O, to: bar.end, k: 100, length: 1}}\n",
+            "it is called stiffness here",
+        ),
         (ANALYSIS, ANALYSIS + "sections: {s: {body: rod, from: top, to: end, count: 3}}\n", "known bodies: bar, ball"),
         (ANALYSIS, "analysis: {duration: 2, samples: 11, tolerance: 1}\n", "the default is 1e-9"),
         (ANALYSIS, "analysis: {duration: 1e20, samples: 11}\n", "is its unit right?"),

@@ -31,7 +31,7 @@ LAWS: dict[str, Callable[[float], float]] = {  # of a rate its integral from 0
     "1/(1 + t)": math.log1p,
     "table(v, t)": lambda t: t * t if t < 1 else 1 + 2 * (t - 1) - 0.75 * (t - 1) ** 2 if t < 3 else 5 - t,
     # a pulse that no grid would see, and one that decays at once behind a jump
-    "exp(-((t - 3.3)*1e5)**2) + 0.1": lambda t: (math.sqrt(math.pi) / 2e5 * (math.erf((t - 3.3) * 1e5) + 1) + 0.1 * t),
+    "exp(-((t - 3.3)*1e5)**2) + 0.1": lambda t: math.sqrt(math.pi) / 2e5 * (math.erf((t - 3.3) * 1e5) + 1) + 0.1 * t,
     "1e4*exp(-(t - 1)*1e4) if t >= 1 else 0": lambda t: -math.expm1(-(t - 1) * 1e4) if t > 1 else 0.0,
 }
 

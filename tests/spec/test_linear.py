@@ -150,4 +150,3 @@ def test_powers_of_powers_are_no_units(unit: str) -> None:
     with pytest.raises(SpecError) as caught:
         load("spec.yaml", HEAD.replace("mass: 1", f"mass: 1 {unit}"))
     assert [problem.code for problem in caught.value.problems] == ["unknown-unit"]
-

@@ -258,15 +258,16 @@ def test_drives_and_impulses() -> None:
 
 
 def test_stops() -> None:
-    joints = (
-        f"joints: {{j: {{type: cylinder, {ENDS}, axis: [1, 0, 0]}}, r: {{type: rod, from: ground.Q, to: b.q}}}}\n"
-    )
+    joints = f"joints: {{j: {{type: cylinder, {ENDS}, axis: [1, 0, 0]}}, r: {{type: rod, from: ground.Q, to: b.q}}}}\n"
     top = f"ground: {{points: {{O: [0, 0, 0], Q: [9, 0, 0]}}}}\nbodies: {{b: {POINT}}}\n{joints}"
-    found = scene(top + """stops:
+    found = scene(
+        top
+        + """stops:
   near: {joint: j, travel: [-1 mm, null]}
   turned: {joint: j, angle: [-90 deg, 90 deg], restitution: 0.5}
   far: {joint: r, length: [null, 1 m], restitution: 1}
-""").stops
+"""
+    ).stops
     assert found["near"] == m.Stop("j", "travel", -1e-3, None, 0.0)
     assert found["turned"] == m.Stop("j", "angle", -math.pi / 2, math.pi / 2, 0.5)
     assert found["far"] == m.Stop("r", "length", None, 1.0, 1.0)

@@ -255,9 +255,7 @@ def test_the_depth_counted_is_the_largest_seen_on_every_stack(holds: bool) -> No
         program, held = (lambda p: p.holding() if holds else (p, []))(random_program(random))
         code, span = program.numbered(plain.OPERATIONS), (0, len(program.code))
         depth = plain.stack_depth(code)
-        programs = plain.Expressions(
-            code, array("d", program.constants), VARIABLES, len(held), tables=program.tables
-        )
+        programs = plain.Expressions(code, array("d", program.constants), VARIABLES, len(held), tables=program.tables)
         memory = programs.programs
         assert len(memory.stack) == len(memory.jets) == len(memory.spans) == depth
         memory.stack, memory.jets, memory.spans = (Watched(x) for x in (memory.stack, memory.jets, memory.spans))

@@ -48,14 +48,17 @@ def rod(more: str = "", tail: str = "") -> str:
 
 
 def test_a_mechanism_has_its_blows_and_stops() -> None:
-    found = mechanism(PIN + """\
+    found = mechanism(
+        PIN
+        + """\
 impulses:
   hit: {on: bar.b, vector: [0, 1, 0], frame: body, time: 0.5}
   twist: {on: bar.b, couple: [0, 0, 2]}
   spin: {body: bar, couple: [0, 0, 3]}
 stops: {s: {joint: pivot, angle: [-1, null], restitution: 0.25}}
 analysis: {duration: 1}
-""")
+"""
+    )
     hit, twist, spin = found.blows
     assert (hit.name, hit.body, hit.in_body, hit.time, hit.kind) == ("hit", 0, True, 0.5, "impulse")
     assert (twist.kind, spin.kind, spin.point) == ("couple", "couple", None)

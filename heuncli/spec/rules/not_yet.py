@@ -19,9 +19,7 @@ def rubbing(draft: DraftDocument) -> Iterator[Path_]:
             yield "stops", name, "friction"
 
 
-NOT_YET: tuple[tuple[str, Where], ...] = (
-    ("friction at strikes", rubbing),
-)
+NOT_YET: tuple[tuple[str, Where], ...] = (("friction at strikes", rubbing),)
 
 
 @rule("not-yet", follows=False)
