@@ -229,7 +229,7 @@ JOINTS: dict[str, Kind] = TYPES | {
         Kind("spun pin", POINT, ABOUT_AXIS, motions=("turning",), looser_in_plane=("flat line",), spoken="pin"),
     )
 }  # fmt: skip
-# with what they all are where a scene is solved in its plane (reduction/plane.py)
+# with what they all are where a scene is solved in its plane (reduction/plane/step.py)
 FLAT: dict[tuple[str, bool], Kind] = {
     (kind.name, along): kind._replace(
         name=f"{kind.name} {'along' if along else 'across'} the normal", hold=held[kind.hold], turn=turns[kind.turn],

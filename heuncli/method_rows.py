@@ -77,12 +77,13 @@ METHODS = (
         "stiff motions to six digits and more", "collocation.RADAU9",
     ),
     MethodRow(
-        "SciPy-Radau", 5, "SciPy", "adaptive", "quaternion", "an independent check of stiff motions", "foreign.RADAU"
+        "SciPy-Radau", 5, "SciPy", "adaptive", "quaternion",
+        "an independent check of stiff motions", "scipy_methods.RADAU",
     ),
-    MethodRow("SciPy-BDF", 5, "SciPy", "adaptive", "quaternion", "the same, of orders 1 to 5", "foreign.BDF"),
+    MethodRow("SciPy-BDF", 5, "SciPy", "adaptive", "quaternion", "the same, of orders 1 to 5", "scipy_methods.BDF"),
     MethodRow(
         "SciPy-LSODA", 12, "SciPy", "adaptive", "quaternion", "the same, of orders 1 to 12; takes what it finds",
-        "foreign.LSODA",
+        "scipy_methods.LSODA",
     ),
 )  # fmt: skip
 BY_NAME = {row.name.lower(): row for row in METHODS}

@@ -16,7 +16,7 @@ from typing import TypeVar
 from heuncli.cli import alarm, memory, plain
 from heuncli.cli.files import ReaderGone
 from heuncli.cli.output import emit, say
-from heuncli.cli.requests import COMMANDS, GRACES, LATER_COMMANDS, LATER_OPTIONS, Request
+from heuncli.cli.requests import COMMANDS, GRACES, LATER_COMMANDS, LATER_OPTIONS, WINGS, Request
 from heuncli.errors import HeunError, LimitError, Problem
 from heuncli.foreign_text import shown
 from heuncli.spec.reading import forget
@@ -113,7 +113,8 @@ def _command(argv: list[str]) -> int:
     for name in ("time_limit", "time_limit_each"):
         _require_limit(f"--{name.replace('_', '-')}", getattr(request, name, None))
     memory.require_some()
-    module = importlib.import_module(f"heuncli.cli.{type(request).__name__.lower()}")
+    name = next(name for name, command in COMMANDS.items() if command is type(request))
+    module = importlib.import_module(f"heuncli.{WINGS[name]}.command" if name in WINGS else f"heuncli.cli.{name}")
     grace = GRACES.get(type(request), alarm.GRACE)
     return int(alarm.limited(lambda: module.main(request), getattr(request, "time_limit", None), grace))
 

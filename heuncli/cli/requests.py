@@ -197,6 +197,7 @@ COMMANDS: dict[str, type[Request]] = {
     "run": Run, "validate": Validate, "model": Model, "modes": Modes, "chart": Chart, "probe": Probe, "check": Check,
     "methods": Methods,
 }  # fmt: skip
+WINGS = {"modes": "modes", "chart": "charting", "probe": "probing"}  # whose commands stand in folders of their own
 # seconds that a command may go on beyond its limit, to tell what it has by then; others have nothing
 GRACES: dict[type[Request], float] = {Chart: 0.8}
 LATER_COMMANDS = ("balance", "lagrange", "schema", "explain", "new", "sweep", "plot")

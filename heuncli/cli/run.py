@@ -31,10 +31,10 @@ from heuncli.results import Results
 from heuncli.results_schema import BLOWS, REPORT_OF, REPORTS, SHARES, with_shared
 from heuncli.spec.load import load
 from heuncli.spec.models import Spec
-from heuncli.study.asked import Asked, Entry, asked_by, entries_of, entry_at
-from heuncli.study.places import placed
-from heuncli.study.room import Room
-from heuncli.study.solve import Options, Study, solve
+from heuncli.study.ask.selection import Asked, Entry, asked_by, entries_of, entry_at
+from heuncli.study.solve.memory_estimate import Room
+from heuncli.study.solve.places import placed
+from heuncli.study.solve.solve import Options, Study, solve
 
 ENDINGS = {".json": "json", ".csv": "csv", ".md": "markdown", ".txt": "table", "": "table"}
 NOT_SEARCHED = "extremes among the samples only: too many quantities to search between them"

@@ -23,9 +23,9 @@ import numpy as np
 from heuncli import tolerances
 from heuncli.errors import Problem, SolveError
 from heuncli.expressions.programs import Expression, Pack
-from heuncli.integration.blows import Jump
-from heuncli.integration.pairs import matched
-from heuncli.integration.runner import Runner, Trajectory
+from heuncli.integration.check.comparison import matched
+from heuncli.integration.contacts.blows import Jump
+from heuncli.integration.run.runner import Runner, Trajectory
 from heuncli.kernel.choose import expressions as kernel
 from heuncli.mechanism.model import Condition
 from heuncli.records import record, replace

@@ -12,7 +12,7 @@ import numpy as np
 from heuncli import tolerances
 from heuncli.errors import Problem, SolveError
 from heuncli.integration.evaluator import Evaluator, Recovered
-from heuncli.integration.runner import Runner
+from heuncli.integration.run.runner import Runner
 from heuncli.linearisation.displace import displaced
 from heuncli.linearisation.linearise import Linearised, linearised
 from heuncli.linearisation.oscillations import norm, null_space

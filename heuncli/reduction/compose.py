@@ -14,7 +14,7 @@ STEPS: tuple[tuple[str, Callable[[PreparedScene], bool]], ...] = (
     ("merged", lambda scene: any(JOINTS[joint.kind].is_rigid for joint in scene.mechanism.joints)),
     ("held", lambda scene: bool(scene.layout.rows)),
     ("spins", lambda scene: bool(scene.layout.bodies["ball"].any())),
-    ("plane", lambda scene: bool(scene.mechanism.bodies)),
+    ("plane.step", lambda scene: bool(scene.mechanism.bodies)),
 )
 
 

@@ -8,7 +8,7 @@ from typing import TYPE_CHECKING, NamedTuple
 import numpy as np
 
 from heuncli import tolerances
-from heuncli.integration.runner import Runner
+from heuncli.integration.run.runner import Runner
 from heuncli.kinetostatics.bodies import BodyStates, body_states
 from heuncli.mechanism.model import Joint
 from heuncli.tree.layout import Layout

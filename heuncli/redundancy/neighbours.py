@@ -8,7 +8,7 @@ import numpy as np
 
 from heuncli import tolerances
 from heuncli.integration.evaluator import Recovered
-from heuncli.integration.runner import Runner
+from heuncli.integration.run.runner import Runner
 from heuncli.results import Array
 from heuncli.shapes.rotations import quaternion_product
 from heuncli.tree.layout import Layout

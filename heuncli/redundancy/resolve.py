@@ -8,7 +8,7 @@ import numpy as np
 
 from heuncli import tolerances
 from heuncli.integration.evaluator import Recovered
-from heuncli.integration.runner import Runner
+from heuncli.integration.run.runner import Runner
 from heuncli.kinetostatics.bodies import BodyStates, body_states
 from heuncli.kinetostatics.joint_axes import axes_at, components_of_shares
 from heuncli.kinetostatics.reactions import JointLoads

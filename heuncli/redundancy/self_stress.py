@@ -16,7 +16,7 @@ import numpy as np
 
 from heuncli import tolerances
 from heuncli.integration.evaluator import Recovered
-from heuncli.integration.runner import Runner
+from heuncli.integration.run.runner import Runner
 from heuncli.kinetostatics.bodies import BodyStates
 from heuncli.records import record
 from heuncli.response import carried, jacobian

@@ -23,13 +23,13 @@ os.environ.setdefault("OPENBLAS_NUM_THREADS", "1")  # as the command sets it, be
 
 import numpy as np
 
-from heuncli.integration.runner import Runner
+from heuncli.integration.run.runner import Runner
 from heuncli.kernel.choose import KERNEL
 from heuncli.report.export import to_csv, to_json
 from heuncli.report.labels import labels_of
 from heuncli.spec.load import load
-from heuncli.study.setup import set_up
-from heuncli.study.solve import solve
+from heuncli.study.solve.setup import set_up
+from heuncli.study.solve.solve import solve
 from heuncli.tree.prepare import PreparedScene
 from tests.bench.auto import table
 from tests.bench.causes import by_cause

@@ -18,17 +18,17 @@ from typing import NamedTuple
 import numpy as np
 
 from heuncli.errors import HeunError
-from heuncli.integration.apart import Marks, motion_error
-from heuncli.integration.checked import recovered_at
+from heuncli.integration.check.comparison import interleaved
+from heuncli.integration.check.distance import Marks, motion_error
+from heuncli.integration.check.estimate import recovered_at
 from heuncli.integration.methods.method import Method
 from heuncli.integration.methods.registry import method_of
-from heuncli.integration.pairs import interleaved
-from heuncli.integration.runner import Runner, Trajectory, discontinuities_of
+from heuncli.integration.run.runner import Runner, Trajectory, discontinuities_of
 from heuncli.method_rows import DEFAULT, METHODS
 from heuncli.spec.load import load
 from heuncli.spec.models import Spec
-from heuncli.study.setup import Setup, set_up
-from heuncli.study.solve import Options, solve
+from heuncli.study.solve.setup import Setup, set_up
+from heuncli.study.solve.solve import Options, solve
 from tests.bench.stiff import STIFF_SCENES
 
 ROOT = Path(__file__).parents[2]

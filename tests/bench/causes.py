@@ -8,8 +8,8 @@ from functools import partial
 from typing import Any
 
 from heuncli.spec.load import load
-from heuncli.study.recover import blocks, recover
-from heuncli.study.solve import Study, solve
+from heuncli.study.solve.recover import blocks, recover
+from heuncli.study.solve.solve import Study, solve
 
 REPORTS = frozenset({"motion", "foundation", "joints", "sections", "forces", "energy"})
 FORCES = 7  # beside gravity, drives and motion

@@ -20,11 +20,11 @@ from heuncli.errors import HeunError, LimitError, SolveError
 from heuncli.integration.evaluator import Recovered
 from heuncli.integration.methods.method import Method
 from heuncli.integration.methods.registry import method_of
-from heuncli.integration.runner import Runner
+from heuncli.integration.run.runner import Runner
 from heuncli.method_rows import METHODS
 from heuncli.results import Array
 from heuncli.spec.load import load
-from heuncli.study.setup import set_up
+from heuncli.study.solve.setup import set_up
 from tests.bench.chart import chart
 
 LISTED = [row.name for row in METHODS if row.kind != "SciPy"]

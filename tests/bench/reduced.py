@@ -18,9 +18,9 @@ import numpy as np
 from heuncli.kernel.choose import KERNEL
 from heuncli.spec.load import load
 from heuncli.spec.models import Spec
-from heuncli.study.asked import EVERYTHING, asked_by
-from heuncli.study.setup import set_up
-from heuncli.study.solve import Options, solve
+from heuncli.study.ask.selection import EVERYTHING, asked_by
+from heuncli.study.solve.setup import set_up
+from heuncli.study.solve.solve import Options, solve
 from tests.bench.reducible import cluster, engine, pendulums, spun, truss
 from tests.oracle.published import START, andrews, windows
 from tests.oracle.values import to_yaml

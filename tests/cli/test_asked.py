@@ -14,19 +14,20 @@ from typing import Any
 import numpy as np
 import pytest
 
-from heuncli.integration.runner import Runner
+from heuncli.integration.run.runner import Runner
 from heuncli.kernel.choose import KERNEL
 from heuncli.results import Results
 from heuncli.results_paths import find
 from heuncli.spec.load import load
 from heuncli.spec.models import Spec
-from heuncli.study import kinds, recover
-from heuncli.study import solve as solving
-from heuncli.study.asked import asked_by
-from heuncli.study.measure import Measure, value
-from heuncli.study.parts import restricted
-from heuncli.study.recover import Recovery
-from heuncli.study.solve import Options, Study, describe, solve
+from heuncli.study.ask.measure import Measure, value
+from heuncli.study.ask.parts import restricted
+from heuncli.study.ask.selection import asked_by
+from heuncli.study.solve import load_errors as kinds
+from heuncli.study.solve import recover
+from heuncli.study.solve import solve as solving
+from heuncli.study.solve.recover import Recovery
+from heuncli.study.solve.solve import Options, Study, describe, solve
 from tests.cli.conftest import SPECS as SPECS_OF
 from tests.cli.conftest import Heun
 

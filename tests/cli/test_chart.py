@@ -13,9 +13,9 @@ from typing import Any, cast
 
 import pytest
 
-from heuncli.charts import COMPLETED, Charted, Row
-from heuncli.report import picture_plot
-from heuncli.study.chart_runs import Charting, Timed
+from heuncli.charting.results import COMPLETED, Charted, Row
+from heuncli.charting.runs import Charting, Timed
+from heuncli.drawing import by_matplotlib as picture_plot
 from tests.cli.conftest import HANGING, SPECS, TURNED, Heun
 
 FEW = ("--methods", "DOP853", "--tolerances", "1e-4,1e-8")
@@ -137,7 +137,7 @@ def test_a_run_that_fails_is_that_error(heun: Heun, folder: Path) -> None:
 
 
 def test_beyond_the_time_limit_rows_are_told_not_run(heun: Heun, monkeypatch: pytest.MonkeyPatch) -> None:
-    from heuncli.study.chart_motion import Motion
+    from heuncli.charting.motion import Motion
 
     monkeypatch.setattr(Motion, "late", True)
     found = json.loads(heun("chart", "swinging.yaml", *FEW, "--time-limit", "60", "--format", "json").stdout)

@@ -298,7 +298,7 @@ def test_a_limit_that_nothing_can_keep(heun: Heun, spec: str) -> None:
 
 def test_a_limit_is_kept_to_the_end_of_a_run(heun: Heun, monkeypatch: pytest.MonkeyPatch) -> None:
     """The whole of this run is one look at the clock to the next."""
-    monkeypatch.setattr("heuncli.integration.runner.time.monotonic", map(float, itertools.count()).__next__)
+    monkeypatch.setattr("heuncli.integration.run.runner.time.monotonic", map(float, itertools.count()).__next__)
     done = heun("run", "swinging.yaml", "--time-limit", "1.5")
     assert done.returncode == 4
     assert "reached at t = 1 s of 1 s" in done.stderr

@@ -17,7 +17,7 @@ import pytest
 from heuncli.cli import alarm, files
 from heuncli.integration import evaluator
 from heuncli.spec.load import load
-from heuncli.study.solve import solve
+from heuncli.study.solve.solve import solve
 from tests.cli.conftest import HANGING, Heun
 
 SPECS = Path(__file__).parents[2] / "specs"
@@ -50,17 +50,25 @@ def forever(*_: Any, **__: Any) -> Any:
     [
         ("heuncli.spec.load.read", "run hanging.yaml", "while the spec was read"),
         ("heuncli.spec.load.read", "validate hanging.yaml", "while the spec was read"),
-        ("heuncli.study.setup.prepare", "run hanging.yaml", "while the scene was set up"),
-        ("heuncli.study.setup.prepare", "model hanging.yaml", "while the scene was set up"),
-        ("heuncli.study.setup.prepare", "modes hanging.yaml", "while the scene was set up"),
+        ("heuncli.study.solve.setup.prepare", "run hanging.yaml", "while the scene was set up"),
+        ("heuncli.study.solve.setup.prepare", "model hanging.yaml", "while the scene was set up"),
+        ("heuncli.study.solve.setup.prepare", "modes hanging.yaml", "while the scene was set up"),
         ("heuncli.rest.search.slopes", "run rest.yaml", "on the way to the rest pose"),
         ("heuncli.expressions.discontinuities._changes", "run driven.yaml", "while jumps in time were searched"),
-        ("heuncli.integration.checked.instants_of", "run swinging.yaml", "while the motion was integrated and checked"),
-        ("heuncli.integration.checked.instants_of", "check swinging.yaml", "swinging.yaml: the time limit"),
-        ("heuncli.study.recover.body_states", "run swinging.yaml", "while loads were computed"),
-        ("heuncli.study.extremes.highest", "run swinging.yaml", "while extremes between the samples were searched"),
+        (
+            "heuncli.integration.check.estimate.instants_of",
+            "run swinging.yaml",
+            "while the motion was integrated and checked",
+        ),
+        ("heuncli.integration.check.estimate.instants_of", "check swinging.yaml", "swinging.yaml: the time limit"),
+        ("heuncli.study.solve.recover.body_states", "run swinging.yaml", "while loads were computed"),
+        (
+            "heuncli.study.search.extremes.highest",
+            "run swinging.yaml",
+            "while extremes between the samples were searched",
+        ),
         ("heuncli.cli.run._report", "run swinging.yaml", "before the work was done"),
-        ("heuncli.study.probe.growing", "probe swinging.yaml", "before the work was done"),
+        ("heuncli.probing.study.growing", "probe swinging.yaml", "before the work was done"),
     ],
 )
 def test_whatever_takes_too_long_is_ended(

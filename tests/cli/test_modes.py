@@ -10,8 +10,8 @@ from pathlib import Path
 import pytest
 
 from heuncli.errors import HeunError
+from heuncli.modes.study import modes
 from heuncli.spec.load import load
-from heuncli.study.modes import modes
 from tests.cli.conftest import Heun
 
 SCENE = """\

@@ -17,7 +17,7 @@ from heuncli.expressions.grammar import ARITY, CONSTANTS
 from heuncli.expressions.units import UNITS
 from heuncli.spec import format as document
 from heuncli.spec.load import load
-from heuncli.study.solve import solve
+from heuncli.study.solve.solve import solve
 from tests.shared.picture import picture
 
 ROOT = Path(__file__).parents[2]

@@ -11,13 +11,13 @@ import numpy as np
 import pytest
 
 from heuncli.cli import memory
-from heuncli.integration.kept import Growing, Kept
+from heuncli.integration.run.step_records import Growing, Kept
 from heuncli.results_schema import REPORT_OF, REPORTS, SHARES
 from heuncli.spec.load import load
-from heuncli.study.asked import Asked
-from heuncli.study.room import in_words, numbers_by_block, two_digits
-from heuncli.study.setup import set_up
-from heuncli.study.solve import Options, solve
+from heuncli.study.ask.selection import Asked
+from heuncli.study.solve.memory_estimate import in_words, numbers_by_block, two_digits
+from heuncli.study.solve.setup import set_up
+from heuncli.study.solve.solve import Options, solve
 from tests.cli.conftest import Heun
 from tests.cli.test_process import shell
 

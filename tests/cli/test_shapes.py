@@ -23,8 +23,8 @@ from heuncli.report.labels import labels_of
 from heuncli.results_paths import find
 from heuncli.results_schema import BLOWS, CUT, REPORTS, SHARES, beside_magnitudes, quantity
 from heuncli.spec.load import load
-from heuncli.study.measure import Measure, NotOneNumber, value
-from heuncli.study.solve import Options, Study, solve
+from heuncli.study.ask.measure import Measure, NotOneNumber, value
+from heuncli.study.solve.solve import Options, Study, solve
 from tests.cli.conftest import Heun
 
 BAR = """\

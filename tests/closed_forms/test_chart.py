@@ -12,17 +12,17 @@ import numpy as np
 import pytest
 from scipy.special import ellipj, ellipk
 
-from heuncli.charts import Chart, Charted, Row
-from heuncli.integration.checked import Runs
+from heuncli.charting import runs as chart_runs
+from heuncli.charting.motion import motion_of
+from heuncli.charting.plan import Wanted
+from heuncli.charting.reference import refer
+from heuncli.charting.results import Chart, Charted, Row
+from heuncli.charting.runs import Charting
+from heuncli.charting.study import chart
+from heuncli.integration.check.estimate import Runs
 from heuncli.integration.methods.dop853 import DOP853
-from heuncli.integration.runner import Trajectory
+from heuncli.integration.run.runner import Trajectory
 from heuncli.spec.load import load
-from heuncli.study import chart_runs
-from heuncli.study.chart import chart
-from heuncli.study.chart_motion import motion_of
-from heuncli.study.chart_plan import Wanted
-from heuncli.study.chart_reference import refer
-from heuncli.study.chart_runs import Charting
 
 SCENES = Path(__file__).parents[1] / "bench" / "scenes"
 REFERENCE = json.loads((SCENES / "reference.json").read_text())

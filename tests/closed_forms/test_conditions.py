@@ -14,7 +14,7 @@ from heuncli.errors import SolveError
 from heuncli.integration.conditions import Changes, Conditions, coordinates_at
 from heuncli.results import Array
 from heuncli.spec.load import load
-from heuncli.study.solve import Options, Study, solve
+from heuncli.study.solve.solve import Options, Study, solve
 from tests.shared.scenes import near
 
 G = 9.81

@@ -12,8 +12,8 @@ import numpy as np
 import pytest
 
 from heuncli.linearisation.modes import Modes
+from heuncli.modes.study import modes
 from heuncli.spec.load import load
-from heuncli.study.modes import modes
 from tests.oracle.values import to_yaml
 
 G = 9.81

@@ -8,15 +8,15 @@ from pathlib import Path
 import numpy as np
 import pytest
 
-from heuncli.integration.loop import Integration
 from heuncli.integration.methods.dop853 import DOP853
 from heuncli.integration.methods.method import Method
 from heuncli.integration.methods.registry import method_of
-from heuncli.probing.model import DEAD_CENTRE, GIMBAL, HALF_TURN, SINGULAR, Probe
-from heuncli.probing.stiffness import polynomial, reach
+from heuncli.integration.run.loop import Integration
+from heuncli.probing.numerics.stiffness import polynomial, reach
+from heuncli.probing.results import DEAD_CENTRE, GIMBAL, HALF_TURN, SINGULAR, Probe
+from heuncli.probing.study import probe
 from heuncli.spec.load import load
-from heuncli.study.probe import probe
-from heuncli.study.solve import Options
+from heuncli.study.solve.solve import Options
 from tests.shared.bars import HEAD, rods
 
 FLAT = Path(__file__).parents[2] / "specs" / "flat_four_bar.yaml"

@@ -8,7 +8,7 @@ import numpy as np
 import pytest
 
 from heuncli.spec.load import load
-from heuncli.study.solve import Options, Study, describe, solve
+from heuncli.study.solve.solve import Options, Study, describe, solve
 from tests.shared.scenes import near, study
 
 SPECS = Path(__file__).parents[2] / "specs"

@@ -16,8 +16,8 @@ import pytest
 
 from heuncli.results import Array
 from heuncli.spec.load import load
-from heuncli.study.recover import blocks, recover
-from heuncli.study.solve import Options, Study, solve
+from heuncli.study.solve.recover import blocks, recover
+from heuncli.study.solve.solve import Options, Study, solve
 from tests.closed_forms.test_theory_2j_motion import free_top, heavy_top
 from tests.closed_forms.test_theory_golden_a import SCENE as GOLDEN_A
 from tests.oracle.values import to_yaml

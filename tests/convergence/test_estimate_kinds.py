@@ -15,7 +15,7 @@ import pytest
 
 from heuncli.results import Array, Results
 from heuncli.spec.load import load
-from heuncli.study.solve import Options, Study, solve
+from heuncli.study.solve.solve import Options, Study, solve
 from tests.shared.bars import HEAD, rods
 from tests.shared.scenes import solved
 

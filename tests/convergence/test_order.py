@@ -13,7 +13,7 @@ import pytest
 from heuncli.errors import SolveError
 from heuncli.integration.methods.method import Method, Row
 from heuncli.integration.methods.registry import method_of
-from heuncli.integration.runner import Runner
+from heuncli.integration.run.runner import Runner
 from heuncli.method_rows import METHODS
 from heuncli.records import replace
 from heuncli.results import Array

@@ -13,11 +13,11 @@ import numpy as np
 import pytest
 from scipy.integrate import solve_ivp
 
-from heuncli.integration.runner import Runner, Trajectory
+from heuncli.integration.run.runner import Runner, Trajectory
 from heuncli.integration.singular import singular_poses
 from heuncli.results import Array
 from heuncli.spec.load import load
-from heuncli.study.setup import set_up
+from heuncli.study.solve.setup import set_up
 from heuncli.tree.prepare import PreparedScene
 from tests.shared.parallelogram import parallelogram
 from tests.shared.scenes import study

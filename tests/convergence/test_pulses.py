@@ -7,7 +7,7 @@ from typing import Any
 
 import pytest
 
-from heuncli.study.measure import peak
+from heuncli.study.ask.measure import peak
 from tests.shared.scenes import near, study
 
 

@@ -9,12 +9,12 @@ from pathlib import Path
 import numpy as np
 import pytest
 
-from heuncli.integration import loop
-from heuncli.integration.runner import Trajectory, discontinuities_of
+from heuncli.integration.run import loop
+from heuncli.integration.run.runner import Trajectory, discontinuities_of
 from heuncli.integration.singular import singular_poses
 from heuncli.results import Array
 from heuncli.spec.load import load
-from heuncli.study.setup import Setup, set_up
+from heuncli.study.solve.setup import Setup, set_up
 from tests.oracle.published import START, andrews, windows
 from tests.oracle.values import to_yaml
 from tests.shared.one_freedom import One

@@ -9,7 +9,7 @@ import numpy as np
 import pytest
 
 from heuncli.errors import HeunError, LimitError, Problem, SolveError
-from heuncli.integration.pace import FIRST_LOOK, projected_steps
+from heuncli.integration.run.pace import FIRST_LOOK, projected_steps
 from heuncli.tolerances import MOST_STEPS
 from tests.shared.scenes import solved
 

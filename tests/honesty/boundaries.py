@@ -15,13 +15,14 @@ import numpy as np
 import pytest
 
 from heuncli import tolerances
-from heuncli.charts import COMPLETED, Charted, with_front
-from heuncli.charts import Row as RowOfChart
+from heuncli.charting.reference import judged_instants
+from heuncli.charting.results import COMPLETED, Charted, with_front
+from heuncli.charting.results import Row as RowOfChart
 from heuncli.errors import HeunError
-from heuncli.integration.checked import shared_steps
-from heuncli.integration.complementarity import complementary
-from heuncli.integration.contacts import Touching, answerable, short_flights
-from heuncli.integration.pace import hopeless
+from heuncli.integration.check.estimate import shared_steps
+from heuncli.integration.contacts.complementarity import complementary
+from heuncli.integration.contacts.strikes import Touching, answerable, short_flights
+from heuncli.integration.run.pace import hopeless
 from heuncli.kinetostatics.auto_properties import Cutting, joined
 from heuncli.kinetostatics.energy import energy_drift
 from heuncli.kinetostatics.foundation import central_axis
@@ -31,7 +32,10 @@ from heuncli.linearisation.reduced import Reduced
 from heuncli.linearisation.steady import off_balance
 from heuncli.mechanism.build import build
 from heuncli.mechanism.model import Stop
-from heuncli.probing.shadows import Growth
+from heuncli.modes.study import modes
+from heuncli.probing.growth import told
+from heuncli.probing.numerics.shadows import Growth
+from heuncli.probing.study import probe
 from heuncli.records import replace
 from heuncli.redundancy.certain_sums import relations, tidy
 from heuncli.redundancy.turning_sums import factors
@@ -42,14 +46,10 @@ from heuncli.shapes.figures import Rectangle
 from heuncli.shapes.forms import Form
 from heuncli.spec.load import load
 from heuncli.spec.turns import of_matrix
-from heuncli.study.beside import AMPLE, error, reached
-from heuncli.study.chart_reference import judged_instants
-from heuncli.study.expect import compare
-from heuncli.study.modes import modes
-from heuncli.study.probe import probe
-from heuncli.study.probe_growth import told
-from heuncli.study.solve import Options
-from heuncli.study.warnings import unbalanced
+from heuncli.study.ask.expect import compare
+from heuncli.study.search.near_singular import AMPLE, error, reached
+from heuncli.study.solve.solve import Options
+from heuncli.study.solve.warnings import unbalanced
 from heuncli.tree.prepare import prepare
 from tests.closed_forms.test_stretched_chain import chain
 from tests.convergence.test_pulses import slide

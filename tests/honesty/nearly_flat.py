@@ -7,7 +7,7 @@ from typing import Any
 
 from heuncli.mechanism.build import build
 from heuncli.reduction.model import Reduction
-from heuncli.reduction.plane import step
+from heuncli.reduction.plane.step import step
 from heuncli.spec.load import load
 from heuncli.tree.prepare import prepare
 

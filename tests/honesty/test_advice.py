@@ -14,7 +14,7 @@ import pytest
 from heuncli.results import Results
 from heuncli.spec.load import load
 from heuncli.spec.source import parse
-from heuncli.study.solve import Options, describe, solve
+from heuncli.study.solve.solve import Options, describe, solve
 from tests.closed_forms.test_redundant import door
 from tests.oracle.published import four_bar, windows
 from tests.oracle.read import state_at

@@ -6,7 +6,7 @@ import pytest
 
 from heuncli.mechanism.build import build
 from heuncli.reduction.model import Reduction
-from heuncli.reduction.plane import step
+from heuncli.reduction.plane.step import step
 from heuncli.spec.load import load
 from heuncli.tree.prepare import prepare
 from tests.honesty.nearly_flat import swing

@@ -13,12 +13,12 @@ import pytest
 
 from heuncli import tolerances
 from heuncli.errors import SolveError, SpecError
-from heuncli.integration.checked import Marks
-from heuncli.integration.pairs import between_strikes
-from heuncli.integration.runner import Trajectory
+from heuncli.integration.check.comparison import between_strikes
+from heuncli.integration.check.estimate import Marks
+from heuncli.integration.run.runner import Trajectory
 from heuncli.method_rows import METHODS, MethodRow
 from heuncli.results import Array
-from heuncli.study.solve import Study
+from heuncli.study.solve.solve import Study
 from tests.bench.honesty import told
 from tests.package.test_kernels_agree import EVENTS, SPECS
 from tests.shared.scenes import study

@@ -14,11 +14,11 @@ import pytest
 from heuncli.errors import SolveError
 from heuncli.integration.methods.method import Method
 from heuncli.integration.methods.registry import method_of
-from heuncli.integration.runner import Runner, Trajectory, discontinuities_of
+from heuncli.integration.run.runner import Runner, Trajectory, discontinuities_of
 from heuncli.method_rows import METHODS
 from heuncli.results import Array
 from heuncli.spec.load import load
-from heuncli.study.setup import set_up
+from heuncli.study.solve.setup import set_up
 from tests.bench.honesty import told
 from tests.bench.stiff import STIFF_SCENES
 from tests.honesty.chaotic import chaotic_scene

@@ -9,12 +9,12 @@ import numpy as np
 import pytest
 
 from heuncli.errors import SolveError
-from heuncli.integration.complementarity import complementary
-from heuncli.integration.contacts import Struck, Touching, strikes
-from heuncli.integration.runner import Trajectory
+from heuncli.integration.contacts.complementarity import complementary
+from heuncli.integration.contacts.strikes import Struck, Touching, strikes
+from heuncli.integration.run.runner import Trajectory
 from heuncli.results import Array
 from heuncli.spec.load import load
-from heuncli.study.setup import set_up
+from heuncli.study.solve.setup import set_up
 from tests.shared.scenes import solved
 
 G = 10.0

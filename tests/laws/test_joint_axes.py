@@ -12,7 +12,7 @@ from heuncli.cli.entry import enter
 from heuncli.report.labels import labels_of
 from heuncli.results import Array, Block, Results
 from heuncli.spec.load import load
-from heuncli.study.solve import Options, Study, solve
+from heuncli.study.solve.solve import Options, Study, solve
 
 SPECS = Path(__file__).parents[2] / "specs"
 SOLVED = ("double", "engine", "spatial_crank", "skew_rod", "hammered_four_bar", "crankshaft_stiff")

@@ -8,11 +8,11 @@ from typing import Any
 import numpy as np
 import pytest
 
-from heuncli.integration.runner import Runner
+from heuncli.integration.run.runner import Runner
 from heuncli.linearisation.displace import displaced
 from heuncli.linearisation.linearise import Linearised, linearised
 from heuncli.results import Array
-from heuncli.study.at_rest import rates_of
+from heuncli.study.solve.singular_start import rates_of
 from heuncli.tree.layout import places_of_rates
 from tests.shared.loops import loop
 from tests.shared.scenes import study

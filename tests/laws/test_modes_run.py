@@ -15,10 +15,10 @@ from heuncli.linearisation.displace import displaced
 from heuncli.linearisation.oscillations import Mode, oscillations
 from heuncli.linearisation.reduced import idle_spins
 from heuncli.linearisation.steady import Looked, carried_on
+from heuncli.modes.study import require_no_time, state_of
 from heuncli.results import Array
 from heuncli.spec.load import load
-from heuncli.study.modes import require_no_time, state_of
-from heuncli.study.setup import set_up
+from heuncli.study.solve.setup import set_up
 from heuncli.tree.layout import places_of_rates
 from tests.closed_forms.test_modes import porter, spindle
 from tests.oracle.values import to_yaml

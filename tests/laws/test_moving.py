@@ -10,11 +10,11 @@ import numpy as np
 import pytest
 
 from heuncli.integration.moving import Moving
-from heuncli.integration.runner import Runner
+from heuncli.integration.run.runner import Runner
 from heuncli.records import replace
 from heuncli.results import Array
 from heuncli.spec.load import load
-from heuncli.study.setup import set_up
+from heuncli.study.solve.setup import set_up
 from heuncli.tree.layout import Layout
 
 TURN = 2.0 * np.pi

@@ -11,12 +11,12 @@ import numpy as np
 import pytest
 
 from heuncli.integration.evaluator import Recovered
-from heuncli.integration.runner import Runner
+from heuncli.integration.run.runner import Runner
 from heuncli.records import replace
 from heuncli.response import Columns, Jacobian, blows, carried, columns, jacobian
 from heuncli.results import Array
 from heuncli.spec.load import load
-from heuncli.study.setup import draw, set_up
+from heuncli.study.solve.setup import draw, set_up
 from heuncli.tree.flat import moves_in_plane
 from heuncli.tree.prepare import prepare
 from heuncli.tree.tables import Table

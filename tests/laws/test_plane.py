@@ -8,12 +8,12 @@ import numpy as np
 import pytest
 
 from heuncli.integration.evaluator import Evaluator
-from heuncli.integration.solvable import ready
-from heuncli.reduction import plane
+from heuncli.integration.refusals.solvability import ready
 from heuncli.reduction.model import Reduction
+from heuncli.reduction.plane import step as plane
 from heuncli.results import Array
 from heuncli.spec.load import load
-from heuncli.study.setup import draw
+from heuncli.study.solve.setup import draw
 from heuncli.tree.prepare import PreparedScene, prepare
 from tests.oracle.values import to_yaml
 from tests.shared.flat_scenes import PLANES, flat

@@ -15,13 +15,13 @@ import pytest
 
 from heuncli.integration.evaluator import Recovered
 from heuncli.integration.moving import smaller
-from heuncli.integration.runner import Runner
-from heuncli.integration.solvable import ready
+from heuncli.integration.refusals.solvability import ready
+from heuncli.integration.run.runner import Runner
 from heuncli.reduction import held, merged, spins
 from heuncli.reduction.model import Reduced, Reduction
 from heuncli.results import Array
 from heuncli.spec.load import load
-from heuncli.study.setup import set_up
+from heuncli.study.solve.setup import set_up
 from heuncli.tree.layout import Layout
 from tests.oracle.read import start_state
 from tests.oracle.scenes import ALL_KINDS, LOADS, Maker

@@ -14,7 +14,7 @@ import pytest
 
 from heuncli.response import tangent, workspace_of
 from heuncli.spec.load import load
-from heuncli.study.setup import set_up
+from heuncli.study.solve.setup import set_up
 from heuncli.tree.layout import Layout
 from tests.laws.test_thin_rods import rods
 from tests.oracle.values import to_yaml

@@ -9,11 +9,11 @@ import pytest
 
 from heuncli.integration.evaluator import Recovered
 from heuncli.linearisation.linearise import linearised
-from heuncli.probing.twists import closure_rows, mass_matrix, twists
+from heuncli.probing.numerics.twists import closure_rows, mass_matrix, twists
 from heuncli.response import jacobian
 from heuncli.rest.coordinates import coordinates_of
 from heuncli.spec.load import load
-from heuncli.study.setup import Setup, set_up
+from heuncli.study.solve.setup import Setup, set_up
 
 SPECS = Path(__file__).parents[2] / "specs"
 SCENES = ("bricard", "cardan", "crane", "double", "excavator", "lift", "slider_crank_pins", "spatial_crank", "swing")

@@ -14,10 +14,10 @@ import numpy as np
 from heuncli.kinetostatics.bodies import body_states
 from heuncli.linearisation.displace import displaced
 from heuncli.linearisation.steady import Looked
+from heuncli.modes.study import state_of
 from heuncli.results import Array
 from heuncli.spec.load import load
-from heuncli.study.modes import state_of
-from heuncli.study.setup import set_up
+from heuncli.study.solve.setup import set_up
 from tests.oracle.read import Placed, model
 from tests.oracle.solve import solve
 from tests.oracle.values import to_yaml

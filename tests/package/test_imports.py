@@ -33,7 +33,8 @@ def modules(name: str) -> list[str]:
     """The module of this name, or all modules of the package."""
     if (ROOT / f"{name}.py").exists():
         return [f"heuncli.{name}"]
-    return [f"heuncli.{name}.{path.stem}" for path in sorted((ROOT / name).glob("*.py")) if path.stem != "__init__"]
+    files = (path for path in sorted((ROOT / name).rglob("*.py")) if path.stem != "__init__")
+    return [".".join(("heuncli", *path.relative_to(ROOT).with_suffix("").parts)) for path in files]
 
 
 def imported(names: list[str]) -> set[str]:

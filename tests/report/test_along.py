@@ -15,8 +15,8 @@ from heuncli.report.runs import extremes_of_samples, one_source, runs_of
 from heuncli.report.table import Table
 from heuncli.results import Extremes, Place
 from heuncli.spec.load import load
-from heuncli.study.measure import peak
-from heuncli.study.solve import Options, Study, solve
+from heuncli.study.ask.measure import peak
+from heuncli.study.solve.solve import Options, Study, solve
 
 SPEC = """
 heun: 1

@@ -9,7 +9,9 @@ import math
 
 import pytest
 
-from heuncli.charts import (
+from heuncli.charting import page as report
+from heuncli.charting.letters import draw, letters
+from heuncli.charting.results import (
     COMPLETED,
     FAILED,
     KINDS,
@@ -21,10 +23,8 @@ from heuncli.charts import (
     shown,
     with_front,
 )  # fmt: skip
+from heuncli.charting.scale import Scale, scales
 from heuncli.records import replace
-from heuncli.report import chart as report
-from heuncli.report.chart_scale import Scale, scales
-from heuncli.report.chart_text import draw, letters
 from heuncli.report.export import dump
 from heuncli.report.fit import fit
 from heuncli.report.table import WIDTH, plain

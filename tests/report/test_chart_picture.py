@@ -8,13 +8,13 @@ from random import Random
 
 import pytest
 
+from heuncli.charting.labels import Box, crosses, inside, placed
+from heuncli.charting.picture import picture, stacked
+from heuncli.drawing import by_matplotlib as picture_plot
+from heuncli.drawing.picture import Line, Mark, Picture, Text, svg
 from heuncli.errors import HeunError
 from heuncli.foreign_text import shown
 from heuncli.records import replace
-from heuncli.report import picture_plot
-from heuncli.report.chart_labels import Box, crosses, inside, placed
-from heuncli.report.chart_picture import picture, stacked
-from heuncli.report.picture import Line, Mark, Picture, Text, svg
 from tests.report.test_chart import FAILS, TOO_LONG, chart, run
 
 SVG = "{http://www.w3.org/2000/svg}"

@@ -15,9 +15,9 @@ from heuncli.report.export import to_json
 from heuncli.results import Results
 from heuncli.results_schema import REPORTS, ROWS, SHARES, quantity
 from heuncli.spec.load import load
-from heuncli.study import recover
-from heuncli.study.finite import leaves, require_finite
-from heuncli.study.solve import Options, solve
+from heuncli.study.solve import recover
+from heuncli.study.solve.finiteness import leaves, require_finite
+from heuncli.study.solve.solve import Options, solve
 from tests.cli.conftest import Heun, folder, heun  # noqa: F401  # fixtures
 
 ROOT = Path(__file__).parents[2]

@@ -14,7 +14,7 @@ from heuncli.report.heading import write_heading
 from heuncli.report.page import Page, page_of
 from heuncli.report.table import plain
 from heuncli.results import Array, Extremes, Results
-from heuncli.study import extremes as peaks
+from heuncli.study.search import extremes as peaks
 from tests.shared.fakes import ACCURATE, LABELS, MAGNITUDES, FakeStudy, found_extremes, pendulum, restrict, vectors
 
 T = np.linspace(0.0, 2.0, 21)

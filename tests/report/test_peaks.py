@@ -6,7 +6,7 @@ import numpy as np
 import pytest
 
 from heuncli.results import Array
-from heuncli.study.extremes import MOST_COLUMNS, search
+from heuncli.study.search.extremes import MOST_COLUMNS, search
 
 GRID = np.linspace(0.0, 2.0, 61)
 

@@ -12,7 +12,7 @@ import numpy as np
 from heuncli import tolerances
 from heuncli.results import Results
 from heuncli.spec.models import Spec
-from heuncli.study.solve import Options, Study, solve
+from heuncli.study.solve.solve import Options, Study, solve
 
 BLOCKS = ("bodies", "points", "coordinates", "foundation", "joints", "stops", "sections", "forces", "energy",
           "system_vector")  # fmt: skip

@@ -9,7 +9,7 @@ import numpy as np
 
 from heuncli.results import Array, Results
 from heuncli.spec.load import load
-from heuncli.study.solve import Options, Study, solve
+from heuncli.study.solve.solve import Options, Study, solve
 from tests.oracle.read import Placed, state_at
 from tests.oracle.values import to_yaml
 

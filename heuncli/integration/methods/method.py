@@ -26,7 +26,7 @@ class Method:
     reached by a step of the same method from the step's start. implicit: the stages are solved for
     (kernel/collocation.py), by the numbers in `collocation`; dense rows are then of what the stages are beyond the
     start, from 1 on, and of the three. attitude: how it is held within a step. foreign: its name in SciPy, where
-    its steps are taken (integration/foreign.py). stable: of an explicit method, how large
+    its steps are taken (integration/run/scipy_loop.py). stable: of an explicit method, how large
     h lambda may be of what decays exp(lambda t), lambda < 0, before the method lets it grow: |R(-x)| = 1. within: where
     in a step its interpolation errs most, measured on open and closed chains (tests/convergence/test_between_ends.py).
     check: the method of its check run, where that is another one.

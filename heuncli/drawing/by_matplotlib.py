@@ -1,0 +1,61 @@
+"""The same drawing as PNG or PDF, by matplotlib, which is an extra of its own."""
+
+from __future__ import annotations
+
+import importlib.util
+import io
+
+from heuncli.drawing.picture import SHAPES, Line, Mark, Picture, Text, corners
+from heuncli.errors import Problem, SpecError
+
+PER_INCH = 96.0  # pixels
+POINTS = 72.0 / PER_INCH  # in a pixel
+FINE = 2.0  # pixels of a PNG in one of the drawing
+INSTALL = 'pip install "heuncli[plot]"; or --save chart.svg, which needs nothing'
+
+
+def require_plot(what: str) -> None:
+    """Say before the work that matplotlib is missing."""
+    if importlib.util.find_spec("matplotlib") is None:
+        message = f"{what} is drawn by matplotlib, which is not installed"
+        raise SpecError(Problem("missing-extra", message, hint=INSTALL))
+
+
+def rendered(picture: Picture, form: str) -> bytes:
+    """The drawing as a file of that form."""
+    require_plot(f"a {form} file")
+    from matplotlib.figure import Figure
+    from matplotlib.patches import Circle, Polygon
+
+    figure = Figure(figsize=(picture.width / PER_INCH, picture.height / PER_INCH), facecolor="#ffffff")
+    axes = figure.add_axes((0.0, 0.0, 1.0, 1.0))
+    axes.set_xlim(0.0, picture.width)
+    axes.set_ylim(picture.height, 0.0)
+    axes.set_axis_off()
+    for shape in picture.shapes:
+        if isinstance(shape, Line):
+            xs, ys = zip(*shape.points, strict=True)
+            width = shape.width * POINTS
+            style = (0.0, tuple(x * POINTS / width for x in shape.dash)) if shape.dash else "solid"
+            axes.plot(xs, ys, color=shape.colour, linewidth=width, linestyle=style, scalex=False, scaley=False)
+        elif isinstance(shape, Mark):
+            face = shape.colour if shape.filled else "#ffffff"
+            own = {"facecolor": face, "edgecolor": shape.colour, "linewidth": 1.2 * POINTS, "zorder": 3}
+            round_ = not SHAPES[shape.shape]
+            axes.add_patch(Circle((shape.x, shape.y), shape.size, **own) if round_ else Polygon(corners(shape), **own))
+        else:
+            write(axes, shape)
+    file = io.BytesIO()
+    dates = {"CreationDate": None} if form == "pdf" else {"Software": None}
+    figure.savefig(file, format=form, dpi=PER_INCH * FINE, metadata=dates)
+    return file.getvalue()
+
+
+def write(axes: object, text: Text) -> None:
+    """A line of text."""
+    where = {"start": "left", "middle": "center", "end": "right"}[text.anchor]
+    axes.text(  # type: ignore[attr-defined]
+        text.x, text.y, text.text, parse_math=False, fontsize=text.size * POINTS, color=text.colour, ha=where,
+        va="baseline", fontweight="bold" if text.bold else "normal", rotation=90 if text.turned else 0,
+        rotation_mode="anchor", zorder=4,
+    )  # fmt: skip

@@ -1,0 +1,149 @@
+"""The instants at which a run is compared with its check run, and the start from which that one sets out.
+
+An estimate must hold for every instant of the run, asked or not. So the runs are compared at the asked instants, at the
+ends of the steps, and within steps where the method's interpolation errs most: up to fifty times what the ends
+themselves err by.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+
+import numpy as np
+
+from heuncli import tolerances
+from heuncli.integration.contacts.blows import Jump
+from heuncli.integration.run.runner import Runner, Trajectory
+from heuncli.records import record
+from heuncli.results import Array, Indices, Mask
+from heuncli.tree.layout import Layout
+
+ENDS = 2_000  # ends of steps that are compared, in even numbers over a longer run; the horizon is then looked for again
+INSIDE = 2_000  # bodies times steps up to which all steps are looked into
+SOLVED = 64  # asked instants that are compared of a run that is followed
+BLOCKS, BLOCK = 8, 16  # else so many stretches of so many steps, spread over the run
+
+
+@record
+class Instants:
+    """Instants (n,) of a run, ascending, and its states there (n, n_state); asked (n,): whether they are told."""
+
+    times: Array
+    states: Array
+    asked: Mask
+
+
+def instants_of(runner: Runner, run: Trajectory) -> Instants:
+    """All instants at which a run is compared: asked ones, ends of steps, and some within the steps.
+
+    What is followed is solved at each instant by itself: it errs by rounding alone, most where the closures are nearest
+    to a singular pose, and there its steps end most closely. So their ends tell, and some of the asked instants.
+    """
+    told = slice(None, None, -(-len(run.times) // SOLVED) if run.method.determined else 1)
+    asked, own = run.times[told], run.states[told]
+    bounds = np.concatenate([[0.0], run.ends])
+    seen = np.diff(np.searchsorted(asked, bounds)) if len(run.ends) else np.zeros(0, dtype=np.intp)
+    ends, states = ends_of(runner, run, seen)
+    inner = np.zeros(0) if run.method.determined else within(bounds, len(runner.layout.place), run.method.within)
+    times = np.concatenate([asked, ends, inner])
+    states = np.concatenate([own, states, runner.resample(run, inner)])
+    order = np.argsort(times, kind="stable")  # of equal instants the asked one comes first
+    times = times[order]
+    new = np.concatenate([[True], times[1:] != times[:-1]]) & (times <= run.times[-1])
+    return Instants(times[new], states[order][new], (order < len(asked))[new])
+
+
+def ends_of(runner: Runner, run: Trajectory, seen: Indices) -> tuple[Array, Array]:
+    """Ends of steps with fewer than two asked instants (seen: how many), as far as their states were kept."""
+    n = runner.moving.layout.n_state  # a record begins with the state
+    kept = np.flatnonzero(np.append(0, seen)[run.kept.steps] < 2)
+    kept = kept[:: -(-len(kept) // ENDS)]
+    times = np.append(0.0, run.ends)[run.kept.steps[kept]]
+    return times, runner.moving.embed(times, run.kept.records[kept, :n])
+
+
+def within(bounds: Array, bodies: int, parts: tuple[float, ...]) -> Array:
+    """Instants at these parts of steps, (n,) ascending; of a long run in some stretches of steps.
+
+    However many instants are asked for: they need not lie where a step errs most, and told half of it by chance.
+    """
+    count = len(bounds) - 1
+    steps = np.arange(count)
+    if count * bodies > INSIDE and count > BLOCKS * BLOCK:
+        first = np.linspace(0, count - BLOCK, BLOCKS).astype(int)
+        steps = (first[:, None] + np.arange(BLOCK)).ravel()
+    inner: Array = bounds[steps, None] + np.diff(bounds)[steps, None] * np.array(parts)
+    return inner.ravel()
+
+
+def passed_between(runner: Runner, runs: Sequence[Trajectory], begin: float, end: float) -> tuple[Array, list[Array]]:
+    """The ends of the first run's steps between two instants, and the states of all runs there."""
+    last = min(run.reached for run in runs)
+    ends = runs[0].ends[(runs[0].ends > begin) & (runs[0].ends < end) & (runs[0].ends <= last)]
+    ends = ends[:: max(1, -(-len(ends) // ENDS))]
+    return ends, [runner.resample(run, ends) for run in runs]
+
+
+def interleaved(times: Array, states: Sequence[Array]) -> tuple[Array, Array]:
+    """The instants as often as there are runs, with the states of all runs (n, n_state) there, one after the other.
+
+    So all are answered with the same choice of closure rows, which goes from one state to the next: what redundant
+    joints leave open would else differ by more than an error.
+    """
+    return np.repeat(times, len(states)), np.stack(states, axis=1).reshape(len(states) * len(times), -1)
+
+
+def matched(own: Sequence[Jump], others: Sequence[Jump]) -> list[tuple[int, int]]:
+    """The blows that two runs of one motion share: each the other's nearest, with a name in common.
+
+    What rounding adds to a blow, a rope that hardly takes part, does not make it another one.
+    """
+    if not own or not others:
+        return []
+    times, among = (np.array([jump.time for jump in jumps]) for jumps in (own, others))
+    there, back = nearest(times, among), nearest(among, times)
+    pairs = [(i, int(k)) for i, k in enumerate(there) if back[k] == i]
+    return [(i, k) for i, k in pairs if set(own[i].names) & set(others[k].names)]
+
+
+def nearest(times: Array, among: Array) -> Indices:
+    """Of each instant the place of the nearest among others, ascending."""
+    behind = np.clip(np.searchsorted(among, times), 1, max(len(among) - 1, 1))
+    before = np.abs(times - among[behind - 1]) <= np.abs(among[np.minimum(behind, len(among) - 1)] - times)
+    return np.where(before, behind - 1, np.minimum(behind, len(among) - 1))
+
+
+def between_strikes(runs: Sequence[Trajectory], times: Array) -> Mask:
+    """Which instants lie between the first run's strike and another run's same one, (n,): one has jumped by then.
+
+    What strikes at an instant of its own in each run is later in one of them by the error of the motion: there the
+    velocities differ by the jump, which is no error of either.
+    """
+    inside = np.zeros(len(times), dtype=bool)
+    own = runs[0].blows
+    for other in runs[1:]:
+        for i, k in matched(own, other.blows):
+            first, last = sorted((own[i].time, other.blows[k].time))
+            if first < last:
+                inside |= (times >= first) & (times <= last)
+    return inside
+
+
+def moved_start(layout: Layout) -> Array:
+    """A start beside the given one by the rounding of its numbers; the closures are closed again by the run.
+
+    What an unstable start makes of rounding is then seen: upright at 180 degrees, A stays there for ever. Rates move by
+    the rounding of the body's largest, so that what rests stays at rest. The directions are those of no symmetry: an
+    even spread of fractions of the golden section.
+    """
+    y = layout.y0.copy()
+    share = np.modf(0.6180339887498949 * np.arange(1, len(y) + 1))[0]
+    direction = np.where(share < 0.5, -1.0, 1.0) * (0.5 + np.modf(2.0 * share)[0] / 2.0)
+    for group in layout.tables["groups"]:
+        coordinates, rates, end = group["coordinates"], group["rates"], group["end"]
+        unit = 1.0 / layout.weights[coordinates:end]
+        size = np.maximum(np.abs(y[coordinates:rates]), unit[: rates - coordinates])
+        largest = (np.abs(y[rates:end]) / unit[rates - coordinates :]).max(initial=0.0)
+        scale = np.concatenate([size, largest * unit[rates - coordinates :]])
+        y[coordinates:end] += tolerances.START_ROUNDING * direction[coordinates:end] * scale
+    return y

@@ -1,0 +1,263 @@
+"""Blows: at an instant velocities jump, and impulses run through all joints.
+
+    M (V+ - V-) = H + J' Lambda,   J (V+ - V-) = -(jumps of the prescribed rates)           (45)-(48), (50), (51)
+H are given impulses; what is driven jumps by as much as its prescribed rate does, and by nothing else. One column of
+the one linear map a cause: each given impulse, the drives together. Positions stay.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+
+import numpy as np
+
+from heuncli.expressions.discontinuities import jumps
+from heuncli.expressions.programs import Expression
+from heuncli.integration.evaluator import Evaluator, Recovered
+from heuncli.integration.run.loop import just_after, just_before
+from heuncli.mechanism.model import Mechanism
+from heuncli.records import record, replace
+from heuncli.response import Blows as Answered
+from heuncli.response import Columns, blows
+from heuncli.results import Array
+from heuncli.shapes.rotations import cross_rows
+from heuncli.tree.layout import Layout
+from heuncli.tree.tables import Table
+
+DRIVES = "drives"  # the cause beside the given impulses
+
+
+@record
+class Given:
+    """What is given to happen at one instant: impulses, and drives whose rates jump.
+
+    before, after: the last instant before it and the first behind; blows: places in mechanism.blows; drives: of joints,
+    from which rate to which.
+    """
+
+    before: float
+    after: float
+    blows: tuple[int, ...]
+    drives: dict[int, tuple[float, float]]
+
+    def names(self, mechanism: Mechanism) -> tuple[str, ...]:
+        """The names of what acts."""
+        drives = (mechanism.joints[k].drive for k in self.drives)
+        return (*(mechanism.blows[i].name for i in self.blows), *(d.name for d in drives if d is not None))
+
+
+@record
+class Impulse:
+    """A given impulse on a body: force [N s], moment [N m s] about the world position `at`; (3,), world axes."""
+
+    blow: int
+    force: Array
+    moment: Array
+    at: Array
+
+
+@record
+class Jump:
+    """A blow that happened.
+
+    recovered: the kernel's answers at the state before it, with `causes` the columns of jumps, (1, n_c); causes: their
+    names; impulses: the given ones; after: the state behind, settled; kinetic: energy before and behind [J]; work: of
+    all impulses [J]; holding (contacts,): which are closed behind it.
+    """
+
+    time: float
+    names: tuple[str, ...]
+    recovered: Recovered
+    causes: tuple[str, ...]
+    impulses: tuple[Impulse, ...]
+    after: Array
+    kinetic: tuple[float, float]
+    work: float
+    holding: Array = np.zeros(0)
+
+
+def rate_jumps(value: Expression, last: float) -> list[tuple[float, float, float, float]]:
+    """Where within (0, last] the rate of a drive jumps: the instants before and behind, and the rates there."""
+    return jumps(value, just_after(last), order=1) if value.time_dependent else []
+
+
+def schedule(mechanism: Mechanism, last: float) -> list[Given]:
+    """The blows that are given within [0, last], ascending; those of one instant together."""
+    at: dict[float, tuple[list[int], dict[int, tuple[float, float]]]] = {}
+    befores: dict[float, float] = {}
+    for k, joint in enumerate(mechanism.joints):
+        for before, after, first, then in rate_jumps(joint.drive.value, last) if joint.drive is not None else ():
+            befores[after] = before
+            at.setdefault(after, ([], {}))[1][k] = (first, then)
+    for i, blow in enumerate(mechanism.blows):
+        with_drive = next((t for t, before in befores.items() if before < blow.time <= t), blow.time)
+        at.setdefault(with_drive, ([], {}))[0].append(i)
+    return [Given(befores.get(t, just_before(t) if t > 0.0 else 0.0), t, tuple(at[t][0]), at[t][1]) for t in sorted(at)]
+
+
+@record
+class Asked:
+    """What is given at a state: the answers there, impulses, and the columns of loads and of prescribed jumps."""
+
+    still: Recovered
+    impulses: tuple[Impulse, ...]
+    loads: list[Array]
+    jumps: list[Array]
+    causes: tuple[str, ...]
+
+
+def asked_of(evaluator: Evaluator, given: Given, state: Array) -> Asked:
+    """What is given, in world axes; the contacts are open, so that they are columns themselves."""
+    layout, mechanism = evaluator.layout, evaluator.layout.mechanism
+    still = evaluator.recovered(np.array([given.before]), state[None, :], holding=np.zeros(len(layout.contacts)))
+    impulses = tuple(impulse(layout, still.bodies[0], i) for i in given.blows)
+    n_b, n_u = len(layout.place), len(layout.freedoms) + len(layout.rows)
+    loads, jumps = [column(layout, still.bodies[0], one) for one in impulses], [np.zeros(n_u)] * len(impulses)
+    if given.drives:
+        loads.append(np.zeros((n_b, 6)))
+        jumps.append(prescribed(layout, given))
+    causes = tuple(mechanism.blows[i].name for i in given.blows) + ((DRIVES,) if given.drives else ())
+    return Asked(still, impulses, loads, jumps, causes)
+
+
+def strike(evaluator: Evaluator, given: Given, state: Array, time: float) -> Jump:
+    """What blows make of a state, at an instant."""
+    asked = asked_of(evaluator, given, state)
+    found = blows(
+        evaluator.workspace, given.before, asked.still.states[0], np.array(asked.loads), np.array(asked.jumps)
+    )
+    after, work = behind(evaluator.layout, given, asked, found.columns)
+    return told(evaluator, given, asked, Told(time, found, asked.causes, after, work, np.zeros(0)))
+
+
+def behind(layout: Layout, given: Given, asked: Asked, columns: Columns) -> tuple[Array, float]:
+    """The state behind columns of jumps, and the work of what is given [J]."""
+    whole = columns.sum()
+    work = work_of_impulses(layout, asked.still.bodies[0], whole, asked.impulses) + work_of_drives(layout, given, whole)
+    return jumped(layout, asked.still.states[0], whole), work
+
+
+@record
+class Told:
+    """What a blow came to: its columns by cause, the state behind it, the work of all, the contacts closed there.
+
+    struck: the contacts that take part in it, also those that share what others bear.
+    """
+
+    time: float
+    found: Answered
+    causes: tuple[str, ...]
+    after: Array
+    work: float
+    holding: Array
+    struck: tuple[str, ...] = ()
+
+
+def told(evaluator: Evaluator, given: Given, asked: Asked, blow: Told) -> Jump:
+    """The blow with its energies."""
+    layout, found, after = evaluator.layout, blow.found, blow.after.copy()
+    if layout.work_at >= 0:
+        after[layout.work_at] += blow.work
+    then = evaluator.recovered(np.array([given.after]), after[None, :], holding=blow.holding)
+    still = replace(
+        asked.still, causes=found.columns.at(None), residual=np.array([found.unmet.max()]),
+        idle=np.array([float(found.idle)]),
+    )  # fmt: skip
+    kinetic = kinetic_energy(layout, still.bodies[0]), kinetic_energy(layout, then.bodies[0])
+    names = tuple(dict.fromkeys((*given.names(layout.mechanism), *blow.struck)))
+    return Jump(
+        blow.time, names, still, blow.causes, asked.impulses, then.states[0], kinetic, blow.work, blow.holding
+    )  # fmt: skip
+
+
+def impulse(layout: Layout, bodies: Table, i: int) -> Impulse:
+    """A given impulse in world axes; bodies: where they are."""
+    blow = layout.mechanism.blows[i]
+    place = layout.place[blow.body]
+    R, r = bodies["R"][place], bodies["r"][place]
+    point = blow.point if blow.point is not None else layout.mechanism.bodies[blow.body].center
+    vector = R @ blow.vector if blow.in_body else blow.vector
+    none = np.zeros(3)
+    force, moment = (none, vector) if blow.kind == "couple" else (vector, none)
+    return Impulse(i, force, moment, r + R @ (point - layout.reference[place]))
+
+
+def column(layout: Layout, bodies: Table, given: Impulse) -> Array:
+    """An impulse as a column of loads, (n_b, 6): moment about the body's joint point, force."""
+    place = layout.place[layout.mechanism.blows[given.blow].body]
+    loads = np.zeros((len(bodies), 6))
+    loads[place, :3] = given.moment + cross_rows(given.at - bodies["r"][place], given.force)
+    loads[place, 3:] = given.force
+    return loads
+
+
+def prescribed(layout: Layout, given: Given) -> Array:
+    """The jumps of the prescribed rates, of the freedoms and then of the closure rows."""
+    jumps = {k: then - first for k, (first, then) in given.drives.items()}
+    freedoms = [jumps.get(f.joint, 0.0) if f.q < 0 else 0.0 for f in layout.freedoms]
+    driven = layout.tables["closures"]["program"]["count"] > 0
+    return np.array(freedoms + [jumps.get(k, 0.0) if own else 0.0 for k, own in zip(layout.rows, driven, strict=True)])
+
+
+def jumped(layout: Layout, state: Array, jump: Columns) -> Array:
+    """The state with its rates changed by a column of jumps (n_b, n_f); what is driven has none in the state."""
+    after = state.copy()
+    for body, answer in zip(layout.bodies, jump.bodies, strict=True):
+        if body["ball"]:
+            after[body["rate_at"] : body["rate_at"] + 3] += answer["alpha"]
+    for freedom, answer in zip(layout.freedoms, jump.freedoms, strict=True):
+        if freedom.q >= 0:
+            after[freedom.u] += answer["udot"]
+    return after
+
+
+def work_of_impulses(layout: Layout, bodies: Table, jump: Columns, impulses: tuple[Impulse, ...]) -> float:
+    """Work of given impulses: each by the mean of the velocities before and behind, where it acts [J]."""
+    work = 0.0
+    for given in impulses:
+        place = layout.place[layout.mechanism.blows[given.blow].body]
+        body, change = bodies[place], jump.bodies[place]
+        omega = body["omega"] + 0.5 * change["alpha"]
+        v = body["v"] + 0.5 * change["a"] + cross_rows(omega, given.at - body["r"])
+        work += float(given.force @ v + given.moment @ omega)
+    return work
+
+
+def work_of_drives(layout: Layout, given: Given, jump: Columns) -> float:
+    """Work of the drives' impulses, by the mean of the prescribed rates before and behind [J].
+
+    A drive whose rate stays works, too: its impulse times that rate.
+    """
+    work = 0.0
+    for k, joint in enumerate(layout.mechanism.joints):
+        if joint.drive is None:
+            continue
+        steady = joint.drive.value.derivatives(given.after)[1]
+        rate = 0.5 * sum(given.drives.get(k, (steady, steady)))
+        if joint.drive.quantity == "length":
+            work += rate * float(jump.multipliers[layout.rows.index(k)])
+        else:
+            own = [n for n, freedom in enumerate(layout.freedoms) if freedom.joint == k and freedom.q < 0]
+            work += rate * float(jump.freedoms["drive"][own].sum())
+    return work
+
+
+def kinetic_energy(layout: Layout, bodies: Table) -> float:
+    """Of all bodies [J], tree order."""
+    energy = 0.0
+    for place, hang in enumerate(layout.spanning.hangs):
+        body, own = layout.mechanism.bodies[hang.body], bodies[place]
+        v = own["v"] + cross_rows(own["omega"], own["R"] @ (body.center - layout.reference[place]))
+        w = own["R"].T @ own["omega"]
+        energy += 0.5 * (body.mass * float(v @ v) + float(w @ body.inertia @ w))
+    return energy
+
+
+def met_freely(layout: Layout, impulses: Sequence[Impulse]) -> float:
+    """The energy [J] that given impulses would bring to their bodies' mass, if no joint held them."""
+    energy = 0.0
+    for given in impulses:
+        mass = layout.mechanism.bodies[layout.mechanism.blows[given.blow].body].mass
+        arm = given.moment / layout.size
+        energy += 0.5 * float(given.force @ given.force + arm @ arm) / mass
+    return energy

@@ -1,0 +1,246 @@
+"""What contacts do where a run comes to an instant: blows that strike them, and which are held from there on."""
+
+from __future__ import annotations
+
+import numpy as np
+
+from heuncli import tolerances
+from heuncli.errors import Problem, SolveError
+from heuncli.integration.contacts.blows import Asked, Given, Jump, Told, asked_of, behind, met_freely, told
+from heuncli.integration.contacts.strikes import (
+    Struck,
+    Touching,
+    answerable,
+    answers,
+    rests,
+    short_flights,
+    strikes,
+    touching,
+    undecided,
+)
+from heuncli.integration.evaluator import Evaluator, Recovered
+from heuncli.records import record, replace
+from heuncli.response import Blows as Answered
+from heuncli.response import Columns, blows
+from heuncli.results import Array, Mask
+from heuncli.tree.tables import Table
+
+AT_ONCE = 16  # events at one instant, and four a contact: more follow each other without end
+
+
+@record
+class Pressed:
+    """The touching contacts: A, which of them move anything, and the rates that what is given adds."""
+
+    touch: Touching
+    A: Array
+    moves: Mask
+    rates: Array
+
+
+@record
+class Outcome:
+    """The impulses, which contacts are held, which rest because they would never be seen to leave; the state behind.
+
+    columns: of what is given, and of the touching contacts by their impulses; work: of all [J].
+    """
+
+    struck: Struck
+    holding: Array
+    at_rest: Mask
+    columns: Columns
+    after: Array
+    work: float
+
+
+def held_at(evaluator: Evaluator, t: float, state: Array) -> Array:
+    """The contacts that are closed at a state, behind the blow that it may be."""
+    contacts = Contacts(evaluator, t)
+    contacts.meet(Given(t, t, (), {}), state, t, None)
+    return contacts.holding
+
+
+def require_energy(jump: Jump, terms: float) -> None:
+    """Raise SolveError where the energies before and behind a blow and the work of its impulses do not add up.
+
+    terms: what the impulses would bring alone, which joints and others may take back.
+    """
+    before, after = jump.kinetic
+    size = max(before, after, abs(jump.work), tolerances.UNBALANCED * terms)
+    if not abs(after - before - jump.work) <= tolerances.UNBALANCED * size:
+        message = f"at t = {jump.time:.9g} s the energies of the blow on {', '.join(jump.names)} do not add up"
+        raise SolveError(
+            Problem("blow-unbalanced", message, None, "a singular pose, or contacts that hardly differ", jump.names[0])
+        )
+
+
+@record
+class Unrefined:
+    """Impulses as the complementarity problem gives them, and the columns of unit impulses."""
+
+    touch: Touching
+    struck: Struck
+    units: Columns
+
+
+class Contacts:
+    """The contacts of one run: which are closed, and what is to be told of them. Changes with every instant met."""
+
+    def __init__(self, evaluator: Evaluator, last: float) -> None:
+        self.evaluator, self.last = evaluator, last
+        self.layout = evaluator.layout
+        self.holding = np.zeros(len(self.layout.contacts))
+        self.strikes: dict[str, int] = {}
+        self.notes: dict[str, None] = {}
+        self.since, self.at_once = -1.0, 0
+
+    def count(self, t: float) -> None:
+        """An event at an instant. Raises SolveError for too many at one."""
+        near = tolerances.KERNEL["least_step"] * self.last
+        self.at_once = self.at_once + 1 if t - self.since <= near else 0
+        self.since = t
+        if self.at_once > AT_ONCE + 4 * len(self.holding):
+            raise undecided(t, max(self.strikes, key=lambda name: self.strikes[name], default=""))
+
+    def meet(self, given: Given, state: Array, time: float, row: int | None) -> Jump | None:
+        """The blow at an instant, where there is one; row: of the contact that closed or opened there."""
+        asked = asked_of(self.evaluator, given, state)
+        touch = touching(self.layout, asked.still, self.holding > 0.0, row, self.last)
+        found, pressed = self.pose(given, asked, touch)
+        outcome = self.solve(given, asked, found.columns, pressed)
+        self.holding = np.zeros(len(self.layout.contacts))
+        self.holding[touch.which] = outcome.holding
+        self.tell(time, touch, outcome)
+        bears, n = np.flatnonzero(outcome.struck.impulses), len(asked.loads)
+        if not len(bears) and not n:
+            return None
+        causes = (*asked.causes, *(self.layout.contacts[i].name for i in touch.which[bears]))
+        shown = np.array([*range(n), *(n + bears)], dtype=int)
+        found = Answered(outcome.columns.at(shown), found.unmet[shown], found.idle)
+        asked = replace(asked, still=self.shown(asked.still, touch, outcome.struck))
+        struck = tuple(self.layout.contacts[i].name for i in touch.which[outcome.struck.closed])
+        blow = Told(time, found, causes, outcome.after, outcome.work, self.holding.copy(), struck)
+        jump = told(self.evaluator, given, asked, blow)
+        terms = 0.5 * float(outcome.struck.impulses**2 @ np.diag(pressed.A)) + met_freely(self.layout, asked.impulses)
+        require_energy(jump, terms)
+        return jump
+
+    def pose(self, given: Given, asked: Asked, touch: Touching) -> tuple[Answered, Pressed]:
+        """The columns of what is given and of each contact that touches, and the problem they make."""
+        n, n_u = len(asked.loads), len(self.layout.freedoms) + len(self.layout.rows)
+        loads = np.array([*asked.loads, *touch.loads]).reshape(-1, len(self.layout.place), 6)
+        jumps = np.array([*asked.jumps, *([np.zeros(n_u)] * len(touch.which))]).reshape(-1, n_u)
+        found = blows(self.evaluator.workspace, given.before, asked.still.states[0], loads, jumps)
+        rates = answers(touch, found.columns.bodies)
+        A = 0.5 * (rates[:, n:] + rates[:, n:].T)
+        return found, Pressed(touch, A, answerable(self.layout, touch, A), rates[:, :n].sum(axis=1))
+
+    def solve(self, given: Given, asked: Asked, units: Columns, pressed: Pressed) -> Outcome:
+        """Impulses, then who rests; a rebound too short to be seen is none."""
+        touch, open_ = pressed.touch, np.zeros(len(self.holding))
+        at_rest = np.zeros(len(touch.which), dtype=bool)
+        while True:
+            struck = strikes(touch, pressed.A, pressed.moves, pressed.rates, at_rest)
+            columns = self.scaled(units, touch, struck.impulses)
+            after, work = behind(self.layout, given, asked, columns)
+            then = self.evaluator.recovered(np.array([given.after]), after[None, :], holding=open_)
+            holding, acceleration = rests(touch, pressed.A, pressed.moves, struck.rate, then, self.layout)
+            instant = tolerances.SHORTEST_FLIGHT * self.last
+            short = short_flights(touch, struck.rate, acceleration, instant) & ~at_rest & pressed.moves
+            if not short.any():
+                break
+            at_rest = at_rest | short
+        if struck.impulses.any():
+            struck, columns, whole = self.refined(given, asked, Unrefined(touch, struck, units))
+            after, work = behind(self.layout, given, asked, whole)
+        work += float(struck.impulses @ (0.5 * (touch.rate + struck.rate)))
+        self.bring_to_rest(asked.still.states[0], after)
+        return Outcome(struck, holding, at_rest, columns, after, work)
+
+    def refined(self, given: Given, asked: Asked, found: Unrefined) -> tuple[Struck, Columns, Columns]:
+        """The impulses and columns, and all in one, with the digits that A loses between very unequal masses.
+
+        With the rates behind known, what bears is held and answered by the factors of the closures, in one column; what
+        the columns of the contacts lack of it goes to the last of them.
+        """
+        touch, struck, n = found.touch, found.struck, len(asked.loads)
+        own = np.flatnonzero(struck.impulses)
+        contacts = [self.layout.contacts[i] for i in touch.which[own].tolist()]
+        rows, sense = [c.row for c in contacts], np.array([c.sense for c in contacts])
+        load = np.sum([np.zeros((len(self.layout.place), 6)), *asked.loads], axis=0)
+        jump = np.sum([np.zeros(len(self.layout.freedoms) + len(self.layout.rows)), *asked.jumps], axis=0)
+        jump[len(self.layout.freedoms) + np.array(rows)] -= sense * (struck.rate - touch.rate)[own]
+        holding = np.zeros(len(self.holding))
+        holding[touch.which[own]] = 1.0
+        self.evaluator.workspace.hold(holding)
+        whole = blows(self.evaluator.workspace, given.before, asked.still.states[0], load[None], jump[None]).columns
+        impulses = struck.impulses.copy()
+        impulses[own] = -sense * whole.multipliers[0, rows]
+        columns = self.scaled(found.units, touch, impulses)
+        total, last = columns.sum(), n + int(own[-1])
+        for part in ("bodies", "freedoms"):
+            table, right, summed = (getattr(x, part) for x in (columns, whole, total))
+            for name in table.dtype.names or ():
+                table[name][last] += right[name][0] - summed[name]
+        columns.multipliers[last] += whole.multipliers[0] - total.multipliers
+        return replace(struck, impulses=impulses), columns, whole
+
+    def bring_to_rest(self, before: Array, after: Array) -> None:
+        """Rates behind a blow that are rounding of those before are none, in place: what stands still has no motion."""
+        for group in self.layout.tables["groups"]:
+            rates = slice(group["rates"], group["end"])
+            if group["rates"] < group["end"] and group["coordinates"] < group["rates"]:
+                largest = np.abs(before[rates] * self.layout.weights[rates]).max()
+                if np.abs(after[rates] * self.layout.weights[rates]).max() <= tolerances.SUM_ROUNDING * largest:
+                    after[rates] = 0.0
+
+    def scaled(self, units: Columns, touch: Touching, impulses: Array) -> Columns:
+        """The columns of what is given, and those of the contacts by their impulses, each with its own multiplier."""
+        n = len(units.multipliers) - len(impulses)
+        factors = np.concatenate([np.ones(n), impulses])
+
+        def by(table: Table) -> Table:
+            out = table.copy()
+            for name in table.dtype.names or ():
+                out[name] = table[name] * factors.reshape(-1, *([1] * (table[name].ndim - 1)))
+            return out
+
+        multipliers = units.multipliers * factors[:, None]
+        for k, i in enumerate(touch.which.tolist()):
+            contact = self.layout.contacts[i]
+            multipliers[n + k, contact.row] -= contact.sense * impulses[k]
+        return Columns(by(units.bodies), by(units.freedoms), multipliers)
+
+    def shown(self, still: Recovered, touch: Touching, struck: Struck) -> Recovered:
+        """The answers before the blow, with the contacts that take part in it: what they leave open is then seen."""
+        rows, closed = still.rows.copy(), np.zeros(len(self.layout.contacts))
+        closed[touch.which] = struck.closed
+        if not closed.any():
+            return still
+        chosen = self.evaluator.recovered(still.times, still.states, holding=closed).rows
+        for name in ("chosen", "closed"):
+            rows[name] = chosen[name]
+        return replace(still, rows=rows)
+
+    def tell(self, t: float, touch: Touching, outcome: Outcome) -> None:
+        """Put down what is worth a sentence."""
+        own = [self.layout.contacts[i] for i in touch.which.tolist()]
+        struck = [own[k] for k in np.flatnonzero(outcome.struck.closed & (touch.rate < 0.0))]
+        for contact in struck:
+            self.strikes[contact.name] = self.strikes.get(contact.name, 0) + 1
+        at = f"at t = {t:.6g} s"
+        if len(struck) > 1:
+            names = [contact.name for contact in struck]
+            together = f"{', '.join(names[:-1])} and {names[-1]}"
+            self.notes[f"{at} {together} are struck at once: Newton's restitution is taken for each"] = None
+        alike = [own[k] for k in np.flatnonzero(outcome.struck.equal & (touch.rate < 0.0))]
+        if len(alike) > 1:
+            least = min(contact.restitution for contact in alike)
+            told = ", ".join(contact.name for contact in alike)
+            self.notes[f"{at} {told} take the restitution {least:g}: each with its own would add energy"] = None
+        for k in np.flatnonzero(outcome.at_rest):
+            name = own[k].name
+            count = self.strikes.get(name, 0)
+            if not count:
+                continue
+            self.notes[f"{name} rests {at}, after {count} strikes: further ones are too small to be seen"] = None

@@ -1,0 +1,139 @@
+"""What happens where a run comes to an instant: given blows, and what its contacts do; between them it goes in pieces.
+
+Changes the run: it goes on from the state behind.
+"""
+
+from __future__ import annotations
+
+from typing import TYPE_CHECKING
+
+import numpy as np
+
+from heuncli import tolerances
+from heuncli.errors import Problem, SolveError
+from heuncli.integration.contacts.blows import Given, Jump, schedule, strike
+from heuncli.integration.evaluator import Evaluator
+from heuncli.integration.moving import Moving
+from heuncli.integration.run.loop import Integration, Segment, Steps
+from heuncli.records import replace
+from heuncli.results import Array
+from heuncli.tree.layout import Layout
+
+if TYPE_CHECKING:  # loaded where something opens and closes
+    from heuncli.integration.contacts.meetings import Contacts
+
+
+class Blows:
+    """The blows of a run, each done where the run comes to its instant, and its contacts. Changes the run.
+
+    They are solved in the scene itself, whatever is integrated in its place.
+    """
+
+    def __init__(self, evaluator: Evaluator, moving: Moving, run: Integration, steps: Steps, last: float) -> None:
+        self.evaluator, self.moving, self.run, self.steps, self.last = evaluator, moving, run, steps, last
+        self.due = schedule(evaluator.layout.mechanism, last)
+        self.done: list[Jump] = []
+        self.contacts = contacts_of(evaluator, last)
+
+    def until(self, t: float, reached: float) -> str | None:
+        """Those up to an instant, behind the one that the run has reached: it goes on from the state behind them.
+
+        A rope that would have to push in one of them: the run ends before it. Raises SolveError if that is the start.
+        """
+        while self.due and self.due[0].after <= t:
+            jump = self.meet(self.due.pop(0), reached)
+            if jump is None:
+                continue
+            rope = pushing(self.evaluator.layout, jump)
+            if rope is not None and reached > 0.0:
+                return rope
+            require_pull(rope)
+            self.take(jump)
+        return None
+
+    def meet(self, given: Given, time: float, row: int | None = None) -> Jump | None:
+        """The blow that is given at the state reached, and that of its contacts; row: of the one that closed."""
+        state = self.moving.state(time, np.array(self.run.loop.state()))
+        if self.contacts is None:
+            return strike(self.evaluator, given, state, time)
+        return self.contacts.meet(given, state, time, row)
+
+    def settle(self, t: float, row: int | None = None) -> None:
+        """What its contacts do at an instant that the run has reached; row: of the one that closed or opened there.
+
+        row: of what is integrated.
+        """
+        if self.contacts is None:
+            return
+        if row is not None:
+            self.contacts.count(t)
+            row = self.evaluator.layout.contacts[self.moving.contact(row)].row
+        jump = self.meet(Given(t, t, (), {}), t, row)
+        if jump is not None:
+            self.take(jump)
+
+    def begin(self, segment: Segment) -> None:
+        """The run goes on from the state reached, with the contacts that are closed there."""
+        if self.contacts is not None:
+            self.moving.workspace.hold(self.contacts.holding)
+            self.steps.hold(self.contacts.holding)
+        self.run.loop.begin(*segment)
+
+    def take(self, jump: Jump) -> None:
+        """Go on from behind a blow."""
+        after = self.moving.restrict(jump.time, jump.after)
+        self.run.loop.jump(after)
+        self.steps.stand(after)
+        self.done.append(replace(jump, after=self.moving.state(jump.time, after)))
+
+    @property
+    def notes(self) -> tuple[str, ...]:
+        """What is to be told of the contacts."""
+        return tuple(self.contacts.notes) if self.contacts is not None else ()
+
+
+def contacts_of(evaluator: Evaluator, last: float) -> Contacts | None:
+    """The contacts of a run, where there are any."""
+    if not evaluator.layout.contacts:
+        return None
+    from heuncli.integration.contacts.meetings import Contacts  # few scenes have them
+
+    return Contacts(evaluator, last)
+
+
+def at_once(evaluator: Evaluator, state: Array, t: float) -> tuple[Jump, ...]:
+    """The blow at the only instant of a scene: the one that is given, and that of its contacts."""
+    contacts = contacts_of(evaluator, t)
+    given = [one for one in schedule(evaluator.layout.mechanism, 0.0) if t == 0.0][:1]
+    if not given and contacts is not None:
+        given = [Given(t, t, (), {})]
+    for one in given:
+        jump = contacts.meet(one, state, t, None) if contacts is not None else strike(evaluator, one, state, t)
+        if jump is not None:
+            require_pull(pushing(evaluator.layout, jump))
+            return (jump,)
+    return ()
+
+
+def pushing(layout: Layout, jump: Jump) -> str | None:
+    """The rope that would have to push in a blow, if there is one that does not go slack."""
+    columns = jump.recovered.causes
+    assert columns is not None
+    impulses = columns.multipliers[0].sum(axis=0)
+    largest = max(
+        np.abs(columns.multipliers[0]).max(initial=0.0), np.abs(columns.bodies["joint_force"]).max(initial=0.0),
+        *(np.abs(given.force).max() + np.abs(given.moment).max() / layout.size for given in jump.impulses),
+    )  # fmt: skip
+    for r, k in enumerate(layout.rows):
+        joint = layout.mechanism.joints[k]
+        if joint.tension_only and joint.restitution is None and impulses[r] > tolerances.NO_FORCE * largest:
+            return joint.name
+    return None
+
+
+def require_pull(rope: str | None) -> None:
+    """Raise SolveError for a rope that would have to push in a blow at the start."""
+    if rope is not None:
+        message = f"in the blow at t = 0 s the rod {rope} would have to push (tension_only)"
+        hint = "with restitution: 0 (to 1) it goes slack, and catches again"
+        raise SolveError(Problem("rope-pushes", message, hint=hint, about=f"joints.{rope}"))

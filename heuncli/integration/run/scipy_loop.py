@@ -1,0 +1,197 @@
+"""SciPy's integrators as independent checks: the kernel's derivative, their steps and their dense output.
+
+The derivative is taken at the state brought onto the closed chains: so the exact motion solves this equation, too, and
+what a step leaves beside them does not grow. They begin anew at every discontinuity in time. Events hang on dense
+output and on what holds over a step, which are the kernel's: scenes with contacts, blows, branches in coordinates or
+conditions are refused by name. SciPy is imported where such a method is asked for, and nowhere else.
+"""
+
+from __future__ import annotations
+
+import time
+import warnings
+from collections.abc import Callable, Sequence
+from typing import TYPE_CHECKING, Any
+
+import numpy as np
+
+from heuncli import tolerances
+from heuncli.errors import LimitError, Problem, SolveError, SpecError
+from heuncli.integration.contacts.blows import rate_jumps
+from heuncli.integration.methods.method import Method
+from heuncli.integration.moving import Moving
+from heuncli.integration.run.loop import Segment, Segments, smooth_segments
+from heuncli.integration.run.runner import Trajectory, check_deadline
+from heuncli.integration.run.step_records import Kept
+from heuncli.method_rows import SMOOTH_ONLY
+from heuncli.records import record
+from heuncli.response import settled, slope
+from heuncli.results import Array
+from heuncli.tree.layout import Layout
+
+if TYPE_CHECKING:
+    from heuncli.integration.run.runner import Runner
+
+LEAST_RELATIVE = 100.0 * tolerances.EPS  # what SciPy takes for its relative tolerance at least
+
+
+@record
+class Solved:
+    """Steps that were done: their ends, the states there, and what interpolates within each."""
+
+    ends: list[float]
+    states: list[Array]
+    within: list[Callable[[float], Array]]
+    pieces: list[Segment]
+
+    def at(self, moving: Moving, times: Array) -> Array:
+        """The scene's states (n_t, n) at instants within the run."""
+        steps = np.minimum(np.searchsorted(self.ends, times), len(self.ends) - 1)
+        own = [self.states[0] if t <= 0.0 else self.within[k](float(t)) for k, t in zip(steps, times, strict=True)]
+        return moving.embed(times, np.array(own).reshape(len(times), moving.layout.n_state))
+
+
+class Derivative:
+    """dy/dt of what is integrated, on the closures; counts how often it is asked for. Impure: keeps the largest gap."""
+
+    def __init__(self, moving: Moving) -> None:
+        self.moving, self.count, self.gap = moving, 0, 0.0
+        self.begin = self.end = 0.0
+
+    def __call__(self, t: float, y: Array) -> Array:
+        """The derivative at an instant of the segment; beyond its ends other branches in time hold."""
+        self.count += 1
+        rate, gap = slope(self.moving.workspace, min(max(t, self.begin), self.end), y)
+        self.gap = max(self.gap, gap)
+        return rate
+
+
+def trajectory(
+    runner: Runner, times: Array, local: float, *, discontinuities: Sequence[float], deadline: float | None,
+    most_steps: int, method: Method, start: Array | None,
+) -> Trajectory:  # fmt: skip
+    """A run by one of SciPy's methods, as `Runner.trajectory` gives it.
+
+    Raises SpecError for what they do not run, SolveError where they give up, LimitError past the deadline.
+    """
+    begun = time.perf_counter()
+    moving = runner.moving
+    last = float(times[-1]) if len(times) else 0.0
+    require_smooth(runner.layout, method, last)
+    state = moving.restrict(0.0, runner.layout.y0 if start is None else start)
+    derivative = Derivative(moving)
+    done = Solved([], [state], [], [])
+    goes = Solving(derivative, method, local, last, deadline, min(most_steps, tolerances.MOST_FOREIGN))
+    for segment in smooth_segments(last, discontinuities):
+        done.pieces.append(segment)
+        goes.run(segment, settled(moving.workspace, moving.layout, segment.begin, done.states[-1])[0], done)
+    own = done.at(moving, times)
+    steps = len(done.ends)
+    kept = Kept(np.arange(len(done.states)), np.array(done.states))
+    return Trajectory(
+        times=times, states=own, ends=np.array(done.ends), steps=steps, evaluations=derivative.count,
+        gap=derivative.gap, local=local, method=method, seconds=time.perf_counter() - begun,
+        segments=Segments(np.array(done.pieces)), kept=kept, pivots=np.ones(steps), settled=np.ones(steps),
+        branches=np.zeros((steps, 0)), turned=np.zeros(steps), holding=np.zeros((steps + 1, 0)),
+        within=lambda at: done.at(moving, at),
+    )  # fmt: skip
+
+
+@record
+class Solving:
+    """How SciPy integrates a run, a segment after the other."""
+
+    derivative: Derivative
+    method: Method
+    local: float
+    last: float
+    deadline: float | None
+    most_steps: int
+
+    def run(self, segment: Segment, state: Array, done: Solved) -> None:
+        """The steps of a segment from a state, added to those done."""
+        self.derivative.begin, self.derivative.end = segment.begin, segment.before_end
+        if segment.end <= segment.begin:
+            return
+        with warnings.catch_warnings():
+            warnings.simplefilter("ignore")  # of SciPy: what it would say of the tolerance, the estimate tells
+            solver = self.solver(segment, state)
+            while solver.status == "running":
+                self.step(solver)
+                done.ends.append(float(solver.t))
+                done.states.append(np.array(solver.y))
+                done.within.append(solver.dense_output())
+                check_deadline(self.deadline, f"at t = {solver.t:.6g} s of {self.last:.6g} s")
+                if len(done.ends) > self.most_steps:
+                    raise too_many(self.method, self.most_steps, solver.t, self.last)
+
+    def solver(self, segment: Segment, state: Array) -> Any:
+        """SciPy's solver at the start of a segment."""
+        from scipy import integrate  # not before it is needed: a third of a second
+
+        kind = getattr(integrate, self.method.foreign)
+        scale = scales(self.derivative, segment.begin, state, self.last)
+        relative = max(self.local, LEAST_RELATIVE)
+        try:
+            return kind(self.derivative, segment.begin, state, segment.end, rtol=relative, atol=self.local * scale)
+        except (ValueError, ArithmeticError) as error:
+            raise gave_up(self.method, segment.begin, str(error)) from None
+
+    def step(self, solver: Any) -> None:
+        """One step. Raises SolveError where there is none."""
+        try:
+            message = solver.step()
+        except (ValueError, ArithmeticError, np.linalg.LinAlgError) as error:  # it factored what is no number
+            raise gave_up(self.method, float(solver.t), str(error)) from None
+        if solver.status == "failed" or not np.isfinite(solver.y).all():
+            raise gave_up(self.method, float(solver.t), str(message or "a value is no number any more"))
+
+
+def scales(derivative: Derivative, t: float, state: Array, last: float) -> Array:
+    """What errors of the components are measured by: 1 rad, the scene's size, and these times the scene's rate."""
+    moving = derivative.moving
+    weights = np.asarray(moving.layout.weights)
+    groups = moving.layout.tables["groups"]
+    slopes = derivative(t, state)
+    rates = np.zeros(len(state), dtype=bool)
+    for group in groups:
+        rates[group["rates"] : group["end"]] = True
+    largest = [tolerances.LEAST_RATE / last]
+    if rates.any():
+        largest += [float(np.abs(weights * state)[rates].max()), float(np.sqrt(np.abs(weights * slopes)[rates].max()))]
+    unit = 1.0 / weights
+    return np.where(rates, unit * np.nan_to_num(max(largest), nan=1.0), unit)
+
+
+def require_smooth(layout: Layout, method: Method, last: float) -> None:
+    """Raise SpecError for what of a run up to `last` only the kernel's own methods do, each by name."""
+    mechanism = layout.mechanism
+    named = [f"the stop {stop.name}" for stop in mechanism.stops]
+    named += [f"the rope {joint.name}, which may go slack" for joint in mechanism.joints if joint.tension_only]
+    named += [f"the impulse {blow.name}" for blow in mechanism.blows]
+    named += [f"the condition {condition.name}" for condition in mechanism.conditions]
+    drives = [joint.drive for joint in mechanism.joints if joint.drive is not None]
+    named += [f"the drive {drive.name}, whose rate jumps" for drive in drives if rate_jumps(drive.value, last)]
+    problems = [Problem("method-scene", f"{method.name} does not run {name}", hint=SMOOTH_ONLY) for name in named]
+    for expression in mechanism.expressions():
+        if expression.uses and expression.held:
+            source = expression.source.strip()
+            message = f"{method.name} does not run '{source}', which jumps or bends with a coordinate"
+            problems.append(Problem("method-scene", message, expression.location, SMOOTH_ONLY))
+    if problems:
+        raise SpecError(*problems)
+
+
+def gave_up(method: Method, t: float, why: str) -> SolveError:
+    """The error of a run that SciPy does not continue."""
+    hint = "method: auto tells more of what happens there"
+    message = f"at t = {t:.9g} s: {method.name} gave up: {why.strip()}"
+    error = SolveError(Problem("step-collapsed", message, hint=hint, about="analysis.method"))
+    error.reached = t
+    return error
+
+
+def too_many(method: Method, most: int, t: float, last: float) -> LimitError:
+    """The error of a run of more steps than are worth it."""
+    message = f"{most} steps of {method.name} were done at t = {t:.6g} s of {last:.6g} s"
+    return LimitError(Problem("step-limit", message, hint="a coarser tolerance, or method: auto"))

@@ -1,0 +1,140 @@
+"""Small oscillations of a spec's scene: about its start where that is at rest, else about the pose that rests.
+
+A motion is looked at about its start if nothing pushes it there, about the rest pose found from it otherwise; a `state`
+about itself alone. In steady motions, where drives turn at constant rates, modes are those in the turning frame.
+"""
+
+from __future__ import annotations
+
+from typing import Literal
+
+import numpy as np
+
+from heuncli import tolerances
+from heuncli.errors import Problem, SolveError
+from heuncli.integration.refusals.solvability import Asked, require_solvable
+from heuncli.linearisation.modes import Modes, most, shape_of
+from heuncli.linearisation.oscillations import oscillations
+from heuncli.linearisation.shapes import coordinates
+from heuncli.linearisation.smooth import without_slope
+from heuncli.linearisation.steady import Looked, fastest, goes_on_as_it_is, look, off_balance
+from heuncli.redundancy.neighbours import neighbours
+from heuncli.spec.models import Spec
+from heuncli.study.solve.places import placed
+from heuncli.study.solve.setup import Setup, set_up
+
+REST_HINT = "analysis: {type: rest} looks for the pose that rests"
+NEARLY = "look for it from nearer by: draw the scene closer to where it rests"
+MOVING_HINT = "leave out the velocities, or run a motion: modes are those about a pose, or a steady motion"
+
+
+def modes(spec: Spec) -> Modes:
+    """The modes of a spec. Raises SolveError where there is no state to oscillate about."""
+    with placed(spec):
+        return found_in(spec)
+
+
+def found_in(spec: Spec) -> Modes:
+    """The same, with errors that have names in place of places."""
+    setup = set_up(spec, reduce=False)
+    require_no_time(setup)
+    here, at = state_of(setup)
+    require_slopes(here)
+    found = oscillations(here.system)
+    rows = coordinates(here.layout, here.found)
+    shapes = [shape_of(mode.shape, rows) for mode in found]
+    return Modes(
+        title=spec.title,
+        at=at,
+        steady=moves(here) and bool(found),  # with nothing free nothing was compared at later instants
+        held=here.layout.driven and not moves(here),
+        modes=tuple(found),
+        shapes=tuple(shapes),
+        largest=tuple(most(shape, here.layout.size) for shape in shapes),
+    )
+
+
+def require_no_time(setup: Setup) -> None:
+    """Raise SolveError for loads that depend on the time."""
+    problems = [
+        Problem(
+            "no-modes",
+            f"forces.{load.name} depends on t: small oscillations are those about a state at which nothing changes",
+            hint="give it the value that it has there, by --set forces... or a parameter",
+        )
+        for load in setup.scene.mechanism.loads
+        if any(value.time_dependent for value in load.values)
+    ]
+    if problems:
+        raise SolveError(*problems)
+
+
+def state_of(setup: Setup) -> tuple[Looked, Literal["rest", "state"]]:
+    """The scene in the state that it oscillates about."""
+    kind = setup.spec.analysis.type
+    here = looked_at(setup)
+    reason = restless(here)
+    if reason is None:
+        return here, "rest" if kind == "rest" else "state"
+    if kind in ("state", "rest"):
+        what = "state is not at rest" if kind == "state" else "pose found is not quite at rest"
+        hint = MOVING_HINT if moves(here) else REST_HINT
+        raise SolveError(Problem("not-at-rest", f"the {what}: {reason}", hint=hint if kind == "state" else NEARLY))
+    return state_of(at_rest(setup.spec))
+
+
+def looked_at(setup: Setup) -> Looked:
+    """The scene at its start, or at the rest pose that was found."""
+    runner, layout = setup.runner, setup.scene.layout
+    t = float(setup.spec.analysis.times[0]) if setup.spec.analysis.type == "state" else 0.0
+    at = runner.recovered(np.array([t]), layout.y0[None, :])
+    require_solvable(setup.scene, at, Asked("accelerations of the start"))
+    return look(setup.scene, runner, t, layout.y0, runner.start_holding)
+
+
+def at_rest(spec: Spec) -> Setup:
+    """The scene at the rest pose that is found from its start."""
+    asked = spec.analysis._replace(type="rest", times=(0.0,), duration=None, conditions=())
+    return set_up(spec._replace(analysis=asked), reduce=False)
+
+
+def moves(here: Looked) -> bool:
+    """Whether anything moves there, if steadily."""
+    return fastest(here) > tolerances.AT_REST
+
+
+def restless(here: Looked) -> str | None:
+    """Why a state is no rest and no steady motion; None where it is one."""
+    if not here.system.count:
+        return None
+    off = off_balance(here)
+    if not off <= tolerances.OFF_BALANCE:
+        return f"{pushed_most(here)} is pushed" + (f", some {off:.2g} from where it would rest" if off < 1.0 else "")
+    if moves(here) and not goes_on_as_it_is(here):
+        return "its motion is not steady: loads change as it goes on, also in the frame that turns along"
+    return None
+
+
+def is_singular(here: Looked) -> bool:
+    """Whether fewer closure rows are independent there than close by."""
+    if not here.layout.rows or not here.system.count:
+        return False
+    near = neighbours(here.runner, here.t, here.found.state, (tolerances.NEIGHBOUR,), holding=here.holding)
+    return near is not None and bool(near.rows["chosen"].sum(axis=1).max() > here.at.rows["chosen"].sum())
+
+
+def pushed_most(here: Looked) -> str:
+    """The coordinate with the largest acceleration, lengths by the scene's size."""
+    rows = coordinates(here.layout, here.found)
+    return most(shape_of(here.system.tangent @ here.system.pushed, rows), here.layout.size)[0]
+
+
+def require_slopes(here: Looked) -> None:
+    """Raise SolveError where a law has no slope, or where closed chains give way to the first order only."""
+    sentences = list(dict.fromkeys(without_slope(here)))
+    if is_singular(here):
+        sentences.append("closed chains are stretched, folded or flat there, and give way to the first order only")
+    if sentences:
+        so = "oscillations about it are not linear, however small"
+        hint = "take modes a little beside it, by type: state; or run a motion, which shows how it moves there"
+        raise SolveError(*(Problem("no-modes", f"{sentence}: {so}", hint=hint) for sentence in sentences))

@@ -1,0 +1,243 @@
+"""One number of a run, such as the largest of sections.middle.M1 or energy.kinetic at 0.5 s."""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+from dataclasses import replace
+from typing import Literal, NamedTuple
+
+import numpy as np
+
+from heuncli import results_schema, tolerances
+from heuncli.errors import HeunError, Problem
+from heuncli.results import Array, Place, Results
+from heuncli.results_paths import Numbers, find
+from heuncli.results_schema import (
+    BLOWS,
+    CUT,
+    EVENTS,
+    MAGNITUDES,
+    SHARES,
+    SPACE,
+    beside_magnitudes,
+    kind_of_error,
+    quantity,
+    spelled_first,
+)  # fmt: skip
+from heuncli.study.search.extremes import Searched, no_columns
+from heuncli.study.solve.solve import Study
+
+NOT_CLAIMED = "from t = {:.4g} s on nothing is claimed"
+
+
+class NotOneNumber(HeunError):
+    """What is to be measured is no single number of this run."""
+
+    exit_code = 2
+
+    def __init__(self, message: str, hint: str) -> None:
+        super().__init__(Problem("bad-option", message, hint=hint))
+
+
+class Measure(NamedTuple):
+    """What is measured; how is empty for a number that has no instants, abs for the largest magnitude."""
+
+    how: Literal["", "max", "min", "abs", "first", "final", "at"]
+    path: str
+    at: float | None = None
+
+
+def report_of(path: str) -> frozenset[str] | None:
+    """Which report a path needs; None where its first word does not say."""
+    first, *rest = path.split(".")
+    report = results_schema.report_of(first)
+    return frozenset({report, *({SHARES} & set(rest))}) if report else None
+
+
+def value(asked: Measure, study: Study) -> Peak:
+    """The number, its instant and place if it has them; nan is open. Raises NotOneNumber."""
+    results, path = study.results, asked.path
+    there = find(results, path)
+    if there.keys[0] == BLOWS:
+        return struck(asked, there, study)
+    if there.keys[0] == EVENTS and asked.how:
+        return of_event(asked, there)
+    if not there.timed:
+        if asked.how:
+            raise NotOneNumber(f"{path} has no instants", f"give the path alone: {path}")
+        if there.values.size != 1:
+            raise several(path, there)
+        return Peak(float(there.values.reshape(())), None)
+    if asked.how in ("max", "min", "abs"):
+        return peak(study, path, asked.how)
+    if asked.how == "at":
+        at = instant_of(asked, results.time)
+        there = find(study.resample(np.array([at])), path)
+        return Peak(one_number(path, there, 0), at)
+    if asked.how or len(results.time) == 1:
+        k = -1 if asked.how == "final" else 0
+        return Peak(one_number(path, there, k), float(results.time[k]))
+    message = f"{path} runs over {len(results.time)} instants: say max, min, max abs, first, final or at T"
+    raise NotOneNumber(message, f"such as 'max abs {path}', or 'at {results.time[-1]:.6g} {path}'")
+
+
+def lost_from(asked: Measure, study: Study) -> float | None:
+    """The horizon, where the number that is asked for lies beyond it, or may: that of a run that goes on beyond it."""
+    results = study.results
+    horizon, there = results.accuracy.get("horizon"), find(results, asked.path)
+    if horizon is not None and there.keys[0] == BLOWS:
+        return float(horizon) if time_of_blow(results, there) >= horizon else None
+    if there.keys[0] == EVENTS:  # of a run that goes on beyond its horizon more may follow
+        certain = horizon is None or not there.axes or (asked.how == "first" and there.values.size)
+        return None if certain else horizon
+    if horizon is None or asked.path.split(".")[0] == "time" or not (there.timed or there.instant is not None):
+        return None
+    last = results.time[0 if asked.how == "first" else -1]
+    if there.instant is not None:
+        last = results.time[there.instant]
+    elif asked.how == "at":
+        last = instant_of(asked, results.time)
+    return float(horizon) if last >= horizon else None
+
+
+def of_event(asked: Measure, there: Numbers) -> Peak:
+    """The first or last of what is told of an event."""
+    if not there.axes:
+        raise NotOneNumber(f"{asked.path} has no instants", f"give the path alone: {asked.path}")
+    if asked.how not in ("first", "final"):
+        hint = f"'first {asked.path}', 'final {asked.path}', or its place: {asked.path}.0"
+        raise NotOneNumber(f"{asked.path} is told of an event, once for each change", hint)
+    if not there.values.size:
+        raise NotOneNumber(f"{asked.path}: the event does not happen in this run", "run longer, or set another limit")
+    return Peak(float(there.values[0 if asked.how == "first" else -1]), None)
+
+
+def struck(asked: Measure, there: Numbers, study: Study) -> Peak:
+    """A number of one blow, with its instant; of a run of cuts the largest. A vector counts by its magnitude."""
+    path, at = asked.path, time_of_blow(study.results, there)
+    if asked.how in ("first", "final", "at"):
+        raise NotOneNumber(f"{path} has one instant, that of the blow", f"give the path alone, or 'max abs {path}'")
+    require_extreme(path, there)
+    if CUT in there.axes and asked.how:
+        return struck_along(asked, there, study)
+    values = np.sqrt(np.sum(np.square(there.values), axis=-1)) if there.of_vectors else there.values
+    if values.size > 1 and not asked.how:
+        raise several(path, there)
+    result = float(np.abs(values).max() if asked.how == "abs" else values.min() if asked.how == "min" else values.max())
+    return Peak(result + 0.0, at)
+
+
+def struck_along(asked: Measure, there: Numbers, study: Study) -> Peak:
+    """The extreme of one blow along a run of cuts, over its whole stretch."""
+    from heuncli.study.search.stretches import at_one_instant, stretch_named  # where there are runs of cuts
+
+    setup = study.stretched(False)
+    whole = replace(study.results, impulses=study.impulses(setup))
+    name = there.keys[3]
+    values = find(whole, asked.path).values
+    if there.of_vectors:
+        values = np.sum(np.square(values), axis=-1)
+    nodes = find(whole, f"{BLOWS}.{there.keys[1]}.sections.{name}.s").values
+    low, high = at_one_instant(stretch_named(setup, name), nodes, values)
+    lower = asked.how == "min" or (asked.how == "abs" and abs(low.value) > abs(high.value))
+    value, place = low if lower else high
+    value = float(np.sqrt(np.abs(value))) if there.of_vectors else abs(value) if asked.how == "abs" else value
+    return Peak(value, time_of_blow(study.results, there), place)
+
+
+def time_of_blow(results: Results, there: Numbers) -> float:
+    """When the blow was whose number it is [s]."""
+    return float(results.impulses[int(there.keys[1])]["time"])
+
+
+class Peak(NamedTuple):
+    """An extreme with its instant, and in a run of cuts its place; open_at: an instant at which it is open, if any."""
+
+    value: float
+    at: float | None
+    place: Place | None = None
+    open_at: float | None = None
+
+
+def peak(study: Study, path: str, how: str, times: Array | None = None) -> Peak:
+    """Highest (`max`), lowest (`min`) or largest (`abs`) value up to the horizon, between the samples too; where, when.
+
+    A vector counts by its magnitude, a run of cuts over its whole stretch. times: of these instants alone.
+    """
+    asked = find(study.results, path)
+    if not asked.timed:
+        raise NotOneNumber(f"{path} has no instants, of which one could be the largest", f"give the path alone: {path}")
+    require_extreme(path, asked)
+    even = asked.of_vectors or asked.keys[-1] in MAGNITUDES
+    open_at: list[float] = []
+
+    def columns(results: Results) -> Array:
+        values = find(results, path).values
+        is_open = np.isnan(values.reshape(len(values), -1)).any(axis=1)
+        open_at.extend(results.time[is_open & ~np.isin(results.time, results.accuracy.get("unknown", []))][:1])
+        # the square of a magnitude is smooth where the magnitude is zero
+        if asked.of_vectors:
+            values = np.einsum("...k,...k->...", values, values)
+        elif even:
+            values = values * values
+        return values.reshape(len(values), -1)
+
+    error = np.array([stated_error(study, asked.keys)])
+    n = columns(study.results).shape[1]
+    searched = Searched(columns, [list(range(n))], error, np.array([even]))
+    if CUT in asked.axes:
+        name = asked.keys[1]
+        searched = searched._replace(
+            columns=no_columns, groups=[], along=lambda results: [(name, columns(results))], bent=asked.bent
+        )
+    bounds = study.extremes(searched, report_of(path), times=times)
+    low, high = float(bounds.low[0]), float(bounds.high[0])
+    if how == "abs" and abs(low) > abs(high):
+        how, low = "min", abs(low)
+    result, at = (low + 0.0, bounds.low_at) if how == "min" else (high + 0.0, bounds.high_at)
+    place = bounds.places[0][0 if how == "min" else 1] if bounds.places else None
+    value = float(np.sqrt(np.abs(result))) if even else result
+    return Peak(value, float(at[0]), place, float(min(open_at)) if open_at else None)
+
+
+def stated_error(study: Study, keys: Sequence[str]) -> float:
+    """The error of the quantity under some keys, as the tables state it; nan where they state none."""
+    row, of = quantity(keys), study.magnitudes
+    if row is None:
+        return np.nan
+    kind = kind_of_error(keys[0], ".".join(keys[1:-1]), keys[-1])
+    known = [(of.errors.get((kind, unit), 0.0), tolerances.WRITTEN * of.by_unit.get(unit, 0.0)) for unit in row.units]
+    return min(map(max, known)) or np.nan
+
+
+def one_number(path: str, there: Numbers, k: int) -> float:
+    """The number at an instant, or the magnitude of the vector. Raises NotOneNumber."""
+    values = there.values[k]
+    if values.size == 1:
+        return float(values.reshape(()))
+    if there.axes == (SPACE,):
+        return float(np.linalg.norm(values))
+    raise several(path, there)
+
+
+def require_extreme(path: str, there: Numbers) -> None:
+    """Raise NotOneNumber for lists of which no one number counts, as of a vector its magnitude does."""
+    if beside_magnitudes(there.axes):
+        raise several(path, there)
+
+
+def several(path: str, there: Numbers) -> NotOneNumber:
+    """The error of a path that leads to several numbers."""
+    count = int(np.prod(there.values.shape[1 if there.timed else 0 :]))
+    hint = f"name one of them: {path}{spelled_first(there.axes)}" if count else "there is none in this run"
+    return NotOneNumber(f"{path} is {count} numbers: say which", hint)
+
+
+def instant_of(asked: Measure, times: Array) -> float:
+    """The instant asked for, if the run has it. Raises NotOneNumber."""
+    at = float(asked.at or 0.0)
+    slack = tolerances.SAME_INSTANT * float(np.ptp(times))
+    if not times[0] - slack <= at <= times[-1] + slack:
+        hint = f"such as 'at {times[-1]:.6g} {asked.path}'"
+        raise NotOneNumber(f"{asked.path} at {at:.6g}: the run goes from {times[0]:.6g} to {times[-1]:.6g} s", hint)
+    return float(np.clip(at, times[0], times[-1]))

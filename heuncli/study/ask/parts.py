@@ -1,0 +1,131 @@
+"""The parts of a scene on which it depends what is asked for.
+
+Bodies that joints and forces connect make a part; the ground connects nothing. No part feels another, unless a force or
+drive of it is given in coordinates of the other's joints: then it needs the other, which does not need it. A part on
+which nothing depends that is asked for is left out before anything is assembled, and so are sections that nobody asks
+for.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Collection, Iterator, Mapping
+from typing import Any
+
+from heuncli.expressions.programs import Expression
+from heuncli.records import fields
+from heuncli.results_schema import BLOWS, EVENTS, SHARES
+from heuncli.spec.models import End, Spec
+from heuncli.study.ask.selection import Asked, entries_of
+from heuncli.study.solve.words import some
+
+Ends = Mapping[str, Mapping[str, set[str]]]
+STANDING = ("joints", "drives", "forces", "impulses", "stops")  # blocks of what stands on bodies
+# reports that are of some bodies alone, and the blocks of what they tell; the others are of all
+OF_SOME = {"joints": (("joints",), ("stops",)), "sections": (("sections",),), "forces": (("forces",),),
+    "points": (("points",),)}  # fmt: skip
+
+
+def bodies_of(item: Any, spec: Spec) -> set[str]:
+    """The bodies that something in a spec names: itself, by its ends, or by its joint; not the ground."""
+    if isinstance(item, str):
+        return {item}
+    if isinstance(item, End):
+        return {item.body} & spec.bodies.keys()
+    found: set[str] = set()
+    for name, value in named_fields(item):
+        if isinstance(value, End):
+            found.add(value.body)
+        elif name == "body":
+            found.add(value)
+        elif name == "joint":
+            found |= bodies_of(spec.joints[value], spec)
+    return found & spec.bodies.keys()
+
+
+def named_fields(item: Any) -> Iterator[tuple[str, Any]]:
+    """The fields of a part of a spec: a named tuple, or a record."""
+    yield from zip(item._fields, item, strict=True) if hasattr(item, "_fields") else fields(item).items()
+
+
+def expressions_in(item: Any) -> Iterator[Expression]:
+    """The values in time of a force or drive."""
+    for _, value in named_fields(item):
+        for member in value if type(value) is tuple else (value,):
+            if isinstance(member, Expression):
+                yield member
+
+
+def followed(item: Any, spec: Spec) -> set[str]:
+    """The bodies whose coordinates the values of a force or drive are given in."""
+    uses = {joint for expression in expressions_in(item) for joint, _ in expression.uses}
+    return set().union(*(bodies_of(spec.joints[joint], spec) for joint in uses))
+
+
+def ends_of(spec: Spec) -> Ends:
+    """The bodies that everything with a name stands on, by block and name."""
+    items: dict[str, Mapping[str, Any]] = {block: getattr(spec, block) for block in STANDING}
+    return {block: {name: bodies_of(item, spec) for name, item in own.items()} for block, own in items.items()}
+
+
+def needed(spec: Spec, asked: Asked, ends: Ends) -> set[str]:
+    """The bodies on which it depends what is asked for: their parts, and those that these follow."""
+    begun = roots(spec, asked)
+    if begun is None:
+        return set(spec.bodies)
+    moved = list(ends["joints"].values())  # sets of bodies of which none is solved without the others
+    beside: dict[str, set[str]] = {name: set() for name in spec.bodies}
+    for block in ("forces", "drives"):
+        items: Mapping[str, Any] = getattr(spec, block)
+        moved += ends[block].values()
+        for name, item in items.items():
+            others = followed(item, spec)
+            for body in ends[block][name]:
+                beside[body] |= others
+    for group in moved:
+        for body in group:
+            beside[body] |= group
+    found, ahead = set(begun), list(begun)
+    while ahead:
+        new = beside[ahead.pop()] - found
+        found |= new
+        ahead += new
+    return found or set(spec.bodies)
+
+
+def roots(spec: Spec, asked: Asked) -> set[str] | None:
+    """The bodies that what is asked for names itself; None where it is about all of them."""
+    whole = [report for report in asked.reports - {SHARES, EVENTS} if asked.whole(report)]
+    if any(report not in OF_SOME for report in whole):
+        return None
+    known = entries_of(spec)
+    items = [item for report in whole for block in OF_SOME[report] for item in known[block].values()]
+    items += [known[entry[:-1]][entry[-1]] for entry in asked.entries]
+    watched = [c.value for c in spec.analysis.conditions if c.value is not None]
+    items += [spec.joints[joint] for value in watched for joint, _ in value.uses]
+    return set().union(*(bodies_of(item, spec) for item in items))
+
+
+def restricted(spec: Spec, asked: Asked, *, reduce: bool = True) -> Spec:
+    """The spec as far as it is asked for: without other sections, and if reduced without parts nothing depends on."""
+    ends = ends_of(spec) if reduce else {}
+    kept = needed(spec, asked, ends) if reduce else set(spec.bodies)
+    cut = set(spec.sections) if asked.whole("sections") or BLOWS in asked.reports else asked.of("sections")
+    if len(kept) == len(spec.bodies):
+        return spec if len(cut) == len(spec.sections) else spec._replace(sections=only(spec.sections, cut))
+    held: dict[str, Any] = {"bodies": only(spec.bodies, kept), "sections": only(spec.sections, cut)}
+    for block, standing in ends.items():
+        held[block] = only(getattr(spec, block), {name for name, on in standing.items() if on <= kept})
+    return spec._replace(**held)
+
+
+def only(items: Mapping[str, Any], names: Collection[str]) -> dict[str, Any]:
+    """The items of some names, in their order."""
+    return {name: item for name, item in items.items() if name in names}
+
+
+def left_out(whole: Spec, part: Spec) -> tuple[str, ...]:
+    """What of a scene is not solved, in a sentence."""
+    names = [name for name in whole.bodies if name not in part.bodies]
+    if not names:
+        return ()
+    return (f"left out, because nothing that is asked for depends on it: {some(names)}",)

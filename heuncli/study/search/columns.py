@@ -1,0 +1,104 @@
+"""A study as columns of numbers over the instants, for a search of their extremes."""
+
+from __future__ import annotations
+
+import math
+from typing import Protocol
+
+import numpy as np
+
+from heuncli.results import Array, Extremes, Place, Results
+from heuncli.study.search import extremes
+from heuncli.study.search.extremes import Searched
+from heuncli.study.solve.setup import Setup
+
+
+class Sampleable(Protocol):
+    """What is asked of a study (study/solve/solve.py)."""
+
+    @property
+    def results(self) -> Results:
+        """At the asked instants."""
+
+    @property
+    def at_once(self) -> int:
+        """At how many instants results are made at a time."""
+
+    def only(self, times: Array, wanted: frozenset[str], setup: Setup | None = None) -> Results:
+        """Some reports' blocks at other instants; setup: with other cuts."""
+
+
+class Sampled:
+    """A study as the columns that are searched; keeps the instants at which rounding reached some of them.
+
+    setup: with runs of cuts as whole stretches, of which each quantity is two columns, its lowest and its highest.
+    """
+
+    def __init__(self, study: Sampleable, searched: Searched, wanted: frozenset[str], setup: Setup | None) -> None:
+        self.study, self.searched, self.wanted, self.setup = study, searched, wanted, setup
+        self.unknown: list[float] = []
+        first = sum(map(len, searched.groups))
+        runs = len(searched.errors) - len(searched.groups)
+        self.groups = [*searched.groups, *([first + 2 * k, first + 2 * k + 1] for k in range(runs))]
+
+    def results(self, at: Array, setup: Setup | None = None) -> Results:
+        """Of the study, at some instants."""
+        study, setup = self.study, setup or self.setup
+        if setup is None and np.array_equal(at, study.results.time):
+            return study.results
+        results = study.only(at, self.wanted, setup)
+        self.unknown.extend(results.accuracy.get("unknown", []))
+        return results
+
+    def columns(self, at: Array) -> Array:
+        """The columns at some instants."""
+        most = self.study.at_once
+        return np.concatenate([self._part(at[i : i + most]) for i in range(0, len(at), most)])
+
+    def _part(self, at: Array) -> Array:
+        results = self.results(at)
+        if self.searched.along is None:
+            return self.searched.columns(results)
+        from heuncli.study.search.stretches import envelope
+
+        along = [envelope(values) for _, values in self.searched.along(results)]
+        return np.concatenate([self.searched.columns(results), *along], axis=1)
+
+    def placed(self, found: Extremes) -> Extremes:
+        """With the places of those of runs of cuts; of what is no polynomial they are looked for once more."""
+        if self.searched.along is None:
+            return found
+        first, n = len(self.searched.groups), len(self.searched.errors)
+        low, high, places = found.low.copy(), found.high.copy(), []
+        at = np.stack([found.low_at, found.high_at])[:, first:]
+        instants = extremes.distinct(at)
+        results = self.results(instants)
+        for k, (name, values) in enumerate(self.searched.along(results)):
+            both = []
+            for side, bounds in ((-1.0, low), (1.0, high)):
+                i = int(np.searchsorted(instants, at[int(side > 0.0), k]))
+                s = np.broadcast_to(results.sections[name]["s"], values.shape)[i]
+                own = name, float(instants[i]), s, values[i]
+                bounds[first + k], place = self._place(k, side, own, float(bounds[first + k]))
+                both.append(place)
+            places.append((both[0], both[1]))
+        assert first + len(places) == n
+        return found._replace(low=low, high=high, places=tuple(places))
+
+    def _place(self, k: int, side: float, own: tuple[str, float, Array, Array], value: float) -> tuple[float, Place]:
+        """The value of an extreme of a run, and where it is; own: its run and instant, the nodes, their values."""
+        assert self.searched.along is not None and self.setup is not None
+        from heuncli.study.search.stretches import cut_at, side_of, stretch_named, summit
+
+        name, at, nodes, values = own
+        s, end, ends = summit(nodes, values, side)
+        if self.searched.bent and math.isfinite(value):
+
+            def along(s: Array) -> Array:
+                assert self.searched.along is not None and self.setup is not None
+                return self.searched.along(self.results(np.array([at]), cut_at(self.setup, name, s, ends)))[k][1].T
+
+            there = extremes.search(along, np.linspace(*ends, 17))
+            value, s = (float(x[0]) for x in ((there.high, there.high_at) if side > 0.0 else (there.low, there.low_at)))
+            end = float(side_of(np.array(s), ends))
+        return value, stretch_named(self.setup, name).place(s, end)

@@ -1,0 +1,318 @@
+"""What happens: the motion asked for with its check run, or the one instant of a state; and the instants between.
+
+Impure: integrating looks at the clock.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Mapping
+from types import MappingProxyType
+from typing import TYPE_CHECKING
+
+import numpy as np
+
+from heuncli import tolerances
+from heuncli.errors import LimitError, Problem, SolveError
+from heuncli.integration.check.comparison import interleaved, moved_start
+from heuncli.integration.check.distance import Marks, motion_error
+from heuncli.integration.check.estimate import Checked, Runs, checked_run, recovered_at
+from heuncli.integration.contacts.blows import Jump
+from heuncli.integration.evaluator import Recovered
+from heuncli.integration.methods.method import Method
+from heuncli.integration.methods.registry import method_of
+from heuncli.integration.refusals.solvability import Asked, require_start
+from heuncli.integration.run.loop import limits_of
+from heuncli.integration.run.pieces import at_once
+from heuncli.integration.run.runner import Eventful, Runner, Stiff, Trajectory, discontinuities_of
+from heuncli.integration.singular import singular_poses
+from heuncli.mechanism.model import Mechanism, PairLoad
+from heuncli.method_rows import AUTO
+from heuncli.records import record, replace
+from heuncli.results import Array, Estimate
+from heuncli.study.search.extremes import distinct
+from heuncli.study.solve.load_errors import Kinds
+from heuncli.study.solve.memory_estimate import Room, require_room_for_steps
+from heuncli.study.solve.setup import Setup
+from heuncli.study.solve.singular_start import require_motion
+
+if TYPE_CHECKING:  # loaded where there are conditions
+    from heuncli.integration.conditions import Changes
+
+WITHIN_STEP = (0.0, 0.23, 0.52, 0.77)  # of each step of the integrator: where it is looked at for extremes first
+TURNED = np.pi / 8.0  # rad: so far a body may turn between two of these instants, an eighth period of what goes twice
+FINER = 4  # times as closely the expressions in time are looked at
+MOST_SEARCHED = 100_000
+
+
+@record
+class History:
+    """The kernel's answers at the instants asked for; of a motion the checked run behind them.
+
+    tolerance: what the motion was to keep; estimate: of the errors, by kind; blows: those that happened; beside: those
+    of the check runs; jumps: instants at which a load or drive jumps or bends, events and blows among them; singular:
+    those of singular poses that the run came through; seconds: what took how long;
+    errors: by kind and unit, of one instant those of shares by cause.
+    """
+
+    recovered: Recovered
+    tolerance: float
+    estimate: Estimate
+    checked: Checked | None = None
+    blows: tuple[Jump, ...] = ()
+    beside: tuple[tuple[Jump, ...], ...] = ()
+    jumps: tuple[float, ...] = ()
+    singular: tuple[float, ...] = ()
+    seconds: Mapping[str, float] = MappingProxyType({})
+    errors: Mapping[tuple[str, str], float] = MappingProxyType({})
+
+    @property
+    def changes(self) -> tuple[Changes, ...]:
+        """When the conditions in time and coordinates change."""
+        return self.checked.changes if self.checked is not None else ()
+
+    @property
+    def followed_for(self) -> float | None:
+        """How long the run is, if it was followed and not integrated [s]."""
+        run = self.checked.run if self.checked is not None else None
+        return float(run.times[-1]) if run is not None and run.method.determined else None
+
+    @property
+    def times(self) -> Array:
+        """The instants, (n_t,) ascending; fewer than asked for where the run stopped."""
+        return self.recovered.times
+
+
+def integrate(
+    setup: Setup, tolerance: float, deadline: float | None, *, by_cause: bool = False, room: Room | None = None
+) -> History:
+    """The history that the analysis asks for, with a column a cause where asked; nothing moves in a state.
+
+    room: in which its steps must fit, as far as they are known before.
+    Raises SolveError where no acceleration exists or the motion cannot be continued, LimitError past the deadline.
+    """
+    times, runner = np.array(setup.spec.analysis.times, dtype=float), setup.runner
+    if setup.method is None:
+        return state(setup, float(times[0]), tolerance, by_cause)
+    jumps = begin(setup)
+    if room is not None:
+        require_room_for_steps(setup, len(jumps) + 1, room)
+    checked = checked_motion(setup, tolerance, jumps, deadline, by_cause)
+    jumps = tuple(sorted({*jumps, *checked.run.jumps}))
+    require_followed(runner, checked.run)
+    require_apart(runner, checked)
+    seconds = {"integrate": checked.run.seconds, "check": checked.check_seconds}
+    if checked.lost_seconds:
+        seconds["lost"] = checked.lost_seconds
+    singular = tuple(singular_poses(runner, checked.run))
+    estimate, beside = Estimate(motion=checked.motion, **checked.loads), checked.beside
+    return History(
+        checked.recovered, tolerance, estimate, checked, checked.run.blows, beside, jumps, singular, seconds,
+        checked.errors,
+    )  # fmt: skip
+
+
+def begin(setup: Setup) -> tuple[float, ...]:
+    """The discontinuities in time of a motion that can begin.
+
+    Raises SolveError, LimitError where they are more than steps may be: before a long run, not after it.
+    """
+    first = setup.runner.recovered(np.zeros(1), setup.scene.layout.y0[None, :])
+    require_start(setup.scene, first)
+    require_motion(setup.scene.layout, first)
+    jumps = tuple(discontinuities_of(setup.scene.mechanism, 0.0, float(setup.spec.analysis.times[-1])))
+    require_steps(len(jumps) + 1, setup.method)
+    return jumps
+
+
+def require_steps(segments: int, method: Method | None) -> None:
+    """Raise LimitError [step-limit] where a run takes more steps than it may, were it one to a segment."""
+    foreign = method is not None and method.foreign
+    most = tolerances.MOST_FOREIGN if foreign else tolerances.MOST_STEPS
+    if segments <= most:
+        return
+    message = (
+        f"loads and drives jump or bend at {segments - 1:,} instants, each the end of a step: "
+        f"the run takes at least {segments:,} steps, and {most:,} is the most"
+    )
+    hint = "a shorter duration, or tables of fewer points" + ("; or method: auto" if foreign else "")
+    raise LimitError(Problem("step-limit", message, hint=hint))
+
+
+def checked_motion(
+    setup: Setup, tolerance: float, jumps: tuple[float, ...], deadline: float | None, by_cause: bool
+) -> Checked:
+    """The motion asked for with its check run.
+
+    Where it cannot be followed, at a singular pose or beyond what the loops can do, it is integrated: there what moves
+    has a say in how it goes on, or the error is told.
+    """
+    assert setup.method is not None
+    times, method = np.array(setup.spec.analysis.times, dtype=float), setup.method
+    if method.determined:
+        try:
+            runs = Runs(setup.runner, times, jumps, deadline, method)
+            return checked_run(runs, tolerance, Kinds(setup, by_cause))
+        except SolveError:
+            method = method_of(AUTO)
+        except LimitError as limit:
+            if limit.problems[0].code != "step-limit":
+                raise
+            method = method_of(AUTO)  # towards a singular pose steps along a branch become ever shorter
+    try:
+        runs = Runs(setup.runner, times, jumps, deadline, method, step=setup.step, watched=setup.auto)
+        return checked_between_events(runs, setup, tolerance, by_cause)
+    except Stiff as stiff:
+        runs = Runs(setup.runner, times, jumps, deadline, stiff.method)
+        return begun_anew(runs, stiff, method, setup, tolerance, by_cause)
+
+
+def checked_between_events(runs: Runs, setup: Setup, tolerance: float, by_cause: bool) -> Checked:
+    """A motion with its check run, by a method of few stages where events end most steps and that takes less."""
+    method, runs.eventful = runs.method, setup.auto
+    try:
+        return checked_run(runs, tolerance, Kinds(setup, by_cause))
+    except Eventful as left:
+        from heuncli.integration.run.event_frequency import try_fewer_stages  # few scenes have so many
+
+        runs.eventful = try_fewer_stages(runs, left)
+        return begun_anew(runs, left, method, setup, tolerance, by_cause)
+
+
+def begun_anew(
+    runs: Runs, left: Stiff | Eventful, method: Method, setup: Setup, tolerance: float, by_cause: bool
+) -> Checked:
+    """A motion by the method of the runs, another than a run was left with, or, if need be, as it was begun after all.
+
+    That is where the other one does not come through, or events become rare.
+    """
+    lost, why = left.seconds, None if runs.method is method else left.told
+    try:
+        checked = checked_run(runs, tolerance, Kinds(setup, by_cause))
+        return replace(checked, lost_seconds=checked.lost_seconds + lost, begun_anew=why)
+    except Eventful as again:
+        lost += again.seconds
+    except SolveError:
+        if runs.method is method:
+            raise
+    except LimitError as limit:
+        if runs.method is method or limit.problems[0].code != "step-limit":
+            raise
+    runs.method, runs.eventful = method, False
+    checked = checked_run(runs, tolerance, Kinds(setup, by_cause))
+    return replace(checked, lost_seconds=checked.lost_seconds + lost)
+
+
+def state(setup: Setup, at: float, tolerance: float, by_cause: bool = False) -> History:
+    """The history of one instant, behind the blow that is asked for; beside it, from a start moved by rounding."""
+    runner, layout = setup.runner, setup.scene.layout
+    # a rest pose moved by rounding would be another one: beside it are those that rounding does not tell from it
+    others = [moved_start(layout)] if setup.rest is None else list(setup.rest.beside)
+    starts = [layout.y0, *others]
+    blows: list[tuple[Jump, ...]] = [() for _ in starts]
+    if setup.spec.analysis.type == "impulse" or layout.contacts:
+        blows = [at_once(runner, start, at) for start in starts]
+        starts = [jumps[-1].after if jumps else start for start, jumps in zip(starts, blows, strict=True)]
+    times = np.array([at])
+    holding = blows[0][-1].holding if blows[0] else held(runner, at, starts[0])
+    answers = runner.recovered(times, starts[0][None, :], causes=by_cause, holding=holding)
+    require_start(setup.scene, answers, Asked("accelerations behind the blow") if blows[0] else Asked())
+    require_motion(layout, answers)
+    beside = interleaved(times, [start[None, :] for start in starts])
+    both = runner.recovered(*beside, causes=by_cause, holding=holding)
+    kinds = Kinds(setup, by_cause)
+    kinds.add(both, *np.ones((2, 1), dtype=bool))
+    # of one instant: what rounding of its state makes of the loads, and of a pose that was looked for
+    off = 0.0 if setup.rest is None else float(motion_error(Marks(layout), both, len(starts), layout.size)[0])
+    estimate = Estimate(motion=off, **kinds.estimate())
+    seconds = {"integrate": 0.0 if setup.rest is None else setup.rest.seconds, "check": 0.0}
+    return History(
+        answers, tolerance, estimate, blows=blows[0], beside=tuple(blows[1:]), seconds=seconds,
+        errors=kinds.errors_by_cause(),
+    )  # fmt: skip
+
+
+def held(runner: Runner, t: float, state: Array) -> Array:
+    """The contacts that are closed at a state, (contacts,)."""
+    if not runner.layout.contacts:
+        return np.zeros(0)
+    from heuncli.integration.contacts.meetings import held_at  # few scenes have them
+
+    return held_at(runner, t, state)
+
+
+def require_followed(runner: Runner, run: Trajectory) -> None:
+    """Raise SolveError where drives of one loop contradict each other within the run."""
+    if sum(joint.drive is not None for joint in runner.layout.mechanism.joints) > 1 and runner.layout.rows:
+        from heuncli.integration.refusals.contradictions import unfollowed  # few scenes need it
+
+        problem = unfollowed(runner, run)
+        if problem is not None:
+            raise SolveError(problem)
+
+
+def require_apart(runner: Runner, checked: Checked) -> None:
+    """Raise SolveError where the points of an actuator or spring come together within a motion, before its horizon."""
+    if any(isinstance(load, PairLoad) for load in runner.layout.mechanism.loads):
+        from heuncli.integration.refusals.coincident_points import comes_together  # few scenes have them
+
+        problem = comes_together(runner, checked.run, checked.horizon)
+        if problem is not None:
+            raise SolveError(problem)
+
+
+def resample(runner: Runner, history: History, times: Array, *, by_cause: bool = False) -> Recovered:
+    """The kernel's answers at other instants within the run, (n,) ascending; in a state there is one instant only."""
+    if history.checked is None:
+        return history.recovered
+    times = np.asarray(times, dtype=float)
+    run = history.checked.run
+    return recovered_at(runner, run, times, runner.resample(run, times), history.jumps, causes=by_cause)
+
+
+def search_times(setup: Setup, history: History) -> tuple[Array, bool]:
+    """Instants close enough to bracket every extreme, (n,) ascending; and whether there are enough of them.
+
+    The asked ones; some within each step, at uneven distances, so that nothing that repeats itself looks at rest; both
+    sides of all jumps; where loads and drives in time have their own extremes; and so many that no body turns far
+    between two of them: a rotor that is driven, or spins on, needs no steps, but its loads turn.
+    """
+    times = history.times
+    if history.checked is None:
+        return times, True
+    marks = np.concatenate([[0.0], history.checked.run.ends])
+    per_step = max(1, min(len(WITHIN_STEP), MOST_SEARCHED // max(len(marks), 1)))
+    inner = (marks[:-1, None] + np.diff(marks)[:, None] * np.array(WITHIN_STEP[:per_step])).ravel()
+    # a jump has a value on either side of it
+    before, after = limits_of(history.jumps)
+    grid = np.concatenate([inner, before[before > 0.0], after[before > 0.0]])
+    grid = distinct(np.concatenate([times, grid[(grid > times[0]) & (grid < times[-1])]]))
+    grid = distinct(np.concatenate([grid, *own_extremes(setup.scene.mechanism, grid)]))
+    turns = np.ceil(turned_between(setup, history, grid) / TURNED)
+    parts = np.clip(turns, 1, MOST_SEARCHED + 1).astype(int)  # what turns faster is not searched to its turns
+    enough = per_step == len(WITHIN_STEP) and int(parts.sum()) <= MOST_SEARCHED
+    parts = np.minimum(parts, max(1, MOST_SEARCHED // len(grid))) if not enough else parts
+    first = np.repeat(np.arange(len(parts)), parts)
+    share = (np.arange(len(first)) - np.repeat(np.cumsum(parts) - parts, parts)) / parts[first]
+    return np.append(grid[first] + share * np.diff(grid)[first], grid[-1:]), enough
+
+
+def own_extremes(mechanism: Mechanism, grid: Array) -> list[Array]:
+    """Where loads and drives in time alone are highest and lowest, as a finer grid shows them."""
+    in_time = {e for e in mechanism.expressions() if e.time_dependent and not e.uses}
+    if not in_time or len(grid) < 2:
+        return []
+    fine = (grid[:-1, None] + np.diff(grid)[:, None] * (np.arange(FINER) / FINER)).ravel()
+    found = []
+    for expression in in_time:
+        change = np.diff(np.array(expression.sample(fine.tolist())))
+        found.append(fine[1:-1][change[:-1] * change[1:] < 0.0])
+    return found
+
+
+def turned_between(setup: Setup, history: History, grid: Array) -> Array:
+    """The largest angle [rad] by which any body turns between neighbouring instants, (n - 1,)."""
+    driven = any(joint.drive is not None for joint in setup.scene.mechanism.joints)
+    known = resample(setup.runner, history, grid) if driven else history.recovered
+    omega = np.sqrt(np.nan_to_num(np.sum(known.bodies["omega"] ** 2, axis=2)).max(axis=1, initial=0.0))
+    omega = np.interp(grid, known.times, omega)
+    return np.asarray(np.maximum(omega[1:], omega[:-1]) * np.diff(grid))

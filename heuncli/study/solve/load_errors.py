@@ -1,0 +1,411 @@
+"""Estimated errors of loads and energy, by kind: twice the difference between runs, and the rounding of sums.
+
+Errors are the largest over the whole run, asked instants or not; each is relative to the largest that is told of its
+kind at the asked instants. A kind's forces are seen against its largest force, or largest moment by its longest arm;
+its moments against the largest moment, or largest force times the size of the scene. An arm is as long as the scene, of
+the foundation as far as the scene reaches from the point that its moment is taken about.
+Drives: torques and thrusts each against their own largest. Energy: against the largest kinetic, or what potential and
+work have exchanged, for these have no zero of their own.
+Where a kind is nothing but what larger terms leave when they cancel it is none: 0.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Iterable, Sequence
+from functools import cached_property
+from typing import NamedTuple
+
+import numpy as np
+
+from heuncli import tolerances
+from heuncli.integration.evaluator import Recovered
+from heuncli.kinetostatics.actions import Action, AppliedLoad, applied_loads, joint_actions, whole_joint_actions
+from heuncli.kinetostatics.bodies import BodyStates, body_states
+from heuncli.kinetostatics.energy import energy
+from heuncli.kinetostatics.foundation import inertia_loads, total
+from heuncli.kinetostatics.joint_axes import in_axes
+from heuncli.kinetostatics.reactions import JointLoads, in_plane, joint_loads
+from heuncli.mechanism.size import marks
+from heuncli.results import Array, Estimate, Mask
+from heuncli.results_schema import BLOWS, BY_CAUSE
+from heuncli.shapes.rotations import cross_rows
+from heuncli.study.solve.recover import about
+from heuncli.study.solve.setup import Setup
+
+CHOSEN_ANEW = 1e-6  # of the largest multiplier: what redundant joints leave open changes by more when rows are chosen
+
+
+# Kinds, and the reports that tell something of them: what nobody asks for is not compared.
+TOLD_IN = {
+    "reactions": {"joints", "foundation"},
+    "foundation": {"foundation"},
+    "sections": {"sections"},
+    "forces": {"forces"},
+    "motion": {"motion", "points", "forces", BLOWS},
+    "energy": {"energy", BLOWS},
+}
+
+
+class Weights(NamedTuple):
+    """What an error is made of: so many times the difference between the runs, and the rounding of sums."""
+
+    difference: float
+    rounding: float
+
+
+ESTIMATED = Weights(2.0, 1.0)  # of a run, by one that is finer
+APART = Weights(1.0, 0.0)  # the difference itself
+
+
+class Extent:
+    """Of one quantity over the instants so far: largest error, rounding and terms; largest value and range as told.
+
+    claimed: the largest difference before the horizon.
+    """
+
+    def __init__(self, weights: Weights = ESTIMATED) -> None:
+        self.weights = weights
+        self.difference = self.claimed = self.rounding = self.terms = 0.0
+        self.largest = self.told = 0.0
+        self.low, self.high = np.inf, -np.inf
+
+    def add(
+        self, values: Array, rounding: Array, terms: Array, which: tuple[Mask, Mask], more: Array | None = None
+    ) -> None:
+        """values (c n, ...): of c runs, at each instant one after the other; more (n,): difference beside.
+
+        rounding, terms (c n,); which: the instants that are asked ones, and those before the horizon, (n,).
+        """
+        asked, before = which
+        if not values.size:
+            return
+        count = len(values) // len(asked)
+        own = values[0::count]
+        size = lengths(own)
+        difference = np.max([lengths(own - values[k::count]) for k in range(1, count)], axis=0)
+        self.differ(difference if more is None else difference + more, before)
+        self.rounding = _larger(self.rounding, rounding)
+        self.terms = _larger(self.terms, terms)
+        self.largest, self.told = _larger(self.largest, size), _larger(self.told, size[asked])
+        self.low, self.high = min(self.low, float(own.min())), max(self.high, float(own.max()))
+
+    def differ(self, difference: Array, before: Mask) -> None:
+        """More differences, and which are before the horizon, (n,)."""
+        self.difference, self.claimed = _larger(self.difference, difference), _larger(self.claimed, difference[before])
+
+    @property
+    def error(self) -> float:
+        """The estimated error."""
+        return self.weights.difference * self.difference + self.weights.rounding * self.rounding
+
+    @property
+    def claimed_error(self) -> float:
+        """The same before the horizon."""
+        return self.weights.difference * self.claimed + self.weights.rounding * self.rounding
+
+    @property
+    def exchanged(self) -> float:
+        """What lies between the lowest and the highest value, if less than the largest."""
+        return max(min(self.high - self.low, self.largest), 0.0)
+
+
+def _norms(vectors: Array) -> Array:
+    return np.asarray(np.sqrt(np.einsum("tni,tni->tn", vectors, vectors)))
+
+
+def lengths(values: Array) -> Array:
+    """The largest length of the vectors (n, ..., 3), or magnitude of the numbers (n,), at each instant."""
+    if values.ndim == 1:
+        return np.abs(values)
+    squares = np.sum(values * values, axis=-1).reshape(len(values), -1)
+    return np.asarray(np.sqrt(squares.max(axis=1)))
+
+
+def _larger(so_far: float, values: Array) -> float:
+    """The largest; what is no number is unboundedly large."""
+    largest = float(values.max(initial=0.0))
+    return max(so_far, largest) if np.isfinite(largest) else np.inf
+
+
+def relative(error: float, terms: float, *scales: float) -> float:
+    """An error against the first of the scales that is more than rounding of its terms; 0 where none is."""
+    scale = next((x for x in scales if x > tolerances.NO_LOAD * terms), 0.0)
+    if scale == 0.0:
+        return 0.0
+    found = error / scale if np.isfinite(scale) else np.inf
+    return min(found, tolerances.UNKNOWN)
+
+
+def rounding_of_loads(several: Recovered, force: Array, moment: Array, size: float) -> tuple[Array, Array]:
+    """What rounding makes of forces [N] and moments [N m] at each instant, (c n,); force, moment: their largest terms.
+
+    That of sums of some dozen terms, and beside it what the kernel finds that rounding may make of each multiplier:
+    near a singular pose the closures amplify it (kernel/orthogonal.py).
+    """
+    rows = several.rows
+    by_force = (rows["doubt"] * np.abs(rows["f"]).max(axis=2)).max(axis=1, initial=0.0)
+    by_moment = (rows["doubt"] * np.abs(rows["m"]).max(axis=2)).max(axis=1, initial=0.0)
+    F = tolerances.SUM_ROUNDING * force + by_force + by_moment / size
+    return F, tolerances.SUM_ROUNDING * moment + by_moment + size * by_force
+
+
+class Terms:
+    """The terms of the balances: inertia loads (c n, b, 3), weights, and the largest of all at each instant (c n,).
+
+    force [N]; moment [N m], those of forces over the reach of the scene among them; rounding: of the loads, relative.
+    """
+
+    def __init__(self, setup: Setup, several: Recovered, states: BodyStates, loads: Sequence[AppliedLoad]) -> None:
+        mechanism, size = setup.scene.mechanism, setup.scene.layout.size
+        self.ma, self.spin = inertia_loads(mechanism, states)
+        self.weight = np.array([b.mass for b in mechanism.bodies])[:, None] * mechanism.gravity
+        of_rows = several.rows["multiplier"][..., None] * several.rows["f"]
+        applied = [load.action for load in loads]
+        # what spins freely is a balance of terms, too: m x_s.. and I sigma. + sigma x I sigma vanish there
+        layout, bodies = setup.scene.layout, mechanism.bodies
+        turning = np.abs(states.alpha).max(axis=2) + np.sum(states.omega**2, axis=2)
+        arms = [b.center - layout.reference[layout.place[i]] for i, b in enumerate(bodies)]
+        offset = [b.mass * float(np.abs(arm).max()) for b, arm in zip(bodies, arms, strict=True)]
+        gyration = [float(np.trace(b.inertia)) for b in bodies]
+        forces = [self.ma, turning * offset, several.bodies["joint_force"], of_rows, *(x.force for x in applied)]
+        moments = [self.spin, turning * gyration, several.bodies["joint_moment"], *(x.moment for x in applied)]
+        self.force = np.maximum(_at_each(forces), np.abs(self.weight).max(initial=0.0))
+        self.moment = np.maximum(_at_each(moments), size * self.force)
+        self.rounding = rounding_of_loads(several, self.force, self.moment, size)
+
+
+def _at_each(values: Iterable[Array]) -> Array:
+    """The largest of all values at each instant, (c n,); each (c n, ...)."""
+    largest = [np.abs(x.reshape(len(x), -1)).max(axis=1, initial=0.0) for x in values]
+    return np.asarray(np.max(largest, axis=0))
+
+
+class Kinds:
+    """Collects the differences of a motion's loads and energy between two runs, of the kinds that are asked for."""
+
+    def __init__(self, setup: Setup, by_cause: bool = False, weights: Weights = ESTIMATED) -> None:
+        self.setup, self.by_cause, self.weights = setup, by_cause, weights
+        self.compared = frozenset(kind for kind, told_in in TOLD_IN.items() if told_in & setup.asked.reports)
+        self.extents: dict[tuple[str, str], Extent] = {}
+        self.reach = 0.0  # farthest centre of mass from the point that the foundation's moment is about
+        self.asked = self.before = np.zeros(0, dtype=bool)
+
+    def extent(self, kind: str, quantity: str) -> Extent:
+        """That of a quantity."""
+        return self.extents.setdefault((kind, quantity), Extent(self.weights))
+
+    def take(
+        self, name: tuple[str, str], values: Array, rounding: Array, terms: Array, more: Array | None = None
+    ) -> None:
+        """More instants of a quantity: see `Extent.add`."""
+        self.extent(*name).add(values, rounding, terms, (self.asked, self.before), more)
+
+    def add(self, several: Recovered, asked: Mask, before: Mask) -> None:
+        """More instants, which are asked and which before the horizon; at each the answers of A, then of the others."""
+        count = len(several.times) // max(len(asked), 1)
+        same = same_rows(several, count) if self.setup.model["redundant"] else np.ones(len(asked), dtype=bool)
+        if same.any() and not same.all():
+            several, asked, before = several.at(np.repeat(same, count)), asked[same], before[same]
+        self.asked, self.before = asked, before
+        states = body_states(self.setup.scene.layout, several)
+        loads = applied_loads(self.setup.scene.mechanism, several)
+        if self.compared & {"reactions", "foundation", "sections", "forces"}:
+            self.add_loads(several, states, loads)
+        if "energy" in self.compared:
+            self.add_energy(several, states, loads)
+        if "motion" in self.compared:
+            self.add_motion(states)
+
+    def add_loads(self, several: Recovered, states: BodyStates, loads: Sequence[AppliedLoad]) -> None:
+        """Loads of all kinds."""
+        joints = joint_loads(self.setup.scene.layout, several, states)
+        terms = Terms(self.setup, several, states, loads)
+        applied = [load.action for load in loads]
+        if "reactions" in self.compared:
+            self.add_joints([in_axes(load, states, self.setup.asked.axes) for load in joints], terms)
+        if "foundation" in self.compared:
+            driven = [load for load in joints if load.drive is not None]
+            self.add_foundation(states, [*applied, *joint_actions(driven)], terms)
+        if self.setup.cuts and "sections" in self.compared:
+            self.add_sections(states, [*whole_joint_actions(joints), *applied], terms)
+        if "forces" in self.compared:
+            self.add_forces(loads, terms)
+        if self.by_cause:
+            from heuncli.study.solve.cause_shares import compare_shares  # few runs ask for them
+
+            compare_shares(self, several, states, applied, about(self.setup), terms)
+
+    def add_forces(self, loads: Sequence[AppliedLoad], terms: Terms) -> None:
+        """Applied loads, and what they put into the bodies."""
+        F, M = terms.rounding
+        for load in loads:
+            self.take(("forces", "N"), load.action.force, F, terms.force)
+            self.take(("forces", "N·m"), load.action.moment, M, terms.moment)
+            self.take(("forces", "W"), load.power, np.zeros(len(F)), terms.force)
+
+    def add_motion(self, states: BodyStates) -> None:
+        """Velocities and accelerations: of the bodies, and of points as far from their centres as they reach."""
+        count = len(states.omega) // len(self.asked)
+
+        def apart(values: Array) -> Array:
+            own = values[0::count]
+            return np.asarray(np.max([_norms(own - values[k::count]) for k in range(1, count)], axis=0))
+
+        turn, turning = apart(states.omega), apart(states.alpha)
+        centripetal = 2.0 * _norms(states.omega[0::count]) * turn
+        for unit, difference in (
+            ("rad/s", turn),
+            ("rad/s²", turning),
+            ("m/s", apart(states.v_centre) + turn * self.reaches),
+            ("m/s²", apart(states.a_centre) + (turning + centripetal) * self.reaches),
+        ):
+            self.extent("motion", unit).differ(difference.max(axis=1), self.before)
+
+    @cached_property
+    def reaches(self) -> Array:
+        """How far each body's marks are from its centre of mass at most, (b,) [m]."""
+        bodies = self.setup.scene.mechanism.bodies
+        far = [max(float(np.sum(np.square(p - body.center))) for p in marks(body)) for body in bodies]
+        return np.asarray(np.sqrt(far))
+
+    def add_joints(self, joints: Sequence[JointLoads], terms: Terms) -> None:
+        """Reactions, in the axes in which they are told, and drives."""
+        F, M = terms.rounding
+        if joints:
+            self.take(("reactions", "force"), np.stack([x.force for x in joints], axis=1), F, terms.force)
+            self.take(("reactions", "moment"), np.stack([x.moment for x in joints], axis=1), M, terms.moment)
+        for load in joints:
+            if load.drive is not None and load.joint.drive is not None:
+                turns = load.joint.drive.quantity == "angle"
+                rounding, of = (M, terms.moment) if turns else (F, terms.force)
+                self.take(("drives", "torque" if turns else "thrust"), load.drive, rounding, of)
+
+    def add_foundation(self, states: BodyStates, actions: Sequence[Action], terms: Terms) -> None:
+        """Total of the foundation, its elements and the mass effects."""
+        mechanism, origin = self.setup.scene.mechanism, about(self.setup)
+        arm = states.centre - origin
+        far = np.abs(arm).max(axis=(1, 2))
+        self.reach = max(self.reach, float(far.max()))
+        moments = terms.moment + far * terms.force
+        forces_rounding, moments_rounding = terms.rounding
+        inner = [action for action in actions if action.kind != "joint" and action.from_ is not None]
+        elements = [on for action in inner if (on := action.on_ground()) is not None]
+        wrenches = [
+            ("foundation", *total(states, terms.weight - terms.ma, terms.spin, actions, origin)),
+            ("effects", terms.ma.sum(axis=1), np.sum(cross_rows(arm, terms.ma) + terms.spin, axis=1)),
+            *(("elements", force, moment) for force, moment, _ in elements),
+        ]
+        for kind, force, moment in wrenches:
+            F, M = in_plane(force, moment) if mechanism.planar else (force, moment)
+            self.take((kind, "force"), F, forces_rounding, terms.force)
+            self.take((kind, "moment"), M, moments_rounding + far * forces_rounding, moments)
+
+    def add_sections(self, states: BodyStates, actions: Sequence[Action], terms: Terms) -> None:
+        """The cuts' loads in body axes, and how far the bodies themselves have turned between the two runs."""
+        from heuncli.kinetostatics.sections import acceleration_matrix, attachments, piece_loads  # as in recover
+
+        gravity = self.setup.scene.mechanism.gravity
+        for cuts in self.setup.cuts:
+            on = attachments(cuts.body, states, actions)
+            force, moment = piece_loads(cuts, acceleration_matrix(cuts.body, states, gravity), on)
+            R = states.R[:, cuts.body]
+            count = len(R) // len(self.asked)
+            own = R[0::count]
+            turned = np.max([np.sqrt(np.sum((own - R[k::count]) ** 2, axis=(1, 2))) for k in range(1, count)], axis=0)
+            F, M = terms.rounding
+            for quantity, values, rounding, of in (
+                ("force", force, F, terms.force), ("moment", moment, M, terms.moment),
+            ):  # fmt: skip
+                both = values.transpose(1, 2, 0)
+                turn = turned * lengths(both[0::count])
+                self.take(("sections", quantity), both, rounding, of, turn)
+
+    def add_energy(self, several: Recovered, states: BodyStates, loads: Sequence[AppliedLoad]) -> None:
+        """Kinetic and potential energy, and work."""
+        block = energy(self.setup.scene.layout, several, states, loads)
+        m = np.array([b.mass for b in self.setup.scene.mechanism.bodies])
+        speed = np.abs(states.v_centre).max(axis=(1, 2))
+        lift = np.abs(states.centre @ self.setup.scene.mechanism.gravity) @ m
+        rounding = tolerances.SUM_ROUNDING * (block["kinetic"] + m.sum() * speed**2)
+        none = np.zeros(len(several.times))
+        self.take(("energy", "kinetic"), block["kinetic"], rounding, none)
+        self.take(("energy", "potential"), block["potential"], tolerances.SUM_ROUNDING * lift, none)
+        self.take(("energy", "work"), block["work"], none, none)
+
+    def estimate(self) -> Estimate:
+        """The estimated error of each kind that is asked for, relative to the largest told of it."""
+        size, found = self.setup.scene.layout.size, Estimate()
+        if "reactions" in self.compared:
+            found["reactions"] = self.wrench(size, "reactions")
+            found["drives"] = max(self.wrench(1.0, "drives", "thrust", ""), self.wrench(1.0, "drives", "", "torque"))
+        if "foundation" in self.compared:
+            found["foundation"] = self.wrench(size + self.reach, "foundation", also=("effects", "elements"))
+        if "sections" in self.compared:
+            found["sections"] = self.wrench(size, "sections")
+        if "energy" in self.compared:
+            found["energy"] = self.energies()
+        return found
+
+    def errors(self) -> dict[tuple[str, str], float]:
+        """The estimated errors by kind and unit, before the horizon."""
+        of = {name: extent.claimed_error for name, extent in self.extents.items()}
+        found = {name: error for name, error in of.items() if name[0] in ("motion", "forces")}
+        whole = ("foundation", "effects", "elements")
+        for kind, parts in (("reactions", ("reactions",)), ("sections", ("sections",)), ("foundation", whole)):
+            for quantity, unit in (("force", "N"), ("moment", "N·m")):
+                found[kind, unit] = max(of.get((part, quantity), 0.0) for part in parts)
+        found["drives", "N"], found["drives", "N·m"] = (of.get(("drives", x), 0.0) for x in ("thrust", "torque"))
+        found["energy", "J"] = max(of.get(("energy", name), 0.0) for name in ("kinetic", "potential", "work"))
+        return found | self.errors_by_cause()
+
+    def errors_by_cause(self) -> dict[tuple[str, str], float]:
+        """The estimated errors of shares by cause, by kind and unit, before the horizon."""
+        units = {"force": "N", "moment": "N·m"}
+        known = {name: extent for name, extent in self.extents.items() if name[0].endswith(BY_CAUSE)}
+        return {(kind, units[name]): extent.claimed_error for (kind, name), extent in known.items()}
+
+    def wrench(
+        self, arm: float, kind: str, force: str = "force", moment: str = "moment", also: Sequence[str] = ()
+    ) -> float:
+        """Error of forces and of moments, and of those of other kinds; arm: the longest of a moment."""
+        size = self.setup.scene.layout.size
+        F, M = self.extent(kind, force), self.extent(kind, moment)
+        parts = [(F, M), *((self.extent(other, force), self.extent(other, moment)) for other in also)]
+        terms_F, terms_M = max(f.terms for f, _ in parts), max(m.terms for _, m in parts)
+        forces = [max(F.told, M.told / arm), *(max(f.largest, m.largest / arm) for f, m in parts)]
+        moments = [max(M.told, F.told * size), *(max(m.largest, f.largest * size) for f, m in parts)]
+        return max(
+            relative(max(f.error for f, _ in parts), max(terms_F, terms_M / arm), *forces),
+            relative(max(m.error for _, m in parts), max(terms_M, terms_F * size), *moments),
+        )
+
+    def energies(self) -> float:
+        """Error of the energies."""
+        mechanism, size = self.setup.scene.mechanism, self.setup.scene.layout.size
+        kinetic, potential, work = (self.extent("energy", name) for name in ("kinetic", "potential", "work"))
+        lift = sum(b.mass for b in mechanism.bodies) * float(np.abs(mechanism.gravity).max()) * size
+        if kinetic.largest <= tolerances.NO_ENERGY * lift:
+            return 0.0
+        error = max(x.error for x in (kinetic, potential, work))
+        told = max(kinetic.told, potential.exchanged, work.exchanged)
+        return relative(error, kinetic.largest, told, kinetic.largest)
+
+    def kinetic(self) -> float:
+        """The largest kinetic energy over the run [J]."""
+        return self.extent("energy", "kinetic").largest
+
+
+def same_rows(several: Recovered, count: int) -> Mask:
+    """Where all of so many runs are answered with the same closure rows, (n,): the others have no multiplier.
+
+    One that is nought in one run and next to nothing in another is chosen in both.
+    """
+    size = np.abs(several.rows["multiplier"])
+    none, own = size == 0.0, slice(0, None, count)
+    same = np.ones(len(several.times) // count, dtype=bool)
+    for k in range(1, count):
+        other = slice(k, None, count)
+        larger = np.maximum(size[own], size[other])
+        much = larger > CHOSEN_ANEW * larger.max(axis=1, initial=0.0)[:, None]
+        same &= ~((none[own] != none[other]) & much).any(axis=1)
+    return same

@@ -1,0 +1,139 @@
+"""The engineer's note on the model: which one was made of the scene, and why; the block `model` of the results."""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+from typing import TYPE_CHECKING
+
+import numpy as np
+
+from heuncli import tolerances
+from heuncli.integration.methods.method import GLOBAL, QUATERNION, RECENTRED, Method
+from heuncli.integration.run.runner import Runner
+from heuncli.joint_kinds import JOINTS
+from heuncli.mechanism.model import Mechanism
+from heuncli.reduction.model import Reduced
+from heuncli.redundancy.count import freedoms_of_tree, redundancy
+from heuncli.results import Block, Mask
+from heuncli.study.solve.words import count, some
+from heuncli.tree.layout import Layout
+from heuncli.tree.prepare import PreparedScene
+
+if TYPE_CHECKING:  # loaded where a scene has closed chains
+    from heuncli.redundancy.self_stress import SelfStress
+
+COUNTED_FROM = {GLOBAL: "counted from the drawn ones: none can pass a half turn", RECENTRED: "anew in each step"}
+
+
+def model_note(scene: PreparedScene, runner: Runner, method: str) -> Block:
+    """The block `model`: freedoms, loops, redundancy, and the reasons in sentences."""
+    mechanism, layout = scene.mechanism, scene.layout
+    found = redundancy(scene, runner)
+    block: Block = {
+        "space": "planar" if mechanism.planar else "spatial",
+        "freedoms": freedoms_of_tree(layout) - (found.closed - found.dependent),
+        "driven": sum(1 for j in mechanism.joints if j.drive is not None),
+        "bodies": len(mechanism.bodies), "loops": len(layout.spanning.cut), "redundant": found.generic,
+        "method": method, "reasons": [], "joints": len(mechanism.joints), "grubler": grubler(mechanism),
+        "chosen": list(scene.start.chosen), "notes": [],
+    }  # fmt: skip
+    if scene.start.moved:
+        block["moved"] = list(scene.start.moved)
+    if mechanism.planar:
+        block["plane"] = "declared"
+    block["reasons"] = reasons(scene, block)
+    if layout.contacts:
+        block["reasons"].append(one_sided(layout, runner.start_holding > 0.0))
+    if found.at_start > found.generic:
+        more = count(found.at_start - found.generic, "condition depends", "conditions depend")
+        block["notes"].append(f"the start is a singular pose: {more} on the others just there")
+    if found.generic and found.stress is not None:
+        block["notes"] += held_twice(layout, found.stress)
+    block["notes"] += found.giving
+    if found.open < found.generic:
+        block["given_way"] = found.generic - found.open
+    return block
+
+
+def reductions(left_out: Sequence[str], scene: PreparedScene, reduced: Reduced | None) -> Block:
+    """What was left out or made smaller, what was not though one might expect it, what cannot be told: sentences.
+
+    A scene that was found to stay in a plane is planar, too; what is across that is told as in space.
+    """
+    found: Block = {"reduced": [*left_out]}
+    if reduced is not None:
+        found["reduced"] += reduced.told
+        found |= {"not_reduced": list(reduced.kept), "cannot_tell": list(reduced.hidden)}
+        if reduced.steps and reduced.steps[-1].scene.mechanism.planar and not scene.mechanism.planar:
+            found |= {"space": "planar", "plane": "found"}
+    return {key: value for key, value in found.items() if value}
+
+
+def rested(block: Block, told: Sequence[str]) -> Block:
+    """The block `model` with how the scene rests, in sentences."""
+    return block | {"rest": list(told), "notes": [*told, *block["notes"]]} if told else block
+
+
+def grubler(mechanism: Mechanism) -> int:
+    """Grübler's count of freedoms: 6 (in the plane 3) a body less the joints' conditions and the drives."""
+    kinds = [JOINTS[j.kind] for j in mechanism.joints]
+    rows = sum(kind.rows_in_plane if mechanism.planar else kind.rows for kind in kinds)
+    # a driven distance is held anyway
+    drives = sum(1 for j in mechanism.joints if j.drive is not None and not JOINTS[j.kind].keeps_distance)
+    return (3 if mechanism.planar else 6) * len(mechanism.bodies) - rows - drives
+
+
+def reasons(scene: PreparedScene, model: Block) -> list[str]:
+    """The model in sentences."""
+    mechanism, layout = scene.mechanism, scene.layout
+    where = "in the plane" if mechanism.planar else "in space"
+    bodies = count(len(layout.place), "body", "bodies")
+    sentences = [f"{bodies} {where}, {count(model['freedoms'], 'freedom', 'freedoms')}"]
+    cut = [mechanism.joints[k].name for k in layout.spanning.cut]
+    if cut:
+        sentences.append(f"closed at {some(cut)}; the other joints make the tree that carries the motion")
+    driven = [j.name for j in mechanism.joints if j.drive is not None]
+    if driven:
+        sentences.append(f"driven: {some(driven)}")
+    floating = [mechanism.bodies[h.body].name for h in layout.spanning.hangs if h.joint < 0]
+    if floating:
+        sentences.append(f"carried by nothing, free: {some(floating)}")
+    if model["redundant"]:
+        sentences.append(
+            f"Grübler counts {model['grubler']}, there are {model['freedoms']}: "
+            f"{count(model['redundant'], 'condition holds', 'conditions hold')} what others hold already"
+        )
+    for spin in scene.idle:
+        name = mechanism.bodies[spin.body].name
+        sentences.append(f"{name}: the spin about its own axis is undetermined and harmless; taken as zero")
+    return sentences
+
+
+def attitudes(method: Method, integrated: Layout) -> list[str]:
+    """How a method holds attitudes within a step, if not as quaternions, in a sentence."""
+    if method.attitude == QUATERNION:
+        return []
+    if not integrated.bodies["ball"].any():
+        return [f"{method.name}: of what is integrated no body hangs on a ball or floats, so this is DOP853"]
+    return [f"{method.name}: attitudes by Rodrigues' numbers, {COUNTED_FROM[method.attitude]}"]
+
+
+def one_sided(layout: Layout, closed: Mask) -> str:
+    """What opens and closes, and what of it is closed at the start, in a sentence."""
+    contacts = layout.contacts
+    names = list(dict.fromkeys(contact.name for contact in contacts))
+    shut = list(dict.fromkeys(contact.name for contact, held in zip(contacts, closed, strict=True) if held))
+    return f"opens and closes: {some(names)}; closed at the start: {some(shut) if shut else 'none'}"
+
+
+def held_twice(layout: Layout, stress: SelfStress) -> list[str]:
+    """Which joints take part in the self-stresses, and by which loads."""
+    notes = []
+    for joint, share in zip(layout.mechanism.joints, stress.shares, strict=True):
+        size = np.where(stress.largest > 0.0, stress.largest, 1.0)
+        parts = np.abs(share / size[:, None, :]).max(axis=(0, 2))
+        parts[3:] /= stress.length
+        names = [f"{'F' if i < 3 else 'M'}{'xyz'[i % 3]}" for i in range(6) if parts[i] > tolerances.OPEN_SHARE]
+        if names:
+            notes.append(f"held more than once: {joint.name} {', '.join(names)}")
+    return notes

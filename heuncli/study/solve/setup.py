@@ -1,0 +1,165 @@
+"""A spec set up to be solved: built, cut, assembled, laid out; and the note on the model this makes."""
+
+from __future__ import annotations
+
+from functools import cached_property
+from typing import TYPE_CHECKING
+
+from heuncli import tolerances
+from heuncli.errors import SolveError
+from heuncli.integration.following import NOT_DETERMINED, determined
+from heuncli.integration.methods.followed import FOLLOWED
+from heuncli.integration.methods.method import Method
+from heuncli.integration.methods.registry import method_of
+from heuncli.integration.moving import smaller
+from heuncli.integration.refusals.solvability import ready
+from heuncli.integration.run.runner import Runner
+from heuncli.mechanism.build import build, forms_of
+from heuncli.mechanism.model import Mechanism
+from heuncli.method_rows import AUTO
+from heuncli.records import record, replace
+from heuncli.reduction import compose as reduction
+from heuncli.reduction.model import Reduced
+from heuncli.results import Array, Block
+from heuncli.spec.models import Spec
+from heuncli.study.ask.selection import EVERYTHING, Asked
+from heuncli.study.solve.method_choice import first_choice, why
+from heuncli.study.solve.model_note import attitudes, model_note, reductions, rested
+from heuncli.tree.prepare import PreparedScene, prepare
+
+if TYPE_CHECKING:  # loaded where a scene has sections
+    from heuncli.kinetostatics.cuts import Cuts
+    from heuncli.study.solve.rest_pose import Rest
+
+
+@record
+class Setup:
+    """All that is known of a scene before anything moves; method is None where nothing is integrated.
+
+    spec: as far as it is solved; asked: what is told of it. cuts: of the sections, as asked; in a search runs of cuts
+    as whole stretches stand for them. reduced: what is integrated in the scene's place, and why; None where nothing is,
+    or where all is solved in full. rest: how the pose was found, where that is what is asked for. step: that is given
+    to a method of fixed step [s].
+    auto: the method was left to heun, which may change it on the way.
+    """
+
+    spec: Spec
+    scene: PreparedScene
+    cuts: tuple[Cuts, ...]
+    runner: Runner
+    method: Method | None
+    model: Block
+    reduced: Reduced | None = None
+    asked: Asked = EVERYTHING
+    rest: Rest | None = None
+    auto: bool = False
+    step: float | None = None
+
+    @cached_property
+    def steady(self) -> dict[int, Array]:
+        """The axes, in body axes, about which bodies have a spin that nothing changes."""
+        if not self.scene.layout.bodies["ball"].any():
+            return {}
+        from heuncli.reduction.spins import spins_of  # only what hangs on balls, or on nothing, has such
+
+        return {i: spin.axis for i, spin in spins_of(self.scene).items()}
+
+
+def set_up(
+    spec: Spec, method: str | None = None, *, reduce: bool = True, asked: Asked = EVERYTHING, looked_for: bool = True
+) -> Setup:
+    """Build, cut, assemble, lay out; `method` stands for the one in the spec; reduce: a smaller scene may move for it.
+
+    looked_for: a rest pose that is asked for is found.
+    asked: what is not asked for, and what nothing asked for depends on, is left out. Raises SpecError for a section
+    that cannot be cut, SolveError where the scene does not close.
+    """
+    spec, left_out = asked_part(spec, asked, reduce)
+    mechanism, cuts = draw(spec)
+    if spec.analysis.type == "rest":
+        mechanism = with_slack_ropes(mechanism)
+    require_drives(mechanism, spec.analysis.times[0] if spec.analysis.times else 0.0)
+    prepared = prepare(mechanism, spec.analysis.times[0] if spec.analysis.type == "state" else 0.0)
+    if any(drive.by_rate for drive in spec.drives.values()):
+        from heuncli.tree.driven_starts import require_lengths  # few scenes have them
+
+        require_lengths(prepared.mechanism, max(spec.analysis.times))
+    if not reduce:  # what is declared planar is moved as in space, too
+        prepared = replace(prepared, layout=replace(prepared.layout, flat=False))
+    scene, runner = ready(prepared)
+    if spec.analysis.type == "rest":
+        return set_up_at_rest(Setup(spec, scene, cuts, runner, None, {}, None, asked), left_out, looked_for)
+    asked_method = method or spec.analysis.method
+    auto = asked_method.lower() == AUTO
+    chosen = method_of(asked_method) if spec.analysis.type == "motion" else None
+    reduced = None
+    if chosen is not None and reduce:
+        reduced, runner = reduced_runner(scene, runner)
+    told = reductions(left_out, scene, reduced)
+    if chosen is not None and auto:
+        follows = determined(runner.moving) if reduce else NOT_DETERMINED
+        chosen, told = FOLLOWED if follows.is_so else first_choice(runner.moving.layout, spec), follows.beside(told)
+    note = model_note(scene, runner, chosen.name if chosen else "none") | told
+    if chosen is not None:
+        note["reasons"] += attitudes(chosen, runner.moving.layout)
+        if auto and not chosen.determined:
+            note["reasons"] += why(chosen, runner.moving.layout, spec)
+    step = spec.analysis.step if chosen is not None and chosen.fixed else None
+    note |= {} if step is None else {"step": step}
+    return Setup(spec, scene, cuts, runner, chosen, note, reduced, asked, auto=auto, step=step)
+
+
+def require_drives(mechanism: Mechanism, t: float) -> None:
+    """Raise SolveError for drives that begin with what is too large to be computed with: the assembly squares it."""
+    jets = [joint.drive.value.derivatives(t) for joint in mechanism.joints if joint.drive is not None]
+    if any(abs(value) > tolerances.MOST_MAGNITUDE for jet in jets for value in jet):
+        from heuncli.integration.refusals.domains import large_values  # only on the way to an error
+
+        raise SolveError(*large_values(mechanism, t, {}))
+
+
+def set_up_at_rest(setup: Setup, left_out: tuple[str, ...], looked_for: bool) -> Setup:
+    """The same at its rest pose, unless that is not looked for."""
+    from heuncli.study.solve.rest_pose import at_rest  # few scenes ask for it
+
+    scene, runner, rest = setup.scene, setup.runner, None
+    if looked_for:
+        scene, runner, rest = at_rest(scene, runner)
+    note = model_note(scene, runner, "rest") | reductions(left_out, scene, None)
+    return replace(setup, scene=scene, runner=runner, rest=rest, model=rested(note, rest.told if rest else ()))
+
+
+def with_slack_ropes(mechanism: Mechanism) -> Mechanism:
+    """Ropes that may go slack: at rest they bear or do not, and nothing ends where they would push."""
+    joints = [replace(j, restitution=0.0) if j.tension_only and j.restitution is None else j for j in mechanism.joints]
+    return replace(mechanism, joints=tuple(joints))
+
+
+def asked_part(spec: Spec, asked: Asked, reduce: bool) -> tuple[Spec, tuple[str, ...]]:
+    """The spec as far as it is asked for; what of the scene is left out, in a sentence."""
+    if asked.is_everything:
+        return spec, ()
+    from heuncli.study.ask.parts import left_out, restricted  # where not all is asked for
+
+    part = restricted(spec, asked, reduce=reduce)
+    return part, left_out(spec, part)
+
+
+def reduced_runner(scene: PreparedScene, runner: Runner) -> tuple[Reduced, Runner]:
+    """The smallest scene that moves as this one does, and a runner that integrates it in its place."""
+    reduced = reduction.reduce(scene)
+    if not reduced.steps:
+        return reduced, runner
+    _, own = ready(reduced.steps[-1].scene)
+    return reduced, Runner(scene.layout, smaller(own, reduced))
+
+
+def draw(spec: Spec) -> tuple[Mechanism, tuple[Cuts, ...]]:
+    """The bodies as they are drawn, and their sections. Raises SpecError with every section that cannot be cut."""
+    forms = forms_of(spec)
+    mechanism = build(spec, forms)
+    if not spec.sections:
+        return mechanism, ()
+    from heuncli.kinetostatics.cuts import lay_cuts  # with the shapes 9 ms that other scenes do not need
+
+    return mechanism, lay_cuts(mechanism, spec, forms)

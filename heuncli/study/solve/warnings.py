@@ -1,0 +1,90 @@
+"""How a run ended, and what its reader is warned of, in sentences."""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+
+from heuncli import tolerances
+from heuncli.results import Array, Block, Status
+from heuncli.study.solve.history import History
+from heuncli.study.solve.recover import Recovery
+from heuncli.study.solve.setup import Setup
+
+MOST_TIMES = 5  # that a sentence lists
+
+
+def status(history: History) -> Status:
+    """Whether the run came to its end."""
+    if history.checked is None:
+        return {"code": "completed", "message": "one instant, nothing integrated"}
+    run = history.checked.run
+    if run.stopped is not None:
+        why = f"at t = {run.times[-1]:.6g} s the rod {run.stopped} would have to push (tension_only)"
+        return {"code": "stopped", "message": why}
+    return {"code": "completed", "message": f"{run.steps} steps to t = {run.times[-1]:.6g} s"}
+
+
+def warnings(setup: Setup, history: History, recovery: Recovery, joints: Block, residual: float) -> tuple[str, ...]:
+    """Everything worth a warning at the instants of `recovery`; joints: their block, residual: d'Alembert's."""
+    singular = []
+    if recovery.verdicts and recovery.decided is not None:
+        singular = recovery.decided.singular(recovery.recovered.times, recovery.generic)
+    return (
+        *unbalanced(residual),
+        *(warning for cuts in setup.cuts for warning in cuts.warnings),
+        *(of_the_motion(setup, history) if history.checked is not None else of_ropes(setup, joints)),
+        *singular,
+    )
+
+
+def beside_singular_poses(unknown: Array) -> list[str]:
+    """A sentence where rounding reaches numbers at some instants."""
+    if not len(unknown):
+        return []
+    at = ", ".join(f"{t:.6g}" for t in unknown[:MOST_TIMES]) + (" ..." if len(unknown) > MOST_TIMES else "")
+    return [f"beside a singular pose at t = {at} s: rounding reaches some numbers there, which are not told"]
+
+
+def left_out(unknown: Sequence[float]) -> list[str]:
+    """A sentence where a search for extremes came upon such instants."""
+    if not unknown:
+        return []
+    low, high = min(unknown), max(unknown)
+    to = f" to {high:.6g}" if f"{low:.6g}" != f"{high:.6g}" else ""
+    return [f"extremes are searched without what rounding reaches beside singular poses at t = {low:.6g}{to} s"]
+
+
+def unbalanced(residual: float) -> list[str]:
+    """A sentence where the numbers do not fulfil d'Alembert's principle."""
+    wrong = f"the forces balance to {residual:.1g} of the largest only: the loads are not to be trusted"
+    return [wrong] if residual > tolerances.UNBALANCED else []
+
+
+def of_the_motion(setup: Setup, history: History) -> list[str]:
+    """A tolerance that was missed, singular poses, an early end.
+
+    Given steps keep to no tolerance; they are held to one that was asked for beside them.
+    """
+    assert history.checked is not None
+    checked, tolerance = history.checked, history.tolerance
+    lines = []
+    held = setup.step is None or setup.spec.analysis.tolerance_given
+    if (worst := checked.motion) > tolerance and held:
+        missed = f"the tolerance {tolerance:.3g} was not reached"
+        lines.append(f"{missed}: the motion is estimated to {worst:.2g} of the scene's size")
+    if history.singular:
+        at = ", ".join(f"{t:.6g}" for t in history.singular[:MOST_TIMES])
+        at += " ..." if len(history.singular) > MOST_TIMES else ""
+        goes = "this one goes on smoothly" if checked.horizon is None else "rounding decides which is followed"
+        lines.append(f"passes through a singular pose at t = {at} s: another motion branches off there, {goes}")
+    if checked.run.undecided:
+        lines.append(f"of {checked.run.undecided} steps it could not be decided what loads do between their stages")
+    if checked.run.stopped is not None:
+        lines.append(f"stopped before the end: {status(history)['message']}")
+    return lines
+
+
+def of_ropes(setup: Setup, joints: Block) -> list[str]:
+    """Ropes that would have to push at the one instant of a state."""
+    ropes = [j.name for j in setup.scene.mechanism.joints if j.tension_only and j.name in joints]
+    return [f"the rod {name} would have to push (tension_only)" for name in ropes if joints[name]["tension"][0] < 0.0]
