@@ -2,7 +2,8 @@
 
 A joint holds the point of `to` in one of a few ways, and leaves `to` to turn in one of a few ways, both seen from the
 axes of `from`. The two together are its freedoms, its closure rows when it is cut, with the forces and moments that
-they carry (theory.md 2b), and what the assembly asks of it. What is left of a row is how users speak of the joint.
+they carry (manual/theory.md, "Joints as rows"), and what the assembly asks of it. What is left of a row is how users
+speak of the joint.
 
 Directions: `axis` and the two across it, `first` and `second`, are fixed in `from`, `to_axis` in `to`; in a scene
 declared planar `z` is the world's and `across` is z × axis. Lies below the spec, and so needs no NumPy.

@@ -1,4 +1,4 @@
-"""Results of a run: the JSON of the contract, with arrays in place of lists.
+"""Results of a run: the JSON of manual/results.md, with arrays in place of lists.
 
 Arrays are float64 and run over the instants first: (n_t,), (n_t, 3), (n_t, 3, 3); runs of cuts (n_t, n_cuts).
 `nan` in an array means that the laws of rigid bodies leave the component open (`null` in JSON). A block that does not
@@ -70,7 +70,7 @@ class Work(TypedDict, total=False):
 
 @dataclass(frozen=True, eq=False)
 class Results:
-    """Everything a run reports; field names and the nesting below them are those of the contract's section 3.
+    """Everything a run reports; field names and the nesting below them are those of manual/results.md.
 
     What stands in a block, in which shape and unit, says heuncli/results_schema.py.
     """

@@ -1,4 +1,4 @@
-"""What the results hold: one row a quantity of the JSON (contract section 3).
+"""What the results hold: one row a quantity of the JSON (manual/results.md).
 
 From these rows follow the paths of `--measure` and `expect` with their checks, the units and components of CSV and
 tables, and the README's table of results. Shapes are stated here and never guessed from an array's length: a run of

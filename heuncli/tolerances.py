@@ -111,7 +111,7 @@ LEAST_EXTENT = 1e-9  # [m] what IN_PLANE is measured by where all lies in the or
 TOUCHING = 1e3  # times IN_PLANE: outlines of a cut that come so near are one
 OUTLINES_APART = 1e-3  # of their radii: polygons of 96 sides are 5e-4 of a radius off the curves they stand for
 OFF_AXIS = 2e-15  # sine of a normal to a body of revolution's axis: rounding of a unit vector, 9 EPS
-EQUAL_COMPONENTS = 1e-9  # of a unit normal: equal ones, of which x goes before y before z (the contract's number)
+EQUAL_COMPONENTS = 1e-9  # of a unit normal: equal ones, of which x goes before y before z (manual/format.md)
 PARALLEL = 1e-9  # sine between directions typed with ten digits: below, they are one line
 PRINCIPAL = 1e-9  # I12 of sqrt(I1 I2): typed lengths; the neutral axis turns by less than that over 1 - I1/I2
 UPRIGHT = 1e-9  # 1 - cosine of a body's z axis to the world's: 4.5e-5 rad, as typed quaternions leave
@@ -128,7 +128,7 @@ CONSTANT = 1e-13  # of its size: a quantity that varies less varies by hundreds 
 # of the way to where a motion fails: how long before it a run may end, that finds what is passed sooner; near a lock
 # rates grow as the inverse root of what is left
 BEFORE_FAILURE = (1e-9, 1e-6, 1e-3, 1e-2, 0.1)
-CLAIMED = 1e-3  # of the whole: the contract's error at the horizon, beyond which nothing is claimed
+CLAIMED = 1e-3  # of the whole: the error at the horizon, beyond which nothing is claimed
 JUDGED = 1e-8  # of the whole: up to where a chart is judged if its references part; half the digits are left to compare
 LOST = 1.0  # of the whole: a motion off by as much tells nothing of where anything is; charts show no more of its error
 # a tolerance that is asked for: the rounding of a state's numbers, 8 EPS, shows as its five-fold in the difference of
@@ -193,12 +193,12 @@ MOST_MAGNITUDE = 1e60
 # -- what is typed in a spec
 UNIT_TYPED = 1e-2  # a unit quaternion or rotation matrix may be this far off: two digits at least
 UNIT_EXACT = 1e-14  # some dozen roundings: nearer to a rotation, a matrix is taken as it stands
-INERTIA_REFUSED = 1e-3  # of the largest moment: the contract's bound on a broken triangle rule
+INERTIA_REFUSED = 1e-3  # of the largest moment: bound on a broken triangle rule
 INERTIA_TYPED = 1e-9  # of the largest moment: moments typed with ten digits keep the rule, and symmetry, this well
 AT_LIMIT = 1e-9  # of the size, or rad: a start beyond a limit by less stands at it, by the ten digits that are typed
 TABLE_ENDS = 1e-6  # of the span: a table's period and the values at its ends are printed with seven digits
-EXPECTED_RELATIVE = 1e-6  # of the largest number expected: the contract's default
-EXPECTED_ABSOLUTE = 1e-9  # the contract's default
+EXPECTED_RELATIVE = 1e-6  # of the largest number expected: default of `rel` (manual/format.md)
+EXPECTED_ABSOLUTE = 1e-9  # default of `abs`
 
 # The kernel's thresholds (kernel/scene.py, Limits).
 KERNEL: dict[str, float] = {

@@ -1,4 +1,4 @@
-"""Poses and rates at the start that fit all joints (contract section 1, "Assembly")."""
+"""Poses and rates at the start that fit all joints (manual/format.md)."""
 
 from __future__ import annotations
 

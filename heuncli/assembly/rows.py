@@ -3,8 +3,9 @@
     D = P_b − P_a                     from the joint's place on `from` to the point on `to`, world [m]
     u = v_b − v_a                     velocity of `to` against `from`, both at P_b [m/s]
     F u = hold,  T (σ_b − σ_a) = turn     F (h, 3), T (k, 3) directions, world
-In the axes of `from` every gap changes as F u and T (σ_b − σ_a), however large it is (theory.md 2b, the lever at P_b).
-The right sides are what is lacking: minus the gap, or what is missing in the rates, or in the accelerations.
+In the axes of `from` every gap changes as F u and T (σ_b − σ_a), however large it is (manual/theory.md, "Joints as
+rows"; the lever at P_b). The right sides are what is lacking: minus the gap, or what is missing in the rates, or in the
+accelerations.
 """
 
 from __future__ import annotations

@@ -1,4 +1,4 @@
-"""A chart of speed against accuracy as a table, as JSON (contract section 3) and as CSV, a line a run."""
+"""A chart of speed against accuracy as a table, as JSON (manual/results.md) and as CSV, a line a run."""
 
 from __future__ import annotations
 

@@ -38,7 +38,10 @@ def energy(layout: Layout, recovered: Recovered, states: BodyStates, loads: Sequ
 
 
 def system_vector(mechanism: Mechanism, states: BodyStates) -> Block:
-    """B = m x_s. x x_s.. + (sigma.I sigma) sigma + T_s (sigma x sigma.), T_s = tr(I)/2 - I; (44), theory.md 2h."""
+    """B = m x_s. x x_s.. + (sigma.I sigma) sigma + T_s (sigma x sigma.), T_s = tr(I)/2 - I; (44) of any body.
+
+    manual/theory.md, "System vector".
+    """
     m = np.array([b.mass for b in mechanism.bodies])
     inertia = np.array([b.inertia for b in mechanism.bodies])
     w = np.einsum("tnji,tnj->tni", states.R, states.omega)

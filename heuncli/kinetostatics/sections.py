@@ -349,7 +349,7 @@ def reduction_line(where: Planes, force: Array, moment: Array) -> Block:
 
     moment is about the cut's own point. point: the one nearest to that; pressure_centre: where the moment in the plane
     is zero. nan where N = 0 (no such points, or all) or Q = 0 (all points); `kind` says which: 0 a line, 1 none, 2 all.
-    theory.md 2e.
+    manual/theory.md, "Reduction line".
     """
     cuts, local, in_world_axes = where.cuts, where.at, where.in_world_axes
     n = cuts.n[:, None, None]

@@ -9,7 +9,7 @@ taken of them, in arrays with an axis of causes before that of the instants, (n_
 
 What a force does to a piece has two parts: k', the force itself where it stands on the piece, and -m' x.., the inertia
 of the piece against the acceleration that it causes, wherever it stands: k' and m'u of (59), both in P of (61); the
-velocity terms are m'w, and Q of (61). The first is told apart as `direct_*`. theory.md 2f.
+velocity terms are m'w, and Q of (61). The first is told apart as `direct_*`. manual/theory.md, "Shares by cause".
 """
 
 from __future__ import annotations

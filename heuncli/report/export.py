@@ -1,4 +1,4 @@
-"""Results as JSON (contract section 3) and as CSV in long form; all digits, nothing rounded.
+"""Results as JSON (manual/results.md) and as CSV in long form; all digits, nothing rounded.
 
 Numbers go through `repr` or the C encoder of json in whole arrays: well below 1 µs each.
 """
@@ -90,7 +90,7 @@ def _sums(sums: Sequence[Any]) -> Iterator[tuple[str, Series]]:
 
 
 def present(results: Results) -> dict[str, Any]:
-    """The blocks that apply, in the contract's order, by their names in the JSON."""
+    """The blocks that apply, in the order of manual/results.md, by their names in the JSON."""
     blocks = {f.name: getattr(results, f.name) for f in fields(results)}
     return {name: block for name, block in blocks.items() if name in ALWAYS or len(block)}
 

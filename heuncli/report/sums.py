@@ -13,7 +13,7 @@ from heuncli.report.units import Shown
 from heuncli.results import Array, CertainSum, Results
 from heuncli.results_schema import XYZ
 
-MOST_TERMS = 6  # contract section 2: tables show short sums of forces, JSON all
+MOST_TERMS = 6  # tables show short sums of forces, JSON all
 TURNS = "(t): a factor that turns with the pose, as at the first instant; --format json has them all"
 FORCES = frozenset({"force", "axial", "radial", "tension", "N", "Q1", "Q2"})
 

@@ -2,8 +2,8 @@
 
 What spec.load returns and the rest of the program reads. Vectors are tuples of three floats, matrices three rows of
 them; "in time" values are expressions. None is what was left out. A joint's, force's or section's axes and points are
-in the body axes the contract names. Keeps clear of pydantic and YAML, so that the numeric part may know these types;
-named tuples, because they are made faster at the start than dataclasses.
+in the body axes that manual/format.md names. Keeps clear of pydantic and YAML, so that the numeric part may know these
+types; named tuples, because they are made faster at the start than dataclasses.
 """
 
 from __future__ import annotations

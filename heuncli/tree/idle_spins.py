@@ -1,8 +1,9 @@
 """Spins that no law determines: thin rods and point masses held and loaded on their own axis only.
 
 Balls hold no spin, other joints none about an axis of theirs, but where they tell its angle it has to be determined.
-Such a spin is harmless: accelerations and reactions do not depend on it (theory.md section 3). For the motion the body
-is given some inertia about that axis and no spin; a moment about it would have no answer and is looked for afterwards.
+Such a spin is harmless: accelerations and reactions do not depend on it (manual/theory.md, "Thin rods"). For the motion
+the body is given some inertia about that axis and no spin; a moment about it would have no answer and is looked for
+afterwards.
 """
 
 from __future__ import annotations

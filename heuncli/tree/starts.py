@@ -40,7 +40,7 @@ class GivenTree:
 
 
 def joint_start(mechanism: Mechanism, start: Assembly, joint: Joint) -> JointStart:
-    """Coordinates and reference attitude of a joint in the assembled mechanism (contract: where the angle is zero)."""
+    """Coordinates of a joint in the assembled mechanism, and its reference attitude, where its angle is zero."""
     xa, Ra, va, wa = pose(start, joint.a)
     xb, Rb, vb, wb = pose(start, joint.b)
     R = Ra.T @ Rb

@@ -1,7 +1,7 @@
 """A pendulum and a free top over many periods: energy, momentum and phase by every method of fixed and adaptive steps.
 
 `python -m tests.bench long [--periods N] [--only NAME ...]`. All take the same evaluations a period: of fixed steps
-their length is chosen, of adaptive ones the tolerance. Against closed forms (theory: Jacobi's elliptic functions),
+their length is chosen, of adaptive ones the tolerance. Against closed forms (manual/theory.md, "Closed cases" 1),
 which the state after each whole period repeats: so the phase is counted on from period to period, and how far it is off
 is certain.
 """
@@ -54,7 +54,7 @@ bodies:
 joints: {pivot: {type: ball, from: ground.O, to: top.c}}
 analysis: {duration: 1}
 """
-TOP_MODULUS = 0.2231404958677686  # m of theory 2j.1
+TOP_MODULUS = 0.2231404958677686  # m of manual/theory.md, "Closed cases" 1
 INERTIA = np.array([1.0, 2.0, 3.0])
 
 

@@ -1,4 +1,4 @@
-"""Blows by hand: theory.md 2j 6, 7, 12, 13, 15, and what follows from the law of impulse alone.
+"""Blows by hand: manual/theory.md, "Closed cases" 6, 7, 12, 13, 15, and what follows from the law of impulse alone.
 
 J Δω = H on a hinge, Δv = H/m on what is free; of ideal joints no energy is lost but what the blow itself puts in,
 ½ H·(v⁺ + v⁻).

@@ -144,7 +144,7 @@ def test_strikes_are_met_by_all_and_errors_do_not_see_the_jump() -> None:
 
 
 def test_references_that_part_are_judged_up_to_where_they_agree() -> None:
-    """theory.md, section 3: growth of about 1.9 a second; a bar beside another, from (2.5, 2.5) at rest."""
+    """manual/theory.md, "Chaos": growth of about 1.9 a second; a bar beside another, from (2.5, 2.5) at rest."""
     scene = """\
 heun: 1
 title: Two bars, chaotic

@@ -1,4 +1,4 @@
-"""Closed chains by hand: theory.md 2j 12 (slider-crank, driven and free) and 13 (ladder on two guides)."""
+"""Closed chains by hand: manual/theory.md, "Closed cases" 12 (slider-crank, driven and free) and 13 (ladder)."""
 
 from __future__ import annotations
 

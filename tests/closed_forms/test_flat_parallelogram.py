@@ -1,7 +1,7 @@
 """A parallelogram lying flat on a line: rank 16 of 20, and of its rates only those of its two branches pass.
 
-theory.md 2b: to second order (φ̇ − ψ̇)(3φ̇ + ψ̇) = 0, φ the crank, ψ the rocker: it opens as a parallelogram, ψ = φ,
-or as crossed bars, tan ψ/2 = −3 tan φ/2.
+manual/theory.md, "Singular poses": to second order (φ̇ − ψ̇)(3φ̇ + ψ̇) = 0, φ the crank, ψ the rocker: it opens as a
+parallelogram, ψ = φ, or as crossed bars, tan ψ/2 = −3 tan φ/2.
 """
 
 from __future__ import annotations

@@ -42,7 +42,7 @@ def half_turn_of(scene: str, **options: object) -> SolveError:
     return caught.value
 
 
-# theory.md, section 3: unit spin about a fixed axis
+# manual/theory.md, "Limits of methods": unit spin about a fixed axis
 
 
 def test_a_spin_comes_to_its_half_turn_at_pi() -> None:
@@ -53,7 +53,7 @@ def test_a_spin_comes_to_its_half_turn_at_pi() -> None:
 
 
 def test_a_spin_goes_on_where_each_step_has_its_own_chart() -> None:
-    """R(2 pi) = 1, relative change of L < 1e-10 (theory.md), and up to just before its half turn in the global one."""
+    """R(2 pi) = 1, relative change of L < 1e-10, and up to just before its half turn in the global one."""
     found = solved(spinner(f"[0, {math.pi}, {2 * math.pi}]"), method=ANEW, reduce=False).bodies["wheel"]
     near(found["rotation"][1:], [np.diag([-1, -1, 1]), np.eye(3)], 1.0, 1e-13)
     near(found["angular_velocity"][2], [0, 0, 1], 1.0, 1e-14)
@@ -61,7 +61,7 @@ def test_a_spin_goes_on_where_each_step_has_its_own_chart() -> None:
     near(before[:2, 0], [math.cos(3.1415), math.sin(3.1415)], 1.0, 1e-12)
 
 
-# theory.md 2j
+# manual/theory.md, "Closed cases" 2
 
 
 @pytest.mark.parametrize("joint", [True, False], ids=["on a ball", "free"])

@@ -1,4 +1,4 @@
-"""contract.md section 2, "all signs at once": a bar of weight 9.81 N hanging at rest."""
+"""manual/signs.md, all signs at once: a bar of weight 9.81 N hanging at rest."""
 
 from __future__ import annotations
 

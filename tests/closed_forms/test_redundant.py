@@ -1,4 +1,4 @@
-"""Redundant supports by hand: theory.md 2b, a table on four legs, a crankshaft on five bearings."""
+"""Redundant supports by hand: manual/theory.md, "Redundancy", a table on four legs, a crankshaft on five bearings."""
 
 from __future__ import annotations
 

@@ -1,4 +1,4 @@
-"""Mass properties of whole shapes and of pieces across the axis: the closed forms of theory.md 2i."""
+"""Mass properties of whole shapes and of pieces across the axis: manual/theory.md, "Mass properties"."""
 
 from __future__ import annotations
 
@@ -80,7 +80,7 @@ def test_box() -> None:
 
 
 def test_golden_box() -> None:
-    """theory.md 2j 16: the 2 x 1 x 0.6 box about the centre of its face x = 0, and its piece x > 0.7."""
+    """manual/theory.md, "Closed cases" 16: a box about the centre of its face x = 0, and its piece x > 0.7."""
     f = form([Shape("box", center=(1, 0, 0), size=(2, 1, 0.6), density=1.0)])
     mass, center, _ = properties(f.whole())
     piece, at, _ = properties(beyond(f, np.array([1.0, 0, 0]), np.array([0.7]))[0])

@@ -1,4 +1,4 @@
-"""theory.md 2j, closed check cases of motion: 1 free top, 2 heavy top, 3 pendulum, 8, 10 rods in line, 11 cone.
+"""manual/theory.md, "Closed cases" of motion: 1 free top, 2 heavy top, 3 pendulum, 8, 10 rods in line, 11 cone.
 
 Tolerances: the digits printed there, or the motion's tolerance where that is larger.
 """

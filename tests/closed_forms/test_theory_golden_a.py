@@ -1,4 +1,4 @@
-"""theory.md 2j 15, golden case A: two links on balls; and what the corrected (49) is for.
+"""manual/theory.md, "Closed cases" 15, golden case A: two links on balls; and what the corrected (49) is for.
 
 (49) as printed lacks N = m''(σ'×c') × (σ''×a''): moment balance of both links together cannot tell, energy can.
 """
@@ -59,7 +59,7 @@ def coupling(found: Results, k: int) -> Array:
 
 
 def mass_matrix(found: Results, k: int) -> Array:
-    """M of theory 2a on (σ', σ''), (6, 6)."""
+    """M of manual/theory.md, "Trees of links", on (σ', σ''), (6, 6)."""
     a1, c, a2 = arms(found, k)
     R1, R2 = found.bodies["one"]["rotation"][k], found.bodies["two"]["rotation"][k]
     M = np.zeros((6, 6))

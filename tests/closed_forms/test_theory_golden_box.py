@@ -1,4 +1,4 @@
-"""theory.md 2j 16, golden box: section, reduction line, system vector of a box on a ball at the centre of a face."""
+"""manual/theory.md, "Closed cases" 16, golden box: section, reduction line, system vector of a box on a ball."""
 
 from __future__ import annotations
 

@@ -1,4 +1,4 @@
-"""Rods that turn about a fixed axis: theory.md 2j 5 and 9, and the textbook tables of references.md."""
+"""Rods that turn about a fixed axis: manual/theory.md, "Closed cases" 5, 9, and manual/references.md, "Rods"."""
 
 from __future__ import annotations
 

@@ -90,7 +90,7 @@ def test_the_horizon_between_two_samples() -> None:
     sparse = solved(rods([2.5, 2.5], [0.0, 0.0], "{times: [0, 300]}")).accuracy["horizon"]
     dense = solved(rods([2.5, 2.5], [0.0, 0.0], "{duration: 300, samples: 6001}")).accuracy["horizon"]
     assert sparse is not None and dense is not None
-    assert sparse == pytest.approx(14.5, abs=1.5)  # theory.md, section 3
+    assert sparse == pytest.approx(14.5, abs=1.5)  # manual/theory.md, "Chaos"
     assert abs(sparse - dense) <= 0.5
 
 

@@ -15,7 +15,7 @@ from tests.shared.scenes import near, study
 
 SPECS = Path(__file__).parents[2] / "specs"
 GOVERNOR = STIFF_SCENES["governor, 10 s"]
-# references.md A05: travel of the sleeve, by a reduced model; 8 digits
+# manual/references.md, "Governor": travel of the sleeve, by a reduced model; 8 digits
 TRAVEL = {1.0: 0.50142092, 2.0: 0.50590929, 5.0: 0.5355631, 10.0: 0.61962292}
 
 

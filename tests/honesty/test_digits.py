@@ -178,7 +178,7 @@ analysis: {duration: 1, samples: 3}
 
 
 def pendulum(samples: str, expect: str = "[]") -> str:
-    """theory.md's double pendulum of uniform rods, 2.5 rad and 2.5 rad from rest: horizon about 14.6 s."""
+    """manual/theory.md, "Chaos": two uniform rods, 2.5 rad and 2.5 rad from rest: horizon about 14.6 s."""
     bar = """{mass: 1, center: [0, -0.5, 0], inertia: [0.08333333333333333, 0, 0.08333333333333333],
       points: {top: [0, 0, 0], end: [0, -1, 0]}, orientation: {axis: [0, 0, 1], angle: 2.5}}"""
     return f"""

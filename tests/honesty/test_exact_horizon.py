@@ -1,5 +1,4 @@
-"""The double pendulum of theory.md section 3 against eleven more bits: nothing told before the horizon is off by more
-than is said.
+"""The double pendulum of manual/theory.md, "Chaos", against eleven more bits: before the horizon errors are as told.
 
 The reference shares nothing with heun: Lagrange's equations of two uniform rods in absolute angles, extrapolated from
 the modified midpoint rule (Gragg, Bulirsch, Stoer) in long double. It is checked against the 40-digit table first.
@@ -27,8 +26,8 @@ pytestmark = [
 Long = Any
 LAST, EVERY, H = 18, 8, "0.0078125"  # [s], instants a second, a step of the reference
 SEQUENCE = tuple(range(2, 20, 2))  # midpoint steps: order 18
-# theory.md: its digits, and what an error of 1e-16 at the start has become by then (8.6e-14, 4.6e-10, 9.9e-6 at 5, 10,
-# 15 s), a thirtieth of it: that is fifty roundings of long double
+# manual/theory.md, "Chaos": its digits, and what an error of 1e-16 at the start has become by then (8.6e-14, 4.6e-10,
+# 9.9e-6 at 5, 10, 15 s), a thirtieth of it: that is fifty roundings of long double
 KNOWN = REFERENCE | {15: (13.361953383, 60.114859849)}
 OFF = {1: 1e-14, 2: 1e-14, 5: 6e-14, 10: 2e-11, 15: 3.3e-7}
 

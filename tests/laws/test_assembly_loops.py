@@ -54,7 +54,7 @@ def slider_crank(near: Any = None, rotation: Any = None, **given: Any) -> Mechan
 
 @pytest.mark.parametrize("degrees", [*range(0, 360, 15), 90, 180, 270])
 def test_a_crank_angle_alone_sets_an_engine(degrees: int) -> None:
-    """theory.md 2j 12 gives the closed forms; the piston is where the rod turns least from the drawing."""
+    """manual/theory.md, "Closed cases" 12: closed forms; the piston is where the rod turns least from the drawing."""
     phi, r, length, omega = np.radians(degrees), 0.1, 0.3, 100.0
     s = slider_crank(angle=phi, rate=omega)
     a = assemble(s)
@@ -70,7 +70,7 @@ def test_a_crank_angle_alone_sets_an_engine(degrees: int) -> None:
 
 def test_the_engine_of_the_theory_sheet() -> None:
     a = assemble(slider_crank(angle=np.radians(60), rate=100.0))
-    assert a.position[2][0] == pytest.approx(0.3372281323269014, abs=1e-15)  # theory.md 2j 12
+    assert a.position[2][0] == pytest.approx(0.3372281323269014, abs=1e-15)  # manual/theory.md, "Closed cases" 12
     assert a.velocity[2][0] == pytest.approx(-10.1678107607332, abs=1e-12)
     assert a.angular_velocity[1][2] == pytest.approx(-17.40776559556978, abs=1e-12)
 

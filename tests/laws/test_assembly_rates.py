@@ -30,7 +30,7 @@ from tests.shared.drafts import (
 
 
 def flat(crank: float | None, rocker: float | None) -> Mechanism:
-    """The parallelogram of theory.md 2b, flat: A(0,0) B(1,0) C(3,0) D(2,0)."""
+    """The parallelogram of manual/theory.md, "Singular poses", flat: A(0,0) B(1,0) C(3,0) D(2,0)."""
     s = four_bar(1.0, 2.0, 1.0, 2.0)
     rates = {"A": crank, "D": rocker}
     return replace(s, joints=tuple(replace(j, rate=rates.get(j.name)) for j in s.joints))
@@ -53,7 +53,7 @@ def test_a_singular_pose_asks_for_one_more_rate() -> None:
 
 
 def test_bars_upright_move_alike() -> None:
-    """A02 of references.md, N = 2: one bar's rate tells all."""
+    """manual/references.md, "Windows", N = 2: one bar's rate tells all."""
     bodies = [body(f"bar{i}", center=(i, 0.5, 0)) for i in range(3)] + [
         body(f"link{i}", center=(i + 0.5, 1, 0)) for i in range(2)
     ]

@@ -1,4 +1,4 @@
-"""The rows of every joint kind against finite differences (theory.md 2b row by row): gaps, rates, accelerations."""
+"""The rows of every joint kind (manual/theory.md, "Joints as rows") against differences: gaps, rates, accelerations."""
 
 from __future__ import annotations
 

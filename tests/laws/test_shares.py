@@ -212,7 +212,7 @@ def about_origin(low: Array, high: Array) -> tuple[float, Array, Array]:
 
 @pytest.mark.parametrize("seed", range(4))
 def test_u_w_of_59_and_P_Q_of_61(seed: int) -> None:
-    """Heun's explicit shares of a body about a fixed point: theory.md (59), (61), any axes.
+    """Heun's explicit shares of a body about a fixed point: (59) and (61), any axes.
 
     s' = k' + m'u + m'w, u = a* x J^-1 M_k, w = -[sigma._w x a* + sigma x (sigma x a*)];
     M' = P + Q, P = M'_k - J' J^-1 M_k, Q = J' J^-1 (sigma x J sigma) - sigma x J' sigma, about the fixed point.

@@ -1,4 +1,7 @@
-"""Rods without axial inertia on balls (theory 3): the spin is undetermined and harmless, a moment is refused."""
+"""Rods without axial inertia on balls: the spin is undetermined and harmless, a moment is refused.
+
+manual/theory.md, "Thin rods".
+"""
 
 from __future__ import annotations
 

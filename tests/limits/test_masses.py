@@ -15,7 +15,10 @@ TURNS = (about(np.array([1.0, 0, 0]), 1.0), about(np.array([0, 1.0, 0]), 0.7))
 
 
 def mass_matrix(axial: float) -> Array:
-    """M_ab = δ_ab I_a + Σ m_i [(d_ai·d_bi) 1 − d_bi d_ai^T] of two rods of 1 kg on balls (theory.md 2a), (6, 6)."""
+    """M_ab = δ_ab I_a + Σ m_i [(d_ai·d_bi) 1 − d_bi d_ai^T] of two rods of 1 kg on balls, (6, 6).
+
+    manual/theory.md, "Trees of links".
+    """
     inertias = [R @ np.diag([1 / 12, 1 / 12, axial]) @ R.T for R in TURNS]
     whole = [R @ c for R, c in zip(TURNS, ARMS, strict=True)]
     d = [{0: whole[0] / 2}, {0: whole[0], 1: whole[1] / 2}]  # of each body: the arms in the bodies on its path

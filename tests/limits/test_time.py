@@ -51,7 +51,7 @@ def test_heun_keeps_its_length() -> None:
 
 
 # ---- a double pendulum that forgets its start
-REFERENCE = {2: (-2.78689971182110, -1.73651330809759), 10: (7.32792296542072, 25.6852343346577)}  # theory.md section 3
+REFERENCE = {2: (-2.78689971182110, -1.73651330809759), 10: (7.32792296542072, 25.6852343346577)}  # "Chaos"
 
 
 def double_pendulum(y: Array) -> Array:

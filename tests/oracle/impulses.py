@@ -2,10 +2,10 @@
 
     M ΔV = H + JᵀΛ,   J (V⁻ + ΔV) = given rate after it,   V = (v of the centre, σ)
 
-What acts in no time has no part in it: weight, springs, velocity terms (theory 2b, 2c). The answer has the shape of an
-instant's: jumps for accelerations, impulses for forces, with the same verdicts on what is unique. An impulse of a scene
-is {on: body.point, vector, frame, time} or {body or on, couple, frame, time}; a drive whose rate jumps at the instant
-is a blow, too.
+What acts in no time has no part in it: weight, springs, velocity terms (manual/theory.md, "Blows"). The answer has the
+shape of an instant's: jumps for accelerations, impulses for forces, with the same verdicts on what is unique. An
+impulse of a scene is {on: body.point, vector, frame, time} or {body or on, couple, frame, time}; a drive whose rate
+jumps at the instant is a blow, too.
 """
 
 from __future__ import annotations

@@ -1,4 +1,4 @@
-"""Published mechanisms (references.md) and the redundant scenes of theory.md 2b, as dicts with full starts."""
+"""Published mechanisms (manual/references.md) and redundant scenes (manual/theory.md), as dicts with full starts."""
 
 from __future__ import annotations
 
@@ -167,7 +167,7 @@ def bricard() -> dict:
     return {"gravity": [0, -9.81, 0], "bodies": bodies, "joints": joints}
 
 
-# ---- theory.md 2b
+# ---- manual/theory.md, "Redundancy"
 BRICK = {"mass": 5.0, "center": [0, 0, 0], "inertia": [0.3, 0.5, 0.2]}
 
 

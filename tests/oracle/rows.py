@@ -1,4 +1,4 @@
-"""Every joint as rows on absolute coordinates (theory 2b, written from one pattern).
+"""Every joint as rows on absolute coordinates (manual/theory.md, "Joints as rows"; written from one pattern).
 
 A row is a force direction f and a moment direction m on `to`, about the point P of `to`; `from` feels the opposite at
 the same place:

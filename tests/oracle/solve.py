@@ -4,8 +4,9 @@
 
 With angular columns divided by a length of the scene and rows at unit length, the SVD of J gives its rank, the free
 directions N and the self-stresses Z (JᵀZ = 0). V̇ = V̇p + N y, (NᵀMN) y = Nᵀ(F − b − M V̇p): massless parts need no
-inverse of M. λ is known up to Z; a load c·λ is unique exactly if cᵀZ = 0 (theory 2b). Signs and places are the
-contract's: force and moment of `from` ON `to`, about the `to` point, by the constraint alone; drives apart.
+inverse of M. λ is known up to Z; a load c·λ is unique exactly if cᵀZ = 0 (manual/theory.md, "Redundancy"). Signs and
+places are the those of manual/signs.md: force and moment of `from` ON `to`, about the `to` point, by the constraint
+alone; drives apart.
 """
 
 from __future__ import annotations
@@ -21,7 +22,7 @@ from tests.oracle.read import GROUND, Joint, Model, Scene, State, model, placed
 from tests.oracle.rows import Rows, assemble
 from tests.oracle.turns import Array, cross
 
-RANK = 1e-9  # singular values of the scaled J below this part of the largest count as zero (theory 2b)
+RANK = 1e-9  # singular values of the scaled J below this part of the largest count as zero
 OPEN = 1e-8  # a share of a self-stress above this part of its largest makes a load open
 MASSLESS = 1e-13  # the same for NᵀMN: a free direction that moves no mass
 
@@ -69,7 +70,7 @@ class Solution:
     length: float
 
     def sum(self, terms: Mapping[str, float]) -> tuple[float, bool]:
-        """Value of a sum of components named as in the contract ("joints.top.force.z"), and whether it is certain."""
+        """Value of a sum of components named as in the results ("joints.top.force.z"), and whether it is certain."""
         wrenches: dict[str, Array] = {}
         for path, factor in terms.items():
             _, name, what, *component = path.split(".")

@@ -1,4 +1,4 @@
-"""The oracle's blows against closed cases (theory 2j 6, 7, 12, 13, 15; 3), momentum and energy."""
+"""The oracle's blows against closed cases (manual/theory.md, "Closed cases" 6, 7, 12, 13, 15), momentum and energy."""
 
 from __future__ import annotations
 

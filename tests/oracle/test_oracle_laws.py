@@ -182,7 +182,10 @@ def test_a_self_stress_changes_nothing_certain() -> None:
 
 @pytest.mark.parametrize("seed", range(4))
 def test_thin_rods_spin_as_they_like(seed: int) -> None:
-    """Theory 3: rods without axial inertia on balls; any small axial inertia and no axial spin gives the same."""
+    """Rods without axial inertia on balls; any small axial inertia and no axial spin gives the same.
+
+    manual/theory.md, "Thin rods".
+    """
     scene, state = some_scene(seed, kinds=("ball",), masses="thin", loops=0, drives=0)
     found = solve(scene, state)
     assert found.loose.shape[1] == len(scene["bodies"]) and found.unbalanced < 1e-13

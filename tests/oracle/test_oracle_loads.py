@@ -1,4 +1,4 @@
-"""The loads' signs and sizes: power by each joint's own rate, action and reaction, directions as the contract says."""
+"""Signs and sizes of loads: power by each joint's own rate, action and reaction, directions as in manual/signs.md."""
 
 from __future__ import annotations
 

@@ -1,4 +1,4 @@
-"""Clouds of mass points against closed forms (theory 2i) and against themselves."""
+"""Clouds of mass points against closed forms (manual/theory.md, "Mass properties") and against themselves."""
 
 from __future__ import annotations
 

@@ -1,4 +1,4 @@
-"""Redundant supports and singular poses: the numbers of theory.md 2b."""
+"""Redundant supports and singular poses: the numbers of manual/theory.md, "Redundancy"."""
 
 from __future__ import annotations
 
@@ -77,7 +77,7 @@ def test_beam_on_three_supports(stiffness: tuple[float, ...] | None, split: tupl
 
 
 def test_a_moment_about_a_thin_rod_is_told() -> None:
-    """Theory 3: a couple about the axis of a rod without inertia there has no acceleration."""
+    """manual/theory.md, "Thin rods": a couple about the axis of a rod without inertia there has no acceleration."""
     rod = {"shapes": [{"type": "rod", "from": [0, 0, 0], "to": [1, 0, 0], "mass": 1.0}], "points": {"root": [0, 0, 0]}}
     s = {
         "ground": {"points": {"O": [0, 0, 0]}},

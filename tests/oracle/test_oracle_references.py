@@ -1,4 +1,4 @@
-"""The oracle against published mechanisms: references.md A02, A03, A04, whirling and skew rod."""
+"""The oracle against published mechanisms: manual/references.md, A02, A03, A04, whirling and skew rod."""
 
 from __future__ import annotations
 

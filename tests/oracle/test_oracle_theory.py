@@ -1,4 +1,4 @@
-"""The oracle against closed cases: theory.md 2j by number, to the digits printed there (g = 9.81)."""
+"""The oracle against manual/theory.md, "Closed cases", by number, to the digits printed there (g = 9.81)."""
 
 from __future__ import annotations
 

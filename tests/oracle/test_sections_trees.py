@@ -1,4 +1,4 @@
-"""Sections against the weld oracle (theory.md 2): the body sawn in two, welded together, and the weld's load read.
+"""Sections against the weld oracle (tests/oracle/weld.py): a body sawn in two and welded, and the weld's load read.
 
 Trees of every joint and free bodies, bodies by shapes, oblique planes, three instants of a motion.
 """

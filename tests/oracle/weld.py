@@ -1,4 +1,6 @@
-"""The weld oracle: saw a body in two, weld the parts together again, and read the weld (theory, "weld oracle").
+"""The weld oracle: saw a body in two, weld the parts together again, and read the weld.
+
+manual/theory.md, "Laws that catch signs".
 
 The piece is where (x − at)·normal > 0. With `from` the piece and `to` the remainder the weld's reaction is what the
 piece exerts ON the remainder, about the cut's point: Heun's s' and M'(P). All that stands on the body goes to the

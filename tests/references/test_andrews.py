@@ -1,8 +1,8 @@
 """A03, Andrews' squeezing mechanism (IVP Test Set): seven bodies, ten pins in space, two loops, 15.8 rad in 30 ms.
 
 Published to 14 digits, but the published state leaves the loops opening at 7e-10 m/s and lies 1.1e-9 rad from every
-converged solution (references.md, and the oracle): 1e-9 of the largest angle or rate is what can be asked of it. Its
-accelerations and multipliers agree with its own state only to 1e-7 of the largest.
+converged solution (manual/references.md, and the oracle): 1e-9 of the largest angle or rate is what can be asked of it.
+Its accelerations and multipliers agree with its own state only to 1e-7 of the largest.
 """
 
 from __future__ import annotations

@@ -1,4 +1,4 @@
-"""Published mechanisms assemble: Andrews (A03) and Bricard (A04) of references.md."""
+"""Published mechanisms assemble: Andrews (A03) and Bricard (A04) of manual/references.md."""
 
 from __future__ import annotations
 
@@ -85,7 +85,7 @@ def test_bricard_is_drawn_closed() -> None:
     assert np.all(a.rotation == np.eye(3))
 
 
-# t, P3 x y z, crank rate (references.md A04, independent solution)
+# t, P3 x y z, crank rate (manual/references.md, "Bricard", independent solution)
 TURNING = [
     (0.2, (0.961349551, -0.999281403, -0.037903521), 0.396422914),
     (0.4, (0.851450939, -0.990499594, -0.13751565), 0.815243721),

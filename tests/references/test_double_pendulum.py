@@ -1,4 +1,4 @@
-"""theory.md section 3, uniform double pendulum released at (2.5, 2.5) rad: 40-digit reference, then chaos."""
+"""manual/theory.md, "Chaos": uniform double pendulum released at (2.5, 2.5) rad: 40-digit reference, then chaos."""
 
 from __future__ import annotations
 
@@ -13,7 +13,7 @@ REFERENCE = {
     1: (-0.29182056951591, -1.20554568598800), 2: (-2.78689971182110, -1.73651330809759),
     5: (-0.439854790363542, 20.2604594237614), 10: (7.32792296542072, 25.6852343346577),
 }  # fmt: skip
-# The digits printed, and what an error of 1e-16 at the start has become (theory.md: 8.6e-14, 4.6e-10 at 5, 10 s),
+# The digits printed, and what an error of 1e-16 at the start has become ("Chaos": 8.6e-14, 4.6e-10 at 5, 10 s),
 # thirty times each: an integrator makes one such error a step
 ALLOWED = {1: 1e-13, 2: 2e-12, 5: 1e-10, 10: 1e-6}
 

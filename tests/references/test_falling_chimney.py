@@ -1,4 +1,4 @@
-"""Falling chimney: theory.md 2j 4 and Varieschi & Kamiya, AJP 71 (2003) 1025 (references.md): a rod hinged at its foot.
+"""Falling chimney: manual/theory.md, "Closed cases" 4, and manual/references.md, "Chimney": a rod hinged at its foot.
 
     S = 3/4 m g sin ϑ (x² − 4x/3 + 1/3),   P = −1/2 m g (1 − x) [(5 + 3x) cos ϑ − 3 (1 + x)]
     M = −1/4 m g H sin ϑ x (1 − x)²

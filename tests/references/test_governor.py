@@ -1,6 +1,6 @@
 """A05, the stiff flyball governor (OpenSim): springs of 8e5 N/m and 4e4 N s/m hold a slider on a turning shaft; 1 s.
 
-The reduced motion of references.md, by Radau at 1e-11, is printed to 8 digits.
+The reduced motion of manual/references.md, "Governor", by Radau at 1e-11, is printed to 8 digits.
 """
 
 from __future__ import annotations

@@ -1,7 +1,8 @@
 """A01, a point mass on a massless bar of 1 m, released level: told as a rod, as a rod in a plane, on a pin, on a ball.
 
-Exact by Jacobi's functions (references.md), over 845 periods; the tension is 3 m g |y|. The body has no inertia at all.
-The error of the phase grows with the square of the time: in double precision the best run of 2000 s is good to 1e-8.
+Exact by Jacobi's functions (manual/references.md, "Point pendulum"), over 845 periods; the tension is 3 m g |y|. The
+body has no inertia at all. The error of the phase grows with the square of the time: in double precision the best run
+of 2000 s is good to 1e-8.
 """
 
 from __future__ import annotations

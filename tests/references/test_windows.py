@@ -1,6 +1,6 @@
 """A02, windows of equal bars (IFToMM): through every horizontal position, where the freedoms jump from 1 to N + 1.
 
-Exact values by the closed motion I th'' = G sin th (references.md).
+Exact values by the closed motion I th'' = G sin th (manual/references.md, "Windows").
 """
 
 from __future__ import annotations

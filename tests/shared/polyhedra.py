@@ -60,7 +60,10 @@ def clipped(faces: Faces, n: Array, d: float) -> Faces:
 
 
 def pseudo_inertia(faces: Faces) -> Array:
-    """P of a convex polyhedron of density 1 about the origin (theory 2i), fanned from its middle."""
+    """P of a convex polyhedron of density 1 about the origin, fanned from its middle.
+
+    manual/theory.md, "Mass properties".
+    """
     P = np.zeros((4, 4))
     if not faces:
         return P

@@ -1,4 +1,4 @@
-"""What a spec expects of its own results, compared (contract section 1, expect)."""
+"""What a spec expects of its own results, compared (manual/format.md, `expect`)."""
 
 from __future__ import annotations
 
