@@ -1,7 +1,7 @@
 """What the results hold: one row a quantity of the JSON (manual/results.md).
 
 From these rows follow the paths of `--measure` and `expect` with their checks, the units and components of CSV and
-tables, and the README's table of results. Shapes are stated here and never guessed from an array's length: a run of
+tables, and the manual's table of results. Shapes are stated here and never guessed from an array's length: a run of
 three cuts is no vector. A word in capitals stands for a name of the scene; a name may hold dots (a point is
 `body.point`). Imports nothing heavy, so that reading a spec stays light.
 """
@@ -175,7 +175,8 @@ ROWS: tuple[Quantity, ...] = (
     *at("sections.SECTION.line", "reduction line; where the moment in the plane is zero; 0: a line, 1: none, 2: any",
         cut_vector("point", "m"), cut_vector("direction", "1"), cut_vector("pressure_centre", "m"),
         cut_scalar("kind", "1")),
-    *at("sections.SECTION.stress", "extremes over the section, [on the safe side](#stresses); `mises` over `strength`",
+    *at("sections.SECTION.stress",
+        "extremes over the section, [on the safe side](stresses.md); `mises` over `strength`",
         cut_scalar("normal_max", "Pa"), cut_scalar("normal_min", "Pa"), cut_scalar("shear_torsion", "Pa"),
         cut_scalar("shear_mean", "Pa"), cut_scalar("shear_max", "Pa"), cut_scalar("mises", "Pa"),
         cut_scalar("utilisation", "1")),

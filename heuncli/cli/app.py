@@ -59,7 +59,9 @@ def _parameter(row: Row, defaults: Mapping[str, Any]) -> inspect.Parameter:
     words, text, metavar = row.option
     if not words:
         argument = typer.Argument(help=text, metavar=metavar, show_default=False)
-        return inspect.Parameter(row.name, inspect.Parameter.KEYWORD_ONLY, annotation=Annotated[kind, argument])
+        default = defaults.get(row.name, inspect.Parameter.empty)
+        annotation = Annotated[kind, argument]
+        return inspect.Parameter(row.name, inspect.Parameter.KEYWORD_ONLY, default=default, annotation=annotation)
     default = defaults[row.name]
     return inspect.Parameter(
         row.name,

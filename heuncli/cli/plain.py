@@ -47,6 +47,8 @@ def read(argv: Sequence[str]) -> Request | None:
     if target is None:
         return command(**values) if not arguments else None
     many = target.type == tuple[str, ...]
+    if not arguments and target.name in command._field_defaults:
+        return command(**values)
     if not arguments or (len(arguments) > 1 and not many):
         return None
     values[target.name] = tuple(arguments) if many else arguments[0]

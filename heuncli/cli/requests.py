@@ -192,15 +192,22 @@ class Methods(NamedTuple):
     output: Annotated[str | None, OUTPUT] = None
 
 
-Request = Run | Validate | Model | Modes | Chart | Probe | Check | Methods
+class Explain(NamedTuple):
+    """Show a page of the manual, or the list of its pages."""
+
+    topic: Annotated[str | None, Option((), "The name of a page; without it, the list of them.", "TOPIC")] = None
+    output: Annotated[str | None, OUTPUT] = None
+
+
+Request = Run | Validate | Model | Modes | Chart | Probe | Check | Methods | Explain
 COMMANDS: dict[str, type[Request]] = {
     "run": Run, "validate": Validate, "model": Model, "modes": Modes, "chart": Chart, "probe": Probe, "check": Check,
-    "methods": Methods,
+    "methods": Methods, "explain": Explain,
 }  # fmt: skip
 WINGS = {"modes": "modes", "chart": "charting", "probe": "probing"}  # whose commands stand in folders of their own
 # seconds that a command may go on beyond its limit, to tell what it has by then; others have nothing
 GRACES: dict[type[Request], float] = {Chart: 0.8}
-LATER_COMMANDS = ("balance", "lagrange", "schema", "explain", "new", "sweep", "plot")
+LATER_COMMANDS = ("balance", "lagrange", "schema", "new", "sweep", "plot")
 LATER_OPTIONS = ("golden", "update", "junit")
 
 

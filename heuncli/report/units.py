@@ -21,7 +21,10 @@ DERIVED: Mapping[str, tuple[str, tuple[str, ...]]] = MappingProxyType({
     "m/s": ("{}/s", ("m",)), "m/s²": ("{}/s²", ("m",)), "rad/s": ("{}/s", ("rad",)), "rad/s²": ("{}/s²", ("rad",)),
 })  # fmt: skip
 SPELLED = {"Nm": "N·m", "kNm": "kN·m", "Nmm": "N·mm", "Ns": "N·s", "Nms": "N·m·s"}
-KNOWN = "such as --units kN,mm,deg,rpm; any unit of a length, angle, force, moment, stress, ... that the README lists"
+KNOWN = (
+    "such as --units kN,mm,deg,rpm; any unit of a length, angle, force, moment, stress, ... that heun explain format "
+    "lists"
+)
 
 
 class Units(NamedTuple):

@@ -1,4 +1,4 @@
-"""The table of README > Limits, row by row: where the method is seen to fail, and where heun's answer is held.
+"""The manual's table of limits, row by row: where the method is seen to fail, and where heun's answer is held.
 
 What is tested elsewhere anyway is referred to, not written twice.
 """

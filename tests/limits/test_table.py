@@ -1,4 +1,4 @@
-"""The table of README > Limits has the rows that are tested, and each of its tests is there."""
+"""The table of the manual's page on limits has the rows that are tested, and each of its tests is there."""
 
 from __future__ import annotations
 
@@ -8,14 +8,13 @@ from pathlib import Path
 import pytest
 
 from tests.limits.table import LIMITS
+from tests.shared.manual import TEXTS
 
 TESTS = Path(__file__).parents[1]
 
 
 def test_the_table_has_the_rows_that_are_tested() -> None:
-    text = (TESTS.parent / "README.md").read_text()
-    (chapter,) = re.findall(r"^## Limits\n(.*?)^## ", text, re.MULTILINE | re.DOTALL)
-    rows = re.findall(r"^\| ([^|]+?) \|", chapter, re.MULTILINE)
+    rows = re.findall(r"^\| ([^|]+?) \|", TEXTS["limits"], re.MULTILINE)
     assert rows == ["method", *LIMITS]
 
 

@@ -1,9 +1,8 @@
-"""One schema of results: shapes come from it and never from an array's length, and the README's table is it."""
+"""One schema of results: shapes come from it and never from an array's length, and the manual's table is it."""
 
 from __future__ import annotations
 
 from itertools import groupby
-from pathlib import Path
 from typing import get_args
 
 import numpy as np
@@ -20,9 +19,9 @@ from heuncli.results_schema import NOT_YET, REPORTS, ROWS, SPACE, TREE, Node, Qu
 from heuncli.spec.format import Head
 from heuncli.spec.load import load
 from tests.shared.fakes import LABELS, FakeStudy, pendulum, vectors
+from tests.shared.manual import TEXTS
 
 T = np.linspace(0.0, 2.0, 5)
-README = Path(__file__).parents[2] / "README.md"
 
 
 def run_of(count: int, t: np.ndarray = T) -> dict[str, object]:
@@ -151,14 +150,13 @@ def leaves(node: Node) -> list[Quantity]:
     return [row for below in node.values() for row in (leaves(below) if isinstance(below, dict) else [below])]
 
 
-def test_the_readme_has_the_schema_as_a_table() -> None:
-    text = README.read_text()
-    table = readme_table()
-    assert table in text, f"### Results of README.md should be:\n\n{table}"
+def test_the_manual_has_the_schema_as_a_table() -> None:
+    table = manual_table()
+    assert table in TEXTS["results"], f"the table of the page on results should be:\n\n{table}"
     assert len(leaves(TREE)) > len(ROWS)  # with what a blow has
 
 
-def readme_table() -> str:
+def manual_table() -> str:
     """A line for the numbers that stand in one place and have one meaning."""
     lines = ["| path | SI unit | |", "|---|---|---|"]
     numbers = [row for row in ROWS if row.units and row.meaning != NOT_YET]

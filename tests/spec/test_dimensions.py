@@ -17,6 +17,7 @@ from heuncli.expressions.programs import Expression
 from heuncli.expressions.units import NUMBER, Dimension, parse_unit
 from heuncli.records import replace
 from heuncli.spec.load import load
+from tests.shared.manual import TEXTS, file_of
 
 WRITTEN = {
     "L": "1200 mm", "b": "0.3 m", "m": "3 kg", "F": "100 N", "n": "1500 rpm", "phi": "30 deg", "v": "2 m/s",
@@ -266,7 +267,7 @@ YAML = re.compile(r"(heun: 1\n(?:.|\n)*?)(?:\"\"\"|```)")
 
 def test_no_scene_of_ours_is_refused() -> None:
     texts = [path.read_text() for path in (ROOT / "specs").glob("*.yaml")]
-    for path in [ROOT / "README.md", *(ROOT / "tests").rglob("*.py")]:
+    for path in [*map(file_of, TEXTS), *(ROOT / "tests").rglob("*.py")]:
         texts += [found for found in YAML.findall(path.read_text()) if "{{" not in found]
     assert len(texts) > 60
     for text in texts:

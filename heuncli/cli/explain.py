@@ -1,0 +1,43 @@
+"""`heun explain TOPIC`: a page of the manual as it is written; without a topic a line for each page."""
+
+from __future__ import annotations
+
+from pathlib import Path
+
+from heuncli.cli.entry import UsageError
+from heuncli.cli.output import emit
+from heuncli.cli.requests import Explain
+from heuncli.errors import Problem
+from heuncli.nearest import did_you_mean
+
+FOLDER = Path(__file__).parents[1] / "manual"
+# in the order in which a reader may want them
+PAGES = (
+    "commands", "format", "results", "signs", "open", "stresses", "model", "rest", "modes", "methods", "accuracy",
+    "chart", "probe", "limits", "decisions", "speed", "developing",
+)  # fmt: skip
+
+
+def main(request: Explain) -> int:
+    """Run the command; returns the exit code."""
+    emit(contents() if request.topic is None else page(request.topic), request.output)
+    return 0
+
+
+def page(topic: str) -> str:
+    """The text of a page. Raises UsageError where there is none of that name."""
+    if topic not in PAGES:
+        hint = f"{did_you_mean(topic, PAGES, 'topics')}; heun explain lists the pages"
+        raise UsageError(Problem("bad-option", f"explain {topic}: no page of the manual is called that", hint=hint))
+    return (FOLDER / f"{topic}.md").read_text(encoding="utf-8")
+
+
+def contents() -> str:
+    """The name of each page, and what it is about."""
+    width = max(map(len, PAGES))
+    return "".join(f"{name:<{width}}  {summary(name)}\n" for name in PAGES)
+
+
+def summary(topic: str) -> str:
+    """What a page is about: the line below its title."""
+    return page(topic).split("\n", 3)[2]

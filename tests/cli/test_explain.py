@@ -1,0 +1,45 @@
+"""`heun explain`: the pages of the manual, as they stand in the package."""
+
+from __future__ import annotations
+
+from pathlib import Path
+
+import pytest
+
+from heuncli.cli.explain import PAGES
+from tests.cli.conftest import Heun
+from tests.shared.manual import TEXTS
+
+
+@pytest.mark.parametrize("topic", PAGES)
+def test_a_page_is_printed_as_it_is_written(heun: Heun, topic: str) -> None:
+    done = heun("explain", topic)
+    assert (done.returncode, done.stdout, done.stderr) == (0, TEXTS[topic], "")
+
+
+def test_without_a_topic_the_pages_are_listed(heun: Heun) -> None:
+    done = heun("explain")
+    assert (done.returncode, done.stderr) == (0, "")
+    assert [line.split()[0] for line in done.stdout.splitlines()] == list(PAGES)
+    assert max(map(len, done.stdout.splitlines())) <= 120
+
+
+def test_a_page_goes_into_a_file(heun: Heun, tmp_path: Path) -> None:
+    done = heun("explain", "signs", "-o", str(tmp_path / "signs.md"))
+    assert (done.returncode, done.stdout) == (0, "")
+    assert (tmp_path / "signs.md").read_text(encoding="utf-8") == TEXTS["signs"]
+
+
+@pytest.mark.parametrize(
+    ("topic", "told"),
+    [("formt", "did you mean format?"), ("Signs", "did you mean signs?"), ("xyzzy", "known topics: commands, format")],
+)
+def test_an_unknown_topic_is_told(heun: Heun, topic: str, told: str) -> None:
+    done = heun("explain", topic)
+    assert (done.returncode, done.stdout) == (2, "")
+    assert f"explain {topic}: no page of the manual is called that [bad-option]" in done.stderr
+    assert told in done.stderr
+
+
+def test_a_word_too_many_is_bad_usage(heun: Heun) -> None:
+    assert heun("explain", "signs", "open").returncode == 2

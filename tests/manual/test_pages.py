@@ -1,0 +1,74 @@
+"""The manual is whole: its list of pages, its links, and the names of all keys, units, functions and commands."""
+
+from __future__ import annotations
+
+import re
+
+import pytest
+from pydantic import BaseModel
+
+from heuncli.cli.explain import PAGES, summary
+from heuncli.cli.requests import COMMANDS, LATER_COMMANDS
+from heuncli.expressions.grammar import ARITY, CONSTANTS
+from heuncli.expressions.units import UNITS
+from heuncli.spec import format as document
+from tests.shared.manual import FENCED, README, ROOT, TEXTS, anchor, file_of, headings
+
+LINK = re.compile(r"\]\(([^()\s]+)\)")
+LONGEST = 350  # lines of the README; what is longer belongs to a page
+
+
+def test_every_page_is_listed() -> None:
+    assert {README, *PAGES} == TEXTS.keys()
+    rows = re.findall(r"^\| \[(\w+)\]\(heuncli/manual/(\w+)\.md\) \| (.*) \|$", TEXTS[README], re.MULTILINE)
+    assert rows == [(name, name, summary(name)) for name in PAGES]
+
+
+@pytest.mark.parametrize("name", PAGES)
+def test_a_page_begins_with_its_title_and_what_it_is_about(name: str) -> None:
+    title, empty, about, below, *_ = TEXTS[name].splitlines()
+    assert re.fullmatch(r"# \S.*", title)
+    assert (empty, below) == ("", "")
+    assert re.fullmatch(r"\S.{10,110}\.", about)
+
+
+def test_the_readme_is_short() -> None:
+    assert len(TEXTS[README].splitlines()) <= LONGEST
+
+
+@pytest.mark.parametrize("name", TEXTS)
+def test_links_lead_somewhere(name: str) -> None:
+    for target in LINK.findall(FENCED.sub("", TEXTS[name])):
+        path, _, place = target.partition("#")
+        file = (file_of(name).parent / path).resolve() if path else file_of(name)
+        assert file.exists(), target
+        if place:
+            page = next(page for page in TEXTS if file_of(page) == file)
+            assert place in map(anchor, headings(page)), target
+
+
+@pytest.mark.parametrize("name", TEXTS)
+def test_a_heading_stands_once_in_a_page(name: str) -> None:
+    places = [anchor(heading) for heading in headings(name)]
+    assert len(set(places)) == len(places)
+
+
+@pytest.mark.parametrize("name", TEXTS)
+def test_the_specs_that_are_named_exist(name: str) -> None:
+    for spec in re.findall(r"\bspecs/[\w/]+\.\w+", TEXTS[name]):
+        assert (ROOT / spec).exists(), spec
+
+
+def keys() -> set[str]:
+    models = [m for m in vars(document).values() if isinstance(m, type) and issubclass(m, BaseModel)]
+    return {field.alias or name for model in models for name, field in model.model_fields.items()}
+
+
+def test_every_key_unit_function_and_command_is_named() -> None:
+    text = " ".join(TEXTS.values())
+    named = set(re.findall(r"[A-Za-z_]\w*", " ".join(re.findall(r"`([^`\n]+)`", text))))
+    assert sorted(keys() - named) == []
+    assert sorted(UNITS.keys() - named) == []
+    assert sorted((ARITY.keys() | CONSTANTS.keys()) - named) == []
+    assert sorted(set(LATER_COMMANDS) - named) == []
+    assert all(f"heun {command}" in text for command in COMMANDS)
