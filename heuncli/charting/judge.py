@@ -19,16 +19,19 @@ from heuncli.integration.run.runner import Trajectory
 from heuncli.kinetostatics.reactions import JointLoads
 from heuncli.records import record, replace
 from heuncli.results import Array, Mask
-from heuncli.study.ask.selection import Asked
-from heuncli.study.solve.load_errors import APART, Kinds, Terms, Weights
-from heuncli.study.solve.recover import blocks, recover
+from heuncli.study.solve.balance_terms import BalanceTerms
+from heuncli.study.solve.blocks import blocks
+from heuncli.study.solve.error_extents import APART, Weights
+from heuncli.study.solve.load_errors import LoadErrors
+from heuncli.study.solve.recovery import recover
+from heuncli.study.solve.selection import Asked
 from heuncli.study.solve.setup import Setup
 
 OF_LOADS = Asked(frozenset({"joints", "sections"}))
 Certain = Mapping[str, tuple[Mask, Mask]]  # by joint: which components of its force and moment are never open
 
 
-class CertainKinds(Kinds):
+class CertainLoadErrors(LoadErrors):
     """The differences of loads, without the components of joints that are open."""
 
     def __init__(self, setup: Setup, certain: Certain, weights: Weights) -> None:
@@ -41,7 +44,7 @@ class CertainKinds(Kinds):
         """Terms are the reference's: beside those of a run that is lost its own loads would count as rounding."""
         super().take(name, values, rounding, np.repeat(terms[0::2], 2), more)
 
-    def add_joints(self, joints: Sequence[JointLoads], terms: Terms) -> None:
+    def add_joints(self, joints: Sequence[JointLoads], terms: BalanceTerms) -> None:
         """Those of the joints of which something is certain."""
         kept = []
         for load in joints:
@@ -70,7 +73,7 @@ class Judge:
         n = len(self.times)
         states = (self.reference.states[:n], other.states[:n])
         kept = ~between_strikes((self.reference, other), self.times)
-        kinds = CertainKinds(self.setup, self.certain, weights)
+        kinds = CertainLoadErrors(self.setup, self.certain, weights)
         layout, places, angles, largest = self.setup.scene.layout, 0.0, 0.0, 1.0
         with np.errstate(all="ignore"):  # what a method has lost may be anywhere
             for part, several in recovered_together(self.runs, self.reference, self.times, states):
@@ -84,7 +87,7 @@ class Judge:
                     kinds.add(told, *np.ones((2, int(own.sum())), dtype=bool))
             return {"motion": max(places, angles / largest), **self.loads(kinds)}
 
-    def loads(self, kinds: Kinds) -> Errors:
+    def loads(self, kinds: LoadErrors) -> Errors:
         """The differences of loads that are collected, relative to the largest."""
         found = kinds.estimate()
         reactions = found["reactions"] if any(f.any() or m.any() for f, m in self.certain.values()) else None

@@ -95,7 +95,8 @@ def up_to_its_end(spec: Spec, deadline: float | None) -> tuple[Spec, str]:
     ending = next((c for c in spec.analysis.conditions if c.ends and c.value is None), None)
     if ending is None:
         return spec, ""
-    from heuncli.study.solve.solve import Options, solve  # few scenes end so
+    from heuncli.study.solve.options import Options  # few scenes end so
+    from heuncli.study.workflow import solve  # few scenes end so
 
     left = None if deadline is None else deadline - time.monotonic()
     if left is not None and left <= 0.0:

@@ -23,8 +23,8 @@ from heuncli.integration.run.runner import Trajectory
 from heuncli.method_rows import DEFAULT, row_of
 from heuncli.records import record
 from heuncli.results import Array
+from heuncli.study.solve.error_extents import ESTIMATED
 from heuncli.study.solve.history import require_followed
-from heuncli.study.solve.load_errors import ESTIMATED
 
 # Pairs of methods, the first the reference; the second pair where the first does not agree, as in stiff scenes
 PAIRS = (("Verner98", "DOP853"), ("Radau9", "Radau5"))

@@ -25,10 +25,11 @@ from heuncli.report.table import Column, Table, plain
 from heuncli.report.words import count
 from heuncli.results import Array
 from heuncli.spec.load import load
-from heuncli.study.ask.expect import Case, compare
-from heuncli.study.ask.selection import EVERYTHING, asked_by
+from heuncli.study.ask.expectations import Case, compare
 from heuncli.study.solve.memory_estimate import Room
-from heuncli.study.solve.solve import Options, solve
+from heuncli.study.solve.options import Options
+from heuncli.study.solve.selection import EVERYTHING, asked_by
+from heuncli.study.workflow import solve
 
 FORMATS = ("table", "json")
 ENDINGS = {".json": "json", ".txt": "table", "": "table"}

@@ -16,7 +16,7 @@ from heuncli.spec.models import Spec
 from heuncli.spec.names import names_in
 from heuncli.spec.rules.outcome import wrong_path
 from heuncli.study.ask.measure import NOT_CLAIMED, Measure, NotOneNumber, Peak, lost_from, value
-from heuncli.study.solve.solve import Study
+from heuncli.study.ask.study import Study
 
 T = TypeVar("T")
 PATH = re.compile(r"[\w.]+\Z")

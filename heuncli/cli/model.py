@@ -13,7 +13,7 @@ from heuncli.cli.target import format_of
 from heuncli.report.export import dump
 from heuncli.report.note import note
 from heuncli.spec.load import load
-from heuncli.study.solve.solve import describe
+from heuncli.study.workflow import describe
 
 FORMATS = ("text", "json")
 ENDINGS = {".json": "json", ".txt": "text", "": "text"}

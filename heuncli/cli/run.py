@@ -31,10 +31,12 @@ from heuncli.results import Results
 from heuncli.results_schema import BLOWS, REPORT_OF, REPORTS, SHARES, with_shared
 from heuncli.spec.load import load
 from heuncli.spec.models import Spec
-from heuncli.study.ask.selection import Asked, Entry, asked_by, entries_of, entry_at
+from heuncli.study.ask.study import Study
+from heuncli.study.solve.error_places import placed
 from heuncli.study.solve.memory_estimate import Room
-from heuncli.study.solve.places import placed
-from heuncli.study.solve.solve import Options, Study, solve
+from heuncli.study.solve.options import Options
+from heuncli.study.solve.selection import Asked, Entry, asked_by, entries_of, entry_at
+from heuncli.study.workflow import solve
 
 ENDINGS = {".json": "json", ".csv": "csv", ".md": "markdown", ".txt": "table", "": "table"}
 NOT_SEARCHED = "extremes among the samples only: too many quantities to search between them"

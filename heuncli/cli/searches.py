@@ -7,8 +7,8 @@ from heuncli.report.page import Page
 from heuncli.report.runs import Run, runs_of
 from heuncli.results import Extremes
 from heuncli.results_schema import SHARES
+from heuncli.study.ask.study import Study
 from heuncli.study.search.extremes import Searched, no_columns
-from heuncli.study.solve.solve import Study
 
 SECTIONS = frozenset({"sections"})
 

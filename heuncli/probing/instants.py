@@ -19,9 +19,10 @@ from heuncli.probing.numerics.shares import Loop, continued, loops_of, motions
 from heuncli.probing.results import DEAD_CENTRE, GIMBAL, HALF_TURN, Event, Turned
 from heuncli.redundancy.neighbours import neighbours
 from heuncli.results import Array, Indices, Mask
+from heuncli.study.ask.study import Study
 from heuncli.study.search.crossings import Bracket, roots
-from heuncli.study.solve.history import resample, search_times
-from heuncli.study.solve.solve import Study
+from heuncli.study.search.instants import search_times
+from heuncli.study.solve.history import resample
 
 CHUNK = 200_000  # body-instants whose answers are kept at a time
 NEWTON = 12  # steps towards the nearest approach

@@ -29,7 +29,7 @@ from heuncli.report.export import to_csv, to_json
 from heuncli.report.labels import labels_of
 from heuncli.spec.load import load
 from heuncli.study.solve.setup import set_up
-from heuncli.study.solve.solve import solve
+from heuncli.study.workflow import solve
 from heuncli.tree.prepare import PreparedScene
 from tests.bench.auto import table
 from tests.bench.causes import by_cause

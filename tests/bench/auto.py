@@ -27,8 +27,9 @@ from heuncli.integration.run.runner import Runner, Trajectory, discontinuities_o
 from heuncli.method_rows import DEFAULT, METHODS
 from heuncli.spec.load import load
 from heuncli.spec.models import Spec
+from heuncli.study.solve.options import Options
 from heuncli.study.solve.setup import Setup, set_up
-from heuncli.study.solve.solve import Options, solve
+from heuncli.study.workflow import solve
 from tests.bench.stiff import STIFF_SCENES
 
 ROOT = Path(__file__).parents[2]

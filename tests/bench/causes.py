@@ -8,8 +8,10 @@ from functools import partial
 from typing import Any
 
 from heuncli.spec.load import load
-from heuncli.study.solve.recover import blocks, recover
-from heuncli.study.solve.solve import Study, solve
+from heuncli.study.ask.study import Study
+from heuncli.study.solve.blocks import blocks
+from heuncli.study.solve.recovery import recover
+from heuncli.study.workflow import solve
 
 REPORTS = frozenset({"motion", "foundation", "joints", "sections", "forces", "energy"})
 FORCES = 7  # beside gravity, drives and motion

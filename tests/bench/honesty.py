@@ -21,7 +21,7 @@ from numpy.typing import NDArray
 from heuncli import tolerances
 from heuncli.errors import HeunError
 from heuncli.results import Results
-from heuncli.study.solve.solve import Study
+from heuncli.study.ask.study import Study
 from tests.oracle.scenes import ALL_KINDS, random_scene
 from tests.oracle.tellings import with_cuts
 from tests.oracle.transforms import turned

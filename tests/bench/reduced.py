@@ -18,9 +18,10 @@ import numpy as np
 from heuncli.kernel.choose import KERNEL
 from heuncli.spec.load import load
 from heuncli.spec.models import Spec
-from heuncli.study.ask.selection import EVERYTHING, asked_by
+from heuncli.study.solve.options import Options
+from heuncli.study.solve.selection import EVERYTHING, asked_by
 from heuncli.study.solve.setup import set_up
-from heuncli.study.solve.solve import Options, solve
+from heuncli.study.workflow import solve
 from tests.bench.reducible import cluster, engine, pendulums, spun, truss
 from tests.oracle.published import START, andrews, windows
 from tests.oracle.values import to_yaml

@@ -21,13 +21,13 @@ from heuncli.results_paths import find
 from heuncli.spec.load import load
 from heuncli.spec.models import Spec
 from heuncli.study.ask.measure import Measure, value
-from heuncli.study.ask.parts import restricted
-from heuncli.study.ask.selection import asked_by
-from heuncli.study.solve import load_errors as kinds
-from heuncli.study.solve import recover
-from heuncli.study.solve import solve as solving
-from heuncli.study.solve.recover import Recovery
-from heuncli.study.solve.solve import Options, Study, describe, solve
+from heuncli.study.ask.study import Study
+from heuncli.study.solve import blocks, compose, load_errors, recovery
+from heuncli.study.solve.needed_parts import restricted
+from heuncli.study.solve.options import Options
+from heuncli.study.solve.recovery import Recovery
+from heuncli.study.solve.selection import asked_by
+from heuncli.study.workflow import describe, solve
 from tests.cli.conftest import SPECS as SPECS_OF
 from tests.cli.conftest import Heun
 
@@ -207,9 +207,10 @@ def test_one_section_alone_is_recovered(monkeypatch: pytest.MonkeyPatch) -> None
     """No other cuts, no foundation, no energy, no sums; the balance, which tells whether numbers are wrong, stays."""
     spec = load(str(SPECS / "jib.yaml"))
     for module, names in {
-        recover: ("foundation", "energy", "coordinates", "system_vector", "points", "forces"),
-        solving: ("certain_sums",),
-        kinds: ("energy", "total"),
+        recovery: ("energy",),
+        blocks: ("foundation", "coordinates", "system_vector", "points", "forces"),
+        compose: ("certain_sums",),
+        load_errors: ("energy", "total"),
     }.items():
         for name in names:
             monkeypatch.setattr(module, name, forbidden)
@@ -223,7 +224,7 @@ def test_one_section_alone_is_recovered(monkeypatch: pytest.MonkeyPatch) -> None
 def test_a_motion_asks_for_no_verdicts(monkeypatch: pytest.MonkeyPatch) -> None:
     spec = load(str(SPECS / "four_bar.yaml"))
     monkeypatch.setattr(Recovery, "decided", property(forbidden))
-    monkeypatch.setattr(kinds, "joint_loads", forbidden)
+    monkeypatch.setattr(load_errors, "joint_loads", forbidden)
     study = asked(spec, ["coordinates.rocker.angle"])
     assert value(Measure("max", "coordinates.rocker.angle"), study).value > 0.0
     assert study.results.accuracy["balance_residual"] < 1e-9

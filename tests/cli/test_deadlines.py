@@ -17,7 +17,7 @@ import pytest
 from heuncli.cli import alarm, files
 from heuncli.integration import evaluator
 from heuncli.spec.load import load
-from heuncli.study.solve.solve import solve
+from heuncli.study.workflow import solve
 from tests.cli.conftest import HANGING, Heun
 
 SPECS = Path(__file__).parents[2] / "specs"
@@ -61,7 +61,7 @@ def forever(*_: Any, **__: Any) -> Any:
             "while the motion was integrated and checked",
         ),
         ("heuncli.integration.check.estimate.instants_of", "check swinging.yaml", "swinging.yaml: the time limit"),
-        ("heuncli.study.solve.recover.body_states", "run swinging.yaml", "while loads were computed"),
+        ("heuncli.study.solve.recovery.body_states", "run swinging.yaml", "while loads were computed"),
         (
             "heuncli.study.search.extremes.highest",
             "run swinging.yaml",

@@ -10,9 +10,10 @@ import pytest
 
 from heuncli.errors import Problem, SolveError, SourceLocation, SpecError
 from heuncli.spec.load import load
-from heuncli.study.ask import expect
-from heuncli.study.ask.expect import compare
-from heuncli.study.solve.solve import Options, solve
+from heuncli.study.ask import expectations as expect
+from heuncli.study.ask.expectations import compare
+from heuncli.study.solve.options import Options
+from heuncli.study.workflow import solve
 from tests.shared.fakes import ACCURATE, FakeStudy, pendulum
 
 STUDY = FakeStudy(np.linspace(0.0, 2.0, 21))

@@ -14,10 +14,11 @@ from heuncli.cli import memory
 from heuncli.integration.run.step_records import Growing, Kept
 from heuncli.results_schema import REPORT_OF, REPORTS, SHARES
 from heuncli.spec.load import load
-from heuncli.study.ask.selection import Asked
 from heuncli.study.solve.memory_estimate import in_words, numbers_by_block, two_digits
+from heuncli.study.solve.options import Options
+from heuncli.study.solve.selection import Asked
 from heuncli.study.solve.setup import set_up
-from heuncli.study.solve.solve import Options, solve
+from heuncli.study.workflow import solve
 from tests.cli.conftest import Heun
 from tests.cli.test_process import shell
 

@@ -24,7 +24,9 @@ from heuncli.results_paths import find
 from heuncli.results_schema import BLOWS, CUT, REPORTS, SHARES, beside_magnitudes, quantity
 from heuncli.spec.load import load
 from heuncli.study.ask.measure import Measure, NotOneNumber, value
-from heuncli.study.solve.solve import Options, Study, solve
+from heuncli.study.ask.study import Study
+from heuncli.study.solve.options import Options
+from heuncli.study.workflow import solve
 from tests.cli.conftest import Heun
 
 BAR = """\

@@ -57,7 +57,7 @@ def shot(number: int, where: str, folder: Path) -> subprocess.CompletedProcess[s
         signal.signal(signal.SIGINT, signal_was)
 
 
-@pytest.mark.parametrize("where", ["heuncli.cli.entry", "yaml", "pydantic_core", "numpy", "heuncli.study.solve.solve"])
+@pytest.mark.parametrize("where", ["heuncli.cli.entry", "yaml", "pydantic_core", "numpy", "heuncli.study.workflow"])
 def test_an_interrupt_while_something_is_imported(folder: Path, where: str) -> None:
     done = shot(signal.SIGINT, where, folder)
     assert (done.returncode, done.stdout, done.stderr) == (130, "", "heun: interrupted\n")

@@ -21,8 +21,10 @@ from heuncli.report.labels import labels_of
 from heuncli.report.quantities import walk
 from heuncli.results_paths import find
 from heuncli.spec.load import load
-from heuncli.study.ask.expect import compare
-from heuncli.study.solve.solve import Options, Study, solve
+from heuncli.study.ask.expectations import compare
+from heuncli.study.ask.study import Study
+from heuncli.study.solve.options import Options
+from heuncli.study.workflow import solve
 
 FOLDER = Path(__file__).parents[2] / "specs"
 HEAVY = ("cardan", "crane", "engine", "friction", "jib")  # too long for the plain kernel

@@ -14,7 +14,9 @@ from heuncli.errors import SolveError
 from heuncli.integration.conditions import Changes, Conditions, coordinates_at
 from heuncli.results import Array
 from heuncli.spec.load import load
-from heuncli.study.solve.solve import Options, Study, solve
+from heuncli.study.ask.study import Study
+from heuncli.study.solve.options import Options
+from heuncli.study.workflow import solve
 from tests.shared.scenes import near
 
 G = 9.81

@@ -12,8 +12,8 @@ from heuncli.cli import measure
 from heuncli.report.labels import labels_of
 from heuncli.report.page import page_of
 from heuncli.results_schema import REPORTS
+from heuncli.study.ask.study import Study
 from heuncli.study.search.extremes import Searched
-from heuncli.study.solve.solve import Study
 from tests.shared.scenes import near, study
 
 pytestmark = pytest.mark.heavy  # families: the plain kernel has the same bits (tests/package/test_kernels_agree.py)

@@ -9,7 +9,7 @@ import numpy as np
 import pytest
 
 from heuncli.spec.load import load
-from heuncli.study.solve.solve import describe
+from heuncli.study.workflow import describe
 from tests.shared.scenes import near, solved
 
 G, OMEGA, KICK = 9.81, 100.0, 3.0

@@ -18,7 +18,8 @@ from heuncli.rest.slopes import Slopes
 from heuncli.results import Array, Results
 from heuncli.shapes.rotations import from_vector
 from heuncli.spec.load import load
-from heuncli.study.solve.solve import Study, solve
+from heuncli.study.ask.study import Study
+from heuncli.study.workflow import solve
 from tests.shared.scenes import near, solved, study
 
 pytestmark = pytest.mark.heavy  # families: the plain kernel has the same bits (tests/package/test_kernels_agree.py)

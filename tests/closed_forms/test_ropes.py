@@ -15,7 +15,7 @@ from scipy.optimize import brentq
 from scipy.special import ellipkinc
 
 from heuncli.errors import SolveError
-from heuncli.study.solve.solve import Study
+from heuncli.study.ask.study import Study
 from tests.shared.scenes import near, solved, study
 
 pytestmark = pytest.mark.heavy  # families: the plain kernel has the same bits (tests/package/test_kernels_agree.py)

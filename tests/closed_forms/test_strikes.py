@@ -12,7 +12,7 @@ import numpy as np
 import pytest
 from scipy.optimize import brentq
 
-from heuncli.study.solve.solve import Study
+from heuncli.study.ask.study import Study
 from tests.closed_forms.test_extremes import told
 from tests.shared.scenes import near, study
 

@@ -13,7 +13,7 @@ import pytest
 from heuncli import tolerances
 from heuncli.cli import measure
 from heuncli.results import Array
-from heuncli.study.solve.solve import Study
+from heuncli.study.ask.study import Study
 from tests.closed_forms.test_extremes import told
 from tests.honesty.test_horizon import KNOWN as KNOWN_TRUTH
 from tests.honesty.test_horizon import SECOND, TRUTH, off

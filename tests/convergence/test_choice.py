@@ -8,7 +8,9 @@ import numpy as np
 import pytest
 
 from heuncli.spec.load import load
-from heuncli.study.solve.solve import Options, Study, describe, solve
+from heuncli.study.ask.study import Study
+from heuncli.study.solve.options import Options
+from heuncli.study.workflow import describe, solve
 from tests.shared.scenes import near, study
 
 SPECS = Path(__file__).parents[2] / "specs"

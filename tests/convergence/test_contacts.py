@@ -9,7 +9,7 @@ import pytest
 
 from heuncli import tolerances
 from heuncli.results import Array
-from heuncli.study.solve.solve import Study
+from heuncli.study.ask.study import Study
 from tests.honesty.test_horizon import KNOWN, SECOND, TRUTH, off
 from tests.shared.bars import rods
 from tests.shared.scenes import near, solved, study

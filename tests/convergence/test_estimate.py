@@ -16,8 +16,11 @@ import pytest
 
 from heuncli.results import Array
 from heuncli.spec.load import load
-from heuncli.study.solve.recover import blocks, recover
-from heuncli.study.solve.solve import Options, Study, solve
+from heuncli.study.ask.study import Study
+from heuncli.study.solve.blocks import blocks
+from heuncli.study.solve.options import Options
+from heuncli.study.solve.recovery import recover
+from heuncli.study.workflow import solve
 from tests.closed_forms.test_theory_2j_motion import free_top, heavy_top
 from tests.closed_forms.test_theory_golden_a import SCENE as GOLDEN_A
 from tests.oracle.values import to_yaml

@@ -15,7 +15,9 @@ import pytest
 
 from heuncli.results import Array, Results
 from heuncli.spec.load import load
-from heuncli.study.solve.solve import Options, Study, solve
+from heuncli.study.ask.study import Study
+from heuncli.study.solve.options import Options
+from heuncli.study.workflow import solve
 from tests.shared.scenes import study
 
 SPECS = Path(__file__).parents[2] / "specs"

@@ -9,7 +9,7 @@ import numpy as np
 import pytest
 
 from heuncli.spec.load import load
-from heuncli.study.solve.solve import describe
+from heuncli.study.workflow import describe
 from tests.bench.stiff import FRICTION, STIFF_SCENES, WIRE
 from tests.shared.scenes import near, study
 

@@ -12,7 +12,7 @@ import numpy as np
 from heuncli.results import Array, Block
 from heuncli.results_schema import ESTIMATES, KIND_OF, SPACE, TREE, Node, Quantity, below
 from heuncli.study.ask.measure import peak
-from heuncli.study.solve.solve import Study
+from heuncli.study.ask.study import Study
 
 TIMES = 10.0  # the stated errors
 SAME = 1e-9  # of the last instant

@@ -46,9 +46,9 @@ from heuncli.shapes.figures import Rectangle
 from heuncli.shapes.forms import Form
 from heuncli.spec.load import load
 from heuncli.spec.turns import of_matrix
-from heuncli.study.ask.expect import compare
-from heuncli.study.search.near_singular import AMPLE, error, reached
-from heuncli.study.solve.solve import Options
+from heuncli.study.ask.expectations import compare
+from heuncli.study.solve.near_singular import AMPLE, error, reached
+from heuncli.study.solve.options import Options
 from heuncli.study.solve.warnings import unbalanced
 from heuncli.tree.prepare import prepare
 from tests.closed_forms.test_stretched_chain import chain

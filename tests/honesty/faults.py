@@ -7,7 +7,7 @@ from typing import Any
 import numpy as np
 
 from heuncli import tolerances
-from heuncli.study.solve.solve import Study
+from heuncli.study.ask.study import Study
 from tests.shared.exact import Exact
 
 

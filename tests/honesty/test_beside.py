@@ -16,7 +16,7 @@ from heuncli import tolerances
 from heuncli.cli.entry import enter
 from heuncli.results import Array, Results
 from heuncli.study.ask.measure import Measure, value
-from heuncli.study.solve.solve import Study
+from heuncli.study.ask.study import Study
 from tests.shared.parallelogram import parallelogram
 from tests.shared.scenes import near, study
 

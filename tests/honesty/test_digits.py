@@ -13,9 +13,9 @@ from heuncli.cli import measure
 from heuncli.report.labels import labels_of
 from heuncli.report.page import page_of
 from heuncli.report.table import plain
-from heuncli.study.ask.expect import compare
+from heuncli.study.ask.expectations import compare
+from heuncli.study.ask.study import Study
 from heuncli.study.search.extremes import Searched
-from heuncli.study.solve.solve import Study
 from tests.shared.scenes import near, study
 
 pytestmark = pytest.mark.heavy  # a family at random: with the compiled kernel, which has the same bits

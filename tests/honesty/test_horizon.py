@@ -11,7 +11,7 @@ import pytest
 
 from heuncli import tolerances
 from heuncli.results import Array, Results
-from heuncli.study.solve.solve import Study
+from heuncli.study.ask.study import Study
 from tests.honesty.chaotic import SEEDS, chaotic_scene, grid, run_of
 
 TRUTH, SECOND = 3e-15, 1e-14  # local tolerances; the run judged has 3e-14 at best

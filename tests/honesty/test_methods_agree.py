@@ -18,7 +18,7 @@ from heuncli.integration.check.estimate import Marks
 from heuncli.integration.run.runner import Trajectory
 from heuncli.method_rows import METHODS, MethodRow
 from heuncli.results import Array
-from heuncli.study.solve.solve import Study
+from heuncli.study.ask.study import Study
 from tests.bench.honesty import told
 from tests.package.test_kernels_agree import EVENTS, SPECS
 from tests.shared.scenes import study

@@ -12,7 +12,9 @@ from heuncli.cli.entry import enter
 from heuncli.report.labels import labels_of
 from heuncli.results import Array, Block, Results
 from heuncli.spec.load import load
-from heuncli.study.solve.solve import Options, Study, solve
+from heuncli.study.ask.study import Study
+from heuncli.study.solve.options import Options
+from heuncli.study.workflow import solve
 
 SPECS = Path(__file__).parents[2] / "specs"
 SOLVED = ("double", "engine", "spatial_crank", "skew_rod", "hammered_four_bar", "crankshaft_stiff")

@@ -9,7 +9,7 @@ from heuncli.integration.evaluator import Recovered
 from heuncli.mechanism.model import GROUND
 from heuncli.response import Columns, blows, columns
 from heuncli.results import Array
-from heuncli.study.solve.solve import Study
+from heuncli.study.ask.study import Study
 from tests.shared.loops import loop
 from tests.shared.scenes import near
 from tests.shared.trees import tree

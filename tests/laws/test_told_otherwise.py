@@ -15,7 +15,7 @@ import numpy as np
 import pytest
 
 from heuncli.results import Results
-from heuncli.study.solve.solve import Study
+from heuncli.study.ask.study import Study
 from tests.oracle.read import state_at
 from tests.oracle.solve import solve
 from tests.oracle.tellings import EITHER_END, TELLINGS, Telling

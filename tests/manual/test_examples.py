@@ -12,7 +12,7 @@ import pytest
 
 from heuncli.cli.entry import enter
 from heuncli.spec.load import load
-from heuncli.study.solve.solve import solve
+from heuncli.study.workflow import solve
 from tests.shared.manual import README, ROOT, TEXTS, blocks
 from tests.shared.picture import picture
 

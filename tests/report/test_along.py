@@ -16,7 +16,9 @@ from heuncli.report.table import Table
 from heuncli.results import Extremes, Place
 from heuncli.spec.load import load
 from heuncli.study.ask.measure import peak
-from heuncli.study.solve.solve import Options, Study, solve
+from heuncli.study.ask.study import Study
+from heuncli.study.solve.options import Options
+from heuncli.study.workflow import solve
 
 SPEC = """
 heun: 1

@@ -15,8 +15,10 @@ from heuncli.report.labels import labels_of
 from heuncli.report.page import Page, page_of
 from heuncli.report.table import Table
 from heuncli.spec.load import load
+from heuncli.study.ask.study import Study
 from heuncli.study.search.extremes import Searched
-from heuncli.study.solve.solve import Options, Study, solve
+from heuncli.study.solve.options import Options
+from heuncli.study.workflow import solve
 
 SPECS = Path(__file__).parents[2] / "specs"
 WANTED = frozenset({"foundation", "joints", "sections", "shares"})

@@ -15,9 +15,10 @@ from heuncli.report.export import to_json
 from heuncli.results import Results
 from heuncli.results_schema import REPORTS, ROWS, SHARES, quantity
 from heuncli.spec.load import load
-from heuncli.study.solve import recover
+from heuncli.study.solve import recovery
 from heuncli.study.solve.finiteness import leaves, require_finite
-from heuncli.study.solve.solve import Options, solve
+from heuncli.study.solve.options import Options
+from heuncli.study.workflow import solve
 from tests.cli.conftest import Heun, folder, heun  # noqa: F401  # fixtures
 
 ROOT = Path(__file__).parents[2]
@@ -113,13 +114,13 @@ def test_what_is_open_is_null_and_nothing_else_is() -> None:
     ("check", "swinging.yaml"),
 ])  # fmt: skip
 def test_every_command_refuses_it(heun: Heun, words: tuple[str, ...], monkeypatch: pytest.MonkeyPatch) -> None:  # noqa: F811
-    energy = recover.energy
+    energy = recovery.energy
 
     def broken(*given: Any) -> Any:
         block = energy(*given)
         return block | {"kinetic": block["kinetic"] + np.where(np.arange(len(block["kinetic"])) == 3, np.inf, 0.0)}
 
-    monkeypatch.setattr(recover, "energy", broken)
+    monkeypatch.setattr(recovery, "energy", broken)
     with Path("swinging.yaml").open("a") as spec:
         spec.write("expect: [{of: energy.kinetic, peak: max, is: 1}]\n")
     done = heun(*words)

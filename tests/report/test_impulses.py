@@ -23,7 +23,7 @@ from heuncli.results import Block, Results
 from heuncli.spec.load import load
 from heuncli.spec.models import Expect
 from heuncli.spec.rules import not_yet
-from heuncli.study.ask.expect import compare
+from heuncli.study.ask.expectations import compare
 from tests.shared.fakes import ACCURATE, LABELS, MAGNITUDES, FakeStudy, pendulum
 
 T = np.linspace(0.0, 2.0, 5)

@@ -10,7 +10,7 @@ from typing import Any
 
 import numpy as np
 
-from heuncli.study.solve.solve import Study
+from heuncli.study.ask.study import Study
 from tests.oracle.impulses import struck
 from tests.oracle.read import Model, Placed, model, state_at
 from tests.oracle.solve import Solution

@@ -15,8 +15,8 @@ from heuncli.report.labels import ForceInfo, JointInfo, Labels, SectionInfo
 from heuncli.report.page import Page
 from heuncli.results import Array, Block, Extremes, Magnitudes, Results
 from heuncli.results_schema import REPORT_OF
+from heuncli.study.ask.study import Study
 from heuncli.study.search.extremes import Searched
-from heuncli.study.solve.solve import Study
 
 ACCURATE: Block = {
     "energy_drift": 2e-12,

@@ -12,7 +12,9 @@ import numpy as np
 from heuncli import tolerances
 from heuncli.results import Results
 from heuncli.spec.models import Spec
-from heuncli.study.solve.solve import Options, Study, solve
+from heuncli.study.ask.study import Study
+from heuncli.study.solve.options import Options
+from heuncli.study.workflow import solve
 
 BLOCKS = ("bodies", "points", "coordinates", "foundation", "joints", "stops", "sections", "forces", "energy",
           "system_vector")  # fmt: skip

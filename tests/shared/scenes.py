@@ -9,7 +9,9 @@ import numpy as np
 
 from heuncli.results import Array, Results
 from heuncli.spec.load import load
-from heuncli.study.solve.solve import Options, Study, solve
+from heuncli.study.ask.study import Study
+from heuncli.study.solve.options import Options
+from heuncli.study.workflow import solve
 from tests.oracle.read import Placed, state_at
 from tests.oracle.values import to_yaml
 

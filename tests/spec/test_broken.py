@@ -10,7 +10,7 @@ import pytest
 
 from heuncli.errors import HeunError
 from heuncli.spec.load import load
-from heuncli.study.solve.solve import solve
+from heuncli.study.workflow import solve
 
 ROOT = Path(__file__).parents[2]
 FILES = sorted((ROOT / "specs" / "broken").glob("*.yaml"))

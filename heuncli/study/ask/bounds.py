@@ -16,7 +16,7 @@ from heuncli.results_paths import Numbers, find
 from heuncli.results_schema import BLOWS
 from heuncli.spec.models import Expect
 from heuncli.study.ask.measure import Measure, Peak, peak, value
-from heuncli.study.solve.solve import Study
+from heuncli.study.ask.study import Study
 
 How = Literal["max", "min", "abs"]
 

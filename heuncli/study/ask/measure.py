@@ -24,8 +24,8 @@ from heuncli.results_schema import (
     quantity,
     spelled_first,
 )  # fmt: skip
+from heuncli.study.ask.study import Study
 from heuncli.study.search.extremes import Searched, no_columns
-from heuncli.study.solve.solve import Study
 
 NOT_CLAIMED = "from t = {:.4g} s on nothing is claimed"
 

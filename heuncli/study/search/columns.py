@@ -14,7 +14,7 @@ from heuncli.study.solve.setup import Setup
 
 
 class Sampleable(Protocol):
-    """What is asked of a study (study/solve/solve.py)."""
+    """What a search asks of a solved scene (study/ask/study.py)."""
 
     @property
     def results(self) -> Results:

@@ -11,7 +11,7 @@ from heuncli.joint_kinds import JOINTS
 from heuncli.kinetostatics.actions import whole_joint_actions
 from heuncli.results import Array
 from heuncli.study.search.extremes import distinct
-from heuncli.study.solve.recover import Recovery
+from heuncli.study.solve.recovery import Recovery
 from heuncli.study.solve.setup import Setup
 
 PARTS = 16  # into which a span with a passage is divided

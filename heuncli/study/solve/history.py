@@ -1,4 +1,4 @@
-"""What happens: the motion asked for with its check run, or the one instant of a state; and the instants between.
+"""What happens: the motion asked for with its check run, or the one instant of a state.
 
 Impure: integrating looks at the clock.
 """
@@ -21,27 +21,20 @@ from heuncli.integration.evaluator import Recovered
 from heuncli.integration.methods.method import Method
 from heuncli.integration.methods.registry import method_of
 from heuncli.integration.refusals.solvability import Asked, require_start
-from heuncli.integration.run.loop import limits_of
 from heuncli.integration.run.pieces import at_once
 from heuncli.integration.run.runner import Eventful, Runner, Stiff, Trajectory, discontinuities_of
 from heuncli.integration.singular import singular_poses
-from heuncli.mechanism.model import Mechanism, PairLoad
+from heuncli.mechanism.model import PairLoad
 from heuncli.method_rows import AUTO
 from heuncli.records import record, replace
 from heuncli.results import Array, Estimate
-from heuncli.study.search.extremes import distinct
-from heuncli.study.solve.load_errors import Kinds
+from heuncli.study.solve.load_errors import LoadErrors
 from heuncli.study.solve.memory_estimate import Room, require_room_for_steps
 from heuncli.study.solve.setup import Setup
 from heuncli.study.solve.singular_start import require_motion
 
 if TYPE_CHECKING:  # loaded where there are conditions
     from heuncli.integration.conditions import Changes
-
-WITHIN_STEP = (0.0, 0.23, 0.52, 0.77)  # of each step of the integrator: where it is looked at for extremes first
-TURNED = np.pi / 8.0  # rad: so far a body may turn between two of these instants, an eighth period of what goes twice
-FINER = 4  # times as closely the expressions in time are looked at
-MOST_SEARCHED = 100_000
 
 
 @record
@@ -151,7 +144,7 @@ def checked_motion(
     if method.determined:
         try:
             runs = Runs(setup.runner, times, jumps, deadline, method)
-            return checked_run(runs, tolerance, Kinds(setup, by_cause))
+            return checked_run(runs, tolerance, LoadErrors(setup, by_cause))
         except SolveError:
             method = method_of(AUTO)
         except LimitError as limit:
@@ -170,7 +163,7 @@ def checked_between_events(runs: Runs, setup: Setup, tolerance: float, by_cause:
     """A motion with its check run, by a method of few stages where events end most steps and that takes less."""
     method, runs.eventful = runs.method, setup.auto
     try:
-        return checked_run(runs, tolerance, Kinds(setup, by_cause))
+        return checked_run(runs, tolerance, LoadErrors(setup, by_cause))
     except Eventful as left:
         from heuncli.integration.run.event_frequency import try_fewer_stages  # few scenes have so many
 
@@ -187,7 +180,7 @@ def begun_anew(
     """
     lost, why = left.seconds, None if runs.method is method else left.told
     try:
-        checked = checked_run(runs, tolerance, Kinds(setup, by_cause))
+        checked = checked_run(runs, tolerance, LoadErrors(setup, by_cause))
         return replace(checked, lost_seconds=checked.lost_seconds + lost, begun_anew=why)
     except Eventful as again:
         lost += again.seconds
@@ -198,7 +191,7 @@ def begun_anew(
         if runs.method is method or limit.problems[0].code != "step-limit":
             raise
     runs.method, runs.eventful = method, False
-    checked = checked_run(runs, tolerance, Kinds(setup, by_cause))
+    checked = checked_run(runs, tolerance, LoadErrors(setup, by_cause))
     return replace(checked, lost_seconds=checked.lost_seconds + lost)
 
 
@@ -219,15 +212,15 @@ def state(setup: Setup, at: float, tolerance: float, by_cause: bool = False) -> 
     require_motion(layout, answers)
     beside = interleaved(times, [start[None, :] for start in starts])
     both = runner.recovered(*beside, causes=by_cause, holding=holding)
-    kinds = Kinds(setup, by_cause)
-    kinds.add(both, *np.ones((2, 1), dtype=bool))
+    errors = LoadErrors(setup, by_cause)
+    errors.add(both, *np.ones((2, 1), dtype=bool))
     # of one instant: what rounding of its state makes of the loads, and of a pose that was looked for
     off = 0.0 if setup.rest is None else float(motion_error(Marks(layout), both, len(starts), layout.size)[0])
-    estimate = Estimate(motion=off, **kinds.estimate())
+    estimate = Estimate(motion=off, **errors.estimate())
     seconds = {"integrate": 0.0 if setup.rest is None else setup.rest.seconds, "check": 0.0}
     return History(
         answers, tolerance, estimate, blows=blows[0], beside=tuple(blows[1:]), seconds=seconds,
-        errors=kinds.errors_by_cause(),
+        errors=errors.errors_by_cause(),
     )  # fmt: skip
 
 
@@ -267,52 +260,3 @@ def resample(runner: Runner, history: History, times: Array, *, by_cause: bool =
     times = np.asarray(times, dtype=float)
     run = history.checked.run
     return recovered_at(runner, run, times, runner.resample(run, times), history.jumps, causes=by_cause)
-
-
-def search_times(setup: Setup, history: History) -> tuple[Array, bool]:
-    """Instants close enough to bracket every extreme, (n,) ascending; and whether there are enough of them.
-
-    The asked ones; some within each step, at uneven distances, so that nothing that repeats itself looks at rest; both
-    sides of all jumps; where loads and drives in time have their own extremes; and so many that no body turns far
-    between two of them: a rotor that is driven, or spins on, needs no steps, but its loads turn.
-    """
-    times = history.times
-    if history.checked is None:
-        return times, True
-    marks = np.concatenate([[0.0], history.checked.run.ends])
-    per_step = max(1, min(len(WITHIN_STEP), MOST_SEARCHED // max(len(marks), 1)))
-    inner = (marks[:-1, None] + np.diff(marks)[:, None] * np.array(WITHIN_STEP[:per_step])).ravel()
-    # a jump has a value on either side of it
-    before, after = limits_of(history.jumps)
-    grid = np.concatenate([inner, before[before > 0.0], after[before > 0.0]])
-    grid = distinct(np.concatenate([times, grid[(grid > times[0]) & (grid < times[-1])]]))
-    grid = distinct(np.concatenate([grid, *own_extremes(setup.scene.mechanism, grid)]))
-    turns = np.ceil(turned_between(setup, history, grid) / TURNED)
-    parts = np.clip(turns, 1, MOST_SEARCHED + 1).astype(int)  # what turns faster is not searched to its turns
-    enough = per_step == len(WITHIN_STEP) and int(parts.sum()) <= MOST_SEARCHED
-    parts = np.minimum(parts, max(1, MOST_SEARCHED // len(grid))) if not enough else parts
-    first = np.repeat(np.arange(len(parts)), parts)
-    share = (np.arange(len(first)) - np.repeat(np.cumsum(parts) - parts, parts)) / parts[first]
-    return np.append(grid[first] + share * np.diff(grid)[first], grid[-1:]), enough
-
-
-def own_extremes(mechanism: Mechanism, grid: Array) -> list[Array]:
-    """Where loads and drives in time alone are highest and lowest, as a finer grid shows them."""
-    in_time = {e for e in mechanism.expressions() if e.time_dependent and not e.uses}
-    if not in_time or len(grid) < 2:
-        return []
-    fine = (grid[:-1, None] + np.diff(grid)[:, None] * (np.arange(FINER) / FINER)).ravel()
-    found = []
-    for expression in in_time:
-        change = np.diff(np.array(expression.sample(fine.tolist())))
-        found.append(fine[1:-1][change[:-1] * change[1:] < 0.0])
-    return found
-
-
-def turned_between(setup: Setup, history: History, grid: Array) -> Array:
-    """The largest angle [rad] by which any body turns between neighbouring instants, (n - 1,)."""
-    driven = any(joint.drive is not None for joint in setup.scene.mechanism.joints)
-    known = resample(setup.runner, history, grid) if driven else history.recovered
-    omega = np.sqrt(np.nan_to_num(np.sum(known.bodies["omega"] ** 2, axis=2)).max(axis=1, initial=0.0))
-    omega = np.interp(grid, known.times, omega)
-    return np.asarray(np.maximum(omega[1:], omega[:-1]) * np.diff(grid))

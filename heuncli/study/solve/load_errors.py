@@ -11,9 +11,8 @@ Where a kind is nothing but what larger terms leave when they cancel it is none:
 
 from __future__ import annotations
 
-from collections.abc import Iterable, Sequence
+from collections.abc import Sequence
 from functools import cached_property
-from typing import NamedTuple
 
 import numpy as np
 
@@ -22,14 +21,15 @@ from heuncli.integration.evaluator import Recovered
 from heuncli.kinetostatics.actions import Action, AppliedLoad, applied_loads, joint_actions, whole_joint_actions
 from heuncli.kinetostatics.bodies import BodyStates, body_states
 from heuncli.kinetostatics.energy import energy
-from heuncli.kinetostatics.foundation import inertia_loads, total
+from heuncli.kinetostatics.foundation import total
 from heuncli.kinetostatics.joint_axes import in_axes
 from heuncli.kinetostatics.reactions import JointLoads, in_plane, joint_loads
 from heuncli.mechanism.size import marks
 from heuncli.results import Array, Estimate, Mask
 from heuncli.results_schema import BLOWS, BY_CAUSE
 from heuncli.shapes.rotations import cross_rows
-from heuncli.study.solve.recover import about
+from heuncli.study.solve.balance_terms import BalanceTerms
+from heuncli.study.solve.error_extents import ESTIMATED, Extent, Weights, lengths, norms, relative
 from heuncli.study.solve.setup import Setup
 
 CHOSEN_ANEW = 1e-6  # of the largest multiplier: what redundant joints leave open changes by more when rows are chosen
@@ -46,141 +46,7 @@ TOLD_IN = {
 }
 
 
-class Weights(NamedTuple):
-    """What an error is made of: so many times the difference between the runs, and the rounding of sums."""
-
-    difference: float
-    rounding: float
-
-
-ESTIMATED = Weights(2.0, 1.0)  # of a run, by one that is finer
-APART = Weights(1.0, 0.0)  # the difference itself
-
-
-class Extent:
-    """Of one quantity over the instants so far: largest error, rounding and terms; largest value and range as told.
-
-    claimed: the largest difference before the horizon.
-    """
-
-    def __init__(self, weights: Weights = ESTIMATED) -> None:
-        self.weights = weights
-        self.difference = self.claimed = self.rounding = self.terms = 0.0
-        self.largest = self.told = 0.0
-        self.low, self.high = np.inf, -np.inf
-
-    def add(
-        self, values: Array, rounding: Array, terms: Array, which: tuple[Mask, Mask], more: Array | None = None
-    ) -> None:
-        """values (c n, ...): of c runs, at each instant one after the other; more (n,): difference beside.
-
-        rounding, terms (c n,); which: the instants that are asked ones, and those before the horizon, (n,).
-        """
-        asked, before = which
-        if not values.size:
-            return
-        count = len(values) // len(asked)
-        own = values[0::count]
-        size = lengths(own)
-        difference = np.max([lengths(own - values[k::count]) for k in range(1, count)], axis=0)
-        self.differ(difference if more is None else difference + more, before)
-        self.rounding = _larger(self.rounding, rounding)
-        self.terms = _larger(self.terms, terms)
-        self.largest, self.told = _larger(self.largest, size), _larger(self.told, size[asked])
-        self.low, self.high = min(self.low, float(own.min())), max(self.high, float(own.max()))
-
-    def differ(self, difference: Array, before: Mask) -> None:
-        """More differences, and which are before the horizon, (n,)."""
-        self.difference, self.claimed = _larger(self.difference, difference), _larger(self.claimed, difference[before])
-
-    @property
-    def error(self) -> float:
-        """The estimated error."""
-        return self.weights.difference * self.difference + self.weights.rounding * self.rounding
-
-    @property
-    def claimed_error(self) -> float:
-        """The same before the horizon."""
-        return self.weights.difference * self.claimed + self.weights.rounding * self.rounding
-
-    @property
-    def exchanged(self) -> float:
-        """What lies between the lowest and the highest value, if less than the largest."""
-        return max(min(self.high - self.low, self.largest), 0.0)
-
-
-def _norms(vectors: Array) -> Array:
-    return np.asarray(np.sqrt(np.einsum("tni,tni->tn", vectors, vectors)))
-
-
-def lengths(values: Array) -> Array:
-    """The largest length of the vectors (n, ..., 3), or magnitude of the numbers (n,), at each instant."""
-    if values.ndim == 1:
-        return np.abs(values)
-    squares = np.sum(values * values, axis=-1).reshape(len(values), -1)
-    return np.asarray(np.sqrt(squares.max(axis=1)))
-
-
-def _larger(so_far: float, values: Array) -> float:
-    """The largest; what is no number is unboundedly large."""
-    largest = float(values.max(initial=0.0))
-    return max(so_far, largest) if np.isfinite(largest) else np.inf
-
-
-def relative(error: float, terms: float, *scales: float) -> float:
-    """An error against the first of the scales that is more than rounding of its terms; 0 where none is."""
-    scale = next((x for x in scales if x > tolerances.NO_LOAD * terms), 0.0)
-    if scale == 0.0:
-        return 0.0
-    found = error / scale if np.isfinite(scale) else np.inf
-    return min(found, tolerances.UNKNOWN)
-
-
-def rounding_of_loads(several: Recovered, force: Array, moment: Array, size: float) -> tuple[Array, Array]:
-    """What rounding makes of forces [N] and moments [N m] at each instant, (c n,); force, moment: their largest terms.
-
-    That of sums of some dozen terms, and beside it what the kernel finds that rounding may make of each multiplier:
-    near a singular pose the closures amplify it (kernel/orthogonal.py).
-    """
-    rows = several.rows
-    by_force = (rows["doubt"] * np.abs(rows["f"]).max(axis=2)).max(axis=1, initial=0.0)
-    by_moment = (rows["doubt"] * np.abs(rows["m"]).max(axis=2)).max(axis=1, initial=0.0)
-    F = tolerances.SUM_ROUNDING * force + by_force + by_moment / size
-    return F, tolerances.SUM_ROUNDING * moment + by_moment + size * by_force
-
-
-class Terms:
-    """The terms of the balances: inertia loads (c n, b, 3), weights, and the largest of all at each instant (c n,).
-
-    force [N]; moment [N m], those of forces over the reach of the scene among them; rounding: of the loads, relative.
-    """
-
-    def __init__(self, setup: Setup, several: Recovered, states: BodyStates, loads: Sequence[AppliedLoad]) -> None:
-        mechanism, size = setup.scene.mechanism, setup.scene.layout.size
-        self.ma, self.spin = inertia_loads(mechanism, states)
-        self.weight = np.array([b.mass for b in mechanism.bodies])[:, None] * mechanism.gravity
-        of_rows = several.rows["multiplier"][..., None] * several.rows["f"]
-        applied = [load.action for load in loads]
-        # what spins freely is a balance of terms, too: m x_s.. and I sigma. + sigma x I sigma vanish there
-        layout, bodies = setup.scene.layout, mechanism.bodies
-        turning = np.abs(states.alpha).max(axis=2) + np.sum(states.omega**2, axis=2)
-        arms = [b.center - layout.reference[layout.place[i]] for i, b in enumerate(bodies)]
-        offset = [b.mass * float(np.abs(arm).max()) for b, arm in zip(bodies, arms, strict=True)]
-        gyration = [float(np.trace(b.inertia)) for b in bodies]
-        forces = [self.ma, turning * offset, several.bodies["joint_force"], of_rows, *(x.force for x in applied)]
-        moments = [self.spin, turning * gyration, several.bodies["joint_moment"], *(x.moment for x in applied)]
-        self.force = np.maximum(_at_each(forces), np.abs(self.weight).max(initial=0.0))
-        self.moment = np.maximum(_at_each(moments), size * self.force)
-        self.rounding = rounding_of_loads(several, self.force, self.moment, size)
-
-
-def _at_each(values: Iterable[Array]) -> Array:
-    """The largest of all values at each instant, (c n,); each (c n, ...)."""
-    largest = [np.abs(x.reshape(len(x), -1)).max(axis=1, initial=0.0) for x in values]
-    return np.asarray(np.max(largest, axis=0))
-
-
-class Kinds:
+class LoadErrors:
     """Collects the differences of a motion's loads and energy between two runs, of the kinds that are asked for."""
 
     def __init__(self, setup: Setup, by_cause: bool = False, weights: Weights = ESTIMATED) -> None:
@@ -219,7 +85,7 @@ class Kinds:
     def add_loads(self, several: Recovered, states: BodyStates, loads: Sequence[AppliedLoad]) -> None:
         """Loads of all kinds."""
         joints = joint_loads(self.setup.scene.layout, several, states)
-        terms = Terms(self.setup, several, states, loads)
+        terms = BalanceTerms(self.setup, several, states, loads)
         applied = [load.action for load in loads]
         if "reactions" in self.compared:
             self.add_joints([in_axes(load, states, self.setup.asked.axes) for load in joints], terms)
@@ -231,11 +97,14 @@ class Kinds:
         if "forces" in self.compared:
             self.add_forces(loads, terms)
         if self.by_cause:
-            from heuncli.study.solve.cause_shares import compare_shares  # few runs ask for them
+            from heuncli.study.solve.share_errors import compared_shares  # few runs ask for them
 
-            compare_shares(self, several, states, applied, about(self.setup), terms)
+            for kind, name, values, more in compared_shares(self.setup, several, states, applied, self.compared, terms):
+                F, M = (rounding * more for rounding in terms.rounding)
+                rounding, of = (M, terms.moment * more) if name == "moment" else (F, terms.force * more)
+                self.take((f"{kind} {BY_CAUSE}", name), values, rounding, of)
 
-    def add_forces(self, loads: Sequence[AppliedLoad], terms: Terms) -> None:
+    def add_forces(self, loads: Sequence[AppliedLoad], terms: BalanceTerms) -> None:
         """Applied loads, and what they put into the bodies."""
         F, M = terms.rounding
         for load in loads:
@@ -249,10 +118,10 @@ class Kinds:
 
         def apart(values: Array) -> Array:
             own = values[0::count]
-            return np.asarray(np.max([_norms(own - values[k::count]) for k in range(1, count)], axis=0))
+            return np.asarray(np.max([norms(own - values[k::count]) for k in range(1, count)], axis=0))
 
         turn, turning = apart(states.omega), apart(states.alpha)
-        centripetal = 2.0 * _norms(states.omega[0::count]) * turn
+        centripetal = 2.0 * norms(states.omega[0::count]) * turn
         for unit, difference in (
             ("rad/s", turn),
             ("rad/s²", turning),
@@ -268,7 +137,7 @@ class Kinds:
         far = [max(float(np.sum(np.square(p - body.center))) for p in marks(body)) for body in bodies]
         return np.asarray(np.sqrt(far))
 
-    def add_joints(self, joints: Sequence[JointLoads], terms: Terms) -> None:
+    def add_joints(self, joints: Sequence[JointLoads], terms: BalanceTerms) -> None:
         """Reactions, in the axes in which they are told, and drives."""
         F, M = terms.rounding
         if joints:
@@ -280,9 +149,9 @@ class Kinds:
                 rounding, of = (M, terms.moment) if turns else (F, terms.force)
                 self.take(("drives", "torque" if turns else "thrust"), load.drive, rounding, of)
 
-    def add_foundation(self, states: BodyStates, actions: Sequence[Action], terms: Terms) -> None:
+    def add_foundation(self, states: BodyStates, actions: Sequence[Action], terms: BalanceTerms) -> None:
         """Total of the foundation, its elements and the mass effects."""
-        mechanism, origin = self.setup.scene.mechanism, about(self.setup)
+        mechanism, origin = self.setup.scene.mechanism, self.setup.about
         arm = states.centre - origin
         far = np.abs(arm).max(axis=(1, 2))
         self.reach = max(self.reach, float(far.max()))
@@ -300,7 +169,7 @@ class Kinds:
             self.take((kind, "force"), F, forces_rounding, terms.force)
             self.take((kind, "moment"), M, moments_rounding + far * forces_rounding, moments)
 
-    def add_sections(self, states: BodyStates, actions: Sequence[Action], terms: Terms) -> None:
+    def add_sections(self, states: BodyStates, actions: Sequence[Action], terms: BalanceTerms) -> None:
         """The cuts' loads in body axes, and how far the bodies themselves have turned between the two runs."""
         from heuncli.kinetostatics.sections import acceleration_matrix, attachments, piece_loads  # as in recover
 

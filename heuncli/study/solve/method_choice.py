@@ -57,6 +57,11 @@ def why(method: Method, layout: Layout, spec: Spec) -> list[str]:
     return [*kind_of_motion(layout, last_of(spec)), found, stiffness(layout.mechanism)]
 
 
+def anew(why: str, method: Method) -> str:
+    """Why a run was begun anew, and by which method."""
+    return f"{why}; begun anew by {method.name}"
+
+
 def stiffness(mechanism: Mechanism) -> str:
     """What may turn out to be stiff, in a sentence."""
     names = list(dict.fromkeys(load.name for load in mechanism.loads if depends(load)))

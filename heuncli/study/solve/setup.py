@@ -5,6 +5,8 @@ from __future__ import annotations
 from functools import cached_property
 from typing import TYPE_CHECKING
 
+import numpy as np
+
 from heuncli import tolerances
 from heuncli.errors import SolveError
 from heuncli.integration.following import NOT_DETERMINED, determined
@@ -22,9 +24,9 @@ from heuncli.reduction import compose as reduction
 from heuncli.reduction.model import Reduced
 from heuncli.results import Array, Block
 from heuncli.spec.models import Spec
-from heuncli.study.ask.selection import EVERYTHING, Asked
 from heuncli.study.solve.method_choice import first_choice, why
 from heuncli.study.solve.model_note import attitudes, model_note, reductions, rested
+from heuncli.study.solve.selection import EVERYTHING, Asked
 from heuncli.tree.prepare import PreparedScene, prepare
 
 if TYPE_CHECKING:  # loaded where a scene has sections
@@ -54,6 +56,12 @@ class Setup:
     rest: Rest | None = None
     auto: bool = False
     step: float | None = None
+
+    @cached_property
+    def about(self) -> Array:
+        """The point about which the foundation's moment is taken, (3,) [m], world axes."""
+        given = self.spec.foundation.about
+        return np.array(given if given is not None else (0.0, 0.0, 0.0))
 
     @cached_property
     def steady(self) -> dict[int, Array]:
@@ -139,7 +147,7 @@ def asked_part(spec: Spec, asked: Asked, reduce: bool) -> tuple[Spec, tuple[str,
     """The spec as far as it is asked for; what of the scene is left out, in a sentence."""
     if asked.is_everything:
         return spec, ()
-    from heuncli.study.ask.parts import left_out, restricted  # where not all is asked for
+    from heuncli.study.solve.needed_parts import left_out, restricted  # where not all is asked for
 
     part = restricted(spec, asked, reduce=reduce)
     return part, left_out(spec, part)

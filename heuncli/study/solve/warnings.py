@@ -7,7 +7,7 @@ from collections.abc import Sequence
 from heuncli import tolerances
 from heuncli.results import Array, Block, Status
 from heuncli.study.solve.history import History
-from heuncli.study.solve.recover import Recovery
+from heuncli.study.solve.recovery import Recovery
 from heuncli.study.solve.setup import Setup
 
 MOST_TIMES = 5  # that a sentence lists

@@ -9,9 +9,9 @@ from __future__ import annotations
 
 import contextlib
 import math
-from collections.abc import Mapping, Sequence
+from collections.abc import Callable, Mapping, Sequence
 from dataclasses import replace as changed
-from typing import TYPE_CHECKING, NamedTuple
+from typing import NamedTuple
 
 import numpy as np
 
@@ -24,20 +24,21 @@ from heuncli.results_paths import find
 from heuncli.results_schema import CUT, EVENTS, KIND_OF, MAGNITUDES, SHARES, kind_of_error, quantity
 from heuncli.spec.models import Condition, Spec
 from heuncli.study.ask.measure import report_of, stated_error
+from heuncli.study.ask.study import Study
 from heuncli.study.search.crossings import Crossings, crossings
+from heuncli.study.solve.compose import compose, impulses_of
 from heuncli.study.solve.history import History, resample
-from heuncli.study.solve.recover import recover
+from heuncli.study.solve.recovery import recover
 from heuncli.study.solve.setup import Setup
 
-if TYPE_CHECKING:
-    from heuncli.study.solve.solve import Options, Study
+Solve = Callable[[Spec], Study]  # how a spec is solved that differs in its instants or conditions alone
 
 SHOWN = 6  # digits of an instant in sentences
 NOT_TOLD = "of the event {} instants may be missing: {} is open, or not known, at some of those looked at"
 TOO_MANY = "of the event {} instants may be missing: the search was ended before all was looked at"
 
 
-def with_events(study: Study, setup: Setup, deadline: float | None) -> Study:
+def with_events(study: Study, setup: Setup, solve: Solve) -> Study:
     """The study with its events; setup: of all that conditions need. What ends on a result is solved up to there."""
     found = {changes.name: changes for changes in study.history.changes}
     conditions = study.spec.analysis.conditions
@@ -48,23 +49,19 @@ def with_events(study: Study, setup: Setup, deadline: float | None) -> Study:
     if last is not None and last.value is None:
         became = found[last.name].times[found[last.name].to]
         if len(became) and became[0] < study.results.time[-1]:
-            return ended(study, found, float(became[0]), deadline)
+            return ended(study, found, float(became[0]), solve)
     return told(replace(study, changes=found))
 
 
-def ended(study: Study, found: Mapping[str, Changes], t: float, deadline: float | None) -> Study:
+def ended(study: Study, found: Mapping[str, Changes], t: float, solve: Solve) -> Study:
     """The same motion up to an instant at which the last condition becomes true; found: what changes in all of it.
 
     Where something strikes, rests or jumps there, what holds behind it is told: the run goes on for a moment.
     """
-    from heuncli.study.solve.solve import solved
-
     analysis = study.spec.analysis
     asked, later = [x for x in analysis.times if x < t] + [t], moment_behind(study.history, t)
     run_to = asked if later is None else [*asked, later]
-    shorter = solved(
-        study.spec._replace(analysis=analysis._replace(times=tuple(run_to), conditions=())), study.options, deadline
-    )
+    shorter = solve(study.spec._replace(analysis=analysis._replace(times=tuple(run_to), conditions=())))
     if later is not None:
         shorter = up_to(shorter, jump_at(shorter.history, t))
     last = float(shorter.results.time[-1])
@@ -92,8 +89,6 @@ def moment_behind(history: History, t: float) -> float | None:
 
 def up_to(study: Study, t: float) -> Study:
     """What a study tells before its last instants, those from t on, and at t."""
-    from heuncli.study.solve.solve import blows, compose
-
     history, setup, options = study.history, study.setup, study.options
     assert history.checked is not None
     times = np.append(history.times[history.times < t * (1.0 - tolerances.SIDE_BY_SIDE)], t)
@@ -106,16 +101,14 @@ def up_to(study: Study, t: float) -> Study:
         jumps=tuple(x for x in history.jumps if x <= t), singular=tuple(x for x in history.singular if x <= t),
     )  # fmt: skip
     recovery = recover(setup, own, options.least_norm)
-    struck = blows(setup, history, options.least_norm, by_cause)
+    struck = impulses_of(setup, history, options.least_norm, by_cause)
     results = compose(setup, history, recovery, options.reports, struck)
     results.work["seconds"] = dict(study.results.work["seconds"])
     return replace(study, history=history, recovery=recovery, results=results, struck=struck)
 
 
-def before_failure(spec: Spec, options: Options, deadline: float | None, error: SolveError) -> Study:
+def before_failure(spec: Spec, solve: Solve, error: SolveError) -> Study:
     """The motion that ends on a result before the instant at which it would fail; else raises the error."""
-    from heuncli.study.solve.solve import solved
-
     assert error.reached is not None
     for share in tolerances.BEFORE_FAILURE:
         last = error.reached * (1.0 - share)
@@ -123,7 +116,7 @@ def before_failure(spec: Spec, options: Options, deadline: float | None, error: 
         if len(times) < 2:
             break
         with contextlib.suppress(SolveError):
-            study = solved(spec._replace(analysis=spec.analysis._replace(times=times)), options, deadline)
+            study = solve(spec._replace(analysis=spec.analysis._replace(times=times)))
             ending = next(c for c in spec.analysis.conditions if c.ends)
             if study.changes[ending.name].to.any():
                 return replace(study, spec=spec)

@@ -15,7 +15,7 @@ from heuncli.expressions.programs import Expression
 from heuncli.records import fields
 from heuncli.results_schema import BLOWS, EVENTS, SHARES
 from heuncli.spec.models import End, Spec
-from heuncli.study.ask.selection import Asked, entries_of
+from heuncli.study.solve.selection import Asked, entries_of
 from heuncli.study.solve.words import some
 
 Ends = Mapping[str, Mapping[str, set[str]]]

@@ -20,7 +20,8 @@ from heuncli.integration.evaluator import Recovered
 from heuncli.integration.run.runner import Trajectory
 from heuncli.results import Array, Indices, Mask
 from heuncli.results_schema import quantity
-from heuncli.study.solve.recover import HUNG_ON_RANK, Recovery, asked_blocks
+from heuncli.study.solve.blocks import blocks_asked_for
+from heuncli.study.solve.recovery import HUNG_ON_RANK, Recovery
 from heuncli.tree.layout import Layout
 
 AMPLE = 10.0  # times the change: errors were 0.2 of it in the median of 4,711 instants, 3.4 at the most
@@ -37,16 +38,16 @@ class Leaf(NamedTuple):
     kind: Kind
 
 
-def known_blocks(
+def without_unknown(
     recovery: Recovery, wanted: Set[str], run: Trajectory, jumps: Sequence[float]
 ) -> tuple[dict[str, Any], Array]:
     """The blocks of a motion, nan where rounding reaches a number beside a singular pose; the instants of such."""
-    shown = asked_blocks(recovery, wanted)
+    shown = blocks_asked_for(recovery, wanted)
     near = nearly_singular(recovery, wanted)
     if not len(near):
         return shown, np.zeros(0)
     moved = moved_states(recovery, near, run, jumps)
-    other = asked_blocks(Recovery(recovery.setup, moved, recovery.least_norm), wanted)
+    other = blocks_asked_for(Recovery(recovery.setup, moved, recovery.least_norm), wanted)
     unknown = np.zeros(len(near), dtype=bool)
     known = [
         (leaf, leaf.block[leaf.name][near], error(leaf.block[leaf.name][near], elsewhere.block[leaf.name]))

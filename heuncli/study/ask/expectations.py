@@ -13,7 +13,7 @@ from heuncli.results import Array, Results
 from heuncli.results_paths import find
 from heuncli.spec.models import Expect
 from heuncli.study.ask.measure import NOT_CLAIMED, Measure, Peak, lost_from, peak
-from heuncli.study.solve.solve import Study
+from heuncli.study.ask.study import Study
 
 
 @record

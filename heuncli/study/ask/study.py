@@ -1,0 +1,176 @@
+"""A solved scene, of which more can be asked: its results at other instants, their extremes between the samples."""
+
+from __future__ import annotations
+
+from collections.abc import Mapping, Sequence
+from functools import cached_property
+from types import MappingProxyType
+from typing import TYPE_CHECKING
+
+import numpy as np
+
+from heuncli.records import record, replace
+from heuncli.results import Accuracy, Array, Block, Extremes, Magnitudes, Place, Results
+from heuncli.results_schema import REPORTS, SHARED, SHARES, with_shared
+from heuncli.spec.models import Spec
+from heuncli.study.search import extremes
+from heuncli.study.search.columns import Sampled
+from heuncli.study.search.extremes import Searched
+from heuncli.study.search.instants import search_times
+from heuncli.study.solve.compose import compose, known_blocks
+from heuncli.study.solve.finiteness import require_finite
+from heuncli.study.solve.history import History, resample
+from heuncli.study.solve.options import Options
+from heuncli.study.solve.recovery import Recovery, recover
+from heuncli.study.solve.setup import Setup
+from heuncli.study.solve.warnings import left_out
+
+if TYPE_CHECKING:  # loaded where there are conditions, or something strikes
+    from heuncli.integration.conditions import Changes
+    from heuncli.study.solve.impulses import Impulses
+
+MOST_SEARCHED = 1_000_000  # numbers to look at for the extremes of a whole report; one measure has no such bound
+NONE: frozenset[str] = frozenset()
+CHUNK = 200_000  # body-instants whose answers are kept at a time
+TOO_FEW = "extremes are searched from {} instants: too few to see every turn and step of this motion"
+CUT_SHORT = "the search for extremes was ended before all was looked at that may lie higher"
+
+
+@record
+class Study:
+    """A solved scene: `results` at the asked instants, `resample` for any others of the same run.
+
+    Impure: keeps what its answers at other instants are warned of.
+    """
+
+    spec: Spec
+    options: Options
+    setup: Setup
+    history: History
+    recovery: Recovery
+    results: Results
+    struck: Impulses | None = None
+    changes: Mapping[str, Changes] = MappingProxyType({})
+
+    @property
+    def magnitudes(self) -> Magnitudes:
+        """What the numbers at the asked instants, and those of blows, are summed from, and their errors."""
+        own, errors = self.recovery.magnitudes, dict(self.history.errors)
+        if self.struck is None:
+            return own._replace(errors=errors)
+        return own._replace(by_unit={**self.struck.by_unit, **own.by_unit}, errors=errors | self.struck.errors)
+
+    @cached_property
+    def search_times(self) -> Array:
+        """Instants close enough to bracket every extreme, (n,) ascending."""
+        times, enough = search_times(self.setup, self.history)
+        if not enough:
+            self.later[TOO_FEW.format(len(times))] = None
+        if self.setup.cuts and len(times) > 1:
+            from heuncli.study.search.passages import may_pass, passages  # where there are sections
+
+            if may_pass(self.setup):
+                times = extremes.distinct(np.concatenate([times, passages(lambda at: self._recovery(at, NONE), times)]))
+        return extremes.filled(times)
+
+    def resample(self, times: Array) -> Results:
+        """The same run at other instants within it (ascending)."""
+        if self.history.checked is None:
+            return self.results
+        wanted = self.options.reports
+        results = compose(self.setup, self.history, self._recovery(times, wanted), wanted, self.struck)
+        results.work["seconds"] = dict(self.results.work["seconds"])
+        self.unknown.update(results.accuracy.get("unknown", ()))
+        self.later.update(dict.fromkeys(w for w in results.warnings if w not in self.results.warnings))
+        return results
+
+    @cached_property
+    def later(self) -> dict[str, None]:
+        """What was warned of since the run, at other instants and in searches: sentences, in their order."""
+        return {}
+
+    @cached_property
+    def unknown(self) -> set[float]:
+        """The instants looked at since the run at which rounding beside a singular pose reaches some numbers."""
+        return set(self.results.accuracy.get("unknown", ()))
+
+    def impulses(self, setup: Setup | None = None) -> list[Block]:
+        """The blocks of the blows; setup: with other cuts."""
+        if self.struck is None:
+            return []
+        return (self.struck if setup is None else self.struck.cut_by(setup)).blocks()
+
+    def struck_along(self, quantities: Sequence[str]) -> list[dict[str, Extremes]]:
+        """Of each blow the extremes of some quantities along its runs of cuts, of their whole stretches."""
+        if not any(cuts.s is not None for cuts in self.setup.cuts):
+            return []
+        from heuncli.study.search.stretches import extremes_at_a_blow  # only runs of cuts are worth it
+
+        setup = self.stretched(False)
+        return [extremes_at_a_blow(setup, block, quantities) for block in self.impulses(setup)]
+
+    def only(self, times: Array, wanted: frozenset[str], setup: Setup | None = None) -> Results:
+        """Some reports' blocks at other instants of the same run, and nothing beside them; setup: with other cuts."""
+        recovery = self._recovery(times, wanted)
+        recovery = recovery if setup is None else replace(recovery, setup=setup)
+        own = self.results
+        shown, unknown = known_blocks(self.history, recovery, wanted)
+        accuracy: Accuracy = {"unknown": unknown.tolist()} if len(unknown) else {}
+        times = recovery.recovered.times
+        results = Results(own.title, own.spec, own.version, own.model, own.status, times, accuracy=accuracy, **shown)
+        return require_finite(results)
+
+    def at(self, times: Array) -> Results:
+        """Loads by cause at other instants of the same run, (n,) ascending."""
+        return self.only(times, self.options.reports & (SHARED | {SHARES}))
+
+    def along(self, name: str, times: Array, places: Sequence[Place]) -> Results:
+        """Loads by cause of a run of cuts at other instants, (n,) ascending, cut at some places along it."""
+        from heuncli.study.search.stretches import at_places
+
+        return self.only(times, frozenset({"sections", SHARES}), at_places(self.setup, name, places))
+
+    def _recovery(self, times: Array, wanted: frozenset[str]) -> Recovery:
+        recovered = resample(self.setup.runner, self.history, times, by_cause=SHARES in wanted)
+        return recover(self.setup, recovered, self.options.least_norm)
+
+    @property
+    def at_once(self) -> int:
+        """At how many instants results are made at a time."""
+        mechanism = self.setup.scene.mechanism
+        causes = len(mechanism.loads) + 3 if SHARES in self.options.reports else 0
+        return max(50, CHUNK // max(1, len(mechanism.bodies) * (1 + causes)))
+
+    def stretched(self, bent: bool) -> Setup:
+        """The scene with its runs of cuts as whole stretches; bent: for what is no polynomial of the loads."""
+        from heuncli.study.search.stretches import stretched  # only runs of cuts are worth it
+
+        return stretched(self.setup, bent)
+
+    def extremes(
+        self, searched: Searched, wanted: frozenset[str] | None, *, whole: bool = False, times: Array | None = None
+    ) -> Extremes:
+        """The extremes over the run, before its horizon, of the columns made of its results.
+
+        wanted: the reports that the columns are made of, None for any. whole: of a whole report, where
+        there may be so many columns that a search would outweigh the run: then they are those of the asked instants.
+        times: of these instants alone.
+        """
+        between = times is None
+        times = self.search_times if times is None else times
+        if whole and len(searched.errors) * len(times) > MOST_SEARCHED:
+            times, between = self.results.time, False
+        horizon = self.results.accuracy.get("horizon")
+        if horizon is not None:
+            times = times[times < horizon] if times[0] < horizon else times[:1]
+        reports = frozenset(REPORTS) if wanted is None else with_shared(wanted)
+        sampled = Sampled(self, searched, reports, self.stretched(searched.bent) if searched.along else None)
+        found = extremes.search(
+            sampled.columns, times, sampled.groups, errors=searched.errors, even=searched.even, between=between,
+            most=extremes.MOST_COLUMNS if whole else None,
+        )  # fmt: skip
+        found = sampled.placed(found)
+        self.later.update(dict.fromkeys(left_out(sampled.unknown)))
+        if not found.complete:
+            self.later[CUT_SHORT] = None
+        return found

@@ -1,0 +1,66 @@
+"""Instants of a run close enough to each other to bracket every extreme of what is told of it."""
+
+from __future__ import annotations
+
+import numpy as np
+
+from heuncli.integration.run.loop import limits_of
+from heuncli.mechanism.model import Mechanism
+from heuncli.results import Array
+from heuncli.study.search.extremes import distinct
+from heuncli.study.solve.history import History, resample
+from heuncli.study.solve.setup import Setup
+
+WITHIN_STEP = (0.0, 0.23, 0.52, 0.77)  # of each step of the integrator: where it is looked at for extremes first
+TURNED = np.pi / 8.0  # rad: so far a body may turn between two of these instants, an eighth period of what goes twice
+FINER = 4  # times as closely the expressions in time are looked at
+MOST_SEARCHED = 100_000
+
+
+def search_times(setup: Setup, history: History) -> tuple[Array, bool]:
+    """Instants close enough to bracket every extreme, (n,) ascending; and whether there are enough of them.
+
+    The asked ones; some within each step, at uneven distances, so that nothing that repeats itself looks at rest; both
+    sides of all jumps; where loads and drives in time have their own extremes; and so many that no body turns far
+    between two of them: a rotor that is driven, or spins on, needs no steps, but its loads turn.
+    """
+    times = history.times
+    if history.checked is None:
+        return times, True
+    marks = np.concatenate([[0.0], history.checked.run.ends])
+    per_step = max(1, min(len(WITHIN_STEP), MOST_SEARCHED // max(len(marks), 1)))
+    inner = (marks[:-1, None] + np.diff(marks)[:, None] * np.array(WITHIN_STEP[:per_step])).ravel()
+    # a jump has a value on either side of it
+    before, after = limits_of(history.jumps)
+    grid = np.concatenate([inner, before[before > 0.0], after[before > 0.0]])
+    grid = distinct(np.concatenate([times, grid[(grid > times[0]) & (grid < times[-1])]]))
+    grid = distinct(np.concatenate([grid, *own_extremes(setup.scene.mechanism, grid)]))
+    turns = np.ceil(turned_between(setup, history, grid) / TURNED)
+    parts = np.clip(turns, 1, MOST_SEARCHED + 1).astype(int)  # what turns faster is not searched to its turns
+    enough = per_step == len(WITHIN_STEP) and int(parts.sum()) <= MOST_SEARCHED
+    parts = np.minimum(parts, max(1, MOST_SEARCHED // len(grid))) if not enough else parts
+    first = np.repeat(np.arange(len(parts)), parts)
+    share = (np.arange(len(first)) - np.repeat(np.cumsum(parts) - parts, parts)) / parts[first]
+    return np.append(grid[first] + share * np.diff(grid)[first], grid[-1:]), enough
+
+
+def own_extremes(mechanism: Mechanism, grid: Array) -> list[Array]:
+    """Where loads and drives in time alone are highest and lowest, as a finer grid shows them."""
+    in_time = {e for e in mechanism.expressions() if e.time_dependent and not e.uses}
+    if not in_time or len(grid) < 2:
+        return []
+    fine = (grid[:-1, None] + np.diff(grid)[:, None] * (np.arange(FINER) / FINER)).ravel()
+    found = []
+    for expression in in_time:
+        change = np.diff(np.array(expression.sample(fine.tolist())))
+        found.append(fine[1:-1][change[:-1] * change[1:] < 0.0])
+    return found
+
+
+def turned_between(setup: Setup, history: History, grid: Array) -> Array:
+    """The largest angle [rad] by which any body turns between neighbouring instants, (n - 1,)."""
+    driven = any(joint.drive is not None for joint in setup.scene.mechanism.joints)
+    known = resample(setup.runner, history, grid) if driven else history.recovered
+    omega = np.sqrt(np.nan_to_num(np.sum(known.bodies["omega"] ** 2, axis=2)).max(axis=1, initial=0.0))
+    omega = np.interp(grid, known.times, omega)
+    return np.asarray(np.maximum(omega[1:], omega[:-1]) * np.diff(grid))

@@ -1,0 +1,59 @@
+"""The terms of d'Alembert's balances at each instant: what loads are summed from, and the rounding of the sums."""
+
+from __future__ import annotations
+
+from collections.abc import Iterable, Sequence
+
+import numpy as np
+
+from heuncli import tolerances
+from heuncli.integration.evaluator import Recovered
+from heuncli.kinetostatics.actions import AppliedLoad
+from heuncli.kinetostatics.bodies import BodyStates
+from heuncli.kinetostatics.foundation import inertia_loads
+from heuncli.results import Array
+from heuncli.study.solve.setup import Setup
+
+
+def rounding_of_loads(several: Recovered, force: Array, moment: Array, size: float) -> tuple[Array, Array]:
+    """What rounding makes of forces [N] and moments [N m] at each instant, (c n,); force, moment: their largest terms.
+
+    That of sums of some dozen terms, and beside it what the kernel finds that rounding may make of each multiplier:
+    near a singular pose the closures amplify it (kernel/orthogonal.py).
+    """
+    rows = several.rows
+    by_force = (rows["doubt"] * np.abs(rows["f"]).max(axis=2)).max(axis=1, initial=0.0)
+    by_moment = (rows["doubt"] * np.abs(rows["m"]).max(axis=2)).max(axis=1, initial=0.0)
+    F = tolerances.SUM_ROUNDING * force + by_force + by_moment / size
+    return F, tolerances.SUM_ROUNDING * moment + by_moment + size * by_force
+
+
+class BalanceTerms:
+    """The terms of the balances: inertia loads (c n, b, 3), weights, and the largest of all at each instant (c n,).
+
+    force [N]; moment [N m], those of forces over the reach of the scene among them; rounding: of the loads, relative.
+    """
+
+    def __init__(self, setup: Setup, several: Recovered, states: BodyStates, loads: Sequence[AppliedLoad]) -> None:
+        mechanism, size = setup.scene.mechanism, setup.scene.layout.size
+        self.ma, self.spin = inertia_loads(mechanism, states)
+        self.weight = np.array([b.mass for b in mechanism.bodies])[:, None] * mechanism.gravity
+        of_rows = several.rows["multiplier"][..., None] * several.rows["f"]
+        applied = [load.action for load in loads]
+        # what spins freely is a balance of terms, too: m x_s.. and I sigma. + sigma x I sigma vanish there
+        layout, bodies = setup.scene.layout, mechanism.bodies
+        turning = np.abs(states.alpha).max(axis=2) + np.sum(states.omega**2, axis=2)
+        arms = [b.center - layout.reference[layout.place[i]] for i, b in enumerate(bodies)]
+        offset = [b.mass * float(np.abs(arm).max()) for b, arm in zip(bodies, arms, strict=True)]
+        gyration = [float(np.trace(b.inertia)) for b in bodies]
+        forces = [self.ma, turning * offset, several.bodies["joint_force"], of_rows, *(x.force for x in applied)]
+        moments = [self.spin, turning * gyration, several.bodies["joint_moment"], *(x.moment for x in applied)]
+        self.force = np.maximum(_at_each(forces), np.abs(self.weight).max(initial=0.0))
+        self.moment = np.maximum(_at_each(moments), size * self.force)
+        self.rounding = rounding_of_loads(several, self.force, self.moment, size)
+
+
+def _at_each(values: Iterable[Array]) -> Array:
+    """The largest of all values at each instant, (c n,); each (c n, ...)."""
+    largest = [np.abs(x.reshape(len(x), -1)).max(axis=1, initial=0.0) for x in values]
+    return np.asarray(np.max(largest, axis=0))

@@ -1,0 +1,150 @@
+"""Recovered answers as blocks of the results: joints, foundation, sections, forces, motion, energy.
+
+Each block is what `Results` holds under its name: arrays over the instants, SI units.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Mapping, Sequence, Set
+from typing import Any
+
+import numpy as np
+
+from heuncli.kinetostatics.actions import AppliedLoad, joint_actions, whole_joint_actions
+from heuncli.kinetostatics.bodies import BodyStates
+from heuncli.kinetostatics.coordinates import coordinates, points
+from heuncli.kinetostatics.energy import system_vector
+from heuncli.kinetostatics.foundation import foundation
+from heuncli.kinetostatics.joint_axes import axes_at, put_in_axes
+from heuncli.kinetostatics.reactions import JointLoads
+from heuncli.mechanism.model import JointLoad, PairLoad
+from heuncli.results import Array, Block, Mask
+from heuncli.results_schema import SHARES
+from heuncli.study.solve.recovery import Recovery
+from heuncli.study.solve.selection import chosen
+
+
+def blocks(recovery: Recovery, wanted: Set[str]) -> dict[str, Any]:
+    """The blocks of the reports that are wanted, as the fields of Results."""
+    mechanism, layout = recovery.setup.scene.mechanism, recovery.setup.scene.layout
+    recovered, states = recovery.recovered, recovery.states
+    shown: dict[str, Any] = {}
+    if "foundation" in wanted:
+        actions = [*recovery.applied, *joint_actions(recovery.joints)]
+        shown["foundation"] = foundation(mechanism, states, actions, recovery.setup.about)
+    if "joints" in wanted:
+        shown["joints"] = {j.joint.name: joint_block(j) for j in recovery.joints}
+        shown["stops"] = stops(recovery.joints)
+    if SHARES in wanted:
+        from heuncli.study.solve.cause_shares import put_shares  # few runs ask for them
+
+        put_shares(shown, recovery.shares, mechanism, states, recovery.setup.about)
+    axes = recovery.setup.asked.axes
+    for load in recovery.joints if axes != "world" and "joints" in shown else ():
+        put_in_axes(shown["joints"][load.joint.name], axes_at(load.joint, states, axes))
+    if shown and recovery.decided is not None:
+        recovery.decided.show(states, shown, axes)
+    if "energy" in wanted:
+        shown["energy"] = recovery.energy
+    if "motion" in wanted:
+        from heuncli.kinetostatics.attitudes import quaternions  # tables do not show them
+
+        turns = quaternions(layout, recovered)
+        shown["bodies"] = {b.name: body_block(states, turns, i) for i, b in enumerate(mechanism.bodies)}
+        shown["coordinates"] = coordinates(layout, recovered, states)
+        shown["system_vector"] = system_vector(mechanism, states)
+    if "points" in wanted:
+        shown["points"] = points(mechanism, states)
+    if "sections" in wanted:
+        shown["sections"] = sections(recovery, SHARES in wanted)
+    if "forces" in wanted:
+        shown["forces"] = forces(recovery.loads)
+    return shown
+
+
+def blocks_asked_for(recovery: Recovery, wanted: Set[str]) -> dict[str, Any]:
+    """The blocks of the reports that are wanted; of a report of which single entries are asked for these alone."""
+    return chosen(blocks(recovery, wanted), recovery.setup.asked)
+
+
+def body_block(states: BodyStates, turns: Array, i: int) -> Block:
+    """Motion of one body."""
+    return {
+        "position": states.x[:, i],
+        "velocity": states.v[:, i],
+        "rotation": states.R[:, i],
+        "quaternion": turns[:, i],
+        "center": states.centre[:, i],
+        "center_velocity": states.v_centre[:, i],
+        "center_acceleration": states.a_centre[:, i],
+        "angular_velocity": states.omega[:, i],
+        "angular_acceleration": states.alpha[:, i],
+    }
+
+
+def joint_block(load: JointLoads) -> Block:
+    """Reaction of one joint, with its components along and across the axis."""
+    block: Block = {"point": load.point, "force": load.force, "moment": load.moment, "open": []}
+    if load.drive is not None:
+        block["drive"] = load.drive
+    if load.axis is not None:
+        axial = np.sum(load.force * load.axis, axis=1)
+        across = load.force - axial[:, None] * load.axis
+        tilting = load.moment - np.sum(load.moment * load.axis, axis=1)[:, None] * load.axis
+        block["axial"] = axial
+        block["radial"] = np.sqrt(np.sum(across**2, axis=1))
+        block["tilting"] = np.sqrt(np.sum(tilting**2, axis=1))
+    if load.tension is not None:
+        block["tension"] = load.tension
+    return block
+
+
+def stops(joints: Sequence[JointLoads]) -> Block:
+    """What each stop exerts ON `to` along its coordinate."""
+    return {
+        own.stop.name: {"moment" if own.stop.quantity == "angle" else "force": own.value}
+        for load in joints
+        for own in load.stops
+    }
+
+
+def sections(recovery: Recovery, by_cause: bool = False) -> Block:
+    """The blocks of all sections; by_cause: with their shares."""
+    scene, states, stress = recovery.setup.scene, recovery.states, recovery.indeterminate
+    block: Block = {}
+    if not recovery.setup.cuts:
+        return block
+    # only scenes with sections load it
+    from heuncli.kinetostatics.sections import attachments, section
+
+    actions = [*whole_joint_actions(recovery.joints), *recovery.applied]
+    for asked in recovery.setup.cuts:
+        on = attachments(asked.body, states, actions)
+        cuts = asked.laid_for(on)
+        is_open: Mapping[str, Mask] = {}
+        if stress is not None:
+            from heuncli.redundancy.open_components import names_in_section, open_in_section
+
+            is_open = open_in_section(cuts, states, recovery.joints, stress)
+        own = section(cuts, states, scene.mechanism.gravity, on, is_open, scene.mechanism.planar)
+        block[cuts.name] = own | ({"open": names_in_section(is_open)} if is_open else {})
+        if by_cause:
+            from heuncli.kinetostatics.section_shares import section_shares
+
+            block[cuts.name]["shares"] = section_shares(cuts, scene.layout, states, recovery.shares, is_open)
+    return block
+
+
+def forces(loads: Sequence[AppliedLoad]) -> Block:
+    """Values, lengths, rates and powers of the applied loads."""
+    block: Block = {}
+    for applied in loads:
+        own: Block = {"value": applied.value}
+        if isinstance(applied.load, PairLoad):
+            own["length"] = applied.length
+        if isinstance(applied.load, JointLoad) and applied.load.kind == "turn_spring":
+            own["angle"] = applied.length
+        if isinstance(applied.load, PairLoad | JointLoad):
+            own["rate"] = applied.rate
+        block[applied.load.name] = own | {"power": applied.power}
+    return block

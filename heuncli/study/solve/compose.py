@@ -1,0 +1,122 @@
+"""Setup + History + Recovery -> Results: the answers at some instants of a run, with what is told of it beside them."""
+
+from __future__ import annotations
+
+from typing import TYPE_CHECKING, Any
+
+import numpy as np
+
+from heuncli.integration.following import integrated_after_all
+from heuncli.kernel.choose import KERNEL
+from heuncli.results import Array, Block, Results
+from heuncli.results_schema import BLOWS
+from heuncli.study.solve.accuracy import accuracy_of
+from heuncli.study.solve.blocks import blocks_asked_for
+from heuncli.study.solve.finiteness import require_finite
+from heuncli.study.solve.history import History
+from heuncli.study.solve.method_choice import anew
+from heuncli.study.solve.recovery import Recovery, certain_sums
+from heuncli.study.solve.selection import sums_among
+from heuncli.study.solve.setup import Setup
+from heuncli.study.solve.warnings import beside_singular_poses, status, warnings
+from heuncli.version import VERSION
+
+if TYPE_CHECKING:  # loaded where something strikes
+    from heuncli.study.solve.impulses import Impulses
+
+
+def compose(
+    setup: Setup, history: History, recovery: Recovery, wanted: frozenset[str], struck: Impulses | None
+) -> Results:
+    """The results at the instants of `recovery`, which are the history's own or others within it; and the blows.
+
+    Raises SolveError where something is neither finite nor open.
+    """
+    shown, unknown = known_blocks(history, recovery, wanted)
+    rest = setup.rest
+    done = history.checked.run if history.checked is not None else rest
+    known = accuracy_of(history, recovery, struck.residual if struck is not None else 0.0)
+    results = Results(
+        title=setup.spec.title,
+        spec={"path": setup.spec.path, "sha256": setup.spec.sha256},
+        version=VERSION,
+        model=model_of(setup, history, recovery),
+        status=status(history) if rest is None else rest.status,
+        time=recovery.recovered.times,
+        **shown,
+        impulses=struck.blocks() if struck is not None and BLOWS in wanted else [],
+        certain_sums=sums_among(certain_sums(recovery), setup.asked) if "joints" in wanted else [],
+        accuracy=known | ({"unknown": unknown.tolist()} if len(unknown) else {}),
+        work={
+            "kernel": KERNEL,
+            "steps": done.steps if done is not None else 0,
+            "evaluations": done.evaluations if done is not None else 0,
+            "seconds": {},
+        },
+        warnings=(
+            *warnings(setup, history, recovery, shown.get("joints", {}), known["balance_residual"]),
+            *beside_singular_poses(unknown),
+            *(rest.warnings if rest is not None else ()),
+        ),
+    )
+    return require_finite(results)
+
+
+def known_blocks(history: History, recovery: Recovery, wanted: frozenset[str]) -> tuple[dict[str, Any], Array]:
+    """The blocks of the reports that are wanted, and the instants of a motion at which some of it is not known: nan."""
+    if history.checked is None or not recovery.setup.scene.layout.rows:
+        return blocks_asked_for(recovery, wanted), np.zeros(0)
+    from heuncli.study.solve.near_singular import without_unknown  # only closed chains have singular poses
+
+    return without_unknown(recovery, wanted, history.checked.run, history.jumps)
+
+
+def impulses_of(setup: Setup, history: History, least_norm: bool, by_cause: bool) -> Impulses | None:
+    """The blows of the run, by_cause: with their shares; None where there was none."""
+    if not history.blows:
+        return None
+    from heuncli.study.solve.impulses import impulses  # where something strikes
+
+    return impulses(setup, history, least_norm, by_cause)
+
+
+def model_of(setup: Setup, history: History, recovery: Recovery) -> Block:
+    """What the results say of the model, that of the run with what only the run shows."""
+    split = recovery.decided.words if recovery.verdicts and recovery.decided is not None else ()
+    return (
+        setup.model
+        | ({"split": "; ".join(split)} if split else {})
+        | not_at_rest(recovery)
+        | ({"axes": setup.asked.axes} if setup.asked.axes != "world" else {})
+        | contacts_of(history)
+        | integrated(setup, history)
+    )
+
+
+def not_at_rest(recovery: Recovery) -> Block:
+    """What is told of a state that its loads set going."""
+    if recovery.setup.spec.analysis.type != "state":
+        return {}
+    from heuncli.study.solve.accelerating_bodies import moves  # a motion moves
+
+    found = moves(recovery)
+    return {"moves": found} if found else {}
+
+
+def contacts_of(history: History) -> Block:
+    """What is told of contacts: who was struck at once, who came to rest after how many strikes."""
+    notes = history.checked.run.notes if history.checked is not None else ()
+    return {"contacts": list(notes)} if notes else {}
+
+
+def integrated(setup: Setup, history: History) -> Block:
+    """What is told of a motion that went by another method than it was begun with."""
+    checked = history.checked
+    if checked is None or setup.method is None or checked.run.method is setup.method:
+        return {}
+    told: Block = {"method": checked.run.method.name}
+    if setup.method.determined:
+        told |= integrated_after_all(setup.model)
+    if checked.begun_anew is not None:
+        told |= {"reasons": [*setup.model["reasons"], anew(checked.begun_anew, checked.run.method)]}
+    return told

@@ -1,0 +1,166 @@
+"""What follows from the kernel's answers at some instants: places, reactions, verdicts, applied loads, shares, energy.
+
+Reads as the list of what is computed; each thing has its own module. Raises SolveError where no acceleration exists.
+"""
+
+from __future__ import annotations
+
+from functools import cached_property
+from typing import TYPE_CHECKING
+
+import numpy as np
+
+from heuncli.integration.evaluator import Recovered
+from heuncli.integration.refusals.solvability import require_directions, require_solvable
+from heuncli.kinetostatics.actions import Action, AppliedLoad, applied_loads, whole_joint_actions
+from heuncli.kinetostatics.bodies import BodyStates, body_states
+from heuncli.kinetostatics.energy import energy
+from heuncli.kinetostatics.magnitudes import magnitudes
+from heuncli.kinetostatics.reactions import JointLoads, joint_loads
+from heuncli.mechanism.model import PairLoad
+from heuncli.records import record, replace
+from heuncli.results import Array, Block, CertainSum, Magnitudes
+from heuncli.results_schema import BLOWS, SHARED
+from heuncli.study.solve.setup import Setup
+
+if TYPE_CHECKING:  # loaded where a scene has closed chains, or sections, or loads are told by cause
+    from heuncli.kinetostatics.shares import Shares
+    from heuncli.redundancy.resolve import Resolution
+    from heuncli.redundancy.self_stress import SelfStress
+
+
+HUNG_ON_RANK = SHARED  # reports that ask for the rank of the closures
+OF_ENERGY = frozenset({"energy", BLOWS})  # reports that tell energies
+
+
+@record
+class Recovery:
+    """What follows from the kernel's answers at some instants; each thing is computed when it is first asked for.
+
+    given: actions from outside that are no loads of the mechanism: the impulses of blows. causes: the names of the
+    kernel's columns, where these are not those of the mechanism.
+    """
+
+    setup: Setup
+    recovered: Recovered
+    least_norm: bool
+    given: tuple[Action, ...] = ()
+    causes: tuple[str, ...] | None = None
+
+    @cached_property
+    def states(self) -> BodyStates:
+        """Places, velocities and accelerations of the bodies."""
+        return body_states(self.setup.scene.layout, self.recovered, self.setup.steady)
+
+    @cached_property
+    def decided(self) -> Resolution | None:
+        """What redundant joints leave open, after the split that was asked for; None without closed chains."""
+        layout = self.setup.scene.layout
+        if not layout.rows:
+            return None
+        from heuncli.redundancy.resolve import resolve  # a tree starts faster without it
+
+        return resolve(self.setup.runner, self.recovered, self.states, self.unsplit, self.least_norm)
+
+    @property
+    def verdicts(self) -> bool:
+        """Whether it matters what redundant joints leave open: to what is asked for, or to how joints are split."""
+        setup = self.setup
+        may_share = bool(setup.model["redundant"] or setup.scene.layout.contacts)
+        return may_share or bool(HUNG_ON_RANK & setup.asked.reports)
+
+    @cached_property
+    def joints(self) -> list[JointLoads]:
+        """The joints' reactions."""
+        if self.decided is not None:
+            return self.decided.joints
+        return self.unsplit
+
+    @cached_property
+    def unsplit(self) -> list[JointLoads]:
+        """The joints' reactions as the kernel answers them: where some are redundant, one split of many."""
+        return joint_loads(self.setup.scene.layout, self.recovered, self.states)
+
+    @cached_property
+    def loads(self) -> list[AppliedLoad]:
+        """The applied loads; of a spring whose points coincide the rate at which they part: its line begins there."""
+        found = applied_loads(self.setup.scene.mechanism, self.recovered)
+        if not any(isinstance(own.load, PairLoad) and (own.length == 0.0).any() for own in found):
+            return found
+        from heuncli.integration.refusals.coincident_points import parting  # hardly any scene needs it
+
+        layout, recovered = self.setup.scene.layout, self.recovered
+        return [
+            replace(own, rate=np.where(own.length == 0.0, speed(parting(layout, own.load, recovered)), own.rate))
+            if isinstance(own.load, PairLoad)
+            else own
+            for own in found
+        ]
+
+    @cached_property
+    def shares(self) -> Shares:
+        """The joints' loads by their causes, after the same split; of instants that were recovered with causes."""
+        from heuncli.kinetostatics.shares import members_of, shares_of  # few runs ask for them
+
+        layout = self.setup.scene.layout
+        own = None if self.causes is None else {name: [k] for k, name in enumerate(self.causes)}
+        members = members_of(layout.mechanism) if own is None else own
+        found = shares_of(layout, self.recovered, self.states, self.applied, members)
+        if self.decided is None:
+            return found
+        return replace(found, joints=self.decided.chosen(found.joints, self.states))
+
+    @property
+    def applied(self) -> list[Action]:
+        """The actions of the applied loads, and of what is given beside them."""
+        return [*(load.action for load in self.loads), *self.given]
+
+    @property
+    def actions(self) -> list[Action]:
+        """Everything that acts on the bodies but their weight; of a joint constraint and drive together."""
+        return [*self.applied, *whole_joint_actions(self.joints if self.verdicts else self.unsplit)]
+
+    @cached_property
+    def energy(self) -> Block:
+        """Kinetic and potential energy, and work."""
+        return energy(self.setup.scene.layout, self.recovered, self.states, self.loads)
+
+    @cached_property
+    def magnitudes(self) -> Magnitudes:
+        """What the numbers are summed from."""
+        scene = self.setup.scene
+        energy = self.energy if OF_ENERGY & self.setup.asked.reports else {}
+        return magnitudes(scene.mechanism, self.states, self.actions, energy, scene.layout.size)
+
+    @property
+    def generic(self) -> Array:
+        """How many self-stresses there are at most at each instant but for a singular pose, (n_t,).
+
+        Those of the start, and one more for each contact that has closed since.
+        """
+        closed = (self.recovered.holding > 0.0) & ~(self.setup.runner.start_holding > 0.0)
+        return np.asarray(self.setup.model["redundant"] + closed.sum(axis=1))
+
+    @property
+    def indeterminate(self) -> SelfStress | None:
+        """The self-stresses that no split has resolved."""
+        return self.decided.left if self.decided is not None else None
+
+
+def speed(velocities: Array) -> Array:
+    """The magnitudes of vectors (n_t, 3)."""
+    return np.asarray(np.sqrt(np.sum(velocities**2, axis=-1)))
+
+
+def recover(setup: Setup, recovered: Recovered, least_norm: bool) -> Recovery:
+    """What follows from the kernel's answers. Raises SolveError where no acceleration exists."""
+    require_solvable(setup.scene, recovered)
+    require_directions(setup.scene, recovered)
+    return Recovery(setup, recovered, least_norm)
+
+
+def certain_sums(recovery: Recovery) -> list[CertainSum]:
+    """Sums of indeterminate components that are determined."""
+    if recovery.decided is None:
+        return []
+    return recovery.decided.sums(recovery.setup.runner, recovery.recovered)

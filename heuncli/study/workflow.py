@@ -1,0 +1,125 @@
+"""From a validated spec to its results: the program of `heun run` and of `heun model` as lists of their stages.
+
+    spec -> Setup -> History -> Recovery -> Results      study/solve: what a scene is, how it moves, what is told of it
+    Study                                                study/ask: the solved scene, of which more is asked
+
+This is the one place that sees both the spec and the kernel. Impure: looks at the clock.
+"""
+
+from __future__ import annotations
+
+import time
+from collections.abc import Callable
+from typing import TYPE_CHECKING
+
+from heuncli.errors import SolveError
+from heuncli.records import replace
+from heuncli.results import Block
+from heuncli.results_schema import SHARES
+from heuncli.spec.models import Spec
+from heuncli.study.ask.study import Study
+from heuncli.study.solve.compose import compose, impulses_of
+from heuncli.study.solve.error_places import placed
+from heuncli.study.solve.history import integrate
+from heuncli.study.solve.memory_estimate import require_room
+from heuncli.study.solve.method_choice import anew
+from heuncli.study.solve.options import Options, as_asked
+from heuncli.study.solve.recovery import recover
+from heuncli.study.solve.selection import needed_by
+from heuncli.study.solve.setup import Setup, set_up
+
+if TYPE_CHECKING:
+    from heuncli.integration.methods.method import Method
+
+
+def solve(spec: Spec, options: Options | None = None) -> Study:
+    """The scene solved as its analysis asks.
+
+    Raises SpecError, LimitError, and SolveError whose problems have their places in the spec.
+    """
+    options = options or Options()
+    deadline = time.monotonic() + options.time_limit if options.time_limit is not None else None
+    with placed(spec):
+        try:
+            return solved(spec, options, deadline)
+        except SolveError as error:
+            if error.reached is None or not any(c.ends and c.value is None for c in spec.analysis.conditions):
+                raise
+            from heuncli.study.ask.events import before_failure  # few scenes end so
+
+            return before_failure(spec, by(options, deadline), error)
+
+
+def by(options: Options, deadline: float | None) -> Callable[[Spec], Study]:
+    """How a spec is solved that differs from the one asked for in its instants or conditions alone."""
+    return lambda spec: solved(spec, options, deadline)
+
+
+def solved(spec: Spec, options: Options, deadline: float | None) -> Study:
+    """The scene solved up to its last instant; deadline: of time.monotonic() [s].
+
+    Raises what `solve` does; SolveError also where a motion fails behind the event that was to end it.
+    """
+    begun = time.perf_counter()
+    conditions = spec.analysis.conditions
+    asked = options.asked.with_all(needed_by(conditions, spec)) if conditions else options.asked
+    spec = as_asked(spec, options)
+    setup = set_up(spec, reduce=options.reduce, asked=asked)
+    if options.room is not None:
+        require_room(setup, options.room)
+    built = time.perf_counter()
+    by_cause = SHARES in options.reports
+    history = integrate(setup, spec.analysis.tolerance, deadline, by_cause=by_cause, room=options.room)
+    whole, setup = setup, replace(setup, asked=options.asked) if conditions else setup
+    moved = time.perf_counter()
+    recovery = recover(setup, history.recovered, options.least_norm)
+    impulses = impulses_of(setup, history, options.least_norm, by_cause)
+    results = compose(setup, history, recovery, options.reports, impulses)
+    looked_for = setup.rest.seconds if setup.rest is not None else 0.0
+    seconds = {"load": options.load_seconds, "build": built - begun - looked_for, **history.seconds}
+    results.work["seconds"] = seconds | {"recover": time.perf_counter() - moved}
+    study = Study(spec, options, setup, history, recovery, results, impulses)
+    if not conditions:
+        return study
+    from heuncli.study.ask.events import with_events  # few scenes have them
+
+    return with_events(study, whole, by(options, deadline))
+
+
+def describe(spec: Spec, *, reduce: bool = True) -> Block:
+    """The block `model` of a scene, with its names, advice on what is redundant, and what a run of it will take.
+
+    Raises as `solve` does.
+    """
+    from heuncli.redundancy.advice import advice  # runs give none
+    from heuncli.study.solve.forecast import noticed, outlook
+
+    with placed(spec):
+        asked = Options(wanted=None if spec.report is None else frozenset(spec.report)).asked
+        setup = set_up(spec, reduce=reduce, asked=asked, looked_for=False)
+        found = noticed(setup)
+        if found is not None:
+            setup = by_another_method(setup, *found)
+        return setup.model | {
+            "names": names_of(setup),
+            "integrates": outlook(setup),
+            "reasons": [*setup.model["reasons"], *watched(spec)],
+            "notes": setup.model["notes"] + advice(setup.scene, setup.model),
+        }
+
+
+def names_of(setup: Setup) -> Block:
+    """The names of the bodies, and of the joints with their kinds."""
+    mechanism = setup.scene.mechanism
+    return {"bodies": [b.name for b in mechanism.bodies], "joints": {j.name: j.kind for j in mechanism.joints}}
+
+
+def watched(spec: Spec) -> list[str]:
+    """What ends a run, and what is watched, in sentences."""
+    return [f"ends: until {c.text}" if c.ends else f"watched: {c.name} ({c.text})" for c in spec.analysis.conditions]
+
+
+def by_another_method(setup: Setup, method: Method, why: str) -> Setup:
+    """The scene with the method that a motion of it is begun anew with, being stiff or full of events."""
+    told = {"method": method.name, "reasons": [*setup.model["reasons"], anew(why, method)]}
+    return replace(setup, method=method, model=setup.model | told)
