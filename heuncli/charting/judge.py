@@ -12,10 +12,11 @@ from typing import Any
 import numpy as np
 
 from heuncli.charting.results import Errors
-from heuncli.integration.check.comparison import between_strikes
 from heuncli.integration.check.distance import angles_apart, known, points_apart
-from heuncli.integration.check.estimate import Runs, recovered_at, recovered_together
-from heuncli.integration.run.runner import Trajectory
+from heuncli.integration.check.estimate import recovered_at, recovered_together
+from heuncli.integration.check.runs import Runs
+from heuncli.integration.check.shared_blows import between_strikes
+from heuncli.integration.trajectory import Trajectory
 from heuncli.kinetostatics.reactions import JointLoads
 from heuncli.records import record, replace
 from heuncli.results import Array, Mask

@@ -11,11 +11,11 @@ from functools import cached_property
 import numpy as np
 
 from heuncli.errors import LimitError, Problem, SolveError, SpecError
-from heuncli.integration.check.estimate import Runs
-from heuncli.integration.following import BY_JOINTS
+from heuncli.integration.check.runs import Runs
+from heuncli.integration.determined_motion import BY_JOINTS
 from heuncli.integration.methods.method import Method
 from heuncli.integration.methods.registry import method_of
-from heuncli.integration.run.runner import Stiff
+from heuncli.integration.run.errors import Stiff
 from heuncli.method_rows import AUTO, DEFAULT
 from heuncli.records import record
 from heuncli.results import Array

@@ -14,7 +14,7 @@ from heuncli.charting.motion import Motion
 from heuncli.charting.results import Row
 from heuncli.errors import LimitError, Problem, SolveError, SpecError
 from heuncli.integration.methods.registry import method_of
-from heuncli.integration.run.runner import Trajectory
+from heuncli.integration.trajectory import Trajectory
 from heuncli.method_rows import DEFAULT, METHODS, MethodRow, row_of
 from heuncli.records import record
 

@@ -16,10 +16,11 @@ from heuncli.charting.judge import Judge, judge_of
 from heuncli.charting.motion import NO_TIME, Motion
 from heuncli.charting.results import KINDS, Errors, Reference
 from heuncli.errors import HeunError, LimitError, Problem, SolveError
-from heuncli.integration.check.estimate import Runs, errors
+from heuncli.integration.check.estimate import errors
+from heuncli.integration.check.runs import Runs
 from heuncli.integration.methods.followed import FOLLOWED
 from heuncli.integration.methods.registry import method_of
-from heuncli.integration.run.runner import Trajectory
+from heuncli.integration.trajectory import Trajectory
 from heuncli.method_rows import DEFAULT, row_of
 from heuncli.records import record
 from heuncli.results import Array

@@ -18,11 +18,11 @@ from heuncli.charting.motion import Motion
 from heuncli.charting.reference import Referred
 from heuncli.charting.results import COMPLETED, FAILED, NOT_RUN, UNFINISHED, Charted, Row
 from heuncli.errors import HeunError, LimitError, SolveError
-from heuncli.integration.check.estimate import Runs
+from heuncli.integration.check.runs import Runs
 from heuncli.integration.methods.followed import FOLLOWED
 from heuncli.integration.methods.method import Method
 from heuncli.integration.methods.registry import method_of
-from heuncli.integration.run.runner import Trajectory
+from heuncli.integration.trajectory import Trajectory
 from heuncli.records import record, replace
 
 SECONDS = 1.0  # a run may take, or so many times what the reference took, if that is more

@@ -60,7 +60,7 @@ class Evaluator:
         """The contacts that are closed at the start, (contacts,)."""
         if not self.layout.contacts:
             return np.zeros(0)
-        from heuncli.integration.contacts.meetings import held_at  # few scenes have them
+        from heuncli.integration.contacts.contact_events import held_at  # few scenes have them
 
         return held_at(self, 0.0, self.layout.y0)
 

@@ -12,7 +12,7 @@ import numpy as np
 
 from heuncli import tolerances
 from heuncli.errors import Problem, SolveError
-from heuncli.integration.refusals.solvability import Asked, require_solvable
+from heuncli.integration.diagnosis.solvability import Asked, require_solvable
 from heuncli.linearisation.modes import Modes, most, shape_of
 from heuncli.linearisation.oscillations import oscillations
 from heuncli.linearisation.shapes import coordinates

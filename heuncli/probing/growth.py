@@ -10,8 +10,8 @@ from heuncli import tolerances
 from heuncli.integration.evaluator import Evaluator
 from heuncli.integration.methods.dop853 import DOP853
 from heuncli.integration.methods.method import QUATERNION, Method
-from heuncli.integration.run.runner import Trajectory
 from heuncli.integration.run.stiffness import implicit_for
+from heuncli.integration.trajectory import Trajectory
 from heuncli.probing.instants import Along
 from heuncli.probing.numerics.shadows import Growth, Shadows
 from heuncli.probing.numerics.twists import twists

@@ -15,7 +15,7 @@ from heuncli import tolerances
 from heuncli.integration.evaluator import Evaluator
 from heuncli.integration.methods.dop853 import DOP853
 from heuncli.integration.methods.registry import method_of
-from heuncli.integration.run.runner import Trajectory
+from heuncli.integration.trajectory import Trajectory
 from heuncli.method_rows import row_of
 from heuncli.probing.instants import Along
 from heuncli.probing.numerics.shadows import Scale

@@ -13,8 +13,7 @@ from itertools import combinations, product
 import numpy as np
 
 from heuncli import tolerances
-from heuncli.integration.refusals.solvability import ready
-from heuncli.integration.run.runner import Runner
+from heuncli.integration.run.runner import Runner, ready
 from heuncli.joint_kinds import ABOUT_Z, JOINTS, POINT
 from heuncli.kinetostatics.bodies import body_states
 from heuncli.mechanism.model import GROUND, Joint, JointLoad

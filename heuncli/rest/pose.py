@@ -42,7 +42,7 @@ def bearing(evaluator: Evaluator, coordinates: Coordinates, t: float, state: Arr
     none = np.zeros(len(evaluator.layout.contacts))
     if not len(none):
         return pose_at(evaluator, coordinates, t, state, none)
-    from heuncli.integration.contacts.meetings import held_at  # few scenes have them
+    from heuncli.integration.contacts.contact_events import held_at  # few scenes have them
 
     still = pose_at(evaluator, coordinates, t, state, none).state
     return pose_at(evaluator, coordinates, t, state, held_at(evaluator, t, still))

@@ -18,12 +18,14 @@ from typing import NamedTuple
 import numpy as np
 
 from heuncli.errors import HeunError
-from heuncli.integration.check.comparison import interleaved
 from heuncli.integration.check.distance import Marks, motion_error
 from heuncli.integration.check.estimate import recovered_at
+from heuncli.integration.check.instants import interleaved
 from heuncli.integration.methods.method import Method
 from heuncli.integration.methods.registry import method_of
-from heuncli.integration.run.runner import Runner, Trajectory, discontinuities_of
+from heuncli.integration.run.runner import Runner
+from heuncli.integration.segments import discontinuities_of
+from heuncli.integration.trajectory import Trajectory
 from heuncli.method_rows import DEFAULT, METHODS
 from heuncli.spec.load import load
 from heuncli.spec.models import Spec

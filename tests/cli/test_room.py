@@ -11,7 +11,8 @@ import numpy as np
 import pytest
 
 from heuncli.cli import memory
-from heuncli.integration.run.step_records import Growing, Kept
+from heuncli.integration.run.step_records import Growing
+from heuncli.integration.trajectory import Kept
 from heuncli.results_schema import REPORT_OF, REPORTS, SHARES
 from heuncli.spec.load import load
 from heuncli.study.solve.memory_estimate import in_words, numbers_by_block, two_digits

@@ -19,9 +19,9 @@ from heuncli.charting.reference import refer
 from heuncli.charting.results import Chart, Charted, Row
 from heuncli.charting.runs import Charting
 from heuncli.charting.study import chart
-from heuncli.integration.check.estimate import Runs
+from heuncli.integration.check.runs import Runs
 from heuncli.integration.methods.dop853 import DOP853
-from heuncli.integration.run.runner import Trajectory
+from heuncli.integration.trajectory import Trajectory
 from heuncli.spec.load import load
 
 SCENES = Path(__file__).parents[1] / "bench" / "scenes"

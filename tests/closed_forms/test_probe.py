@@ -11,7 +11,7 @@ import pytest
 from heuncli.integration.methods.dop853 import DOP853
 from heuncli.integration.methods.method import Method
 from heuncli.integration.methods.registry import method_of
-from heuncli.integration.run.loop import Integration
+from heuncli.integration.run.kernel_loop import Integration
 from heuncli.probing.numerics.stiffness import polynomial, reach
 from heuncli.probing.results import DEAD_CENTRE, GIMBAL, HALF_TURN, SINGULAR, Probe
 from heuncli.probing.study import probe

@@ -13,8 +13,9 @@ import numpy as np
 import pytest
 from scipy.integrate import solve_ivp
 
-from heuncli.integration.run.runner import Runner, Trajectory
-from heuncli.integration.singular import singular_poses
+from heuncli.integration.check.singular_poses import singular_poses
+from heuncli.integration.run.runner import Runner
+from heuncli.integration.trajectory import Trajectory
 from heuncli.results import Array
 from heuncli.spec.load import load
 from heuncli.study.solve.setup import set_up

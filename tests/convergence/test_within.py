@@ -9,9 +9,10 @@ from pathlib import Path
 import numpy as np
 import pytest
 
-from heuncli.integration.run import loop
-from heuncli.integration.run.runner import Trajectory, discontinuities_of
-from heuncli.integration.singular import singular_poses
+from heuncli.integration.check.singular_poses import singular_poses
+from heuncli.integration.run import step_records
+from heuncli.integration.segments import discontinuities_of
+from heuncli.integration.trajectory import Trajectory
 from heuncli.results import Array
 from heuncli.spec.load import load
 from heuncli.study.solve.setup import Setup, set_up
@@ -120,7 +121,7 @@ def others(setup: Setup, run: Trajectory) -> Array:
 @pytest.mark.parametrize("name", MOVING)
 def test_the_run_itself(name: str, kept: int, monkeypatch: pytest.MonkeyPatch) -> None:
     """States at other instants are those of a run that was asked for them; which are asked changes no step."""
-    monkeypatch.setattr(loop, "KEPT", kept)
+    monkeypatch.setattr(step_records, "KEPT", kept)
     setup = scene(name)
     times = asked(setup)
     run, bare = trajectory(setup, times), trajectory(setup, times[[0, -1]])

@@ -19,9 +19,10 @@ from heuncli.charting.reference import judged_instants
 from heuncli.charting.results import COMPLETED, Charted, with_front
 from heuncli.charting.results import Row as RowOfChart
 from heuncli.errors import HeunError
-from heuncli.integration.check.estimate import shared_steps
+from heuncli.integration.check.runs import shared_steps
 from heuncli.integration.contacts.complementarity import complementary
-from heuncli.integration.contacts.strikes import Touching, answerable, short_flights
+from heuncli.integration.contacts.resting import short_flights
+from heuncli.integration.contacts.touching import Touching, answerable
 from heuncli.integration.run.pace import hopeless
 from heuncli.kinetostatics.auto_properties import Cutting, joined
 from heuncli.kinetostatics.energy import energy_drift

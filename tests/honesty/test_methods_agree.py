@@ -13,9 +13,9 @@ import pytest
 
 from heuncli import tolerances
 from heuncli.errors import SolveError, SpecError
-from heuncli.integration.check.comparison import between_strikes
-from heuncli.integration.check.estimate import Marks
-from heuncli.integration.run.runner import Trajectory
+from heuncli.integration.check.distance import Marks
+from heuncli.integration.check.shared_blows import between_strikes
+from heuncli.integration.trajectory import Trajectory
 from heuncli.method_rows import METHODS, MethodRow
 from heuncli.results import Array
 from heuncli.study.ask.study import Study

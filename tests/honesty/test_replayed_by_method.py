@@ -14,7 +14,9 @@ import pytest
 from heuncli.errors import SolveError
 from heuncli.integration.methods.method import Method
 from heuncli.integration.methods.registry import method_of
-from heuncli.integration.run.runner import Runner, Trajectory, discontinuities_of
+from heuncli.integration.run.runner import Runner
+from heuncli.integration.segments import discontinuities_of
+from heuncli.integration.trajectory import Trajectory
 from heuncli.method_rows import METHODS
 from heuncli.results import Array
 from heuncli.spec.load import load

@@ -10,8 +10,9 @@ import pytest
 
 from heuncli.errors import SolveError
 from heuncli.integration.contacts.complementarity import complementary
-from heuncli.integration.contacts.strikes import Struck, Touching, strikes
-from heuncli.integration.run.runner import Trajectory
+from heuncli.integration.contacts.restitution import Struck, strikes
+from heuncli.integration.contacts.touching import Touching
+from heuncli.integration.trajectory import Trajectory
 from heuncli.results import Array
 from heuncli.spec.load import load
 from heuncli.study.solve.setup import set_up

@@ -9,7 +9,7 @@ from __future__ import annotations
 import numpy as np
 import pytest
 
-from heuncli.integration.moving import Moving
+from heuncli.integration.integrated_scene import IntegratedScene
 from heuncli.integration.run.runner import Runner
 from heuncli.records import replace
 from heuncli.results import Array
@@ -35,7 +35,7 @@ def elsewhere(runner: Runner) -> Runner:
     layout = runner.layout
     shift = turned(layout, TURN)
     own = Runner(replace(layout, y0=layout.y0 + shift))
-    return Runner(layout, Moving(own.layout, own.workspace, lambda t, y: y - shift, lambda t, y: y + shift))
+    return Runner(layout, IntegratedScene(own.layout, own.workspace, lambda t, y: y - shift, lambda t, y: y + shift))
 
 
 @pytest.mark.parametrize("name", SPECS)

@@ -8,7 +8,7 @@ import numpy as np
 import pytest
 
 from heuncli.integration.evaluator import Evaluator
-from heuncli.integration.refusals.solvability import ready
+from heuncli.integration.run.runner import ready
 from heuncli.reduction.model import Reduction
 from heuncli.reduction.plane import step as plane
 from heuncli.results import Array

@@ -14,9 +14,8 @@ import numpy as np
 import pytest
 
 from heuncli.integration.evaluator import Recovered
-from heuncli.integration.moving import smaller
-from heuncli.integration.refusals.solvability import ready
-from heuncli.integration.run.runner import Runner
+from heuncli.integration.integrated_scene import smaller
+from heuncli.integration.run.runner import Runner, ready
 from heuncli.reduction import held, merged, spins
 from heuncli.reduction.model import Reduced, Reduction
 from heuncli.results import Array

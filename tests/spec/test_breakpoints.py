@@ -15,7 +15,7 @@ from heuncli.expressions.grammar import Scope, compile_expression
 from heuncli.expressions.programs import Expression, Table
 from heuncli.integration.methods.dop853 import DOP853
 from heuncli.integration.methods.registry import method_of
-from heuncli.integration.run.loop import limits_of
+from heuncli.integration.segments import limits_of
 from heuncli.study.solve.history import require_steps
 
 TRIANGLE = fit("triangle", [0.0, 0.25, 0.5], [0.0, 1.0, 0.0], "linear", None, 0.5)

@@ -1,7 +1,7 @@
 """How far runs of one motion are apart, seen at the same instants: their points, and the angles that they count.
 
 Points of all bodies, by the scene's size; angles over many turns apart, for a small wheel's may err by far more than
-its points. The estimated error is twice the largest distance of the first run from any other (checked.py), with what
+its points. The estimated error is twice the largest distance of the first run from any other (estimate.py), with what
 rounding makes of a place.
 """
 

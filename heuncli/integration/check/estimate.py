@@ -1,7 +1,7 @@
 """Error estimate of a motion by further runs.
 
 The estimate is 2 |A - B|: A is the run that is told, B a check run at 1/30 of A's local tolerance from a start moved by
-rounding, both seen at the same instants (integration/check/comparison.py). Tried on free, open and closed chains,
+rounding, both seen at the same instants (integration/check/instants.py). Tried on free, open and closed chains,
 |A - B| is 0.9 to 1.1 of the true error; a coarser check run would give 3 to 100 times it.
 
 A method of given step has no tolerance: B goes in quarters of the step, |A - B| is then 1 - 4^-p of A's error, three
@@ -15,7 +15,6 @@ distance of any two counts, of the motion: what all make of rounding may lie to 
 
 from __future__ import annotations
 
-import contextlib
 import time
 from collections.abc import Iterator, Mapping, Sequence
 from typing import TYPE_CHECKING, Protocol
@@ -23,28 +22,22 @@ from typing import TYPE_CHECKING, Protocol
 import numpy as np
 
 from heuncli import tolerances
-from heuncli.errors import LimitError, SolveError
-from heuncli.integration.check.comparison import between_strikes, instants_of, interleaved, moved_start, passed_between
-from heuncli.integration.check.distance import Marks, angle_error, motion_error
+from heuncli.integration.check.distance import angle_error, motion_error
+from heuncli.integration.check.instants import instants_of, interleaved, passed_between
+from heuncli.integration.check.runs import Runs
+from heuncli.integration.check.shared_blows import between_strikes
 from heuncli.integration.contacts.blows import Jump
 from heuncli.integration.evaluator import Recovered
-from heuncli.integration.methods.dop853 import DOP853
-from heuncli.integration.methods.method import Method
-from heuncli.integration.run.loop import limits_of
-from heuncli.integration.run.runner import ClosuresLost, Runner, Trajectory
+from heuncli.integration.run.runner import Runner
+from heuncli.integration.segments import limits_of
+from heuncli.integration.trajectory import Trajectory
 from heuncli.records import record, replace
 from heuncli.results import Array, Estimate, Mask
 
 if TYPE_CHECKING:  # loaded where there are conditions
-    from heuncli.integration.conditions import Changes
+    from heuncli.integration.check.changes import Changes
 
-RATIO = 30.0  # local tolerance of A over that of B
-FIRST = 1.0  # local tolerance of the first run over the tolerance asked
-LEAST_RATIO = 4.0  # the same at least: errors are as the tolerances, 2 |A - B| is still 1.5 times that of A
-LEAST_HALVING = 2.0  # of a given step: 2 |A - B| is at order 1 still the error of A
 RERUNS = 2
-COLLAPSED = ("step-collapsed", "closure-lost")  # how a run may end near a singular pose because of rounding
-FUTILE = 20  # a finer run that takes more than so many times the steps of the coarser one is dominated by rounding
 CHUNK = 2_000_000  # numbers compared at a time
 
 
@@ -90,133 +83,6 @@ class Checked:
     lost_seconds: float  # of runs that missed the tolerance
     changes: tuple[Changes, ...] = ()  # of the conditions
     begun_anew: str | None = None  # why by another method than the one that was chosen
-
-
-class Runs:
-    """Runs of one motion, at several tolerances."""
-
-    def __init__(
-        self, runner: Runner, times: Array, jumps: Sequence[float], deadline: float | None, method: Method = DOP853,
-        *, step: float | None = None, watched: bool = False,
-    ) -> None:  # fmt: skip
-        """step: of a method of given step. watched: the runs to be told are left where another takes less (Stiff)."""
-        self.runner, self.times, self.jumps, self.step = runner, times, jumps, step
-        self.deadline, self.method, self.watched = deadline, method, watched
-        self.eventful = False  # whether the same runs are left where events end their steps, or cease to (Eventful)
-        self.moved, self.marks = moved_start(runner.layout), Marks(runner.layout)
-
-    def run(
-        self, local: float, at: Array | None = None, start: Array | None = None,
-        most_steps: int = tolerances.MOST_STEPS, by: Method | None = None,
-    ) -> Trajectory:  # fmt: skip
-        """A run from the start, or from one beside it, seen at the asked instants or at others; by: another method.
-
-        At others: a check run, which goes as far as the run that it checks.
-        """
-        return self.runner.trajectory(
-            self.times if at is None else at, local, discontinuities=self.jumps, deadline=self.deadline,
-            most_steps=most_steps, method=by or self.method, start=start, whole=at is not None,
-            watched=self.watched and at is None, eventful=self.eventful and at is None,
-        )  # fmt: skip
-
-    def first(self, tolerance: float) -> Trajectory:
-        """The run asked for; where it collapses at a singular pose, a coarser one that passes it."""
-        if self.step is not None:
-            return self.given(self.step)
-        local = max(tolerance * FIRST, tolerances.LEAST_TOLERANCE)
-        try:
-            return self.run(local)
-        except SolveError as error:
-            if self.method.determined:
-                raise
-            collapsed = self.runner.layout.rows and error.problems[0].code in COLLAPSED
-            coarser = [local * RATIO**k for k in (1, 2, 3)] if collapsed else []
-            for other in (x for x in coarser if x <= tolerances.COARSEST_RETRY):
-                with contextlib.suppress(SolveError):
-                    return self.run(other)
-            if isinstance(error, ClosuresLost):
-                from heuncli.integration.refusals.contradictions import located  # only on the way to an error
-
-                lock = located(self.runner, error)
-                lock.reached = error.reached
-                raise lock from None
-            raise
-
-    def given(self, step: float) -> Trajectory:
-        """The run in steps of a given length."""
-        try:
-            return self.run(step)
-        except SolveError as error:
-            from heuncli.integration.refusals.given_steps import of_given_steps  # only on the way to an error
-
-            raise of_given_steps(self, error) from None
-
-    def attempt(
-        self, local: float, than: Trajectory, at: Array | None, start: Array | None, by: Method | None = None
-    ) -> Trajectory | None:
-        """A run of not many more steps than another; None where rounding lets it collapse, near a singular pose say."""
-        try:
-            return self.run(local, at, start, FUTILE * than.steps + 1000, by)
-        except SolveError:
-            return None
-        except LimitError as limit:
-            if limit.problems[0].code == "time-limit":
-                raise
-            return None
-
-    def finer(self, a: Trajectory, by: float) -> Trajectory | None:
-        """A run at a tolerance smaller by a factor; by that of check runs at least, and where it collapses."""
-        for ratio in (by, RATIO) if by > RATIO else (RATIO,):
-            run = self.attempt(max(a.local / ratio, tolerances.LEAST_TOLERANCE), a, None, None)
-            if run is not None:
-                return run
-        return None
-
-    def check(self, a: Trajectory, at: Array) -> tuple[Trajectory, ...]:
-        """The check run of A; behind it one more that was made on the way to it.
-
-        Where rounding stands against a finer run, one that is less so serves; without any a coarser one: the estimate
-        is larger, never too small. A start moved by rounding may set what A holds exactly at rest trembling so fast
-        that no run can follow: then the start stays.
-        """
-        most, least = (RATIO, LEAST_RATIO) if not a.method.fixed else (float(tolerances.CHECK_STEPS), LEAST_HALVING)
-        tried = [(a.local / ratio, self.moved) for ratio in (most, least, 1.0 / most)]
-        for local, start in (*tried, (a.local / most, None)):
-            run = self.attempt(local, a, at, start, a.method.check)
-            if run is not None:
-                return self.apart(a, run, at, start)
-        return (self.run(a.local * most, at, by=a.method.check),)
-
-    def apart(self, a: Trajectory, b: Trajectory, at: Array, start: Array | None) -> tuple[Trajectory, ...]:
-        """The check run, before it one as fine as there is where it takes steps that A took: there both err alike.
-
-        So it does where what happens cuts steps and not the tolerance: the difference would show nothing. It counts as
-        well: in a short pulse each run errs by the rounding of its own instants, and two may agree by chance.
-        """
-        if a.method.fixed or a.method.determined or not shared_steps(a.ends, b.ends):
-            return (b,)
-        if b.local <= tolerances.LEAST_TOLERANCE:
-            return (b,)
-        finest = self.attempt(tolerances.LEAST_TOLERANCE, a, at, start)
-        return (b,) if finest is None else (finest, b)
-
-    def beside(self, a: Trajectory, at: Array) -> Trajectory | None:
-        """A run like A from the moved start, where rounding may matter; else None."""
-        if a.method.determined or (not a.method.fixed and a.local >= tolerances.ROUNDING_MATTERS):
-            return None
-        return self.attempt(a.local, a, at, self.moved)
-
-
-def shared_steps(a: Array, b: Array) -> bool:
-    """Whether two runs, by the ends of their steps, have a step in common that counts among them: a long one."""
-    if not len(b):
-        return False  # it was ended at its start
-    steps, others = (np.append(0.0, ends[:-1]) for ends in (a, b))
-    long = a - steps > tolerances.SHARED_STEP * np.max(a - steps, initial=0.0)
-    begin, end = steps[long], a[long]
-    near = tolerances.SAME_STEP * (end - begin)
-    k = np.minimum(np.searchsorted(others, begin - near), len(b) - 1)
-    return bool(np.any((np.abs(others[k] - begin) <= near) & (np.abs(b[k] - end) <= near)))
 
 
 @record
@@ -282,7 +148,7 @@ def changes_of_conditions(runs: Runs, best: Compared) -> tuple[Changes, ...]:
     """When the conditions change, up to the horizon."""
     if not runs.runner.layout.mechanism.conditions:
         return ()
-    from heuncli.integration.conditions import changes_of  # few scenes have them
+    from heuncli.integration.check.changes import changes_of  # few scenes have them
 
     return changes_of(runs.runner, best.runs, np.inf if best.horizon is None else best.horizon)
 

@@ -14,7 +14,7 @@ import numpy as np
 from heuncli.expressions.discontinuities import jumps
 from heuncli.expressions.programs import Expression
 from heuncli.integration.evaluator import Evaluator, Recovered
-from heuncli.integration.run.loop import just_after, just_before
+from heuncli.integration.segments import just_after, just_before
 from heuncli.mechanism.model import Mechanism
 from heuncli.records import record, replace
 from heuncli.response import Blows as Answered

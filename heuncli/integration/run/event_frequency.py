@@ -9,26 +9,14 @@ scene is always solved in the same way.
 
 from __future__ import annotations
 
-from contextlib import suppress
-from typing import TYPE_CHECKING
-
 import numpy as np
 
 from heuncli import tolerances
-from heuncli.errors import LimitError, SolveError
 from heuncli.integration.methods.method import Method
-from heuncli.integration.methods.registry import method_of
-from heuncli.integration.run.runner import Eventful
-
-if TYPE_CHECKING:
-    from heuncli.integration.check.estimate import Runs
-    from heuncli.integration.run.loop import Steps
+from heuncli.integration.run.errors import Eventful
+from heuncli.integration.run.step_records import Steps
 
 FEW_STAGES = "DOPRI5"
-TOLD = (
-    "events: {cut} of the first {steps} steps end at one: up to t = {t:.3g} s {name} takes {few} evaluations, where "
-    "{method} takes {many}"
-)
 
 
 def require_as_before(steps: Steps, method: Method, pieces: int) -> None:
@@ -46,21 +34,3 @@ def require_as_before(steps: Steps, method: Method, pieces: int) -> None:
 def cut_steps(steps: Steps, pieces: int) -> int:
     """How many of the steps done an event ended."""
     return pieces + int(np.count_nonzero(steps.column("turned")))
-
-
-def try_fewer_stages(runs: Runs, left: Eventful) -> bool:
-    """Whether the runs go by a method of few stages from now on, and why; not where the one they had takes no more."""
-    method, before = method_of(FEW_STAGES), [t for t in runs.jumps if t < left.reached]
-    with suppress(SolveError, LimitError):
-        trial = runs.runner.trajectory(
-            np.array([left.reached]), left.local, discontinuities=before, deadline=runs.deadline, method=method,
-            most_steps=left.evaluations // (len(method.nodes) - 1),
-        )  # fmt: skip
-        if trial.evaluations < left.evaluations:
-            left.told = TOLD.format(
-                cut=left.cut, steps=left.steps, t=left.reached, name=method.name, few=trial.evaluations,
-                method=runs.method.name, many=left.evaluations,
-            )  # fmt: skip
-            runs.method = method
-            return True
-    return False

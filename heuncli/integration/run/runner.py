@@ -7,152 +7,50 @@ from __future__ import annotations
 
 import math
 import time
-from collections.abc import Callable, Sequence
-from functools import cached_property
+from collections.abc import Sequence
 from typing import TYPE_CHECKING, NamedTuple
 
 import numpy as np
 
 from heuncli import tolerances
 from heuncli.errors import LimitError, Problem, SolveError
-from heuncli.expressions.discontinuities import discontinuities
 from heuncli.expressions.programs import Expression
-from heuncli.integration.contacts.blows import Jump
 from heuncli.integration.evaluator import Evaluator, Recovered, work_of
+from heuncli.integration.integrated_scene import IntegratedScene, itself
 from heuncli.integration.methods.dop853 import DOP853
 from heuncli.integration.methods.method import Method
-from heuncli.integration.moving import Moving, itself
-from heuncli.integration.run.loop import (
+from heuncli.integration.run.errors import TROUBLE, ClosuresLost, Eventful, Stiff, time_up
+from heuncli.integration.run.interruptions import Blows
+from heuncli.integration.run.kernel_loop import (
+    CHATTERING,
     EVENTS_AFTER,
-    NO_SEGMENTS,
+    GOES_ON,
+    HALF_TURN,
+    LET_GO,
+    MORE,
+    REACHED,
+    ROPE_SLACK,
+    STIFF,
+    STRUCK,
+    TURNED,
+    UNSOLVED,
     Integration,
-    Segment,
-    Segments,
     Start,
-    Steps,
-    just_before,
-    smooth_segments,
 )
 from heuncli.integration.run.pace import hopeless, in_words
-from heuncli.integration.run.pieces import Blows
-from heuncli.integration.run.step_records import NOTHING_KEPT, Growing, Kept
-from heuncli.kernel.choose import steps as kernel
-from heuncli.mechanism.model import Mechanism
+from heuncli.integration.run.step_records import Growing, Steps
+from heuncli.integration.segments import Segment, Segments, just_before, smooth_segments
+from heuncli.integration.trajectory import Trajectory
 from heuncli.records import record
 from heuncli.results import Array
 from heuncli.tree.layout import Layout
+from heuncli.tree.prepare import PreparedScene, lacking_inertia
 
 if TYPE_CHECKING:  # loaded where a condition ends the run
-    from heuncli.integration.conditions import Until
+    from heuncli.integration.run.conditions import Until
 
 CHUNK = 2_000  # body-steps between two looks at the clock
 DENSE_CHUNK = 2_000_000  # the same by the squares of a state's numbers, whose cube the equations of a step take
-
-REACHED, MORE, ROPE_SLACK, CHATTERING, STRUCK, LET_GO, TURNED, STIFF, HALF_TURN = (
-    kernel.CODES[name]
-    for name in ["reached", "more", "rope slack", "chattering", "struck", "let go", "turned", "stiff", "half turn"]
-)
-GOES_ON = (MORE, STRUCK, LET_GO, TURNED, STIFF)
-UNSOLVED = kernel.CODES["unsolved"]
-TROUBLE = {
-    kernel.CODES["collapsed"]: (
-        "step-collapsed",
-        "the step length fell to the rounding error of the time",
-        "a load or a rate grows without bound there",
-    ),
-    kernel.CODES["not a number"]: (
-        "not-a-number",
-        "no finite acceleration exists beyond this instant",
-        "look at the expressions and tables, and at points that coincide",
-    ),
-    kernel.CODES["closures lost"]: (
-        "closure-lost",
-        "the closed chains cannot be held together beyond this instant",
-        "the mechanism locks or reaches the end of its range there",
-    ),
-    UNSOLVED: (
-        "stages-unsolved",
-        "the equations of an implicit step are not solved: Newton's iteration does not contract",
-        "a shorter step, or --method Radau9, which finds its own",
-    ),
-}
-
-
-@record
-class Trajectory:
-    """The state at the asked instants.
-
-    times (n_t,) [s]; states (n_t, n_state), those of the scene; kept: of what is integrated in its place; ends:
-    instants of the accepted steps; gap: largest closure gap left [m]. branches (n_steps, n): those of the expressions
-    that a step held; turned: of each step whether they change at its end; undecided: of how many steps bounds could not
-    tell what loads do between the stages.
-    """
-
-    times: Array
-    states: Array
-    ends: Array
-    steps: int
-    evaluations: int
-    gap: float
-    local: float  # its local tolerance; of a method of fixed step, the step
-    method: Method
-    seconds: float
-    segments: Segments = NO_SEGMENTS  # without discontinuities, events of contacts or blows
-    # of the first, of some other steps and of those after blows: number, record of where it starts
-    kept: Kept = NOTHING_KEPT
-    pivots: Array = np.zeros(0)  # least pivot of the closures in each step
-    settled: Array = np.zeros(0)  # of each step whether its stages were settled on the closures
-    branches: Array = np.zeros((0, 0))
-    turned: Array = np.zeros(0)
-    undecided: int = 0
-    stopped: str | None = None  # the rope that would have to push just after the last instant
-    ended: bool = False  # by the condition that ends it
-    behind: Array = np.zeros(0)  # the branches that hold behind the last step
-    blows: tuple[Jump, ...] = ()
-    holding: Array = np.zeros((1, 0))  # (n_steps + 1, contacts): closed in each step, and behind the last one
-    notes: tuple[str, ...] = ()  # what is told of contacts
-    within: Callable[[Array], Array] | None = None  # of steps that are not the kernel's: the states at instants
-
-    @property
-    def reached(self) -> float:
-        """The end of its last step [s]; the start where a rope ends it there, before any step."""
-        return float(self.ends[-1]) if len(self.ends) else 0.0
-
-    @property
-    def events(self) -> tuple[float, ...]:
-        """The instants at which branches change that hang on coordinates."""
-        return tuple(self.ends[self.turned > 0.0].tolist())
-
-    @cached_property
-    def after_blows(self) -> dict[int, Array]:
-        """The records from which the steps after blows start."""
-        at = {int(np.searchsorted(self.ends, blow.time, side="right")) for blow in self.blows}
-        own = np.isin(self.kept.steps, list(at))
-        return dict(zip(self.kept.steps[own].tolist(), self.kept.records[own], strict=True))
-
-    @property
-    def jumps(self) -> tuple[float, ...]:
-        """The instants of events and of blows."""
-        return tuple(sorted({*self.events, *(blow.time for blow in self.blows)}))
-
-    def holding_at(self, times: Array) -> Array:
-        """The contacts that are closed at instants, (n_t, contacts); at an event those behind it."""
-        return np.asarray(self.holding[np.searchsorted(self.ends, times, side="right")])
-
-    def branches_at(self, times: Array) -> Array:
-        """The branches that hold at instants, (n_t, n); at an event those behind it."""
-        if not self.branches.size:
-            return self.branches
-        step = np.searchsorted(self.ends, times, side="right")
-        held = np.vstack([self.branches, self.behind[None, :]]) if self.ended else self.branches
-        return np.asarray(held[np.minimum(step, len(held) - 1)])
-
-
-def discontinuities_of(mechanism: Mechanism, t0: float, t1: float) -> list[float]:
-    """Instants in (t0, t1) of given blows, or at which some load or drive, or a derivative of it, is discontinuous."""
-    expressions = set(mechanism.expressions())
-    blows = {blow.time for blow in mechanism.blows if t0 < blow.time < t1}
-    return sorted({t for e in expressions if e.time_dependent for t in discontinuities(e, t0, t1)} | blows)
 
 
 def chunk_of(layout: Layout, method: Method) -> int:
@@ -167,18 +65,6 @@ def chunk_of(layout: Layout, method: Method) -> int:
     return max(1, min(CHUNK // bodies, DENSE_CHUNK // max(n, 1) ** 2))
 
 
-def check_deadline(deadline: float | None, where: str) -> None:
-    """Raise LimitError past the deadline (time.monotonic()); `where`: how far the work has come."""
-    if deadline is not None and time.monotonic() > deadline:
-        raise time_up(where)
-
-
-def time_up(where: str) -> LimitError:
-    """The error of a deadline that is past; `where`: how far the work has come."""
-    hint = "a longer --time-limit, a coarser --tolerance, or a shorter duration"
-    return LimitError(Problem("time-limit", f"the time limit was reached {where}", hint=hint))
-
-
 def chattering(t: float, expression: Expression, branch: int) -> Problem:
     """The problem of a branch that turns back as soon as it turned: the motion would have to stay between."""
     message = (
@@ -187,36 +73,6 @@ def chattering(t: float, expression: Expression, branch: int) -> Problem:
     )
     hint = "what sticks needs a smooth law: tanh(rate/0.001) in place of sign(rate), or a force of type friction"
     return Problem("chattering", message, expression.location, hint)
-
-
-class ClosuresLost(SolveError):
-    """A run that ended where its closed chains could not be held; passed: instants and states, failed: where, last."""
-
-    def __init__(self, problem: Problem, *, passed: list[tuple[float, Array]], failed: float, last: float) -> None:
-        super().__init__(problem)
-        self.passed, self.failed, self.last = passed, failed, last
-
-
-class Stiff(Exception):
-    """A run that was left, for another method takes less; told: why, in a sentence; seconds: that it took."""
-
-    def __init__(self, method: Method, told: str) -> None:
-        super().__init__(told)
-        self.method, self.told, self.seconds = method, told, 0.0
-
-
-class Eventful(Exception):
-    """A run that was left, for so many of its steps end at events that another method may take less, or no more do.
-
-    steps: done; cut: by events; reached [s], in so many evaluations and seconds, at a local tolerance. told: why
-    another one takes less, in a sentence.
-    """
-
-    def __init__(self, steps: int, cut: int) -> None:
-        super().__init__(f"{cut} of {steps} steps end at events")
-        self.steps, self.cut = steps, cut
-        self.reached = self.seconds = self.local = 0.0
-        self.evaluations, self.told = 0, ""
 
 
 @record
@@ -248,7 +104,7 @@ def until_of(layout: Layout) -> Until | None:
     """The condition that ends the runs of a scene, if there is one."""
     if not any(condition.ends for condition in layout.mechanism.conditions):
         return None
-    from heuncli.integration.conditions import Until
+    from heuncli.integration.run.conditions import Until
 
     return Until(layout)
 
@@ -270,7 +126,7 @@ class Runner(Evaluator):
     moving: what is integrated in the scene's place; else the scene itself.
     """
 
-    def __init__(self, layout: Layout, moving: Moving | None = None) -> None:
+    def __init__(self, layout: Layout, moving: IntegratedScene | None = None) -> None:
         super().__init__(layout)
         self.moving = itself(self) if moving is None else moving
 
@@ -436,7 +292,7 @@ class Runner(Evaluator):
         if steps.doubled():
             projected = hopeless(steps.column("ends"), last, tolerances.MOST_STEPS, irregular=not run.method.determined)
         if projected is not None:
-            from heuncli.integration.refusals.growth import growing, stalled  # only on the way to an error
+            from heuncli.integration.diagnosis.growth import growing, stalled  # only on the way to an error
 
             problems = growing(self, run.loop.t, self._state(run), self._passed(going))
             raise stalled(problems, f"{steps.count} {done}", projected)
@@ -448,7 +304,7 @@ class Runner(Evaluator):
         if code == CHATTERING:
             return SolveError(chattering(t, *self.layout.pack.branches[run.loop.turning]))
         if code == HALF_TURN:
-            from heuncli.integration.refusals.half_turns import half_turn  # only on the way to an error
+            from heuncli.integration.diagnosis.half_turns import half_turn  # only on the way to an error
 
             itself = self.moving.layout is self.layout
             return half_turn(self.moving, run.loop.half_turn, t, np.array(run.loop.state()), itself=itself)
@@ -456,8 +312,11 @@ class Runner(Evaluator):
         if name == "closure-lost":
             problem = Problem(name, f"at t = {t:.9g} s: {message}", hint=hint)
             return ClosuresLost(problem, passed=self._passed(going), failed=t, last=last)
-        from heuncli.integration.refusals.domains import joint_coordinates, without_value  # only on the way to an error
-        from heuncli.integration.refusals.growth import growing, largest_load
+        from heuncli.integration.diagnosis.domains import (  # only on the way to an error
+            joint_coordinates,
+            without_value,
+        )
+        from heuncli.integration.diagnosis.growth import growing, largest_load
 
         mechanism, recovered = self.layout.mechanism, self.recovered(np.array([t]), state[None, :])
         problems = without_value(mechanism, t, last, joint_coordinates(self.layout, recovered.freedoms[0]))
@@ -543,3 +402,13 @@ class Runner(Evaluator):
             t = loop.t
             first = to + 1
         return replayed.states()
+
+
+def ready(scene: PreparedScene) -> tuple[PreparedScene, Runner]:
+    """A scene to be run and its work arrays: inertia is lent where motions of its tree move no mass."""
+    lacking = lacking_inertia(scene)
+    if lacking:
+        from heuncli.integration.diagnosis.massless_motions import lend  # few scenes need it
+
+        scene = lend(scene, lacking)
+    return scene, Runner(scene.layout)

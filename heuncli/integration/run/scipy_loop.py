@@ -18,11 +18,11 @@ import numpy as np
 from heuncli import tolerances
 from heuncli.errors import LimitError, Problem, SolveError, SpecError
 from heuncli.integration.contacts.blows import rate_jumps
+from heuncli.integration.integrated_scene import IntegratedScene
 from heuncli.integration.methods.method import Method
-from heuncli.integration.moving import Moving
-from heuncli.integration.run.loop import Segment, Segments, smooth_segments
-from heuncli.integration.run.runner import Trajectory, check_deadline
-from heuncli.integration.run.step_records import Kept
+from heuncli.integration.run.errors import check_deadline
+from heuncli.integration.segments import Segment, Segments, smooth_segments
+from heuncli.integration.trajectory import Kept, Trajectory
 from heuncli.method_rows import SMOOTH_ONLY
 from heuncli.records import record
 from heuncli.response import settled, slope
@@ -44,7 +44,7 @@ class Solved:
     within: list[Callable[[float], Array]]
     pieces: list[Segment]
 
-    def at(self, moving: Moving, times: Array) -> Array:
+    def at(self, moving: IntegratedScene, times: Array) -> Array:
         """The scene's states (n_t, n) at instants within the run."""
         steps = np.minimum(np.searchsorted(self.ends, times), len(self.ends) - 1)
         own = [self.states[0] if t <= 0.0 else self.within[k](float(t)) for k, t in zip(steps, times, strict=True)]
@@ -54,7 +54,7 @@ class Solved:
 class Derivative:
     """dy/dt of what is integrated, on the closures; counts how often it is asked for. Impure: keeps the largest gap."""
 
-    def __init__(self, moving: Moving) -> None:
+    def __init__(self, moving: IntegratedScene) -> None:
         self.moving, self.count, self.gap = moving, 0, 0.0
         self.begin = self.end = 0.0
 

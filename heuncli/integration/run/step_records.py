@@ -2,12 +2,12 @@
 
 from __future__ import annotations
 
-from collections.abc import Mapping
-
 import numpy as np
 
-from heuncli.records import record
-from heuncli.results import Array, Indices
+from heuncli.integration.run.kernel_loop import PER_STEP, Integration
+from heuncli.integration.run.pace import FIRST_LOOK
+from heuncli.integration.trajectory import Kept
+from heuncli.results import Array
 
 FIRST_ROOM = 64  # rows
 
@@ -39,24 +39,86 @@ class Growing:
         return self.room[: self.count]
 
 
-@record
-class Kept:
-    """The steps whose starts were kept, by their numbers (n,), ascending, and the records that they start from."""
+class Steps:
+    """The steps done: of each its end, its least pivot, whether its stages were settled; for replays some records."""
 
-    steps: Indices
-    records: Array
+    def __init__(self, start: Array, width: int) -> None:
+        self.rows, self.count = Growing(len(PER_STEP)), 0
+        self.branches: Growing | None = None
+        # what steps 0, every, 2 every, ... start from; the first is a segment's, of which the state alone counts
+        self.kept, self.width = Growing(width), width
+        self.kept.add(self.whole(start))
+        self.every, self.room = 1, max(2, KEPT // max(width, 1))
+        self.after: dict[int, Array] = {}  # of the steps after blows, which are kept in any case
+        self.look = FIRST_LOOK
+        self.looked = self.cut_before = 0  # steps when it was last looked at how many events ended, and those
+        self.holdings: list[tuple[int, Array]] = []  # from which step on which contacts are closed
 
-    def __len__(self) -> int:
-        return len(self.steps)
+    def whole(self, state: Array) -> Array:
+        """The record of a state that no step has reached, (1, width)."""
+        return np.concatenate([state, np.zeros(self.width - len(state))])[None, :]
 
-    def with_others(self, others: Mapping[int, Array]) -> Kept:
-        """With other steps' records, which go before those of the same number."""
-        if not others:
-            return self
-        own = ~np.isin(self.steps, list(others))
-        steps = np.concatenate([self.steps[own], list(others)])
-        order = np.argsort(steps)
-        return Kept(steps[order], np.concatenate([self.records[own], list(others.values())])[order])
+    def hold(self, holding: Array) -> None:
+        """From the next step on other contacts are closed."""
+        self.holdings.append((self.count, holding.copy()))
+
+    def holding(self, contacts: int) -> Array:
+        """The contacts closed in each step, and behind the last one, (n_steps + 1, contacts)."""
+        found = np.zeros((self.count + 1, contacts))
+        bounds = [*(first for first, _ in self.holdings), self.count + 1]
+        for (first, holding), end in zip(self.holdings, bounds[1:], strict=True):
+            found[first:end] = holding
+        return found
+
+    def stand(self, state: Array) -> None:
+        """The next step starts from another state than the last one reached."""
+        self.after[self.count] = self.whole(state)[0]
+
+    def records(self) -> Kept:
+        """Records by their steps, those after blows among them."""
+        return self.every_so_many.with_others(self.after)
+
+    @property
+    def every_so_many(self) -> Kept:
+        """The records of every so many steps."""
+        return Kept(self.every * np.arange(self.kept.count), self.kept.rows)
+
+    def add(self, run: Integration) -> None:
+        """Add the steps of the last call; while there are too many records, every second of them is dropped."""
+        done = run.loop.done
+        self.rows.add(np.column_stack([run.output[name][:done] for name in PER_STEP]))
+        if run.held:
+            self.branches = self.branches or Growing(run.held)
+            self.branches.add(run.held_branches())
+        first = self.count // self.every * self.every + self.every  # the next number of which one is kept
+        self.kept.add(run.records(self.every, first - self.count - 1))
+        self.count += done
+        while self.kept.count > self.room:
+            self.every *= 2
+            self.kept.thin()
+
+    def doubled(self) -> bool:
+        """Whether there are twice as many as when this was last so."""
+        if self.count < self.look:
+            return False
+        self.look = 2 * self.count
+        return True
+
+    def passed(self, n: int) -> list[tuple[float, Array]]:
+        """Instants and states (n,) of some steps of which records were kept, ascending."""
+        ends, kept = self.column("ends"), self.every_so_many
+        some = slice(None, None, -(-len(kept) // PASSED))
+        instants = np.append(0.0, ends)[kept.steps[some]]
+        return list(zip(instants.tolist(), kept.records[some, :n], strict=True))
+
+    def column(self, name: str) -> Array:
+        """Ends, least pivots, or which were settled, (n_steps,)."""
+        return self.rows.rows[:, PER_STEP.index(name)].copy()
+
+    def held_branches(self) -> Array:
+        """The branches that the steps held, (n_steps, n)."""
+        return self.branches.rows if self.branches is not None else np.zeros((0, 0))
 
 
-NOTHING_KEPT = Kept(np.zeros(0, dtype=int), np.zeros((0, 0)))
+KEPT = 20_000_000  # numbers in the states kept for replays, at the ends of all steps or of every second, fourth, ...
+PASSED = 100_000  # of these states, at most, on the way to an error

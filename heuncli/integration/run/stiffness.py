@@ -16,8 +16,8 @@ import numpy as np
 from heuncli import tolerances
 from heuncli.integration.methods.method import Method
 from heuncli.integration.methods.registry import method_of
-from heuncli.integration.run.loop import Integration, Segment, Start
-from heuncli.kernel.choose import steps as kernel
+from heuncli.integration.run.kernel_loop import MORE, REACHED, Integration, Start
+from heuncli.integration.segments import Segment
 from heuncli.response import workspace_of
 
 if TYPE_CHECKING:
@@ -30,7 +30,7 @@ STARTING = 4.0  # times the evaluations of the run so far: what the implicit met
 RECENT = 8  # steps of the run whose mean tells its pace
 FACTORS = 0.02  # n^2 of a stage: what its factors take, in evaluations of n numbers of state
 
-GOES_ON = (kernel.CODES["reached"], kernel.CODES["more"])
+CAME_ON = (REACHED, MORE)  # what a trial ends with that was not stopped
 
 
 def implicit_for(local: float) -> Method:
@@ -58,8 +58,8 @@ def require_easy(runner: Runner, going: Going, segment: Segment) -> None:
         return
     a_second, trial = tried(runner, going, segment, method, beside)
     if STARTING * taken + a_second * left < explicit:
+        from heuncli.integration.run.errors import Stiff
         from heuncli.integration.run.fastest_motion import swift
-        from heuncli.integration.run.runner import Stiff
 
         # where the trial is: coarse explicit steps may be driven to and fro beside the slow motion
         beyond = runner.moving.state(trial.loop.t, np.array(trial.loop.state()))
@@ -78,12 +78,12 @@ def tried(runner: Runner, going: Going, segment: Segment, method: Method, beside
     start = Start(np.array(run.loop.state()), run.start.local, run.start.rate)
     trial = Integration(layout, workspace, method, np.zeros(0), sum(TRIED), start)
     trial.loop.begin(t, segment.before_end, segment.end)
-    if trial.loop.advance(TRIED[0], False, False) not in GOES_ON:
+    if trial.loop.advance(TRIED[0], False, False) not in CAME_ON:
         return math.inf, trial
     begun, evaluations, steps = trial.loop.t, trial.loop.evaluations, trial.loop.steps
     if begun == segment.end:  # sooner than it comes to its pace
         return float((evaluations + beside * steps) / (begun - t)), trial
-    if trial.loop.advance(TRIED[1], False, False) not in GOES_ON:
+    if trial.loop.advance(TRIED[1], False, False) not in CAME_ON:
         return math.inf, trial
     took = trial.loop.evaluations - evaluations + beside * (trial.loop.steps - steps)
     return float(took / (trial.loop.t - begun)), trial

@@ -19,10 +19,12 @@ import numpy as np
 from heuncli import tolerances
 from heuncli.integration.contacts.blows import schedule, strike
 from heuncli.integration.evaluator import Evaluator
+from heuncli.integration.integrated_scene import itself
 from heuncli.integration.methods.method import Method
-from heuncli.integration.moving import itself
-from heuncli.integration.run.loop import Integration, Start, just_before
-from heuncli.integration.run.runner import MORE, REACHED, Runner, Trajectory
+from heuncli.integration.run.kernel_loop import MORE, REACHED, Integration, Start
+from heuncli.integration.run.runner import Runner
+from heuncli.integration.segments import just_before
+from heuncli.integration.trajectory import Trajectory
 from heuncli.records import record
 from heuncli.response import jacobian
 from heuncli.rest.coordinates import coordinates_of

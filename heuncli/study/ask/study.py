@@ -26,7 +26,7 @@ from heuncli.study.solve.setup import Setup
 from heuncli.study.solve.warnings import left_out
 
 if TYPE_CHECKING:  # loaded where there are conditions, or something strikes
-    from heuncli.integration.conditions import Changes
+    from heuncli.integration.check.changes import Changes
     from heuncli.study.solve.impulses import Impulses
 
 MOST_SEARCHED = 1_000_000  # numbers to look at for the extremes of a whole report; one measure has no such bound

@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import numpy as np
 
-from heuncli.integration.run.loop import limits_of
+from heuncli.integration.segments import limits_of
 from heuncli.mechanism.model import Mechanism
 from heuncli.results import Array
 from heuncli.study.search.extremes import distinct

@@ -6,7 +6,7 @@ from typing import TYPE_CHECKING, Any
 
 import numpy as np
 
-from heuncli.integration.following import integrated_after_all
+from heuncli.integration.determined_motion import integrated_after_all
 from heuncli.kernel.choose import KERNEL
 from heuncli.results import Array, Block, Results
 from heuncli.results_schema import BLOWS

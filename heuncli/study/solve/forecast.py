@@ -11,11 +11,13 @@ from contextlib import suppress
 import numpy as np
 
 from heuncli.errors import LimitError, SolveError
-from heuncli.integration.check.estimate import Runs
+from heuncli.integration.check.fewer_stages import try_fewer_stages
+from heuncli.integration.check.runs import Runs
 from heuncli.integration.methods.method import Method
-from heuncli.integration.run.event_frequency import try_fewer_stages
-from heuncli.integration.run.loop import depends
-from heuncli.integration.run.runner import Eventful, Stiff, Trajectory, discontinuities_of
+from heuncli.integration.run.errors import Eventful, Stiff
+from heuncli.integration.run.kernel_loop import depends
+from heuncli.integration.segments import discontinuities_of
+from heuncli.integration.trajectory import Trajectory
 from heuncli.method_rows import row_of
 from heuncli.study.solve.method_choice import is_smooth
 from heuncli.study.solve.setup import Setup

@@ -13,17 +13,21 @@ import numpy as np
 
 from heuncli import tolerances
 from heuncli.errors import LimitError, Problem, SolveError
-from heuncli.integration.check.comparison import interleaved, moved_start
 from heuncli.integration.check.distance import Marks, motion_error
-from heuncli.integration.check.estimate import Checked, Runs, checked_run, recovered_at
+from heuncli.integration.check.estimate import Checked, checked_run, recovered_at
+from heuncli.integration.check.instants import interleaved
+from heuncli.integration.check.runs import Runs, moved_start
+from heuncli.integration.check.singular_poses import singular_poses
 from heuncli.integration.contacts.blows import Jump
+from heuncli.integration.diagnosis.solvability import Asked, require_start
 from heuncli.integration.evaluator import Recovered
 from heuncli.integration.methods.method import Method
 from heuncli.integration.methods.registry import method_of
-from heuncli.integration.refusals.solvability import Asked, require_start
-from heuncli.integration.run.pieces import at_once
-from heuncli.integration.run.runner import Eventful, Runner, Stiff, Trajectory, discontinuities_of
-from heuncli.integration.singular import singular_poses
+from heuncli.integration.run.errors import Eventful, Stiff
+from heuncli.integration.run.interruptions import at_once
+from heuncli.integration.run.runner import Runner
+from heuncli.integration.segments import discontinuities_of
+from heuncli.integration.trajectory import Trajectory
 from heuncli.mechanism.model import PairLoad
 from heuncli.method_rows import AUTO
 from heuncli.records import record, replace
@@ -34,7 +38,7 @@ from heuncli.study.solve.setup import Setup
 from heuncli.study.solve.singular_start import require_motion
 
 if TYPE_CHECKING:  # loaded where there are conditions
-    from heuncli.integration.conditions import Changes
+    from heuncli.integration.check.changes import Changes
 
 
 @record
@@ -165,7 +169,7 @@ def checked_between_events(runs: Runs, setup: Setup, tolerance: float, by_cause:
     try:
         return checked_run(runs, tolerance, LoadErrors(setup, by_cause))
     except Eventful as left:
-        from heuncli.integration.run.event_frequency import try_fewer_stages  # few scenes have so many
+        from heuncli.integration.check.fewer_stages import try_fewer_stages  # few scenes have so many
 
         runs.eventful = try_fewer_stages(runs, left)
         return begun_anew(runs, left, method, setup, tolerance, by_cause)
@@ -228,7 +232,7 @@ def held(runner: Runner, t: float, state: Array) -> Array:
     """The contacts that are closed at a state, (contacts,)."""
     if not runner.layout.contacts:
         return np.zeros(0)
-    from heuncli.integration.contacts.meetings import held_at  # few scenes have them
+    from heuncli.integration.contacts.contact_events import held_at  # few scenes have them
 
     return held_at(runner, t, state)
 
@@ -236,7 +240,7 @@ def held(runner: Runner, t: float, state: Array) -> Array:
 def require_followed(runner: Runner, run: Trajectory) -> None:
     """Raise SolveError where drives of one loop contradict each other within the run."""
     if sum(joint.drive is not None for joint in runner.layout.mechanism.joints) > 1 and runner.layout.rows:
-        from heuncli.integration.refusals.contradictions import unfollowed  # few scenes need it
+        from heuncli.integration.check.contradictions import unfollowed  # few scenes need it
 
         problem = unfollowed(runner, run)
         if problem is not None:
@@ -246,7 +250,7 @@ def require_followed(runner: Runner, run: Trajectory) -> None:
 def require_apart(runner: Runner, checked: Checked) -> None:
     """Raise SolveError where the points of an actuator or spring come together within a motion, before its horizon."""
     if any(isinstance(load, PairLoad) for load in runner.layout.mechanism.loads):
-        from heuncli.integration.refusals.coincident_points import comes_together  # few scenes have them
+        from heuncli.integration.check.meeting_points import comes_together  # few scenes have them
 
         problem = comes_together(runner, checked.run, checked.horizon)
         if problem is not None:

@@ -13,10 +13,10 @@ from typing import Any
 
 import numpy as np
 
-from heuncli.integration.check.comparison import matched
+from heuncli.integration.check.shared_blows import matched
 from heuncli.integration.contacts.blows import DRIVES, Jump
+from heuncli.integration.diagnosis.solvability import Asked, require_solvable
 from heuncli.integration.evaluator import Recovered
-from heuncli.integration.refusals.solvability import Asked, require_solvable
 from heuncli.kinetostatics.actions import Action, End
 from heuncli.kinetostatics.balance import balance_residual
 from heuncli.kinetostatics.magnitudes import magnitudes

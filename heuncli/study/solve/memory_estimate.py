@@ -11,7 +11,7 @@ import math
 from collections.abc import Iterator
 
 from heuncli.errors import LimitError, Problem
-from heuncli.integration.run.loop import KEPT
+from heuncli.integration.run.step_records import KEPT
 from heuncli.records import record
 from heuncli.response import answer_sizes
 from heuncli.results_schema import CUT, REPORT_OF, ROWS, SHARES, Quantity, is_share

@@ -1,7 +1,8 @@
 """Which method `auto` begins with, and why, by what can be seen of the scene and of the tolerance beforehand.
 
-Driven motions that leave no freedom are followed and not integrated (integration/following.py). What turns out to be
-stiff on the way, or cut by events at nearly every step, is begun anew (integration/run/stiffness.py, eventful.py).
+Driven motions that leave no freedom are followed and not integrated (integration/determined_motion.py). What turns out
+to be stiff on the way, or cut by events at nearly every step, is begun anew (integration/run/stiffness.py,
+event_frequency.py).
 """
 
 from __future__ import annotations
@@ -13,8 +14,8 @@ import numpy as np
 from heuncli import tolerances
 from heuncli.integration.methods.method import Method
 from heuncli.integration.methods.registry import method_of
-from heuncli.integration.run.loop import depends
-from heuncli.integration.run.runner import discontinuities_of
+from heuncli.integration.run.kernel_loop import depends
+from heuncli.integration.segments import discontinuities_of
 from heuncli.mechanism.model import Mechanism
 from heuncli.method_rows import DEFAULT
 from heuncli.results import Array

@@ -17,7 +17,7 @@ import numpy as np
 from heuncli import tolerances
 from heuncli.integration.check.estimate import recovered_at
 from heuncli.integration.evaluator import Recovered
-from heuncli.integration.run.runner import Trajectory
+from heuncli.integration.trajectory import Trajectory
 from heuncli.results import Array, Indices, Mask
 from heuncli.results_schema import quantity
 from heuncli.study.solve.blocks import blocks_asked_for

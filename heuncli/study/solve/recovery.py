@@ -10,8 +10,8 @@ from typing import TYPE_CHECKING
 
 import numpy as np
 
+from heuncli.integration.diagnosis.solvability import require_directions, require_solvable
 from heuncli.integration.evaluator import Recovered
-from heuncli.integration.refusals.solvability import require_directions, require_solvable
 from heuncli.kinetostatics.actions import Action, AppliedLoad, applied_loads, whole_joint_actions
 from heuncli.kinetostatics.bodies import BodyStates, body_states
 from heuncli.kinetostatics.energy import energy
@@ -87,7 +87,7 @@ class Recovery:
         found = applied_loads(self.setup.scene.mechanism, self.recovered)
         if not any(isinstance(own.load, PairLoad) and (own.length == 0.0).any() for own in found):
             return found
-        from heuncli.integration.refusals.coincident_points import parting  # hardly any scene needs it
+        from heuncli.integration.diagnosis.coincident_points import parting  # hardly any scene needs it
 
         layout, recovered = self.setup.scene.layout, self.recovered
         return [

@@ -6,7 +6,7 @@ import time
 
 import numpy as np
 
-from heuncli.integration.refusals.solvability import Asked, require_solvable
+from heuncli.integration.diagnosis.solvability import Asked, require_solvable
 from heuncli.integration.run.runner import Runner
 from heuncli.mechanism.model import Mechanism
 from heuncli.records import record, replace

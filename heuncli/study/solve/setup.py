@@ -9,13 +9,12 @@ import numpy as np
 
 from heuncli import tolerances
 from heuncli.errors import SolveError
-from heuncli.integration.following import NOT_DETERMINED, determined
+from heuncli.integration.determined_motion import NOT_DETERMINED, determined
+from heuncli.integration.integrated_scene import smaller
 from heuncli.integration.methods.followed import FOLLOWED
 from heuncli.integration.methods.method import Method
 from heuncli.integration.methods.registry import method_of
-from heuncli.integration.moving import smaller
-from heuncli.integration.refusals.solvability import ready
-from heuncli.integration.run.runner import Runner
+from heuncli.integration.run.runner import Runner, ready
 from heuncli.mechanism.build import build, forms_of
 from heuncli.mechanism.model import Mechanism
 from heuncli.method_rows import AUTO
@@ -121,7 +120,7 @@ def require_drives(mechanism: Mechanism, t: float) -> None:
     """Raise SolveError for drives that begin with what is too large to be computed with: the assembly squares it."""
     jets = [joint.drive.value.derivatives(t) for joint in mechanism.joints if joint.drive is not None]
     if any(abs(value) > tolerances.MOST_MAGNITUDE for jet in jets for value in jet):
-        from heuncli.integration.refusals.domains import large_values  # only on the way to an error
+        from heuncli.integration.diagnosis.domains import large_values  # only on the way to an error
 
         raise SolveError(*large_values(mechanism, t, {}))
 

@@ -1,7 +1,6 @@
-"""Loads along the line between two points, where that has no length: what pushes there has no direction.
+"""Where within a run the two points of a spring or actuator meet: there its force has no direction.
 
-A spring without free length is as strong as it is long, and needs none; where it is damped and its points part, the
-damping does. Points that come together within a step are found between its ends, where the line turns round.
+Points that come together within a step are found between its ends, where the line between them turns round.
 """
 
 from __future__ import annotations
@@ -12,15 +11,14 @@ import numpy as np
 
 from heuncli import tolerances
 from heuncli.errors import Problem
-from heuncli.integration.evaluator import Recovered
-from heuncli.integration.run.runner import Runner, Trajectory
+from heuncli.integration.diagnosis.coincident_points import coincide, needs_direction
+from heuncli.integration.run.runner import Runner
+from heuncli.integration.trajectory import Trajectory
 from heuncli.mechanism.model import Mechanism, PairLoad
 from heuncli.results import Array
-from heuncli.tree.layout import Layout
 
 HALVINGS = 60  # of a step: down to neighbouring doubles
 AT_ONCE = 10_000  # ends of steps that are looked at together
-HINT = "in a pin or slide use type: torque; else keep its points apart"
 
 
 def pushing(mechanism: Mechanism) -> list[tuple[PairLoad, slice]]:
@@ -30,53 +28,6 @@ def pushing(mechanism: Mechanism) -> list[tuple[PairLoad, slice]]:
         for load, rows in mechanism.load_rows()
         if isinstance(load, PairLoad) and load.a != load.b and needs_direction(load)
     ]
-
-
-def needs_direction(load: PairLoad) -> bool:
-    """Whether it pushes where its line has no length."""
-    if load.value is None:
-        return load.stiffness * load.length != 0.0
-    return load.value.constant != 0.0
-
-
-def without_direction(layout: Layout, recovered: Recovered, begins: bool = False) -> list[Problem]:
-    """The loads that push along no line, each at its first instant; begins: a motion, so what will push counts, too."""
-    near = tolerances.NO_LENGTH * layout.size
-    problems = []
-    for load, rows in layout.mechanism.load_rows():
-        if not isinstance(load, PairLoad):
-            continue
-        here = recovered.loads[:, rows][:, 0]
-        together = here["span"] <= near
-        if not together.any():
-            continue
-        if not needs_direction(load):
-            parts = np.sqrt(np.sum(parting(layout, load, recovered) ** 2, axis=1))
-            together &= (here["span"] == 0.0) & (load.damping * parts > 0.0)
-        elif load.value is not None:
-            together &= begins | (here["value"] != 0.0)
-        if together.any():
-            problems.append(coincide(load.name, float(recovered.times[int(np.argmax(together))])))
-    return problems
-
-
-def parting(layout: Layout, load: PairLoad, recovered: Recovered) -> Array:
-    """The velocity of its one point against the other, (n_t, 3) [m/s]."""
-    speeds = []
-    for body, end in ((load.a, "from_at"), (load.b, "at")):
-        if body < 0:
-            speeds.append(np.zeros((len(recovered.times), 3)))
-            continue
-        own = recovered.bodies[:, layout.place[body]]
-        at = next(recovered.loads[:, rows][:, 0][end] for one, rows in layout.mechanism.load_rows() if one is load)
-        speeds.append(own["v"] + np.cross(own["omega"], at - own["r"]))
-    return np.asarray(speeds[1] - speeds[0])
-
-
-def coincide(name: str, t: float) -> Problem:
-    """The problem of a load at an instant."""
-    return Problem("no-direction", f"at t = {t:.9g} s the points of forces.{name} coincide: its force has no direction",
-                   hint=HINT)  # fmt: skip
 
 
 def comes_together(runner: Runner, run: Trajectory, horizon: float | None) -> Problem | None:

@@ -9,9 +9,9 @@ from __future__ import annotations
 import numpy as np
 
 from heuncli.errors import HeunError, Problem, SolveError
-from heuncli.integration.check.estimate import Runs
+from heuncli.integration.check.runs import Runs
 from heuncli.integration.methods.dop853 import DOP853
-from heuncli.integration.run.runner import Stiff
+from heuncli.integration.run.errors import Stiff
 from heuncli.response import tangent
 
 LOCAL = 1e-6  # tolerance of the run that finds its own steps

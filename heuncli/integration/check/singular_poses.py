@@ -5,7 +5,8 @@ from __future__ import annotations
 import numpy as np
 
 from heuncli import tolerances
-from heuncli.integration.run.runner import Runner, Trajectory
+from heuncli.integration.run.runner import Runner
+from heuncli.integration.trajectory import Trajectory
 from heuncli.results import Array
 
 PROBES = 17  # instants looked at in a round

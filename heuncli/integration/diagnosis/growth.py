@@ -9,19 +9,18 @@ import numpy as np
 
 from heuncli import tolerances
 from heuncli.errors import HeunError, LimitError, Problem, SolveError
-from heuncli.integration.evaluator import Recovered
-from heuncli.integration.refusals.domains import grown, joint_coordinates
-from heuncli.integration.run.runner import Runner
+from heuncli.integration.diagnosis.domains import grown, joint_coordinates
+from heuncli.integration.evaluator import Evaluator, Recovered
 from heuncli.mechanism.model import Mechanism
 from heuncli.results import Array
 
 
-def growing(runner: Runner, t: float, state: Array, kept: Sequence[tuple[float, Array]]) -> list[Problem]:
+def growing(scene: Evaluator, t: float, state: Array, kept: Sequence[tuple[float, Array]]) -> list[Problem]:
     """The expressions that have grown so since a quarter of the time; kept: instants and states passed, ascending."""
     earlier, then = next((k for k in reversed(kept) if k[0] <= 0.25 * t), kept[0])
-    pair = runner.recovered(np.array([earlier, t]), np.array([then, state]))
-    coordinates = [joint_coordinates(runner.layout, row) for row in pair.freedoms]
-    return grown(runner.layout.mechanism, (t, coordinates[1]), (earlier, coordinates[0]))
+    pair = scene.recovered(np.array([earlier, t]), np.array([then, state]))
+    coordinates = [joint_coordinates(scene.layout, row) for row in pair.freedoms]
+    return grown(scene.layout.mechanism, (t, coordinates[1]), (earlier, coordinates[0]))
 
 
 def stalled(problems: Sequence[Problem], done: str, projected: float) -> HeunError:

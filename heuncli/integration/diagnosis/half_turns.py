@@ -9,11 +9,11 @@ import numpy as np
 
 from heuncli import tolerances
 from heuncli.errors import Problem, SolveError
-from heuncli.integration.moving import Moving
+from heuncli.integration.integrated_scene import IntegratedScene
 from heuncli.results import Array
 
 
-def half_turn(moving: Moving, body: int, t: float, state: Array, *, itself: bool) -> SolveError:
+def half_turn(moving: IntegratedScene, body: int, t: float, state: Array, *, itself: bool) -> SolveError:
     """The error of a body, by its place in the tree, whose kappa grows without bound in the state at t.
 
     itself: the scene is integrated as it is drawn, and no smaller one in its place.

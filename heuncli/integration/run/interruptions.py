@@ -13,14 +13,16 @@ from heuncli import tolerances
 from heuncli.errors import Problem, SolveError
 from heuncli.integration.contacts.blows import Given, Jump, schedule, strike
 from heuncli.integration.evaluator import Evaluator
-from heuncli.integration.moving import Moving
-from heuncli.integration.run.loop import Integration, Segment, Steps
+from heuncli.integration.integrated_scene import IntegratedScene
+from heuncli.integration.run.kernel_loop import Integration
+from heuncli.integration.run.step_records import Steps
+from heuncli.integration.segments import Segment
 from heuncli.records import replace
 from heuncli.results import Array
 from heuncli.tree.layout import Layout
 
 if TYPE_CHECKING:  # loaded where something opens and closes
-    from heuncli.integration.contacts.meetings import Contacts
+    from heuncli.integration.contacts.contact_events import Contacts
 
 
 class Blows:
@@ -29,7 +31,9 @@ class Blows:
     They are solved in the scene itself, whatever is integrated in its place.
     """
 
-    def __init__(self, evaluator: Evaluator, moving: Moving, run: Integration, steps: Steps, last: float) -> None:
+    def __init__(
+        self, evaluator: Evaluator, moving: IntegratedScene, run: Integration, steps: Steps, last: float
+    ) -> None:
         self.evaluator, self.moving, self.run, self.steps, self.last = evaluator, moving, run, steps, last
         self.due = schedule(evaluator.layout.mechanism, last)
         self.done: list[Jump] = []
@@ -96,7 +100,7 @@ def contacts_of(evaluator: Evaluator, last: float) -> Contacts | None:
     """The contacts of a run, where there are any."""
     if not evaluator.layout.contacts:
         return None
-    from heuncli.integration.contacts.meetings import Contacts  # few scenes have them
+    from heuncli.integration.contacts.contact_events import Contacts  # few scenes have them
 
     return Contacts(evaluator, last)
 

@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from heuncli.integration.moving import Moving
+from heuncli.integration.integrated_scene import IntegratedScene
 from heuncli.records import record
 from heuncli.results import Block
 
@@ -28,7 +28,7 @@ class Determined:
 NOT_DETERMINED = Determined(False, ())
 
 
-def determined(moving: Moving) -> Determined:
+def determined(moving: IntegratedScene) -> Determined:
     """Whether a motion can be followed from its start.
 
     Closed chains that are held more than once leave no freedom as well; a singular start does, and is integrated.

@@ -19,8 +19,11 @@ from heuncli import tolerances
 from heuncli.errors import Problem, SolveError
 from heuncli.integration.evaluator import Recovered
 from heuncli.integration.methods.dop853 import DOP853
-from heuncli.integration.run.loop import Integration, Start, just_after, just_before
-from heuncli.integration.run.runner import REACHED, ClosuresLost, Runner, Trajectory
+from heuncli.integration.run.errors import ClosuresLost
+from heuncli.integration.run.kernel_loop import REACHED, Integration, Start
+from heuncli.integration.run.runner import Runner
+from heuncli.integration.segments import just_after, just_before
+from heuncli.integration.trajectory import Trajectory
 from heuncli.records import record
 from heuncli.results import Array
 from heuncli.tree.islands import loop_of

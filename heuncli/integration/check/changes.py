@@ -1,10 +1,6 @@
-"""Conditions on a motion: what is true of it within each step, and so when that changes.
+"""When the conditions on a motion change, and how well that is known.
 
-A condition is a program with branches that the kernel holds within a step and ends steps at, as those of loads
-(kernel/events.py). Between two changes of its branches it stands still, so it is asked once for each: with the branches
-of the step, whatever rounding says of margins beside zero.
-
-An instant found so errs by as much as the motion by which it is found. The check run, or another beside it, is to show
+An instant found errs by as much as the motion by which it is found. The check run, or another beside it, is to show
 the same change there but for an interval d of time: its course about the instant is known by rates and accelerations,
 
     q(t + d) = q + u d + a d^2 / 2,    u(t + d) = u + a d
@@ -16,26 +12,20 @@ through zero that takes long: such an instant has few digits, or none.
 from __future__ import annotations
 
 import math
-from collections.abc import Mapping, Sequence
+from collections.abc import Sequence
 
 import numpy as np
 
 from heuncli import tolerances
 from heuncli.errors import Problem, SolveError
-from heuncli.expressions.programs import Expression, Pack
-from heuncli.integration.check.comparison import matched
+from heuncli.expressions.programs import Expression
+from heuncli.integration.check.shared_blows import matched
 from heuncli.integration.contacts.blows import Jump
-from heuncli.integration.run.runner import Runner, Trajectory
-from heuncli.kernel.choose import expressions as kernel
-from heuncli.mechanism.model import Condition
+from heuncli.integration.run.conditions import Conditions, Coordinates, coordinates_at
+from heuncli.integration.run.runner import Runner
+from heuncli.integration.trajectory import Trajectory
 from heuncli.records import record, replace
 from heuncli.results import Array, Mask
-from heuncli.tree.layout import Layout
-
-HELD, FREE = kernel.HOLDING["held"], kernel.HOLDING["free"]
-Jet = tuple[float, float, float]  # value, rate, second derivative
-Coordinates = Mapping[tuple[str, str], Jet]  # of a joint and a quantity
-UNKNOWN = math.nan  # an error of which nothing is known
 
 
 @record
@@ -63,95 +53,6 @@ class Changes:
     def some(self, kept: Mask) -> Changes:
         """Those."""
         return replace(self, times=self.times[kept], to=self.to[kept], error=self.error[kept])
-
-
-class Conditions:
-    """The conditions of a scene that is laid out, and where their branches stand among all that its kernel holds."""
-
-    def __init__(self, layout: Layout) -> None:
-        self.conditions: tuple[Condition, ...] = layout.mechanism.conditions
-        self.pack = Pack()
-        self.programs = [self.pack.add(condition.value) for condition in self.conditions]
-        known = {(id(e), k): i for i, (e, k) in enumerate(layout.pack.branches)}
-        self.places = [known[id(e), k] for e, k in self.pack.branches]
-
-    def held(self, t: float, branches: Sequence[float], coordinates: Coordinates) -> list[float]:
-        """Whether each is true (1 or 0) with its branches among those that the kernel holds; nan: it has no value."""
-        own = self.pack.expressions
-        own.hold_branches([branches[i] for i in self.places])
-        own.hold(HELD)
-        values = [own.evaluate(*program, self.variables(t, coordinates)) for program in self.programs]
-        own.hold(FREE)
-        return values
-
-    def free(self, number: int, t: float, d: float, coordinates: Coordinates) -> float:
-        """Whether one is true at t + d, by the coordinates at t."""
-        return self.pack.value(*self.programs[number], self.variables(t, coordinates, d))
-
-    def variables(self, t: float, coordinates: Coordinates, d: float = 0.0) -> list[float]:
-        """The time, and the coordinates that are used, d later than at t."""
-        uses = [coordinates[use] for use in self.pack.variables if not isinstance(use, str)]
-        return [t + d, *(q + d * (u + 0.5 * d * a) for q, u, a in uses)]
-
-
-def coordinates_in(layout: Layout, t: float, state: Array) -> Coordinates:
-    """The coordinates of the joints at a state, by their places in it, without their second derivatives.
-
-    Nothing is asked of the kernel, which may be under way.
-    """
-    found: dict[tuple[str, str], Jet] = {}
-    for freedom in layout.freedoms:
-        if freedom.joint < 0 or freedom.quantity not in ("angle", "travel"):
-            continue
-        joint = layout.mechanism.joints[freedom.joint]
-        if freedom.q >= 0:
-            q, u = float(state[freedom.q]), float(state[freedom.u])
-        else:
-            assert joint.drive is not None
-            q, u, _ = joint.drive.value.derivatives(t)
-        put(found, joint.name, freedom.quantity, (q, u, 0.0))
-    return found
-
-
-def put(to: dict[tuple[str, str], Jet], joint: str, quantity: str, jet: Jet) -> None:
-    """A coordinate and its rate."""
-    q, u, a = jet
-    to[joint, quantity] = q, u, a
-    to[joint, "rate" if quantity == "angle" else "speed"] = u, a, 0.0
-
-
-def coordinates_at(runner: Runner, times: Array, states: Array) -> list[Coordinates]:
-    """The coordinates of the joints at states of a scene, as they go on from there."""
-    if not any(condition.value.uses for condition in runner.layout.mechanism.conditions):
-        return [{}] * len(times)
-    answers = runner.recovered(times, states)
-    found: list[Coordinates] = []
-    for row in answers.freedoms:
-        own: dict[tuple[str, str], Jet] = {}
-        for freedom, (q, u, a, _) in zip(runner.layout.freedoms, row.tolist(), strict=True):
-            if freedom.joint >= 0 and freedom.quantity in ("angle", "travel"):
-                name = runner.layout.mechanism.joints[freedom.joint].name
-                put(own, name, freedom.quantity, (q, u, a if math.isfinite(a) else 0.0))
-        found.append(own)
-    return found
-
-
-class Until:
-    """The condition that ends a run, asked where a piece begins and where branches turn. Remembers what it was."""
-
-    def __init__(self, layout: Layout) -> None:
-        self.conditions = Conditions(layout)
-        self.layout = layout
-        self.number = next(i for i, condition in enumerate(self.conditions.conditions) if condition.ends)
-        self.was: float | None = None
-
-    def ends(self, t: float, state: Array) -> bool:
-        """Whether it became true here: at the start it is what it is."""
-        branches = self.layout.pack.expressions.branches()
-        now = self.conditions.held(t, branches, coordinates_in(self.layout, t, state))[self.number]
-        became = self.was == 0.0 and now == 1.0 and t > 0.0
-        self.was = now
-        return became
 
 
 def changes_of(runner: Runner, runs: Sequence[Trajectory], before: float) -> tuple[Changes, ...]:
@@ -247,3 +148,6 @@ def no_value(value: Expression, t: float) -> SolveError:
     hint = "keep it within the domain of its functions, as with max(x, 0) or 'a if c else b', or within its tables"
     message = f"'{value.source.strip()}' has no value at t = {t:.9g} s"
     return SolveError(Problem("no-value", message, value.location, hint))
+
+
+UNKNOWN = math.nan  # an error of which nothing is known

@@ -25,7 +25,7 @@ Moving = Mapping[tuple[str, str], tuple[float, float]]  # a joint's coordinate a
 
 
 def joint_coordinates(layout: Layout, freedoms: Rows) -> Moving:
-    """The coordinates of the joints at one instant; freedoms (n_f,): runner.Recovered."""
+    """The coordinates of the joints at one instant; freedoms (n_f,): evaluator.Recovered."""
     coordinates: dict[tuple[str, str], tuple[float, float]] = {}
     joints = layout.mechanism.joints
     for freedom, (q, u, a, _) in zip(layout.freedoms, freedoms.tolist(), strict=True):

@@ -1,4 +1,4 @@
-"""The instants at which a run is compared with its check run, and the start from which that one sets out.
+"""The instants at which a run is compared with its check run.
 
 An estimate must hold for every instant of the run, asked or not. So the runs are compared at the asked instants, at the
 ends of the steps, and within steps where the method's interpolation errs most: up to fifty times what the ends
@@ -11,12 +11,10 @@ from collections.abc import Sequence
 
 import numpy as np
 
-from heuncli import tolerances
-from heuncli.integration.contacts.blows import Jump
-from heuncli.integration.run.runner import Runner, Trajectory
+from heuncli.integration.run.runner import Runner
+from heuncli.integration.trajectory import Trajectory
 from heuncli.records import record
 from heuncli.results import Array, Indices, Mask
-from heuncli.tree.layout import Layout
 
 ENDS = 2_000  # ends of steps that are compared, in even numbers over a longer run; the horizon is then looked for again
 INSIDE = 2_000  # bodies times steps up to which all steps are looked into
@@ -91,59 +89,3 @@ def interleaved(times: Array, states: Sequence[Array]) -> tuple[Array, Array]:
     joints leave open would else differ by more than an error.
     """
     return np.repeat(times, len(states)), np.stack(states, axis=1).reshape(len(states) * len(times), -1)
-
-
-def matched(own: Sequence[Jump], others: Sequence[Jump]) -> list[tuple[int, int]]:
-    """The blows that two runs of one motion share: each the other's nearest, with a name in common.
-
-    What rounding adds to a blow, a rope that hardly takes part, does not make it another one.
-    """
-    if not own or not others:
-        return []
-    times, among = (np.array([jump.time for jump in jumps]) for jumps in (own, others))
-    there, back = nearest(times, among), nearest(among, times)
-    pairs = [(i, int(k)) for i, k in enumerate(there) if back[k] == i]
-    return [(i, k) for i, k in pairs if set(own[i].names) & set(others[k].names)]
-
-
-def nearest(times: Array, among: Array) -> Indices:
-    """Of each instant the place of the nearest among others, ascending."""
-    behind = np.clip(np.searchsorted(among, times), 1, max(len(among) - 1, 1))
-    before = np.abs(times - among[behind - 1]) <= np.abs(among[np.minimum(behind, len(among) - 1)] - times)
-    return np.where(before, behind - 1, np.minimum(behind, len(among) - 1))
-
-
-def between_strikes(runs: Sequence[Trajectory], times: Array) -> Mask:
-    """Which instants lie between the first run's strike and another run's same one, (n,): one has jumped by then.
-
-    What strikes at an instant of its own in each run is later in one of them by the error of the motion: there the
-    velocities differ by the jump, which is no error of either.
-    """
-    inside = np.zeros(len(times), dtype=bool)
-    own = runs[0].blows
-    for other in runs[1:]:
-        for i, k in matched(own, other.blows):
-            first, last = sorted((own[i].time, other.blows[k].time))
-            if first < last:
-                inside |= (times >= first) & (times <= last)
-    return inside
-
-
-def moved_start(layout: Layout) -> Array:
-    """A start beside the given one by the rounding of its numbers; the closures are closed again by the run.
-
-    What an unstable start makes of rounding is then seen: upright at 180 degrees, A stays there for ever. Rates move by
-    the rounding of the body's largest, so that what rests stays at rest. The directions are those of no symmetry: an
-    even spread of fractions of the golden section.
-    """
-    y = layout.y0.copy()
-    share = np.modf(0.6180339887498949 * np.arange(1, len(y) + 1))[0]
-    direction = np.where(share < 0.5, -1.0, 1.0) * (0.5 + np.modf(2.0 * share)[0] / 2.0)
-    for group in layout.tables["groups"]:
-        coordinates, rates, end = group["coordinates"], group["rates"], group["end"]
-        unit = 1.0 / layout.weights[coordinates:end]
-        size = np.maximum(np.abs(y[coordinates:rates]), unit[: rates - coordinates])
-        largest = (np.abs(y[rates:end]) / unit[rates - coordinates :]).max(initial=0.0)
-        scale = np.concatenate([size, largest * unit[rates - coordinates :]])
-        y[coordinates:end] += tolerances.START_ROUNDING * direction[coordinates:end] * scale
-    return y

@@ -7,17 +7,9 @@ import numpy as np
 from heuncli import tolerances
 from heuncli.errors import Problem, SolveError
 from heuncli.integration.contacts.blows import Asked, Given, Jump, Told, asked_of, behind, met_freely, told
-from heuncli.integration.contacts.strikes import (
-    Struck,
-    Touching,
-    answerable,
-    answers,
-    rests,
-    short_flights,
-    strikes,
-    touching,
-    undecided,
-)
+from heuncli.integration.contacts.resting import rests, short_flights
+from heuncli.integration.contacts.restitution import Struck, strikes, undecided
+from heuncli.integration.contacts.touching import Touching, answerable, answers, touching
 from heuncli.integration.evaluator import Evaluator, Recovered
 from heuncli.records import record, replace
 from heuncli.response import Blows as Answered

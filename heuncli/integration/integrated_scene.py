@@ -15,7 +15,7 @@ from heuncli.tree.layout import Layout
 
 
 @record
-class Moving:
+class IntegratedScene:
     """The scene whose motion is integrated, its work arrays, and the maps between its states and the scene's own.
 
     embed: instants (n_t,) and its states (n_t, n') to the scene's (n_t, n); restrict: an instant and a state (n,) back.
@@ -40,11 +40,11 @@ class Moving:
         return self.layout.mechanism.joints[self.layout.rows[row]].name
 
 
-def itself(scene: Evaluator) -> Moving:
+def itself(scene: Evaluator) -> IntegratedScene:
     """The scene as it is."""
-    return Moving(scene.layout, scene.workspace, lambda times, states: states, lambda t, state: state)
+    return IntegratedScene(scene.layout, scene.workspace, lambda times, states: states, lambda t, state: state)
 
 
-def smaller(scene: Evaluator, reduced: Reduced) -> Moving:
+def smaller(scene: Evaluator, reduced: Reduced) -> IntegratedScene:
     """A smaller scene, ready to run, in the place of the one it was made from."""
-    return Moving(scene.layout, scene.workspace, reduced.embed, reduced.restrict)
+    return IntegratedScene(scene.layout, scene.workspace, reduced.embed, reduced.restrict)

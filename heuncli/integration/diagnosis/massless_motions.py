@@ -14,8 +14,7 @@ from typing import Any
 import numpy as np
 
 from heuncli import tolerances
-from heuncli.integration.evaluator import Recovered
-from heuncli.integration.run.runner import Runner
+from heuncli.integration.evaluator import Evaluator, Recovered
 from heuncli.kernel.choose import scene as kernel
 from heuncli.mechanism.model import GROUND, PointLoad
 from heuncli.records import record, replace
@@ -265,7 +264,7 @@ def axes_to_lend(scene: PreparedScene, lacking: Mapping[int, Array]) -> dict[int
         own = slice(group["coordinates"], group["rates"])
         shift[1:, own] = rng.uniform(-1.0, 1.0, shift[1:, own].shape)
     shift /= np.where(layout.weights > 0.0, layout.weights, 1.0)
-    poses = Runner(alone).recovered(np.zeros(POSES + 1), layout.y0 + shift).bodies
+    poses = Evaluator(alone).recovered(np.zeros(POSES + 1), layout.y0 + shift).bodies
     found: dict[int, list[Array]] = {}
     for one in poses:
         at = Poses(one["R"], one["r"])

@@ -7,28 +7,17 @@ import numpy as np
 from heuncli import tolerances
 from heuncli.errors import Problem, SolveError
 from heuncli.integration.evaluator import Recovered
-from heuncli.integration.run.runner import Runner
 from heuncli.mechanism.model import PairLoad
 from heuncli.number_range import out_of_range
 from heuncli.records import record
 from heuncli.results import Array
-from heuncli.tree.prepare import PreparedScene, lacking_inertia
+from heuncli.tree.prepare import PreparedScene
 
 QUANTITIES = {  # of a body, in the kernel's answer
     "r": "coordinate of", "v": "speed of", "a": "acceleration of", "omega": "rate of turning of",
     "alpha": "angular acceleration of", "joint_force": "force on", "joint_moment": "moment on",
 }  # fmt: skip
 LARGE = "look at the units of loads, masses and lengths nearby"
-
-
-def ready(scene: PreparedScene) -> tuple[PreparedScene, Runner]:
-    """A scene to be run and its work arrays: inertia is lent where motions of its tree move no mass."""
-    lacking = lacking_inertia(scene)
-    if lacking:
-        from heuncli.integration.refusals.inertialess import lend  # few scenes need it
-
-        scene = lend(scene, lacking)
-    return scene, Runner(scene.layout)
 
 
 @record
@@ -48,7 +37,7 @@ def require_solvable(scene: PreparedScene, recovered: Recovered, asked: Asked = 
         raise SolveError(*not_finite(scene, recovered, int(np.flatnonzero(~finite)[0])))
     require_range(scene, recovered)
     for k in np.flatnonzero(recovered.idle > 0).tolist():
-        from heuncli.integration.refusals.inertialess import is_idle
+        from heuncli.integration.diagnosis.massless_motions import is_idle
 
         if not is_idle(scene, recovered, k):
             raise SolveError(freedom_without_inertia(scene, recovered, k))
@@ -91,7 +80,7 @@ def require_range(scene: PreparedScene, recovered: Recovered) -> None:
 
 def too_large(scene: PreparedScene, recovered: Recovered, instant: int) -> list[Problem]:
     """The problems of values in time that are too large there, else the one of the largest load, or of the motion."""
-    from heuncli.integration.refusals.domains import joint_coordinates, large_values  # only on the way to an error
+    from heuncli.integration.diagnosis.domains import joint_coordinates, large_values  # only on the way to an error
 
     t, mechanism = float(recovered.times[instant]), scene.mechanism
     problems = large_values(mechanism, t, joint_coordinates(scene.layout, recovered.freedoms[instant]))
@@ -122,7 +111,7 @@ def require_start(scene: PreparedScene, start: Recovered, asked: Asked = Asked()
 def require_directions(scene: PreparedScene, recovered: Recovered, begins: bool = False) -> None:
     """Raise SolveError for actuators and springs that push between points that coincide; begins: or are about to."""
     if any(isinstance(load, PairLoad) for load in scene.mechanism.loads):
-        from heuncli.integration.refusals.coincident_points import without_direction  # few scenes have them
+        from heuncli.integration.diagnosis.coincident_points import without_direction  # few scenes have them
 
         if problems := without_direction(scene.layout, recovered, begins):
             raise SolveError(*problems)
@@ -137,7 +126,7 @@ def unmet_rows(recovered: Recovered, instant: int, asked: Asked) -> Problem:
 
 def not_finite(scene: PreparedScene, recovered: Recovered, instant: int) -> list[Problem]:
     """Problems of the expressions without a value there, else one that says that no acceleration exists."""
-    from heuncli.integration.refusals.domains import joint_coordinates, without_value  # only on the way to an error
+    from heuncli.integration.diagnosis.domains import joint_coordinates, without_value  # only on the way to an error
 
     t, length = float(recovered.times[instant]), float(recovered.times[-1])
     problems = without_value(scene.mechanism, t, length, joint_coordinates(scene.layout, recovered.freedoms[instant]))
@@ -147,7 +136,7 @@ def not_finite(scene: PreparedScene, recovered: Recovered, instant: int) -> list
 
 def freedom_without_inertia(scene: PreparedScene, recovered: Recovered, instant: int) -> Problem:
     """The problem of a freedom that moves no mass: which bodies turn in it, about which axes."""
-    from heuncli.integration.refusals.inertialess import loose_axes
+    from heuncli.integration.diagnosis.massless_motions import loose_axes
 
     layout = scene.layout
     lacking = []

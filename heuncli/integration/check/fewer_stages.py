@@ -1,0 +1,36 @@
+"""A run that events cut at nearly every step, tried by a method of fewer stages."""
+
+from __future__ import annotations
+
+from contextlib import suppress
+
+import numpy as np
+
+from heuncli.errors import LimitError, SolveError
+from heuncli.integration.check.runs import Runs
+from heuncli.integration.methods.registry import method_of
+from heuncli.integration.run.errors import Eventful
+from heuncli.integration.run.event_frequency import FEW_STAGES
+
+TOLD = (
+    "events: {cut} of the first {steps} steps end at one: up to t = {t:.3g} s {name} takes {few} evaluations, where "
+    "{method} takes {many}"
+)
+
+
+def try_fewer_stages(runs: Runs, left: Eventful) -> bool:
+    """Whether the runs go by a method of few stages from now on, and why; not where the one they had takes no more."""
+    method, before = method_of(FEW_STAGES), [t for t in runs.jumps if t < left.reached]
+    with suppress(SolveError, LimitError):
+        trial = runs.runner.trajectory(
+            np.array([left.reached]), left.local, discontinuities=before, deadline=runs.deadline, method=method,
+            most_steps=left.evaluations // (len(method.nodes) - 1),
+        )  # fmt: skip
+        if trial.evaluations < left.evaluations:
+            left.told = TOLD.format(
+                cut=left.cut, steps=left.steps, t=left.reached, name=method.name, few=trial.evaluations,
+                method=runs.method.name, many=left.evaluations,
+            )  # fmt: skip
+            runs.method = method
+            return True
+    return False

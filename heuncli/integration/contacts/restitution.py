@@ -1,0 +1,125 @@
+"""Contacts that touch: which strike, rest, let go. Small complementarity problems on columns of the one map.
+
+    w = q + A z,   z >= 0,   w >= 0,   z . w = 0,      A = W M^-1 W'  (through all that holds both ways)
+W are the contacts' unit loads, positive where they bear. Of impulses z, w are the rates of opening behind the blow and
+those that Newton's restitution asks for: w = v+ + e v- of what is struck (v- < 0), v+ of what rests. Of forces z, w are
+the accelerations of opening. A contact bears or opens, never both (Moreau 1988; Pfeiffer and Glocker 1996).
+"""
+
+from __future__ import annotations
+
+import numpy as np
+
+from heuncli import tolerances
+from heuncli.errors import Problem, SolveError
+from heuncli.integration.contacts.complementarity import Pivots, complementary
+from heuncli.integration.contacts.touching import Touching, spread
+from heuncli.records import fields, record
+from heuncli.results import Array, Indices, Mask
+
+MOST_ROUNDS = 60  # strikes that follow each other at one instant, before what is left of them is plastic
+
+
+@record
+class Struck:
+    """Impulses of touching contacts (k,), the rates of opening behind them, and what is worth telling.
+
+    depends (k,): those that others hold, so that how they share is not known; equal (k,): those that took the least
+    restitution of all that feel each other; rounds (k,).
+    """
+
+    impulses: Array
+    rate: Array
+    depends: Mask
+    equal: Mask
+    rounds: Indices
+
+    @property
+    def closed(self) -> Mask:
+        """Those that take part (k,)."""
+        return np.asarray((self.impulses != 0.0) | self.depends)
+
+
+def strikes(touch: Touching, A: Array, moves: Mask, pressed: Array, plastic: Mask) -> Struck:
+    """The impulses of contacts that are struck, or pressed by given blows (pressed: rates these add).
+
+    What moves apart at the instant takes part only if it is struck in a later round. plastic: contacts that rest behind
+    the blow, whatever their restitution, and though they would open by less than is seen. Contacts that do not feel
+    each other are struck as if each were alone: what one machine loses does not hide what another would gain.
+    """
+    k = len(touch.which)
+    none = np.zeros(k, dtype=bool)
+    found = Struck(np.zeros(k), touch.rate.copy(), none.copy(), none.copy(), np.zeros(k, dtype=int))
+    for own in feeling(A):
+        part = struck_together(touch.some(own), A[np.ix_(own, own)], moves[own], pressed[own], plastic[own])
+        for name, values in fields(part).items():
+            getattr(found, name)[own] = values
+    return found
+
+
+def feeling(A: Array) -> list[Indices]:
+    """The groups of contacts that feel each other, by what one that bears does to the other, in their order."""
+    size = np.sqrt(np.maximum(np.diag(A), 0.0))
+    felt = np.abs(A) > tolerances.SUM_ROUNDING * size[:, None] * size
+    np.fill_diagonal(felt, True)
+    for _ in range(len(A)):
+        reached = felt @ felt
+        if np.array_equal(reached, felt):
+            break
+        felt = reached
+    return [np.flatnonzero(row) for k, row in enumerate(felt) if not row[:k].any()]
+
+
+def struck_together(touch: Touching, A: Array, moves: Mask, pressed: Array, plastic: Mask) -> Struck:
+    """The same of contacts that feel each other."""
+    v = touch.rate.copy()
+    total = np.zeros(len(v))
+    depends = np.zeros(len(v), dtype=bool)
+    noise, equal, rounds = touch.noise + tolerances.CONTACT_RATE * np.abs(pressed), False, 0
+    while rounds < 2 * MOST_ROUNDS:
+        struck = v < -noise
+        if not (struck.any() or (v + pressed < -noise).any()):
+            v = v + pressed  # blows that lift what rests, say
+            break
+        e = np.where(plastic | (rounds >= MOST_ROUNDS), 0.0, touch.restitution)
+        own = np.flatnonzero((v <= noise) & moves)
+        found = one_round(A, v, pressed, own, np.where(struck, e, 0.0), noise)
+        z = spread(found.z, own, len(v))
+        if gained(z, v, pressed, A) and struck.any():
+            e = np.where(struck, e[struck].min(), 0.0)
+            found = one_round(A, v, pressed, own, e, noise)
+            z, equal = spread(found.z, own, len(v)), True
+        depends[own[found.depends]] = True
+        rebound, bears = np.where(struck, -e * v, 0.0), own[found.bears]
+        v = v + pressed + A @ z
+        v[bears] = rebound[bears]
+        pressed = np.zeros(len(v))
+        total += z
+        rounds += 1
+        noise = np.maximum(noise, tolerances.CONTACT_RATE * (np.abs(A) @ total))
+    v = np.where(np.abs(v) <= noise, 0.0, v)
+    if (plastic & (v > 0.0)).any():
+        own = np.flatnonzero(moves & (v == 0.0) & (total > 0.0) | plastic & (v > 0.0))
+        total[own] -= np.linalg.lstsq(A[np.ix_(own, own)], v[own], rcond=tolerances.CONTACT_DEPENDS)[0]
+        v[own] = 0.0
+    every = np.ones(len(v), dtype=bool)
+    return Struck(total, v, depends & (total == 0.0), equal & every, rounds * every)
+
+
+def one_round(A: Array, v: Array, pressed: Array, own: Indices, e: Array, noise: Array) -> Pivots:
+    """Impulses of one round: those that leave v+ >= -e v-."""
+    q = (v + pressed + e * v)[own]
+    return complementary(A[np.ix_(own, own)], q, noise[own])
+
+
+def gained(z: Array, v: Array, pressed: Array, A: Array) -> bool:
+    """Whether impulses add energy: work by the mean of the rates before and behind, beyond rounding."""
+    work = 0.5 * z * (2.0 * v + pressed + A @ z)
+    return bool(work.sum() > tolerances.SUM_ROUNDING * np.abs(work).sum())
+
+
+def undecided(t: float, name: str) -> SolveError:
+    """The problem of contacts that follow each other at one instant without an end; name: of the one most struck."""
+    message = f"at t = {t:.9g} s stops and ropes strike and let go again and again without the time going on"
+    hint = "contacts that work against each other: loosen one of them"
+    return SolveError(Problem("chattering", message, hint=hint, about=name))

@@ -1,0 +1,116 @@
+"""The contacts that touch at a state: their loads, their rates of opening, and what rounding makes of both."""
+
+from __future__ import annotations
+
+import math
+
+import numpy as np
+
+from heuncli import tolerances
+from heuncli.integration.evaluator import Recovered
+from heuncli.records import fields, record
+from heuncli.results import Array, Indices, Mask
+from heuncli.shapes.rotations import cross_rows
+from heuncli.tree.layout import Contact, Layout
+from heuncli.tree.tables import Table
+
+OPEN, CLOSED, LEANS = 0.0, 1.0, 2.0  # of Trajectory.holding: open, closed, closed by others
+
+
+@record
+class Touching:
+    """The contacts that touch at a state.
+
+    which (k,): places among the layout's; loads (k, n_b, 6): what each puts on the bodies where it bears 1, moment
+    about the joint point and force; rate (k,): of opening; noise (k,): what rounding makes of it; reach (k,): of the
+    gap; restitution (k,).
+    """
+
+    which: Indices
+    loads: Array
+    rate: Array
+    noise: Array
+    reach: Array
+    restitution: Array
+
+    def some(self, own: Indices) -> Touching:
+        """Some of them."""
+        return Touching(**{name: value[own] for name, value in fields(self).items()})
+
+
+def touching(layout: Layout, at: Recovered, closed: Mask, event: int | None, last: float) -> Touching:
+    """The contacts that touch at a state: closed ones, the row of the event, and those with hardly a gap.
+
+    What was closed until then opens with no rate; nor does what would stay within its reach over the run, up to `last`.
+    """
+    rows, bodies = at.rows[0], at.bodies[0]
+    found = []
+    for i, contact in enumerate(layout.contacts):
+        gap = -contact.sense * float(rows["gap"][contact.row])
+        near = tolerances.CONTACT_TOUCHES * terms_of_gap(layout, bodies, contact)
+        if closed[i] or contact.row == event or gap <= near:
+            found.append(i)
+    own = [layout.contacts[i] for i in found]
+    loads = np.array([unit_load(layout, bodies, rows, contact) for contact in own]).reshape(len(own), len(bodies), 6)
+    motion = np.concatenate([bodies["omega"], bodies["v"]], axis=1)
+    terms = np.array([terms_of_gap(layout, bodies, contact) for contact in own])
+    reaches = tolerances.KERNEL["touching"] * terms
+    turned, shifted = np.linalg.norm(loads[:, :, :3], axis=2), np.linalg.norm(loads[:, :, 3:], axis=2)
+    speeds = turned @ np.linalg.norm(bodies["omega"], axis=1) + shifted @ np.linalg.norm(bodies["v"], axis=1)
+    noise = tolerances.CONTACT_RATE * speeds
+    return Touching(
+        which=np.array(found, dtype=int),
+        loads=loads,
+        rate=np.where(closed[found], 0.0, np.einsum("kbi,bi->k", loads, motion)),
+        noise=np.maximum(noise, reaches / (last or 1.0)),
+        reach=reaches,
+        restitution=np.array([contact.restitution for contact in own]),
+    )
+
+
+def terms_of_gap(layout: Layout, bodies: Table, contact: Contact) -> float:
+    """The size of what a contact's gap is the sum of [m or rad]."""
+    row = layout.tables["closures"][contact.row]
+    Q = point(layout, bodies, contact)
+    return (layout.size + math.sqrt(float(Q @ Q))) / float(row["weight"]) + abs(float(row["length"]))
+
+
+def point(layout: Layout, bodies: Table, contact: Contact) -> Array:
+    """World place of the `to` point, where a contact's force acts on both bodies."""
+    row = layout.tables["closures"][contact.row]
+    q: Array = np.array(row["q"].tolist())
+    return q if row["b"] < 0 else bodies["r"][row["b"]] + bodies["R"][row["b"]] @ q
+
+
+def unit_load(layout: Layout, bodies: Table, rows: Table, contact: Contact) -> Array:
+    """What a contact that bears 1 puts on the bodies, (n_b, 6)."""
+    row = layout.tables["closures"][contact.row]
+    Q = point(layout, bodies, contact)
+    f, m = (-contact.sense * rows[of][contact.row] for of in ("f", "m"))
+    load = np.zeros((len(bodies), 6))
+    for body, sign in ((int(row["b"]), 1.0), (int(row["a"]), -1.0)):
+        if body >= 0:
+            load[body, :3] += sign * (m + cross_rows(Q - bodies["r"][body], f))
+            load[body, 3:] += sign * f
+    return load
+
+
+def answers(touch: Touching, columns: Table) -> Array:
+    """Rates of opening that columns of jumps give, (k, n_c)."""
+    motion = np.concatenate([columns["alpha"], columns["a"]], axis=2)
+    return np.asarray(np.einsum("kbi,cbi->kc", touch.loads, motion))
+
+
+def answerable(layout: Layout, touch: Touching, A: Array) -> Mask:
+    """Whether something moves where a contact bears: else all that holds both ways holds it, too."""
+    mass = layout.bodies["mass"]
+    size = np.einsum("kbi,b->k", touch.loads[:, :, 3:] ** 2, 1.0 / mass)
+    size += np.einsum("kbi,b->k", (touch.loads[:, :, :3] / layout.size) ** 2, 1.0 / mass)
+    return np.asarray(np.diag(A) > tolerances.NO_ANSWER * size)
+
+
+def spread(z: Array, own: Indices, n: int) -> Array:
+    """Values of some contacts, 0 of the others."""
+    out = np.zeros(n)
+    out[own] = z
+    return out
