@@ -1,14 +1,18 @@
-"""What holds for all tests: which kernel is under test, and what the plain one is spared."""
+"""What holds for all tests: the kernel under test, what the plain one is spared, and the command in this process."""
 
 from __future__ import annotations
 
+import io
 import os
+import sys
 from pathlib import Path
 
 import pytest
 
+from heuncli.cli.entry import enter
 from heuncli.kernel.form import FOLDER, KERNEL  # refused where the compiled kernel is older than its text
 from heuncli.nearest import begin_file
+from tests.shared.command import SPEC_TEXTS, Done, Heun
 
 # Folders that judge numbers: the plain kernel gives the same bits, a hundred times slower (test_kernels_agree.py).
 SPARED = {"closed_forms", "convergence", "honesty", "limits"}
@@ -19,6 +23,28 @@ SHARE = 4  # of every other family of cases so many, spread over it: enough to s
 def suggestions() -> None:
     """Suggestions are limited file by file; a test that reads none is a file of its own."""
     begin_file()
+
+
+@pytest.fixture
+def folder(tmp_path: Path) -> Path:
+    """A folder of specs."""
+    for name, text in SPEC_TEXTS.items():
+        (tmp_path / f"{name}.yaml").write_text(text)
+    return tmp_path
+
+
+@pytest.fixture
+def heun(folder: Path, monkeypatch: pytest.MonkeyPatch, capsys: pytest.CaptureFixture[str]) -> Heun:
+    """The command, run in the folder of specs; `text` is its standard input."""
+    monkeypatch.chdir(folder)
+
+    def run(*words: str, text: str = "") -> Done:
+        monkeypatch.setattr(sys, "stdin", io.TextIOWrapper(io.BytesIO(text.encode())))
+        capsys.readouterr()
+        code = enter(words)
+        return Done(code, *capsys.readouterr())
+
+    return run
 
 
 def pytest_configure() -> None:

@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from tests.references.test_governor import SCENE as GOVERNOR
+from tests.shared.governors import GOVERNOR
 
 FRICTION = """
 heun: 1

@@ -28,8 +28,8 @@ from heuncli.study.solve.options import Options
 from heuncli.study.solve.recovery import Recovery
 from heuncli.study.solve.selection import asked_by
 from heuncli.study.workflow import describe, solve
-from tests.cli.conftest import SPECS as SPECS_OF
-from tests.cli.conftest import Heun
+from tests.shared.command import SPEC_TEXTS as SPECS_OF
+from tests.shared.command import Heun
 
 SPECS = Path(__file__).parents[2] / "specs"
 ROD = "shapes: [{type: rod, from: [0, 0, 0], to: [0, 0, -1], mass: 1}]"

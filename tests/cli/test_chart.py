@@ -16,7 +16,7 @@ import pytest
 from heuncli.charting.results import COMPLETED, Charted, Row
 from heuncli.charting.runs import Charting, Timed
 from heuncli.drawing import by_matplotlib as picture_plot
-from tests.cli.conftest import HANGING, SPECS, TURNED, Heun
+from tests.shared.command import HANGING, SPEC_TEXTS, TURNED, Heun
 
 FEW = ("--methods", "DOP853", "--tolerances", "1e-4,1e-8")
 
@@ -108,14 +108,14 @@ def test_a_blow_alone_is_one_instant(heun: Heun, folder: Path) -> None:
 
 
 def test_what_cannot_move_is_refused(heun: Heun, folder: Path) -> None:
-    (folder / "fixed.yaml").write_text(SPECS["swinging"].replace("type: ball", "type: weld"))
+    (folder / "fixed.yaml").write_text(SPEC_TEXTS["swinging"].replace("type: ball", "type: weld"))
     done = heun("chart", "fixed.yaml")
     assert done.returncode == 3 and "the joints leave no freedom" in done.stderr and done.stdout == ""
 
 
 @pytest.mark.heavy
 def test_what_is_driven_is_followed_and_integrated_beside(heun: Heun, folder: Path) -> None:
-    drawn = SPECS["swinging"].replace("type: ball", "type: pin, axis: [0, 1, 0]")
+    drawn = SPEC_TEXTS["swinging"].replace("type: ball", "type: pin, axis: [0, 1, 0]")
     driven = drawn.replace(", orientation: {axis: [1, 0, 0], angle: 60 deg}", "")
     (folder / "driven.yaml").write_text(driven + "drives: {motor: {joint: pivot, angle: 't**2'}}\n")
     few = ("--tolerances", "1e-6", "--steps", "0.1", "--format", "json")

@@ -13,7 +13,7 @@ import pytest
 from heuncli.cli.entry import enter
 from heuncli.errors import SpecError
 from heuncli.spec.load import load
-from tests.cli.conftest import HANGING, SPECS, Heun
+from tests.shared.command import HANGING, SPEC_TEXTS, Heun
 
 
 def row(text: str, name: str) -> list[str]:
@@ -112,7 +112,7 @@ def test_only_what_is_asked_for_is_in_the_output(heun: Heun) -> None:
     parsed = json.loads(heun("run", "hanging.yaml", "--only", "joints", "--format", "json").stdout)
     assert "joints" in parsed
     assert not {"foundation", "bodies", "energy"} & parsed.keys()
-    asked = SPECS["swinging"] + "report: [motion, energy]\n"
+    asked = SPEC_TEXTS["swinging"] + "report: [motion, energy]\n"
     text = heun("run", "-", text=asked).stdout
     assert "MOTION" in text
     assert "JOINTS" not in text
@@ -146,10 +146,10 @@ def test_extremes_on_the_page_are_those_measured(heun: Heun) -> None:
 
 def test_what_is_expected_at_an_instant_that_was_set_away_stops_no_run(heun: Heun, folder: Path) -> None:
     """`run` and `model` use no expectations; `check` and `validate` judge the spec as it stands."""
-    (folder / "set.yaml").write_text(SPECS["swinging"] + "expect: [{of: energy.kinetic, at: 0.7, is: 0}]\n")
+    (folder / "set.yaml").write_text(SPEC_TEXTS["swinging"] + "expect: [{of: energy.kinetic, at: 0.7, is: 0}]\n")
     assert heun("run", "set.yaml", "--set", "analysis.duration=0.5").returncode == 0
     assert heun("model", "set.yaml", "--set", "analysis.duration=0.5").returncode == 0
-    (folder / "set.yaml").write_text(SPECS["swinging"] + "expect: [{of: energy.kinetic, at: 0.75, is: 0}]\n")
+    (folder / "set.yaml").write_text(SPEC_TEXTS["swinging"] + "expect: [{of: energy.kinetic, at: 0.75, is: 0}]\n")
     for command in ("check", "validate"):
         done = heun(command, "set.yaml")
         assert (done.returncode, done.stdout) == (2, "")
@@ -264,7 +264,7 @@ def test_check_of_folders_passes_by_what_is_broken_on_purpose(heun: Heun, folder
 def test_a_table_outside_the_folder_is_named_by_model_and_fails_under_strict(heun: Heun, folder: Path) -> None:
     (folder / "data.csv").write_text("0,1\n1,2\n")
     (folder / "below").mkdir()
-    (folder / "below" / "spec.yaml").write_text(SPECS["hanging"] + "tables: {f: {file: ../data.csv}}\n")
+    (folder / "below" / "spec.yaml").write_text(SPEC_TEXTS["hanging"] + "tables: {f: {file: ../data.csv}}\n")
     told = "tables.f.file: reads a file outside the spec's folder: ../data.csv [outside-folder]"
     for words, code in ((["model"], 0), (["run"], 0), (["run", "--strict"], 1)):
         done = heun(words[0], "below/spec.yaml", *words[1:])

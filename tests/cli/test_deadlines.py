@@ -18,7 +18,7 @@ from heuncli.cli import alarm, files
 from heuncli.integration import evaluator
 from heuncli.spec.load import load
 from heuncli.study.workflow import solve
-from tests.cli.conftest import HANGING, Heun
+from tests.shared.command import HANGING, Heun
 
 SPECS = Path(__file__).parents[2] / "specs"
 ENOUGH = 5.0  # seconds in which a command of a tenth of a second is given up, on a machine that does much else

@@ -7,7 +7,7 @@ from pathlib import Path
 import pytest
 
 from heuncli.cli.explain import PAGES
-from tests.cli.conftest import Heun
+from tests.shared.command import Heun
 from tests.shared.manual import TEXTS
 
 

@@ -10,9 +10,9 @@ from pathlib import Path
 import pytest
 
 from heuncli.cli.folders import Found, PassedBy, specs_below
-from tests.cli.conftest import SPECS, Heun
+from tests.shared.command import SPEC_TEXTS, Heun
 
-EXPECTING = SPECS["expecting"]
+EXPECTING = SPEC_TEXTS["expecting"]
 
 
 @pytest.fixture

@@ -10,7 +10,7 @@ from pathlib import Path
 import pytest
 
 from heuncli.cli.entry import enter
-from tests.cli.conftest import HANGING, Heun
+from tests.shared.command import HANGING, Heun
 
 TABLE = "tables: {g: {file: data/t.csv, x: 1, y: 2}}\n"
 WRITERS = (

@@ -11,7 +11,7 @@ from heuncli.integration.methods.registry import method_of
 from heuncli.method_rows import METHODS
 from heuncli.spec.methods import meant, unfit
 from heuncli.spec.words import METHOD_WORDS
-from tests.cli.conftest import SPECS, Heun
+from tests.shared.command import SPEC_TEXTS, Heun
 
 
 def test_every_method_is_listed(heun: Heun) -> None:
@@ -108,7 +108,7 @@ def test_words_of_other_programs_lead_to_methods() -> None:
 )
 def test_a_spec_is_told_each_error_once_and_where(heun: Heun, given: str, told: list[str]) -> None:
     """A step that could not be read is not missing beside that."""
-    done = heun("run", "-", text=SPECS["swinging"].replace("analysis: {", f"analysis: {{{given}, "))
+    done = heun("run", "-", text=SPEC_TEXTS["swinging"].replace("analysis: {", f"analysis: {{{given}, "))
     assert (done.returncode, done.stdout) == (2, "")
     lines = [line for line in done.stderr.splitlines() if not line.startswith("  hint: ")]
     assert [line.partition(": ")[2] for line in lines] == told

@@ -12,7 +12,7 @@ import pytest
 from heuncli.errors import HeunError
 from heuncli.modes.study import modes
 from heuncli.spec.load import load
-from tests.cli.conftest import Heun
+from tests.shared.command import Heun
 
 SCENE = """\
 heun: 1

@@ -13,7 +13,7 @@ import pytest
 from heuncli.cli.files import ReaderGone, place_of
 from heuncli.cli.output import emit
 from heuncli.errors import OutputError
-from tests.cli.conftest import Heun
+from tests.shared.command import Heun
 
 
 def test_a_file_is_written_and_keeps_its_mode(tmp_path: Path) -> None:

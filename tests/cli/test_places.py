@@ -6,7 +6,7 @@ import re
 
 import pytest
 
-from tests.cli.conftest import Heun
+from tests.shared.command import Heun
 
 SOLID = "mass: 1, center: [0.5, 0, 0], inertia: [0.1, 0.1, 0.1], points: {top: [0, 0, 0], end: [1, 0, 0]}"
 SCENE = f"""\

@@ -7,7 +7,7 @@ from pathlib import Path
 
 import pytest
 
-from tests.cli.conftest import Heun
+from tests.shared.command import Heun
 
 BODY = "{mass: 1, center: [0, 0, 0], inertia: [1, 2, 3], angular_velocity: [0.5, 1, 0.2]}"
 SCENE = f"heun: 1\ntitle: A free body\nbodies: {{b: {BODY}}}\nanalysis: {{duration: DUR, samples: 3}}\n"

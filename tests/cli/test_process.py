@@ -2,7 +2,6 @@
 
 from __future__ import annotations
 
-import os
 import signal
 import subprocess
 import sys
@@ -11,16 +10,7 @@ from pathlib import Path
 
 import pytest
 
-ROOT = Path(__file__).parents[2]
-ENVIRONMENT = {**os.environ, "PYTHONPATH": str(ROOT)}
-
-
-def shell(line: str, folder: Path) -> subprocess.CompletedProcess[str]:
-    """A line of shell in which `heun` is the command."""
-    line = line.replace("heun", f"{sys.executable} -m heuncli", 1)
-    return subprocess.run(
-        ["bash", "-c", line], capture_output=True, text=True, cwd=folder, timeout=60, env=ENVIRONMENT, check=False
-    )
+from tests.shared.shell import ENVIRONMENT, shell
 
 
 def test_the_module_runs_as_the_command_does(folder: Path) -> None:

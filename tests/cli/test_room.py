@@ -20,8 +20,8 @@ from heuncli.study.solve.options import Options
 from heuncli.study.solve.selection import Asked
 from heuncli.study.solve.setup import set_up
 from heuncli.study.workflow import solve
-from tests.cli.conftest import Heun
-from tests.cli.test_process import shell
+from tests.shared.command import Heun
+from tests.shared.shell import shell
 
 SPECS = Path(__file__).parents[2] / "specs"
 

@@ -27,7 +27,7 @@ from heuncli.study.ask.measure import Measure, NotOneNumber, value
 from heuncli.study.ask.study import Study
 from heuncli.study.solve.options import Options
 from heuncli.study.workflow import solve
-from tests.cli.conftest import Heun
+from tests.shared.command import Heun
 
 BAR = """\
   b{0}:

@@ -8,7 +8,7 @@ import pytest
 
 from heuncli.cli.terminal import LEAST_WIDTH, width, write
 from heuncli.report.table import Column, Table
-from tests.cli.conftest import Heun
+from tests.shared.command import Heun
 
 WIDE = Table(
     "JOINTS",

@@ -14,9 +14,9 @@ import pytest
 
 from heuncli.errors import SolveError
 from heuncli.results import Block
-from tests.closed_forms.test_closed_chains import JOINTS, slider_crank
-from tests.closed_forms.test_theory_golden_a import SCENE as GOLDEN_A
+from tests.shared.golden_a import GOLDEN_A
 from tests.shared.scenes import near, solved
+from tests.shared.slider_crank import JOINTS, slider_crank
 
 EXACT = 1e-13  # relative: what is printed has 15 digits or is a fraction
 HEAD = "heun: 1\nground: {points: {O: [0, 0, 0]}}\n"

@@ -2,7 +2,6 @@
 
 from __future__ import annotations
 
-import json
 from typing import Any
 
 import numpy as np
@@ -14,17 +13,12 @@ from heuncli.report.page import page_of
 from heuncli.results_schema import REPORTS
 from heuncli.study.ask.study import Study
 from heuncli.study.search.extremes import Searched
+from tests.shared.measured import measured
 from tests.shared.scenes import near, study
 
 pytestmark = pytest.mark.heavy  # families: the plain kernel has the same bits (tests/package/test_kernels_agree.py)
 
 G = 9.81
-
-
-def told(run: Study, words: str) -> dict[str, Any]:
-    """What `--measure WORDS --format json` prints."""
-    block: dict[str, Any] = json.loads(measure.write([measure.parse(words)], run, "json"))
-    return block
 
 
 def in_table(run: Study, heading: str, label: str) -> list[str]:
@@ -78,11 +72,11 @@ def test_the_highest_of_many_summits_between_few_samples(samples: int) -> None:
     for words, exact in (("max foundation.force", size), ("min foundation.force", np.hypot(x, y).min()),
                          ("max foundation.force.x", x.max()), ("abs foundation.force.y", np.abs(y).max())):  # fmt: skip
         # two million samples miss a summit by (66 * 7e-6 / 2)^2 / 2 of its size, and a crossing of zero by more
-        near(told(run, words)["value"], exact, size, 1e-6)
-    assert told(run, "max foundation.force")["value"] >= size * (1.0 - 1e-12)
+        near(measured(run, words)["value"], exact, size, 1e-6)
+    assert measured(run, "max foundation.force")["value"] >= size * (1.0 - 1e-12)
     low, high = in_table(run, "FOUNDATION", "|F|")[4:7:2]
     for text, words in ((low, "min foundation.force"), (high, "max foundation.force")):
-        near(float(text), told(run, words)["value"], size, 2e-6)  # six digits
+        near(float(text), measured(run, words)["value"], size, 2e-6)  # six digits
 
 
 def test_a_magnitude_through_zero() -> None:
@@ -98,9 +92,9 @@ def test_a_magnitude_through_zero() -> None:
         "analysis": {"duration": float(2.0 * np.pi / rate), "samples": 8},
     })  # fmt: skip
     for quantity in ("radial", "force"):
-        near(told(run, f"min joints.pin.{quantity}")["value"], 0.0, m * G, 1e-11)
-        near(told(run, f"max joints.pin.{quantity}")["value"], 2.0 * m * G, m * G, 1e-11)
-        near(told(run, f"min joints.pin.{quantity}")["at"], np.pi / rate, 1.0, 1e-10)
+        near(measured(run, f"min joints.pin.{quantity}")["value"], 0.0, m * G, 1e-11)
+        near(measured(run, f"max joints.pin.{quantity}")["value"], 2.0 * m * G, m * G, 1e-11)
+        near(measured(run, f"min joints.pin.{quantity}")["at"], np.pi / rate, 1.0, 1e-10)
     assert in_table(run, "JOINTS", "radial")[4] == "0"
 
 
@@ -134,14 +128,14 @@ ARM = END - AT
 def test_the_bearing_moment_whatever_cuts_are_asked(count: int) -> None:
     """|M| = P a + w a²/2 at the bearing, between all asked cuts; the shear force jumps there."""
     run = shaft(count)
-    found = told(run, "max abs sections.shaft.M1")
+    found = measured(run, "max abs sections.shaft.M1")
     near(found["value"], PUSH * ARM + 0.5 * WEIGHT * ARM**2, 100.0, 1e-12)
     near(found["s"], AT + 0.05, 1.0, 1e-12)
-    shear = told(run, "min sections.shaft.Q2")
+    shear = measured(run, "min sections.shaft.Q2")
     near(shear["value"], -PUSH - WEIGHT * ARM, 100.0, 1e-12)
     assert (shear["side"], shear["cut"]) == ("beyond", None)
     lift = (PUSH * ARM + 0.5 * WEIGHT * (ARM**2 - (AT + 0.05) ** 2) + WEIGHT * 0.05 * AT) / AT
-    assert told(run, "max sections.shaft.Q2")["side"] == "before"
+    assert measured(run, "max sections.shaft.Q2")["side"] == "before"
     assert lift > 0.0
     assert in_table(run, "SECTION shaft", "M1")[4:] == [f"{found['value']:.4f}", "0.42 beyond"]
     assert len(run.results.sections["shaft"]["s"]) == count
@@ -158,7 +152,7 @@ def test_the_largest_moment_between_bearings_under_the_own_weight() -> None:
         "sections": {"bar": {"body": "bar", "from": "A", "to": "B", "count": 4}}, "analysis": {"type": "state"},
     })  # fmt: skip
     for words in ("max abs sections.bar.M1", "max sections.bar.moment"):
-        found = told(run, words)
+        found = measured(run, words)
         near(found["value"], 3.0 * G * 2.0**2 / 8.0, 1.0, 1e-12)
         near(found["s"], 1.0, 1.0, 1e-7)
         assert (found["side"], found["cut"]) == (None, None)
@@ -168,18 +162,18 @@ def test_a_stress_between_the_cuts() -> None:
     """At the bearing: bending of P a + w a²/2 over W, beside no other normal stress."""
     run = shaft(5, properties={"circle": {"radius": RADIUS}}, strength=235e6)
     most = (PUSH * ARM + 0.5 * WEIGHT * ARM**2) / (0.25 * np.pi * RADIUS**3)
-    near(told(run, "max sections.shaft.stress.normal_max")["value"], most, most, 1e-9)
-    assert told(run, "max sections.shaft.stress.utilisation")["value"] * 235e6 >= most * (1.0 - 1e-9)
+    near(measured(run, "max sections.shaft.stress.normal_max")["value"], most, most, 1e-9)
+    assert measured(run, "max sections.shaft.stress.utilisation")["value"] * 235e6 >= most * (1.0 - 1e-9)
 
 
 def test_open_in_part_is_open() -> None:
     """Beyond the last bearing the moment is certain, between the three it is not: nobody knows the largest."""
     run = shaft(5, middle=True)
-    assert told(run, "max abs sections.shaft.M1")["value"] is None
+    assert measured(run, "max abs sections.shaft.M1")["value"] is None
     assert measure.write([measure.parse("max sections.shaft.moment")], run, "table") == "open\n"
     assert in_table(run, "SECTION shaft", "M1")[2] == "open"
-    assert told(run, "max abs sections.shaft.N")["value"] == 0.0
-    assert told(run, "max abs sections.shaft.M1.3")["value"] > 0.0  # of a cut that is certain
+    assert measured(run, "max abs sections.shaft.N")["value"] == 0.0
+    assert measured(run, "max abs sections.shaft.M1.3")["value"] > 0.0  # of a cut that is certain
 
 
 @pytest.mark.parametrize("count", [2, 7])
@@ -202,14 +196,14 @@ def test_under_a_trolley_that_runs_along_a_beam(count: int) -> None:
         "sections": {"beam": {"body": "beam", "from": "A", "to": "B", "count": count}},
         "analysis": {"duration": 4.0, "samples": 5},
     })  # fmt: skip
-    found = told(run, "max abs sections.beam.M1")
+    found = measured(run, "max abs sections.beam.M1")
     most = 0.25 * mass * G * length + 0.125 * own * G * length**2
     near(found["value"], most, most, 1e-11)
     near(found["at"], (0.5 * length - 0.4) / speed, 1.0, 1e-5)
     near(found["s"], 0.5 * length, 1.0, 1e-5)
     # the shear force is largest at the end that the trolley is nearest to: in the beginning, before it
     near(
-        told(run, "max abs sections.beam.Q2")["value"],
+        measured(run, "max abs sections.beam.Q2")["value"],
         mass * G * (1.0 - 0.4 / length) + 0.5 * own * G * length,
         most,
         1e-11,

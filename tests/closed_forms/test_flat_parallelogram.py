@@ -15,20 +15,16 @@ import pytest
 
 from heuncli.cli.entry import enter
 from heuncli.errors import SolveError
-from tests.oracle.published import four_bar
 from tests.oracle.read import start_state
 from tests.oracle.solve import solve
 from tests.oracle.values import to_yaml
+from tests.shared.parallelogram import parallelogram_in_line
 from tests.shared.scenes import moving, near, solved
-
-
-def flat(crank: float, rocker: float) -> dict[str, Any]:
-    return four_bar(0.0, 0.0, 0.0, (1, 2, 1, 2), (crank, (rocker - crank) / 2, rocker))
 
 
 def some_rates(**rates: float) -> dict[str, Any]:
     """The flat scene with the rates of these bars alone, all else left to the assembly."""
-    scene = copy.deepcopy(flat(0.0, 0.0))
+    scene = copy.deepcopy(parallelogram_in_line(0.0, 0.0))
     for name, body in scene["bodies"].items():
         del body["velocity"], body["angular_velocity"]
         if name in rates:
@@ -39,7 +35,7 @@ def some_rates(**rates: float) -> dict[str, Any]:
 @pytest.mark.parametrize("rates", [(1, 1), (1, -3), (-2, -2), (0.5, -1.5)])
 def test_rates_of_a_branch_pass(rates: tuple[float, float]) -> None:
     """Accelerations and what is certain as the oracle has them; along the line all is open, and a warning says why."""
-    scene = flat(*rates)
+    scene = parallelogram_in_line(*rates)
     found, wanted = solved(scene), solve(scene, start_state(scene))
     assert (wanted.rows, wanted.rank, wanted.residual < 1e-14) == (20, 16, True)
     assert (found.model["freedoms"], found.model["redundant"]) == (1, 3)  # as in any other pose
@@ -56,7 +52,7 @@ def test_rates_of_a_branch_pass(rates: tuple[float, float]) -> None:
 @pytest.mark.parametrize("rates", [(1, 2), (1, 0), (0, 1), (1, -1)])
 def test_other_rates_have_no_acceleration(rates: tuple[float, float]) -> None:
     with pytest.raises(SolveError) as caught:
-        solved(flat(*rates))
+        solved(parallelogram_in_line(*rates))
     assert caught.value.problems[0].code == "singular-pose"
 
 
@@ -64,7 +60,7 @@ def test_refused_with_exit_code_and_reason(tmp_path: Any, capsys: pytest.Capture
     codes = {}
     for rates in ((1, 1), (1, -3), (1, 2)):
         path = tmp_path / "flat.yaml"
-        path.write_text(to_yaml(flat(*rates)))
+        path.write_text(to_yaml(parallelogram_in_line(*rates)))
         codes[rates] = enter(["run", str(path), "--format", "json"])
         out, err = capsys.readouterr()
         if codes[rates] == 0:
@@ -89,7 +85,7 @@ def test_one_rate_does_not_choose_the_branch() -> None:
 @pytest.mark.parametrize(("rocker", "ratio"), [(1.0, 1.0), (-3.0, -3.0)])
 def test_each_keeps_to_its_branch(rocker: float, ratio: float) -> None:
     """Started flat, without weight: all the way as a parallelogram, or as crossed bars."""
-    scene = {**flat(1.0, rocker), "gravity": [0, 0, 0]}
+    scene = {**parallelogram_in_line(1.0, rocker), "gravity": [0, 0, 0]}
     found = solved(moving(scene, (0.0, 0.2, 0.4, 0.6), 1e-9)).bodies
     R = (found[name]["rotation"] for name in ("crank", "rocker"))
     crank, other = (np.arctan2(r[:, 1, 0], r[:, 0, 0]) for r in R)

@@ -13,9 +13,9 @@ from heuncli.integration.methods.registry import method_of
 from heuncli.results import Array
 from heuncli.spec.load import load
 from heuncli.study.solve.setup import set_up
-from tests.closed_forms.test_theory_2j_motion import PERIOD, free_top, heavy_top
 from tests.shared.bars import double
 from tests.shared.scenes import near, solved, study
+from tests.shared.tops import PERIOD, free_top, heavy_top
 
 GLOBAL, ANEW = "DOP853-rodrigues", "DOP853-recentred"
 METHODS = (GLOBAL, ANEW)

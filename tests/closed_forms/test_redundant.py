@@ -10,18 +10,13 @@ import pytest
 from tests.oracle.published import beam, four_bar, held
 from tests.oracle.transforms import units_changed
 from tests.shared.openness import open_forces, sums, told_by_sums
+from tests.shared.redundant_supports import SQUARE, door, table
 from tests.shared.scenes import moving, near, solved
 
 ROUNDING = 1e-12
 
 
 # ---- a door on two ball hinges
-def door() -> dict[str, Any]:
-    return held(
-        {"top": [-0.4, 0, 0.9], "bottom": [-0.4, 0, -0.7]},
-        {"type": "ball"},
-        {"position": [0.4, 0, 0], "velocity": [0, 0.4 * 2.3, 0], "angular_velocity": [0, 0, 2.3]},
-    )
 
 
 def test_door() -> None:
@@ -195,14 +190,6 @@ def test_a_line_that_could_turn() -> None:
 
 
 # ---- a table on four legs
-def table(legs: dict[str, tuple[float, float]]) -> dict[str, Any]:
-    points = {name: [x, y, 0.0] for name, (x, y) in legs.items()}
-    scene = held(points, {"type": "plane", "normal": [0, 0, 1]}, {"center": [0.1, 0.05, 0.7]})
-    scene["bodies"]["body"]["points"]["cup"] = [0.3, -0.2, 0.75]
-    return {**scene, "forces": {"cup": {"type": "force", "on": "body.cup", "vector": [0, 0, -20.0]}}}
-
-
-SQUARE = {"A": (-0.6, -0.4), "B": (0.6, -0.4), "C": (0.6, 0.4), "D": (-0.6, 0.4)}
 
 
 def test_table_on_four_legs() -> None:

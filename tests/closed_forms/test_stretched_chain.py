@@ -14,32 +14,9 @@ import pytest
 from heuncli.errors import SolveError
 from heuncli.results import Results
 from tests.shared.scenes import near, solved
+from tests.shared.stretched_chain import KINDS, stretched_chain
 
-KINDS = {
-    "pins and a line": ("pin, axis: [0, 1, 0]", "line, axis: [0, 1, 0]", "pin, axis: [0, 1, 0]"),
-    "pins": ("pin, axis: [0, 1, 0]",) * 3,
-    "balls": ("ball",) * 3,
-    "a universal": ("ball", "ball", "universal, axis: [0, 1, 0], to_axis: [0, 0, 1]"),
-}
 STRAIGHT = [0.0, 1e-16, 1e-13, 1e-10, 3e-10]
-
-
-def chain(h: float, load: str, kinds: str = "pins and a line", more: str = "") -> str:
-    """Two bars of mass 1 kg; h: the sag of their joint."""
-    left, middle, right = KINDS[kinds]
-    return f"""
-heun: 1
-ground: {{points: {{A: [0, 0, 0], B: [2, 0, 0]}}}}
-bodies:
-  l: {{mass: 1, center: [0.5, 0, {-h / 2!r}], inertia: [0.01, 0.08, 0.08], points: {{a: [0, 0, 0], c: [1, 0, {-h!r}]}}}}
-  r: {{mass: 1, center: [1.5, 0, {-h / 2!r}], inertia: [0.01, 0.08, 0.08], points: {{c: [1, 0, {-h!r}], b: [2, 0, 0]}}}}
-joints:
-  A: {{type: {left}, from: ground.A, to: l.a}}
-  C: {{type: {middle}, from: l.c, to: r.c}}
-  B: {{type: {right}, from: r.b, to: ground.B}}
-forces: {{push: {{type: force, on: l.c, vector: {load}}}}}
-{more}
-"""
 
 
 def refused(text: str) -> None:
@@ -55,20 +32,20 @@ def refused(text: str) -> None:
 @pytest.mark.parametrize("h", STRAIGHT)
 def test_straight_and_pushed_across_is_refused(kinds: str, h: float) -> None:
     """Also where what is typed is straight but for rounding."""
-    refused(chain(h, "[0, 0, -100]", kinds))
+    refused(stretched_chain(h, "[0, 0, -100]", kinds))
 
 
 @pytest.mark.parametrize("more", ["gravity: [0, 0, -9.81]", "analysis: {duration: 1, samples: 3}"])
 def test_so_is_a_run_from_there_and_by_weight(more: str) -> None:
     """Before a step is done: what would be done goes wrong at first by the fourth power of the time."""
-    refused(chain(0.0, "[0, 0, -100]", more=more))
+    refused(stretched_chain(0.0, "[0, 0, -100]", more=more))
 
 
 @pytest.mark.parametrize("kinds", ["pins", "pins and a line"])
 @pytest.mark.parametrize("h", [2e-9, 1e-8, 1e-6, 1e-4, 1e-2, 0.5])
 def test_with_a_sag_the_tension_grows_as_its_inverse(kinds: str, h: float) -> None:
     """F/(2 sin), whatever the sag that can be told from none."""
-    found = solved(chain(h, "[0, 0, -100]", kinds))
+    found = solved(stretched_chain(h, "[0, 0, -100]", kinds))
     tension = 50.0 / h
     near(found.joints["C"]["force"][0, 0], -tension, tension, 1e-15 / h + 1e-13)
     near(found.joints["A"]["force"][0, 2], 50.0, tension, 1e-13)
@@ -77,16 +54,16 @@ def test_with_a_sag_the_tension_grows_as_its_inverse(kinds: str, h: float) -> No
 @pytest.mark.parametrize("kinds", KINDS)
 def test_pulled_along_it_stands(kinds: str) -> None:
     """How much each half carries is open, the sum is not; and without a load all is at rest."""
-    found = solved(chain(0.0, "[3, 0, 0]", kinds))
+    found = solved(stretched_chain(0.0, "[3, 0, 0]", kinds))
     assert any(w.startswith("singular pose") for w in found.warnings)
     near(found.foundation["force"][0], [3.0, 0.0, 0.0], 3.0, 1e-13)
     near(found.bodies["l"]["center_acceleration"][0], 0.0, 3.0, 1e-13)
-    near(solved(chain(0.0, "[0, 0, 0]", kinds)).foundation["force"][0], 0.0, 1.0, 1e-13)
+    near(solved(stretched_chain(0.0, "[0, 0, 0]", kinds)).foundation["force"][0], 0.0, 1.0, 1e-13)
 
 
 def test_it_may_swing_about_its_ends_where_they_hang() -> None:
     """Straight down between supports, pulled by its weight along itself."""
-    found = solved(chain(0.0, "[0, 0, 0]", "balls", "gravity: [-9.81, 0, 0]"))
+    found = solved(stretched_chain(0.0, "[0, 0, 0]", "balls", "gravity: [-9.81, 0, 0]"))
     near(found.foundation["force"][0], [-2 * 9.81, 0, 0], 20.0, 1e-13)
 
 

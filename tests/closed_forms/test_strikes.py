@@ -13,7 +13,7 @@ import pytest
 from scipy.optimize import brentq
 
 from heuncli.study.ask.study import Study
-from tests.closed_forms.test_extremes import told
+from tests.shared.measured import measured
 from tests.shared.scenes import near, study
 
 pytestmark = pytest.mark.heavy  # families: the plain kernel has the same bits (tests/package/test_kernels_agree.py)
@@ -99,9 +99,9 @@ def test_with_all_of_it_it_never_rests() -> None:
     tops = run.resample(np.array([2 * fall * k for k in range(1, 11)]))
     near(tops.coordinates["guide"]["travel"], 1.0, 1.0, 1e-9)
     energy_never_grows(run, at_one=True)
-    assert told(run, "min coordinates.guide.travel")["value"] == pytest.approx(0.0, abs=1e-12)
-    assert told(run, "max coordinates.guide.speed")["value"] == pytest.approx(math.sqrt(2 * G), rel=1e-9)
-    assert told(run, "min coordinates.guide.speed")["value"] == pytest.approx(-math.sqrt(2 * G), rel=1e-9)
+    assert measured(run, "min coordinates.guide.travel")["value"] == pytest.approx(0.0, abs=1e-12)
+    assert measured(run, "max coordinates.guide.speed")["value"] == pytest.approx(math.sqrt(2 * G), rel=1e-9)
+    assert measured(run, "min coordinates.guide.speed")["value"] == pytest.approx(-math.sqrt(2 * G), rel=1e-9)
 
 
 def test_just_before_and_at_a_strike() -> None:

@@ -12,25 +12,9 @@ import pytest
 
 from tests.shared.bars import HEAD, rods
 from tests.shared.scenes import near, solved
+from tests.shared.tops import PERIOD, free_top, heavy_top
 
 G = 9.81
-
-
-def free_top(times: str, joint: bool) -> str:
-    pivot = "joints: {pivot: {type: ball, from: ground.O, to: top.c}}" if joint else ""
-    return f"""
-heun: 1
-ground: {{points: {{O: [0, 0, 0]}}}}
-bodies:
-  top:
-    mass: 1
-    center: [0, 0, 0]
-    inertia: [1, 2, 3]
-    points: {{c: [0, 0, 0]}}
-    angular_velocity: {{vector: [0.9, 0, 1.1], frame: body}}
-{pivot}
-analysis: {{times: {times}, tolerance: 1e-13}}
-"""
 
 
 @pytest.mark.parametrize("joint", [True, False], ids=["on a ball", "free"])
@@ -41,28 +25,6 @@ def test_case_1_free_top(joint: bool) -> None:
     near(spin[0], [0.4389935957999769, 0.7856746291223909, 1.002116988704977], 1.0, 1e-13)
     near(spin[1], [0.9, 0.0, 1.1], 1.0, 1e-12)
     near(spin[2], [-0.5286165061102699, -0.7283986473544353, 1.016437473160094], 1.0, 1e-12)
-
-
-def heavy_top(spin: float, tilt: str, times: str) -> str:
-    """A = 1 about the tip, C = .5, m g l = 1: 1 kg at 0.1 m under g = 10."""
-    return (
-        HEAD.replace("-9.81", "-10")
-        + f"""
-bodies:
-  top:
-    mass: 1
-    center: [0, 0, 0.1]
-    inertia: [0.99, 0.99, 0.5]
-    points: {{tip: [0, 0, 0]}}
-    orientation: {{axis: [1, 0, 0], angle: {tilt}}}
-    angular_velocity: {{vector: [0, 0, {spin}], frame: body}}
-joints: {{tip: {{type: ball, from: ground.O, to: top.tip}}}}
-analysis: {{times: {times}, tolerance: 1e-13}}
-"""
-    )
-
-
-PERIOD = 1.660594261039426  # of nutation
 
 
 def test_case_2_heavy_top() -> None:

@@ -9,7 +9,7 @@ import numpy as np
 import pytest
 
 from heuncli.results import Array, Results
-from tests.shared.bars import HEAD
+from tests.shared.golden_a import GOLDEN_A
 from tests.shared.scenes import near, solved
 
 M1, M2 = 2.0, 1.5
@@ -20,20 +20,6 @@ N = np.array([-3.171219551979122, -0.63007503262288, 0.063526533275337])
 POWER = -41.43487548934319
 EXCESS = 2.6468565  # [W] by which the printed (49) breaks the energy balance
 EXACT = 1e-13
-
-SCENE = (
-    HEAD
-    + """
-bodies:
-  one: {mass: 2, center: [0.5, 0.1, -0.05], inertia: [0.2, 0.5, 0.6], points: {base: [0, 0, 0], joint: [1, 0.2, 0.1]},
-        orientation: {rodrigues: [0.1, 0.2, 0.3]}, angular_velocity: [1, -2, 0.5]}
-  two: {mass: 1.5, center: [0.4, -0.1, 0.2], inertia: [0.1, 0.3, 0.35], points: {base: [0, 0, 0]},
-        orientation: {rodrigues: [-0.2, 0.4, 0.1]}, angular_velocity: [-0.5, 1.5, 2]}
-joints:
-  fixed: {type: ball, from: ground.O, to: one.base}
-  link: {type: ball, from: one.joint, to: two.base}
-"""
-)
 
 
 def hat(a: Array) -> Array:
@@ -71,7 +57,7 @@ def mass_matrix(found: Results, k: int) -> Array:
 
 
 def test_numbers() -> None:
-    found = solved(SCENE)
+    found = solved(GOLDEN_A)
     one, two = found.bodies["one"], found.bodies["two"]
     near(one["angular_acceleration"][0], [-7.872973507783647, 5.758454792674423, -3.649496691017909], 10.0, EXACT)
     near(two["angular_acceleration"][0], [-2.073300609302811, -2.314982049943921, 10.2532687586563], 10.0, EXACT)
@@ -102,7 +88,7 @@ def rate_of_energy(found: Results, k: int, missing: float) -> float:
 
 def test_49_keeps_the_energy_and_as_printed_does_not() -> None:
     """The rate of the kinetic energy is the weight's power; without N it would be 2.6468565 W more."""
-    found = solved(SCENE)
+    found = solved(GOLDEN_A)
     near(rate_of_energy(found, 0, missing=0.0), POWER, 10.0, EXACT)
     near(rate_of_energy(found, 0, missing=1.0) - POWER, EXCESS, 1.0, 5e-8)
     turned = np.linalg.solve(mass_matrix(found, 0), np.concatenate([-N, N]))
@@ -113,7 +99,7 @@ def test_49_keeps_the_energy_and_as_printed_does_not() -> None:
 def test_49_row_by_row(row: int) -> None:
     """dR'/dt − N = M'_k + c'×k'',  dR''/dt + N = M''_k, dR/dt by differences of the momenta along the run."""
     h = 2e-4
-    found = solved(SCENE + f"analysis: {{times: [0, {h}, {2 * h}, {3 * h}, {4 * h}], tolerance: 1e-13}}")
+    found = solved(GOLDEN_A + f"analysis: {{times: [0, {h}, {2 * h}, {3 * h}, {4 * h}], tolerance: 1e-13}}")
     R = np.array([(mass_matrix(found, k) @ np.concatenate(spins(found, k))).reshape(2, 3)[row] for k in range(5)])
     rate = (R[0] - 8 * R[1] + 8 * R[3] - R[4]) / (12 * h)
     a1, c, a2 = arms(found, 2)
@@ -126,7 +112,7 @@ def test_49_row_by_row(row: int) -> None:
 @pytest.mark.heavy
 def test_energy_along_the_motion() -> None:
     """E + U stays over two seconds, while the printed (49) would have put in the work of N·(σ'' − σ')."""
-    found = solved(SCENE + "analysis: {duration: 2, samples: 2001, tolerance: 1e-12}")
+    found = solved(GOLDEN_A + "analysis: {duration: 2, samples: 2001, tolerance: 1e-12}")
     total = found.energy["kinetic"] + found.energy["potential"]
     near(total, total[0], float(found.energy["kinetic"].max()), 1e-11)
     excess = [coupling(found, k) @ (s2 - s1) for k in range(len(found.time)) for s1, s2 in [spins(found, k)]]

@@ -11,9 +11,9 @@ import pytest
 from heuncli.integration.methods.registry import method_of
 from heuncli.method_rows import METHODS
 from heuncli.results import Array
-from tests.closed_forms.test_theory_2j_motion import heavy_top
 from tests.shared.bars import chain, double
 from tests.shared.scenes import study
+from tests.shared.tops import heavy_top
 
 pytestmark = pytest.mark.heavy
 

@@ -14,16 +14,16 @@ from heuncli import tolerances
 from heuncli.cli import measure
 from heuncli.results import Array
 from heuncli.study.ask.study import Study
-from tests.closed_forms.test_extremes import told
-from tests.honesty.test_horizon import KNOWN as KNOWN_TRUTH
-from tests.honesty.test_horizon import SECOND, TRUTH, off
 from tests.oracle.blows import with_blows
 from tests.oracle.impulses import state_after, struck
 from tests.oracle.read import Placed, state_at
 from tests.shared.bars import rods
 from tests.shared.loops import loop_scene
+from tests.shared.measured import measured
 from tests.shared.scenes import near, solved, study
 from tests.shared.trees import tree_scene, weighed
+from tests.shared.truth import KNOWN as KNOWN_TRUTH
+from tests.shared.truth import SECOND, TRUTH, off
 
 pytestmark = pytest.mark.heavy  # families: the plain kernel has the same bits
 
@@ -47,18 +47,18 @@ def run_of(name: str, tolerance: float = 1e-9, samples: tuple[float, ...] = (0.0
     return study({**scene(name), "analysis": {"times": list(samples), "tolerance": tolerance}})
 
 
-def without(told: dict[str, Any]) -> dict[str, Any]:
-    return {k: v for k, v in told.items() if k != "impulses"}
+def without(measured: dict[str, Any]) -> dict[str, Any]:
+    return {k: v for k, v in measured.items() if k != "impulses"}
 
 
-def as_started(told: dict[str, Any], state: dict[str, Placed]) -> dict[str, Any]:
+def as_started(measured: dict[str, Any], state: dict[str, Placed]) -> dict[str, Any]:
     """The scene with these poses and rates held at its start."""
     bodies = {}
-    for name, body in told["bodies"].items():
+    for name, body in measured["bodies"].items():
         s = state[name]
         bodies[name] = {**body, "position": s.position.tolist(), "orientation": {"matrix": s.rotation.tolist()},
                         "velocity": s.velocity.tolist(), "angular_velocity": s.angular_velocity.tolist()}  # fmt: skip
-    return {**told, "bodies": bodies}
+    return {**measured, "bodies": bodies}
 
 
 # ---- replays
@@ -132,7 +132,7 @@ def by_hand(name: str) -> tuple[Array, Array]:
     return centers[1], centers[2]
 
 
-def later(told: dict[str, Any]) -> dict[str, Any]:
+def later(measured: dict[str, Any]) -> dict[str, Any]:
     """The scene with its clock put on by the blow's instant."""
 
     def put(value: Any) -> Any:
@@ -144,7 +144,7 @@ def later(told: dict[str, Any]) -> dict[str, Any]:
             return Later(value[0])
         return [put(v) for v in value] if isinstance(value, list) else value
 
-    return {**told, **{k: put(told[k]) for k in ("forces", "drives") if k in told}}
+    return {**measured, **{k: put(measured[k]) for k in ("forces", "drives") if k in measured}}
 
 
 class Later:
@@ -188,14 +188,14 @@ def test_extremes_know_the_limit_from_before() -> None:
     J = 0.2 + 2 * 0.09
     run = study(BOUNCE.format(impulses=f'{{stop: {{body: w, couple: [0, 0, "-6*{J}"], time: 0}}}}')
                 .replace("gravity: [0, -9.81, 0]\n", ""))  # fmt: skip
-    assert told(run, "max coordinates.shaft.rate")["value"] == pytest.approx(0.0, abs=1e-14)
+    assert measured(run, "max coordinates.shaft.rate")["value"] == pytest.approx(0.0, abs=1e-14)
     later = study(BOUNCE.format(impulses=f'{{stop: {{body: w, couple: [0, 0, "-6*{J}"], time: 0.437}}}}')
                   .replace("gravity: [0, -9.81, 0]\n", ""))  # fmt: skip
-    assert told(later, "max coordinates.shaft.rate")["value"] == pytest.approx(6.0, rel=1e-12)
-    assert told(later, "max joints.shaft.force")["value"] == pytest.approx(2 * 0.3 * 36, rel=1e-12)
-    assert told(later, "min joints.shaft.force")["value"] == pytest.approx(0.0, abs=1e-12)
-    assert told(later, "min coordinates.shaft.rate")["value"] == pytest.approx(0.0, abs=1e-12)
-    assert told(later, "max coordinates.shaft.angle")["value"] == pytest.approx(6 * 0.437, rel=1e-12)
+    assert measured(later, "max coordinates.shaft.rate")["value"] == pytest.approx(6.0, rel=1e-12)
+    assert measured(later, "max joints.shaft.force")["value"] == pytest.approx(2 * 0.3 * 36, rel=1e-12)
+    assert measured(later, "min joints.shaft.force")["value"] == pytest.approx(0.0, abs=1e-12)
+    assert measured(later, "min coordinates.shaft.rate")["value"] == pytest.approx(0.0, abs=1e-12)
+    assert measured(later, "max coordinates.shaft.angle")["value"] == pytest.approx(6 * 0.437, rel=1e-12)
 
 
 def test_the_highest_just_after_a_blow() -> None:
@@ -204,7 +204,7 @@ def test_the_highest_just_after_a_blow() -> None:
     text = BOUNCE.format(impulses="{kick: {on: w.p, vector: [0, 5, 0], frame: body, time: 0.0317}}")
     run = study(text.replace("duration: 1", "duration: 0.2"))
     block = run.results.impulses[0]
-    found = told(run, "max coordinates.shaft.rate")
+    found = measured(run, "max coordinates.shaft.rate")
     after = run.resample(np.array([0.0317])).coordinates["shaft"]["rate"][0]
     assert found["value"] == pytest.approx(after, rel=1e-12) and found["at"] == pytest.approx(0.0317, abs=1e-12)
     near(block["bodies"]["w"]["angular_velocity_jump"][2], 5 * 0.5 / J, 10.0, 1e-12)

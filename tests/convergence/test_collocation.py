@@ -14,10 +14,11 @@ from heuncli.integration.methods.method import Method
 from heuncli.integration.methods.registry import method_of
 from heuncli.results import Array, Results
 from tests.bench.stiff import STIFF_SCENES
-from tests.convergence.test_order import fitted
-from tests.package.test_kernels_agree import EVENTS, SPECS
 from tests.shared.bars import double
+from tests.shared.event_scenes import EVENTS
+from tests.shared.folders import SPECS
 from tests.shared.scenes import solved, study
+from tests.shared.slopes import fitted
 
 METHODS = [GAUSS4, GAUSS6, RADAU5, RADAU9]
 NAMES = ["Radau5", "Radau9"]

@@ -10,9 +10,9 @@ import pytest
 from heuncli import tolerances
 from heuncli.results import Array
 from heuncli.study.ask.study import Study
-from tests.honesty.test_horizon import KNOWN, SECOND, TRUTH, off
 from tests.shared.bars import rods
 from tests.shared.scenes import near, solved, study
+from tests.shared.truth import KNOWN, SECOND, TRUTH, off
 
 pytestmark = pytest.mark.heavy  # families: the plain kernel has the same bits
 

@@ -5,9 +5,9 @@ from __future__ import annotations
 import numpy as np
 import pytest
 
-from tests.closed_forms.test_theory_2j_motion import free_top
 from tests.shared.bars import HEAD, double
 from tests.shared.scenes import near, solved
+from tests.shared.tops import free_top
 
 
 @pytest.mark.parametrize(("tolerance", "allowed"), [(1e-8, 1e-7), pytest.param(1e-11, 1e-10, marks=pytest.mark.heavy)])

@@ -21,11 +21,11 @@ from heuncli.study.solve.blocks import blocks
 from heuncli.study.solve.options import Options
 from heuncli.study.solve.recovery import recover
 from heuncli.study.workflow import solve
-from tests.closed_forms.test_theory_2j_motion import free_top, heavy_top
-from tests.closed_forms.test_theory_golden_a import SCENE as GOLDEN_A
 from tests.oracle.values import to_yaml
 from tests.shared.bars import chain, double, rods, top
+from tests.shared.golden_a import GOLDEN_A
 from tests.shared.scenes import near
+from tests.shared.tops import free_top, heavy_top
 from tests.shared.trees import tree_scene
 
 RIM = "points: {x: [1, 0, 0], y: [0, 1, 0], z: [0, 0, 1], "  # so that attitudes are seen in places

@@ -17,9 +17,10 @@ from heuncli.integration.run.runner import Runner
 from heuncli.method_rows import METHODS
 from heuncli.records import replace
 from heuncli.results import Array
-from tests.closed_forms.test_theory_2j_motion import heavy_top
 from tests.shared.bars import chain, double, rods
 from tests.shared.scenes import study
+from tests.shared.slopes import fitted
+from tests.shared.tops import heavy_top
 
 NAMES = [row.name for row in METHODS if row.kind != "SciPy"]  # what SciPy integrates takes no given steps
 TABLEAUS = [row.name for row in METHODS if row.kind == "explicit" and row.attitude == "quaternion"]
@@ -27,11 +28,6 @@ SCENE = double("{times: [1]}")  # balls in space, which turn by a radian in the 
 COUNTS = np.array([2, 3, 4, 5, 6, 8, 10, 12, 14, 16, 20, 24, 28, 32, 40, 48, 64, 96, 128, 256])
 ROUNDED, COARSE = 1e-12, 0.1  # m: below, rounding shows; above, the error is not yet that of small steps
 POINTS = 4  # the finest of those between
-
-
-def fitted(counts: Array, errors: Array) -> float:
-    """The slope of log error over log count."""
-    return -float(np.polyfit(np.log(counts), np.log(errors), 1)[0])
 
 
 def centres(runner: Runner, times: Array, states: Array) -> Array:

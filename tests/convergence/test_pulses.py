@@ -3,34 +3,18 @@
 from __future__ import annotations
 
 import math
-from typing import Any
 
 import pytest
 
 from heuncli.study.ask.measure import peak
+from tests.shared.pushed_block import pushed_block
 from tests.shared.scenes import near, study
-
-
-def slide(value: str, **analysis: Any) -> str:
-    """A kilogram at rest on a slide, pushed along it."""
-    asked = ", ".join(f"{k}: {v}" for k, v in {"duration": 10, "samples": 3, **analysis}.items())
-    return f"""
-heun: 1
-ground: {{points: {{O: [0, 0, 0]}}}}
-bodies:
-  block: {{mass: 1, center: [0, 0, 0], inertia: [1, 1, 1], points: {{o: [0, 0, 0]}}}}
-joints:
-  guide: {{type: slide, from: ground.O, to: block.o, axis: [1, 0, 0]}}
-forces:
-  push: {{type: torque, joint: guide, value: "{value}"}}
-analysis: {{{asked}}}
-"""
 
 
 @pytest.mark.parametrize("width", [1.0, 0.1, 1e-2, 1e-3, 1e-4, 1e-5, 1e-6])
 def test_a_blow_sets_a_block_going(width: float) -> None:
     """The push's integral is the speed, whatever else is near: for exp(-(t/w)^2)/w the root of pi."""
-    run = study(slide(f"exp(-((t - 5.3)/{width!r})**2)/{width!r}")).results
+    run = study(pushed_block(f"exp(-((t - 5.3)/{width!r})**2)/{width!r}")).results
     estimate = run.accuracy["estimate"]["motion"]
     near(run.coordinates["guide"]["speed"][-1], math.sqrt(math.pi), 1.0, 1e-9 + 10 * estimate)
     near(run.coordinates["guide"]["travel"][-1], 4.7 * math.sqrt(math.pi), 10.0, estimate)
@@ -44,7 +28,7 @@ def test_a_blow_sets_a_block_going(width: float) -> None:
     ("1e3*sin(2000*t)*exp(-((t - 5.3)/1e-3)**2)", math.sqrt(math.pi) * math.exp(-1) * math.sin(10600)),
 ])  # fmt: skip
 def test_pulses_of_other_shapes(value: str, speed: float) -> None:
-    near(study(slide(value)).results.coordinates["guide"]["speed"][-1], speed, max(speed, 1.0), 1e-9)
+    near(study(pushed_block(value)).results.coordinates["guide"]["speed"][-1], speed, max(speed, 1.0), 1e-9)
 
 
 def test_a_drive_that_jerks_once() -> None:
@@ -67,5 +51,5 @@ analysis: {duration: 10, samples: 3}
 
 def test_a_smooth_load_costs_nothing() -> None:
     """Where the stages have seen what there is, the run is not made again."""
-    run = study(slide("sin(3*t) + t*(10 - t)/25"))
+    run = study(pushed_block("sin(3*t) + t*(10 - t)/25"))
     assert run.history.jumps == ()

@@ -14,7 +14,7 @@ import numpy as np
 import pytest
 
 from heuncli.results import Array, Results
-from tests.closed_forms.test_theory_golden_a import SCENE as GOLDEN_A
+from tests.shared.golden_a import GOLDEN_A
 from tests.shared.scenes import solved
 
 pytestmark = pytest.mark.heavy  # the plain kernel has the same bits

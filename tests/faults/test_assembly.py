@@ -10,7 +10,7 @@ import pytest
 from heuncli.assembly.assemble import assemble
 from heuncli.errors import SolveError
 from heuncli.mechanism.model import Mechanism
-from tests.laws.test_assembly_loops import four_bar, slider_crank
+from tests.shared.drafted_loops import four_bar, slider_crank
 from tests.shared.drafts import X, Y, Z, body, in_time, joint, scene, turned
 
 

@@ -8,9 +8,9 @@ import pytest
 
 from heuncli.errors import Problem, SolveError
 from tests.bench.stiff import WIRE
-from tests.faults.test_locks import CRANK
-from tests.package.test_kernels_agree import SPECS
 from tests.shared.bars import double
+from tests.shared.folders import SPECS
+from tests.shared.locking_crank import LOCKING_CRANK
 from tests.shared.scenes import solved
 
 FOUR_BAR = (SPECS / "four_bar.yaml").read_text().partition("\nexpect:")[0]
@@ -55,7 +55,7 @@ def test_stages_that_are_not_solved() -> None:
 @pytest.mark.parametrize("method", ["Euler", "RK4", "Gauss4"])
 def test_a_lock_is_no_fault_of_the_step(method: str) -> None:
     """The slider is drawn beyond the reach of crank and rod, 3 m, at 1 s: told as by a method that finds its steps."""
-    text = CRANK.replace("{DRIVES}", '{push: {joint: G, travel: "2.5 + 0.5*t"}}')
+    text = LOCKING_CRANK.replace("{DRIVES}", '{push: {joint: G, travel: "2.5 + 0.5*t"}}')
     with pytest.raises(SolveError) as caught:
         solved(text)
     other = caught.value.problems[0]

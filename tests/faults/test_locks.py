@@ -8,6 +8,7 @@ import re
 import pytest
 
 from heuncli.errors import Problem, SolveError
+from tests.shared.locking_crank import LOCKING_CRANK
 from tests.shared.scenes import solved
 
 # two cranks of 1 m, 2 m apart, and a coupler of 2 m
@@ -27,26 +28,6 @@ joints:
   D: {type: pin, from: c.b, to: r.b}
 drives: {left: {joint: A, angle: "0.5*t"}, right: {joint: B, angle: "0.5*t + (MORE)"}}
 analysis: {duration: 1, samples: 5}
-"""
-# a crank of 1 m and a rod of 2 m in front of a slider
-CRANK = """\
-heun: 1
-space: planar
-gravity: [0, -9.81, 0]
-ground: {points: {O: [0, 0, 0]}}
-bodies:
-  crank:
-    {mass: 1, center: [0.5, 0, 0], inertia: 0.1, points: {a: [0, 0, 0], b: [1, 0, 0]},
-     near: {orientation: {axis: [0, 0, 1], angle: 0.5}}}
-  rod: {mass: 1, center: [2, 0, 0], inertia: 0.1, points: {a: [1, 0, 0], b: [3, 0, 0]}}
-  slider: {mass: 1, center: [3, 0, 0], inertia: 0.1, points: {a: [3, 0, 0]}}
-joints:
-  A: {type: pin, from: ground.O, to: crank.a}
-  B: {type: pin, from: crank.b, to: rod.a}
-  C: {type: pin, from: rod.b, to: slider.a}
-  G: {type: slide, from: ground.O, to: slider.a, axis: [1, 0, 0]}
-drives: {DRIVES}
-analysis: {duration: 3, samples: 5}
 """
 # a bar of 1 m that a driven rod draws away from a point 3 m off
 ROD = """\
@@ -104,7 +85,7 @@ def test_two_drives_that_agree() -> None:
 ])  # fmt: skip
 def test_a_slide_driven_beyond_its_reach(travel: str, instant: float) -> None:
     """Stretched at 3 m, folded at 1 m; the rates grow without bound on the way there."""
-    t, problem = told(CRANK.replace("DRIVES", f'push: {{joint: G, travel: "{travel}"}}'))
+    t, problem = told(LOCKING_CRANK.replace("DRIVES", f'push: {{joint: G, travel: "{travel}"}}'))
     assert t == pytest.approx(instant, abs=3e-9)
     assert (problem.hint or "").startswith("the drive push asks for more than the loop can do")
 
@@ -114,7 +95,7 @@ def test_a_crank_driven_against_its_slide() -> None:
     """The slide follows the crank for 0.4 s, and then a little less."""
     x = "cos(0.5 + t) + sqrt(4 - sin(0.5 + t)**2)"
     drives = f'turn: {{joint: A, angle: "0.5 + t"}}, push: {{joint: G, travel: "{x} - 0.01*max(t - 0.4, 0)**3"}}'
-    t, problem = told(CRANK.replace("DRIVES", drives))
+    t, problem = told(LOCKING_CRANK.replace("DRIVES", drives))
     assert t == pytest.approx(0.4, abs=3e-9)
     assert "the drives turn and push" in (problem.hint or "")
 

@@ -11,7 +11,7 @@ from typing import Any
 import pytest
 
 from heuncli.cli import entry, files
-from tests.cli.conftest import HANGING
+from tests.shared.command import HANGING
 
 CALLS = ("open", "write", "fsync", "close", "chmod", "replace")
 MOST = 12  # calls that one file takes, more than there are: then nothing fails, and the file is written

@@ -52,11 +52,11 @@ from heuncli.study.solve.near_singular import AMPLE, error, reached
 from heuncli.study.solve.options import Options
 from heuncli.study.solve.warnings import unbalanced
 from heuncli.tree.prepare import prepare
-from tests.closed_forms.test_stretched_chain import chain
-from tests.convergence.test_pulses import slide
 from tests.honesty import rest
 from tests.honesty.nearly_flat import PARTS, drawn_askew, leaving
+from tests.shared.pushed_block import pushed_block
 from tests.shared.scenes import near, solved, study
+from tests.shared.stretched_chain import stretched_chain
 
 FACTORS = (0.01, 1 / 3, 3.0, 100.0)
 
@@ -429,7 +429,7 @@ def turns_hardly(x: float) -> str:
 
 def across(x: float) -> str:
     """A straight chain pulled by 1 N along it, and x across, over what counts as arms: half a link and both of them."""
-    return verdict(chain(0.0, f"[1, 0, {2.5 * x!r}]"))
+    return verdict(stretched_chain(0.0, f"[1, 0, {2.5 * x!r}]"))
 
 
 def moved_by_a_lever(x: float) -> str:
@@ -611,7 +611,7 @@ def stiff(x: float) -> str:
 
 def unseen_pulse(x: float) -> str:
     """A block pushed with 1 N and, for a moment, x more: whether steps end there."""
-    run = study(slide(f"1 + {x!r}*exp(-((t - 5.3)/1e-3)**2)"))
+    run = study(pushed_block(f"1 + {x!r}*exp(-((t - 5.3)/1e-3)**2)"))
     near(run.results.coordinates["guide"]["speed"][-1], 10.0, 10.0, 2e-4 * x + 1e-9)
     return "looked into" if run.results.work["steps"] > 4 else "as seen"
 

@@ -16,13 +16,13 @@ from heuncli.spec.load import load
 from heuncli.spec.source import parse
 from heuncli.study.solve.options import Options
 from heuncli.study.workflow import describe, solve
-from tests.closed_forms.test_redundant import door
 from tests.oracle.published import four_bar, windows
 from tests.oracle.read import state_at
 from tests.oracle.transforms import turned
 from tests.oracle.turns import random_rotation
 from tests.oracle.values import to_yaml
 from tests.shared.doubles import redundant_scene
+from tests.shared.redundant_supports import door
 from tests.shared.scenes import near
 
 KEPT = (2003, 2005, 2021, 2041, 2048, 2056, 2065, 2086, 2096)  # of the random scenes: some that have an advice

@@ -14,8 +14,8 @@ import pytest
 
 from heuncli import tolerances
 from heuncli.results import Array
-from tests.references.test_double_pendulum import REFERENCE
 from tests.shared.bars import rods
+from tests.shared.double_pendulum import REFERENCE
 from tests.shared.scenes import study
 
 pytestmark = [

@@ -20,7 +20,8 @@ from heuncli.method_rows import METHODS, MethodRow
 from heuncli.results import Array
 from heuncli.study.ask.study import Study
 from tests.bench.honesty import told
-from tests.package.test_kernels_agree import EVENTS, SPECS
+from tests.shared.event_scenes import EVENTS
+from tests.shared.folders import SPECS
 from tests.shared.scenes import study
 
 pytestmark = pytest.mark.heavy  # with the compiled kernel, which has the same bits

@@ -9,8 +9,8 @@ import math
 
 import pytest
 
-from tests.closed_forms.test_stretched_chain import KINDS, chain
 from tests.shared.scenes import solved
+from tests.shared.stretched_chain import KINDS, stretched_chain
 
 RUN = "analysis: {duration: 2, samples: 5}"
 
@@ -24,7 +24,7 @@ def passed(text: str) -> list[str]:
 @pytest.mark.parametrize("mass", [1.0, 1e-12])
 def test_what_stands_still_passes_nothing(kinds: str, h: float, mass: float) -> None:
     """Straight, or next to it, pulled along itself by its weight or not at all."""
-    light = chain(h, "[0, 0, 0]", kinds, RUN).replace("mass: 1,", f"mass: {mass!r},")
+    light = stretched_chain(h, "[0, 0, 0]", kinds, RUN).replace("mass: 1,", f"mass: {mass!r},")
     light = light.replace("[0.01, 0.08, 0.08]", f"[{0.01 * mass!r}, {0.08 * mass!r}, {0.08 * mass!r}]")
     assert passed(light) == []
     if h == 0.0:

@@ -25,7 +25,8 @@ from tests.bench.honesty import told
 from tests.bench.stiff import STIFF_SCENES
 from tests.honesty.chaotic import chaotic_scene
 from tests.oracle.values import to_yaml
-from tests.package.test_kernels_agree import EVENTS, SPECS
+from tests.shared.event_scenes import EVENTS
+from tests.shared.folders import SPECS
 
 pytestmark = pytest.mark.heavy  # with the compiled kernel, which has the same bits
 

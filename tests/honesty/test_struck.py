@@ -9,8 +9,8 @@ import pytest
 
 from heuncli import tolerances
 from tests.honesty.chaotic import chaotic_scene, grid
-from tests.honesty.test_horizon import KNOWN, SECOND, TRUTH, off
 from tests.shared.scenes import study
+from tests.shared.truth import KNOWN, SECOND, TRUTH, off
 
 pytestmark = pytest.mark.heavy  # a family at random: with the compiled kernel, which has the same bits
 

@@ -12,7 +12,8 @@ from heuncli.assembly.assemble import assemble
 from heuncli.mechanism.model import GROUND, Assembly, Mechanism
 from heuncli.records import replace
 from heuncli.shapes.rotations import from_vector, to_vector
-from tests.laws.test_assembly_trees import calls, same_motion
+from tests.shared.assemblies import calls, same_motion
+from tests.shared.drafted_loops import four_bar, random_loop, slider_crank
 from tests.shared.drafts import (
     X,
     Y,
@@ -33,23 +34,6 @@ from tests.shared.drafts import (
 def angle(a: Assembly, i: int) -> float:
     """Turn of a body about z."""
     return float(np.arctan2(a.rotation[i][1, 0], a.rotation[i][0, 0]))
-
-
-def slider_crank(near: Any = None, rotation: Any = None, **given: Any) -> Mechanism:
-    """Everything drawn at the origin, along x: crank 0.1, rod 0.3."""
-    return scene(
-        [
-            body("crank", center=(0.05, 0, 0), rotation=rotation),
-            body("rod", center=(0.15, 0, 0)),
-            body("piston", near_position=near),
-        ],
-        [
-            joint("main", "pin", "ground", (0, 0, 0), "crank", (0, 0, 0), **given),
-            joint("crankpin", "pin", "crank", (0.1, 0, 0), "rod", (0, 0, 0)),
-            joint("wrist", "pin", "rod", (0.3, 0, 0), "piston", (0, 0, 0)),
-            joint("guide", "slide", "ground", (0, 0, 0), "piston", (0, 0, 0), X),
-        ],
-    )
 
 
 @pytest.mark.parametrize("degrees", [*range(0, 360, 15), 90, 180, 270])
@@ -88,26 +72,6 @@ def test_a_drive_sets_the_engine_as_an_angle_does() -> None:
     assert a.position == pytest.approx(b.position, abs=0)
     assert a.velocity == pytest.approx(b.velocity, abs=0)
     assert angle(assemble(s, t0=0.25), 0) == pytest.approx(1.5, abs=1e-15)
-
-
-def four_bar(
-    crank: float = 1.0, coupler: float = 3.0, rocker: float = 2.5, frame: float = 3.5, **given: Any
-) -> Mechanism:
-    """All links drawn along x."""
-    near = given.pop("near", None)
-    return scene(
-        [
-            body("crank", center=(crank / 2, 0, 0)),
-            body("coupler", center=(coupler / 2, 0, 0), near_position=near),
-            body("rocker", center=(rocker / 2, 0, 0)),
-        ],
-        [
-            joint("A", "pin", "ground", (0, 0, 0), "crank", (0, 0, 0), **given),
-            joint("B", "pin", "crank", (crank, 0, 0), "coupler", (0, 0, 0)),
-            joint("C", "pin", "coupler", (coupler, 0, 0), "rocker", (rocker, 0, 0)),
-            joint("D", "pin", "ground", (frame, 0, 0), "rocker", (0, 0, 0)),
-        ],
-    )
 
 
 def branches(phi: float, r: float = 1.0, c: float = 3.0, k: float = 2.5, f: float = 3.5) -> Any:
@@ -307,53 +271,7 @@ def test_what_hangs_on_a_loop_follows_it() -> None:
     assert largest_rate_gap(t, a) < 1e-8
 
 
-KINDS = ("ball", "pin", "universal", "cylinder", "line", "plane", "rod")
-
-
 TURNING = ("ball", "pin", "universal")  # elsewhere a long shift may save a small turn, and the polish may stop short
-
-
-def random_loop(seed: int, noise: float, kinds: tuple[str, ...] = KINDS, count: int = 5) -> Mechanism:
-    """A loop through the ground that does close, its bodies drawn near there."""
-    rng = np.random.default_rng(seed)
-
-    def unit() -> Any:
-        a = rng.normal(size=3)
-        return a / np.linalg.norm(a)
-
-    R = [from_vector(a) for a in rng.normal(size=(count, 3))]
-    x = 2.0 * rng.normal(size=(count, 3))
-    off = noise * rng.normal(size=(count, 2, 3))
-    bodies = [
-        body(
-            f"b{i}",
-            center=0.3 * rng.normal(size=3),
-            near_position=x[i] + off[i, 0],
-            near_rotation=from_vector(off[i, 1]) @ R[i],
-        )
-        for i in range(count)
-    ]
-    names = ["ground", *(f"b{i}" for i in range(count)), "ground"]
-    poses = {f"b{i}": (x[i], R[i]) for i in range(count)} | {"ground": (np.zeros(3), np.eye(3))}
-    joints = []
-    for k in range(count + 1):
-        (xa, Ra), (xb, Rb) = poses[names[k]], poses[names[k + 1]]
-        kind, n, p, given = str(rng.choice(kinds)), unit(), rng.normal(size=3), {}
-        P = xa + Ra @ p
-        Q = {
-            "cylinder": P + rng.normal() * (Ra @ n),
-            "line": P + rng.normal() * (Ra @ n),
-            "plane": P + Ra @ np.cross(n, unit()),
-            "rod": P + 0.5 * unit() + unit(),
-        }.get(kind, P)
-        if kind in ("pin", "cylinder"):
-            given["to_axis"] = Rb.T @ Ra @ n
-        if kind == "universal":
-            given["to_axis"] = Rb.T @ Ra @ np.cross(n, unit())
-        if kind == "rod":
-            given["length"] = float(np.linalg.norm(Q - P))
-        joints.append(joint(f"j{k}", kind, names[k], p, names[k + 1], Rb.T @ (Q - xb), n, **given))
-    return scene(bodies, joints)
 
 
 @pytest.mark.parametrize("noise", [0.0, 0.1, 0.3])

@@ -11,7 +11,7 @@ from heuncli.assembly.assemble import assemble
 from heuncli.errors import SolveError
 from heuncli.mechanism.model import Assembly, Mechanism
 from heuncli.records import replace
-from tests.laws.test_assembly_loops import four_bar, random_loop, slider_crank
+from tests.shared.drafted_loops import four_bar, random_loop, slider_crank
 from tests.shared.drafts import (
     X,
     Y,

@@ -2,8 +2,6 @@
 
 from __future__ import annotations
 
-import sys
-from types import FrameType
 from typing import Any
 
 import numpy as np
@@ -11,18 +9,17 @@ import pytest
 
 from heuncli.assembly.assemble import assemble
 from heuncli.errors import SolveError
-from heuncli.mechanism.model import GROUND, Assembly, Directed, Mechanism
+from heuncli.mechanism.model import GROUND, Directed, Mechanism
 from heuncli.records import replace
 from heuncli.shapes.rotations import from_vector, to_vector
+from tests.shared.assemblies import calls, same_motion
 from tests.shared.drafts import (
     X,
     Y,
     Z,
     after,
     body,
-    centre,
     coordinates,
-    index,
     joint,
     largest_gap,
     largest_rate_gap,
@@ -101,20 +98,6 @@ def test_random_trees_close_and_move_as_asked(seed: int) -> None:
             w = np.zeros((2, 3)) + [np.zeros(3) if i == GROUND else a.angular_velocity[i] for i in (j.a, j.b)]
             assert w[1] - w[0] == pytest.approx(j.rate * (Ra @ j.axis), abs=1e-12)
     assert a.rotation[0] == pytest.approx(s.bodies[0].rotation, abs=0)
-
-
-def same_motion(s: Mechanism, a: Assembly, t: Mechanism, b: Assembly, tolerance: float = 1e-12) -> None:
-    """The same bodies (by name) have the same centres, attitudes relative to the start and rates."""
-    for i, one in enumerate(s.bodies):
-        k = index(t, one.name)
-        assert centre(t, b, k) == pytest.approx(centre(s, a, i), abs=tolerance)
-        assert b.rotation[k] == pytest.approx(a.rotation[i], abs=tolerance)
-        assert b.angular_velocity[k] == pytest.approx(a.angular_velocity[i], abs=tolerance)
-        arm = [c.rotation[m] @ r.bodies[m].center for r, c, m in ((s, a, i), (t, b, k))]
-        speeds = [
-            c.velocity[m] + np.cross(c.angular_velocity[m], r) for (c, m), r in zip(((a, i), (b, k)), arm, strict=True)
-        ]
-        assert speeds[1] == pytest.approx(speeds[0], abs=tolerance)
 
 
 @pytest.mark.parametrize("grounded", [True, False])
@@ -409,21 +392,6 @@ def test_given_attitudes_are_kept_by_slide_and_weld(kind: str) -> None:
         [body("a", rotation=Ra), body("b", near_rotation=Rb)], [joint("j", kind, "a", (1, 0, 0), "b", (0, 0, 0), X)]
     )
     assert assemble(left_out).rotation[1] == pytest.approx(Ra, abs=1e-15)
-
-
-def calls(s: Mechanism) -> int:
-    count = 0
-
-    def counted(frame: FrameType, event: str, arg: object) -> None:
-        nonlocal count
-        count += 1
-
-    sys.setprofile(counted)
-    try:
-        assemble(s)
-    finally:
-        sys.setprofile(None)
-    return count
 
 
 @pytest.mark.parametrize("kind", ["ball", "pin"])

@@ -20,8 +20,8 @@ from heuncli.results import Array
 from heuncli.spec.load import load
 from heuncli.study.solve.setup import set_up
 from heuncli.tree.layout import places_of_rates
-from tests.closed_forms.test_modes import porter, spindle
 from tests.oracle.values import to_yaml
+from tests.shared.governors import porter, spindle
 
 ROOT = Path(__file__).parents[2]
 SMALL = 1e-5  # of turns, of the size, and of both a second: what is not linear is smaller by this once more

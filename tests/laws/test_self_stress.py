@@ -9,12 +9,12 @@ import numpy as np
 import pytest
 
 from heuncli.results import Results
-from tests.closed_forms.test_redundant import SQUARE, beam, door, table
-from tests.oracle.published import bricard, four_bar
+from tests.oracle.published import beam, bricard, four_bar
 from tests.oracle.read import GROUND, model
 from tests.oracle.turns import Array
 from tests.shared.doubles import SEEDS, redundant_scene
 from tests.shared.openness import sums
+from tests.shared.redundant_supports import SQUARE, door, table
 from tests.shared.scenes import moving, near, solved
 
 

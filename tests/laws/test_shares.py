@@ -10,11 +10,11 @@ import numpy as np
 import pytest
 
 from heuncli.results import Results
-from tests.closed_forms.test_redundant import door
 from tests.oracle.read import state_at
 from tests.oracle.turns import Array
 from tests.oracle.values import Harmonic
 from tests.shared.loops import loop_scene
+from tests.shared.redundant_supports import door
 from tests.shared.scenes import near, solved
 from tests.shared.trees import cut_through, tree_scene
 

@@ -16,12 +16,12 @@ from heuncli.response import tangent, workspace_of
 from heuncli.spec.load import load
 from heuncli.study.solve.setup import set_up
 from heuncli.tree.layout import Layout
-from tests.laws.test_thin_rods import rods
 from tests.oracle.values import to_yaml
 from tests.shared.dual_tangent import dual_tangent
 from tests.shared.flat import flat_scene
 from tests.shared.loops import loop_scene
 from tests.shared.parallelogram import parallelogram
+from tests.shared.thin_rods import thin_rods
 from tests.shared.trees import tree_scene
 
 pytestmark = pytest.mark.heavy
@@ -99,7 +99,7 @@ def scene_of(kind: str, which: Any) -> Layout:
         "tree": lambda: to_yaml(tree_scene(which)[0]),
         "loop": lambda: to_yaml(loop_scene(which)[0]),
         "flat": lambda: flat_scene(which),
-        "thin": lambda: to_yaml(rods(which)[0]),
+        "thin": lambda: to_yaml(thin_rods(which)[0]),
         "spinning": lambda: parallelogram(1.0, 0.5, 3, which),
         "text": lambda: which,
     }

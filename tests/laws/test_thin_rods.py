@@ -13,21 +13,14 @@ import pytest
 
 from heuncli.errors import SolveError
 from tests.oracle.masses import mass_of
-from tests.oracle.read import Placed, directed
-from tests.oracle.scenes import random_scene
+from tests.oracle.read import directed
 from tests.oracle.transforms import entry
 from tests.oracle.turns import Array, attitude, unit
 from tests.shared.scenes import moving, near, solved
+from tests.shared.thin_rods import thin_rods
 
 TIMES = (0.0, 0.1, 0.3)
 SEEDS = range(10)
-
-
-def rods(seed: int) -> tuple[dict[str, Any], dict[str, Placed]]:
-    """Several rods on balls at and near their axes' points, all forces on the axes."""
-    rng = np.random.default_rng(seed)
-    loads = ("force", "spring", "actuator")
-    return random_scene(rng, int(rng.integers(2, 6)), kinds=("ball",), masses="thin", loads=loads)
 
 
 def axis_of(body: dict[str, Any]) -> Array:
@@ -59,7 +52,7 @@ def test_any_axial_inertia_gives_the_same(seed: int, ratio: float) -> None:
 
     The smaller ones at the start only, where their condition 1/ratio costs nothing: a motion turns rounding into spin.
     """
-    scene, _ = rods(seed)
+    scene, _ = thin_rods(seed)
     pair = [moving(s, TIMES, 1e-12) if ratio >= 1e-3 else s for s in (scene, with_axial(scene, ratio))]
     thin, thick = (solved(s) for s in pair)
     F = max(1.0, *(float(np.abs(j["force"]).max()) for j in thin.joints.values()))
@@ -77,7 +70,7 @@ def test_any_axial_inertia_gives_the_same(seed: int, ratio: float) -> None:
 @pytest.mark.parametrize("seed", SEEDS)
 def test_spin_is_harmless(seed: int) -> None:
     """Whatever spin about its axis a rod starts with, it counts as none."""
-    scene, state = rods(seed)
+    scene, state = thin_rods(seed)
     bodies = {}
     for k, (name, body) in enumerate(scene["bodies"].items()):
         R = state[name].rotation

@@ -5,8 +5,8 @@ from __future__ import annotations
 import numpy as np
 import pytest
 
-from tests.closed_forms.test_closed_chains import slider_crank
 from tests.shared.scenes import near, solved
+from tests.shared.slider_crank import slider_crank
 
 TURN = 2 * np.pi / 100.0  # [s] one turn at 100 rad/s
 GRAVITY = "gravity: [0, -9.81, 0]\n"

@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import pytest
 
-from tests.closed_forms.test_drives import LAWS, energy_is_kept, nut, winch
+from tests.shared.drive_laws import LAWS, energy_is_kept, nut, winch
 
 
 def test_a_nut_pushed_back_and_forth() -> None:

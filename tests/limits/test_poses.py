@@ -11,12 +11,12 @@ import pytest
 from heuncli.errors import SolveError
 from heuncli.results import Array
 from heuncli.tolerances import EPS
-from tests.closed_forms.test_flat_parallelogram import flat
-from tests.closed_forms.test_nearly_singular import three_rods
 from tests.limits.methods import Equations, rk4
 from tests.limits.windows import accelerated, normal_equations, upright
 from tests.oracle.published import windows
+from tests.shared.parallelogram import parallelogram_in_line
 from tests.shared.scenes import near, solved
+from tests.shared.three_rods import three_rods
 
 
 # ---- a parallelogram that lies flat
@@ -26,14 +26,14 @@ def test_a_mean_solution_answers_what_has_no_acceleration(rates: tuple[float, fl
 
     The exact ones of a branch leave nothing over; heun refuses the others.
     """
-    V, over = Equations(flat(*rates)).least_squares()
+    V, over = Equations(parallelogram_in_line(*rates)).least_squares()
     assert np.isfinite(V).all() and over == pytest.approx(left, abs=1e-12)
     if left == 0.0:
-        found = solved(flat(*rates))
+        found = solved(parallelogram_in_line(*rates))
         near(found.bodies["crank"]["angular_velocity"][0, 2], rates[0], 1.0, 1e-15)
         return
     with pytest.raises(SolveError) as caught:
-        solved(flat(*rates))
+        solved(parallelogram_in_line(*rates))
     assert caught.value.problems[0].code == "singular-pose"
 
 

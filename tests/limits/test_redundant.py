@@ -5,9 +5,9 @@ from __future__ import annotations
 import numpy as np
 import pytest
 
-from tests.closed_forms.test_redundant import door
 from tests.limits.methods import Equations
 from tests.oracle.published import bricard
+from tests.shared.redundant_supports import door
 from tests.shared.scenes import solved
 
 

@@ -10,8 +10,8 @@ import pytest
 from heuncli.errors import SolveError
 from heuncli.results import Array
 from tests.limits.methods import rk4, stepped
-from tests.references.test_governor import SCENE as GOVERNOR
 from tests.shared.bars import rods
+from tests.shared.governors import GOVERNOR
 from tests.shared.scenes import near, solved
 
 G = 9.81

@@ -12,7 +12,7 @@ from tests.oracle.masses import Plane, cut, mass_of
 from tests.oracle.read import GROUND, start_state
 from tests.oracle.rows import rates
 from tests.oracle.solve import Solution
-from tests.oracle.test_oracle_theory import bar, golden_a, scene, slider_crank
+from tests.oracle.theory_scenes import bar, golden_a, scene, slider_crank
 from tests.oracle.turns import about, cross, random_unit
 
 X, Y, Z = np.eye(3)

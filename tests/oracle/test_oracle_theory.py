@@ -9,41 +9,15 @@ from tests.oracle.motion import motion
 from tests.oracle.read import start_state
 from tests.oracle.rows import gaps, rates
 from tests.oracle.solve import Solution, solve
+from tests.oracle.theory_scenes import G, X, Y, Z, bar, golden_a, scene, slider_crank
 from tests.oracle.turns import Array, about
 from tests.oracle.weld import section
-
-G = 9.81
-X, Y, Z = np.eye(3)
 
 
 def close(a: object, b: object, tolerance: float = 1e-12) -> None:
     """To `tolerance` of the largest entry expected (of one where all are zero)."""
     b = np.asarray(b, dtype=float)
     np.testing.assert_allclose(np.asarray(a), b, rtol=0, atol=tolerance * (np.abs(b).max() or 1.0))
-
-
-def bar(
-    length: float, mass: float, R: Array, spin: Array | None = None, at: Array | None = None, v: Array | None = None
-) -> dict:
-    """A uniform rod along its body's x from its origin."""
-    return {
-        "shapes": [{"type": "rod", "from": [0, 0, 0], "to": [length, 0, 0], "mass": mass}],
-        "points": {"root": [0, 0, 0], "end": [length, 0, 0]},
-        "orientation": {"matrix": R.tolist()},
-        "position": list(np.zeros(3) if at is None else at),
-        "velocity": list(np.zeros(3) if v is None else v),
-        "angular_velocity": list(np.zeros(3) if spin is None else spin),
-    }
-
-
-def scene(bodies: dict, joints: dict, gravity: Array | None = None, **more: object) -> dict:
-    return {
-        "gravity": list(np.zeros(3) if gravity is None else gravity),
-        "ground": {"points": {"O": [0, 0, 0]}},
-        "bodies": bodies,
-        "joints": joints,
-        **more,
-    }
 
 
 def solved(s: dict, fits: float = 1e-13) -> Solution:
@@ -251,34 +225,6 @@ def test_11_conical_rod() -> None:
     close(np.abs(found.loose[3:, 0]) / np.linalg.norm(found.loose), np.abs(along), 1e-13)
 
 
-def slider_crank(phi: float, omega: float, **more: object) -> dict:
-    r, length = 0.1, 0.3
-    psi = -np.arcsin(r / length * np.sin(phi))
-    psi_rate = -r / length * omega * np.cos(phi) / np.cos(psi)
-    pin = r * np.array([np.cos(phi), np.sin(phi), 0])
-    v = omega * np.cross(Z, pin)
-    wrist = pin + length * np.array([np.cos(psi), np.sin(psi), 0])
-    slider = {
-        "mass": 1.5,
-        "center": [0, 0, 0],
-        "inertia": [0.01, 0.01, 0.01],
-        "points": {"pin": [0, 0, 0]},
-        "position": [wrist[0], 0, 0],
-        "velocity": list(v + psi_rate * np.cross(Z, wrist - pin)),
-    }
-    crank, rod = bar(r, 1.0, about(Z, phi), omega * Z), bar(length, 0.8, about(Z, psi), psi_rate * Z, pin, v)
-    return scene(
-        {"crank": crank, "rod": rod, "slider": slider},
-        {
-            "base": {"type": "pin", "from": "ground.O", "to": "crank.root", "axis": [0, 0, 1]},
-            "crankpin": {"type": "pin", "from": "crank.end", "to": "rod.root", "axis": [0, 0, 1]},
-            "wrist": {"type": "pin", "from": "rod.end", "to": "slider.pin", "axis": [0, 0, 1]},
-            "guide": {"type": "slide", "from": "ground.O", "to": "slider.pin", "axis": [1, 0, 0]},
-        },
-        **more,
-    )
-
-
 def test_12_driven_slider_crank() -> None:
     phi, omega = np.pi / 3, 100.0
     drive = (lambda t: phi + omega * t, lambda t: omega, lambda t: 0.0)
@@ -330,41 +276,6 @@ def test_13_ladder() -> None:
     assert -found.angular_acceleration["ladder"] @ Y == pytest.approx(11.526655475168418, rel=1e-14)
     assert found.reactions["floor"].force[2] == pytest.approx(2.242836917183334, rel=1e-13)
     assert found.reactions["wall"].force[0] == pytest.approx(-0.2642086567283595, rel=1e-12)
-
-
-GOLDEN_A = {
-    "first": {
-        "mass": 2.0,
-        "center": [0.5, 0.1, -0.05],
-        "inertia": [0.2, 0.5, 0.6],
-        "points": {"root": [0, 0, 0], "end": [1, 0.2, 0.1]},
-        "orientation": {"rodrigues": [0.1, 0.2, 0.3]},
-        "position": [0, 0, 0],
-        "angular_velocity": [1, -2, 0.5],
-    },
-    "second": {
-        "mass": 1.5,
-        "center": [0.4, -0.1, 0.2],
-        "inertia": [0.1, 0.3, 0.35],
-        "points": {"root": [0, 0, 0]},
-        "orientation": {"rodrigues": [-0.2, 0.4, 0.1]},
-        "angular_velocity": [-0.5, 1.5, 2],
-    },
-}
-
-
-def golden_a() -> dict:
-    first = start_state({"bodies": GOLDEN_A})["first"]
-    end = np.array(GOLDEN_A["first"]["points"]["end"])
-    second = {**GOLDEN_A["second"], "position": list(first.point(end)), "velocity": list(first.speed(end))}
-    return scene(
-        {**GOLDEN_A, "second": second},
-        {
-            "base": {"type": "ball", "from": "ground.O", "to": "first.root"},
-            "elbow": {"type": "ball", "from": "first.end", "to": "second.root"},
-        },
-        -G * Z,
-    )
 
 
 def test_15_golden_a() -> None:

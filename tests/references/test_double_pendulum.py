@@ -6,13 +6,9 @@ import numpy as np
 import pytest
 
 from tests.shared.bars import rods
+from tests.shared.double_pendulum import REFERENCE
 from tests.shared.scenes import near, solved
 
-# Absolute angles from downward vertical
-REFERENCE = {
-    1: (-0.29182056951591, -1.20554568598800), 2: (-2.78689971182110, -1.73651330809759),
-    5: (-0.439854790363542, 20.2604594237614), 10: (7.32792296542072, 25.6852343346577),
-}  # fmt: skip
 # The digits printed, and what an error of 1e-16 at the start has become ("Chaos": 8.6e-14, 4.6e-10 at 5, 10 s),
 # thirty times each: an integrator makes one such error a step
 ALLOWED = {1: 1e-13, 2: 2e-12, 5: 1e-10, 10: 1e-6}

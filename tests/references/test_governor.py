@@ -10,42 +10,11 @@ from functools import cache
 import pytest
 
 from heuncli.results import Results
+from tests.shared.governors import GOVERNOR
 from tests.shared.scenes import near, solved
 
 DIGITS = 2e-8  # half of the last digit printed, and the error of the reference (1e-11 local, fast transient)
 
-SCENE = """
-heun: 1
-parameters: {alpha: 30*deg, s: 0.5}
-gravity: [0, 0, -9.81]
-ground: {points: {foot: [0, 0, 0]}}
-bodies:
-  shaft:
-    shapes: [{type: box, center: [0, 0, 0.5], size: [0.01, 0.01, 1], density: 3000}]
-    points: {foot: [0, 0, 0], right: [0.05, 0, 1], left: [-0.05, 0, 1]}
-  slider:
-    shapes: [{type: box, center: [0, 0, 0], size: [0.1, 0.1, 0.1], density: 3000}]
-    points: {middle: [0, 0, 0], right: [0.05, 0, 0], left: [-0.05, 0, 0]}
-  arm_right:
-    shapes:
-      - {type: box, center: [0.5, 0, 0], size: [1, 0.01, 0.01], density: 3000}
-      - {type: point, at: [1, 0, 0], mass: 5}
-    points: {root: [0, 0, 0], middle: [0.5, 0, 0], tip: [1, 0, 0]}
-  arm_left:
-    shapes:
-      - {type: box, center: [-0.5, 0, 0], size: [1, 0.01, 0.01], density: 3000}
-      - {type: point, at: [-1, 0, 0], mass: 5}
-    points: {root: [0, 0, 0], middle: [-0.5, 0, 0], tip: [-1, 0, 0]}
-joints:
-  spin: {type: pin, from: ground.foot, to: shaft.foot, axis: [0, 0, 1], initial: {angle: 0, rate: 2*pi}}
-  sleeve: {type: slide, from: shaft.foot, to: slider.middle, axis: [0, 0, 1], initial: {travel: s, speed: 0}}
-  right: {type: pin, from: shaft.right, to: arm_right.root, axis: [0, 1, 0], initial: {angle: alpha, rate: 0}}
-  left: {type: pin, from: shaft.left, to: arm_left.root, axis: [0, -1, 0], initial: {angle: alpha, rate: 0}}
-forces:
-  strut_right: {type: spring, from: slider.right, to: arm_right.middle, stiffness: 8e5, length: 0.5, damping: 4e4}
-  strut_left: {type: spring, from: slider.left, to: arm_left.middle, stiffness: 8e5, length: 0.5, damping: 4e4}
-analysis: {times: [0, 0.1, 0.2, 0.5, 1], tolerance: 1e-9}
-"""
 TRAVEL = {0.1: 0.52383648, 0.2: 0.58507981, 0.5: 0.74324942, 1.0: 0.50142092}
 ARM = {0.5: 0.25949138, 1.0: 0.5218333}
 SPIN = {0.5: 5.10341542, 1.0: 6.27112574}
@@ -54,7 +23,7 @@ TIMES = (0.0, 0.1, 0.2, 0.5, 1.0)
 
 @cache
 def governor() -> Results:
-    return solved(SCENE)
+    return solved(GOVERNOR)
 
 
 @pytest.mark.heavy
@@ -87,7 +56,7 @@ LATER = {2.0: 0.50590929, 3.0: 0.51324608, 4.0: 0.52322337, 5.0: 0.5355631, 6.0:
 def test_ten_seconds(method: str) -> None:
     """All of the table, by what heun chooses and by its stiff methods, at the order's tolerance of 1e-6 and finer."""
     times = [0.0, *TRAVEL, *LATER]
-    text = SCENE.replace("times: [0, 0.1, 0.2, 0.5, 1], tolerance: 1e-9", f"times: {times}, tolerance: 1e-8")
+    text = GOVERNOR.replace("times: [0, 0.1, 0.2, 0.5, 1], tolerance: 1e-9", f"times: {times}, tolerance: 1e-8")
     results = solved(text, method=method)
     assert str(results.model["method"]).startswith("Radau")
     found = results.coordinates

@@ -15,7 +15,7 @@ from heuncli.drawing.picture import Line, Mark, Picture, Text, svg
 from heuncli.errors import HeunError
 from heuncli.foreign_text import shown
 from heuncli.records import replace
-from tests.report.test_chart import FAILS, TOO_LONG, chart, run
+from tests.shared.fake_charts import FAILS, TOO_LONG, chart, run
 
 SVG = "{http://www.w3.org/2000/svg}"
 FIELD = Box(80.0, 100.0, 810.0, 580.0)

@@ -15,18 +15,9 @@ from heuncli.errors import LimitError
 from heuncli.report import export
 from heuncli.report.export import to_csv, to_json
 from heuncli.report.quantities import walk
-from tests.shared.fakes import LABELS, pendulum
+from tests.shared.fakes import BLOW, LABELS, pendulum
 
 T = np.linspace(0.0, 2.0, 7)
-BLOW = {
-    "time": 0.5,
-    "names": ["blow"],
-    "bodies": {"upper": {"center_velocity_jump": np.array([1.0, 0.0, 0.0])}},
-    "foundation": {"force": np.array([0.0, 0.0, 2.0]), "moment": np.zeros(3)},
-    "joints": {"pivot": {"force": np.array([0.0, np.nan, 0.0]), "open": ["force.y"]}},
-    "sections": {},
-    "energy_jump": 0.25,
-}
 
 
 def assert_same(parsed: Any, block: Any) -> None:

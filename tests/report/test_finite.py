@@ -19,7 +19,7 @@ from heuncli.study.solve import recovery
 from heuncli.study.solve.finiteness import leaves, require_finite
 from heuncli.study.solve.options import Options
 from heuncli.study.workflow import solve
-from tests.cli.conftest import Heun, folder, heun  # noqa: F401  # fixtures
+from tests.shared.command import Heun
 
 ROOT = Path(__file__).parents[2]
 # together they hold every quantity
@@ -113,7 +113,7 @@ def test_what_is_open_is_null_and_nothing_else_is() -> None:
     ("run", "swinging.yaml", "--measure", "max energy.kinetic"), ("run", "swinging.yaml", "--at", "0.5"),
     ("check", "swinging.yaml"),
 ])  # fmt: skip
-def test_every_command_refuses_it(heun: Heun, words: tuple[str, ...], monkeypatch: pytest.MonkeyPatch) -> None:  # noqa: F811
+def test_every_command_refuses_it(heun: Heun, words: tuple[str, ...], monkeypatch: pytest.MonkeyPatch) -> None:
     energy = recovery.energy
 
     def broken(*given: Any) -> Any:

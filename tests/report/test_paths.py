@@ -18,8 +18,7 @@ from heuncli.spec.load import load
 from heuncli.spec.models import Spec
 from heuncli.spec.names import names_in
 from heuncli.spec.rules.outcome import wrong_path
-from tests.report.test_export import BLOW
-from tests.shared.fakes import LABELS, pendulum
+from tests.shared.fakes import BLOW, LABELS, pendulum
 
 T = np.linspace(0.0, 2.0, 7)
 SUMS = [{"terms": {"joints.a.force.x": 1}, "value": 2.0 * T}]

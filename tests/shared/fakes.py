@@ -217,3 +217,14 @@ def restrict(results: Results, wanted: Set[str]) -> Results:
     """The results without the blocks that were not asked for."""
     unasked: dict[str, Any] = {block: {} for block, report in REPORT_OF.items() if report not in wanted}
     return replace(results, **unasked)
+
+
+BLOW = {
+    "time": 0.5,
+    "names": ["blow"],
+    "bodies": {"upper": {"center_velocity_jump": np.array([1.0, 0.0, 0.0])}},
+    "foundation": {"force": np.array([0.0, 0.0, 2.0]), "moment": np.zeros(3)},
+    "joints": {"pivot": {"force": np.array([0.0, np.nan, 0.0]), "open": ["force.y"]}},
+    "sections": {},
+    "energy_jump": 0.25,
+}

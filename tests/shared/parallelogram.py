@@ -3,6 +3,9 @@
 from __future__ import annotations
 
 from collections.abc import Sequence
+from typing import Any
+
+from tests.oracle.published import four_bar
 
 
 def parallelogram(rate: float, duration: float, samples: int, kinds: Sequence[str] = ("pin",) * 4,
@@ -33,3 +36,8 @@ joints:
 {chr(10).join(joints)}
 analysis: {{duration: {duration!r}, samples: {samples}}}
 """
+
+
+def parallelogram_in_line(crank: float, rocker: float) -> dict[str, Any]:
+    """The four-bar of 1, 2, 1, 2 m folded on a line, a singular pose, as the oracle's dict, with two of its rates."""
+    return four_bar(0.0, 0.0, 0.0, (1, 2, 1, 2), (crank, (rocker - crank) / 2, rocker))

@@ -6,6 +6,10 @@ import math
 from array import array
 from dataclasses import dataclass, field
 from random import Random
+from typing import Any
+
+from heuncli.expressions.programs import OPS
+from heuncli.kernel.choose import expressions
 
 ONE = (
     "neg", "abs", "sign", "step", "sin", "cos", "tan", "asin", "acos", "atan", "sinh", "cosh", "tanh", "exp", "log",
@@ -19,6 +23,7 @@ NUMBERS = (
     math.inf, -math.inf, math.nan,
 )  # fmt: skip
 VARIABLES = 3
+FREE, HELD, TAKEN = (expressions.HOLDING[name] for name in ("free", "held", "taken"))
 
 
 @dataclass
@@ -113,3 +118,15 @@ def _table(program: Program, random: Random, deep: int) -> None:
     coefficients = [random.uniform(-2.0, 2.0) for _ in range(4 * pieces)]
     program.tables.append(array("d", [knots[-1] - knots[0], *knots, *coefficients]))
     program.code += [(random.choice(("table", "table", "knot")), len(program.tables) - 1), (pieces, outside)]
+
+
+def programs_of(program: Program, held: int = 0) -> Any:
+    """The program as the kernel's evaluator holds it, with so many held branches."""
+    code = program.numbered(OPS)
+    return expressions.Expressions(code, array("d", program.constants), VARIABLES, held, tables=program.tables)
+
+
+def some_stretch(random: Random, shortest: float = -9.0) -> tuple[float, float]:
+    """Of lengths from 10**shortest to 3, or none."""
+    begin = random.choice((0.0, random.uniform(-3.0, 3.0), random.uniform(-3.0, 3.0)))
+    return begin, begin + random.choice((0.0, *[10.0 ** random.uniform(shortest, 0.5)] * 6))

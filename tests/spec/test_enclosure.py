@@ -17,12 +17,18 @@ import pytest
 
 from heuncli.expressions.curves import fit
 from heuncli.expressions.grammar import Scope, compile_expression
-from heuncli.expressions.programs import OPS, Expression, Pack
-from heuncli.kernel.choose import enclosure, expressions, jets
+from heuncli.expressions.programs import Expression, Pack
+from heuncli.kernel.choose import enclosure, jets
 from heuncli.kernel.form import KERNEL
-from tests.shared.random_programs import VARIABLES, Program, random_program
+from tests.shared.random_programs import (
+    HELD,
+    TAKEN,
+    VARIABLES,
+    programs_of,
+    random_program,
+    some_stretch,
+)
 
-FREE, HELD, TAKEN = (expressions.HOLDING[name] for name in ("free", "held", "taken"))
 PROGRAMS = 1000 if KERNEL == "compiled" else 60
 TIME, NONE, ANY = (1.0, 1.0, 0.0, 0.0), (0.0, 0.0, 0.0, 0.0), (-math.inf, math.inf)
 KNOTS = [-9.0, -1.0, 0.5, 1.0, 2.0, 9.0]
@@ -40,17 +46,6 @@ TWO = ("min({}, {})", "max({}, {})", "hypot({}, {})", "atan2({}, {})")
 
 def read(text: str) -> Expression:
     return compile_expression(text, Scope(joints={"g": "slide", "p": "pin"}, tables=TABLES, in_time=True))
-
-
-def programs_of(program: Program, held: int = 0) -> Any:
-    code = program.numbered(OPS)
-    return expressions.Expressions(code, array("d", program.constants), VARIABLES, held, tables=program.tables)
-
-
-def some_stretch(random: Random, shortest: float = -9.0) -> tuple[float, float]:
-    """Of lengths from 10**shortest to 3, or none."""
-    begin = random.choice((0.0, random.uniform(-3.0, 3.0), random.uniform(-3.0, 3.0)))
-    return begin, begin + random.choice((0.0, *[10.0 ** random.uniform(shortest, 0.5)] * 6))
 
 
 def instants(random: Random, begin: float, end: float, count: int) -> list[float]:
@@ -303,8 +298,7 @@ SAME = """
 import json, sys
 from random import Random
 from heuncli.kernel.choose import enclosure
-from tests.shared.random_programs import VARIABLES, random_program
-from tests.spec.test_enclosure import HELD, programs_of, some_stretch
+from tests.shared.random_programs import HELD, VARIABLES, programs_of, random_program, some_stretch
 random, found = Random(25), []
 for _ in range(400):
     program, held = random_program(random).holding()

@@ -14,8 +14,8 @@ from heuncli.expressions.grammar import Scope, compile_expression
 from heuncli.expressions.integrals import begun_at, integral
 from heuncli.expressions.programs import Expression, Pack
 from heuncli.kernel.choose import expressions
+from tests.shared.evaluators import COMPILED, PLAIN, answers
 from tests.shared.scenes import near
-from tests.spec.test_program import COMPILED, PLAIN, answers
 
 LAST = 10.0
 TABLES = {"v": fit("v", [0, 1, 3, 10], [0, 2, -1, -1], "linear", None, None)}

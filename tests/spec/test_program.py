@@ -5,7 +5,6 @@ from __future__ import annotations
 import cmath
 import math
 from array import array
-from collections.abc import Iterable, Sequence
 from random import Random
 from typing import Any
 
@@ -17,6 +16,7 @@ from heuncli.expressions.discontinuities import discontinuities
 from heuncli.expressions.grammar import Scope, compile_expression
 from heuncli.expressions.programs import Expression, Pack
 from heuncli.kernel.choose import expressions, jets
+from tests.shared.evaluators import COMPILED, PLAIN, answers, bits
 from tests.shared.plain_kernel import plain_module
 from tests.shared.random_programs import VARIABLES, random_program
 
@@ -187,18 +187,6 @@ def test_constants_need_no_program_run() -> None:
     assert list(read("t*t").sample([1.0, 2.0, 3.0])) == [1.0, 4.0, 9.0]
 
 
-Form = tuple[Any, Any]  # evaluator and derivatives
-COMPILED: Form = expressions, jets
-PLAIN: Form = plain_module("expressions"), plain_module("jets")  # as plain Python files, whatever runs otherwise
-
-
-def answers(form: Form, pack: Pack, count: int, x: Sequence[float]) -> list[str]:
-    """Value, and value with derivatives in time alone, of the pack's first program, to the last bit."""
-    evaluator, derived = form
-    programs = evaluator.Expressions(pack.code, pack.constants, len(pack.variables), 0, pack.starts, pack.tables)
-    return bits([programs.evaluate(0, count, x), *derived.derivatives(programs, 0, count, x[0])])
-
-
 @pytest.mark.skipif(not expressions.COMPILED, reason="there is only the plain form")
 @given(text=EXPRESSIONS, t=st.floats(-5.0, 5.0))
 @settings(max_examples=EXAMPLES, deadline=None, derandomize=True)
@@ -329,11 +317,6 @@ def test_what_is_no_program_is_not_run(start: int, count: int) -> None:
             run()
     with pytest.raises(ValueError, match="2 instants"):
         programs.sample(0, 3, array("d", [1.0, 2.0]), array("d", [0.0]))
-
-
-def bits(numbers: Iterable[float]) -> list[str]:
-    """Numbers to the last bit; one NaN is like another."""
-    return [float(x).hex() if x == x else "nan" for x in numbers]
 
 
 def test_the_table_of_operations_is_complete() -> None:

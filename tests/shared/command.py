@@ -1,16 +1,9 @@
-"""Specs to run commands on, and the command itself, in this process."""
+"""Specs to run commands on, and what a command leaves behind when it runs in this process."""
 
 from __future__ import annotations
 
-import io
-import sys
 from collections.abc import Callable
-from pathlib import Path
 from typing import NamedTuple
-
-import pytest
-
-from heuncli.cli.entry import enter
 
 HANGING = """\
 heun: 1
@@ -24,7 +17,7 @@ joints:
   pivot: {type: ball, from: ground.O, to: bar.top}
 """
 TURNED = HANGING.replace("top: [0, 0, 0]}", "top: [0, 0, 0]}, orientation: {axis: [1, 0, 0], angle: 60 deg}")
-SPECS = {
+SPEC_TEXTS = {
     "hanging": HANGING,
     "swinging": TURNED + "analysis: {duration: 1, samples: 11}\n",
     "long": TURNED + "analysis: {duration: 100000, samples: 11}\n",
@@ -46,25 +39,3 @@ class Done(NamedTuple):
 
 
 Heun = Callable[..., Done]
-
-
-@pytest.fixture
-def folder(tmp_path: Path) -> Path:
-    """A folder of specs."""
-    for name, text in SPECS.items():
-        (tmp_path / f"{name}.yaml").write_text(text)
-    return tmp_path
-
-
-@pytest.fixture
-def heun(folder: Path, monkeypatch: pytest.MonkeyPatch, capsys: pytest.CaptureFixture[str]) -> Heun:
-    """The command, run in the folder of specs; `text` is its standard input."""
-    monkeypatch.chdir(folder)
-
-    def run(*words: str, text: str = "") -> Done:
-        monkeypatch.setattr(sys, "stdin", io.TextIOWrapper(io.BytesIO(text.encode())))
-        capsys.readouterr()
-        code = enter(words)
-        return Done(code, *capsys.readouterr())
-
-    return run

@@ -1,0 +1,15 @@
+"""What the command's --measure tells of a run."""
+
+from __future__ import annotations
+
+import json
+from typing import Any
+
+from heuncli.cli import measure
+from heuncli.study.ask.study import Study
+
+
+def measured(run: Study, words: str) -> dict[str, Any]:
+    """What `--measure WORDS --format json` prints."""
+    block: dict[str, Any] = json.loads(measure.write([measure.parse(words)], run, "json"))
+    return block
