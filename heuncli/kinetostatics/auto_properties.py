@@ -14,7 +14,6 @@ from __future__ import annotations
 
 from collections.abc import Callable, Mapping, Sequence
 from itertools import pairwise
-from typing import Any
 
 import numpy as np
 
@@ -199,7 +198,7 @@ def stress_block(found: Found, cuts: tuple[int, ...], loads: Mapping[str, Array]
     block: Block = {}
     for group in found.groups:
         on = np.broadcast_to(group.on.reshape(cuts), shape)
-        values: dict[str, Any] = {
+        values: dict[str, float | Array] = {
             name: np.broadcast_to(value.reshape(cuts), shape)[on] if isinstance(value, np.ndarray) else value
             for name, value in group.values.items()
         }

@@ -9,13 +9,13 @@ from __future__ import annotations
 
 from collections.abc import Sequence
 from functools import cached_property
-from typing import TYPE_CHECKING, Any
+from typing import TYPE_CHECKING
 
 import numpy as np
 from numpy.typing import NDArray
 
 from heuncli import tolerances
-from heuncli.errors import Finding, Problem, SpecError
+from heuncli.errors import Finding, Problem, SourceLocation, SpecError
 from heuncli.joint_kinds import JOINTS
 from heuncli.kinetostatics.section_axes import first_axis
 from heuncli.mechanism.model import GROUND, Mechanism, PointLoad
@@ -23,6 +23,7 @@ from heuncli.records import record, replace
 from heuncli.results import Array
 from heuncli.shapes.forms import Form
 from heuncli.shapes.inertia import pseudo_inertia
+from heuncli.spec.models import Properties, Section, Spec
 
 if TYPE_CHECKING:
     from heuncli.kinetostatics.auto_properties import Cutting, Found
@@ -58,7 +59,7 @@ class Cuts:
     centroids: Array | None
     about: str | tuple[int, Array]
     line: bool
-    properties: Any
+    properties: Properties | None
     strength: float | None
     warnings: tuple[str, ...]
     form: Form | None = None
@@ -124,7 +125,7 @@ def spread_on(mechanism: Mechanism, body: int) -> list[tuple[str, Array]]:
     return list(found.items())
 
 
-def lay_cuts(mechanism: Mechanism, spec: Any, forms: dict[str, Form]) -> tuple[Cuts, ...]:
+def lay_cuts(mechanism: Mechanism, spec: Spec, forms: dict[str, Form]) -> tuple[Cuts, ...]:
     """The cuts of all sections of a spec. Raises SpecError with every section that cannot be cut."""
     cuts: list[Cuts] = []
     problems: list[Problem] = []
@@ -142,7 +143,9 @@ def lay_cuts(mechanism: Mechanism, spec: Any, forms: dict[str, Form]) -> tuple[C
     return tuple(cuts)
 
 
-def _lay(mechanism: Mechanism, spec: Any, name: str, section: Any, index: dict[str, int], form: Form | None) -> Cuts:
+def _lay(
+    mechanism: Mechanism, spec: Spec, name: str, section: Section, index: dict[str, int], form: Form | None
+) -> Cuts:
     body = index[section.body]
     n = np.array(section.normal, dtype=float)
     n = n / np.sqrt(n @ n)
@@ -192,7 +195,7 @@ def _lay(mechanism: Mechanism, spec: Any, name: str, section: Any, index: dict[s
     return cuts
 
 
-def _require_properties(location: Any, cuts: Cuts) -> None:
+def _require_properties(location: SourceLocation, cuts: Cuts) -> None:
     """Raise SpecError where the properties of a cut cannot be taken from the shapes; of a run anywhere along it."""
     from heuncli.kinetostatics.auto_properties import properties_of
 
@@ -215,7 +218,7 @@ def _require_properties(location: Any, cuts: Cuts) -> None:
         raise SpecError(Problem("no-properties", message, location, hint=hint))
 
 
-def _cut_points(section: Any) -> tuple[Array, Array | None]:
+def _cut_points(section: Section) -> tuple[Array, Array | None]:
     """Points of the cuts (k, 3) and their distances along the run (k,), None for a single cut."""
     if section.at is not None:
         return np.array([section.at], dtype=float), None
@@ -234,7 +237,7 @@ def _near(form: Form | None, heights: Array, d: Array) -> float:
     return tolerances.IN_PLANE * max(extent, float(np.abs(d).max()), tolerances.LEAST_EXTENT)
 
 
-def _needs_side(names: list[str], location: Any) -> Problem:
+def _needs_side(names: list[str], location: SourceLocation) -> Problem:
     """The problem of a single cut with something in its plane and no side given."""
     what = " and ".join(names) if names else "a point mass or rod of the body"
     hint = "add side: before (the cut just before it, so that it belongs to the piece) or side: beyond"
@@ -259,7 +262,7 @@ def _sides_of_run(jumps: NDArray[np.bool_]) -> tuple[list[int], Array]:
 
 
 def _cut_pieces(
-    location: Any, name: str, section: Any, form: Form | None, n: Array, points: Array, side: Array,
+    location: SourceLocation, name: str, section: Section, form: Form | None, n: Array, points: Array, side: Array,
     reach: tuple[float, float],
 ) -> tuple[Array, Array | None, tuple[str, ...]]:  # fmt: skip
     """Pieces, centroids and warnings of the cuts; reach: from the least to the largest n.x of joints and loads."""
@@ -296,7 +299,9 @@ def _cut_pieces(
     return form.pieces(n, d, side), centroids, tuple(warnings)
 
 
-def _require_body(location: Any, section: Any, form: Form, n: Array, d: Array, reach: tuple[float, float]) -> None:
+def _require_body(
+    location: SourceLocation, section: Section, form: Form, n: Array, d: Array, reach: tuple[float, float]
+) -> None:
     """Raise SpecError unless cuts at d, which meet no material, have something of the body on both sides of them.
 
     What is drawn apart is one body all the same: what the piece exerts on the remainder is as certain there as in a

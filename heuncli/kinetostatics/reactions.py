@@ -11,7 +11,7 @@ Loads by their causes are found by the same sums: their arrays have an axis of c
 
 from __future__ import annotations
 
-from typing import Any, Protocol
+from typing import Protocol
 
 import numpy as np
 
@@ -28,7 +28,7 @@ from heuncli.tree.starts import joint_frame
 class Named(Protocol):
     """Arrays by the names of fields: a table, or a mapping."""
 
-    def __getitem__(self, name: str, /) -> Any: ...
+    def __getitem__(self, name: str, /) -> Array: ...
 
 
 @record

@@ -337,6 +337,7 @@ def section(
 
 def stress(cuts: Cuts, loads: Mapping[str, Array]) -> Block:
     """The stresses of all cuts, by the properties given or by those of the shapes."""
+    assert cuts.properties is not None
     if cuts.properties.kind == "auto":
         from heuncli.kinetostatics.auto_properties import stress_block
 

@@ -21,6 +21,10 @@ from heuncli.results import Array, Block
 UNKNOWN_SHEAR = 5.5
 
 
+Number = float | Array  # one, or one a cut
+Sizes = Mapping[str, Number]  # a section's measures by name, as the spec gives them
+
+
 @record
 class SectionModuli:
     """Area [m2], second moments about e1 and e2 [m4], half extents c1 along e1 and c2 along e2 [m], W_T [m3].
@@ -29,37 +33,37 @@ class SectionModuli:
     (circle, tube), else the corners count; largest: of the whole section.
     """
 
-    area: float
-    I1: float
-    I2: float
-    c1: float
-    c2: float
-    W_T: float
-    shear: float
+    area: Number
+    I1: Number
+    I2: Number
+    c1: Number
+    c2: Number
+    W_T: Number
+    shear: Number
     round: bool
     largest: fields.Largest
 
 
-def circle(v: Mapping[str, float]) -> SectionModuli:
+def circle(v: Sizes) -> SectionModuli:
     """Solid circle."""
     return ring(v["radius"], 0.0, fields.circle)
 
 
-def tube(v: Mapping[str, float]) -> SectionModuli:
+def tube(v: Sizes) -> SectionModuli:
     """Circular ring."""
     return ring(v["radius"], v["inner_radius"], fields.tube)
 
 
-def ring(R: float, r: float, largest: fields.Largest) -> SectionModuli:
+def ring(R: Number, r: Number, largest: fields.Largest) -> SectionModuli:
     """From a solid circle to a thin tube."""
     I = 0.25 * math.pi * (R**4 - r**4)
     shear = 4.0 / 3.0 * (R * R + R * r + r * r) / (R * R + r * r)
     return SectionModuli(math.pi * (R * R - r * r), I, I, R, R, 2.0 * I / R, shear, True, largest)
 
 
-def rectangle(v: Mapping[str, float]) -> SectionModuli:
+def rectangle(v: Sizes) -> SectionModuli:
     """Solid rectangle, width along e1, height along e2; W_T by Saint-Venant's series."""
-    b, h = v["width"], v["height"]
+    b, h = float(v["width"]), float(v["height"])
     I1, I2, W_T = b * h**3 / 12.0, h * b**3 / 12.0, torsion_modulus(b, h)
     return SectionModuli(b * h, I1, I2, 0.5 * b, 0.5 * h, W_T, 1.5, False, fields.rectangle(b, h))
 
@@ -85,20 +89,18 @@ def torsion_constant(b: float, h: float) -> float:
     return a**3 * c / 3.0 * (1.0 - 192.0 * a / (math.pi**5 * c) * tanh)
 
 
-def general(v: Mapping[str, float]) -> SectionModuli:
+def general(v: Sizes) -> SectionModuli:
     """Properties as given; the torsional stress as the thickest shape has it that fits.
 
     A convex section's is at most 2 rho T/J, rho the radius of the largest circle in it (Payne's bound of the stress
     function's slope), which is at most min(c1, c2); an open profile's is t T/J with walls of t < 2 min(c1, c2).
     """
-    reach = max(v["c1"], v["c2"], 2.0 * min(v["c1"], v["c2"]))
-    shear = v.get("shear_factor", UNKNOWN_SHEAR)
-    return SectionModuli(
-        v["area"], v["I1"], v["I2"], v["c1"], v["c2"], v["J"] / reach, shear, False, fields.unknown
-    )  # fmt: skip
+    c1, c2, shear = float(v["c1"]), float(v["c2"]), float(v.get("shear_factor", UNKNOWN_SHEAR))
+    reach = max(c1, c2, 2.0 * min(c1, c2))
+    return SectionModuli(v["area"], v["I1"], v["I2"], c1, c2, v["J"] / reach, shear, False, fields.unknown)
 
 
-MODULI: dict[str, Callable[[Mapping[str, float]], SectionModuli]] = {
+MODULI: dict[str, Callable[[Sizes], SectionModuli]] = {
     "circle": circle, "tube": tube, "rectangle": rectangle, "general": general,
 }  # fmt: skip
 

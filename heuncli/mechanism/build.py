@@ -2,7 +2,8 @@
 
 from __future__ import annotations
 
-from typing import TYPE_CHECKING, Any
+from collections.abc import Mapping
+from typing import TYPE_CHECKING
 
 import numpy as np
 
@@ -26,6 +27,7 @@ from heuncli.mechanism.model import (
 from heuncli.records import replace
 from heuncli.results import Array
 from heuncli.shapes.inertia import properties
+from heuncli.spec import models as m
 
 if TYPE_CHECKING:
     from heuncli.shapes.forms import Form
@@ -33,7 +35,7 @@ if TYPE_CHECKING:
 INFINITE = np.full(3, np.inf)
 
 
-def forms_of(spec: Any) -> dict[str, Form]:
+def forms_of(spec: m.Spec) -> dict[str, Form]:
     """The forms of the bodies that are built from shapes."""
     shapes = {name: b.shapes for name, b in spec.bodies.items() if b.shapes is not None}
     if not shapes:
@@ -43,7 +45,7 @@ def forms_of(spec: Any) -> dict[str, Form]:
     return {name: form(of) for name, of in shapes.items()}
 
 
-def build(spec: Any, forms: dict[str, Form]) -> Mechanism:
+def build(spec: m.Spec, forms: dict[str, Form]) -> Mechanism:
     """The mechanism of a validated spec (spec.models.Spec)."""
     index = {name: i for i, name in enumerate(spec.bodies)} | {"ground": GROUND}
     joints = {name: (k, TYPES[j.type]) for k, (name, j) in enumerate(spec.joints.items())}
@@ -73,22 +75,22 @@ def build(spec: Any, forms: dict[str, Form]) -> Mechanism:
     )
 
 
-def vectors(points: dict[str, Any]) -> dict[str, Array]:
+def vectors(points: Mapping[str, m.Vec]) -> dict[str, Array]:
     """Named points as arrays."""
     return {name: np.array(p) for name, p in points.items()}
 
 
-def optional(value: Any) -> Array | None:
+def optional(value: m.Vec | m.Matrix | None) -> Array | None:
     """An array, or None for what was left out."""
     return None if value is None else np.array(value, dtype=float)
 
 
-def directed(value: Any) -> Directed | None:
+def directed(value: m.Directed | None) -> Directed | None:
     """A vector with its frame, or None."""
     return None if value is None else Directed(np.array(value.vector), value.frame == "body")
 
 
-def unit(vector: Any) -> Array:
+def unit(vector: m.Vec) -> Array:
     """The direction of a vector that the spec layer found not to be zero."""
     v = np.array(vector, dtype=float)
     v = v / np.abs(v).max()
@@ -96,11 +98,12 @@ def unit(vector: Any) -> Array:
     return along
 
 
-def body(name: str, b: Any, shape: Form | None) -> Body:
+def body(name: str, b: m.Body, shape: Form | None) -> Body:
     """One body, its mass properties given or those of its shapes."""
     if shape is not None:
         mass, center, inertia = properties(shape.whole())
     else:
+        assert b.mass is not None  # as center and inertia, of what is not built from shapes
         mass, center, inertia = b.mass, np.array(b.center), np.array(b.inertia)
     return Body(
         name=name, mass=mass, center=center, inertia=inertia, points=vectors(b.points),
@@ -111,7 +114,7 @@ def body(name: str, b: Any, shape: Form | None) -> Body:
     )  # fmt: skip
 
 
-def drive_of(name: str, d: Any, last: float) -> Drive:
+def drive_of(name: str, d: m.Drive, last: float) -> Drive:
     """A drive; of one by its rate the integral, for a run up to `last`, is the value."""
     value = d.value
     if d.by_rate:
@@ -121,7 +124,9 @@ def drive_of(name: str, d: Any, last: float) -> Drive:
     return Drive(name, d.quantity, value, d.zero == "assembled", d.by_rate)
 
 
-def joint(name: str, j: Any, index: dict[str, int], driven: Any, planar: bool, last: float) -> Joint:
+def joint(
+    name: str, j: m.Joint, index: dict[str, int], driven: tuple[str, m.Drive] | None, planar: bool, last: float
+) -> Joint:
     """One joint with its drive, as what it is in the plane where that was declared; last: the end of the run [s]."""
     given = j.axis if j.axis is not None else j.normal
     axis = unit(given) if given is not None else np.array([0.0, 0.0, 1.0])
@@ -161,9 +166,9 @@ def spun(joint: Joint, bodies: tuple[Body, ...]) -> Joint:
     return joint
 
 
-def parts_of(name: str, f: Any, index: dict[str, int], joints: dict[str, tuple[int, Kind]]) -> tuple[Load, ...]:
+def parts_of(name: str, f: m.Force, index: dict[str, int], joints: dict[str, tuple[int, Kind]]) -> tuple[Load, ...]:
     """An applied load: of a distributed one the parts that grow towards its one end and its other."""
-    if f.type != "distributed":
+    if not isinstance(f, m.Distributed):
         return (load(name, f, index, joints),)
     start, end = np.array(f.from_), np.array(f.to)
     spreads = (f.vector, Spread(start, end)), (f.to_vector, Spread(end, start))
@@ -173,33 +178,35 @@ def parts_of(name: str, f: Any, index: dict[str, int], joints: dict[str, tuple[i
     )
 
 
-def load(name: str, f: Any, index: dict[str, int], joints: dict[str, tuple[int, Kind]]) -> Load:
-    """One applied load."""
-    match f.type:
-        case "force":
+def load(name: str, f: m.Force, index: dict[str, int], joints: dict[str, tuple[int, Kind]]) -> Load:
+    """One applied load that is not distributed."""
+    match f:
+        case m.PointForce():
             return PointLoad(name, "force", index[f.on.body], np.array(f.on.point), f.vector, f.frame == "body")
-        case "couple":
+        case m.Couple():
             point = np.array(f.on.point) if f.on is not None else None
             return PointLoad(name, "couple", index[f.body], point, f.vector, f.frame == "body")
-        case "actuator" | "spring":
+        case m.Actuator() | m.Spring():
             a, b = f.from_, f.to
-            spring = (None, f.stiffness, f.length, f.damping) if f.type == "spring" else (f.value, 0.0, 0.0, 0.0)
+            spring = (None, f.stiffness, f.length, f.damping) if isinstance(f, m.Spring) else (f.value, 0.0, 0.0, 0.0)
             return PairLoad(name, index[a.body], np.array(a.point), index[b.body], np.array(b.point), *spring)
-        case "torque":
+        case m.Torque():
             return JointLoad(name, "torque", joints[f.joint][0], f.value)
-        case "turn_spring":
+        case m.TurnSpring():
             k = joints[f.joint][0]
             return JointLoad(name, "turn_spring", k, None, f.damping, stiffness=f.stiffness, angle=f.angle)
-        case "damper":
+        case m.Damper():
             # the coefficient is that of the one motion; a joint of both gives that of the sliding apart
             k, kind = joints[f.joint]
             sliding = f.coefficient if kind.motions == ("sliding",) else f.sliding or 0.0
             return JointLoad(name, "damper", k, None, f.coefficient, sliding, 1.0)
-        case _:
+        case m.Friction():
             return JointLoad(name, "friction", joints[f.joint][0], None, f.torque or 0.0, f.force or 0.0, f.speed)
+        case m.Distributed():
+            raise TypeError("a distributed load is two loads")
 
 
-def blow(name: str, i: Any, index: dict[str, int]) -> Blow:
+def blow(name: str, i: m.Impulse, index: dict[str, int]) -> Blow:
     """One impulse or impulsive couple."""
     point = np.array(i.on.point) if i.on is not None else None
     return Blow(name, index[i.body], point, np.array(i.vector), i.frame == "body", i.time, i.type)
