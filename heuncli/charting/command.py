@@ -23,8 +23,8 @@ from heuncli.errors import Problem
 from heuncli.method_rows import AUTO, METHODS, row_of
 from heuncli.records import replace
 from heuncli.report.export import dump
-from heuncli.report.fit import fit
-from heuncli.report.table import WIDTH, plain
+from heuncli.report.page_width import fit
+from heuncli.report.text_table import WIDTH, plain
 from heuncli.spec.load import load
 from heuncli.spec.methods import meant
 

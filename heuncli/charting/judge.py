@@ -25,10 +25,10 @@ from heuncli.study.solve.blocks import blocks
 from heuncli.study.solve.error_extents import APART, Weights
 from heuncli.study.solve.load_errors import LoadErrors
 from heuncli.study.solve.recovery import recover
-from heuncli.study.solve.selection import Asked
+from heuncli.study.solve.selection import Selection
 from heuncli.study.solve.setup import Setup
 
-OF_LOADS = Asked(frozenset({"joints", "sections"}))
+OF_LOADS = Selection(frozenset({"joints", "sections"}))
 Certain = Mapping[str, tuple[Mask, Mask]]  # by joint: which components of its force and moment are never open
 
 

@@ -6,7 +6,7 @@ import string
 
 from heuncli.charting.results import Chart
 from heuncli.charting.scale import failures, points, power, scales, seconds
-from heuncli.report.table import wrapped
+from heuncli.report.text_table import wrapped
 
 WIDTH = 100  # columns of the field
 ROWS = 2  # a decade of error

@@ -12,7 +12,7 @@ from heuncli.charting.results import COMPLETED, FAILED, KINDS, UNFINISHED, Chart
 from heuncli.charting.scale import power
 from heuncli.method_rows import row_of
 from heuncli.report.export import FORMAT
-from heuncli.report.table import WIDTH, Column, Table, labelled
+from heuncli.report.text_table import WIDTH, TextColumn, TextTable, labelled
 from heuncli.version import VERSION
 
 HEADING = "RUNS  processor time of the integration alone, median; errors at the judged instants, * on the front"
@@ -45,13 +45,18 @@ def write_heading(chart: Chart, width: int = WIDTH) -> str:
     return labelled(heading(chart), width)
 
 
-def table(chart: Chart) -> Table:
+def table(chart: Chart) -> TextTable:
     """The runs, a row each, those of a method under its name."""
     kinds = chart.kinds
-    columns = [Column("", "left"), Column("tolerance or step", "left"), Column("time [ms]"), Column("steps")]
-    columns += [Column("evaluations"), *(Column(kind, "left") for kind in kinds)]
+    columns = [
+        TextColumn("", "left"),
+        TextColumn("tolerance or step", "left"),
+        TextColumn("time [ms]"),
+        TextColumn("steps"),
+    ]
+    columns += [TextColumn("evaluations"), *(TextColumn(kind, "left") for kind in kinds)]
     remarks = any(run.status != COMPLETED for run in chart.runs)
-    columns += [Column("", "left")] * remarks
+    columns += [TextColumn("", "left")] * remarks
     rows: list[tuple[str, ...] | str] = []
     for name, runs in chart.by_method.items():
         rows.append(title(name))
@@ -60,7 +65,7 @@ def table(chart: Chart) -> Table:
     if any(run.bounded for run in chart.runs):
         notes.append(f"{AT_MOST}: the run differs from the reference by no more than that one may err itself")
     notes += reasons(chart)
-    return Table(HEADING, tuple(columns), tuple(rows), tuple(notes))
+    return TextTable(HEADING, tuple(columns), tuple(rows), tuple(notes))
 
 
 def alike(runs: Sequence[Charted]) -> Iterator[list[Charted]]:

@@ -19,10 +19,10 @@ from heuncli.cli.target import format_of
 from heuncli.errors import HeunError, Problem, SpecError
 from heuncli.foreign_text import shown
 from heuncli.records import record
+from heuncli.report.digits import OPEN
 from heuncli.report.export import dump
-from heuncli.report.numbers import OPEN
-from heuncli.report.table import Column, Table, plain
-from heuncli.report.words import count
+from heuncli.report.plurals import count
+from heuncli.report.text_table import TextColumn, TextTable, plain
 from heuncli.results import Array
 from heuncli.spec.load import load
 from heuncli.study.ask.expectations import Case, compare
@@ -119,7 +119,7 @@ def _table(checked: Sequence[Checked], skipped: Sequence[PassedBy]) -> str:
         if not case.passed
     )
     heads = ("file", "of", "at", "expected", "found", "why it fails")
-    failures = Table("FAILED", tuple(Column(head, "left") for head in heads), rows)
+    failures = TextTable("FAILED", tuple(TextColumn(head, "left") for head in heads), rows)
     errors = sum(one.error is not None for one in checked)
     silent = sum(not one.cases and one.error is None for one in checked)
     parts = [count(len(checked), "spec"), f"{sum(case.passed for case in cases)} passed", f"{len(rows)} failed"]

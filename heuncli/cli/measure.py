@@ -10,12 +10,12 @@ from typing import Any, TypeVar
 
 from heuncli.cli.entry import UsageError
 from heuncli.errors import HeunError, Problem, SpecError
+from heuncli.report.digits import OPEN, UNKNOWN
 from heuncli.report.export import dump
-from heuncli.report.numbers import OPEN, UNKNOWN
 from heuncli.spec.models import Spec
 from heuncli.spec.names import names_in
 from heuncli.spec.rules.outcome import wrong_path
-from heuncli.study.ask.measure import NOT_CLAIMED, Measure, NotOneNumber, Peak, lost_from, value
+from heuncli.study.ask.measure import NOT_CLAIMED, MeasureRequest, NotOneNumber, Peak, lost_from, value
 from heuncli.study.ask.study import Study
 
 T = TypeVar("T")
@@ -30,18 +30,18 @@ FORMS = "expected [max | min | max abs | first | final | at T] PATH"
 HINT = "such as --measure 'max abs sections.middle.M1'"
 
 
-def parse(text: str) -> Measure:
-    """The Measure that the words mean. Raises UsageError."""
+def parse(text: str) -> MeasureRequest:
+    """The MeasureRequest that the words mean. Raises UsageError."""
     words = text.split()
     match words if words and PATH.match(words[-1]) else []:
         case [path] if path not in ("max", "min", "abs", "first", "final", "at"):
-            return Measure("", path)
+            return MeasureRequest("", path)
         case ["max" | "min" | "abs" | "first" | "final" as how, path]:
-            return Measure(how, path)
+            return MeasureRequest(how, path)
         case ["max", "abs", path]:
-            return Measure("abs", path)
+            return MeasureRequest("abs", path)
         case ["at", t, path] if _is_number(t):
-            return Measure("at", path, float(t))
+            return MeasureRequest("at", path, float(t))
     raise UsageError(Problem("bad-option", f"--measure '{text}': {FORMS}", hint=meant(text)))
 
 
@@ -62,12 +62,12 @@ def meant(text: str) -> str:
     return f"did you mean '{proposed}'?"
 
 
-def parse_all(texts: Sequence[str]) -> list[Measure]:
+def parse_all(texts: Sequence[str]) -> list[MeasureRequest]:
     """The Measures that several mean. Raises UsageError with all that mean none."""
     return all_or_errors([partial(parse, text) for text in texts])
 
 
-def check(several: Sequence[Measure], spec: Spec) -> None:
+def check(several: Sequence[MeasureRequest], spec: Spec) -> None:
     """Whether their paths lead anywhere, as far as that is seen before the run. Raises SpecError [unknown-path]."""
     names = names_in(spec)
     runs = {name: section.from_ is not None for name, section in spec.sections.items()}
@@ -76,7 +76,7 @@ def check(several: Sequence[Measure], spec: Spec) -> None:
         raise SpecError(*(Problem("unknown-path", f"--measure: {what}", hint=hint) for what, hint in wrong))
 
 
-def write(several: Sequence[Measure], study: Study, form: str) -> str:
+def write(several: Sequence[MeasureRequest], study: Study, form: str) -> str:
     """Each number as text, all its digits, on a line; as JSON with its instant, several in a list.
 
     What is not known beyond the horizon is `?`.
@@ -87,7 +87,7 @@ def write(several: Sequence[Measure], study: Study, form: str) -> str:
     return "".join(all_or_errors([partial(line, asked, study) for asked in several]))
 
 
-def line(asked: Measure, study: Study) -> str:
+def line(asked: MeasureRequest, study: Study) -> str:
     """One number as text."""
     peak, horizon = measured(asked, study)
     if horizon is not None:
@@ -97,7 +97,7 @@ def line(asked: Measure, study: Study) -> str:
     return f"{peak.value!r}\n"
 
 
-def block(asked: Measure, study: Study) -> dict[str, Any]:
+def block(asked: MeasureRequest, study: Study) -> dict[str, Any]:
     """One number for JSON."""
     peak, horizon = measured(asked, study)
     found = {"measure": f"{asked.how} {asked.path}".strip(), "value": peak.value, "at": peak.at}
@@ -110,7 +110,7 @@ def block(asked: Measure, study: Study) -> dict[str, Any]:
     return found
 
 
-def measured(asked: Measure, study: Study) -> tuple[Peak, float | None]:
+def measured(asked: MeasureRequest, study: Study) -> tuple[Peak, float | None]:
     """The number, and the horizon where it lies beyond. Raises UsageError."""
     try:
         return value(asked, study), lost_from(asked, study)
@@ -133,7 +133,7 @@ def all_or_errors(calls: Sequence[Callable[[], T]]) -> list[T]:
     return given
 
 
-def warnings(several: Sequence[Measure], study: Study) -> list[str]:
+def warnings(several: Sequence[MeasureRequest], study: Study) -> list[str]:
     """Why there is `?` in place of some numbers."""
     lost = [(asked.path, lost_from(asked, study)) for asked in several]
     return [f"{path} is not known: {NOT_CLAIMED.format(horizon)}" for path, horizon in lost if horizon is not None]

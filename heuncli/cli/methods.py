@@ -7,8 +7,8 @@ import json
 from heuncli.cli.output import emit
 from heuncli.cli.requests import Methods
 from heuncli.cli.target import format_of
-from heuncli.report.methods import block, table
-from heuncli.report.table import WIDTH, plain
+from heuncli.report.methods_table import block, table
+from heuncli.report.text_table import WIDTH, plain
 
 FORMATS = ("table", "json")
 ENDINGS = {".json": "json", ".txt": "table", "": "table"}

@@ -11,7 +11,7 @@ from heuncli.cli.requests import Model
 from heuncli.cli.solving import overrides, warn
 from heuncli.cli.target import format_of
 from heuncli.report.export import dump
-from heuncli.report.note import note
+from heuncli.report.model_text import note
 from heuncli.spec.load import load
 from heuncli.study.workflow import describe
 

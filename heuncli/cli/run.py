@@ -19,14 +19,14 @@ from heuncli.errors import Finding, Problem
 from heuncli.kinetostatics.joint_axes import JOINT_AXES
 from heuncli.nearest import did_you_mean, nearest
 from heuncli.records import replace
-from heuncli.report import units
-from heuncli.report.fit import fit
+from heuncli.report import table_units
+from heuncli.report.cut_runs import LOADS
 from heuncli.report.heading import write_heading, write_heading_markdown
 from heuncli.report.labels import Labels, labels_of
 from heuncli.report.page import EXPORT_DEFAULT, TABLE_DEFAULT, page_of
-from heuncli.report.runs import LOADS
-from heuncli.report.table import WIDTH, Table, markdown, plain
-from heuncli.report.units import Units
+from heuncli.report.page_width import fit
+from heuncli.report.table_units import Units
+from heuncli.report.text_table import WIDTH, TextTable, markdown, plain
 from heuncli.results import Results
 from heuncli.results_schema import BLOWS, REPORT_OF, REPORTS, SHARES, with_shared
 from heuncli.spec.load import load
@@ -35,7 +35,7 @@ from heuncli.study.ask.study import Study
 from heuncli.study.solve.error_places import placed
 from heuncli.study.solve.memory_estimate import Room
 from heuncli.study.solve.options import Options
-from heuncli.study.solve.selection import Asked, Entry, asked_by, entries_of, entry_at
+from heuncli.study.solve.selection import Entry, Selection, asked_by, entries_of, entry_at
 from heuncli.study.workflow import solve
 
 ENDINGS = {".json": "json", ".csv": "csv", ".md": "markdown", ".txt": "table", "": "table"}
@@ -88,7 +88,7 @@ def main(request: Run) -> int:
 
 def _units(words: str) -> Units:
     try:
-        return units.asked(words)
+        return table_units.asked(words)
     except Finding as finding:
         raise UsageError(Problem("bad-option", f"--units {words}: {finding.message}", hint=finding.hint)) from None
 
@@ -103,7 +103,7 @@ def _only(words: str) -> tuple[frozenset[str], tuple[str, ...]]:
     return frozenset(names) - frozenset(paths), paths
 
 
-def _asked(request: Run, only: tuple[frozenset[str], tuple[str, ...]] | None, spec: Spec, form: str) -> Asked:
+def _asked(request: Run, only: tuple[frozenset[str], tuple[str, ...]] | None, spec: Spec, form: str) -> Selection:
     """What is asked for; who asks for the impulses alone sees them alone."""
     wanted = TABLE_DEFAULT if form in TABLES else EXPORT_DEFAULT
     if form in TABLES and spec.analysis.type == "impulse":
@@ -116,7 +116,7 @@ def _asked(request: Run, only: tuple[frozenset[str], tuple[str, ...]] | None, sp
         single = [_entry(path, spec) for path in paths]
         entries = frozenset(entry for entry in single if REPORT_OF[entry[0]] not in wanted)
         wanted = wanted | {REPORT_OF[entry[0]] for entry in single}
-    return Asked(with_shared(wanted | {SHARES} if request.by_cause else wanted), entries)
+    return Selection(with_shared(wanted | {SHARES} if request.by_cause else wanted), entries)
 
 
 def _entry(path: str, spec: Spec) -> Entry:
@@ -171,15 +171,15 @@ def _report(request: Run, form: str, study: Study, labels: Labels, wanted: froze
     else:
         tables = page.extremes(extremes, shares)
         if not extremes.searched:
-            tables.append(Table("", notes=(NOT_SEARCHED,)))
+            tables.append(TextTable("", notes=(NOT_SEARCHED,)))
     if not tables:
-        tables = [Table("", notes=(f"nothing to show of {', '.join(sorted(wanted))}: the scene has none",))]
+        tables = [TextTable("", notes=(f"nothing to show of {', '.join(sorted(wanted))}: the scene has none",))]
     if form == "markdown":
         return write_heading_markdown(study.results) + "\n".join(map(markdown, tables))
     return write_heading(study.results) + "".join("\n" + text for text in _writer(request)(tables))
 
 
-def _writer(request: Run) -> Callable[[list[Table]], list[str]]:
+def _writer(request: Run) -> Callable[[list[TextTable]], list[str]]:
     """How tables become text: fitted to a terminal where one is written to, else to a page."""
     if request.output is None:
         from heuncli.cli import terminal  # rich is worth its 44 ms only where somebody looks

@@ -2,13 +2,13 @@
 
 from __future__ import annotations
 
-from heuncli.report.along import Numbers, OfRun, at_cuts, stresses_along
+from heuncli.report.cut_runs import CutRun, runs_of
 from heuncli.report.page import Page
-from heuncli.report.runs import Run, runs_of
+from heuncli.report.run_searches import RunExtremes, RunSearch, at_cuts, stresses_along
 from heuncli.results import Extremes
 from heuncli.results_schema import SHARES
 from heuncli.study.ask.study import Study
-from heuncli.study.search.extremes import Searched, no_columns
+from heuncli.study.search.extremes import ColumnSearch, no_columns
 
 SECTIONS = frozenset({"sections"})
 
@@ -16,28 +16,28 @@ SECTIONS = frozenset({"sections"})
 def rows(page: Page, study: Study, wanted: frozenset[str]) -> Extremes:
     """Of the rows of the page, and of the loads along its runs of cuts."""
     along = page.along if page.has_runs else None
-    searched = Searched(page.columns, page.groups(), page.errors(), page.even(), along)
+    searched = ColumnSearch(page.columns, page.groups(), page.errors(), page.even(), along)
     return study.extremes(searched, wanted - {SHARES}, whole=True)
 
 
-def along_runs(page: Page, study: Study) -> dict[str, OfRun]:
+def along_runs(page: Page, study: Study) -> dict[str, RunExtremes]:
     """Of the stresses along each run of cuts, and of all at its cuts where more than one instant is told."""
     return {run.name: of_run(run, page, study) for run in runs_of(page.results, page.labels)}
 
 
-def of_run(run: Run, page: Page, study: Study) -> OfRun:
+def of_run(run: CutRun, page: Page, study: Study) -> RunExtremes:
     """Those of one run."""
     stresses = cuts = None
     if run.stresses:
         own = stresses_along(run, page.labels)
-        searched = Searched(no_columns, [], own.errors(page.certain), own.even, own.along, bent=True)
+        searched = ColumnSearch(no_columns, [], own.errors(page.certain), own.even, own.along, bent=True)
         stresses = own.roots(study.extremes(searched, SECTIONS))
     if len(page.results.time) > 1:
         cuts = extremes_at_cuts(at_cuts(run, page.labels), page, study)
-    return OfRun(stresses, cuts)
+    return RunExtremes(stresses, cuts)
 
 
-def extremes_at_cuts(own: Numbers, page: Page, study: Study) -> Extremes:
+def extremes_at_cuts(own: RunSearch, page: Page, study: Study) -> Extremes:
     """Those of the quantities at each cut."""
-    searched = Searched(own.columns, own.groups, own.errors(page.certain), own.even)
+    searched = ColumnSearch(own.columns, own.groups, own.errors(page.certain), own.even)
     return own.roots(study.extremes(searched, SECTIONS, whole=True))

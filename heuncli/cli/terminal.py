@@ -7,8 +7,8 @@ import shutil
 import sys
 from collections.abc import Sequence
 
-from heuncli.report.fit import fit
-from heuncli.report.table import Table, plain, wrapped
+from heuncli.report.page_width import fit
+from heuncli.report.text_table import TextTable, plain, wrapped
 
 LEAST_WIDTH = 40  # below it words stand one to a line, and nothing can be read across
 BOLD, CYAN, END = "\x1b[1m", "\x1b[36m", "\x1b[0m"
@@ -30,13 +30,13 @@ def width() -> int:
     return max(shutil.get_terminal_size().columns, LEAST_WIDTH)
 
 
-def write(tables: Sequence[Table]) -> list[str]:
+def write(tables: Sequence[TextTable]) -> list[str]:
     """The tables as text for the terminal at hand, in its width and with its colours (or none: NO_COLOR)."""
     room, codes = width(), styled()
     return [_part(part, room, codes) for table in tables for part in fit(table, room)]
 
 
-def _part(part: Table, room: int, codes: bool) -> str:
+def _part(part: TextTable, room: int, codes: bool) -> str:
     text = plain(part, room)
     if not codes:
         return text

@@ -11,7 +11,7 @@ from heuncli.cli.output import emit, say
 from heuncli.cli.requests import Validate
 from heuncli.errors import HeunError, SpecError
 from heuncli.foreign_text import shown
-from heuncli.report.words import count
+from heuncli.report.plurals import count
 from heuncli.spec.load import load
 from heuncli.spec.models import Spec
 

@@ -8,9 +8,9 @@ from collections.abc import Iterator
 from heuncli.foreign_text import shown
 from heuncli.linearisation.modes import Modes, is_length
 from heuncli.linearisation.oscillations import Mode
-from heuncli.report.fit import fit
-from heuncli.report.numbers import rough, style
-from heuncli.report.table import WIDTH, Column, Table, plain
+from heuncli.report.digits import rough, style
+from heuncli.report.page_width import fit
+from heuncli.report.text_table import WIDTH, TextColumn, TextTable, plain
 from heuncli.version import VERSION
 
 ABOUT = {"rest": "about the rest pose", "state": "about the start"}
@@ -18,18 +18,18 @@ FRAME = ", as seen by what moves steadily there"
 HELD = ", its drives held where they are"
 HEADING = "MODES  motions exp(growth t) cos(2π frequency t): damping ratio -growth/|growth + 2πi frequency|"
 COLUMNS = (
-    Column("mode"), Column("frequency Hz"), Column("period s"), Column("damping"), Column("growth 1/s"),
-    Column("kind", "left"), Column("what moves most (rad, m)", "left"),
+    TextColumn("mode"), TextColumn("frequency Hz"), TextColumn("period s"), TextColumn("damping"),
+    TextColumn("growth 1/s"), TextColumn("kind", "left"), TextColumn("what moves most (rad, m)", "left"),
 )  # fmt: skip
 CSV_COLUMNS = "mode,kind,name,quantity,component,unit,value"
 SOFT = 1e-3  # [1/s]: a bound on what is free is told if it leaves motions that take less than an hour or two
 ALMOST = 0.02  # of the largest: a smaller part of the other phase is not worth a table's room
 
 
-def table(found: Modes) -> Table:
+def table(found: Modes) -> TextTable:
     """The modes, a row each; notes say what is unstable, and what nothing holds."""
     rows = tuple(row(k, mode, found) for k, mode in enumerate(found.modes))
-    return Table(HEADING, COLUMNS, rows, tuple(notes(found)))
+    return TextTable(HEADING, COLUMNS, rows, tuple(notes(found)))
 
 
 def page(found: Modes) -> list[tuple[str, str]]:

@@ -6,8 +6,8 @@ import math
 from collections.abc import Iterator
 
 from heuncli.probing.results import Growing, Probe, Stiffness
-from heuncli.report.fit import fit
-from heuncli.report.table import WIDTH, Column, Table, labelled, plain
+from heuncli.report.page_width import fit
+from heuncli.report.text_table import WIDTH, TextColumn, TextTable, labelled, plain
 from heuncli.version import VERSION
 
 MOST = 30  # events that a table lists; JSON has more
@@ -53,16 +53,16 @@ def reasons(found: Probe) -> list[str]:
     return [f"{', '.join(keys)}: {text}" for text, keys in by.items()]
 
 
-def tables(found: Probe) -> Iterator[Table]:
+def tables(found: Probe) -> Iterator[TextTable]:
     """All tables that have something to show."""
     if grown := tuple(growth_row(name, g) for name, g in growths(found) if g is not None):
         heads = ("of", "e times every [s]", "times", "until [s]", "horizon of double precision [s]")
-        yield Table(GROWTH, columns(heads, 1), grown)
+        yield TextTable(GROWTH, columns(heads, 1), grown)
     if found.stiffness is not None and found.stiffness.steps:
         yield steps(found.stiffness, found.duration)
     if known := found.conditions():
         own = tuple((NAMES[name], condition(at.value), f"{at.time:.6g}", at.where) for name, at in known)
-        yield Table(CONDITION, (*columns(("of", "condition", "t [s]"), 1), Column("in", "left")), own)
+        yield TextTable(CONDITION, (*columns(("of", "condition", "t [s]"), 1), TextColumn("in", "left")), own)
     if found.attitudes:
         sequences = tuple(found.attitudes[0].euler)
         over = ("body", "half turns", *(f"{s} at [s]" if i else s for s in sequences for i in (0, 1)))
@@ -70,35 +70,35 @@ def tables(found: Probe) -> Iterator[Table]:
             (t.body, str(t.half_turns), *(x for k, at in t.euler.values() for x in (condition(k), f"{at:.6g}")))
             for t in found.attitudes
         )
-        yield Table(ATTITUDES, columns(over, 1), bodies)
+        yield TextTable(ATTITUDES, columns(over, 1), bodies)
     if found.events:
         yield events(found)
 
 
-def steps(stiff: Stiffness, duration: float) -> Table:
+def steps(stiff: Stiffness, duration: float) -> TextTable:
     """The steps of explicit methods, those that accuracy asks for of a motion alone; longer than the run is any."""
     note = f"rates of the tangent: decay up to {stiff.decay:.3g} 1/s, oscillation up to {stiff.oscillation:.3g} 1/s"
     if not duration:
         rows = tuple((s.method, str(s.order), seconds(s.stability, math.inf)) for s in stiff.steps)
-        return Table(STEPS_HERE, columns(("method", "order", "stable [s]"), 1), rows, (note,))
+        return TextTable(STEPS_HERE, columns(("method", "order", "stable [s]"), 1), rows, (note,))
     both = tuple(
         (s.method, str(s.order), *(seconds(x, duration) for x in (s.stability, s.accuracy))) for s in stiff.steps
     )
-    return Table(STEPS, columns(("method", "order", "stable [s]", "accurate [s]"), 1), both, (note,))
+    return TextTable(STEPS, columns(("method", "order", "stable [s]", "accurate [s]"), 1), both, (note,))
 
 
-def events(found: Probe) -> Table:
+def events(found: Probe) -> TextTable:
     """The instants, the first ones of many."""
     shown = [(f"{e.time:.6g}", e.kind, e.message) for e in found.events[:MOST]]
     left = len(found.events) - len(shown) + sum(count for _, _, count in found.more)
     notes = (f"{left} more; JSON lists a hundred of each kind and place",) if left else ()
-    heads = (Column("t [s]"), Column("what", "left"), Column("", "left"))
-    return Table(EVENTS, heads, tuple(shown), notes)
+    heads = (TextColumn("t [s]"), TextColumn("what", "left"), TextColumn("", "left"))
+    return TextTable(EVENTS, heads, tuple(shown), notes)
 
 
-def columns(heads: tuple[str, ...], words: int) -> tuple[Column, ...]:
+def columns(heads: tuple[str, ...], words: int) -> tuple[TextColumn, ...]:
     """Columns, the first of them of words."""
-    return tuple(Column(head, "left") if k < words else Column(head) for k, head in enumerate(heads))
+    return tuple(TextColumn(head, "left") if k < words else TextColumn(head) for k, head in enumerate(heads))
 
 
 def growths(found: Probe) -> tuple[tuple[str, Growing | None], ...]:

@@ -15,7 +15,7 @@ import numpy as np
 from heuncli.errors import LimitError, Problem
 from heuncli.foreign_text import shown
 from heuncli.report.labels import Labels
-from heuncli.report.quantities import Series, walk, walk_impulse
+from heuncli.report.series import Series, walk, walk_impulse
 from heuncli.results import Block, Results
 from heuncli.results_schema import AT_A_BLOW, BLOWS, row_of
 
@@ -35,7 +35,7 @@ def to_json(results: Results) -> str:
     return "".join(chunks) + "\n"
 
 
-class Rows(NamedTuple):
+class CsvSeries(NamedTuple):
     """The lines of one series in CSV: kind and name, the instants it holds at, and the sections that it may be of."""
 
     series: Series
@@ -50,12 +50,12 @@ def to_csv(results: Results, labels: Labels) -> str:
     _limit(results)
     instants = [repr(t) for t in results.time.tolist()]
     rows = [
-        Rows(series, series.kind, series.name, [""] if series.static else instants, results.sections)
+        CsvSeries(series, series.kind, series.name, [""] if series.static else instants, results.sections)
         for series in walk(results, labels)
     ]
     for number, block in enumerate(results.impulses):
         rows += _of_blow(number, block, labels)
-    rows += [Rows(series, series.kind, name, instants, {}) for name, series in _sums(results.certain_sums)]
+    rows += [CsvSeries(series, series.kind, name, instants, {}) for name, series in _sums(results.certain_sums)]
     by_cause = any(row.series.cause for row in rows)
     cut = any(row.series.kind == "sections" for row in rows)
     lines = [",".join([*CSV_COLUMNS, *["cause"] * by_cause, *CUT_COLUMNS * cut]) + "\n"]
@@ -64,20 +64,20 @@ def to_csv(results: Results, labels: Labels) -> str:
         # one text a series: of a short one a line, Python's own share is half of it
         lines.append("".join(_lines(row, [f",{row.series.cause}{end}" if by_cause else end for end in ends])))
     if results.events:
-        from heuncli.report.events import csv_lines  # where there are conditions
+        from heuncli.report.event_table import csv_lines  # where there are conditions
 
         lines += csv_lines(results, "," * (by_cause + len(CUT_COLUMNS) * cut))
     return "".join(lines)
 
 
-def _of_blow(number: int, block: Block, labels: Labels) -> Iterator[Rows]:
+def _of_blow(number: int, block: Block, labels: Labels) -> Iterator[CsvSeries]:
     """The rows of one blow."""
     at, sections = [repr(float(block["time"]))], block.get("sections", {})
     for series in walk_impulse(block, labels):
         name = ".".join(part for part in (str(number), series.kind, series.name) if part)
-        yield Rows(series, BLOWS, name, at, sections)
+        yield CsvSeries(series, BLOWS, name, at, sections)
     for name, series in _sums(block.get("certain_sums", ())):
-        yield Rows(series._replace(unit=AT_A_BLOW[series.unit]), BLOWS, f"{number}.certain_sums.{name}", at, {})
+        yield CsvSeries(series._replace(unit=AT_A_BLOW[series.unit]), BLOWS, f"{number}.certain_sums.{name}", at, {})
 
 
 def _sums(sums: Sequence[Any]) -> Iterator[tuple[str, Series]]:
@@ -141,7 +141,7 @@ def _plain(values: Any) -> Any:
     )
 
 
-def _lines(row: Rows, ends: Sequence[str]) -> Iterator[str]:
+def _lines(row: CsvSeries, ends: Sequence[str]) -> Iterator[str]:
     """A line an instant and component; ends: what stands behind its number."""
     series = row.series
     for component, end, column in zip(series.components, ends, series.values.T, strict=True):
@@ -152,7 +152,7 @@ def _lines(row: Rows, ends: Sequence[str]) -> Iterator[str]:
         yield from [f"{t}{middle}{number}{tail}" for t, number in zip(row.instants, numbers, strict=True)]
 
 
-def _cuts(row: Rows) -> list[str]:
+def _cuts(row: CsvSeries) -> list[str]:
     """Of each component the section, the cut of a run, its distance and its side, as they end its lines."""
     series = row.series
     if series.kind != "sections":

@@ -9,9 +9,9 @@ import numpy as np
 
 from heuncli import tolerances
 from heuncli.foreign_text import shown
-from heuncli.report.numbers import LOADS, rough
-from heuncli.report.table import labelled
-from heuncli.report.words import count
+from heuncli.report.digits import LOADS, rough
+from heuncli.report.plurals import count
+from heuncli.report.text_table import labelled
 from heuncli.results import Estimate, Results
 
 MOST_TOLD = 5

@@ -15,7 +15,7 @@ from heuncli import tolerances
 from heuncli.joint_kinds import TYPES, Kind
 from heuncli.kinetostatics.section_axes import default_axis, nearest_axis
 from heuncli.records import record
-from heuncli.report.units import Units
+from heuncli.report.table_units import Units
 from heuncli.spec.models import End, Force, Friction, Section, Spec, Vec
 
 PUSHING_FORCES = frozenset({"force", "distributed", "actuator", "spring"})

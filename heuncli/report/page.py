@@ -12,15 +12,17 @@ from typing import TYPE_CHECKING, Any, NamedTuple, Protocol
 
 import numpy as np
 
-from heuncli.report import extremes, instants, runs
-from heuncli.report.along import NONE, OfRun, with_stresses
-from heuncli.report.blocks import Block, Row, build
+from heuncli.report import cut_runs
+from heuncli.report.certain_sums import sums_table
+from heuncli.report.digits import Certainty, certainty, with_axis
+from heuncli.report.extremes_tables import abridged, extremes_table
+from heuncli.report.instants_tables import instants_tables
 from heuncli.report.labels import Labels
-from heuncli.report.numbers import Certainty, certainty, with_axis
-from heuncli.report.plans import PLANS
-from heuncli.report.quantities import Series, in_units, walk
-from heuncli.report.sums import sums_table
-from heuncli.report.table import Table
+from heuncli.report.run_searches import NONE, RunExtremes, with_stresses
+from heuncli.report.series import Series, in_units, walk
+from heuncli.report.table_blocks import NumberRow, TableBlock, build
+from heuncli.report.table_plans import PLANS
+from heuncli.report.text_table import TextTable
 from heuncli.results import Array, CertainSum, Extremes, Magnitudes, Mask, Place, Results
 from heuncli.results_schema import REPORT_OF, REPORTS, quantity
 
@@ -29,7 +31,7 @@ EXPORT_DEFAULT = frozenset(REPORTS) - {"points"}
 
 
 if TYPE_CHECKING:
-    from heuncli.report import causes
+    from heuncli.report import cause_tables
 
 
 class SharesAt(Protocol):
@@ -55,7 +57,7 @@ class Page(NamedTuple):
     of: Magnitudes
     beyond: Results | None = None
     struck: Sequence[Mapping[str, Extremes]] = ()
-    along_runs: Mapping[str, OfRun] = NONE
+    along_runs: Mapping[str, RunExtremes] = NONE
 
     def columns(self, results: Results) -> Array:
         """What is searched, (n_t, n): all rows of all blocks, magnitudes squared."""
@@ -64,8 +66,8 @@ class Page(NamedTuple):
 
     def along(self, results: Results) -> list[tuple[str, Array]]:
         """The resultants of the runs of cuts, each (n_t, n_cuts), with the names of their runs."""
-        made = runs.runs_of(results, self.labels)
-        return [(run.name, values) for run in made for values in run.values[: len(runs.LOADS)]]
+        made = cut_runs.runs_of(results, self.labels)
+        return [(run.name, values) for run in made for values in run.values[: len(cut_runs.LOADS)]]
 
     @property
     def has_runs(self) -> bool:
@@ -79,19 +81,19 @@ class Page(NamedTuple):
     def errors(self) -> Array:
         """How well the numbers are known, of all rows and of the resultants of runs, (n,)."""
         errors = [self.certain.error(row.kind, row.unit) for row in self._rows(self.results)]
-        for _ in runs.runs_of(self.results, self.labels):
-            errors += [self.certain.error("sections", load.unit) for load in runs.LOADS]
+        for _ in cut_runs.runs_of(self.results, self.labels):
+            errors += [self.certain.error("sections", load.unit) for load in cut_runs.LOADS]
         return np.array(errors)
 
     def even(self) -> Mask:
         """Which of them are squares, (n,)."""
         rows = [row.even for row in self._rows(self.results)]
-        more = len(runs.LOADS) * len(runs.runs_of(self.results, self.labels))
+        more = len(cut_runs.LOADS) * len(cut_runs.runs_of(self.results, self.labels))
         return np.array(rows + [False] * more, dtype=bool)
 
-    def extremes(self, searched: Extremes, shares: SharesAt | None = None) -> list[Table]:
+    def extremes(self, searched: Extremes, shares: SharesAt | None = None) -> list[TextTable]:
         """The tables with extremes, from those searched for each of `groups`; shares: by cause, at any instants."""
-        tables: list[Table] = []
+        tables: list[TextTable] = []
         start = 0
         times, last = self.results.time, self._last_values()
         for block in self._lasting(self.results):
@@ -99,48 +101,48 @@ class Page(NamedTuple):
             own = slice(start, start + len(rows))
             part = self._roots(block, searched.part(own))
             beyond = last[own] if last is not None else None
-            tables += extremes.extremes_table(block, times, part, self.certain, beyond)
+            tables += extremes_table(block, times, part, self.certain, beyond)
             start += len(rows)
-        for k, run in enumerate(runs.runs_of(self.results, self.labels)):
-            of = self.along_runs.get(run.name, OfRun())
+        for k, run in enumerate(cut_runs.runs_of(self.results, self.labels)):
+            of = self.along_runs.get(run.name, RunExtremes())
             whole = with_stresses(run, *self._of_run(searched, k), of.stresses)
-            tables += runs.extremes_tables(run, times, *whole, self.certain, of.cuts)
+            tables += cut_runs.extremes_tables(run, times, *whole, self.certain, of.cuts)
         more = self._by_cause(searched, shares) if shares is not None else []
         return [*tables, *more, *self._ending()]
 
-    def _by_cause(self, searched: Extremes, shares: SharesAt) -> list[Table]:
+    def _by_cause(self, searched: Extremes, shares: SharesAt) -> list[TextTable]:
         """What each cause does of the extremes."""
-        from heuncli.report import causes  # few runs ask for them
+        from heuncli.report import cause_tables  # few runs ask for them
 
         n = len(searched.low) - len(searched.places)
         instants = np.unique(np.concatenate([searched.low_at[:n], searched.high_at[:n]]))
         shared = self._shared(shares.at(instants)) if n else {}
-        span, tables, start = float(np.ptp(self.results.time)), list[Table](), 0
+        span, tables, start = float(np.ptp(self.results.time)), list[TextTable](), 0
         for block in self._lasting(self.results):
             count = sum(len(group.rows) for group in block.groups)
             own = self._roots(block, searched.part(slice(start, start + count)))
-            tables += causes.extremes_table(block, shared, instants, own, self.certain, span)
+            tables += cause_tables.extremes_table(block, shared, instants, own, self.certain, span)
             start += count
-        for k, run in enumerate(runs.runs_of(self.results, self.labels)):
+        for k, run in enumerate(cut_runs.runs_of(self.results, self.labels)):
             tables += self._run_by_cause(run, searched, k, shares)
         return tables
 
-    def _shared(self, results: Results) -> dict[causes.Key, causes.Shared]:
-        from heuncli.report import causes
+    def _shared(self, results: Results) -> dict[cause_tables.Key, cause_tables.SharedNumber]:
+        from heuncli.report import cause_tables
 
-        return causes.shared_rows(results, in_units(walk(results, self.labels), self.labels.units))
+        return cause_tables.shared_rows(results, in_units(walk(results, self.labels), self.labels.units))
 
-    def _run_by_cause(self, run: runs.Run, searched: Extremes, k: int, shares: SharesAt) -> list[Table]:
+    def _run_by_cause(self, run: cut_runs.CutRun, searched: Extremes, k: int, shares: SharesAt) -> list[TextTable]:
         """What each cause does of the extremes along a run."""
-        from heuncli.report import causes
+        from heuncli.report import cause_tables
 
         found, places = self._of_run(searched, k)
         at = np.unique(np.concatenate([found.low_at, found.high_at]))
         results = shares.along(run.name, at, [place for both in places for place in both])
-        return causes.run_extremes_table(run, results, found, places, self.certain)
+        return cause_tables.run_extremes_table(run, results, found, places, self.certain)
 
     @staticmethod
-    def _roots(block: Block, part: Extremes) -> Extremes:
+    def _roots(block: TableBlock, part: Extremes) -> Extremes:
         """The extremes of a block's rows, magnitudes themselves and not their squares."""
         even = np.array([row.even for group in block.groups for row in group.rows], dtype=bool)
         low, high = (np.where(even, np.sqrt(np.abs(bound)), bound) for bound in (part.low, part.high))
@@ -153,20 +155,20 @@ class Page(NamedTuple):
         every_cut: bool = False,
         searched: Extremes | None = None,
         shares: SharesAt | None = None,
-    ) -> list[Table]:
+    ) -> list[TextTable]:
         """The tables at the instants of `results`, which is the same run at any instants; searched: where it is one."""
         horizon = self.results.accuracy.get("horizon")
         unknown = frozenset(results.accuracy.get("unknown", ()))
         certain = with_axis(self.certain._replace(beside=unknown), results, self.of, self.labels.units)
-        tables: list[Table] = []
+        tables: list[TextTable] = []
         for block in _blocks(results, self.labels):
-            tables += instants.instants_tables(block, results.time, horizon, certain)
-        for k, run in enumerate(runs.runs_of(results, self.labels)):
+            tables += instants_tables(block, results.time, horizon, certain)
+        for k, run in enumerate(cut_runs.runs_of(results, self.labels)):
             if searched is not None:
-                of = self.along_runs.get(run.name, OfRun())
+                of = self.along_runs.get(run.name, RunExtremes())
                 whole = with_stresses(run, *self._of_run(searched, k), of.stresses)
-                tables.append(runs.extremes_table(run, results.time, *whole, self.certain))
-            made = runs.instants_tables(run, results.time, horizon, self.certain, every=every_cut)
+                tables.append(cut_runs.extremes_table(run, results.time, *whole, self.certain))
+            made = cut_runs.instants_tables(run, results.time, horizon, self.certain, every=every_cut)
             tables += [made[0]._replace(heading=""), *made[1:]] if searched is not None else made
         if shares is not None:
             tables += self._instants_by_cause(results, certain, searched, shares)
@@ -174,24 +176,24 @@ class Page(NamedTuple):
 
     def _instants_by_cause(
         self, results: Results, certain: Certainty, searched: Extremes | None, shares: SharesAt
-    ) -> list[Table]:
+    ) -> list[TextTable]:
         """What each cause does at some instants."""
-        from heuncli.report import causes  # few runs ask for them
+        from heuncli.report import cause_tables  # few runs ask for them
 
         horizon = self.results.accuracy.get("horizon")
-        shared, tables = self._shared(results), list[Table]()
+        shared, tables = self._shared(results), list[TextTable]()
         for block in _blocks(results, self.labels):
-            tables += causes.instants_table(block, shared, results.time, horizon, certain)
-        for k, run in enumerate(runs.runs_of(results, self.labels)):
+            tables += cause_tables.instants_table(block, shared, results.time, horizon, certain)
+        for k, run in enumerate(cut_runs.runs_of(results, self.labels)):
             if searched is not None:
                 tables += self._run_by_cause(run, searched, k, shares)
             else:
-                tables += causes.run_instants_table(run, results, horizon, certain)
+                tables += cause_tables.run_instants_table(run, results, horizon, certain)
         return tables
 
     def _of_run(self, searched: Extremes, k: int) -> tuple[Extremes, tuple[tuple[Place, Place], ...]]:
         """The extremes of the resultants of a run, and their places."""
-        n = len(runs.LOADS)
+        n = len(cut_runs.LOADS)
         first = len(searched.low) - len(searched.places) + n * k
         return searched.part(slice(first, first + n)), searched.places[n * k : n * (k + 1)]
 
@@ -202,29 +204,29 @@ class Page(NamedTuple):
         blocks = self._lasting(self.beyond)
         return np.array([row.values[-1] for block in blocks for group in block.groups for row in group.rows])
 
-    def _rows(self, results: Results) -> list[Row]:
+    def _rows(self, results: Results) -> list[NumberRow]:
         return [row for block in self._lasting(results) for group in block.groups for row in group.rows]
 
-    def _lasting(self, results: Results) -> list[Block]:
+    def _lasting(self, results: Results) -> list[TableBlock]:
         return _blocks(results, self.labels, lasting=True)
 
-    def _ending(self, every: bool = False) -> list[Table]:
+    def _ending(self, every: bool = False) -> list[TextTable]:
         sums = sums_table(self.results, self.certain, self.beyond, self.labels.units.of("N"))
         return [*([sums] if sums else []), *self._events(every), *self._impulses(every)]
 
-    def _events(self, every: bool) -> list[Table]:
+    def _events(self, every: bool) -> list[TextTable]:
         if not self.results.events:
             return []
-        from heuncli.report.events import events_table  # where there are conditions
+        from heuncli.report.event_table import events_table  # where there are conditions
 
         return [events_table(self.results, every=every)]
 
-    def _impulses(self, every: bool) -> list[Table]:
+    def _impulses(self, every: bool) -> list[TextTable]:
         if not self.results.impulses:
             return []
-        from heuncli.report.impulses import Blows, impulse_tables  # where something strikes
+        from heuncli.report.impulse_tables import BlowReport, impulse_tables  # where something strikes
 
-        return impulse_tables(Blows(self.results, self.labels, self.certain, self.of, self.struck), every=every)
+        return impulse_tables(BlowReport(self.results, self.labels, self.certain, self.of, self.struck), every=every)
 
 
 def page_of(results: Results, labels: Labels, of: Magnitudes) -> Page:
@@ -259,8 +261,8 @@ def _some_of_sum(block: CertainSum, which: slice) -> CertainSum:
     return {"terms": factors, "value": block["value"][which]}
 
 
-def _blocks(results: Results, labels: Labels, *, lasting: bool = False) -> list[Block]:
+def _blocks(results: Results, labels: Labels, *, lasting: bool = False) -> list[TableBlock]:
     series: Sequence[Series] = in_units(walk(results, labels), labels.units)
     blocks = [build(plan, results, labels, series) for plan in PLANS if plan.lasting or not lasting]
     made = [block for block in blocks if block is not None]
-    return [extremes.abridged(block) for block in made] if lasting else made
+    return [abridged(block) for block in made] if lasting else made

@@ -20,7 +20,7 @@ from heuncli.results import Results
 from heuncli.results_paths import find
 from heuncli.spec.load import load
 from heuncli.spec.models import Spec
-from heuncli.study.ask.measure import Measure, value
+from heuncli.study.ask.measure import MeasureRequest, value
 from heuncli.study.ask.study import Study
 from heuncli.study.solve import blocks, compose, load_errors, recovery
 from heuncli.study.solve.needed_parts import restricted
@@ -216,7 +216,7 @@ def test_one_section_alone_is_recovered(monkeypatch: pytest.MonkeyPatch) -> None
             monkeypatch.setattr(module, name, forbidden)
     study = asked(spec, ["sections.root.M1"])
     assert [cuts.name for cuts in study.setup.cuts] == ["root"]
-    assert value(Measure("abs", "sections.root.N"), study).value > 0.0
+    assert value(MeasureRequest("abs", "sections.root.N"), study).value > 0.0
     assert study.results.accuracy["balance_residual"] < 1e-9
     assert study.results.accuracy["estimate"].keys() == {"motion", "sections"}
 
@@ -226,7 +226,7 @@ def test_a_motion_asks_for_no_verdicts(monkeypatch: pytest.MonkeyPatch) -> None:
     monkeypatch.setattr(Recovery, "decided", property(forbidden))
     monkeypatch.setattr(load_errors, "joint_loads", forbidden)
     study = asked(spec, ["coordinates.rocker.angle"])
-    assert value(Measure("max", "coordinates.rocker.angle"), study).value > 0.0
+    assert value(MeasureRequest("max", "coordinates.rocker.angle"), study).value > 0.0
     assert study.results.accuracy["balance_residual"] < 1e-9
 
 

@@ -17,7 +17,7 @@ from heuncli.results_schema import REPORT_OF, REPORTS, SHARES
 from heuncli.spec.load import load
 from heuncli.study.solve.memory_estimate import in_words, numbers_by_block, two_digits
 from heuncli.study.solve.options import Options
-from heuncli.study.solve.selection import Asked
+from heuncli.study.solve.selection import Selection
 from heuncli.study.solve.setup import set_up
 from heuncli.study.workflow import solve
 from tests.shared.command import Heun
@@ -65,7 +65,7 @@ def test_steps_that_are_known_before_are_counted(heun: Heun, folder: Path, monke
 @pytest.mark.parametrize("shares", [False, True])
 def test_the_estimate_counts_what_is_told(name: str, shares: bool) -> None:
     """No less, and no more than a few times as much: not every joint has all that a joint may have."""
-    asked = Asked(frozenset((*REPORTS, SHARES) if shares else REPORTS))
+    asked = Selection(frozenset((*REPORTS, SHARES) if shares else REPORTS))
     spec = load(str(SPECS / f"{name}.yaml"))
     estimated = dict(numbers_by_block(set_up(spec, asked=asked)))
     results = solve(spec, Options(wanted=asked.reports)).results

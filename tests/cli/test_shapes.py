@@ -23,7 +23,7 @@ from heuncli.report.labels import labels_of
 from heuncli.results_paths import find
 from heuncli.results_schema import BLOWS, CUT, REPORTS, SHARES, beside_magnitudes, quantity
 from heuncli.spec.load import load
-from heuncli.study.ask.measure import Measure, NotOneNumber, value
+from heuncli.study.ask.measure import MeasureRequest, NotOneNumber, value
 from heuncli.study.ask.study import Study
 from heuncli.study.solve.options import Options
 from heuncli.study.workflow import solve
@@ -98,7 +98,7 @@ def test_every_array_has_the_axes_of_the_schema(count: tuple[int, int, int]) -> 
 def extreme(study: Study, how: str, path: str) -> float | str:
     """What --measure tells, or that it refuses."""
     try:
-        return value(Measure(how, path), study).value  # type: ignore[arg-type]
+        return value(MeasureRequest(how, path), study).value  # type: ignore[arg-type]
     except NotOneNumber as error:
         return re.sub(r"\d+", "N", error.problems[0].message)
 
@@ -123,12 +123,12 @@ def test_at_an_instant_a_list_of_three_cuts_is_no_vector(count: tuple[int, int, 
     for path in ("sections.s.M2", "sections.s.force", "joints.j0.force", "bodies.b0.rotation", "bodies.b0.quaternion"):
         there = find(study_of(count).results, path)
         if not there.axes or (there.of_vectors and len(there.axes) == 1):
-            assert isinstance(value(Measure("final", path), study_of(count)).value, float)
+            assert isinstance(value(MeasureRequest("final", path), study_of(count)).value, float)
         else:
             with pytest.raises(NotOneNumber, match="say which") as caught:
-                value(Measure("final", path), study_of(count))
+                value(MeasureRequest("final", path), study_of(count))
             one = str(caught.value.problems[0].hint).rpartition(": ")[2]
-            assert isinstance(value(Measure("final", one), study_of(count)).value, float)
+            assert isinstance(value(MeasureRequest("final", one), study_of(count)).value, float)
 
 
 @each

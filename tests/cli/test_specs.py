@@ -18,7 +18,7 @@ import pytest
 from heuncli.cli.entry import enter
 from heuncli.report.export import present, to_csv, to_json
 from heuncli.report.labels import labels_of
-from heuncli.report.quantities import walk
+from heuncli.report.series import walk
 from heuncli.results_paths import find
 from heuncli.spec.load import load
 from heuncli.study.ask.expectations import compare

@@ -7,12 +7,12 @@ import sys
 import pytest
 
 from heuncli.cli.terminal import LEAST_WIDTH, width, write
-from heuncli.report.table import Column, Table
+from heuncli.report.text_table import TextColumn, TextTable
 from tests.shared.command import Heun
 
-WIDE = Table(
+WIDE = TextTable(
     "JOINTS",
-    (Column("joint", "left"), *(Column(f"F{i} [N]") for i in range(12))),
+    (TextColumn("joint", "left"), *(TextColumn(f"F{i} [N]") for i in range(12))),
     tuple((name, *(f"{i}.5" for i in range(12))) for name in ("pivot", "elbow")),
     ("a note",),
 )

@@ -7,7 +7,7 @@ from pathlib import Path
 import pytest
 
 from heuncli.cli.entry import enter
-from heuncli.report.table import WIDTH
+from heuncli.report.text_table import WIDTH
 
 SPECS = sorted((Path(__file__).parents[2] / "specs").glob("*.yaml"))
 

@@ -12,7 +12,7 @@ from heuncli.report.labels import labels_of
 from heuncli.report.page import page_of
 from heuncli.results_schema import REPORTS
 from heuncli.study.ask.study import Study
-from heuncli.study.search.extremes import Searched
+from heuncli.study.search.extremes import ColumnSearch
 from tests.shared.measured import measured
 from tests.shared.scenes import near, study
 
@@ -25,7 +25,7 @@ def in_table(run: Study, heading: str, label: str) -> list[str]:
     """The cells of a row of the tables with this heading."""
     page = page_of(run.results, labels_of(run.spec), run.magnitudes)
     along = page.along if page.has_runs else None
-    searched = Searched(page.columns, page.groups(), page.errors(), page.even(), along)
+    searched = ColumnSearch(page.columns, page.groups(), page.errors(), page.even(), along)
     found = run.extremes(searched, frozenset(REPORTS), whole=True)
     one = len(run.results.time) == 1
     tables = page.instants(run.results, searched=found) if one else page.extremes(found)

@@ -15,7 +15,7 @@ import pytest
 from heuncli import tolerances
 from heuncli.cli.entry import enter
 from heuncli.results import Array, Results
-from heuncli.study.ask.measure import Measure, value
+from heuncli.study.ask.measure import MeasureRequest, value
 from heuncli.study.ask.study import Study
 from tests.shared.parallelogram import parallelogram
 from tests.shared.scenes import near, study
@@ -76,11 +76,11 @@ def test_extremes_are_those_of_what_is_known(rate: float) -> None:
     bottom = 0.5 * (rate**2 + 4.8 * G + G)
     if s.results.points["left.top"]["position"][:, 1].min() > 0.0 or len(s.history.singular) < 2:
         pytest.skip("it does not come to the bottom in two seconds")
-    found, at, *_ = value(Measure("abs", "joints.C.radial"), s)
+    found, at, *_ = value(MeasureRequest("abs", "joints.C.radial"), s)
     assert at is not None
     # a search ends where nothing promises more than a tenth of the error that is told, which singular poses enlarge
     near(found, bottom, bottom, max(1e-8, 0.1 * s.magnitudes.errors["reactions", "N"] / bottom))
-    near(value(Measure("max", "energy.kinetic"), s)[0], 5.0 / 6.0 * (rate**2 + 4.8 * G), bottom, 1e-8)
+    near(value(MeasureRequest("max", "energy.kinetic"), s)[0], 5.0 / 6.0 * (rate**2 + 4.8 * G), bottom, 1e-8)
 
 
 def test_the_example(capsys: pytest.CaptureFixture[str]) -> None:

@@ -12,10 +12,10 @@ import pytest
 from heuncli.cli import measure
 from heuncli.report.labels import labels_of
 from heuncli.report.page import page_of
-from heuncli.report.table import plain
+from heuncli.report.text_table import plain
 from heuncli.study.ask.expectations import compare
 from heuncli.study.ask.study import Study
-from heuncli.study.search.extremes import Searched
+from heuncli.study.search.extremes import ColumnSearch
 from tests.shared.scenes import near, study
 
 pytestmark = pytest.mark.heavy  # a family at random: with the compiled kernel, which has the same bits
@@ -29,7 +29,7 @@ def tables(run: Study) -> str:
     if len(run.results.time) == 1:
         return "\n".join(map(plain, page.instants(run.results)))
     along = page.along if page.has_runs else None
-    searched = Searched(page.columns, page.groups(), page.errors(), page.even(), along)
+    searched = ColumnSearch(page.columns, page.groups(), page.errors(), page.even(), along)
     extremes = run.extremes(searched, None, whole=True)
     return "\n".join(map(plain, page.extremes(extremes)))
 

@@ -12,7 +12,7 @@ from heuncli.report.labels import labels_of
 from heuncli.report.page import TABLE_DEFAULT, page_of
 from heuncli.spec.load import load
 from heuncli.study.ask.study import Study
-from heuncli.study.search.extremes import Searched
+from heuncli.study.search.extremes import ColumnSearch
 from heuncli.study.solve.options import Options
 from heuncli.study.workflow import solve
 from tests.bench.honesty import told
@@ -30,7 +30,7 @@ def short_by(run: Study, samples: int, slack: float = 0.0) -> list[tuple[str, fl
     page = page_of(run.results, labels_of(run.spec), run.magnitudes)
     errors, even = page.errors(), page.even()
     along = page.along if page.has_runs else None
-    found = run.extremes(Searched(page.columns, page.groups(), errors, even, along), TABLE_DEFAULT)
+    found = run.extremes(ColumnSearch(page.columns, page.groups(), errors, even, along), TABLE_DEFAULT)
     last, horizon = run.results.time[-1], run.results.accuracy.get("horizon")
     times = np.linspace(run.results.time[0], last, samples)
     results = run.only(times if horizon is None else times[times < horizon], TABLE_DEFAULT)

@@ -9,10 +9,10 @@ import numpy as np
 import pytest
 
 from heuncli.cli import searches
+from heuncli.report.cut_runs import extremes_of_samples, one_source, runs_of
 from heuncli.report.labels import labels_of
 from heuncli.report.page import Page, page_of
-from heuncli.report.runs import extremes_of_samples, one_source, runs_of
-from heuncli.report.table import Table
+from heuncli.report.text_table import TextTable
 from heuncli.results import Extremes, Place
 from heuncli.spec.load import load
 from heuncli.study.ask.measure import peak
@@ -48,7 +48,7 @@ def solved(tmp_path_factory: pytest.TempPathFactory) -> tuple[Study, Page, Extre
     return study, page._replace(along_runs=searches.along_runs(page, study)), found
 
 
-def cells(table: Table) -> list[tuple[str, ...]]:
+def cells(table: TextTable) -> list[tuple[str, ...]]:
     return [row for row in table.rows if not isinstance(row, str)]
 
 

@@ -13,10 +13,10 @@ from heuncli.cli.entry import enter
 from heuncli.report.export import to_csv
 from heuncli.report.labels import labels_of
 from heuncli.report.page import Page, page_of
-from heuncli.report.table import Table
+from heuncli.report.text_table import TextTable
 from heuncli.spec.load import load
 from heuncli.study.ask.study import Study
-from heuncli.study.search.extremes import Searched
+from heuncli.study.search.extremes import ColumnSearch
 from heuncli.study.solve.options import Options
 from heuncli.study.workflow import solve
 
@@ -30,11 +30,11 @@ def study_of(name: str) -> tuple[Study, Page]:
     return made, page_of(made.results, labels_of(spec), made.magnitudes)
 
 
-def by_cause(tables: list[Table]) -> list[Table]:
+def by_cause(tables: list[TextTable]) -> list[TextTable]:
     return [table for table in tables if "BY CAUSE" in table.heading]
 
 
-def rows_of(table: Table) -> list[dict[str, str]]:
+def rows_of(table: TextTable) -> list[dict[str, str]]:
     """The cells of every line by the heads of their columns."""
     heads = ["label", "unit", *(column.head for column in table.columns[2:])]
     return [dict(zip(heads, row, strict=True)) for row in table.rows if not isinstance(row, str)]
@@ -44,7 +44,7 @@ def rows_of(table: Table) -> list[dict[str, str]]:
 def test_extremes_say_who_is_responsible() -> None:
     """The shares at the instant of each extreme add up to it, in every row but for the last digit of each."""
     made, page = study_of("crane_load")
-    searched = Searched(page.columns, page.groups(), page.errors(), page.even(), page.along)
+    searched = ColumnSearch(page.columns, page.groups(), page.errors(), page.even(), page.along)
     extremes = made.extremes(searched, WANTED - {"shares"}, whole=True)
     tables = page.extremes(extremes, made)
     found = by_cause(tables)

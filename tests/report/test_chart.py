@@ -22,8 +22,8 @@ from heuncli.charting.results import (
 from heuncli.charting.scale import Scale, scales
 from heuncli.records import replace
 from heuncli.report.export import dump
-from heuncli.report.fit import fit
-from heuncli.report.table import WIDTH, plain
+from heuncli.report.page_width import fit
+from heuncli.report.text_table import WIDTH, plain
 from heuncli.tolerances import LOST
 from tests.shared.fake_charts import FAILS, REFERENCE, TOO_LONG, chart, run
 

@@ -12,7 +12,7 @@ from heuncli import records
 from heuncli.report.heading import write_heading
 from heuncli.report.labels import JointInfo, Labels
 from heuncli.report.page import page_of
-from heuncli.report.table import plain
+from heuncli.report.text_table import plain
 from heuncli.results import Magnitudes, Results
 from tests.shared.fakes import LABELS, MAGNITUDES, FakeStudy, found_extremes, pendulum, restrict
 

@@ -14,7 +14,7 @@ import pytest
 from heuncli.errors import LimitError
 from heuncli.report import export
 from heuncli.report.export import to_csv, to_json
-from heuncli.report.quantities import walk
+from heuncli.report.series import walk
 from tests.shared.fakes import BLOW, LABELS, pendulum
 
 T = np.linspace(0.0, 2.0, 7)

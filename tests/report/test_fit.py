@@ -4,21 +4,21 @@ from __future__ import annotations
 
 import pytest
 
-from heuncli.report.fit import fit
-from heuncli.report.table import Column, Table, plain, wrapped
+from heuncli.report.page_width import fit
+from heuncli.report.text_table import TextColumn, TextTable, plain, wrapped
 
-WIDE = Table(
+WIDE = TextTable(
     "JOINTS",
-    (Column("joint", "left"), *(Column(f"F{i} [N]") for i in range(12))),
+    (TextColumn("joint", "left"), *(TextColumn(f"F{i} [N]") for i in range(12))),
     tuple((name, *(f"{i}.5" for i in range(12))) for name in ("pivot", "elbow")),
     ("a note",),
 )
 
 
-VECTORS = Table(
+VECTORS = TextTable(
     "MASS EFFECT  what it is",
-    (Column("", "left"), Column("", "left", once=True),
-     *(Column(name, vector=name[0]) for name in ("Fx", "Fy", "Fz", "Mx", "My"))),
+    (TextColumn("", "left"), TextColumn("", "left", once=True),
+     *(TextColumn(name, vector=name[0]) for name in ("Fx", "Fy", "Fz", "Mx", "My"))),
     (("total", "a long note on it", "11111", "22222", "33333", "44444", "55555"),),
 )  # fmt: skip
 
@@ -48,7 +48,9 @@ def test_a_vector_is_not_parted_and_a_note_not_repeated() -> None:
 
 
 def test_a_vector_wider_than_a_page_is_parted_all_the_same() -> None:
-    table = Table("", (Column("", "left"), *(Column("F" * 9, vector="F") for _ in range(3))), (("a", "1", "2", "3"),))
+    table = TextTable(
+        "", (TextColumn("", "left"), *(TextColumn("F" * 9, vector="F") for _ in range(3))), (("a", "1", "2", "3"),)
+    )
     assert [len(part.columns) for part in fit(table, 25)] == [3, 2]
 
 
@@ -79,7 +81,7 @@ def test_a_line_ends_with_a_clause_and_not_within_brackets() -> None:
 
 def test_a_last_column_of_text_goes_on_in_lines_of_its_own() -> None:
     row = ("1", "a.angle 1, b.angle -1, guide.travel -0.5")
-    table = Table("MODES", (Column("mode"), Column("shape", "left")), (row,))
+    table = TextTable("MODES", (TextColumn("mode"), TextColumn("shape", "left")), (row,))
     (part,) = fit(table, 40)
     assert plain(part, 40).splitlines() == [
         "MODES", "mode  shape", "   1  a.angle 1, b.angle -1,", "      guide.travel -0.5",

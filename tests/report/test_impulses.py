@@ -18,7 +18,7 @@ from heuncli.report.export import to_csv, to_json
 from heuncli.report.heading import write_heading
 from heuncli.report.labels import StopInfo
 from heuncli.report.page import page_of
-from heuncli.report.table import markdown, plain
+from heuncli.report.text_table import markdown, plain
 from heuncli.results import Block, Results
 from heuncli.spec.load import load
 from heuncli.spec.models import Expect

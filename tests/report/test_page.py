@@ -9,10 +9,10 @@ from typing import Any
 import numpy as np
 import pytest
 
-from heuncli.report.extremes import MANY
+from heuncli.report.extremes_tables import MANY
 from heuncli.report.heading import write_heading
 from heuncli.report.page import Page, page_of
-from heuncli.report.table import plain
+from heuncli.report.text_table import plain
 from heuncli.results import Array, Extremes, Results
 from heuncli.study.search import extremes as peaks
 from tests.shared.fakes import ACCURATE, LABELS, MAGNITUDES, FakeStudy, found_extremes, pendulum, restrict, vectors

@@ -12,7 +12,7 @@ import pytest
 from heuncli.errors import SpecError
 from heuncli.nearest import begin_file
 from heuncli.report.export import to_json
-from heuncli.report.quantities import walk
+from heuncli.report.series import walk
 from heuncli.results_paths import find
 from heuncli.spec.load import load
 from heuncli.spec.models import Spec

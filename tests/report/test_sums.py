@@ -6,8 +6,8 @@ from typing import Any
 
 import numpy as np
 
-from heuncli.report.numbers import Certainty
-from heuncli.report.sums import sums_table
+from heuncli.report.certain_sums import sums_table
+from heuncli.report.digits import Certainty
 from tests.shared.fakes import pendulum
 
 T = np.linspace(0.0, 2.0, 5)

@@ -4,11 +4,11 @@ from __future__ import annotations
 
 import pytest
 
-from heuncli.report.table import Column, Table, markdown, plain
+from heuncli.report.text_table import TextColumn, TextTable, markdown, plain
 
-TABLE = Table(
+TABLE = TextTable(
     "HEADING  what it is",
-    (Column("", "left"), Column("F [N]"), Column("note", "left")),
+    (TextColumn("", "left"), TextColumn("F [N]"), TextColumn("note", "left")),
     ("pivot  ball", ("Fx", "-12.5", "a"), ("Fy", "3", ""), ("|F|", "1.25e-07", ""), ("open", "open", "b")),
     ("a note",),
 )
@@ -29,7 +29,7 @@ def test_points_stand_under_each_other() -> None:
 
 
 def test_heads_that_are_all_blank_take_no_line() -> None:
-    table = Table("JOINTS", (Column("", "left"),), ("pin  a pin", "  open: Fx"))
+    table = TextTable("JOINTS", (TextColumn("", "left"),), ("pin  a pin", "  open: Fx"))
     assert plain(table).splitlines() == ["JOINTS", "pin  a pin", "  open: Fx"]
 
 
@@ -46,7 +46,7 @@ def test_markdown_has_as_many_cells_in_every_row() -> None:
 
 @pytest.mark.parametrize("write", [plain, markdown])
 def test_a_table_may_be_notes_alone(write: object) -> None:
-    assert write(Table("SUMS", notes=("a + b = 1 N",))).split() == ["###"] * (write is markdown) + [
+    assert write(TextTable("SUMS", notes=("a + b = 1 N",))).split() == ["###"] * (write is markdown) + [
         "SUMS",
         "a",
         "+",

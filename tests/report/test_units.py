@@ -10,8 +10,8 @@ import pytest
 
 from heuncli.cli.entry import enter
 from heuncli.errors import Finding
-from heuncli.report.numbers import Certainty, with_units
-from heuncli.report.units import Units, asked
+from heuncli.report.digits import Certainty, with_units
+from heuncli.report.table_units import Units, asked
 
 SPECS = Path(__file__).parents[2] / "specs"
 

@@ -16,7 +16,7 @@ from heuncli.report.page import Page
 from heuncli.results import Array, Block, Extremes, Magnitudes, Results
 from heuncli.results_schema import REPORT_OF
 from heuncli.study.ask.study import Study
-from heuncli.study.search.extremes import Searched
+from heuncli.study.search.extremes import ColumnSearch
 
 ACCURATE: Block = {
     "energy_drift": 2e-12,
@@ -203,7 +203,7 @@ def blow_at_nodes(section: Block) -> Block:
 def found_extremes(study: FakeStudy, page: Page, wanted: Set[str]) -> Extremes:
     """Those of a page, as the command searches them."""
     along = page.along if page.has_runs else None
-    searched = Searched(page.columns, page.groups(), page.errors(), page.even(), along)
+    searched = ColumnSearch(page.columns, page.groups(), page.errors(), page.even(), along)
     return study.extremes(searched, frozenset(wanted), whole=True)
 
 

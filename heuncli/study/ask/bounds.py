@@ -15,7 +15,7 @@ from heuncli.results import Place
 from heuncli.results_paths import Numbers, find
 from heuncli.results_schema import BLOWS
 from heuncli.spec.models import Expect
-from heuncli.study.ask.measure import Measure, Peak, peak, value
+from heuncli.study.ask.measure import MeasureRequest, Peak, peak, value
 from heuncli.study.ask.study import Study
 
 How = Literal["max", "min", "abs"]
@@ -69,7 +69,7 @@ def extreme_of(study: Study, item: Expect, how: How) -> Peak:
     """The number that comes nearest to the bound: over the run, at the instant, or of what has no instants."""
     there = find(study.results, item.of)
     if there.keys[0] == BLOWS:
-        return value(Measure("" if there.values.size == 1 else item.peak or how, item.of), study)
+        return value(MeasureRequest("" if there.values.size == 1 else item.peak or how, item.of), study)
     if not there.timed:
         values = np.linalg.norm(there.values, axis=-1) if there.of_vectors else there.values
         if not values.size:

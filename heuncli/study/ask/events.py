@@ -127,7 +127,7 @@ def before_failure(spec: Spec, solve: Solve, error: SolveError) -> Study:
 # Conditions on numbers of the results
 
 
-class Watched(NamedTuple):
+class WatchedNumber(NamedTuple):
     """A number of the results against its limit: above zero where the condition is true, squared where it is even."""
 
     study: Study
@@ -189,7 +189,7 @@ def on_result(study: Study, setup: Setup, condition: Condition) -> Changes:
         from heuncli.study.search.stretches import stretched
 
         setup = stretched(setup, asked.bent)
-    number = Watched(study, setup, condition, even, along)
+    number = WatchedNumber(study, setup, condition, even, along)
     h = number.sample(times)
     error = number.error(asked.keys, h)
     found = crossings(number.sample, times, h, error * (2.0 * abs(condition.limit) + error) if even else error)

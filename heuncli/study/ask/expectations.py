@@ -12,7 +12,7 @@ from heuncli.records import record, replace
 from heuncli.results import Array, Results
 from heuncli.results_paths import find
 from heuncli.spec.models import Expect
-from heuncli.study.ask.measure import NOT_CLAIMED, Measure, Peak, lost_from, peak
+from heuncli.study.ask.measure import NOT_CLAIMED, MeasureRequest, Peak, lost_from, peak
 from heuncli.study.ask.study import Study
 
 
@@ -82,7 +82,7 @@ def _found(study: Study, item: Expect) -> Array:
 def _lost_from(study: Study, item: Expect) -> float | None:
     """The horizon, where what is expected lies beyond it: nothing is told there, and no expectation met by luck."""
     how: Literal["abs", "at", ""] = "abs" if item.peak else "at" if item.at is not None else ""
-    return lost_from(Measure(how, item.of, item.at), study)
+    return lost_from(MeasureRequest(how, item.of, item.at), study)
 
 
 def _instant(times: Array, at: float) -> int:

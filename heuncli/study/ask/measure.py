@@ -25,7 +25,7 @@ from heuncli.results_schema import (
     spelled_first,
 )  # fmt: skip
 from heuncli.study.ask.study import Study
-from heuncli.study.search.extremes import Searched, no_columns
+from heuncli.study.search.extremes import ColumnSearch, no_columns
 
 NOT_CLAIMED = "from t = {:.4g} s on nothing is claimed"
 
@@ -39,7 +39,7 @@ class NotOneNumber(HeunError):
         super().__init__(Problem("bad-option", message, hint=hint))
 
 
-class Measure(NamedTuple):
+class MeasureRequest(NamedTuple):
     """What is measured; how is empty for a number that has no instants, abs for the largest magnitude."""
 
     how: Literal["", "max", "min", "abs", "first", "final", "at"]
@@ -54,7 +54,7 @@ def report_of(path: str) -> frozenset[str] | None:
     return frozenset({report, *({SHARES} & set(rest))}) if report else None
 
 
-def value(asked: Measure, study: Study) -> Peak:
+def value(asked: MeasureRequest, study: Study) -> Peak:
     """The number, its instant and place if it has them; nan is open. Raises NotOneNumber."""
     results, path = study.results, asked.path
     there = find(results, path)
@@ -81,7 +81,7 @@ def value(asked: Measure, study: Study) -> Peak:
     raise NotOneNumber(message, f"such as 'max abs {path}', or 'at {results.time[-1]:.6g} {path}'")
 
 
-def lost_from(asked: Measure, study: Study) -> float | None:
+def lost_from(asked: MeasureRequest, study: Study) -> float | None:
     """The horizon, where the number that is asked for lies beyond it, or may: that of a run that goes on beyond it."""
     results = study.results
     horizon, there = results.accuracy.get("horizon"), find(results, asked.path)
@@ -100,7 +100,7 @@ def lost_from(asked: Measure, study: Study) -> float | None:
     return float(horizon) if last >= horizon else None
 
 
-def of_event(asked: Measure, there: Numbers) -> Peak:
+def of_event(asked: MeasureRequest, there: Numbers) -> Peak:
     """The first or last of what is told of an event."""
     if not there.axes:
         raise NotOneNumber(f"{asked.path} has no instants", f"give the path alone: {asked.path}")
@@ -112,7 +112,7 @@ def of_event(asked: Measure, there: Numbers) -> Peak:
     return Peak(float(there.values[0 if asked.how == "first" else -1]), None)
 
 
-def struck(asked: Measure, there: Numbers, study: Study) -> Peak:
+def struck(asked: MeasureRequest, there: Numbers, study: Study) -> Peak:
     """A number of one blow, with its instant; of a run of cuts the largest. A vector counts by its magnitude."""
     path, at = asked.path, time_of_blow(study.results, there)
     if asked.how in ("first", "final", "at"):
@@ -127,7 +127,7 @@ def struck(asked: Measure, there: Numbers, study: Study) -> Peak:
     return Peak(result + 0.0, at)
 
 
-def struck_along(asked: Measure, there: Numbers, study: Study) -> Peak:
+def struck_along(asked: MeasureRequest, there: Numbers, study: Study) -> Peak:
     """The extreme of one blow along a run of cuts, over its whole stretch."""
     from heuncli.study.search.stretches import at_one_instant, stretch_named  # where there are runs of cuts
 
@@ -184,7 +184,7 @@ def peak(study: Study, path: str, how: str, times: Array | None = None) -> Peak:
 
     error = np.array([stated_error(study, asked.keys)])
     n = columns(study.results).shape[1]
-    searched = Searched(columns, [list(range(n))], error, np.array([even]))
+    searched = ColumnSearch(columns, [list(range(n))], error, np.array([even]))
     if CUT in asked.axes:
         name = asked.keys[1]
         searched = searched._replace(
@@ -233,7 +233,7 @@ def several(path: str, there: Numbers) -> NotOneNumber:
     return NotOneNumber(f"{path} is {count} numbers: say which", hint)
 
 
-def instant_of(asked: Measure, times: Array) -> float:
+def instant_of(asked: MeasureRequest, times: Array) -> float:
     """The instant asked for, if the run has it. Raises NotOneNumber."""
     at = float(asked.at or 0.0)
     slack = tolerances.SAME_INSTANT * float(np.ptp(times))

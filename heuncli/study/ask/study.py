@@ -14,8 +14,8 @@ from heuncli.results import Accuracy, Array, Block, Extremes, Magnitudes, Place,
 from heuncli.results_schema import REPORTS, SHARED, SHARES, with_shared
 from heuncli.spec.models import Spec
 from heuncli.study.search import extremes
-from heuncli.study.search.columns import Sampled
-from heuncli.study.search.extremes import Searched
+from heuncli.study.search.columns import StudyColumns
+from heuncli.study.search.extremes import ColumnSearch
 from heuncli.study.search.instants import search_times
 from heuncli.study.solve.compose import compose, known_blocks
 from heuncli.study.solve.finiteness import require_finite
@@ -148,7 +148,7 @@ class Study:
         return stretched(self.setup, bent)
 
     def extremes(
-        self, searched: Searched, wanted: frozenset[str] | None, *, whole: bool = False, times: Array | None = None
+        self, searched: ColumnSearch, wanted: frozenset[str] | None, *, whole: bool = False, times: Array | None = None
     ) -> Extremes:
         """The extremes over the run, before its horizon, of the columns made of its results.
 
@@ -164,7 +164,7 @@ class Study:
         if horizon is not None:
             times = times[times < horizon] if times[0] < horizon else times[:1]
         reports = frozenset(REPORTS) if wanted is None else with_shared(wanted)
-        sampled = Sampled(self, searched, reports, self.stretched(searched.bent) if searched.along else None)
+        sampled = StudyColumns(self, searched, reports, self.stretched(searched.bent) if searched.along else None)
         found = extremes.search(
             sampled.columns, times, sampled.groups, errors=searched.errors, even=searched.even, between=between,
             most=extremes.MOST_COLUMNS if whole else None,

@@ -9,7 +9,7 @@ import numpy as np
 
 from heuncli.results import Array, Extremes, Place, Results
 from heuncli.study.search import extremes
-from heuncli.study.search.extremes import Searched
+from heuncli.study.search.extremes import ColumnSearch
 from heuncli.study.solve.setup import Setup
 
 
@@ -28,13 +28,13 @@ class Sampleable(Protocol):
         """Some reports' blocks at other instants; setup: with other cuts."""
 
 
-class Sampled:
+class StudyColumns:
     """A study as the columns that are searched; keeps the instants at which rounding reached some of them.
 
     setup: with runs of cuts as whole stretches, of which each quantity is two columns, its lowest and its highest.
     """
 
-    def __init__(self, study: Sampleable, searched: Searched, wanted: frozenset[str], setup: Setup | None) -> None:
+    def __init__(self, study: Sampleable, searched: ColumnSearch, wanted: frozenset[str], setup: Setup | None) -> None:
         self.study, self.searched, self.wanted, self.setup = study, searched, wanted, setup
         self.unknown: list[float] = []
         first = sum(map(len, searched.groups))

@@ -17,7 +17,15 @@ import numpy as np
 
 from heuncli import tolerances
 from heuncli.results import Array, Mask
-from heuncli.study.search.extremes import MOST_PROBES, MOST_ROUNDS, Asked, Best, distinct, intervals_of, sides_of_jumps
+from heuncli.study.search.extremes import (
+    MOST_PROBES,
+    MOST_ROUNDS,
+    Best,
+    Targets,
+    distinct,
+    intervals_of,
+    sides_of_jumps,
+)
 from heuncli.study.search.intervals import Intervals
 
 Sample = Callable[[Array], Array]  # of sorted instants (n,) the number there, (n,); nan where there is none
@@ -72,7 +80,9 @@ def refined(sample: Sample, times: Array, h: Array, error: float) -> tuple[Array
     """More instants where h passes zero and comes back between two of the grid; whether all was looked at."""
     if len(times) < 3:
         return times, h, True
-    asked = Asked(1, np.zeros(1, dtype=np.intp), np.zeros(1, dtype=np.intp), np.array([error]), np.zeros(1, dtype=bool))
+    asked = Targets(
+        1, np.zeros(1, dtype=np.intp), np.zeros(1, dtype=np.intp), np.array([error]), np.zeros(1, dtype=bool)
+    )
     none = Best(np.zeros(2), np.zeros(2), np.zeros(2, dtype=np.intp))  # zero is the height to be passed, on either side
     pool, probes = hidden(intervals_of(times, (h - error)[:, None], asked, none)), 0
     more_t, more_h = [times], [h]

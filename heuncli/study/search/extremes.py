@@ -29,7 +29,7 @@ MOST_COLUMNS = 400  # of quantities that vary, in tables; beyond, the grid's own
 GOOD_ENOUGH = 0.1  # of a quantity's own error: what a higher summit is not looked for beyond
 
 
-class Searched(NamedTuple):
+class ColumnSearch(NamedTuple):
     """What a search is made of: columns of results, (n_t, n_columns), and groups of those that are compared.
 
     along: quantities of runs of cuts, each with the name of its run, (n_t, n_cuts); each is a group more. errors: of
@@ -50,7 +50,7 @@ def no_columns(results: Results) -> Array:
     return np.zeros((len(results.time), 0))
 
 
-class Asked(NamedTuple):
+class Targets(NamedTuple):
     """What is searched for, 2n targets: the lowest values of n groups of columns, then the highest, as heights.
 
     column, owner (m,): the columns of all groups, and to which group each belongs; error (n,): absolute, of what is
@@ -121,7 +121,7 @@ def search(
     largest = np.zeros(n)
     np.maximum.at(largest, owner, np.nan_to_num(np.abs(values[:, column]), posinf=0.0).max(axis=0))
     least = tolerances.CONSTANT * np.where(even, np.sqrt(largest), largest)
-    asked = Asked(n, column, owner, least if errors is None else np.fmax(errors, least), even)
+    asked = Targets(n, column, owner, least if errors is None else np.fmax(errors, least), even)
     found = highest(times, values, asked)
     if most is not None:
         between = between and len(distinct(owner[_varies(values[:, column])])) <= most
@@ -133,7 +133,7 @@ def search(
     return Extremes(value[:n], at[:n], column[:n], value[n:], at[n:], column[n:], between, complete)
 
 
-def highest(times: Array, values: Array, asked: Asked) -> Best:
+def highest(times: Array, values: Array, asked: Targets) -> Best:
     """The best of each target on the grid; nan is passed over, and told where there is nothing else."""
     parts = []
     for side in (-1.0, 1.0):
@@ -148,7 +148,7 @@ def highest(times: Array, values: Array, asked: Asked) -> Best:
     return Best(*(np.concatenate(both) for both in zip(*parts, strict=True)))
 
 
-def intervals_of(times: Array, values: Array, asked: Asked, found: Best) -> Intervals:
+def intervals_of(times: Array, values: Array, asked: Targets, found: Best) -> Intervals:
     """The intervals of the grid that promise more than the best on it."""
     step = np.diff(times)
     smooth = ~sides_of_jumps(times)
@@ -207,7 +207,7 @@ def _rises(heights: Array, step: Array, smooth: Mask) -> tuple[Array, Array]:
     return slope[:-2] * step[:, None], -slope[2:] * step[:, None]
 
 
-def refined(sample: Sample, pool: Intervals, asked: Asked, found: Best, span: float) -> bool:
+def refined(sample: Sample, pool: Intervals, asked: Targets, found: Best, span: float) -> bool:
     """Divide the intervals until none promises more than what was found, which is kept up in place; whether so."""
     probes = 0
     for turn in range(MOST_ROUNDS):

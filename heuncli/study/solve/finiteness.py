@@ -20,7 +20,7 @@ MAY_BE_NONE = (
     "joints.JOINT.", "stops.", "sections.", "foundation.supports.", "foundation.elements.", "foundation.axis.",
 )  # fmt: skip
 BLOCKS = ("time", *REPORT_OF, BLOWS, "events", "certain_sums", "accuracy")  # causes before what follows from them
-Numbers = Iterator[tuple[tuple[str, ...], Any, Mapping[str, Any]]]
+NumericLeaves = Iterator[tuple[tuple[str, ...], Any, Mapping[str, Any]]]
 
 
 def require_finite(results: Results) -> Results:
@@ -36,7 +36,7 @@ def require_finite(results: Results) -> Results:
     return results
 
 
-def leaves(node: Any, keys: tuple[str, ...], block: Mapping[str, Any]) -> Numbers:
+def leaves(node: Any, keys: tuple[str, ...], block: Mapping[str, Any]) -> NumericLeaves:
     """The arrays and numbers below a node of the results: their path, their value, the block they stand in."""
     if isinstance(node, Mapping):
         for name, member in node.items():

@@ -27,7 +27,7 @@ from heuncli.tree.layout import Layout
 AMPLE = 10.0  # times the change: errors were 0.2 of it in the median of 4,711 instants, 3.4 at the most
 DIRECTIONS = 3  # in which a state is moved: that none of them meets the weak one is a matter of 1e-3
 OF_ACCELERATIONS = frozenset({"m/s²", "rad/s²", "N", "N·m", "Pa", "W", "N·m/s"})  # units of what hangs on them
-Kind = tuple[str, str]  # numbers of one kind: the path of the schema, and the unit
+PathAndUnit = tuple[str, str]  # numbers of one kind: the path of the schema, and the unit
 
 
 class Leaf(NamedTuple):
@@ -35,7 +35,7 @@ class Leaf(NamedTuple):
 
     block: dict[str, Any]
     name: str
-    kind: Kind
+    kind: PathAndUnit
 
 
 def without_unknown(
@@ -120,9 +120,9 @@ def leaves(shown: dict[str, Any], keys: tuple[str, ...] = ()) -> Iterator[Leaf]:
                 yield Leaf(shown, name, (row.path, row.units[-1]))
 
 
-def largest_of_kind(known: Sequence[tuple[Leaf, Array, Array]], least: Mapping[str, Array]) -> dict[Kind, Array]:
+def largest_of_kind(known: Sequence[tuple[Leaf, Array, Array]], least: Mapping[str, Array]) -> dict[PathAndUnit, Array]:
     """The largest number of each kind at each instant, less its error; not below what its unit comes to (least)."""
-    found: dict[Kind, Array] = {}
+    found: dict[PathAndUnit, Array] = {}
     for leaf, values, off in known:
         most = largest(np.maximum(np.abs(values) - off, 0.0))
         found[leaf.kind] = np.maximum(found.get(leaf.kind, least.get(leaf.kind[1], 0.0)), most)

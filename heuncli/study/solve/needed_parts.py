@@ -15,8 +15,8 @@ from heuncli.expressions.programs import Expression
 from heuncli.records import fields
 from heuncli.results_schema import BLOWS, EVENTS, SHARES
 from heuncli.spec.models import End, Spec
-from heuncli.study.solve.selection import Asked, entries_of
-from heuncli.study.solve.words import some
+from heuncli.study.solve.counts_and_lists import some
+from heuncli.study.solve.selection import Selection, entries_of
 
 Ends = Mapping[str, Mapping[str, set[str]]]
 STANDING = ("joints", "drives", "forces", "impulses", "stops")  # blocks of what stands on bodies
@@ -67,7 +67,7 @@ def ends_of(spec: Spec) -> Ends:
     return {block: {name: bodies_of(item, spec) for name, item in own.items()} for block, own in items.items()}
 
 
-def needed(spec: Spec, asked: Asked, ends: Ends) -> set[str]:
+def needed(spec: Spec, asked: Selection, ends: Ends) -> set[str]:
     """The bodies on which it depends what is asked for: their parts, and those that these follow."""
     begun = roots(spec, asked)
     if begun is None:
@@ -92,7 +92,7 @@ def needed(spec: Spec, asked: Asked, ends: Ends) -> set[str]:
     return found or set(spec.bodies)
 
 
-def roots(spec: Spec, asked: Asked) -> set[str] | None:
+def roots(spec: Spec, asked: Selection) -> set[str] | None:
     """The bodies that what is asked for names itself; None where it is about all of them."""
     whole = [report for report in asked.reports - {SHARES, EVENTS} if asked.whole(report)]
     if any(report not in OF_SOME for report in whole):
@@ -105,7 +105,7 @@ def roots(spec: Spec, asked: Asked) -> set[str] | None:
     return set().union(*(bodies_of(item, spec) for item in items))
 
 
-def restricted(spec: Spec, asked: Asked, *, reduce: bool = True) -> Spec:
+def restricted(spec: Spec, asked: Selection, *, reduce: bool = True) -> Spec:
     """The spec as far as it is asked for: without other sections, and if reduced without parts nothing depends on."""
     ends = ends_of(spec) if reduce else {}
     kept = needed(spec, asked, ends) if reduce else set(spec.bodies)

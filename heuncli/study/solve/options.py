@@ -9,7 +9,7 @@ from heuncli.results_schema import REPORTS, with_shared
 from heuncli.spec.methods import unfit
 from heuncli.spec.models import Spec
 from heuncli.study.solve.memory_estimate import Room
-from heuncli.study.solve.selection import Asked, Entry
+from heuncli.study.solve.selection import Entry, Selection
 
 
 @record
@@ -37,9 +37,9 @@ class Options:
         return frozenset(REPORTS) if self.wanted is None else with_shared(self.wanted)
 
     @property
-    def asked(self) -> Asked:
+    def asked(self) -> Selection:
         """What of the results is asked for."""
-        return Asked(self.reports, self.entries, self.axes)
+        return Selection(self.reports, self.entries, self.axes)
 
 
 def as_asked(spec: Spec, options: Options) -> Spec:

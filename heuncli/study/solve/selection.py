@@ -19,7 +19,7 @@ ALL_OF_IT = frozenset({"foundation", "sections"})  # of all bodies, of all secti
 
 
 @record
-class Asked:
+class Selection:
     """Reports that are asked for, those with entries as far as these go.
 
     An entry of another report is not told; what it stands on is solved all the same. axes: of joint loads (joint_axes).
@@ -47,17 +47,17 @@ class Asked:
         """The names of a block's entries that are asked for."""
         return {entry[1] for entry in self.entries if entry[0] == block}
 
-    def with_all(self, other: Asked) -> Asked:
+    def with_all(self, other: Selection) -> Selection:
         """What either of the two asks for."""
         whole = {report for one in (self, other) for report in one.reports if one.whole(report)}
         entries = frozenset(entry for entry in self.entries | other.entries if REPORT_OF[entry[0]] not in whole)
-        return Asked(self.reports | other.reports, entries)
+        return Selection(self.reports | other.reports, entries)
 
 
-EVERYTHING = Asked()
+EVERYTHING = Selection()
 
 
-def asked_by(paths: Iterable[str], spec: Spec) -> Asked:
+def asked_by(paths: Iterable[str], spec: Spec) -> Selection:
     """What some paths into the results need; everything where the first word of one does not say."""
     known = entries_of(spec)
     reports, whole, entries = set[str](), set[str](), set[Entry]()
@@ -72,10 +72,10 @@ def asked_by(paths: Iterable[str], spec: Spec) -> Asked:
             whole.add(report)
         else:
             entries |= {entry, *share_of(rest, spec)}
-    return Asked(frozenset(reports), frozenset(entry for entry in entries if REPORT_OF[entry[0]] not in whole))
+    return Selection(frozenset(reports), frozenset(entry for entry in entries if REPORT_OF[entry[0]] not in whole))
 
 
-def needed_by(conditions: Iterable[Condition], spec: Spec) -> Asked:
+def needed_by(conditions: Iterable[Condition], spec: Spec) -> Selection:
     """What conditions on numbers of the results need."""
     return asked_by([condition.of for condition in conditions if condition.value is None], spec)
 
@@ -113,7 +113,7 @@ def entries_of(spec: Spec) -> dict[Entry, dict[str, Any]]:
     }  # fmt: skip
 
 
-def chosen(shown: Mapping[str, Any], asked: Asked) -> dict[str, Any]:
+def chosen(shown: Mapping[str, Any], asked: Selection) -> dict[str, Any]:
     """The blocks of the results as far as they are asked for."""
     if not asked.entries:
         return dict(shown)
@@ -138,7 +138,7 @@ def picked(block: Mapping[str, Any], entries: Sequence[Entry]) -> dict[str, Any]
     return found
 
 
-def sums_among(sums: Sequence[CertainSum], asked: Asked) -> list[CertainSum]:
+def sums_among(sums: Sequence[CertainSum], asked: Selection) -> list[CertainSum]:
     """The certain sums that a joint has a part in that is asked for."""
     if "joints" not in asked.partial:
         return list(sums)

@@ -25,7 +25,7 @@ from heuncli.results import Array, Block
 from heuncli.spec.models import Spec
 from heuncli.study.solve.method_choice import first_choice, why
 from heuncli.study.solve.model_note import attitudes, model_note, reductions, rested
-from heuncli.study.solve.selection import EVERYTHING, Asked
+from heuncli.study.solve.selection import EVERYTHING, Selection
 from heuncli.tree.prepare import PreparedScene, prepare
 
 if TYPE_CHECKING:  # loaded where a scene has sections
@@ -51,7 +51,7 @@ class Setup:
     method: Method | None
     model: Block
     reduced: Reduced | None = None
-    asked: Asked = EVERYTHING
+    asked: Selection = EVERYTHING
     rest: Rest | None = None
     auto: bool = False
     step: float | None = None
@@ -73,7 +73,12 @@ class Setup:
 
 
 def set_up(
-    spec: Spec, method: str | None = None, *, reduce: bool = True, asked: Asked = EVERYTHING, looked_for: bool = True
+    spec: Spec,
+    method: str | None = None,
+    *,
+    reduce: bool = True,
+    asked: Selection = EVERYTHING,
+    looked_for: bool = True,
 ) -> Setup:
     """Build, cut, assemble, lay out; `method` stands for the one in the spec; reduce: a smaller scene may move for it.
 
@@ -142,7 +147,7 @@ def with_slack_ropes(mechanism: Mechanism) -> Mechanism:
     return replace(mechanism, joints=tuple(joints))
 
 
-def asked_part(spec: Spec, asked: Asked, reduce: bool) -> tuple[Spec, tuple[str, ...]]:
+def asked_part(spec: Spec, asked: Selection, reduce: bool) -> tuple[Spec, tuple[str, ...]]:
     """The spec as far as it is asked for; what of the scene is left out, in a sentence."""
     if asked.is_everything:
         return spec, ()

@@ -7,8 +7,7 @@ from typing import NamedTuple
 
 import numpy as np
 
-from heuncli.report.labels import Labels
-from heuncli.report.numbers import (
+from heuncli.report.digits import (
     OPEN,
     OPEN_NOTE,
     UNKNOWN,
@@ -22,9 +21,10 @@ from heuncli.report.numbers import (
     write,
     write_times,
 )
-from heuncli.report.plans import STRESSES
-from heuncli.report.table import Column, Table, head
-from heuncli.report.units import Shown, Units
+from heuncli.report.labels import Labels
+from heuncli.report.table_plans import STRESSES
+from heuncli.report.table_units import Shown, Units
+from heuncli.report.text_table import TextColumn, TextTable, head
 from heuncli.results import Array, Extremes, Indices, Place, Results
 from heuncli.results_schema import MAGNITUDES, row_of
 
@@ -32,7 +32,7 @@ STRETCH_NOTE = "extremes of the whole stretch, between the cuts and at its corne
 MOST_CUTS = 25  # of a diagram: evenly spaced cuts, with all jumps and extremes
 
 
-class Along(NamedTuple):
+class RunQuantity(NamedTuple):
     """A quantity along a run: its name in the results, its label, its unit, and whether it is never negative.
 
     bounds: which of its lowest and highest say something at a cut; size: of one of its unit in the results, here.
@@ -46,18 +46,18 @@ class Along(NamedTuple):
     size: float = 1.0
 
 
-def _stress(name: str) -> Along:
+def _stress(name: str) -> RunQuantity:
     unit = row_of(f"sections.SECTION.stress.{name}").unit()
     bounds = ("min",) if name == "normal_min" else ("max",)
-    return Along(name, name.replace("_", " "), unit, name in MAGNITUDES, bounds)
+    return RunQuantity(name, name.replace("_", " "), unit, name in MAGNITUDES, bounds)
 
 
 RESULTANTS = ("N", "Q1", "Q2", "T", "M1", "M2")
-LOADS = tuple(Along(name, name, row_of(f"sections.SECTION.{name}").unit()) for name in RESULTANTS)
+LOADS = tuple(RunQuantity(name, name, row_of(f"sections.SECTION.{name}").unit()) for name in RESULTANTS)
 ALONG_STRESSES = tuple(_stress(name) for name in STRESSES)
 
 
-class Run(NamedTuple):
+class CutRun(NamedTuple):
     """One run of cuts: positions along the body [m], sides; its loads, then its stresses, (n, n_t, n_cuts).
 
     length: the unit in which positions are shown.
@@ -68,21 +68,21 @@ class Run(NamedTuple):
     s: Array
     side: tuple[str | None, ...]
     values: Array
-    quantities: tuple[Along, ...] = LOADS
+    quantities: tuple[RunQuantity, ...] = LOADS
     length: Shown = ("m", 1.0)
 
     @property
-    def loads(self) -> tuple[Along, ...]:
+    def loads(self) -> tuple[RunQuantity, ...]:
         """Those of its quantities that are loads."""
         return self.quantities[: len(LOADS)]
 
     @property
-    def stresses(self) -> tuple[Along, ...]:
+    def stresses(self) -> tuple[RunQuantity, ...]:
         """Those of its quantities that are stresses."""
         return self.quantities[len(LOADS) :]
 
 
-def runs_of(results: Results, labels: Labels, units: Mapping[str, str] | None = None) -> list[Run]:
+def runs_of(results: Results, labels: Labels, units: Mapping[str, str] | None = None) -> list[CutRun]:
     """The runs of cuts among the sections; units: those that stand for others, of what is no force but an impulse."""
     shown = labels.units
     loads = tuple(_shown_in(load._replace(unit=(units or {}).get(load.unit, load.unit)), shown) for load in LOADS)
@@ -102,29 +102,29 @@ def runs_of(results: Results, labels: Labels, units: Mapping[str, str] | None = 
         own += [one.size * stress[one.name] for one in stresses]
         side = tuple(section.get("side") or [None] * len(section["s"]))
         s = np.asarray(section["s"], dtype=np.float64)
-        runs.append(Run(name, heading, s, side, np.stack(own), (*loads, *stresses), shown.of("m")))
+        runs.append(CutRun(name, heading, s, side, np.stack(own), (*loads, *stresses), shown.of("m")))
     return runs
 
 
-def _shown_in(quantity: Along, units: Units) -> Along:
+def _shown_in(quantity: RunQuantity, units: Units) -> RunQuantity:
     unit, size = units.of(quantity.unit)
     return quantity._replace(unit=unit, size=size)
 
 
-def in_units(run: Run, found: Extremes) -> Extremes:
+def in_units(run: CutRun, found: Extremes) -> Extremes:
     """Extremes of the loads along a run, of results, as they are shown."""
     sizes = np.array([load.size for load in run.loads])
     return found._replace(low=sizes * found.low, high=sizes * found.high)
 
 
 def extremes_tables(
-    run: Run,
+    run: CutRun,
     times: Array,
     extremes: Extremes,
     places: Sequence[tuple[Place, Place]],
     certain: Certainty,
     cuts: Extremes | None = None,
-) -> list[Table]:
+) -> list[TextTable]:
     """Extremes over the whole stretch and time, of each quantity with their places; and those at each cut.
 
     cuts: those at the cuts that are shown, of one quantity after the other; without, among the samples.
@@ -152,7 +152,7 @@ def extremes_of_samples(times: Array, values: Array) -> Extremes:
 
 
 def one_source(
-    run: Run, kept: Indices, head: Extremes, places: Sequence[tuple[Place, Place]], cuts: Extremes
+    run: CutRun, kept: Indices, head: Extremes, places: Sequence[tuple[Place, Place]], cuts: Extremes
 ) -> tuple[Extremes, tuple[tuple[Place, Place], ...], Extremes]:
     """Extremes of the stretch and of its cuts, each the better of what two searches found there."""
     ends, ends_at = np.stack([head.low, head.high]), np.stack([head.low_at, head.high_at])
@@ -173,10 +173,10 @@ def one_source(
 
 
 def _envelope(
-    run: Run, bounds: Mapping[str, Array], kept: Indices, styles: Mapping[str, Style], notes: Sequence[str]
-) -> Table:
+    run: CutRun, bounds: Mapping[str, Array], kept: Indices, styles: Mapping[str, Style], notes: Sequence[str]
+) -> TextTable:
     """A line a cut with the lowest and the highest there; what is 0 throughout is left out."""
-    columns, texts, left_out = list[Column](), list[list[str]](), False
+    columns, texts, left_out = list[TextColumn](), list[list[str]](), False
     for i, own in enumerate(run.quantities):
         both = [write(bounds[word][i].tolist(), styles[own.unit]) for word in own.bounds]
         if {text for column in both for text in column} == {"0"}:
@@ -184,9 +184,9 @@ def _envelope(
             continue
         words = own.bounds if len(both) > 1 and both[0] != both[1] else ("",)  # what is steady is told once
         texts += both[: len(words)]
-        columns += [Column(head(f"{own.label} {word}".rstrip(), own.unit), vector=own.label) for word in words]
+        columns += [TextColumn(head(f"{own.label} {word}".rstrip(), own.unit), vector=own.label) for word in words]
     if not columns:
-        return Table("", notes=(*notes, "0 throughout"))
+        return TextTable("", notes=(*notes, "0 throughout"))
     shown = {text for column in texts for text in column}
     below = [*notes, *[ZERO_NOTE] * left_out]
     below += [note for word, note in ((OPEN, OPEN_NOTE), (UNKNOWN, UNKNOWN_NOTE)) if word in shown]
@@ -194,8 +194,8 @@ def _envelope(
 
 
 def _at_cuts(
-    run: Run, kept: Indices, columns: Sequence[Column], texts: Sequence[Sequence[str]], notes: Sequence[str]
-) -> Table:
+    run: CutRun, kept: Indices, columns: Sequence[TextColumn], texts: Sequence[Sequence[str]], notes: Sequence[str]
+) -> TextTable:
     """A line a cut, behind its place and side."""
     positions = _positions(run)
     sides = any(side is not None for side in run.side)
@@ -203,13 +203,13 @@ def _at_cuts(
         (positions[cut], *([run.side[cut] or ""] if sides else []), *(column[j] for column in texts))
         for j, cut in enumerate(kept)
     )
-    heads = [Column(f"s [{run.length[0]}]"), *([Column("side", "left")] if sides else [])]
-    return Table("", (*heads, *columns), rows, tuple(notes))
+    heads = [TextColumn(f"s [{run.length[0]}]"), *([TextColumn("side", "left")] if sides else [])]
+    return TextTable("", (*heads, *columns), rows, tuple(notes))
 
 
 def extremes_table(
-    run: Run, times: Array, extremes: Extremes, places: Sequence[tuple[Place, Place]], certain: Certainty
-) -> Table:
+    run: CutRun, times: Array, extremes: Extremes, places: Sequence[tuple[Place, Place]], certain: Certainty
+) -> TextTable:
     """The lowest and the highest of each resultant over the whole stretch and time, with where and when."""
     styles = _styles(run, certain, extremes)
     span = float(np.ptp(times))
@@ -229,35 +229,35 @@ def extremes_table(
         rows.append((label, unit, low, where[0], low_at, high, where[1], high_at))
     at = f"at s [{run.length[0]}]"
     heads = ("min", at, "t [s]", "max", at, "t [s]")
-    columns = (Column("", "left"), Column("", "left"), *(Column(head) for head in heads))
+    columns = (TextColumn("", "left"), TextColumn("", "left"), *(TextColumn(head) for head in heads))
     if len(times) == 1:
         columns, rows = columns[:4] + columns[5:7], [(*row[:4], *row[5:7]) for row in rows]
     is_open = any(OPEN in row for row in rows)
-    return Table(run.heading, columns, tuple(rows), (STRETCH_NOTE, *((OPEN_NOTE,) if is_open else ())))
+    return TextTable(run.heading, columns, tuple(rows), (STRETCH_NOTE, *((OPEN_NOTE,) if is_open else ())))
 
 
 def instants_tables(
-    run: Run, times: Array, horizon: float | None, certain: Certainty, *, every: bool = False
-) -> list[Table]:
+    run: CutRun, times: Array, horizon: float | None, certain: Certainty, *, every: bool = False
+) -> list[TextTable]:
     """The diagram at each instant."""
     styles = _styles(run, certain)
     kept = np.arange(len(run.s)) if every else thinned(run)
     if len(times) == 1:
         diagram = _diagram(run, run.values[:, 0, :], kept, styles, [_rest(run, kept).lstrip("; ")])
-        return [Table(run.heading, diagram.columns, diagram.rows, diagram.notes)]
+        return [TextTable(run.heading, diagram.columns, diagram.rows, diagram.notes)]
     clock = write_times(times.tolist(), float(np.ptp(times)))
     rows: list[tuple[str, ...] | str] = []
-    table = Table("")
+    table = TextTable("")
     notes: tuple[str, ...] = ()
     for i, t in enumerate(times):
         lost = certain if horizon is not None and t >= horizon else None
         table = _diagram(run, run.values[:, i, :], kept, styles, [_rest(run, kept).lstrip("; ")], lost)
         rows += [f"t = {clock[i]} s", *table.rows]
         notes += table.notes
-    return [Table(run.heading, table.columns, tuple(rows), tuple(dict.fromkeys(notes)))]
+    return [TextTable(run.heading, table.columns, tuple(rows), tuple(dict.fromkeys(notes)))]
 
 
-def thinned(run: Run) -> Indices:
+def thinned(run: CutRun) -> Indices:
     """Which cuts a diagram shows, at most about MOST_CUTS: evenly spaced ones, both ends, jumps and extremes."""
     n = len(run.s)
     if n <= MOST_CUTS:
@@ -270,13 +270,13 @@ def thinned(run: Run) -> Indices:
 
 
 def _diagram(
-    run: Run,
+    run: CutRun,
     values: Array,
     kept: Indices,
     styles: dict[str, Style],
     notes: Sequence[str],
     beyond: Certainty | None = None,
-) -> Table:
+) -> TextTable:
     """A line a cut; `values` is (6, n_cuts). beyond: given where the instant is beyond the horizon."""
     texts = []
     for own, row in zip(run.quantities, values[:, kept].tolist(), strict=True):
@@ -287,12 +287,12 @@ def _diagram(
     shown = {text for column in texts for text in column}
     below = [note for note in notes if note]
     below += [note for word, note in ((OPEN, OPEN_NOTE), (UNKNOWN, UNKNOWN_NOTE)) if word in shown]
-    columns = [Column(head(own.label, own.unit), vector="loads") for own in run.loads]
-    columns += [Column(head(own.label, own.unit)) for own in run.stresses]
+    columns = [TextColumn(head(own.label, own.unit), vector="loads") for own in run.loads]
+    columns += [TextColumn(head(own.label, own.unit)) for own in run.stresses]
     return _at_cuts(run, kept, columns, texts, below)
 
 
-def _styles(run: Run, certain: Certainty, extremes: Extremes | None = None) -> dict[str, Style]:
+def _styles(run: CutRun, certain: Certainty, extremes: Extremes | None = None) -> dict[str, Style]:
     """The style of forces and that of moments, by all that is shown of them."""
     bounds = np.zeros((2, 0)) if extremes is None else np.stack([extremes.low, extremes.high])
     styles = {}
@@ -308,24 +308,24 @@ def _steady(values: Array, how: Style) -> bool:
     return how.write(float(np.min(values))) == how.write(float(np.max(values)))
 
 
-def _nearest(run: Run, place: Place) -> int:
+def _nearest(run: CutRun, place: Place) -> int:
     """The asked cut at a place, or the nearest to it."""
     return int(np.argmin(np.abs(run.s - place.s))) if place.cut is None else place.cut
 
 
-def position(place: Place, run: Run) -> str:
+def position(place: Place, run: CutRun) -> str:
     """A place in words: the distance, and between the ends the side of what acts there."""
     side = [place.side] if place.side and 0.0 < place.s < run.s[-1] else []
     size = run.length[1]
     return " ".join([*write([size * place.s], style(size * largest(run.s), 0.0)), *side])
 
 
-def _positions(run: Run) -> list[str]:
+def _positions(run: CutRun) -> list[str]:
     s = run.length[1] * run.s
     return write(s.tolist(), style(largest(s), 0.0))
 
 
-def _rest(run: Run, kept: Indices) -> str:
+def _rest(run: CutRun, kept: Indices) -> str:
     if len(kept) == len(run.s):
         return ""
     return f"; {len(kept)} of {len(run.s)} cuts shown, jumps and extremes among them; every cut: --all, or --format csv"

@@ -5,18 +5,23 @@ from __future__ import annotations
 import math
 from collections.abc import Iterator
 
-from heuncli.report.numbers import UNKNOWN, style, trim
-from heuncli.report.table import Column, Table
+from heuncli.report.digits import UNKNOWN, style, trim
+from heuncli.report.text_table import TextColumn, TextTable
 from heuncli.results import Block, Results
 from heuncli.results_schema import EVENTS, row_of
 
 HEADING = "EVENTS  instants at which conditions change, and what they become"
-COLUMNS = (Column("event", "left"), Column("condition", "left"), Column("t [s]"), Column("becomes", "left"))
+COLUMNS = (
+    TextColumn("event", "left"),
+    TextColumn("condition", "left"),
+    TextColumn("t [s]"),
+    TextColumn("becomes", "left"),
+)
 ONLY_JUST = "only just: a run beside this one may not show it, as its margin is as small as its error"
 MOST = 20  # instants of an event that a table shows, unless it shows all
 
 
-def events_table(results: Results, *, every: bool = False) -> Table:
+def events_table(results: Results, *, every: bool = False) -> TextTable:
     """The table; every: with all instants."""
     rows: list[tuple[str, ...]] = []
     only_just = False
@@ -29,7 +34,7 @@ def events_table(results: Results, *, every: bool = False) -> Table:
         rows += [(name, event["condition"], *shown[0]), *(("", "", *line) for line in shown[1:])]
         if len(own) > len(shown):
             rows.append(("", f"{len(own) - len(shown)} more with --all", "", ""))
-    return Table(HEADING, COLUMNS, tuple(rows), (ONLY_JUST,) if only_just else ())
+    return TextTable(HEADING, COLUMNS, tuple(rows), (ONLY_JUST,) if only_just else ())
 
 
 def lines(event: Block) -> Iterator[tuple[str, str]]:

@@ -9,8 +9,7 @@ from typing import NamedTuple
 
 import numpy as np
 
-from heuncli.report.blocks import Block, Group, family_styles, texts_of
-from heuncli.report.numbers import (
+from heuncli.report.digits import (
     OPEN,
     OPEN_NOTE,
     UNKNOWN,
@@ -20,7 +19,8 @@ from heuncli.report.numbers import (
     beyond_horizon,
     write_times,
 )
-from heuncli.report.table import INDENT, Column, Table
+from heuncli.report.table_blocks import RowGroup, TableBlock, family_styles, texts_of
+from heuncli.report.text_table import INDENT, TextColumn, TextTable
 from heuncli.results import Array, Extremes
 
 MANY = 40  # groups beyond which each gets one line
@@ -28,15 +28,15 @@ PARTLY_OPEN_NOTE = "* open at some instants; the extremes are those of the other
 NOTES = (ZERO_NOTE, OPEN_NOTE, PARTLY_OPEN_NOTE, UNKNOWN_NOTE)
 
 
-class Part(NamedTuple):
+class GroupExtremes(NamedTuple):
     """A group with the extremes of its rows, and where the run ends beyond its horizon their last values."""
 
-    group: Group
+    group: RowGroup
     extremes: Extremes
     beyond: Array | None = None
 
 
-def abridged(block: Block) -> Block:
+def abridged(block: TableBlock) -> TableBlock:
     """The block without the components of vectors in its groups, where these are so many that each gets one line."""
     if len(block.groups) <= MANY:
         return block
@@ -48,8 +48,8 @@ def abridged(block: Block) -> Block:
 
 
 def extremes_table(
-    block: Block, times: Array, extremes: Extremes, certain: Certainty, beyond: Array | None = None
-) -> list[Table]:
+    block: TableBlock, times: Array, extremes: Extremes, certain: Certainty, beyond: Array | None = None
+) -> list[TextTable]:
     """First and last value, lowest and highest with their instants; one line a group where there are many.
 
     beyond: the last value of each row, where the run ends beyond its horizon.
@@ -57,7 +57,9 @@ def extremes_table(
     counts = np.cumsum([0, *(len(group.rows) for group in block.groups)])
     own = [slice(a, b) for a, b in pairwise(counts)]
     last = [None if beyond is None else beyond[rows] for rows in own]
-    parts = [Part(group, extremes.part(rows), x) for group, rows, x in zip(block.groups, own, last, strict=True)]
+    parts = [
+        GroupExtremes(group, extremes.part(rows), x) for group, rows, x in zip(block.groups, own, last, strict=True)
+    ]
     if len(parts) <= MANY:
         return [_full(block, parts, times, certain)]
     whole = [part for part in parts if part.group.whole]
@@ -66,7 +68,7 @@ def extremes_table(
     return [*tables, _one_line_each(block, single, times, certain, heading="" if whole else block.heading)]
 
 
-def _full(block: Block, parts: Sequence[Part], times: Array, certain: Certainty) -> Table:
+def _full(block: TableBlock, parts: Sequence[GroupExtremes], times: Array, certain: Certainty) -> TextTable:
     """A line a row, under a title a group."""
     rows: list[tuple[str, ...] | str] = []
     notes: set[str] = set()
@@ -76,13 +78,13 @@ def _full(block: Block, parts: Sequence[Part], times: Array, certain: Certainty)
         rows += [part.group.title, *lines] if part.group.name else lines
         notes |= needed
     heads = ("first", "last", "min", "at [s]", "max", "at [s]")
-    columns = (Column("", "left"), Column("", "left"), *(Column(head) for head in heads))
+    columns = (TextColumn("", "left"), TextColumn("", "left"), *(TextColumn(head) for head in heads))
     if all(isinstance(row, str) for row in rows):
-        columns = (Column("", "left"),)  # a title and what is open of each: no numbers to head
-    return Table(block.heading, columns, tuple(rows), (*block.notes, *(note for note in NOTES if note in notes)))
+        columns = (TextColumn("", "left"),)  # a title and what is open of each: no numbers to head
+    return TextTable(block.heading, columns, tuple(rows), (*block.notes, *(note for note in NOTES if note in notes)))
 
 
-def _lines(part: Part, span: float, certain: Certainty) -> tuple[list[tuple[str, ...] | str], set[str]]:
+def _lines(part: GroupExtremes, span: float, certain: Certainty) -> tuple[list[tuple[str, ...] | str], set[str]]:
     """The lines of a group, and the notes they need: rows that are 0 or open throughout take no line."""
     group, extremes = part.group, part.extremes
     instants = np.stack([extremes.low_at, extremes.high_at])
@@ -111,7 +113,7 @@ def _lines(part: Part, span: float, certain: Certainty) -> tuple[list[tuple[str,
     return lines or [f"{INDENT}0 throughout"], notes
 
 
-def _texts(part: Part, certain: Certainty) -> list[list[str]]:
+def _texts(part: GroupExtremes, certain: Certainty) -> list[list[str]]:
     """First, last, lowest and highest value of each row."""
     rows, beyond = part.group.rows, part.beyond
     first, last = (np.array([row.values[i] for row in rows]) for i in (0, -1))
@@ -122,7 +124,9 @@ def _texts(part: Part, certain: Certainty) -> list[list[str]]:
     return texts
 
 
-def _one_line_each(block: Block, parts: Sequence[Part], times: Array, certain: Certainty, heading: str) -> Table:
+def _one_line_each(
+    block: TableBlock, parts: Sequence[GroupExtremes], times: Array, certain: Certainty, heading: str
+) -> TextTable:
     """A line a group: of each row but the components of vectors the value farthest from zero, and when."""
     span = float(np.ptp(times))
     heads: dict[str, None] = {}
@@ -139,9 +143,9 @@ def _one_line_each(block: Block, parts: Sequence[Part], times: Array, certain: C
         }
         heads |= dict.fromkeys(head for head, (text, _) in own.items() if text != "0")
         cells.append(own)
-    columns = [Column(block.what, "left")]
+    columns = [TextColumn(block.what, "left")]
     for head in heads:
-        columns += [Column(head), Column("at [s]")]
+        columns += [TextColumn(head), TextColumn("at [s]")]
     rows = tuple(
         (part.group.name, *(text for head in heads for text in own.get(head, ("", ""))))
         for part, own in zip(parts, cells, strict=True)
@@ -150,4 +154,4 @@ def _one_line_each(block: Block, parts: Sequence[Part], times: Array, certain: C
     notes = (*block.notes, f"{what}; components: --at, or --format csv")
     shown = {text for row in rows for text in row}
     notes += tuple(note for word, note in ((OPEN, OPEN_NOTE), (UNKNOWN, UNKNOWN_NOTE)) if word in shown)
-    return Table(heading, tuple(columns), rows, notes)
+    return TextTable(heading, tuple(columns), rows, notes)

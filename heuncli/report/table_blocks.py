@@ -10,10 +10,10 @@ from typing import NamedTuple
 
 import numpy as np
 
+from heuncli.report.digits import OPEN, OPEN_NOTE, Certainty, Style, kind_of, largest, write
 from heuncli.report.labels import Labels
-from heuncli.report.numbers import OPEN, OPEN_NOTE, Certainty, Style, kind_of, largest, write
-from heuncli.report.plans import MASS_EFFECT, Plan
-from heuncli.report.quantities import Series
+from heuncli.report.series import Series
+from heuncli.report.table_plans import MASS_EFFECT, TablePlan
 from heuncli.results import Array, Results
 from heuncli.results_schema import MAGNITUDES, XYZ
 
@@ -43,7 +43,7 @@ POSITIONS = frozenset({"position", "center", "point", "direction"})  # vectors w
 FREE = "nothing stands on the ground: the scene is free"
 
 
-class Row(NamedTuple):
+class NumberRow(NamedTuple):
     """One number over the instants, (n_t,). Rows of one `family` share their decimals; `kind`: of their error.
 
     An `even` one is a magnitude: never negative, with a kink at zero that its square does not have. Components and
@@ -60,12 +60,12 @@ class Row(NamedTuple):
     beside: float = 0.0
 
 
-class Group(NamedTuple):
+class RowGroup(NamedTuple):
     """The rows of one joint, force, ...; `note` says what it is, `whole` that it stands for the scene as a whole."""
 
     name: str
     note: str
-    rows: tuple[Row, ...]
+    rows: tuple[NumberRow, ...]
     whole: bool = False
 
     @property
@@ -74,7 +74,7 @@ class Group(NamedTuple):
         return f"{self.name}  {self.note}".rstrip()
 
 
-class Block(NamedTuple):
+class TableBlock(NamedTuple):
     """One table of the report before it is laid out; `what` heads the column of the groups' names.
 
     `missing` is what stands for nan, and the note that explains it.
@@ -83,12 +83,12 @@ class Block(NamedTuple):
     key: str
     heading: str
     what: str
-    groups: tuple[Group, ...]
+    groups: tuple[RowGroup, ...]
     notes: tuple[str, ...] = ()
     missing: tuple[str, str] = (OPEN, OPEN_NOTE)
 
 
-def family_styles(rows: Sequence[Row], numbers: Array, certain: Certainty) -> list[Style]:
+def family_styles(rows: Sequence[NumberRow], numbers: Array, certain: Certainty) -> list[Style]:
     """The style of each row, that of its family, by all that is shown of it: its values and `numbers`, (n, n_rows)."""
     scales: dict[tuple[str, ...], float] = {}
     for row, shown in zip(rows, numbers.T, strict=True):
@@ -102,11 +102,11 @@ def family_styles(rows: Sequence[Row], numbers: Array, certain: Certainty) -> li
     return styles
 
 
-def _family(row: Row) -> tuple[str, ...]:
+def _family(row: NumberRow) -> tuple[str, ...]:
     return row.family, row.kind, row.unit
 
 
-def texts_of(group: Group, numbers: Array, certain: Certainty) -> list[list[str]]:
+def texts_of(group: RowGroup, numbers: Array, certain: Certainty) -> list[list[str]]:
     """The numbers of each row as text, (n, n_rows) -> n_rows lists of n; the rows of a family share their decimals."""
     texts: list[list[str]] = [[] for _ in group.rows]
     styles = family_styles(group.rows, numbers, certain)
@@ -119,10 +119,10 @@ def texts_of(group: Group, numbers: Array, certain: Certainty) -> list[list[str]
     return texts
 
 
-def build(plan: Plan, results: Results, labels: Labels, series: Iterable[Series]) -> Block | None:
+def build(plan: TablePlan, results: Results, labels: Labels, series: Iterable[Series]) -> TableBlock | None:
     """The block of one plan out of the walked series of its kind; None where there is nothing to show.
 
-    Runs of cuts are left to report/runs.py.
+    Runs of cuts are left to report/cut_runs.py.
     """
     runs = {name for name, section in results.sections.items() if "s" in section} if plan.kind == "sections" else set()
     named: dict[str, dict[str, Series]] = {}
@@ -139,7 +139,7 @@ def build(plan: Plan, results: Results, labels: Labels, series: Iterable[Series]
     for name, own in named.items():
         rows = [row for quantity in plan.quantities if quantity in own for row in rows_of(own[quantity])]
         label = _group_name(plan, name)
-        groups.append(Group(label, plan.note(label, labels), tuple(rows), whole=not name))
+        groups.append(RowGroup(label, plan.note(label, labels), tuple(rows), whole=not name))
     notes: tuple[str, ...] = ()
     if plan.of_foundation:
         groups, notes = _supports(groups, results)
@@ -148,32 +148,34 @@ def build(plan: Plan, results: Results, labels: Labels, series: Iterable[Series]
     if plan.kind == "energy" and groups:
         groups = [_with_sum(groups[0])]
     heading = plan.heading(results, labels)
-    return Block(plan.key, heading, plan.what, tuple(groups), notes, plan.missing) if groups else None
+    return TableBlock(plan.key, heading, plan.what, tuple(groups), notes, plan.missing) if groups else None
 
 
-def rows_of(series: Series) -> list[Row]:
+def rows_of(series: Series) -> list[NumberRow]:
     """The rows of one quantity: itself, or its components and the magnitude of a free vector."""
     quantity, unit = series.quantity, series.unit
     spoken, family, kind = quantity.replace("_", " "), FAMILIES.get(quantity, quantity), kind_of(series)
     if len(series.components) == 1:
-        return [Row(spoken, unit, family, kind, series.values[:, 0], even=quantity in MAGNITUDES)]
+        return [NumberRow(spoken, unit, family, kind, series.values[:, 0], even=quantity in MAGNITUDES)]
     symbol = SYMBOLS.get(quantity, f"{spoken} ")
     vector = "" if quantity in POSITIONS else symbol.strip()
     columns = zip(series.components, series.values.T, strict=True)
-    rows = [Row(f"{symbol}{component}", unit, family, kind, column, vector=vector) for component, column in columns]
+    rows = [
+        NumberRow(f"{symbol}{component}", unit, family, kind, column, vector=vector) for component, column in columns
+    ]
     if series.components == XYZ and vector:
         squares = np.einsum("ij,ij->i", series.values, series.values)
-        rows.append(Row(f"|{vector}|", unit, family, kind, np.sqrt(squares), even=True, vector=vector))
+        rows.append(NumberRow(f"|{vector}|", unit, family, kind, np.sqrt(squares), even=True, vector=vector))
     return rows
 
 
-def _group_name(plan: Plan, name: str) -> str:
+def _group_name(plan: TablePlan, name: str) -> str:
     if not plan.of_foundation:
         return "" if plan.only else name
     return name.replace("supports.", "support ", 1).replace("elements.", "element ", 1) or "total"
 
 
-def _supports(groups: list[Group], results: Results) -> tuple[list[Group], tuple[str, ...]]:
+def _supports(groups: list[RowGroup], results: Results) -> tuple[list[RowGroup], tuple[str, ...]]:
     """Groups and notes of the foundation: a support alone is the total, apart from the point of its moment."""
     supports, elements = results.foundation.get("supports", {}), results.foundation.get("elements", {})
     if not supports and not elements:
@@ -200,12 +202,12 @@ def short(component: str) -> str:
     return f"{SYMBOLS[quantity]}{axis}" if axis in XYZ and quantity in SYMBOLS else component
 
 
-def _with_sum(group: Group) -> Group:
+def _with_sum(group: RowGroup) -> RowGroup:
     """The energies and their sum, which is constant."""
     part = {row.label: row.values for row in group.rows}
     if not {"kinetic", "potential", "work"} <= part.keys():
         return group
     total = part["kinetic"] + part["potential"] - part["work"]
     terms = max(largest(values) for values in part.values())
-    rows = (*group.rows, Row("sum", group.rows[0].unit, "sum", "energy", total, beside=terms))
-    return Group(group.name, group.note, rows, whole=True)
+    rows = (*group.rows, NumberRow("sum", group.rows[0].unit, "sum", "energy", total, beside=terms))
+    return RowGroup(group.name, group.note, rows, whole=True)

@@ -6,20 +6,20 @@ from collections.abc import Sequence
 
 import numpy as np
 
-from heuncli.report.blocks import Block, Group, texts_of
-from heuncli.report.numbers import OPEN, UNKNOWN, UNKNOWN_NOTE, ZERO_NOTE, Certainty, beyond_horizon, write_times
-from heuncli.report.table import Column, Table, head
+from heuncli.report.digits import OPEN, UNKNOWN, UNKNOWN_NOTE, ZERO_NOTE, Certainty, beyond_horizon, write_times
+from heuncli.report.table_blocks import RowGroup, TableBlock, texts_of
+from heuncli.report.text_table import TextColumn, TextTable, head
 from heuncli.results import Array
 
 Cells = dict[str, dict[str, list[str]]]  # group -> label -> a text for each instant
 
 
-def instants_tables(block: Block, times: Array, horizon: float | None, certain: Certainty) -> list[Table]:
+def instants_tables(block: TableBlock, times: Array, horizon: float | None, certain: Certainty) -> list[TextTable]:
     """A line for each instant, group by group; for one instant a line for each group."""
     word, note = block.missing
     if word != OPEN and all(np.isnan(row.values).all() for group in block.groups for row in group.rows):
-        return [Table(block.heading, notes=(note,))]
-    tables: list[Table] = []
+        return [TextTable(block.heading, notes=(note,))]
+    tables: list[TextTable] = []
     notes = list(block.notes)
     lay = _at_one if len(times) == 1 else _one_below_the_other
     for groups in _same_columns(block.groups):
@@ -29,19 +29,19 @@ def instants_tables(block: Block, times: Array, horizon: float | None, certain: 
         if len(labels) < len(units):
             notes.append(ZERO_NOTE if labels else f"0 throughout: {', '.join(group.name for group in groups)}")
         of = {row.label: row.vector for group in groups for row in group.rows}
-        columns = [Column(head(label, units[label]), vector=of[label]) for label in labels]
+        columns = [TextColumn(head(label, units[label]), vector=of[label]) for label in labels]
         lead, rows = lay(block, groups, labels, cells, times)
-        tables += [Table("" if tables else block.heading, (*lead, *columns), tuple(rows))] if labels else []
+        tables += [TextTable("" if tables else block.heading, (*lead, *columns), tuple(rows))] if labels else []
     shown = {text for table in tables for row in table.rows if not isinstance(row, str) for text in row}
     notes += [note for word, note in (block.missing, (UNKNOWN, UNKNOWN_NOTE)) if word in shown]
     if not tables:
-        return [Table(block.heading, notes=("0 throughout",))]
+        return [TextTable(block.heading, notes=("0 throughout",))]
     return [*tables[:-1], tables[-1]._replace(notes=tuple(dict.fromkeys(notes)))]
 
 
 def _at_one(
-    block: Block, groups: Sequence[Group], labels: Sequence[str], cells: Cells, times: Array
-) -> tuple[list[Column], list[tuple[str, ...] | str]]:
+    block: TableBlock, groups: Sequence[RowGroup], labels: Sequence[str], cells: Cells, times: Array
+) -> tuple[list[TextColumn], list[tuple[str, ...] | str]]:
     """Leading columns, and a row for each group."""
     named = any(group.name for group in groups)
     noted = any(group.note for group in groups)
@@ -49,12 +49,12 @@ def _at_one(
     for group in groups:
         about = [group.name] * named + [group.note] * noted
         rows.append((*about, *(cells[group.name].get(label, [""])[0] for label in labels)))
-    return [Column(block.what, "left")] * named + [Column("", "left", once=named)] * noted, rows
+    return [TextColumn(block.what, "left")] * named + [TextColumn("", "left", once=named)] * noted, rows
 
 
 def _one_below_the_other(
-    block: Block, groups: Sequence[Group], labels: Sequence[str], cells: Cells, times: Array
-) -> tuple[list[Column], list[tuple[str, ...] | str]]:
+    block: TableBlock, groups: Sequence[RowGroup], labels: Sequence[str], cells: Cells, times: Array
+) -> tuple[list[TextColumn], list[tuple[str, ...] | str]]:
     """Leading columns, and a row for each instant of each group."""
     clock = write_times(times.tolist(), float(np.ptp(times)))
     empty = [""] * len(times)
@@ -63,10 +63,10 @@ def _one_below_the_other(
         rows += [group.title] if group.name else []
         columns = [cells[group.name].get(label, empty) for label in labels]
         rows += list(zip(clock, *columns, strict=True))
-    return [Column("t [s]")], rows
+    return [TextColumn("t [s]")], rows
 
 
-def _in_order(groups: Sequence[Group]) -> list[str]:
+def _in_order(groups: Sequence[RowGroup]) -> list[str]:
     """The labels of all groups, each after those it follows in its own."""
     order: list[str] = []
     for group in groups:
@@ -79,7 +79,7 @@ def _in_order(groups: Sequence[Group]) -> list[str]:
 
 
 def _group_texts(
-    block: Block, group: Group, times: Array, horizon: float | None, certain: Certainty
+    block: TableBlock, group: RowGroup, times: Array, horizon: float | None, certain: Certainty
 ) -> dict[str, list[str]]:
     """The cells of a group by label, one an instant."""
     numbers = np.stack([row.values for row in group.rows], axis=1)
@@ -95,16 +95,16 @@ def _group_texts(
     return cells
 
 
-def _not_zero(groups: Sequence[Group], cells: Cells) -> list[str]:
+def _not_zero(groups: Sequence[RowGroup], cells: Cells) -> list[str]:
     """The labels of what is not 0 throughout, vectors whole, in their order."""
     whole = {row.label: row.vector or row.label for group in groups for row in group.rows}
     shown = {whole[label] for own in cells.values() for label, texts in own.items() if set(texts) != {"0"}}
     return [label for label in _in_order(groups) if whole[label] in shown]
 
 
-def _same_columns(groups: Sequence[Group]) -> list[list[Group]]:
+def _same_columns(groups: Sequence[RowGroup]) -> list[list[RowGroup]]:
     """The groups in tables whose columns have one unit each."""
-    tables: list[tuple[dict[str, str], list[Group]]] = []
+    tables: list[tuple[dict[str, str], list[RowGroup]]] = []
     for group in groups:
         units = {row.label: row.unit for row in group.rows}
         for known, members in tables:

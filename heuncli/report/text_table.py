@@ -14,7 +14,7 @@ MORE = 4  # by which the lines that a long heading, title or note goes on in sta
 Align = Literal["left", "point"]  # `point`: decimal points stand under each other
 
 
-class Column(NamedTuple):
+class TextColumn(NamedTuple):
     """A column's head and how its cells stand.
 
     Where a table is too wide for a page: neighbours of one `vector` stay together; what stands `once` is not repeated.
@@ -26,11 +26,11 @@ class Column(NamedTuple):
     once: bool = False
 
 
-class Table(NamedTuple):
+class TextTable(NamedTuple):
     """A heading, columns, rows of cells, and notes below. A row that is one string is a line across, over its rows."""
 
     heading: str
-    columns: tuple[Column, ...] = ()
+    columns: tuple[TextColumn, ...] = ()
     rows: tuple[tuple[str, ...] | str, ...] = ()
     notes: tuple[str, ...] = ()
 
@@ -40,7 +40,7 @@ def head(label: str, unit: str) -> str:
     return f"{label} [{unit}]" if unit != "1" else label
 
 
-def plain(table: Table, width: int | None = None) -> str:
+def plain(table: TextTable, width: int | None = None) -> str:
     """The table as aligned text; ends with a newline. Headings, titles and notes go on in more lines, if of a width."""
     indent = INDENT if any(isinstance(row, str) for row in table.rows) else ""
     lines = wrapped(shown(table.heading), width) if table.heading else []
@@ -86,7 +86,7 @@ def _end_of_line(line: str, start: int, width: int) -> int:
     return max(ends or blanks, default=line.find(" ", max(width, start + 1)))
 
 
-def markdown(table: Table) -> str:
+def markdown(table: TextTable) -> str:
     """The table as markdown; the lines across become rows with a bold first cell."""
     lines = [f"### {_escape(table.heading)}", ""] if table.heading else []
     if table.columns:
@@ -101,7 +101,7 @@ def markdown(table: Table) -> str:
     return "\n".join(lines)
 
 
-def aligned(table: Table) -> list[tuple[str, ...]]:
+def aligned(table: TextTable) -> list[tuple[str, ...]]:
     """Head and rows of cells (without the lines across), the cells of a `point` column padded to a common point."""
     rows = [row for row in table.rows if not isinstance(row, str)]
     columns = []
@@ -129,7 +129,7 @@ def _is_number(cell: str) -> bool:
     return cell.lstrip("-")[:1].isdecimal()
 
 
-def _line(cells: Sequence[str], widths: Sequence[int], columns: Sequence[Column], indent: str) -> str:
+def _line(cells: Sequence[str], widths: Sequence[int], columns: Sequence[TextColumn], indent: str) -> str:
     padded = [
         cell.ljust(width) if column.align == "left" else cell.rjust(width)
         for cell, width, column in zip(cells, widths, columns, strict=True)

@@ -10,8 +10,8 @@ from typing import NamedTuple
 
 import numpy as np
 
+from heuncli.report.digits import OPEN, OPEN_NOTE
 from heuncli.report.labels import Labels
-from heuncli.report.numbers import OPEN, OPEN_NOTE
 from heuncli.results import Results
 
 STRESSES = ("normal_max", "normal_min", "shear_torsion", "shear_mean", "shear_max", "mises", "utilisation")
@@ -19,7 +19,7 @@ POINTS = ("the origin", "the point")
 NO_AXIS = ("none", "none: there is no force, so no axis")
 
 
-class Plan(NamedTuple):
+class TablePlan(NamedTuple):
     """How a kind of results becomes a block: the quantities in their order, and the text about it.
 
     `only` takes one name of the kind. What is not `lasting` (a line in space) has no extremes: it is shown at instants.
@@ -88,7 +88,7 @@ def _foundation_note(name: str, labels: Labels) -> str:
     return notes[kind](own, labels) if kind in notes else ""
 
 
-FOUNDATION = Plan(
+FOUNDATION = TablePlan(
     "foundation",
     "foundation",
     "",
@@ -98,7 +98,7 @@ FOUNDATION = Plan(
     ),
     _foundation_note,
 )
-MASS_EFFECT = Plan(
+MASS_EFFECT = TablePlan(
     "foundation",
     "foundation",
     "",
@@ -110,14 +110,14 @@ MASS_EFFECT = Plan(
     only="mass_effect",
 )
 PLANS = (
-    Plan(
+    TablePlan(
         "motion",
         "bodies",
         "body",
         ("center", "center_velocity", "center_acceleration", "angular_velocity", "angular_acceleration"),
         lambda results, labels: "MOTION  of the centres of mass, and angular velocity of the bodies, world axes",
     ),
-    Plan(
+    TablePlan(
         "motion",
         "coordinates",
         "joint",
@@ -125,7 +125,7 @@ PLANS = (
         lambda results, labels: 'COORDINATES  of the joints, of "to" against "from"',
         _joint_note,
     ),
-    Plan(
+    TablePlan(
         "points",
         "points",
         "point",
@@ -134,7 +134,7 @@ PLANS = (
     ),
     FOUNDATION,
     MASS_EFFECT,
-    Plan(
+    TablePlan(
         "foundation",
         "foundation",
         "",
@@ -144,7 +144,7 @@ PLANS = (
         lasting=False,
         missing=NO_AXIS,
     ),
-    Plan(
+    TablePlan(
         "joints",
         "joints",
         "joint",
@@ -154,7 +154,7 @@ PLANS = (
         ),
         _joint_note,
     ),
-    Plan(
+    TablePlan(
         "joints",
         "stops",
         "stop",
@@ -162,7 +162,7 @@ PLANS = (
         lambda results, labels: 'STOPS  force or moment ON "to", along the coordinate that is limited; 0 where free',
         _stop_note,
     ),
-    Plan(
+    TablePlan(
         "sections",
         "sections",
         "section",
@@ -170,7 +170,7 @@ PLANS = (
         lambda results, labels: "SECTIONS  the piece beyond the cut ON the part before it; N > 0 tension; e2 = n × e1",
         _section_note,
     ),
-    Plan(
+    TablePlan(
         "forces",
         "forces",
         "force",
@@ -178,7 +178,7 @@ PLANS = (
         lambda results, labels: "FORCES  value, length of its line, angle of a turn spring, their rate, power put in",
         _force_note,
     ),
-    Plan(
+    TablePlan(
         "energy",
         "energy",
         "",
@@ -188,14 +188,14 @@ PLANS = (
 )
 # What a blow does, each table under its instant and what struck.
 IMPULSES = (
-    Plan(
+    TablePlan(
         "bodies",
         "bodies",
         "body",
         ("center_velocity_jump", "angular_velocity_jump"),
         lambda results, labels: "BODIES  jumps of the centre's velocity and of the angular velocity, world axes",
     ),
-    Plan(
+    TablePlan(
         "foundation",
         "foundation",
         "",
@@ -205,7 +205,7 @@ IMPULSES = (
         ),
         _foundation_note,
     ),
-    Plan(
+    TablePlan(
         "foundation",
         "foundation",
         "",
@@ -215,7 +215,7 @@ IMPULSES = (
         lasting=False,
         missing=("none", "none: there is no impulse, so no axis"),
     ),
-    Plan(
+    TablePlan(
         "joints",
         "joints",
         "joint",
@@ -225,7 +225,7 @@ IMPULSES = (
         ),
         _joint_note,
     ),
-    Plan(
+    TablePlan(
         "stops",
         "stops",
         "stop",
@@ -233,7 +233,7 @@ IMPULSES = (
         lambda results, labels: 'STOPS  impulse ON "to", along the coordinate that is limited',
         _stop_note,
     ),
-    Plan(
+    TablePlan(
         "sections",
         "sections",
         "section",
@@ -243,7 +243,7 @@ IMPULSES = (
         ),
         _section_note,
     ),
-    Plan(
+    TablePlan(
         "energy",
         "",
         "",

@@ -14,7 +14,7 @@ from typing import NamedTuple
 import numpy as np
 
 from heuncli.report.labels import Labels
-from heuncli.report.units import Units
+from heuncli.report.table_units import Units
 from heuncli.results import Array, Block, Results
 from heuncli.results_schema import CUT, REPORT_OF, SHARES, TREE, Node, Quantity, Shape, below, is_share
 

@@ -20,8 +20,8 @@ import numpy as np
 
 from heuncli import tolerances
 from heuncli.report.labels import Labels
-from heuncli.report.quantities import Series, walk, walk_impulse
-from heuncli.report.units import Units
+from heuncli.report.series import Series, walk, walk_impulse
+from heuncli.report.table_units import Units
 from heuncli.results import Array, Estimate, Magnitudes, Results
 from heuncli.results_schema import BY_CAUSE, KIND_OF, SHARES, kind_of_error
 

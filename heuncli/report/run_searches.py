@@ -11,28 +11,28 @@ from typing import NamedTuple
 
 import numpy as np
 
+from heuncli.report.cut_runs import CutRun, RunQuantity, runs_of, thinned
+from heuncli.report.digits import Certainty
 from heuncli.report.labels import Labels
-from heuncli.report.numbers import Certainty
-from heuncli.report.runs import Along, Run, runs_of, thinned
 from heuncli.results import Array, Extremes, Indices, Mask, Place, Results
 
 
-class OfRun(NamedTuple):
+class RunExtremes(NamedTuple):
     """Extremes of the stresses along a run; of loads and stresses at its cuts that are shown."""
 
     stresses: Extremes | None = None
     cuts: Extremes | None = None
 
 
-NONE: Mapping[str, OfRun] = MappingProxyType({})
+NONE: Mapping[str, RunExtremes] = MappingProxyType({})
 
 
-class Numbers(NamedTuple):
+class RunSearch(NamedTuple):
     """Quantities of one run as columns of a search; cuts: those that are shown, none for the run as a whole."""
 
-    run: Run
+    run: CutRun
     labels: Labels
-    quantities: tuple[Along, ...]
+    quantities: tuple[RunQuantity, ...]
     cuts: Indices
 
     def of(self, results: Results) -> Array:
@@ -75,18 +75,18 @@ class Numbers(NamedTuple):
         return np.repeat(np.array(values, dtype=np.float64), len(self.cuts) or 1)
 
 
-def at_cuts(run: Run, labels: Labels) -> Numbers:
+def at_cuts(run: CutRun, labels: Labels) -> RunSearch:
     """All quantities at the cuts that are shown."""
-    return Numbers(run, labels, run.quantities, thinned(run))
+    return RunSearch(run, labels, run.quantities, thinned(run))
 
 
-def stresses_along(run: Run, labels: Labels) -> Numbers:
+def stresses_along(run: CutRun, labels: Labels) -> RunSearch:
     """The stresses along the run."""
-    return Numbers(run, labels, run.stresses, np.zeros(0, dtype=np.intp))
+    return RunSearch(run, labels, run.stresses, np.zeros(0, dtype=np.intp))
 
 
 def with_stresses(
-    run: Run, loads: Extremes, places: tuple[tuple[Place, Place], ...], stresses: Extremes | None
+    run: CutRun, loads: Extremes, places: tuple[tuple[Place, Place], ...], stresses: Extremes | None
 ) -> tuple[Extremes, tuple[tuple[Place, Place], ...]]:
     """The extremes of the loads along a run and of its stresses, one after the other."""
     if stresses is None or not run.stresses:

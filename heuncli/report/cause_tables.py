@@ -11,8 +11,8 @@ from typing import NamedTuple
 
 import numpy as np
 
-from heuncli.report.blocks import Block, Group, Row, rows_of
-from heuncli.report.numbers import (
+from heuncli.report.cut_runs import CutRun, RunQuantity, position
+from heuncli.report.digits import (
     OPEN,
     OPEN_NOTE,
     UNKNOWN,
@@ -23,10 +23,10 @@ from heuncli.report.numbers import (
     write,
     write_times,
 )
-from heuncli.report.plans import MASS_EFFECT
-from heuncli.report.quantities import Series
-from heuncli.report.runs import Along, Run, position
-from heuncli.report.table import INDENT, Column, Table
+from heuncli.report.series import Series
+from heuncli.report.table_blocks import NumberRow, RowGroup, TableBlock, rows_of
+from heuncli.report.table_plans import MASS_EFFECT
+from heuncli.report.text_table import INDENT, TextColumn, TextTable
 from heuncli.results import Array, Extremes, Place, Results
 from heuncli.results_schema import BY_CAUSE, SHARES
 
@@ -39,30 +39,30 @@ AXES = {"N": ("force", 0), "Q1": ("force", 1), "Q2": ("force", 2), "T": ("moment
 Key = tuple[str, str, str]  # of a number: kind, name, label
 
 
-class Shared(NamedTuple):
+class SharedNumber(NamedTuple):
     """A number over the instants with its shares by cause, and of these what the loads do directly, (n_t,) each."""
 
-    row: Row
+    row: NumberRow
     shares: dict[str, Array]
     direct: dict[str, Array]
 
 
-class Line(NamedTuple):
+class ShareLine(NamedTuple):
     """One number with its shares; the lines of one family share their decimals. when: beyond the horizon, or beside."""
 
     label: str
     at: str
-    row: Row
+    row: NumberRow
     shares: dict[str, float]
     total: float | None
     lost: bool = False
     beside: bool = False
 
 
-Groups = Sequence[tuple[str, Sequence[Line]]]  # titles and lines
+LineGroups = Sequence[tuple[str, Sequence[ShareLine]]]  # titles and lines
 
 
-def shared_rows(results: Results, series: Iterable[Series]) -> dict[Key, Shared]:
+def shared_rows(results: Results, series: Iterable[Series]) -> dict[Key, SharedNumber]:
     """The numbers that have shares, but those of runs of cuts; series: those walked of the results."""
     runs = {name for name, section in results.sections.items() if "s" in section}
     own: dict[tuple[str, str, str], dict[str, Series]] = {}
@@ -74,7 +74,7 @@ def shared_rows(results: Results, series: Iterable[Series]) -> dict[Key, Shared]
             own.setdefault((item.kind, item.name, item.quantity), {})[item.cause] = item
         else:
             whole.append(item)
-    found: dict[Key, Shared] = {}
+    found: dict[Key, SharedNumber] = {}
     for item in whole:
         shares = own.get((item.kind, item.name, item.quantity))
         if shares is None:
@@ -83,11 +83,11 @@ def shared_rows(results: Results, series: Iterable[Series]) -> dict[Key, Shared]
         for i, row in enumerate(rows_of(item)):
             parts = {cause: part_of(row, i, item, series.values) for cause, series in shares.items()}
             beside = {cause: values[:, i] for cause, values in direct.items() if i < values.shape[1]}
-            found[item.kind, item.name, row.label] = Shared(row, parts, beside)
+            found[item.kind, item.name, row.label] = SharedNumber(row, parts, beside)
     return found
 
 
-def part_of(row: Row, i: int, whole: Series, share: Array) -> Array:
+def part_of(row: NumberRow, i: int, whole: Series, share: Array) -> Array:
     """A share in a component, or along the whole vector in its magnitude."""
     if i < share.shape[1]:
         return share[:, i]
@@ -107,7 +107,7 @@ def direct_of(results: Results, item: Series, own: Mapping[Key, Mapping[str, Ser
     return {cause: np.sum(series.values * along, axis=1)[:, None] for cause, series in known.items()}
 
 
-def key_of(block: Block, group: Group, row: Row) -> Key:
+def key_of(block: TableBlock, group: RowGroup, row: NumberRow) -> Key:
     """Of a row of a table, as the results name it."""
     if block.key != "foundation":
         return block.key, group.name, row.label
@@ -116,38 +116,43 @@ def key_of(block: Block, group: Group, row: Row) -> Key:
 
 
 def instants_table(
-    block: Block, shared: Mapping[Key, Shared], times: Array, horizon: float | None, certain: Certainty
-) -> list[Table]:
+    block: TableBlock, shared: Mapping[Key, SharedNumber], times: Array, horizon: float | None, certain: Certainty
+) -> list[TextTable]:
     """Every number of a block that has shares, at every instant; none where nothing has."""
     clock = [""] if len(times) == 1 else [f"{x} s" for x in write_times(times.tolist(), float(np.ptp(times)))]
-    groups: list[tuple[str, list[Line]]] = []
+    groups: list[tuple[str, list[ShareLine]]] = []
     for group in block.groups:
-        lines: list[Line] = []
+        lines: list[ShareLine] = []
         for row in group.rows:
             one = shared.get(key_of(block, group, row))
             for k, t in enumerate(times.tolist() if one is not None else []):
                 assert one is not None
                 lost, beside = horizon is not None and t >= horizon, t in certain.beside
                 shares = {cause: float(values[k]) for cause, values in one.shares.items()}
-                lines.append(Line(row.label, clock[k], one.row, shares, float(one.row.values[k]), lost, beside))
+                lines.append(ShareLine(row.label, clock[k], one.row, shares, float(one.row.values[k]), lost, beside))
                 direct = {cause: float(values[k]) for cause, values in one.direct.items()}
                 if direct:
-                    lines.append(Line(f"{row.label} direct", "", one.row, direct, None, lost, beside))
+                    lines.append(ShareLine(f"{row.label} direct", "", one.row, direct, None, lost, beside))
         groups.append((group.title, lines))
     return [table_of(heading_of(block), groups, certain)] if any(lines for _, lines in groups) else []
 
 
 def extremes_table(
-    block: Block, shared: Mapping[Key, Shared], instants: Array, extremes: Extremes, certain: Certainty, span: float
-) -> list[Table]:
+    block: TableBlock,
+    shared: Mapping[Key, SharedNumber],
+    instants: Array,
+    extremes: Extremes,
+    certain: Certainty,
+    span: float,
+) -> list[TextTable]:
     """The lowest and the highest of every number of a block, with the shares at their instants.
 
     shared: at `instants`, those of the extremes among them; extremes: of the block's rows, one after the other.
     """
-    groups: list[tuple[str, list[Line]]] = []
+    groups: list[tuple[str, list[ShareLine]]] = []
     place = 0
     for group in block.groups:
-        lines: list[Line] = []
+        lines: list[ShareLine] = []
         for row in group.rows:
             one = shared.get(key_of(block, group, row))
             if one is not None:
@@ -166,26 +171,26 @@ def extremes_table(
     return [table_of(heading_of(block), groups, certain)] if any(lines for _, lines in groups) else []
 
 
-def line_at(one: Shared, instants: Array, label: str, at: float, value: float, span: float) -> Line:
+def line_at(one: SharedNumber, instants: Array, label: str, at: float, value: float, span: float) -> ShareLine:
     """The line of a number at an instant."""
     k = int(np.searchsorted(instants, at))
     clock = f"{write_times([at], span)[0]} s" if span > 0.0 else ""
-    return Line(label, clock, one.row, {cause: float(values[k]) for cause, values in one.shares.items()}, value)
+    return ShareLine(label, clock, one.row, {cause: float(values[k]) for cause, values in one.shares.items()}, value)
 
 
-def heading_of(block: Block) -> str:
+def heading_of(block: TableBlock) -> str:
     """The block's heading, with what is told of it here."""
     return block.heading.replace("  ", f" {BY_CAUSE.upper()}  ", 1)
 
 
-def table_of(heading: str, groups: Groups, certain: Certainty) -> Table:
+def table_of(heading: str, groups: LineGroups, certain: Certainty) -> TextTable:
     """The lines in their groups; a column a cause, those that are 0 throughout left out."""
     everything = [line for _, lines in groups for line in lines]
     known = dict.fromkeys(cause for line in everything for cause in line.shares)
     few, rest = chosen_causes(list(known), everything)
     heads = [*few, *[f"{len(rest)} others"] * bool(rest), "sum", "total"]
     rows: list[tuple[str, ...] | str] = []
-    kept_lines: list[Line] = []
+    kept_lines: list[ShareLine] = []
     words, left_out = set[str](), False
     numbers: list[list[str]] = []
     for title, lines in groups:
@@ -201,27 +206,27 @@ def table_of(heading: str, groups: Groups, certain: Certainty) -> Table:
         kept_lines += [line for line, _ in kept]
         numbers += [own for _, own in kept]
     if not numbers:
-        return Table(heading, notes=(*map(str.strip, map(str, rows)), OPEN_NOTE) if rows else ("0 throughout",))
+        return TextTable(heading, notes=(*map(str.strip, map(str, rows)), OPEN_NOTE) if rows else ("0 throughout",))
     empty = [i for i in range(len(heads) - 2) if all(own[i] in ("0", "") for own in numbers)]
     shown = [i for i in range(len(heads)) if i not in empty]
     lead = 3 if any(line.at for line in everything) else 2
     cells = [row if isinstance(row, str) else (*row[:lead], *(row[3 + i] for i in shown)) for row in rows]
-    columns = [*(Column(head, "left") for head in ("", "", "at")[:lead]), *(Column(heads[i]) for i in shown)]
+    columns = [*(TextColumn(head, "left") for head in ("", "", "at")[:lead]), *(TextColumn(heads[i]) for i in shown)]
     where = "in all that is not open" if words else "throughout"
     notes = [f"0 {where}: {', '.join(heads[i] for i in empty)}"] if empty else []
     notes += notes_of(kept_lines, {heads[i] for i in shown}, words.union(*numbers))
     notes += [ZERO_NOTE] if left_out else []
-    return Table(heading, tuple(columns), tuple(cells), tuple(notes))
+    return TextTable(heading, tuple(columns), tuple(cells), tuple(notes))
 
 
-def open_throughout(lines: Sequence[Line]) -> list[str]:
+def open_throughout(lines: Sequence[ShareLine]) -> list[str]:
     """The labels of what is open in all its lines."""
     told = dict.fromkeys(line.row.label for line in lines if line.total is not None)
     known = {line.row.label for line in lines if line.total is not None and (line.beside or np.isfinite(line.total))}
     return [label for label in told if label not in known]
 
 
-def chosen_causes(causes: Sequence[str], lines: Sequence[Line]) -> tuple[list[str], list[str]]:
+def chosen_causes(causes: Sequence[str], lines: Sequence[ShareLine]) -> tuple[list[str], list[str]]:
     """The causes that have a column, in their order, and the smallest of many, which have one together."""
     if len(causes) <= MOST_CAUSES:
         return list(causes), []
@@ -235,12 +240,12 @@ def chosen_causes(causes: Sequence[str], lines: Sequence[Line]) -> tuple[list[st
     return [cause for cause in causes if cause in largest], [cause for cause in causes if cause not in largest]
 
 
-def family_of(line: Line) -> tuple[str, str]:
+def family_of(line: ShareLine) -> tuple[str, str]:
     """Lines that share their decimals."""
     return line.row.family, line.row.unit
 
 
-def family_scales(lines: Iterable[Line]) -> dict[tuple[str, str], float]:
+def family_scales(lines: Iterable[ShareLine]) -> dict[tuple[str, str], float]:
     """The largest number of each family."""
     scales: dict[tuple[str, str], float] = {}
     for line in lines:
@@ -249,7 +254,9 @@ def family_scales(lines: Iterable[Line]) -> dict[tuple[str, str], float]:
     return scales
 
 
-def texts_of(lines: Sequence[Line], columns: Sequence[str], rest: Sequence[str], certain: Certainty) -> list[list[str]]:
+def texts_of(
+    lines: Sequence[ShareLine], columns: Sequence[str], rest: Sequence[str], certain: Certainty
+) -> list[list[str]]:
     """The numbers of each line as text: of each column, of their sum, and the total."""
     numbers: list[list[float | None]] = []
     for line in lines:
@@ -268,14 +275,14 @@ def texts_of(lines: Sequence[Line], columns: Sequence[str], rest: Sequence[str],
     return texts
 
 
-def told(value: float, text: str, line: Line, certain: Certainty) -> str:
+def told(value: float, text: str, line: ShareLine, certain: Certainty) -> str:
     """A number's text, where it is known."""
     if line.lost:
         return beyond_horizon(value, line.row.unit, certain, text)
     return UNKNOWN if text == OPEN and line.beside else text
 
 
-def notes_of(lines: Sequence[Line], shown: set[str], words: set[str]) -> list[str]:
+def notes_of(lines: Sequence[ShareLine], shown: set[str], words: set[str]) -> list[str]:
     """What has to be said of the lines of a table, its columns and words."""
     notes = [CAUSES_NOTE] if "motion" in shown else []
     notes += [ALONG_NOTE] if any(line.label.startswith("|") for line in lines) else []
@@ -288,13 +295,13 @@ def notes_of(lines: Sequence[Line], shown: set[str], words: set[str]) -> list[st
 
 
 def run_extremes_table(
-    run: Run, results: Results, extremes: Extremes, places: Sequence[tuple[Place, Place]], certain: Certainty
-) -> list[Table]:
+    run: CutRun, results: Results, extremes: Extremes, places: Sequence[tuple[Place, Place]], certain: Certainty
+) -> list[TextTable]:
     """The lowest and the highest of each resultant along a run, with their shares.
 
     results: with the run cut at the places of the lowest and the highest of every resultant, in this order.
     """
-    lines: list[Line] = []
+    lines: list[ShareLine] = []
     span = float(np.ptp(np.concatenate([extremes.low_at, extremes.high_at])))
     for i, load in enumerate(run.loads):
         ends = (("min", extremes.low, extremes.low_at), ("max", extremes.high, extremes.high_at))
@@ -307,11 +314,11 @@ def run_extremes_table(
     return of_run(run, lines, certain)
 
 
-def run_instants_table(run: Run, results: Results, horizon: float | None, certain: Certainty) -> list[Table]:
+def run_instants_table(run: CutRun, results: Results, horizon: float | None, certain: Certainty) -> list[TextTable]:
     """The lowest and the highest of each resultant among the cuts at every instant, with their shares."""
     times = results.time.tolist()
     clock = [] if len(times) == 1 else [f", {text} s" for text in write_times(times, float(np.ptp(results.time)))]
-    lines: list[Line] = []
+    lines: list[ShareLine] = []
     for k, t in enumerate(times):
         for i, load in enumerate(run.loads):
             values = np.nan_to_num(run.values[i, k])
@@ -323,16 +330,18 @@ def run_instants_table(run: Run, results: Results, horizon: float | None, certai
     return of_run(run, lines, certain)
 
 
-def line_of_run(results: Results, name: str, load: Along, label: str, at: tuple[int, int], where: str) -> Line:
+def line_of_run(
+    results: Results, name: str, load: RunQuantity, label: str, at: tuple[int, int], where: str
+) -> ShareLine:
     """The line of a resultant of a run at an instant and a cut."""
     quantity, unit = load.name, load.unit
     section = results.sections[name]
     shares = {cause: load.size * float(own[quantity][at]) for cause, own in section.get(SHARES, {}).items()}
-    row = Row(quantity, unit, AXES[quantity][0], "sections", np.zeros(0))
-    return Line(label, where, row, shares, load.size * float(section[quantity][at]))
+    row = NumberRow(quantity, unit, AXES[quantity][0], "sections", np.zeros(0))
+    return ShareLine(label, where, row, shares, load.size * float(section[quantity][at]))
 
 
-def of_run(run: Run, lines: Sequence[Line], certain: Certainty) -> list[Table]:
+def of_run(run: CutRun, lines: Sequence[ShareLine], certain: Certainty) -> list[TextTable]:
     """The table of a run, if it has shares."""
     heading = run.heading.replace("  ", f" {BY_CAUSE.upper()}  ", 1)
     return [table_of(heading, [("", lines)], certain)] if any(line.shares for line in lines) else []

@@ -4,13 +4,13 @@ from __future__ import annotations
 
 from collections.abc import Iterator, Sequence
 
-from heuncli.report.table import GAP, INDENT, Table, aligned, wrapped
+from heuncli.report.text_table import GAP, INDENT, TextTable, aligned, wrapped
 
 GOES_ON = "continued"
 LEAST_TEXT = 24  # places that a last column of text must have to go on in lines of its own
 
 
-def fit(table: Table, width: int) -> list[Table]:
+def fit(table: TextTable, width: int) -> list[TextTable]:
     """The table in parts no wider than `width` if that can be; each repeats the leading columns of words."""
     if not table.columns:
         return [table]
@@ -30,11 +30,11 @@ def fit(table: Table, width: int) -> list[Table]:
         kept = [*(again if number else range(lead)), *part]
         rows = tuple(row if isinstance(row, str) else tuple(row[i] for i in kept) for row in table.rows)
         notes = table.notes if number == len(parts) - 1 else ()
-        tables.append(Table(heading(table, number), tuple(table.columns[i] for i in kept), rows, notes))
+        tables.append(TextTable(heading(table, number), tuple(table.columns[i] for i in kept), rows, notes))
     return tables
 
 
-def in_lines(table: Table, room: int) -> Iterator[tuple[str, ...] | str]:
+def in_lines(table: TextTable, room: int) -> Iterator[tuple[str, ...] | str]:
     """The rows with the text of the last column in lines of so many places."""
     for row in table.rows:
         if isinstance(row, str):
@@ -45,7 +45,7 @@ def in_lines(table: Table, room: int) -> Iterator[tuple[str, ...] | str]:
         yield from ((*[""] * (len(row) - 1), line) for line in rest)
 
 
-def heading(table: Table, part: int) -> str:
+def heading(table: TextTable, part: int) -> str:
     """The heading of a part: of the first all of it, of the others what it is called."""
     if not part or not table.heading:
         return "" if part else table.heading
@@ -54,7 +54,7 @@ def heading(table: Table, part: int) -> str:
     return f"{begins}{called.partition('  ')[0]}  {GOES_ON}"
 
 
-def unparted(table: Table, lead: int, widths: Sequence[int], room: int) -> list[list[int]]:
+def unparted(table: TextTable, lead: int, widths: Sequence[int], room: int) -> list[list[int]]:
     """The columns behind the leading ones, those of one vector together as long as they have room."""
     found: list[list[int]] = []
     for place in range(lead, len(widths)):

@@ -12,15 +12,15 @@ from typing import Any, NamedTuple
 
 import numpy as np
 
-from heuncli.report import instants, runs
-from heuncli.report.blocks import Block as Laid
-from heuncli.report.blocks import build
+from heuncli.report import cut_runs
+from heuncli.report.certain_sums import sums_table
+from heuncli.report.digits import UNKNOWN, Certainty, largest, with_axis, write, write_times
+from heuncli.report.instants_tables import instants_tables
 from heuncli.report.labels import Labels
-from heuncli.report.numbers import UNKNOWN, Certainty, largest, with_axis, write, write_times
-from heuncli.report.plans import IMPULSES
-from heuncli.report.quantities import Series, in_units, walk_impulse
-from heuncli.report.sums import sums_table
-from heuncli.report.table import Column, Table
+from heuncli.report.series import Series, in_units, walk_impulse
+from heuncli.report.table_blocks import TableBlock, build
+from heuncli.report.table_plans import IMPULSES
+from heuncli.report.text_table import TextColumn, TextTable
 from heuncli.results import Array, Block, CertainSum, Extremes, Indices, Magnitudes, Results
 from heuncli.results_schema import AT_A_BLOW, SHARES, STRUCK, quantity
 
@@ -30,7 +30,7 @@ HEADING = "the blows of the run: largest impulse and moment of a joint, a stop o
 ENERGIES = ("energy_before", "energy_after", "energy_jump")
 
 
-class Blows(NamedTuple):
+class BlowReport(NamedTuple):
     """The blows of a run and what is known of its numbers; along: of each the extremes along its runs of cuts."""
 
     results: Results
@@ -40,7 +40,7 @@ class Blows(NamedTuple):
     along: Sequence[Mapping[str, Extremes]] = ()
 
 
-def impulse_tables(blows: Blows, *, every: bool = False) -> list[Table]:
+def impulse_tables(blows: BlowReport, *, every: bool = False) -> list[TextTable]:
     """A list of all blows where there are several, then the tables of each, or of the largest."""
     found = blows.results.impulses
     if not found:
@@ -71,7 +71,7 @@ def _largest(sizes: Array) -> Indices:
     return np.sort(largest_first[:MOST_SHOWN])
 
 
-def listing(blows: Blows, sizes: Array, shown: Indices, every: bool) -> Table:
+def listing(blows: BlowReport, sizes: Array, shown: Indices, every: bool) -> TextTable:
     """A line a blow: when, by what, with which largest impulse, and what it did to the kinetic energy."""
     found, certain = blows.results.impulses, blows.certain
     times = np.array([float(impulse["time"]) for impulse in found])
@@ -94,15 +94,15 @@ def listing(blows: Blows, sizes: Array, shown: Indices, every: bool) -> Table:
         rows.append((str(i), clock[i], ", ".join(block["names"]), *cells))
     heads = [f"largest [{unit}]" for unit, _ in told]
     heads += [f"{word} [{of_energy}]" for word in ("energy before", "after", "jump")]
-    columns = (Column(""), Column("t [s]"), Column("struck by", "left"), *map(Column, heads))
+    columns = (TextColumn(""), TextColumn("t [s]"), TextColumn("struck by", "left"), *map(TextColumn, heads))
     numbers = ", ".join(map(str, shown.tolist()))
     note = f"below: {numbers}, the largest; all: --all, or --format csv"
     left = f"{len(found) - len(listed)} more, the last at t = {clock[-1]} s"
     notes = (left,) * (len(listed) < len(found)) + (note,) * (len(shown) < len(found))
-    return Table(f"IMPULSES  {HEADING}", columns, tuple(rows), notes)
+    return TextTable(f"IMPULSES  {HEADING}", columns, tuple(rows), notes)
 
 
-def tables_of(blows: Blows, number: int, every: bool = False) -> list[Table]:
+def tables_of(blows: BlowReport, number: int, every: bool = False) -> list[TextTable]:
     """The tables of one blow."""
     impulse = blows.results.impulses[number]
     at = float(impulse["time"])
@@ -112,19 +112,19 @@ def tables_of(blows: Blows, number: int, every: bool = False) -> list[Table]:
     certain = with_axis(blows.certain, view, blows.of, labels.units, UNIT)
     series = in_units(walk_impulse(impulse, labels), labels.units)
     by_cause = any(item.cause for item in series)
-    tables, more = list[Table](), list[Table]()
+    tables, more = list[TextTable](), list[TextTable]()
     for plan in IMPULSES:
         block = build(plan, view, labels, series)
         if block is not None:
             named = block._replace(heading=lead + block.heading)
-            tables += instants.instants_tables(named, view.time, horizon, certain)
+            tables += instants_tables(named, view.time, horizon, certain)
             more += shares_of(named, view, series, certain, horizon) if by_cause else []
     along = blows.along[number] if blows.along else {}
-    for run in runs.runs_of(view, labels, AT_A_BLOW):
-        made = runs.instants_tables(run, view.time, horizon, certain, every=every)
+    for run in cut_runs.runs_of(view, labels, AT_A_BLOW):
+        made = cut_runs.instants_tables(run, view.time, horizon, certain, every=every)
         if run.name in along:
-            found = runs.in_units(run, along[run.name])
-            table = runs.extremes_table(run, view.time, found, found.places, certain)
+            found = cut_runs.in_units(run, along[run.name])
+            table = cut_runs.extremes_table(run, view.time, found, found.places, certain)
             made = [table, made[0]._replace(heading=""), *made[1:]]
         tables += [made[0]._replace(heading=lead + made[0].heading), *made[1:]]
         more += [own._replace(heading=lead + own.heading) for own in shares_along(run, view, certain, horizon)]
@@ -134,22 +134,22 @@ def tables_of(blows: Blows, number: int, every: bool = False) -> list[Table]:
 
 
 def shares_of(
-    block: Laid, view: Results, series: Sequence[Series], certain: Certainty, horizon: float | None
-) -> list[Table]:
+    block: TableBlock, view: Results, series: Sequence[Series], certain: Certainty, horizon: float | None
+) -> list[TextTable]:
     """What each that struck does of a block's impulses."""
-    from heuncli.report import causes  # few runs ask for them
+    from heuncli.report import cause_tables  # few runs ask for them
 
-    shared = causes.shared_rows(view, series)
-    return causes.instants_table(block, shared, view.time, horizon, certain)
+    shared = cause_tables.shared_rows(view, series)
+    return cause_tables.instants_table(block, shared, view.time, horizon, certain)
 
 
-def shares_along(run: runs.Run, view: Results, certain: Certainty, horizon: float | None) -> list[Table]:
+def shares_along(run: cut_runs.CutRun, view: Results, certain: Certainty, horizon: float | None) -> list[TextTable]:
     """The same along a run of cuts, if there are shares."""
     if SHARES not in view.sections[run.name]:
         return []
-    from heuncli.report import causes
+    from heuncli.report import cause_tables
 
-    return causes.run_instants_table(run, view, horizon, certain)
+    return cause_tables.run_instants_table(run, view, horizon, certain)
 
 
 def at_one_instant(results: Results, impulse: Block) -> Results:

@@ -5,11 +5,11 @@ from __future__ import annotations
 from typing import Any
 
 from heuncli.method_rows import AUTO, DEFAULT, METHODS
-from heuncli.report.table import Column, Table
+from heuncli.report.text_table import TextColumn, TextTable
 
 HEADING = "METHODS  of integration, for analysis: {method: NAME} and --method NAME"
 COLUMNS = tuple(
-    Column(head, "point" if head == "order" else "left")
+    TextColumn(head, "point" if head == "order" else "left")
     for head in ("name", "order", "kind", "steps", "attitude", "what for")
 )
 NOTES = (
@@ -19,10 +19,10 @@ NOTES = (
 )
 
 
-def table() -> Table:
+def table() -> TextTable:
     """A row a method."""
     rows = tuple((m.name, str(m.order), m.kind, m.steps, m.attitude, m.purpose) for m in METHODS)
-    return Table(HEADING, COLUMNS, rows, NOTES)
+    return TextTable(HEADING, COLUMNS, rows, NOTES)
 
 
 def block() -> dict[str, Any]:

@@ -7,7 +7,7 @@ from collections.abc import Mapping, Sequence
 from typing import Any
 
 from heuncli.foreign_text import shown
-from heuncli.report.words import count
+from heuncli.report.plurals import count
 
 WIDTH = 110
 MOST_NAMES = 12

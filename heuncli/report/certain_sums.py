@@ -6,10 +6,10 @@ from collections.abc import Mapping
 
 import numpy as np
 
-from heuncli.report.blocks import short
-from heuncli.report.numbers import Certainty, beyond_horizon, largest, write
-from heuncli.report.table import Table
-from heuncli.report.units import Shown
+from heuncli.report.digits import Certainty, beyond_horizon, largest, write
+from heuncli.report.table_blocks import short
+from heuncli.report.table_units import Shown
+from heuncli.report.text_table import TextTable
 from heuncli.results import Array, CertainSum, Results
 from heuncli.results_schema import XYZ
 
@@ -20,7 +20,7 @@ FORCES = frozenset({"force", "axial", "radial", "tension", "N", "Q1", "Q2"})
 
 def sums_table(
     results: Results, certain: Certainty, beyond: Results | None = None, unit: Shown = ("N", 1.0)
-) -> Table | None:
+) -> TextTable | None:
     """The sums that are certain although their terms are open; None where there are none.
 
     beyond: the last instant, where the run ends beyond its horizon; unit: that is shown, for N·s of impulses.
@@ -34,7 +34,7 @@ def sums_table(
     rest = f"{left} more in --format json (moments, or more than {MOST_TERMS} terms)" if left else ""
     notes = [*lines, *([TURNS] if any("(t)·" in line for line in lines) else []), *([rest] if rest else [])]
     axes = ", world axes" if "axes" in results.model else ""  # elsewhere others are told
-    return Table(f"CERTAIN SUMS  of components that redundancy leaves open{axes}", notes=tuple(notes))
+    return TextTable(f"CERTAIN SUMS  of components that redundancy leaves open{axes}", notes=tuple(notes))
 
 
 def _line(block: CertainSum, certain: Certainty, beyond: CertainSum | None, of: Shown) -> str | None:
