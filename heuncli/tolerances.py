@@ -202,7 +202,6 @@ EXPECTED_ABSOLUTE = 1e-9  # default of `abs`
 
 # The kernel's thresholds (kernel/scene.py, Limits).
 KERNEL: dict[str, float] = {
-    "dodges": 10,  # lengths tried; .87**10 spans a factor of 4, more than the width of what a singular pose spoils
     # -- inertia
     "no_inertia": 1e-14,  # of the trace: some dozen roundings of the sums that make an articulated inertia
     # square of NEARLY_SINGULAR: where the loops hold a freedom without inertia by a lever of s, s^2 of the others' is
@@ -236,7 +235,9 @@ KERNEL: dict[str, float] = {
     "given_end": 1e-6,  # of a given step: 10 million steps know their ends to 1e-8 of one, typed durations to 1e-9
     "least_step": 1e-14,  # of the time: fewer than 50 roundings of t; what lies nearer together is one instant
     "dodge": 0.87,
+    "dodges": 10,  # lengths tried; .87**10 spans a factor of 4, more than the width of what a singular pose spoils
     "pivot_rounding": 1e-16,  # a rounding of the closures, amplified by 1 / pivot
+    "pivot_noise": 3e-13,  # what ten lengths could not avoid: the gap that settling leaves, amplified likewise
     # -- events
     "one_instant": 4.0 * EPS,  # what an event is off by adds up over many: no more than instants are rounded
     "finest": 1e-10,  # of a step: pulses a ten-thousandth of a millionth of it long are met, and its error not
@@ -249,7 +250,6 @@ KERNEL: dict[str, float] = {
     "least_load": 1e-200,  # N, N m or rad/s^2: bounds of exponentials are no closer than 1e-250
     "touching": 1e-14,  # of the size, and of places and limits: what settling leaves of a gap (nearly_closed)
     "unseen": 1e-4,  # of a load's largest in a step: what it does beyond what the stages saw
-    "pivot_noise": 3e-13,  # what ten lengths could not avoid: the gap that settling leaves, amplified likewise
     # -- branches that are followed
     # rows of J turn threefold with what moves, so the least pivot keeps five eighths, Newton's method contracts by 3/5
     "branch_step": 0.125,
@@ -259,6 +259,7 @@ KERNEL: dict[str, float] = {
     # cube root of EPS: rounding of W, EPS kappa, is there what the straight last way to the half turn leaves, kappa^-2
     "half_turn": EPS ** (1 / 3),
     "chart_turn": 0.5,  # half the way there: no step passes it, and of what turns re-centred |kappa| stays below 1
+    # -- stages that are solved for
     "newton_ends": EPS,  # of the largest coordinate or rate: the next correction of the stages would be rounding
     "newton_rounding": 1e3 * EPS,  # what the sums of a derivative leave of stages that are solved for
     "newton_part": 0.1,  # of the local tolerance: what the stages may be left off by beside a step's own error

@@ -4,11 +4,13 @@ from __future__ import annotations
 
 import ast
 import inspect
+import re
 
 import pytest
 
 from heuncli import tolerances
-from tests.honesty.boundaries import EXEMPT, ROWS, WANTED, Row
+from tests.honesty.boundaries.part import Row
+from tests.honesty.boundaries.table import EXEMPT, PARTS, ROWS, WANTED
 
 
 def names(rows: tuple[Row, ...]) -> list[str]:
@@ -47,6 +49,28 @@ def test_each_threshold_has_its_row() -> None:
     assert not with_row & (EXEMPT.keys() | WANTED.keys())
     assert not EXEMPT.keys() & WANTED.keys()
     assert set(known) == with_row | EXEMPT.keys() | WANTED.keys()
+
+
+def headings() -> dict[str, str]:
+    """The heading in tolerances.py, as far as its colon, under which each threshold stands."""
+    found, kernel, heading = {}, "", ""
+    for line in inspect.getsource(tolerances).splitlines():
+        if line.startswith("KERNEL"):
+            kernel = heading = "kernel: "
+        elif said := re.match(r" *# -- (.*?)(?:: .*)?$", line):
+            heading = kernel + said[1]
+        elif named := re.match(r'([A-Z0-9_]+) = |    "(\w+)": ', line):
+            found[named[1] or f"KERNEL.{named[2]}"] = heading
+    return found
+
+
+def test_a_threshold_stands_in_the_part_of_its_heading() -> None:
+    """So that its scene is found at once."""
+    wanted = headings()
+    assert {heading for part in PARTS for heading in part.headings} == set(wanted.values())
+    for part in PARTS:
+        names = {row.name for row in part.rows} | part.exempt.keys() | part.wanted.keys()
+        assert names == {name for name, heading in wanted.items() if heading in part.headings}
 
 
 def test_each_threshold_is_named_once() -> None:

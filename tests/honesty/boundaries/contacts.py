@@ -1,0 +1,97 @@
+"""Contacts: what touches, bears, leans on another one, or hops."""
+
+from __future__ import annotations
+
+from types import SimpleNamespace
+from typing import Any
+
+import numpy as np
+import pytest
+
+from heuncli import tolerances
+from heuncli.integration.contacts.complementarity import complementary
+from heuncli.integration.contacts.resting import short_flights
+from heuncli.integration.contacts.touching import Touching, answerable
+from tests.honesty.boundaries.part import Part, Row
+from tests.shared.scenes import near, study
+
+FLOOR = """
+heun: 1
+gravity: [0, 0, -10]
+ground: {{points: {{O: [0, 0, 0]}}}}
+bodies: {{ball: {{mass: 2, center: [0, 0, 0], inertia: [1, 1, 1], points: {{p: [0, 0, 0]}}}}}}
+joints: {{guide: {{type: slide, from: ground.O, to: ball.p, axis: [0, 0, 1], initial: {{travel: {at!r}}}}}}}
+stops: {{floor: {{joint: guide, travel: [0, null], restitution: 0.5}}}}
+analysis: {{duration: 1, samples: 2}}
+"""
+
+
+SWUNG = """
+heun: 1
+gravity: [0, 0, -10]
+ground: {{points: {{O: [0, 0, 0]}}}}
+bodies:
+  ball:
+    {{mass: 2, center: [0, 0, 0], inertia: [1, 1, 1], points: {{p: [0, 0, 0]}},
+     position: [0, 0, -1], velocity: [1, 0, {rate!r}]}}
+joints: {{rope: {{type: rod, from: ground.O, to: ball.p, length: 1, tension_only: true, restitution: 1}}}}
+analysis: {{duration: 0.1, samples: 2}}
+"""
+
+
+def near_the_floor(x: float) -> str:
+    """A ball at rest above a floor, by so much of the size of the scene: its extent is that of its inertia."""
+    setup = study(FLOOR.format(at=1.5 * x)).setup
+    assert setup.scene.layout.size == pytest.approx(1.5)
+    return "rests" if setup.runner.start_holding[0] else "falls"
+
+
+def opening_rope(x: float) -> str:
+    """A ball on a circle whose rope opens by a part of its speed."""
+    run = study(SWUNG.format(rate=-x)).history.checked
+    assert run is not None
+    near(run.run.states[-1][4:7] @ run.run.states[-1][4:7], 1.0, 1.0, 1e-9)
+    return "struck" if run.run.blows else "taut"
+
+
+def pressed(x: float) -> str:
+    """A contact pressed with an acceleration of a part of its terms."""
+    found = complementary(np.eye(1), np.array([-x]), np.array([tolerances.CONTACT_ACCELERATION]))
+    return "bears" if found.bears[0] else "open"
+
+
+def leaning(x: float) -> str:
+    """Two contacts of which the one leaves so much of the other, both without rate if the first bears."""
+    c = 1.0 - x
+    found = complementary(np.array([[1.0, c], [c, 1.0]]), np.array([-1.0, -c]), np.full(2, 1e-14))
+    near(found.z, [1.0, 0.0], 1.0, 1e-6)
+    return "leans" if found.depends[1] else "open"
+
+
+def hardly_moved(x: float) -> str:
+    """A contact on a body of 1 kg that gives way to a part of what it would if it were free."""
+    layout: Any = SimpleNamespace(bodies={"mass": np.ones(1)}, size=1.0)
+    one = np.ones(1)
+    touch = Touching(np.zeros(1, dtype=int), np.array([[[0.0, 0, 0, 0, 0, 1.0]]]), one, one, one, one)
+    return "moves" if answerable(layout, touch, np.array([[x]]))[0] else "held"
+
+
+def hop(x: float) -> str:
+    """A flight of so much time, at once and too high to be none."""
+    one = np.ones(1)
+    touch = Touching(np.zeros(1, dtype=int), np.zeros((1, 1, 6)), one, one, np.zeros(1), one)
+    short = short_flights(touch, one, -2.0 * one / x, tolerances.SHORTEST_FLIGHT)
+    return "none" if short[0] else "flies"
+
+
+PART = Part(
+    ("contacts",),
+    rows=(
+        Row("CONTACT_TOUCHES", near_the_floor, "rests", "falls"),
+        Row("CONTACT_RATE", opening_rope, "taut", "struck"),
+        Row("CONTACT_ACCELERATION", pressed, "open", "bears"),
+        Row("CONTACT_DEPENDS", leaning, "leans", "open"),
+        Row("NO_ANSWER", hardly_moved, "held", "moves"),
+        Row("SHORTEST_FLIGHT", hop, "none", "flies"),
+    ),
+)

@@ -1,0 +1,16 @@
+"""Branches of poses that are followed."""
+
+from __future__ import annotations
+
+from tests.honesty.boundaries.part import Part
+
+PART = Part(
+    ("kernel: branches that are followed",),
+    exempt={
+        "KERNEL.branch_bend": "lengths of steps in which extremes are looked for: no number depends on it",
+        "KERNEL.branch_beside": "lengths of the check run's steps along a branch, on which no number depends",
+    },
+    wanted={
+        "KERNEL.branch_step": "lengths of steps along a branch: where they are too long another branch is taken",
+    },
+)

@@ -1,0 +1,105 @@
+"""One instant, one place, one direction, or two."""
+
+from __future__ import annotations
+
+import math
+
+import numpy as np
+
+from heuncli.kinetostatics.auto_properties import Cutting, joined
+from heuncli.kinetostatics.section_axes import nearest_axis
+from heuncli.results import Results
+from heuncli.shapes.figures import Rectangle
+from heuncli.shapes.forms import Form
+from tests.honesty.boundaries.part import Part, Row
+from tests.honesty.boundaries.scenes import WEIGHT, bar, read, verdict
+from tests.shared.scenes import near, study
+
+
+def along_the_normal(x: float) -> str:
+    section = f"{{body: bar, at: [0, 0, -0.3], normal: [0, 0, 1], first_axis: [{x!r}, 0, 1]}}"
+    return read(bar(", piece: {mass: 0.7, center: [0, 0, -0.65], inertia: [1, 1, 1]}", f"sections: {{s: {section}}}"))
+
+
+def tilted(x: float) -> str:
+    text = bar(f", orientation: {{axis: [1, 0, 0], angle: {2 * math.asin(math.sqrt(x / 2))!r}}}", kind="pin")
+    return read(text.replace("gravity: [0, 0, -9.81]", "space: planar"))
+
+
+def expected_at(x: float) -> str:
+    expect = f"expect: [{{of: joints.pivot.force.z, at: {0.5 + x!r}, is: 9.81}}]"
+    return read(bar(tail=f"analysis: {{duration: 1, samples: 3}}\n{expect}"))
+
+
+def needs_side(x: float) -> str:
+    """A cut through a bar of 1 m, x off the place of a load."""
+    push = f"forces: {{f: {{type: force, on: {{body: bar, at: [0, 0, {-0.3 - x!r}]}}, vector: [0, 1, 0]}}}}"
+    section = "sections: {s: {body: bar, at: [0, 0, -0.3], normal: [0, 0, -1]}}"
+    text = bar(tail=f"{push}\n{section}")
+    solid = "shapes: [{type: cylinder, from: [0, 0, 0], to: [0, 0, -1], radius: 10 mm, mass: 1}]"
+    text = text.replace("mass: 1, center: [0, 0, -0.5], inertia: [0.08, 0.08, 0.001]", solid)
+
+    def right(found: Results) -> None:
+        near(found.sections["s"]["N"][0], 0.7 * WEIGHT, WEIGHT)
+
+    return verdict(text, right)
+
+
+def two_legs(x: float) -> str:
+    """A cut through two legs, 0.1 m square, x of the sum of their half diagonals apart."""
+    half = 0.05 + 0.5 * x * 0.1 * math.sqrt(2)
+    legs = ", ".join(f"{{type: box, center: [{s * half!r}, 0, -0.5], size: [0.1, 0.1, 1], mass: 0.5}}" for s in (-1, 1))
+    text = bar(tail="sections: {s: {body: bar, at: [0, 0, -0.3], normal: [0, 0, -1]}}")
+    text = text.replace("mass: 1, center: [0, 0, -0.5], inertia: [0.08, 0.08, 0.001]", f"shapes: [{legs}]")
+    return verdict(text, lambda found: near(found.sections["s"]["N"][0], 0.7 * WEIGHT, WEIGHT)).split(" in ")[0]
+
+
+def one_place(x: float) -> str:
+    """A body on a ball 1 m off the origin, and its centre 3/4 x beyond: a scene of the size x, or of 1 m."""
+    body = f"{{mass: 1, center: [{0.75 * x!r}, 0, 0], inertia: [0, 0, 0], points: {{p: [0, 0, 0]}}}}"
+    text = f"heun: 1\nground: {{points: {{O: [1, 0, 0]}}}}\nbodies: {{b: {body}}}\n"
+    found = study(text + "joints: {j: {type: ball, from: ground.O, to: b.p}}").setup.scene.layout.size
+    return "1 m" if found == 1.0 else "its extent"
+
+
+def equal(x: float) -> str:
+    # y is the nearest to the normal; of x and y alike, x is
+    n = np.array([0.6, 0.6 + x, 0.4])
+    return "xyz"[nearest_axis(n / math.sqrt(n @ n))]
+
+
+def askew(x: float) -> str:
+    """A web and two flanges, shifted either way until I12 is x of √(I1 I2)."""
+    I1, I2 = 2 * 2.0 * 1.0**3 / 12 + 2 * 2.0 * 1.5**2 + 1.0 * 2.0**3 / 12, 2 * 2.0**3 / 12 + 2.0 / 12
+    shift = x * math.sqrt(I1 * I2) / (2 * 2.0 * 1.5)
+    met, at = np.array([True]), [[0.0, 0.0], [shift, 1.5], [-shift, -1.5]]
+    parts = [
+        Rectangle(met, np.array([[*place, 0.0]]), width, height)
+        for place, width, height in zip(at, (1.0, 2.0, 2.0), (2.0, 1.0, 1.0), strict=True)
+    ]
+    zero, ex, ez = np.zeros(1), np.array([1.0, 0.0, 0.0]), np.array([0.0, 0.0, 1.0])
+    found = joined(parts, 0, Cutting(Form((), 1e-15), ez, ex, zero, zero), 1e-12)
+    return "refused" if isinstance(found, str) else "taken"
+
+
+PART = Part(
+    ("same instant, same place, same direction",),
+    rows=(
+        Row("SAME_INSTANT", expected_at, "fine", "refused: expect-instants"),
+        Row("PARALLEL", along_the_normal, "refused: first-axis", "fine"),
+        Row("UPRIGHT", tilted, "fine", "refused: not-planar"),
+        Row("EQUAL_COMPONENTS", equal, "x", "y"),
+        Row("PRINCIPAL", askew, "taken", "refused"),
+        Row("IN_PLANE", needs_side, "refused: needs-side", "fine"),
+        Row("OUTLINES_APART", two_legs, "fine", "warned: sections.s: the plane meets the body bar"),
+        Row("ONE_PLACE", one_place, "1 m", "its extent"),
+    ),
+    exempt={
+        "LEAST_EXTENT": "what IN_PLANE is measured by where all lies in the origin",
+        "OFF_AXIS": "two formulas for the same piece of a body of revolution",
+        "SIDE_BY_SIDE": "ends a search at a jump that nobody told of",
+    },
+    wanted={
+        "TOUCHING": "whether two outlines without extent are one",
+    },
+)

@@ -1,0 +1,80 @@
+"""What is typed in a spec: units, inertias, tables, limits, expectations."""
+
+from __future__ import annotations
+
+import numpy as np
+
+from heuncli.errors import HeunError
+from heuncli.mechanism.build import build
+from heuncli.mechanism.model import Stop
+from heuncli.records import replace
+from heuncli.spec.load import load
+from heuncli.spec.turns import of_matrix
+from heuncli.study.ask.expectations import compare
+from heuncli.tree.prepare import prepare
+from tests.honesty.boundaries.part import Part, Row
+from tests.honesty.boundaries.scenes import WEIGHT, bar, read
+from tests.shared.scenes import near, study
+
+
+def start_beyond(x: float) -> str:
+    """A pin that starts at the angle 0, above the limit of its stop by x."""
+    mechanism = build(load("scene.yaml", bar(kind="pin, axis: [0, 1, 0]")), {})
+    stopped = replace(mechanism, stops=(Stop("s", 0, "angle", None, -x, 0.0),))
+    try:
+        prepare(stopped)
+    except HeunError as error:
+        return f"refused: {error.problems[0].code}"
+    return "fine"
+
+
+def quaternion(x: float) -> str:
+    return read(bar(f", orientation: {{quaternion: [{1 + x!r}, 0, 0, 0]}}"))
+
+
+def matrix(x: float) -> str:
+    given = ((1.0 + x / 2, 0.0, 0.0), (0.0, 1.0, 0.0), (0.0, 0.0, 1.0))
+    R = of_matrix(given)
+    near(R, np.eye(3), 1.0, 2 * x)
+    return "as typed" if R == given else "made a rotation"
+
+
+def principal(x: float) -> str:
+    return read(bar(inertia=f"[1, 1, {2 / (1 - x)!r}]"))
+
+
+def unsymmetric(x: float) -> str:
+    return read(bar(inertia=f"[[1, {x!r}, 0], [0, 1, 0], [0, 0, 1]]"))
+
+
+def periodic(x: float) -> str:
+    return read(bar(tail=f"tables: {{w: {{x: [0, 1, 2], y: [0, 1, 0], period: {2 * (1 + x)!r}}}}}"))
+
+
+def expectation(wanted: str) -> str:
+    done = study(bar(tail=f"expect: [{wanted}]"))
+    return "passed" if compare(done, done.spec.expect[0]).passed else "failed"
+
+
+def relatively_off(x: float) -> str:
+    return expectation(f"{{of: joints.pivot.force.z, is: {WEIGHT / (1 - x)!r}}}")
+
+
+def absolutely_off(x: float) -> str:
+    return expectation(f"{{of: joints.pivot.force.x, is: {x!r}}}")
+
+
+PART = Part(
+    ("what is typed in a spec",),
+    rows=(
+        Row("UNIT_TYPED", quaternion, "fine", "refused: orientation"),
+        Row("UNIT_EXACT", matrix, "as typed", "made a rotation"),
+        Row("INERTIA_REFUSED", principal, "warned: inertia-rounded", "refused: inertia-not-physical"),
+        Row("INERTIA_TYPED", principal, "fine", "warned: inertia-rounded"),
+        Row("INERTIA_TYPED", unsymmetric, "fine", "refused: inertia-form"),
+        Row("TABLE_ENDS", periodic, "fine", "refused: table-period"),
+        Row("EXPECTED_RELATIVE", relatively_off, "passed", "failed"),
+        Row("EXPECTED_ABSOLUTE", absolutely_off, "passed", "failed"),
+        Row("AT_LIMIT", start_beyond, "fine", "refused: beyond-stop"),
+    ),
+)
