@@ -14,7 +14,7 @@ FOLDER = Path(__file__).parents[1] / "manual"
 # in the order in which a reader may want them
 PAGES = (
     "commands", "format", "results", "signs", "open", "stresses", "model", "rest", "modes", "methods", "accuracy",
-    "chart", "probe", "limits", "decisions", "speed", "theory", "references", "developing",
+    "chart", "probe", "limits", "theory", "references", "decisions", "speed", "developing", "index",
 )  # fmt: skip
 
 

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import io
+import json
 import re
 import shlex
 import sys
@@ -12,6 +13,7 @@ import pytest
 
 from heuncli.cli.entry import enter
 from heuncli.spec.load import load
+from heuncli.spec.source import read
 from heuncli.study.workflow import solve
 from tests.shared.manual import README, ROOT, TEXTS, blocks
 from tests.shared.picture import picture
@@ -72,6 +74,39 @@ def test_shown_output_is_the_output(shown: list[str], capsys: pytest.CaptureFixt
 def steady(line: str) -> str:
     """A line without its error estimates, which differ in the last bits from machine to machine."""
     return re.sub(r"\de-\d+", "#", line)
+
+
+WHOLE = {f"{name}: {block.splitlines()[1]}": block for name in TEXTS for block in blocks(name, "yaml")
+         if block.startswith("heun: 1\n")}  # fmt: skip
+PARTS = [(name, block) for name in TEXTS for block in blocks(name, "yaml") if not block.startswith("heun: 1\n")]
+
+
+@pytest.mark.heavy
+@pytest.mark.parametrize("text", WHOLE.values(), ids=WHOLE)
+def test_scenes_run_and_are_as_they_expect(text: str, tmp_path: Path, capsys: pytest.CaptureFixture[str]) -> None:
+    run_and_check(text, tmp_path, capsys)
+
+
+@pytest.mark.heavy
+@pytest.mark.parametrize(("name", "text"), PARTS, ids=[f"{name}: {part.splitlines()[1]}" for name, part in PARTS])
+def test_parts_of_scenes_belong_to_the_first_one_of_their_page(
+    name: str, text: str, tmp_path: Path, capsys: pytest.CaptureFixture[str]
+) -> None:
+    """Their entries replace those of the same name; `analysis` and lists are replaced as a whole."""
+    scene = dict(read("scene.yaml", blocks(name, "yaml")[0]).data)
+    for block, given in read("part.yaml", text).data.items():
+        entries = isinstance(given, dict) and block != "analysis"
+        scene[block] = {**scene.get(block, {}), **given} if entries else given
+    run_and_check(json.dumps(scene), tmp_path, capsys)
+
+
+def run_and_check(text: str, folder: Path, capsys: pytest.CaptureFixture[str]) -> None:
+    """A scene runs without a warning, with nothing open, and its numbers are those that it expects."""
+    file = folder / "scene.yaml"
+    file.write_text(text)
+    assert enter(["run", str(file), "--strict"]) == 0
+    assert enter(["check", str(file)]) == 0
+    assert capsys.readouterr().err == ""
 
 
 def test_the_first_example_runs(monkeypatch: pytest.MonkeyPatch, capsys: pytest.CaptureFixture[str]) -> None:

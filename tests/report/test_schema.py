@@ -1,8 +1,7 @@
-"""One schema of results: shapes come from it and never from an array's length, and the manual's table is it."""
+"""One schema of results: shapes come from it and never from an array's length, and what is asked for fits it."""
 
 from __future__ import annotations
 
-from itertools import groupby
 from typing import get_args
 
 import numpy as np
@@ -15,11 +14,10 @@ from heuncli.report.export import to_csv
 from heuncli.report.page import some_instants
 from heuncli.results import Results
 from heuncli.results_paths import find
-from heuncli.results_schema import NOT_YET, REPORTS, ROWS, SPACE, TREE, Node, Quantity, quantity
+from heuncli.results_schema import REPORTS, ROWS, TREE, Node, Quantity, quantity
 from heuncli.spec.format import Head
 from heuncli.spec.load import load
 from tests.shared.fakes import LABELS, FakeStudy, pendulum, vectors
-from tests.shared.manual import TEXTS
 
 T = np.linspace(0.0, 2.0, 5)
 
@@ -150,27 +148,5 @@ def leaves(node: Node) -> list[Quantity]:
     return [row for below in node.values() for row in (leaves(below) if isinstance(below, dict) else [below])]
 
 
-def test_the_manual_has_the_schema_as_a_table() -> None:
-    table = manual_table()
-    assert table in TEXTS["results"], f"the table of the page on results should be:\n\n{table}"
-    assert len(leaves(TREE)) > len(ROWS)  # with what a blow has
-
-
-def manual_table() -> str:
-    """A line for the numbers that stand in one place and have one meaning."""
-    lines = ["| path | SI unit | |", "|---|---|---|"]
-    numbers = [row for row in ROWS if row.units and row.meaning != NOT_YET]
-    for (place, meaning), group in groupby(numbers, lambda row: (row.path.rpartition(".")[0], row.meaning)):
-        rows = list(group)
-        first, *others = [row.path.rpartition(".")[2] for row in rows]
-        names = [f"`{place}.{first}`" if place else f"`{first}`", *(f"`{name}`" for name in others)]
-        units = [unit_of(row) for row in rows]
-        units = units[:1] if len(set(units)) == 1 else units
-        lines.append(f"| {', '.join(names)} | {', '.join(units)} | {meaning} |")
-    return "\n".join(lines) + "\n"
-
-
-def unit_of(row: Quantity) -> str:
-    """The unit; *m* of a vector, **1** of a matrix."""
-    stars = "*" * row.shape.count(SPACE)
-    return f"{stars}{' or '.join(row.units)}{stars}"
+def test_a_blow_has_rows_of_its_own() -> None:
+    assert len(leaves(TREE)) > len(ROWS)

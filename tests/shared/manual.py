@@ -32,3 +32,18 @@ def headings(name: str) -> list[str]:
 def anchor(heading: str) -> str:
     """Where links to a heading lead: its letters, digits and hyphens, spaces as hyphens."""
     return re.sub(r"[^\w\- ]", "", heading.lower()).replace(" ", "-")
+
+
+def below(text: str, heading: str) -> tuple[int, int]:
+    """Where the text below a heading begins and ends, up to the next heading of any kind."""
+    plain = FENCED.sub(lambda found: "." * len(found[0]), text)
+    begun = re.search(rf"^#+ {re.escape(heading)}$", plain, re.MULTILINE)
+    assert begun is not None, f"there is no heading {heading}"
+    ended = re.compile(r"^#", re.MULTILINE).search(plain, begun.end())
+    return begun.end(), ended.start() if ended else len(text)
+
+
+def tables_below(text: str, heading: str) -> list[str]:
+    """The tables that stand below a heading."""
+    start, end = below(text, heading)
+    return re.findall(r"(?:^\|.*\n)+", text[start:end], re.MULTILINE)

@@ -1,0 +1,144 @@
+"""The keys of the format as the models have them, and where the manual's page on the format describes each."""
+
+from __future__ import annotations
+
+from collections.abc import Iterator, Mapping
+from typing import Any, NamedTuple, get_args
+
+from pydantic.fields import FieldInfo
+
+from heuncli.expressions import units as u
+from heuncli.spec import fields
+from heuncli.spec import format as f
+from heuncli.spec.fields import Model
+
+ALL = "all"  # in place of the types that have a key, where all have it
+# by heading: the model whose keys the first table below it lists, or the models by type
+CHAPTERS: dict[str, type[Model] | Mapping[str, type[Model]]] = {
+    "Tables": f.Table,
+    "Bodies": f.Body,
+    "Shapes": f.SHAPES,
+    "Orientation": f.Orientation,
+    "Piece": f.Piece,
+    "Joints": f.JOINTS,
+    "Initial": {"pin": f.Turning, "slide": f.Sliding, "cylinder": f.TurningAndSliding},
+    "Stiffness of joints": f.StiffnessParts,
+    "Drives": f.Drive,
+    **f.LOADS,
+    "Impulses": f.Blow,
+    "Stops": f.Stop,
+    "Sections": f.Section,
+    "Properties": f.Properties,
+    "Analysis": f.Analysis,
+    "Conditions": f.OfResults,
+    "Expect": f.Expect,
+}
+TOP = "Top level"
+# small mappings that are described in the row of the key that holds them
+INLINE: dict[type[Model], tuple[str, str]] = {
+    f.Ground: (TOP, "ground"),
+    f.Foundation: (TOP, "foundation"),
+    f.Near: ("Bodies", "near"),
+    f.VelocityInFrame: ("Bodies", "velocity"),
+    f.RateInFrame: ("Bodies", "velocity"),
+    f.Circle: ("Properties", "circle"),
+    f.Tube: ("Properties", "tube"),
+    f.Rectangle: ("Properties", "rectangle"),
+}
+NEEDED = {("Tables", "x"), ("Tables", "y")}  # asked for by a rule, not by the model
+
+
+class Place(NamedTuple):
+    """A key below a heading of the page on the format; types: those that have it, where not all entries do."""
+
+    key: str
+    heading: str
+    types: tuple[str, ...] = ()
+
+
+def named_fields(model: type[Model]) -> dict[str, FieldInfo]:
+    """The fields of a model by their keys, without the `type` by which it is chosen: that stands above its table."""
+    fields_of = {field.alias or name: field for name, field in model.model_fields.items()}
+    return {key: field for key, field in fields_of.items() if key != "type" or not field.is_required()}
+
+
+def top_keys() -> list[str]:
+    """The keys of a spec's top level."""
+    return [*named_fields(f.Head), *f.READ_BEFORE, *f.ENTRIES, *f.SINGLE, "expect"]
+
+
+def pairs(models: Mapping[str, type[Model]]) -> dict[tuple[str, str], FieldInfo]:
+    """The fields by type and key."""
+    return {(kind, key): field for kind, model in models.items() for key, field in named_fields(model).items()}
+
+
+def places() -> Iterator[Place]:
+    """Every key with the headings below which it stands."""
+    for key in top_keys():
+        yield Place(key, TOP)
+    for model, (heading, parent) in INLINE.items():
+        for key in named_fields(model):
+            yield Place(key, heading, (parent,))
+    for heading, model_or_models in CHAPTERS.items():
+        if isinstance(model_or_models, Mapping):
+            have: dict[str, list[str]] = {}
+            for kind, key in pairs(model_or_models):
+                have.setdefault(key, []).append(kind)
+            for key, kinds in have.items():
+                yield Place(key, heading, tuple(kinds) if len(kinds) < len(model_or_models) else ())
+            yield Place("type", heading)
+        else:
+            for key in named_fields(model_or_models):
+                yield Place(key, heading)
+    yield Place("type", "Forces")
+
+
+PLACES = tuple(dict.fromkeys(places()))
+SPELLED = {"*": "·", "^2": "²", "^3": "³", "^4": "⁴"}
+
+
+def unit_of_value(name: str, value: fields.Value) -> str | None:
+    """The unit of a kind of values of spec/fields.py, as the manual writes it; None: one that other keys decide."""
+    if value.dimension is None or isinstance(value, fields.Component):
+        return None
+    unit = u.si_unit(value.dimension)
+    if value.dimension == u.NUMBER and not name.startswith("Angle"):
+        unit = "1"
+    for typed, written in SPELLED.items():
+        unit = unit.replace(typed, written)
+    return f"{unit}, in time" if isinstance(value, fields.InTime) else unit
+
+
+UNITS = {
+    id(value): unit_of_value(name, value)
+    for name, kind in vars(fields).items()
+    for value in getattr(kind, "__metadata__", ())
+    if isinstance(value, fields.Value)
+}
+
+
+def unit_of(field: FieldInfo) -> str | None:
+    """The unit of a field; None where it has none, or several."""
+    found = {UNITS[id(value)] for value in values(field) if id(value) in UNITS}
+    return found.pop() if len(found) == 1 else None
+
+
+def values(field: FieldInfo) -> Iterator[fields.Value]:
+    """The values that stand in a field's annotation, and beside it."""
+    yield from (value for value in field.metadata if isinstance(value, fields.Value))
+    yield from within(field.annotation)
+
+
+def within(annotation: Any) -> Iterator[fields.Value]:
+    """The values within an annotation; those of models apart."""
+    for value in getattr(annotation, "__metadata__", ()):
+        if isinstance(value, fields.Value):
+            yield value
+    for part in get_args(annotation):
+        yield from within(part)
+
+
+def words_of(annotation: Any) -> set[str]:
+    """The words that an annotation admits by name."""
+    found = {part for part in get_args(annotation) if isinstance(part, str)}
+    return found.union(*(words_of(part) for part in get_args(annotation)))

@@ -1,0 +1,199 @@
+"""The tables of the manual that follow from rows of the code: what they should be, and a command that writes them.
+
+    python -m tests.manual.tables        # renews them all in the pages, after a row has changed
+
+A table is known by its page, its heading and its first line; what stands around it is written by hand.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Iterator, Sequence
+from itertools import groupby
+from typing import NamedTuple
+
+from heuncli.cli.explain import PAGES, summary
+from heuncli.cli.requests import COMMANDS, LATER_OPTIONS, rows
+from heuncli.expressions import units as u
+from heuncli.expressions.grammar import ARITY, CONSTANTS
+from heuncli.joint_kinds import TYPES, Kind
+from heuncli.method_rows import METHODS
+from heuncli.results_schema import NOT_YET, ROWS, SPACE, Quantity, is_share
+from tests.manual.keys import PLACES
+from tests.shared.manual import README, anchor, below, file_of, tables_below
+
+SOLVED = [row for row in ROWS if row.meaning != NOT_YET]
+
+
+class Table(NamedTuple):
+    """A table of a page: below which heading, its head, and its rows."""
+
+    page: str
+    heading: str
+    head: tuple[str, ...]
+    rows: Sequence[Sequence[str]]
+
+    @property
+    def first_line(self) -> str:
+        """The line by which it is known."""
+        return line_of(self.head)
+
+    @property
+    def text(self) -> str:
+        """The table as it should stand in the page."""
+        return "\n".join([self.first_line, "|" + "---|" * len(self.head), *map(line_of, self.rows)]) + "\n"
+
+
+def line_of(cells: Sequence[str]) -> str:
+    """A row of a table in markdown."""
+    return "|" + "|".join(f" {cell} " if cell else " " for cell in cells) + "|"
+
+
+def quoted(words: Sequence[str]) -> str:
+    """Words of the format, side by side."""
+    return ", ".join(f"`{word}`" for word in words)
+
+
+def grouped(chosen: Sequence[Quantity]) -> Iterator[tuple[str, list[Quantity], str]]:
+    """The rows that stand in one place and have one meaning: their paths, themselves, the meaning."""
+    for (place, meaning), group in groupby(chosen, lambda row: (row.path.rpartition(".")[0], row.meaning)):
+        members = list(group)
+        first, *others = [row.path.rpartition(".")[2] for row in members]
+        names = [f"`{place}.{first}`" if place else f"`{first}`", *(f"`{name}`" for name in others)]
+        yield ", ".join(names), members, meaning
+
+
+def results() -> Iterator[tuple[str, str, str]]:
+    """The numbers of the results with their units."""
+    for names, members, meaning in grouped([row for row in SOLVED if row.units]):
+        each = [unit_of(row) for row in members]
+        yield names, ", ".join(each[:1] if len(set(each)) == 1 else each), meaning
+
+
+def no_numbers() -> Iterator[tuple[str, str]]:
+    """What else stands in the JSON."""
+    for names, _, meaning in grouped([row for row in SOLVED if not row.units]):
+        yield names, meaning
+
+
+def unit_of(row: Quantity) -> str:
+    """The unit; *m* of a vector, **1** of a matrix."""
+    stars = "*" * row.shape.count(SPACE)
+    return f"{stars}{' or '.join(row.units)}{stars}"
+
+
+SAID_OF = {u.NUMBER: "an angle", u.MOMENT: "a moment, an energy"}
+
+
+def units() -> Iterator[tuple[str, str]]:
+    """The units of each dimension that has any of its own."""
+    dimensions = dict.fromkeys(dimension for _, dimension in u.UNITS.values())
+    for dimension in dimensions:
+        yield (
+            SAID_OF.get(dimension, u.describe(dimension)),
+            quoted([unit for unit, (_, of) in u.UNITS.items() if of == dimension]),
+        )
+
+
+def words() -> Iterator[tuple[str, str]]:
+    """What expressions are made of."""
+    yield "operators", "`+ - * / **`, parentheses, `< <= > >= == !=`, `and or not`, `a if c else b`"
+    yield "functions", f"`{' '.join(name for name in ARITY if name != 'table')}`"
+    yield "constants", f"{quoted(list(CONSTANTS))}, as in `1500*rpm*t`"
+
+
+def joints() -> Iterator[tuple[str, ...]]:
+    """What each kind of joint holds and takes."""
+    for kind in TYPES.values():
+        yield f"`{kind.name}`", str(kind.rows), quoted(driven(kind)), quoted(kind.loads), ", ".join(kind.synonyms)
+
+
+def driven(kind: Kind) -> list[str]:
+    """The keys by which a kind of joint may be driven."""
+    rates = {"angle": "rate", "travel": "speed", "length": "speed"}
+    return [key for quantity in kind.drives for key in (quantity, rates[quantity])]
+
+
+def methods() -> Iterator[tuple[str, ...]]:
+    """The list of `heun methods`."""
+    for row in METHODS:
+        yield f"`{row.name}`", str(row.order), row.kind, row.steps, row.attitude, row.purpose
+
+
+def options(command: str) -> Iterator[tuple[str, str]]:
+    """The arguments and options of a command."""
+    for row in rows(COMMANDS[command]):
+        value = (row.option.metavar or "").replace("|", "\\|")
+        if row.name not in LATER_OPTIONS:
+            yield f"`{' '.join([', '.join(row.option.words), value]).strip()}`", row.option.help.replace("|", "\\|")
+
+
+def keys() -> Iterator[tuple[str, str]]:
+    """Each key of the format with the chapters of the page on it."""
+    places: dict[str, dict[str, list[str]]] = {}
+    for place in PLACES:
+        places.setdefault(place.key, {}).setdefault(place.heading, []).extend(place.types)
+    for key in sorted(places, key=str.lower):
+        links = []
+        for heading, types in places[key].items():
+            of = f" of {quoted(sorted(set(types)))}" if types else ""
+            links.append(f"[{heading}](format.md#{anchor(heading)}){of}")
+        yield f"`{key}`", "; ".join(links)
+
+
+def results_by_word() -> Iterator[tuple[str, str]]:
+    """Each last word of a path of the results with its paths; those of shares stand together."""
+    paths: dict[str, list[str]] = {}
+    for row in SOLVED:
+        whole, _, word = row.path.rpartition(".")
+        path = "shares.CAUSE" if is_share(row) else whole
+        paths.setdefault(word, []).append(f"`{path}.{word}`" if path else f"`{word}`")
+    for word in sorted(paths, key=str.lower):
+        yield f"`{word}`", f"[Paths](results.md#paths): {', '.join(dict.fromkeys(paths[word]))}"
+
+
+def options_by_word() -> Iterator[tuple[str, str]]:
+    """Each option with the commands that know it."""
+    known: dict[str, list[str]] = {}
+    for name, command in COMMANDS.items():
+        for row in rows(command):
+            for word in row.option.words:
+                if row.name not in LATER_OPTIONS:
+                    known.setdefault(word, []).append(name)
+    for word in sorted(known, key=str.lower):
+        links = (f"[heun {name}](commands.md#{anchor(f'heun {name}')})" for name in known[word])
+        yield f"`{word}`", ", ".join(links)
+
+
+def pages() -> Iterator[tuple[str, str]]:
+    """The pages of the manual."""
+    for name in PAGES:
+        yield f"[{name}](heuncli/manual/{name}.md)", summary(name)
+
+
+TABLES = (
+    Table(README, "The manual", ("page", "about"), list(pages())),
+    Table("results", "Paths", ("path", "SI unit", ""), list(results())),
+    Table("results", "What is no number", ("path", "meaning"), list(no_numbers())),
+    Table("format", "Units", ("quantity", "units"), list(units())),
+    Table("format", "Expressions", ("", ""), list(words())),
+    Table("format", "Joints", ("type", "conditions", "may be driven", "takes", "also called"), list(joints())),
+    Table("methods", "The list", ("name", "order", "kind", "steps", "attitude", "what for"), list(methods())),
+    *(Table("commands", f"heun {name}", ("option", "meaning"), list(options(name))) for name in COMMANDS),
+    Table("index", "Keys of a spec", ("key", "stands in"), list(keys())),
+    Table("index", "Words of the results", ("word", "paths"), list(results_by_word())),
+    Table("index", "Options", ("option", "of"), list(options_by_word())),
+)
+
+
+def renew(table: Table) -> None:
+    """Write a table into its page, in the place of the one that begins alike."""
+    path = file_of(table.page)
+    text = path.read_text(encoding="utf-8")
+    (old,) = [found for found in tables_below(text, table.heading) if found.startswith(table.first_line + "\n")]
+    start, _ = below(text, table.heading)
+    path.write_text(text[:start] + text[start:].replace(old, table.text, 1), encoding="utf-8")
+
+
+if __name__ == "__main__":
+    for each in TABLES:
+        renew(each)
