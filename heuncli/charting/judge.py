@@ -20,13 +20,13 @@ from heuncli.integration.trajectory import Trajectory
 from heuncli.kinetostatics.reactions import JointLoads
 from heuncli.records import record, replace
 from heuncli.results import Array, Mask
+from heuncli.study.compose.blocks import blocks
+from heuncli.study.compose.recovery import recover
+from heuncli.study.model.selection import Selection
+from heuncli.study.model.setup import Setup
 from heuncli.study.solve.balance_terms import BalanceTerms
-from heuncli.study.solve.blocks import blocks
 from heuncli.study.solve.error_extents import APART, Weights
 from heuncli.study.solve.load_errors import LoadErrors
-from heuncli.study.solve.recovery import recover
-from heuncli.study.solve.selection import Selection
-from heuncli.study.solve.setup import Setup
 
 OF_LOADS = Selection(frozenset({"joints", "sections"}))
 Certain = Mapping[str, tuple[Mask, Mask]]  # by joint: which components of its force and moment are never open

@@ -20,8 +20,8 @@ from heuncli.method_rows import AUTO, DEFAULT
 from heuncli.records import record
 from heuncli.results import Array
 from heuncli.spec.models import Spec
+from heuncli.study.model.setup import Setup, set_up
 from heuncli.study.solve.history import begin
-from heuncli.study.solve.setup import Setup, set_up
 
 NOTICED, PATIENCE = 1e-8, 10.0  # local tolerance of the run by which stiffness is noticed; seconds it may take
 NO_TIME = "the time limit was reached before a reference was found"
@@ -95,7 +95,7 @@ def up_to_its_end(spec: Spec, deadline: float | None) -> tuple[Spec, str]:
     ending = next((c for c in spec.analysis.conditions if c.ends and c.value is None), None)
     if ending is None:
         return spec, ""
-    from heuncli.study.solve.options import Options  # few scenes end so
+    from heuncli.study.model.options import Options  # few scenes end so
     from heuncli.study.workflow import solve  # few scenes end so
 
     left = None if deadline is None else deadline - time.monotonic()

@@ -13,7 +13,7 @@ from heuncli.charting.reference import refer
 from heuncli.charting.results import Chart, with_front
 from heuncli.charting.runs import Charting, Tell
 from heuncli.spec.models import Spec
-from heuncli.study.solve.error_places import placed
+from heuncli.study.model.error_places import placed
 
 DRIVEN = (
     "the drives leave no freedom: heun run solves every instant by itself (followed) and integrates nothing; the other "

@@ -35,9 +35,9 @@ PHASES = (
     ("heuncli.integration.check.runs", "while the motion was integrated and checked"),
     ("heuncli.assembly", "while the scene was assembled"),
     ("heuncli.redundancy", "while it was judged which reactions are open"),
-    ("heuncli.study.solve.setup", "while the scene was set up"),
-    ("heuncli.study.solve.recovery", "while loads were computed"),
-    ("heuncli.study.solve.blocks", "while loads were computed"),
+    ("heuncli.study.model.setup", "while the scene was set up"),
+    ("heuncli.study.compose.recovery", "while loads were computed"),
+    ("heuncli.study.compose.blocks", "while loads were computed"),
     ("heuncli.kinetostatics", "while loads were computed"),
     ("heuncli.report", "while the results were written down"),
 )  # fmt: skip

@@ -26,9 +26,9 @@ from heuncli.report.text_table import TextColumn, TextTable, plain
 from heuncli.results import Array
 from heuncli.spec.load import load
 from heuncli.study.ask.expectations import Case, compare
-from heuncli.study.solve.memory_estimate import Room
-from heuncli.study.solve.options import Options
-from heuncli.study.solve.selection import EVERYTHING, asked_by
+from heuncli.study.model.memory_estimate import Room
+from heuncli.study.model.options import Options
+from heuncli.study.model.selection import EVERYTHING, asked_by
 from heuncli.study.workflow import solve
 
 FORMATS = ("table", "json")

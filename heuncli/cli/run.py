@@ -32,10 +32,10 @@ from heuncli.results_schema import BLOWS, REPORT_OF, REPORTS, SHARES, with_share
 from heuncli.spec.load import load
 from heuncli.spec.models import Spec
 from heuncli.study.ask.study import Study
-from heuncli.study.solve.error_places import placed
-from heuncli.study.solve.memory_estimate import Room
-from heuncli.study.solve.options import Options
-from heuncli.study.solve.selection import Entry, Selection, asked_by, entries_of, entry_at
+from heuncli.study.model.error_places import placed
+from heuncli.study.model.memory_estimate import Room
+from heuncli.study.model.options import Options
+from heuncli.study.model.selection import Entry, Selection, asked_by, entries_of, entry_at
 from heuncli.study.workflow import solve
 
 ENDINGS = {".json": "json", ".csv": "csv", ".md": "markdown", ".txt": "table", "": "table"}

@@ -50,7 +50,7 @@ def _of_cuts(spec: Spec) -> list[str]:
     """Warnings of the sections. Raises SpecError with every one that cannot be cut."""
     if not spec.sections:
         return []
-    from heuncli.study.solve.setup import draw  # with NumPy, which other specs are judged without
+    from heuncli.study.model.setup import draw  # with NumPy, which other specs are judged without
 
     return [f"{shown(spec.path)}: {warning}" for cut in draw(spec)[1] for warning in cut.warnings]
 

@@ -20,8 +20,8 @@ from heuncli.linearisation.smooth import without_slope
 from heuncli.linearisation.steady import Looked, fastest, goes_on_as_it_is, look, off_balance
 from heuncli.redundancy.neighbours import neighbours
 from heuncli.spec.models import Spec
-from heuncli.study.solve.error_places import placed
-from heuncli.study.solve.setup import Setup, set_up
+from heuncli.study.model.error_places import placed
+from heuncli.study.model.setup import Setup, set_up
 
 REST_HINT = "analysis: {type: rest} looks for the pose that rests"
 NEARLY = "look for it from nearer by: draw the scene closer to where it rests"

@@ -12,7 +12,7 @@ from heuncli.probing import page as report
 from heuncli.probing.study import probe
 from heuncli.report.export import dump
 from heuncli.spec.load import load
-from heuncli.study.solve.options import Options
+from heuncli.study.model.options import Options
 
 FORMATS = ("table", "json")
 ENDINGS = {".json": "json", ".txt": "table", "": "table"}

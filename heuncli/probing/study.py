@@ -16,8 +16,8 @@ from heuncli.probing.stiffness import stiffness_of
 from heuncli.probing.verdict import others, trouble
 from heuncli.records import replace
 from heuncli.spec.models import Spec
-from heuncli.study.solve.error_places import placed
-from heuncli.study.solve.options import Options
+from heuncli.study.model.error_places import placed
+from heuncli.study.model.options import Options
 from heuncli.study.workflow import solve
 
 MOST_EVENTS = 100  # that are listed of one kind and place

@@ -7,7 +7,7 @@ from collections.abc import Iterator
 
 from heuncli import tolerances
 from heuncli.probing.results import DEAD_CENTRE, GIMBAL, HALF_TURN, NO_MASS, SINGULAR, Event, Probe
-from heuncli.study.solve.counts_and_lists import count, some
+from heuncli.study.model.counts_and_lists import count, some
 
 MOST_TIMES = 3  # that a sentence lists
 

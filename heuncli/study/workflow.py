@@ -18,15 +18,15 @@ from heuncli.results import Block
 from heuncli.results_schema import SHARES
 from heuncli.spec.models import Spec
 from heuncli.study.ask.study import Study
-from heuncli.study.solve.compose import compose, impulses_of
-from heuncli.study.solve.error_places import placed
+from heuncli.study.compose.recovery import recover
+from heuncli.study.compose.results import compose, impulses_of
+from heuncli.study.model.error_places import placed
+from heuncli.study.model.memory_estimate import require_room
+from heuncli.study.model.method_choice import anew
+from heuncli.study.model.options import Options, as_asked
+from heuncli.study.model.selection import needed_by
+from heuncli.study.model.setup import Setup, set_up
 from heuncli.study.solve.history import integrate
-from heuncli.study.solve.memory_estimate import require_room
-from heuncli.study.solve.method_choice import anew
-from heuncli.study.solve.options import Options, as_asked
-from heuncli.study.solve.recovery import recover
-from heuncli.study.solve.selection import needed_by
-from heuncli.study.solve.setup import Setup, set_up
 
 if TYPE_CHECKING:
     from heuncli.integration.methods.method import Method
@@ -92,7 +92,7 @@ def describe(spec: Spec, *, reduce: bool = True) -> Block:
     Raises as `solve` does.
     """
     from heuncli.redundancy.advice import advice  # runs give none
-    from heuncli.study.solve.forecast import noticed, outlook
+    from heuncli.study.model.forecast import noticed, outlook
 
     with placed(spec):
         asked = Options(wanted=None if spec.report is None else frozenset(spec.report)).asked

@@ -28,7 +28,7 @@ from heuncli.kernel.choose import KERNEL
 from heuncli.report.export import to_csv, to_json
 from heuncli.report.labels import labels_of
 from heuncli.spec.load import load
-from heuncli.study.solve.setup import set_up
+from heuncli.study.model.setup import set_up
 from heuncli.study.workflow import solve
 from heuncli.tree.prepare import PreparedScene
 from tests.bench.auto import table

@@ -29,8 +29,8 @@ from heuncli.integration.trajectory import Trajectory
 from heuncli.method_rows import DEFAULT, METHODS
 from heuncli.spec.load import load
 from heuncli.spec.models import Spec
-from heuncli.study.solve.options import Options
-from heuncli.study.solve.setup import Setup, set_up
+from heuncli.study.model.options import Options
+from heuncli.study.model.setup import Setup, set_up
 from heuncli.study.workflow import solve
 from tests.bench.stiff import STIFF_SCENES
 

@@ -9,8 +9,8 @@ from typing import Any
 
 from heuncli.spec.load import load
 from heuncli.study.ask.study import Study
-from heuncli.study.solve.blocks import blocks
-from heuncli.study.solve.recovery import recover
+from heuncli.study.compose.blocks import blocks
+from heuncli.study.compose.recovery import recover
 from heuncli.study.workflow import solve
 
 REPORTS = frozenset({"motion", "foundation", "joints", "sections", "forces", "energy"})

@@ -24,7 +24,7 @@ from heuncli.integration.run.runner import Runner
 from heuncli.method_rows import METHODS
 from heuncli.results import Array
 from heuncli.spec.load import load
-from heuncli.study.solve.setup import set_up
+from heuncli.study.model.setup import set_up
 from tests.bench.chart import chart
 
 LISTED = [row.name for row in METHODS if row.kind != "SciPy"]

@@ -18,9 +18,9 @@ import numpy as np
 from heuncli.kernel.choose import KERNEL
 from heuncli.spec.load import load
 from heuncli.spec.models import Spec
-from heuncli.study.solve.options import Options
-from heuncli.study.solve.selection import EVERYTHING, asked_by
-from heuncli.study.solve.setup import set_up
+from heuncli.study.model.options import Options
+from heuncli.study.model.selection import EVERYTHING, asked_by
+from heuncli.study.model.setup import set_up
 from heuncli.study.workflow import solve
 from tests.bench.reducible import cluster, engine, pendulums, spun, truss
 from tests.oracle.published import START, andrews, windows

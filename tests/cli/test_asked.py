@@ -22,11 +22,12 @@ from heuncli.spec.load import load
 from heuncli.spec.models import Spec
 from heuncli.study.ask.measure import MeasureRequest, value
 from heuncli.study.ask.study import Study
-from heuncli.study.solve import blocks, compose, load_errors, recovery
-from heuncli.study.solve.needed_parts import restricted
-from heuncli.study.solve.options import Options
-from heuncli.study.solve.recovery import Recovery
-from heuncli.study.solve.selection import asked_by
+from heuncli.study.compose import blocks, recovery, results
+from heuncli.study.compose.recovery import Recovery
+from heuncli.study.model.needed_parts import restricted
+from heuncli.study.model.options import Options
+from heuncli.study.model.selection import asked_by
+from heuncli.study.solve import load_errors
 from heuncli.study.workflow import describe, solve
 from tests.shared.command import SPEC_TEXTS as SPECS_OF
 from tests.shared.command import Heun
@@ -209,7 +210,7 @@ def test_one_section_alone_is_recovered(monkeypatch: pytest.MonkeyPatch) -> None
     for module, names in {
         recovery: ("energy",),
         blocks: ("foundation", "coordinates", "system_vector", "points", "forces"),
-        compose: ("certain_sums",),
+        results: ("certain_sums",),
         load_errors: ("energy", "total"),
     }.items():
         for name in names:

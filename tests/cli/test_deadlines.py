@@ -50,9 +50,9 @@ def forever(*_: Any, **__: Any) -> Any:
     [
         ("heuncli.spec.load.read", "run hanging.yaml", "while the spec was read"),
         ("heuncli.spec.load.read", "validate hanging.yaml", "while the spec was read"),
-        ("heuncli.study.solve.setup.prepare", "run hanging.yaml", "while the scene was set up"),
-        ("heuncli.study.solve.setup.prepare", "model hanging.yaml", "while the scene was set up"),
-        ("heuncli.study.solve.setup.prepare", "modes hanging.yaml", "while the scene was set up"),
+        ("heuncli.study.model.setup.prepare", "run hanging.yaml", "while the scene was set up"),
+        ("heuncli.study.model.setup.prepare", "model hanging.yaml", "while the scene was set up"),
+        ("heuncli.study.model.setup.prepare", "modes hanging.yaml", "while the scene was set up"),
         ("heuncli.rest.search.slopes", "run rest.yaml", "on the way to the rest pose"),
         ("heuncli.expressions.discontinuities._changes", "run driven.yaml", "while jumps in time were searched"),
         (
@@ -61,7 +61,7 @@ def forever(*_: Any, **__: Any) -> Any:
             "while the motion was integrated and checked",
         ),
         ("heuncli.integration.check.estimate.instants_of", "check swinging.yaml", "swinging.yaml: the time limit"),
-        ("heuncli.study.solve.recovery.body_states", "run swinging.yaml", "while loads were computed"),
+        ("heuncli.study.compose.recovery.body_states", "run swinging.yaml", "while loads were computed"),
         (
             "heuncli.study.search.extremes.highest",
             "run swinging.yaml",

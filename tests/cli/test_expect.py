@@ -12,7 +12,7 @@ from heuncli.errors import Problem, SolveError, SourceLocation, SpecError
 from heuncli.spec.load import load
 from heuncli.study.ask import expectations as expect
 from heuncli.study.ask.expectations import compare
-from heuncli.study.solve.options import Options
+from heuncli.study.model.options import Options
 from heuncli.study.workflow import solve
 from tests.shared.fakes import ACCURATE, FakeStudy, pendulum
 

@@ -15,10 +15,10 @@ from heuncli.integration.run.step_records import Growing
 from heuncli.integration.trajectory import Kept
 from heuncli.results_schema import REPORT_OF, REPORTS, SHARES
 from heuncli.spec.load import load
-from heuncli.study.solve.memory_estimate import in_words, numbers_by_block, two_digits
-from heuncli.study.solve.options import Options
-from heuncli.study.solve.selection import Selection
-from heuncli.study.solve.setup import set_up
+from heuncli.study.model.memory_estimate import in_words, numbers_by_block, two_digits
+from heuncli.study.model.options import Options
+from heuncli.study.model.selection import Selection
+from heuncli.study.model.setup import set_up
 from heuncli.study.workflow import solve
 from tests.shared.command import Heun
 from tests.shared.shell import shell

@@ -25,7 +25,7 @@ from heuncli.results_schema import BLOWS, CUT, REPORTS, SHARES, beside_magnitude
 from heuncli.spec.load import load
 from heuncli.study.ask.measure import MeasureRequest, NotOneNumber, value
 from heuncli.study.ask.study import Study
-from heuncli.study.solve.options import Options
+from heuncli.study.model.options import Options
 from heuncli.study.workflow import solve
 from tests.shared.command import Heun
 

@@ -23,7 +23,7 @@ from heuncli.results_paths import find
 from heuncli.spec.load import load
 from heuncli.study.ask.expectations import compare
 from heuncli.study.ask.study import Study
-from heuncli.study.solve.options import Options
+from heuncli.study.model.options import Options
 from heuncli.study.workflow import solve
 
 FOLDER = Path(__file__).parents[2] / "specs"

@@ -16,7 +16,7 @@ from heuncli.integration.run.conditions import Conditions, coordinates_at
 from heuncli.results import Array
 from heuncli.spec.load import load
 from heuncli.study.ask.study import Study
-from heuncli.study.solve.options import Options
+from heuncli.study.model.options import Options
 from heuncli.study.workflow import solve
 from tests.shared.scenes import near
 

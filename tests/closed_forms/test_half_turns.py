@@ -12,7 +12,7 @@ from heuncli.errors import HeunError, SolveError
 from heuncli.integration.methods.registry import method_of
 from heuncli.results import Array
 from heuncli.spec.load import load
-from heuncli.study.solve.setup import set_up
+from heuncli.study.model.setup import set_up
 from tests.shared.bars import double
 from tests.shared.scenes import near, solved, study
 from tests.shared.tops import PERIOD, free_top, heavy_top

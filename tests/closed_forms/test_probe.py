@@ -16,7 +16,7 @@ from heuncli.probing.numerics.stiffness import polynomial, reach
 from heuncli.probing.results import DEAD_CENTRE, GIMBAL, HALF_TURN, SINGULAR, Probe
 from heuncli.probing.study import probe
 from heuncli.spec.load import load
-from heuncli.study.solve.options import Options
+from heuncli.study.model.options import Options
 from tests.shared.bars import HEAD, rods
 
 FLAT = Path(__file__).parents[2] / "specs" / "flat_four_bar.yaml"

@@ -9,7 +9,7 @@ import pytest
 
 from heuncli.spec.load import load
 from heuncli.study.ask.study import Study
-from heuncli.study.solve.options import Options
+from heuncli.study.model.options import Options
 from heuncli.study.workflow import describe, solve
 from tests.shared.scenes import near, study
 

@@ -17,9 +17,9 @@ import pytest
 from heuncli.results import Array
 from heuncli.spec.load import load
 from heuncli.study.ask.study import Study
-from heuncli.study.solve.blocks import blocks
-from heuncli.study.solve.options import Options
-from heuncli.study.solve.recovery import recover
+from heuncli.study.compose.blocks import blocks
+from heuncli.study.compose.recovery import recover
+from heuncli.study.model.options import Options
 from heuncli.study.workflow import solve
 from tests.oracle.values import to_yaml
 from tests.shared.bars import chain, double, rods, top

@@ -16,7 +16,7 @@ import pytest
 from heuncli.results import Array, Results
 from heuncli.spec.load import load
 from heuncli.study.ask.study import Study
-from heuncli.study.solve.options import Options
+from heuncli.study.model.options import Options
 from heuncli.study.workflow import solve
 from tests.shared.bars import HEAD, rods
 from tests.shared.scenes import solved

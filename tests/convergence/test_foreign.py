@@ -7,7 +7,7 @@ import pytest
 
 from heuncli.errors import LimitError, SolveError, SpecError
 from heuncli.spec.load import load
-from heuncli.study.solve.options import Options
+from heuncli.study.model.options import Options
 from heuncli.study.workflow import solve
 from tests.shared.bars import double
 from tests.shared.scenes import study

@@ -18,7 +18,7 @@ from heuncli.integration.run.runner import Runner
 from heuncli.integration.trajectory import Trajectory
 from heuncli.results import Array
 from heuncli.spec.load import load
-from heuncli.study.solve.setup import set_up
+from heuncli.study.model.setup import set_up
 from heuncli.tree.prepare import PreparedScene
 from tests.shared.parallelogram import parallelogram
 from tests.shared.scenes import study

@@ -15,7 +15,7 @@ from heuncli.integration.segments import discontinuities_of
 from heuncli.integration.trajectory import Trajectory
 from heuncli.results import Array
 from heuncli.spec.load import load
-from heuncli.study.solve.setup import Setup, set_up
+from heuncli.study.model.setup import Setup, set_up
 from tests.oracle.published import START, andrews, windows
 from tests.oracle.values import to_yaml
 from tests.shared.one_freedom import One

@@ -17,7 +17,7 @@ import numpy as np
 from heuncli.errors import HeunError
 from heuncli.spec.load import load
 from heuncli.study.ask.study import Study
-from heuncli.study.solve.options import Options
+from heuncli.study.model.options import Options
 from heuncli.study.workflow import solve
 from tests.faults import mild, retell, sources
 from tests.faults.agree import apart, beyond_peaks, growing, kept, state_at, turning

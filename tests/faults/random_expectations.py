@@ -11,7 +11,7 @@ from random import Random
 from typing import Any
 
 from heuncli.spec.load import load
-from heuncli.study.solve.options import Options
+from heuncli.study.model.options import Options
 from heuncli.study.workflow import solve
 from tests.faults import sources
 from tests.faults.mutate_spec import EXTREMES, OTHER_TYPES, misspelt

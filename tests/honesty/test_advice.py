@@ -14,7 +14,7 @@ import pytest
 from heuncli.results import Results
 from heuncli.spec.load import load
 from heuncli.spec.source import parse
-from heuncli.study.solve.options import Options
+from heuncli.study.model.options import Options
 from heuncli.study.workflow import describe, solve
 from tests.oracle.published import four_bar, windows
 from tests.oracle.read import state_at

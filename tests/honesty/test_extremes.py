@@ -12,8 +12,8 @@ from heuncli.report.labels import labels_of
 from heuncli.report.page import TABLE_DEFAULT, page_of
 from heuncli.spec.load import load
 from heuncli.study.ask.study import Study
+from heuncli.study.model.options import Options
 from heuncli.study.search.extremes import ColumnSearch
-from heuncli.study.solve.options import Options
 from heuncli.study.workflow import solve
 from tests.bench.honesty import told
 from tests.shared.scenes import study

@@ -13,8 +13,8 @@ import pytest
 from heuncli.errors import SolveError
 from heuncli.reduction.model import Reduced
 from heuncli.spec.load import load
-from heuncli.study.solve.options import Options
-from heuncli.study.solve.setup import set_up
+from heuncli.study.model.options import Options
+from heuncli.study.model.setup import set_up
 from heuncli.study.workflow import solve
 from tests.oracle.values import to_yaml
 from tests.shared.reduced import pair, same

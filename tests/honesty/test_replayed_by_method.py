@@ -20,7 +20,7 @@ from heuncli.integration.trajectory import Trajectory
 from heuncli.method_rows import METHODS
 from heuncli.results import Array
 from heuncli.spec.load import load
-from heuncli.study.solve.setup import set_up
+from heuncli.study.model.setup import set_up
 from tests.bench.honesty import told
 from tests.bench.stiff import STIFF_SCENES
 from tests.honesty.chaotic import chaotic_scene

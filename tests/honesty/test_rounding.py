@@ -9,7 +9,7 @@ import pytest
 
 from heuncli.errors import SolveError
 from heuncli.integration.methods.followed import FOLLOWED
-from heuncli.study.solve.warnings import unbalanced
+from heuncli.study.compose.warnings import unbalanced
 from tests.shared.scenes import near, solved
 
 

@@ -6,7 +6,7 @@ import numpy as np
 import pytest
 
 from heuncli.spec.load import load
-from heuncli.study.solve.setup import set_up
+from heuncli.study.model.setup import set_up
 from tests.shared.reduced import pair, same
 from tests.shared.scenes import study
 

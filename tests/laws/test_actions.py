@@ -11,8 +11,8 @@ from heuncli.joint_kinds import JOINTS
 from heuncli.kinetostatics.actions import joint_actions
 from heuncli.kinetostatics.foundation import inertia_loads
 from heuncli.mechanism.model import GROUND
+from heuncli.study.compose.recovery import Recovery, recover
 from heuncli.study.solve.history import resample
-from heuncli.study.solve.recovery import Recovery, recover
 from tests.oracle.turns import Array, cross
 from tests.shared import doubles
 from tests.shared.loops import loop

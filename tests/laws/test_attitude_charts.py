@@ -17,7 +17,7 @@ import pytest
 from heuncli.kernel.form import FOLDER
 from heuncli.results import Array
 from heuncli.spec.load import load
-from heuncli.study.solve.setup import set_up
+from heuncli.study.model.setup import set_up
 from heuncli.tolerances import EPS
 from tests.shared.bars import double
 from tests.shared.scenes import near

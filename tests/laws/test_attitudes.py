@@ -8,7 +8,7 @@ import numpy as np
 import pytest
 
 from heuncli.spec.load import load
-from heuncli.study.solve.options import Options
+from heuncli.study.model.options import Options
 from heuncli.study.workflow import solve
 
 SPECS = sorted((Path(__file__).parents[2] / "specs").glob("*.yaml"))

@@ -13,8 +13,8 @@ from heuncli.integration.evaluator import Recovered
 from heuncli.kernel.choose import scene as kernel
 from heuncli.response import carried, columns, jacobian
 from heuncli.shapes.rotations import from_vector
+from heuncli.study.model.setup import Setup
 from heuncli.study.solve.history import resample
-from heuncli.study.solve.setup import Setup
 from heuncli.tree.layout import Layout
 from heuncli.tree.tables import vectors
 from tests.oracle.turns import Array, cross

@@ -15,7 +15,7 @@ from heuncli.integration.contacts.touching import Touching
 from heuncli.integration.trajectory import Trajectory
 from heuncli.results import Array
 from heuncli.spec.load import load
-from heuncli.study.solve.setup import set_up
+from heuncli.study.model.setup import set_up
 from tests.shared.scenes import solved
 
 G = 10.0

@@ -13,7 +13,7 @@ from heuncli.report.labels import labels_of
 from heuncli.results import Array, Block, Results
 from heuncli.spec.load import load
 from heuncli.study.ask.study import Study
-from heuncli.study.solve.options import Options
+from heuncli.study.model.options import Options
 from heuncli.study.workflow import solve
 
 SPECS = Path(__file__).parents[2] / "specs"

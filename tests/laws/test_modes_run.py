@@ -18,7 +18,7 @@ from heuncli.linearisation.steady import Looked, carried_on
 from heuncli.modes.study import require_no_time, state_of
 from heuncli.results import Array
 from heuncli.spec.load import load
-from heuncli.study.solve.setup import set_up
+from heuncli.study.model.setup import set_up
 from heuncli.tree.layout import places_of_rates
 from tests.oracle.values import to_yaml
 from tests.shared.governors import porter, spindle

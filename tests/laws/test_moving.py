@@ -14,7 +14,7 @@ from heuncli.integration.run.runner import Runner
 from heuncli.records import replace
 from heuncli.results import Array
 from heuncli.spec.load import load
-from heuncli.study.solve.setup import set_up
+from heuncli.study.model.setup import set_up
 from heuncli.tree.layout import Layout
 
 TURN = 2.0 * np.pi

@@ -16,7 +16,7 @@ from heuncli.records import replace
 from heuncli.response import Columns, Jacobian, blows, carried, columns, jacobian
 from heuncli.results import Array
 from heuncli.spec.load import load
-from heuncli.study.solve.setup import draw, set_up
+from heuncli.study.model.setup import draw, set_up
 from heuncli.tree.flat import moves_in_plane
 from heuncli.tree.prepare import prepare
 from heuncli.tree.tables import Table

@@ -13,7 +13,7 @@ from heuncli.reduction.model import Reduction
 from heuncli.reduction.plane import step as plane
 from heuncli.results import Array
 from heuncli.spec.load import load
-from heuncli.study.solve.setup import draw
+from heuncli.study.model.setup import draw
 from heuncli.tree.prepare import PreparedScene, prepare
 from tests.oracle.values import to_yaml
 from tests.shared.flat_scenes import PLANES, flat

@@ -20,7 +20,7 @@ from heuncli.reduction import held, merged, spins
 from heuncli.reduction.model import Reduced, Reduction
 from heuncli.results import Array
 from heuncli.spec.load import load
-from heuncli.study.solve.setup import set_up
+from heuncli.study.model.setup import set_up
 from heuncli.tree.layout import Layout
 from tests.oracle.read import start_state
 from tests.oracle.scenes import ALL_KINDS, LOADS, Maker

@@ -14,7 +14,7 @@ import pytest
 
 from heuncli.response import tangent, workspace_of
 from heuncli.spec.load import load
-from heuncli.study.solve.setup import set_up
+from heuncli.study.model.setup import set_up
 from heuncli.tree.layout import Layout
 from tests.oracle.values import to_yaml
 from tests.shared.dual_tangent import dual_tangent

@@ -13,7 +13,7 @@ from heuncli.probing.numerics.twists import closure_rows, mass_matrix, twists
 from heuncli.response import jacobian
 from heuncli.rest.coordinates import coordinates_of
 from heuncli.spec.load import load
-from heuncli.study.solve.setup import Setup, set_up
+from heuncli.study.model.setup import Setup, set_up
 
 SPECS = Path(__file__).parents[2] / "specs"
 SCENES = ("bricard", "cardan", "crane", "double", "excavator", "lift", "slider_crank_pins", "spatial_crank", "swing")

@@ -17,7 +17,7 @@ from heuncli.linearisation.steady import Looked
 from heuncli.modes.study import state_of
 from heuncli.results import Array
 from heuncli.spec.load import load
-from heuncli.study.solve.setup import set_up
+from heuncli.study.model.setup import set_up
 from tests.oracle.read import Placed, model
 from tests.oracle.solve import solve
 from tests.oracle.values import to_yaml

@@ -78,7 +78,7 @@ import json, sys
 import numpy as np
 from heuncli.response import carried, columns, jacobian, tangent
 from heuncli.spec.load import load
-from heuncli.study.solve.setup import set_up
+from heuncli.study.model.setup import set_up
 setup = set_up(load(sys.argv[1]))
 layout, runner = setup.scene.layout, setup.runner
 found = runner.recovered(np.zeros(2), np.array([layout.y0, layout.y0]))
@@ -113,7 +113,7 @@ import json, sys
 import numpy as np
 from heuncli.integration.methods.registry import method_of
 from heuncli.spec.load import load
-from heuncli.study.solve.setup import set_up
+from heuncli.study.model.setup import set_up
 setup = set_up(load(sys.argv[1]))
 method = setup.method if sys.argv[2] == "auto" else method_of(sys.argv[2])
 run = setup.runner.trajectory(np.linspace(0.0, 0.8, 3), 1e-6, method=method)

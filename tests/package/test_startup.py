@@ -79,7 +79,7 @@ def loaded(*words: str, text: str = "") -> set[str]:
 
 def test_a_plain_run_loads_what_it_needs() -> None:
     found = loaded("run", "-", text=CHAIN)
-    assert {"numpy", "pydantic", "yaml", "heuncli.study.solve.recovery"} <= found
+    assert {"numpy", "pydantic", "yaml", "heuncli.study.compose.recovery"} <= found
     assert not (found - loaded_by("numpy")) & (STRANGE | SHAPED | REDUNDANT | RARE)
 
 

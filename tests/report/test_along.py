@@ -17,7 +17,7 @@ from heuncli.results import Extremes, Place
 from heuncli.spec.load import load
 from heuncli.study.ask.measure import peak
 from heuncli.study.ask.study import Study
-from heuncli.study.solve.options import Options
+from heuncli.study.model.options import Options
 from heuncli.study.workflow import solve
 
 SPEC = """

@@ -16,8 +16,8 @@ from heuncli.report.page import Page, page_of
 from heuncli.report.text_table import TextTable
 from heuncli.spec.load import load
 from heuncli.study.ask.study import Study
+from heuncli.study.model.options import Options
 from heuncli.study.search.extremes import ColumnSearch
-from heuncli.study.solve.options import Options
 from heuncli.study.workflow import solve
 
 SPECS = Path(__file__).parents[2] / "specs"

@@ -15,9 +15,9 @@ from heuncli.report.export import to_json
 from heuncli.results import Results
 from heuncli.results_schema import REPORTS, ROWS, SHARES, quantity
 from heuncli.spec.load import load
-from heuncli.study.solve import recovery
-from heuncli.study.solve.finiteness import leaves, require_finite
-from heuncli.study.solve.options import Options
+from heuncli.study.compose import recovery
+from heuncli.study.compose.finiteness import leaves, require_finite
+from heuncli.study.model.options import Options
 from heuncli.study.workflow import solve
 from tests.shared.command import Heun
 

@@ -13,7 +13,7 @@ from heuncli import tolerances
 from heuncli.results import Results
 from heuncli.spec.models import Spec
 from heuncli.study.ask.study import Study
-from heuncli.study.solve.options import Options
+from heuncli.study.model.options import Options
 from heuncli.study.workflow import solve
 
 BLOCKS = ("bodies", "points", "coordinates", "foundation", "joints", "stops", "sections", "forces", "energy",

@@ -10,7 +10,7 @@ import numpy as np
 from heuncli.results import Array, Results
 from heuncli.spec.load import load
 from heuncli.study.ask.study import Study
-from heuncli.study.solve.options import Options
+from heuncli.study.model.options import Options
 from heuncli.study.workflow import solve
 from tests.oracle.read import Placed, state_at
 from tests.oracle.values import to_yaml

@@ -25,11 +25,11 @@ from heuncli.results_schema import CUT, EVENTS, KIND_OF, MAGNITUDES, SHARES, kin
 from heuncli.spec.models import Condition, Spec
 from heuncli.study.ask.measure import report_of, stated_error
 from heuncli.study.ask.study import Study
+from heuncli.study.compose.recovery import recover
+from heuncli.study.compose.results import compose, impulses_of
+from heuncli.study.model.setup import Setup
 from heuncli.study.search.crossings import Crossings, crossings
-from heuncli.study.solve.compose import compose, impulses_of
 from heuncli.study.solve.history import History, resample
-from heuncli.study.solve.recovery import recover
-from heuncli.study.solve.setup import Setup
 
 Solve = Callable[[Spec], Study]  # how a spec is solved that differs in its instants or conditions alone
 

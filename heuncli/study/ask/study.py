@@ -13,21 +13,21 @@ from heuncli.records import record, replace
 from heuncli.results import Accuracy, Array, Block, Extremes, Magnitudes, Place, Results
 from heuncli.results_schema import REPORTS, SHARED, SHARES, with_shared
 from heuncli.spec.models import Spec
+from heuncli.study.compose.finiteness import require_finite
+from heuncli.study.compose.recovery import Recovery, recover
+from heuncli.study.compose.results import compose, known_blocks
+from heuncli.study.compose.warnings import left_out
+from heuncli.study.model.options import Options
+from heuncli.study.model.setup import Setup
 from heuncli.study.search import extremes
 from heuncli.study.search.columns import StudyColumns
 from heuncli.study.search.extremes import ColumnSearch
 from heuncli.study.search.instants import search_times
-from heuncli.study.solve.compose import compose, known_blocks
-from heuncli.study.solve.finiteness import require_finite
 from heuncli.study.solve.history import History, resample
-from heuncli.study.solve.options import Options
-from heuncli.study.solve.recovery import Recovery, recover
-from heuncli.study.solve.setup import Setup
-from heuncli.study.solve.warnings import left_out
 
 if TYPE_CHECKING:  # loaded where there are conditions, or something strikes
     from heuncli.integration.check.changes import Changes
-    from heuncli.study.solve.impulses import Impulses
+    from heuncli.study.compose.impulses import Impulses
 
 MOST_SEARCHED = 1_000_000  # numbers to look at for the extremes of a whole report; one measure has no such bound
 NONE: frozenset[str] = frozenset()

@@ -8,9 +8,9 @@ from typing import Protocol
 import numpy as np
 
 from heuncli.results import Array, Extremes, Place, Results
+from heuncli.study.model.setup import Setup
 from heuncli.study.search import extremes
 from heuncli.study.search.extremes import ColumnSearch
-from heuncli.study.solve.setup import Setup
 
 
 class Sampleable(Protocol):

@@ -28,7 +28,7 @@ from heuncli.study.search.extremes import (
 )
 from heuncli.study.search.intervals import Intervals
 
-Sample = Callable[[Array], Array]  # of sorted instants (n,) the number there, (n,); nan where there is none
+NumberAt = Callable[[Array], Array]  # of sorted instants (n,) the number there, (n,); nan where there is none
 MOST_STEPS = 120  # towards a root: halving alone takes 53, an interpolation that fails each time twice that
 
 
@@ -57,7 +57,7 @@ class Bracket(NamedTuple):
     g: Array
 
 
-def crossings(sample: Sample, times: Array, h: Array, error: float) -> Crossings:
+def crossings(sample: NumberAt, times: Array, h: Array, error: float) -> Crossings:
     """Where what is sampled passes zero within the span of `times`, (n,) ascending; h: it there, error: of h."""
     times, h, complete = refined(sample, times, h, error)
     known = np.isfinite(h)
@@ -76,7 +76,7 @@ def crossings(sample: Sample, times: Array, h: Array, error: float) -> Crossings
     return Crossings(begins, at, above[k + 1], off, jumps[k], gaps, complete)
 
 
-def refined(sample: Sample, times: Array, h: Array, error: float) -> tuple[Array, Array, bool]:
+def refined(sample: NumberAt, times: Array, h: Array, error: float) -> tuple[Array, Array, bool]:
     """More instants where h passes zero and comes back between two of the grid; whether all was looked at."""
     if len(times) < 3:
         return times, h, True
@@ -118,7 +118,7 @@ def joined(times: list[Array], h: list[Array], *, complete: bool) -> tuple[Array
     return t[order][new], values[order][new], complete
 
 
-def roots(sample: Sample, of: Bracket, error: float) -> Array:
+def roots(sample: NumberAt, of: Bracket, error: float) -> Array:
     """The instant in each bracket at which h passes zero, or its own error where it does not pass zero itself.
 
     By inverse quadratic interpolation where that is safe, else by halves: T. R. Chandrupatla, Adv. Eng. Softw. 28
@@ -158,7 +158,7 @@ def next_share(of: Bracket, c: Array, e: Array, width: Array) -> Array:
     return np.clip(share, least, 1.0 - least)
 
 
-def errors(sample: Sample, at: Array, error: float, span: tuple[float, float]) -> Array:
+def errors(sample: NumberAt, at: Array, error: float, span: tuple[float, float]) -> Array:
     """Within which time of each root h is beyond its error on either side, (n,); nan if not within a part of all."""
     found, open_ = np.full(len(at), np.nan), np.ones(len(at), dtype=bool)
     d = tolerances.KERNEL["one_instant"] * max(abs(span[1]), 1e-300)

@@ -19,7 +19,7 @@ from heuncli import tolerances
 from heuncli.results import Array, Extremes, Indices, Mask, Results
 from heuncli.study.search.intervals import FOURTH, Intervals, completed, joined, promised
 
-Sample = Callable[[Array], Array]
+ColumnsAt = Callable[[Array], Array]  # of sorted instants (n,) the quantities there, (n, n_columns)
 
 FIRST = 4  # intervals of a quantity that are asked in the first round, twice as many in each that follows
 FEW = 5  # instants of a smooth stretch, the least that show how it bends, and how that changes
@@ -94,7 +94,7 @@ class Best(NamedTuple):
 
 
 def search(
-    sample: Sample,
+    sample: ColumnsAt,
     times: Array,
     groups: Sequence[Sequence[int]] | None = None,
     *,
@@ -103,7 +103,7 @@ def search(
     between: bool = True,
     most: int | None = None,
 ) -> Extremes:
-    """Extremes over the span of `times`, (n_t,) ascending, of what `sample` gives at sorted instants as (n, n_columns).
+    """Extremes over the span of `times`, (n_t,) ascending, of what `sample` gives.
 
     groups: the columns that are compared with each other; by default each column is on its own. errors (n,): of each
     group's numbers, how well they are known; even (n,): whether its columns are their squares. between: whether the
@@ -207,7 +207,7 @@ def _rises(heights: Array, step: Array, smooth: Mask) -> tuple[Array, Array]:
     return slope[:-2] * step[:, None], -slope[2:] * step[:, None]
 
 
-def refined(sample: Sample, pool: Intervals, asked: Targets, found: Best, span: float) -> bool:
+def refined(sample: ColumnsAt, pool: Intervals, asked: Targets, found: Best, span: float) -> bool:
     """Divide the intervals until none promises more than what was found, which is kept up in place; whether so."""
     probes = 0
     for turn in range(MOST_ROUNDS):

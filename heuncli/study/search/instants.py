@@ -7,9 +7,9 @@ import numpy as np
 from heuncli.integration.segments import limits_of
 from heuncli.mechanism.model import Mechanism
 from heuncli.results import Array
+from heuncli.study.model.setup import Setup
 from heuncli.study.search.extremes import distinct
 from heuncli.study.solve.history import History, resample
-from heuncli.study.solve.setup import Setup
 
 WITHIN_STEP = (0.0, 0.23, 0.52, 0.77)  # of each step of the integrator: where it is looked at for extremes first
 TURNED = np.pi / 8.0  # rad: so far a body may turn between two of these instants, an eighth period of what goes twice

@@ -10,9 +10,9 @@ from heuncli import tolerances
 from heuncli.joint_kinds import JOINTS
 from heuncli.kinetostatics.actions import whole_joint_actions
 from heuncli.results import Array
+from heuncli.study.compose.recovery import Recovery
+from heuncli.study.model.setup import Setup
 from heuncli.study.search.extremes import distinct
-from heuncli.study.solve.recovery import Recovery
-from heuncli.study.solve.setup import Setup
 
 PARTS = 16  # into which a span with a passage is divided
 ROUNDS = 14  # 16^14: down to neighbouring doubles

@@ -16,7 +16,7 @@ from heuncli.kinetostatics.cuts import BEFORE, BEYOND, Cuts, attached, spread_on
 from heuncli.kinetostatics.stretch import DEGREE, Stretch, laid, stretch_of, summits
 from heuncli.records import replace
 from heuncli.results import Array, Block, Extremes, Place
-from heuncli.study.solve.setup import Setup
+from heuncli.study.model.setup import Setup
 
 HALVED = 2  # how often pieces are halved for what bends where loads change their sign: stresses, reduction lines
 

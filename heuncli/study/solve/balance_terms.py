@@ -12,7 +12,7 @@ from heuncli.kinetostatics.actions import AppliedLoad
 from heuncli.kinetostatics.bodies import BodyStates
 from heuncli.kinetostatics.foundation import inertia_loads
 from heuncli.results import Array
-from heuncli.study.solve.setup import Setup
+from heuncli.study.model.setup import Setup
 
 
 def rounding_of_loads(several: Recovered, force: Array, moment: Array, size: float) -> tuple[Array, Array]:

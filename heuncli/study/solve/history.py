@@ -32,9 +32,9 @@ from heuncli.mechanism.model import PairLoad
 from heuncli.method_rows import AUTO
 from heuncli.records import record, replace
 from heuncli.results import Array, Estimate
+from heuncli.study.model.memory_estimate import Room, require_room_for_steps
+from heuncli.study.model.setup import Setup
 from heuncli.study.solve.load_errors import LoadErrors
-from heuncli.study.solve.memory_estimate import Room, require_room_for_steps
-from heuncli.study.solve.setup import Setup
 from heuncli.study.solve.singular_start import require_motion
 
 if TYPE_CHECKING:  # loaded where there are conditions

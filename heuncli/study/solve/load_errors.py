@@ -28,9 +28,9 @@ from heuncli.mechanism.size import marks
 from heuncli.results import Array, Estimate, Mask
 from heuncli.results_schema import BLOWS, BY_CAUSE
 from heuncli.shapes.rotations import cross_rows
+from heuncli.study.model.setup import Setup
 from heuncli.study.solve.balance_terms import BalanceTerms
 from heuncli.study.solve.error_extents import ESTIMATED, Extent, Weights, lengths, norms, relative
-from heuncli.study.solve.setup import Setup
 
 CHOSEN_ANEW = 1e-6  # of the largest multiplier: what redundant joints leave open changes by more when rows are chosen
 

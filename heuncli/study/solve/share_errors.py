@@ -18,8 +18,8 @@ from heuncli.kinetostatics.joint_axes import in_axes
 from heuncli.kinetostatics.reactions import JointLoads
 from heuncli.kinetostatics.shares import Column, Shares, foundation_shares, members_of, shares_of
 from heuncli.results import Array
+from heuncli.study.model.setup import Setup
 from heuncli.study.solve.balance_terms import BalanceTerms
-from heuncli.study.solve.setup import Setup
 
 
 class ComparedShares(NamedTuple):

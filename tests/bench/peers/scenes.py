@@ -54,7 +54,7 @@ def bars(name: str) -> list[Bar]:
         drawn = json.loads(Path(os.environ[DRAWN]).read_text(encoding="utf-8"))[name]
         return [Bar(bar[0], bar[1], *(np.array(x) for x in bar[2:])) for bar in drawn]
     from heuncli.spec.load import load
-    from heuncli.study.solve.setup import set_up
+    from heuncli.study.model.setup import set_up
 
     scene = set_up(load(str(FOLDER / f"{name}.yaml")), reduce=False).scene
     start = scene.start

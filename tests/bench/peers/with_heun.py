@@ -9,7 +9,7 @@ import numpy as np
 
 from heuncli.integration.methods.registry import method_of
 from heuncli.spec.load import load
-from heuncli.study.solve.setup import set_up
+from heuncli.study.model.setup import set_up
 from heuncli.version import VERSION
 from tests.bench.peers.scenes import FOLDER, duration
 from tests.bench.peers.ways import Way

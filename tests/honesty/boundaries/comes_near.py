@@ -10,7 +10,7 @@ from heuncli.probing.growth import told
 from heuncli.probing.numerics.shadows import Growth
 from heuncli.probing.study import probe
 from heuncli.spec.load import load
-from heuncli.study.solve.options import Options
+from heuncli.study.model.options import Options
 from tests.honesty.boundaries.part import Part, Row
 from tests.shared.scenes import near
 

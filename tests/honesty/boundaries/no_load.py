@@ -8,7 +8,7 @@ import numpy as np
 
 from heuncli.kinetostatics.energy import energy_drift
 from heuncli.kinetostatics.foundation import central_axis
-from heuncli.study.solve.warnings import unbalanced
+from heuncli.study.compose.warnings import unbalanced
 from tests.honesty.boundaries.part import Part, Row
 from tests.honesty.boundaries.scenes import WEIGHT, bar
 from tests.shared.scenes import near, solved, study

@@ -20,7 +20,7 @@ from heuncli.mechanism.model import Mechanism
 from heuncli.method_rows import DEFAULT
 from heuncli.results import Array
 from heuncli.spec.models import Spec
-from heuncli.study.solve.counts_and_lists import some
+from heuncli.study.model.counts_and_lists import some
 from heuncli.tree.layout import Layout
 
 FINE = "Verner98"

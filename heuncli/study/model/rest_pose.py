@@ -17,7 +17,7 @@ from heuncli.rest.stability import Stability, stability
 from heuncli.rest.steady import going_on, require_constant, require_steady, require_together
 from heuncli.rest.still import require_still
 from heuncli.results import Array, Status
-from heuncli.study.solve.counts_and_lists import count, some
+from heuncli.study.model.counts_and_lists import count, some
 from heuncli.tree.prepare import PreparedScene
 
 

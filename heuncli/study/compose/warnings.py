@@ -6,9 +6,9 @@ from collections.abc import Sequence
 
 from heuncli import tolerances
 from heuncli.results import Array, Block, Status
+from heuncli.study.compose.recovery import Recovery
+from heuncli.study.model.setup import Setup
 from heuncli.study.solve.history import History
-from heuncli.study.solve.recovery import Recovery
-from heuncli.study.solve.setup import Setup
 
 MOST_TIMES = 5  # that a sentence lists
 

@@ -10,19 +10,19 @@ from heuncli.integration.determined_motion import integrated_after_all
 from heuncli.kernel.choose import KERNEL
 from heuncli.results import Array, Block, Results
 from heuncli.results_schema import BLOWS
-from heuncli.study.solve.accuracy import accuracy_of
-from heuncli.study.solve.blocks import blocks_asked_for
-from heuncli.study.solve.finiteness import require_finite
+from heuncli.study.compose.accuracy import accuracy_of
+from heuncli.study.compose.blocks import blocks_asked_for
+from heuncli.study.compose.finiteness import require_finite
+from heuncli.study.compose.recovery import Recovery, certain_sums
+from heuncli.study.compose.warnings import beside_singular_poses, status, warnings
+from heuncli.study.model.method_choice import anew
+from heuncli.study.model.selection import sums_among
+from heuncli.study.model.setup import Setup
 from heuncli.study.solve.history import History
-from heuncli.study.solve.method_choice import anew
-from heuncli.study.solve.recovery import Recovery, certain_sums
-from heuncli.study.solve.selection import sums_among
-from heuncli.study.solve.setup import Setup
-from heuncli.study.solve.warnings import beside_singular_poses, status, warnings
 from heuncli.version import VERSION
 
 if TYPE_CHECKING:  # loaded where something strikes
-    from heuncli.study.solve.impulses import Impulses
+    from heuncli.study.compose.impulses import Impulses
 
 
 def compose(
@@ -66,7 +66,7 @@ def known_blocks(history: History, recovery: Recovery, wanted: frozenset[str]) -
     """The blocks of the reports that are wanted, and the instants of a motion at which some of it is not known: nan."""
     if history.checked is None or not recovery.setup.scene.layout.rows:
         return blocks_asked_for(recovery, wanted), np.zeros(0)
-    from heuncli.study.solve.near_singular import without_unknown  # only closed chains have singular poses
+    from heuncli.study.compose.near_singular import without_unknown  # only closed chains have singular poses
 
     return without_unknown(recovery, wanted, history.checked.run, history.jumps)
 
@@ -75,7 +75,7 @@ def impulses_of(setup: Setup, history: History, least_norm: bool, by_cause: bool
     """The blows of the run, by_cause: with their shares; None where there was none."""
     if not history.blows:
         return None
-    from heuncli.study.solve.impulses import impulses  # where something strikes
+    from heuncli.study.compose.impulses import impulses  # where something strikes
 
     return impulses(setup, history, least_norm, by_cause)
 
@@ -97,7 +97,7 @@ def not_at_rest(recovery: Recovery) -> Block:
     """What is told of a state that its loads set going."""
     if recovery.setup.spec.analysis.type != "state":
         return {}
-    from heuncli.study.solve.accelerating_bodies import moves  # a motion moves
+    from heuncli.study.compose.accelerating_bodies import moves  # a motion moves
 
     found = moves(recovery)
     return {"moves": found} if found else {}

@@ -21,7 +21,7 @@ from heuncli.mechanism.model import PairLoad
 from heuncli.records import record, replace
 from heuncli.results import Array, Block, CertainSum, Magnitudes
 from heuncli.results_schema import BLOWS, SHARED
-from heuncli.study.solve.setup import Setup
+from heuncli.study.model.setup import Setup
 
 if TYPE_CHECKING:  # loaded where a scene has closed chains, or sections, or loads are told by cause
     from heuncli.kinetostatics.shares import Shares

@@ -25,10 +25,10 @@ from heuncli.records import fields, record, replace
 from heuncli.response import Columns
 from heuncli.results import Array, Block, CertainSum
 from heuncli.results_schema import BLOWS, BY_CAUSE, SHARES
-from heuncli.study.solve.blocks import blocks
+from heuncli.study.compose.blocks import blocks
+from heuncli.study.compose.recovery import Recovery, certain_sums
+from heuncli.study.model.setup import Setup
 from heuncli.study.solve.history import History
-from heuncli.study.solve.recovery import Recovery, certain_sums
-from heuncli.study.solve.setup import Setup
 
 UNTIMED = frozenset({"about", "s", "side"})  # of the blocks: the same at all blows
 STRUCK = frozenset({"foundation", "joints", "sections"})

@@ -15,8 +15,8 @@ from heuncli.expressions.programs import Expression
 from heuncli.records import fields
 from heuncli.results_schema import BLOWS, EVENTS, SHARES
 from heuncli.spec.models import End, Spec
-from heuncli.study.solve.counts_and_lists import some
-from heuncli.study.solve.selection import Selection, entries_of
+from heuncli.study.model.counts_and_lists import some
+from heuncli.study.model.selection import Selection, entries_of
 
 Ends = Mapping[str, Mapping[str, set[str]]]
 STANDING = ("joints", "drives", "forces", "impulses", "stops")  # blocks of what stands on bodies

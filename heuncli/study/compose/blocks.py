@@ -20,8 +20,8 @@ from heuncli.kinetostatics.reactions import JointLoads
 from heuncli.mechanism.model import JointLoad, PairLoad
 from heuncli.results import Array, Block, Mask
 from heuncli.results_schema import SHARES
-from heuncli.study.solve.recovery import Recovery
-from heuncli.study.solve.selection import chosen
+from heuncli.study.compose.recovery import Recovery
+from heuncli.study.model.selection import chosen
 
 
 def blocks(recovery: Recovery, wanted: Set[str]) -> dict[str, Any]:
@@ -36,7 +36,7 @@ def blocks(recovery: Recovery, wanted: Set[str]) -> dict[str, Any]:
         shown["joints"] = {j.joint.name: joint_block(j) for j in recovery.joints}
         shown["stops"] = stops(recovery.joints)
     if SHARES in wanted:
-        from heuncli.study.solve.cause_shares import put_shares  # few runs ask for them
+        from heuncli.study.compose.cause_shares import put_shares  # few runs ask for them
 
         put_shares(shown, recovery.shares, mechanism, states, recovery.setup.about)
     axes = recovery.setup.asked.axes

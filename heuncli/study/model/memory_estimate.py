@@ -15,7 +15,7 @@ from heuncli.integration.run.step_records import KEPT
 from heuncli.records import record
 from heuncli.response import answer_sizes
 from heuncli.results_schema import CUT, REPORT_OF, ROWS, SHARES, Quantity, is_share
-from heuncli.study.solve.setup import Setup
+from heuncli.study.model.setup import Setup
 
 ANSWERS = 3.0  # times the kernel's answers at an instant: those of both runs, and what is made of them beside
 RUNS = 3  # whose steps are held at once: the run that is told, its check run, the one from a moved start

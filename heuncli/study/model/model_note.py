@@ -15,7 +15,7 @@ from heuncli.mechanism.model import Mechanism
 from heuncli.reduction.model import Reduced
 from heuncli.redundancy.count import freedoms_of_tree, redundancy
 from heuncli.results import Block, Mask
-from heuncli.study.solve.counts_and_lists import count, some
+from heuncli.study.model.counts_and_lists import count, some
 from heuncli.tree.layout import Layout
 from heuncli.tree.prepare import PreparedScene
 

@@ -8,8 +8,8 @@ from heuncli.records import record
 from heuncli.results_schema import REPORTS, with_shared
 from heuncli.spec.methods import unfit
 from heuncli.spec.models import Spec
-from heuncli.study.solve.memory_estimate import Room
-from heuncli.study.solve.selection import Entry, Selection
+from heuncli.study.model.memory_estimate import Room
+from heuncli.study.model.selection import Entry, Selection
 
 
 @record

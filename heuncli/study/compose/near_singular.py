@@ -20,8 +20,8 @@ from heuncli.integration.evaluator import Recovered
 from heuncli.integration.trajectory import Trajectory
 from heuncli.results import Array, Indices, Mask
 from heuncli.results_schema import quantity
-from heuncli.study.solve.blocks import blocks_asked_for
-from heuncli.study.solve.recovery import HUNG_ON_RANK, Recovery
+from heuncli.study.compose.blocks import blocks_asked_for
+from heuncli.study.compose.recovery import HUNG_ON_RANK, Recovery
 from heuncli.tree.layout import Layout
 
 AMPLE = 10.0  # times the change: errors were 0.2 of it in the median of 4,711 instants, 3.4 at the most

@@ -19,9 +19,9 @@ from heuncli.integration.run.kernel_loop import depends
 from heuncli.integration.segments import discontinuities_of
 from heuncli.integration.trajectory import Trajectory
 from heuncli.method_rows import row_of
-from heuncli.study.solve.counts_and_lists import count
-from heuncli.study.solve.method_choice import is_smooth
-from heuncli.study.solve.setup import Setup
+from heuncli.study.model.counts_and_lists import count
+from heuncli.study.model.method_choice import is_smooth
+from heuncli.study.model.setup import Setup
 
 PART = 0.1  # of the run, which is tried
 PATIENCE = 0.5  # seconds that the trial may take

@@ -11,8 +11,8 @@ from heuncli.integration.contacts.blows import met_freely
 from heuncli.kinetostatics.balance import balance_residual
 from heuncli.kinetostatics.energy import energy_drift, magnitude_of_work, power_imbalance
 from heuncli.results import Accuracy
+from heuncli.study.compose.recovery import OF_ENERGY, Recovery
 from heuncli.study.solve.history import History
-from heuncli.study.solve.recovery import OF_ENERGY, Recovery
 
 
 def accuracy_of(history: History, recovery: Recovery, residual_of_blows: float = 0.0) -> Accuracy:

@@ -23,14 +23,14 @@ from heuncli.reduction import compose as reduction
 from heuncli.reduction.model import Reduced
 from heuncli.results import Array, Block
 from heuncli.spec.models import Spec
-from heuncli.study.solve.method_choice import first_choice, why
-from heuncli.study.solve.model_note import attitudes, model_note, reductions, rested
-from heuncli.study.solve.selection import EVERYTHING, Selection
+from heuncli.study.model.method_choice import first_choice, why
+from heuncli.study.model.model_note import attitudes, model_note, reductions, rested
+from heuncli.study.model.selection import EVERYTHING, Selection
 from heuncli.tree.prepare import PreparedScene, prepare
 
 if TYPE_CHECKING:  # loaded where a scene has sections
     from heuncli.kinetostatics.cuts import Cuts
-    from heuncli.study.solve.rest_pose import Rest
+    from heuncli.study.model.rest_pose import Rest
 
 
 @record
@@ -132,7 +132,7 @@ def require_drives(mechanism: Mechanism, t: float) -> None:
 
 def set_up_at_rest(setup: Setup, left_out: tuple[str, ...], looked_for: bool) -> Setup:
     """The same at its rest pose, unless that is not looked for."""
-    from heuncli.study.solve.rest_pose import at_rest  # few scenes ask for it
+    from heuncli.study.model.rest_pose import at_rest  # few scenes ask for it
 
     scene, runner, rest = setup.scene, setup.runner, None
     if looked_for:
@@ -151,7 +151,7 @@ def asked_part(spec: Spec, asked: Selection, reduce: bool) -> tuple[Spec, tuple[
     """The spec as far as it is asked for; what of the scene is left out, in a sentence."""
     if asked.is_everything:
         return spec, ()
-    from heuncli.study.solve.needed_parts import left_out, restricted  # where not all is asked for
+    from heuncli.study.model.needed_parts import left_out, restricted  # where not all is asked for
 
     part = restricted(spec, asked, reduce=reduce)
     return part, left_out(spec, part)

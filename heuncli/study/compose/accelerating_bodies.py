@@ -12,7 +12,7 @@ from heuncli import tolerances
 from heuncli.kinetostatics.magnitudes import inertia_scale
 from heuncli.mechanism.model import GROUND
 from heuncli.results import Array
-from heuncli.study.solve.recovery import Recovery
+from heuncli.study.compose.recovery import Recovery
 
 NAMED = 3  # bodies that are named
 UNITS = {"angle": "rad/s\u00b2", "travel": "m/s\u00b2"}
