@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import re
 from pathlib import Path
 
 from heuncli.cli.entry import UsageError
@@ -27,9 +28,21 @@ def main(request: Explain) -> int:
 def page(topic: str) -> str:
     """The text of a page. Raises UsageError where there is none of that name."""
     if topic not in PAGES:
-        hint = f"{did_you_mean(topic, PAGES, 'topics')}; heun explain lists the pages"
+        hint = f"{indexed(topic) or did_you_mean(topic, PAGES, 'topics')}; heun explain lists the pages"
         raise UsageError(Problem("bad-option", f"explain {topic}: no page of the manual is called that", hint=hint))
     return (FOLDER / f"{topic}.md").read_text(encoding="utf-8")
+
+
+def indexed(word: str) -> str:
+    """Where a key, an option, a word of the results or a subject stands by the index; empty where it knows none."""
+    named = re.compile(rf"(?<!\w){re.escape(word)}(?!\w)", re.IGNORECASE)
+    places: dict[str, dict[str, None]] = {}
+    for row in re.findall(r"^\| .*", page("index"), re.MULTILINE):
+        name, _, where = row[2:].partition(" |")
+        for part, topic in re.findall(r"\[([^]]*)\]\((\w+)\.md", where) if named.search(name) else ():
+            places.setdefault(topic, {})[part] = None
+    told = (f"heun explain {topic} ({', '.join(parts)})" for topic, parts in places.items())
+    return f"see {' and '.join(told)}" if places else ""
 
 
 def contents() -> str:

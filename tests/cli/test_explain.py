@@ -32,7 +32,16 @@ def test_a_page_goes_into_a_file(heun: Heun, tmp_path: Path) -> None:
 
 @pytest.mark.parametrize(
     ("topic", "told"),
-    [("formt", "did you mean format?"), ("Signs", "did you mean signs?"), ("xyzzy", "known topics: commands, format")],
+    [
+        ("side", "see heun explain format (Sections)"),
+        ("rope", "see heun explain format (Joints)"),
+        ("spring", "see heun explain format (turn_spring, spring)"),
+        ("axes", "see heun explain signs (Joints) and heun explain commands (heun run)"),
+        ("tilting", "see heun explain results (Paths)"),
+        ("formt", "did you mean format?"),
+        ("Modes", "did you mean modes?"),
+        ("xyzzy", "known topics: commands, format"),
+    ],
 )
 def test_an_unknown_topic_is_told(heun: Heun, topic: str, told: str) -> None:
     done = heun("explain", topic)

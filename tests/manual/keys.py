@@ -11,6 +11,7 @@ from heuncli.expressions import units as u
 from heuncli.spec import fields
 from heuncli.spec import format as f
 from heuncli.spec.fields import Model
+from tests.shared.manual import headings
 
 ALL = "all"  # in place of the types that have a key, where all have it
 # by heading: the model whose keys the first table below it lists, or the models by type
@@ -76,6 +77,10 @@ def places() -> Iterator[Place]:
     """Every key with the headings below which it stands."""
     for key in top_keys():
         yield Place(key, TOP)
+        if key.capitalize() in headings("format"):
+            yield Place(key, key.capitalize())
+    for key in ("until", "events"):
+        yield Place(key, "Conditions")
     for model, (heading, parent) in INLINE.items():
         for key in named_fields(model):
             yield Place(key, heading, (parent,))

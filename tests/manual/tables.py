@@ -18,6 +18,7 @@ from heuncli.expressions.grammar import ARITY, CONSTANTS
 from heuncli.joint_kinds import TYPES, Kind
 from heuncli.method_rows import METHODS
 from heuncli.results_schema import NOT_YET, ROWS, SPACE, Quantity, is_share
+from heuncli.spec import format as f
 from tests.manual.keys import PLACES
 from tests.shared.manual import README, anchor, below, file_of, tables_below
 
@@ -140,6 +141,16 @@ def keys() -> Iterator[tuple[str, str]]:
         yield f"`{key}`", "; ".join(links)
 
 
+def types() -> Iterator[tuple[str, str]]:
+    """What `type` may be, with the words of others for it, and where each is described."""
+    blocks = {"a joint": (f.JOINTS, "Joints"), "a load": (f.LOADS, None), "a shape": (f.SHAPES, "Shapes")}
+    for what, (models, heading) in blocks.items():
+        for name in models:
+            others = TYPES[name].synonyms if models is f.JOINTS else ()
+            link = f"[{heading or name}](format.md#{anchor(heading or name)})"
+            yield ", ".join([f"`{name}`", *others]), f"{link}, {what}"
+
+
 def results_by_word() -> Iterator[tuple[str, str]]:
     """Each last word of a path of the results with its paths; those of shares stand together."""
     paths: dict[str, list[str]] = {}
@@ -180,6 +191,7 @@ TABLES = (
     Table("methods", "The list", ("name", "order", "kind", "steps", "attitude", "what for"), list(methods())),
     *(Table("commands", f"heun {name}", ("option", "meaning"), list(options(name))) for name in COMMANDS),
     Table("index", "Keys of a spec", ("key", "stands in"), list(keys())),
+    Table("index", "Types", ("type", "stands in"), list(types())),
     Table("index", "Words of the results", ("word", "paths"), list(results_by_word())),
     Table("index", "Options", ("option", "of"), list(options_by_word())),
 )
