@@ -35,7 +35,7 @@ def page(topic: str) -> str:
 
 def indexed(word: str) -> str:
     """Where a key, an option, a word of the results or a subject stands by the index; empty where it knows none."""
-    named = re.compile(rf"(?<!\w){re.escape(word)}(?!\w)", re.IGNORECASE)
+    named = re.compile(rf"(?<!\w){re.escape(word)}s?(?!\w)", re.IGNORECASE)
     places: dict[str, dict[str, None]] = {}
     for row in re.findall(r"^\| .*", page("index"), re.MULTILINE):
         name, _, where = row[2:].partition(" |")
