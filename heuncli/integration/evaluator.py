@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+from collections.abc import Callable
 from functools import cached_property
 
 import numpy as np
@@ -50,19 +51,20 @@ def work_of(layout: Layout) -> int:
 class Evaluator:
     """A laid-out scene with the kernel's work arrays; every call starts from what it is given."""
 
-    def __init__(self, layout: Layout) -> None:
-        self.layout = layout
+    def __init__(self, layout: Layout, closed_at_start: Callable[[Evaluator], Array] | None = None) -> None:
+        """closed_at_start: which of the contacts are closed at the start, (contacts,); needed where there are any."""
+        self.layout, self.closed_at_start = layout, closed_at_start
         self.workspace = workspace_of(layout)
         self.size = layout.size
 
     @cached_property
     def start_holding(self) -> Array:
-        """The contacts that are closed at the start, (contacts,)."""
+        """The contacts that are closed at the start, (contacts,). Raises ValueError where nobody can tell."""
         if not self.layout.contacts:
             return np.zeros(0)
-        from heuncli.integration.contacts.contact_events import held_at  # few scenes have them
-
-        return held_at(self, 0.0, self.layout.y0)
+        if self.closed_at_start is None:
+            raise ValueError("which contacts are closed at the start was not handed in")
+        return self.closed_at_start(self)
 
     def may_stay(self, gap: Array) -> Array:
         """What accelerations may leave unmet of rows that depend on others, at gaps (n_t,), of the rows' terms."""

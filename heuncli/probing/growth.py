@@ -7,9 +7,9 @@ import math
 import numpy as np
 
 from heuncli import tolerances
-from heuncli.integration.evaluator import Evaluator
 from heuncli.integration.methods.dop853 import DOP853
 from heuncli.integration.methods.method import QUATERNION, Method
+from heuncli.integration.run.runner import Runner
 from heuncli.integration.run.stiffness import implicit_for
 from heuncli.integration.trajectory import Trajectory
 from heuncli.probing.instants import Along
@@ -83,7 +83,7 @@ def across(shadows: Shadows) -> Array | None:
         return None
     n = fastest / size
     layout, own = shadows.layout, shadows.scale.coordinates
-    at = Evaluator(layout).recovered(np.zeros(1), run.states[:1])
+    at = Runner(layout).recovered(np.zeros(1), run.states[:1])
     found = twists(layout, at)
     turn, shift = found.turn[0][:, own.answers], found.shift[0][:, own.answers]
     within = np.concatenate([(turn @ n)[..., None], shift - (shift @ n)[..., None] * n], axis=2)

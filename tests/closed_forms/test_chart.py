@@ -21,6 +21,7 @@ from heuncli.charting.runs import Charting
 from heuncli.charting.study import chart
 from heuncli.integration.check.runs import Runs
 from heuncli.integration.methods.dop853 import DOP853
+from heuncli.integration.run.request import Request
 from heuncli.integration.trajectory import Trajectory
 from heuncli.spec.load import load
 
@@ -75,7 +76,7 @@ def test_the_errors_of_a_pendulum_are_those_of_the_closed_form(pendulum: Chart) 
     wanted = pivot_force(angle, rate)
     size = motion.setup.scene.layout.size
     for run, tolerance in zip(pendulum.runs, TOLERANCES, strict=True):
-        own = motion.setup.runner.trajectory(motion.times, tolerance, method=DOP853)
+        own = motion.setup.runner.trajectory(Request(motion.times, tolerance, method=DOP853))
         answers = motion.setup.runner.recovered(motion.times, own.states)
         off = np.abs(answers.freedoms["q"][:, 0] - angle)
         tip = float(np.max(2.0 * np.sin(off / 2.0))) / size

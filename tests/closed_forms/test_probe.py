@@ -11,7 +11,7 @@ import pytest
 from heuncli.integration.methods.dop853 import DOP853
 from heuncli.integration.methods.method import Method
 from heuncli.integration.methods.registry import method_of
-from heuncli.integration.run.kernel_loop import Integration
+from heuncli.integration.run.kernel_loop import KernelLoop
 from heuncli.probing.numerics.stiffness import polynomial, reach
 from heuncli.probing.results import DEAD_CENTRE, GIMBAL, HALF_TURN, SINGULAR, Probe
 from heuncli.probing.study import probe
@@ -93,7 +93,7 @@ def test_beside_a_run_by_scipy_the_kernel_runs() -> None:
     assert found.model["method"] == "SciPy-LSODA" and found.across is not None
     assert found.across.rate == pytest.approx(math.sqrt(1.0 / 3.0), rel=SHADOW)
     with pytest.raises(ValueError, match="no stages of SciPy-LSODA"):
-        Integration(None, None, method_of("SciPy-LSODA"), np.zeros(0), 1, None)  # type: ignore[arg-type]
+        KernelLoop(None, None, method_of("SciPy-LSODA"), np.zeros(0), 1, None)  # type: ignore[arg-type]
 
 
 def test_a_pendulum_forgets_nothing() -> None:

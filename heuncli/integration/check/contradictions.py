@@ -20,7 +20,7 @@ from heuncli.errors import Problem, SolveError
 from heuncli.integration.evaluator import Recovered
 from heuncli.integration.methods.dop853 import DOP853
 from heuncli.integration.run.errors import ClosuresLost
-from heuncli.integration.run.kernel_loop import REACHED, Integration, Start
+from heuncli.integration.run.kernel_loop import REACHED, KernelLoop, Start
 from heuncli.integration.run.runner import Runner
 from heuncli.integration.segments import just_after, just_before
 from heuncli.integration.trajectory import Trajectory
@@ -122,7 +122,7 @@ def forward(runner: Runner, good: State, t: float) -> State | None:
     """The state at a later instant if it is good: integrated, or at a lock brought there by its gaps alone."""
     begin, end = just_after(good.t), just_before(t)
     start = Start(good.y, LOCAL, tolerances.LEAST_RATE / (t - good.t))
-    piece = Integration(runner.layout, runner.workspace, DOP853, np.array([t]), MOST_STEPS, start)
+    piece = KernelLoop(runner.layout, runner.workspace, DOP853, np.array([t]), MOST_STEPS, start)
     if begin < end:
         piece.loop.begin(begin, end, t)
         reached = piece.loop.advance(MOST_STEPS, False, False) == REACHED

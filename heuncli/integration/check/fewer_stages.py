@@ -4,13 +4,12 @@ from __future__ import annotations
 
 from contextlib import suppress
 
-import numpy as np
-
 from heuncli.errors import LimitError, SolveError
 from heuncli.integration.check.runs import Runs
 from heuncli.integration.methods.registry import method_of
 from heuncli.integration.run.errors import Eventful
 from heuncli.integration.run.event_frequency import FEW_STAGES
+from heuncli.integration.run.request import Request, Watch
 
 TOLD = (
     "events: {cut} of the first {steps} steps end at one: up to t = {t:.3g} s {name} takes {few} evaluations, where "
@@ -22,10 +21,9 @@ def try_fewer_stages(runs: Runs, left: Eventful) -> bool:
     """Whether the runs go by a method of few stages from now on, and why; not where the one they had takes no more."""
     method, before = method_of(FEW_STAGES), [t for t in runs.jumps if t < left.reached]
     with suppress(SolveError, LimitError):
-        trial = runs.runner.trajectory(
-            np.array([left.reached]), left.local, discontinuities=before, deadline=runs.deadline, method=method,
-            most_steps=left.evaluations // (len(method.nodes) - 1),
-        )  # fmt: skip
+        most = left.evaluations // (len(method.nodes) - 1)
+        request = Request([left.reached], left.local, method, before, deadline=runs.deadline, most_steps=most)
+        trial = runs.runner.trajectory(request, Watch())
         if trial.evaluations < left.evaluations:
             left.told = TOLD.format(
                 cut=left.cut, steps=left.steps, t=left.reached, name=method.name, few=trial.evaluations,

@@ -6,15 +6,15 @@ to be, the fastest rate of the linearised motion at the start tells where that i
 
 from __future__ import annotations
 
+from collections.abc import Callable
+
 import numpy as np
 
 from heuncli.errors import HeunError, Problem, SolveError
-from heuncli.integration.check.runs import Runs
-from heuncli.integration.methods.dop853 import DOP853
-from heuncli.integration.run.errors import Stiff
+from heuncli.integration.methods.method import Method
+from heuncli.integration.run.runner import Runner
 from heuncli.response import tangent
 
-LOCAL = 1e-6  # tolerance of the run that finds its own steps
 BORNE = 2.0  # h |lambda| that explicit methods of given step bear: 2 of Euler's and Heun's, 2.5 of Heun3, 2.8 of RK4
 BLAMED = {
     "not-a-number": "a motion in steps of {step:g} s has no finite acceleration beyond this instant",
@@ -23,18 +23,22 @@ BLAMED = {
 }
 
 
-def of_given_steps(runs: Runs, error: SolveError) -> SolveError:
-    """The error to be told in place of that of a run in given steps, which ended at `error.reached`."""
-    assert runs.step is not None
+def of_given_steps(
+    error: SolveError, runner: Runner, method: Method, step: float, in_own_steps: Callable[[], HeunError | None]
+) -> SolveError:
+    """The error to be told in place of that of a run in given steps [s], which ended at `error.reached`.
+
+    in_own_steps: how the motion fails in steps that a method finds, None where it comes to its end; asked at need.
+    """
     problem, t = error.problems[0], error.reached
     if problem.code not in BLAMED or t is None:
         return error
-    other = found_otherwise(runs)
+    other = in_own_steps()
     end = other.reached if isinstance(other, SolveError) and other.reached is not None else None
-    if isinstance(other, SolveError) and (end is None or end <= t + runs.step):
+    if isinstance(other, SolveError) and (end is None or end <= t + step):
         return other  # what no step would pass, and it tells where and why
-    message = f"at t = {t:.9g} s: {BLAMED[problem.code].format(step=runs.step)}"
-    hint = f"{shorter(runs)}, or --method auto, which finds its own"
+    message = f"at t = {t:.9g} s: {BLAMED[problem.code].format(step=step)}"
+    hint = f"{shorter(runner, method, step)}, or --method auto, which finds its own"
     if other is None:
         hint += " and comes to the end"
     elif end is not None:
@@ -45,33 +49,18 @@ def of_given_steps(runs: Runs, error: SolveError) -> SolveError:
     return found
 
 
-def found_otherwise(runs: Runs) -> HeunError | None:
-    """How the motion fails in steps that a method finds, as `auto` takes them; None where it comes to its end."""
-    method, watched = DOP853, True
-    while True:
-        try:
-            Runs(runs.runner, runs.times, runs.jumps, runs.deadline, method, watched=watched).first(LOCAL)
-        except Stiff as stiff:
-            method, watched = stiff.method, False
-        except HeunError as error:
-            return error
-        else:
-            return None
-
-
-def shorter(runs: Runs) -> str:
-    """What steps to try."""
-    assert runs.step is not None
-    rate = 0.0 if runs.method.implicit else fastest(runs)
-    if rate * runs.step > BORNE:
+def shorter(runner: Runner, method: Method, step: float) -> str:
+    """What steps to try in place of a step [s], in words."""
+    rate = 0.0 if method.implicit else fastest_rate(runner)
+    if rate * step > BORNE:
         return f"the fastest rate at the start is {rate:.2g} 1/s: steps of {BORNE / rate:.1g} s and less"
-    return f"a shorter step than {runs.step:g} s"
+    return f"a shorter step than {step:g} s"
 
 
-def fastest(runs: Runs) -> float:
+def fastest_rate(runner: Runner) -> float:
     """The largest magnitude among the eigenvalues of the linearised motion at the start [1/s]; 0 where it has none."""
-    moving = runs.runner.moving
-    start = moving.restrict(0.0, runs.runner.layout.y0)
+    moving = runner.moving
+    start = moving.restrict(0.0, runner.layout.y0)
     linearised = tangent(moving.workspace, 0.0, start)
     if not np.isfinite(linearised).all():
         return 0.0

@@ -8,11 +8,12 @@ from collections.abc import Sequence
 import numpy as np
 
 from heuncli import tolerances
-from heuncli.errors import LimitError, SolveError
+from heuncli.errors import HeunError, LimitError, SolveError
 from heuncli.integration.check.distance import Marks
 from heuncli.integration.methods.dop853 import DOP853
 from heuncli.integration.methods.method import Method
-from heuncli.integration.run.errors import ClosuresLost
+from heuncli.integration.run.errors import ClosuresLost, Stiff
+from heuncli.integration.run.request import Request, Watch
 from heuncli.integration.run.runner import Runner
 from heuncli.integration.trajectory import Trajectory
 from heuncli.results import Array
@@ -22,6 +23,7 @@ RATIO = 30.0  # local tolerance of A over that of B
 FIRST = 1.0  # local tolerance of the first run over the tolerance asked
 LEAST_RATIO = 4.0  # the same at least: errors are as the tolerances, 2 |A - B| is still 1.5 times that of A
 LEAST_HALVING = 2.0  # of a given step: 2 |A - B| is at order 1 still the error of A
+OWN_STEPS = 1e-6  # tolerance of a run that finds its own steps, where given ones fail
 COLLAPSED = ("step-collapsed", "closure-lost")  # how a run may end near a singular pose because of rounding
 FUTILE = 20  # a finer run that takes more than so many times the steps of the coarser one is dominated by rounding
 
@@ -47,11 +49,12 @@ class Runs:
 
         At others: a check run, which goes as far as the run that it checks.
         """
-        return self.runner.trajectory(
-            self.times if at is None else at, local, discontinuities=self.jumps, deadline=self.deadline,
-            most_steps=most_steps, method=by or self.method, start=start, whole=at is not None,
-            watched=self.watched and at is None, eventful=self.eventful and at is None,
-        )  # fmt: skip
+        request = Request(
+            self.times if at is None else at, local, by or self.method, self.jumps, start, self.deadline, most_steps
+        )
+        told = at is None
+        watch = Watch(ending=told, stiffness=told and self.watched, events=told and self.eventful)
+        return self.runner.trajectory(request, watch)
 
     def first(self, tolerance: float) -> Trajectory:
         """The run asked for; where it collapses at a singular pose, a coarser one that passes it."""
@@ -83,7 +86,20 @@ class Runs:
         except SolveError as error:
             from heuncli.integration.check.given_steps import of_given_steps  # only on the way to an error
 
-            raise of_given_steps(self, error) from None
+            raise of_given_steps(error, self.runner, self.method, step, self.in_own_steps) from None
+
+    def in_own_steps(self) -> HeunError | None:
+        """How the motion fails in steps that a method finds, as `auto` takes them; None where it comes to its end."""
+        method, watched = DOP853, True
+        while True:
+            try:
+                Runs(self.runner, self.times, self.jumps, self.deadline, method, watched=watched).first(OWN_STEPS)
+            except Stiff as stiff:
+                method, watched = stiff.method, False
+            except HeunError as error:
+                return error
+            else:
+                return None
 
     def attempt(
         self, local: float, than: Trajectory, at: Array | None, start: Array | None, by: Method | None = None

@@ -2,9 +2,7 @@
 
 from __future__ import annotations
 
-import time
-
-from heuncli.errors import LimitError, Problem, SolveError
+from heuncli.errors import Problem, SolveError
 from heuncli.integration.methods.method import Method
 from heuncli.kernel.choose import steps as kernel
 from heuncli.results import Array
@@ -33,18 +31,6 @@ TROUBLE = {
 }
 
 
-def check_deadline(deadline: float | None, where: str) -> None:
-    """Raise LimitError past the deadline (time.monotonic()); `where`: how far the work has come."""
-    if deadline is not None and time.monotonic() > deadline:
-        raise time_up(where)
-
-
-def time_up(where: str) -> LimitError:
-    """The error of a deadline that is past; `where`: how far the work has come."""
-    hint = "a longer --time-limit, a coarser --tolerance, or a shorter duration"
-    return LimitError(Problem("time-limit", f"the time limit was reached {where}", hint=hint))
-
-
 class ClosuresLost(SolveError):
     """A run that ended where its closed chains could not be held; passed: instants and states, failed: where, last."""
 
@@ -64,12 +50,11 @@ class Stiff(Exception):
 class Eventful(Exception):
     """A run that was left, for so many of its steps end at events that another method may take less, or no more do.
 
-    steps: done; cut: by events; reached [s], in so many evaluations and seconds, at a local tolerance. told: why
-    another one takes less, in a sentence.
+    reached [s] in so many steps, of which events cut so many, and evaluations, at a local tolerance; seconds: that it
+    took. told: why another method takes less, in a sentence.
     """
 
-    def __init__(self, steps: int, cut: int) -> None:
+    def __init__(self, reached: float, steps: int, cut: int, evaluations: int, local: float) -> None:
         super().__init__(f"{cut} of {steps} steps end at events")
-        self.steps, self.cut = steps, cut
-        self.reached = self.seconds = self.local = 0.0
-        self.evaluations, self.told = 0, ""
+        self.reached, self.steps, self.cut, self.evaluations, self.local = reached, steps, cut, evaluations, local
+        self.seconds, self.told = 0.0, ""

@@ -15,18 +15,18 @@ from heuncli.results import Array
 STEP = 1e-8  # rad, or of the size, and of rates [1/s]: by which the state is moved along the eigenvector
 
 
-def swift(scene: Evaluator, t: float, state: Array, h: float) -> str:
+def fastest(scene: Evaluator, t: float, state: Array, h: float) -> str:
     """What is fast at a state, how fast, and how fast the motion is beside it, in a sentence; h: explicit steps [s]."""
     values, vectors = np.linalg.eig(tangent(scene.workspace, t, state))
     k = int(np.argmax(np.abs(values)))
-    fastest = complex(values[k])
-    does = "swings" if abs(fastest.imag) > abs(fastest.real) else "decays"
+    largest = complex(values[k])
+    does = "swings" if abs(largest.imag) > abs(largest.real) else "decays"
     answers = scene.recovered(np.array([t]), state[None, :])
     omega = np.sqrt(np.sum(answers.bodies["omega"] ** 2, axis=2)).max(initial=0.0)
     speed = np.sqrt(np.sum(answers.bodies["v"] ** 2, axis=2)).max(initial=0.0) / scene.size
-    what = responsible(scene, t, state, vectors[:, k], abs(fastest))
+    what = responsible(scene, t, state, vectors[:, k], abs(largest))
     return (
-        f"stiff: {what} {does} at {abs(fastest):.2g} 1/s where the motion goes at {max(omega, speed):.2g} 1/s: "
+        f"stiff: {what} {does} at {abs(largest):.2g} 1/s where the motion goes at {max(omega, speed):.2g} 1/s: "
         f"at t = {t:.3g} s it keeps explicit steps at {h:.2g} s"
     )
 

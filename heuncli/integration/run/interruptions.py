@@ -1,4 +1,4 @@
-"""What happens where a run comes to an instant: given blows, and what its contacts do; between them it goes in pieces.
+"""What interrupts a run: given blows at their instants, and contacts that close, are struck or let go.
 
 Changes the run: it goes on from the state behind.
 """
@@ -13,9 +13,7 @@ from heuncli import tolerances
 from heuncli.errors import Problem, SolveError
 from heuncli.integration.contacts.blows import Given, Jump, schedule, strike
 from heuncli.integration.evaluator import Evaluator
-from heuncli.integration.integrated_scene import IntegratedScene
-from heuncli.integration.run.kernel_loop import Integration
-from heuncli.integration.run.step_records import Steps
+from heuncli.integration.run.progress import Progress
 from heuncli.integration.segments import Segment
 from heuncli.records import replace
 from heuncli.results import Array
@@ -25,19 +23,18 @@ if TYPE_CHECKING:  # loaded where something opens and closes
     from heuncli.integration.contacts.contact_events import Contacts
 
 
-class Blows:
+class Interruptions:
     """The blows of a run, each done where the run comes to its instant, and its contacts. Changes the run.
 
-    They are solved in the scene itself, whatever is integrated in its place.
+    due: given blows still to come; done: the blows that happened. They are solved in the scene itself, whatever is
+    integrated in its place.
     """
 
-    def __init__(
-        self, evaluator: Evaluator, moving: IntegratedScene, run: Integration, steps: Steps, last: float
-    ) -> None:
-        self.evaluator, self.moving, self.run, self.steps, self.last = evaluator, moving, run, steps, last
-        self.due = schedule(evaluator.layout.mechanism, last)
+    def __init__(self, progress: Progress) -> None:
+        self.progress, self.scene, self.moving = progress, progress.scene, progress.moving
+        self.due = schedule(self.scene.layout.mechanism, progress.last)
         self.done: list[Jump] = []
-        self.contacts = contacts_of(evaluator, last)
+        self.contacts = contacts_of(self.scene, progress.last)
 
     def until(self, t: float, reached: float) -> str | None:
         """Those up to an instant, behind the one that the run has reached: it goes on from the state behind them.
@@ -48,7 +45,7 @@ class Blows:
             jump = self.meet(self.due.pop(0), reached)
             if jump is None:
                 continue
-            rope = pushing(self.evaluator.layout, jump)
+            rope = pushing(self.scene.layout, jump)
             if rope is not None and reached > 0.0:
                 return rope
             require_pull(rope)
@@ -57,9 +54,9 @@ class Blows:
 
     def meet(self, given: Given, time: float, row: int | None = None) -> Jump | None:
         """The blow that is given at the state reached, and that of its contacts; row: of the one that closed."""
-        state = self.moving.state(time, np.array(self.run.loop.state()))
+        state = self.moving.state(time, self.progress.integrated_state)
         if self.contacts is None:
-            return strike(self.evaluator, given, state, time)
+            return strike(self.scene, given, state, time)
         return self.contacts.meet(given, state, time, row)
 
     def settle(self, t: float, row: int | None = None) -> None:
@@ -71,7 +68,7 @@ class Blows:
             return
         if row is not None:
             self.contacts.count(t)
-            row = self.evaluator.layout.contacts[self.moving.contact(row)].row
+            row = self.scene.layout.contacts[self.moving.contact(row)].row
         jump = self.meet(Given(t, t, (), {}), t, row)
         if jump is not None:
             self.take(jump)
@@ -80,20 +77,27 @@ class Blows:
         """The run goes on from the state reached, with the contacts that are closed there."""
         if self.contacts is not None:
             self.moving.workspace.hold(self.contacts.holding)
-            self.steps.hold(self.contacts.holding)
-        self.run.loop.begin(*segment)
+            self.progress.steps.hold(self.contacts.holding)
+        self.progress.kernel.loop.begin(*segment)
 
     def take(self, jump: Jump) -> None:
         """Go on from behind a blow."""
         after = self.moving.restrict(jump.time, jump.after)
-        self.run.loop.jump(after)
-        self.steps.stand(after)
+        self.progress.kernel.loop.jump(after)
+        self.progress.steps.stand(after)
         self.done.append(replace(jump, after=self.moving.state(jump.time, after)))
 
     @property
     def notes(self) -> tuple[str, ...]:
         """What is to be told of the contacts."""
         return tuple(self.contacts.notes) if self.contacts is not None else ()
+
+
+def closed_at_start(scene: Evaluator) -> Array:
+    """The contacts of a scene that are closed at its start, (contacts,)."""
+    from heuncli.integration.contacts.contact_events import held_at  # few scenes have them
+
+    return held_at(scene, 0.0, scene.layout.y0)
 
 
 def contacts_of(evaluator: Evaluator, last: float) -> Contacts | None:

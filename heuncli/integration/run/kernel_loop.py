@@ -25,7 +25,6 @@ UNSOLVED = kernel.CODES["unsolved"]
 STIFF_AFTER = 15  # steps held short by stability, as in Hairer's DOP853 ...
 EASY_AFTER = 6  # ... and steps on end that were not, after which their count begins anew
 LOOK_AFTER = 1_000  # steps; then each time that they have doubled
-EVENTS_AFTER = 16  # steps; then likewise: fewer are no pattern
 UNWATCHED = {"stiff_after": 0, "easy_after": 0, "look_after": 0, "stable": 0.0}
 PER_STEP = ("ends", "settled", "pivots", "turned")  # what is put down of each step
 
@@ -47,7 +46,7 @@ class Start:
     watched: bool = False
 
 
-class Integration:
+class KernelLoop:
     """The kernel's loop over the asked instants, at most `most` steps at a time, with the arrays it writes to."""
 
     def __init__(
@@ -57,7 +56,6 @@ class Integration:
             raise ValueError(f"the kernel has no stages of {method.name}")
         n = self.n = layout.n_state
         self.method, self.start = method, start
-        self.looked = 0  # steps after which it was looked at last whether another method takes less
         self.width = integration.record_width(workspace, n)
         self.output = {name: np.zeros(most) for name in PER_STEP}
         self.held = layout.pack.held

@@ -10,8 +10,8 @@ from __future__ import annotations
 
 import time
 import warnings
-from collections.abc import Callable, Sequence
-from typing import TYPE_CHECKING, Any
+from collections.abc import Callable
+from typing import Any
 
 import numpy as np
 
@@ -20,7 +20,8 @@ from heuncli.errors import LimitError, Problem, SolveError, SpecError
 from heuncli.integration.contacts.blows import rate_jumps
 from heuncli.integration.integrated_scene import IntegratedScene
 from heuncli.integration.methods.method import Method
-from heuncli.integration.run.errors import check_deadline
+from heuncli.integration.run.limits import check_deadline
+from heuncli.integration.run.request import Request
 from heuncli.integration.segments import Segment, Segments, smooth_segments
 from heuncli.integration.trajectory import Kept, Trajectory
 from heuncli.method_rows import SMOOTH_ONLY
@@ -28,9 +29,6 @@ from heuncli.records import record
 from heuncli.response import settled, slope
 from heuncli.results import Array
 from heuncli.tree.layout import Layout
-
-if TYPE_CHECKING:
-    from heuncli.integration.run.runner import Runner
 
 LEAST_RELATIVE = 100.0 * tolerances.EPS  # what SciPy takes for its relative tolerance at least
 
@@ -66,31 +64,27 @@ class Derivative:
         return rate
 
 
-def trajectory(
-    runner: Runner, times: Array, local: float, *, discontinuities: Sequence[float], deadline: float | None,
-    most_steps: int, method: Method, start: Array | None,
-) -> Trajectory:  # fmt: skip
-    """A run by one of SciPy's methods, as `Runner.trajectory` gives it.
+def trajectory(layout: Layout, moving: IntegratedScene, request: Request) -> Trajectory:
+    """A run of a scene by one of SciPy's methods, as `Runner.trajectory` gives it.
 
     Raises SpecError for what they do not run, SolveError where they give up, LimitError past the deadline.
     """
     begun = time.perf_counter()
-    moving = runner.moving
-    last = float(times[-1]) if len(times) else 0.0
-    require_smooth(runner.layout, method, last)
-    state = moving.restrict(0.0, runner.layout.y0 if start is None else start)
+    times, method, last = request.instants, request.method, request.last
+    require_smooth(layout, method, last)
+    state = moving.restrict(0.0, layout.y0 if request.start is None else request.start)
     derivative = Derivative(moving)
     done = Solved([], [state], [], [])
-    goes = Solving(derivative, method, local, last, deadline, min(most_steps, tolerances.MOST_FOREIGN))
-    for segment in smooth_segments(last, discontinuities):
+    solving = Solving(derivative, request, min(request.most_steps, tolerances.MOST_FOREIGN))
+    for segment in smooth_segments(last, request.discontinuities):
         done.pieces.append(segment)
-        goes.run(segment, settled(moving.workspace, moving.layout, segment.begin, done.states[-1])[0], done)
+        solving.run(segment, settled(moving.workspace, moving.layout, segment.begin, done.states[-1])[0], done)
     own = done.at(moving, times)
     steps = len(done.ends)
     kept = Kept(np.arange(len(done.states)), np.array(done.states))
     return Trajectory(
         times=times, states=own, ends=np.array(done.ends), steps=steps, evaluations=derivative.count,
-        gap=derivative.gap, local=local, method=method, seconds=time.perf_counter() - begun,
+        gap=derivative.gap, local=request.local, method=method, seconds=time.perf_counter() - begun,
         segments=Segments(np.array(done.pieces)), kept=kept, pivots=np.ones(steps), settled=np.ones(steps),
         branches=np.zeros((steps, 0)), turned=np.zeros(steps), holding=np.zeros((steps + 1, 0)),
         within=lambda at: done.at(moving, at),
@@ -102,10 +96,7 @@ class Solving:
     """How SciPy integrates a run, a segment after the other."""
 
     derivative: Derivative
-    method: Method
-    local: float
-    last: float
-    deadline: float | None
+    request: Request
     most_steps: int
 
     def run(self, segment: Segment, state: Array, done: Solved) -> None:
@@ -121,30 +112,32 @@ class Solving:
                 done.ends.append(float(solver.t))
                 done.states.append(np.array(solver.y))
                 done.within.append(solver.dense_output())
-                check_deadline(self.deadline, f"at t = {solver.t:.6g} s of {self.last:.6g} s")
+                check_deadline(self.request.deadline, f"at t = {solver.t:.6g} s of {self.request.last:.6g} s")
                 if len(done.ends) > self.most_steps:
-                    raise too_many(self.method, self.most_steps, solver.t, self.last)
+                    raise too_many(self.request.method, self.most_steps, solver.t, self.request.last)
 
     def solver(self, segment: Segment, state: Array) -> Any:
         """SciPy's solver at the start of a segment."""
         from scipy import integrate  # not before it is needed: a third of a second
 
-        kind = getattr(integrate, self.method.foreign)
-        scale = scales(self.derivative, segment.begin, state, self.last)
-        relative = max(self.local, LEAST_RELATIVE)
+        kind = getattr(integrate, self.request.method.foreign)
+        scale = scales(self.derivative, segment.begin, state, self.request.last)
+        relative = max(self.request.local, LEAST_RELATIVE)
         try:
-            return kind(self.derivative, segment.begin, state, segment.end, rtol=relative, atol=self.local * scale)
+            return kind(
+                self.derivative, segment.begin, state, segment.end, rtol=relative, atol=self.request.local * scale
+            )
         except (ValueError, ArithmeticError) as error:
-            raise gave_up(self.method, segment.begin, str(error)) from None
+            raise gave_up(self.request.method, segment.begin, str(error)) from None
 
     def step(self, solver: Any) -> None:
         """One step. Raises SolveError where there is none."""
         try:
             message = solver.step()
         except (ValueError, ArithmeticError, np.linalg.LinAlgError) as error:  # it factored what is no number
-            raise gave_up(self.method, float(solver.t), str(error)) from None
+            raise gave_up(self.request.method, float(solver.t), str(error)) from None
         if solver.status == "failed" or not np.isfinite(solver.y).all():
-            raise gave_up(self.method, float(solver.t), str(message or "a value is no number any more"))
+            raise gave_up(self.request.method, float(solver.t), str(message or "a value is no number any more"))
 
 
 def scales(derivative: Derivative, t: float, state: Array, last: float) -> Array:

@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import numpy as np
 
-from heuncli.integration.run.kernel_loop import PER_STEP, Integration
+from heuncli.integration.run.kernel_loop import PER_STEP, KernelLoop
 from heuncli.integration.run.pace import FIRST_LOOK
 from heuncli.integration.trajectory import Kept
 from heuncli.results import Array
@@ -51,7 +51,6 @@ class Steps:
         self.every, self.room = 1, max(2, KEPT // max(width, 1))
         self.after: dict[int, Array] = {}  # of the steps after blows, which are kept in any case
         self.look = FIRST_LOOK
-        self.looked = self.cut_before = 0  # steps when it was last looked at how many events ended, and those
         self.holdings: list[tuple[int, Array]] = []  # from which step on which contacts are closed
 
     def whole(self, state: Array) -> Array:
@@ -83,15 +82,15 @@ class Steps:
         """The records of every so many steps."""
         return Kept(self.every * np.arange(self.kept.count), self.kept.rows)
 
-    def add(self, run: Integration) -> None:
+    def add(self, kernel: KernelLoop) -> None:
         """Add the steps of the last call; while there are too many records, every second of them is dropped."""
-        done = run.loop.done
-        self.rows.add(np.column_stack([run.output[name][:done] for name in PER_STEP]))
-        if run.held:
-            self.branches = self.branches or Growing(run.held)
-            self.branches.add(run.held_branches())
+        done = kernel.loop.done
+        self.rows.add(np.column_stack([kernel.output[name][:done] for name in PER_STEP]))
+        if kernel.held:
+            self.branches = self.branches or Growing(kernel.held)
+            self.branches.add(kernel.held_branches())
         first = self.count // self.every * self.every + self.every  # the next number of which one is kept
-        self.kept.add(run.records(self.every, first - self.count - 1))
+        self.kept.add(kernel.records(self.every, first - self.count - 1))
         self.count += done
         while self.kept.count > self.room:
             self.every *= 2

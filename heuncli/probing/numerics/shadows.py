@@ -21,7 +21,7 @@ from heuncli.integration.contacts.blows import schedule, strike
 from heuncli.integration.evaluator import Evaluator
 from heuncli.integration.integrated_scene import itself
 from heuncli.integration.methods.method import Method
-from heuncli.integration.run.kernel_loop import MORE, REACHED, Integration, Start
+from heuncli.integration.run.kernel_loop import MORE, REACHED, KernelLoop, Start
 from heuncli.integration.run.runner import Runner
 from heuncli.integration.segments import just_before
 from heuncli.integration.trajectory import Trajectory
@@ -138,7 +138,7 @@ class Shadows:
         self.layout, self.workspace = self.moving.layout, self.moving.workspace
         self.rate = largest_rate(runner, run)
         self.scale = Scale(self.layout, self.rate)
-        self.beside = Evaluator(self.layout) if self.layout.rows else None
+        self.beside = Runner(self.layout) if self.layout.rows else None
         self.blows = schedule(runner.layout.mechanism, float(run.times[-1]))
 
     def settled(self, t: float, states: Array) -> Array:
@@ -150,7 +150,7 @@ class Shadows:
     def forward(self, piece: Piece, state: Array) -> tuple[Array, int] | None:
         """The state that one at the beginning of a piece comes to at its end, and the steps; None if it does not."""
         start = Start(state, STIFF_LOCAL if self.method.implicit else tolerances.LEAST_TOLERANCE, self.rate)
-        run = Integration(self.layout, self.workspace, self.method, np.array([piece.end]), CHUNK, start)
+        run = KernelLoop(self.layout, self.workspace, self.method, np.array([piece.end]), CHUNK, start)
         run.loop.begin(piece.begin, piece.before_end, piece.end)
         for _ in range(MOST_CHUNKS):
             code = run.loop.advance(CHUNK, False, False)

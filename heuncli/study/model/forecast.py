@@ -16,6 +16,7 @@ from heuncli.integration.check.runs import Runs
 from heuncli.integration.methods.method import Method
 from heuncli.integration.run.errors import Eventful, Stiff
 from heuncli.integration.run.kernel_loop import depends
+from heuncli.integration.run.request import Request, Watch
 from heuncli.integration.segments import discontinuities_of
 from heuncli.integration.trajectory import Trajectory
 from heuncli.method_rows import row_of
@@ -88,7 +89,6 @@ def begun(setup: Setup, local: float, last: float, *, watched: bool = False) -> 
     """The first part of the run."""
     jumps = tuple(discontinuities_of(setup.scene.mechanism, 0.0, last))
     assert setup.method is not None
-    return setup.runner.trajectory(
-        np.array([0.0, last]), local, discontinuities=jumps, deadline=time.monotonic() + PATIENCE,
-        most_steps=MOST_STEPS, method=setup.method, watched=watched, eventful=watched,
-    )  # fmt: skip
+    deadline = time.monotonic() + PATIENCE
+    request = Request([0.0, last], local, setup.method, jumps, deadline=deadline, most_steps=MOST_STEPS)
+    return setup.runner.trajectory(request, Watch(stiffness=watched, events=watched))

@@ -1,0 +1,56 @@
+"""Why a run cannot go on where the kernel's loop has ended. Imported only on the way to an error."""
+
+from __future__ import annotations
+
+import numpy as np
+
+from heuncli.errors import Problem, SolveError
+from heuncli.expressions.programs import Expression
+from heuncli.integration.diagnosis.domains import joint_coordinates, without_value
+from heuncli.integration.diagnosis.growth import growing, largest_load
+from heuncli.integration.run.errors import TROUBLE, ClosuresLost
+from heuncli.integration.run.kernel_loop import CHATTERING, HALF_TURN
+from heuncli.integration.run.progress import Progress
+
+
+def failure(progress: Progress, code: int) -> SolveError:
+    """The error of a run that the kernel's loop ended with a code."""
+    t, scene, loop = progress.t, progress.scene, progress.kernel.loop
+    if code == CHATTERING:
+        return SolveError(chattering(t, *scene.layout.pack.branches[loop.turning]))
+    if code == HALF_TURN:
+        from heuncli.integration.diagnosis.half_turns import half_turn  # the global chart alone has them
+
+        itself = progress.moving.layout is scene.layout
+        return half_turn(progress.moving, loop.half_turn, t, progress.integrated_state, itself=itself)
+    name, message, hint = TROUBLE[code]
+    if name == "closure-lost":
+        problem = Problem(name, f"at t = {t:.9g} s: {message}", hint=hint)
+        return ClosuresLost(problem, passed=progress.passed, failed=t, last=progress.last)
+    return without_acceleration(progress, name, message, hint)
+
+
+def without_acceleration(progress: Progress, name: str, message: str, hint: str) -> SolveError:
+    """An expression without a value there, else one that grows without bound, else what the kernel's code means."""
+    t, state, scene = progress.t, progress.state, progress.scene
+    mechanism, recovered = scene.layout.mechanism, scene.recovered(np.array([t]), state[None, :])
+    problems = without_value(mechanism, t, progress.last, joint_coordinates(scene.layout, recovered.freedoms[0]))
+    problems = problems or growing(scene, t, state, progress.passed)
+    if problems:
+        return SolveError(*problems)
+    hint = "; ".join(filter(None, [hint, largest_load(mechanism, recovered)]))
+    hangs = scene.layout.spanning.hangs
+    light = sorted({f"bodies.{mechanism.bodies[hangs[i].body].name}" for i in scene.layout.tables["lents"]["body"]})
+    if light and name == "step-collapsed":
+        hint += f", as where closed loops cease to hold the turn of what has no inertia: {', '.join(light)}"
+    return SolveError(Problem(name, f"at t = {t:.9g} s: {message}", hint=hint))
+
+
+def chattering(t: float, expression: Expression, branch: int) -> Problem:
+    """The problem of a branch that turns back as soon as it turned: the motion would have to stay between."""
+    message = (
+        f"at t = {t:.9g} s '{expression.held[branch]}' in '{expression.source.strip()}' chatters: "
+        "it changes back as soon as it has changed, for on either side the motion is driven to the other"
+    )
+    hint = "what sticks needs a smooth law: tanh(rate/0.001) in place of sign(rate), or a force of type friction"
+    return Problem("chattering", message, expression.location, hint)

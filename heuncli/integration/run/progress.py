@@ -1,0 +1,49 @@
+"""How far a run has come: what is integrated, the kernel's loop, and what is put down of the steps done."""
+
+from __future__ import annotations
+
+import numpy as np
+
+from heuncli.integration.evaluator import Evaluator
+from heuncli.integration.integrated_scene import IntegratedScene
+from heuncli.integration.run.kernel_loop import KernelLoop
+from heuncli.integration.run.step_records import Steps
+from heuncli.records import record
+from heuncli.results import Array
+
+
+@record
+class Progress:
+    """A run under way.
+
+    scene: whose motion is asked for; moving: what is integrated in its place; kernel: the stepping loop; steps: those
+    done; last: the instant at which it is to end [s].
+    """
+
+    scene: Evaluator
+    moving: IntegratedScene
+    kernel: KernelLoop
+    steps: Steps
+    last: float
+
+    @property
+    def t(self) -> float:
+        """The instant that it has reached [s]."""
+        return self.kernel.loop.t
+
+    @property
+    def integrated_state(self) -> Array:
+        """The state that it has reached, of what is integrated, (n',)."""
+        return np.array(self.kernel.loop.state())
+
+    @property
+    def state(self) -> Array:
+        """The scene's state that it has reached, (n,)."""
+        return self.moving.state(self.t, self.integrated_state)
+
+    @property
+    def passed(self) -> list[tuple[float, Array]]:
+        """Instants and the scene's states (n,) that it has passed, ascending: some, on the way to an error."""
+        passed = self.steps.passed(self.kernel.n)
+        times = [t for t, _ in passed]
+        return list(zip(times, self.moving.embed(np.array(times), np.array([y for _, y in passed])), strict=True))

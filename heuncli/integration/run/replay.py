@@ -1,0 +1,73 @@
+"""States of a run at other instants: its own steps are done once more, from records that were kept of it.
+
+To the last bit what the run would have given, had these instants been among those it was asked for; and what it gave,
+where they were. It takes no other steps than the run, so it costs at most as much and succeeds wherever the run did.
+"""
+
+from __future__ import annotations
+
+import math
+
+import numpy as np
+
+from heuncli.errors import Problem, SolveError
+from heuncli.integration.integrated_scene import IntegratedScene
+from heuncli.integration.run.errors import TROUBLE
+from heuncli.integration.run.kernel_loop import UNSOLVED, KernelLoop, Start
+from heuncli.integration.trajectory import Trajectory
+from heuncli.results import Array
+
+
+def resampled(moving: IntegratedScene, run: Trajectory, times: Array) -> Array:
+    """The scene's states (n_t, n) at instants of a run, ascending, within it."""
+    times = np.ascontiguousarray(times, dtype=float)
+    if run.within is not None:
+        return run.within(times)
+    out = np.empty((len(times), run.states.shape[1]))
+    own = np.minimum(np.searchsorted(run.times, times), len(run.times) - 1)
+    for blow in run.blows:  # its own instant shows the state behind it
+        out[times == blow.time] = blow.after
+    asked = run.times[own] == times
+    out[asked] = run.states[own[asked]]
+    others = np.flatnonzero(~(asked | np.isin(times, [blow.time for blow in run.blows])))
+    step = np.searchsorted(run.ends, times[others])  # the step in which an instant lies
+    base = np.searchsorted(run.kept.steps, step, side="right") - 1
+    # consecutive steps are replayed together
+    breaks = np.flatnonzero((np.diff(step) > 1) & (np.diff(base) > 0)) + 1
+    for group in np.split(np.arange(len(others)), breaks):
+        if len(group):
+            to = others[group]
+            states = replayed(moving, run, int(base[group[0]]), int(step[group[-1]]), times[to])
+            out[to] = moving.embed(times[to], states)
+    return out
+
+
+def replayed(moving: IntegratedScene, run: Trajectory, record: int, last: int, times: Array) -> Array:
+    """States (n_t, n') of what is integrated at instants within the steps from a kept record on to step `last`.
+
+    record: its place in `run.kept`. Raises SolveError where the equations of an implicit step are not solved again.
+    """
+    first, state = int(run.kept.steps[record]), run.kept.records[record]
+    given = Start(moving.layout.y0, math.inf, following=True)
+    kernel = KernelLoop(moving.layout, moving.workspace, run.method, times, last - first + 1, given)
+    loop, after = kernel.loop, run.after_blows
+    loop.stand(state)
+    t = float(run.ends[first - 1]) if first else 0.0
+    while first <= last:
+        begin, before_end, end = run.segments.at(t)
+        to = min(last, int(np.searchsorted(run.ends, end)))  # a segment ends with a step
+        steps = slice(first, to + 1)
+        loop.follow(run.ends[steps], run.settled[steps], run.branches[steps])
+        if first in after:
+            loop.stand(after[first])
+        moving.workspace.hold(run.holding[first])
+        if t <= begin:
+            loop.begin(begin, before_end, end)
+        else:
+            loop.resume(t, before_end, end)
+        if loop.advance(to + 1 - first, False, False) == UNSOLVED:
+            code, message, hint = TROUBLE[UNSOLVED]
+            raise SolveError(Problem(code, f"at t = {loop.t:.9g} s: {message}", hint=hint))
+        t = loop.t
+        first = to + 1
+    return kernel.states()
