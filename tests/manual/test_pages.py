@@ -3,16 +3,19 @@
 from __future__ import annotations
 
 import re
+import signal
 
 import pytest
 from pydantic import BaseModel
 
+from heuncli.cli.entry import INTERRUPTED, OF_SEVERAL
 from heuncli.cli.explain import PAGES
+from heuncli.cli.files import ReaderGone
 from heuncli.cli.requests import COMMANDS, LATER_COMMANDS
 from heuncli.expressions.grammar import ARITY, CONSTANTS
 from heuncli.expressions.units import UNITS
 from heuncli.spec import format as document
-from tests.shared.manual import FENCED, README, ROOT, TEXTS, anchor, file_of, headings
+from tests.shared.manual import FENCED, README, ROOT, TEXTS, anchor, file_of, headings, tables_below
 
 LINK = re.compile(r"\]\(([^()\s]+)\)")
 LONGEST = 350  # lines of the README; what is longer belongs to a page
@@ -70,3 +73,10 @@ def test_every_key_unit_function_and_command_is_named() -> None:
     assert sorted((ARITY.keys() | CONSTANTS.keys()) - named) == []
     assert sorted(set(LATER_COMMANDS) - named) == []
     assert all(f"heun {command}" in text for command in COMMANDS)
+
+
+def test_the_exit_codes_are_listed() -> None:
+    ended = {128 + signal.SIGHUP, 128 + signal.SIGTERM}
+    (table,) = tables_below(TEXTS["commands"], "Exit codes")
+    told = {int(code) for row in table.splitlines()[2:] for code in re.findall(r"\d+", row.split("|")[1])}
+    assert told == {0, *OF_SEVERAL, INTERRUPTED, ReaderGone.exit_code} | ended

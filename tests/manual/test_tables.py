@@ -10,9 +10,18 @@ import pytest
 from pydantic.fields import FieldInfo
 from pydantic_core import PydanticUndefined
 
+from heuncli import tolerances
+from heuncli.expressions.grammar import LONGEST as LONGEST_EXPRESSION
+from heuncli.kinetostatics.stress import UNKNOWN_SHEAR
+from heuncli.report.export import MOST_NUMBERS
 from heuncli.spec import format as f
 from heuncli.spec.fields import Model
-from heuncli.spec.semantics import DEFAULT_SAMPLES
+from heuncli.spec.resolve import DEFAULT_TOLERANCE
+from heuncli.spec.rules.analysis import LONGEST as LONGEST_RUN
+from heuncli.spec.rules.sections import MOST_CUTS
+from heuncli.spec.semantics import DEFAULT_SAMPLES, MOST_SAMPLES
+from heuncli.spec.source import LARGEST as LARGEST_SPEC
+from heuncli.spec.tables import LARGEST as LARGEST_TABLE
 from tests.manual.keys import ALL, CHAPTERS, INLINE, NEEDED, TOP, named_fields, pairs, top_keys, unit_of, words_of
 from tests.manual.tables import TABLES, Table
 from tests.shared.manual import TEXTS, tables_below
@@ -125,9 +134,39 @@ def default(field: FieldInfo) -> str | None:
     return str([int(x) for x in value]) if isinstance(value, tuple) else f"{value:g}"
 
 
-def test_the_default_of_samples() -> None:
-    (row,) = [row for row in rows("Analysis", KEYS) if row["key"] == "samples"]
-    assert row["default"] == str(DEFAULT_SAMPLES)
+LATE = {  # defaults that are taken after the models are read
+    ("Analysis", "samples"): DEFAULT_SAMPLES,
+    ("Analysis", "tolerance"): DEFAULT_TOLERANCE,
+    ("Expect", "rel"): tolerances.EXPECTED_RELATIVE,
+    ("Expect", "abs"): tolerances.EXPECTED_ABSOLUTE,
+    ("Properties", "shear_factor"): UNKNOWN_SHEAR,
+}
+SIZES = (
+    ("numbers to export", MOST_NUMBERS),
+    ("samples", MOST_SAMPLES),
+    ("cuts in a run", MOST_CUTS),
+    ("steps", tolerances.MOST_STEPS),
+    ("time", LONGEST_RUN),
+    ("an expression", LONGEST_EXPRESSION),
+    ("a spec", LARGEST_SPEC),
+    ("the file of a table", LARGEST_TABLE),
+)
+
+
+@pytest.mark.parametrize(("place", "value"), LATE.items())
+def test_defaults_that_come_later(place: tuple[str, str], value: float) -> None:
+    heading, key = place
+    (cell,) = {row["default"] for row in rows(heading, KEYS) if row["key"] == key}
+    assert float(cell) == value
+
+
+def test_sizes_are_those_of_the_code() -> None:
+    (table,) = tables_below(TEXTS["limits"], "Sizes")
+    listed = [tuple(cells(line)) for line in table.splitlines()[2:]]
+    assert [what for what, _ in listed] == [what for what, _ in SIZES]
+    for (what, told), (_, value) in zip(listed, SIZES, strict=True):
+        number, unit, *_ = [*told.replace(",", "").split(), ""]
+        assert float(number) * {"million": 1e6, "MB": 1e6}.get(unit, 1.0) == value, what
 
 
 def test_words_are_those_of_the_models() -> None:
