@@ -15,10 +15,11 @@ from heuncli import tolerances
 from heuncli.assembly.drives import Jet, drive_jet
 from heuncli.errors import Problem, SolveError
 from heuncli.joint_kinds import JOINTS
-from heuncli.mechanism.model import GROUND, Drive, Joint, Mechanism
+from heuncli.mechanism.model import GROUND, Joint, Mechanism
 from heuncli.records import record
 from heuncli.results import Array
 from heuncli.shapes.rotations import about, perpendicular, turn_onto
+from heuncli.spec.models import Drive
 
 Hold = Literal["none", "point", "line", "plane", "distance"]
 Turn = Literal["free", "axis", "square", "all"]

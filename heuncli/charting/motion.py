@@ -19,7 +19,7 @@ from heuncli.integration.run.errors import Stiff
 from heuncli.method_rows import AUTO, DEFAULT
 from heuncli.records import record
 from heuncli.results import Array
-from heuncli.spec.models import Spec
+from heuncli.spec.models import ResultCondition, Spec
 from heuncli.study.model.setup import Setup, set_up
 from heuncli.study.solve.history import begin
 
@@ -92,7 +92,7 @@ def motion_of(spec: Spec, deadline: float | None) -> Motion:
 
 def up_to_its_end(spec: Spec, deadline: float | None) -> tuple[Spec, str]:
     """A motion that ends on a number of its results, without the condition: up to the instant that `heun run` finds."""
-    ending = next((c for c in spec.analysis.conditions if c.ends and c.value is None), None)
+    ending = next((c for c in spec.analysis.conditions if c.ends and isinstance(c, ResultCondition)), None)
     if ending is None:
         return spec, ""
     from heuncli.study.model.options import Options  # few scenes end so

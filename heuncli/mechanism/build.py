@@ -1,8 +1,7 @@
-"""Spec -> Mechanism: the user's words become plain SI arrays; nothing is solved here."""
+"""Spec -> Mechanism: names become numbers, tuples arrays, shapes mass properties; nothing is solved here."""
 
 from __future__ import annotations
 
-from collections.abc import Mapping
 from typing import TYPE_CHECKING
 
 import numpy as np
@@ -12,9 +11,7 @@ from heuncli.mechanism.model import (
     GROUND,
     Blow,
     Body,
-    Condition,
     Directed,
-    Drive,
     Joint,
     JointLoad,
     Load,
@@ -32,8 +29,6 @@ from heuncli.spec import models as m
 if TYPE_CHECKING:
     from heuncli.shapes.forms import Form
 
-INFINITE = np.full(3, np.inf)
-
 
 def forms_of(spec: m.Spec) -> dict[str, Form]:
     """The forms of the bodies that are built from shapes."""
@@ -46,16 +41,16 @@ def forms_of(spec: m.Spec) -> dict[str, Form]:
 
 
 def build(spec: m.Spec, forms: dict[str, Form]) -> Mechanism:
-    """The mechanism of a validated spec (spec.models.Spec)."""
+    """The mechanism of a validated spec; forms: of the bodies that are built from shapes."""
     index = {name: i for i, name in enumerate(spec.bodies)} | {"ground": GROUND}
-    joints = {name: (k, TYPES[j.type]) for k, (name, j) in enumerate(spec.joints.items())}
-    drives = {d.joint: (name, d) for name, d in spec.drives.items()}
+    joints = {name: (k, TYPES[j.kind]) for k, (name, j) in enumerate(spec.joints.items())}
+    drives = {drive.joint: drive for drive in spec.drives.values()}
     planar = spec.space == "planar"
-    bodies = tuple(body(name, b, forms.get(name)) for name, b in spec.bodies.items())
+    bodies = tuple(body(b, forms.get(name)) for name, b in spec.bodies.items())
     last = max(spec.analysis.times, default=0.0)
-    made = tuple(joint(name, j, index, drives.get(name), planar, last) for name, j in spec.joints.items())
+    made = tuple(joint(j, index, drives.get(name), planar, last) for name, j in spec.joints.items())
     loads = tuple(part for name, f in spec.forces.items() for part in parts_of(name, f, index, joints))
-    conditions = tuple(Condition(c.name, c.value, c.ends) for c in spec.analysis.conditions if c.value is not None)
+    conditions = tuple(c for c in spec.analysis.conditions if isinstance(c, m.Condition))
     if planar:
         told = {joints[stop.joint][0] for stop in spec.stops.values()} | coordinates_used(loads, joints)
         told |= {joints[name][0] for condition in conditions for name, _ in condition.value.uses}
@@ -67,17 +62,12 @@ def build(spec: m.Spec, forms: dict[str, Form]) -> Mechanism:
         bodies=bodies,
         joints=made,
         loads=loads,
-        blows=tuple(blow(name, i, index) for name, i in spec.impulses.items()),
+        blows=tuple(blow(b, index) for b in spec.impulses.values()),
         stops=tuple(
-            Stop(name, joints[s.joint][0], s.quantity, s.low, s.high, s.restitution) for name, s in spec.stops.items()
+            Stop(s.name, joints[s.joint][0], s.quantity, s.low, s.high, s.restitution) for s in spec.stops.values()
         ),
         conditions=conditions,
     )
-
-
-def vectors(points: Mapping[str, m.Vec]) -> dict[str, Array]:
-    """Named points as arrays."""
-    return {name: np.array(p) for name, p in points.items()}
 
 
 def optional(value: m.Vec | m.Matrix | None) -> Array | None:
@@ -85,9 +75,9 @@ def optional(value: m.Vec | m.Matrix | None) -> Array | None:
     return None if value is None else np.array(value, dtype=float)
 
 
-def directed(value: m.Directed | None) -> Directed | None:
+def directed(value: m.Directed[m.Vec] | None) -> Directed | None:
     """A vector with its frame, or None."""
-    return None if value is None else Directed(np.array(value.vector), value.frame == "body")
+    return None if value is None else Directed(np.array(value.vector), value.in_body)
 
 
 def unit(vector: m.Vec) -> Array:
@@ -98,54 +88,41 @@ def unit(vector: m.Vec) -> Array:
     return along
 
 
-def body(name: str, b: m.Body, shape: Form | None) -> Body:
+def body(b: m.Body[m.Vec, m.Matrix], shape: Form | None) -> Body:
     """One body, its mass properties given or those of its shapes."""
     if shape is not None:
         mass, center, inertia = properties(shape.whole())
     else:
-        assert b.mass is not None  # as center and inertia, of what is not built from shapes
         mass, center, inertia = b.mass, np.array(b.center), np.array(b.inertia)
     return Body(
-        name=name, mass=mass, center=center, inertia=inertia, points=vectors(b.points),
+        name=b.name, mass=mass, center=center, inertia=inertia,
+        points={name: np.array(p) for name, p in b.points.items()},
         position=optional(b.position), rotation=optional(b.rotation), velocity=directed(b.velocity),
-        angular_velocity=directed(b.angular_velocity),
-        near_position=optional(b.near.position) if b.near is not None else None,
-        near_rotation=optional(b.near.rotation) if b.near is not None else None,
+        angular_velocity=directed(b.angular_velocity), near_position=optional(b.near_position),
+        near_rotation=optional(b.near_rotation),
     )  # fmt: skip
 
 
-def drive_of(name: str, d: m.Drive, last: float) -> Drive:
-    """A drive; of one by its rate the integral, for a run up to `last`, is the value."""
-    value = d.value
-    if d.by_rate:
-        from heuncli.expressions.integrals import integral  # few scenes have them
+def with_values(drive: m.Drive, last: float) -> m.Drive:
+    """A drive whose value is that of its coordinate; of one by its rate the integral, for a run up to `last` [s]."""
+    if not drive.by_rate:
+        return drive
+    from heuncli.expressions.integrals import integral  # few scenes have them
 
-        value = integral(value, last)
-    return Drive(name, d.quantity, value, d.zero == "assembled", d.by_rate)
+    return replace(drive, value=integral(drive.value, last), by_rate=False, from_start=True)
 
 
-def joint(
-    name: str, j: m.Joint, index: dict[str, int], driven: tuple[str, m.Drive] | None, planar: bool, last: float
-) -> Joint:
+def joint(j: m.Joint[str, m.Vec], index: dict[str, int], drive: m.Drive | None, planar: bool, last: float) -> Joint:
     """One joint with its drive, as what it is in the plane where that was declared; last: the end of the run [s]."""
-    given = j.axis if j.axis is not None else j.normal
-    axis = unit(given) if given is not None else np.array([0.0, 0.0, 1.0])
-    initial = j.initial
-    drive = None
-    if driven is not None:
-        drive = drive_of(driven[0], driven[1], last)
-    stiffness = None
-    if j.stiffness is not None:
-        parts = (j.stiffness.force, j.stiffness.moment)
-        stiffness = tuple(INFINITE if part is None else np.array(part) for part in parts)
+    axis = unit(j.axis)
     return Joint(
-        name=name, kind=(TYPES[j.type].planar if planar else None) or j.type,
-        a=index[j.from_.body], p=np.array(j.from_.point), b=index[j.to.body], q=np.array(j.to.point),
-        axis=axis, to_axis=unit(j.to_axis) if j.to_axis is not None else axis, to_axis_given=j.to_axis is not None,
-        angle=initial.angle if initial else None, rate=initial.rate if initial else None,
-        travel=initial.travel if initial else None, speed=initial.speed if initial else None,
-        length=j.length, tension_only=j.tension_only, stiffness=stiffness, drive=drive,  # type: ignore[arg-type]
-        restitution=j.restitution,
+        name=j.name, kind=(TYPES[j.kind].planar if planar else None) or j.kind,
+        a=index[j.a], p=np.array(j.p), b=index[j.b], q=np.array(j.q),
+        axis=axis, to_axis=unit(j.to_axis) if j.to_axis_given else axis, to_axis_given=j.to_axis_given,
+        angle=j.angle, rate=j.rate, travel=j.travel, speed=j.speed, length=j.length, tension_only=j.tension_only,
+        stiffness=(np.array(j.stiffness[0]), np.array(j.stiffness[1])) if j.stiffness is not None else None,
+        drive=with_values(drive, last) if drive is not None else None, restitution=j.restitution,
+        p_name=j.p_name, q_name=j.q_name,
     )  # fmt: skip
 
 
@@ -206,7 +183,6 @@ def load(name: str, f: m.Force, index: dict[str, int], joints: dict[str, tuple[i
             raise TypeError("a distributed load is two loads")
 
 
-def blow(name: str, i: m.Impulse, index: dict[str, int]) -> Blow:
+def blow(b: m.Blow[str, m.Vec], index: dict[str, int]) -> Blow:
     """One impulse or impulsive couple."""
-    point = np.array(i.on.point) if i.on is not None else None
-    return Blow(name, index[i.body], point, np.array(i.vector), i.frame == "body", i.time, i.type)
+    return Blow(b.name, index[b.body], optional(b.point), np.array(b.vector), b.in_body, b.time, b.kind)

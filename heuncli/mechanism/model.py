@@ -1,6 +1,8 @@
 """The mechanism as plain SI arrays: bodies, joints, drives and loads, before any tree is chosen.
 
-Vectors are (3,) float64. Body index -1 is the ground. Values in time stay expressions (spec.expression.Expression).
+Vectors are (3,) float64. Bodies and joints are called by their numbers, in the order of the spec; body -1 is the
+ground. Values in time stay expressions (expressions/programs.py). Bodies, joints, drives, blows, stops and conditions
+have the classes of the spec (spec/models.py); its nine kinds of loads become three, by where they act.
 """
 
 from __future__ import annotations
@@ -14,86 +16,15 @@ from heuncli.expressions.programs import Expression
 from heuncli.joint_kinds import JOINTS
 from heuncli.records import record
 from heuncli.results import Array
+from heuncli.spec import models
+from heuncli.spec.models import Condition
 
 GROUND = -1
-
-
-@record
-class Directed:
-    """A vector given in world axes or in the body's own."""
-
-    vector: Array
-    in_body: bool
-
-
-@record
-class Body:
-    """A rigid body: mass [kg], centre of mass [m] and inertia about it [kg m2] in body axes; what of its start is held.
-
-    position and velocity are those of the body's origin; None means left out. `near_*` only guides the assembly.
-    """
-
-    name: str
-    mass: float
-    center: Array
-    inertia: Array
-    points: dict[str, Array]
-    position: Array | None
-    rotation: Array | None
-    velocity: Directed | None
-    angular_velocity: Directed | None
-    near_position: Array | None
-    near_rotation: Array | None
-
-
-@record
-class Drive:
-    """A coordinate prescribed in time: angle [rad], travel [m] or length [m].
-
-    from_start: the value is what is added to the coordinate since t = 0, whose start the assembly is yet to find.
-    """
-
-    name: str
-    quantity: Literal["angle", "travel", "length"]
-    value: Expression
-    zero_assembled: bool
-    from_start: bool = False
-
-    @property
-    def adds_to_start(self) -> bool:
-        """Whether the value is to be added to what the coordinate is at the assembled start.
-
-        An angle counted from there is zero there; a travel is zero where the points are level.
-        """
-        return self.from_start or (self.zero_assembled and self.quantity == "travel")
-
-
-@record
-class Joint:
-    """A joint between the points p of body a ("from") and q of body b ("to"), both in their body's axes.
-
-    axis: unit vector in a's axes (for `plane`: the normal); to_axis: unit vector in b's axes, the same components
-    unless `to_axis_given`. Held initial values are None where left out. length: of a rod, None = as assembled.
-    """
-
-    name: str
-    kind: str
-    a: int
-    p: Array
-    b: int
-    q: Array
-    axis: Array
-    to_axis: Array
-    to_axis_given: bool
-    angle: float | None
-    rate: float | None
-    travel: float | None
-    speed: float | None
-    length: float | None
-    tension_only: bool
-    stiffness: tuple[Array, Array] | None  # force (3,) [N/m] and moment (3,) [N m/rad], inf where not given
-    drive: Drive | None
-    restitution: float | None = None  # of a rope that goes slack and catches; None: the run ends where it would push
+Directed = models.Directed[Array]
+Body = models.Body[Array, Array]
+Joint = models.Joint[int, Array]
+Blow = models.Blow[int, Array]
+Stop = models.Stop[int]
 
 
 @record
@@ -217,43 +148,6 @@ class JointLoad:
 
 
 Load = PointLoad | PairLoad | JointLoad
-
-
-@record
-class Blow:
-    """An impulse [N s] at a body's point at one instant, or an impulsive couple [N m s] on it.
-
-    Of a couple point is where it enters, which a cut asks for, or None.
-    """
-
-    name: str
-    body: int
-    point: Array | None
-    vector: Array
-    in_body: bool
-    time: float
-    kind: Literal["impulse", "couple"] = "impulse"
-
-
-@record
-class Stop:
-    """Limits of a joint's coordinate [rad] or [m], None where there is none; restitution: of its strikes, 0 to 1."""
-
-    name: str
-    joint: int
-    quantity: Literal["angle", "travel", "length"]
-    low: float | None
-    high: float | None
-    restitution: float
-
-
-@record
-class Condition:
-    """What is true or not (1 or 0), in time and coordinates; ends: whether the motion ends where it becomes true."""
-
-    name: str
-    value: Expression
-    ends: bool = False
 
 
 @record

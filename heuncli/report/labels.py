@@ -96,7 +96,10 @@ class Labels:
 
 def labels_of(spec: Spec) -> Labels:
     """The labels of a loaded spec."""
-    joints = {name: JointInfo(joint.type, _end(joint.from_), _end(joint.to)) for name, joint in spec.joints.items()}
+    joints = {
+        name: JointInfo(j.kind, _end(End(j.a, j.p, j.p_name)), _end(End(j.b, j.q, j.q_name)))
+        for name, j in spec.joints.items()
+    }
     forces = {name: _force(force) for name, force in spec.forces.items()}
     sections = {name: _section(section) for name, section in spec.sections.items()}
     about = spec.foundation.about or (0.0, 0.0, 0.0)

@@ -8,9 +8,10 @@ types; named tuples, because they are made faster at the start than dataclasses.
 
 from __future__ import annotations
 
+import math
 from collections.abc import Mapping
 from types import MappingProxyType
-from typing import Literal, NamedTuple
+from typing import Generic, Literal, NamedTuple, TypeVar
 
 from heuncli.errors import Problem, SourceLocation
 from heuncli.expressions.programs import Expression, Table
@@ -20,6 +21,13 @@ Vec = tuple[float, float, float]
 Matrix = tuple[Vec, Vec, Vec]
 Vector = tuple[Expression, Expression, Expression]
 Frame = Literal["world", "body"]
+Coordinate = Literal["angle", "travel", "length"]
+Ref = TypeVar("Ref")  # what a body or joint is called by: its name, or its number
+V = TypeVar("V")  # a vector
+M = TypeVar("M")  # a matrix
+ZERO: Vec = (0.0, 0.0, 0.0)
+Z: Vec = (0.0, 0.0, 1.0)
+RIGID: Vec = (math.inf, math.inf, math.inf)  # a stiffness that is not given
 NOWHERE: Mapping[str, SourceLocation] = MappingProxyType({})
 
 
@@ -55,18 +63,12 @@ class Shape(NamedTuple):
     to_radius: float | None = None
 
 
-class Directed(NamedTuple):
-    """A vector in world axes or in the body's own."""
+@record
+class Directed(Generic[V]):
+    """A vector in world axes, or in the body's own."""
 
-    vector: Vec
-    frame: Frame
-
-
-class Near(NamedTuple):
-    """Where the assembly starts to look; not held."""
-
-    position: Vec | None
-    rotation: Matrix | None
+    vector: V
+    in_body: bool
 
 
 class Piece(NamedTuple):
@@ -77,65 +79,89 @@ class Piece(NamedTuple):
     inertia: Matrix
 
 
-class Body(NamedTuple):
-    """A rigid body: mass, center, inertia (about the centre of mass, deviation merged), or shapes instead of the three.
+@record
+class Body(Generic[V, M]):
+    """A rigid body: mass [kg], centre of mass [m], inertia about it [kg m2], body axes; what of its start is held.
 
-    rotation takes components in body axes to world axes.
+    rotation takes components in body axes to world axes. position and velocity are those of the body's origin.
+    near_position, near_rotation: where the assembly starts to look, not held. shapes: what the body is built from
+    instead; then mass, center and inertia are zero until mechanism/build.py has summed the shapes up.
     """
 
-    mass: float | None
-    center: Vec | None
-    inertia: Matrix | None
-    shapes: tuple[Shape, ...] | None
-    points: Mapping[str, Vec]
-    position: Vec | None = None
-    rotation: Matrix | None = None
-    near: Near | None = None
-    velocity: Directed | None = None
-    angular_velocity: Directed | None = None
-    piece: Piece | None = None
+    name: str
+    mass: float
+    center: V
+    inertia: M
+    points: Mapping[str, V]
+    position: V | None
+    rotation: M | None
+    velocity: Directed[V] | None
+    angular_velocity: Directed[V] | None
+    near_position: V | None
+    near_rotation: M | None
+    shapes: tuple[Shape, ...] | None = None
 
 
-class Initial(NamedTuple):
-    """Held start values of a joint's coordinates."""
+@record
+class Drive:
+    """A coordinate of a joint prescribed in time: angle [rad], travel [m] or length [m]; joint: its name.
 
-    angle: float | None = None
-    rate: float | None = None
-    travel: float | None = None
-    speed: float | None = None
+    by_rate: the value is the coordinate's rate of change. from_start: the value is what is added to the coordinate
+    since t = 0, whose start the assembly is yet to find; the integral of a rate is. zero_assembled: the coordinate is
+    counted from the assembled start.
+    """
 
-
-class Stiffness(NamedTuple):
-    """What shares out a redundant joint's reactions: N/m and N m/rad along the world's axes at the start."""
-
-    force: Vec | None
-    moment: Vec | None
-
-
-class Joint(NamedTuple):
-    """A joint; directions as given, not zero, not normalised, in the axes of `from` (to_axis: of `to`)."""
-
-    type: str  # a name of joint_kinds.TYPES
-    from_: End
-    to: End
-    axis: Vec | None = None
-    to_axis: Vec | None = None
-    normal: Vec | None = None
-    initial: Initial | None = None
-    length: float | None = None
-    tension_only: bool = False
-    stiffness: Stiffness | None = None
-    restitution: float | None = None
-
-
-class Drive(NamedTuple):
-    """A coordinate of a joint prescribed in time; by_rate: its rate of change is, from where it starts."""
-
+    name: str
     joint: str
-    quantity: Literal["angle", "travel", "length"]
+    quantity: Coordinate
     value: Expression
-    zero: Literal["assembled"] | None = None
+    zero_assembled: bool = False
     by_rate: bool = False
+    from_start: bool = False
+
+    @property
+    def adds_to_start(self) -> bool:
+        """Whether the value is to be added to what the coordinate is at the assembled start.
+
+        An angle counted from there is zero there; a travel is zero where the points are level.
+        """
+        return self.from_start or (self.zero_assembled and self.quantity == "travel")
+
+
+@record
+class Joint(Generic[Ref, V]):
+    """A joint between the point p of body a ("from") and the point q of body b ("to"), each in its body's axes.
+
+    kind: a name of joint_kinds.TYPES; in a mechanism of joint_kinds.JOINTS, what it is in the plane if that was
+    declared. axis: direction in a's axes (of `plane` the normal), z where the kind has none; to_axis: direction in b's
+    axes, the same components unless `to_axis_given`. As written in a spec, of unit length in a mechanism.
+    Held start values of the coordinates are None where left out: angle [rad], rate [rad/s], travel [m], speed [m/s].
+    length: of a rod [m], None = as assembled. stiffness: what shares out redundant reactions, of force [N/m] and moment
+    [N m/rad] along the world's axes at the start, infinite where not given. drive: in a mechanism; a spec lists its
+    drives by themselves. restitution: of a rope that goes slack and catches; None: the run ends where it would push.
+    p_name, q_name: of the two points, where they have names.
+    """
+
+    name: str
+    kind: str
+    a: Ref
+    p: V
+    b: Ref
+    q: V
+    axis: V
+    to_axis: V
+    to_axis_given: bool
+    angle: float | None
+    rate: float | None
+    travel: float | None
+    speed: float | None
+    length: float | None
+    tension_only: bool
+    stiffness: tuple[V, V] | None
+    drive: Drive | None
+    restitution: float | None = None
+    p_name: str | None = None
+    q_name: str | None = None
 
 
 class PointForce(NamedTuple):
@@ -229,22 +255,29 @@ class Friction(NamedTuple):
 Force = PointForce | Couple | Torque | Actuator | Spring | TurnSpring | Distributed | Damper | Friction
 
 
-class Impulse(NamedTuple):
-    """A blow: an impulse [N s] at a point, or an impulsive couple [N m s] on a body (on: where it enters, if named)."""
+@record
+class Blow(Generic[Ref, V]):
+    """An impulse [N s] at a body's point at one instant [s], or an impulsive couple [N m s] on it.
 
-    body: str
-    on: End | None
-    vector: Vec
+    in_body: the vector is in the body's axes. Of a couple point is where it enters, which a cut asks for, or None.
+    """
+
+    name: str
+    body: Ref
+    point: V | None
+    vector: V
+    in_body: bool
     time: float
-    frame: Frame = "world"
-    type: Literal["impulse", "couple"] = "impulse"
+    kind: Literal["impulse", "couple"] = "impulse"
 
 
-class Stop(NamedTuple):
-    """Limits of a joint's coordinate [rad] or [m], None where there is none, and the restitution of its strikes."""
+@record
+class Stop(Generic[Ref]):
+    """Limits of a joint's coordinate [rad] or [m], None where there is none; restitution: of its strikes, 0 to 1."""
 
-    joint: str
-    quantity: Literal["angle", "travel", "length"]
+    name: str
+    joint: Ref
+    quantity: Coordinate
     low: float | None
     high: float | None
     restitution: float = 0.0
@@ -280,19 +313,29 @@ class Section:
 
 
 class Condition(NamedTuple):
-    """What is watched for during a motion, by its name; ends: whether the motion ends where it becomes true.
+    """What is watched for during a motion: true or not (1 or 0), in time and coordinates; text: as written.
 
-    text: as written. value: what is true or not, in time and coordinates; or None, and the number of the results at the
-    path `of` is below the limit, or above it.
+    ends: whether the motion ends where it becomes true.
     """
 
     name: str
     text: str
     ends: bool
-    value: Expression | None
-    of: str = ""
-    limit: float = 0.0
-    above: bool = False
+    value: Expression
+
+
+class ResultCondition(NamedTuple):
+    """The same of the results: the number at the path `of` is below the limit, or above it."""
+
+    name: str
+    text: str
+    ends: bool
+    of: str
+    limit: float
+    above: bool
+
+
+WatchedCondition = Condition | ResultCondition
 
 
 class Analysis(NamedTuple):
@@ -307,7 +350,7 @@ class Analysis(NamedTuple):
     tolerance: float
     method: str
     step: float | None
-    conditions: tuple[Condition, ...] = ()
+    conditions: tuple[WatchedCondition, ...] = ()
     tolerance_given: bool = False
 
 
@@ -341,12 +384,12 @@ class Spec(NamedTuple):
     parameters: Mapping[str, float]
     gravity: Vec
     ground: Ground
-    bodies: Mapping[str, Body]
-    joints: Mapping[str, Joint]
+    bodies: Mapping[str, Body[Vec, Matrix]]
+    joints: Mapping[str, Joint[str, Vec]]
     drives: Mapping[str, Drive]
     forces: Mapping[str, Force]
-    impulses: Mapping[str, Impulse]
-    stops: Mapping[str, Stop]
+    impulses: Mapping[str, Blow[str, Vec]]
+    stops: Mapping[str, Stop[str]]
     sections: Mapping[str, Section]
     tables: Mapping[str, Table]
     analysis: Analysis

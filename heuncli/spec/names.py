@@ -55,7 +55,7 @@ def names_in(spec: Spec) -> Names:
     entries: dict[str, dict[str, Any]] = {block: dict(getattr(spec, block)) for block in NAMED}
     entries["events"] = {condition.name: condition for condition in spec.analysis.conditions}
     points = {name: dict(body.points) for name, body in spec.bodies.items()} | {GROUND: dict(spec.ground.points)}
-    return Names(entries, points, {name: joint.type for name, joint in spec.joints.items()}, {})
+    return Names(entries, points, {name: joint.kind for name, joint in spec.joints.items()}, {})
 
 
 def points_of(owner: Any, model: type[Model]) -> dict[str, Any]:

@@ -48,12 +48,12 @@ def resolve(document: f.Document, meaning: Meaning) -> m.Spec:
         parameters=meaning.parameters,
         gravity=document.head.gravity,
         ground=m.Ground(document.ground.points),
-        bodies={name: r.body(body) for name, body in document.bodies.items()},
-        joints={name: r.joint(joint) for name, joint in document.joints.items()},
+        bodies={name: r.body(name, body) for name, body in document.bodies.items()},
+        joints={name: r.joint(name, joint) for name, joint in document.joints.items()},
         drives={name: r.drive(name, drive) for name, drive in document.drives.items()},
         forces={name: r.force(name, force) for name, force in document.forces.items()},
-        impulses={name: r.impulse(blow) for name, blow in document.impulses.items()},
-        stops={name: stop(given) for name, given in document.stops.items()},
+        impulses={name: r.impulse(name, blow) for name, blow in document.impulses.items()},
+        stops={name: stop(name, given) for name, given in document.stops.items()},
         sections={name: r.section(section) for name, section in document.sections.items()},
         tables=meaning.tables,
         analysis=m.Analysis(
@@ -116,45 +116,56 @@ class Resolver:
     def piece(self, piece: f.Piece | None) -> m.Piece | None:
         return m.Piece(piece.mass, piece.center, tensor(piece)) if piece is not None else None
 
-    def body(self, body: f.Body) -> m.Body:
+    def body(self, name: str, body: f.Body) -> m.Body[m.Vec, m.Matrix]:
         near = body.near
         return m.Body(
-            mass=body.mass,
-            center=body.center,
-            inertia=tensor(body) if body.inertia is not None else None,
-            shapes=tuple(self.shape(shape) for shape in body.shapes) if body.shapes is not None else None,
+            name=name,
+            mass=body.mass if body.mass is not None else 0.0,
+            center=body.center if body.center is not None else m.ZERO,
+            inertia=tensor(body) if body.inertia is not None else (m.ZERO, m.ZERO, m.ZERO),
             points=body.points,
             position=body.position,
             rotation=body_axes(body.orientation) if body.orientation is not None else None,
-            near=m.Near(near.position, body_axes(near.orientation) if near.orientation else None)
-            if near is not None
-            else None,
             velocity=directed(body.velocity),
             angular_velocity=directed(body.angular_velocity),
-            piece=self.piece(body.piece),
+            near_position=near.position if near is not None else None,
+            near_rotation=body_axes(near.orientation) if near is not None and near.orientation else None,
+            shapes=tuple(self.shape(shape) for shape in body.shapes) if body.shapes is not None else None,
         )
 
-    def joint(self, joint: f.Joint) -> m.Joint:
+    def joint(self, name: str, joint: f.Joint) -> m.Joint[str, m.Vec]:
+        a, b = self.end(joint.from_), self.end(joint.to)
+        axis = getattr(joint, "axis", None) or getattr(joint, "normal", None) or m.Z
+        to_axis = getattr(joint, "to_axis", None)
         initial = getattr(joint, "initial", None)
         return m.Joint(
-            type=joint.type,
-            from_=self.end(joint.from_),
-            to=self.end(joint.to),
-            axis=getattr(joint, "axis", None),
-            to_axis=getattr(joint, "to_axis", None),
-            normal=getattr(joint, "normal", None),
-            initial=m.Initial(**initial.model_dump()) if initial is not None else None,
+            name=name,
+            kind=joint.type,
+            a=a.body,
+            p=a.point,
+            b=b.body,
+            q=b.point,
+            axis=axis,
+            to_axis=to_axis if to_axis is not None else axis,
+            to_axis_given=to_axis is not None,
+            angle=getattr(initial, "angle", None),
+            rate=getattr(initial, "rate", None),
+            travel=getattr(initial, "travel", None),
+            speed=getattr(initial, "speed", None),
             length=getattr(joint, "length", None),
             tension_only=getattr(joint, "tension_only", False),
             stiffness=stiffness(joint.stiffness),
+            drive=None,
             restitution=getattr(joint, "restitution", None),
+            p_name=a.name,
+            q_name=b.name,
         )
 
     def drive(self, name: str, drive: f.Drive) -> m.Drive:
         driven = drive_of(drive, self.document.joints[drive.joint].type)
         assert driven is not None
         value = self.placed(driven.value, f"drives.{name}.{driven.key}")
-        return m.Drive(drive.joint, driven.quantity, value, drive.zero, driven.by_rate)
+        return m.Drive(name, drive.joint, driven.quantity, value, drive.zero == "assembled", driven.by_rate)
 
     def force(self, name: str, load: f.Load) -> m.Force:
         path = f"forces.{name}"
@@ -189,15 +200,16 @@ class Resolver:
         to_vector = vector if load.to_vector is None else self.vector(load.to_vector, path, "to_vector")
         return m.Distributed(load.on, start, end, vector, to_vector, load.frame)
 
-    def impulse(self, blow: f.Blow) -> m.Impulse:
-        body, on = blow.body, None
+    def impulse(self, name: str, blow: f.Blow) -> m.Blow[str, m.Vec]:
+        body, point = blow.body, None
         if blow.on is not None:
-            body, on = blow.on.body, self.end(blow.on) if blow.on.at is not None else None
+            body, point = blow.on.body, self.end(blow.on).point if blow.on.at is not None else None
         assert body is not None
+        in_body = blow.frame == "body"
         if blow.vector is not None:
-            return m.Impulse(body, on, blow.vector, blow.time, blow.frame)
+            return m.Blow(name, body, point, blow.vector, in_body, blow.time)
         assert blow.couple is not None
-        return m.Impulse(body, on, blow.couple, blow.time, blow.frame, "couple")
+        return m.Blow(name, body, point, blow.couple, in_body, blow.time, "couple")
 
     def section(self, section: f.Section) -> m.Section:
         body = self.document.bodies[section.body]
@@ -221,12 +233,12 @@ class Resolver:
             return self.document.ground.points[about.rpartition(".")[2]]
         return about  # type: ignore[return-value]
 
-    def conditions(self, analysis: f.Analysis) -> tuple[m.Condition, ...]:
+    def conditions(self, analysis: f.Analysis) -> tuple[m.WatchedCondition, ...]:
         found = [(UNTIL, True, UNTIL, analysis.until)] if analysis.until is not None else []
         found += [(name, False, f"events.{name}", given) for name, given in analysis.events.items()]
         return tuple(self.condition(*row) for row in found)
 
-    def condition(self, name: str, ends: bool, path: str, given: Expression | f.OfResults) -> m.Condition:
+    def condition(self, name: str, ends: bool, path: str, given: Expression | f.OfResults) -> m.WatchedCondition:
         if isinstance(given, Expression):
             return m.Condition(name, given.source.strip(), ends, self.placed(given, f"analysis.{path}"))
         above = given.above is not None
@@ -234,7 +246,7 @@ class Resolver:
         assert limit is not None
         number = limit.source.strip() if limit.dimension is not None else f"{constant(limit):.9g}"
         text = f"{given.of} {'above' if above else 'below'} {number}"
-        return m.Condition(name, text, ends, None, given.of, constant(limit), above)
+        return m.ResultCondition(name, text, ends, given.of, constant(limit), above)
 
     def expect(self, i: int, item: f.Expect) -> m.Expect:
         location = self.locations.get(f"expect.{i}", SourceLocation("", 1, 1))
@@ -242,34 +254,36 @@ class Resolver:
         return m.Expect(item.of, item.at, item.peak, numbers(item.is_), item.rel, numbers(item.abs), location, *bounds)
 
 
-def stop(given: f.Stop) -> m.Stop:
+def stop(name: str, given: f.Stop) -> m.Stop[str]:
     """A stop that limits one coordinate."""
     found = limits_of(given)
     assert found is not None
     quantity, (low, high) = found
-    return m.Stop(given.joint, quantity, low, high, given.restitution)
+    return m.Stop(name, given.joint, quantity, low, high, given.restitution)
 
 
-def directed(value: object) -> m.Directed | None:
+def directed(value: m.Vec | f.VelocityInFrame | f.RateInFrame | None) -> m.Directed[m.Vec] | None:
     """A vector in world axes unless it says otherwise."""
     if value is None:
         return None
     if isinstance(value, f.VelocityInFrame | f.RateInFrame):
-        return m.Directed(value.vector, value.frame)
-    return m.Directed(value, "world")  # type: ignore[arg-type]
+        return m.Directed(value.vector, value.frame == "body")
+    return m.Directed(value, False)
 
 
-def stiffness(value: float | f.StiffnessParts | None) -> m.Stiffness | None:
-    """One number is that of the force, in all directions."""
+def stiffness(value: float | f.StiffnessParts | None) -> tuple[m.Vec, m.Vec] | None:
+    """Of force and moment; one number is that of the force, in all directions."""
     if value is None:
         return None
     if isinstance(value, float):
-        return m.Stiffness((value, value, value), None)
+        return (value, value, value), m.RIGID
 
-    def three(part: float | m.Vec | None) -> m.Vec | None:
+    def three(part: float | m.Vec | None) -> m.Vec:
+        if part is None:
+            return m.RIGID
         return (part, part, part) if isinstance(part, float) else part
 
-    return m.Stiffness(three(value.force), three(value.moment))
+    return three(value.force), three(value.moment)
 
 
 def properties(value: f.Properties | Literal["auto"] | None) -> m.Properties | None:

@@ -16,7 +16,7 @@ from heuncli.errors import SolveError
 from heuncli.records import replace
 from heuncli.results import Block
 from heuncli.results_schema import SHARES
-from heuncli.spec.models import Spec
+from heuncli.spec.models import ResultCondition, Spec
 from heuncli.study.ask.study import Study
 from heuncli.study.compose.recovery import recover
 from heuncli.study.compose.results import compose, impulses_of
@@ -43,7 +43,8 @@ def solve(spec: Spec, options: Options | None = None) -> Study:
         try:
             return solved(spec, options, deadline)
         except SolveError as error:
-            if error.reached is None or not any(c.ends and c.value is None for c in spec.analysis.conditions):
+            on_result = any(c.ends and isinstance(c, ResultCondition) for c in spec.analysis.conditions)
+            if error.reached is None or not on_result:
                 raise
             from heuncli.study.ask.events import before_failure  # few scenes end so
 

@@ -8,8 +8,9 @@ import numpy as np
 
 from heuncli.expressions.grammar import Scope, compile_expression
 from heuncli.expressions.programs import Expression
-from heuncli.mechanism.model import GROUND, Assembly, Body, Directed, Drive, Joint, Mechanism
+from heuncli.mechanism.model import GROUND, Assembly, Body, Joint, Mechanism
 from heuncli.shapes.rotations import about, from_vector, to_vector
+from heuncli.spec.models import Directed, Drive
 
 X, Y, Z = np.eye(3)
 
@@ -79,7 +80,7 @@ def scene(bodies: list[Body], joints: list[dict[str, Any]], planar: bool = False
             j.get("length"),
             False,
             None,
-            Drive("motor", drive[0], drive[1], len(drive) > 2) if drive else None,
+            Drive("motor", j["name"], drive[0], drive[1], len(drive) > 2) if drive else None,
         )
 
     return Mechanism("scene", planar, np.zeros(3), tuple(bodies), tuple(made(j) for j in joints), ())

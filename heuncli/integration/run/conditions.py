@@ -13,8 +13,8 @@ from collections.abc import Mapping, Sequence
 from heuncli.expressions.programs import Pack
 from heuncli.integration.evaluator import Evaluator
 from heuncli.kernel.choose import expressions as kernel
-from heuncli.mechanism.model import Condition
 from heuncli.results import Array
+from heuncli.spec.models import Condition
 from heuncli.tree.layout import Layout
 
 HELD, FREE = kernel.HOLDING["held"], kernel.HOLDING["free"]

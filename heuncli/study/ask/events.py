@@ -22,7 +22,7 @@ from heuncli.records import replace
 from heuncli.results import Array, Block, Results, Status
 from heuncli.results_paths import find
 from heuncli.results_schema import CUT, EVENTS, KIND_OF, MAGNITUDES, SHARES, kind_of_error, quantity
-from heuncli.spec.models import Condition, Spec
+from heuncli.spec.models import ResultCondition, Spec, WatchedCondition
 from heuncli.study.ask.measure import report_of, stated_error
 from heuncli.study.ask.study import Study
 from heuncli.study.compose.recovery import recover
@@ -43,10 +43,10 @@ def with_events(study: Study, setup: Setup, solve: Solve) -> Study:
     found = {changes.name: changes for changes in study.history.changes}
     conditions = study.spec.analysis.conditions
     for condition in conditions:
-        if condition.value is None:
+        if isinstance(condition, ResultCondition):
             found[condition.name] = on_result(study, setup, condition)
     last = next((c for c in conditions if c.ends), None)
-    if last is not None and last.value is None:
+    if isinstance(last, ResultCondition):
         became = found[last.name].times[found[last.name].to]
         if len(became) and became[0] < study.results.time[-1]:
             return ended(study, found, float(became[0]), solve)
@@ -132,7 +132,7 @@ class WatchedNumber(NamedTuple):
 
     study: Study
     setup: Setup
-    condition: Condition
+    condition: ResultCondition
     even: bool
     along: bool
 
@@ -177,7 +177,7 @@ class WatchedNumber(NamedTuple):
         return max(float(np.nan_to_num(own)), tolerances.WRITTEN * largest)
 
 
-def on_result(study: Study, setup: Setup, condition: Condition) -> Changes:
+def on_result(study: Study, setup: Setup, condition: ResultCondition) -> Changes:
     """When a number of the results comes below its limit, or above it, and back; up to the horizon."""
     times, horizon = study.search_times, study.results.accuracy.get("horizon")
     if horizon is not None:
@@ -225,7 +225,7 @@ def told(study: Study) -> Study:
     return replace(study, results=results)
 
 
-def block(condition: Condition, changes: Changes) -> Block:
+def block(condition: WatchedCondition, changes: Changes) -> Block:
     """One event as it stands in the results."""
     return {
         "condition": condition.text, "begins": changes.begins, "time": changes.times, "error": changes.error,
@@ -233,7 +233,7 @@ def block(condition: Condition, changes: Changes) -> Block:
     }  # fmt: skip
 
 
-def ending(results: Results, last: Condition, changes: Changes) -> Results:
+def ending(results: Results, last: WatchedCondition, changes: Changes) -> Results:
     """The results with a sentence on the condition that was to end the motion."""
     began = "; it is true at the start, which ends nothing" if changes.begins else ""
     became = np.flatnonzero(changes.to)

@@ -14,7 +14,7 @@ from typing import Any
 from heuncli.expressions.programs import Expression
 from heuncli.records import fields
 from heuncli.results_schema import BLOWS, EVENTS, SHARES
-from heuncli.spec.models import End, Spec
+from heuncli.spec.models import Condition, End, Spec
 from heuncli.study.model.counts_and_lists import some
 from heuncli.study.model.selection import Selection, entries_of
 
@@ -35,7 +35,7 @@ def bodies_of(item: Any, spec: Spec) -> set[str]:
     for name, value in named_fields(item):
         if isinstance(value, End):
             found.add(value.body)
-        elif name == "body":
+        elif name in ("body", "a", "b"):
             found.add(value)
         elif name == "joint":
             found |= bodies_of(spec.joints[value], spec)
@@ -100,7 +100,7 @@ def roots(spec: Spec, asked: Selection) -> set[str] | None:
     known = entries_of(spec)
     items = [item for report in whole for block in OF_SOME[report] for item in known[block].values()]
     items += [known[entry[:-1]][entry[-1]] for entry in asked.entries]
-    watched = [c.value for c in spec.analysis.conditions if c.value is not None]
+    watched = [c.value for c in spec.analysis.conditions if isinstance(c, Condition)]
     items += [spec.joints[joint] for value in watched for joint, _ in value.uses]
     return set().union(*(bodies_of(item, spec) for item in items))
 

@@ -12,7 +12,7 @@ from typing import Any
 from heuncli.records import record
 from heuncli.results import CertainSum
 from heuncli.results_schema import REPORT_OF, REPORTS, SHARES, leading_key, report_of
-from heuncli.spec.models import Condition, Spec
+from heuncli.spec.models import ResultCondition, Spec, WatchedCondition
 
 Entry = tuple[str, ...]
 ALL_OF_IT = frozenset({"foundation", "sections"})  # of all bodies, of all sections
@@ -75,9 +75,9 @@ def asked_by(paths: Iterable[str], spec: Spec) -> Selection:
     return Selection(frozenset(reports), frozenset(entry for entry in entries if REPORT_OF[entry[0]] not in whole))
 
 
-def needed_by(conditions: Iterable[Condition], spec: Spec) -> Selection:
+def needed_by(conditions: Iterable[WatchedCondition], spec: Spec) -> Selection:
     """What conditions on numbers of the results need."""
-    return asked_by([condition.of for condition in conditions if condition.value is None], spec)
+    return asked_by([condition.of for condition in conditions if isinstance(condition, ResultCondition)], spec)
 
 
 def share_of(words: Sequence[str], spec: Spec) -> set[Entry]:
