@@ -108,7 +108,7 @@ def test_validate_does_without_numpy() -> None:
     assert not found & (STRANGE | {"numpy"})
 
 
-@pytest.mark.parametrize("words", [("--help",), ("run", "--help"), ("--version",)])
+@pytest.mark.parametrize("words", [("--help",), ("run", "--help"), ("--version",), ("explain", "format")])
 def test_help_and_version_do_without_the_heavy_ones(words: tuple[str, ...]) -> None:
     found = loaded(*words) - loaded_by("typer")
     assert not found & {"numpy", "scipy", "yaml", "rich", "heuncli.spec.load"}
