@@ -108,7 +108,7 @@ def direct_of(results: Results, item: Series, own: Mapping[Key, Mapping[str, Ser
 
 
 def key_of(block: TableBlock, group: RowGroup, row: NumberRow) -> Key:
-    """Of a row of a table, as the results name it."""
+    """Under which kind, name and label the results have the number of a table's row."""
     if block.key != "foundation":
         return block.key, group.name, row.label
     name = group.name.replace("support ", "supports.", 1).replace("element ", "elements.", 1)

@@ -73,12 +73,12 @@ class CutRun(NamedTuple):
 
     @property
     def loads(self) -> tuple[RunQuantity, ...]:
-        """Those of its quantities that are loads."""
+        """The resultants among the quantities: N, Q1, Q2, T, M1, M2."""
         return self.quantities[: len(LOADS)]
 
     @property
     def stresses(self) -> tuple[RunQuantity, ...]:
-        """Those of its quantities that are stresses."""
+        """The stresses among the quantities, behind the resultants; none without section properties."""
         return self.quantities[len(LOADS) :]
 
 
@@ -293,7 +293,7 @@ def _diagram(
 
 
 def _styles(run: CutRun, certain: Certainty, extremes: Extremes | None = None) -> dict[str, Style]:
-    """The style of forces and that of moments, by all that is shown of them."""
+    """How numbers are written, by unit: by all numbers of that unit that are shown of the run."""
     bounds = np.zeros((2, 0)) if extremes is None else np.stack([extremes.low, extremes.high])
     styles = {}
     for unit in dict.fromkeys(own.unit for own in run.quantities):

@@ -120,7 +120,7 @@ def certainty(results: Results, labels: Labels, of: Magnitudes) -> Certainty:
 
 
 def with_units(certain: Certainty, units: Units) -> Certainty:
-    """The same, also in the units that tables show."""
+    """Errors and rounding by the SI units of the results, and beside these by the units that tables show for them."""
     errors, lost = dict(certain.errors), dict(certain.rounding)
     for (kind, unit), error in certain.errors.items():
         shown, size = units.of(unit)
@@ -132,7 +132,7 @@ def with_units(certain: Certainty, units: Units) -> Certainty:
 
 
 def kind_of(series: Series) -> str:
-    """Of which estimate the error of a quantity is."""
+    """The kind of estimate (`accuracy.estimate`) that states the error of a series."""
     name = f"{series.name}.{SHARES}.{series.cause}" if series.cause else series.name
     return kind_of_error(series.kind, name, series.quantity)
 
@@ -147,7 +147,7 @@ def _of_wrench(kind: str, relative: float, scales: Scales, size: float) -> dict[
 
 
 def with_axis(certain: Certainty, results: Results, of: Magnitudes, units: Units, unit: str = "N") -> Certainty:
-    """The same, with the errors of the central axis at the instants that are shown: no better than its force's.
+    """The errors of a run with those of the central axis at the instants that are shown: no better than its force's.
 
     direction s/|s|, point s × M / s², pitch s·M / s²: an error of M is one of s on a lever. unit: N·s of impulses.
     """

@@ -153,7 +153,7 @@ def _lines(row: CsvSeries, ends: Sequence[str]) -> Iterator[str]:
 
 
 def _cuts(row: CsvSeries) -> list[str]:
-    """Of each component the section, the cut of a run, its distance and its side, as they end its lines."""
+    """The last four columns of the lines of each component: section, cut of a run, distance, side; empty elsewhere."""
     series = row.series
     if series.kind != "sections":
         return [",,,,"] * len(series.components)

@@ -69,7 +69,7 @@ def _reduced(sentences: Sequence[str]) -> list[tuple[str, str]]:
 
 
 def _labelled(label: str, sentences: Sequence[str]) -> list[tuple[str, str]]:
-    """Sentences, the first of them with a label."""
+    """A line for each sentence: the label stands before the first."""
     return [(label * (not i), sentence) for i, sentence in enumerate(sentences)]
 
 

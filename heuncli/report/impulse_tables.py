@@ -144,7 +144,7 @@ def shares_of(
 
 
 def shares_along(run: cut_runs.CutRun, view: Results, certain: Certainty, horizon: float | None) -> list[TextTable]:
-    """The same along a run of cuts, if there are shares."""
+    """What each that struck does of the impulses along a run of cuts; none where no shares are asked for."""
     if SHARES not in view.sections[run.name]:
         return []
     from heuncli.report import cause_tables

@@ -26,6 +26,6 @@ def table() -> TextTable:
 
 
 def block() -> dict[str, Any]:
-    """The same as data: the default, and a mapping a method."""
+    """The methods as plain data for JSON: the default, and a mapping for each."""
     keys = ("name", "order", "kind", "steps", "attitude", "purpose")
     return {"default": AUTO, "methods": [{key: getattr(m, key) for key in keys} for m in METHODS]}

@@ -38,10 +38,10 @@ class SharesAt(Protocol):
     """A run's loads by cause wherever they are asked for."""
 
     def at(self, times: Array) -> Results:
-        """At instants (n,), ascending."""
+        """The results with shares at instants (n,), ascending."""
 
     def along(self, name: str, times: Array, places: Sequence[Place]) -> Results:
-        """Of a run of cuts, at places along it."""
+        """The results with shares at instants (n,), of a run of cuts that is cut at these places alone."""
 
 
 class Page(NamedTuple):
@@ -86,7 +86,7 @@ class Page(NamedTuple):
         return np.array(errors)
 
     def even(self) -> Mask:
-        """Which of them are squares, (n,)."""
+        """Which columns are squares of magnitudes, (n,)."""
         rows = [row.even for row in self._rows(self.results)]
         more = len(cut_runs.LOADS) * len(cut_runs.runs_of(self.results, self.labels))
         return np.array(rows + [False] * more, dtype=bool)

@@ -44,12 +44,12 @@ class RunSearch(NamedTuple):
         return np.where(even, values * values, values)
 
     def columns(self, results: Results) -> Array:
-        """Those at the cuts, (n_t, n * n_cuts)."""
+        """The quantities at the cuts as columns, (n_t, n * n_cuts), the cuts of one quantity side by side."""
         values = self.of(results)[:, :, self.cuts]
         return values.transpose(1, 0, 2).reshape(values.shape[1], -1)
 
     def along(self, results: Results) -> list[tuple[str, Array]]:
-        """Those along the run, each (n_t, n_nodes), with its name."""
+        """Each quantity along the whole run, (n_t, n_nodes), with the name of the run."""
         return [(self.run.name, values) for values in self.of(results)]
 
     def errors(self, certain: Certainty) -> Array:
@@ -58,7 +58,7 @@ class RunSearch(NamedTuple):
 
     @property
     def even(self) -> Mask:
-        """Which of them are squares."""
+        """Which columns are squares of magnitudes."""
         return self._each([own.even for own in self.quantities]).astype(bool)
 
     @property

@@ -52,7 +52,7 @@ def walk(results: Results, labels: Labels) -> Iterator[Series]:
 
 
 def in_units(series: Iterable[Series], units: Units) -> list[Series]:
-    """The same as tables show them."""
+    """The series in the units that tables show."""
     shown = [(item, *units.of(item.unit)) for item in series]
     return [
         item._replace(unit=unit, values=size * item.values) if unit != item.unit else item for item, unit, size in shown

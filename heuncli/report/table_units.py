@@ -38,7 +38,7 @@ class Units(NamedTuple):
 
 
 def asked(words: str) -> Units:
-    """The units that a list of them asks for. Raises Finding."""
+    """The units that `--units kN,mm,deg` asks for. Raises Finding."""
     own: dict[str, Shown] = {}
     for word in (part.strip() for part in words.split(",")):
         unit, size = quantity_of(word)

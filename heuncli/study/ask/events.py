@@ -54,7 +54,7 @@ def with_events(study: Study, setup: Setup, solve: Solve) -> Study:
 
 
 def ended(study: Study, found: Mapping[str, Changes], t: float, solve: Solve) -> Study:
-    """The same motion up to an instant at which the last condition becomes true; found: what changes in all of it.
+    """The motion of a study up to the instant t at which its last condition becomes true; found: all its changes.
 
     Where something strikes, rests or jumps there, what holds behind it is told: the run goes on for a moment.
     """

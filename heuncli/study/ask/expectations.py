@@ -36,7 +36,7 @@ class Case:
 
     @property
     def passed(self) -> bool:
-        """Whether it holds."""
+        """Whether the expectation holds."""
         return self.failure is None
 
 
@@ -60,7 +60,7 @@ def compare(study: Study, item: Expect) -> Case:
 
 
 def _bounded(case: Case, study: Study, item: Expect) -> Case:
-    """Of what is expected to stay below or above something."""
+    """The comparison of a number that is expected to stay below or above a bound."""
     from heuncli.study.ask.bounds import bounded  # that few specs have
 
     extreme, failure = bounded(study, item)

@@ -74,7 +74,7 @@ class Study:
         return extremes.filled(times)
 
     def resample(self, times: Array) -> Results:
-        """The same run at other instants within it (ascending)."""
+        """The results of the run at other instants within it, (n,) ascending; of a state those of its one instant."""
         if self.history.checked is None:
             return self.results
         wanted = self.options.reports
@@ -101,7 +101,7 @@ class Study:
         return (self.struck if setup is None else self.struck.cut_by(setup)).blocks()
 
     def struck_along(self, quantities: Sequence[str]) -> list[dict[str, Extremes]]:
-        """Of each blow the extremes of some quantities along its runs of cuts, of their whole stretches."""
+        """The lowest and highest of some quantities along whole runs of cuts: a mapping by run for each blow."""
         if not any(cuts.s is not None for cuts in self.setup.cuts):
             return []
         from heuncli.study.search.stretches import extremes_at_a_blow  # only runs of cuts are worth it
@@ -136,7 +136,7 @@ class Study:
 
     @property
     def at_once(self) -> int:
-        """At how many instants results are made at a time."""
+        """How many instants are answered in one go: so many that memory holds their numbers."""
         mechanism = self.setup.scene.mechanism
         causes = len(mechanism.loads) + 3 if SHARES in self.options.reports else 0
         return max(50, CHUNK // max(1, len(mechanism.bodies) * (1 + causes)))

@@ -16,7 +16,7 @@ from heuncli.study.solve.history import History
 
 
 def accuracy_of(history: History, recovery: Recovery, residual_of_blows: float = 0.0) -> Accuracy:
-    """Of a run at the instants of `recovery`.
+    """The block `accuracy` of a run at the instants of `recovery`.
 
     residual_of_blows: what its blows leave unmet of d'Alembert's principle, of the largest impulse.
     """

@@ -67,12 +67,12 @@ def is_wrong(keys: tuple[str, ...], value: Array | float, block: Mapping[str, An
 
 
 def nan_in(array: Array, row: Quantity) -> Mask:
-    """Of each component whether it is nan at some instant: (3,) of a vector, else (1,)."""
+    """Whether each component of a quantity is nan at some instant: (3,) for a vector, else (1,)."""
     return np.asarray(np.isnan(array).reshape(-1, 3 if row.shape == (SPACE,) else 1).any(axis=0))
 
 
 def named_open(row: Quantity, block: Mapping[str, Any]) -> Mask:
-    """Of each component of a joint's load whether it is told to be open."""
+    """Whether each component of a joint's load is among those that its block names as open."""
     name = row.path.rpartition(".")[2]
     names = [f"{name}.{c}" for c in SPACE.letters] if row.shape == (SPACE,) else [name]
     return np.array([name in block["open"] for name in names])

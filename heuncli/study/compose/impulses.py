@@ -130,7 +130,7 @@ class Impulses:
         return [self.block(k) for k in range(len(self.jumps))]
 
     def cut_by(self, setup: Setup) -> Impulses:
-        """The same with other cuts."""
+        """The blows as they meet the cuts of another setup of the same scene."""
         still = at_rest(setup)
         return replace(self, setup=still, recovery=replace(self.recovery, setup=still))
 
@@ -190,7 +190,7 @@ def actions(mechanism: Mechanism, jumps: Sequence[Jump]) -> list[Action]:
 
 
 def of_one(block: Block, k: int) -> Block:
-    """A block over the blows at one of them; of what is open what is so there."""
+    """The block of blow k, from a block over all blows; `open` names what is open at this one."""
     own: Block = {}
     for name, value in block.items():
         if isinstance(value, dict):

@@ -26,7 +26,7 @@ def placed(spec: Spec) -> Iterator[None]:
 
 
 def location_of(problem: Problem, spec: Spec) -> SourceLocation:
-    """Of the entry that it is about, or the first that its words name; else of the analysis, or of the bodies."""
+    """Where the entry stands that a problem is about, or the first that its words name; else the analysis."""
     if problem.location is not None:
         return problem.location
     about = (problem.about, *(f"{block}.{problem.about}" for block in ACTING), WHERE.get(problem.code, ""))

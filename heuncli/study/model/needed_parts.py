@@ -93,7 +93,7 @@ def needed(spec: Spec, asked: Selection, ends: Ends) -> set[str]:
 
 
 def roots(spec: Spec, asked: Selection) -> set[str] | None:
-    """The bodies that what is asked for names itself; None where it is about all of them."""
+    """The bodies that are named by what is asked for; None where it is about all bodies."""
     whole = [report for report in asked.reports - {SHARES, EVENTS} if asked.whole(report)]
     if any(report not in OF_SOME for report in whole):
         return None

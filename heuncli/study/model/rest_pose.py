@@ -64,7 +64,7 @@ def at_rest(scene: PreparedScene, runner: Runner) -> tuple[PreparedScene, Runner
 
 
 def sentences(mechanism: Mechanism, found: Found, own: Stability) -> list[str]:
-    """How it rests."""
+    """How the scene rests, in sentences: in which frame, stable or not, and along which motions it is indifferent."""
     drives = some([f"drives.{name}" for name in going_on(mechanism)])
     told = [f"at rest in the frame that goes along with {drives}"] if drives else []
     least = f"the least eigenvalue of stiffness over inertia is {own.least:.4g} 1/s² ({own.slowest})"

@@ -131,7 +131,7 @@ def require_drives(mechanism: Mechanism, t: float) -> None:
 
 
 def set_up_at_rest(setup: Setup, left_out: tuple[str, ...], looked_for: bool) -> Setup:
-    """The same at its rest pose, unless that is not looked for."""
+    """The setup with its rest pose as the start, and how it rests; as drawn where that is not looked for."""
     from heuncli.study.model.rest_pose import at_rest  # few scenes ask for it
 
     scene, runner, rest = setup.scene, setup.runner, None

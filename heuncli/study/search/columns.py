@@ -18,11 +18,11 @@ class Sampleable(Protocol):
 
     @property
     def results(self) -> Results:
-        """At the asked instants."""
+        """The results at the instants that the spec asks for."""
 
     @property
     def at_once(self) -> int:
-        """At how many instants results are made at a time."""
+        """How many instants are answered in one go."""
 
     def only(self, times: Array, wanted: frozenset[str], setup: Setup | None = None) -> Results:
         """Some reports' blocks at other instants; setup: with other cuts."""
@@ -42,7 +42,7 @@ class StudyColumns:
         self.groups = [*searched.groups, *([first + 2 * k, first + 2 * k + 1] for k in range(runs))]
 
     def results(self, at: Array, setup: Setup | None = None) -> Results:
-        """Of the study, at some instants."""
+        """The results of the study at some instants, ascending; setup: with other cuts."""
         study, setup = self.study, setup or self.setup
         if setup is None and np.array_equal(at, study.results.time):
             return study.results
@@ -65,7 +65,7 @@ class StudyColumns:
         return np.concatenate([self.searched.columns(results), *along], axis=1)
 
     def placed(self, found: Extremes) -> Extremes:
-        """With the places of those of runs of cuts; of what is no polynomial they are looked for once more."""
+        """The extremes with their places along runs of cuts; what is no polynomial of loads is searched there anew."""
         if self.searched.along is None:
             return found
         first, n = len(self.searched.groups), len(self.searched.errors)

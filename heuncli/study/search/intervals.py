@@ -41,7 +41,7 @@ class Intervals(NamedTuple):
     column: Indices
 
     def some(self, which: Mask | Indices) -> Intervals:
-        """Those."""
+        """The intervals that are marked."""
         t, f, doubt, rough, target, column = self
         return Intervals(t[which], f[which], doubt[which], rough[which], target[which], column[which])
 
@@ -101,7 +101,7 @@ class Intervals(NamedTuple):
 
 
 def joined(parts: Sequence[Intervals]) -> Intervals:
-    """All of them."""
+    """The intervals of several lists in one."""
     return Intervals(*(np.concatenate(columns) for columns in zip(*parts, strict=True)))
 
 

@@ -22,7 +22,7 @@ HALVED = 2  # how often pieces are halved for what bends where loads change thei
 
 
 def stretched(setup: Setup, bent: bool) -> Setup:
-    """The same, with its runs of cuts as whole stretches; bent: for what is no polynomial of the loads."""
+    """The scene with its runs of cuts as whole stretches; bent: for what is no polynomial of loads."""
     mechanism, halved = setup.scene.mechanism, HALVED if bent else 0
 
     def whole(cuts: Cuts) -> Cuts | Stretch:
@@ -35,18 +35,18 @@ def stretched(setup: Setup, bent: bool) -> Setup:
 
 
 def stretch_named(setup: Setup, name: str) -> Stretch:
-    """One of them."""
+    """The stretch of the run of cuts with that name."""
     known: tuple[Cuts | Stretch, ...] = setup.cuts
     return next(cuts for cuts in known if isinstance(cuts, Stretch) and cuts.name == name)
 
 
 def cut_at(setup: Setup, name: str, s: Array, ends: tuple[float, float]) -> Setup:
-    """The same, with a stretch as cuts at some distances (k,) between the ends of a piece."""
+    """The scene cut once more: a stretch as cuts at distances (k,) [m] between the ends of one of its pieces."""
     return replace(setup, cuts=(laid(stretch_named(setup, name).asked, s, side_of(s, ends)),))
 
 
 def at_places(setup: Setup, name: str, places: Sequence[Place]) -> Setup:
-    """The same, with a run of cuts at some places along it."""
+    """The scene with a run of cuts at these places alone, on the sides that they name."""
     asked = next(cuts for cuts in setup.cuts if cuts.name == name)
     side = np.array([{"before": BEFORE, "beyond": BEYOND}.get(place.side or "", 0.0) for place in places])
     return replace(setup, cuts=(laid(asked, np.array([place.s for place in places]), side),))

@@ -22,7 +22,7 @@ APART = Weights(1.0, 0.0)  # the difference itself
 
 
 class Extent:
-    """Of one quantity over the instants so far: largest error, rounding and terms; largest value and range as told.
+    """What is known of one quantity from the instants so far: largest difference, rounding, terms; its range.
 
     claimed: the largest difference before the horizon.
     """
@@ -59,12 +59,12 @@ class Extent:
 
     @property
     def error(self) -> float:
-        """The estimated error."""
+        """The estimated error over the whole run."""
         return self.weights.difference * self.difference + self.weights.rounding * self.rounding
 
     @property
     def claimed_error(self) -> float:
-        """The same before the horizon."""
+        """The estimated error before the horizon, up to which numbers are told."""
         return self.weights.difference * self.claimed + self.weights.rounding * self.rounding
 
     @property

@@ -57,7 +57,7 @@ class LoadErrors:
         self.asked = self.before = np.zeros(0, dtype=bool)
 
     def extent(self, kind: str, quantity: str) -> Extent:
-        """That of a quantity."""
+        """What is known so far of a quantity of a kind."""
         return self.extents.setdefault((kind, quantity), Extent(self.weights))
 
     def take(

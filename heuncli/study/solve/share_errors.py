@@ -66,7 +66,7 @@ OfKind = list[tuple[str, str, Array]]  # kind, quantity, values with the instant
 
 
 def of_joints(joints: Sequence[JointLoads]) -> OfKind:
-    """The joints' shares."""
+    """The shares of reactions and of drives."""
     found: OfKind = []
     for name in ("force", "moment"):
         values = [np.moveaxis(getattr(load, name), 0, 1) for load in joints]
