@@ -18,13 +18,12 @@ GRACE = 0.2  # seconds beyond the limit: the loops, which know more, speak first
 REPEAT = 0.1  # seconds from one alarm to the next: a destructor may swallow one
 LONGEST = 1e8  # seconds that the timer is set to at most, three years; the system's clocks end somewhere
 HINT = "a longer --time-limit, fewer samples, --only what is needed, or a shorter duration"
-# What is being done, by the modules at work: the first row that has one of them tells.
+# What is being done, by the modules at work: the first row that has one of them tells, else the command's own words.
 PHASES = (
     ("heuncli.spec", "while the spec was read"),
     ("heuncli.study.search.extremes", "while extremes between the samples were searched"),
     ("heuncli.study.search.passages", "while extremes between the samples were searched"),
     ("heuncli.rest", "on the way to the rest pose"),
-    ("heuncli.probing", "while the neighbourhood of the motion was looked at"),
     ("heuncli.redundancy.advice", "while advice on what is redundant was sought"),
     ("heuncli.integration.check.singular_poses", "while singular poses were searched"),
     ("heuncli.expressions.discontinuities", "while jumps in time were searched"),
@@ -41,6 +40,7 @@ PHASES = (
     ("heuncli.kinetostatics", "while loads were computed"),
     ("heuncli.report", "while the results were written down"),
 )  # fmt: skip
+UNTOLD = "before the work was done"  # of commands that have no words of their own
 Answer = TypeVar("Answer")
 IMPORTING = "importlib._bootstrap"
 
@@ -54,16 +54,17 @@ class _Clock:
 
     deadline: float | None = None
     limit = 0.0
+    phase = UNTOLD
 
 
-def limited(work: Callable[[], Answer], seconds: float | None, grace: float = GRACE) -> Answer:
+def limited(work: Callable[[], Answer], seconds: float | None, grace: float = GRACE, phase: str = UNTOLD) -> Answer:
     """What the work gives. Raises LimitError [time-limit] where it takes longer; None: as long as it wants.
 
-    grace [s]: how much later it is interrupted.
+    grace [s]: how much later it is interrupted; phase: what it is doing where the modules at work do not tell.
     """
     if seconds is None:
         return work()
-    _Clock.deadline, _Clock.limit = time.monotonic() + seconds, seconds
+    _Clock.deadline, _Clock.limit, _Clock.phase = time.monotonic() + seconds, seconds, phase
     undo = _timer(min(seconds + grace, LONGEST))
     try:
         return _at_work(work)
@@ -120,7 +121,7 @@ def _ring(number: int, frame: FrameType | None) -> None:
     if not working or _Clock.deadline is None or any(IMPORTING in name for name in modules):
         return
     told = (text for prefix, text in PHASES if any(name == prefix or name.startswith(prefix + ".") for name in modules))
-    raise TimeUp(next(told, "before the work was done"))
+    raise TimeUp(next(told, _Clock.phase))
 
 
 def _frames(frame: FrameType | None) -> Iterator[FrameType]:

@@ -5,7 +5,6 @@ Results go to standard output, everything else to standard error; a command that
 
 from __future__ import annotations
 
-import importlib
 import math
 import os
 import sys
@@ -13,10 +12,11 @@ from collections.abc import Callable, Sequence
 from pathlib import Path
 from typing import TypeVar
 
-from heuncli.cli import alarm, memory, plain
+from heuncli.cli import alarm, memory, plain, registry
 from heuncli.cli.files import ReaderGone
+from heuncli.cli.options import fields_of
 from heuncli.cli.output import emit, say
-from heuncli.cli.requests import COMMANDS, GRACES, LATER_COMMANDS, LATER_OPTIONS, WINGS, Request
+from heuncli.cli.registry import Asked
 from heuncli.errors import HeunError, LimitError, Problem
 from heuncli.foreign_text import shown
 from heuncli.spec.reading import forget
@@ -97,26 +97,22 @@ def _command(argv: list[str]) -> int:
     if argv[:1] == ["--version"]:
         emit(version() + "\n")
         return 0
-    if argv and argv[0] in LATER_COMMANDS:
-        known = ", ".join(COMMANDS)
+    if argv and argv[0] in registry.LATER_COMMANDS:
+        known = ", ".join(command.name for command in registry.COMMANDS)
         raise UsageError(Problem("not-yet", f"{argv[0]}: not in this version yet", hint=f"there are: {known}"))
-    request = plain.read(argv)
-    if request is None:
-        answer = _through_typer(argv)
-        if isinstance(answer, int):
-            return answer
-        request = answer
-    for name in LATER_OPTIONS:
-        if getattr(request, name, None):
-            message = f"--{name.replace('_', '-')}: not in this version yet"
+    asked = plain.read(argv) or _through_typer(argv)
+    if isinstance(asked, int):
+        return asked
+    command, request = asked
+    for field in fields_of(type(request)):
+        if field.option.later and getattr(request, field.name):
+            message = f"{field.option.words[0]}: not in this version yet"
             raise UsageError(Problem("not-yet", message, hint="leave it out"))
     for name in ("time_limit", "time_limit_each"):
         _require_limit(f"--{name.replace('_', '-')}", getattr(request, name, None))
     memory.require_some()
-    name = next(name for name, command in COMMANDS.items() if command is type(request))
-    module = importlib.import_module(f"heuncli.{WINGS[name]}.command" if name in WINGS else f"heuncli.cli.{name}")
-    grace = GRACES.get(type(request), alarm.GRACE)
-    return int(alarm.limited(lambda: module.main(request), getattr(request, "time_limit", None), grace))
+    limit = getattr(request, "time_limit", None)
+    return alarm.limited(lambda: command.main(request), limit, command.grace, command.phase)
 
 
 def _require_limit(option: str, limit: float | None) -> None:
@@ -126,7 +122,7 @@ def _require_limit(option: str, limit: float | None) -> None:
         raise UsageError(Problem("bad-option", f"{option} {limit:g}: expected a positive number", hint=hint))
 
 
-def _through_typer(argv: list[str]) -> Request | int:
+def _through_typer(argv: list[str]) -> Asked | int:
     import contextlib
     import io
 

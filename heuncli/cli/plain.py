@@ -8,16 +8,18 @@ from __future__ import annotations
 from collections.abc import Sequence
 from typing import Any
 
-from heuncli.cli.requests import COMMANDS, Request, rows
+from heuncli.cli.options import fields_of
+from heuncli.cli.registry import Asked, command_of
 
 
-def read(argv: Sequence[str]) -> Request | None:
+def read(argv: Sequence[str]) -> Asked | None:
     """The request of a command line, or None where typer has to look: help, errors, `--`, bundled short options."""
-    if not argv or argv[0] not in COMMANDS:
+    command = command_of(argv[0]) if argv else None
+    if command is None:
         return None
-    command = COMMANDS[argv[0]]
-    table = rows(command)
-    options = {word: row for row in table for word in row.option.words}
+    request = command.request
+    fields = fields_of(request)
+    options = {word: field for field in fields for word in field.option.words}
     values: dict[str, Any] = {}
     arguments: list[str] = []
     words = iter(argv[1:])
@@ -26,30 +28,29 @@ def read(argv: Sequence[str]) -> Request | None:
             arguments.append(word)
             continue
         name, equals, value = word.partition("=") if word.startswith("--") else (word, "", "")
-        row = options.get(name)
-        if row is None or (row.type is bool and equals):
+        field = options.get(name)
+        if field is None or (field.type is bool and equals):
             return None
-        text = "" if row.type is bool else value if equals else next(words, None)
+        text = "" if field.type is bool else value if equals else next(words, None)
         if text is None:
             return None
-        if row.type is bool:
-            values[row.name] = True
-        elif row.type == tuple[str, ...]:
-            values[row.name] = (*values.get(row.name, ()), text)
-        elif row.type == float | None:
+        if field.type is bool:
+            values[field.name] = True
+        elif field.type == tuple[str, ...]:
+            values[field.name] = (*values.get(field.name, ()), text)
+        elif field.type == float | None:
             try:
-                values[row.name] = float(text)
+                values[field.name] = float(text)
             except ValueError:
                 return None
         else:
-            values[row.name] = text
-    target = next((row for row in table if not row.option.words), None)
-    if target is None:
-        return command(**values) if not arguments else None
-    many = target.type == tuple[str, ...]
-    if not arguments and target.name in command._field_defaults:
-        return command(**values)
-    if not arguments or (len(arguments) > 1 and not many):
+            values[field.name] = text
+    target = next((field for field in fields if not field.option.words), None)
+    many = target is not None and target.type == tuple[str, ...]
+    if len(arguments) > (target is not None) and not many:
         return None
-    values[target.name] = tuple(arguments) if many else arguments[0]
-    return command(**values)
+    if target is not None and arguments:
+        values[target.name] = tuple(arguments) if many else arguments[0]
+    elif target is not None and target.name not in request._field_defaults:
+        return None
+    return Asked(command, request(**values))

@@ -13,8 +13,8 @@ from typing import Any, cast
 
 import pytest
 
-from heuncli.charting.results import COMPLETED, Charted, Row
-from heuncli.charting.runs import Charting, Timed
+from heuncli.commands.charting.results import COMPLETED, Charted, Row
+from heuncli.commands.charting.runs import Charting, Timed
 from heuncli.drawing import by_matplotlib as picture_plot
 from tests.shared.command import HANGING, SPEC_TEXTS, TURNED, Heun
 
@@ -137,7 +137,7 @@ def test_a_run_that_fails_is_that_error(heun: Heun, folder: Path) -> None:
 
 
 def test_beyond_the_time_limit_rows_are_told_not_run(heun: Heun, monkeypatch: pytest.MonkeyPatch) -> None:
-    from heuncli.charting.motion import Motion
+    from heuncli.commands.charting.motion import Motion
 
     monkeypatch.setattr(Motion, "late", True)
     found = json.loads(heun("chart", "swinging.yaml", *FEW, "--time-limit", "60", "--format", "json").stdout)

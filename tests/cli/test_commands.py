@@ -324,7 +324,7 @@ def test_no_trouble_reaches_a_user_as_a_traceback(
     def fail(*_: object, **__: object) -> None:
         raise trouble
 
-    monkeypatch.setattr("heuncli.cli.run.load", fail)
+    monkeypatch.setattr("heuncli.commands.run.command.load", fail)
     monkeypatch.delenv("HEUN_DEBUG", raising=False)
     done = heun("run", "hanging.yaml")
     assert (done.returncode, done.stdout) == (code, "")
@@ -349,7 +349,7 @@ def test_what_goes_wrong_in_one_file_is_told_of_it_alone(
             raise trouble
         return load(path, **words)
 
-    monkeypatch.setattr(f"heuncli.cli.{command}.load", fail_once)
+    monkeypatch.setattr(f"heuncli.commands.{command}.command.load", fail_once)
     monkeypatch.delenv("HEUN_DEBUG", raising=False)
     done = heun(command, "expecting.yaml", "swinging.yaml", "failing.yaml", "wrong.yaml")
     assert done.returncode == (code if code == 70 else 2)

@@ -67,8 +67,12 @@ def forever(*_: Any, **__: Any) -> Any:
             "run swinging.yaml",
             "while extremes between the samples were searched",
         ),
-        ("heuncli.cli.run._report", "run swinging.yaml", "before the work was done"),
-        ("heuncli.probing.study.growing", "probe swinging.yaml", "while the neighbourhood of the motion was looked at"),
+        ("heuncli.commands.run.command._report", "run swinging.yaml", "before the work was done"),
+        (
+            "heuncli.commands.probing.study.growing",
+            "probe swinging.yaml",
+            "while the neighbourhood of the motion was looked at",
+        ),
     ],
 )
 def test_whatever_takes_too_long_is_ended(

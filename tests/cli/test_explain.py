@@ -6,7 +6,7 @@ from pathlib import Path
 
 import pytest
 
-from heuncli.cli.explain import PAGES
+from heuncli.commands.explain.command import PAGES
 from tests.shared.command import Heun
 from tests.shared.manual import TEXTS
 

@@ -65,7 +65,7 @@ def test_what_is_read_stays(
 ) -> None:  # fmt: skip
     """Refused before anything is solved."""
     for module in ("run", "check"):
-        monkeypatch.setattr(f"heuncli.cli.{module}.solve", None)
+        monkeypatch.setattr(f"heuncli.commands.{module}.command.solve", None)
     before, inode = (scene / read).read_bytes(), (scene / read).stat().st_ino
     form = () if writer == ("chart", "--save") else ("--format", "json")
     done = heun(writer[0], "scene.yaml", writer[1], named(scene / read), *form)

@@ -9,7 +9,8 @@ import sys
 import pytest
 
 from heuncli.cli import app, plain
-from heuncli.cli.requests import COMMANDS, rows
+from heuncli.cli.options import fields_of
+from heuncli.cli.registry import COMMANDS
 from tests.shared.loaded import loaded_by
 
 WORDS = {
@@ -21,9 +22,9 @@ WORDS = {
 
 def random_line(seed: int) -> list[str]:
     draw = random.Random(seed)
-    name = draw.choice(list(COMMANDS))
+    command = draw.choice(COMMANDS)
     line = []
-    for row in rows(COMMANDS[name]):
+    for row in fields_of(command.request):
         if not row.option.words:
             many = row.type == tuple[str, ...]
             line += [[draw.choice(["a.yaml", "-", "dir/b.yaml"])] for _ in range(draw.randint(1, 3) if many else 1)]
@@ -35,7 +36,7 @@ def random_line(seed: int) -> list[str]:
                 value = draw.choice(WORDS[row.type])
                 line.append([f"{word}={value}"] if word.startswith("--") and draw.random() < 0.5 else [word, value])
     draw.shuffle(line)
-    return [name, *(word for part in line for word in part)]
+    return [command.name, *(word for part in line for word in part)]
 
 
 @pytest.mark.parametrize("seed", range(60))

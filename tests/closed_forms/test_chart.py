@@ -12,13 +12,13 @@ import numpy as np
 import pytest
 from scipy.special import ellipj, ellipk
 
-from heuncli.charting import runs as chart_runs
-from heuncli.charting.motion import motion_of
-from heuncli.charting.plan import Wanted
-from heuncli.charting.reference import refer
-from heuncli.charting.results import Chart, Charted, Row
-from heuncli.charting.runs import Charting
-from heuncli.charting.study import chart
+from heuncli.commands.charting import runs as chart_runs
+from heuncli.commands.charting.motion import motion_of
+from heuncli.commands.charting.plan import Wanted
+from heuncli.commands.charting.reference import refer
+from heuncli.commands.charting.results import Chart, Charted, Row
+from heuncli.commands.charting.runs import Charting
+from heuncli.commands.charting.study import chart
 from heuncli.integration.check.runs import Runs
 from heuncli.integration.methods.dop853 import DOP853
 from heuncli.integration.run.request import Request

@@ -5,7 +5,8 @@ from __future__ import annotations
 from collections.abc import Callable
 from random import Random
 
-from heuncli.cli.requests import COMMANDS, Row, rows
+from heuncli.cli.options import RequestField, fields_of
+from heuncli.cli.registry import command_of
 from tests.faults import sources
 from tests.faults.mutate_spec import UNITS, misspelt, vocabulary
 from tests.faults.random_expressions import random_expression
@@ -57,7 +58,9 @@ def random_command(random: Random, tree: sources.Tree) -> tuple[str, ...]:
     """A command line on the file SPEC, which holds this tree."""
     command = random.choice(QUICK) if random.random() < 0.97 else "chart"
     words = [command]
-    options = rows(COMMANDS[command])
+    row = command_of(command)
+    assert row is not None
+    options = fields_of(row.request)
     if any(not row.option.words for row in options):
         words += (
             [SPEC]
@@ -79,7 +82,7 @@ def random_command(random: Random, tree: sources.Tree) -> tuple[str, ...]:
     return tuple(words)
 
 
-def _option(random: Random, row: Row, tree: sources.Tree) -> list[str]:
+def _option(random: Random, row: RequestField, tree: sources.Tree) -> list[str]:
     """An option with a value, in one of the ways that it may be written in."""
     word = random.choice(row.option.words)
     if row.type is bool:

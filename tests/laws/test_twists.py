@@ -7,9 +7,9 @@ from pathlib import Path
 import numpy as np
 import pytest
 
+from heuncli.commands.probing.numerics.twists import closure_rows, mass_matrix, twists
 from heuncli.integration.evaluator import Recovered
 from heuncli.linearisation.linearise import linearised
-from heuncli.probing.numerics.twists import closure_rows, mass_matrix, twists
 from heuncli.response import jacobian
 from heuncli.rest.coordinates import coordinates_of
 from heuncli.spec.load import load

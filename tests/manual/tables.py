@@ -11,8 +11,9 @@ from collections.abc import Iterator, Sequence
 from itertools import groupby
 from typing import NamedTuple
 
-from heuncli.cli.explain import PAGES, summary
-from heuncli.cli.requests import COMMANDS, LATER_OPTIONS, rows
+from heuncli.cli.options import fields_of
+from heuncli.cli.registry import COMMANDS, Command
+from heuncli.commands.explain.command import PAGES, summary
 from heuncli.expressions import units as u
 from heuncli.expressions.grammar import ARITY, CONSTANTS
 from heuncli.joint_kinds import TYPES, Kind
@@ -120,12 +121,11 @@ def methods() -> Iterator[tuple[str, ...]]:
         yield f"`{row.name}`", str(row.order), row.kind, row.steps, row.attitude, row.purpose
 
 
-def options(command: str) -> Iterator[tuple[str, str]]:
+def options(command: Command) -> Iterator[tuple[str, str]]:
     """The arguments and options of a command."""
-    for row in rows(COMMANDS[command]):
-        value = (row.option.metavar or "").replace("|", "\\|")
-        if row.name not in LATER_OPTIONS:
-            yield f"`{' '.join([', '.join(row.option.words), value]).strip()}`", row.option.help.replace("|", "\\|")
+    for option in (field.option for field in fields_of(command.request) if not field.option.later):
+        value = (option.metavar or "").replace("|", "\\|")
+        yield f"`{' '.join([', '.join(option.words), value]).strip()}`", option.help.replace("|", "\\|")
 
 
 def keys() -> Iterator[tuple[str, str]]:
@@ -165,11 +165,10 @@ def results_by_word() -> Iterator[tuple[str, str]]:
 def options_by_word() -> Iterator[tuple[str, str]]:
     """Each option with the commands that know it."""
     known: dict[str, list[str]] = {}
-    for name, command in COMMANDS.items():
-        for row in rows(command):
-            for word in row.option.words:
-                if row.name not in LATER_OPTIONS:
-                    known.setdefault(word, []).append(name)
+    for command in COMMANDS:
+        for option in (field.option for field in fields_of(command.request) if not field.option.later):
+            for word in option.words:
+                known.setdefault(word, []).append(command.name)
     for word in sorted(known, key=str.lower):
         links = (f"[heun {name}](commands.md#{anchor(f'heun {name}')})" for name in known[word])
         yield f"`{word}`", ", ".join(links)
@@ -189,7 +188,7 @@ TABLES = (
     Table("format", "Expressions", ("", ""), list(words())),
     Table("format", "Joints", ("type", "conditions", "may be driven", "takes", "also called"), list(joints())),
     Table("methods", "The list", ("name", "order", "kind", "steps", "attitude", "what for"), list(methods())),
-    *(Table("commands", f"heun {name}", ("option", "meaning"), list(options(name))) for name in COMMANDS),
+    *(Table("commands", f"heun {each.name}", ("option", "meaning"), list(options(each))) for each in COMMANDS),
     Table("index", "Keys of a spec", ("key", "stands in"), list(keys())),
     Table("index", "Types", ("type", "stands in"), list(types())),
     Table("index", "Words of the results", ("word", "paths"), list(results_by_word())),

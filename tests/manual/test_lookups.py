@@ -6,7 +6,7 @@ import re
 
 import pytest
 
-from heuncli.cli.explain import PAGES, indexed
+from heuncli.commands.explain.command import PAGES, indexed
 from tests.shared.manual import TEXTS, below
 
 QUESTIONS = [

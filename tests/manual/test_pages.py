@@ -9,9 +9,9 @@ import pytest
 from pydantic import BaseModel
 
 from heuncli.cli.entry import INTERRUPTED, OF_SEVERAL
-from heuncli.cli.explain import PAGES
 from heuncli.cli.files import ReaderGone
-from heuncli.cli.requests import COMMANDS, LATER_COMMANDS
+from heuncli.cli.registry import COMMANDS, LATER_COMMANDS
+from heuncli.commands.explain.command import PAGES
 from heuncli.expressions.grammar import ARITY, CONSTANTS
 from heuncli.expressions.units import UNITS
 from heuncli.spec import format as document
@@ -72,7 +72,7 @@ def test_every_key_unit_function_and_command_is_named() -> None:
     assert sorted(UNITS.keys() - named) == []
     assert sorted((ARITY.keys() | CONSTANTS.keys()) - named) == []
     assert sorted(set(LATER_COMMANDS) - named) == []
-    assert all(f"heun {command}" in text for command in COMMANDS)
+    assert all(f"heun {command.name}" in text for command in COMMANDS)
 
 
 def test_the_exit_codes_are_listed() -> None:

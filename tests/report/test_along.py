@@ -8,7 +8,7 @@ from pathlib import Path
 import numpy as np
 import pytest
 
-from heuncli.cli import searches
+from heuncli.commands.run import searches
 from heuncli.report.cut_runs import extremes_of_samples, one_source, runs_of
 from heuncli.report.labels import labels_of
 from heuncli.report.page import Page, page_of

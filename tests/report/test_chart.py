@@ -9,9 +9,9 @@ import math
 
 import pytest
 
-from heuncli.charting import page as report
-from heuncli.charting.letters import draw, letters
-from heuncli.charting.results import (
+from heuncli.commands.charting import page as report
+from heuncli.commands.charting.letters import draw, letters
+from heuncli.commands.charting.results import (
     KINDS,
     Chart,
     Charted,
@@ -19,7 +19,7 @@ from heuncli.charting.results import (
     shown,
     with_front,
 )  # fmt: skip
-from heuncli.charting.scale import Scale, scales
+from heuncli.commands.charting.scale import Scale, scales
 from heuncli.records import replace
 from heuncli.report.export import dump
 from heuncli.report.page_width import fit

@@ -8,8 +8,8 @@ from random import Random
 
 import pytest
 
-from heuncli.charting.labels import Box, crosses, inside, placed
-from heuncli.charting.picture import picture, stacked
+from heuncli.commands.charting.labels import Box, crosses, inside, placed
+from heuncli.commands.charting.picture import picture, stacked
 from heuncli.drawing import by_matplotlib as picture_plot
 from heuncli.drawing.picture import Line, Mark, Picture, Text, svg
 from heuncli.errors import HeunError

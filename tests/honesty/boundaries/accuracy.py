@@ -7,9 +7,9 @@ from typing import Any
 
 import numpy as np
 
-from heuncli.charting.reference import judged_instants
-from heuncli.charting.results import COMPLETED, Charted, with_front
-from heuncli.charting.results import Row as RowOfChart
+from heuncli.commands.charting.reference import judged_instants
+from heuncli.commands.charting.results import COMPLETED, Charted, with_front
+from heuncli.commands.charting.results import Row as RowOfChart
 from heuncli.integration.check.runs import shared_steps
 from heuncli.integration.run.pace import hopeless
 from heuncli.report.labels import labels_of

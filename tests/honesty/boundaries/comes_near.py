@@ -6,9 +6,9 @@ import math
 
 import numpy as np
 
-from heuncli.probing.growth import told
-from heuncli.probing.numerics.shadows import Growth
-from heuncli.probing.study import probe
+from heuncli.commands.probing.growth import told
+from heuncli.commands.probing.numerics.shadows import Growth
+from heuncli.commands.probing.study import probe
 from heuncli.spec.load import load
 from heuncli.study.model.options import Options
 from tests.honesty.boundaries.part import Part, Row

@@ -6,11 +6,11 @@ from types import SimpleNamespace
 
 import numpy as np
 
+from heuncli.commands.modes.study import modes
 from heuncli.errors import HeunError
 from heuncli.linearisation.oscillations import oscillations
 from heuncli.linearisation.reduced import Reduced
 from heuncli.linearisation.steady import off_balance
-from heuncli.modes.study import modes
 from heuncli.spec.load import load
 from tests.honesty.boundaries.part import Part, Row
 from tests.shared.scenes import near

@@ -1,0 +1,73 @@
+"""The commands, a row each: a new command is a folder in heuncli/commands and a row here.
+
+The folder of a command holds what it alone needs:
+
+    request.py   the named tuple of its options, NameRequest; imports the vocabulary of cli/options.py and nothing else,
+                 for `--help` reads the requests of all commands
+    command.py   main(request) -> exit code; the one module that knows the command line, files and the terminal
+    study.py     what it finds out; page.py: how that is told; results.py: the rows of what is found; and the like
+
+Both modules are found by name when the command is asked for, so that nothing below heuncli/commands imports any of it,
+and one command loads nothing of another. What two commands need stands below them: in cli, report, drawing or study.
+"""
+
+from __future__ import annotations
+
+from importlib import import_module
+from typing import Any, NamedTuple
+
+from heuncli.cli.alarm import GRACE, UNTOLD
+from heuncli.cli.options import Request
+
+
+class Command(NamedTuple):
+    """A command.
+
+    name: the word of the command line; folder: in heuncli/commands, where that is not the name; grace: seconds that it
+    may go on beyond its time limit, to tell what it has by then (others have nothing); phase: what it is doing, where
+    the time limit is reached and the modules at work do not tell.
+    """
+
+    name: str
+    folder: str = ""
+    grace: float = GRACE
+    phase: str = UNTOLD
+
+    @property
+    def request(self) -> type[Request]:
+        """The named tuple of its options."""
+        found: type[Request] = getattr(self._module("request"), f"{self.name.capitalize()}Request")
+        return found
+
+    def main(self, request: Request) -> int:
+        """Do what is asked for; returns the exit code."""
+        return int(self._module("command").main(request))
+
+    def _module(self, file: str) -> Any:
+        return import_module(f"heuncli.commands.{self.folder or self.name}.{file}")
+
+
+class Asked(NamedTuple):
+    """A command line that is understood: a command, and what it is asked for."""
+
+    command: Command
+    request: Request
+
+
+COMMANDS = (
+    Command("run"),
+    Command("validate"),
+    Command("model"),
+    Command("modes"),
+    Command("chart", folder="charting", grace=0.8),
+    Command("probe", folder="probing", phase="while the neighbourhood of the motion was looked at"),
+    Command("check"),
+    Command("methods"),
+    Command("explain"),
+)
+LATER_COMMANDS = ("balance", "lagrange", "schema", "new", "sweep", "plot")  # not in this version yet
+
+
+def command_of(name: str) -> Command | None:
+    """The command of a name, if there is one."""
+    return next((command for command in COMMANDS if command.name == name), None)

@@ -1,0 +1,150 @@
+"""`heun chart`: speed against accuracy of the methods, on the user's own scene."""
+
+from __future__ import annotations
+
+import math
+from collections.abc import Callable
+from pathlib import Path
+
+from heuncli.cli import alarm
+from heuncli.cli.entry import UsageError
+from heuncli.cli.files import STDOUT
+from heuncli.cli.guard import require_other_file, same_file
+from heuncli.cli.output import emit, save
+from heuncli.cli.progress import progress
+from heuncli.cli.solving import overrides, warn
+from heuncli.cli.target import format_of, require_room
+from heuncli.commands.charting import page as report
+from heuncli.commands.charting.plan import Wanted
+from heuncli.commands.charting.request import ChartRequest
+from heuncli.commands.charting.results import Chart
+from heuncli.commands.charting.study import chart
+from heuncli.errors import Problem
+from heuncli.method_rows import AUTO, METHODS, row_of
+from heuncli.records import replace
+from heuncli.report.export import dump
+from heuncli.report.page_width import fit
+from heuncli.report.text_table import WIDTH, plain
+from heuncli.spec.load import load
+from heuncli.spec.methods import meant
+
+FORMATS = ("table", "json", "csv")
+ENDINGS = {".json": "json", ".csv": "csv", ".txt": "table", "": "table"}
+LEAST_WIDTH = 60  # of a terminal that a chart is drawn for
+PICTURES = {".svg": "svg", ".png": "png", ".pdf": "pdf"}
+
+
+def main(request: ChartRequest) -> int:
+    """Run the command; returns the exit code."""
+    require_other_file(request.output, [request.spec])
+    form = format_of(request.format, request.output, ENDINGS, FORMATS)
+    drawn = picture_format(request)
+    wanted = Wanted(
+        methods(request.methods),
+        numbers("--tolerances", request.tolerances, 1.0),
+        numbers("--steps", request.steps, math.inf),
+    )
+    spec = load(request.spec, overrides=overrides(request.set), checking=False)
+    require_other_file(request.output, [request.spec])
+    if request.save is not None:
+        require_other_file(request.save, [request.spec], "--save")
+    with progress(request.quiet) as tell:
+        found = chart(spec, replace(wanted, time_limit=alarm.remaining()), tell)
+    if drawn is not None and request.save is not None:
+        save(drawn(found), request.save)
+    emit(text(found, form, request.output), request.output, late=True)
+    warn(spec, None, request.quiet)
+    return 0
+
+
+def text(found: Chart, form: str, output: str | None) -> str:
+    """The chart in one of the formats."""
+    if form == "json":
+        return dump(report.block(found))
+    if form == "csv":
+        return report.to_csv(found)
+    from heuncli.cli import terminal
+    from heuncli.commands.charting.letters import WIDTH as FIELD
+    from heuncli.commands.charting.letters import draw
+
+    own = report.table(found)
+    if output is None and terminal.present():
+        width = min(max(terminal.width() - 1, LEAST_WIDTH), WIDTH)
+        rows = "".join(terminal.write([own]))
+    else:
+        width = WIDTH
+        rows = "".join(plain(part, WIDTH) for part in fit(own, WIDTH))
+    return f"{report.write_heading(found, width)}\n{rows}\n{draw(found, min(width, FIELD))}"
+
+
+def picture_format(request: ChartRequest) -> Callable[[Chart], bytes] | None:
+    """How the picture is drawn that is to be saved, by the end of its name."""
+    if request.save is None:
+        return None
+    form = PICTURES.get(Path(request.save).suffix.lower())
+    if form is None:
+        hint = f"known endings: {', '.join(PICTURES)}"
+        raise UsageError(Problem("bad-option", f"--save {request.save}: no picture is known by that ending", hint=hint))
+    require_room(request.save, "--save")
+    if same_file("/dev/stdout" if request.output in (None, STDOUT) else request.output, request.save):
+        message = f"--save {request.save}: that is where the table goes"
+        raise UsageError(Problem("bad-option", message, hint="name another file"))
+    if form == "svg":
+        return _svg
+    from heuncli.drawing.by_matplotlib import require_plot
+
+    require_plot(f"--save {request.save}")
+    return lambda found: _plotted(found, form)
+
+
+def _svg(found: Chart) -> bytes:
+    from heuncli.commands.charting.picture import picture
+    from heuncli.drawing.picture import svg
+
+    return svg(picture(found)).encode()
+
+
+def _plotted(found: Chart, form: str) -> bytes:
+    from heuncli.commands.charting.picture import picture
+    from heuncli.drawing.by_matplotlib import rendered
+
+    return rendered(picture(found), form)
+
+
+def methods(words: str | None) -> tuple[str, ...] | None:
+    """The names of `--methods` as the registry writes them."""
+    if words is None:
+        return None
+    found = []
+    for word in words.split(","):
+        row = row_of(word.strip())
+        if row is None:
+            names = [each.name for each in METHODS]
+            hint = meant(word.strip())
+            if word.strip().lower() == AUTO:
+                hint = f"auto chooses among these: {', '.join(names)}"
+            raise UsageError(Problem("bad-option", f"--methods {word.strip()}: not a method", hint=hint))
+        found.append(row.name)
+    return tuple(dict.fromkeys(found))
+
+
+def numbers(option: str, words: str | None, below: float) -> tuple[float, ...] | None:
+    """Positive numbers between commas, all below a bound."""
+    if words is None:
+        return None
+    try:
+        found = [float(word) for word in words.split(",")]
+    except ValueError:
+        hint = f"such as {option} 1e-4,1e-6"
+        raise UsageError(Problem("bad-option", f"{option} {words}: expected numbers", hint=hint)) from None
+    for value in found:
+        if not (0.0 < value < below and math.isfinite(value)):
+            limit = "" if below == math.inf else f" below {below:g}"
+            raise UsageError(
+                Problem(
+                    "bad-option",
+                    f"{option} {value:g}: expected positive numbers{limit}",
+                    hint=f"such as {option} 1e-4,1e-6",
+                )
+            )
+    return tuple(found)

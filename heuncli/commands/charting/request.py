@@ -1,0 +1,33 @@
+"""What `heun chart` is asked for: its options and arguments."""
+
+from typing import Annotated, NamedTuple
+
+from heuncli.cli.options import OUTPUT, QUIET, SET, SPEC, Option
+
+
+class ChartRequest(NamedTuple):
+    """Speed against accuracy: methods at several tolerances or steps, which ones fail, and where."""
+
+    spec: Annotated[str, SPEC]
+    format: Annotated[
+        str | None,
+        Option(
+            ("--format",),
+            "How to write it. Default: by the name's end of -o FILE, else table.",
+            "table|json|csv",
+        ),
+    ] = None
+    output: Annotated[str | None, OUTPUT] = None
+    save: Annotated[
+        str | None, Option(("--save",), "Draw it there, too: chart.svg; .png and .pdf by matplotlib.", "FILE")
+    ] = None
+    methods: Annotated[str | None, Option(("--methods",), "These alone; heun methods lists them.", "NAME,...")] = None
+    tolerances: Annotated[
+        str | None, Option(("--tolerances",), "Local tolerances of adaptive methods.", "NUMBER,...")
+    ] = None
+    steps: Annotated[str | None, Option(("--steps",), "Steps of methods of fixed step [s].", "NUMBER,...")] = None
+    set: Annotated[tuple[str, ...], SET] = ()
+    time_limit: Annotated[
+        float | None, Option(("--time-limit",), "After that long no run is begun; what is left is told.", "SECONDS")
+    ] = None
+    quiet: Annotated[bool, QUIET] = False

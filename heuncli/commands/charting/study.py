@@ -1,0 +1,45 @@
+"""Speed against accuracy: methods at several tolerances, or steps, on a scene's own motion.
+
+Each run is held against a reference that is itself checked. Impure: looks at the clock.
+"""
+
+from __future__ import annotations
+
+import time
+
+from heuncli.commands.charting.motion import motion_of
+from heuncli.commands.charting.plan import Wanted, plan
+from heuncli.commands.charting.reference import refer
+from heuncli.commands.charting.results import Chart, with_front
+from heuncli.commands.charting.runs import Charting, Tell
+from heuncli.spec.models import Spec
+from heuncli.study.model.error_places import placed
+
+DRIVEN = (
+    "the drives leave no freedom: heun run solves every instant by itself (followed) and integrates nothing; the other "
+    "rows are what integrating it would take"
+)
+
+
+def chart(spec: Spec, wanted: Wanted, tell: Tell = lambda done, of, what: None) -> Chart:
+    """The chart of a spec. Raises SpecError, SolveError, LimitError where there is none."""
+    with placed(spec):
+        return charted(spec, wanted, tell)
+
+
+def charted(spec: Spec, wanted: Wanted, tell: Tell) -> Chart:
+    """The same, with errors that have names in place of places."""
+    deadline = None if wanted.time_limit is None else time.monotonic() + wanted.time_limit
+    motion = motion_of(spec, deadline)
+    rows = plan(motion, wanted)
+    tell(0, 1, "reference")
+    referred = refer(motion)
+    runs = Charting(motion, referred, tell).all(rows.rows)
+    return Chart(
+        title=spec.title,
+        spec={"path": spec.path, "sha256": spec.sha256},
+        reference=referred.reference,
+        runs=with_front(runs),
+        size=motion.setup.scene.layout.size,
+        notes=(*([DRIVEN] if motion.determined else []), *rows.notes),
+    )

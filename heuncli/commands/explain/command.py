@@ -1,0 +1,56 @@
+"""`heun explain TOPIC`: a page of the manual as it is written; without a topic a line for each page."""
+
+from __future__ import annotations
+
+import re
+from pathlib import Path
+
+from heuncli.cli.entry import UsageError
+from heuncli.cli.output import emit
+from heuncli.commands.explain.request import ExplainRequest
+from heuncli.errors import Problem
+from heuncli.nearest import did_you_mean
+
+FOLDER = Path(__file__).parents[2] / "manual"
+# in the order in which a reader may want them
+PAGES = (
+    "commands", "format", "results", "signs", "open", "stresses", "model", "rest", "modes", "methods", "accuracy",
+    "chart", "probe", "limits", "theory", "references", "decisions", "speed", "developing", "index",
+)  # fmt: skip
+
+
+def main(request: ExplainRequest) -> int:
+    """Run the command; returns the exit code."""
+    emit(contents() if request.topic is None else page(request.topic), request.output)
+    return 0
+
+
+def page(topic: str) -> str:
+    """The text of a page. Raises UsageError where there is none of that name."""
+    if topic not in PAGES:
+        hint = f"{indexed(topic) or did_you_mean(topic, PAGES, 'topics')}; heun explain lists the pages"
+        raise UsageError(Problem("bad-option", f"explain {topic}: no page of the manual is called that", hint=hint))
+    return (FOLDER / f"{topic}.md").read_text(encoding="utf-8")
+
+
+def indexed(word: str) -> str:
+    """Where a key, an option, a word of the results or a subject stands by the index; empty where it knows none."""
+    named = re.compile(rf"(?<!\w){re.escape(word)}s?(?!\w)", re.IGNORECASE)
+    places: dict[str, dict[str, None]] = {}
+    for row in re.findall(r"^\| .*", page("index"), re.MULTILINE):
+        name, _, where = row[2:].partition(" |")
+        for part, topic in re.findall(r"\[([^]]*)\]\((\w+)\.md", where) if named.search(name) else ():
+            places.setdefault(topic, {})[part] = None
+    told = (f"heun explain {topic} ({', '.join(parts)})" for topic, parts in places.items())
+    return f"see {' and '.join(told)}" if places else ""
+
+
+def contents() -> str:
+    """The name of each page, and what it is about."""
+    width = max(map(len, PAGES))
+    return "".join(f"{name:<{width}}  {summary(name)}\n" for name in PAGES)
+
+
+def summary(topic: str) -> str:
+    """What a page is about: the line below its title."""
+    return page(topic).split("\n", 3)[2]

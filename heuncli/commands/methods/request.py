@@ -1,0 +1,15 @@
+"""What `heun methods` is asked for: its options and arguments."""
+
+from typing import Annotated, NamedTuple
+
+from heuncli.cli.options import OUTPUT, Option
+
+
+class MethodsRequest(NamedTuple):
+    """List the methods of integration, and what each is for."""
+
+    format: Annotated[
+        str | None,
+        Option(("--format",), "How to write it. Default: by the name's end of -o FILE, else table.", "table|json"),
+    ] = None
+    output: Annotated[str | None, OUTPUT] = None

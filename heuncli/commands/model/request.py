@@ -1,0 +1,17 @@
+"""What `heun model` is asked for: its options and arguments."""
+
+from typing import Annotated, NamedTuple
+
+from heuncli.cli.options import NO_REDUCE, OUTPUT, QUIET, SET, SPEC, TIME_LIMIT, Option
+
+
+class ModelRequest(NamedTuple):
+    """Tell which model is made of a scene, and why."""
+
+    spec: Annotated[str, SPEC]
+    format: Annotated[str | None, Option(("--format",), "How to write it. Default: text.", "text|json")] = None
+    output: Annotated[str | None, OUTPUT] = None
+    set: Annotated[tuple[str, ...], SET] = ()
+    no_reduce: Annotated[bool, NO_REDUCE] = False
+    time_limit: Annotated[float | None, TIME_LIMIT] = None
+    quiet: Annotated[bool, QUIET] = False

@@ -1,0 +1,23 @@
+"""What `heun modes` is asked for: its options and arguments."""
+
+from typing import Annotated, NamedTuple
+
+from heuncli.cli.options import OUTPUT, QUIET, SET, SPEC, TIME_LIMIT, Option
+
+
+class ModesRequest(NamedTuple):
+    """Frequencies, damping and shapes of small oscillations about the pose at rest."""
+
+    spec: Annotated[str, SPEC]
+    format: Annotated[
+        str | None,
+        Option(
+            ("--format",),
+            "How to write them. Default: by the name's end of -o FILE, else table.",
+            "table|json|csv",
+        ),
+    ] = None
+    output: Annotated[str | None, OUTPUT] = None
+    set: Annotated[tuple[str, ...], SET] = ()
+    time_limit: Annotated[float | None, TIME_LIMIT] = None
+    quiet: Annotated[bool, QUIET] = False

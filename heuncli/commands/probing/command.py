@@ -1,0 +1,30 @@
+"""`heun probe`: what a motion comes near to, of what methods cannot bear."""
+
+from __future__ import annotations
+
+from heuncli.cli import alarm
+from heuncli.cli.guard import require_other_file
+from heuncli.cli.output import emit
+from heuncli.cli.solving import overrides, warn
+from heuncli.cli.target import format_of
+from heuncli.commands.probing import page as report
+from heuncli.commands.probing.request import ProbeRequest
+from heuncli.commands.probing.study import probe
+from heuncli.report.export import dump
+from heuncli.spec.load import load
+from heuncli.study.model.options import Options
+
+FORMATS = ("table", "json")
+ENDINGS = {".json": "json", ".txt": "table", "": "table"}
+
+
+def main(request: ProbeRequest) -> int:
+    """Run the command; returns the exit code."""
+    require_other_file(request.output, [request.spec])
+    form = format_of(request.format, request.output, ENDINGS, FORMATS)
+    spec = load(request.spec, overrides=overrides(request.set), checking=False)
+    require_other_file(request.output, [request.spec])
+    found = probe(spec, Options(time_limit=alarm.remaining()))
+    emit(dump(found.block()) if form == "json" else report.write(found), request.output)
+    warn(spec, None, request.quiet)
+    return 0

@@ -1,0 +1,57 @@
+"""The largest condition numbers along a motion, and the poses at which a rank is lost."""
+
+from __future__ import annotations
+
+import numpy as np
+
+from heuncli.commands.probing.instants import Along
+from heuncli.commands.probing.numerics.condition import Conditions, conditions
+from heuncli.commands.probing.results import NO_MASS, SINGULAR, Event, Largest
+from heuncli.rest.coordinates import Coordinates, coordinates_of
+
+MOST_FREEDOMS = 400  # of matrices that are looked at as a whole
+ROOM = 20_000_000  # numbers of these at a time
+INSTANTS = 400  # at which they are looked at
+
+
+def conditions_of(along: Along) -> tuple[Largest | None, Largest | None, str]:
+    """The largest condition of the mass matrix and of the closures; why they are not told."""
+    layout = along.layout
+    own, n = coordinates_of(layout), layout.answer_count
+    if not own.count:
+        return None, None, "nothing is free to move"
+    if n > MOST_FREEDOMS:
+        return None, None, f"{n} freedoms, more than {MOST_FREEDOMS}: whole matrices are not formed"
+    many = max(1, ROOM // (6 * n * len(layout.place) + n * n + n * len(layout.rows)))
+    times = along.times[:: -(-len(along.times) // min(INSTANTS, max(many, 4)))]
+    at = along.at(times)
+    found = conditions(layout, own, at)
+    if not found.light.any():
+        return None, None, "drives and joints leave nothing free to move"
+    k, m = int(np.argmax(found.mass)), int(np.argmax(found.closure))
+    mass = Largest(float(found.mass[k]), float(times[k]), lightest(own, found, k))
+    closure = Largest(float(found.closure[m]), float(times[m])) if layout.rows else None
+    return mass, closure, ""
+
+
+def lightest(own: Coordinates, found: Conditions, k: int) -> str:
+    """The joint or body that moves most in the motion with the least inertia."""
+    return own.owner(int(np.argmax(np.abs(found.light[k]))))[0]
+
+
+def singular_events(along: Along) -> list[Event]:
+    """Singular poses that the motion passes or begins in, and bodies without inertia about an axis."""
+    study = along.study
+    loops = f"joints.{study.setup.scene.mechanism.joints[along.layout.rows[0]].name}" if along.layout.rows else ""
+    through = "closed chains are stretched, folded or flat: they lose rank, and may go on in more than one way"
+    events = [Event(t, SINGULAR, loops, through) for t in study.history.singular]
+    events += [
+        Event(float(along.times[0]), SINGULAR, loops, note)
+        for note in study.setup.model["notes"]
+        if note.startswith("the start is a singular pose")
+    ]
+    for spin in study.setup.scene.idle:
+        name = study.setup.scene.mechanism.bodies[spin.body].name
+        what = f"{name} has no inertia about its own axis: a mass matrix of the whole is singular"
+        events.append(Event(float(along.times[0]), NO_MASS, f"bodies.{name}", what))
+    return events

@@ -1,0 +1,210 @@
+"""`heun run`: read, solve, report."""
+
+from __future__ import annotations
+
+import time
+from collections.abc import Callable, Mapping
+from typing import Any
+
+import numpy as np
+
+from heuncli.cli import alarm, memory
+from heuncli.cli.entry import UsageError
+from heuncli.cli.guard import require_other_file
+from heuncli.cli.output import emit, say
+from heuncli.cli.solving import choice, instants, overrides, positive, timings, tolerance, warn
+from heuncli.cli.target import format_of
+from heuncli.commands.run import searches
+from heuncli.commands.run.request import FORMATS, RunRequest
+from heuncli.errors import Finding, Problem
+from heuncli.kinetostatics.joint_axes import JOINT_AXES
+from heuncli.nearest import did_you_mean, nearest
+from heuncli.records import replace
+from heuncli.report import table_units
+from heuncli.report.cut_runs import LOADS
+from heuncli.report.heading import write_heading, write_heading_markdown
+from heuncli.report.labels import Labels, labels_of
+from heuncli.report.page import EXPORT_DEFAULT, TABLE_DEFAULT, page_of
+from heuncli.report.page_width import fit
+from heuncli.report.table_units import Units
+from heuncli.report.text_table import WIDTH, TextTable, markdown, plain
+from heuncli.results import Results
+from heuncli.results_schema import BLOWS, REPORT_OF, REPORTS, SHARES, with_shared
+from heuncli.spec.load import load
+from heuncli.spec.models import Spec
+from heuncli.study.ask.study import Study
+from heuncli.study.model.error_places import placed
+from heuncli.study.model.memory_estimate import Room
+from heuncli.study.model.options import Options
+from heuncli.study.model.selection import Entry, Selection, asked_by, entries_of, entry_at
+from heuncli.study.workflow import solve
+
+ENDINGS = {".json": "json", ".csv": "csv", ".md": "markdown", ".txt": "table", "": "table"}
+NOT_SEARCHED = "extremes among the samples only: too many quantities to search between them"
+TABLES = ("table", "markdown")
+
+
+def main(request: RunRequest) -> int:
+    """Run the command; returns the exit code."""
+    require_other_file(request.output, [request.spec])
+    form = format_of(request.format, request.output, ENDINGS, FORMATS)
+    asked = []
+    if request.measure:
+        from heuncli.cli import measure  # with paths and JSON 2 ms that tables do not need
+
+        asked = measure.parse_all(request.measure)
+    only = _only(request.only) if request.only is not None else None
+    shown = Units() if request.units is None else _units(request.units)
+    options = Options(
+        tolerance=tolerance(request.tolerance),
+        method=request.method,
+        step=positive("--step", request.step),
+        least_norm=request.least_norm,
+        reduce=not request.no_reduce,
+        axes="world" if request.axes is None else choice("--axes", request.axes, JOINT_AXES),
+    )
+    begun = time.perf_counter()
+    spec = load(request.spec, overrides=overrides(request.set), checking=False)
+    require_other_file(request.output, [request.spec])
+    options = replace(options, load_seconds=time.perf_counter() - begun, time_limit=alarm.remaining())
+    options = replace(options, room=Room(*memory.room("table" if asked else form)))
+    if asked:
+        measure.check(asked, spec)
+    what = asked_by([each.path for each in asked], spec) if asked else _asked(request, only, spec, form)
+    with placed(spec):
+        study = solve(spec, replace(options, wanted=what.reports, entries=what.entries))
+        if asked:
+            text = measure.write(asked, study, form)
+        else:
+            text = _report(request, form, study, replace(labels_of(spec), units=shown), what.reports)
+    emit(text, request.output)
+    if request.units is not None and not request.quiet and (asked or form not in TABLES):
+        say(f"heun: --units is of tables: {'--measure' if asked else form} stays in SI")
+    later = [*study.later, *(measure.warnings(asked, study) if asked else ())]
+    warnings = warn(spec, study.results, request.quiet, later=later)
+    if request.verbose:
+        say(f"heun: {timings(study.results.work)}")
+    return _strict(study.results, warnings) if request.strict else 0
+
+
+def _units(words: str) -> Units:
+    try:
+        return table_units.asked(words)
+    except Finding as finding:
+        raise UsageError(Problem("bad-option", f"--units {words}: {finding.message}", hint=finding.hint)) from None
+
+
+def _only(words: str) -> tuple[frozenset[str], tuple[str, ...]]:
+    """The reports of `--only`, and the paths of single entries; what is no report may be such."""
+    names = [REPORT_OF.get(word.strip(), word.strip()) for word in words.split(",")]
+    paths = tuple(name for name in names if name not in (*REPORTS, SHARES))
+    for name in paths:
+        if not all(part.isidentifier() or part.isdecimal() for part in name.split(".")):
+            choice("--only", name, (*REPORTS, SHARES))
+    return frozenset(names) - frozenset(paths), paths
+
+
+def _asked(
+    request: RunRequest, only: tuple[frozenset[str], tuple[str, ...]] | None, spec: Spec, form: str
+) -> Selection:
+    """What is asked for; who asks for the impulses alone sees them alone."""
+    wanted = TABLE_DEFAULT if form in TABLES else EXPORT_DEFAULT
+    if form in TABLES and spec.analysis.type == "impulse":
+        wanted = frozenset({BLOWS})
+    if spec.report is not None:
+        wanted = frozenset(spec.report)
+    entries = frozenset[Entry]()
+    if only is not None:
+        wanted, paths = only
+        single = [_entry(path, spec) for path in paths]
+        entries = frozenset(entry for entry in single if REPORT_OF[entry[0]] not in wanted)
+        wanted = wanted | {REPORT_OF[entry[0]] for entry in single}
+    return Selection(with_shared(wanted | {SHARES} if request.by_cause else wanted), entries)
+
+
+def _entry(path: str, spec: Spec) -> Entry:
+    """The entry that a path of `--only` names."""
+    words = path.split(".")
+    known = entries_of(spec)
+    entry, rest = entry_at(words, known)
+    if entry is not None and not rest:
+        return entry
+    names = [".".join((*block, name)) for block, own in known.items() if block[0] == words[0] for name in own]
+    message = f"--only {path}: not an entry of the results"
+    if entry is not None:
+        hint = f"say {'.'.join(entry)}; --measure prints single numbers"
+    elif words[0] not in REPORT_OF:
+        message = f"--only {path}: known: {', '.join((*REPORTS, SHARES))}, or entries of them, as joints.NAME"
+        hint = _meant(path, known)
+    else:
+        hint = did_you_mean(path, names, "entries") if names else f"the scene has no {words[0]}"
+    raise UsageError(Problem("bad-option", message, hint=hint))
+
+
+def _meant(path: str, known: Mapping[Entry, Mapping[str, Any]]) -> str:
+    """What may be meant by a path of `--only` that begins with no block."""
+    from heuncli.path_hints import meant  # only on the way to an error
+
+    entry = meant(path, lambda words: entry_at(words, known)[0] is not None)
+    if entry is not None:
+        return f"did you mean {'.'.join(entry_at(entry.split('.'), known)[0] or ())}?"
+    near = nearest(path, (*REPORTS, SHARES))
+    return f"did you mean {near}?" if near else "such as --only foundation,joints.NAME"
+
+
+def _report(request: RunRequest, form: str, study: Study, labels: Labels, wanted: frozenset[str]) -> str:
+    at = instants(request.at, study.results.time) if request.at is not None else None
+    shown = study.results if at is None else study.resample(at)
+    if form not in TABLES:
+        from heuncli.report.export import to_csv, to_json  # tables do without
+
+        return to_json(shown) if form == "json" else to_csv(shown, labels)
+    page = page_of(study.results, labels, study.magnitudes)
+    if study.results.impulses:
+        page = page._replace(struck=study.struck_along([load.name for load in LOADS]))
+    one = len(study.results.time) == 1
+    extremes = None
+    if not (request.all or at is not None or (one and not page.has_runs)):
+        extremes = searches.rows(page, study, wanted)
+        if page.has_runs:
+            page = page._replace(along_runs=searches.along_runs(page, study))
+    shares = study if SHARES in wanted else None
+    if extremes is None or one:
+        tables = page.instants(shown, every_cut=request.all, searched=extremes, shares=shares)
+    else:
+        tables = page.extremes(extremes, shares)
+        if not extremes.searched:
+            tables.append(TextTable("", notes=(NOT_SEARCHED,)))
+    if not tables:
+        tables = [TextTable("", notes=(f"nothing to show of {', '.join(sorted(wanted))}: the scene has none",))]
+    if form == "markdown":
+        return write_heading_markdown(study.results) + "\n".join(map(markdown, tables))
+    return write_heading(study.results) + "".join("\n" + text for text in _writer(request)(tables))
+
+
+def _writer(request: RunRequest) -> Callable[[list[TextTable]], list[str]]:
+    """How tables become text: fitted to a terminal where one is written to, else to a page."""
+    if request.output is None:
+        from heuncli.cli import terminal  # rich is worth its 44 ms only where somebody looks
+
+        if terminal.present():
+            return terminal.write
+    return lambda tables: [plain(part, WIDTH) for table in tables for part in fit(table, WIDTH)]
+
+
+def _strict(results: Results, warnings: list[str]) -> int:
+    """1 if there are warnings or open reactions, and why."""
+    loads = [results.joints, results.sections, results.foundation.get("supports", {})]
+    for struck in results.impulses:
+        supports = struck.get("foundation", {}).get("supports", {})
+        loads += [struck.get("joints", {}), struck.get("sections", {}), supports]
+    unsure = [name for block in loads for name, part in block.items() if part.get("open") or _has_open(part)]
+    if warnings:
+        say(f"heun: --strict: {len(warnings)} warning{'s' * (len(warnings) > 1)}")
+    if unsure:
+        say(f"heun: --strict: open reactions in {', '.join(dict.fromkeys(unsure))}")
+    return int(bool(warnings or unsure))
+
+
+def _has_open(part: dict[str, Any]) -> bool:
+    return any(isinstance(part.get(key), np.ndarray) and np.isnan(part[key]).any() for key in ("force", "moment", "N"))

@@ -1,0 +1,66 @@
+"""What `heun run` is asked for: its options and arguments."""
+
+from typing import Annotated, NamedTuple
+
+from heuncli.cli.options import NO_REDUCE, OUTPUT, QUIET, SET, SPEC, TIME_LIMIT, Option
+
+FORMATS = ("table", "json", "csv", "markdown")
+
+
+class RunRequest(NamedTuple):
+    """Solve a scene and report its loads and motion."""
+
+    spec: Annotated[str, SPEC]
+    format: Annotated[
+        str | None,
+        Option(
+            ("--format",),
+            "How to write the results. Default: by the name's end of -o FILE, else table.",
+            "|".join(FORMATS),
+        ),
+    ] = None
+    output: Annotated[str | None, OUTPUT] = None
+    only: Annotated[
+        str | None,
+        Option(
+            ("--only",),
+            "Only these: motion, points, foundation, joints, sections, forces, energy, impulses, events, shares; or "
+            "entries: joints.NAME, sections.NAME, ...",
+            "REPORT,...",
+        ),
+    ] = None
+    set: Annotated[tuple[str, ...], SET] = ()
+    at: Annotated[str | None, Option(("--at",), "Show these instants instead of the extremes.", "T,...")] = None
+    all: Annotated[bool, Option(("--all",), "Show every instant, and every cut of a run of cuts.")] = False
+    measure: Annotated[
+        tuple[str, ...],
+        Option(
+            ("--measure",),
+            "Print one number: 'max abs sections.middle.M1', 'final energy.kinetic', 'at 0.5 PATH'. May be repeated.",
+            "WHAT",
+        ),
+    ] = ()
+    method: Annotated[
+        str | None, Option(("--method",), "The method of integration; `heun methods` lists them.", "NAME")
+    ] = None
+    step: Annotated[float | None, Option(("--step",), "The step of a method of fixed step.", "SECONDS")] = None
+    tolerance: Annotated[
+        float | None, Option(("--tolerance",), "Error of the motion, relative to the scene.", "NUMBER")
+    ] = None
+    no_reduce: Annotated[bool, NO_REDUCE] = False
+    least_norm: Annotated[bool, Option(("--least-norm",), "Split what redundant supports leave open.")] = False
+    by_cause: Annotated[
+        bool, Option(("--by-cause",), "Split every load by its causes: gravity, each force, drives, motion.")
+    ] = False
+    axes: Annotated[
+        str | None,
+        Option(("--axes",), "Joint loads in the axes of the one or the other body, as it turns.", "world|from|to"),
+    ] = None
+    units: Annotated[
+        str | None,
+        Option(("--units",), "Units of tables, such as kN,mm,deg,rpm; JSON, CSV and --measure stay SI.", "UNIT,..."),
+    ] = None
+    strict: Annotated[bool, Option(("--strict",), "Leave with 1 if there are warnings or open reactions.")] = False
+    time_limit: Annotated[float | None, TIME_LIMIT] = None
+    quiet: Annotated[bool, QUIET] = False
+    verbose: Annotated[bool, Option(("--verbose", "-v"), "Tell on standard error where the time went.")] = False
