@@ -1,95 +1,66 @@
 """Vectors and matrices of three dimensions as values: what is made is never changed, operations give new ones.
 
-The plain twin of algebra.pxd, which is inlined into the compiled kernel; a test holds the two to the same bits. World
-axes unless a matrix turns them.
+Compiled, these are structs and inlined functions: they cost no calls. World axes unless a matrix turns them.
 """
 
 from __future__ import annotations
 
 from math import cos, sin, sqrt
 
+from heuncli.kernel.structs import Value
 
-class Vec3:
+
+class Vec3(Value):
     """A vector."""
 
-    __slots__ = ("x", "y", "z")
-
-    def __init__(self, x: float = 0.0, y: float = 0.0, z: float = 0.0) -> None:
-        self.x = x
-        self.y = y
-        self.z = z
+    x: float
+    y: float
+    z: float
 
 
-class Mat3:
+class Mat3(Value):
     """A 3x3 matrix; the first letter is the row."""
 
-    __slots__ = ("xx", "xy", "xz", "yx", "yy", "yz", "zx", "zy", "zz")
-
-    def __init__(
-        self,
-        xx: float = 0.0,
-        xy: float = 0.0,
-        xz: float = 0.0,
-        yx: float = 0.0,
-        yy: float = 0.0,
-        yz: float = 0.0,
-        zx: float = 0.0,
-        zy: float = 0.0,
-        zz: float = 0.0,
-    ) -> None:
-        self.xx = xx
-        self.xy = xy
-        self.xz = xz
-        self.yx = yx
-        self.yy = yy
-        self.yz = yz
-        self.zx = zx
-        self.zy = zy
-        self.zz = zz
+    xx: float
+    xy: float
+    xz: float
+    yx: float
+    yy: float
+    yz: float
+    zx: float
+    zy: float
+    zz: float
 
 
-class Sym3:
+class Sym3(Value):
     """A symmetric 3x3 matrix."""
 
-    __slots__ = ("xx", "xy", "xz", "yy", "yz", "zz")
-
-    def __init__(
-        self, xx: float = 0.0, xy: float = 0.0, xz: float = 0.0, yy: float = 0.0, yz: float = 0.0, zz: float = 0.0
-    ) -> None:
-        self.xx = xx
-        self.xy = xy
-        self.xz = xz
-        self.yy = yy
-        self.yz = yz
-        self.zz = zz
+    xx: float
+    xy: float
+    xz: float
+    yy: float
+    yz: float
+    zz: float
 
 
-class Ldl3:
+class Ldl3(Value):
     """Factors A = L D L' of a symmetric matrix: L below its unit diagonal, D inverted."""
 
-    __slots__ = ("xx", "yx", "yy", "zx", "zy", "zz")
-
-    def __init__(
-        self, yx: float = 0.0, zx: float = 0.0, zy: float = 0.0, xx: float = 0.0, yy: float = 0.0, zz: float = 0.0
-    ) -> None:
-        self.yx = yx
-        self.zx = zx
-        self.zy = zy
-        self.xx = xx
-        self.yy = yy
-        self.zz = zz
+    yx: float
+    zx: float
+    zy: float
+    xx: float
+    yy: float
+    zz: float
 
 
-class Quaternion:
+class Quaternion(Value):
     """An attitude; its length is free."""
 
-    __slots__ = ("w", "x", "y", "z")
-
-    def __init__(self, w: float = 0.0, x: float = 0.0, y: float = 0.0, z: float = 0.0) -> None:
-        self.w = w
-        self.x = x
-        self.y = y
-        self.z = z
+    w: float
+    x: float
+    y: float
+    z: float
 
 
 # --- vectors

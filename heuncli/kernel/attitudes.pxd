@@ -1,11 +1,11 @@
-"""Signatures of attitudes.py for C."""
+# Made of attitudes.py by headers.py.
 
 from heuncli.kernel.algebra cimport Quaternion, Vec3, add_cross, add_scaled, cross, dot, norm, scaled, sub
 from heuncli.kernel.scene cimport Body, Scene
 from libc.math cimport atan2, fabs, sqrt
 
-cdef enum:                    # how a method holds attitudes
-    QUATERNION, GLOBAL, RECENTRED
+cdef enum:
+    QUATERNION = 0, GLOBAL = 1, RECENTRED = 2
 
 cdef Quaternion centre(int attitude, double *y, Py_ssize_t at) noexcept nogil
 cdef Vec3 kappa_of(Quaternion q, Quaternion c) noexcept nogil
@@ -19,9 +19,7 @@ cdef Vec3 kappa_at(int attitude, double *y, double *state, Py_ssize_t at) noexce
 cdef void enter_chart(Scene *scene, int attitude, double *y, double *state, double *out) noexcept nogil
 cdef void leave_chart(Scene *scene, int attitude, double *y, double *x) noexcept nogil
 cdef void drop_small_parts(Scene *scene, int attitude, double *carry) noexcept nogil
-cdef void chart_slopes(
-    Scene *scene, int attitude, double *y, double *state, double *dy, double *out
-) noexcept nogil
+cdef void chart_slopes(Scene *scene, int attitude, double *y, double *state, double *dy, double *out) noexcept nogil
 cdef void weigh_in_chart(Scene *scene, int attitude, double *x, double *error) noexcept nogil
 cdef void measure_ways(Scene *scene, int attitude, double *y, double *ways) noexcept nogil
 cdef double nearing(Scene *scene, double *state, double *ways) noexcept nogil

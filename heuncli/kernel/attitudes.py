@@ -25,7 +25,7 @@ if not cython.compiled:
     from heuncli.kernel.scene import Body, Scene
     from heuncli.kernel.shadow import cython
 
-    # How a method holds attitudes; for C these stand in attitudes.pxd, in the same order.
+    # How a method holds attitudes.
     QUATERNION, GLOBAL, RECENTRED = range(3)
 
 

@@ -8,6 +8,6 @@ from __future__ import annotations
 
 from heuncli.kernel.form import KERNEL  # isort: split
 
-from heuncli.kernel import enclosure, expressions, integration, jets, scene, steps, workspace
+from heuncli.kernel import enclosure, expressions, integration, jets, scene, steps, structs, workspace
 
-__all__ = ["KERNEL", "enclosure", "expressions", "integration", "jets", "scene", "steps", "workspace"]
+__all__ = ["KERNEL", "enclosure", "expressions", "integration", "jets", "scene", "steps", "structs", "workspace"]

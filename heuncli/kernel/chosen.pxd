@@ -1,4 +1,4 @@
-"""Signatures of chosen.py for C."""
+# Made of chosen.py by headers.py.
 
 from heuncli.kernel.orthogonal cimport list_coupled
 from heuncli.kernel.response cimport settle

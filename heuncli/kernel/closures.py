@@ -31,9 +31,9 @@ if not cython.compiled:
     )
     from heuncli.kernel.jets import jet
     from heuncli.kernel.plane_rows import demanded_in_plane, measure_in_plane
-    from heuncli.kernel.scene import DOT, GUIDE, TURN, Body, Closure, Counter, Scene
+    from heuncli.kernel.programs import Jet
+    from heuncli.kernel.scene import DOT, GUIDE, TURN, Body, Carried, Closure, Counter, Scene
     from heuncli.kernel.shadow import cython
-    from heuncli.kernel.structs import Carried, Jet
     from heuncli.kernel.tree import answered, direction_of, push
 
 

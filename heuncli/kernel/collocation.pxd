@@ -1,11 +1,12 @@
-"""Signatures of collocation.py for C."""
+# Made of collocation.py by headers.py.
 
-from heuncli.kernel.dense cimport Collocation, Factors, Method, Newton, Run, clipped
+from heuncli.kernel.dense cimport clipped
 from heuncli.kernel.jacobian cimport find_jacobian
 from heuncli.kernel.landing cimport begin_to_see, see_stage
 from heuncli.kernel.linear cimport factor_complex, factor_real, solve_complex, solve_real
 from heuncli.kernel.response cimport evaluate, settle
 from heuncli.kernel.scene cimport Group, Scene
+from heuncli.kernel.stepping cimport Collocation, Factors, Method, Newton, Run
 from libc.math cimport fabs, pow
 
 cdef enum:

@@ -26,7 +26,7 @@ if not cython.compiled:
     from heuncli.kernel.response import evaluate, settle
     from heuncli.kernel.scene import Group, Scene
     from heuncli.kernel.shadow import cython
-    from heuncli.kernel.structs import Collocation, Factors, Method, Newton, Run
+    from heuncli.kernel.stepping import Collocation, Factors, Method, Newton, Run
 
     MOST_ITERATIONS = 25
 

@@ -1,10 +1,10 @@
-"""Signatures of columns.py for C."""
+# Made of columns.py by headers.py.
 
 from heuncli.kernel.algebra cimport Vec3, add_scaled, scaled
 from heuncli.kernel.closures cimport measure_rows, push_closures, residual_of, size_of_answer
 from heuncli.kernel.orthogonal cimport answer_of_row
 from heuncli.kernel.response cimport configure, respond
-from heuncli.kernel.scene cimport APART, Body, Closure, Freedom, Load, SHIFT, Scene
+from heuncli.kernel.scene cimport APART, SHIFT, Body, Closure, Freedom, Load, Scene
 from heuncli.kernel.tree cimport balance, kinematics, push
 from libc.math cimport sqrt
 

@@ -30,7 +30,7 @@ if not cython.compiled:
     from heuncli.kernel.response import evaluate, settle
     from heuncli.kernel.scene import APART, CARRIES, LEANS, Closure, Contact, Scene
     from heuncli.kernel.shadow import cython
-    from heuncli.kernel.structs import Method, Run
+    from heuncli.kernel.stepping import Method, Run
     from heuncli.kernel.tree import kinematics
 
     # Halvings of a step, down to the rounding of its instants; into how many a part is divided to be looked at; parts

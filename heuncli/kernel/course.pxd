@@ -1,11 +1,12 @@
-"""Signatures of course.py for C."""
+# Made of course.py by headers.py.
 
-from heuncli.kernel.dense cimport Course, Method, Run, clipped
+from heuncli.kernel.dense cimport clipped
 from heuncli.kernel.enclosure cimport enclose
-from heuncli.kernel.expressions cimport Bounds, Jet, Programs, Span
-from heuncli.kernel.jets cimport jet
 from heuncli.kernel.intervals cimport anything
+from heuncli.kernel.jets cimport jet
+from heuncli.kernel.programs cimport Bounds, Jet, Programs, Span
 from heuncli.kernel.scene cimport Freedom, Scene
+from heuncli.kernel.stepping cimport Course, Method, Run
 
 cdef void raise_by_x(double *b, int n) noexcept nogil
 cdef void raise_by_rest(double *b, int n) noexcept nogil

@@ -19,9 +19,10 @@ if not cython.compiled:
     from heuncli.kernel.enclosure import enclose
     from heuncli.kernel.intervals import anything
     from heuncli.kernel.jets import jet
+    from heuncli.kernel.programs import Bounds, Jet, Programs, Span
     from heuncli.kernel.scene import Freedom, Scene
     from heuncli.kernel.shadow import cython
-    from heuncli.kernel.structs import Bounds, Course, Jet, Method, Programs, Run, Span
+    from heuncli.kernel.stepping import Course, Method, Run
 
 
 # Polynomials

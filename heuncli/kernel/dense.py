@@ -15,9 +15,9 @@ if not cython.compiled:
     from heuncli.kernel.response import evaluate, settle
     from heuncli.kernel.scene import Freedom, Scene
     from heuncli.kernel.shadow import cython
-    from heuncli.kernel.structs import Method, Run
+    from heuncli.kernel.stepping import Method, Run
 
-    # What a step tried comes to; for C these stand in dense.pxd, in the same order.
+    # What a step tried comes to.
     STANDS, AGAIN_TO, TURNS_OVER, CHATTERS = range(4)
     MOST_LANDINGS = 6  # on one event: each finds its place to the square of the error of the one before
 

@@ -1,16 +1,8 @@
-"""Signatures of enclosure.py for C."""
+# Made of enclosure.py by headers.py.
 
-from heuncli.kernel.expressions cimport (
-    ABS, ADD, ASIN, ATAN, ATAN2, CONST, COS, COSH, DIV, EQ, EXP, EXTENDED, GE, GT, HELD, HOLD, HYPOT, INTEGRAL, JUMP, KNOT,
-    LE, LOG, LT, MAX, MIN, MUL, NE, NEG, PERIODIC, POW, POWER, SIGN, SIN, SINH, SQRT, STEP, SUB, TABLE, TAN, TANH, UNLESS,
-    VAR, Bounds, Expressions, Program, Programs, Span, Table, angle_on, integral, integrated, piece, piece_counted, side_of_cut,
-    summed_at, table_at, takes_two,
-)
-from heuncli.kernel.intervals cimport (
-    angle, anything, arccosine, arcsine, arctangent, cosine, distance, exact_times, exponential_of, hull, hyperbolic_cosine,
-    hyperbolic_sine, hyperbolic_tangent, is_nothing, is_zero, less, logarithm, magnitude, meet, minus, more, negative,
-    nothing, off_the_cut, over, plus, point, root, scaled, sine, squared, tangent, times, to_number, to_power, to_whole,
-)
+from heuncli.kernel.expressions cimport ABS, ADD, ASIN, ATAN, ATAN2, CONST, COS, COSH, DIV, EQ, EXP, EXTENDED, GE, GT, HELD, HOLD, HYPOT, INTEGRAL, JUMP, KNOT, LE, LOG, LT, MAX, MIN, MUL, NE, NEG, PERIODIC, POW, POWER, SIGN, SIN, SINH, SQRT, STEP, SUB, TABLE, TAN, TANH, UNLESS, VAR, Expressions, angle_on, integral, integrated, piece, piece_counted, side_of_cut, summed_at, table_at, takes_two
+from heuncli.kernel.intervals cimport angle, anything, arccosine, arcsine, arctangent, cosine, distance, exact_times, exponential_of, hull, hyperbolic_cosine, hyperbolic_sine, hyperbolic_tangent, is_nothing, is_zero, less, logarithm, magnitude, meet, minus, more, negative, nothing, off_the_cut, over, plus, point, root, scaled, sine, squared, tangent, times, to_number, to_power, to_whole
+from heuncli.kernel.programs cimport Bounds, Program, Programs, Span, Table
 from libc.math cimport INFINITY, fabs, floor, sqrt
 
 cdef Span enclose(Programs *programs, Program program) noexcept nogil
@@ -56,5 +48,5 @@ cdef Span span_on_branch(Programs *programs, int k, Py_ssize_t at, Span a, Span 
 cdef bint may_change(Programs *programs, Py_ssize_t at, double branch, Bounds a, Bounds b) noexcept nogil
 cdef Span angle_above(Span y, Span x) noexcept nogil
 cdef Span span_of_piece(double *c, Table table, double counted, Span u) noexcept nogil
-cdef int set_ranges(Expressions expressions, Py_ssize_t start, Py_ssize_t count, Span *into, object ranges) except -1
+cdef object set_ranges(Expressions expressions, Py_ssize_t start, Py_ssize_t count, Span *into, object ranges)
 cdef tuple numbers_of(Span u)

@@ -23,7 +23,7 @@ except ImportError:
 from collections.abc import Sequence
 
 if not cython.compiled:
-    from math import fabs, inf, sqrt
+    from math import fabs, sqrt
 
     from heuncli.kernel.expressions import (
         ABS,
@@ -117,11 +117,9 @@ if not cython.compiled:
         to_power,
         to_whole,
     )
-    from heuncli.kernel.libm import floor
+    from heuncli.kernel.libm import INFINITY, floor
+    from heuncli.kernel.programs import Bounds, Program, Programs, Span, Table
     from heuncli.kernel.shadow import cython
-    from heuncli.kernel.structs import Bounds, Program, Programs, Span, Table
-
-    INFINITY = inf
 
 
 # Programs

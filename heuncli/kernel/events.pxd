@@ -1,26 +1,19 @@
-"""Signatures of events.py for C."""
+# Made of events.py by headers.py.
 
 from heuncli.kernel.course cimport derivatives_over, instant, range_over, set_time, stand_at
-from heuncli.kernel.dense cimport Course
 from heuncli.kernel.enclosure cimport enclose, enclose_closely
-from heuncli.kernel.expressions cimport ATAN2, Bounds, HELD, HOLD, Program, Programs, Span, TAKEN, value
-from heuncli.kernel.jets cimport jet
+from heuncli.kernel.expressions cimport ATAN2, HELD, HOLD, TAKEN, value
 from heuncli.kernel.intervals cimport anything, magnitude
+from heuncli.kernel.jets cimport jet
+from heuncli.kernel.programs cimport Bounds, Program, Programs, Span
 from heuncli.kernel.scene cimport Scene, Watch
+from heuncli.kernel.stepping cimport Course
 from libc.math cimport INFINITY, fabs
 
 cdef enum:
-    NOTHING, TURNS, UNSEEN, UNDECIDED
-    CLEAR, BRANCH_IN_DOUBT, VALUE_IN_DOUBT, PASSED
-
-cdef enum:
-    AS_HELD, TURNED, OPEN
-
-cdef enum:
-    LOOKS = 20                # divisions after which a value is taken for seen: a millionth of the step
-    PARTS = 60                # of a stretch, in which a load's peak is looked for
-    MOST_LOOKS = 1000         # parts looked at for values that bounds do not settle
-    MOST_PARTS = 4000         # and in all
+    NOTHING = 0, TURNS = 1, UNSEEN = 2, UNDECIDED = 3, CLEAR = 4, BRANCH_IN_DOUBT = 5, VALUE_IN_DOUBT = 6, PASSED = 7
+    AS_HELD = 0, TURNED = 1, OPEN = 2
+    LOOKS = 20, PARTS = 60, MOST_LOOKS = 1000, MOST_PARTS = 4000
 
 cdef void forget(Scene *scene) noexcept nogil
 cdef void watch_afresh(Scene *scene) noexcept nogil
@@ -34,8 +27,6 @@ cdef void clear_doubts(Scene *scene) noexcept nogil
 cdef bint any_doubt(Scene *scene) noexcept nogil
 cdef bint is_resting(Course *course, Py_ssize_t i, double x) noexcept nogil
 cdef bint moving_doubt(Scene *scene, Course *course, double x) noexcept nogil
-cdef bint pass_over(Scene *scene, Course *course, double x0, double x1) noexcept nogil
-cdef bint moves_off(Scene *scene, Course *course, double x) noexcept nogil
 cdef int doubt_over(Scene *scene, Course *course, double x0, double x1) noexcept nogil
 cdef Bounds closer(Scene *scene, Course *course, Watch *watch, double x0, double x1) noexcept nogil
 cdef void scale_watches(Scene *scene, Course *course) noexcept nogil
@@ -50,6 +41,8 @@ cdef double beyond_rounding(Scene *scene, Course *course, double x, double end) 
 cdef double turns_at_once(Scene *scene, Course *course) noexcept nogil
 cdef int first_event(Scene *scene, Course *course) noexcept nogil
 cdef int look_at_turn(Scene *scene, Course *course, double x0, double x1) noexcept nogil
+cdef bint pass_over(Scene *scene, Course *course, double x0, double x1) noexcept nogil
+cdef bint moves_off(Scene *scene, Course *course, double x) noexcept nogil
 cdef double crossing_in(Scene *scene, Course *course, double x0, double x1, double width) noexcept nogil
 cdef double division(Scene *scene, Course *course, double x0, double x1, int found) noexcept nogil
 cdef void find_angles(Scene *scene) noexcept nogil

@@ -16,18 +16,19 @@ except ImportError:
 
 if not cython.compiled:
     from math import fabs
-    from math import inf as INFINITY
 
     from heuncli.kernel.course import derivatives_over, instant, range_over, set_time, stand_at
     from heuncli.kernel.enclosure import enclose, enclose_closely
     from heuncli.kernel.expressions import ATAN2, HELD, HOLD, TAKEN, value
     from heuncli.kernel.intervals import anything, magnitude
     from heuncli.kernel.jets import jet
+    from heuncli.kernel.libm import INFINITY
+    from heuncli.kernel.programs import Bounds, Program, Programs, Span
     from heuncli.kernel.scene import Scene, Watch
     from heuncli.kernel.shadow import cython
-    from heuncli.kernel.structs import Bounds, Course, Program, Programs, Span
+    from heuncli.kernel.stepping import Course
 
-    # What a stretch of time holds, and what bounds leave open; for C these stand in events.pxd, in the same order.
+    # What a stretch of time holds, and what bounds leave open.
     NOTHING, TURNS, UNSEEN, UNDECIDED, CLEAR, BRANCH_IN_DOUBT, VALUE_IN_DOUBT, PASSED = range(8)
     AS_HELD, TURNED, OPEN = range(3)  # branches at an instant
     # Divisions of a stretch after which a value is taken for seen, a millionth of the step; parts in which a load's

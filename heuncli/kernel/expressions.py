@@ -41,43 +41,20 @@ from __future__ import annotations
 
 try:
     import cython
-except ImportError:  # Cython is a build requirement only
-    from heuncli.kernel.shadow import cython
-if not cython.compiled:  # also where it is installed: its own stand-in knows no objects behind pointers
+except ImportError:
     from heuncli.kernel.shadow import cython
 
 from array import array
 from collections.abc import Sequence
+from typing import Any
 
-if cython.compiled:
-    from cython.cimports.libc.math import (
-        NAN,
-        acos,
-        asin,
-        atan,
-        atan2,
-        cos,
-        cosh,
-        exp,
-        fabs,
-        floor,
-        log,
-        pow,
-        sin,
-        sinh,
-        sqrt,
-        tan,
-        tanh,
-    )
-else:
-    from math import acos, asin, atan, atan2, fabs, log, nan, sqrt, tanh
+if not cython.compiled:
+    from math import acos, asin, atan, atan2, fabs, log, sqrt, tanh
 
-    from heuncli.kernel.libm import cos, cosh, exp, floor, pow, sin, sinh, tan
-    from heuncli.kernel.structs import Bounds, Instruction, Jet, Program, Programs, Span, Table
+    from heuncli.kernel.libm import NAN, cos, cosh, exp, floor, pow, sin, sinh, tan
+    from heuncli.kernel.programs import Bounds, Instruction, Jet, Program, Programs, Span, Table
+    from heuncli.kernel.shadow import cython
 
-    NAN = nan
-
-    # What stands for C in expressions.pxd, in the same order.
     CONST, VAR = range(2)
     ADD, SUB, MUL, DIV, POW, ATAN2, HYPOT, MIN, MAX = range(2, 11)
     NEG, POWER, ABS, SIGN, STEP = range(11, 16)
@@ -641,7 +618,6 @@ def followers(op: int, argument: int, at: int) -> tuple[int, ...]:
     return (at + 2 if op in (TABLE, KNOT, INTEGRAL) else at + 1,)
 
 
-@cython.cclass
 class Expressions:
     """Programs side by side, with the memory they run in: the door from Python, and what the kernel's scene holds.
 
@@ -657,14 +633,14 @@ class Expressions:
         tables: Sequence[array[float]] = (),
     ) -> None:  # fmt: skip
         ends: list[int] = [*starts[1:], len(code) // 2]
-        self.counts = {start: end - start for start, end in zip(starts, ends, strict=False)}
+        self.counts: dict[int, int] = {start: end - start for start, end in zip(starts, ends, strict=False)}
         depth = 1
         for start, count in self.counts.items():
             depth = max(depth, stack_depth(code[2 * start : 2 * (start + count)]))
-        self.variables = variables
-        self.held = held
+        self.variables: cython.Py_ssize_t = variables
+        self.held: cython.Py_ssize_t = held
         if not cython.compiled:
-            self.programs = Programs()
+            self.programs: Programs = Programs.blank()
             self.programs.code = [Instruction(*pair) for pair in zip(code[::2], code[1::2], strict=True)]
             self.programs.constants = list(constants)
             self.programs.tables = list(tables)
@@ -679,7 +655,7 @@ class Expressions:
             self.programs.spans = [self.programs.ranges[0]] * depth
         else:
             wide: bool = cython.sizeof(cython.p_double) == 8
-            self.memory = (
+            self.memory: tuple[Any, ...] = (
                 array("i", code),
                 array("d", constants),
                 array("d", bytes(8 * max(variables, 1))),

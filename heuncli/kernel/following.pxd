@@ -1,26 +1,25 @@
-"""Signatures of following.py for C."""
+# Made of following.py by headers.py.
 
-from heuncli.kernel.algebra cimport (
-    Quaternion, Vec3, add_scaled, cross, dot, norm, rotate_back, scaled, slightly_turned, sub, transform,
-)
+from heuncli.kernel.algebra cimport Quaternion, Vec3, add_scaled, cross, dot, norm, rotate_back, scaled, slightly_turned, sub, transform
 from heuncli.kernel.closures cimport place_of
 from heuncli.kernel.columns cimport apply_none, prescribe, stand_still
 from heuncli.kernel.course cimport set_time
-from heuncli.kernel.dense cimport Branch, Method, Run, clipped, interpolate, need_interpolant
+from heuncli.kernel.dense cimport clipped, interpolate, need_interpolant
 from heuncli.kernel.enclosure cimport enclose
 from heuncli.kernel.events cimport see
-from heuncli.kernel.expressions cimport Bounds, Jet, Program
 from heuncli.kernel.jets cimport jet
 from heuncli.kernel.landing cimport begin_to_see, see_stage
 from heuncli.kernel.loads cimport turned_by
+from heuncli.kernel.programs cimport Bounds, Jet, Program
 from heuncli.kernel.response cimport evaluate, respond, settle
-from heuncli.kernel.scene cimport Body, Counter, Freedom, Load, SHIFT, SPRING, Scene, TURN_SPRING
+from heuncli.kernel.scene cimport SHIFT, SPRING, TURN_SPRING, Body, Counter, Freedom, Load, Scene
 from heuncli.kernel.selection cimport order_all
+from heuncli.kernel.stepping cimport Branch, Method, Run
 from heuncli.kernel.tree cimport coordinates, direction_of, kinematics
 from libc.math cimport INFINITY, atan2, fabs, sqrt
 
 cdef enum:
-    LOOKED_AT = 2             # parts of a step at whose ends loads are seen
+    LOOKED_AT = 2
 
 cdef bint is_determined(Scene *scene) noexcept nogil
 cdef void stand_here(Scene *scene, Run *run) noexcept nogil

@@ -21,7 +21,6 @@ except ImportError:
 
 if not cython.compiled:
     from math import atan2, fabs, sqrt
-    from math import inf as INFINITY
 
     from heuncli.kernel.algebra import (
         Quaternion,
@@ -44,12 +43,14 @@ if not cython.compiled:
     from heuncli.kernel.events import see
     from heuncli.kernel.jets import jet
     from heuncli.kernel.landing import begin_to_see, see_stage
+    from heuncli.kernel.libm import INFINITY
     from heuncli.kernel.loads import turned_by
+    from heuncli.kernel.programs import Bounds, Jet, Program
     from heuncli.kernel.response import evaluate, respond, settle
     from heuncli.kernel.scene import SHIFT, SPRING, TURN_SPRING, Body, Counter, Freedom, Load, Scene
     from heuncli.kernel.selection import order_all
     from heuncli.kernel.shadow import cython
-    from heuncli.kernel.structs import Bounds, Branch, Jet, Method, Program, Run
+    from heuncli.kernel.stepping import Branch, Method, Run
     from heuncli.kernel.tree import coordinates, direction_of, kinematics
 
     LOOKED_AT = 2  # parts of a step at whose ends loads are seen

@@ -22,8 +22,8 @@ if not cython.compiled:
     from heuncli.kernel.response import evaluate
     from heuncli.kernel.scene import SHIFT, Body, Freedom, Group, Scene
     from heuncli.kernel.shadow import cython
+    from heuncli.kernel.stepping import Branch, Collocation, Course, Method, Newton, Run
     from heuncli.kernel.steps import run_steps, take_record
-    from heuncli.kernel.structs import Branch, Collocation, Course, Factors, Method, Newton, Run, Tangent
     from heuncli.kernel.workspace import Workspace
 
 
@@ -43,12 +43,11 @@ class Integration:
         turned, branches, passed, which are written into: flat arrays. following: ends, settled and branches are given.
         """
         if not cython.compiled:
-            self.run, self.method = Run(), Method()
-            self.run.course, self.run.branch, self.run.newton = Course(), Branch(), Newton()
-            self.method.collocation = Collocation()
-        self.workspace = workspace
-        self.output = output
-        self.memory = Memory()
+            self.run: Run = Run.blank()
+            self.method: Method = Method.blank()
+        self.workspace: Workspace = workspace
+        self.output: dict[str, Any] = output
+        self.memory: Memory = Memory()
         self.take_method(method)
         self.take_start(start)
         self.make_room()
@@ -188,9 +187,6 @@ class Integration:
         of.back = self.memory.doubles(method["back"])
         of.end = self.memory.doubles(method["end"])
         of.error = self.memory.doubles(method["error"])
-        if not cython.compiled:
-            newton.tangent = Tangent()
-            newton.real, newton.pairs = Factors(), [Factors(), Factors()]
         newton.tangent.n = n
         newton.tangent.J = self.memory.zeros(n * n)
         newton.tangent.at = self.memory.zeros(n)

@@ -1,9 +1,8 @@
-"""Signatures of intervals.py for C."""
+# Made of intervals.py by headers.py.
 
-from heuncli.kernel.expressions cimport Bounds, length
-from libc.math cimport (
-    INFINITY, NAN, acos, asin, atan, atan2, cos, cosh, exp, fabs, floor, log, pow, sin, sinh, sqrt, tan, tanh,
-)
+from heuncli.kernel.expressions cimport length
+from heuncli.kernel.programs cimport Bounds
+from libc.math cimport INFINITY, NAN, acos, asin, atan, atan2, cos, cosh, exp, fabs, floor, log, pow, sin, sinh, sqrt, tan, tanh
 
 cdef double down(double x) noexcept nogil
 cdef double up(double x) noexcept nogil
@@ -27,9 +26,9 @@ cdef Bounds negative(Bounds a) noexcept nogil
 cdef Bounds magnitude(Bounds a) noexcept nogil
 cdef Bounds plus(Bounds a, Bounds b) noexcept nogil
 cdef Bounds minus(Bounds a, Bounds b) noexcept nogil
+cdef Bounds times(Bounds a, Bounds b) noexcept nogil
 cdef Bounds outward(double low, double high) noexcept nogil
 cdef Bounds exact_times(Bounds a, Bounds b) noexcept nogil
-cdef Bounds times(Bounds a, Bounds b) noexcept nogil
 cdef Bounds scaled(double s, Bounds a) noexcept nogil
 cdef Bounds squared(Bounds a) noexcept nogil
 cdef Bounds over(Bounds a, Bounds b) noexcept nogil

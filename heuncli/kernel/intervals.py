@@ -16,14 +16,12 @@ except ImportError:
     from heuncli.kernel.shadow import cython
 
 if not cython.compiled:
-    from math import acos, asin, atan, atan2, fabs, inf, log, nan, sqrt, tanh
+    from math import acos, asin, atan, atan2, fabs, log, sqrt, tanh
 
     from heuncli.kernel.expressions import length
-    from heuncli.kernel.libm import cos, cosh, exp, floor, pow, sin, sinh, tan
+    from heuncli.kernel.libm import INFINITY, NAN, cos, cosh, exp, floor, pow, sin, sinh, tan
+    from heuncli.kernel.programs import Bounds
     from heuncli.kernel.shadow import cython
-    from heuncli.kernel.structs import Bounds
-
-    INFINITY, NAN = inf, nan
 
 
 # Directed rounding

@@ -15,7 +15,7 @@ if not cython.compiled:
     from heuncli.kernel.columns import put
     from heuncli.kernel.scene import BodyTangent, Scene
     from heuncli.kernel.shadow import cython
-    from heuncli.kernel.structs import Tangent
+    from heuncli.kernel.stepping import Tangent
     from heuncli.kernel.tangent import change_along, stand_at
     from heuncli.kernel.tangent_closures import row_along
     from heuncli.kernel.tangent_motion import move_along

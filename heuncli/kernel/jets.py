@@ -16,7 +16,7 @@ from array import array
 from collections.abc import Sequence
 
 if not cython.compiled:
-    from math import atan2, log, nan, sqrt
+    from math import atan2, log, sqrt
 
     from heuncli.kernel.expressions import (
         ABS,
@@ -74,11 +74,9 @@ if not cython.compiled:
         trigonometric,
         where,
     )
-    from heuncli.kernel.libm import cos, cosh, floor, sin, sinh
+    from heuncli.kernel.libm import NAN, cos, cosh, floor, sin, sinh
+    from heuncli.kernel.programs import Jet, Program, Programs, Table
     from heuncli.kernel.shadow import cython
-    from heuncli.kernel.structs import Jet, Program, Programs, Table
-
-    NAN = nan
 
 
 # Programs

@@ -1,19 +1,22 @@
-"""Signatures of judging.py for C."""
+# Made of judging.py by headers.py.
 
-from heuncli.kernel.algebra cimport norm
-from heuncli.kernel.attitudes cimport nearing, weigh_in_chart
+from heuncli.kernel.attitudes cimport weigh_in_chart
 from heuncli.kernel.collocation cimport estimate, estimate_again
-from heuncli.kernel.dense cimport Method, Run, combine
+from heuncli.kernel.dense cimport combine
 from heuncli.kernel.scene cimport Group, Scene
-from heuncli.kernel.tree cimport coordinates
+from heuncli.kernel.stepping cimport Method, Run
 from libc.math cimport fabs, pow, sqrt
 
 cdef enum:
-    REACHED, MORE, COLLAPSED, NOT_A_NUMBER, CLOSURES_LOST, ROPE_SLACK, CHATTERING, STRUCK, LET_GO, TURNED, STIFF
-    HALF_TURN, UNSOLVED
-    ACCEPTED, AGAIN
+    REACHED = 0, MORE = 1, COLLAPSED = 2, NOT_A_NUMBER = 3, CLOSURES_LOST = 4, ROPE_SLACK = 5, CHATTERING = 6
+    STRUCK = 7, LET_GO = 8, TURNED = 9, STIFF = 10, HALF_TURN = 11, UNSOLVED = 12, ACCEPTED = 13, AGAIN = 14
 
-cdef double SAFETY, LEAST_FACTOR, MOST_FACTOR, OUT_OF_REACH, COARSE_SHARE, UNSOLVED_ERROR
+cdef double SAFETY
+cdef double LEAST_FACTOR
+cdef double MOST_FACTOR
+cdef double OUT_OF_REACH
+cdef double COARSE_SHARE
+cdef double UNSOLVED_ERROR
 
 cdef double norm_of(Run *run, double *x, int begin, int end) noexcept nogil
 cdef double step_error(Scene *scene, Method *method, Run *run) noexcept nogil

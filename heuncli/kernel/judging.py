@@ -21,9 +21,9 @@ if not cython.compiled:
     from heuncli.kernel.dense import combine
     from heuncli.kernel.scene import Group, Scene
     from heuncli.kernel.shadow import cython
-    from heuncli.kernel.structs import Method, Run
+    from heuncli.kernel.stepping import Method, Run
 
-    # What `advance` answers (steps.py), and what a step is judged; for C these stand in judging.pxd, in the same order.
+    # What `advance` answers (steps.py), and what a step is judged.
     REACHED, MORE, COLLAPSED, NOT_A_NUMBER, CLOSURES_LOST, ROPE_SLACK, CHATTERING = range(7)
     STRUCK, LET_GO, TURNED, STIFF, HALF_TURN, UNSOLVED, ACCEPTED, AGAIN = range(7, 15)
 

@@ -43,7 +43,7 @@ if not cython.compiled:
     from heuncli.kernel.response import evaluate
     from heuncli.kernel.scene import Scene
     from heuncli.kernel.shadow import cython
-    from heuncli.kernel.structs import Course, Method, Run
+    from heuncli.kernel.stepping import Course, Method, Run
     from heuncli.kernel.tree import coordinates
 
     FLURRY = 16  # events that gather at an instant

@@ -1,9 +1,11 @@
-"""C's functions in plain Python: they answer everywhere where those of `math` raise."""
+"""C's functions and numbers in plain Python: they answer everywhere where those of `math` raise."""
 
 from __future__ import annotations
 
 import math
 from collections.abc import Callable
+
+INFINITY, NAN = math.inf, math.nan
 
 
 def exp(x: float) -> float:

@@ -1,4 +1,4 @@
-"""Signatures of linear.py for C."""
+# Made of linear.py by headers.py.
 
 from libc.math cimport fabs
 

@@ -1,12 +1,9 @@
-"""Signatures of loads.py for C."""
+# Made of loads.py by headers.py.
 
 from heuncli.kernel.algebra cimport Vec3, cross, dot, norm, scaled, sub
 from heuncli.kernel.expressions cimport value
-from heuncli.kernel.scene cimport (
-    ACTUATOR, Body, COUPLE, Counter, FORCE, Load, SHIFT_DAMPER, SHIFT_FRICTION, SPRING, Scene, THRUST, TURN_FRICTION,
-    TURN_SPRING,
-)
-from heuncli.kernel.tree cimport PointMotion, direction_of, point_of, push
+from heuncli.kernel.scene cimport ACTUATOR, COUPLE, FORCE, SHIFT_DAMPER, SHIFT_FRICTION, SPRING, THRUST, TURN_FRICTION, TURN_SPRING, Body, Counter, Load, PointMotion, Scene
+from heuncli.kernel.tree cimport direction_of, point_of, push
 from libc.math cimport atan2, tanh
 
 cdef double apply_loads(Scene *scene) noexcept nogil

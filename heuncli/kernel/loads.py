@@ -28,10 +28,10 @@ if not cython.compiled:
         Body,
         Counter,
         Load,
+        PointMotion,
         Scene,
     )
     from heuncli.kernel.shadow import cython
-    from heuncli.kernel.structs import PointMotion
     from heuncli.kernel.tree import direction_of, point_of, push
 
 

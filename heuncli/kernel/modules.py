@@ -1,4 +1,4 @@
-"""The names of the kernel's compiled modules, as pyproject.toml has them."""
+"""The names of the kernel's modules: those that are compiled, and those that only declare."""
 
 MODULES = (
     "memory",
@@ -37,3 +37,6 @@ MODULES = (
     "steps",
     "integration",
 )
+
+# Structs and inlined functions, which the compiled modules take into themselves.
+DECLARED = ("algebra", "programs", "scene", "stepping")

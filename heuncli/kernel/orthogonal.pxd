@@ -1,4 +1,4 @@
-"""Signatures of orthogonal.py for C."""
+# Made of orthogonal.py by headers.py.
 
 from heuncli.kernel.algebra cimport Vec3, from_half, half_solve, roots
 from heuncli.kernel.closures cimport build_column, clear_path, put_unit_load, size_of_demand, sweep_column

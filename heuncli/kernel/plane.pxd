@@ -1,7 +1,7 @@
-"""Signatures of plane.py for C."""
+# Made of plane.py by headers.py.
 
 from heuncli.kernel.algebra cimport Mat3, Sym3, Vec3
-from heuncli.kernel.scene cimport Body, Freedom, SHIFT, Scene
+from heuncli.kernel.scene cimport SHIFT, Body, Freedom, Scene
 from libc.math cimport cos, sin
 
 cdef void move_in_plane(Scene *scene) noexcept nogil

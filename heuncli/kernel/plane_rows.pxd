@@ -1,15 +1,8 @@
-"""Signatures of plane_rows.py for C."""
+# Made of plane_rows.py by headers.py.
 
 from heuncli.kernel.algebra cimport Vec3
-from heuncli.kernel.scene cimport Body, Closure, DOT, Freedom, GUIDE, Scene
+from heuncli.kernel.scene cimport DOT, GUIDE, Body, CarriedInPlane, Closure, Freedom, Scene
 from libc.math cimport sqrt
-
-cdef struct CarriedInPlane:
-    double vx
-    double vy
-    double cx
-    double cy
-    double omega
 
 cdef Vec3 turned_in_plane(Scene *scene, int body, Vec3 a) noexcept nogil
 cdef Vec3 place_in_plane(Scene *scene, int body, Vec3 q) noexcept nogil

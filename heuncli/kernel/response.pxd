@@ -1,13 +1,11 @@
-"""Signatures of response.py for C."""
+# Made of response.py by headers.py.
 
 from heuncli.kernel.algebra cimport Quaternion, Vec3, dot, slightly_turned, turned
-from heuncli.kernel.closures cimport count_turns, demanded, measure_row, measure_moving_rows, push_closures
+from heuncli.kernel.closures cimport count_turns, demanded, measure_moving_rows, measure_row, push_closures
 from heuncli.kernel.loads cimport apply_loads
 from heuncli.kernel.orthogonal cimport factor_closures, solve_closures
 from heuncli.kernel.scene cimport APART, Body, Closure, Freedom, Lent, Scene
-from heuncli.kernel.tree cimport (
-    add_zeros, balance, derivative, downward, factor_tree, kinematics, push_lent, put_all_loads, put_loads, upward,
-)
+from heuncli.kernel.tree cimport add_zeros, balance, derivative, downward, factor_tree, kinematics, push_lent, put_all_loads, put_loads, upward
 from libc.math cimport fabs, sqrt
 
 cdef int configure(Scene *scene, double t) noexcept nogil

@@ -1,19 +1,14 @@
-"""The structs of scene.py for C, field by field in the same order (a test compares them), and the scene they make."""
+# Made of scene.py by headers.py.
 
 from heuncli.kernel.algebra cimport Ldl3, Mat3, Sym3, Vec3
-from heuncli.kernel.expressions cimport Program, Programs
+from heuncli.kernel.programs cimport Program, Programs
 
 cdef enum:
-    TURN_IN_PARENT, TURN_IN_BODY, SHIFT
-
-cdef enum:
-    FORCE, COUPLE, SPRING, ACTUATOR, TORQUE, THRUST, TURN_SPRING, TURN_DAMPER, SHIFT_DAMPER, TURN_FRICTION, SHIFT_FRICTION
-
-cdef enum:
-    GUIDE, DOT, ROD, TURN
-
-cdef enum:
-    CARRIES, APART, LEANS
+    TURN_IN_PARENT = 0, TURN_IN_BODY = 1, SHIFT = 2
+    FORCE = 0, COUPLE = 1, SPRING = 2, ACTUATOR = 3, TORQUE = 4, THRUST = 5, TURN_SPRING = 6
+    TURN_DAMPER = 7, SHIFT_DAMPER = 8, TURN_FRICTION = 9, SHIFT_FRICTION = 10
+    GUIDE = 0, DOT = 1, ROD = 2, TURN = 3
+    CARRIES = 0, APART = 1, LEANS = 2
 
 cdef struct Body:
     int parent
@@ -54,7 +49,6 @@ cdef struct Body:
     Vec3 a
     Vec3 M_joint
     Vec3 f_joint
-
 cdef struct Freedom:
     int kind
     int q_at
@@ -73,7 +67,6 @@ cdef struct Freedom:
     double u
     double udot
     double drive
-
 cdef struct Load:
     int kind
     int a
@@ -104,7 +97,6 @@ cdef struct Load:
     double span
     double rate
     double power
-
 cdef struct Closure:
     int kind
     int a
@@ -146,7 +138,6 @@ cdef struct Closure:
     int coupled_count
     double reflector
     double pose_scale
-
 cdef struct Contact:
     int row
     int sense
@@ -165,7 +156,6 @@ cdef struct Contact:
     double rate_bent
     double rate_before
     double rate_first
-
 cdef struct Counter:
     int a
     int b
@@ -173,11 +163,9 @@ cdef struct Counter:
     int unused
     Vec3 axis
     double counted
-
 cdef struct Variable:
     int freedom
     int is_rate
-
 cdef struct Watch:
     Program program
     int curved
@@ -186,7 +174,6 @@ cdef struct Watch:
     double high
     double scale
     double rounding
-
 cdef struct Lent:
     int body
     int unused
@@ -194,7 +181,6 @@ cdef struct Lent:
     Vec3 axis
     Vec3 n
     double z
-
 cdef struct Group:
     int coordinates
     int rates
@@ -202,13 +188,11 @@ cdef struct Group:
     int unused
     double rate
     double trial
-
 cdef struct Island:
     int rows
     int row_count
     int freedoms
     int freedom_count
-
 cdef struct Limits:
     int dodges
     int unused
@@ -261,14 +245,12 @@ cdef struct Limits:
     double newton_noise
     double newton_stalls
     double newton_diverges
-
 cdef struct BodyAtState:
     Sym3 inertia
     Vec3 alpha
     Vec3 a
     Vec3 M
     Vec3 f
-
 cdef struct BodyTangent:
     int moves
     int unused
@@ -282,14 +264,53 @@ cdef struct BodyTangent:
     Vec3 a
     Vec3 M
     Vec3 f
-
 cdef struct FreedomTangent:
     double q
     double u
     double udot
     double load
     Vec3 s
-
+cdef struct PointMotion:
+    Vec3 x
+    Vec3 v
+cdef struct Carried:
+    Vec3 v
+    Vec3 centripetal
+    Vec3 omega
+cdef struct CarriedInPlane:
+    double vx
+    double vy
+    double cx
+    double cy
+    double omega
+cdef struct LoadTangent:
+    Vec3 at
+    Vec3 force
+    Vec3 moment
+cdef struct RowTangent:
+    Vec3 Q
+    Vec3 f
+    Vec3 m
+    double rate
+    double acceleration
+cdef struct MotionTangent:
+    Vec3 v
+    Vec3 a
+cdef struct Instants:
+    Py_ssize_t count
+    Py_ssize_t n
+    Py_ssize_t width
+    bint afresh
+    bint held
+    bint causes
+    int opening
+    double *branches
+    double *holding
+    double *times
+    double *states
+    double *out
+    double *y
+    double *dy
 cdef struct Scene:
     int body_count
     int freedom_count
@@ -300,28 +321,28 @@ cdef struct Scene:
     int lent_count
     int island_count
     int watch_count
-    int contact_count         # one-sided rows
-    int held_count            # branches of expressions that are held over a step
-    int angle_count           # of them those of atan2
-    int answer_count          # freedoms, a ball's three turns among them
-    int selected_count        # independent closure rows
-    int driven                # something is driven: the work of drives counts
-    int flat                  # bodies turn about z and shift across it: plane.py moves them
-    int work_at               # where the work stands in the state; -1: it is not asked for
+    int contact_count
+    int held_count
+    int angle_count
+    int answer_count
+    int selected_count
+    int driven
+    int flat
+    int work_at
     Vec3 gravity
     double size
     Limits limits
-    double rank_of_gap        # what of a row the gap of a pose may feign [1/m]
-    double least_row          # what has to be left of a row for it to be chosen
-    double pivot_chosen       # least pivot of the closures when their rows were chosen
-    double pivot              # now
-    double pivot_of_step      # least since the step began
-    double gap                # of the state recovered last, over all rows [m]
-    double lent_part          # root of the part of the inertias in `lents` that is lent
-    double own_share          # least pivot of 1 - T: of the inertia in a motion, how much is not lent
-    double pivot_recovered    # least of the independent rows there, as they were selected: geometry alone, squared
-    double load_size          # |D^(-1/2) e|: what the freedoms would answer without closures, in the measure of M
-    double residual           # largest J Vdot + gamma of all rows there, of the terms it is the sum of
+    double rank_of_gap
+    double least_row
+    double pivot_chosen
+    double pivot
+    double pivot_of_step
+    double gap
+    double lent_part
+    double own_share
+    double pivot_recovered
+    double load_size
+    double residual
     Body *bodies
     Freedom *freedoms
     Load *loads
@@ -332,29 +353,29 @@ cdef struct Scene:
     Island *islands
     Watch *watches
     Contact *contacts
-    int *is_angle             # which branches are those of atan2
-    double *least             # of each variable what the stages of a step saw
+    int *is_angle
+    double *least
     double *most
     Programs *programs
-    int *indices              # paths, answers and couplings of the closure rows
-    int *selected             # independent rows, ascending
-    int *envelope             # first coupled row of each of them
-    int *support              # which answers the reflectors have something of, as their numbers stand in `columns`
-    int *coupled              # of the independent rows: places of earlier ones that fill them, where their couplings stand
-    int *taken                # which answers are pivots of reflectors already
-    double *measure           # of each answer in an island: 1 of a shift, 1 / length of a turn; 0: in none, or driven
-    double *e                 # load that each freedom answers
-    double *root              # D^(-1/2) of each answer
-    double *spread            # one vector over all answers
-    double *columns           # e_r of all rows, one after the other; then the reflectors that make R of them
-    double *R                 # R' over the independent rows, the diagonal inverted
-    double *J                 # one island's rows of J on its freedoms, scaled
-    double *y                 # a number an independent row
-    double *own               # 1 - T of the lent inertias, and its Cholesky factor
-    BodyAtState *at_state     # what stands at the state whose directions are looked at
-    BodyTangent *tangents     # of the bodies, along one direction
+    int *indices
+    int *selected
+    int *envelope
+    int *support
+    int *coupled
+    int *taken
+    double *measure
+    double *e
+    double *root
+    double *spread
+    double *columns
+    double *R
+    double *J
+    double *y
+    double *own
+    BodyAtState *at_state
+    BodyTangent *tangents
     FreedomTangent *freedom_tangents
-    double *multipliers       # at the state
-    double *slopes            # of the variables of the expressions, along the direction
-    int sloping               # some of them are not 0
-    double *along             # a direction of the state
+    double *multipliers
+    double *slopes
+    int sloping
+    double *along

@@ -1,4 +1,4 @@
-"""The scene as the kernel sees it: one struct a body, freedom, load, closure row; scene.pxd is the same for C.
+"""The scene as the kernel sees it: one struct a body, freedom, load, closure row.
 
     [n; f] = [A C; C' K] [alpha; a] + [M_branch; f_branch]       what a joint must exert on the branch from its body
                                                                  outward, about the body's joint point r; world axes
@@ -9,34 +9,16 @@ kernel's own. World axes unless said otherwise; `a` is throughout the accelerati
 
 from __future__ import annotations
 
-from collections.abc import Iterable
-from typing import Any, Self
-
 from heuncli.kernel.algebra import Ldl3, Mat3, Sym3, Vec3
-from heuncli.kernel.structs import Fields, Program, Programs
+from heuncli.kernel.programs import Program, Programs
+from heuncli.kernel.structs import Pointer, Record, Size, Struct, Value
 
-# Kinds of freedoms, loads and closure rows; for C they stand in scene.pxd, in the same order.
+# Kinds of freedoms, loads and closure rows.
 TURN_IN_PARENT, TURN_IN_BODY, SHIFT = range(3)
 FORCE, COUPLE, SPRING, ACTUATOR, TORQUE, THRUST, TURN_SPRING = range(7)
 TURN_DAMPER, SHIFT_DAMPER, TURN_FRICTION, SHIFT_FRICTION = range(7, 11)
 GUIDE, DOT, ROD, TURN = range(4)
 CARRIES, APART, LEANS = range(3)  # modes of closure rows
-
-VALUES: dict[str, Any] = {"Vec3": Vec3, "Mat3": Mat3, "Sym3": Sym3, "Ldl3": Ldl3, "Program": Program}
-
-
-class Record(metaclass=Fields):
-    """A struct in plain Python: fields in the order of their annotations, from nested tuples as NumPy gives them."""
-
-    def __init__(self, row: Iterable[Any]) -> None:
-        for (name, kind), value in zip(type(self).__annotations__.items(), row, strict=True):
-            setattr(self, name, VALUES[kind](*value) if kind in VALUES else value)
-
-    @classmethod
-    def blank(cls) -> Self:
-        """All of it zero."""
-        kinds = cls.__annotations__.values()
-        return cls((0.0,) * len(VALUES[kind].__slots__) if kind in VALUES else 0 for kind in kinds)
 
 
 class Body(Record):
@@ -375,8 +357,77 @@ class FreedomTangent(Record):
     s: Vec3
 
 
-class Scene(metaclass=Fields):
-    """A scene and the kernel's work on it; scene.pxd says what the fields are."""
+class PointMotion(Value):
+    """A point's place and velocity."""
+
+    x: Vec3
+    v: Vec3
+
+
+class Carried(Value):
+    """How a body carries a place with it: velocity, centripetal acceleration, and its angular velocity."""
+
+    v: Vec3
+    centripetal: Vec3
+    omega: Vec3
+
+
+class CarriedInPlane(Value):
+    """How a body carries a place in the plane: velocity, centripetal acceleration, its angular velocity."""
+
+    vx: float
+    vy: float
+    cx: float
+    cy: float
+    omega: float
+
+
+class LoadTangent(Value):
+    """What a load changes by along a direction of the state: its place, force and moment."""
+
+    at: Vec3
+    force: Vec3
+    moment: Vec3
+
+
+class RowTangent(Value):
+    """What a closure row changes by along a direction of the state: place, unit load, rate, J Vdot + gamma."""
+
+    Q: Vec3
+    f: Vec3
+    m: Vec3
+    rate: float
+    acceleration: float
+
+
+class MotionTangent(Value):
+    """What velocity and acceleration of a place that a body carries change by."""
+
+    v: Vec3
+    a: Vec3
+
+
+class Instants(Value):
+    """States to recover, and room for the work."""
+
+    count: Size
+    n: Size
+    width: Size
+    afresh: bool
+    held: bool
+    causes: bool
+    opening: int
+    branches: list[float]
+    holding: list[float]
+    times: list[float]
+    states: list[float]
+    out: list[float]
+    y: list[float]
+    dy: list[float]
+
+
+class Scene(Struct):
+    """A scene and the kernel's work on it."""
 
     body_count: int
     freedom_count: int
@@ -387,28 +438,28 @@ class Scene(metaclass=Fields):
     lent_count: int
     island_count: int
     watch_count: int
-    contact_count: int
-    held_count: int
-    angle_count: int
-    answer_count: int
-    selected_count: int
-    driven: int
-    flat: int
-    work_at: int
+    contact_count: int  # one-sided rows
+    held_count: int  # branches of expressions that are held over a step
+    angle_count: int  # of them those of atan2
+    answer_count: int  # freedoms, a ball's three turns among them
+    selected_count: int  # independent closure rows
+    driven: int  # something is driven: the work of drives counts
+    flat: int  # bodies turn about z and shift across it: plane.py moves them
+    work_at: int  # where the work stands in the state; -1: it is not asked for
     gravity: Vec3
     size: float
     limits: Limits
-    rank_of_gap: float
-    least_row: float
-    pivot_chosen: float
-    pivot: float
-    pivot_of_step: float
-    gap: float
-    lent_part: float
-    own_share: float
-    pivot_recovered: float
-    load_size: float
-    residual: float
+    rank_of_gap: float  # what of a row the gap of a pose may feign [1/m]
+    least_row: float  # what has to be left of a row for it to be chosen
+    pivot_chosen: float  # least pivot of the closures when their rows were chosen
+    pivot: float  # now
+    pivot_of_step: float  # least since the step began
+    gap: float  # of the state recovered last, over all rows [m]
+    lent_part: float  # root of the part of the inertias in `lents` that is lent
+    own_share: float  # least pivot of 1 - T: of the inertia in a motion, how much is not lent
+    pivot_recovered: float  # least of the independent rows there, as they were selected: geometry alone, squared
+    load_size: float  # |D^(-1/2) e|: what the freedoms would answer without closures, in the measure of M
+    residual: float  # largest J Vdot + gamma of all rows there, of the terms it is the sum of
     bodies: list[Body]
     freedoms: list[Freedom]
     loads: list[Load]
@@ -419,29 +470,29 @@ class Scene(metaclass=Fields):
     islands: list[Island]
     watches: list[Watch]
     contacts: list[Contact]
-    is_angle: list[int]
-    least: list[float]
+    is_angle: list[int]  # which branches are those of atan2
+    least: list[float]  # of each variable what the stages of a step saw
     most: list[float]
-    programs: Programs
-    indices: list[int]
-    selected: list[int]
-    envelope: list[int]
-    support: list[int]
-    coupled: list[int]
-    taken: list[int]
-    measure: list[float]
-    e: list[float]
-    root: list[float]
-    spread: list[float]
-    columns: list[float]
-    R: list[float]
-    J: list[float]
-    y: list[float]
-    own: list[float]
-    at_state: list[BodyAtState]
-    tangents: list[BodyTangent]
+    programs: Pointer[Programs]
+    indices: list[int]  # paths, answers and couplings of the closure rows
+    selected: list[int]  # independent rows, ascending
+    envelope: list[int]  # first coupled row of each of them
+    support: list[int]  # which answers the reflectors have something of, as their numbers stand in `columns`
+    coupled: list[int]  # of the independent rows: places of earlier ones that fill them, where their couplings stand
+    taken: list[int]  # which answers are pivots of reflectors already
+    measure: list[float]  # of each answer in an island: 1 of a shift, 1 / length of a turn; 0: in none, or driven
+    e: list[float]  # load that each freedom answers
+    root: list[float]  # D^(-1/2) of each answer
+    spread: list[float]  # one vector over all answers
+    columns: list[float]  # e_r of all rows, one after the other; then the reflectors that make R of them
+    R: list[float]  # R' over the independent rows, the diagonal inverted
+    J: list[float]  # one island's rows of J on its freedoms, scaled
+    y: list[float]  # a number an independent row
+    own: list[float]  # 1 - T of the lent inertias, and its Cholesky factor
+    at_state: list[BodyAtState]  # what stands at the state whose directions are looked at
+    tangents: list[BodyTangent]  # of the bodies, along one direction
     freedom_tangents: list[FreedomTangent]
-    multipliers: list[float]
-    slopes: list[float]
-    sloping: int
-    along: list[float]
+    multipliers: list[float]  # at the state
+    slopes: list[float]  # of the variables of the expressions, along the direction
+    sloping: int  # some of them are not 0
+    along: list[float]  # a direction of the state

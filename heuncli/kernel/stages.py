@@ -15,7 +15,7 @@ if not cython.compiled:
     from heuncli.kernel.landing import see_stage
     from heuncli.kernel.scene import Scene
     from heuncli.kernel.shadow import cython
-    from heuncli.kernel.structs import Method, Run
+    from heuncli.kernel.stepping import Method, Run
 
 
 def take_stages(scene: cython.pointer[Scene], method: cython.pointer[Method], run: cython.pointer[Run]) -> cython.int:

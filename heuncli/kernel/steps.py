@@ -59,8 +59,8 @@ if not cython.compiled:
     from heuncli.kernel.selection import select_independent_rows
     from heuncli.kernel.shadow import cython
     from heuncli.kernel.stages import step_to, take_stages
+    from heuncli.kernel.stepping import Method, Run
     from heuncli.kernel.stiffness import estimate_swiftness, is_held_short
-    from heuncli.kernel.structs import Method, Run
     from heuncli.kernel.tree import coordinates
 
 CODES = {

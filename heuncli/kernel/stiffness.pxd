@@ -1,7 +1,7 @@
-"""Signatures of stiffness.py for C."""
+# Made of stiffness.py by headers.py.
 
-from heuncli.kernel.dense cimport Method, Run
 from heuncli.kernel.scene cimport Group
+from heuncli.kernel.stepping cimport Method, Run
 from libc.math cimport sqrt
 
 cdef void estimate_swiftness(Method *method, Run *run) noexcept nogil

@@ -23,7 +23,7 @@ if not cython.compiled:
 
     from heuncli.kernel.scene import Group
     from heuncli.kernel.shadow import cython
-    from heuncli.kernel.structs import Method, Run
+    from heuncli.kernel.stepping import Method, Run
 
 
 def estimate_swiftness(method: cython.pointer[Method], run: cython.pointer[Run]) -> cython.void:

@@ -1,23 +1,12 @@
-"""Signatures of tangent_closures.py for C."""
+# Made of tangent_closures.py by headers.py.
 
 from heuncli.kernel.algebra cimport Vec3, add, add_cross, add_scaled, centripetal, cross, dot, norm, scaled, sub
 from heuncli.kernel.closures cimport carried, place_of
 from heuncli.kernel.loads cimport omega_of
-from heuncli.kernel.scene cimport BodyAtState, Body, BodyTangent, Closure, DOT, GUIDE, Scene, TURN
-from heuncli.kernel.tangent_loads cimport LoadTangent, opposite, push_along
+from heuncli.kernel.scene cimport DOT, GUIDE, TURN, Body, BodyAtState, BodyTangent, Closure, LoadTangent, MotionTangent, RowTangent, Scene
+from heuncli.kernel.tangent_loads cimport opposite, push_along
 from heuncli.kernel.tangent_motion cimport omega_along, point_along, swung
 from heuncli.kernel.tree cimport direction_of
-
-cdef struct RowTangent:
-    Vec3 Q
-    Vec3 f
-    Vec3 m
-    double rate
-    double acceleration
-
-cdef struct MotionTangent:
-    Vec3 v
-    Vec3 a
 
 cdef void closures_along(Scene *scene) noexcept nogil
 cdef RowTangent row_along(Scene *scene, Closure *row) noexcept nogil

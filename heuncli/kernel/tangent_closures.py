@@ -16,9 +16,20 @@ if not cython.compiled:
     from heuncli.kernel.algebra import Vec3, add, add_cross, add_scaled, centripetal, cross, dot, norm, scaled, sub
     from heuncli.kernel.closures import carried, place_of
     from heuncli.kernel.loads import omega_of
-    from heuncli.kernel.scene import DOT, GUIDE, TURN, Body, BodyAtState, BodyTangent, Closure, Scene
+    from heuncli.kernel.scene import (
+        DOT,
+        GUIDE,
+        TURN,
+        Body,
+        BodyAtState,
+        BodyTangent,
+        Closure,
+        LoadTangent,
+        MotionTangent,
+        RowTangent,
+        Scene,
+    )
     from heuncli.kernel.shadow import cython
-    from heuncli.kernel.structs import LoadTangent, MotionTangent, RowTangent
     from heuncli.kernel.tangent_loads import opposite, push_along
     from heuncli.kernel.tangent_motion import omega_along, point_along, swung
     from heuncli.kernel.tree import direction_of

@@ -1,20 +1,12 @@
-"""Signatures of tangent_loads.py for C."""
+# Made of tangent_loads.py by headers.py.
 
 from heuncli.kernel.algebra cimport Vec3, add, add_cross, add_scaled, cross, dot, norm, scaled, sub
 from heuncli.kernel.jets cimport slope
 from heuncli.kernel.loads cimport omega_of, sliding_in
-from heuncli.kernel.scene cimport (
-    ACTUATOR, Body, BodyTangent, COUPLE, FORCE, Load, SHIFT_DAMPER, SHIFT_FRICTION, SPRING, Scene, THRUST,
-    TURN_FRICTION, TURN_SPRING,
-)
+from heuncli.kernel.scene cimport ACTUATOR, COUPLE, FORCE, SHIFT_DAMPER, SHIFT_FRICTION, SPRING, THRUST, TURN_FRICTION, TURN_SPRING, Body, BodyTangent, Load, LoadTangent, PointMotion, Scene
 from heuncli.kernel.tangent_motion cimport omega_along, point_along, swung
-from heuncli.kernel.tree cimport PointMotion, direction_of, point_of
+from heuncli.kernel.tree cimport direction_of, point_of
 from libc.math cimport NAN, tanh
-
-cdef struct LoadTangent:
-    Vec3 at
-    Vec3 force
-    Vec3 moment
 
 cdef double loads_along(Scene *scene) noexcept nogil
 cdef Vec3 given_along(Scene *scene, Load *load) noexcept nogil

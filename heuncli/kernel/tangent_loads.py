@@ -12,10 +12,11 @@ except ImportError:
     from heuncli.kernel.shadow import cython
 
 if not cython.compiled:
-    from math import nan, tanh
+    from math import tanh
 
     from heuncli.kernel.algebra import Vec3, add, add_cross, add_scaled, cross, dot, norm, scaled, sub
     from heuncli.kernel.jets import slope
+    from heuncli.kernel.libm import NAN
     from heuncli.kernel.loads import omega_of, sliding_in
     from heuncli.kernel.scene import (
         ACTUATOR,
@@ -30,14 +31,13 @@ if not cython.compiled:
         Body,
         BodyTangent,
         Load,
+        LoadTangent,
+        PointMotion,
         Scene,
     )
     from heuncli.kernel.shadow import cython
-    from heuncli.kernel.structs import LoadTangent, PointMotion
     from heuncli.kernel.tangent_motion import omega_along, point_along, swung
     from heuncli.kernel.tree import direction_of, point_of
-
-    NAN = nan
 
 
 def loads_along(scene: cython.pointer[Scene]) -> cython.double:

@@ -1,10 +1,7 @@
-"""Signatures of tangent_motion.py for C."""
+# Made of tangent_motion.py by headers.py.
 
 from heuncli.kernel.algebra cimport Vec3, add, add_cross, add_scaled, cross, rotate, scaled, sub, transform
-from heuncli.kernel.scene cimport (
-    BodyAtState, Body, BodyTangent, Freedom, FreedomTangent, SHIFT, Scene, TURN_IN_BODY, TURN_IN_PARENT, Variable,
-)
-from heuncli.kernel.tree cimport PointMotion
+from heuncli.kernel.scene cimport SHIFT, TURN_IN_BODY, TURN_IN_PARENT, Body, BodyAtState, BodyTangent, Freedom, FreedomTangent, PointMotion, Scene, Variable
 
 cdef void move_along(Scene *scene, double *y, double *along) noexcept nogil
 cdef void coordinates_along(Scene *scene, double *along) noexcept nogil

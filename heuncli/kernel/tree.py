@@ -67,9 +67,19 @@ if not cython.compiled:
         move_in_plane,
         upward_in_plane,
     )
-    from heuncli.kernel.scene import SHIFT, TURN_IN_BODY, TURN_IN_PARENT, Body, Freedom, Lent, Scene, Variable
+    from heuncli.kernel.programs import Jet
+    from heuncli.kernel.scene import (
+        SHIFT,
+        TURN_IN_BODY,
+        TURN_IN_PARENT,
+        Body,
+        Freedom,
+        Lent,
+        PointMotion,
+        Scene,
+        Variable,
+    )
     from heuncli.kernel.shadow import cython
-    from heuncli.kernel.structs import Jet, PointMotion
 
 
 def coordinates(scene: cython.pointer[Scene], t: cython.double, y: cython.p_double) -> cython.void:

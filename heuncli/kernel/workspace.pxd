@@ -1,4 +1,4 @@
-"""Signatures of workspace.py for C."""
+# Made of workspace.py by headers.py.
 
 from heuncli.kernel.algebra cimport Mat3, Vec3
 from heuncli.kernel.chosen cimport choose_afresh, judge_start
@@ -6,32 +6,14 @@ from heuncli.kernel.closures cimport acceleration_of, measure_rows, push_closure
 from heuncli.kernel.columns cimport answer_blow, answer_causes, answer_column, measure_answers, put, unmet
 from heuncli.kernel.events cimport find_angles
 from heuncli.kernel.expressions cimport FREE, HELD, TAKEN, Expressions
-from heuncli.kernel.jacobian cimport Tangent, find_jacobian, find_motions
+from heuncli.kernel.jacobian cimport find_jacobian, find_motions
 from heuncli.kernel.memory cimport Memory
 from heuncli.kernel.orthogonal cimport doubt_multipliers
 from heuncli.kernel.response cimport configure, evaluate, must_choose_anew, settle
-from heuncli.kernel.scene cimport (
-    APART, Body, BodyAtState, BodyTangent, CARRIES, Closure, Contact, Counter, Freedom, FreedomTangent, Island, LEANS,
-    Lent, Limits, Load, Scene, Variable, Watch,
-)
+from heuncli.kernel.scene cimport APART, CARRIES, LEANS, Body, BodyAtState, BodyTangent, Closure, Contact, Counter, Freedom, FreedomTangent, Instants, Island, Lent, Limits, Load, Scene, Variable, Watch
 from heuncli.kernel.selection cimport jacobian_row, order_all, select_independent_rows
+from heuncli.kernel.stepping cimport Tangent
 from heuncli.kernel.tree cimport balance, factor_tree, kinematics
-
-cdef struct Instants:         # states to recover, and room for the work
-    Py_ssize_t count
-    Py_ssize_t n
-    Py_ssize_t width
-    bint afresh
-    bint held
-    bint causes
-    int opening               # contacts that open and close; 0: they stay as they are
-    double *branches
-    double *holding
-    double *times
-    double *states
-    double *out
-    double *y
-    double *dy
 
 cdef Py_ssize_t put_matrix(double *out, Py_ssize_t at, Mat3 R) noexcept nogil
 cdef Py_ssize_t put_body(double *out, Py_ssize_t at, Body *body) noexcept nogil
@@ -46,11 +28,8 @@ cdef void carry(Scene *scene, double *multipliers, double *out) noexcept nogil
 cdef void put_jacobian(Scene *scene, double *out) noexcept nogil
 
 cdef class Workspace:
-    cdef Scene scene
     cdef Expressions expressions
     cdef Memory memory
     cdef int opening
-    cpdef object take_tables(self, dict tables)
-    cpdef object take_arrays(self, object indices, dict numbers)
-    cpdef object make_tangents(self)
+    cdef Scene scene
     cdef object put_motions(self, double *y, double *dy, dict more)

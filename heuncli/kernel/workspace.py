@@ -41,6 +41,7 @@ if not cython.compiled:
         Counter,
         Freedom,
         FreedomTangent,
+        Instants,
         Island,
         Lent,
         Limits,
@@ -51,7 +52,7 @@ if not cython.compiled:
     )
     from heuncli.kernel.selection import jacobian_row, order_all, select_independent_rows
     from heuncli.kernel.shadow import cython
-    from heuncli.kernel.structs import Instants, Tangent
+    from heuncli.kernel.stepping import Tangent
     from heuncli.kernel.tree import balance, factor_tree, kinematics
 
 
@@ -254,11 +255,11 @@ class Workspace:
     ) -> None:
         """tables: structured arrays by name (tree/tables.py); indices: of the closure rows; numbers: single ones."""
         if not cython.compiled:
-            self.scene = Scene()
+            self.scene: Scene = Scene.blank()
         scene: cython.pointer[Scene] = cython.address(self.scene)
         x, y, z = numbers["gravity"]
-        self.expressions = expressions
-        self.memory = Memory()
+        self.expressions: Expressions = expressions
+        self.memory: Memory = Memory()
         scene.gravity = Vec3(x, y, z)
         scene.size = numbers["size"]
         scene.rank_of_gap = numbers["rank_of_gap"]
@@ -283,7 +284,7 @@ class Workspace:
         scene.watch_count = len(tables["watches"])
         scene.contact_count = len(tables["contacts"])
         scene.flat = numbers["flat"] and scene.lent_count == 0
-        self.opening = sum(1 for opens in tables["contacts"]["opens"].tolist() if opens)
+        self.opening: cython.int = sum(1 for opens in tables["contacts"]["opens"].tolist() if opens)
         scene.held_count = expressions.held
         self.take_tables(tables)
         self.take_arrays(indices, numbers)
@@ -444,8 +445,10 @@ class Workspace:
             with cython.nogil:
                 recover_states(scene, cython.address(instants))
         else:
-            lists = (x.tolist() for x in (branches, holding, times, states, out))
-            plain = Instants(count, n, width, afresh, held, causes, opening, *lists, [0.0] * n, [0.0] * n)
+            plain = Instants(
+                count, n, width, afresh, held, causes, opening, branches.tolist(), holding.tolist(), times.tolist(),
+                states.tolist(), out.tolist(), [0.0] * n, [0.0] * n,
+            )  # fmt: skip
             recover_states(scene, plain)
             states[:], out[:] = plain.states, plain.out
 
@@ -554,7 +557,7 @@ class Workspace:
         memory: Memory = Memory()
         tangent: Tangent
         if not cython.compiled:
-            tangent = Tangent()
+            tangent = Tangent.blank()
         tangent.n = len(state)
         y: cython.p_double = memory.doubles(state)
         tangent.at = memory.zeros(tangent.n)

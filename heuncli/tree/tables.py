@@ -11,31 +11,22 @@ from typing import Any
 
 import numpy as np
 
-from heuncli.kernel.choose import scene
+from heuncli.kernel.choose import scene, structs
 from heuncli.results import Array
 
 Table = np.ndarray[Any, np.dtype[np.void]]
 
 NUMBERS = {"int": np.dtype(np.intc), "float": np.dtype(np.float64)}
-VALUES = {
-    name: np.dtype([(part, np.intc if name == "Program" else np.float64) for part in parts.split()], align=True)
-    for name, parts in {
-        "Vec3": "x y z",
-        "Mat3": "xx xy xz yx yy yz zx zy zz",
-        "Sym3": "xx xy xz yy yz zz",
-        "Ldl3": "yx zx zy xx yy zz",
-        "Program": "start count",
-    }.items()
-}
 
 
-def type_of(record: type[scene.Record]) -> np.dtype[np.void]:
-    """The NumPy type of a struct."""
-    kinds = {**NUMBERS, **VALUES}
-    return np.dtype([(name, kinds[kind]) for name, kind in record.__annotations__.items()], align=True)
+def type_of(struct: type[structs.Struct]) -> np.dtype[np.void]:
+    """The NumPy type of a struct of numbers and of structs that `kernel/scene.py` knows."""
+    known = vars(scene)
+    fields = [(name, NUMBERS[k] if k in NUMBERS else type_of(known[k])) for name, k in struct.__annotations__.items()]
+    return np.dtype(fields, align=True)
 
 
-def table(record: type[scene.Record], rows: list[dict[str, Any]]) -> Table:
+def table(record: type[structs.Record], rows: list[dict[str, Any]]) -> Table:
     """Rows given by field; what a row does not give is zero, or the kernel's own."""
     found: Table = np.zeros(len(rows), type_of(record))
     for name in dict.fromkeys(name for row in rows for name in row):

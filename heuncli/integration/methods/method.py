@@ -10,7 +10,7 @@ from typing import Any
 from heuncli.records import record
 
 Row = tuple[tuple[int, float], ...]
-QUATERNION, GLOBAL, RECENTRED = range(3)  # how attitudes are held within a step (kernel/dense.pxd)
+QUATERNION, GLOBAL, RECENTRED = range(3)  # how attitudes are held within a step (kernel/stepping.py)
 
 
 @record
@@ -54,7 +54,7 @@ class Method:
 
     @cached_property
     def arrays(self) -> dict[str, Any]:
-        """The method as the kernel takes it (kernel/dense.pxd)."""
+        """The method as the kernel takes it (kernel/stepping.py)."""
         rows = [(), *self.stages, self.solution, *self.extra, *self.estimates, *self.dense]
         begin = [0]
         for row in rows:

@@ -1,0 +1,256 @@
+"""The kernel's headers for Cython, made of its Python texts where it is compiled: a declaration stands nowhere twice.
+
+What a module says in Python, and what its header declares of it:
+
+    from heuncli.kernel.tree import push    the same for C; from `math` and libm.py: the function of C's library. Of
+                                            modules that are compiled what counts is the block for plain Python
+    GUIDE, DOT = range(2)                   in that block: an enumeration
+    SAFETY = 0.9                            at the top: a number of C, set where the module is loaded
+    class Body(Struct)                      a struct (structs.py), field by field
+    def push(...)                           a C function, if it gives a C type or takes a pointer or a struct; where no
+                                            object of Python is in it, without exceptions and without the interpreter's
+                                            lock. Of modules that are not compiled themselves: inlined where it is used
+    class Workspace                         an extension type: the attributes that `__init__` annotates, and the methods
+                                            that are C functions
+"""
+
+from __future__ import annotations
+
+import ast
+from collections.abc import Iterator
+from functools import cache
+from pathlib import Path
+
+from heuncli.kernel.modules import DECLARED, MODULES
+
+PACKAGE = "heuncli.kernel"
+NUMBERS = {"int": "int", "float": "double", "bool": "bint", "Size": "Py_ssize_t"}
+OBJECTS = ("dict", "list", "tuple")
+EXTENSION_TYPES = ("Expressions", "Integration", "Memory", "Workspace")
+POINTERS = {"p_void": "void *", "p_int": "int *", "p_double": "double *", "pp_double": "double **"}
+# What the build gives as a macro, as text: where it does not, the text is "none".
+GIVEN = '''cdef extern from *:
+    """
+    #ifndef {name}
+    #define {name} none
+    #endif
+    #define HEUN_TEXT_OF(name) #name
+    #define HEUN_TEXT(name) HEUN_TEXT_OF(name)
+    static const char *given_{name} = HEUN_TEXT({name});
+    """
+    const char *{name} "given_{name}"
+'''
+
+
+def header(folder: Path, name: str) -> str:
+    """The header of a module of the kernel, whose text lies in the folder."""
+    module = ast.parse((folder / f"{name}.py").read_text(encoding="utf-8"))
+    declared = name in DECLARED
+    structs = known_structs(folder)
+    plain = module.body if declared else plain_block(module)
+    parts = [
+        imports(plain),
+        [text for node in plain if isinstance(node, ast.Assign) for text in given(node)],
+        enumeration(plain),
+        [f"cdef double {target}\n" for target in floats(module)],
+        [struct(node, structs) for node in module.body if isinstance(node, ast.ClassDef) and node.name in structs],
+        functions(module, structs, inline=declared),
+    ]
+    if not declared:
+        parts.append([extension_type(node, structs) for node in module.body if isinstance(node, ast.ClassDef)])
+    return "\n".join(["# Made of " + f"{name}.py by headers.py.\n", *("".join(part) for part in parts if part)])
+
+
+def write(folder: Path, to: Path) -> None:
+    """Write all headers into a folder as Cython finds them there, below their package; what says the same stays."""
+    package = to.joinpath(*PACKAGE.split("."))
+    package.mkdir(parents=True, exist_ok=True)
+    texts = {package / f"{name}.pxd": header(folder, name) for name in (*DECLARED, *MODULES)}
+    texts |= {place / "__init__.pxd": "" for place in (package, package.parent)}
+    for path, text in texts.items():
+        if not path.exists() or path.read_text(encoding="utf-8") != text:
+            path.write_text(text, encoding="utf-8")
+
+
+@cache
+def known_structs(folder: Path) -> frozenset[str]:
+    """The names of all structs of the kernel."""
+    modules = [ast.parse((folder / f"{name}.py").read_text(encoding="utf-8")) for name in DECLARED]
+    return frozenset(node.name for module in modules for node in module.body if isinstance(node, ast.ClassDef))
+
+
+def plain_block(module: ast.Module) -> list[ast.stmt]:
+    """What stands below `if not cython.compiled:`."""
+    blocks = [node for node in module.body if isinstance(node, ast.If)]
+    return next(node.body for node in blocks if ast.unparse(node.test) == "not cython.compiled")
+
+
+# Imports and constants
+
+
+def imports(block: list[ast.stmt]) -> list[str]:
+    """The imports from modules that have headers, and from C's library; in their order, the library's last."""
+    own, library = [], set()
+    for node in block:
+        if isinstance(node, ast.ImportFrom):
+            names = [alias.name for alias in node.names]
+            origin = (node.module or "").removeprefix(f"{PACKAGE}.")
+            if origin in ("math", "libm"):
+                library.update(names)
+            elif origin in (*DECLARED, *MODULES):
+                own.append(f"from {PACKAGE}.{origin} cimport {', '.join(names)}\n")
+    return own + ([f"from libc.math cimport {', '.join(sorted(library))}\n"] if library else [])
+
+
+def given(node: ast.Assign) -> list[str]:
+    """Of bytes the text that the build gives in their place."""
+    if isinstance(node.value, ast.Constant) and isinstance(node.value.value, bytes):
+        return [GIVEN.format(name=ast.unparse(node.targets[0]))]
+    return []
+
+
+def enumeration(block: list[ast.stmt]) -> list[str]:
+    """The whole numbers of a block, by their names."""
+    lines = []
+    for node in block:
+        if isinstance(node, ast.Assign) and not given(node):
+            target, value = node.targets[0], node.value
+            names = [ast.unparse(part) for part in (target.elts if isinstance(target, ast.Tuple) else [target])]
+            if isinstance(value, ast.Call) and ast.unparse(value.func) == "range":
+                numbers = list(range(*(ast.literal_eval(argument) for argument in value.args)))
+            else:
+                numbers = [ast.literal_eval(part) for part in (value.elts if isinstance(value, ast.Tuple) else [value])]
+            lines.append(", ".join(f"{name} = {number}" for name, number in zip(names, numbers, strict=True)))
+    return ["cdef enum:\n", *(f"    {line}\n" for line in lines)] if lines else []
+
+
+def floats(module: ast.Module) -> list[str]:
+    """The names at the top that are numbers with a point."""
+    return [
+        ast.unparse(node.targets[0])
+        for node in module.body
+        if isinstance(node, ast.Assign) and isinstance(node.value, ast.Constant) and isinstance(node.value.value, float)
+    ]
+
+
+# Types
+
+
+def c_type(node: ast.expr, structs: frozenset[str]) -> str | None:
+    """A type of Cython's that an annotation names, or a struct; None for an object of Python."""
+    if isinstance(node, ast.Attribute) and ast.unparse(node.value) == "cython":
+        return POINTERS.get(node.attr, node.attr)
+    if isinstance(node, ast.Subscript) and ast.unparse(node.value) == "cython.pointer":
+        return pointer_to(str(c_type(node.slice, structs)))
+    name = ast.unparse(node)
+    return name if name in structs else None
+
+
+def pointer_to(kind: str) -> str:
+    """The type of a pointer to a type."""
+    return f"{kind}*" if kind.endswith("*") else f"{kind} *"
+
+
+def object_type(node: ast.expr | None) -> str:
+    """An object of Python as Cython declares it: the built-in ones and the kernel's own by their types."""
+    name = "" if node is None else ast.unparse(node).partition("[")[0]
+    return name if name in (*OBJECTS, *EXTENSION_TYPES) else "object"
+
+
+def field_type(node: ast.expr, structs: frozenset[str]) -> str:
+    """The type of a field as structs.py says."""
+    name = ast.unparse(node)
+    if name in NUMBERS or name in structs:
+        return NUMBERS.get(name, name)
+    assert isinstance(node, ast.Subscript), name
+    if ast.unparse(node.value) in ("list", "array", "Pointer"):
+        return pointer_to(field_type(node.slice, structs))
+    raise ValueError(f"no type of a field: {name}")
+
+
+def of(kind: str, name: str) -> str:
+    """A declaration of a name."""
+    return f"{kind}{name}" if kind.endswith("*") else f"{kind} {name}"
+
+
+# Structs and extension types
+
+
+def struct(node: ast.ClassDef, structs: frozenset[str]) -> str:
+    """A struct; a tuple of structs of one kind is an array."""
+    lines = [f"cdef struct {node.name}:\n"]
+    for field in node.body:
+        if isinstance(field, ast.AnnAssign):
+            kind, name = field.annotation, ast.unparse(field.target)
+            if isinstance(kind, ast.Subscript) and isinstance(kind.slice, ast.Tuple):
+                name += f"[{len(kind.slice.elts)}]"
+                kind = kind.slice.elts[0]
+            lines.append(f"    {of(field_type(kind, structs), name)}\n")
+    return "".join(lines)
+
+
+def extension_type(node: ast.ClassDef, structs: frozenset[str]) -> str:
+    """The type of objects that hold structs: its attributes, and the methods that are C functions."""
+    lines = [f"cdef class {node.name}:\n"]
+    methods = [method for method in node.body if isinstance(method, ast.FunctionDef)]
+    first = next(method for method in methods if method.name == "__init__")
+    for line in ast.walk(first):
+        if isinstance(line, ast.AnnAssign) and isinstance(line.target, ast.Attribute):
+            kind = c_type(line.annotation, structs) or object_type(line.annotation)
+            lines.append(f"    cdef {of(kind, line.target.attr)}\n")
+    lines += [f"    {text}\n" for method in methods for text in signature(method, structs)]
+    return "".join(lines)
+
+
+# Functions
+
+
+def functions(module: ast.Module, structs: frozenset[str], inline: bool) -> list[str]:
+    """The C functions: their signatures, or all of them."""
+    found = []
+    for node in module.body:
+        if isinstance(node, ast.FunctionDef):
+            if inline:
+                found.append(inlined(node, structs))
+            else:
+                found += [f"{text}\n" for text in signature(node, structs)]
+    return found
+
+
+def signature(node: ast.FunctionDef, structs: frozenset[str]) -> Iterator[str]:
+    """The signature of what is a C function."""
+    assert node.returns is not None, node.name
+    gives = c_type(node.returns, structs)
+    takes = [
+        (argument, c_type(argument.annotation, structs) if argument.annotation else None) for argument in node.args.args
+    ]
+    if gives is None and not any(kind and (kind.endswith("*") or kind in structs) for _, kind in takes):
+        return
+    words = [
+        argument.arg if argument.arg == "self" else of(kind or object_type(argument.annotation), argument.arg)
+        for argument, kind in takes
+    ]
+    told = "" if gives is None or any(kind is None for _, kind in takes) else " noexcept nogil"
+    yield f"cdef {of(gives or object_type(node.returns), node.name)}({', '.join(words)}){told}"
+
+
+def inlined(node: ast.FunctionDef, structs: frozenset[str]) -> str:
+    """A whole function, in which every number and every value is declared."""
+    assert node.returns is not None, node.name
+    words = [of(field_type(a.annotation, structs), a.arg) for a in node.args.args if a.annotation is not None]
+    head = f"cdef inline {of(field_type(node.returns, structs), node.name)}({', '.join(words)}) noexcept nogil:\n"
+    return head + "".join(statements(node.body[1:], structs, "    ")) + "\n"
+
+
+def statements(body: list[ast.stmt], structs: frozenset[str], indent: str) -> Iterator[str]:
+    """Statements with their declarations as C's."""
+    for node in body:
+        if isinstance(node, ast.AnnAssign) and node.value is not None:
+            declared = of(field_type(node.annotation, structs), ast.unparse(node.target))
+            yield f"{indent}cdef {declared} = {ast.unparse(node.value)}\n"
+        elif isinstance(node, ast.If):
+            yield f"{indent}if {ast.unparse(node.test)}:\n"
+            yield from statements(node.body, structs, indent + "    ")
+            assert not node.orelse
+        else:
+            yield f"{indent}{ast.unparse(node)}\n"

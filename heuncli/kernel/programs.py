@@ -1,0 +1,71 @@
+"""The structs of expressions: programs, what they run on and what they give (expressions.py, jets.py, enclosure.py)."""
+
+from __future__ import annotations
+
+from array import array
+
+from heuncli.kernel.structs import Size, Struct, Value
+
+
+class Instruction(Value):
+    """An operation and its argument."""
+
+    op: int
+    argument: int
+
+
+class Program(Value):
+    """`count` instructions from number `start`; none where a number stands in the program's stead."""
+
+    start: int
+    count: int
+
+
+class Jet(Value):
+    """A value with its first and second derivative in time."""
+
+    value: float
+    rate: float
+    second: float
+
+
+class Table(Value):
+    """A table among the constants: its knots and coefficients begin at these places."""
+
+    pieces: int
+    outside: int
+    period: float
+    knots: Size
+    coefficients: Size
+
+
+class Bounds(Value):
+    """The least and the largest that a number may be."""
+
+    low: float
+    high: float
+
+
+class Span(Value):
+    """Bounds of a value, its rate and its second derivative over a stretch of time."""
+
+    value: Bounds
+    rate: Bounds
+    second: Bounds
+
+
+class Programs(Struct):
+    """Programs side by side, what they point into, the stacks they run on, and the branches they hold."""
+
+    code: list[Instruction]
+    constants: list[float]
+    tables: list[array[float]]
+    variables: list[float]
+    stack: list[float]
+    jets: list[Jet]
+    held: list[float]
+    holding: int
+    doubt: list[int]  # whether each branch held may change over the stretch of time
+    ranges: list[Span]  # of the variables over a stretch of time
+    middles: list[Span]  # and at an instant of it
+    spans: list[Span]

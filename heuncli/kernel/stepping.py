@@ -1,0 +1,203 @@
+"""The structs of the stepping loop: a method, a step under way, and a run (integration.py makes them)."""
+
+from __future__ import annotations
+
+from heuncli.kernel.scene import Group
+from heuncli.kernel.structs import Struct
+
+
+class Tangent(Struct):
+    """The tangent of a motion at a state, and room for its work."""
+
+    n: int
+    J: list[float]  # d(ydot)/dy by rows
+    at: list[float]  # the derivative at the state
+    beside: list[float]  # what it changes by along a direction
+
+
+class Collocation(Struct):
+    """An implicit method by its numbers: the stages Z = T W, with A^-1 = T L T^-1 (collocation.py)."""
+
+    stages: int
+    pair_count: int  # pairs of L
+    real: float  # number of L; 0: it has none
+    parts: list[float]  # real and imaginary part of each pair
+    into: list[float]  # T^-1 by rows
+    back: list[float]  # T by rows
+    end: list[float]  # what of the stages makes the end of a step
+    error: list[float]  # what of them makes the estimate
+
+
+class Factors(Struct):
+    """The factors of a dense matrix A + i B, by rows (linear.py)."""
+
+    A: list[float]
+    B: list[float]
+    pivots: list[int]
+
+
+class Newton(Struct):
+    """The iteration for the stages of a step."""
+
+    solved: int  # 1: there are stages
+    elsewhere: int  # 1: the last that was evaluated is not the end of the step
+    reach: float  # the largest coordinate
+    rate: float  # and rate, by which corrections are measured
+    tangent: Tangent  # at the start of the step
+    real: Factors  # of L - h J
+    pairs: tuple[Factors, Factors]
+    Z: list[list[float]]  # of each stage what its state is beyond the start
+    known: list[list[float]]  # the same from 1 on, then the first rows of the interpolating polynomial
+    W: list[list[float]]
+    step: list[list[float]]  # a correction of W
+    error: list[float]
+
+
+class Method(Struct):
+    """A Runge-Kutta method."""
+
+    stages: int  # evaluations a step; the derivative at its end is one more, and the next step's first
+    extra: int  # further stages of the dense output
+    dense_rows: int  # rows of the interpolating polynomial beside the three that every method has
+    estimates: int  # rows of the error estimate: the finer, and (2) a coarser one to weigh it by
+    fixed: int  # 1: the steps are given (Run.step), none is judged
+    by_step: int  # 1: an asked instant within a step is reached by a step of its own from the step's start
+    implicit: int  # 1: the stages are solved for (collocation.py)
+    attitude: int  # held within a step: 0 quaternion, 1 Rodrigues' parameters, 2 the same from the step's start
+    exponent: float  # 1 / order of the error estimate in h
+    begin: list[int]  # of each row: stages, solution, extra stages, estimates (coarser first), dense
+    stage: list[int]  # which stages a row combines
+    coefficient: list[float]
+    node: list[float]
+    collocation: Collocation  # of an implicit one
+
+
+class Course(Struct):
+    """The course of the coordinates over a stretch of time."""
+
+    degree: int  # of their polynomials
+    late: int  # 1: events are where they are certain, not where margins are zero
+    slot: int  # a branch that turns
+    undecided: int  # 1: bounds left open whether all values were seen
+    begin: float  # the instant of x = 0
+    length: float  # from there to x = 1
+    latest: float  # the last instant that counts
+    finest: float  # part of it down to which events are told apart
+    event: float  # x of the event
+    crossed_by: float  # an end of a part by which branches have turned ...
+    crossing: float  # ... and where, somewhere before it
+    value: list[list[float]]  # of each variable its coefficients in Bernstein's form over the stretch
+    rate: list[list[float]]  # and those of its rate, and of the rate of that
+    second: list[list[float]]
+    work: list[float]
+    begins: list[float]  # of the parts to be looked at
+    ends: list[float]
+    promise: list[float]  # and what they may hold
+    before: list[float]  # branches put aside
+    turned: list[float]  # branches behind the event
+    resting: list[float]  # 1: a branch whose margin rests at zero, which is passed over ...
+    rests_from: float  # ... between these x
+    rests_to: float
+
+
+class Branch(Struct):
+    """The start of a step of a motion that its drives determine."""
+
+    length: float  # by which shifts are measured
+    pivot: float  # least of what is left of an independent row
+    moved: float  # the most that any coordinate moves in the step
+    energy: float  # kinetic and potential
+    reach: list[float]  # of each freedom, then each closure row: how far a unit of its drive moves any; -1: none
+    marks: list[float]  # of each counted angle a direction across its axis, in b
+
+
+class Run(Struct):
+    """The stepping loop's state."""
+
+    n: int  # length of the state
+    group_count: int
+    energy_group: int  # the group of the drives' work; -1: none
+    determined: int  # 1: nothing is integrated, the closures tell where everything is
+    following: int  # 1: the steps are given by `ends` and `settled`, none is judged
+    fresh: int  # 1: a piece begins
+    last: int  # 1: this step reaches the end of the piece
+    near: int  # 1: the stages are settled, too
+    rejected_before: int  # 1: the last attempt was rejected
+    dodges: int  # other lengths tried for this step, to keep its stages off a singular pose
+    contact: int  # 1 + the one-sided row that closes or opens
+    watching: int  # 1: contacts are watched
+    halting: int  # 1: the loop is left where a piece begins and where branches turn
+    late: int  # 1: events are met late by the rounding of an instant, to see what that makes
+    seeing: int  # 1: stages are looked at for events
+    has_cut: int  # 1: the step under way ends at `cut`
+    has_interpolant: int  # 1: the dense output of the step tried is there
+    landings: int  # attempts to end this step on an event
+    contact_landings: int  # the same where a contact closes or opens
+    turns: int  # 1: branches turn at the end of the step under way
+    at_once: int  # turns of branches since the time went on
+    flurry: int  # events since flurry_begin
+    stiff_after: int  # steps held short by stability after which the loop is left; 0: not looked at
+    easy_after: int  # steps on end that were not, after which their count begins anew
+    look_after: int  # steps after which it is left in any case, twice as many the next time; 0: never
+    stiff_steps: int  # the counts
+    easy_steps: int
+    half_turn: int  # 1 + the body whose attitude has come to the end of its chart
+    undecided: int  # steps of which bounds could not decide what they hold
+    on_grid: int  # given steps done since `grid`
+    steps: int
+    evaluations: int
+    rejected: int
+    most: int  # steps of one call
+    done: int  # of them
+    next_sample: int
+    sample_count: int
+    t: float
+    h: float  # of the step under way
+    proposed: float
+    stop: float  # where the step under way ends
+    before_end: float  # the last instant at which the piece's expressions hold
+    end: float
+    tolerance: float
+    step: float  # the step of a method of fixed step; 0: adaptive
+    grid: float  # the instant from which given steps are counted
+    stable: float  # h |lambda| from which a step counts as held short by stability
+    swiftness: float  # that of the step tried
+    rate: float  # the scene's largest
+    energy_scale: float  # sum m size^2
+    error: float
+    nearing: float  # largest angular velocity that a stage saw, by the way to the chart's end [1/s]
+    gap: float  # the largest that closures were left with [m]
+    best: float  # the least trouble of the lengths tried, and its length
+    best_h: float
+    pivot_at_start: float  # of the closures, where the step starts
+    cut: float
+    flurry_begin: float
+    course: Course
+    branch: Branch
+    newton: Newton
+    groups: list[Group]
+    weights: list[float]  # of the components: 1, or 1 / size
+    y: list[float]
+    z: list[float]  # the solution tried
+    carry: list[float]  # small parts of y that its digits do not hold
+    z_carry: list[float]
+    K: list[list[float]]  # derivatives at the stages
+    beside: list[list[float]]  # the same of steps to asked instants within the step under way
+    coarse: list[float]  # error estimates
+    fine: list[float]
+    dense: list[list[float]]  # rows of the interpolating polynomial
+    stage: list[float]  # a state under way
+    chart_y: list[
+        float
+    ]  # y, z and K in the numbers that steps are taken in: the state's, or those of a chart of attitudes
+    chart_z: list[float]
+    chart_K: list[list[float]]
+    ways: list[float]  # of each body, how far its attitude may turn before it leaves the chart [rad]
+    times: list[float]
+    samples: list[list[float]]
+    ends: list[float]  # of the steps done, or of those to be followed
+    settled: list[float]  # of each whether it was near
+    pivots: list[float]  # of each the least pivot of the closures
+    turned: list[float]  # of each whether branches turned at its end
+    branches: list[list[float]]  # of each the branches that were held
+    passed: list[list[float]]  # at each end what the next step starts from: put_record
