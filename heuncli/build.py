@@ -1,6 +1,7 @@
 """How the package is built: the kernel by Cython in pure-Python mode, optional by default, one wheel for every CPython.
 
-The kernel's modules stand in pyproject.toml (`tool.setuptools.ext-modules`). HEUN_KERNEL at build time:
+Its modules are those of kernel/modules.py; what C has to know of them is written from their text into the build folder
+(kernel/headers.py). HEUN_KERNEL at build time:
 
     unset      compile; where that fails (no compiler, no Python headers, no Cython) install the plain files instead
     require    a failed compilation fails the build
@@ -27,8 +28,11 @@ from setuptools.command.build_ext import build_ext
 from setuptools.command.sdist import sdist
 
 sys.path.insert(0, str(Path(__file__).parents[1]))  # installers load this file alone, where no package can be imported
+from heuncli.kernel import headers
+from heuncli.kernel.modules import MODULES
 from heuncli.kernel.sources import KEEPER, digest
 
+FOLDER = Path("heuncli", "kernel")
 # The kernel validates before it enters the loops and guards its divisors itself.
 DIRECTIVES = {
     "language_level": 3,
@@ -57,10 +61,21 @@ def oldest(distribution: Distribution) -> int:
     return int(str(distribution.python_requires).removeprefix(">=3."))  # type: ignore[attr-defined]
 
 
+def add_kernel(distribution: Distribution) -> None:
+    """Make the kernel's modules part of what is built."""
+    distribution.ext_modules = distribution.ext_modules or [
+        Extension(f"heuncli.kernel.{name}", [(FOLDER / f"{name}.py").as_posix()], optional=True) for name in MODULES
+    ]
+
+
 class BuildKernel(build_ext):
-    """build_ext with the kernel's flags and the meaning of HEUN_KERNEL."""
+    """build_ext with the kernel's modules, headers and flags, and the meaning of HEUN_KERNEL."""
 
     sanitized = False
+
+    def initialize_options(self) -> None:
+        add_kernel(self.distribution)
+        super().initialize_options()
 
     def finalize_options(self) -> None:
         limit = ("Py_LIMITED_API", f"0x03{oldest(self.distribution):02X}0000")
@@ -73,9 +88,11 @@ class BuildKernel(build_ext):
             raise SystemExit(f"HEUN_KERNEL={self.kernel}: known: require, compiled, pure")
         self.cython_directives = DIRECTIVES | (CHECKED if self.sanitized else {})
         self.cython_c_in_temp = True
-        self.folders = [Path(self.build_lib, "heuncli", "kernel")]
+        self.headers = Path(self.build_temp, "headers")
+        self.cython_include_dirs = [str(self.headers)]
+        self.folders = [Path(self.build_lib) / FOLDER]
         if self.inplace:
-            self.folders.append(Path("heuncli", "kernel"))
+            self.folders.append(FOLDER)
         if self.kernel == "pure":
             for extension in self.extensions:
                 self.forget(extension)
@@ -96,20 +113,28 @@ class BuildKernel(build_ext):
         flags: tuple[str, ...] = MSVC_FLAGS if self.compiler.compiler_type == "msvc" else GNU_FLAGS
         if self.sanitized:
             flags = SANITIZED_FLAGS
+        headers.write(FOLDER, self.headers)
         for extension in self.extensions:
             extension.extra_compile_args = list(flags)
             extension.extra_link_args = [flag for flag in flags if flag.startswith("-fsanitize=")]
             extension.optional = self.kernel not in ("require", "compiled")
             self.forget(extension, but=Path(self.get_ext_fullpath(extension.name)).name)
             if extension.name.endswith(f".{KEEPER}"):
-                extension.define_macros.append(("HEUN_SOURCES", digest(Path("heuncli", "kernel"))))
+                extension.define_macros.append(("HEUN_SOURCES", digest(FOLDER)))
                 self.forget(extension)  # whatever was edited, it holds the digest of it all
         super().build_extensions()
         if not self.is_compiled():  # compiled modules call each other as C functions: all of them, or none
             for extension in self.extensions:
                 self.forget(extension)
 
+    def is_older_than_headers(self, ext: Extension) -> bool:
+        """Whether a header changed since a module was compiled: Cython looks for those beside the sources alone."""
+        compiled = Path(self.get_ext_fullpath(ext.name))
+        last = max(path.stat().st_mtime_ns for path in self.headers.rglob("*.pxd"))
+        return not compiled.exists() or compiled.stat().st_mtime_ns < last
+
     def build_extension(self, ext: Extension) -> None:
+        self.force = self.is_older_than_headers(ext)
         try:
             super().build_extension(ext)
         except Exception as reason:  # whatever stops a compiler: the plain files run everywhere
@@ -126,6 +151,10 @@ class BuildKernel(build_ext):
 
 class Wheel(bdist_wheel):
     """bdist_wheel with nothing left from another day, labelled by what was compiled, not by what might have been."""
+
+    def initialize_options(self) -> None:
+        add_kernel(self.distribution)  # an editable install asks for this command alone
+        super().initialize_options()
 
     def run(self) -> None:
         if not self.skip_build:

@@ -36,6 +36,13 @@ def copy() -> None:
     """The sources of this checkout, to be compiled otherwise; what was compiled there from the same text stays."""
     compiled = shutil.ignore_patterns("*.so", "*.pyd", "__pycache__")
     shutil.copytree(CHECKOUT / "heuncli", COPY / "heuncli", dirs_exist_ok=True, ignore=compiled, copy_function=renew)
+    for path in (COPY / "heuncli").rglob("*"):  # what is no more
+        if (
+            path.is_file()
+            and path.suffix not in (".so", ".pyd", ".pyc")
+            and not (CHECKOUT / path.relative_to(COPY)).exists()
+        ):
+            path.unlink()
     for name in LINKED:
         if not (COPY / name).is_symlink():
             (COPY / name).symlink_to(CHECKOUT / name)

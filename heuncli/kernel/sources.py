@@ -9,20 +9,21 @@ import os
 from collections.abc import Iterable
 from pathlib import Path
 
-from heuncli.kernel.modules import MODULES
+from heuncli.kernel.modules import DECLARED, MODULES
 
 COMPILED = (".so", ".pyd")
 KEEPER = "memory"  # the module that holds the digest; each compilation makes it anew
+SOURCES = frozenset(f"{name}.py" for name in (*MODULES, *DECLARED, "headers"))
 
 
 def digest(folder: Path) -> str:
-    """A name that is a C identifier for the text of all that is compiled, declarations included; 3 ms."""
+    """A name that is a C identifier for the text of all that is compiled, and of what makes its headers; 3 ms."""
     import hashlib  # only builds ask, and checkouts in which something was edited
 
     text = hashlib.sha256()
-    for path in sorted([*folder.glob("*.pxd"), *(folder / f"{name}.py" for name in MODULES)]):
-        content = path.read_bytes()
-        text.update(f"{path.name} {len(content)}\n".encode())
+    for name in sorted(SOURCES):
+        content = (folder / name).read_bytes()
+        text.update(f"{name} {len(content)}\n".encode())
         text.update(content)
     return f"h{text.hexdigest()}"
 
@@ -31,9 +32,8 @@ def newer_than_compiled(folder: Path, names: Iterable[str]) -> list[str]:
     """Which of a folder's files are sources that look newer than the last compilation; 0.1 ms on a quick disk."""
     keeper = next(name for name in names if name.startswith(f"{KEEPER}.") and name.endswith(COMPILED))
     last = (folder / keeper).stat().st_mtime_ns
-    sources = {f"{name}.py" for name in MODULES}
     return sorted(
         name
         for name in names
-        if (name in sources or name.endswith(".pxd")) and os.stat(f"{folder}/{name}").st_mtime_ns > last  # noqa: PTH116
+        if name in SOURCES and os.stat(f"{folder}/{name}").st_mtime_ns > last  # noqa: PTH116
     )

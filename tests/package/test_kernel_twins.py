@@ -175,11 +175,6 @@ def test_what_is_declared_of_a_text(tmp_path: Path) -> None:
     assert headers.header(tmp_path, "tree") == HEADER
 
 
-@pytest.mark.parametrize("name", [*DECLARED, *MODULES])
-def test_the_headers_are_what_the_generator_makes(name: str) -> None:
-    assert (FOLDER / f"{name}.pxd").read_text(encoding="utf-8") == header(name)
-
-
 def test_headers_that_say_the_same_stay_as_they_are(tmp_path: Path) -> None:
     """What is compiled from them is compiled again where one is newer."""
     headers.write(FOLDER, tmp_path)
