@@ -123,6 +123,12 @@ DIRECT = (
     "of that part the load itself: for a section where it stands on the piece, for the foundation where it is applied "
     "from outside"
 )
+# The loads of a section: along n, e1 and e2, and about them. The stresses they make.
+SECTION_FORCES, SECTION_MOMENTS = ("N", "Q1", "Q2"), ("T", "M1", "M2")
+RESULTANTS = SECTION_FORCES + SECTION_MOMENTS
+STRESSES = ("normal_max", "normal_min", "shear_torsion", "shear_mean", "shear_max", "mises", "utilisation")
+# The loads of a joint that are one number: along its axis, across it, about axes across it; of a rod.
+AXIAL_FORCES, TILTING_MOMENTS = ("axial", "radial", "tension"), ("tilting",)
 OPEN = "the components that are open at some instant, and those that a chosen split gives"
 NOT_YET = "not yet"
 ROWS: tuple[Quantity, ...] = (
@@ -177,24 +183,21 @@ ROWS: tuple[Quantity, ...] = (
     *at("sections.SECTION", OPEN, words("open")),
     *at("sections.SECTION", "of the piece ON the remainder", cut_vector("force", "N"), cut_vector("moment", "N·m")),
     *at("sections.SECTION", "force along n (> 0 tension), e1, e2",
-        cut_scalar("N", "N"), cut_scalar("Q1", "N"), cut_scalar("Q2", "N")),
+        *(cut_scalar(name, "N") for name in SECTION_FORCES)),
     *at("sections.SECTION", "moment about n, e1, e2",
-        cut_scalar("T", "N·m"), cut_scalar("M1", "N·m"), cut_scalar("M2", "N·m")),
+        *(cut_scalar(name, "N·m") for name in SECTION_MOMENTS)),
     *at("sections.SECTION.line", "reduction line: a point of it, its direction, where the moment in the plane is "
         "zero; kind 0: a line, 1: none, 2: any",
         cut_vector("point", "m"), cut_vector("direction", "1"), cut_vector("pressure_centre", "m"),
         cut_scalar("kind", "1")),
     *at("sections.SECTION.stress",
         "extremes over the section, [on the safe side](stresses.md); `utilisation` is `mises` over `strength`",
-        cut_scalar("normal_max", "Pa"), cut_scalar("normal_min", "Pa"), cut_scalar("shear_torsion", "Pa"),
-        cut_scalar("shear_mean", "Pa"), cut_scalar("shear_max", "Pa"), cut_scalar("mises", "Pa"),
-        cut_scalar("utilisation", "1")),
+        *(cut_scalar(name, "1" if name == "utilisation" else "Pa") for name in STRESSES)),
     *at("sections.SECTION", "of a run of cuts: from its first point to each cut",
         scalar("s", "m", (CUT,), timed=False)),
     *at("sections.SECTION", "of a run: before or beyond what acts in the plane of the cut", words("side")),
     *shares("sections.SECTION", cut_vector("force", "N"), cut_vector("moment", "N·m"),
-        cut_scalar("N", "N"), cut_scalar("Q1", "N"), cut_scalar("Q2", "N"),
-        cut_scalar("T", "N·m"), cut_scalar("M1", "N·m"), cut_scalar("M2", "N·m")),
+        *(cut_scalar(name, "N") for name in SECTION_FORCES), *(cut_scalar(name, "N·m") for name in SECTION_MOMENTS)),
     *at("sections.SECTION.shares.CAUSE", DIRECT, cut_vector("direct_force", "N"), cut_vector("direct_moment", "N·m")),
     *at("forces.FORCE", "its value as in the spec; of a vector its size, of a distributed load that of the resultant",
         scalar("value", "N | N·m")),

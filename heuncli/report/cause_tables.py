@@ -28,14 +28,18 @@ from heuncli.report.table_blocks import NumberRow, RowGroup, TableBlock, rows_of
 from heuncli.report.table_plans import MASS_EFFECT
 from heuncli.report.text_table import INDENT, TextColumn, TextTable
 from heuncli.results import Array, Extremes, Place, Results
-from heuncli.results_schema import BY_CAUSE, SHARES
+from heuncli.results_schema import BY_CAUSE, SECTION_FORCES, SECTION_MOMENTS, SHARES
 
 MOST_CAUSES = 9  # that have a column; the smallest of more are told together
 ALONG_NOTE = "of |F| and |M| the share along the whole vector"
 CAUSES_NOTE = "motion: the part quadratic in the velocities; drives: that of prescribed accelerations"
 DIRECT_NOTE = "direct: the load itself, where it stands; the rest of its share acts through the motion it causes"
-AXES = {"N": ("force", 0), "Q1": ("force", 1), "Q2": ("force", 2), "T": ("moment", 0), "M1": ("moment", 1),
-        "M2": ("moment", 2)}  # fmt: skip
+# Of a section's resultants: the vector and the axis of the section that each is a component of.
+AXES = {
+    name: (vector, axis)
+    for vector, names in (("force", SECTION_FORCES), ("moment", SECTION_MOMENTS))
+    for axis, name in enumerate(names)
+}
 Key = tuple[str, str, str]  # of a number: kind, name, label
 
 

@@ -11,11 +11,11 @@ from heuncli.report.table_blocks import short
 from heuncli.report.table_units import Shown
 from heuncli.report.text_table import TextTable
 from heuncli.results import Array, CertainSum, Results
-from heuncli.results_schema import XYZ
+from heuncli.results_schema import AXIAL_FORCES, SECTION_FORCES, XYZ
 
 MOST_TERMS = 6  # tables show short sums of forces, JSON all
 TURNS = "(t): a factor that turns with the pose, as at the first instant; --format json has them all"
-FORCES = frozenset({"force", "axial", "radial", "tension", "N", "Q1", "Q2"})
+FORCES = frozenset({"force", *AXIAL_FORCES, *SECTION_FORCES})
 
 
 def sums_table(

@@ -22,11 +22,10 @@ from heuncli.report.digits import (
     write_times,
 )
 from heuncli.report.labels import Labels
-from heuncli.report.table_plans import STRESSES
 from heuncli.report.table_units import Shown, Units
 from heuncli.report.text_table import TextColumn, TextTable, head
 from heuncli.results import Array, Extremes, Indices, Place, Results
-from heuncli.results_schema import MAGNITUDES, row_of
+from heuncli.results_schema import MAGNITUDES, RESULTANTS, STRESSES, row_of
 
 STRETCH_NOTE = "extremes of the whole stretch, between the cuts and at its corners, too"
 MOST_CUTS = 25  # of a diagram: evenly spaced cuts, with all jumps and extremes
@@ -52,7 +51,6 @@ def _stress(name: str) -> RunQuantity:
     return RunQuantity(name, name.replace("_", " "), unit, name in MAGNITUDES, bounds)
 
 
-RESULTANTS = ("N", "Q1", "Q2", "T", "M1", "M2")
 LOADS = tuple(RunQuantity(name, name, row_of(f"sections.SECTION.{name}").unit()) for name in RESULTANTS)
 ALONG_STRESSES = tuple(_stress(name) for name in STRESSES)
 

@@ -15,7 +15,7 @@ from heuncli.report.labels import Labels
 from heuncli.report.series import Series
 from heuncli.report.table_plans import MASS_EFFECT, TablePlan
 from heuncli.results import Array, Results
-from heuncli.results_schema import MAGNITUDES, XYZ
+from heuncli.results_schema import AXIAL_FORCES, MAGNITUDES, SECTION_FORCES, SECTION_MOMENTS, TILTING_MOMENTS, XYZ
 
 # Vector -> the short name its components begin with. What is not listed is called by its own name.
 SYMBOLS = {
@@ -36,8 +36,8 @@ SYMBOLS = {
 }
 # Quantities that share their decimals with another: noise in one shows against the others.
 FAMILIES = {
-    **dict.fromkeys(("axial", "radial", "tension", "N", "Q1", "Q2"), "force"),
-    **dict.fromkeys(("tilting", "T", "M1", "M2", "moment_orbital", "moment_spin"), "moment"),
+    **dict.fromkeys((*AXIAL_FORCES, *SECTION_FORCES), "force"),
+    **dict.fromkeys((*TILTING_MOMENTS, *SECTION_MOMENTS, "moment_orbital", "moment_spin"), "moment"),
 }
 POSITIONS = frozenset({"position", "center", "point", "direction"})  # vectors whose length means nothing
 FREE = "nothing stands on the ground: the scene is free"

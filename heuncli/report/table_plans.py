@@ -13,8 +13,8 @@ import numpy as np
 from heuncli.report.digits import OPEN, OPEN_NOTE
 from heuncli.report.labels import Labels
 from heuncli.results import Results
+from heuncli.results_schema import RESULTANTS, STRESSES
 
-STRESSES = ("normal_max", "normal_min", "shear_torsion", "shear_mean", "shear_max", "mises", "utilisation")
 POINTS = ("the origin", "the point")
 NO_AXIS = ("none", "none: there is no force, so no axis")
 
@@ -109,6 +109,49 @@ MASS_EFFECT = TablePlan(
     ),
     only="mass_effect",
 )
+AXIS = TablePlan(
+    "foundation",
+    "foundation",
+    "",
+    ("point", "direction", "pitch"),
+    lambda results, labels: "CENTRAL AXIS  of the foundation's wrench: its point nearest the moment's, world axes",
+    only="axis",
+    lasting=False,
+    missing=NO_AXIS,
+)
+JOINTS = TablePlan(
+    "joints",
+    "joints",
+    "joint",
+    ("force", "moment", "axial", "radial", "tilting", "tension", "drive"),
+    lambda results, labels: (
+        f'JOINTS  what "from" exerts ON "to" (drive, friction apart), {_axes(results)}, moment about the "to" point'
+    ),
+    _joint_note,
+)
+STOPS = TablePlan(
+    "joints",
+    "stops",
+    "stop",
+    ("force", "moment"),
+    lambda results, labels: 'STOPS  force or moment ON "to", along the coordinate that is limited; 0 where free',
+    _stop_note,
+)
+SECTIONS = TablePlan(
+    "sections",
+    "sections",
+    "section",
+    (*RESULTANTS, *STRESSES),
+    lambda results, labels: "SECTIONS  the piece beyond the cut ON the part before it; N > 0 tension; e2 = n × e1",
+    _section_note,
+)
+ENERGY = TablePlan(
+    "energy",
+    "energy",
+    "",
+    ("kinetic", "potential", "work"),
+    lambda results, labels: "ENERGY  potential from the world's origin; kinetic + potential − work is constant",
+)
 PLANS = (
     TablePlan(
         "motion",
@@ -134,42 +177,10 @@ PLANS = (
     ),
     FOUNDATION,
     MASS_EFFECT,
-    TablePlan(
-        "foundation",
-        "foundation",
-        "",
-        ("point", "direction", "pitch"),
-        lambda results, labels: "CENTRAL AXIS  of the foundation's wrench: its point nearest the moment's, world axes",
-        only="axis",
-        lasting=False,
-        missing=NO_AXIS,
-    ),
-    TablePlan(
-        "joints",
-        "joints",
-        "joint",
-        ("force", "moment", "axial", "radial", "tilting", "tension", "drive"),
-        lambda results, labels: (
-            f'JOINTS  what "from" exerts ON "to" (drive, friction apart), {_axes(results)}, moment about the "to" point'
-        ),
-        _joint_note,
-    ),
-    TablePlan(
-        "joints",
-        "stops",
-        "stop",
-        ("force", "moment"),
-        lambda results, labels: 'STOPS  force or moment ON "to", along the coordinate that is limited; 0 where free',
-        _stop_note,
-    ),
-    TablePlan(
-        "sections",
-        "sections",
-        "section",
-        ("N", "Q1", "Q2", "T", "M1", "M2", *STRESSES),
-        lambda results, labels: "SECTIONS  the piece beyond the cut ON the part before it; N > 0 tension; e2 = n × e1",
-        _section_note,
-    ),
+    AXIS,
+    JOINTS,
+    STOPS,
+    SECTIONS,
     TablePlan(
         "forces",
         "forces",
@@ -178,15 +189,9 @@ PLANS = (
         lambda results, labels: "FORCES  value, length of its line, angle of a turn spring, their rate, power put in",
         _force_note,
     ),
-    TablePlan(
-        "energy",
-        "energy",
-        "",
-        ("kinetic", "potential", "work"),
-        lambda results, labels: "ENERGY  potential from the world's origin; kinetic + potential − work is constant",
-    ),
+    ENERGY,
 )
-# What a blow does, each table under its instant and what struck.
+# What a blow does, each table under its instant and what struck: of impulses the same tables as of loads.
 IMPULSES = (
     TablePlan(
         "bodies",
@@ -195,59 +200,35 @@ IMPULSES = (
         ("center_velocity_jump", "angular_velocity_jump"),
         lambda results, labels: "BODIES  jumps of the centre's velocity and of the angular velocity, world axes",
     ),
-    TablePlan(
-        "foundation",
-        "foundation",
-        "",
-        ("force", "moment"),
-        lambda results, labels: (
+    FOUNDATION._replace(
+        heading=lambda results, labels: (
             f"FOUNDATION  impulse and its moment ON the ground, world axes, moment about {_about(results, labels)}"
-        ),
-        _foundation_note,
+        )
     ),
-    TablePlan(
-        "foundation",
-        "foundation",
-        "",
-        ("point", "direction", "pitch"),
-        lambda results, labels: "CENTRAL AXIS  of the foundation's impulse: its point nearest the moment's, world axes",
-        only="axis",
-        lasting=False,
+    AXIS._replace(
+        heading=lambda results, labels: (
+            "CENTRAL AXIS  of the foundation's impulse: its point nearest the moment's, world axes"
+        ),
         missing=("none", "none: there is no impulse, so no axis"),
     ),
-    TablePlan(
-        "joints",
-        "joints",
-        "joint",
-        ("force", "moment", "axial", "radial", "tilting", "tension", "drive"),
-        lambda results, labels: (
+    JOINTS._replace(
+        heading=lambda results, labels: (
             f'JOINTS  impulse that "from" exerts ON "to" (drive apart), {_axes(results)}, moment about the "to" point'
-        ),
-        _joint_note,
+        )
     ),
-    TablePlan(
-        "stops",
-        "stops",
-        "stop",
-        ("force", "moment"),
-        lambda results, labels: 'STOPS  impulse ON "to", along the coordinate that is limited',
-        _stop_note,
+    STOPS._replace(
+        key="stops",
+        heading=lambda results, labels: 'STOPS  impulse ON "to", along the coordinate that is limited',
     ),
-    TablePlan(
-        "sections",
-        "sections",
-        "section",
-        ("N", "Q1", "Q2", "T", "M1", "M2"),
-        lambda results, labels: (
+    SECTIONS._replace(
+        quantities=RESULTANTS,
+        heading=lambda results, labels: (
             "SECTIONS  impulse of the piece beyond the cut ON the part before it; N > 0 tension; e2 = n × e1"
         ),
-        _section_note,
     ),
-    TablePlan(
-        "energy",
-        "",
-        "",
-        ("energy_before", "energy_after", "energy_jump"),
-        lambda results, labels: "ENERGY  kinetic, before and after the blow",
+    ENERGY._replace(
+        kind="",
+        quantities=("energy_before", "energy_after", "energy_jump"),
+        heading=lambda results, labels: "ENERGY  kinetic, before and after the blow",
     ),
 )

@@ -24,7 +24,7 @@ from heuncli.mechanism.model import Mechanism
 from heuncli.records import fields, record, replace
 from heuncli.response import Columns
 from heuncli.results import Array, Block, CertainSum
-from heuncli.results_schema import BLOWS, BY_CAUSE, SHARES
+from heuncli.results_schema import BLOWS, BY_CAUSE, SECTION_FORCES, SECTION_MOMENTS, SHARES
 from heuncli.study.compose.blocks import blocks
 from heuncli.study.compose.recovery import Recovery, certain_sums
 from heuncli.study.model.setup import Setup
@@ -33,7 +33,7 @@ from heuncli.study.solve.history import History
 UNTIMED = frozenset({"about", "s", "side"})  # of the blocks: the same at all blows
 STRUCK = frozenset({"foundation", "joints", "sections"})
 UNITS = {"N": "N·s", "N·m": "N·m·s"}
-WRENCH = {"N·s": ("force", "N", "Q1", "Q2"), "N·m·s": ("moment", "T", "M1", "M2")}
+WRENCH = {"N·s": ("force", *SECTION_FORCES), "N·m·s": ("moment", *SECTION_MOMENTS)}
 KINDS = (  # of estimated errors, the block they are of, and its numbers by unit; a drive's unit is its joint's
     ("foundation", "foundation", WRENCH),
     ("reactions", "joints", WRENCH),
