@@ -14,7 +14,7 @@ from heuncli.kernel.form import FOLDER, KERNEL  # refused where the compiled ker
 from heuncli.nearest import begin_file
 from tests.shared.command import SPEC_TEXTS, Done, Heun
 
-# Folders that judge numbers: the plain kernel gives the same bits, a hundred times slower (test_kernels_agree.py).
+# Folders that judge numbers: the plain kernel gives the same bits (tests/package/test_kernels_agree.py), but slowly.
 SPARED = {"closed_forms", "convergence", "honesty", "limits"}
 SHARE = 4  # of every other family of cases so many, spread over it: enough to see what only plain Python does otherwise
 

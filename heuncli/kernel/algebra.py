@@ -427,7 +427,7 @@ def attitude(q: Quaternion) -> Mat3:
 
 
 def quaternion_rate(q: Quaternion, omega: Vec3) -> Quaternion:
-    """dq/dt = (0, omega) q / 2, omega in world axes: (28) in quaternions."""
+    """dq/dt = (0, omega) q / 2, omega in world axes: (40) of Euler's parameters, solved for their rates."""
     u: float = 0.5 * omega.x
     v: float = 0.5 * omega.y
     w: float = 0.5 * omega.z

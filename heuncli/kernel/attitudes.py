@@ -1,8 +1,8 @@
 """Charts of attitudes by Rodrigues' numbers, kappa = tan(theta / 2) about the axis, in place of quaternions in a step.
 
     R(kappa) = 1 + 2 (hat + hat^2) / (1 + kappa^2),   as a quaternion (1, kappa) / sqrt(1 + kappa^2)
-    sigma = W kappadot = 2 (kappadot + kappa x kappadot) / (1 + kappa^2)                 (42), corrected, world axes
-    kappadot = W^-1 sigma = (sigma + kappa (kappa . sigma) - kappa x sigma) / 2          (43)
+    sigma = W kappadot = 2 (kappadot + kappa x kappadot) / (1 + kappa^2)                 (42), (43), world axes
+    kappadot = W^-1 sigma = (sigma + kappa (kappa . sigma) - kappa x sigma) / 2          the same, inverted
     kappaddot = W^-1 sigmadot + [2 kappa . kappadot / (1 + kappa^2)] kappadot            no. 20, Lagrange's form
 
 Global: R = R(kappa) all along, the unknowns kappa and kappadot; at a half turn kappa is infinite. Re-centred: R =

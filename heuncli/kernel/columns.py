@@ -2,9 +2,9 @@
 
     M V + ... = loads + J' lambda,   J V + gamma = 0
 The loads are affine in what is applied, in gravity, in the prescribed accelerations and in the velocity terms: so one
-column a cause, which add up to the whole (theory: shares by cause). The jump of a blow (45)-(48) is one more column:
-M dV = impulses + J' Lambda, J dV = -(jumps of what is prescribed), without gravity and velocity terms, with the same
-factors.
+column a cause, which add up to the whole (manual/theory.md, "Shares by cause"). The jump of a blow (45)-(48) is one
+more column: M dV = impulses + J' Lambda, J dV = -(jumps of what is prescribed), without gravity and velocity terms,
+with the same factors.
 """
 
 from __future__ import annotations

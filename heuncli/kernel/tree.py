@@ -1,6 +1,6 @@
 """Trees of bodies: kinematics, and the sweep that factors the mass matrix and solves with it, O(n).
 
-    [n; f] = [A C; C' K] [alpha; a] + [M_branch; f_branch]       what a joint must exert on its branch (scene.py)
+    [n; f] = [A C; C' K] [alpha; a] + [M_branch; f_branch]       what a joint must exert on its branch (kernel/scene.py)
     sum over b of M_ab omegadot_b + h_a = tau_a              (49), corrected, for any number of links: what is solved
 A, C, K are the articulated inertia of a branch, its inertia against the acceleration of its joint when all its freedoms
 give way. A free direction s (a unit turn or a unit shift) is eliminated by U = I s, D = s . U, I <- I - U U' / D; a
@@ -294,7 +294,7 @@ def load_along(freedom: cython.pointer[Freedom], M: Vec3, f: Vec3) -> cython.dou
 
 
 def add_branch(parent: cython.pointer[Body], body: cython.pointer[Body]) -> cython.void:
-    """The branch hangs at the arm l: K += K_b, C += C_b + l x K_b, A += A_b + C_b l' + l C_b' + (l x K_b) l'.
+    """The branch hangs at the arm l: K += K_b, C += C_b + L K_b, A += A_b + C_b L' + L C_b' + L K_b L', L x = l x x.
 
     Behind a ball neither A_b nor C_b is left.
     """

@@ -5,7 +5,7 @@ themselves and move nothing. A component that some self-stress has a share in is
 give. Moments and turns by the island's length L, which makes rows of the order of 1; those with longer levers are
 shortened to that. Shorter ones stay: a row that moves no freedom, in this pose or in all, holds what the tree holds
 already, and its rounding must not be made a direction. Verdicts by the instant's own null space.
-design: closure Jacobian on tree coordinates, SVD, one statics sweep a null vector.
+One sweep of statics carries a null vector to all joints. manual/theory.md, "Redundancy".
 """
 
 from __future__ import annotations

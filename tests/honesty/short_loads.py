@@ -3,7 +3,7 @@
     python -m tests.honesty.short_loads FIRST COUNT
 
 prints of so many scenes what each says of its error, and what that is against the motion from edge to edge
-(switched.py).
+(tests/oracle/switched.py).
 """
 
 from __future__ import annotations

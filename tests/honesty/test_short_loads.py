@@ -1,4 +1,4 @@
-"""No short load is missed: scenes at random against their motions from edge to edge (tests/oracle/short_loads.py)."""
+"""No short load is missed: scenes at random against their motions from edge to edge (tests/honesty/short_loads.py)."""
 
 from __future__ import annotations
 

@@ -1,6 +1,6 @@
 """Blows: at an instant velocities jump, and impulses run through all joints.
 
-    M (V+ - V-) = H + J' Lambda,   J (V+ - V-) = -(jumps of the prescribed rates)           (45)-(48), (50), (51)
+    M (V+ - V-) = H + J' Lambda,   J (V+ - V-) = -(jumps of the prescribed rates)           (45)-(48), (50)
 H are given impulses; what is driven jumps by as much as its prescribed rate does, and by nothing else. One column of
 the one linear map a cause: each given impulse, the drives together. Positions stay.
 """

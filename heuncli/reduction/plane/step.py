@@ -1,7 +1,7 @@
-"""The plane that a scene stays in: it moves as the flat scene in that plane does (plane_mechanism.py).
+"""The plane that a scene stays in: it moves as the flat scene in that plane does (reduction/plane/mechanism.py).
 
 Either no joint leaves a body another motion than turns about the normal and shifts across it, or what could leave the
-plane does not, for the scene is its own mirror image in it (plane_departures.py).
+plane does not, for the scene is its own mirror image in it (reduction/plane/departures.py).
 """
 
 from __future__ import annotations

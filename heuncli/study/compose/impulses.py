@@ -1,6 +1,6 @@
 """The blows of a run as blocks of the results: the same sums as of forces, taken of jumps and impulses.
 
-    r = sum h - sum m (x'+ - x'-),   M_r likewise                                         (50), (51), (54)
+    r = sum h - sum m (x'+ - x'-),   M_r likewise                                         (50), (54)
 A blow is answered as loads are at rest and without weight: jumps of velocities stand for accelerations, impulses for
 forces. So reactions, verdicts, sums, foundation and sections are those of the same modules.
 """

@@ -2,7 +2,7 @@
 
 Driven motions that leave no freedom are followed and not integrated (integration/determined_motion.py). What turns out
 to be stiff on the way, or cut by events at nearly every step, is begun anew (integration/run/stiffness.py,
-event_frequency.py).
+integration/run/event_frequency.py).
 """
 
 from __future__ import annotations
