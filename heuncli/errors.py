@@ -60,7 +60,7 @@ class Finding(ValueError):
 
 
 class HeunError(Exception):
-    """A failure the user can act on; `exit_code` is the command's exit status (manual/commands.md)."""
+    """A failure the user can act on; `exit_code` is the command's exit status (manual/commands.md, "Exit codes")."""
 
     exit_code = 70
 

@@ -111,7 +111,9 @@ LEAST_EXTENT = 1e-9  # [m] what IN_PLANE is measured by where all lies in the or
 TOUCHING = 1e3  # times IN_PLANE: outlines of a cut that come so near are one
 OUTLINES_APART = 1e-3  # of their radii: polygons of 96 sides are 5e-4 of a radius off the curves they stand for
 OFF_AXIS = 2e-15  # sine of a normal to a body of revolution's axis: rounding of a unit vector, 9 EPS
-EQUAL_COMPONENTS = 1e-9  # of a unit normal: equal ones, of which x goes before y before z (manual/format.md)
+EQUAL_COMPONENTS = (
+    1e-9  # of a unit normal: equal ones, of which x goes before y before z (manual/format.md, "Sections")
+)
 PARALLEL = 1e-9  # sine between directions typed with ten digits: below, they are one line
 PRINCIPAL = 1e-9  # I12 of sqrt(I1 I2): typed lengths; the neutral axis turns by less than that over 1 - I1/I2
 UPRIGHT = 1e-9  # 1 - cosine of a body's z axis to the world's: 4.5e-5 rad, as typed quaternions leave
@@ -197,7 +199,7 @@ INERTIA_REFUSED = 1e-3  # of the largest moment: bound on a broken triangle rule
 INERTIA_TYPED = 1e-9  # of the largest moment: moments typed with ten digits keep the rule, and symmetry, this well
 AT_LIMIT = 1e-9  # of the size, or rad: a start beyond a limit by less stands at it, by the ten digits that are typed
 TABLE_ENDS = 1e-6  # of the span: a table's period and the values at its ends are printed with seven digits
-EXPECTED_RELATIVE = 1e-6  # of the largest number expected: default of `rel` (manual/format.md)
+EXPECTED_RELATIVE = 1e-6  # of the largest number expected: default of `rel` (manual/format.md, "Expect")
 EXPECTED_ABSOLUTE = 1e-9  # default of `abs`
 
 # The kernel's thresholds (kernel/scene.py, Limits).

@@ -1,4 +1,4 @@
-"""Poses and rates at the start that fit all joints (manual/format.md)."""
+"""Poses and rates at the start that fit all joints (manual/format.md, "Where bodies start")."""
 
 from __future__ import annotations
 

@@ -1,4 +1,4 @@
-"""From the words of the command line to an exit code (manual/commands.md).
+"""From the words of the command line to an exit code (manual/commands.md, "Exit codes").
 
 Results go to standard output, everything else to standard error; a command that fails has written nothing. Impure.
 """
@@ -25,7 +25,7 @@ from heuncli.version import VERSION
 INTERRUPTED = 130
 Given = TypeVar("Given")
 BUG = 70
-OF_SEVERAL = (BUG, 5, 2, 3, 4, 1)  # manual/commands.md: which exit code stands for several files
+OF_SEVERAL = (BUG, 5, 2, 3, 4, 1)  # manual/commands.md, "Exit codes": which exit code stands for several files
 OUT_OF_MEMORY = Problem("out-of-memory", "the memory does not suffice", hint="fewer samples, or --only")
 
 

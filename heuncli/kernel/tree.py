@@ -294,7 +294,7 @@ def load_along(freedom: cython.pointer[Freedom], M: Vec3, f: Vec3) -> cython.dou
 
 
 def add_branch(parent: cython.pointer[Body], body: cython.pointer[Body]) -> cython.void:
-    """The branch hangs at the arm l: K += K_b, C += C_b + L K_b, A += A_b + C_b L' + L C_b' + L K_b L', L x = l x x.
+    """The branch hangs at the arm l: K += K_b, C += C_b + L K_b, A += A_b + C_b L' + L C_b' + L K_b L', L = hat(l).
 
     Behind a ball neither A_b nor C_b is left.
     """

@@ -4,8 +4,8 @@
     M'(P) = sum' (x - P) x k + couples - sum' (x - P) x m x..     about P [N m]
     N = s'.n (tension > 0), Q1 = s'.e1, Q2 = s'.e2, T = M'.n, M1 = M'.e1, M2 = M'.e2
 sum' runs over the piece, n points into it; k is its weight, the loads and the joints on it. With the acceleration
-matrix Acc = [hat(sigma.) + hat(sigma)^2, x_o.. - g] the inertia load of a piece of pseudo-inertia P is Acc P: its last
-column the force, the skew part of the rest the moment about the body's origin. Heun (1901), (57)-(61), corrected.
+matrix Acc = [hat(sigma.) + hat(sigma)^2, x_o.. - g] sum' m (x.. - g) of a piece of pseudo-inertia P is the last column
+of Acc P, its moment about the body's origin the skew part of the rest. Heun (1901), (57)-(61), corrected.
 """
 
 from __future__ import annotations

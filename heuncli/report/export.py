@@ -90,7 +90,7 @@ def _sums(sums: Sequence[Any]) -> Iterator[tuple[str, Series]]:
 
 
 def present(results: Results) -> dict[str, Any]:
-    """The blocks that apply, in the order of manual/results.md, by their names in the JSON."""
+    """The blocks that apply, in the order of manual/results.md, "Paths", by their names in the JSON."""
     blocks = {f.name: getattr(results, f.name) for f in fields(results)}
     return {name: block for name, block in blocks.items() if name in ALWAYS or len(block)}
 

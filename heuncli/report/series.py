@@ -1,6 +1,6 @@
 """One walk over the results: every number that runs over the instants, with its path, components and unit.
 
-The paths are those of the JSON (manual/results.md): `joints.elbow.force.z` is kind `joints`, name `elbow`, quantity
+The paths are those of manual/results.md, "Paths": `joints.elbow.force.z` is kind `joints`, name `elbow`, quantity
 `force`, component `z`; in a run of cuts the component begins with the number of the cut, `3.z`. Units and shapes are
 those of the schema: what is added to the results later needs a row there.
 """

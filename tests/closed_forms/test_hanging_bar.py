@@ -1,4 +1,4 @@
-"""manual/signs.md, all signs at once: a bar of weight 9.81 N hanging at rest."""
+"""manual/signs.md, "Signs at a glance": a bar of weight 9.81 N hanging at rest."""
 
 from __future__ import annotations
 

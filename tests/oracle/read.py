@@ -161,7 +161,7 @@ def start_state(scene: Scene) -> dict[str, Placed]:
 
 
 def state_at(bodies: Mapping[str, Mapping[str, Any]], instant: int) -> dict[str, Placed]:
-    """The state in a result's `bodies` (manual/results.md: arrays with the instants first)."""
+    """The state in a result's `bodies` (manual/results.md, "Paths": arrays with the instants first)."""
     keys = ("position", "rotation", "velocity", "angular_velocity")
     return {name: Placed(*(np.array(body[k][instant], dtype=float) for k in keys)) for name, body in bodies.items()}
 

@@ -5,7 +5,7 @@
 With angular columns divided by a length of the scene and rows at unit length, the SVD of J gives its rank, the free
 directions N and the self-stresses Z (JᵀZ = 0). V̇ = V̇p + N y, (NᵀMN) y = Nᵀ(F − b − M V̇p): massless parts need no
 inverse of M. λ is known up to Z; a load c·λ is unique exactly if cᵀZ = 0 (manual/theory.md, "Redundancy"). Signs and
-places are the those of manual/signs.md: force and moment of `from` ON `to`, about the `to` point, by the constraint
+places are those of manual/signs.md: force and moment of `from` ON `to`, about the `to` point, by the constraint
 alone; drives apart.
 """
 

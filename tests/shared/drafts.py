@@ -110,7 +110,7 @@ def after(scene: Mechanism, a: Assembly, dt: float) -> Assembly:
 
 
 def coordinates(scene: Mechanism, a: Assembly, j: Joint) -> dict[str, Any]:
-    """What the joint's kind is about, by its plain definition in manual/format.md."""
+    """What the joint's kind is about, by its plain definition in manual/format.md, "Joints"."""
     xa, Ra = pose(scene, a, j.a)
     xb, Rb = pose(scene, a, j.b)
     D = xb + Rb @ j.q - xa - Ra @ j.p

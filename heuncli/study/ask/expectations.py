@@ -1,4 +1,4 @@
-"""What a spec expects of its own results, compared (manual/format.md, `expect`)."""
+"""What a spec expects of its own results, compared (manual/format.md, "Expect")."""
 
 from __future__ import annotations
 
