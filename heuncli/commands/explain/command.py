@@ -15,7 +15,7 @@ FOLDER = Path(__file__).parents[2] / "manual"
 # in the order in which a reader may want them
 PAGES = (
     "commands", "format", "results", "signs", "open", "stresses", "model", "rest", "modes", "methods", "accuracy",
-    "chart", "probe", "limits", "theory", "references", "decisions", "speed", "developing", "index",
+    "chart", "probe", "limits", "theory", "references", "decisions", "speed", "developing", "contributing", "index",
 )  # fmt: skip
 
 

@@ -1,0 +1,92 @@
+"""A type of load of a known law is its keys, what they mean, and a load of the mechanism."""
+
+from __future__ import annotations
+
+from pathlib import Path
+
+import pytest
+
+from tests.contributing.addition import Addition, Edit, after, answers, heun
+
+COUNTERWEIGHT = Addition(  # a rope over a pulley, whose pull is the same at any length
+    "A load",
+    {
+        "heuncli/spec/format.py": (
+            after("""class Spring(Model):
+    type: Literal["spring"]
+    from_: AnEnd = Field(alias="from")
+    to: AnEnd
+    stiffness: Stiffness
+    length: Length
+    damping: Damping = 0.0
+""", """
+
+class Counterweight(Model):
+    type: Literal["counterweight"]
+    from_: AnEnd = Field(alias="from")
+    to: AnEnd
+    pull: Force
+"""),
+            Edit("Load = PointForce | ", "Load = Counterweight | PointForce | "),
+            after('    "force": PointForce, ', '"counterweight": Counterweight, '),
+        ),
+        "heuncli/spec/models.py": (
+            Edit("Force = PointForce | ", '''class Counterweight(NamedTuple):
+    """A force that draws two points together, the same at any distance [N]."""
+
+    from_: End
+    to: End
+    pull: float
+    type: Literal["counterweight"] = "counterweight"
+
+
+Force = Counterweight | PointForce | '''),
+        ),
+        "heuncli/spec/resolve.py": (
+            Edit("            case f.TurnSpring():\n", """            case f.Counterweight():
+                return m.Counterweight(self.end(load.from_), self.end(load.to), load.pull)
+            case f.TurnSpring():
+"""),
+        ),
+        "heuncli/spec/rules/references.py": (
+            Edit("load, f.Actuator | f.Spring):", "load, f.Actuator | f.Spring | f.Counterweight):"),
+        ),
+        "heuncli/spec/rules/joints.py": (
+            Edit("load, f.Actuator | f.Spring) or", "load, f.Actuator | f.Spring | f.Counterweight) or"),
+        ),
+        "heuncli/mechanism/build.py": (
+            Edit("        case m.Torque():\n", """        case m.Counterweight():
+            a, b = f.from_, f.to
+            ends = index[a.body], np.array(a.point), index[b.body], np.array(b.point)
+            return PairLoad(name, *ends, Expression.of(-f.pull), 0.0, 0.0, 0.0)
+        case m.Torque():
+"""),
+            after("import numpy as np\n", "\nfrom heuncli.expressions.programs import Expression"),
+        ),
+        "heuncli/report/labels.py": (Edit('"actuator", "spring"})', '"actuator", "spring", "counterweight"})'),),
+    },
+)  # fmt: skip
+SCENE = """\
+heun: 1
+ground: {points: {O: [0, 0, 0], pulley: [0, 0, 2]}}
+bodies: {a: {mass: 4, center: [0, 0, 0], inertia: [1, 1, 1], points: {c: [0, 0, 0]}}}
+joints: {u: {type: slide, from: ground.O, to: a.c, axis: [0, 0, 1], initial: {travel: 0, speed: 0}}}
+forces: {w: {type: counterweight, from: PLACE, to: a.c, pull: 12}}
+analysis: {times: [0, 0.5]}
+"""
+
+
+def test_a_load(tmp_path: Path) -> None:
+    """It draws a mass up with 3 m/s^2 and puts its work into it; a place that there is not is told where it stands."""
+    folder = COUNTERWEIGHT.made_in(tmp_path)
+    scene = SCENE.replace("PLACE", "ground.pulley")
+    paths = "coordinates.u.travel", "energy.work", "forces.w.power", "foundation.elements.w.force.z"
+    found = answers(folder, scene, [f"final {path}" for path in paths])
+    assert found == pytest.approx([0.375, 12.0 * 0.375, 12.0 * 1.5, -12.0], rel=1e-9)
+    wrong = heun(folder, "validate", "-", text=SCENE.replace("PLACE", "ground.wheel"))
+    assert "forces.w.from" in wrong.stderr and wrong.returncode != 0
+    assert "same point" in heun(folder, "validate", "-", text=SCENE.replace("PLACE", "a.c")).stderr
+
+
+def test_its_list() -> None:
+    assert COUNTERWEIGHT.is_as_listed()
