@@ -94,6 +94,18 @@ def test_what_is_certainly_wrong(text: str, said: str) -> None:
     assert f"'{text}' {said}" in wrong(text)
 
 
+# Seeds of random expressions, chosen from the first 400 of either test below: between them they show every operation on
+# every two kinds of parts that those show, and of 372 changes of a word or a number of the code of dimensions they find
+# all 169 that those find, each by three seeds where there are three.
+ANY = (
+    0, 9, 12, 16, 17, 21, 23, 26, 32, 33, 34, 38, 41, 54, 55, 64, 68, 76, 94, 107, 108, 111, 114, 115, 117, 132,
+    135, 145, 146, 150, 161, 171, 174, 192, 208, 217, 243, 253, 254, 259, 262, 297, 299, 300, 328, 339, 340, 350,
+    386, 395,
+)  # fmt: skip
+RIGHT = (
+    1, 4, 6, 16, 21, 28, 30, 34, 38, 40, 57, 62, 68, 85, 91, 92, 98, 113, 115, 131, 148, 160, 171, 178, 194, 196,
+    199, 212, 233, 235, 240, 251, 252, 332, 377,
+)  # fmt: skip
 OPERATIONS = ("+", "-", "*", "*", "/", "/", "**", "sqrt", "abs", "neg", "min", "sin", "if", "hypot", "half")
 
 
@@ -133,7 +145,7 @@ def value(text: str, units: tuple[float, float, float]) -> float:
     return found.constant
 
 
-@pytest.mark.parametrize("seed", range(400))
+@pytest.mark.parametrize("seed", ANY)
 def test_a_certain_dimension_is_what_a_change_of_units_shows(seed: int, monkeypatch: pytest.MonkeyPatch) -> None:
     """Where nothing without a unit is added to what has one: that is taken to have the same."""
     kinds: list[set[str]] = []
@@ -188,7 +200,7 @@ def right(draw: random.Random, wanted: Dimension, depth: int) -> str:
     return f"{name}*{right(draw, rest, depth - 1)}"
 
 
-@pytest.mark.parametrize("seed", range(400))
+@pytest.mark.parametrize("seed", RIGHT)
 def test_nothing_right_is_refused(seed: int) -> None:
     draw = random.Random(seed)
     wanted = draw.choice([*DIMENSIONS.values()])
