@@ -29,7 +29,7 @@ sections: {{run: {{body: rod, from: root, to: tip, count: 31}}}}
     )
 
 
-def test_theory_2j_5() -> None:
+def test_case_5() -> None:
     """N = 1/2 m ω² L (1 − ξ²) at ω = 20: 600, 450 in the middle, 0 at the tip."""
     run = whirl(20, 0).sections["run"]
     xi = run["s"] / 1.5
@@ -76,7 +76,7 @@ sections: {{run: {{body: rod, from: c, to: tip, count: 21}}}}
     )
 
 
-def test_theory_2j_9() -> None:
+def test_case_9() -> None:
     """m = 3, L = .8, 40°, ω = 50: couple 196.9615506024416 N m, bearings .5 m apart bear 393.9231012048832 N each."""
     found = skew(3, 0.8, 40, 50, bearings=True)
     near(found.joints["b"]["radial"], 393.9231012048832, 400.0, 1e-14)

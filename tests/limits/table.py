@@ -15,7 +15,7 @@ LIMITS = {
     "Euler's angles": {
         "limits/test_attitudes.py": ("eulers_angles_lose_their_digits",
                                      "eulers_angles_lose_the_attitude_and_heun_keeps_it"),
-        "closed_forms/test_theory_2j_motion.py": ("case_2_sleeping_top",),
+        "closed_forms/test_motion_cases.py": ("case_2_sleeping_top",),
     },
     "y + h y′": {
         "limits/test_attitudes.py": ("eulers_method_flips_at_the_wrong_time", "heun_flips_in_time",

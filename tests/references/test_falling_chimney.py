@@ -47,7 +47,7 @@ def cuts(places: dict[str, float], height: float) -> str:
     return "{" + ", ".join(rows) + "}"
 
 
-def test_theory_2j_4() -> None:
+def test_case_4() -> None:
     """m = 1000, L = 30, 30°: M2, Q1 and N at three heights; e1 is the direction it falls in."""
     wanted = {
         0.5: (-4598.4375, -306.5625, -2769.277468078683), 0.1: (-2979.7875, 772.5375, -5694.416468533943),
