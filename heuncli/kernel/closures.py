@@ -62,9 +62,9 @@ def measure_rows(scene: cython.pointer[Scene], t: cython.double) -> cython.void:
 
 
 def measure_moving_rows(scene: cython.pointer[Scene], t: cython.double) -> cython.void:
-    """The same of the rows that the freedoms may answer, where all were measured when rows were chosen.
+    """Unit load, gap, rate and gamma of the rows that the freedoms can change; all others were measured before.
 
-    In a flat scene the others hold what stands across it: their gaps stay, their rates are none.
+    Those are, in a flat scene, the rows that hold what stands across it: their gaps stay, their rates are zero.
     """
     r: cython.Py_ssize_t
     for r in range(scene.closure_count):
@@ -75,7 +75,7 @@ def measure_moving_rows(scene: cython.pointer[Scene], t: cython.double) -> cytho
 
 
 def measure_row(scene: cython.pointer[Scene], row: cython.pointer[Closure], t: cython.double) -> cython.void:
-    """The same of one row."""
+    """Unit load (f, m at Q), gap, rate and gamma of one row, less what is prescribed of its length."""
     if scene.flat and row.e.z == 0.0 and row.g.z == 0.0:  # nothing along z, nor a turn about it
         measure_in_plane(scene, row)
     else:

@@ -323,9 +323,9 @@ def put_loads(scene: cython.pointer[Scene], inertial: cython.bint) -> cython.voi
 
 
 def put_all_loads(scene: cython.pointer[Scene]) -> cython.void:
-    """The same with all that the bodies resist if no freedom accelerates, gravity among it; alpha_zero and a_zero.
+    """What each body asks of its joint if no freedom accelerates, gravity and inertia among it; less applied loads.
 
-    What the freedoms then answer is an answer to loads alone.
+    Leaves those accelerations in alpha_zero and a_zero. What the freedoms then answer is an answer to loads alone.
     """
     i: cython.Py_ssize_t
     zero: Vec3 = Vec3(0.0, 0.0, 0.0)

@@ -81,12 +81,12 @@ class Cuts:
         return Cutting(self.form, self.n, self.e1, (self.points @ self.n).ravel(), side.ravel())
 
     def laid_for(self, on: Sequence[object]) -> Cuts:
-        """Themselves, whatever acts on the body."""
+        """These cuts: where they lie does not depend on what acts on the body (that of a Stretch may)."""
         return self
 
     @property
     def without_stresses(self) -> Cuts:
-        """The same, where no stresses are asked for."""
+        """The cuts without properties of their sections, so that no stresses are told."""
         return replace(self, properties=None)
 
 

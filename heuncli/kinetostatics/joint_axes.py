@@ -30,7 +30,7 @@ def components(vectors: Array, R: Array | None) -> Array:
 
 
 def components_of_shares(shares: Array, R: Array | None) -> Array:
-    """Those of the shares of self-stresses, force and moment, (n_t, 6, k)."""
+    """The components in the axes R of shares of self-stresses, force and moment, (n_t, 6, k)."""
     if R is None:
         return shares
     return np.concatenate([np.einsum("tji,tjk->tik", R, part) for part in (shares[:, :3], shares[:, 3:])], axis=1)

@@ -126,7 +126,7 @@ def acceleration_matrix(body: int, states: BodyStates, gravity: Array) -> Array:
 
 
 def accelerations_as_matrix(w: Array, u: Array, a: Array) -> Array:
-    """The same of an angular velocity, its rate and the acceleration of the body's origin, body axes (..., n_t, 3)."""
+    """Acc of angular velocity w, its rate u, the origin's acceleration a; body axes: (..., n_t, 3) -> (3, ..., n_t, 4)."""
     A = np.empty((3, *u.shape[:-1], 4))
     square = np.sum(w * w, axis=-1)
     for i in range(3):
@@ -180,7 +180,7 @@ def piece_loads(cuts: Cuts, A: Array, on: Sequence[Attachment]) -> tuple[Array, 
 
 
 def moving_piece_loads(cuts: Cuts, A: Array, on: Sequence[Attachment]) -> tuple[Array, Array]:
-    """The same for cuts that move along the body: pieces (n_t, k, 4, 4), points (n_t, k, 3)."""
+    """`piece_loads` of cuts that move along the body: pieces (n_t, k, 4, 4), points (n_t, k, 3)."""
     p = cuts.points.transpose(2, 0, 1)
     inertia = -np.einsum("i...tj,tkjl->il...tk", A, cuts.pieces)
     force = inertia[:, 3].copy()

@@ -80,12 +80,12 @@ class Stretch:
 
     @property
     def warnings(self) -> tuple[str, ...]:
-        """Those of its cuts."""
+        """What is worth saying about its cuts."""
         return self.asked.warnings
 
     @property
     def without_stresses(self) -> Stretch:
-        """The same, where no stresses are asked for."""
+        """The stretch with cuts that have no properties, so that no stresses are told."""
         return replace(self, asked=self.asked.without_stresses)
 
     def height(self, s: Array) -> Array:

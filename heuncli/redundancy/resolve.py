@@ -172,7 +172,7 @@ def sums_of(runner: Runner, recovered: Recovered, joints: Sequence[JointLoads], 
 
 
 def of_constraints(stress: SelfStress, joints: Sequence[JointLoads], states: BodyStates) -> SelfStress:
-    """The same with the shares of the joints' constraints alone, without those of drives and stops."""
+    """The self-stresses with their shares in the joints' constraints alone, without those in drives and stops."""
     shares = [load.parts(states, whole)[0] for load, whole in zip(joints, stress.shares, strict=True)]
     alone: SelfStress = replace(stress, shares=np.array(shares))
     return alone
