@@ -11,7 +11,7 @@ import numpy as np
 import pytest
 
 from heuncli.cli import memory
-from heuncli.integration.run.step_records import Growing
+from heuncli.integration.run.step_records import GrowingRows
 from heuncli.integration.trajectory import Kept
 from heuncli.results_schema import REPORT_OF, REPORTS, SHARES
 from heuncli.spec.load import load
@@ -117,7 +117,7 @@ def test_a_library_that_finds_no_memory(heun: Heun, monkeypatch: pytest.MonkeyPa
 
 def test_rows_that_grow() -> None:
     rng = np.random.default_rng(1)
-    grown, whole = Growing(3), np.zeros((0, 3))
+    grown, whole = GrowingRows(3), np.zeros((0, 3))
     for n in (1, 100, 0, 7, 500):
         rows = rng.random((n, 3))
         grown.add(rows)

@@ -12,7 +12,7 @@ import numpy as np
 
 from heuncli import tolerances
 from heuncli.errors import Problem, SolveError
-from heuncli.integration.diagnosis.solvability import Asked, require_solvable
+from heuncli.integration.diagnosis.solvability import Wording, require_solvable
 from heuncli.linearisation.modes import Modes, most, shape_of
 from heuncli.linearisation.oscillations import oscillations
 from heuncli.linearisation.shapes import coordinates
@@ -88,7 +88,7 @@ def looked_at(setup: Setup) -> Looked:
     runner, layout = setup.runner, setup.scene.layout
     t = float(setup.spec.analysis.times[0]) if setup.spec.analysis.type == "state" else 0.0
     at = runner.recovered(np.array([t]), layout.y0[None, :])
-    require_solvable(setup.scene, at, Asked("accelerations of the start"))
+    require_solvable(setup.scene, at, Wording("accelerations of the start"))
     return look(setup.scene, runner, t, layout.y0, runner.start_holding)
 
 

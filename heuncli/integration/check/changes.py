@@ -42,16 +42,16 @@ class Changes:
     error: Array
 
     def before(self, t: float) -> Changes:
-        """Those before an instant."""
+        """The changes before an instant [s]."""
         return self.some(self.times < t)
 
     def known_by(self, t: float, last: float) -> Changes:
-        """Those that may lie up to an instant, by their errors, in a run that ends there: at its last instant then."""
+        """The changes up to an instant t [s] or, by their errors, perhaps so; late ones at `last`, where a run ends."""
         kept = self.some(self.times - np.nan_to_num(self.error) <= t)
         return replace(kept, times=np.where(kept.times < t, kept.times, last))
 
     def some(self, kept: Mask) -> Changes:
-        """Those."""
+        """Some of the changes, kept (n,)."""
         return replace(self, times=self.times[kept], to=self.to[kept], error=self.error[kept])
 
 

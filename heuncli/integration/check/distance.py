@@ -42,7 +42,10 @@ def angle_error(layout: Layout, several: Recovered, count: int) -> tuple[Array, 
 
 
 def angles_apart(layout: Layout, several: Recovered, count: int, first: int = 0) -> tuple[Array, Array]:
-    """The same of the counted angles [rad], (n,); and the largest of them in the one, at least 1, (n,)."""
+    """How far any counted angle of one run is from that of a later one [rad], (n,); and its largest, at least 1, (n,).
+
+    several: answers of so many runs, instant by instant; first: the number of the one.
+    """
     turning = [n for n, freedom in enumerate(layout.freedoms) if freedom.quantity == "angle"]
     angles = np.hstack([several.freedoms["q"][:, turning], several.states[:, list(layout.counters.values())]])
     own = angles[first::count]

@@ -41,7 +41,7 @@ RERUNS = 2
 CHUNK = 2_000_000  # numbers compared at a time
 
 
-class Loads(Protocol):
+class LoadDifferences(Protocol):
     """What collects the differences of loads and energy between the two runs (study/solve/load_errors.py)."""
 
     def add(self, several: Recovered, asked: Mask, before: Mask) -> None:
@@ -62,7 +62,7 @@ class Loads(Protocol):
 
 
 @record
-class Checked:
+class CheckedRun:
     """A run that was checked.
 
     recovered: accelerations and loads at the run's instants; motion: largest estimated error of any point over the
@@ -113,7 +113,7 @@ class Compared:
         return bool(mine > its or (mine == its and self.motion < than.motion))
 
 
-def checked_run(runs: Runs, tolerance: float, loads: Loads) -> Checked:
+def checked_run(runs: Runs, tolerance: float, loads: LoadDifferences) -> CheckedRun:
     """Integrate until the motion's estimated error is below `tolerance`, with at most two reruns; else the best run."""
     a = runs.first(tolerance)
     best, lost = None, 0.0
@@ -141,7 +141,7 @@ def checked_run(runs: Runs, tolerance: float, loads: Loads) -> Checked:
     seconds = best.seconds + time.perf_counter() - begun
     told = best.motion, loads.estimate(), loads.errors(), best.horizon, loads.kinetic()
     beside = tuple(run.blows for run in best.runs[1:])
-    return Checked(a, recovered, *told, beside, seconds, lost, changes_of_conditions(runs, best))
+    return CheckedRun(a, recovered, *told, beside, seconds, lost, changes_of_conditions(runs, best))
 
 
 def changes_of_conditions(runs: Runs, best: Compared) -> tuple[Changes, ...]:

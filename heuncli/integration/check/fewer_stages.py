@@ -9,7 +9,7 @@ from heuncli.integration.check.runs import Runs
 from heuncli.integration.methods.registry import method_of
 from heuncli.integration.run.errors import Eventful
 from heuncli.integration.run.event_frequency import FEW_STAGES
-from heuncli.integration.run.request import Request, Watch
+from heuncli.integration.run.request import Request, StoppingRules
 
 TOLD = (
     "events: {cut} of the first {steps} steps end at one: up to t = {t:.3g} s {name} takes {few} evaluations, where "
@@ -23,7 +23,7 @@ def try_fewer_stages(runs: Runs, left: Eventful) -> bool:
     with suppress(SolveError, LimitError):
         most = left.evaluations // (len(method.nodes) - 1)
         request = Request([left.reached], left.local, method, before, deadline=runs.deadline, most_steps=most)
-        trial = runs.runner.trajectory(request, Watch())
+        trial = runs.runner.trajectory(request, StoppingRules())
         if trial.evaluations < left.evaluations:
             left.told = TOLD.format(
                 cut=left.cut, steps=left.steps, t=left.reached, name=method.name, few=trial.evaluations,

@@ -23,15 +23,15 @@ BLOCKS, BLOCK = 8, 16  # else so many stretches of so many steps, spread over th
 
 
 @record
-class Instants:
-    """Instants (n,) of a run, ascending, and its states there (n, n_state); asked (n,): whether they are told."""
+class ComparisonInstants:
+    """Instants (n,) of a run, ascending, and its states there (n, n_state); asked (n,): which of them are told."""
 
     times: Array
     states: Array
     asked: Mask
 
 
-def instants_of(runner: Runner, run: Trajectory) -> Instants:
+def instants_of(runner: Runner, run: Trajectory) -> ComparisonInstants:
     """All instants at which a run is compared: asked ones, ends of steps, and some within the steps.
 
     What is followed is solved at each instant by itself: it errs by rounding alone, most where the closures are nearest
@@ -48,7 +48,7 @@ def instants_of(runner: Runner, run: Trajectory) -> Instants:
     order = np.argsort(times, kind="stable")  # of equal instants the asked one comes first
     times = times[order]
     new = np.concatenate([[True], times[1:] != times[:-1]]) & (times <= run.times[-1])
-    return Instants(times[new], states[order][new], (order < len(asked))[new])
+    return ComparisonInstants(times[new], states[order][new], (order < len(asked))[new])
 
 
 def ends_of(runner: Runner, run: Trajectory, seen: Indices) -> tuple[Array, Array]:

@@ -13,7 +13,7 @@ from heuncli.integration.check.distance import Marks
 from heuncli.integration.methods.dop853 import DOP853
 from heuncli.integration.methods.method import Method
 from heuncli.integration.run.errors import ClosuresLost, Stiff
-from heuncli.integration.run.request import Request, Watch
+from heuncli.integration.run.request import Request, StoppingRules
 from heuncli.integration.run.runner import Runner
 from heuncli.integration.trajectory import Trajectory
 from heuncli.results import Array
@@ -21,7 +21,7 @@ from heuncli.tree.layout import Layout
 
 RATIO = 30.0  # local tolerance of A over that of B
 FIRST = 1.0  # local tolerance of the first run over the tolerance asked
-LEAST_RATIO = 4.0  # the same at least: errors are as the tolerances, 2 |A - B| is still 1.5 times that of A
+LEAST_RATIO = 4.0  # the least such ratio: errors go as tolerances, 2 |A - B| is still 1.5 times that of A
 LEAST_HALVING = 2.0  # of a given step: 2 |A - B| is at order 1 still the error of A
 OWN_STEPS = 1e-6  # tolerance of a run that finds its own steps, where given ones fail
 COLLAPSED = ("step-collapsed", "closure-lost")  # how a run may end near a singular pose because of rounding
@@ -38,7 +38,9 @@ class Runs:
         """step: of a method of given step. watched: the runs to be told are left where another takes less (Stiff)."""
         self.runner, self.times, self.jumps, self.step = runner, times, jumps, step
         self.deadline, self.method, self.watched = deadline, method, watched
-        self.eventful = False  # whether the same runs are left where events end their steps, or cease to (Eventful)
+        self.eventful = (
+            False  # whether the runs to be told are left where events end their steps, or cease to (Eventful)
+        )
         self.moved, self.marks = moved_start(runner.layout), Marks(runner.layout)
 
     def run(
@@ -53,8 +55,8 @@ class Runs:
             self.times if at is None else at, local, by or self.method, self.jumps, start, self.deadline, most_steps
         )
         told = at is None
-        watch = Watch(ending=told, stiffness=told and self.watched, events=told and self.eventful)
-        return self.runner.trajectory(request, watch)
+        rules = StoppingRules(ending=told, stiffness=told and self.watched, events=told and self.eventful)
+        return self.runner.trajectory(request, rules)
 
     def first(self, tolerance: float) -> Trajectory:
         """The run asked for; where it collapses at a singular pose, a coarser one that passes it."""

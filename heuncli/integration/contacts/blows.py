@@ -28,7 +28,7 @@ DRIVES = "drives"  # the cause beside the given impulses
 
 
 @record
-class Given:
+class GivenBlow:
     """What is given to happen at one instant: impulses, and drives whose rates jump.
 
     before, after: the last instant before it and the first behind; blows: places in mechanism.blows; drives: of joints,
@@ -81,7 +81,7 @@ def rate_jumps(value: Expression, last: float) -> list[tuple[float, float, float
     return jumps(value, just_after(last), order=1) if value.time_dependent else []
 
 
-def schedule(mechanism: Mechanism, last: float) -> list[Given]:
+def schedule(mechanism: Mechanism, last: float) -> list[GivenBlow]:
     """The blows that are given within [0, last], ascending; those of one instant together."""
     at: dict[float, tuple[list[int], dict[int, tuple[float, float]]]] = {}
     befores: dict[float, float] = {}
@@ -92,12 +92,18 @@ def schedule(mechanism: Mechanism, last: float) -> list[Given]:
     for i, blow in enumerate(mechanism.blows):
         with_drive = next((t for t, before in befores.items() if before < blow.time <= t), blow.time)
         at.setdefault(with_drive, ([], {}))[0].append(i)
-    return [Given(befores.get(t, just_before(t) if t > 0.0 else 0.0), t, tuple(at[t][0]), at[t][1]) for t in sorted(at)]
+    return [
+        GivenBlow(befores.get(t, just_before(t) if t > 0.0 else 0.0), t, tuple(at[t][0]), at[t][1]) for t in sorted(at)
+    ]
 
 
 @record
-class Asked:
-    """What is given at a state: the answers there, impulses, and the columns of loads and of prescribed jumps."""
+class RightSides:
+    """What is given at a state: right sides of the equations of the blow, a column each impulse and one for all drives.
+
+    still: the kernel's answers at that state; impulses: in world axes; loads: columns (n_b, 6), moment about the joint
+    point and force; jumps: columns (n_f + n_rows,) of what the prescribed rates jump by; causes: names of the columns.
+    """
 
     still: Recovered
     impulses: tuple[Impulse, ...]
@@ -106,8 +112,8 @@ class Asked:
     causes: tuple[str, ...]
 
 
-def asked_of(evaluator: Evaluator, given: Given, state: Array) -> Asked:
-    """What is given, in world axes; the contacts are open, so that they are columns themselves."""
+def right_sides(evaluator: Evaluator, given: GivenBlow, state: Array) -> RightSides:
+    """What is given at a state (n,) just before it acts; all contacts are open there, and columns of their own."""
     layout, mechanism = evaluator.layout, evaluator.layout.mechanism
     still = evaluator.recovered(np.array([given.before]), state[None, :], holding=np.zeros(len(layout.contacts)))
     impulses = tuple(impulse(layout, still.bodies[0], i) for i in given.blows)
@@ -117,28 +123,28 @@ def asked_of(evaluator: Evaluator, given: Given, state: Array) -> Asked:
         loads.append(np.zeros((n_b, 6)))
         jumps.append(prescribed(layout, given))
     causes = tuple(mechanism.blows[i].name for i in given.blows) + ((DRIVES,) if given.drives else ())
-    return Asked(still, impulses, loads, jumps, causes)
+    return RightSides(still, impulses, loads, jumps, causes)
 
 
-def strike(evaluator: Evaluator, given: Given, state: Array, time: float) -> Jump:
-    """What blows make of a state, at an instant."""
-    asked = asked_of(evaluator, given, state)
+def strike(evaluator: Evaluator, given: GivenBlow, state: Array, time: float) -> Jump:
+    """The blow that is given at a state (n,) of a scene without contacts."""
+    sides = right_sides(evaluator, given, state)
     found = blows(
-        evaluator.workspace, given.before, asked.still.states[0], np.array(asked.loads), np.array(asked.jumps)
+        evaluator.workspace, given.before, sides.still.states[0], np.array(sides.loads), np.array(sides.jumps)
     )
-    after, work = behind(evaluator.layout, given, asked, found.columns)
-    return told(evaluator, given, asked, Told(time, found, asked.causes, after, work, np.zeros(0)))
+    after, work = state_behind(evaluator.layout, given, sides, found.columns)
+    return jump_of(evaluator, given, sides, BlowResult(time, found, sides.causes, after, work, np.zeros(0)))
 
 
-def behind(layout: Layout, given: Given, asked: Asked, columns: Columns) -> tuple[Array, float]:
+def state_behind(layout: Layout, given: GivenBlow, sides: RightSides, columns: Columns) -> tuple[Array, float]:
     """The state behind columns of jumps, and the work of what is given [J]."""
     whole = columns.sum()
-    work = work_of_impulses(layout, asked.still.bodies[0], whole, asked.impulses) + work_of_drives(layout, given, whole)
-    return jumped(layout, asked.still.states[0], whole), work
+    work = work_of_impulses(layout, sides.still.bodies[0], whole, sides.impulses) + work_of_drives(layout, given, whole)
+    return jumped(layout, sides.still.states[0], whole), work
 
 
 @record
-class Told:
+class BlowResult:
     """What a blow came to: its columns by cause, the state behind it, the work of all, the contacts closed there.
 
     struck: the contacts that take part in it, also those that share what others bear.
@@ -153,20 +159,20 @@ class Told:
     struck: tuple[str, ...] = ()
 
 
-def told(evaluator: Evaluator, given: Given, asked: Asked, blow: Told) -> Jump:
-    """The blow with its energies."""
+def jump_of(evaluator: Evaluator, given: GivenBlow, sides: RightSides, blow: BlowResult) -> Jump:
+    """The blow with its energies; blow: what the impulses came to."""
     layout, found, after = evaluator.layout, blow.found, blow.after.copy()
     if layout.work_at >= 0:
         after[layout.work_at] += blow.work
     then = evaluator.recovered(np.array([given.after]), after[None, :], holding=blow.holding)
     still = replace(
-        asked.still, causes=found.columns.at(None), residual=np.array([found.unmet.max()]),
+        sides.still, causes=found.columns.at(None), residual=np.array([found.unmet.max()]),
         idle=np.array([float(found.idle)]),
     )  # fmt: skip
     kinetic = kinetic_energy(layout, still.bodies[0]), kinetic_energy(layout, then.bodies[0])
     names = tuple(dict.fromkeys((*given.names(layout.mechanism), *blow.struck)))
     return Jump(
-        blow.time, names, still, blow.causes, asked.impulses, then.states[0], kinetic, blow.work, blow.holding
+        blow.time, names, still, blow.causes, sides.impulses, then.states[0], kinetic, blow.work, blow.holding
     )  # fmt: skip
 
 
@@ -191,7 +197,7 @@ def column(layout: Layout, bodies: Table, given: Impulse) -> Array:
     return loads
 
 
-def prescribed(layout: Layout, given: Given) -> Array:
+def prescribed(layout: Layout, given: GivenBlow) -> Array:
     """The jumps of the prescribed rates, of the freedoms and then of the closure rows."""
     jumps = {k: then - first for k, (first, then) in given.drives.items()}
     freedoms = [jumps.get(f.joint, 0.0) if f.q < 0 else 0.0 for f in layout.freedoms]
@@ -223,7 +229,7 @@ def work_of_impulses(layout: Layout, bodies: Table, jump: Columns, impulses: tup
     return work
 
 
-def work_of_drives(layout: Layout, given: Given, jump: Columns) -> float:
+def work_of_drives(layout: Layout, given: GivenBlow, jump: Columns) -> float:
     """Work of the drives' impulses, by the mean of the prescribed rates before and behind [J].
 
     A drive whose rate stays works, too: its impulse times that rate.

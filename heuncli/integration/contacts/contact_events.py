@@ -6,7 +6,16 @@ import numpy as np
 
 from heuncli import tolerances
 from heuncli.errors import Problem, SolveError
-from heuncli.integration.contacts.blows import Asked, Given, Jump, Told, asked_of, behind, met_freely, told
+from heuncli.integration.contacts.blows import (
+    BlowResult,
+    GivenBlow,
+    Jump,
+    RightSides,
+    jump_of,
+    met_freely,
+    right_sides,
+    state_behind,
+)
 from heuncli.integration.contacts.resting import rests, short_flights
 from heuncli.integration.contacts.restitution import Struck, strikes, undecided
 from heuncli.integration.contacts.touching import Touching, answerable, answers, touching
@@ -31,7 +40,7 @@ class Pressed:
 
 
 @record
-class Outcome:
+class ContactOutcome:
     """The impulses, which contacts are held, which rest because they would never be seen to leave; the state behind.
 
     columns: of what is given, and of the touching contacts by their impulses; work: of all [J].
@@ -48,7 +57,7 @@ class Outcome:
 def held_at(evaluator: Evaluator, t: float, state: Array) -> Array:
     """The contacts that are closed at a state, behind the blow that it may be."""
     contacts = Contacts(evaluator, t)
-    contacts.meet(Given(t, t, (), {}), state, t, None)
+    contacts.meet(GivenBlow(t, t, (), {}), state, t, None)
     return contacts.holding
 
 
@@ -94,47 +103,47 @@ class Contacts:
         if self.at_once > AT_ONCE + 4 * len(self.holding):
             raise undecided(t, max(self.strikes, key=lambda name: self.strikes[name], default=""))
 
-    def meet(self, given: Given, state: Array, time: float, row: int | None) -> Jump | None:
+    def meet(self, given: GivenBlow, state: Array, time: float, row: int | None) -> Jump | None:
         """The blow at an instant, where there is one; row: of the contact that closed or opened there."""
-        asked = asked_of(self.evaluator, given, state)
-        touch = touching(self.layout, asked.still, self.holding > 0.0, row, self.last)
-        found, pressed = self.pose(given, asked, touch)
-        outcome = self.solve(given, asked, found.columns, pressed)
+        sides = right_sides(self.evaluator, given, state)
+        touch = touching(self.layout, sides.still, self.holding > 0.0, row, self.last)
+        found, pressed = self.pose(given, sides, touch)
+        outcome = self.solve(given, sides, found.columns, pressed)
         self.holding = np.zeros(len(self.layout.contacts))
         self.holding[touch.which] = outcome.holding
         self.tell(time, touch, outcome)
-        bears, n = np.flatnonzero(outcome.struck.impulses), len(asked.loads)
+        bears, n = np.flatnonzero(outcome.struck.impulses), len(sides.loads)
         if not len(bears) and not n:
             return None
-        causes = (*asked.causes, *(self.layout.contacts[i].name for i in touch.which[bears]))
+        causes = (*sides.causes, *(self.layout.contacts[i].name for i in touch.which[bears]))
         shown = np.array([*range(n), *(n + bears)], dtype=int)
         found = Answered(outcome.columns.at(shown), found.unmet[shown], found.idle)
-        asked = replace(asked, still=self.shown(asked.still, touch, outcome.struck))
+        sides = replace(sides, still=self.shown(sides.still, touch, outcome.struck))
         struck = tuple(self.layout.contacts[i].name for i in touch.which[outcome.struck.closed])
-        blow = Told(time, found, causes, outcome.after, outcome.work, self.holding.copy(), struck)
-        jump = told(self.evaluator, given, asked, blow)
-        terms = 0.5 * float(outcome.struck.impulses**2 @ np.diag(pressed.A)) + met_freely(self.layout, asked.impulses)
+        blow = BlowResult(time, found, causes, outcome.after, outcome.work, self.holding.copy(), struck)
+        jump = jump_of(self.evaluator, given, sides, blow)
+        terms = 0.5 * float(outcome.struck.impulses**2 @ np.diag(pressed.A)) + met_freely(self.layout, sides.impulses)
         require_energy(jump, terms)
         return jump
 
-    def pose(self, given: Given, asked: Asked, touch: Touching) -> tuple[Answered, Pressed]:
+    def pose(self, given: GivenBlow, sides: RightSides, touch: Touching) -> tuple[Answered, Pressed]:
         """The columns of what is given and of each contact that touches, and the problem they make."""
-        n, n_u = len(asked.loads), len(self.layout.freedoms) + len(self.layout.rows)
-        loads = np.array([*asked.loads, *touch.loads]).reshape(-1, len(self.layout.place), 6)
-        jumps = np.array([*asked.jumps, *([np.zeros(n_u)] * len(touch.which))]).reshape(-1, n_u)
-        found = blows(self.evaluator.workspace, given.before, asked.still.states[0], loads, jumps)
+        n, n_u = len(sides.loads), len(self.layout.freedoms) + len(self.layout.rows)
+        loads = np.array([*sides.loads, *touch.loads]).reshape(-1, len(self.layout.place), 6)
+        jumps = np.array([*sides.jumps, *([np.zeros(n_u)] * len(touch.which))]).reshape(-1, n_u)
+        found = blows(self.evaluator.workspace, given.before, sides.still.states[0], loads, jumps)
         rates = answers(touch, found.columns.bodies)
         A = 0.5 * (rates[:, n:] + rates[:, n:].T)
         return found, Pressed(touch, A, answerable(self.layout, touch, A), rates[:, :n].sum(axis=1))
 
-    def solve(self, given: Given, asked: Asked, units: Columns, pressed: Pressed) -> Outcome:
+    def solve(self, given: GivenBlow, sides: RightSides, units: Columns, pressed: Pressed) -> ContactOutcome:
         """Impulses, then who rests; a rebound too short to be seen is none."""
         touch, open_ = pressed.touch, np.zeros(len(self.holding))
         at_rest = np.zeros(len(touch.which), dtype=bool)
         while True:
             struck = strikes(touch, pressed.A, pressed.moves, pressed.rates, at_rest)
             columns = self.scaled(units, touch, struck.impulses)
-            after, work = behind(self.layout, given, asked, columns)
+            after, work = state_behind(self.layout, given, sides, columns)
             then = self.evaluator.recovered(np.array([given.after]), after[None, :], holding=open_)
             holding, acceleration = rests(touch, pressed.A, pressed.moves, struck.rate, then, self.layout)
             instant = tolerances.SHORTEST_FLIGHT * self.last
@@ -143,29 +152,29 @@ class Contacts:
                 break
             at_rest = at_rest | short
         if struck.impulses.any():
-            struck, columns, whole = self.refined(given, asked, Unrefined(touch, struck, units))
-            after, work = behind(self.layout, given, asked, whole)
+            struck, columns, whole = self.refined(given, sides, Unrefined(touch, struck, units))
+            after, work = state_behind(self.layout, given, sides, whole)
         work += float(struck.impulses @ (0.5 * (touch.rate + struck.rate)))
-        self.bring_to_rest(asked.still.states[0], after)
-        return Outcome(struck, holding, at_rest, columns, after, work)
+        self.bring_to_rest(sides.still.states[0], after)
+        return ContactOutcome(struck, holding, at_rest, columns, after, work)
 
-    def refined(self, given: Given, asked: Asked, found: Unrefined) -> tuple[Struck, Columns, Columns]:
+    def refined(self, given: GivenBlow, sides: RightSides, found: Unrefined) -> tuple[Struck, Columns, Columns]:
         """The impulses and columns, and all in one, with the digits that A loses between very unequal masses.
 
         With the rates behind known, what bears is held and answered by the factors of the closures, in one column; what
         the columns of the contacts lack of it goes to the last of them.
         """
-        touch, struck, n = found.touch, found.struck, len(asked.loads)
+        touch, struck, n = found.touch, found.struck, len(sides.loads)
         own = np.flatnonzero(struck.impulses)
         contacts = [self.layout.contacts[i] for i in touch.which[own].tolist()]
         rows, sense = [c.row for c in contacts], np.array([c.sense for c in contacts])
-        load = np.sum([np.zeros((len(self.layout.place), 6)), *asked.loads], axis=0)
-        jump = np.sum([np.zeros(len(self.layout.freedoms) + len(self.layout.rows)), *asked.jumps], axis=0)
+        load = np.sum([np.zeros((len(self.layout.place), 6)), *sides.loads], axis=0)
+        jump = np.sum([np.zeros(len(self.layout.freedoms) + len(self.layout.rows)), *sides.jumps], axis=0)
         jump[len(self.layout.freedoms) + np.array(rows)] -= sense * (struck.rate - touch.rate)[own]
         holding = np.zeros(len(self.holding))
         holding[touch.which[own]] = 1.0
         self.evaluator.workspace.hold(holding)
-        whole = blows(self.evaluator.workspace, given.before, asked.still.states[0], load[None], jump[None]).columns
+        whole = blows(self.evaluator.workspace, given.before, sides.still.states[0], load[None], jump[None]).columns
         impulses = struck.impulses.copy()
         impulses[own] = -sense * whole.multipliers[0, rows]
         columns = self.scaled(found.units, touch, impulses)
@@ -214,7 +223,7 @@ class Contacts:
             rows[name] = chosen[name]
         return replace(still, rows=rows)
 
-    def tell(self, t: float, touch: Touching, outcome: Outcome) -> None:
+    def tell(self, t: float, touch: Touching, outcome: ContactOutcome) -> None:
         """Put down what is worth a sentence."""
         own = [self.layout.contacts[i] for i in touch.which.tolist()]
         struck = [own[k] for k in np.flatnonzero(outcome.struck.closed & (touch.rate < 0.0))]

@@ -71,7 +71,7 @@ def feeling(A: Array) -> list[Indices]:
 
 
 def struck_together(touch: Touching, A: Array, moves: Mask, pressed: Array, plastic: Mask) -> Struck:
-    """The same of contacts that feel each other."""
+    """The impulses of contacts of which each feels the others; arguments as those of `strikes`."""
     v = touch.rate.copy()
     total = np.zeros(len(v))
     depends = np.zeros(len(v), dtype=bool)

@@ -29,7 +29,7 @@ SEED = 1901  # fixed: the same scene is solved in the same way
 
 
 @record
-class Poses:
+class TreePoses:
     """Where the bodies are, tree order: attitudes R (n, 3, 3), joint points r (n, 3)."""
 
     R: Array
@@ -57,7 +57,7 @@ class Massless:
         """Combinations of them, N (k, other)."""
         return Massless(self.bodies, self.omega @ N, self.v @ N)
 
-    def of(self, body: int, point: Array | None, at: Poses, size: float) -> tuple[Array, Array]:
+    def of(self, body: int, point: Array | None, at: TreePoses, size: float) -> tuple[Array, Array]:
         """Of a body (-1: the ground) its angular velocities, and velocities over the size of its point, (3, k)."""
         if body not in self.bodies:
             return np.zeros((3, self.count)), np.zeros((3, self.count))
@@ -65,7 +65,7 @@ class Massless:
         arm = np.zeros(3) if point is None else (point - at.r[body]) / size
         return self.omega[n], self.v[n] + np.cross(self.omega[n], arm, axis=0)
 
-    def axes(self, at: Poses) -> dict[int, Array]:
+    def axes(self, at: TreePoses) -> dict[int, Array]:
         """Of each body that turns its angular velocities, body axes (k, 3)."""
         turning = np.einsum("nji,njk->nki", at.R[self.bodies], self.omega)
         largest = np.abs(turning).max(axis=(1, 2), initial=0.0)
@@ -91,7 +91,7 @@ def loose_axes(scene: PreparedScene, bodies: Table, rows: Table) -> dict[int, Ar
 
     By recovered bodies and closure rows, of one instant.
     """
-    at = Poses(bodies["R"], bodies["r"])
+    at = TreePoses(bodies["R"], bodies["r"])
     still = massless(scene, lacking_inertia(scene), at)
     return {i: span(turning) for i, turning in loose(scene.layout, still, at, rows).axes(at).items()}
 
@@ -106,7 +106,7 @@ def is_idle(scene: PreparedScene, recovered: Recovered, k: int) -> bool:
     universal holds of one spin the other one gives way to.
     """
     layout, bodies = scene.layout, recovered.bodies[k]
-    at = Poses(bodies["R"], bodies["r"])
+    at = TreePoses(bodies["R"], bodies["r"])
     free = loose(layout, massless(scene, lacking_inertia(scene), at), at, recovered.rows[k])
     if free.count != recovered.idle[k] or not holds_still(scene, free, at):
         return False
@@ -122,7 +122,7 @@ def is_idle(scene: PreparedScene, recovered: Recovered, k: int) -> bool:
     return bool(np.all(np.abs(power) <= tolerances.NO_MOMENT * scale))
 
 
-def holds_still(scene: PreparedScene, free: Massless, at: Poses) -> bool:
+def holds_still(scene: PreparedScene, free: Massless, at: TreePoses) -> bool:
     """Whether motions leave the points of all joints where they are, and turn no direction that guides another body.
 
     Nor an angle that is told: a pin's, a cylinder's.
@@ -143,15 +143,15 @@ def holds_still(scene: PreparedScene, free: Massless, at: Poses) -> bool:
     return True
 
 
-def start_of(scene: PreparedScene) -> Poses:
+def start_of(scene: PreparedScene) -> TreePoses:
     """Where the bodies are at the start."""
     layout, start = scene.layout, scene.start
     order = [h.body for h in layout.spanning.hangs]
     R = start.rotation[order]
-    return Poses(R, start.position[order] + np.einsum("nij,nj->ni", R, layout.reference))
+    return TreePoses(R, start.position[order] + np.einsum("nij,nj->ni", R, layout.reference))
 
 
-def massless(scene: PreparedScene, lacking: Mapping[int, Array], at: Poses) -> Massless:
+def massless(scene: PreparedScene, lacking: Mapping[int, Array], at: TreePoses) -> Massless:
     """The motions of the tree that move no mass; lacking: the bodies that lack inertia, and their axes without it.
 
     A body with all its inertia rests in them as the ground does; its freedoms may make up for what its parent does.
@@ -185,7 +185,7 @@ def massless(scene: PreparedScene, lacking: Mapping[int, Array], at: Poses) -> M
     return Massless(bodies, motion[:, :3], motion[:, 3:]).among(Vt.T / sigma)
 
 
-def at_rest(layout: Layout, i: int, axes: Array | None, at: Poses) -> Array:
+def at_rest(layout: Layout, i: int, axes: Array | None, at: TreePoses) -> Array:
     """Conditions on turn and shift of a body, (n, 6): its centre rests, it turns about `axes` without inertia alone."""
     R, c = at.R[i], layout.mechanism.bodies[layout.spanning.hangs[i].body].center - layout.reference[i]
     across = np.eye(3) if axes is None else np.linalg.svd(axes, full_matrices=True)[2][len(axes) :]
@@ -200,7 +200,7 @@ def turned_by(arm: Array) -> Array:
     return np.array([[0.0, z, -y], [-z, 0.0, x], [y, -x, 0.0]])
 
 
-def carried_along(layout: Layout, i: int, at: Poses) -> Array:
+def carried_along(layout: Layout, i: int, at: TreePoses) -> Array:
     """What the parent's turn and shift do to a body whose joint is fixed, (6, 6); a ball's turns are its own."""
     found = np.eye(6)
     arm = (at.r[i] - at.r[layout.bodies["parent"][i]]) / layout.size
@@ -210,7 +210,7 @@ def carried_along(layout: Layout, i: int, at: Poses) -> Array:
     return found
 
 
-def freedoms_of(layout: Layout, i: int, at: Poses) -> Array:
+def freedoms_of(layout: Layout, i: int, at: TreePoses) -> Array:
     """What each freedom of a body that is not driven does to it: turn and shift, world axes (n, 6)."""
     row = layout.bodies[i]
     of_parent = at.R[row["parent"]] if row["parent"] >= 0 else np.eye(3)
@@ -223,7 +223,7 @@ def freedoms_of(layout: Layout, i: int, at: Poses) -> Array:
     return np.concatenate([np.zeros((0, 6)), *found])
 
 
-def loose(layout: Layout, still: Massless, at: Poses, rows: Table) -> Massless:
+def loose(layout: Layout, still: Massless, at: TreePoses, rows: Table) -> Massless:
     """Those massless motions that the closure rows do not resist, or none by more than NEARLY_SINGULAR; one at least.
 
     Rows as redundancy/self_stress.py scales them.
@@ -267,7 +267,7 @@ def axes_to_lend(scene: PreparedScene, lacking: Mapping[int, Array]) -> dict[int
     poses = Evaluator(alone).recovered(np.zeros(POSES + 1), layout.y0 + shift).bodies
     found: dict[int, list[Array]] = {}
     for one in poses:
-        at = Poses(one["R"], one["r"])
+        at = TreePoses(one["R"], one["r"])
         for body, turning in massless(scene, lacking, at).axes(at).items():
             found.setdefault(body, []).append(turning)
     return {body: span(np.concatenate(turning)) for body, turning in found.items()}

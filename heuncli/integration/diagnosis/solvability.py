@@ -21,7 +21,7 @@ LARGE = "look at the units of loads, masses and lengths nearby"
 
 
 @record
-class Asked:
+class Wording:
     """What is asked of a scene, in words; given [N m] or [N m s]: the largest moment of what is given beside loads."""
 
     answers: str = "accelerations"
@@ -30,7 +30,7 @@ class Asked:
     given: float = 0.0
 
 
-def require_solvable(scene: PreparedScene, recovered: Recovered, asked: Asked = Asked()) -> None:  # noqa: B008
+def require_solvable(scene: PreparedScene, recovered: Recovered, wording: Wording = Wording()) -> None:  # noqa: B008
     """Raise SolveError for accelerations that are not finite, freedoms without inertia, moments about such axes."""
     finite = np.isfinite(recovered.bodies.view(np.float64)).all(axis=1)
     if not finite.all():
@@ -43,7 +43,7 @@ def require_solvable(scene: PreparedScene, recovered: Recovered, asked: Asked = 
             raise SolveError(freedom_without_inertia(scene, recovered, k))
     unmet = recovered.residual > recovered.may_stay
     if unmet.any():
-        raise SolveError(unmet_rows(recovered, int(np.flatnonzero(unmet)[0]), asked))
+        raise SolveError(unmet_rows(recovered, int(np.flatnonzero(unmet)[0]), wording))
     layout, gravity = scene.layout, scene.mechanism.gravity
     for spin in scene.idle:
         rows = recovered.bodies[:, layout.place[spin.body]]
@@ -54,14 +54,14 @@ def require_solvable(scene: PreparedScene, recovered: Recovered, asked: Asked = 
         force = np.abs(rows["joint_force"]).max(initial=0.0) + np.abs(recovered.loads["force"]).max(initial=0.0)
         body = scene.mechanism.bodies[spin.body]
         scale = (force + body.mass * float(np.abs(gravity).max())) * layout.size
-        scale += np.abs(recovered.loads["moment"]).max(initial=0.0) + asked.given
+        scale += np.abs(recovered.loads["moment"]).max(initial=0.0) + wording.given
         scale += float(np.trace(body.inertia)) * float(np.sum(rows["omega"] ** 2, axis=1).max())
         if moment > tolerances.NO_MOMENT * scale:
             axis = ", ".join(f"{x:.4g}" for x in spin.axes[0])
             name = scene.mechanism.bodies[spin.body].name
             message = (
                 f"bodies.{name} has no inertia about its axis ({axis}), "
-                f"and a {asked.moment} of {moment:.4g} {asked.unit} acts about it"
+                f"and a {wording.moment} of {moment:.4g} {wording.unit} acts about it"
             )
             hint = "give the body its moment of inertia about that axis, or let the load act on the axis"
             raise SolveError(Problem("no-inertia", message, hint=hint))
@@ -102,9 +102,9 @@ def too_large(scene: PreparedScene, recovered: Recovered, instant: int) -> list[
     return [Problem(found.code, found.message, hint=LARGE)]
 
 
-def require_start(scene: PreparedScene, start: Recovered, asked: Asked = Asked()) -> None:  # noqa: B008
+def require_start(scene: PreparedScene, start: Recovered, wording: Wording = Wording()) -> None:  # noqa: B008
     """Raise SolveError where there are no accelerations at the start, or loads push between points that coincide."""
-    require_solvable(scene, start, asked)
+    require_solvable(scene, start, wording)
     require_directions(scene, start, begins=True)
 
 
@@ -117,10 +117,10 @@ def require_directions(scene: PreparedScene, recovered: Recovered, begins: bool 
             raise SolveError(*problems)
 
 
-def unmet_rows(recovered: Recovered, instant: int, asked: Asked) -> Problem:
+def unmet_rows(recovered: Recovered, instant: int, wording: Wording) -> Problem:
     """The problem of closed chains that nothing found holds together."""
     t, residual = float(recovered.times[instant]), float(recovered.residual[instant])
-    message = f"at t = {t:.9g} s the {asked.answers} leave {residual:.1g} of what the closed chains ask of them unmet"
+    message = f"at t = {t:.9g} s the {wording.answers} leave {residual:.1g} of what the closed chains ask of them unmet"
     return Problem("closure-lost", message, hint="a singular pose, or joints that contradict each other by a little")
 
 

@@ -93,7 +93,7 @@ def coordinates_at(scene: Evaluator, times: Array, states: Array) -> list[Coordi
     return found
 
 
-class Until:
+class EndingCondition:
     """The condition that ends a run, asked where a piece begins and where branches turn. Remembers what it was."""
 
     def __init__(self, layout: Layout) -> None:

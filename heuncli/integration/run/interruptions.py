@@ -11,7 +11,7 @@ import numpy as np
 
 from heuncli import tolerances
 from heuncli.errors import Problem, SolveError
-from heuncli.integration.contacts.blows import Given, Jump, schedule, strike
+from heuncli.integration.contacts.blows import GivenBlow, Jump, schedule, strike
 from heuncli.integration.evaluator import Evaluator
 from heuncli.integration.run.progress import Progress
 from heuncli.integration.segments import Segment
@@ -52,7 +52,7 @@ class Interruptions:
             self.take(jump)
         return None
 
-    def meet(self, given: Given, time: float, row: int | None = None) -> Jump | None:
+    def meet(self, given: GivenBlow, time: float, row: int | None = None) -> Jump | None:
         """The blow that is given at the state reached, and that of its contacts; row: of the one that closed."""
         state = self.moving.state(time, self.progress.integrated_state)
         if self.contacts is None:
@@ -69,7 +69,7 @@ class Interruptions:
         if row is not None:
             self.contacts.count(t)
             row = self.scene.layout.contacts[self.moving.contact(row)].row
-        jump = self.meet(Given(t, t, (), {}), t, row)
+        jump = self.meet(GivenBlow(t, t, (), {}), t, row)
         if jump is not None:
             self.take(jump)
 
@@ -114,7 +114,7 @@ def at_once(evaluator: Evaluator, state: Array, t: float) -> tuple[Jump, ...]:
     contacts = contacts_of(evaluator, t)
     given = [one for one in schedule(evaluator.layout.mechanism, 0.0) if t == 0.0][:1]
     if not given and contacts is not None:
-        given = [Given(t, t, (), {})]
+        given = [GivenBlow(t, t, (), {})]
     for one in given:
         jump = contacts.meet(one, state, t, None) if contacts is not None else strike(evaluator, one, state, t)
         if jump is not None:

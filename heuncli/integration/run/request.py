@@ -44,7 +44,7 @@ class Request:
 
 
 @record
-class Watch:
+class StoppingRules:
     """What a run may be left for before its last instant.
 
     ending: the condition that ends it became true; stiffness: an implicit method takes less (run/stiffness.py);
@@ -56,4 +56,4 @@ class Watch:
     events: bool = False
 
 
-FOR_ITS_ENDING = Watch()
+FOR_ITS_ENDING = StoppingRules()

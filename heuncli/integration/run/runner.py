@@ -13,7 +13,7 @@ from heuncli.integration.integrated_scene import IntegratedScene, itself
 from heuncli.integration.run.errors import Eventful, Stiff
 from heuncli.integration.run.interruptions import closed_at_start
 from heuncli.integration.run.replay import resampled
-from heuncli.integration.run.request import FOR_ITS_ENDING, Request, Watch
+from heuncli.integration.run.request import FOR_ITS_ENDING, Request, StoppingRules
 from heuncli.integration.run.stepper import Stepper, begun
 from heuncli.integration.trajectory import Trajectory
 from heuncli.results import Array
@@ -31,7 +31,7 @@ class Runner(Evaluator):
         super().__init__(layout, closed_at_start)
         self.moving = itself(self) if moving is None else moving
 
-    def trajectory(self, request: Request, watch: Watch = FOR_ITS_ENDING) -> Trajectory:
+    def trajectory(self, request: Request, rules: StoppingRules = FOR_ITS_ENDING) -> Trajectory:
         """Integrate from the start at t = 0 over the asked instants.
 
         Where a rope would have to push the run ends: the instants up to there, and that one. So it does where the
@@ -45,8 +45,8 @@ class Runner(Evaluator):
             from heuncli.integration.run import scipy_loop  # loads SciPy
 
             return scipy_loop.trajectory(self.layout, self.moving, request)
-        progress = begun(self, self.moving, request, watch)
-        stepper = Stepper(progress, request, watch)
+        progress = begun(self, self.moving, request, rules)
+        stepper = Stepper(progress, request, rules)
         try:
             ending = stepper.to_end()
         except SolveError as error:

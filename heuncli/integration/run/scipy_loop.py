@@ -34,7 +34,7 @@ LEAST_RELATIVE = 100.0 * tolerances.EPS  # what SciPy takes for its relative tol
 
 
 @record
-class Solved:
+class ScipySteps:
     """Steps that were done: their ends, the states there, and what interpolates within each."""
 
     ends: list[float]
@@ -74,8 +74,8 @@ def trajectory(layout: Layout, moving: IntegratedScene, request: Request) -> Tra
     require_smooth(layout, method, last)
     state = moving.restrict(0.0, layout.y0 if request.start is None else request.start)
     derivative = Derivative(moving)
-    done = Solved([], [state], [], [])
-    solving = Solving(derivative, request, min(request.most_steps, tolerances.MOST_FOREIGN))
+    done = ScipySteps([], [state], [], [])
+    solving = ScipyIntegration(derivative, request, min(request.most_steps, tolerances.MOST_FOREIGN))
     for segment in smooth_segments(last, request.discontinuities):
         done.pieces.append(segment)
         solving.run(segment, settled(moving.workspace, moving.layout, segment.begin, done.states[-1])[0], done)
@@ -92,14 +92,14 @@ def trajectory(layout: Layout, moving: IntegratedScene, request: Request) -> Tra
 
 
 @record
-class Solving:
+class ScipyIntegration:
     """How SciPy integrates a run, a segment after the other."""
 
     derivative: Derivative
     request: Request
     most_steps: int
 
-    def run(self, segment: Segment, state: Array, done: Solved) -> None:
+    def run(self, segment: Segment, state: Array, done: ScipySteps) -> None:
         """The steps of a segment from a state, added to those done."""
         self.derivative.begin, self.derivative.end = segment.begin, segment.before_end
         if segment.end <= segment.begin:

@@ -12,7 +12,7 @@ from heuncli.results import Array
 FIRST_ROOM = 64  # rows
 
 
-class Growing:
+class GrowingRows:
     """Rows of so many numbers, one behind the other; the room is doubled where it ends, so that adding stays cheap."""
 
     def __init__(self, width: int) -> None:
@@ -43,10 +43,10 @@ class Steps:
     """The steps done: of each its end, its least pivot, whether its stages were settled; for replays some records."""
 
     def __init__(self, start: Array, width: int) -> None:
-        self.rows, self.count = Growing(len(PER_STEP)), 0
-        self.branches: Growing | None = None
+        self.rows, self.count = GrowingRows(len(PER_STEP)), 0
+        self.branches: GrowingRows | None = None
         # what steps 0, every, 2 every, ... start from; the first is a segment's, of which the state alone counts
-        self.kept, self.width = Growing(width), width
+        self.kept, self.width = GrowingRows(width), width
         self.kept.add(self.whole(start))
         self.every, self.room = 1, max(2, KEPT // max(width, 1))
         self.after: dict[int, Array] = {}  # of the steps after blows, which are kept in any case
@@ -87,7 +87,7 @@ class Steps:
         done = kernel.loop.done
         self.rows.add(np.column_stack([kernel.output[name][:done] for name in PER_STEP]))
         if kernel.held:
-            self.branches = self.branches or Growing(kernel.held)
+            self.branches = self.branches or GrowingRows(kernel.held)
             self.branches.add(kernel.held_branches())
         first = self.count // self.every * self.every + self.every  # the next number of which one is kept
         self.kept.add(kernel.records(self.every, first - self.count - 1))

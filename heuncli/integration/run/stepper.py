@@ -30,15 +30,15 @@ from heuncli.integration.run.kernel_loop import (
 )
 from heuncli.integration.run.limits import chunk_of, require_progress, require_time
 from heuncli.integration.run.progress import Progress
-from heuncli.integration.run.request import Request, Watch
-from heuncli.integration.run.step_records import Growing, Steps
+from heuncli.integration.run.request import Request, StoppingRules
+from heuncli.integration.run.step_records import GrowingRows, Steps
 from heuncli.integration.segments import Segment, Segments, just_before, smooth_segments
 from heuncli.integration.trajectory import Trajectory
 from heuncli.results import Array
 from heuncli.tree.layout import Layout
 
 if TYPE_CHECKING:  # loaded where they are watched
-    from heuncli.integration.run.conditions import Until
+    from heuncli.integration.run.conditions import EndingCondition
     from heuncli.integration.run.event_frequency import EventWatch
     from heuncli.integration.run.stiffness import StiffnessWatch
 
@@ -53,13 +53,13 @@ class Ending(NamedTuple):
     rope: str | None = None
 
 
-def begun(scene: Evaluator, moving: IntegratedScene, request: Request, watch: Watch) -> Progress:
+def begun(scene: Evaluator, moving: IntegratedScene, request: Request, rules: StoppingRules) -> Progress:
     """A run at its start. Raises LimitError where its method would have to solve too many equations."""
     last, start = request.last, request.start
     # at rest under a load like t**4 all rates and accelerations vanish at first: this rate then sets the scale
     rate = tolerances.LEAST_RATE / last if last > 0.0 else 0.0
     state = moving.restrict(0.0, scene.layout.y0 if start is None else start)
-    begin = Start(state, request.local, rate, late=start is not None, watched=watch.stiffness)
+    begin = Start(state, request.local, rate, late=start is not None, watched=rules.stiffness)
     most = chunk_of(moving.layout, request.method)
     kernel = KernelLoop(moving.layout, moving.workspace, request.method, request.instants, most, begin)
     return Progress(scene, moving, kernel, Steps(state, kernel.width), last)
@@ -71,13 +71,13 @@ class Stepper:
     pieces: the segments, cut where contacts close or open; rows as those of Segments.
     """
 
-    def __init__(self, progress: Progress, request: Request, watch: Watch) -> None:
+    def __init__(self, progress: Progress, request: Request, rules: StoppingRules) -> None:
         self.progress, self.request = progress, request
         self.interruptions = Interruptions(progress)
         self.segments = smooth_segments(progress.last, request.discontinuities)
-        self.pieces = Growing(3)
-        self.until = until_of(progress.moving.layout) if watch.ending else None
-        self.events = event_watch(progress, self.segments) if watch.events else None
+        self.pieces = GrowingRows(3)
+        self.until = until_of(progress.moving.layout) if rules.ending else None
+        self.events = event_watch(progress, self.segments) if rules.events else None
         self.stiffness: StiffnessWatch | None = None
         self.begun = time.monotonic()
 
@@ -183,13 +183,13 @@ class Stepper:
         )  # fmt: skip
 
 
-def until_of(layout: Layout) -> Until | None:
+def until_of(layout: Layout) -> EndingCondition | None:
     """The condition that ends the runs of a scene, if there is one."""
     if not any(condition.ends for condition in layout.mechanism.conditions):
         return None
-    from heuncli.integration.run.conditions import Until  # few scenes have one
+    from heuncli.integration.run.conditions import EndingCondition  # few scenes have one
 
-    return Until(layout)
+    return EndingCondition(layout)
 
 
 def event_watch(progress: Progress, segments: Segments) -> EventWatch | None:

@@ -15,7 +15,7 @@ import numpy as np
 
 from heuncli.integration.check.shared_blows import matched
 from heuncli.integration.contacts.blows import DRIVES, Jump
-from heuncli.integration.diagnosis.solvability import Asked, require_solvable
+from heuncli.integration.diagnosis.solvability import Wording, require_solvable
 from heuncli.integration.evaluator import Recovered
 from heuncli.kinetostatics.actions import Action, End
 from heuncli.kinetostatics.balance import balance_residual
@@ -170,7 +170,7 @@ def of_run(setup: Setup, jumps: tuple[Jump, ...], least_norm: bool, by_cause: bo
     size = still.scene.layout.size
     impulses = [*(float(np.abs(a.force).max() * size + np.abs(a.moment).max()) for a in given), 0.0]
     largest = max(impulses) + float(np.abs(answers.rows["multiplier"]).max(initial=0.0)) * size
-    require_solvable(still.scene, answers, Asked("jumps of velocities", "couple", "N m s", largest))
+    require_solvable(still.scene, answers, Wording("jumps of velocities", "couple", "N m s", largest))
     names, columns = columns_of(jumps) if by_cause else (None, None)
     return Impulses(still, jumps, Recovery(still, replace(answers, causes=columns), least_norm, given, names), {})
 

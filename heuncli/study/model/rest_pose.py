@@ -6,7 +6,7 @@ import time
 
 import numpy as np
 
-from heuncli.integration.diagnosis.solvability import Asked, require_solvable
+from heuncli.integration.diagnosis.solvability import Wording, require_solvable
 from heuncli.integration.run.runner import Runner
 from heuncli.mechanism.model import Mechanism
 from heuncli.records import record, replace
@@ -44,7 +44,7 @@ def at_rest(scene: PreparedScene, runner: Runner) -> tuple[PreparedScene, Runner
     begun = time.perf_counter()
     require_constant(scene.mechanism)
     first = runner.recovered(np.zeros(1), runner.layout.y0[None, :])
-    require_solvable(scene, first, Asked("accelerations of the start"))
+    require_solvable(scene, first, Wording("accelerations of the start"))
     search = Search(runner, 0.0)
     require_together(runner, search.coordinates, search.begun())
     found = search.found()

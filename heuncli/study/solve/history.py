@@ -14,12 +14,12 @@ import numpy as np
 from heuncli import tolerances
 from heuncli.errors import LimitError, Problem, SolveError
 from heuncli.integration.check.distance import Marks, motion_error
-from heuncli.integration.check.estimate import Checked, checked_run, recovered_at
+from heuncli.integration.check.estimate import CheckedRun, checked_run, recovered_at
 from heuncli.integration.check.instants import interleaved
 from heuncli.integration.check.runs import Runs, moved_start
 from heuncli.integration.check.singular_poses import singular_poses
 from heuncli.integration.contacts.blows import Jump
-from heuncli.integration.diagnosis.solvability import Asked, require_start
+from heuncli.integration.diagnosis.solvability import Wording, require_start
 from heuncli.integration.evaluator import Recovered
 from heuncli.integration.methods.method import Method
 from heuncli.integration.methods.registry import method_of
@@ -54,7 +54,7 @@ class History:
     recovered: Recovered
     tolerance: float
     estimate: Estimate
-    checked: Checked | None = None
+    checked: CheckedRun | None = None
     blows: tuple[Jump, ...] = ()
     beside: tuple[tuple[Jump, ...], ...] = ()
     jumps: tuple[float, ...] = ()
@@ -137,7 +137,7 @@ def require_steps(segments: int, method: Method | None) -> None:
 
 def checked_motion(
     setup: Setup, tolerance: float, jumps: tuple[float, ...], deadline: float | None, by_cause: bool
-) -> Checked:
+) -> CheckedRun:
     """The motion asked for with its check run.
 
     Where it cannot be followed, at a singular pose or beyond what the loops can do, it is integrated: there what moves
@@ -163,7 +163,7 @@ def checked_motion(
         return begun_anew(runs, stiff, method, setup, tolerance, by_cause)
 
 
-def checked_between_events(runs: Runs, setup: Setup, tolerance: float, by_cause: bool) -> Checked:
+def checked_between_events(runs: Runs, setup: Setup, tolerance: float, by_cause: bool) -> CheckedRun:
     """A motion with its check run, by a method of few stages where events end most steps and that takes less."""
     method, runs.eventful = runs.method, setup.auto
     try:
@@ -177,7 +177,7 @@ def checked_between_events(runs: Runs, setup: Setup, tolerance: float, by_cause:
 
 def begun_anew(
     runs: Runs, left: Stiff | Eventful, method: Method, setup: Setup, tolerance: float, by_cause: bool
-) -> Checked:
+) -> CheckedRun:
     """A motion by the method of the runs, another than a run was left with, or, if need be, as it was begun after all.
 
     That is where the other one does not come through, or events become rare.
@@ -212,7 +212,7 @@ def state(setup: Setup, at: float, tolerance: float, by_cause: bool = False) -> 
     times = np.array([at])
     holding = blows[0][-1].holding if blows[0] else held(runner, at, starts[0])
     answers = runner.recovered(times, starts[0][None, :], causes=by_cause, holding=holding)
-    require_start(setup.scene, answers, Asked("accelerations behind the blow") if blows[0] else Asked())
+    require_start(setup.scene, answers, Wording("accelerations behind the blow") if blows[0] else Wording())
     require_motion(layout, answers)
     beside = interleaved(times, [start[None, :] for start in starts])
     both = runner.recovered(*beside, causes=by_cause, holding=holding)
@@ -247,7 +247,7 @@ def require_followed(runner: Runner, run: Trajectory) -> None:
             raise SolveError(problem)
 
 
-def require_apart(runner: Runner, checked: Checked) -> None:
+def require_apart(runner: Runner, checked: CheckedRun) -> None:
     """Raise SolveError where the points of an actuator or spring come together within a motion, before its horizon."""
     if any(isinstance(load, PairLoad) for load in runner.layout.mechanism.loads):
         from heuncli.integration.check.meeting_points import comes_together  # few scenes have them
