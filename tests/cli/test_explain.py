@@ -38,6 +38,8 @@ def test_a_page_goes_into_a_file(heun: Heun, tmp_path: Path) -> None:
         ("spring", "see heun explain format (turn_spring, spring)"),
         ("axes", "see heun explain signs (Joints) and heun explain commands (heun run)"),
         ("tilting", "see heun explain results (Paths)"),
+        ("rpm", "see heun explain format (Units, Expressions)"),
+        ("RK4", "see heun explain methods (The list)"),
         ("formt", "did you mean format?"),
         ("Modes", "did you mean modes?"),
         ("xyzzy", "known topics: commands, format"),

@@ -16,10 +16,11 @@ from heuncli.cli.registry import COMMANDS, Command
 from heuncli.commands.explain.command import PAGES, summary
 from heuncli.expressions import units as u
 from heuncli.expressions.grammar import ARITY, CONSTANTS
-from heuncli.joint_kinds import TYPES, Kind
+from heuncli.joint_kinds import SYNONYMS, TYPES, Kind
 from heuncli.method_rows import METHODS
 from heuncli.results_schema import NOT_YET, ROWS, SPACE, Quantity, is_share
 from heuncli.spec import format as f
+from heuncli.spec.words import FORCE_WORDS, SHAPE_WORDS
 from tests.manual.keys import PLACES
 from tests.shared.manual import README, anchor, below, file_of, tables_below
 
@@ -143,12 +144,23 @@ def keys() -> Iterator[tuple[str, str]]:
 
 def types() -> Iterator[tuple[str, str]]:
     """What `type` may be, with the words of others for it, and where each is described."""
-    blocks = {"a joint": (f.JOINTS, "Joints"), "a load": (f.LOADS, None), "a shape": (f.SHAPES, "Shapes")}
-    for what, (models, heading) in blocks.items():
+    blocks = (
+        ("a joint", f.JOINTS, SYNONYMS, "Joints"),
+        ("a load", f.LOADS, FORCE_WORDS, None),
+        ("a shape", f.SHAPES, SHAPE_WORDS, "Shapes"),
+    )
+    for what, models, meant, heading in blocks:
         for name in models:
-            others = TYPES[name].synonyms if models is f.JOINTS else ()
+            others = [word for word, kind in meant.items() if kind == name]
             link = f"[{heading or name}](format.md#{anchor(heading or name)})"
             yield ", ".join([f"`{name}`", *others]), f"{link}, {what}"
+
+
+def words_of_expressions() -> Iterator[tuple[str, str]]:
+    """What stands in numbers and expressions, and the methods of integration."""
+    yield quoted(list(u.UNITS)), "[Units](format.md#units)"
+    yield quoted([*ARITY, *CONSTANTS]), "[Expressions](format.md#expressions)"
+    yield quoted([row.name for row in METHODS]), "[The list](methods.md#the-list)"
 
 
 def results_by_word() -> Iterator[tuple[str, str]]:
@@ -191,6 +203,7 @@ TABLES = (
     *(Table("commands", f"heun {each.name}", ("option", "meaning"), list(options(each))) for each in COMMANDS),
     Table("index", "Keys of a spec", ("key", "stands in"), list(keys())),
     Table("index", "Types", ("type", "stands in"), list(types())),
+    Table("index", "Units, functions, methods", ("words", "stand in"), list(words_of_expressions())),
     Table("index", "Words of the results", ("word", "paths"), list(results_by_word())),
     Table("index", "Options", ("option", "of"), list(options_by_word())),
 )

@@ -80,3 +80,8 @@ def test_the_exit_codes_are_listed() -> None:
     (table,) = tables_below(TEXTS["commands"], "Exit codes")
     told = {int(code) for row in table.splitlines()[2:] for code in re.findall(r"\d+", row.split("|")[1])}
     assert told == {0, *OF_SEVERAL, INTERRUPTED, ReaderGone.exit_code} | ended
+
+
+def test_the_index_names_the_headings_that_it_leads_to() -> None:
+    links = re.findall(r"\[([^]]*)\]\(\w+\.md#([\w-]+)\)", TEXTS["index"])
+    assert [text for text, place in links if anchor(text) != place] == []
