@@ -126,7 +126,7 @@ def acceleration_matrix(body: int, states: BodyStates, gravity: Array) -> Array:
 
 
 def accelerations_as_matrix(w: Array, u: Array, a: Array) -> Array:
-    """Acc of angular velocity w, its rate u, the origin's acceleration a; body axes: (..., n_t, 3) -> (3, ..., n_t, 4)."""
+    """Acc (3, ..., n_t, 4) of angular velocity w, its rate u and the acceleration a of the origin, all in body axes."""
     A = np.empty((3, *u.shape[:-1], 4))
     square = np.sum(w * w, axis=-1)
     for i in range(3):
