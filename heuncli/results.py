@@ -59,6 +59,49 @@ class Accuracy(TypedDict, total=False):
     unknown: list[float]
 
 
+class BodyBlock(TypedDict):
+    """Motion of a body: of its origin, its attitude (columns: its axes), its centre of mass; world axes."""
+
+    position: Array
+    velocity: Array
+    rotation: Array
+    quaternion: Array
+    center: Array
+    center_velocity: Array
+    center_acceleration: Array
+    angular_velocity: Array
+    angular_acceleration: Array
+
+
+class JointBlock(TypedDict, total=False):
+    """Reaction of a joint ON `to`, moment about `point`; axial, radial, tilting where it has an axis.
+
+    open: components that are open at some instant (`force.z`); chosen: those that a split gives. shares: by cause.
+    """
+
+    point: Array
+    force: Array
+    moment: Array
+    open: list[str]
+    chosen: list[str]
+    drive: Array
+    axial: Array
+    radial: Array
+    tilting: Array
+    tension: Array
+    shares: Block
+
+
+class ForceBlock(TypedDict, total=False):
+    """An applied load: its value as in the spec, length or angle and rate of what it acts between, power put in."""
+
+    value: Array
+    length: Array
+    angle: Array
+    rate: Array
+    power: Array
+
+
 class Work(TypedDict, total=False):
     """What the run took."""
 
@@ -81,14 +124,14 @@ class Results:
     model: Block
     status: Status
     time: Array
-    bodies: Block = field(default_factory=dict)
+    bodies: dict[str, BodyBlock] = field(default_factory=dict)
     points: Block = field(default_factory=dict)
     coordinates: Block = field(default_factory=dict)
     foundation: Block = field(default_factory=dict)
-    joints: Block = field(default_factory=dict)
+    joints: dict[str, JointBlock] = field(default_factory=dict)
     stops: Block = field(default_factory=dict)
     sections: Block = field(default_factory=dict)
-    forces: Block = field(default_factory=dict)
+    forces: dict[str, ForceBlock] = field(default_factory=dict)
     energy: Block = field(default_factory=dict)
     system_vector: Block = field(default_factory=dict)
     impulses: list[Block] = field(default_factory=list)

@@ -18,7 +18,7 @@ from heuncli.kinetostatics.foundation import foundation
 from heuncli.kinetostatics.joint_axes import axes_at, put_in_axes
 from heuncli.kinetostatics.reactions import JointLoads
 from heuncli.mechanism.model import JointLoad, PairLoad
-from heuncli.results import Array, Block, Mask
+from heuncli.results import Array, Block, BodyBlock, ForceBlock, JointBlock, Mask
 from heuncli.results_schema import SHARES
 from heuncli.study.compose.recovery import Recovery
 from heuncli.study.model.selection import chosen
@@ -67,7 +67,7 @@ def blocks_asked_for(recovery: Recovery, wanted: Set[str]) -> dict[str, Any]:
     return chosen(blocks(recovery, wanted), recovery.setup.asked)
 
 
-def body_block(states: BodyStates, turns: Array, i: int) -> Block:
+def body_block(states: BodyStates, turns: Array, i: int) -> BodyBlock:
     """Motion of one body."""
     return {
         "position": states.x[:, i],
@@ -82,9 +82,9 @@ def body_block(states: BodyStates, turns: Array, i: int) -> Block:
     }
 
 
-def joint_block(load: JointLoads) -> Block:
+def joint_block(load: JointLoads) -> JointBlock:
     """Reaction of one joint, with its components along and across the axis."""
-    block: Block = {"point": load.point, "force": load.force, "moment": load.moment, "open": []}
+    block: JointBlock = {"point": load.point, "force": load.force, "moment": load.moment, "open": []}
     if load.drive is not None:
         block["drive"] = load.drive
     if load.axis is not None:
@@ -135,16 +135,17 @@ def sections(recovery: Recovery, by_cause: bool = False) -> Block:
     return block
 
 
-def forces(loads: Sequence[AppliedLoad]) -> Block:
+def forces(loads: Sequence[AppliedLoad]) -> dict[str, ForceBlock]:
     """Values, lengths, rates and powers of the applied loads."""
-    block: Block = {}
+    block: dict[str, ForceBlock] = {}
     for applied in loads:
-        own: Block = {"value": applied.value}
+        own: ForceBlock = {"value": applied.value}
         if isinstance(applied.load, PairLoad):
             own["length"] = applied.length
         if isinstance(applied.load, JointLoad) and applied.load.kind == "turn_spring":
             own["angle"] = applied.length
         if isinstance(applied.load, PairLoad | JointLoad):
             own["rate"] = applied.rate
-        block[applied.load.name] = own | {"power": applied.power}
+        own["power"] = applied.power
+        block[applied.load.name] = own
     return block

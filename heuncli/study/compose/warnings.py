@@ -2,10 +2,10 @@
 
 from __future__ import annotations
 
-from collections.abc import Sequence
+from collections.abc import Mapping, Sequence
 
 from heuncli import tolerances
-from heuncli.results import Array, Block, Status
+from heuncli.results import Array, JointBlock, Status
 from heuncli.study.compose.recovery import Recovery
 from heuncli.study.model.setup import Setup
 from heuncli.study.solve.history import History
@@ -24,7 +24,9 @@ def status(history: History) -> Status:
     return {"code": "completed", "message": f"{run.steps} steps to t = {run.times[-1]:.6g} s"}
 
 
-def warnings(setup: Setup, history: History, recovery: Recovery, joints: Block, residual: float) -> tuple[str, ...]:
+def warnings(
+    setup: Setup, history: History, recovery: Recovery, joints: Mapping[str, JointBlock], residual: float
+) -> tuple[str, ...]:
     """Everything worth a warning at the instants of `recovery`; joints: their block, residual: d'Alembert's."""
     singular = []
     if recovery.verdicts and recovery.decided is not None:
@@ -84,7 +86,7 @@ def of_the_motion(setup: Setup, history: History) -> list[str]:
     return lines
 
 
-def of_ropes(setup: Setup, joints: Block) -> list[str]:
+def of_ropes(setup: Setup, joints: Mapping[str, JointBlock]) -> list[str]:
     """Ropes that would have to push at the one instant of a state."""
     ropes = [j.name for j in setup.scene.mechanism.joints if j.tension_only and j.name in joints]
     return [f"the rod {name} would have to push (tension_only)" for name in ropes if joints[name]["tension"][0] < 0.0]
