@@ -37,10 +37,10 @@ if TYPE_CHECKING:
 class SharesAt(Protocol):
     """A run's loads by cause wherever they are asked for."""
 
-    def at(self, times: Array) -> Results:
+    def shares_at(self, times: Array) -> Results:
         """The results with shares at instants (n,), ascending."""
 
-    def along(self, name: str, times: Array, places: Sequence[Place]) -> Results:
+    def shares_along(self, name: str, times: Array, places: Sequence[Place]) -> Results:
         """The results with shares at instants (n,), of a run of cuts that is cut at these places alone."""
 
 
@@ -116,7 +116,7 @@ class Page(NamedTuple):
 
         n = len(searched.low) - len(searched.places)
         instants = np.unique(np.concatenate([searched.low_at[:n], searched.high_at[:n]]))
-        shared = self._shared(shares.at(instants)) if n else {}
+        shared = self._shared(shares.shares_at(instants)) if n else {}
         span, tables, start = float(np.ptp(self.results.time)), list[TextTable](), 0
         for block in self._lasting(self.results):
             count = sum(len(group.rows) for group in block.groups)
@@ -138,7 +138,7 @@ class Page(NamedTuple):
 
         found, places = self._of_run(searched, k)
         at = np.unique(np.concatenate([found.low_at, found.high_at]))
-        results = shares.along(run.name, at, [place for both in places for place in both])
+        results = shares.shares_along(run.name, at, [place for both in places for place in both])
         return cause_tables.run_extremes_table(run, results, found, places, self.certain)
 
     @staticmethod

@@ -90,7 +90,11 @@ def distance(a: Array, b: Array) -> float:
 def measured(name: str, tolerance: float) -> tuple[float, float, float]:
     """Estimate, true error, and how far that is sure, all relative to the scene's size."""
     study = solve(load("scene.yaml", SCENES[name]), Options(tolerance=tolerance))
-    found, size, wanted = study.only(instants(study), {"motion", "points"}), study.setup.scene.layout.size, exact(name)
+    found, size, wanted = (
+        study.reports_at(instants(study), {"motion", "points"}),
+        study.setup.scene.layout.size,
+        exact(name),
+    )
     error = distance(read_places(found.bodies, found.points), wanted.places)
     return study.results.accuracy["estimate"]["motion"], error / size, wanted.sure / size
 

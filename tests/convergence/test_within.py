@@ -166,7 +166,7 @@ def test_a_chaotic_run_has_its_energy_at_every_instant() -> None:
     s = study(DOUBLE.replace("duration: 2, samples: 201", "duration: 200, samples: 3"), wanted=frozenset({"energy"}))
     assert s.history.checked is not None
     run = s.history.checked.run
-    found = s.only(s.search_times, frozenset({"energy"})).energy
+    found = s.reports_at(s.search_times, frozenset({"energy"})).energy
     total = found["kinetic"] + found["potential"]
     near(total, np.full(len(total), total[0]), float(np.ptp(found["potential"])), 1e-6)
     own = trajectory(s.setup, s.search_times, run.local)

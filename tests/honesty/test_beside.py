@@ -66,7 +66,7 @@ def test_what_is_told_is_right(rate: float) -> None:
     assert told[off * speed > 1e-2].all()
     assert not told[off * speed < 1e-5].any()
     assert set(found.accuracy["unknown"]) >= set(times[~told].tolist())
-    assert any(w.startswith("beside a singular pose at t = ") for w in s.later)
+    assert any(w.startswith("beside a singular pose at t = ") for w in s.later_warnings)
 
 
 @pytest.mark.parametrize("rate", RATES)
@@ -106,7 +106,7 @@ def test_far_from_a_singular_pose_everything_is_told() -> None:
     found = s.resample(s.search_times)
     assert "unknown" not in found.accuracy
     assert not np.isnan(found.joints["C"]["radial"]).any()
-    assert not s.later
+    assert not s.later_warnings
 
 
 def folding(a: float, b: float, c: float, phi: float, rate: float) -> str:

@@ -33,7 +33,7 @@ def short_by(run: Study, samples: int, slack: float = 0.0) -> list[tuple[str, fl
     found = run.extremes(ColumnSearch(page.columns, page.groups(), errors, even, along), TABLE_DEFAULT)
     last, horizon = run.results.time[-1], run.results.accuracy.get("horizon")
     times = np.linspace(run.results.time[0], last, samples)
-    results = run.only(times if horizon is None else times[times < horizon], TABLE_DEFAULT)
+    results = run.reports_at(times if horizon is None else times[times < horizon], TABLE_DEFAULT)
     rows = [values[:, None] for values in page.columns(results).T] + [values for _, values in page.along(results)]
     missed = []
     for k, values in enumerate(rows):

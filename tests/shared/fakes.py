@@ -126,7 +126,7 @@ class FakeStudy:
 
     times: Array
     changes: Mapping[str, Any] = field(default_factory=dict)
-    later: dict[str, None] = field(default_factory=dict)
+    later_warnings: dict[str, None] = field(default_factory=dict)
     unknown: set[float] = field(default_factory=set)
 
     @property
@@ -143,7 +143,7 @@ class FakeStudy:
         """At any instants."""
         return pendulum(np.asarray(times), **self.changes)
 
-    def only(self, times: Array, wanted: Set[str], setup: Any = None) -> Results:
+    def reports_at(self, times: Array, wanted: Set[str], setup: Any = None) -> Results:
         """Some reports at any instants; in a search runs have nodes between their cuts, where they are linear."""
         found = restrict(self.resample(times), wanted)
         return (
@@ -163,7 +163,7 @@ class FakeStudy:
         """What stands for the scene with its runs of cuts as stretches."""
         return SimpleNamespace(cuts=[stretch_like(*item) for item in self.results.sections.items() if "s" in item[1]])
 
-    at_once = 1000
+    instants_at_once = 1000
     extremes = Study.extremes
     magnitudes = MAGNITUDES
 

@@ -95,7 +95,7 @@ def _compared(path: str, request: CheckRequest) -> Checked:
     study = solve(spec, options)
     cases = tuple(compare(study, item) for item in spec.expect)
     alarm.disarm()
-    warn(spec, study.results, request.quiet, f"heun: {path}", study.later)
+    warn(spec, study.results, request.quiet, f"heun: {path}", study.later_warnings)
     return Checked(path, cases)
 
 

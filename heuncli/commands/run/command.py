@@ -80,7 +80,7 @@ def main(request: RunRequest) -> int:
     emit(text, request.output)
     if request.units is not None and not request.quiet and (asked or form not in TABLES):
         say(f"heun: --units is of tables: {'--measure' if asked else form} stays in SI")
-    later = [*study.later, *(measure.warnings(asked, study) if asked else ())]
+    later = [*study.later_warnings, *(measure.warnings(asked, study) if asked else ())]
     warnings = warn(spec, study.results, request.quiet, later=later)
     if request.verbose:
         say(f"heun: {timings(study.results.work)}")

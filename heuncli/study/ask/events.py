@@ -138,7 +138,7 @@ class WatchedNumber(NamedTuple):
 
     def sample(self, times: Array) -> Array:
         """The number at instants (n,), ascending; nan where it is open."""
-        most = self.study.at_once
+        most = self.study.instants_at_once
         return np.concatenate([self._part(times[i : i + most]) for i in range(0, len(times), most)])
 
     def _part(self, times: Array) -> Array:
@@ -149,7 +149,7 @@ class WatchedNumber(NamedTuple):
     def values(self, times: Array) -> Array:
         """The number itself, or its square; of a run of cuts the end of its range that comes first to the limit."""
         wanted = report_of(self.condition.of)
-        results = self.study.only(times, wanted if wanted is not None else frozenset(), self.setup)
+        results = self.study.reports_at(times, wanted if wanted is not None else frozenset(), self.setup)
         found = find(results, self.condition.of)
         values = found.values
         if found.of_vectors:
@@ -183,7 +183,7 @@ def on_result(study: Study, setup: Setup, condition: ResultCondition) -> Changes
     if horizon is not None:
         times = times[times < horizon]
     wanted = report_of(condition.of)
-    asked = find(study.only(times[:1], wanted if wanted is not None else frozenset(), setup), condition.of)
+    asked = find(study.reports_at(times[:1], wanted if wanted is not None else frozenset(), setup), condition.of)
     even, along = asked.of_vectors or asked.keys[-1] in MAGNITUDES, CUT in asked.axes
     if along:
         from heuncli.study.search.stretches import stretched
@@ -194,9 +194,9 @@ def on_result(study: Study, setup: Setup, condition: ResultCondition) -> Changes
     error = number.error(asked.keys, h)
     found = crossings(number.sample, times, h, error * (2.0 * abs(condition.limit) + error) if even else error)
     if found.gaps:
-        study.later[NOT_TOLD.format(condition.name, condition.of)] = None
+        study.later_warnings[NOT_TOLD.format(condition.name, condition.of)] = None
     if not found.complete:
-        study.later[TOO_MANY.format(condition.name)] = None
+        study.later_warnings[TOO_MANY.format(condition.name)] = None
     return Changes(condition.name, found.begins, found.times, found.up, at_jumps(study, found))
 
 

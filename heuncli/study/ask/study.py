@@ -65,7 +65,7 @@ class Study:
         """Instants close enough to bracket every extreme, (n,) ascending."""
         times, enough = search_times(self.setup, self.history)
         if not enough:
-            self.later[TOO_FEW.format(len(times))] = None
+            self.later_warnings[TOO_FEW.format(len(times))] = None
         if self.setup.cuts and len(times) > 1:
             from heuncli.study.search.passages import may_pass, passages  # where there are sections
 
@@ -81,11 +81,11 @@ class Study:
         results = compose(self.setup, self.history, self._recovery(times, wanted), wanted, self.struck)
         results.work["seconds"] = dict(self.results.work["seconds"])
         self.unknown.update(results.accuracy.get("unknown", ()))
-        self.later.update(dict.fromkeys(w for w in results.warnings if w not in self.results.warnings))
+        self.later_warnings.update(dict.fromkeys(w for w in results.warnings if w not in self.results.warnings))
         return results
 
     @cached_property
-    def later(self) -> dict[str, None]:
+    def later_warnings(self) -> dict[str, None]:
         """What was warned of since the run, at other instants and in searches: sentences, in their order."""
         return {}
 
@@ -109,7 +109,7 @@ class Study:
         setup = self.stretched(False)
         return [extremes_at_a_blow(setup, block, quantities) for block in self.impulses(setup)]
 
-    def only(self, times: Array, wanted: frozenset[str], setup: Setup | None = None) -> Results:
+    def reports_at(self, times: Array, wanted: frozenset[str], setup: Setup | None = None) -> Results:
         """Some reports' blocks at other instants of the same run, and nothing beside them; setup: with other cuts."""
         recovery = self._recovery(times, wanted)
         recovery = recovery if setup is None else replace(recovery, setup=setup)
@@ -120,22 +120,22 @@ class Study:
         results = Results(own.title, own.spec, own.version, own.model, own.status, times, accuracy=accuracy, **shown)
         return require_finite(results)
 
-    def at(self, times: Array) -> Results:
+    def shares_at(self, times: Array) -> Results:
         """Loads by cause at other instants of the same run, (n,) ascending."""
-        return self.only(times, self.options.reports & (SHARED | {SHARES}))
+        return self.reports_at(times, self.options.reports & (SHARED | {SHARES}))
 
-    def along(self, name: str, times: Array, places: Sequence[Place]) -> Results:
+    def shares_along(self, name: str, times: Array, places: Sequence[Place]) -> Results:
         """Loads by cause of a run of cuts at other instants, (n,) ascending, cut at some places along it."""
         from heuncli.study.search.stretches import at_places
 
-        return self.only(times, frozenset({"sections", SHARES}), at_places(self.setup, name, places))
+        return self.reports_at(times, frozenset({"sections", SHARES}), at_places(self.setup, name, places))
 
     def _recovery(self, times: Array, wanted: frozenset[str]) -> Recovery:
         recovered = resample(self.setup.runner, self.history, times, by_cause=SHARES in wanted)
         return recover(self.setup, recovered, self.options.least_norm)
 
     @property
-    def at_once(self) -> int:
+    def instants_at_once(self) -> int:
         """How many instants are answered in one go: so many that memory holds their numbers."""
         mechanism = self.setup.scene.mechanism
         causes = len(mechanism.loads) + 3 if SHARES in self.options.reports else 0
@@ -170,7 +170,7 @@ class Study:
             most=extremes.MOST_COLUMNS if whole else None,
         )  # fmt: skip
         found = sampled.placed(found)
-        self.later.update(dict.fromkeys(left_out(sampled.unknown)))
+        self.later_warnings.update(dict.fromkeys(left_out(sampled.unknown)))
         if not found.complete:
-            self.later[CUT_SHORT] = None
+            self.later_warnings[CUT_SHORT] = None
         return found

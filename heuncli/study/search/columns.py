@@ -21,10 +21,10 @@ class Sampleable(Protocol):
         """The results at the instants that the spec asks for."""
 
     @property
-    def at_once(self) -> int:
+    def instants_at_once(self) -> int:
         """How many instants are answered in one go."""
 
-    def only(self, times: Array, wanted: frozenset[str], setup: Setup | None = None) -> Results:
+    def reports_at(self, times: Array, wanted: frozenset[str], setup: Setup | None = None) -> Results:
         """Some reports' blocks at other instants; setup: with other cuts."""
 
 
@@ -46,13 +46,13 @@ class StudyColumns:
         study, setup = self.study, setup or self.setup
         if setup is None and np.array_equal(at, study.results.time):
             return study.results
-        results = study.only(at, self.wanted, setup)
+        results = study.reports_at(at, self.wanted, setup)
         self.unknown.extend(results.accuracy.get("unknown", []))
         return results
 
     def columns(self, at: Array) -> Array:
         """The columns at some instants."""
-        most = self.study.at_once
+        most = self.study.instants_at_once
         return np.concatenate([self._part(at[i : i + most]) for i in range(0, len(at), most)])
 
     def _part(self, at: Array) -> Array:
