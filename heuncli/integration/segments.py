@@ -1,4 +1,4 @@
-"""The segments of a run: stretches of time within which no load or drive in time is discontinuous."""
+"""The segments of a run, within which no load or drive in time is discontinuous, and the instants beside their ends."""
 
 from __future__ import annotations
 

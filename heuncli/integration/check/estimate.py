@@ -11,6 +11,15 @@ it, Gauss's methods keep that alive at any step: there B goes by Radau's (`Metho
 At small tolerances the error of A may be no larger than what the moved start has grown to in B, and cancel it. There a
 further run M goes from the moved start as A goes from its own: |A - M| is what rounding grows to, and the largest
 distance of any two counts, of the motion: what all make of rounding may lie to one side of the truth.
+
+This is the top of the package. From here down, each room imports those below it:
+    check/      runs of one motion (runs.py), seen at the same instants (instants.py, distance.py); what else is looked
+                for in a finished run: changes of conditions, singular poses, points that meet, drives that contradict
+    run/        one run from its start to its end; runner.py says in which order to read it
+    diagnosis/  why no motion or no acceleration exists, in sentences; mostly loaded on the way to an error
+    contacts/   blows, and which contacts close, are struck and let go
+    methods/    Runge-Kutta methods as tables of coefficients
+trajectory.py is the record that a run leaves, evaluator.py the answer at a state, which all of them ask for.
 """
 
 from __future__ import annotations

@@ -1,4 +1,4 @@
-"""Runs of one motion at several tolerances: the one asked for, its check runs, finer ones."""
+"""Runs of one motion at several tolerances: A, the one that is told, its check runs B, finer ones (estimate.py)."""
 
 from __future__ import annotations
 

@@ -1,4 +1,7 @@
-"""What contacts do where a run comes to an instant: blows that strike them, and which are held from there on."""
+"""Events of contacts: what is struck at an instant of a run, by which impulses, and what is held from there on.
+
+touching.py finds the contacts that touch, restitution.py the impulses, resting.py those that stay closed.
+"""
 
 from __future__ import annotations
 

@@ -1,4 +1,9 @@
-"""Which of the contacts that touch are held from an instant on, and which let go."""
+"""Which of the contacts that touch are held from an instant on, and which let go.
+
+    w = q + A z,   z >= 0,   w >= 0,   z . w = 0
+The problem of restitution.py once more, now of forces z of the contacts that open with no rate: w are the accelerations
+of opening, q those with every contact open.
+"""
 
 from __future__ import annotations
 

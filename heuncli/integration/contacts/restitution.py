@@ -1,9 +1,9 @@
-"""Contacts that touch: which strike, rest, let go. Small complementarity problems on columns of the one map.
+"""Impulses of contacts that are struck: small complementarity problems on columns of the one map.
 
     w = q + A z,   z >= 0,   w >= 0,   z . w = 0,      A = W M^-1 W'  (through all that holds both ways)
 W are the contacts' unit loads, positive where they bear. Of impulses z, w are the rates of opening behind the blow and
-those that Newton's restitution asks for: w = v+ + e v- of what is struck (v- < 0), v+ of what rests. Of forces z, w are
-the accelerations of opening. A contact bears or opens, never both (Moreau 1988; Pfeiffer and Glocker 1996).
+those that Newton's restitution asks for: w = v+ + e v- of what is struck (v- < 0), v+ of what rests. A contact bears or
+opens, never both (Moreau 1988; Pfeiffer and Glocker 1996).
 """
 
 from __future__ import annotations

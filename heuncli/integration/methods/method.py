@@ -15,42 +15,38 @@ QUATERNION, GLOBAL, RECENTRED = range(3)  # how attitudes are held within a step
 
 @record
 class Method:
-    """An explicit Runge-Kutta method with dense output, or what stands in for one.
+    """A Runge-Kutta method with dense output, or what stands in for one; a step goes from y by h, with x = 0 ... 1.
 
-    nodes: of all stages; stages: rows of the stages 1..; solution; extra: further stages for the dense output;
-    estimates: the rows of the error, one, or two, of which the first is coarser (then h e5^2 / sqrt(e5^2 + 0.01 e3^2));
-    error_order: of the estimate in h; dense: rows of the interpolating polynomial in nested form, beside the three that
-    every method has: y + x (F0 + (1 - x) (F1 + x (F2 + (1 - x) (F3 + ...)))). determined: nothing is integrated.
-
-    fixed: steps are given and none is judged. by_step: no dense output of its own: an asked instant within a step is
-    reached by a step of the same method from the step's start. implicit: the stages are solved for
-    (kernel/collocation.py), by the numbers in `collocation`; dense rows are then of what the stages are beyond the
-    start, from 1 on, and of the three. attitude: how it is held within a step. foreign: its name in SciPy, where
-    its steps are taken (integration/run/scipy_loop.py). stable: of an explicit method, how large
-    h lambda may be of what decays exp(lambda t), lambda < 0, before the method lets it grow: |R(-x)| = 1. within: where
-    in a step its interpolation errs most, measured on open and closed chains (tests/convergence/test_between_ends.py).
-    check: the method of its check run, where that is another one.
+    stages, solution, extra, estimates and dense are rows of its tableau. Of two estimates the first is the coarser one,
+    and the error is h e5^2 / sqrt(e5^2 + 0.01 e3^2).
+    Dense output is a polynomial in nested form, y + x (F0 + (1 - x) (F1 + x (F2 + (1 - x) (F3 + ...)))): F0, F1, F2 are
+    those of the cubic through both ends, which every method has, and the rows give the others.
     """
 
     name: str
     order: int
-    nodes: tuple[float, ...]
-    stages: tuple[Row, ...]
+    nodes: tuple[float, ...]  # of all stages, the first 0
+    stages: tuple[Row, ...]  # of stages 1, 2, ...: what each takes of those before it
     solution: Row
-    extra: tuple[Row, ...] = ()
-    estimates: tuple[Row, ...] = ()
-    error_order: int = 1
-    dense: tuple[Row, ...] = ()
-    determined: bool = False
-    fixed: bool = False
-    by_step: bool = False
-    implicit: bool = False
-    attitude: int = QUATERNION
-    foreign: str = ""
-    stable: float = 0.0
+    extra: tuple[Row, ...] = ()  # further stages, for the dense output
+    estimates: tuple[Row, ...] = ()  # of the error: one, or two
+    error_order: int = 1  # of the estimate in h
+    dense: tuple[
+        Row, ...
+    ] = ()  # of an implicit method: of what stages are beyond the start, from 1 on, then F0, F1, F2
+    determined: bool = False  # nothing is integrated: every instant follows from the drives
+    fixed: bool = False  # steps are given, and none is judged
+    by_step: bool = False  # no dense output: an instant within a step is reached by a step of its own from the start
+    implicit: bool = False  # the stages are solved for (kernel/collocation.py), by the numbers in `collocation`
+    attitude: int = QUATERNION  # how attitudes are held within a step
+    foreign: str = ""  # its name in SciPy, where its steps are taken (integration/run/scipy_loop.py)
+    stable: float = (
+        0.0  # the largest h |lambda| at which it lets decay what goes as exp(lambda t): |R(-h |lambda|)| = 1
+    )
+    # where in a step its interpolation errs most, on open and closed chains (tests/convergence/test_between_ends.py)
     within: tuple[float, ...] = (0.5, 0.85)
     collocation: Mapping[str, Any] | None = None
-    check: Method | None = None
+    check: Method | None = None  # the method of its check run, where that is another one
 
     @cached_property
     def arrays(self) -> dict[str, Any]:

@@ -1,4 +1,4 @@
-"""What a run is asked for, and what is looked at on its way."""
+"""What a run is asked for, and for what it may be left before its end."""
 
 from __future__ import annotations
 
