@@ -62,10 +62,11 @@ def oldest(distribution: Distribution) -> int:
 
 
 def add_kernel(distribution: Distribution) -> None:
-    """Make the kernel's modules part of what is built."""
-    distribution.ext_modules = distribution.ext_modules or [
-        Extension(f"heuncli.kernel.{name}", [(FOLDER / f"{name}.py").as_posix()], optional=True) for name in MODULES
-    ]
+    """Make the kernel's modules part of what is built, unless it was decided otherwise."""
+    if distribution.ext_modules is None:
+        distribution.ext_modules = [
+            Extension(f"heuncli.kernel.{name}", [(FOLDER / f"{name}.py").as_posix()], optional=True) for name in MODULES
+        ]
 
 
 class BuildKernel(build_ext):
