@@ -1,6 +1,12 @@
 """Recovered answers as blocks of the results: joints, foundation, sections, forces, motion, energy.
 
 Each block is what `Results` holds under its name: arrays over the instants, SI units.
+
+The way of a joint's reaction, a type each: the kernel's answers (`Recovered`) are summed up to `JointLoads`
+(kinetostatics/reactions.py), split where redundancy asks for it (redundancy/resolve.py), and become a `JointBlock`
+here, with shares by cause, turned into the axes asked for, and open where no law decides. JSON is written of that block
+(report/export.py). For CSV and tables it becomes a `Series` (report/series.py), for tables a `NumberRow` a component
+(report/table_blocks.py), whose text is a cell of a `TextTable` (report/text_table.py).
 """
 
 from __future__ import annotations
@@ -25,7 +31,10 @@ from heuncli.study.model.selection import chosen
 
 
 def blocks(recovery: Recovery, wanted: Set[str]) -> dict[str, Any]:
-    """The blocks of the reports that are wanted, as the fields of Results."""
+    """The blocks of the reports that are wanted, by the names of the fields of `Results`.
+
+    Joints, stops and foundation in this order: loads, their shares by cause, axes, and what of them is open.
+    """
     mechanism, layout = recovery.setup.scene.mechanism, recovery.setup.scene.layout
     recovered, states = recovery.recovered, recovery.states
     shown: dict[str, Any] = {}
