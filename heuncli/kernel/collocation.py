@@ -167,7 +167,7 @@ def is_noise(
         return True
     if method.fixed:
         return False  # there is no tolerance to be a part of
-    return size <= scene.limits.newton_part * run.tolerance or size <= scene.limits.newton_rounding
+    return size <= scene.limits.newton_part * run.control.tolerance or size <= scene.limits.newton_rounding
 
 
 def begin_stages(method: cython.pointer[Method], run: cython.pointer[Run]) -> cython.void:

@@ -153,7 +153,7 @@ def set_levels(scene: cython.pointer[Scene], run: cython.pointer[Run]) -> cython
         reach = scene.limits.touching * size
         early = row.mode == APART and run.late and closes_early(contact, reach)
         likely = contact.most + 0.5 * (contact.most - contact.least)
-        if likely < (-reach if early else 0.0) and not run.contact_landings:
+        if likely < (-reach if early else 0.0) and not run.landing.contact_attempts:
             continue
         if row.mode == CARRIES:
             contact.level = scene.limits.rounding * fabs(least)
@@ -206,16 +206,16 @@ def meet_contacts(scene: cython.pointer[Scene], method: cython.pointer[Method], 
     need_interpolant(scene, method, run)
     x = first_contact(scene, method, run, doubt)
     if x > 1.0:
-        run.contact_landings = 0
+        run.landing.contact_attempts = 0
         return STANDS
     at = run.t + where_closed(scene, method, run, x) * run.h
     if at - run.t <= near:
         run.stop = run.t
         return TURNS_OVER
-    if run.stop - at <= near or run.contact_landings >= MOST_LANDINGS:
+    if run.stop - at <= near or run.landing.contact_attempts >= MOST_LANDINGS:
         return TURNS_OVER
-    run.contact_landings += 1
-    run.cut = at
+    run.landing.contact_attempts += 1
+    run.landing.cut = at
     return AGAIN_TO
 
 

@@ -83,9 +83,9 @@ def evaluate_stage(
     if method.attitude:
         enter_slopes(scene, method, run, run.stage, s)
         if not run.following:
-            rate = nearing(scene, run.stage, run.ways)
-            if rate > run.nearing:
-                run.nearing = rate
+            rate = nearing(scene, run.stage, run.chart.ways)
+            if rate > run.chart.nearing:
+                run.chart.nearing = rate
     return trouble
 
 
@@ -99,18 +99,18 @@ def enter_slopes(
     """The derivative at a state, of stage s, in the chart of attitudes."""
     i: cython.Py_ssize_t
     for i in range(run.n):
-        run.chart_K[s][i] = run.K[s][i]
-    chart_slopes(scene, method.attitude, run.y, state, run.K[s], run.chart_K[s])
+        run.chart.K[s][i] = run.K[s][i]
+    chart_slopes(scene, method.attitude, run.y, state, run.K[s], run.chart.K[s])
 
 
 def hermite(method: cython.pointer[Method], run: cython.pointer[Run]) -> cython.void:
     """The first rows of the interpolating polynomial: the cubic with the values and derivatives at both ends."""
     i: cython.Py_ssize_t
     change: cython.double
-    last: cython.p_double = run.chart_K[method.stages]
-    first: cython.p_double = run.chart_K[0]
+    last: cython.p_double = run.chart.K[method.stages]
+    first: cython.p_double = run.chart.K[0]
     for i in range(run.n):
-        change = run.chart_z[i] - run.chart_y[i]
+        change = run.chart.z[i] - run.chart.y[i]
         run.dense[0][i] = change
         run.dense[1][i] = run.h * first[i] - change
         run.dense[2][i] = 2.0 * change - run.h * (last[i] + first[i])
@@ -142,15 +142,15 @@ def interpolant(scene: cython.pointer[Scene], method: cython.pointer[Method], ru
     s: cython.int
     i: cython.Py_ssize_t
     for s in range(method.stages + 1, method.stages + 1 + method.extra):
-        combine(method, s, run.chart_K, run.n, run.stage)
+        combine(method, s, run.chart.K, run.n, run.stage)
         for i in range(run.n):
-            run.stage[i] = run.chart_y[i] + run.h * run.stage[i]
+            run.stage[i] = run.chart.y[i] + run.h * run.stage[i]
         near: cython.bint = scene.closure_count > 0 and scene.pivot_of_step < scene.limits.near_singular
         evaluate_stage(scene, method, run, s, near)
     run.evaluations += method.extra
     hermite(method, run)
     for s in range(method.dense_rows):
-        combine(method, method.stages + 1 + method.extra + method.estimates + s, run.chart_K, run.n, run.dense[3 + s])
+        combine(method, method.stages + 1 + method.extra + method.estimates + s, run.chart.K, run.n, run.dense[3 + s])
         for i in range(run.n):
             run.dense[3 + s][i] *= run.h
 
@@ -197,6 +197,6 @@ def interpolate(
         for i in range(run.n):
             out[i] = (out[i] + row[i]) * factor
     for i in range(run.n):
-        out[i] = run.chart_y[i] + out[i]
+        out[i] = run.chart.y[i] + out[i]
     if method.attitude:
         leave_chart(scene, method.attitude, run.y, out)

@@ -86,9 +86,6 @@ COMPILED = cython.compiled
 # Values
 
 
-@cython.cfunc
-@cython.nogil
-@cython.exceptval(check=False)
 def value(programs: cython.pointer[Programs], program: Program) -> cython.double:
     """Value of a program at the variables; NaN when not computable."""
     stack: cython.p_double = programs.stack  # what lies below x
@@ -144,10 +141,6 @@ def value(programs: cython.pointer[Programs], program: Program) -> cython.double
     return x if x - x == 0.0 else without_branches(programs, program)
 
 
-@cython.cfunc
-@cython.inline
-@cython.nogil
-@cython.exceptval(check=False)
 def of_two(op: cython.int, a: cython.double, b: cython.double) -> cython.double:
     """An operation on two numbers."""
     if op == ADD:
@@ -170,10 +163,6 @@ def of_two(op: cython.int, a: cython.double, b: cython.double) -> cython.double:
         return b if b > a or b != b else a
 
 
-@cython.cfunc
-@cython.inline
-@cython.nogil
-@cython.exceptval(check=False)
 def compare(op: cython.int, a: cython.double, b: cython.double) -> cython.double:
     """1 or 0; NaN where an operand is."""
     holds: cython.bint
@@ -194,10 +183,6 @@ def compare(op: cython.int, a: cython.double, b: cython.double) -> cython.double
     return 1.0 if holds else 0.0
 
 
-@cython.cfunc
-@cython.inline
-@cython.nogil
-@cython.exceptval(check=False)
 def of_one(op: cython.int, a: cython.double, n: cython.int) -> cython.double:
     """An operation on one number; n: the exponent of a whole power."""
     if op <= STEP:
@@ -208,10 +193,6 @@ def of_one(op: cython.int, a: cython.double, n: cython.int) -> cython.double:
         return exponential(op, a)
 
 
-@cython.cfunc
-@cython.inline
-@cython.nogil
-@cython.exceptval(check=False)
 def piecewise(op: cython.int, a: cython.double, n: cython.int) -> cython.double:
     """-a, the whole power n, |a|, and its jumps."""
     if op == NEG:
@@ -226,10 +207,6 @@ def piecewise(op: cython.int, a: cython.double, n: cython.int) -> cython.double:
         return 1.0 if a >= 0.0 else 0.0 if a < 0.0 else NAN
 
 
-@cython.cfunc
-@cython.inline
-@cython.nogil
-@cython.exceptval(check=False)
 def trigonometric(op: cython.int, a: cython.double) -> cython.double:
     """The functions of the circle and their inverses."""
     if op == SIN:
@@ -246,10 +223,6 @@ def trigonometric(op: cython.int, a: cython.double) -> cython.double:
         return atan(a)
 
 
-@cython.cfunc
-@cython.inline
-@cython.nogil
-@cython.exceptval(check=False)
 def exponential(op: cython.int, a: cython.double) -> cython.double:
     """The functions of the hyperbola, the exponential, and what undoes powers."""
     if op == SINH:
@@ -266,10 +239,6 @@ def exponential(op: cython.int, a: cython.double) -> cython.double:
         return sqrt(a) if a >= 0.0 else NAN
 
 
-@cython.cfunc
-@cython.inline
-@cython.nogil
-@cython.exceptval(check=False)
 def power(x: cython.double, n: cython.int) -> cython.double:
     """x to the whole power n >= 0, by squaring."""
     product: cython.double = 1.0
@@ -281,10 +250,6 @@ def power(x: cython.double, n: cython.int) -> cython.double:
     return product
 
 
-@cython.cfunc
-@cython.inline
-@cython.nogil
-@cython.exceptval(check=False)
 def real_power(x: cython.double, y: cython.double) -> cython.double:
     """x**y; NaN for a negative base with a broken exponent and for 0 to a negative power."""
     if (x == 0.0 and y < 0.0) or x != x or y != y:  # 1**y and x**0 are 1 for C, whatever x and y are
@@ -292,10 +257,6 @@ def real_power(x: cython.double, y: cython.double) -> cython.double:
     return pow(x, y)
 
 
-@cython.cfunc
-@cython.inline
-@cython.nogil
-@cython.exceptval(check=False)
 def length(a: cython.double, b: cython.double) -> cython.double:
     """sqrt(a² + b²) without overflow."""
     larger: cython.double = fabs(a)
@@ -311,9 +272,6 @@ def length(a: cython.double, b: cython.double) -> cython.double:
 # Branches
 
 
-@cython.cfunc
-@cython.nogil
-@cython.exceptval(check=False)
 def without_branches(programs: cython.pointer[Programs], program: Program) -> cython.double:
     """What a program is that has no value as it was run: where branches were held, its value without that."""
     f: cython.double = NAN
@@ -324,18 +282,11 @@ def without_branches(programs: cython.pointer[Programs], program: Program) -> cy
     return f
 
 
-@cython.cfunc
-@cython.inline
-@cython.nogil
-@cython.exceptval(check=False)
 def takes_two(op: cython.int) -> cython.int:
     """1 for an operation on two numbers, else 0."""
     return 1 if op <= MAX or op >= LT else 0
 
 
-@cython.cfunc
-@cython.nogil
-@cython.exceptval(check=False)
 def take_branch(
     programs: cython.pointer[Programs], k: cython.int, at: cython.Py_ssize_t, a: cython.double, b: cython.double
 ) -> cython.void:
@@ -362,9 +313,6 @@ def take_branch(
     programs.held[k] = met
 
 
-@cython.cfunc
-@cython.nogil
-@cython.exceptval(check=False)
 def on_branch(
     programs: cython.pointer[Programs], at: cython.Py_ssize_t, branch: cython.double, a: cython.double, b: cython.double
 ) -> cython.double:
@@ -384,10 +332,6 @@ def on_branch(
     return branch
 
 
-@cython.cfunc
-@cython.inline
-@cython.nogil
-@cython.exceptval(check=False)
 def angle_on(branch: cython.double, y: cython.double, x: cython.double) -> cython.double:
     """atan2(y, x), by a turn more or less where the negative x axis was crossed from the side of the branch."""
     turn: cython.double = 6.283185307179586
@@ -398,10 +342,6 @@ def angle_on(branch: cython.double, y: cython.double, x: cython.double) -> cytho
     return f
 
 
-@cython.cfunc
-@cython.inline
-@cython.nogil
-@cython.exceptval(check=False)
 def side_of_cut(y: cython.double) -> cython.double:
     """1 above the negative x axis and on it, 0 below; -0.0 is below."""
     return 1.0 if atan2(y, -1.0) > 0.0 else 0.0
@@ -410,20 +350,12 @@ def side_of_cut(y: cython.double) -> cython.double:
 # Tables
 
 
-@cython.cfunc
-@cython.inline
-@cython.nogil
-@cython.exceptval(check=False)
 def table_at(programs: cython.pointer[Programs], at: cython.Py_ssize_t, k: cython.Py_ssize_t) -> Table:
     """Where the parts of table k stand in its numbers; its data are the instruction at `at`."""
     data: Instruction = programs.code[at]
     return Table(data.op, data.argument, programs.tables[k][0], 1, 2 + data.op)
 
 
-@cython.cfunc
-@cython.inline
-@cython.nogil
-@cython.exceptval(check=False)
 def of_table(op: cython.int, c: cython.p_double, table: Table, x: cython.double) -> cython.double:
     """The table's value at x, or the number of its piece there."""
     if op == KNOT:
@@ -437,10 +369,6 @@ def of_table(op: cython.int, c: cython.p_double, table: Table, x: cython.double)
     return ((c[i + 3] * h + c[i + 2]) * h + c[i + 1]) * h + c[i]
 
 
-@cython.cfunc
-@cython.inline
-@cython.nogil
-@cython.exceptval(check=False)
 def in_range(c: cython.p_double, table: Table, x: cython.double) -> cython.double:
     """The point of the table's own range that stands for x; NaN where there is none."""
     first: cython.double = c[table.knots]
@@ -461,10 +389,6 @@ def in_range(c: cython.p_double, table: Table, x: cython.double) -> cython.doubl
     return x
 
 
-@cython.cfunc
-@cython.inline
-@cython.nogil
-@cython.exceptval(check=False)
 def piece(c: cython.p_double, table: Table, x: cython.double) -> cython.int:
     """Number of the piece that holds x, by bisection; a knot belongs to the piece that begins there."""
     low: cython.int = 0
@@ -480,10 +404,6 @@ def piece(c: cython.p_double, table: Table, x: cython.double) -> cython.int:
     return low
 
 
-@cython.cfunc
-@cython.inline
-@cython.nogil
-@cython.exceptval(check=False)
 def piece_counted(c: cython.p_double, table: Table, x: cython.double) -> cython.double:
     """Number of the piece that holds x, counted on over the periods; -1 before a table that ends, n beyond it."""
     n: cython.int = table.pieces
@@ -502,10 +422,6 @@ def piece_counted(c: cython.p_double, table: Table, x: cython.double) -> cython.
     return float(piece(c, table, x))
 
 
-@cython.cfunc
-@cython.inline
-@cython.nogil
-@cython.exceptval(check=False)
 def of_piece(c: cython.p_double, table: Table, counted: cython.double, x: cython.double) -> cython.double:
     """The cubic of a piece, by its counted number, at any x; beyond the ends the value there, or none."""
     n: cython.int = table.pieces
@@ -526,28 +442,17 @@ def of_piece(c: cython.p_double, table: Table, counted: cython.double, x: cython
 # Integrals
 
 
-@cython.cfunc
-@cython.inline
-@cython.nogil
-@cython.exceptval(check=False)
 def integrated(programs: cython.pointer[Programs], at: cython.Py_ssize_t) -> Program:
     """The program under an integral whose data are the instruction at `at`."""
     return Program(cython.cast(cython.int, at + 1), programs.code[at].argument)
 
 
-@cython.cfunc
-@cython.inline
-@cython.nogil
-@cython.exceptval(check=False)
 def summed_at(programs: cython.pointer[Programs], at: cython.Py_ssize_t, k: cython.Py_ssize_t) -> Table:
     """Its knots and, as coefficients, what it is at each of them; they stand in the constants behind the quadrature."""
     pieces: cython.int = programs.code[at].op
     return Table(pieces, EXTENDED, 0.0, k + 2 * NODES, k + 2 * NODES + pieces + 1)
 
 
-@cython.cfunc
-@cython.nogil
-@cython.exceptval(check=False)
 def integral(
     programs: cython.pointer[Programs], at: cython.Py_ssize_t, k: cython.Py_ssize_t, t: cython.double
 ) -> cython.double:
@@ -734,7 +639,6 @@ class Expressions:
             raise ValueError(f"no program of {count} instructions begins at {start}; there are {len(self.counts)}")
 
 
-@cython.cfunc
 def where(memory: array[int] | array[float]) -> cython.size_t:
     """Address of an array's first number."""
     address: cython.size_t = memory.buffer_info()[0]

@@ -224,9 +224,8 @@ def follow(scene: cython.pointer[Scene], method: cython.pointer[Method], run: cy
 
 def shorten_to(run: cython.pointer[Run], part: cython.double) -> cython.void:
     """The next attempt is a part of this one, a tenth at least."""
-    run.proposed = run.h * (part if part > 0.1 else 0.1)
-    run.rejected += 1
-    run.rejected_before = 1
+    run.control.proposed = run.h * (part if part > 0.1 else 0.1)
+    run.control.rejected_before = 1
 
 
 def predict(scene: cython.pointer[Scene], run: cython.pointer[Run]) -> cython.void:
@@ -360,7 +359,7 @@ def see_between(scene: cython.pointer[Scene], method: cython.pointer[Method], ru
 
 def find_between(scene: cython.pointer[Scene], run: cython.pointer[Run], x: cython.p_double) -> cython.void:
     """The state at an asked instant within the step, from its interpolation x."""
-    t: cython.double = clipped(run, run.times[run.next_sample])
+    t: cython.double = clipped(run, run.samples.times[run.samples.next])
     settle(scene, t, x)
     if scene.counter_count > 0 or scene.work_at >= 0:
         kinematics(scene, t, x)

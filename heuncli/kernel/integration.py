@@ -75,24 +75,20 @@ class Integration:
         to.node = self.memory.doubles(method["node"])
 
     def take_start(self, start: dict[str, Any]) -> None:
-        """The loop's state before the first piece, and its room."""
+        """The loop's state before the first piece, and its room; what is not set here begins at 0."""
         run: cython.pointer[Run] = cython.address(self.run)
         n: cython.int = len(start["weights"])
         run.n = n
         run.energy_group = start["energy_group"]
-        run.tolerance = start["tolerance"]
-        run.step = start["step"]
-        run.rate = start["rate"]
+        run.control.tolerance = start["tolerance"]
+        run.control.step = start["step"]
+        run.control.rate = start["rate"]
         run.following = start["following"]
         run.late = start["late"]
-        run.next_sample = run.contact = run.steps = run.evaluations = run.rejected = run.done = run.dodges = 0
-        run.rejected_before = run.has_cut = run.landings = run.contact_landings = run.at_once = run.turns = 0
-        run.flurry = run.undecided = run.seeing = run.stiff_steps = run.easy_steps = run.half_turn = 0
-        run.on_grid = 0
-        run.stiff_after, run.easy_after, run.stable = start["stiff_after"], start["easy_after"], start["stable"]
-        run.t = run.grid = run.proposed = run.energy_scale = run.gap = run.cut = run.flurry_begin = run.nearing = 0.0
-        run.newton.solved = run.newton.elsewhere = 0
-        run.look_after = start["look_after"]
+        run.stiffness.after = start["stiff_after"]
+        run.stiffness.easy_after = start["easy_after"]
+        run.stiffness.look_after = start["look_after"]
+        run.stiffness.stable = start["stable"]
         run.weights = self.memory.doubles(start["weights"])
         run.y = self.memory.doubles(start["state"])
         run.z = self.memory.zeros(n)
@@ -116,12 +112,12 @@ class Integration:
     def make_chart(self, n: cython.int) -> None:
         """Room for the numbers that steps are taken in, where those are not the state's own."""
         run: cython.pointer[Run] = cython.address(self.run)
-        run.chart_y, run.chart_z, run.chart_K = run.y, run.z, run.K
-        run.ways = self.memory.zeros(self.workspace.scene.body_count)
+        run.chart.y, run.chart.z, run.chart.K = run.y, run.z, run.K
+        run.chart.ways = self.memory.zeros(self.workspace.scene.body_count)
         if self.method.attitude:
-            run.chart_y = self.memory.zeros(n)
-            run.chart_z = self.memory.zeros(n)
-            run.chart_K = self.memory.matrix(self.method.stages + 1 + self.method.extra, n)
+            run.chart.y = self.memory.zeros(n)
+            run.chart.z = self.memory.zeros(n)
+            run.chart.K = self.memory.matrix(self.method.stages + 1 + self.method.extra, n)
 
     def make_room(self) -> None:
         """Room for the course of the coordinates that expressions hang on."""
@@ -138,8 +134,6 @@ class Integration:
         course.before = self.memory.zeros(scene.held_count)
         course.turned = self.memory.zeros(scene.held_count)
         course.resting = self.memory.zeros(scene.held_count)
-        course.rests_from = course.rests_to = 0.0
-        course.slot = 0
 
     def make_branch(self) -> None:
         """Room for what is known of a branch, with the drives of its loops and the length that shifts are measured by.
@@ -154,7 +148,6 @@ class Integration:
         branch: cython.pointer[Branch] = cython.address(self.run.branch)
         branch.reach = self.memory.doubles([-1.0] * (scene.freedom_count + scene.closure_count))
         branch.marks = self.memory.zeros(3 * scene.counter_count)
-        branch.pivot = branch.moved = branch.energy = 0.0
         for i in range(scene.body_count):
             body: cython.pointer[Body] = cython.address(scene.bodies[i])
             if body.ball and scene.measure[body.answer_at] > most:
@@ -210,17 +203,17 @@ class Integration:
     def take_output(self, output: dict[str, Any]) -> None:
         """The asked instants, and where states at them and at the ends of the steps go."""
         run: cython.pointer[Run] = cython.address(self.run)
-        run.sample_count = len(output["times"])
-        run.most = len(output["ends"])
-        run.times = self.memory.doubles(output["times"])
-        run.samples = self.memory.over(output["samples"], run.sample_count, run.n)
-        run.ends = self.memory.over(output["ends"], 1, run.most)[0]
-        run.settled = self.memory.over(output["settled"], 1, run.most)[0]
-        run.pivots = self.memory.over(output["pivots"], 1, run.most)[0]
-        run.turned = self.memory.over(output["turned"], 1, run.most)[0]
+        run.samples.count = len(output["times"])
+        run.track.most = len(output["ends"])
+        run.samples.times = self.memory.doubles(output["times"])
+        run.samples.states = self.memory.over(output["samples"], run.samples.count, run.n)
+        run.track.ends = self.memory.over(output["ends"], 1, run.track.most)[0]
+        run.track.settled = self.memory.over(output["settled"], 1, run.track.most)[0]
+        run.track.pivots = self.memory.over(output["pivots"], 1, run.track.most)[0]
+        run.track.turned = self.memory.over(output["turned"], 1, run.track.most)[0]
         held: cython.int = self.workspace.scene.held_count
-        run.branches = self.memory.over(output["branches"], run.most if held else 0, held)
-        run.passed = self.memory.over(output["passed"], 0 if run.following else run.most, self.record_width)
+        run.track.branches = self.memory.over(output["branches"], run.track.most if held else 0, held)
+        run.track.passed = self.memory.over(output["passed"], 0 if run.following else run.track.most, self.record_width)
 
     def begin(self, t: cython.double, before_end: cython.double, end: cython.double) -> None:
         """A piece from t to its end, of which `before_end` is the last instant."""
@@ -230,13 +223,13 @@ class Integration:
         """Go on from another state than the one reached, which is told at the instant reached, too."""
         i: cython.Py_ssize_t
         run: cython.pointer[Run] = cython.address(self.run)
-        k: cython.Py_ssize_t = run.next_sample - 1
+        k: cython.Py_ssize_t = run.samples.next - 1
         for i in range(run.n):
             run.y[i] = state[i]
             run.carry[i] = 0.0
-        while k >= 0 and run.times[k] == run.t:
+        while k >= 0 and run.samples.times[k] == run.t:
             for i in range(run.n):
-                run.samples[k][i] = run.y[i]
+                run.samples.states[k][i] = run.y[i]
             k -= 1
 
     def stand(self, record: Any) -> None:
@@ -249,7 +242,7 @@ class Integration:
         run: cython.pointer[Run] = cython.address(self.run)
         run.t, run.before_end, run.end, run.fresh = t, before_end, end, 0
         if scene.held_count:
-            take_branches(scene, run.branches[0])
+            take_branches(scene, run.track.branches[0])
         scene.programs.holding = HELD
         evaluate(scene, clipped(run, t), run.y, run.K[0])
         if run.determined:
@@ -260,10 +253,10 @@ class Integration:
         i: cython.Py_ssize_t
         k: cython.Py_ssize_t
         for i in range(len(ends)):
-            self.run.ends[i] = float(ends[i])
-            self.run.settled[i] = float(settled[i])
+            self.run.track.ends[i] = float(ends[i])
+            self.run.track.settled[i] = float(settled[i])
             for k in range(self.workspace.scene.held_count):
-                self.run.branches[i][k] = float(branches[i][k])
+                self.run.track.branches[i][k] = float(branches[i][k])
 
     def advance(self, most: cython.int, watching: cython.bint, halting: cython.bint) -> int:
         """Up to `most` steps; REACHED, MORE to do, or why not. watching: stop where a contact closes or opens.
@@ -274,7 +267,7 @@ class Integration:
         scene: cython.pointer[Scene] = cython.address(self.workspace.scene)
         run: cython.pointer[Run] = cython.address(self.run)
         method: cython.pointer[Method] = cython.address(self.method)
-        run.most = most
+        run.track.most = most
         run.watching = watching
         run.halting = halting
         scene.programs.holding = HELD
@@ -283,21 +276,21 @@ class Integration:
         scene.programs.holding = FREE
         if not cython.compiled and not run.following:
             for name in ("ends", "settled", "pivots", "turned"):
-                self.output[name][: run.done] = getattr(run, name)[: run.done]
+                self.output[name][: run.track.done] = getattr(run.track, name)[: run.track.done]
             width = self.record_width
-            for k in range(run.done):
-                self.output["passed"][k * width : (k + 1) * width] = run.passed[k]
+            for k in range(run.track.done):
+                self.output["passed"][k * width : (k + 1) * width] = run.track.passed[k]
             held = self.workspace.scene.held_count
-            for k in range(run.done if held else 0):
-                self.output["branches"][k * held : (k + 1) * held] = run.branches[k]
+            for k in range(run.track.done if held else 0):
+                self.output["branches"][k * held : (k + 1) * held] = run.track.branches[k]
         return code
 
     def fetch(self) -> None:
         """Bring the samples into `output` (compiled, they are written there)."""
         if not cython.compiled:
             n = self.run.n
-            for k in range(self.run.sample_count):
-                self.output["samples"][k * n : (k + 1) * n] = self.run.samples[k]
+            for k in range(self.run.samples.count):
+                self.output["samples"][k * n : (k + 1) * n] = self.run.samples.states[k]
 
     def state(self) -> list[float]:
         """The state reached."""
@@ -316,7 +309,7 @@ class Integration:
     @property
     def done(self) -> int:
         """Steps of the last call."""
-        return self.run.done
+        return self.run.track.done
 
     @property
     def steps(self) -> int:
@@ -346,7 +339,7 @@ class Integration:
     @property
     def half_turn(self) -> int:
         """The body, by its place in the tree, that came to a half turn of the global chart."""
-        return self.run.half_turn - 1
+        return self.run.chart.half_turn - 1
 
     @property
     def undecided(self) -> int:
@@ -356,4 +349,4 @@ class Integration:
     @property
     def sampled(self) -> int:
         """How many of the asked instants are done."""
-        return self.run.next_sample
+        return self.run.samples.next

@@ -99,9 +99,6 @@ def slope(programs: cython.pointer[Programs], program: Program, slopes: cython.p
     return x.rate if x.value - x.value == 0.0 else NAN
 
 
-@cython.cfunc
-@cython.nogil
-@cython.exceptval(check=False)
 def jet_along(programs: cython.pointer[Programs], program: Program, t: cython.double, slopes: cython.p_double) -> Jet:
     """Value and derivatives of a program as its variables move: the time alone, or all by their slopes.
 
@@ -155,10 +152,6 @@ def jet_along(programs: cython.pointer[Programs], program: Program, t: cython.do
     return x
 
 
-@cython.cfunc
-@cython.inline
-@cython.nogil
-@cython.exceptval(check=False)
 def moving(programs: cython.pointer[Programs], k: cython.int, t: cython.double, slopes: cython.p_double) -> Jet:
     """A variable as it moves: the time evenly where there are no slopes, others not at all."""
     if slopes:
@@ -166,18 +159,12 @@ def moving(programs: cython.pointer[Programs], k: cython.int, t: cython.double, 
     return Jet(t if k == 0 else NAN, 1.0, 0.0)
 
 
-@cython.cfunc
-@cython.nogil
-@cython.exceptval(check=False)
 def jet_of_integral(programs: cython.pointer[Programs], at: cython.Py_ssize_t, k: cython.int, t: Jet) -> Jet:
     """The integral up to a moving time; its derivative is what is integrated."""
     first: Jet = jet(programs, integrated(programs, at), t.value)
     return Jet(integral(programs, at, k, t.value), first.value * t.rate, first.rate * t.rate * t.rate)
 
 
-@cython.cfunc
-@cython.nogil
-@cython.exceptval(check=False)
 def jet_held(
     programs: cython.pointer[Programs], at: cython.Py_ssize_t, k: cython.int, height: cython.Py_ssize_t, b: Jet
 ) -> Jet:
@@ -190,9 +177,6 @@ def jet_held(
     return f
 
 
-@cython.cfunc
-@cython.nogil
-@cython.exceptval(check=False)
 def jet_on_branch(
     programs: cython.pointer[Programs], at: cython.Py_ssize_t, branch: cython.double, a: Jet, b: Jet
 ) -> Jet:
@@ -213,9 +197,6 @@ def jet_on_branch(
     return constant(f)
 
 
-@cython.cfunc
-@cython.nogil
-@cython.exceptval(check=False)
 def slope_of_piece(c: cython.p_double, table: Table, counted: cython.double, x: cython.double) -> cython.double:
     """The derivative of the cubic of a piece, by its counted number, at any x; none beyond ends that are held."""
     n: cython.int = table.pieces
@@ -232,19 +213,11 @@ def slope_of_piece(c: cython.p_double, table: Table, counted: cython.double, x: 
 # Operations
 
 
-@cython.cfunc
-@cython.inline
-@cython.nogil
-@cython.exceptval(check=False)
 def constant(f: cython.double) -> Jet:
     """What stands still at f, for a while at least."""
     return Jet(f, 0.0, 0.0)
 
 
-@cython.cfunc
-@cython.inline
-@cython.nogil
-@cython.exceptval(check=False)
 def chain(u: Jet, f: cython.double, df: cython.double, ddf: cython.double) -> Jet:
     """f(u), given f and its derivatives in u there; where u stands still so does f(u), whatever f' is."""
     if u.rate == 0.0 and u.second == 0.0:
@@ -252,10 +225,6 @@ def chain(u: Jet, f: cython.double, df: cython.double, ddf: cython.double) -> Je
     return Jet(f, df * u.rate, ddf * u.rate * u.rate + df * u.second)
 
 
-@cython.cfunc
-@cython.inline
-@cython.nogil
-@cython.exceptval(check=False)
 def jet_of_two(op: cython.int, a: Jet, b: Jet) -> Jet:
     """An operation on two jets."""
     if op == ADD:
@@ -278,10 +247,6 @@ def jet_of_two(op: cython.int, a: Jet, b: Jet) -> Jet:
     return a
 
 
-@cython.cfunc
-@cython.inline
-@cython.nogil
-@cython.exceptval(check=False)
 def jet_of_product(a: Jet, b: Jet) -> Jet:
     """(a b)' = a' b + a b',  (a b)'' = a'' b + 2 a' b' + a b''."""
     return Jet(
@@ -291,10 +256,6 @@ def jet_of_product(a: Jet, b: Jet) -> Jet:
     )
 
 
-@cython.cfunc
-@cython.inline
-@cython.nogil
-@cython.exceptval(check=False)
 def jet_of_quotient(a: Jet, b: Jet) -> Jet:
     """q = a/b from a = q b:  q' = (a' - q b')/b,  q'' = (a'' - 2 q' b' - q b'')/b."""
     if b.value == 0.0:
@@ -304,10 +265,6 @@ def jet_of_quotient(a: Jet, b: Jet) -> Jet:
     return Jet(q, rate, (a.second - 2.0 * rate * b.rate - q * b.second) / b.value)
 
 
-@cython.cfunc
-@cython.inline
-@cython.nogil
-@cython.exceptval(check=False)
 def jet_of_power(a: Jet, b: Jet) -> Jet:
     """y = a**b; where b moves, by y = exp(w), w = b log a, so that a must be positive there."""
     x: cython.double = a.value
@@ -323,19 +280,11 @@ def jet_of_power(a: Jet, b: Jet) -> Jet:
     return Jet(y, y * rate, y * (rate * rate + second))
 
 
-@cython.cfunc
-@cython.inline
-@cython.nogil
-@cython.exceptval(check=False)
 def scaled_power(c: cython.double, x: cython.double, y: cython.double) -> cython.double:
     """c x**y, and 0 for c = 0 also where x**y is not a number."""
     return c * real_power(x, y) if c != 0.0 else 0.0
 
 
-@cython.cfunc
-@cython.inline
-@cython.nogil
-@cython.exceptval(check=False)
 def jet_of_angle(a: Jet, b: Jet) -> Jet:
     """The angle φ of (b, a), r² = a² + b²:  r² φ' = b a' - a b',  r² φ'' = b a'' - a b'' - 2 φ' (a a' + b b')."""
     x: cython.double = b.value
@@ -348,10 +297,6 @@ def jet_of_angle(a: Jet, b: Jet) -> Jet:
     return Jet(atan2(y, x), rate, second)
 
 
-@cython.cfunc
-@cython.inline
-@cython.nogil
-@cython.exceptval(check=False)
 def jet_of_length(a: Jet, b: Jet) -> Jet:
     """r² = a² + b²:  r r' = a a' + b b',  r r'' = a'² + b'² + a a'' + b b'' - r'²."""
     r: cython.double = length(a.value, b.value)
@@ -362,10 +307,6 @@ def jet_of_length(a: Jet, b: Jet) -> Jet:
     return Jet(r, rate, (square - rate * rate) / r)
 
 
-@cython.cfunc
-@cython.inline
-@cython.nogil
-@cython.exceptval(check=False)
 def jet_of_one(op: cython.int, u: Jet, n: cython.int) -> Jet:
     """An operation on one jet; n: the exponent of a whole power."""
     if op <= STEP:
@@ -376,10 +317,6 @@ def jet_of_one(op: cython.int, u: Jet, n: cython.int) -> Jet:
         return jet_of_exponential(op, u)
 
 
-@cython.cfunc
-@cython.inline
-@cython.nogil
-@cython.exceptval(check=False)
 def jet_of_piecewise(op: cython.int, u: Jet, n: cython.int) -> Jet:
     """-u, the whole power n, |u|, and its jumps, between which it stands still."""
     a: cython.double = u.value
@@ -393,10 +330,6 @@ def jet_of_piecewise(op: cython.int, u: Jet, n: cython.int) -> Jet:
         return constant(piecewise(op, a, n))
 
 
-@cython.cfunc
-@cython.inline
-@cython.nogil
-@cython.exceptval(check=False)
 def jet_of_trigonometric(op: cython.int, u: Jet) -> Jet:
     """The functions of the circle and their inverses; asin and acos have no derivatives at -1 and 1."""
     a: cython.double = u.value
@@ -424,10 +357,6 @@ def jet_of_trigonometric(op: cython.int, u: Jet) -> Jet:
     return chain(u, f, -df, -a * df * df * df)
 
 
-@cython.cfunc
-@cython.inline
-@cython.nogil
-@cython.exceptval(check=False)
 def jet_of_exponential(op: cython.int, u: Jet) -> Jet:
     """The functions of the hyperbola, the exponential, and what undoes powers."""
     a: cython.double = u.value
@@ -451,10 +380,6 @@ def jet_of_exponential(op: cython.int, u: Jet) -> Jet:
     return chain(u, f, df, -df * df / f if f > 0.0 else NAN)
 
 
-@cython.cfunc
-@cython.inline
-@cython.nogil
-@cython.exceptval(check=False)
 def jet_of_table(op: cython.int, c: cython.p_double, table: Table, u: Jet) -> Jet:
     """The table at u, or the number of its piece there; beyond ends that are held it stands still."""
     if op == KNOT:

@@ -76,14 +76,14 @@ def group_error(
     if rate < group.rate:
         rate = group.rate
     group.trial = rate
-    floor: cython.double = scene.limits.slow_rate * run.rate
+    floor: cython.double = scene.limits.slow_rate * run.control.rate
     if b == run.energy_group:
         # energy, against the largest work so far or a part of what the bodies may have of it
-        floor = scene.limits.slow_rate * run.energy_scale * run.rate * run.rate
-    scale: cython.double = 1.0 / run.tolerance
+        floor = scene.limits.slow_rate * run.control.energy_scale * run.control.rate * run.control.rate
+    scale: cython.double = 1.0 / run.control.tolerance
     for i in range(group.coordinates, group.end):
         if i == group.rates:
-            scale = 1.0 / (run.tolerance * (rate + floor + 1e-200))
+            scale = 1.0 / (run.control.tolerance * (rate + floor + 1e-200))
         g = run.weights[i] * scale
         e = run.fine[i] * g
         fine += e * e
@@ -98,12 +98,11 @@ def group_error(
 def turns_too_far(scene: cython.pointer[Scene], run: cython.pointer[Run]) -> cython.bint:
     """Whether a stage turned so fast that the step may have passed the end of the chart: a shorter one, then."""
     part: cython.double
-    if not run.nearing * run.h > scene.limits.chart_turn:
+    if not run.chart.nearing * run.h > scene.limits.chart_turn:
         return False
-    part = 0.9 * scene.limits.chart_turn / (run.nearing * run.h)
-    run.proposed = run.h * (part if part > 0.2 else 0.2)
-    run.rejected += 1
-    run.rejected_before = 1
+    part = 0.9 * scene.limits.chart_turn / (run.chart.nearing * run.h)
+    run.control.proposed = run.h * (part if part > 0.2 else 0.2)
+    run.control.rejected_before = 1
     return True
 
 
@@ -113,7 +112,7 @@ def judge(
     """ACCEPTED, AGAIN with another length, NOT_A_NUMBER, or CLOSURES_LOST."""
     error: cython.double
     noise: cython.double = 0.0
-    run.error = 0.0
+    run.control.error = 0.0
     if run.following:
         return ACCEPTED
     if run.determined:
@@ -127,21 +126,21 @@ def judge(
         noise = singular_noise(scene, run)
     if error != error or trouble < 0:
         # outside what the scene can do: a much smaller step, or the end of it
-        run.proposed = OUT_OF_REACH * run.h
-        run.rejected += 1
-        run.rejected_before = 1
-        if run.proposed < scene.limits.least_step * (run.end - run.t) or run.proposed <= 1e-15 * fabs(run.t):
+        run.control.proposed = OUT_OF_REACH * run.h
+        run.control.rejected_before = 1
+        if run.control.proposed < scene.limits.least_step * (run.end - run.t) or run.control.proposed <= 1e-15 * fabs(
+            run.t
+        ):
             return NOT_A_NUMBER
         return AGAIN
     if error > 1.0 + noise:
         factor: cython.double = SAFETY * pow(error, -method.exponent)
-        run.proposed = run.h * (factor if factor > LEAST_FACTOR else LEAST_FACTOR)
-        run.rejected += 1
-        run.rejected_before = 1
+        run.control.proposed = run.h * (factor if factor > LEAST_FACTOR else LEAST_FACTOR)
+        run.control.rejected_before = 1
         return AGAIN
     if method.attitude and turns_too_far(scene, run):
         return AGAIN
-    run.error = error
+    run.control.error = error
     return ACCEPTED
 
 
@@ -172,11 +171,11 @@ def explicit_error(
 ) -> cython.double:
     """Error of the step tried, 1 = just allowed."""
     row: cython.int = method.stages + 1 + method.extra
-    combine(method, row, run.chart_K, run.n, run.coarse)
-    combine(method, row + method.estimates - 1, run.chart_K, run.n, run.fine)
+    combine(method, row, run.chart.K, run.n, run.coarse)
+    combine(method, row + method.estimates - 1, run.chart.K, run.n, run.fine)
     if method.attitude:
-        weigh_in_chart(scene, method.attitude, run.chart_y, run.coarse)
-        weigh_in_chart(scene, method.attitude, run.chart_y, run.fine)
+        weigh_in_chart(scene, method.attitude, run.chart.y, run.coarse)
+        weigh_in_chart(scene, method.attitude, run.chart.y, run.fine)
     return step_error(scene, method, run)
 
 
@@ -200,43 +199,44 @@ def dodge(
     """Whether to try another length that may keep the stages off a singular pose; at last the best of those tried."""
     noise: cython.double = 1e300  # what rounding makes of the closures at the worst of the stages, by the tolerance
     if scene.pivot_of_step > 0.0:
-        noise = scene.limits.pivot_rounding * run.h * run.rate / (scene.pivot_of_step * run.tolerance)
+        noise = scene.limits.pivot_rounding * run.h * run.control.rate / (scene.pivot_of_step * run.control.tolerance)
     broken: cython.bint = error != error or trouble < 0
-    if run.dodges >= scene.limits.dodges or run.last:
+    if run.control.dodges >= scene.limits.dodges or run.last:
         return 0
-    if not (noise > 0.1 or broken or (error > 1.0 and run.dodges > 0)):
+    if not (noise > 0.1 or broken or (error > 1.0 and run.control.dodges > 0)):
         return 0
     worse: cython.double = error if error > noise else noise
     if broken:
         worse = 1e300
-    if run.dodges == 0 or worse < run.best:
-        run.best = worse
-        run.best_h = run.h
-    run.dodges += 1
-    run.proposed = run.best_h if run.dodges == scene.limits.dodges else scene.limits.dodge * run.h
-    run.rejected += 1
+    if run.control.dodges == 0 or worse < run.control.best:
+        run.control.best = worse
+        run.control.best_h = run.h
+    run.control.dodges += 1
+    run.control.proposed = (
+        run.control.best_h if run.control.dodges == scene.limits.dodges else scene.limits.dodge * run.h
+    )
     return 1
 
 
 def singular_noise(scene: cython.pointer[Scene], run: cython.pointer[Run]) -> cython.double:
     """What a step that found no better way may be off by, also by what its start makes of the rounding."""
     pivot: cython.double = scene.pivot_of_step
-    if run.pivot_at_start < pivot:
-        pivot = run.pivot_at_start
-    if pivot > 0.0 and run.dodges == scene.limits.dodges:
-        return scene.limits.pivot_noise * run.h * run.rate / (pivot * run.tolerance)
+    if run.control.pivot_at_start < pivot:
+        pivot = run.control.pivot_at_start
+    if pivot > 0.0 and run.control.dodges == scene.limits.dodges:
+        return scene.limits.pivot_noise * run.h * run.control.rate / (pivot * run.control.tolerance)
     return 0.0
 
 
 def growth(method: cython.pointer[Method], run: cython.pointer[Run]) -> cython.double:
     """By what factor the next step may be longer; none after a rejection."""
     factor: cython.double = MOST_FACTOR
-    if run.error > 1.0:
+    if run.control.error > 1.0:
         factor = 1.0
-    elif run.error > 0.0:
-        factor = SAFETY * pow(run.error, -method.exponent)
+    elif run.control.error > 0.0:
+        factor = SAFETY * pow(run.control.error, -method.exponent)
         if factor > MOST_FACTOR:
             factor = MOST_FACTOR
-    if run.rejected_before and factor > 1.0:
+    if run.control.rejected_before and factor > 1.0:
         factor = 1.0
     return factor

@@ -78,11 +78,11 @@ def meet(scene: cython.pointer[Scene], method: cython.pointer[Method], run: cyth
     code: cython.int = STANDS
     pivot: cython.double = scene.pivot
     least: cython.double = scene.pivot_of_step
-    run.turns = 0
+    run.landing.turns = 0
     if scene.watch_count:
         code = meet_branches(scene, method, run)
         if code == STANDS:
-            run.landings = 0
+            run.landing.attempts = 0
     if run.watching and code == STANDS:
         code = meet_contacts(scene, method, run)
     scene.pivot = pivot
@@ -94,7 +94,7 @@ def meet_branches(scene: cython.pointer[Scene], method: cython.pointer[Method], 
     """Turns of branches, and what no stage has seen, within a step tried."""
     found: cython.int
     course: cython.pointer[Course] = cython.address(run.course)
-    if run.landings:
+    if run.landing.attempts:
         lay_window(scene, method, run)
         if first_event(scene, course) == TURNS and course.event > 0.0:
             return land_on(scene, run)
@@ -121,13 +121,13 @@ def shorten(scene: cython.pointer[Scene], run: cython.pointer[Run], found: cytho
     """A step up to what no stage has seen, or up to where bounds ceased to decide."""
     to: cython.double = instant(cython.address(run.course), run.course.event)
     if found == UNSEEN or to - run.t > 0.1 * run.h:
-        run.cut = to
+        run.landing.cut = to
     elif run.h > scene.limits.locked_step * fabs(run.end):
-        run.cut = run.t + 0.1 * run.h
+        run.landing.cut = run.t + 0.1 * run.h
     else:
         run.undecided += 1
         return STANDS
-    run.landings = 0
+    run.landing.attempts = 0
     return AGAIN_TO
 
 
@@ -140,25 +140,25 @@ def land_on(scene: cython.pointer[Scene], run: cython.pointer[Run]) -> cython.in
         at = at + near
     off: cython.double = fabs(at - run.stop)
     if at - run.t <= 2.0 * near:
-        run.at_once += 1
-        if run.at_once > 4 + 2 * scene.held_count or gathered(scene, run, run.t):
+        run.landing.at_once += 1
+        if run.landing.at_once > 4 + 2 * scene.held_count or gathered(scene, run, run.t):
             return CHATTERS
         take_branches(scene, course.turned)
         evaluate(scene, clipped(run, run.t), run.y, run.K[0])
         start_contacts(scene, run.t)
         run.evaluations += 1
-        run.landings = 0
-        run.cut = run.t  # none
+        run.landing.attempts = 0
+        run.landing.cut = run.t  # none
         return AGAIN_TO
     if scene.limits.near_kink * run.h > near and jump_at(scene, course) <= scene.limits.no_jump:
         near = scene.limits.near_kink * run.h
-    if run.landings and (off <= near or run.landings >= MOST_LANDINGS):
-        run.turns = 1
+    if run.landing.attempts and (off <= near or run.landing.attempts >= MOST_LANDINGS):
+        run.landing.turns = 1
         return CHATTERS if gathered(scene, run, run.stop) else STANDS
     if at >= run.end:
         return STANDS  # beyond the piece
-    run.landings += 1
-    run.cut = at
+    run.landing.attempts += 1
+    run.landing.cut = at
     return AGAIN_TO
 
 
@@ -172,13 +172,13 @@ def one_instant(scene: cython.pointer[Scene], run: cython.pointer[Run]) -> cytho
 
 def in_flurry(scene: cython.pointer[Scene], run: cython.pointer[Run]) -> cython.bint:
     """Whether several events lie just behind."""
-    return run.flurry > 2 and fabs(run.t - run.flurry_begin) <= scene.limits.flurry * fabs(run.end)
+    return run.landing.flurry > 2 and fabs(run.t - run.landing.flurry_begin) <= scene.limits.flurry * fabs(run.end)
 
 
 def gathered(scene: cython.pointer[Scene], run: cython.pointer[Run], t: cython.double) -> cython.bint:
     """Whether events follow each other without end at t, one of which is counted."""
-    if not fabs(t - run.flurry_begin) <= scene.limits.flurry * fabs(run.end):
-        run.flurry_begin = t
-        run.flurry = 0
-    run.flurry += 1
-    return run.flurry > FLURRY
+    if not fabs(t - run.landing.flurry_begin) <= scene.limits.flurry * fabs(run.end):
+        run.landing.flurry_begin = t
+        run.landing.flurry = 0
+    run.landing.flurry += 1
+    return run.landing.flurry > FLURRY

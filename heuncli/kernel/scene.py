@@ -182,7 +182,6 @@ class Contact(Record):
     row: int
     sense: int  # 1: an upper limit, a rope; -1: a lower limit
     opens: int  # 1 + its place among those that open and close; 0: a rope that ends the run where it would push
-    unused: int
 
     start: float  # the margin at the start of a step, and its rate
     start_rate: float
@@ -205,7 +204,6 @@ class Counter(Record):
     a: int
     b: int
     at: int  # where it stands in the state
-    unused: int
     axis: Vec3  # in a
 
     counted: float  # the state's angle, which is right to half a turn
@@ -235,7 +233,6 @@ class Lent(Record):
     """Inertia lent to a body about an axis, so that the tree can be factored, and given back (kernel/response.py)."""
 
     body: int
-    unused: int
     root: float  # of the inertia
     axis: Vec3  # unit vector, body axes
 
@@ -249,7 +246,6 @@ class Group(Record):
     coordinates: int
     rates: int
     end: int
-    unused: int
 
     rate: float  # the largest it has had
     trial: float  # of the step under way
@@ -268,7 +264,6 @@ class Limits(Record):
     """Thresholds of the kernel: heuncli/tolerances.py derives each."""
 
     dodges: int  # lengths tried for a step whose stages come near to a singular pose
-    unused: int
     no_inertia: float  # of all directions' inertia: what has less moves nothing
     own_share: float  # of a motion's inertia, lent and its own: with less of its own nothing holds it
     much_lent: float  # with less, but more than that, less is lent
@@ -334,7 +329,6 @@ class BodyTangent(Record):
     """What a body's motion and loads change by along a direction of the state, per unit of it; world axes."""
 
     moves: int  # 0: nothing of its motion changes
-    unused: int
     turn: Vec3  # its attitude, as a small turn: dR = turn x R
     arm: Vec3
     r: Vec3

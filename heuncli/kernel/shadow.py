@@ -1,7 +1,7 @@
 """Stand-in for `import cython` where the kernel runs as plain Python.
 
 Cython is a build requirement only, and its own stand-in knows no objects behind pointers: here a pointer to one struct
-is the object itself, a pointer to the first of many is the list of them, and every other name means "do nothing".
+is the object itself, a pointer to the first of many is the list of them, and any other name a type that does nothing.
 """
 
 from __future__ import annotations
@@ -20,10 +20,7 @@ class _Type:
 
 
 class _Block:
-    """What is both a decorator and the head of a block, like `nogil`."""
-
-    def __call__(self, f: Any) -> Any:
-        return f
+    """The head of a block, like `nogil`."""
 
     def __enter__(self) -> None:
         return None
@@ -46,11 +43,7 @@ class _Cython:
     def cast(_: Any, x: Any, **__: Any) -> Any:
         return x
 
-    def __getattr__(self, name: str) -> Any:
-        if name in ("cfunc", "ccall", "inline", "cclass", "final"):
-            return lambda f: f
-        if name in ("exceptval", "locals", "returns", "boundscheck", "wraparound", "cdivision"):
-            return lambda *a, **k: lambda f: f
+    def __getattr__(self, _: str) -> Any:
         return _Type()  # pointer, double, p_double, ...
 
 

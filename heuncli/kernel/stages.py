@@ -29,9 +29,9 @@ def take_stages(scene: cython.pointer[Scene], method: cython.pointer[Method], ru
     trouble: cython.int
     worst: cython.int = 0
     for s in range(1, method.stages):
-        combine(method, s, run.chart_K, run.n, run.stage)
+        combine(method, s, run.chart.K, run.n, run.stage)
         for i in range(run.n):
-            run.stage[i] = run.chart_y[i] + run.h * run.stage[i]
+            run.stage[i] = run.chart.y[i] + run.h * run.stage[i]
         trouble = evaluate_stage(scene, method, run, s, run.near)
         if trouble < worst:
             worst = trouble
@@ -59,7 +59,7 @@ def step_to(
         run.beside[0][i] = K[0][i]
     run.h = t - run.t
     run.K = run.beside
-    run.chart_K = run.beside
+    run.chart.K = run.beside
     run.evaluations += method.stages - 1
     take_stages(scene, method, run)
     combine(method, method.stages, run.K, run.n, out)
@@ -67,4 +67,4 @@ def step_to(
         out[i] = run.y[i] + (run.h * out[i] + run.carry[i])
     run.h = h
     run.K = K
-    run.chart_K = K
+    run.chart.K = K

@@ -60,7 +60,7 @@ class Method(Struct):
     extra: int  # further stages of the dense output
     dense_rows: int  # rows of the interpolating polynomial beside the three that every method has
     estimates: int  # rows of the error estimate: the finer, and (2) a coarser one to weigh it by
-    fixed: int  # 1: the steps are given (Run.step), none is judged
+    fixed: int  # 1: the steps are given (Controller.step), none is judged
     by_step: int  # 1: an asked instant within a step is reached by a step of its own from the step's start
     implicit: int  # 1: the stages are solved for (collocation.py)
     attitude: int  # held within a step: 0 quaternion, 1 Rodrigues' parameters, 2 the same from the step's start
@@ -111,73 +111,123 @@ class Branch(Struct):
     marks: list[float]  # of each counted angle a direction across its axis, in b
 
 
+class Controller(Struct):
+    """How long the steps are, and by what they are judged (judging.py)."""
+
+    tolerance: float
+    step: float  # of a method of fixed step; 0: adaptive
+    grid: float  # the instant from which given steps are counted
+    on_grid: int  # given steps done since then
+    rejected_before: int  # 1: the last attempt was rejected
+    proposed: float  # length of the next step
+    error: float  # of the step tried, 1 = just allowed
+    rate: float  # the scene's largest so far [1/s]
+    energy_scale: float  # sum m size^2
+    dodges: int  # other lengths tried for this step, to keep its stages off a singular pose
+    best: float  # the least trouble of the lengths tried, and its length
+    best_h: float
+    pivot_at_start: float  # of the closures, where the step starts
+
+
+class Stiffness(Struct):
+    """Whether stability, not accuracy, keeps the steps short (stiffness.py)."""
+
+    after: int  # steps held short after which the loop is left; 0: not looked at
+    easy_after: int  # steps on end that were not, after which their count begins anew
+    look_after: int  # steps after which it is left in any case, twice as many the next time; 0: never
+    steps: int  # the counts
+    easy_steps: int
+    stable: float  # h |lambda| from which a step counts as held short
+    swiftness: float  # h |lambda| of the step tried
+
+
+class Landing(Struct):
+    """Where the step under way is to end on an event, and events that gather (landing.py, contacts.py)."""
+
+    has_cut: int  # 1: the step under way ends at `cut`
+    attempts: int  # to end this step on an event of a branch or a load
+    contact_attempts: int  # the same where a contact closes or opens
+    turns: int  # 1: branches turn at the end of the step under way
+    at_once: int  # turns of branches since the time went on
+    flurry: int  # events since flurry_begin
+    cut: float
+    flurry_begin: float
+
+
+class Chart(Struct):
+    """The numbers that steps are taken in: the state's own, or those of a chart of attitudes (attitudes.py)."""
+
+    y: list[float]
+    z: list[float]
+    K: list[list[float]]
+    ways: list[float]  # of each body, how far its attitude may turn before it leaves the chart [rad]
+    nearing: float  # largest angular velocity that a stage saw, by the way to the chart's end [1/s]
+    half_turn: int  # 1 + the body whose attitude has come to the end of its chart
+
+
+class Samples(Struct):
+    """The asked instants, and the states there."""
+
+    next: int
+    count: int
+    times: list[float]
+    states: list[list[float]]
+
+
+class Track(Struct):
+    """The steps of one call: those done, or those to be followed."""
+
+    most: int  # room for so many
+    done: int
+    ends: list[float]
+    settled: list[float]  # of each whether its stages were settled
+    pivots: list[float]  # of each the least pivot of the closures
+    turned: list[float]  # of each whether branches turned at its end
+    branches: list[list[float]]  # of each the branches that were held
+    passed: list[list[float]]  # at each end what the next step starts from (steps.py, put_record)
+
+
 class Run(Struct):
-    """The stepping loop's state."""
+    """The stepping loop's state: how it was asked for, the step under way, and its parts."""
 
     n: int  # length of the state
     group_count: int
     energy_group: int  # the group of the drives' work; -1: none
     determined: int  # 1: nothing is integrated, the closures tell where everything is
-    following: int  # 1: the steps are given by `ends` and `settled`, none is judged
-    fresh: int  # 1: a piece begins
-    last: int  # 1: this step reaches the end of the piece
-    near: int  # 1: the stages are settled, too
-    rejected_before: int  # 1: the last attempt was rejected
-    dodges: int  # other lengths tried for this step, to keep its stages off a singular pose
-    contact: int  # 1 + the one-sided row that closes or opens
+    following: int  # 1: the steps are given by the track, none is judged
     watching: int  # 1: contacts are watched
     halting: int  # 1: the loop is left where a piece begins and where branches turn
     late: int  # 1: events are met late by the rounding of an instant, to see what that makes
+
+    fresh: int  # 1: a piece begins
+    last: int  # 1: this step reaches the end of the piece
+    near: int  # 1: the stages are settled, too
     seeing: int  # 1: stages are looked at for events
-    has_cut: int  # 1: the step under way ends at `cut`
     has_interpolant: int  # 1: the dense output of the step tried is there
-    landings: int  # attempts to end this step on an event
-    contact_landings: int  # the same where a contact closes or opens
-    turns: int  # 1: branches turn at the end of the step under way
-    at_once: int  # turns of branches since the time went on
-    flurry: int  # events since flurry_begin
-    stiff_after: int  # steps held short by stability after which the loop is left; 0: not looked at
-    easy_after: int  # steps on end that were not, after which their count begins anew
-    look_after: int  # steps after which it is left in any case, twice as many the next time; 0: never
-    stiff_steps: int  # the counts
-    easy_steps: int
-    half_turn: int  # 1 + the body whose attitude has come to the end of its chart
+    contact: int  # 1 + the one-sided row that closes or opens
     undecided: int  # steps of which bounds could not decide what they hold
-    on_grid: int  # given steps done since `grid`
-    steps: int
-    evaluations: int
-    rejected: int
-    most: int  # steps of one call
-    done: int  # of them
-    next_sample: int
-    sample_count: int
-    t: float
-    h: float  # of the step under way
-    proposed: float
+    steps: int  # accepted
+    evaluations: int  # of the derivative
+    t: float  # the instant reached
+    h: float  # length of the step under way
     stop: float  # where the step under way ends
     before_end: float  # the last instant at which the piece's expressions hold
-    end: float
-    tolerance: float
-    step: float  # the step of a method of fixed step; 0: adaptive
-    grid: float  # the instant from which given steps are counted
-    stable: float  # h |lambda| from which a step counts as held short by stability
-    swiftness: float  # that of the step tried
-    rate: float  # the scene's largest
-    energy_scale: float  # sum m size^2
-    error: float
-    nearing: float  # largest angular velocity that a stage saw, by the way to the chart's end [1/s]
+    end: float  # of the piece
     gap: float  # the largest that closures were left with [m]
-    best: float  # the least trouble of the lengths tried, and its length
-    best_h: float
-    pivot_at_start: float  # of the closures, where the step starts
-    cut: float
-    flurry_begin: float
+
+    control: Controller
+    stiffness: Stiffness
+    landing: Landing
+    chart: Chart
+    samples: Samples
+    track: Track
     course: Course
     branch: Branch
     newton: Newton
+
     groups: list[Group]
     weights: list[float]  # of the components: 1, or 1 / size
-    y: list[float]
+    y: list[float]  # the state reached
     z: list[float]  # the solution tried
     carry: list[float]  # small parts of y that its digits do not hold
     z_carry: list[float]
@@ -187,17 +237,3 @@ class Run(Struct):
     fine: list[float]
     dense: list[list[float]]  # rows of the interpolating polynomial
     stage: list[float]  # a state under way
-    chart_y: list[
-        float
-    ]  # y, z and K in the numbers that steps are taken in: the state's, or those of a chart of attitudes
-    chart_z: list[float]
-    chart_K: list[list[float]]
-    ways: list[float]  # of each body, how far its attitude may turn before it leaves the chart [rad]
-    times: list[float]
-    samples: list[list[float]]
-    ends: list[float]  # of the steps done, or of those to be followed
-    settled: list[float]  # of each whether it was near
-    pivots: list[float]  # of each the least pivot of the closures
-    turned: list[float]  # of each whether branches turned at its end
-    branches: list[list[float]]  # of each the branches that were held
-    passed: list[list[float]]  # at each end what the next step starts from: put_record

@@ -92,7 +92,7 @@ def begin_piece(scene: cython.pointer[Scene], method: cython.pointer[Method], ru
         choose_afresh(scene, run.t, run.y)
         settle(scene, run.t, run.y)
     if run.following and scene.held_count:
-        take_branches(scene, run.branches[0])
+        take_branches(scene, run.track.branches[0])
     if not run.following:
         scene.programs.holding = TAKEN
     evaluate(scene, run.t, run.y, run.K[0])
@@ -105,19 +105,19 @@ def begin_piece(scene: cython.pointer[Scene], method: cython.pointer[Method], ru
     if run.watching and pushed_at_once(scene, run):
         return ROPE_SLACK
     if run.determined:
-        run.proposed = run.end - run.t
+        run.control.proposed = run.end - run.t
         if not is_determined(scene):
             return COLLAPSED
         stand_here(scene, run)
     elif not run.following:
         h = first_step(scene, method, run)
-        if run.proposed <= 0.0 or h < run.proposed:
-            run.proposed = h
+        if run.control.proposed <= 0.0 or h < run.control.proposed:
+            run.control.proposed = h
     run.fresh = 0
-    run.grid = run.t
-    run.on_grid = 0
-    run.rejected_before = 0
-    run.has_cut = run.landings = run.contact_landings = run.at_once = 0
+    run.control.grid = run.t
+    run.control.on_grid = 0
+    run.control.rejected_before = 0
+    run.landing.has_cut = run.landing.attempts = run.landing.contact_attempts = run.landing.at_once = 0
     for i in range(run.n):
         run.carry[i] = 0.0
     return REACHED
@@ -141,15 +141,15 @@ def first_step(scene: cython.pointer[Scene], method: cython.pointer[Method], run
                 rate = u
             if v > acceleration:
                 acceleration = v
-    if rate > run.rate:
-        run.rate = rate
+    if rate > run.control.rate:
+        run.control.rate = rate
     if sqrt(acceleration) > rate:
         rate = sqrt(acceleration)
     v = load_rate(scene, run)
-    if v > run.rate:
-        run.rate = v
+    if v > run.control.rate:
+        run.control.rate = v
     if rate > 0.0:
-        return pow(run.tolerance, method.exponent) / rate
+        return pow(run.control.tolerance, method.exponent) / rate
     return run.end - run.t
 
 
@@ -159,11 +159,11 @@ def load_rate(scene: cython.pointer[Scene], run: cython.pointer[Run]) -> cython.
     u: cython.double
     g: cython.double
     largest: cython.double = norm(scene.gravity) / scene.size
-    run.energy_scale = 0.0
+    run.control.energy_scale = 0.0
     for i in range(scene.body_count):
         body: cython.pointer[Body] = cython.address(scene.bodies[i])
         g = body.mass * scene.size
-        run.energy_scale += g * scene.size
+        run.control.energy_scale += g * scene.size
         u = (manhattan(body.f_applied) + manhattan(body.M_applied) / scene.size) / g
         if u > largest:
             largest = u
@@ -203,29 +203,29 @@ def propose(scene: cython.pointer[Scene], run: cython.pointer[Run]) -> cython.vo
 
     Its length is the way to that end, rounded as the end is: so the ends alone tell the steps.
     """
-    run.stop = run.t + run.proposed
-    run.last = run.t + 1.01 * run.proposed >= run.end
+    run.stop = run.t + run.control.proposed
+    run.last = run.t + 1.01 * run.control.proposed >= run.end
     if run.following:
-        run.stop = run.ends[run.done]
+        run.stop = run.track.ends[run.track.done]
         run.last = run.stop >= run.end
-    elif run.has_cut:
-        run.stop = run.cut
+    elif run.landing.has_cut:
+        run.stop = run.landing.cut
         run.last = 0
-    elif run.step > 0.0:
-        run.stop = run.grid + (run.on_grid + 1) * run.step
-        run.last = run.stop + scene.limits.given_end * run.step >= run.end
+    elif run.control.step > 0.0:
+        run.stop = run.control.grid + (run.control.on_grid + 1) * run.control.step
+        run.last = run.stop + scene.limits.given_end * run.control.step >= run.end
         if run.last:
             run.stop = run.end
     elif run.last:
         run.stop = run.end
-    elif run.t + 2.0 * run.proposed > run.end:
+    elif run.t + 2.0 * run.control.proposed > run.end:
         run.stop = run.t + 0.5 * (run.end - run.t)
     run.h = run.stop - run.t
 
 
 def blocked(scene: cython.pointer[Scene], run: cython.pointer[Run]) -> cython.int:
     """Why there is no further step: the closures lock while rates grow, or the step is rounding of the time."""
-    if run.last or run.has_cut:
+    if run.last or run.landing.has_cut:
         return REACHED
     if scene.closure_count and scene.pivot < scene.limits.locked and run.h <= scene.limits.locked_step * fabs(run.end):
         return CLOSURES_LOST
@@ -237,10 +237,10 @@ def blocked(scene: cython.pointer[Scene], run: cython.pointer[Run]) -> cython.in
 def near_singular(scene: cython.pointer[Scene], run: cython.pointer[Run]) -> cython.bint:
     """Whether the step before, the last attempt at this one or its start came near to a singular pose."""
     if run.following:
-        return run.settled[run.done] > 0.0
+        return run.track.settled[run.track.done] > 0.0
     if scene.closure_count == 0:
         return False
-    return scene.pivot_of_step < scene.limits.near_singular or run.pivot_at_start < scene.limits.near_singular
+    return scene.pivot_of_step < scene.limits.near_singular or run.control.pivot_at_start < scene.limits.near_singular
 
 
 def attempt(scene: cython.pointer[Scene], method: cython.pointer[Method], run: cython.pointer[Run]) -> cython.int:
@@ -260,11 +260,11 @@ def attempt(scene: cython.pointer[Scene], method: cython.pointer[Method], run: c
     if method.attitude:
         enter(scene, method, run)
     worst: cython.int = take_stages(scene, method, run)
-    combine(method, method.stages, run.chart_K, run.n, run.chart_z)
+    combine(method, method.stages, run.chart.K, run.n, run.chart.z)
     for i in range(run.n):
-        change = run.h * run.chart_z[i] + run.carry[i]
-        run.chart_z[i] = run.chart_y[i] + change
-        run.z_carry[i] = change - (run.chart_z[i] - run.chart_y[i])
+        change = run.h * run.chart.z[i] + run.carry[i]
+        run.chart.z[i] = run.chart.y[i] + change
+        run.z_carry[i] = change - (run.chart.z[i] - run.chart.y[i])
     if method.attitude:
         leave(scene, method, run)
     run.evaluations += method.stages
@@ -273,7 +273,7 @@ def attempt(scene: cython.pointer[Scene], method: cython.pointer[Method], run: c
         enter_slopes(scene, method, run, run.z, method.stages)
     if run.seeing:
         see_stage(scene, run)
-    if run.stiff_after:
+    if run.stiffness.after:
         estimate_swiftness(method, run)
     return worst if method.fixed and worst < trouble else trouble
 
@@ -282,8 +282,8 @@ def enter(scene: cython.pointer[Scene], method: cython.pointer[Method], run: cyt
     """The start of a step, with its derivative, in the chart of attitudes."""
     i: cython.Py_ssize_t
     for i in range(run.n):
-        run.chart_y[i] = run.y[i]
-    enter_chart(scene, method.attitude, run.y, run.y, run.chart_y)
+        run.chart.y[i] = run.y[i]
+    enter_chart(scene, method.attitude, run.y, run.y, run.chart.y)
     enter_slopes(scene, method, run, run.y, 0)
 
 
@@ -291,7 +291,7 @@ def leave(scene: cython.pointer[Scene], method: cython.pointer[Method], run: cyt
     """The end of a step made a state again; small parts of a chart's numbers are none of the state's."""
     i: cython.Py_ssize_t
     for i in range(run.n):
-        run.z[i] = run.chart_z[i]
+        run.z[i] = run.chart.z[i]
     leave_chart(scene, method.attitude, run.y, run.z)
     drop_small_parts(scene, method.attitude, run.z_carry)
 
@@ -301,19 +301,19 @@ def leaves_chart(scene: cython.pointer[Scene], method: cython.pointer[Method], r
 
     So no step jumps over a half turn, however well its ends may fit.
     """
-    run.half_turn = at_half_turn(scene, method.attitude, run.y)
-    measure_ways(scene, method.attitude, run.y, run.ways)
-    run.nearing = nearing(scene, run.y, run.ways)
-    if 0.9 * scene.limits.chart_turn < run.nearing * run.proposed:
-        run.proposed = 0.9 * scene.limits.chart_turn / run.nearing
-    return run.half_turn > 0
+    run.chart.half_turn = at_half_turn(scene, method.attitude, run.y)
+    measure_ways(scene, method.attitude, run.y, run.chart.ways)
+    run.chart.nearing = nearing(scene, run.y, run.chart.ways)
+    if 0.9 * scene.limits.chart_turn < run.chart.nearing * run.control.proposed:
+        run.control.proposed = 0.9 * scene.limits.chart_turn / run.chart.nearing
+    return run.chart.half_turn > 0
 
 
 def sample(scene: cython.pointer[Scene], method: cython.pointer[Method], run: cython.pointer[Run]) -> cython.void:
     """The asked instants within the step y -> z, before its end; which are asked changes nothing of the steps."""
     x: cython.double
     pivot: cython.double = scene.pivot_of_step
-    if run.next_sample >= run.sample_count or run.times[run.next_sample] >= run.stop:
+    if run.samples.next >= run.samples.count or run.samples.times[run.samples.next] >= run.stop:
         return
     if method.by_step:
         sample_by_steps(scene, method, run)
@@ -321,12 +321,12 @@ def sample(scene: cython.pointer[Scene], method: cython.pointer[Method], run: cy
         return
     need_interpolant(scene, method, run)
     scene.pivot_of_step = pivot
-    while run.next_sample < run.sample_count and run.times[run.next_sample] < run.stop:
-        x = (run.times[run.next_sample] - run.t) / run.h
-        interpolate(scene, method, run, x, run.samples[run.next_sample])
+    while run.samples.next < run.samples.count and run.samples.times[run.samples.next] < run.stop:
+        x = (run.samples.times[run.samples.next] - run.t) / run.h
+        interpolate(scene, method, run, x, run.samples.states[run.samples.next])
         if run.determined:
-            find_between(scene, run, run.samples[run.next_sample])
-        run.next_sample += 1
+            find_between(scene, run, run.samples.states[run.samples.next])
+        run.samples.next += 1
 
 
 def sample_by_steps(
@@ -336,29 +336,29 @@ def sample_by_steps(
     seeing: cython.bint = run.seeing
     run.seeing = 0
     run.has_interpolant = 1  # the scene does not stand at the step's end any more
-    while run.next_sample < run.sample_count and run.times[run.next_sample] < run.stop:
+    while run.samples.next < run.samples.count and run.samples.times[run.samples.next] < run.stop:
         if method.implicit:
-            collocate_to(scene, method, run, run.times[run.next_sample], run.samples[run.next_sample])
+            collocate_to(scene, method, run, run.samples.times[run.samples.next], run.samples.states[run.samples.next])
         else:
-            step_to(scene, method, run, run.times[run.next_sample], run.samples[run.next_sample])
-        run.next_sample += 1
+            step_to(scene, method, run, run.samples.times[run.samples.next], run.samples.states[run.samples.next])
+        run.samples.next += 1
     run.seeing = seeing
 
 
 def sample_reached(run: cython.pointer[Run]) -> cython.void:
     """The asked instants up to the one reached: its state, on the closures."""
     i: cython.Py_ssize_t
-    while run.next_sample < run.sample_count and run.times[run.next_sample] <= run.t:
+    while run.samples.next < run.samples.count and run.samples.times[run.samples.next] <= run.t:
         for i in range(run.n):
-            run.samples[run.next_sample][i] = run.y[i]
-        run.next_sample += 1
+            run.samples.states[run.samples.next][i] = run.y[i]
+        run.samples.next += 1
 
 
 def accept(scene: cython.pointer[Scene], method: cython.pointer[Method], run: cython.pointer[Run]) -> cython.int:
     """The step stands: samples, the new state with its derivative, the next length; CLOSURES_LOST, or REACHED."""
     i: cython.Py_ssize_t
     code: cython.int = REACHED
-    run.dodges = 0
+    run.control.dodges = 0
     sample(scene, method, run)
     for i in range(run.n):
         run.y[i] = run.z[i]
@@ -366,20 +366,20 @@ def accept(scene: cython.pointer[Scene], method: cython.pointer[Method], run: cy
     if not run.following:
         keep_rates(run)
     run.t = run.stop
-    run.on_grid += 1
-    if run.has_cut:
-        run.grid = run.t
-        run.on_grid = 0
+    run.control.on_grid += 1
+    if run.landing.has_cut:
+        run.control.grid = run.t
+        run.control.on_grid = 0
     propose_next(method, run)
-    run.rejected_before = 0
-    run.has_cut = run.landings = run.contact_landings = 0
-    run.at_once = 0
+    run.control.rejected_before = 0
+    run.landing.has_cut = run.landing.attempts = run.landing.contact_attempts = 0
+    run.landing.at_once = 0
     run.steps += 1
     pivot: cython.double = scene.pivot_of_step
     turns: cython.bint = scene.held_count > 0 and turn_branches(scene, run)
     if scene.closure_count:
         code = land(scene, run)
-        run.pivot_at_start = scene.pivot
+        run.control.pivot_at_start = scene.pivot
     elif turns:
         evaluate(scene, clipped(run, run.t), run.y, run.K[0])
         run.evaluations += 1
@@ -393,9 +393,9 @@ def accept(scene: cython.pointer[Scene], method: cython.pointer[Method], run: cy
     if code == REACHED:
         sample_reached(run)
         if not run.following:
-            run.pivots[run.done] = pivot
+            run.track.pivots[run.track.done] = pivot
             put_down(scene, run)
-        run.done += 1
+        run.track.done += 1
     return code
 
 
@@ -404,39 +404,39 @@ def keep_rates(run: cython.pointer[Run]) -> cython.void:
     b: cython.Py_ssize_t
     for b in range(run.group_count):
         run.groups[b].rate = run.groups[b].trial
-        if run.groups[b].rate > run.rate and b != run.energy_group:
-            run.rate = run.groups[b].rate
+        if run.groups[b].rate > run.control.rate and b != run.energy_group:
+            run.control.rate = run.groups[b].rate
 
 
 def propose_next(method: cython.pointer[Method], run: cython.pointer[Run]) -> cython.void:
     """The next length by the error; a step cut short by an event or by its piece says nothing against a longer one."""
     h: cython.double = run.h * growth(method, run)
-    if not (run.last or run.has_cut) or run.proposed < h:
-        run.proposed = h
+    if not (run.last or run.landing.has_cut) or run.control.proposed < h:
+        run.control.proposed = h
 
 
 def put_down(scene: cython.pointer[Scene], run: cython.pointer[Run]) -> cython.void:
     """The step by its end, whether its stages were settled, and what the next one starts from."""
-    run.ends[run.done] = run.t
-    run.settled[run.done] = run.near
-    put_record(scene, run, run.passed[run.done])
+    run.track.ends[run.track.done] = run.t
+    run.track.settled[run.track.done] = run.near
+    put_record(scene, run, run.track.passed[run.track.done])
 
 
 def turn_branches(scene: cython.pointer[Scene], run: cython.pointer[Run]) -> cython.bint:
     """The branches of the next step, where those change at the end of this one; which were held is put down."""
     i: cython.Py_ssize_t
-    changed: cython.bint = run.turns
+    changed: cython.bint = run.landing.turns
     if run.following:
         changed = False
-        if run.done + 1 < run.most:
+        if run.track.done + 1 < run.track.most:
             for i in range(scene.held_count):
-                changed = changed or run.branches[run.done + 1][i] != scene.programs.held[i]
-            take_branches(scene, run.branches[run.done + 1])
+                changed = changed or run.track.branches[run.track.done + 1][i] != scene.programs.held[i]
+            take_branches(scene, run.track.branches[run.track.done + 1])
         return changed
     for i in range(scene.held_count):
-        run.branches[run.done][i] = scene.programs.held[i]
-    run.turned[run.done] = run.turns
-    if run.turns:
+        run.track.branches[run.track.done][i] = scene.programs.held[i]
+    run.track.turned[run.track.done] = run.landing.turns
+    if run.landing.turns:
         take_branches(scene, run.course.turned)
     elif scene.angle_count:
         coordinates(scene, clipped(run, run.t), run.y)
@@ -475,12 +475,12 @@ def jumped(scene: cython.pointer[Scene], run: cython.pointer[Run]) -> cython.bin
     i: cython.Py_ssize_t
     change: cython.double
     explained: cython.double = scene.limits.jump
-    if run.step > 0.0:
+    if run.control.step > 0.0:
         # what a step may turn the scene by, its rates may be off by: Euler's are, by half of it
         most: cython.double = scene.limits.jump_of_given
-        explained += run.h * run.rate if run.h * run.rate < most else most
+        explained += run.h * run.control.rate if run.h * run.control.rate < most else most
     elif scene.pivot > 0.0:
-        explained += scene.limits.jump_of_error * run.tolerance / sqrt(scene.pivot)
+        explained += scene.limits.jump_of_error * run.control.tolerance / sqrt(scene.pivot)
     if run.following or run.determined:
         return False
     for b in range(run.group_count):
@@ -488,7 +488,7 @@ def jumped(scene: cython.pointer[Scene], run: cython.pointer[Run]) -> cython.bin
         for i in range(group.rates, group.end):
             run.stage[i] = run.y[i] - run.z[i]
         change = norm_of(run, run.stage, group.rates, group.end)
-        if change > explained * run.rate:
+        if change > explained * run.control.rate:
             return True
     return False
 
@@ -516,7 +516,7 @@ def try_step(scene: cython.pointer[Scene], method: cython.pointer[Method], run: 
     trouble: cython.int = attempt(scene, method, run)
     code = judge(scene, method, run, trouble)
     if code == AGAIN:
-        run.has_cut = run.landings = run.contact_landings = 0
+        run.landing.has_cut = run.landing.attempts = run.landing.contact_attempts = 0
         return REACHED
     if code != ACCEPTED:
         return code
@@ -525,8 +525,8 @@ def try_step(scene: cython.pointer[Scene], method: cython.pointer[Method], run: 
         if met == CHATTERS:
             return CHATTERING
         if met == AGAIN_TO:
-            run.has_cut = run.cut > run.t
-            return TURNED if run.halting and not run.has_cut else REACHED  # they turned at once
+            run.landing.has_cut = run.landing.cut > run.t
+            return TURNED if run.halting and not run.landing.has_cut else REACHED  # they turned at once
         if met == TURNS_OVER and run.stop <= run.t:
             return verdict(scene, run)
     code = accept(scene, method, run)
@@ -539,9 +539,9 @@ def leave_for(scene: cython.pointer[Scene], run: cython.pointer[Run], met: cytho
         return verdict(scene, run)
     if run.watching and opened_by_others(scene, run):
         return LET_GO
-    if run.halting and run.turns:
+    if run.halting and run.landing.turns:
         return TURNED
-    if run.stiff_after and is_held_short(run):
+    if run.stiffness.after and is_held_short(run):
         return STIFF
     return REACHED
 
@@ -553,8 +553,8 @@ def run_steps(scene: cython.pointer[Scene], method: cython.pointer[Method], run:
     branches turn. STIFF where stability keeps the steps short, if that is looked at.
     """
     code: cython.int
-    run.done = 0
-    run.dodges = 0
+    run.track.done = 0
+    run.control.dodges = 0
     run.watching = run.watching and not run.following and scene.contact_count > 0
     run.seeing = not run.following and (scene.watch_count > 0 or run.watching)
     if run.fresh:
@@ -564,11 +564,13 @@ def run_steps(scene: cython.pointer[Scene], method: cython.pointer[Method], run:
         if run.halting:
             return TURNED
     sample_reached(run)
-    run.pivot_at_start = scene.pivot
+    run.control.pivot_at_start = scene.pivot
     attempts: cython.int = 0
     while run.t < run.end:
         attempts += 1
-        if run.done >= run.most or attempts > 100 * run.most:  # also where none stands: the clock is looked at
+        if (
+            run.track.done >= run.track.most or attempts > 100 * run.track.most
+        ):  # also where none stands: the clock is looked at
             return MORE
         code = try_step(scene, method, run)
         if code != REACHED:

@@ -47,7 +47,7 @@ def estimate_swiftness(method: cython.pointer[Method], run: cython.pointer[Run])
                 apart += x * x
                 x = w * (end[i] - last[i])
                 changes += x * x
-    run.swiftness = run.h * sqrt(changes / apart) if apart > 0.0 else 0.0
+    run.stiffness.swiftness = run.h * sqrt(changes / apart) if apart > 0.0 else 0.0
 
 
 def is_held_short(run: cython.pointer[Run]) -> cython.bint:
@@ -56,19 +56,19 @@ def is_held_short(run: cython.pointer[Run]) -> cython.bint:
     Where loads may be stiff, also after some steps, and each time that they have doubled: what saturates, as friction
     does, is driven to and fro by a coarse tolerance, and no quotient tells.
     """
-    if run.look_after and run.steps >= run.look_after:
-        run.look_after = 2 * run.steps
+    if run.stiffness.look_after and run.steps >= run.stiffness.look_after:
+        run.stiffness.look_after = 2 * run.steps
         return True
     if run.near or run.last:
         return False  # its length says nothing
-    if run.swiftness > run.stable:
-        run.stiff_steps += 1
-        run.easy_steps = 0
+    if run.stiffness.swiftness > run.stiffness.stable:
+        run.stiffness.steps += 1
+        run.stiffness.easy_steps = 0
     else:
-        run.easy_steps += 1
-        if run.easy_steps >= run.easy_after:
-            run.stiff_steps = 0
-    if run.stiff_steps < run.stiff_after:
+        run.stiffness.easy_steps += 1
+        if run.stiffness.easy_steps >= run.stiffness.easy_after:
+            run.stiffness.steps = 0
+    if run.stiffness.steps < run.stiffness.after:
         return False
-    run.stiff_steps = 0
+    run.stiffness.steps = 0
     return True
