@@ -1,9 +1,13 @@
 """From a validated spec to its results: the program of `heun run` and of `heun model` as lists of their stages.
 
-    spec -> Setup -> History -> Recovery -> Results      study/solve: what a scene is, how it moves, what is told of it
-    Study                                                study/ask: the solved scene, of which more is asked
+    Spec -> Setup                 model/     what is solved, by which method, and why
+    Setup -> History              solve/     what happens, and how well it is known
+    History -> Results            compose/   the answers at some instants as blocks of results
+    between the instants          search/    extremes, crossings of zero
+    Study                         ask/       the solved scene: measures, expectations, events
 
-This is the one place that sees both the spec and the kernel. Impure: looks at the clock.
+Each room imports those above it in this list alone, and the workflow all of them. Here both the spec and
+the kernel are seen. Impure: looks at the clock.
 """
 
 from __future__ import annotations
