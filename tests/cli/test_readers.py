@@ -11,7 +11,7 @@ import pytest
 from heuncli.cli import app, plain
 from heuncli.cli.options import fields_of
 from heuncli.cli.registry import COMMANDS
-from tests.shared.loaded import loaded_by
+from tests.shared.loaded_modules import loaded_by
 
 WORDS = {
     str | None: ["x", "0.5,1", "-1", "a b", "k=v=w", ""],

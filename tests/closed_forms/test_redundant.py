@@ -9,7 +9,7 @@ import pytest
 
 from tests.oracle.published import beam, four_bar, held
 from tests.oracle.transforms import units_changed
-from tests.shared.openness import open_forces, sums, told_by_sums
+from tests.shared.open_components import open_forces, sums, told_by_sums
 from tests.shared.redundant_supports import SQUARE, door, table
 from tests.shared.scenes import moving, near, solved
 

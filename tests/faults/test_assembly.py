@@ -11,7 +11,7 @@ from heuncli.assembly.assemble import assemble
 from heuncli.errors import SolveError
 from heuncli.mechanism.model import Mechanism
 from tests.shared.drafted_loops import four_bar, slider_crank
-from tests.shared.drafts import X, Y, Z, body, in_time, joint, scene, turned
+from tests.shared.drafted_mechanisms import X, Y, Z, body, in_time, joint, scene, turned
 
 
 def refusal(s: Mechanism) -> tuple[str, str]:

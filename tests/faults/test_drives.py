@@ -9,7 +9,7 @@ import numpy as np
 import pytest
 
 from heuncli.errors import HeunError, SolveError, SpecError
-from tests.shared.driven import driven
+from tests.shared.drive_sources import driven
 from tests.shared.mechanisms import BASE, ROCKER, crank_rocker
 from tests.shared.scenes import moving, solved
 

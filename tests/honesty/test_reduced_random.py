@@ -11,8 +11,8 @@ from heuncli.spec.load import load
 from tests.oracle.scenes import SPREAD
 from tests.oracle.values import to_yaml
 from tests.shared.doubles import redundant_scene
-from tests.shared.in_plane import PLANAR, flat_scene
 from tests.shared.loops import loop_scene
+from tests.shared.moving_in_a_plane import PLANAR, flat_scene
 from tests.shared.reduced import Pair, pair, same
 from tests.shared.reducible import carried, driven, round_scene, welded
 from tests.shared.scenes import moving

@@ -14,7 +14,7 @@ from heuncli.records import replace
 from heuncli.shapes.rotations import from_vector, to_vector
 from tests.shared.assemblies import calls, same_motion
 from tests.shared.drafted_loops import four_bar, random_loop, slider_crank
-from tests.shared.drafts import (
+from tests.shared.drafted_mechanisms import (
     X,
     Y,
     Z,

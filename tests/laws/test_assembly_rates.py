@@ -12,7 +12,7 @@ from heuncli.errors import SolveError
 from heuncli.mechanism.model import Assembly, Mechanism
 from heuncli.records import replace
 from tests.shared.drafted_loops import four_bar, random_loop, slider_crank
-from tests.shared.drafts import (
+from tests.shared.drafted_mechanisms import (
     X,
     Y,
     Z,

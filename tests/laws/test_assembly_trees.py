@@ -13,7 +13,7 @@ from heuncli.mechanism.model import GROUND, Directed, Mechanism
 from heuncli.records import replace
 from heuncli.shapes.rotations import from_vector, to_vector
 from tests.shared.assemblies import calls, same_motion
-from tests.shared.drafts import (
+from tests.shared.drafted_mechanisms import (
     X,
     Y,
     Z,

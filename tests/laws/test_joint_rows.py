@@ -10,7 +10,7 @@ import pytest
 from heuncli.assembly.conditions import Condition, conditions_of
 from heuncli.assembly.rows import Rows, acceleration_rows, missing, pose_rows, rate_rows
 from heuncli.shapes.rotations import from_vector
-from tests.shared.drafts import body, in_time, joint, scene
+from tests.shared.drafted_mechanisms import body, in_time, joint, scene
 
 KINDS = ("ball", "pin", "universal", "weld", "slide", "cylinder", "line", "plane", "rod")
 GIVEN = {"pin": {"angle": 0.7}, "slide": {"travel": 0.3}, "cylinder": {"angle": -0.4, "travel": 0.2}}

@@ -10,8 +10,8 @@ import pytest
 from heuncli.assembly.assemble import assemble
 from heuncli.mechanism.model import Assembly
 from heuncli.records import replace
-from tests.shared.drafts import body, in_time, joint, largest_gap, scene
-from tests.shared.misdrawn import MODES, drawn, known
+from tests.shared.drafted_mechanisms import body, in_time, joint, largest_gap, scene
+from tests.shared.misdrawn_loops import MODES, drawn, known
 
 pytestmark = pytest.mark.heavy  # a family at random: with the compiled kernel, which has the same bits
 

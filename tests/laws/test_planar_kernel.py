@@ -21,7 +21,7 @@ from heuncli.study.model.setup import draw, set_up
 from heuncli.tree.flat import moves_in_plane
 from heuncli.tree.prepare import prepare
 from heuncli.tree.tables import Table
-from tests.shared.flat import flat_scene
+from tests.shared.planar_scenes import flat_scene
 from tests.shared.scenes import near
 
 # rods, ropes, lines, welds, slides, free bodies, drives of all kinds, stops; 14: a light end of a lever, pivot 4e-5

@@ -16,7 +16,7 @@ from heuncli.spec.load import load
 from heuncli.study.model.setup import draw
 from heuncli.tree.prepare import PreparedScene, prepare
 from tests.oracle.values import to_yaml
-from tests.shared.flat_scenes import PLANES, flat
+from tests.shared.flat_in_any_plane import PLANES, flat
 
 ROUNDING = 1e-9  # of the largest acceleration: poses of random loops are well conditioned to three digits or so
 INSTANTS = np.array([0.0, 0.4, 1.3])

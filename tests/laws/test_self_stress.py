@@ -13,7 +13,7 @@ from tests.oracle.published import beam, bricard, four_bar
 from tests.oracle.read import GROUND, model
 from tests.oracle.turns import Array
 from tests.shared.doubles import SEEDS, redundant_scene
-from tests.shared.openness import sums
+from tests.shared.open_components import sums
 from tests.shared.redundant_supports import SQUARE, door, table
 from tests.shared.scenes import moving, near, solved
 

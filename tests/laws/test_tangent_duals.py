@@ -18,9 +18,9 @@ from heuncli.study.model.setup import set_up
 from heuncli.tree.layout import Layout
 from tests.oracle.values import to_yaml
 from tests.shared.dual_tangent import dual_tangent
-from tests.shared.flat import flat_scene
 from tests.shared.loops import loop_scene
 from tests.shared.parallelogram import parallelogram
+from tests.shared.planar_scenes import flat_scene
 from tests.shared.thin_rods import thin_rods
 from tests.shared.trees import tree_scene
 

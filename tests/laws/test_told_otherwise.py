@@ -21,8 +21,8 @@ from tests.oracle.solve import solve
 from tests.oracle.tellings import EITHER_END, TELLINGS, Telling
 from tests.shared import doubles
 from tests.shared.loops import DRIVEN, QUICK, SOME, loop_scene
-from tests.shared.openness import open_parts, sums, told_by_sums
-from tests.shared.retold import same_results
+from tests.shared.open_components import open_parts, sums, told_by_sums
+from tests.shared.retellings import same_results
 from tests.shared.scenes import moving, near, solved, study
 from tests.shared.seeds import spared
 from tests.shared.trees import SOME as TREES

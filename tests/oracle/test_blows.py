@@ -15,10 +15,10 @@ from tests.oracle.impulses import energy_jump, struck, struck_section, work_of_b
 from tests.oracle.read import start_state, state_at
 from tests.oracle.totals import kinetic_energy, mass_effect
 from tests.shared import checks
-from tests.shared.blown import Blown, blown
 from tests.shared.doubles import redundant_scene
 from tests.shared.loops import DRIVEN, loop_scene
 from tests.shared.scenes import near, solved, terms_at
+from tests.shared.struck_runs import Blown, blown
 from tests.shared.trees import ABOUT, cut_through, tree_scene
 
 pytestmark = pytest.mark.heavy  # families at random: with the compiled kernel, which has the same bits

@@ -13,8 +13,8 @@ import pytest
 
 from heuncli.kernel.form import KERNEL
 from tests.shared.event_scenes import EVENTS
-from tests.shared.flat import flat_scene
 from tests.shared.folders import SPECS
+from tests.shared.planar_scenes import flat_scene
 
 SCENES = {
     "double": ("analysis.duration=0.3", "analysis.samples=7"),

@@ -11,7 +11,7 @@ from pathlib import Path
 import pytest
 
 import heuncli
-from tests.shared.loaded import loaded_by
+from tests.shared.loaded_modules import loaded_by
 
 ROOT = Path(heuncli.__file__).parents[1]
 CHAIN = """\

@@ -9,7 +9,7 @@ import pytest
 
 from heuncli.assembly.assemble import assemble
 from heuncli.mechanism.model import Mechanism
-from tests.shared.drafts import X, Y, Z, body, joint, largest_gap, largest_rate_gap, point, scene, turned
+from tests.shared.drafted_mechanisms import X, Y, Z, body, joint, largest_gap, largest_rate_gap, point, scene, turned
 
 # Andrews' angles at the start, as printed in the IVP test set
 B, TH, G, PH = -0.0617138900142764496, 0.0, 0.455279819163070380, 0.222668390165885885

@@ -10,7 +10,7 @@ import pytest
 
 from heuncli.assembly.assemble import assemble
 from heuncli.mechanism.model import Assembly, Mechanism
-from tests.shared.drafts import (
+from tests.shared.drafted_mechanisms import (
     centre,
     index,
 )

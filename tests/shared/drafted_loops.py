@@ -8,7 +8,7 @@ import numpy as np
 
 from heuncli.mechanism.model import Mechanism
 from heuncli.shapes.rotations import from_vector
-from tests.shared.drafts import (
+from tests.shared.drafted_mechanisms import (
     X,
     body,
     joint,

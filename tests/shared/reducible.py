@@ -16,7 +16,7 @@ from tests.oracle.solve import solve
 from tests.oracle.transforms import turned
 from tests.oracle.turns import random_rotation
 from tests.oracle.values import Harmonic
-from tests.shared.in_plane import FlatMaker
+from tests.shared.moving_in_a_plane import FlatMaker
 
 Scene = dict[str, Any]
 WELDS = ("weld", "weld", "weld", "pin", "ball", "slide", "universal")

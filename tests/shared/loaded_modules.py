@@ -1,4 +1,4 @@
-"""What packages load by themselves, so that what heun loads is told from it: old versions of some load more."""
+"""Modules that other packages load by themselves, by version: what is left of sys.modules is what heun loaded."""
 
 from __future__ import annotations
 

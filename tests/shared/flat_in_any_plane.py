@@ -1,7 +1,7 @@
-"""Flat scenes at random: drawn in the axes of their plane, which lies anywhere, bodies in axes of their own.
+"""Random scenes that move in a plane which lies anywhere in space, as dicts of a spec, for tests of that discovery.
 
-Upright ones have joints that cannot leave the plane, at any heights, with loads and inertia that point out of it; the
-others could leave it, and are their own mirror image in it.
+Drawn in the axes of their plane, bodies in axes of their own. Upright ones have joints that cannot leave the plane, at
+any heights, with loads and inertia that point out of it; the others could leave it, and are their own mirror image.
 """
 
 from __future__ import annotations

@@ -1,7 +1,8 @@
-"""Random closed loops in space whose closed pose is known by construction, and drawings of them that are a little off.
+"""Closed loops drawn a little wrong: random ones whose closed pose is known by construction, and drawings off it.
 
-Loops of 4 to 7 bodies (the ground is one), several loops coupled, platforms on rods, and loops with rows that others
-hold already: parallel pins, pins through one point, doors on two hinges.
+For tests of the assembly: the pose found must be near the drawing, and as near as the known one. Loops of 4 to 7 bodies
+(the ground is one), several loops coupled, platforms on rods, and loops with rows that others hold already: parallel
+pins, pins through one point, doors on two hinges.
 """
 
 from __future__ import annotations
@@ -16,7 +17,7 @@ from heuncli.mechanism.model import GROUND, Mechanism
 from heuncli.records import record, replace
 from heuncli.results import Array
 from heuncli.shapes.rotations import from_vector, to_vector
-from tests.shared.drafts import body, joint, scene
+from tests.shared.drafted_mechanisms import body, joint, scene
 
 KINDS = ("pin", "ball", "universal", "cylinder", "slide", "line", "plane", "rod", "weld")
 OFTEN = np.array([5, 4, 3, 3, 2, 1, 1, 1, 0.5])

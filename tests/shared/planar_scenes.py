@@ -1,4 +1,4 @@
-"""Scenes declared planar, at random: every joint kind, load and drive that a plane has, with points at any height."""
+"""Random scenes with `space: planar`, as text: every joint kind, load and drive that a plane has, at any height."""
 
 from __future__ import annotations
 

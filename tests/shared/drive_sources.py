@@ -1,4 +1,4 @@
-"""Drives and values in time from their text, as the oracle's dicts hold them."""
+"""Drives and values in time for the oracle: text for the program, and the same law as a function where it is needed."""
 
 from __future__ import annotations
 

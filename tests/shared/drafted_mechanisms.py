@@ -1,4 +1,8 @@
-"""Small mechanisms in few words, and the gaps of what came out, measured here once more by hand."""
+"""Mechanisms as they are drawn, before assembling, made of short calls in place of a spec; and whether they close.
+
+For tests of the assembly. The gaps of what it finds are measured here by the joints' plain definitions, not by its own
+equations.
+"""
 
 from __future__ import annotations
 
@@ -16,6 +20,7 @@ X, Y, Z = np.eye(3)
 
 
 def vec(a: Any) -> Any:
+    """An array; None stays none."""
     return None if a is None else np.asarray(a, dtype=float)
 
 
@@ -25,6 +30,7 @@ def in_time(text: str) -> Expression:
 
 
 def turned(axis: Any, degrees: float) -> Any:
+    """The rotation about an axis."""
     axis = np.asarray(axis, dtype=float)
     return about(axis / np.linalg.norm(axis), np.radians(degrees))
 
@@ -57,6 +63,7 @@ def joint(name: str, kind: str, a: str, p: Any, b: str, q: Any, axis: Any = (0, 
 
 
 def scene(bodies: list[Body], joints: list[dict[str, Any]], planar: bool = False) -> Mechanism:
+    """The mechanism of these bodies and joints, which name their bodies."""
     index = {b.name: i for i, b in enumerate(bodies)} | {"ground": GROUND}
 
     def made(j: dict[str, Any]) -> Joint:
@@ -87,19 +94,23 @@ def scene(bodies: list[Body], joints: list[dict[str, Any]], planar: bool = False
 
 
 def pose(scene: Mechanism, a: Assembly, body: int) -> tuple[Any, Any]:
+    """Place and rotation of a body, by its number; the ground stands still."""
     return (np.zeros(3), np.eye(3)) if body == GROUND else (a.position[body], a.rotation[body])
 
 
 def index(scene: Mechanism, body: str) -> int:
+    """The number of a body."""
     return GROUND if body == "ground" else [b.name for b in scene.bodies].index(body)
 
 
 def point(scene: Mechanism, a: Assembly, body: str, at: Any) -> Any:
+    """Where a point of a body is."""
     x, R = pose(scene, a, index(scene, body))
     return x + R @ vec(at)
 
 
 def centre(scene: Mechanism, a: Assembly, i: int) -> Any:
+    """Where the centre of mass of a body is."""
     return a.position[i] + a.rotation[i] @ scene.bodies[i].center
 
 
@@ -143,6 +154,7 @@ def gaps(scene: Mechanism, a: Assembly, j: Joint, relative: Any = None) -> list[
 
 
 def largest_gap(scene: Mechanism, a: Assembly) -> float:
+    """The largest gap of all joints, in m and rad."""
     return max((abs(g) for j in scene.joints for g in gaps(scene, a, j)), default=0.0)
 
 

@@ -1,4 +1,7 @@
-"""A run that is struck, with the oracle's answer at every blow: as a case of the checks that instants have."""
+"""Runs with blows beside the oracle's answers, in the form that the checks of instants take (checks.py).
+
+A blow is to velocities and impulses what an instant is to accelerations and forces: the same checks serve both.
+"""
 
 from __future__ import annotations
 
