@@ -18,6 +18,7 @@ ROOT = Path(__file__).parents[2]
 PACKAGE, TESTS, MANUAL = ROOT / "heuncli", ROOT / "tests", ROOT / "heuncli" / "manual"
 SOURCES = sorted([*PACKAGE.rglob("*.py"), *TESTS.rglob("*.py")])
 PAGES = sorted(MANUAL.glob("*.md"))
+READMES = [ROOT / "README.md", *sorted(TESTS.rglob("README.md"))]
 
 NUMBER = re.compile(r"\((1[6-9]|[2-5]\d|6[01])\)")  # of an equation of the paper
 COMMENT = re.compile(r"(?:^|\s)#:?\s+(.*)$")
@@ -154,7 +155,7 @@ def page_section(page: str, title: str) -> str:
     return text.split(f"\n## {title}\n", 1)[1].split("\n## ", 1)[0]
 
 
-@pytest.mark.parametrize("page", PAGES, ids=lambda page: page.stem)
+@pytest.mark.parametrize("page", [*PAGES, *READMES], ids=lambda page: str(page.relative_to(ROOT)))
 def test_what_a_page_of_the_manual_cites_is_there(page: Path) -> None:
     """Files of the project; links between pages are looked at in tests/manual."""
     cited = re.findall(r"\b(?:heuncli|tests|specs)/[\w./-]*\w", page.read_text(encoding="utf-8"))
