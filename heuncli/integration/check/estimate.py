@@ -185,7 +185,7 @@ def compared(runs: Runs, a: Trajectory) -> Compared:
     """A with its check run, and the run beside it."""
     begun = time.perf_counter()
     at = instants_of(runs.runner, a)
-    m = runs.beside(a, at.times)
+    m = runs.from_moved_start(a, at.times)
     others = [*runs.check(a, at.times), *([] if m is None else [m])]
     n = len(at.times)
     if any(run.stopped for run in (a, *others)):
@@ -213,7 +213,7 @@ def errors(runs: Runs, a: Trajectory, times: Array, states: Sequence[Array]) -> 
     places, angles, largest = np.zeros(len(times)), np.zeros(len(times)), 1.0
     several = None
     for part, several in recovered_together(runs, a, times, states):
-        with np.errstate(over="ignore", invalid="ignore"):  # the same
+        with np.errstate(over="ignore", invalid="ignore"):  # given steps that run away: errors without bound
             places[part] = motion_error(runs.marks, several, len(states), layout.size)
             angles[part], turned = angle_error(layout, several, len(states))
         largest = max(largest, turned)

@@ -29,27 +29,30 @@ FUTILE = 20  # a finer run that takes more than so many times the steps of the c
 
 
 class Runs:
-    """Runs of one motion, at several tolerances."""
+    """Runs of one motion, at several tolerances. What is changed of it between two runs: method, eventful."""
 
     def __init__(
         self, runner: Runner, times: Array, jumps: Sequence[float], deadline: float | None, method: Method = DOP853,
         *, step: float | None = None, watched: bool = False,
     ) -> None:  # fmt: skip
-        """step: of a method of given step. watched: the runs to be told are left where another takes less (Stiff)."""
+        """times (n_t,), jumps: asked instants and discontinuities in time [s]; deadline: by time.monotonic().
+
+        step [s]: of a method of given step. watched: runs at the asked instants are left where another method takes
+        less (Stiff).
+        """
         self.runner, self.times, self.jumps, self.step = runner, times, jumps, step
         self.deadline, self.method, self.watched = deadline, method, watched
-        self.eventful = (
-            False  # whether the runs to be told are left where events end their steps, or cease to (Eventful)
-        )
+        self.eventful = False  # whether these runs are left where events end their steps, or cease to (Eventful)
         self.moved, self.marks = moved_start(runner.layout), Marks(runner.layout)
 
     def run(
         self, local: float, at: Array | None = None, start: Array | None = None,
         most_steps: int = tolerances.MOST_STEPS, by: Method | None = None,
     ) -> Trajectory:  # fmt: skip
-        """A run from the start, or from one beside it, seen at the asked instants or at others; by: another method.
+        """A run at a tolerance (or step) from the scene's start or another one (n,); by: another method.
 
-        At others: a check run, which goes as far as the run that it checks.
+        at: other instants than the asked ones, to which a check run goes: as far as the run that it checks, though the
+        condition that ends the motion became true.
         """
         request = Request(
             self.times if at is None else at, local, by or self.method, self.jumps, start, self.deadline, most_steps
@@ -125,7 +128,7 @@ class Runs:
         return None
 
     def check(self, a: Trajectory, at: Array) -> tuple[Trajectory, ...]:
-        """The check run of A; behind it one more that was made on the way to it.
+        """The check run B of A; before it a finer one, where both would err alike.
 
         Where rounding stands against a finer run, one that is less so serves; without any a coarser one: the estimate
         is larger, never too small. A start moved by rounding may set what A holds exactly at rest trembling so fast
@@ -136,14 +139,15 @@ class Runs:
         for local, start in (*tried, (a.local / most, None)):
             run = self.attempt(local, a, at, start, a.method.check)
             if run is not None:
-                return self.apart(a, run, at, start)
+                return self.with_finest(a, run, at, start)
         return (self.run(a.local * most, at, by=a.method.check),)
 
-    def apart(self, a: Trajectory, b: Trajectory, at: Array, start: Array | None) -> tuple[Trajectory, ...]:
-        """The check run, before it one as fine as there is where it takes steps that A took: there both err alike.
+    def with_finest(self, a: Trajectory, b: Trajectory, at: Array, start: Array | None) -> tuple[Trajectory, ...]:
+        """The check run B, and before it one as fine as there is where B takes steps that A took.
 
-        So it does where what happens cuts steps and not the tolerance: the difference would show nothing. It counts as
-        well: in a short pulse each run errs by the rounding of its own instants, and two may agree by chance.
+        In common steps both err alike, and their difference shows nothing: steps are in common where events cut them,
+        and not the tolerance. B counts as well: in a short pulse each run errs by the rounding of its own instants, and
+        two may agree by chance.
         """
         if a.method.fixed or a.method.determined or not shared_steps(a.ends, b.ends):
             return (b,)
@@ -152,8 +156,8 @@ class Runs:
         finest = self.attempt(tolerances.LEAST_TOLERANCE, a, at, start)
         return (b,) if finest is None else (finest, b)
 
-    def beside(self, a: Trajectory, at: Array) -> Trajectory | None:
-        """A run like A from the moved start, where rounding may matter; else None."""
+    def from_moved_start(self, a: Trajectory, at: Array) -> Trajectory | None:
+        """The run M: like A from the moved start, where rounding may matter; else None."""
         if a.method.determined or (not a.method.fixed and a.local >= tolerances.ROUNDING_MATTERS):
             return None
         return self.attempt(a.local, a, at, self.moved)

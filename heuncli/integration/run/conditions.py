@@ -23,7 +23,7 @@ Coordinates = Mapping[tuple[str, str], Jet]  # of a joint and a quantity
 
 
 class Conditions:
-    """The conditions of a scene that is laid out, and where their branches stand among all that its kernel holds."""
+    """The conditions of a scene; places: where their branches stand among all that its kernel holds."""
 
     def __init__(self, layout: Layout) -> None:
         self.conditions: tuple[Condition, ...] = layout.mechanism.conditions
@@ -71,7 +71,7 @@ def coordinates_in(layout: Layout, t: float, state: Array) -> Coordinates:
 
 
 def put(to: dict[tuple[str, str], Jet], joint: str, quantity: str, jet: Jet) -> None:
-    """A coordinate and its rate."""
+    """Add a coordinate of a joint, and its rate, by their names in conditions."""
     q, u, a = jet
     to[joint, quantity] = q, u, a
     to[joint, "rate" if quantity == "angle" else "speed"] = u, a, 0.0
@@ -103,7 +103,7 @@ class EndingCondition:
         self.was: float | None = None
 
     def ends(self, t: float, state: Array) -> bool:
-        """Whether it became true here: at the start it is what it is."""
+        """Whether it became true at t, by the state of what is integrated (n',); at the start it may be true already."""
         branches = self.layout.pack.expressions.branches()
         now = self.conditions.held(t, branches, coordinates_in(self.layout, t, state))[self.number]
         became = self.was == 0.0 and now == 1.0 and t > 0.0

@@ -37,9 +37,10 @@ class Interruptions:
         self.contacts = contacts_of(self.scene, progress.last)
 
     def until(self, t: float, reached: float) -> str | None:
-        """Those up to an instant, behind the one that the run has reached: it goes on from the state behind them.
+        """Do the given blows that are due up to t [s]; the run, at `reached` [s], goes on from the state behind them.
 
-        A rope that would have to push in one of them: the run ends before it. Raises SolveError if that is the start.
+        The rope, if there is one, that would have to push in one of them: the run then ends before it. Raises
+        SolveError if that is the start.
         """
         while self.due and self.due[0].after <= t:
             jump = self.meet(self.due.pop(0), reached)
@@ -60,9 +61,9 @@ class Interruptions:
         return self.contacts.meet(given, state, time, row)
 
     def settle(self, t: float, row: int | None = None) -> None:
-        """What its contacts do at an instant that the run has reached; row: of the one that closed or opened there.
+        """Do what contacts do at an instant that the run has reached.
 
-        row: of what is integrated.
+        row: the closure row, in what is integrated, of the contact that closed or opened there, if one did.
         """
         if self.contacts is None:
             return
