@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 from heuncli.assembly.chosen import chosen, pose_choices, rate_choices
-from heuncli.assembly.conditions import Condition, conditions_of
+from heuncli.assembly.conditions import JointCondition, conditions_of
 from heuncli.assembly.gaps import size_of
 from heuncli.assembly.moved import moved
 from heuncli.assembly.poses import Placing
@@ -26,7 +26,7 @@ def assemble(mechanism: Mechanism, t0: float = 0.0) -> Assembly:
     return _assembled(mechanism, found, size)
 
 
-def _assembled(mechanism: Mechanism, found: list[Condition], size: float) -> Assembly:
+def _assembled(mechanism: Mechanism, found: list[JointCondition], size: float) -> Assembly:
     placing = Placing(mechanism, found, size)
     placing.fit()
     moving = Moving(mechanism, found, placing.poses, size)

@@ -10,7 +10,7 @@ import numpy as np
 
 from heuncli import tolerances
 from heuncli.assembly.rates import Rates
-from heuncli.assembly.walk import Poses, Tree
+from heuncli.assembly.walk import AssemblyPoses, Tree
 from heuncli.mechanism.model import Mechanism
 from heuncli.results import Array
 from heuncli.shapes.rotations import to_vector
@@ -26,7 +26,7 @@ FORMS = {
 FITTED, FROM_JOINT = "fitted to the joints", "from joint"
 
 
-class Choice(NamedTuple):
+class StartChoice(NamedTuple):
     """One start value: whose, which, how it came about; its value in the unit of FORMS where it is not the default.
 
     size: what the value's components are measured by, to leave out the dust of rounding.
@@ -40,9 +40,9 @@ class Choice(NamedTuple):
     size: float = 1.0
 
 
-def chosen(choices: Iterable[Choice]) -> tuple[str, ...]:
+def chosen(choices: Iterable[StartChoice]) -> tuple[str, ...]:
     """One sentence a body and origin; where many bodies share one, they are listed together."""
-    groups: dict[tuple[str, str], list[Choice]] = defaultdict(list)
+    groups: dict[tuple[str, str], list[StartChoice]] = defaultdict(list)
     for c in choices:
         groups[c.what, c.how].append(c)
     single: dict[tuple[str, str, str], list[str]] = defaultdict(list)
@@ -66,8 +66,8 @@ def chosen(choices: Iterable[Choice]) -> tuple[str, ...]:
 
 
 def pose_choices(
-    mechanism: Mechanism, drawn: Poses, poses: Poses, tree: Tree, fitted: set[int], size: float
-) -> list[Choice]:
+    mechanism: Mechanism, drawn: AssemblyPoses, poses: AssemblyPoses, tree: Tree, fitted: set[int], size: float
+) -> list[StartChoice]:
     """The positions and orientations that were left out."""
     moved = np.max(np.abs(poses.x - drawn.x), axis=1) > tolerances.UNMOVED * size
     turned = np.max(np.abs(poses.R - drawn.R), axis=(1, 2)) > tolerances.UNMOVED
@@ -76,19 +76,19 @@ def pose_choices(
         how, joint = _origin(mechanism, tree, i, fitted)
         if body.position is None:
             if moved[i]:
-                found.append(Choice(body.name, "position", how, joint, poses.x[i], size))
+                found.append(StartChoice(body.name, "position", how, joint, poses.x[i], size))
             else:
-                found.append(Choice(body.name, "position", _default(body.near_position)))
+                found.append(StartChoice(body.name, "position", _default(body.near_position)))
         if body.rotation is None:
             if turned[i]:
                 turn = np.degrees(to_vector(poses.R[i] @ drawn.R[i].T))
-                found.append(Choice(body.name, "orientation", how, joint, turn))
+                found.append(StartChoice(body.name, "orientation", how, joint, turn))
             else:
-                found.append(Choice(body.name, "orientation", _default(body.near_rotation)))
+                found.append(StartChoice(body.name, "orientation", _default(body.near_rotation)))
     return found
 
 
-def rate_choices(mechanism: Mechanism, rates: Rates, tree: Tree, fitted: set[int], size: float) -> list[Choice]:
+def rate_choices(mechanism: Mechanism, rates: Rates, tree: Tree, fitted: set[int], size: float) -> list[StartChoice]:
     """The velocities (of the centre of mass) and angular velocities that were left out."""
     scale = float(np.max(np.abs(rates.v)) + size * np.max(np.abs(rates.w)))
     moving = np.max(np.abs(rates.v), axis=1) > tolerances.UNMOVED * scale
@@ -98,10 +98,10 @@ def rate_choices(mechanism: Mechanism, rates: Rates, tree: Tree, fitted: set[int
         how, joint = _origin(mechanism, tree, i, fitted)
         if body.velocity is None:
             how_chosen = (how, joint, rates.v[i], scale) if moving[i] else ("zero",)
-            found.append(Choice(body.name, "velocity", *how_chosen))
+            found.append(StartChoice(body.name, "velocity", *how_chosen))
         if body.angular_velocity is None:
             how_chosen = (how, joint, rates.w[i], scale / size) if turning[i] else ("zero",)
-            found.append(Choice(body.name, "angular velocity", *how_chosen))
+            found.append(StartChoice(body.name, "angular velocity", *how_chosen))
     return found
 
 

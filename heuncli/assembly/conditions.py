@@ -12,7 +12,7 @@ from typing import Literal, NamedTuple
 import numpy as np
 
 from heuncli import tolerances
-from heuncli.assembly.drives import Jet, drive_jet
+from heuncli.assembly.drives import CoordinateJet, drive_jet
 from heuncli.errors import Problem, SolveError
 from heuncli.joint_kinds import JOINTS
 from heuncli.mechanism.model import GROUND, Joint, Mechanism
@@ -40,7 +40,7 @@ class Ask(NamedTuple):
 
 
 @record
-class Condition:
+class JointCondition:
     """What one joint asks at the start; a, b, p, q, axis and to_axis as in Joint, p moved on by a known travel.
 
     across: two unit vectors (2, 3) perpendicular to axis, axes of a, where they are needed. relative: the R_a^T R_b
@@ -65,7 +65,7 @@ class Condition:
     stretch: tuple[float, float]
 
 
-def conditions_of(mechanism: Mechanism, t0: float) -> list[Condition]:
+def conditions_of(mechanism: Mechanism, t0: float) -> list[JointCondition]:
     """One Condition a joint, in the order of the joints. Raises SolveError where a held value contradicts a drive."""
     problems: list[Problem] = []
     found = [_condition_of(mechanism, k, joint, t0, problems) for k, joint in enumerate(mechanism.joints)]
@@ -74,7 +74,7 @@ def conditions_of(mechanism: Mechanism, t0: float) -> list[Condition]:
     return found
 
 
-def _condition_of(mechanism: Mechanism, k: int, joint: Joint, t0: float, problems: list[Problem]) -> Condition:
+def _condition_of(mechanism: Mechanism, k: int, joint: Joint, t0: float, problems: list[Problem]) -> JointCondition:
     drive = joint.drive
     driven = {drive.quantity: drive_jet(drive.value, t0)} if drive else {}
     problems += [_not_computable(drive, t0) for jet in driven.values() if drive and not all(map(math.isfinite, jet))]
@@ -109,7 +109,7 @@ def _condition_of(mechanism: Mechanism, k: int, joint: Joint, t0: float, problem
         rate = Ask("point", rate.turn)
     if hold == "distance" and length is None:  # as assembled: asks nothing of the pose, but keeps its length then
         pose = Ask("none", "free")
-    return Condition(
+    return JointCondition(
         k, joint.a, joint.b, p, joint.q, joint.axis, joint.to_axis, across,
         pose, rate, relative, length or 0.0, spin or (0.0, 0.0), slip or (0.0, 0.0), stretch,
     )  # fmt: skip
@@ -125,7 +125,7 @@ Given = tuple[str, str, float | None]  # what, its unit, the initial value
 
 
 def _known(
-    joint: Joint, jet: Jet | None, value: Given, rate: Given, zero_free: bool, problems: list[Problem]
+    joint: Joint, jet: CoordinateJet | None, value: Given, rate: Given, zero_free: bool, problems: list[Problem]
 ) -> tuple[float | None, tuple[float, float] | None]:
     """A coordinate's value at the start, and its (rate, acceleration), from drive and initial; None where free.
 

@@ -7,7 +7,7 @@ from typing import NamedTuple
 from heuncli.expressions.programs import Expression
 
 
-class Jet(NamedTuple):
+class CoordinateJet(NamedTuple):
     """A coordinate, its rate and its acceleration."""
 
     value: float
@@ -15,6 +15,6 @@ class Jet(NamedTuple):
     acceleration: float
 
 
-def drive_jet(expression: Expression, t: float) -> Jet:
+def drive_jet(expression: Expression, t: float) -> CoordinateJet:
     """The expression and its first and second derivative at t."""
-    return Jet(*expression.derivatives(t))
+    return CoordinateJet(*expression.derivatives(t))

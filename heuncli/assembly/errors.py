@@ -7,7 +7,7 @@ from collections.abc import Sequence
 
 import numpy as np
 
-from heuncli.assembly.islands import Island
+from heuncli.assembly.islands import AssemblyIsland
 from heuncli.errors import Problem, SolveError
 from heuncli.mechanism.model import GROUND, Mechanism
 from heuncli.results import Array
@@ -61,7 +61,7 @@ def no_length(mechanism: Mechanism, joint: int) -> SolveError:
     return SolveError(Problem("no-length", message, hint=hint, about=f"joints.{name}"))
 
 
-def too_many(mechanism: Mechanism, island: Island, what: str) -> SolveError:
+def too_many(mechanism: Mechanism, island: AssemblyIsland, what: str) -> SolveError:
     """An island beyond what is fitted at once."""
     name = mechanism.joints[(island.closures or island.via)[0]].name
     message = (

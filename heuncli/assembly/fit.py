@@ -19,12 +19,12 @@ from collections.abc import Mapping, Sequence
 import numpy as np
 
 from heuncli import tolerances
-from heuncli.assembly.conditions import Condition
+from heuncli.assembly.conditions import JointCondition
 from heuncli.assembly.following import stages
-from heuncli.assembly.islands import Island
-from heuncli.assembly.reduced import Reduced, least, rank_of
+from heuncli.assembly.islands import AssemblyIsland
+from heuncli.assembly.reduced import ReducedIsland, least, rank_of
 from heuncli.assembly.rows import Rows, pose_rows
-from heuncli.assembly.walk import Poses, place
+from heuncli.assembly.walk import AssemblyPoses, place
 from heuncli.results import Array
 from heuncli.shapes.rotations import from_vector, to_vector
 
@@ -42,7 +42,13 @@ class Fit:
     """One island in its poses, which it changes."""
 
     def __init__(
-        self, poses: Poses, island: Island, found: Sequence[Condition], depth: Sequence[int], size: float, planar: bool
+        self,
+        poses: AssemblyPoses,
+        island: AssemblyIsland,
+        found: Sequence[JointCondition],
+        depth: Sequence[int],
+        size: float,
+        planar: bool,
     ) -> None:
         self.poses = poses
         self.island = island
@@ -69,9 +75,9 @@ class Fit:
         s = self.pivots()
         return {k: pose_rows(self.found[k], self.poses.x, self.poses.R, s) for k in self.joints}
 
-    def reduced(self, rows: dict[int, Rows]) -> Reduced:
+    def reduced(self, rows: dict[int, Rows]) -> ReducedIsland:
         """Its rows in the freedoms its tree leaves."""
-        return Reduced(self.island, self.found, rows, self.free(), self.size)
+        return ReducedIsland(self.island, self.found, rows, self.free(), self.size)
 
     def gap(self, rows: dict[int, Rows]) -> float:
         """Root of the sum of squares of all gaps, lengths by L."""
@@ -181,7 +187,7 @@ class Fit:
             if position:
                 shifts[body] = False
                 pivot[body] = 0.0
-        self.poses = Poses(p.x, p.R, pivot, shifts, turns)
+        self.poses = AssemblyPoses(p.x, p.R, pivot, shifts, turns)
         self.settle(limit, KICKS[:1])
         self.poses = p
 
@@ -274,7 +280,7 @@ def _counted(members: int, shift: float) -> Array:
     return np.tile([1.0, 1.0, 1.0, shift, shift, shift], members)
 
 
-def _damped(r: Reduced, mu: float) -> Array:
+def _damped(r: ReducedIsland, mu: float) -> Array:
     """z of least |e − C y|² + μ (Σθ² + SHIFT Σ(d/L)²), (6m,)."""
     Q, A = r.measured(math.sqrt(SHIFT))
     v = -(Q.T @ (r.t * _counted(len(r.steps), SHIFT)))

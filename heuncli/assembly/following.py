@@ -11,8 +11,8 @@ from collections.abc import Iterator, Mapping, Sequence
 
 import numpy as np
 
-from heuncli.assembly.conditions import Condition
-from heuncli.assembly.walk import Poses
+from heuncli.assembly.conditions import JointCondition
+from heuncli.assembly.walk import AssemblyPoses
 from heuncli.joint_kinds import JOINTS
 from heuncli.mechanism.model import Mechanism
 from heuncli.records import replace
@@ -23,7 +23,7 @@ STEP = 0.1  # [rad], or of the lever: shorter than what separates the two ways t
 MOST_STEPS = 64
 
 
-def given(mechanism: Mechanism, found: Sequence[Condition]) -> dict[int, tuple[bool, bool]]:
+def given(mechanism: Mechanism, found: Sequence[JointCondition]) -> dict[int, tuple[bool, bool]]:
     """The joints of which a coordinate is asked for: whether an angle, and whether a travel or length."""
     kinds = [JOINTS[j.kind] for j in mechanism.joints]
     asked = {
@@ -37,8 +37,8 @@ def given(mechanism: Mechanism, found: Sequence[Condition]) -> dict[int, tuple[b
 
 
 def stages(
-    found: Sequence[Condition], asked: Mapping[int, tuple[bool, bool]], drawn: Poses, lever: float
-) -> Iterator[list[Condition]]:
+    found: Sequence[JointCondition], asked: Mapping[int, tuple[bool, bool]], drawn: AssemblyPoses, lever: float
+) -> Iterator[list[JointCondition]]:
     """The conditions with the coordinates as drawn, then nearer and nearer to where they are asked; last as asked.
 
     asked: of which joints, as `given` says. Nothing where all are as drawn, or too far for small steps.
@@ -57,7 +57,7 @@ def stages(
         yield before
 
 
-def _way(d: Condition, which: tuple[bool, bool], drawn: Poses) -> tuple[float, float]:
+def _way(d: JointCondition, which: tuple[bool, bool], drawn: AssemblyPoses) -> tuple[float, float]:
     """Angle [rad] and length [m] by which the coordinates of a joint are beyond what is asked, as drawn."""
     Ra, Rb = drawn.R[d.a], drawn.R[d.b]
     D = Ra.T @ (drawn.x[d.b] + Rb @ d.q - drawn.x[d.a]) - d.p
@@ -67,7 +67,7 @@ def _way(d: Condition, which: tuple[bool, bool], drawn: Poses) -> tuple[float, f
     return angle, float(np.sqrt(D @ D)) - d.length if d.pose.hold == "distance" else float(d.axis @ D)
 
 
-def _before(d: Condition, angle: float, length: float) -> Condition:
+def _before(d: JointCondition, angle: float, length: float) -> JointCondition:
     """The condition with its coordinates so far from what is asked."""
     relative = about(d.axis, angle) @ d.relative if angle else d.relative
     if d.pose.hold == "distance":

@@ -6,16 +6,16 @@ from collections.abc import Sequence
 
 import numpy as np
 
-from heuncli.assembly.conditions import Ask, Condition
+from heuncli.assembly.conditions import Ask, JointCondition
 from heuncli.mechanism.model import GROUND, Mechanism
 from heuncli.results import Array
 from heuncli.shapes.rotations import cross_rows
 
 
-class Closure:
+class JointGaps:
     """The gaps of all joints at once, for any number of poses: joints of one ask are stacked."""
 
-    def __init__(self, found: Sequence[Condition], asks: Sequence[Ask]) -> None:
+    def __init__(self, found: Sequence[JointCondition], asks: Sequence[Ask]) -> None:
         self.count = len(found)
         self.groups = []
         for ask in sorted(set(asks)):

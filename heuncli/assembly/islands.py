@@ -8,7 +8,7 @@ from __future__ import annotations
 
 from collections.abc import Callable, Iterable, Sequence
 
-from heuncli.assembly.conditions import Condition
+from heuncli.assembly.conditions import JointCondition
 from heuncli.assembly.walk import Tree
 from heuncli.mechanism.model import GROUND
 from heuncli.records import record
@@ -18,7 +18,7 @@ TOGETHER = 1000  # bodies in one island: dense matrices of its freedoms must fit
 
 
 @record
-class Island:
+class AssemblyIsland:
     """Members, outward; the joint each hangs on (-1: none); the other joints of their loops; what the loops hang on."""
 
     members: list[int]
@@ -27,14 +27,16 @@ class Island:
     above: int
 
 
-Fitting = Callable[[Island, bool], None]
+Fitting = Callable[[AssemblyIsland, bool], None]
 Again = Callable[[int], None]
 
 
 class Islands:
     """The loops of a tree, merged in almost linear time. It changes: loops may be added and merge others."""
 
-    def __init__(self, tree: Tree, found: Sequence[Condition], links: Sequence[bool], fixed: Sequence[bool]) -> None:
+    def __init__(
+        self, tree: Tree, found: Sequence[JointCondition], links: Sequence[bool], fixed: Sequence[bool]
+    ) -> None:
         """links: which joints count; fixed: which bodies stay whatever happens."""
         n = len(tree.via)
         self._tree = tree
@@ -96,10 +98,10 @@ class Islands:
         self._merge(joint, to_root=True)
         return self.of(joint)
 
-    def island(self, group: int) -> Island:
+    def island(self, group: int) -> AssemblyIsland:
         """The island a body stands for."""
         members = sorted(self._members[group], key=self._rank.__getitem__)
-        return Island(members, [self._tree.via[i] for i in members], self._closures[group], self._above[group])
+        return AssemblyIsland(members, [self._tree.via[i] for i in members], self._closures[group], self._above[group])
 
     def loops(self, body: int) -> bool:
         """Whether a body is in a loop."""

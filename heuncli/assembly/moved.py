@@ -11,9 +11,9 @@ from collections.abc import Sequence
 import numpy as np
 
 from heuncli import tolerances
-from heuncli.assembly.conditions import Condition
-from heuncli.assembly.gaps import Closure
-from heuncli.assembly.walk import Poses
+from heuncli.assembly.conditions import JointCondition
+from heuncli.assembly.gaps import JointGaps
+from heuncli.assembly.walk import AssemblyPoses
 from heuncli.joint_kinds import JOINTS
 from heuncli.mechanism.model import Assembly, Body, Mechanism
 from heuncli.mechanism.size import marks, size_of_scene
@@ -24,7 +24,7 @@ LEAST_ANGLE = 0.01  # [deg] that is mentioned
 
 
 def moved(
-    mechanism: Mechanism, found: Sequence[Condition], drawn: Poses, start: Assembly, lever: float
+    mechanism: Mechanism, found: Sequence[JointCondition], drawn: AssemblyPoses, start: Assembly, lever: float
 ) -> tuple[str, ...]:
     """The bodies that were moved by more than typed digits are off, each with its way, the longest first.
 
@@ -47,7 +47,7 @@ def _told(name: str, way: float, turned: Array) -> str:
     return f"{name} by {way:.2g} m" + (f" and {angle:.2g} deg" if angle >= LEAST_ANGLE else "")
 
 
-def drawn_in_place(mechanism: Mechanism, found: Sequence[Condition], drawn: Poses, lever: float) -> bool:
+def drawn_in_place(mechanism: Mechanism, found: Sequence[JointCondition], drawn: AssemblyPoses, lever: float) -> bool:
     """Whether the scene is drawn in world coordinates, so that a body's place in the drawing is meant.
 
     Bodies drawn each about its own origin fit at a joint or two by chance; in a scene drawn as it stands, but for a
@@ -56,14 +56,14 @@ def drawn_in_place(mechanism: Mechanism, found: Sequence[Condition], drawn: Pose
     asking = [d for d in found if d.pose.hold != "none"]
     if not asking:
         return False
-    distance, angle = Closure(asking, [d.pose for d in asking])(drawn.x, drawn.R)
+    distance, angle = JointGaps(asking, [d.pose for d in asking])(drawn.x, drawn.R)
     is_open = np.maximum(distance / lever, angle) > tolerances.DRAWN_IN_PLACE
     kinds = [JOINTS[mechanism.joints[d.joint].kind] for d in asking]
     set_apart = [d.pose != (kind.hold.asks, kind.turn.asks) for d, kind in zip(asking, kinds, strict=True)]
     return not bool(np.any(is_open & np.array(set_apart))) and 2 * int(np.sum(is_open)) < len(asking)
 
 
-def _way(body: Body, drawn: Poses, start: Assembly, i: int, counts: tuple[bool, bool]) -> float:
+def _way(body: Body, drawn: AssemblyPoses, start: Assembly, i: int, counts: tuple[bool, bool]) -> float:
     """How far the point of a body that moved most is from where it is drawn [m]; counts: its shift, and its turn."""
     turned: Array = start.rotation[i] - drawn.R[i]
     shift = start.position[i] - drawn.x[i] + turned @ body.center if counts[0] else np.zeros(3)

@@ -12,13 +12,13 @@ from collections.abc import Callable, Sequence
 import numpy as np
 
 from heuncli import tolerances
-from heuncli.assembly.conditions import Ask, Condition
+from heuncli.assembly.conditions import Ask, JointCondition
 from heuncli.errors import SolveError
 from heuncli.mechanism.model import GROUND, Assembly, Mechanism
 from heuncli.records import replace
 
 NOTHING = Ask("none", "free")
-Assemble = Callable[[list[Condition]], Assembly]
+Assemble = Callable[[list[JointCondition]], Assembly]
 
 
 def one_sided(mechanism: Mechanism) -> tuple[list[int], list[int]]:
@@ -28,7 +28,7 @@ def one_sided(mechanism: Mechanism) -> tuple[list[int], list[int]]:
     return ropes, free
 
 
-def assembled(mechanism: Mechanism, found: Sequence[Condition], size: float, assemble: Assemble) -> Assembly:
+def assembled(mechanism: Mechanism, found: Sequence[JointCondition], size: float, assemble: Assemble) -> Assembly:
     """The start, with ropes as taut as it finds them. Raises SolveError as `assemble` does."""
     ropes, free = one_sided(mechanism)
     asking = list(found)

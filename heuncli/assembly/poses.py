@@ -7,13 +7,13 @@ from collections.abc import Sequence
 import numpy as np
 
 from heuncli import tolerances
-from heuncli.assembly.conditions import Condition
+from heuncli.assembly.conditions import JointCondition
 from heuncli.assembly.errors import does_not_fit, no_length, too_many
 from heuncli.assembly.fit import Fit
 from heuncli.assembly.following import given
-from heuncli.assembly.gaps import Closure
-from heuncli.assembly.islands import TOGETHER, Island, Islands, settle
-from heuncli.assembly.walk import Poses, Tree, place, spanning, start, walk
+from heuncli.assembly.gaps import JointGaps
+from heuncli.assembly.islands import TOGETHER, AssemblyIsland, Islands, settle
+from heuncli.assembly.walk import AssemblyPoses, Tree, place, spanning, start, walk
 from heuncli.mechanism.model import GROUND, Mechanism
 
 
@@ -24,7 +24,7 @@ class Placing:
     folded: joints whose loop was folded in a fixed way. gap: the largest that is left [m].
     """
 
-    def __init__(self, mechanism: Mechanism, found: Sequence[Condition], size: float) -> None:
+    def __init__(self, mechanism: Mechanism, found: Sequence[JointCondition], size: float) -> None:
         self.mechanism = mechanism
         self.found = found
         self.size = size
@@ -36,7 +36,7 @@ class Placing:
         self.gap = 0.0
         self.limit = tolerances.OPEN_GAP
         self._given = given(mechanism, found)
-        self._gaps = Closure(found, [d.pose for d in found])
+        self._gaps = JointGaps(found, [d.pose for d in found])
 
     def fit(self) -> None:
         """Close all joints. Raises SolveError: does-not-fit, held-conflict."""
@@ -61,7 +61,7 @@ class Placing:
         if self.tree.via[body] >= 0:
             place(self.poses, self.found[self.tree.via[body]], body)
 
-    def _fit(self, island: Island, afresh: bool) -> None:
+    def _fit(self, island: AssemblyIsland, afresh: bool) -> None:
         if afresh:
             for body in island.members:
                 self._walk_on(body)
@@ -101,13 +101,13 @@ class Placing:
         return does_not_fit(self.mechanism, distance, angle, self.size, joints)
 
 
-def _span(d: Condition, poses: Poses) -> float:
+def _span(d: JointCondition, poses: AssemblyPoses) -> float:
     """Distance of a joint's points [m]."""
     D = poses.x[d.b] + poses.R[d.b] @ d.q - poses.x[d.a] - poses.R[d.a] @ d.p
     return float(np.sqrt(D @ D))
 
 
-def _loops(mechanism: Mechanism, found: Sequence[Condition]) -> tuple[Tree, Islands]:
+def _loops(mechanism: Mechanism, found: Sequence[JointCondition]) -> tuple[Tree, Islands]:
     """The tree of the walk, from ground and held positions, and in loops from `near` positions too; and its loops."""
     bodies = mechanism.bodies
     asks = [(d.a, d.b, d.pose) for d in found]

@@ -14,12 +14,12 @@ from functools import cached_property
 import numpy as np
 
 from heuncli import tolerances
-from heuncli.assembly.conditions import Condition
+from heuncli.assembly.conditions import JointCondition
 from heuncli.assembly.errors import rates_do_not_fit, singular_pose, too_many
-from heuncli.assembly.islands import TOGETHER, Island, Islands, settle
-from heuncli.assembly.reduced import Reduced, least, solve
+from heuncli.assembly.islands import TOGETHER, AssemblyIsland, Islands, settle
+from heuncli.assembly.reduced import ReducedIsland, least, solve
 from heuncli.assembly.rows import Rows, acceleration_rows, missing, rate_rows
-from heuncli.assembly.walk import Poses, spanning
+from heuncli.assembly.walk import AssemblyPoses, spanning
 from heuncli.mechanism.model import GROUND, Directed, Mechanism
 from heuncli.records import record, replace
 from heuncli.results import Array
@@ -46,7 +46,7 @@ class Rates:
         return float(np.max(np.abs(self.v)) + size * (np.max(np.abs(self.w)) + tolerances.AT_REST))
 
 
-def start_rates(mechanism: Mechanism, poses: Poses) -> Rates:
+def start_rates(mechanism: Mechanism, poses: AssemblyPoses) -> Rates:
     """Rates as held, else at rest."""
     n = len(mechanism.bodies)
     v, w, s = np.zeros((n + 1, 3)), np.zeros((n + 1, 3)), np.zeros((n + 1, 3))
@@ -75,7 +75,9 @@ class Moving:
     rates: where they are; tree: how the walk reaches them. fitted: bodies fitted in an island.
     """
 
-    def __init__(self, mechanism: Mechanism, found: Sequence[Condition], poses: Poses, size: float) -> None:
+    def __init__(
+        self, mechanism: Mechanism, found: Sequence[JointCondition], poses: AssemblyPoses, size: float
+    ) -> None:
         self.mechanism = mechanism
         self.found = found
         self.poses = poses
@@ -142,7 +144,7 @@ class Moving:
         speed, spin = self._lacking()
         return [int(k) for k in np.flatnonzero(np.maximum(speed, self.size * spin) > self._limit())]
 
-    def _fit(self, island: Island, afresh: bool) -> None:
+    def _fit(self, island: AssemblyIsland, afresh: bool) -> None:
         r = self.rates
         if len(island.members) > TOGETHER:
             raise too_many(self.mechanism, island, "velocities")
@@ -151,7 +153,7 @@ class Moving:
         joints = [k for k in island.via if k >= 0] + island.closures
         rows = {k: _lacking_rows(self.found[k], self.rows[k], r) for k in joints}
         free = [(r.turns[i], r.shifts[i]) for i in island.members]
-        z, lack = least(Reduced(island, self.found, rows, free, self.size), np.zeros(6 * len(free)))
+        z, lack = least(ReducedIsland(island, self.found, rows, free, self.size), np.zeros(6 * len(free)))
         for i, body in enumerate(island.members):
             r.w[body] += z[6 * i : 6 * i + 3]
             r.v[body] += self.size * z[6 * i + 3 : 6 * i + 6]
@@ -180,13 +182,13 @@ class Moving:
             asked = max(max(_norm(row.hold), self.size * _norm(row.turn)) for row in rows.values())
             if asked == 0.0 or len(joints) > CHECKED:
                 continue
-            reduced = Reduced(island, self.found, rows, [(True, True)] * len(island.members), self.size)
+            reduced = ReducedIsland(island, self.found, rows, [(True, True)] * len(island.members), self.size)
             rounding = tolerances.NO_ACCELERATION * r.scale(self.size) ** 2 / self.size
             if self.size * _norm(solve(reduced.measured()[1], reduced.e)[2]) > tolerances.SOLVABLE * asked + rounding:
                 raise singular_pose(self.mechanism, island.closures[0], joints)
 
 
-def _lacking_rows(d: Condition, row: Rows, r: Rates) -> Rows:
+def _lacking_rows(d: JointCondition, row: Rows, r: Rates) -> Rows:
     hold, turn = missing(d, row, r.v, r.w)
     return replace(row, hold=hold, turn=turn)
 

@@ -14,8 +14,8 @@ from functools import cached_property
 import numpy as np
 
 from heuncli import tolerances
-from heuncli.assembly.conditions import Condition
-from heuncli.assembly.islands import Island
+from heuncli.assembly.conditions import JointCondition
+from heuncli.assembly.islands import AssemblyIsland
 from heuncli.assembly.rows import Rows
 from heuncli.records import record
 from heuncli.results import Array
@@ -25,7 +25,7 @@ Free = Sequence[tuple[bool, bool]]  # whether each member may turn, and shift
 
 
 @record
-class Step:
+class MemberStep:
     """How a member follows the one before: z = own + follow z_before + N y_here. before: its place, -1 for none.
 
     rest, lack: rows (r, 6) on z_before that it cannot follow, as it is held, and their right side.
@@ -39,11 +39,11 @@ class Step:
     lack: Array
 
 
-class Reduced:
+class ReducedIsland:
     """An island's rows in its freedoms. What is no member stays."""
 
     def __init__(
-        self, island: Island, found: Sequence[Condition], rows: Mapping[int, Rows], free: Free, size: float
+        self, island: AssemblyIsland, found: Sequence[JointCondition], rows: Mapping[int, Rows], free: Free, size: float
     ) -> None:
         place = {body: i for i, body in enumerate(island.members)}
         self.free = free
@@ -121,7 +121,9 @@ def _blocks(row: Rows, size: float) -> tuple[Array, Array, Array]:
     return J_a, J_b, np.concatenate([row.hold / size, row.turn])
 
 
-def _step(body: int, d: Condition, row: Rows, place: Mapping[int, int], may: tuple[bool, bool], size: float) -> Step:
+def _step(
+    body: int, d: JointCondition, row: Rows, place: Mapping[int, int], may: tuple[bool, bool], size: float
+) -> MemberStep:
     J_a, J_b, c = _blocks(row, size)
     J, J_before, before = (J_b, J_a, d.a) if body == d.b else (J_a, J_b, d.b)
     E = _root(may).N
@@ -129,17 +131,17 @@ def _step(body: int, d: Condition, row: Rows, place: Mapping[int, int], may: tup
     rank = rank_of(S)
     inverse = E @ ((V[:rank].T / S[:rank]) @ U[:, :rank].T)
     rest = U[:, rank:].T
-    return Step(
+    return MemberStep(
         inverse @ c, -(inverse @ J_before), E @ V[rank:].T, place.get(before, -1), rest @ J_before, rest @ c
     )  # fmt: skip
 
 
-def _root(may: tuple[bool, bool]) -> Step:
+def _root(may: tuple[bool, bool]) -> MemberStep:
     N = np.eye(6)[:, np.repeat(np.array(may), 3)]
-    return Step(np.zeros(6), np.zeros((6, 6)), N, -1, np.zeros((0, 6)), np.zeros(0))
+    return MemberStep(np.zeros(6), np.zeros((6, 6)), N, -1, np.zeros((0, 6)), np.zeros(0))
 
 
-def least(r: Reduced, moved: Array, together: float = 0.0) -> tuple[Array, Array]:
+def least(r: ReducedIsland, moved: Array, together: float = 0.0) -> tuple[Array, Array]:
     """z (6m,) with C y = e and least Σ(turns)², then least Σ(shifts)², of z + moved; and what C y = e lacks.
 
     together: least of both in one sum, in which a shift counts so many times a turn. Only what may turn, or shift,

@@ -15,7 +15,7 @@ import math
 import numpy as np
 
 from heuncli import tolerances
-from heuncli.assembly.conditions import Ask, Condition
+from heuncli.assembly.conditions import Ask, JointCondition
 from heuncli.records import record
 from heuncli.results import Array
 from heuncli.shapes.rotations import cross, hat, to_vector
@@ -38,7 +38,7 @@ class Rows:
     r_b: Array
 
 
-def pose_rows(d: Condition, x: Array, R: Array, s: Array) -> Rows:
+def pose_rows(d: JointCondition, x: Array, R: Array, s: Array) -> Rows:
     """Minus the gaps of a joint [m], [rad], in a pose; s (n+1, 3) pivots."""
     Ra, Rb = R[d.a], R[d.b]
     P = x[d.b] + Rb @ d.q
@@ -51,7 +51,7 @@ def pose_rows(d: Condition, x: Array, R: Array, s: Array) -> Rows:
     return Rows(F, T, hold, turn, P - s[d.a], P - s[d.b])
 
 
-def _held(d: Condition, ask: Ask, Ra: Array, D: Array) -> Array:
+def _held(d: JointCondition, ask: Ask, Ra: Array, D: Array) -> Array:
     """F: unit rows, perpendicular to each other."""
     if ask.hold == "point":
         return Ra.T
@@ -65,7 +65,7 @@ def _held(d: Condition, ask: Ask, Ra: Array, D: Array) -> Array:
     return NOTHING
 
 
-def _turn_gap(d: Condition, Ra: Array, Rb: Array) -> tuple[Array, Array]:
+def _turn_gap(d: JointCondition, Ra: Array, Rb: Array) -> tuple[Array, Array]:
     """T and minus the gap: the vector of the smallest turn that is missing, so opposite axes are far from closed."""
     if d.pose.turn == "all":
         phi = to_vector(Ra.T @ Rb @ d.relative.T)
@@ -87,7 +87,7 @@ def _inverse_jacobian(phi: Array) -> Array:
     return np.eye(3) - 0.5 * V + factor * (V @ V)
 
 
-def _axis_gap(d: Condition, Ra: Array, Rb: Array) -> tuple[Array, Array]:
+def _axis_gap(d: JointCondition, Ra: Array, Rb: Array) -> tuple[Array, Array]:
     """The same for one axis: t = φ m, from the axis of `from` to that of `to`, in the two directions across."""
     E = d.across @ Ra.T
     n, n_b = Ra @ d.axis, Rb @ d.to_axis
@@ -105,7 +105,7 @@ def _axis_gap(d: Condition, Ra: Array, Rb: Array) -> tuple[Array, Array]:
     return E @ T, -phi * (E @ m)
 
 
-def _turned(d: Condition, Ra: Array, Rb: Array) -> Array:
+def _turned(d: JointCondition, Ra: Array, Rb: Array) -> Array:
     """T of the rates, in a pose that is closed: unit rows, perpendicular to each other."""
     if d.rate.turn == "all":
         return Ra.T
@@ -117,7 +117,7 @@ def _turned(d: Condition, Ra: Array, Rb: Array) -> Array:
     return NOTHING
 
 
-def rate_rows(d: Condition, x: Array, R: Array, s: Array) -> Rows:
+def rate_rows(d: JointCondition, x: Array, R: Array, s: Array) -> Rows:
     """What a joint asks of the rates [m/s], [rad/s], in a closed pose (lacking, when all is at rest)."""
     Ra, Rb = R[d.a], R[d.b]
     P = x[d.b] + Rb @ d.q
@@ -125,7 +125,7 @@ def rate_rows(d: Condition, x: Array, R: Array, s: Array) -> Rows:
     return Rows(F, T, *_given(d, F, T, 0), P - s[d.a], P - s[d.b])
 
 
-def _given(d: Condition, F: Array, T: Array, order: int) -> tuple[Array, Array]:
+def _given(d: JointCondition, F: Array, T: Array, order: int) -> tuple[Array, Array]:
     """The prescribed rates (order 0) or accelerations (order 1) beside the rows."""
     hold, turn = np.zeros(len(F)), np.zeros(len(T))
     if d.rate.hold == "point":
@@ -137,7 +137,7 @@ def _given(d: Condition, F: Array, T: Array, order: int) -> tuple[Array, Array]:
     return hold, turn
 
 
-def missing(d: Condition, row: Rows, v: Array, w: Array) -> tuple[Array, Array]:
+def missing(d: JointCondition, row: Rows, v: Array, w: Array) -> tuple[Array, Array]:
     """What the rates lack: hold − F u [m/s] and turn − T (σ_b − σ_a) [rad/s]; v, w (n+1, 3) of the pivots."""
     hold, turn = row.hold, row.turn
     if len(row.F):
@@ -147,7 +147,7 @@ def missing(d: Condition, row: Rows, v: Array, w: Array) -> tuple[Array, Array]:
     return hold, turn
 
 
-def acceleration_rows(d: Condition, row: Rows, x: Array, R: Array, v: Array, w: Array) -> Rows:
+def acceleration_rows(d: JointCondition, row: Rows, x: Array, R: Array, v: Array, w: Array) -> Rows:
     """What a joint asks of the accelerations: −γ − g̈_t [m/s2], [rad/s2], from its rate rows and rates that fit them."""
     wa, wb = w[d.a], w[d.b]
     u = v[d.b] + cross(wb, row.r_b) - v[d.a] - cross(wa, row.r_a)

@@ -12,7 +12,7 @@ from collections.abc import Sequence
 import numpy as np
 
 from heuncli import tolerances
-from heuncli.assembly.conditions import Ask, Condition
+from heuncli.assembly.conditions import Ask, JointCondition
 from heuncli.mechanism.model import Mechanism
 from heuncli.records import record
 from heuncli.results import Array
@@ -95,7 +95,7 @@ def spanning(
 
 
 @record
-class Poses:
+class AssemblyPoses:
     """Where the bodies are while they are assembled: its arrays are written to. The last row is the ground.
 
     x (n+1, 3) origins, R (n+1, 3, 3). pivot (n+1, 3): the point turns are about, body axes. shifts, turns: who may.
@@ -107,9 +107,9 @@ class Poses:
     shifts: list[bool]
     turns: list[bool]
 
-    def copy(self) -> Poses:
+    def copy(self) -> AssemblyPoses:
         """The same, to be changed apart."""
-        return Poses(self.x.copy(), self.R.copy(), self.pivot, self.shifts, self.turns)
+        return AssemblyPoses(self.x.copy(), self.R.copy(), self.pivot, self.shifts, self.turns)
 
     def turn(self, body: int, new: Array) -> None:
         """Give the body an attitude; its pivot stays."""
@@ -118,7 +118,7 @@ class Poses:
         self.R[body] = new
 
 
-def start(mechanism: Mechanism) -> Poses:
+def start(mechanism: Mechanism) -> AssemblyPoses:
     """Poses as held, else at near, else as drawn."""
     n = len(mechanism.bodies)
     x, R, pivot = np.zeros((n + 1, 3)), np.tile(np.eye(3), (n + 1, 1, 1)), np.zeros((n + 1, 3))
@@ -131,14 +131,14 @@ def start(mechanism: Mechanism) -> Poses:
             R[i] = attitude
         if b.position is None:
             pivot[i] = b.center
-    return Poses(
+    return AssemblyPoses(
         x, R, pivot,
         [b.position is None for b in mechanism.bodies] + [False],
         [b.rotation is None for b in mechanism.bodies] + [False],
     )  # fmt: skip
 
 
-def place(poses: Poses, d: Condition, body: int) -> None:
+def place(poses: AssemblyPoses, d: JointCondition, body: int) -> None:
     """Turn and shift the body at one end of a joint so that it fits the body at the other, as far as it may."""
     R, x = poses.R, poses.x
     is_to = body == d.b
@@ -150,7 +150,7 @@ def place(poses: Poses, d: Condition, body: int) -> None:
         x[body] += shift if is_to else -shift
 
 
-def asked_attitude(d: Condition, Ra: Array, Rb: Array, is_to: bool) -> Array:
+def asked_attitude(d: JointCondition, Ra: Array, Rb: Array, is_to: bool) -> Array:
     """The attitude of `to` (or of `from`), nearest its present one, that the joint's turn asks for, (3, 3)."""
     if d.pose.turn == "all":
         return Ra @ d.relative if is_to else Rb @ d.relative.T
@@ -174,7 +174,7 @@ def _square(m: Array, n: Array) -> Array:
     return s / size
 
 
-def to_close(d: Condition, n: Array, D: Array) -> Array:
+def to_close(d: JointCondition, n: Array, D: Array) -> Array:
     """The least shift of the `to` point that closes the hold, (3,); n the axis, D from its place on `from`, world."""
     hold = d.pose.hold
     if hold == "point":
@@ -188,7 +188,7 @@ def to_close(d: Condition, n: Array, D: Array) -> Array:
     return (d.length - size) * e
 
 
-def walk(poses: Poses, tree: Tree, found: Sequence[Condition], only: Sequence[int] | None = None) -> None:
+def walk(poses: AssemblyPoses, tree: Tree, found: Sequence[JointCondition], only: Sequence[int] | None = None) -> None:
     """Place the bodies of the tree outward, or `only` those given (in the order of the tree)."""
     for body in tree.order if only is None else only:
         if tree.via[body] >= 0:

@@ -10,7 +10,7 @@ from array import array
 
 from heuncli.errors import Finding
 from heuncli.expressions.dimensions import COORDINATES, FACTOR, FREE, OF_TIME, Measure, combined, looked_up, loose
-from heuncli.expressions.programs import Code, Expression, Switch, Table, outside
+from heuncli.expressions.programs import Code, Expression, Switch, TableFunction, outside
 from heuncli.kernel.choose import expressions
 from heuncli.records import record, replace
 
@@ -43,7 +43,7 @@ class Codegen:
         self.nodes = 0
         self.constants: list[float] = []
         self.variables: dict[tuple[str, str], int] = {}
-        self.tables: list[Table] = []
+        self.tables: list[TableFunction] = []
         self.switches: list[Switch] = []
         self.held: list[str] = []
         self.out_of_range: Finding | None = None  # a table at a constant outside its range: an error ...
@@ -79,7 +79,7 @@ class Codegen:
         self.held.append(text)
         return (OP["hold"], len(self.held) - 1)
 
-    def look_up(self, table: Table, argument: Part, text: str) -> Part:
+    def look_up(self, table: TableFunction, argument: Part, text: str) -> Part:
         """A table's value at the argument."""
         if table not in self.tables:
             self.tables.append(table)
@@ -123,7 +123,7 @@ class Codegen:
             raise Finding("expression-limit", message, "put its values in a table: tables: {gas: {file: ...}}")
         return part
 
-    def run(self, code: Code, table: Table | None = None) -> float:
+    def run(self, code: Code, table: TableFunction | None = None) -> float:
         """The number that constant code gives; a table of it is the one given."""
         tables: tuple[array[float], ...] = ()
         if table is not None:

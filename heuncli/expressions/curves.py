@@ -10,7 +10,7 @@ from collections.abc import Callable, Sequence
 
 import numpy as np
 
-from heuncli.expressions.programs import Table
+from heuncli.expressions.programs import TableFunction
 from heuncli.results import Array
 
 COEFFICIENTS = 4  # of a cubic
@@ -18,7 +18,7 @@ COEFFICIENTS = 4  # of a cubic
 
 def fit(
     name: str, x: Sequence[float], y: Sequence[float], interpolation: str, outside: str | None, period: float | None
-) -> Table:
+) -> TableFunction:
     """The table through points of ascending x; with a period the last point is the first one again.
 
     Slopes of points that lie too close together may come out infinite.
@@ -32,7 +32,7 @@ def fit(
         cubics(np.frombuffer(xs), np.frombuffer(ys), interpolation, period is not None,
                memory[len(xs) + 1 :].reshape(-1, COEFFICIENTS))  # fmt: skip
     kind = 2 if period is not None else 1 if outside == "hold" else 0
-    return Table(name, len(xs) - 1, kind, numbers, xs, ys, interpolation)
+    return TableFunction(name, len(xs) - 1, kind, numbers, xs, ys, interpolation)
 
 
 def cubics(x: Array, y: Array, interpolation: str, periodic: bool, out: Array) -> None:

@@ -13,7 +13,7 @@ from collections.abc import Callable, Sequence
 
 from heuncli import tolerances
 from heuncli.errors import LimitError, Problem
-from heuncli.expressions.programs import KNOT, OPS, VAR, Code, Expression, Pack, Switch, Table
+from heuncli.expressions.programs import KNOT, OPS, VAR, Code, Expression, Pack, Switch, TableFunction
 from heuncli.records import record
 
 COARSEST, FINEST = 1 << 12, 1 << 20  # cells of the grids on which branches are looked for
@@ -82,12 +82,12 @@ def _changes(expression: Expression, switch: Switch, t0: float, t1: float) -> li
     """Where one switch changes, decided; where that has no end, as seen on a grid, too."""
     if switch.decision[:2] == OF_TIME and switch.decision[2] == KNOT and switch.decision[5] != PERIODIC:
         return _knots(expression.tables[switch.decision[3]], t0, t1)
-    found = Search(expression, switch, Grid(t0, t1, COARSEST)).changes()
+    found = SwitchSearch(expression, switch, Grid(t0, t1, COARSEST)).changes()
     found = _seen(expression, switch, t0, t1) if found is None else found
     return [t for t in (*found, *_edges(expression, switch, found)) if t0 < t < t1]
 
 
-def _knots(table: Table, t0: float, t1: float) -> list[float]:
+def _knots(table: TableFunction, t0: float, t1: float) -> list[float]:
     """Where a table of the time itself goes from piece to piece: at its points; the last one belongs to the last piece.
 
     These are the doubles that a search finds, to the last bit; of a million of them it takes minutes.
@@ -128,7 +128,7 @@ class Grid:
         return self.t0 + (self.t1 - self.t0) * (i / self.cells)
 
 
-class Search:
+class SwitchSearch:
     """The search for the changes of one switch over a run."""
 
     def __init__(self, expression: Expression, switch: Switch, grid: Grid) -> None:

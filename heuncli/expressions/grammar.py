@@ -17,7 +17,7 @@ from typing import Any, NamedTuple
 from heuncli.errors import Finding
 from heuncli.expressions.codegen import COMPARISONS, MOST_NODES, Codegen, Part
 from heuncli.expressions.dimensions import FACTOR, FREE, known, loose, of_literal, raised
-from heuncli.expressions.programs import Expression, Table
+from heuncli.expressions.programs import Expression, TableFunction
 from heuncli.expressions.units import RATE, Dimension, describe, in_si
 from heuncli.joint_kinds import RATES, TYPES
 from heuncli.nearest import did_you_mean, nearest
@@ -87,9 +87,9 @@ class Scope:
 
     parameters: Mapping[str, float | None] = NONE
     joints: Mapping[str, str] = NONE
-    tables: Mapping[str, Table | None] = NONE
+    tables: Mapping[str, TableFunction | None] = NONE
     in_time: bool = False
-    given: Mapping[str, Given] = NONE
+    given: Mapping[str, GivenParameter] = NONE
 
 
 FIXED = "this one is read once, before the run: give it as a number or by parameters"
@@ -98,7 +98,7 @@ FIXED = "this one is read once, before the run: give it as a number or by parame
 NO_COORDINATE = "only a pin and a slide have coordinates: shaft.angle, guide.travel"
 
 
-class Given(NamedTuple):
+class GivenParameter(NamedTuple):
     """A parameter with a dimension, as it is written."""
 
     dimension: Dimension

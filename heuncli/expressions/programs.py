@@ -24,7 +24,7 @@ Code = tuple[int, ...]  # pairs (operation, argument), one after another
 
 
 @record
-class Table:
+class TableFunction:
     """A function given by points, as the kernel reads it: a piecewise cubic.
 
     numbers: period, knots (pieces + 1), four coefficients a piece; kind: outside is 0 refused, 1 held, 2 periodic.
@@ -41,7 +41,7 @@ class Table:
     dimensions: tuple[tuple[int, int, int] | None, tuple[int, int, int] | None] = (None, None)
 
 
-def outside(table: Table) -> tuple[str, str]:
+def outside(table: TableFunction) -> tuple[str, str]:
     """What to say where a table's range is left, and a hint."""
     message = f"the table {table.name} covers x from {table.x[0]:.9g} to {table.x[-1]:.9g} (SI)"
     return message, "extend the table, or give it a period, or outside: hold"
@@ -75,7 +75,7 @@ class Expression:
     location: SourceLocation | None = None
     code: Code = ()
     constants: tuple[float, ...] = ()
-    tables: tuple[Table, ...] = ()
+    tables: tuple[TableFunction, ...] = ()
     switches: tuple[Switch, ...] = ()
     held: tuple[str, ...] = ()
     dimension: tuple[int, int, int] | None = None  # where it was written with a unit
@@ -185,7 +185,7 @@ class Pack:
         self.starts.append(start)
         return start, len(code) // 2
 
-    def _table(self, table: Table) -> int:
+    def _table(self, table: TableFunction) -> int:
         if id(table.numbers) not in self._tables:
             self._tables[id(table.numbers)] = len(self.tables)
             self.tables.append(table.numbers)

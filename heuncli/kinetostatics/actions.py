@@ -22,7 +22,7 @@ from heuncli.shapes.rotations import cross_rows
 
 
 @record
-class End:
+class ActionEnd:
     """Where an action enters a body; the moment is about `position` (n_t, 3), world.
 
     point: where that is in the body's axes (3,), None where it moves over the body. apart: the position is that of the
@@ -36,7 +36,7 @@ class End:
 
 
 @record
-class Along:
+class DistributedForce:
     """A part of a distributed load: its force (n_t, 3), world, and how it is spread along the body."""
 
     spread: Spread
@@ -53,13 +53,13 @@ class Action:
 
     kind: Literal["load", "joint", "drive", "stop"]
     name: str
-    to: End
-    from_: End | None
+    to: ActionEnd
+    from_: ActionEnd | None
     force: Array
     moment: Array
-    spread: tuple[Along, ...] = ()
+    spread: tuple[DistributedForce, ...] = ()
 
-    def on_bodies(self) -> Iterator[tuple[End, Array, Array]]:
+    def on_bodies(self) -> Iterator[tuple[ActionEnd, Array, Array]]:
         """Each end with the force and moment ON the body there, about its position."""
         yield self.to, self.force, self.moment
         if self.from_ is not None:
@@ -119,8 +119,8 @@ def distributed(parts: Sequence[tuple[PointLoad, LoadRows]]) -> AppliedLoad:
     middle, force = 0.5 * (on[0] + on[1]), forces[0] + forces[1]
     moment = cross_rows(0.5 * (on[0] - on[1]), forces[0] - forces[1])
     spreads = [part.spread for part, _ in parts if part.spread is not None]
-    end = End(load.body, middle, 0.5 * (spreads[0].center + spreads[1].center))
-    along = tuple(Along(spread, own) for spread, own in zip(spreads, forces, strict=True))
+    end = ActionEnd(load.body, middle, 0.5 * (spreads[0].center + spreads[1].center))
+    along = tuple(DistributedForce(spread, own) for spread, own in zip(spreads, forces, strict=True))
     action = Action("load", load.name, end, None, force, moment, along)
     none = np.zeros(len(force))
     power = sum((row["power"].sum(axis=1) for _, row in parts), none)
@@ -129,21 +129,21 @@ def distributed(parts: Sequence[tuple[PointLoad, LoadRows]]) -> AppliedLoad:
 
 def _ends(
     mechanism: Mechanism, load: Load, joint: Joint | None, on_to: Array, on_from: Array
-) -> tuple[End, End | None]:
+) -> tuple[ActionEnd, ActionEnd | None]:
     """Where a load acts; on_to, on_from: the kernel's positions of its points, world."""
     if isinstance(load, PointLoad):
         point = load.point if load.point is not None else mechanism.bodies[load.body].center
-        return End(load.body, on_to, point), None
+        return ActionEnd(load.body, on_to, point), None
     if isinstance(load, PairLoad):
-        return End(load.b, on_to, load.q), End(load.a, on_from, load.p)
+        return ActionEnd(load.b, on_to, load.q), ActionEnd(load.a, on_from, load.p)
     assert joint is not None
     return _joint_ends(joint, on_to)
 
 
-def _joint_ends(joint: Joint, position: Array) -> tuple[End, End]:
+def _joint_ends(joint: Joint, position: Array) -> tuple[ActionEnd, ActionEnd]:
     """The ends of what acts in a joint, at its `to` point."""
     point = None if JOINTS[joint.kind].wanders else joint.p
-    return End(joint.b, position, joint.q), End(joint.a, position, point, apart=True)
+    return ActionEnd(joint.b, position, joint.q), ActionEnd(joint.a, position, point, apart=True)
 
 
 def joint_actions(joints: Sequence[JointLoads]) -> list[Action]:

@@ -21,14 +21,14 @@ from heuncli import tolerances
 from heuncli.kinetostatics.stress import MODULI, stresses, torsion_constant
 from heuncli.records import record
 from heuncli.results import Array, Block, Mask
-from heuncli.shapes.figures import Figure, Planes, Rectangle, Round, Unknown, figure_of
+from heuncli.shapes.figures import CuttingPlanes, Figure, Rectangle, Round, Unknown, figure_of
 from heuncli.shapes.forms import Form
 
 Values = Mapping[str, float]
 
 
 @record
-class Group:
+class CutGroup:
     """Cuts of one kind: which they are, (k,), and their properties, numbers or arrays over all cuts."""
 
     on: Mask
@@ -37,10 +37,10 @@ class Group:
 
 
 @record
-class Found:
+class CutProperties:
     """The properties of cuts, and why those of the others are not known: by the number of the cut."""
 
-    groups: tuple[Group, ...]
+    groups: tuple[CutGroup, ...]
     missing: Mapping[int, str]
 
 
@@ -55,7 +55,7 @@ class Cutting:
     side: Array
 
 
-def properties_of(cut: Cutting) -> Found:
+def properties_of(cut: Cutting) -> CutProperties:
     """The properties of each cut; where nothing decides between the two sides of a shoulder those of the smaller."""
     before, beyond = (one_sided(cut, -1.0), one_sided(cut, 1.0))
     first = cut.side > 0.0
@@ -63,16 +63,16 @@ def properties_of(cut: Cutting) -> Found:
     area_before, area_beyond = areas(before, len(cut.d)), areas(beyond, len(cut.d))
     first = first | (both & np.isfinite(area_before) & ~(area_beyond < area_before))
     groups = [
-        Group(group.on & own, group.kind, group.values)
+        CutGroup(group.on & own, group.kind, group.values)
         for found, own in ((before, first), (beyond, ~first))
         for group in found.groups
         if (group.on & own).any()
     ]
     missing = {k: why for k, why in before.missing.items() if first[k]}
-    return Found(tuple(groups), missing | {k: why for k, why in beyond.missing.items() if not first[k]})
+    return CutProperties(tuple(groups), missing | {k: why for k, why in beyond.missing.items() if not first[k]})
 
 
-def areas(found: Found, count: int) -> Array:
+def areas(found: CutProperties, count: int) -> Array:
     """The areas of the cuts; nan where they are not known."""
     area = np.full(count, np.nan)
     for group in found.groups:
@@ -89,13 +89,13 @@ AREAS: dict[str, Callable[[Mapping[str, Array]], Array]] = {
 }
 
 
-def one_sided(cut: Cutting, side: float) -> Found:
+def one_sided(cut: Cutting, side: float) -> CutProperties:
     """The properties as limits from before (-1) or beyond (1) the planes."""
-    at = Planes(cut.n, cut.e1, cut.d, cut.d + side * cut.form.near)
+    at = CuttingPlanes(cut.n, cut.e1, cut.d, cut.d + side * cut.form.near)
     found = [figure for part in cut.form.parts if (figure := figure_of(part, at)) is not None]
     met = np.array([figure.met for figure in found], dtype=bool).reshape(len(found), len(cut.d))
     count = met.sum(axis=0)
-    groups: list[Group] = []
+    groups: list[CutGroup] = []
     missing = {int(k): "no shape with a thickness is cut" for k in np.flatnonzero(count == 0)}
     for figure, own in zip(found, met, strict=True):
         alone = own & (count == 1)
@@ -114,17 +114,17 @@ def one_sided(cut: Cutting, side: float) -> Found:
         else:
             several.setdefault((together[0], tuple(together[1].items())), []).append(k)
     for (kind, values), cuts in several.items():
-        groups.append(Group(np.isin(np.arange(len(cut.d)), cuts), kind, dict(values)))
-    return Found(tuple(groups), missing)
+        groups.append(CutGroup(np.isin(np.arange(len(cut.d)), cuts), kind, dict(values)))
+    return CutProperties(tuple(groups), missing)
 
 
-def groups_of(figure: Round | Rectangle, on: Mask) -> list[Group]:
+def groups_of(figure: Round | Rectangle, on: Mask) -> list[CutGroup]:
     """Cuts through one shape alone."""
     if isinstance(figure, Rectangle):
-        return [Group(on, "rectangle", {"width": figure.width, "height": figure.height})]
+        return [CutGroup(on, "rectangle", {"width": figure.width, "height": figure.height})]
     full = figure.inner <= 0.0
     ring = {"radius": figure.outer, "inner_radius": figure.inner}
-    return [Group(on & full, "circle", {"radius": figure.outer}), Group(on & ~full, "tube", ring)]
+    return [CutGroup(on & full, "circle", {"radius": figure.outer}), CutGroup(on & ~full, "tube", ring)]
 
 
 def combined(figures: Sequence[Figure], k: int, cut: Cutting) -> tuple[str, Values] | str:
@@ -192,7 +192,9 @@ def is_point_symmetric(off: Array, size: Array, near: float) -> bool:
     return bool(same.any(axis=1).all())
 
 
-def stress_block(found: Found, cuts: tuple[int, ...], loads: Mapping[str, Array], strength: float | None) -> Block:
+def stress_block(
+    found: CutProperties, cuts: tuple[int, ...], loads: Mapping[str, Array], strength: float | None
+) -> Block:
     """The stresses of cuts by their groups, (n_t, k), nan where properties are not known; cuts: (k,) or (n_t, k)."""
     shape = loads["N"].shape
     block: Block = {}

@@ -26,7 +26,7 @@ from heuncli.shapes.inertia import pseudo_inertia
 from heuncli.spec.models import Properties, Section, Spec
 
 if TYPE_CHECKING:
-    from heuncli.kinetostatics.auto_properties import Cutting, Found
+    from heuncli.kinetostatics.auto_properties import CutProperties, Cutting
 
 BEFORE, BEYOND = 1.0, -1.0
 TOLD_APART = 4.0  # times what counts as in a plane: the corners of a run are told apart by as much (stretch.py)
@@ -65,7 +65,7 @@ class Cuts:
     form: Form | None = None
 
     @cached_property
-    def taken(self) -> Found:
+    def taken(self) -> CutProperties:
         """The properties taken from the shapes, of all cuts one after the other."""
         from heuncli.kinetostatics.auto_properties import properties_of  # few scenes ask for them
 

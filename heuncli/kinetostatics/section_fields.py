@@ -23,7 +23,7 @@ CHUNK = 512  # places in time and along a run treated together: the cells' array
 
 
 @record
-class Fields:
+class StressFields:
     """What the loads make of a section, [Pa], arrays of one shape, signs as the loads'.
 
     bend: of the normal stress at the ends of its half extents along e1, e2; shear: largest from Q1, Q2 alone;
@@ -41,10 +41,10 @@ class Fields:
         return np.asarray(np.hypot(*self.shear))
 
 
-Largest = Callable[[Fields], tuple[Array, Array]]  # shear and von Mises
+Largest = Callable[[StressFields], tuple[Array, Array]]  # shear and von Mises
 
 
-def circle(at: Fields) -> tuple[Array, Array]:
+def circle(at: StressFields) -> tuple[Array, Array]:
     """Of a solid circle: both on its edge, where tau = torsion + shear x u runs along it.
 
     Inside, tau = torsion (n x u) + q - (q.u) u (textbooks' directions: chords' ends along the edge): linear along a
@@ -53,7 +53,7 @@ def circle(at: Fields) -> tuple[Array, Array]:
     return np.abs(at.torsion) + at.sheared, np.sqrt(on_edge(at))
 
 
-def tube(at: Fields) -> tuple[Array, Array]:
+def tube(at: StressFields) -> tuple[Array, Array]:
     """Of a ring: on its edge, as a thin one; but what shear takes off the torsion is not counted on inside thick walls.
 
     Along a chord the shear that Jourawski gives is the same: convex again, and below shear * (cos of the place)^2.
@@ -62,7 +62,7 @@ def tube(at: Fields) -> tuple[Array, Array]:
     return np.abs(at.torsion) + at.sheared, np.sqrt(np.maximum(on_edge(at), unrelieved))
 
 
-def on_edge(at: Fields) -> Array:
+def on_edge(at: StressFields) -> Array:
     """Largest (axial + bend.u)^2 + 3 (torsion + (shear2, -shear1).u)^2 on the circle |u| = 1.
 
     u.H u + 2 g.u + c is nowhere above c + l + g.(l - H)^-1 g for any l above the eigenvalues of H; the least of these
@@ -91,7 +91,7 @@ def on_edge(at: Fields) -> Array:
     return np.asarray((largest + a * a + t * t) * scale * scale)
 
 
-def unknown(at: Fields) -> tuple[Array, Array]:
+def unknown(at: StressFields) -> tuple[Array, Array]:
     """Of a section whose shape is not known: as if all that is largest met in one place."""
     shear = np.abs(at.torsion) + at.sheared
     return shear, np.sqrt((np.abs(at.axial) + np.abs(at.bend[0]) + np.abs(at.bend[1])) ** 2 + 3.0 * shear**2)
@@ -104,7 +104,7 @@ def rectangle(width: float, height: float) -> Largest:
     """
     middle, half = rectangle_factors(width, height)
 
-    def largest(at: Fields) -> tuple[Array, Array]:
+    def largest(at: StressFields) -> tuple[Array, Array]:
         loads = np.stack(np.broadcast_arrays(at.axial, *at.bend, *at.shear, at.torsion)).reshape(6, -1)
         shear, mises = np.empty((2, loads.shape[1]))
         for first in range(0, loads.shape[1], CHUNK):

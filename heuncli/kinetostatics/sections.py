@@ -206,7 +206,7 @@ def shifted(force: Array, moment: Array, by: Array) -> Array:
 
 
 @record
-class Planes:
+class CutPlaces:
     """Where the cuts are and where their moments are taken: body axes, (3, n_t, k)."""
 
     cuts: Cuts
@@ -265,7 +265,7 @@ def along(axis: Array, v: Array, out: Array | None = None) -> Array:
     return component
 
 
-def planes(cuts: Cuts, states: BodyStates) -> Planes:
+def planes(cuts: Cuts, states: BodyStates) -> CutPlaces:
     """Points of the cuts, of their moments and their centroids at the asked instants."""
     R, x = states.R[:, cuts.body], states.x[:, cuts.body]
     shape = (3, len(R), cuts.points.shape[-2])
@@ -280,7 +280,7 @@ def planes(cuts: Cuts, states: BodyStates) -> Planes:
     if not isinstance(cuts.about, str):
         owner, point = cuts.about
         about = np.broadcast_to(in_body_axes(R, states.point_position(owner, point) - x).T[:, :, None], shape)
-    return Planes(cuts, R, x, at, about, centre)
+    return CutPlaces(cuts, R, x, at, about, centre)
 
 
 MOMENTS = frozenset({"moment", "T", "M1", "M2", "T0", "M10", "M20"})
@@ -345,7 +345,7 @@ def stress(cuts: Cuts, loads: Mapping[str, Array]) -> Block:
     return stresses(MODULI[cuts.properties.kind](cuts.properties.values), loads, cuts.strength)
 
 
-def reduction_line(where: Planes, force: Array, moment: Array) -> Block:
+def reduction_line(where: CutPlaces, force: Array, moment: Array) -> Block:
     """Points of the plane where force and moment in it are parallel: Q.p = -n.(Q x M_t)/N, direction n x Q.
 
     moment is about the cut's own point. point: the one nearest to that; pressure_centre: where the moment in the plane

@@ -111,7 +111,7 @@ def stresses(moduli: SectionModuli, loads: Mapping[str, Array], strength: float 
     loads: N, Q1, Q2, T, M1, M2 about the centroid.
     """
     m = moduli
-    at = fields.Fields(
+    at = fields.StressFields(
         loads["N"] / m.area,
         (-loads["M2"] * (m.c1 / m.I2), loads["M1"] * (m.c2 / m.I1)),
         (m.shear * loads["Q1"] / m.area, m.shear * loads["Q2"] / m.area),

@@ -10,7 +10,7 @@ from heuncli.results import Array
 
 
 @record
-class Modes:
+class SceneModes:
     """The modes of a scene; at: about which pose; shapes: of each mode its coordinates, the largest 1."""
 
     title: str

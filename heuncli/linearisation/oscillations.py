@@ -14,7 +14,7 @@ from typing import Literal
 import numpy as np
 
 from heuncli import tolerances
-from heuncli.linearisation.reduced import Reduced
+from heuncli.linearisation.reduced import ReducedEquations
 from heuncli.records import record
 from heuncli.results import Array
 
@@ -50,7 +50,7 @@ class Mode:
         return 0.0 - self.eigenvalue.real / abs(self.eigenvalue) if self.eigenvalue else 0.0
 
 
-def oscillations(system: Reduced) -> list[Mode]:
+def oscillations(system: ReducedEquations) -> list[Mode]:
     """All motions: what is free, what creeps or diverges, and oscillations by their frequency."""
     if system.count == 0:
         return []
@@ -62,7 +62,7 @@ def oscillations(system: Reduced) -> list[Mode]:
     return sorted(modes, key=lambda mode: (mode.kind != "free", mode.frequency, abs(mode.growth)))
 
 
-def mode_of(system: Reduced, eigenvalue: complex, error: float, x: Array, free: bool) -> Mode:
+def mode_of(system: ReducedEquations, eigenvalue: complex, error: float, x: Array, free: bool) -> Mode:
     """A motion by its eigenvalue and its displacement x in the reduced coordinates."""
     shape = system.tangent @ x
     if free:
@@ -116,7 +116,7 @@ def roots(k: complex, error: float, x: Array) -> list[Row]:
     return [(root, off, x, False), (-root.conjugate(), off, x.conj(), False)]
 
 
-def with_rates(system: Reduced) -> list[Row]:
+def with_rates(system: ReducedEquations) -> list[Row]:
     """(x, z)' = A (x, z), rates in units of the fastest of its motions, what is free taken out first."""
     f = system.count
     K = system.stiffness

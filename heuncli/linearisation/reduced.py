@@ -23,7 +23,7 @@ from heuncli.tree.prepare import PreparedScene
 
 
 @record
-class Reduced:
+class ReducedEquations:
     """The equations of f free motions, and T (n, f) that leads back to the freedoms of the tree."""
 
     tangent: Array
@@ -47,7 +47,7 @@ class Reduced:
         return np.asarray(self.A22 @ self.A11 - self.A21)
 
 
-def reduced(scene: PreparedScene, found: Linearised, at: Recovered) -> Reduced:
+def reduced(scene: PreparedScene, found: Linearised, at: Recovered) -> ReducedEquations:
     """The equations on what is free and has inertia; scene: whose bodies' spins may be idle; at: the loads there."""
     idle = idle_spins(scene, found)
     kept = complement(np.array([spin.along for spin in idle]), found.tangent.shape[1])
@@ -64,14 +64,14 @@ def reduced(scene: PreparedScene, found: Linearised, at: Recovered) -> Reduced:
     return on_basis(scene.layout, found, at, T, S)
 
 
-def on_basis(layout: Layout, found: Linearised, at: Recovered, T: Array, S: Array) -> Reduced:
+def on_basis(layout: Layout, found: Linearised, at: Recovered, T: Array, S: Array) -> ReducedEquations:
     """The equations on displacements T that are orthonormal in the mass matrix, and the rates S that these need."""
     spin, frame = frames(layout, found)
     P = T.T @ found.mass
     slow = found.by_rate - frame
     A11 = P @ (S + (spin - frame) @ T)
     loads, terms = sizes(layout, found, at, T)
-    return Reduced(
+    return ReducedEquations(
         tangent=T,
         drift=S,
         mass=found.mass,

@@ -16,7 +16,7 @@ from heuncli.integration.run.runner import Runner
 from heuncli.linearisation.displace import displaced
 from heuncli.linearisation.linearise import Linearised, linearised
 from heuncli.linearisation.oscillations import norm, null_space
-from heuncli.linearisation.reduced import Reduced, balls, on_basis, reduced
+from heuncli.linearisation.reduced import ReducedEquations, balls, on_basis, reduced
 from heuncli.records import record
 from heuncli.results import Array
 from heuncli.shapes.rotations import from_vector
@@ -36,7 +36,7 @@ class Looked:
     holding: Array
     found: Linearised
     at: Recovered
-    system: Reduced
+    system: ReducedEquations
 
     @property
     def layout(self) -> Layout:

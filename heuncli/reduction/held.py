@@ -18,7 +18,7 @@ from heuncli.mechanism.model import GROUND, Joint
 from heuncli.records import record, replace
 from heuncli.reduction.merged import listed
 from heuncli.reduction.model import Reduction
-from heuncli.reduction.restated import Part, Parts, restated
+from heuncli.reduction.restated import Parts, PlaceInBody, restated
 from heuncli.reduction.slots import slots
 from heuncli.reduction.spins import spins_of
 from heuncli.response import Jacobian, jacobian, settled, workspace_of
@@ -33,12 +33,14 @@ def step(scene: PreparedScene) -> Reduction | tuple[str, ...]:
     layout, mechanism = scene.layout, scene.mechanism
     workspace = workspace_of(layout)
     state, bodies = settled(workspace, layout, 0.0, layout.y0)
-    search = Search(layout, jacobian(workspace, layout, np.zeros(1), state[None, :]), idle_axes(scene, bodies["R"]))
+    search = ImmobilitySearch(
+        layout, jacobian(workspace, layout, np.zeros(1), state[None, :]), idle_axes(scene, bodies["R"])
+    )
     held, kept = immobile(search)
     if not held.any():
         return kept
     of = tuple(
-        standing(layout, bodies, layout.place[i]) if held[layout.place[i]] else Part(i, np.eye(3), np.zeros(3))
+        standing(layout, bodies, layout.place[i]) if held[layout.place[i]] else PlaceInBody(i, np.eye(3), np.zeros(3))
         for i in range(len(mechanism.bodies))
     )
     parts = Parts(of, tuple(i for i, part in enumerate(of) if part.body == i))
@@ -53,7 +55,7 @@ def step(scene: PreparedScene) -> Reduction | tuple[str, ...]:
 
 
 @record
-class Search:
+class ImmobilitySearch:
     """What the search for bodies that cannot move looks at: J at the start, the scene, and spins that are none.
 
     spins: of bodies, by their places in the tree, world axes (k, 3) about which they do not turn, though no joint holds
@@ -73,10 +75,10 @@ def idle_axes(scene: PreparedScene, R: Array) -> dict[int, Array]:
     return {i: axes @ R[i].T for i, axes in found.items()}
 
 
-def standing(layout: Layout, bodies: Table, place: int) -> Part:
+def standing(layout: Layout, bodies: Table, place: int) -> PlaceInBody:
     """Where a body of the tree stands on the ground."""
     R, r = bodies["R"][place], bodies["r"][place]
-    return Part(GROUND, R, r - R @ layout.reference[place])
+    return PlaceInBody(GROUND, R, r - R @ layout.reference[place])
 
 
 def resting(layout: Layout, held: Mask, state: Array) -> Array:
@@ -87,7 +89,7 @@ def resting(layout: Layout, held: Mask, state: Array) -> Array:
     return state
 
 
-def immobile(search: Search) -> tuple[Mask, tuple[str, ...]]:
+def immobile(search: ImmobilitySearch) -> tuple[Mask, tuple[str, ...]]:
     """Which bodies, by their places in the tree, cannot move; why others were left that could be thought to be so."""
     layout = search.layout
     held = ~movable(layout)
@@ -148,7 +150,7 @@ def ends_of_limits(layout: Layout, held: Mask, kept: dict[int, str]) -> list[int
     return []
 
 
-def in_motion(search: Search, island: Island, held: Mask, kept: dict[int, str]) -> list[int]:
+def in_motion(search: ImmobilitySearch, island: Island, held: Mask, kept: dict[int, str]) -> list[int]:
     """Of an island's bodies that are left those that can move, if the others do not."""
     layout = search.layout
     bodies = {i: free for i in np.flatnonzero(held).tolist() if (free := within(layout, island, i))}
@@ -185,7 +187,7 @@ def lasting(layout: Layout, r: int, held: Mask) -> bool:
     return bool(held[ends].all()) and not one_sided and not varies(layout.mechanism.joints[layout.rows[r]])
 
 
-def scaled(search: Search, island: Island, rows: Array, freedoms: Array) -> Array:
+def scaled(search: ImmobilitySearch, island: Island, rows: Array, freedoms: Array) -> Array:
     """J of some of an island's rows and freedoms, as redundancy/self_stress.py measures it, (rows, freedoms)."""
     couples, turns = np.isin(rows, island.rows[island.couples]), np.isin(freedoms, island.freedoms[island.turns])
     J = search.J.block(rows, freedoms)[0]
@@ -193,7 +195,7 @@ def scaled(search: Search, island: Island, rows: Array, freedoms: Array) -> Arra
     return np.asarray(J / np.maximum(np.sqrt(np.sum(J * J, axis=1, keepdims=True)), 1.0))
 
 
-def without_spins(search: Search, bodies: dict[int, list[int]]) -> Array:
+def without_spins(search: ImmobilitySearch, bodies: dict[int, list[int]]) -> Array:
     """Unit motions, as columns (freedoms, n), of all freedoms but the spins that are none."""
     blocks = []
     for i, free in bodies.items():

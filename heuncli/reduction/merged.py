@@ -17,7 +17,7 @@ from heuncli.joint_kinds import JOINTS
 from heuncli.mechanism.model import GROUND, Body, Mechanism
 from heuncli.records import replace
 from heuncli.reduction.model import Reduction
-from heuncli.reduction.restated import Part, Parts, bound_to_axes, restated
+from heuncli.reduction.restated import Parts, PlaceInBody, bound_to_axes, restated
 from heuncli.reduction.slots import slots
 from heuncli.results import Array
 from heuncli.shapes.inertia import properties, pseudo_inertia
@@ -52,9 +52,9 @@ def welded(layout: Layout, apart: dict[int, str]) -> Parts:
     """
     mechanism = layout.mechanism
     bound = bound_to_axes(mechanism)
-    found: dict[int, Part] = {GROUND: Part(GROUND, np.eye(3), np.zeros(3))}
+    found: dict[int, PlaceInBody] = {GROUND: PlaceInBody(GROUND, np.eye(3), np.zeros(3))}
     for h in layout.spanning.hangs:
-        found[h.body] = Part(h.body, np.eye(3), np.zeros(3))
+        found[h.body] = PlaceInBody(h.body, np.eye(3), np.zeros(3))
         if h.joint < 0 or not JOINTS[mechanism.joints[h.joint].kind].is_rigid or h.body in apart:
             continue
         part = found[h.parent].holds(beside(layout, h.joint, h.reverse))
@@ -68,12 +68,12 @@ def welded(layout: Layout, apart: dict[int, str]) -> Parts:
     return Parts(of, tuple(i for i, part in enumerate(of) if part.body == i))
 
 
-def beside(layout: Layout, joint: int, reverse: bool) -> Part:
+def beside(layout: Layout, joint: int, reverse: bool) -> PlaceInBody:
     """Where a body stands in the one it is welded to."""
     weld, R = layout.mechanism.joints[joint], layout.starts[joint].R_ref
     if reverse:
-        return Part(weld.b, R.T, weld.q - R.T @ weld.p)
-    return Part(weld.a, R, weld.p - R @ weld.q)
+        return PlaceInBody(weld.b, R.T, weld.q - R.T @ weld.p)
+    return PlaceInBody(weld.a, R, weld.p - R @ weld.q)
 
 
 def not_inside(layout: Layout, parts: Parts) -> tuple[int, str] | None:
@@ -102,7 +102,7 @@ def whole(mechanism: Mechanism, parts: Parts, root: int) -> Body:
     return replace(body, mass=mass, center=about + center, inertia=0.5 * (inertia + inertia.T))
 
 
-def moved(body: Body, part: Part, about: Array) -> Array:
+def moved(body: Body, part: PlaceInBody, about: Array) -> Array:
     """The pseudo-inertia of a body about a point of what it is part of, in its axes."""
     centre = part.point(body.center) - about
     return pseudo_inertia(body.mass, centre, part.R @ body.inertia @ part.R.T)

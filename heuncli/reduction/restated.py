@@ -34,7 +34,7 @@ from heuncli.tree.starts import GivenTree, JointStart
 
 
 @record
-class Part:
+class PlaceInBody:
     """Where a body stands in what it is part of: that body (-1: the ground), its attitude R and origin p there."""
 
     body: int
@@ -45,12 +45,12 @@ class Part:
         """A point of the body."""
         return np.asarray(self.R @ x + self.p)
 
-    def holds(self, inner: Part) -> Part:
+    def holds(self, inner: PlaceInBody) -> PlaceInBody:
         """Where a body stands that stands so in this one."""
-        return Part(self.body, self.R @ inner.R, self.point(inner.p))
+        return PlaceInBody(self.body, self.R @ inner.R, self.point(inner.p))
 
 
-WHOLE = Part(GROUND, np.eye(3), np.zeros(3))  # the ground in itself
+WHOLE = PlaceInBody(GROUND, np.eye(3), np.zeros(3))  # the ground in itself
 
 
 @record
@@ -60,10 +60,10 @@ class Parts:
     A part's body is numbered as in the larger scene.
     """
 
-    of: tuple[Part, ...]
+    of: tuple[PlaceInBody, ...]
     roots: tuple[int, ...]
 
-    def at(self, body: int) -> Part:
+    def at(self, body: int) -> PlaceInBody:
         """Of a body, or of the ground."""
         return WHOLE if body == GROUND else self.of[body]
 
@@ -149,7 +149,7 @@ def load_of(load: Load, parts: Parts, number: dict[int, int], joint_number: dict
     return PointLoad(load.name, "couple", GROUND, None, (value, nothing, nothing), False)
 
 
-def turned(part: Part, load: PointLoad) -> tuple[Expression, Expression, Expression]:
+def turned(part: PlaceInBody, load: PointLoad) -> tuple[Expression, Expression, Expression]:
     """The components of a load that is fixed in a body in the axes of what it is part of.
 
     What is not constant can stand in the same axes only, or on the ground, which it does not move (`bound_to_axes`).

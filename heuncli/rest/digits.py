@@ -14,7 +14,7 @@ from heuncli.integration.evaluator import Evaluator
 from heuncli.linearisation.linearise import linearised
 from heuncli.records import replace
 from heuncli.rest.coordinates import Coordinates, resting, rounding_of
-from heuncli.rest.search import Found
+from heuncli.rest.search import FoundPose
 from heuncli.rest.slopes import Slopes
 from heuncli.results import Array, Mask
 
@@ -25,7 +25,7 @@ THRICE = 3.0  # of Newton's steps: so far away is the rest of what is held by a 
 BACK = 6  # of Newton's steps by the slopes of the pose itself: beside it each errs by as much as that is away
 
 
-def beside(evaluator: Evaluator, found: Found) -> tuple[list[Array], Mask]:
+def beside(evaluator: Evaluator, found: FoundPose) -> tuple[list[Array], Mask]:
     """States (n_state,) of such poses; which directions (f,) without stiffness are held, or pushed, by what bends."""
     at, own, coordinates = found.pose, found.slopes, found.coordinates
     by = np.array([rounding_of(coordinates, at.state, k) for k in range(BESIDE)])
@@ -38,7 +38,7 @@ def beside(evaluator: Evaluator, found: Found) -> tuple[list[Array], Mask]:
     return [*again.states, *resting(evaluator, at.t, sums, at.holding).states, *far], bends
 
 
-def rounding_of_sums(found: Found) -> Array:
+def rounding_of_sums(found: FoundPose) -> Array:
     """How far each direction gives way to what rounding leaves of its accelerations' sums, all together, (n,)."""
     own = found.slopes
     push = THRICE * tolerances.PLACE_ROUNDING / tolerances.SUM_ROUNDING * own.summed
@@ -47,7 +47,7 @@ def rounding_of_sums(found: Found) -> Array:
     return way / max(1.0, found.coordinates.size(way))  # a radian, or the size: nothing is known beyond that
 
 
-def bent(evaluator: Evaluator, found: Found) -> tuple[list[Array], Mask]:
+def bent(evaluator: Evaluator, found: FoundPose) -> tuple[list[Array], Mask]:
     """The farthest poses along directions without stiffness at which accelerations are rounding, but are none farther.
 
     And which directions (f,) these are; none in which accelerations are rounding as far as one looks: indifferent ones.
@@ -66,7 +66,7 @@ def bent(evaluator: Evaluator, found: Found) -> tuple[list[Array], Mask]:
     return states, bends
 
 
-def softened(found: Found, states: list[Array]) -> Slopes:
+def softened(found: FoundPose, states: list[Array]) -> Slopes:
     """The slopes at a pose, with eigenvalues known no better than they stay as far off as rounding leaves the pose."""
     at, own, coordinates = found.pose, found.slopes, found.coordinates
     if not own.decided.any():
@@ -77,7 +77,7 @@ def softened(found: Found, states: list[Array]) -> Slopes:
     return replace(own, known=own.known + TWICE * np.abs(np.diag(change)))
 
 
-def beyond(evaluator: Evaluator, found: Found, way: Array) -> tuple[Array, Array]:
+def beyond(evaluator: Evaluator, found: FoundPose, way: Array) -> tuple[Array, Array]:
     """States displaced by ways (k, n) at which all directions but those without stiffness rest, and c there, (k, f)."""
     at, own, coordinates = found.pose, found.slopes, found.coordinates
     states = coordinates.displaced(np.repeat(at.state[None, :], len(way), axis=0), way)

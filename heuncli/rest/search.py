@@ -34,7 +34,7 @@ CLOSING = 60  # steps of the search for where a contact closes
 
 
 @record
-class Found:
+class FoundPose:
     """A rest pose, with the linear law about it; what it took."""
 
     pose: Pose
@@ -44,7 +44,7 @@ class Found:
     evaluations: int
 
 
-class Search:
+class RestSearch:
     """A search under way. Changes with every step."""
 
     def __init__(self, evaluator: Evaluator, t: float) -> None:
@@ -55,7 +55,7 @@ class Search:
         self.steps = self.evaluations = 0
         self.h = self.most = 0.0
 
-    def found(self) -> Found:
+    def found(self) -> FoundPose:
         """The rest pose. Raises SolveError [no-rest-pose]."""
         at = self.begun()
         while True:
@@ -63,7 +63,7 @@ class Search:
             self.evaluations += 3 + SAMPLES
             if not own.left.any():
                 self.require_held(at, own)
-                return Found(*self.polished(at, own), self.coordinates, self.steps, self.evaluations)
+                return FoundPose(*self.polished(at, own), self.coordinates, self.steps, self.evaluations)
             self.check(at, own)
             at = self.advanced(at, own)
             self.steps += 1

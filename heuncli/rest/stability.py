@@ -12,7 +12,7 @@ import numpy as np
 from heuncli import tolerances
 from heuncli.records import record
 from heuncli.rest.coordinates import Coordinates
-from heuncli.rest.search import Found
+from heuncli.rest.search import FoundPose
 from heuncli.results import Array, Mask
 from heuncli.shapes.rotations import hat
 
@@ -36,7 +36,7 @@ class Stability:
     flat: tuple[str, ...]
 
 
-def stability(found: Found, bends: Mask) -> Stability:
+def stability(found: FoundPose, bends: Mask) -> Stability:
     """Of a rest pose; bends (f,): the directions without stiffness that are held, or pushed, by what bends."""
     own, coordinates = found.slopes, found.coordinates
     real = own.decided
@@ -60,7 +60,7 @@ def stability(found: Found, bends: Mask) -> Stability:
     )
 
 
-def motions_of(found: Found) -> tuple[Array, Array]:
+def motions_of(found: FoundPose) -> tuple[Array, Array]:
     """The exponents s of small motions along directions that are not indifferent, and their displacements (f, k)."""
     own, coordinates = found.slopes, found.coordinates
     C = own.law.by_rate.copy()
@@ -75,7 +75,7 @@ def motions_of(found: Found) -> tuple[Array, Array]:
     return s, vectors[:f]
 
 
-def indifferent(found: Found, loose: Mask) -> tuple[str, ...]:
+def indifferent(found: FoundPose, loose: Mask) -> tuple[str, ...]:
     """What moves along some directions, by name; not what moves no mass, as spins that nothing determines."""
     own, coordinates = found.slopes, found.coordinates
     if not loose.any():

@@ -21,7 +21,7 @@ EDGES = np.array([(a, b) for a in range(8) for b in range(a + 1, 8) if np.abs(CO
 
 
 @record
-class Columns:
+class BoxColumns:
     """The box in columns along x3: where in x1 and x2, how much of the base, and the height g of the plane, (k, m)."""
 
     order: tuple[int, int, int]
@@ -41,7 +41,7 @@ class Box(Thick):
     axes: Array
     density: float
 
-    def columns(self, n: Array, d: Array) -> Columns:
+    def columns(self, n: Array, d: Array) -> BoxColumns:
         local = self.axes.T @ n
         i3 = int(np.argmax(np.abs(local)))
         order = ((i3 + 1) % 3, (i3 + 2) % 3, i3)
@@ -57,7 +57,7 @@ class Box(Thick):
             x2, w2 = piecewise(np.full(x1.shape, -b), np.full(x1.shape, b), edges, 2)
         g = (rest[..., None] - n2 * x2) / n3
         grid = np.broadcast_to(x1[..., None], x2.shape), x2, g, w1[..., None] * w2
-        return Columns(order, sign, *(part.reshape(len(d), -1) for part in grid))
+        return BoxColumns(order, sign, *(part.reshape(len(d), -1) for part in grid))
 
     def placed(self, mass: Array, first: Array, second: Array) -> Array:
         """Pseudo-inertia about the body's origin from moments about the box's centre, in the box's axes."""

@@ -21,7 +21,7 @@ Flags = NDArray[np.bool_]
 
 
 @record
-class Planes:
+class CuttingPlanes:
     """Planes n.x = d (k,) and e1 in them; beside (k,): a hair before or beyond each, which decides what it meets."""
 
     n: Array
@@ -61,7 +61,7 @@ class Unknown:
 Figure = Round | Rectangle | Unknown
 
 
-def figure_of(part: Solid, at: Planes) -> Figure | None:
+def figure_of(part: Solid, at: CuttingPlanes) -> Figure | None:
     """The figure of a shape; None of what has no thickness, and so none."""
     if isinstance(part, Frustum):
         return of_frustum(part, at)
@@ -75,7 +75,7 @@ def figure_of(part: Solid, at: Planes) -> Figure | None:
     return None
 
 
-def of_frustum(part: Frustum, at: Planes) -> Figure:
+def of_frustum(part: Frustum, at: CuttingPlanes) -> Figure:
     """Of a cylinder, tube or cone."""
     if not is_along(part.axis, at.n):
         low, high = part.extent(at.n)
@@ -86,7 +86,7 @@ def of_frustum(part: Frustum, at: Planes) -> Figure:
     return Round((beside > 0.0) & (beside < part.length), part.start + z[:, None] * part.axis, r, q)
 
 
-def of_box(part: Box, at: Planes) -> Figure:
+def of_box(part: Box, at: CuttingPlanes) -> Figure:
     """Of a box, sides along e1 and e2."""
     i = int(np.argmax(np.abs(part.axes.T @ at.n)))
     h = at.d - at.n @ part.center

@@ -19,7 +19,7 @@ from heuncli.results import Array
 from heuncli.shapes.box import Box
 from heuncli.shapes.frustum import Frustum
 from heuncli.shapes.outlines import count_regions
-from heuncli.shapes.solids import Ball, Point, Rod, Solid
+from heuncli.shapes.solids import Ball, PointMass, Rod, Solid
 from heuncli.spec.models import Shape, Vec
 
 Value = TypeVar("Value")
@@ -66,7 +66,7 @@ def sphere(shape: Shape, density: float) -> Solid:
 
 
 def point(shape: Shape, density: float) -> Solid:
-    return Point(vector(shape.at), density)
+    return PointMass(vector(shape.at), density)
 
 
 # density: kg/m3; of a rod kg/m, of a point kg
@@ -135,13 +135,13 @@ class Form:
 
     def masses_in_plane(self, n: Array, d: Array) -> NDArray[np.bool_]:
         """Whether a point mass lies in the plane, (k,): such a cut needs a side."""
-        return self.in_plane(Point, n, d)
+        return self.in_plane(PointMass, n, d)
 
     def rods_in_plane(self, n: Array, d: Array) -> NDArray[np.bool_]:
         """Whether the plane contains a rod, (k,): on which side the rod's mass counts is then a choice."""
         return self.in_plane(Rod, n, d)
 
-    def in_plane(self, kind: type[Point] | type[Rod], n: Array, d: Array) -> NDArray[np.bool_]:
+    def in_plane(self, kind: type[PointMass] | type[Rod], n: Array, d: Array) -> NDArray[np.bool_]:
         flags = [part.lies_in(n, d, self.near) for part in self.parts if isinstance(part, kind)]
         return np.asarray(np.any([np.zeros(len(d), dtype=bool), *flags], axis=0))
 

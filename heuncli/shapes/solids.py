@@ -57,7 +57,7 @@ def ends(solid: Solid, n: Array) -> Array:
 
 
 @record
-class Point:
+class PointMass:
     """A point mass [kg]."""
 
     at: Array

@@ -54,7 +54,7 @@ class CsvError(Exception):
         self.line, self.column, self.finding = line, column, finding
 
 
-class Layout(NamedTuple):
+class ColumnLayout(NamedTuple):
     """How a file is written: what separates cells, the names in its first row, how many cells that has, and how many
     lines stand before the numbers."""
 
@@ -69,7 +69,7 @@ def columns_of(text: str, *wanted: object) -> Columns:
     layout = layout_of(text)
     indices = [column(number, key, layout, text) for number, key in enumerate(wanted)]
     if all(counted(str(key)) is not None for key in wanted) and begins_at_once(layout, indices, text):
-        layout = Layout(layout.mark, [], layout.width, layout.before - 1)
+        layout = ColumnLayout(layout.mark, [], layout.width, layout.before - 1)
     columns: Columns = [array("d") for _ in wanted]
     for line, lines in numbered(text, layout.before):
         if not read_plain(lines, layout.mark, indices, columns):
@@ -102,7 +102,7 @@ def is_row(line: str) -> bool:
     return shown != "" and not shown.startswith("#")
 
 
-def layout_of(text: str) -> Layout:
+def layout_of(text: str) -> ColumnLayout:
     """How a text is written, by its first row. Raises CsvError."""
     n, line = next(rows_of(text), (0, ""))
     if not n:
@@ -110,11 +110,11 @@ def layout_of(text: str) -> Layout:
     mark = next((m for m in (";", "\t", ",") if m in line), None)
     first = [cell.strip() for cell in cells(n, line, mark)]
     if all(as_number(cell, mark) is not None for cell in first):
-        return Layout(mark, [], len(first), n - 1)
-    return Layout(mark, first, len(first), n)
+        return ColumnLayout(mark, [], len(first), n - 1)
+    return ColumnLayout(mark, first, len(first), n)
 
 
-def begins_at_once(layout: Layout, indices: Sequence[int], text: str) -> bool:
+def begins_at_once(layout: ColumnLayout, indices: Sequence[int], text: str) -> bool:
     """Whether what was taken for names is the first point of columns named by number: "0,1,start", "0,1,", "0,NaN".
 
     Its x is a number then, or all that is wanted begins as one: "0 s,1 N", which is no point, and no names either.
@@ -220,7 +220,7 @@ def hint_for(cell: str, mark: str | None) -> str:
     return NUMBERS
 
 
-def column(number: int, key: object, layout: Layout, text: str) -> int:
+def column(number: int, key: object, layout: ColumnLayout, text: str) -> int:
     """Index of a column, from 0; number: which of those wanted. Raises NoColumn."""
     place = counted(str(key)) if isinstance(key, int | str) else None
     if isinstance(key, str) and place is None:
@@ -238,7 +238,7 @@ def column(number: int, key: object, layout: Layout, text: str) -> int:
     return place - 1
 
 
-def known_columns(key: str, layout: Layout, text: str) -> str:
+def known_columns(key: str, layout: ColumnLayout, text: str) -> str:
     """A hint for a column that is not there."""
     by_number = "columns may be named by 1, 2, ..., too"
     if not layout.names:
@@ -251,7 +251,7 @@ def known_columns(key: str, layout: Layout, text: str) -> str:
     return f"did you mean {near}? {hint}" if near else f"{hint}; {by_number}"
 
 
-def names_of_numbers(layout: Layout, text: str) -> list[str]:
+def names_of_numbers(layout: ColumnLayout, text: str) -> list[str]:
     """The names in the first row, if the others are numbers. Of a file that is no table of numbers nothing is told: it
     may be any file, and its first row anything."""
     rows = [cells(n, line, layout.mark) for n, line in islice(rows_of(text), 1, LOOKED_THROUGH + 1)]

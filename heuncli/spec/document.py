@@ -9,7 +9,7 @@ from pydantic import ValidationError
 
 from heuncli.nearest import misspelt
 from heuncli.spec import format as f
-from heuncli.spec.fields import Context, Model, keys_of
+from heuncli.spec.fields import Context, Entry, keys_of
 from heuncli.spec.quantity import kind_of
 from heuncli.spec.rules.registry import Path_, Violation
 from heuncli.spec.verdicts import unknown_key, unknown_type, verdicts
@@ -31,7 +31,7 @@ class Reader:
         single = {key: self.single(key, model) for key, model in f.SINGLE.items()}
         return f.Document(head=self.head(), expect=self.expectations(), **blocks, **single)  # type: ignore[arg-type]
 
-    def model(self, path: Path_, data: Any, model: type[Model]) -> Any:
+    def model(self, path: Path_, data: Any, model: type[Entry]) -> Any:
         """One model; what is wrong in it is reported and the rest read; None where the rest is not enough."""
         try:
             return model.model_validate(data, context=self.context)
@@ -40,7 +40,7 @@ class Reader:
                 self.report(code, violation._replace(path=(*path, *violation.path)))
             return self.rest(path, data, model, {str(e["loc"][0]) for e in error.errors() if e["loc"]})
 
-    def rest(self, path: Path_, data: Any, model: type[Model], wrong: set[str]) -> Any:
+    def rest(self, path: Path_, data: Any, model: type[Entry], wrong: set[str]) -> Any:
         """The model without the keys in error, so that its other values are checked, too; None where it needs these."""
         if not wrong or type(data) is not dict:
             return None
@@ -60,7 +60,7 @@ class Reader:
                 return True
         return False
 
-    def typed(self, path: Path_, data: Any, models: Mapping[str, type[Model]], block: str) -> Any:
+    def typed(self, path: Path_, data: Any, models: Mapping[str, type[Entry]], block: str) -> Any:
         """One model of those that the key `type` chooses from."""
         tag = data.get("type") if type(data) is dict else None
         model = models.get(tag) if type(tag) is str else None
@@ -70,22 +70,22 @@ class Reader:
         self.report(code, violation._replace(path=(*path, *violation.path)))
         return None
 
-    def head(self) -> f.Head:
+    def head(self) -> f.HeadEntry:
         """The keys that are no blocks."""
         blocks = {*f.ENTRIES, *f.SINGLE, *f.READ_BEFORE, "expect"}
         own = {key: value for key, value in self.data.items() if key not in blocks}
-        known = [*f.Head.model_fields, *f.SINGLE, *f.READ_BEFORE, *f.ENTRIES, "expect"]
-        for key in [key for key in own if key not in f.Head.model_fields]:
+        known = [*f.HeadEntry.model_fields, *f.SINGLE, *f.READ_BEFORE, *f.ENTRIES, "expect"]
+        for key in [key for key in own if key not in f.HeadEntry.model_fields]:
             del own[key]
             self.report(*unknown_key((key,), known))
-        return self.model((), own, f.Head) or f.Head.model_construct(heun=1)
+        return self.model((), own, f.HeadEntry) or f.HeadEntry.model_construct(heun=1)
 
-    def single(self, key: str, model: type[Model]) -> Any:
+    def single(self, key: str, model: type[Entry]) -> Any:
         """A block that is one entry; its defaults where it is left out or in error."""
         data = self.data.get(key, {})
         return (self.model((key,), data, model) if data != {} else None) or model.model_construct()
 
-    def entries(self, block: str, models: type[Model] | Mapping[str, type[Model]]) -> dict[str, Any]:
+    def entries(self, block: str, models: type[Entry] | Mapping[str, type[Entry]]) -> dict[str, Any]:
         """A block of named entries."""
         entries = self.data.get(block, {})
         if type(entries) is not dict:
@@ -104,19 +104,19 @@ class Reader:
                 read[name] = entry
         return read
 
-    def with_shapes(self, path: Path_, body: f.Body) -> f.Body | None:
+    def with_shapes(self, path: Path_, body: f.BodyEntry) -> f.BodyEntry | None:
         """A body with its shapes read; None where one is in error."""
         shapes = [
             self.typed((*path, "shapes", i), shape, f.SHAPES, "shapes") for i, shape in enumerate(body.shapes or [])
         ]
         return None if None in shapes else body.model_copy(update={"shapes": shapes})
 
-    def expectations(self) -> dict[int, f.Expect]:
+    def expectations(self) -> dict[int, f.ExpectEntry]:
         """The list of expectations, by their indices in it."""
         items = self.data.get("expect", [])
         if type(items) is not list:
             message = f"expected a list, found {kind_of(items)}"
             self.report("wrong-kind", Violation(("expect",), message, FORMS["expect"]))
             return {}
-        read = {i: self.model(("expect", i), item, f.Expect) for i, item in enumerate(items)}
+        read = {i: self.model(("expect", i), item, f.ExpectEntry) for i, item in enumerate(items)}
         return {i: item for i, item in read.items() if item is not None}

@@ -33,13 +33,13 @@ class Context:
     points: Mapping[str, Collection[str]] = NONE
 
 
-class Model(BaseModel):
+class Entry(BaseModel):
     """A mapping with known keys."""
 
     model_config = ConfigDict(extra="forbid", frozen=True, defer_build=True, arbitrary_types_allowed=True)
 
 
-def keys_of(model: type[Model]) -> tuple[str, ...]:
+def keys_of(model: type[Entry]) -> tuple[str, ...]:
     """The keys of a mapping, as users write them."""
     return tuple(str(field.alias or name) for name, field in model.model_fields.items())
 
@@ -197,7 +197,7 @@ FORM = Discriminator(kind_of_form)
 PointOrName = Annotated[Annotated[Position, Tag("list")] | Annotated[str, Tag("single")], FORM]
 
 
-class End(Model):
+class EndEntry(Entry):
     """{body, at}, or body.point."""
 
     body: str
@@ -214,7 +214,7 @@ def split_end(value: Any, info: Any) -> Any:
     body, dot, point = value.partition(".")
     if not dot or not body or not point or "." in point:
         raise Finding("end", f"'{value}' is not an end", end_hint(value, info.context.points))
-    return End.model_construct(body=body, at=point)
+    return EndEntry.model_construct(body=body, at=point)
 
 
 def in_brackets(values: list[Any]) -> str:
@@ -236,7 +236,7 @@ def end_hint(word: str, points: Mapping[str, Collection[str]]) -> str:
 def split_body_or_end(value: Any, info: Any) -> Any:
     """'crank' as {body: crank}, 'crank.pin' as {body: crank, at: pin}."""
     if type(value) is str and "." not in value:
-        return End.model_construct(body=value, at=None)
+        return EndEntry.model_construct(body=value, at=None)
     return split_end(value, info)
 
 
@@ -248,7 +248,7 @@ def two_limits(value: Any) -> Any:
     return value
 
 
-AnEnd = Annotated[End, BeforeValidator(split_end)]
-BodyOrEnd = Annotated[End, BeforeValidator(split_body_or_end)]
+AnEnd = Annotated[EndEntry, BeforeValidator(split_end)]
+BodyOrEnd = Annotated[EndEntry, BeforeValidator(split_body_or_end)]
 AngleLimits = Annotated[tuple[Angle | None, Angle | None], BeforeValidator(two_limits)]
 LengthLimits = Annotated[tuple[Length | None, Length | None], BeforeValidator(two_limits)]

@@ -29,6 +29,7 @@ from heuncli.spec.fields import (
     Direction,
     Either,
     EitherInTime,
+    Entry,
     Expected,
     Force,
     ForceInTime,
@@ -43,7 +44,6 @@ from heuncli.spec.fields import (
     LineForceInTime,
     Mass,
     Matrix,
-    Model,
     Moment,
     MomentInTime,
     Number,
@@ -70,7 +70,7 @@ Report = Literal[
 Points = dict[str, Position]
 
 
-class Orientation(Model):
+class Orientation(Entry):
     """An attitude, in one of its forms."""
 
     axis: Direction | None = None
@@ -82,13 +82,13 @@ class Orientation(Model):
     matrix: Matrix | None = None
 
 
-class Ground(Model):
+class GroundEntry(Entry):
     """What does not move."""
 
     points: Points = Field(default_factory=dict)
 
 
-class Rod(Model):
+class RodShape(Entry):
     type: Literal["rod"]
     from_: Position = Field(alias="from")
     to: Position
@@ -96,7 +96,7 @@ class Rod(Model):
     line_density: LineDensity | None = None
 
 
-class Cylinder(Model):
+class CylinderShape(Entry):
     type: Literal["cylinder"]
     from_: Position = Field(alias="from")
     to: Position
@@ -106,7 +106,7 @@ class Cylinder(Model):
     density: Density | None = None
 
 
-class Cone(Model):
+class ConeShape(Entry):
     type: Literal["cone"]
     from_: Position = Field(alias="from")
     to: Position
@@ -116,7 +116,7 @@ class Cone(Model):
     density: Density | None = None
 
 
-class Box(Model):
+class BoxShape(Entry):
     type: Literal["box"]
     center: Position
     size: Position
@@ -125,7 +125,7 @@ class Box(Model):
     density: Density | None = None
 
 
-class Sphere(Model):
+class SphereShape(Entry):
     type: Literal["sphere"]
     center: Position
     radius: Length
@@ -133,15 +133,16 @@ class Sphere(Model):
     density: Density | None = None
 
 
-class Point(Model):
+class PointShape(Entry):
     type: Literal["point"]
     at: Position
     mass: Mass
 
 
-Shape = Rod | Cylinder | Cone | Box | Sphere | Point
-SHAPES: dict[str, type[Shape]] = {
-    "rod": Rod, "cylinder": Cylinder, "cone": Cone, "box": Box, "sphere": Sphere, "point": Point,
+ShapeEntry = RodShape | CylinderShape | ConeShape | BoxShape | SphereShape | PointShape
+SHAPES: dict[str, type[ShapeEntry]] = {
+    "rod": RodShape, "cylinder": CylinderShape, "cone": ConeShape, "box": BoxShape, "sphere": SphereShape,
+    "point": PointShape,
 }  # fmt: skip
 InertiaForms = Annotated[
     Annotated[Inertia, Tag("single")]
@@ -151,24 +152,24 @@ InertiaForms = Annotated[
 ]
 
 
-class Near(Model):
+class NearEntry(Entry):
     """Where the assembly starts to look."""
 
     position: Position | None = None
     orientation: Orientation | None = None
 
 
-class VelocityInFrame(Model):
+class VelocityInFrame(Entry):
     vector: tuple[Velocity, Velocity, Velocity]
     frame: Frame = "world"
 
 
-class RateInFrame(Model):
+class RateInFrame(Entry):
     vector: tuple[Rate, Rate, Rate]
     frame: Frame = "world"
 
 
-class Piece(Model):
+class PieceEntry(Entry):
     """What a cut separates from a body without shapes."""
 
     mass: Mass
@@ -177,16 +178,16 @@ class Piece(Model):
     deviation: tuple[Inertia, Inertia, Inertia] | None = None
 
 
-class Body(Model):
+class BodyEntry(Entry):
     mass: Mass | None = None
     center: Position | None = None
     inertia: InertiaForms | None = None
     deviation: tuple[Inertia, Inertia, Inertia] | None = None
-    shapes: Annotated[list[Shape], InParts()] | None = None
+    shapes: Annotated[list[ShapeEntry], InParts()] | None = None
     points: Points = Field(default_factory=dict)
     position: Position | None = None
     orientation: Orientation | None = None
-    near: Near | None = None
+    near: NearEntry | None = None
     velocity: (
         Annotated[
             Annotated[tuple[Velocity, Velocity, Velocity], Tag("list")] | Annotated[VelocityInFrame, Tag("mapping")],
@@ -197,10 +198,10 @@ class Body(Model):
     angular_velocity: (
         Annotated[Annotated[tuple[Rate, Rate, Rate], Tag("list")] | Annotated[RateInFrame, Tag("mapping")], FORM] | None
     ) = None
-    piece: Piece | None = None
+    piece: PieceEntry | None = None
 
 
-class StiffnessParts(Model):
+class StiffnessParts(Entry):
     force: (
         Annotated[
             Annotated[Stiffness, Tag("single")] | Annotated[tuple[Stiffness, Stiffness, Stiffness], Tag("list")], FORM
@@ -217,7 +218,7 @@ class StiffnessParts(Model):
     ) = None
 
 
-class AnyJoint(Model):
+class AnyJoint(Entry):
     """What all joints have."""
 
     from_: AnEnd = Field(alias="from")
@@ -227,12 +228,12 @@ class AnyJoint(Model):
     ) = None
 
 
-class Turning(Model):
+class Turning(Entry):
     angle: Angle | None = None
     rate: Rate | None = None
 
 
-class Sliding(Model):
+class Sliding(Entry):
     travel: Length | None = None
     speed: Velocity | None = None
 
@@ -241,18 +242,18 @@ class TurningAndSliding(Turning, Sliding):
     """All four, of a cylinder."""
 
 
-class Ball(AnyJoint):
+class BallJoint(AnyJoint):
     type: Literal["ball"]
 
 
-class Pin(AnyJoint):
+class PinJoint(AnyJoint):
     type: Literal["pin"]
     axis: Direction
     to_axis: Direction | None = None
     initial: Turning | None = None
 
 
-class Slide(AnyJoint):
+class SlideJoint(AnyJoint):
     type: Literal["slide"]
     axis: Direction
     to_axis: Direction | None = None
@@ -266,22 +267,22 @@ class CylinderJoint(AnyJoint):
     initial: TurningAndSliding | None = None
 
 
-class Universal(AnyJoint):
+class UniversalJoint(AnyJoint):
     type: Literal["universal"]
     axis: Direction
     to_axis: Direction
 
 
-class Weld(AnyJoint):
+class WeldJoint(AnyJoint):
     type: Literal["weld"]
 
 
-class Line(AnyJoint):
+class LineJoint(AnyJoint):
     type: Literal["line"]
     axis: Direction
 
 
-class Plane(AnyJoint):
+class PlaneJoint(AnyJoint):
     type: Literal["plane"]
     normal: Direction
 
@@ -293,14 +294,23 @@ class RodJoint(AnyJoint):
     restitution: Number | None = None
 
 
-Joint = Ball | Pin | Slide | CylinderJoint | Universal | Weld | Line | Plane | RodJoint
-JOINTS: dict[str, type[Joint]] = {
-    "ball": Ball, "pin": Pin, "slide": Slide, "cylinder": CylinderJoint, "universal": Universal, "weld": Weld,
-    "line": Line, "plane": Plane, "rod": RodJoint,
-}  # fmt: skip
+JointEntry = (
+    BallJoint | PinJoint | SlideJoint | CylinderJoint | UniversalJoint | WeldJoint | LineJoint | PlaneJoint | RodJoint
+)
+JOINTS: dict[str, type[JointEntry]] = {
+    "ball": BallJoint,
+    "pin": PinJoint,
+    "slide": SlideJoint,
+    "cylinder": CylinderJoint,
+    "universal": UniversalJoint,
+    "weld": WeldJoint,
+    "line": LineJoint,
+    "plane": PlaneJoint,
+    "rod": RodJoint,
+}
 
 
-class Drive(Model):
+class DriveEntry(Entry):
     joint: str
     angle: AngleInTime | None = None
     travel: LengthInTime | None = None
@@ -310,34 +320,34 @@ class Drive(Model):
     zero: Literal["assembled"] | None = None
 
 
-class PointForce(Model):
+class ForceEntry(Entry):
     type: Literal["force"]
     on: AnEnd
     vector: tuple[ForceInTime, ForceInTime, ForceInTime]
     frame: Frame = "world"
 
 
-class Couple(Model):
+class CoupleEntry(Entry):
     type: Literal["couple"]
     on: BodyOrEnd
     vector: tuple[MomentInTime, MomentInTime, MomentInTime]
     frame: Frame = "world"
 
 
-class Torque(Model):
+class TorqueEntry(Entry):
     type: Literal["torque"]
     joint: str
     value: EitherInTime
 
 
-class Actuator(Model):
+class ActuatorEntry(Entry):
     type: Literal["actuator"]
     from_: AnEnd = Field(alias="from")
     to: AnEnd
     value: ForceInTime
 
 
-class Spring(Model):
+class SpringEntry(Entry):
     type: Literal["spring"]
     from_: AnEnd = Field(alias="from")
     to: AnEnd
@@ -346,7 +356,7 @@ class Spring(Model):
     damping: Damping = 0.0
 
 
-class TurnSpring(Model):
+class TurnSpringEntry(Entry):
     type: Literal["turn_spring"]
     joint: str
     stiffness: TurningStiffness
@@ -354,7 +364,7 @@ class TurnSpring(Model):
     damping: TurningDamping = 0.0
 
 
-class Distributed(Model):
+class DistributedEntry(Entry):
     type: Literal["distributed"]
     on: str
     from_: PointOrName = Field(alias="from")
@@ -364,14 +374,14 @@ class Distributed(Model):
     frame: Frame = "world"
 
 
-class Damper(Model):
+class DamperEntry(Entry):
     type: Literal["damper"]
     joint: str
     coefficient: Either | None = None
     sliding: Damping | None = None
 
 
-class Friction(Model):
+class FrictionEntry(Entry):
     type: Literal["friction"]
     joint: str
     torque: Moment | None = None
@@ -379,14 +389,31 @@ class Friction(Model):
     speed: Either
 
 
-Load = PointForce | Couple | Torque | Actuator | Spring | TurnSpring | Distributed | Damper | Friction
-LOADS: dict[str, type[Load]] = {
-    "force": PointForce, "couple": Couple, "torque": Torque, "actuator": Actuator, "spring": Spring,
-    "turn_spring": TurnSpring, "distributed": Distributed, "damper": Damper, "friction": Friction,
-}  # fmt: skip
+LoadEntry = (
+    ForceEntry
+    | CoupleEntry
+    | TorqueEntry
+    | ActuatorEntry
+    | SpringEntry
+    | TurnSpringEntry
+    | DistributedEntry
+    | DamperEntry
+    | FrictionEntry
+)
+LOADS: dict[str, type[LoadEntry]] = {
+    "force": ForceEntry,
+    "couple": CoupleEntry,
+    "torque": TorqueEntry,
+    "actuator": ActuatorEntry,
+    "spring": SpringEntry,
+    "turn_spring": TurnSpringEntry,
+    "distributed": DistributedEntry,
+    "damper": DamperEntry,
+    "friction": FrictionEntry,
+}
 
 
-class Blow(Model):
+class ImpulseEntry(Entry):
     on: BodyOrEnd | None = None
     vector: tuple[Impulse, Impulse, Impulse] | None = None
     body: str | None = None
@@ -395,7 +422,7 @@ class Blow(Model):
     frame: Frame = "world"
 
 
-class Stop(Model):
+class StopEntry(Entry):
     joint: str
     angle: AngleLimits | None = None
     travel: LengthLimits | None = None
@@ -404,26 +431,26 @@ class Stop(Model):
     friction: Number | None = None
 
 
-class Circle(Model):
+class CircleEntry(Entry):
     radius: Length
 
 
-class Tube(Model):
+class TubeEntry(Entry):
     radius: Length
     inner_radius: Length
 
 
-class Rectangle(Model):
+class RectangleEntry(Entry):
     width: Length
     height: Length
 
 
-class Properties(Model):
+class PropertiesEntry(Entry):
     """Of a section: one of the named shapes, or all of the numbers."""
 
-    circle: Circle | None = None
-    tube: Tube | None = None
-    rectangle: Rectangle | None = None
+    circle: CircleEntry | None = None
+    tube: TubeEntry | None = None
+    rectangle: RectangleEntry | None = None
     area: Area | None = None
     I1: AreaMoment | None = None
     I2: AreaMoment | None = None
@@ -433,7 +460,7 @@ class Properties(Model):
     shear_factor: Number | None = None
 
 
-class Section(Model):
+class SectionEntry(Entry):
     body: str
     at: PointOrName | None = None
     normal: Direction | None = None
@@ -444,16 +471,16 @@ class Section(Model):
     reduce_to: Annotated[Annotated[str, Tag("single")] | Annotated[AnEnd, Tag("mapping")], FORM] = "at"
     side: Literal["before", "beyond"] | None = None
     properties: (
-        Annotated[Annotated[Literal["auto"], Tag("single")] | Annotated[Properties, Tag("mapping")], FORM] | None
+        Annotated[Annotated[Literal["auto"], Tag("single")] | Annotated[PropertiesEntry, Tag("mapping")], FORM] | None
     ) = None
     strength: Pressure | None = None
-    piece: Piece | None = None
+    piece: PieceEntry | None = None
 
 
 Column = Annotated[Annotated[list[Any], Tag("list")] | Annotated[str | int, Tag("single")], FORM]
 
 
-class Table(Model):
+class TableEntry(Entry):
     file: str | None = None
     x: Column | None = None
     y: Column | None = None
@@ -464,7 +491,7 @@ class Table(Model):
     outside: Literal["hold"] | None = None
 
 
-class OfResults(Model):
+class ResultConditionEntry(Entry):
     """A condition on a number of the results."""
 
     of: str
@@ -472,10 +499,12 @@ class OfResults(Model):
     above: Either | None = None
 
 
-Condition = Annotated[Annotated[TruthInTime, Tag("single")] | Annotated[OfResults, Tag("mapping")], FORM]
+ConditionEntry = Annotated[
+    Annotated[TruthInTime, Tag("single")] | Annotated[ResultConditionEntry, Tag("mapping")], FORM
+]
 
 
-class Analysis(Model):
+class AnalysisEntry(Entry):
     type: Literal["motion", "impulse", "state", "rest"] | None = None
     duration: Time | None = None
     samples: Count | None = None
@@ -483,15 +512,15 @@ class Analysis(Model):
     tolerance: Number | None = None
     method: str = "auto"
     step: Time | None = None
-    until: Condition | None = None
-    events: dict[str, Condition] = Field(default_factory=dict)
+    until: ConditionEntry | None = None
+    events: dict[str, ConditionEntry] = Field(default_factory=dict)
 
 
-class Foundation(Model):
+class FoundationEntry(Entry):
     about: PointOrName | None = None
 
 
-class Expect(Model):
+class ExpectEntry(Entry):
     of: str
     at: Time | None = None
     peak: Literal["max", "min", "abs"] | None = None
@@ -517,7 +546,7 @@ class Expect(Model):
         return data
 
 
-class Head(Model):
+class HeadEntry(Entry):
     """What a spec has beside its blocks of entries."""
 
     heun: FormatVersion
@@ -527,26 +556,26 @@ class Head(Model):
     report: list[Report] | None = None
 
 
-ENTRIES: dict[str, type[Model] | Mapping[str, type[Model]]] = {  # blocks of named entries: their models, or by type
-    "bodies": Body, "joints": JOINTS, "drives": Drive, "forces": LOADS, "impulses": Blow, "stops": Stop,
-    "sections": Section,
+ENTRIES: dict[str, type[Entry] | Mapping[str, type[Entry]]] = {  # blocks of named entries: their models, or by type
+    "bodies": BodyEntry, "joints": JOINTS, "drives": DriveEntry, "forces": LOADS, "impulses": ImpulseEntry,
+    "stops": StopEntry, "sections": SectionEntry,
 }  # fmt: skip
-SINGLE: dict[str, type[Model]] = {"ground": Ground, "analysis": Analysis, "foundation": Foundation}
+SINGLE: dict[str, type[Entry]] = {"ground": GroundEntry, "analysis": AnalysisEntry, "foundation": FoundationEntry}
 READ_BEFORE = ("parameters", "tables")  # by themselves: the rest refers to them
 
 
 class Document(NamedTuple):
     """A spec as it was read; entries in error are left out."""
 
-    head: Head
-    ground: Ground
-    bodies: dict[str, Body]
-    joints: dict[str, Joint]
-    drives: dict[str, Drive]
-    forces: dict[str, Load]
-    impulses: dict[str, Blow]
-    stops: dict[str, Stop]
-    sections: dict[str, Section]
-    analysis: Analysis
-    foundation: Foundation
-    expect: dict[int, Expect]
+    head: HeadEntry
+    ground: GroundEntry
+    bodies: dict[str, BodyEntry]
+    joints: dict[str, JointEntry]
+    drives: dict[str, DriveEntry]
+    forces: dict[str, LoadEntry]
+    impulses: dict[str, ImpulseEntry]
+    stops: dict[str, StopEntry]
+    sections: dict[str, SectionEntry]
+    analysis: AnalysisEntry
+    foundation: FoundationEntry
+    expect: dict[int, ExpectEntry]

@@ -41,7 +41,7 @@ def belonging(key: str, known: Collection[str]) -> str | None:
             word = key if key in keys_of(model) else called(key, keys_of(model))
             if word is not None and (block == "analysis" or word == key):
                 return f"it belongs under {block}: {block}: {{{word}: ...}}"
-        if key in keys_of(f.Body):
+        if key in keys_of(f.BodyEntry):
             return f"it belongs to a body: bodies: {{NAME: {{{key}: ...}}}}"
     if key in COORDINATES and "initial" in known:
         return f"the start of a coordinate is initial: {{{key}: ...}}"

@@ -7,8 +7,8 @@ from pathlib import Path
 from typing import Any
 
 from heuncli.errors import Problem, SourceLocation, SpecError
-from heuncli.expressions.grammar import Given
-from heuncli.expressions.programs import Table
+from heuncli.expressions.grammar import GivenParameter
+from heuncli.expressions.programs import TableFunction
 from heuncli.nearest import begin_file
 from heuncli.spec import format as f
 from heuncli.spec.document import Reader
@@ -22,7 +22,7 @@ from heuncli.spec.quantity import Scope, kind_of
 from heuncli.spec.reading import STANDARD_INPUT
 from heuncli.spec.resolve import Meaning, resolve
 from heuncli.spec.rules.every import RULES, DraftDocument, Violation, violations
-from heuncli.spec.source import Path_, Source, dotted, read
+from heuncli.spec.source import Path_, SourceFile, dotted, read
 from heuncli.spec.verdicts import is_primary
 
 PLACED = ("analysis", "drives", "expect", "forces")  # blocks of which later stages can locate every value
@@ -45,7 +45,7 @@ def load(
 class Loading:
     """One spec on its way; gathers problems as it goes."""
 
-    def __init__(self, path: str, source: Source, overrides: Mapping[str, str], checking: bool) -> None:
+    def __init__(self, path: str, source: SourceFile, overrides: Mapping[str, str], checking: bool) -> None:
         self.path, self.source = path, source
         self.rules = [rule for rule in RULES if checking or not rule.for_check]
         self.problems = list(source.problems)
@@ -102,14 +102,14 @@ class Loading:
         meaning = Meaning(source.file, source.sha256, values, built, warnings, self.locations())
         return resolve(draft.document, meaning)
 
-    def parameters(self) -> tuple[dict[str, float | None], dict[str, Given]]:
+    def parameters(self) -> tuple[dict[str, float | None], dict[str, GivenParameter]]:
         """Values of the parameters, None for those in error; and those that have a dimension."""
         parameters = evaluate_parameters(self.block("parameters"))
         for name, finding in parameters.findings:
             self.report(finding.code, Violation(("parameters", name), finding.message, finding.hint))
         return parameters.values, parameters.given
 
-    def tables(self, scope: Scope) -> dict[str, Table | None]:
+    def tables(self, scope: Scope) -> dict[str, TableFunction | None]:
         """The tables; None for those in error."""
         entries = self.block("tables")
         if not entries:
@@ -118,10 +118,10 @@ class Loading:
 
         folder = Path() if self.path == STANDARD_INPUT else Path(self.path).parent
         reader = Reader(self.data, Context(scope, scope), self.report)
-        tables: dict[str, Table | None] = {}
+        tables: dict[str, TableFunction | None] = {}
         for name, data in entries.items():
             path = ("tables", name)
-            entry = reader.model(path, data, f.Table)
+            entry = reader.model(path, data, f.TableEntry)
             tables[name], wrong = build_table(name, entry, scope, folder) if entry is not None else (None, [])
             if entry is not None and entry.file is not None and (told := outside_folder(folder, entry.file)):
                 self.warnings.append(Problem(told.code, told.message, self.location((*path, "file")), told.hint))

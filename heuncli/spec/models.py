@@ -14,7 +14,7 @@ from types import MappingProxyType
 from typing import Generic, Literal, NamedTuple, TypeVar
 
 from heuncli.errors import Problem, SourceLocation
-from heuncli.expressions.programs import Expression, Table
+from heuncli.expressions.programs import Expression, TableFunction
 from heuncli.records import record
 
 Vec = tuple[float, float, float]
@@ -71,7 +71,7 @@ class Directed(Generic[V]):
     in_body: bool
 
 
-class Piece(NamedTuple):
+class MassProperties(NamedTuple):
     """Mass properties of what a cut separates: mass [kg], centre of mass [m], inertia about it, body axes."""
 
     mass: float
@@ -309,7 +309,7 @@ class Section:
     side: Literal["before", "beyond"] | None = None
     properties: Properties | None = None
     strength: float | None = None
-    piece: Piece | None = None
+    piece: MassProperties | None = None
 
 
 class Condition(NamedTuple):
@@ -391,7 +391,7 @@ class Spec(NamedTuple):
     impulses: Mapping[str, Blow[str, Vec]]
     stops: Mapping[str, Stop[str]]
     sections: Mapping[str, Section]
-    tables: Mapping[str, Table]
+    tables: Mapping[str, TableFunction]
     analysis: Analysis
     report: tuple[str, ...] | None
     foundation: Foundation

@@ -6,8 +6,8 @@ from typing import Any, NamedTuple
 
 from heuncli.expressions.grammar import RESERVED
 from heuncli.nearest import misspelt
-from heuncli.spec.fields import Model, keys_of
-from heuncli.spec.format import Body, Ground
+from heuncli.spec.fields import Entry, keys_of
+from heuncli.spec.format import BodyEntry, GroundEntry
 from heuncli.spec.models import Spec
 
 GROUND = "ground"
@@ -44,8 +44,8 @@ class Names(NamedTuple):
         ends = {key: analysis[key] for key in (UNTIL,) if key in analysis}
         entries["events"] = ends | mapping(analysis.get("events"))
         bodies = entries["bodies"]
-        points = {name: points_of(body, Body) for name, body in bodies.items()}
-        points[GROUND] = points_of(data.get(GROUND), Ground)
+        points = {name: points_of(body, BodyEntry) for name, body in bodies.items()}
+        points[GROUND] = points_of(data.get(GROUND), GroundEntry)
         joints = {name: str(mapping(joint).get("type")) for name, joint in mapping(data.get("joints")).items()}
         return cls(entries, points, joints, {})
 
@@ -58,7 +58,7 @@ def names_in(spec: Spec) -> Names:
     return Names(entries, points, {name: joint.kind for name, joint in spec.joints.items()}, {})
 
 
-def points_of(owner: Any, model: type[Model]) -> dict[str, Any]:
+def points_of(owner: Any, model: type[Entry]) -> dict[str, Any]:
     """The points of a body or of the ground, also under a misspelt key."""
     given = mapping(owner)
     if "points" not in given and any(key not in keys_of(model) for key in given):

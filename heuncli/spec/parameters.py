@@ -5,7 +5,7 @@ from __future__ import annotations
 from typing import Any
 
 from heuncli.errors import Finding
-from heuncli.expressions.grammar import Given
+from heuncli.expressions.grammar import GivenParameter
 from heuncli.records import record
 from heuncli.spec.quantity import Follows, Scope, in_time
 
@@ -40,14 +40,14 @@ class Parameters:
     """Values in SI, None for those in error; those with a dimension, as they are written; and what is wrong."""
 
     values: dict[str, float | None]
-    given: dict[str, Given]
+    given: dict[str, GivenParameter]
     findings: list[tuple[str, Finding]]
 
 
 def evaluate_parameters(given: dict[str, Any]) -> Parameters:
     """The parameters that a spec gives."""
     values = _Values(given)
-    written: dict[str, Given] = {}
+    written: dict[str, GivenParameter] = {}
     scope = Scope(parameters=values, given=written)
     findings: list[tuple[str, Finding]] = []
     for first in given:
@@ -61,7 +61,7 @@ def evaluate_parameters(given: dict[str, Any]) -> Parameters:
                 expression = in_time(given[name], None, scope)
                 values[name] = expression.constant
                 if expression.dimension is not None:
-                    written[name] = Given(expression.dimension, expression.source.strip())
+                    written[name] = GivenParameter(expression.dimension, expression.source.strip())
             except _Needed as needed:
                 if needed.name in waiting:
                     asked = list(waiting)

@@ -9,12 +9,12 @@ from collections.abc import Mapping
 from typing import Any, Literal
 
 from heuncli.errors import Problem, SourceLocation
-from heuncli.expressions.programs import Expression, Table
+from heuncli.expressions.programs import Expression, TableFunction
 from heuncli.method_rows import canonical
 from heuncli.records import record
 from heuncli.spec import format as f
 from heuncli.spec import models as m
-from heuncli.spec.fields import End
+from heuncli.spec.fields import EndEntry
 from heuncli.spec.names import GROUND, UNTIL
 from heuncli.spec.semantics import body_axes, drive_of, end_of, instants_of, limits_of, point_in, tensor, type_of
 from heuncli.spec.turns import IDENTITY
@@ -29,7 +29,7 @@ class Meaning:
     path: str
     sha256: str
     parameters: Mapping[str, float]
-    tables: Mapping[str, Table]
+    tables: Mapping[str, TableFunction]
     warnings: tuple[Problem, ...]
     locations: Mapping[str, SourceLocation]
 
@@ -81,7 +81,7 @@ class Resolver:
         points = self.document.ground.points if body == GROUND else self.document.bodies[body].points
         return points[name]
 
-    def end(self, end: End) -> m.End:
+    def end(self, end: EndEntry) -> m.End:
         if isinstance(end.at, str):
             return m.End(end.body, self.point(end.body, end.at), end.at)
         assert end.at is not None
@@ -94,7 +94,7 @@ class Resolver:
         x, y, z = (self.placed(value, f"{path}.{key}.{i}") for i, value in enumerate(values))
         return x, y, z
 
-    def shape(self, shape: f.Shape) -> m.Shape:
+    def shape(self, shape: f.ShapeEntry) -> m.Shape:
         keys = (
             "mass",
             "density",
@@ -109,14 +109,14 @@ class Resolver:
             "to_radius",
         )
         rotation = None
-        if isinstance(shape, f.Box):
+        if isinstance(shape, f.BoxShape):
             rotation = body_axes(shape.orientation) if shape.orientation is not None else IDENTITY
         return m.Shape(type=shape.type, rotation=rotation, **{key: getattr(shape, key, None) for key in keys})
 
-    def piece(self, piece: f.Piece | None) -> m.Piece | None:
-        return m.Piece(piece.mass, piece.center, tensor(piece)) if piece is not None else None
+    def piece(self, piece: f.PieceEntry | None) -> m.MassProperties | None:
+        return m.MassProperties(piece.mass, piece.center, tensor(piece)) if piece is not None else None
 
-    def body(self, name: str, body: f.Body) -> m.Body[m.Vec, m.Matrix]:
+    def body(self, name: str, body: f.BodyEntry) -> m.Body[m.Vec, m.Matrix]:
         near = body.near
         return m.Body(
             name=name,
@@ -133,7 +133,7 @@ class Resolver:
             shapes=tuple(self.shape(shape) for shape in body.shapes) if body.shapes is not None else None,
         )
 
-    def joint(self, name: str, joint: f.Joint) -> m.Joint[str, m.Vec]:
+    def joint(self, name: str, joint: f.JointEntry) -> m.Joint[str, m.Vec]:
         a, b = self.end(joint.from_), self.end(joint.to)
         axis = getattr(joint, "axis", None) or getattr(joint, "normal", None) or m.Z
         to_axis = getattr(joint, "to_axis", None)
@@ -161,37 +161,37 @@ class Resolver:
             q_name=b.name,
         )
 
-    def drive(self, name: str, drive: f.Drive) -> m.Drive:
+    def drive(self, name: str, drive: f.DriveEntry) -> m.Drive:
         driven = drive_of(drive, self.document.joints[drive.joint].type)
         assert driven is not None
         value = self.placed(driven.value, f"drives.{name}.{driven.key}")
         return m.Drive(name, drive.joint, driven.quantity, value, drive.zero == "assembled", driven.by_rate)
 
-    def force(self, name: str, load: f.Load) -> m.Force:
+    def force(self, name: str, load: f.LoadEntry) -> m.Force:
         path = f"forces.{name}"
         match load:
-            case f.PointForce():
+            case f.ForceEntry():
                 return m.PointForce(self.end(load.on), self.vector(load.vector, path), load.frame)
-            case f.Couple():
+            case f.CoupleEntry():
                 on = self.end(load.on) if load.on.at is not None else None
                 return m.Couple(load.on.body, on, self.vector(load.vector, path), load.frame)
-            case f.Torque():
+            case f.TorqueEntry():
                 return m.Torque(load.joint, self.placed(load.value, f"{path}.value"))
-            case f.Actuator():
+            case f.ActuatorEntry():
                 return m.Actuator(self.end(load.from_), self.end(load.to), self.placed(load.value, f"{path}.value"))
-            case f.Spring():
+            case f.SpringEntry():
                 return m.Spring(self.end(load.from_), self.end(load.to), load.stiffness, load.length, load.damping)
-            case f.TurnSpring():
+            case f.TurnSpringEntry():
                 return m.TurnSpring(load.joint, load.stiffness, load.angle, load.damping)
-            case f.Distributed():
+            case f.DistributedEntry():
                 return self.distributed(load, path)
-            case f.Damper():
+            case f.DamperEntry():
                 coefficient = constant(load.coefficient) if load.coefficient is not None else 0.0
                 return m.Damper(load.joint, coefficient, load.sliding)
             case _:
                 return m.Friction(load.joint, load.torque, load.force, constant(load.speed))
 
-    def distributed(self, load: f.Distributed, path: str) -> m.Distributed:
+    def distributed(self, load: f.DistributedEntry, path: str) -> m.Distributed:
         body = self.document.bodies[load.on]
         start, end = point_in(body, load.from_), point_in(body, load.to)
         assert start is not None
@@ -200,7 +200,7 @@ class Resolver:
         to_vector = vector if load.to_vector is None else self.vector(load.to_vector, path, "to_vector")
         return m.Distributed(load.on, start, end, vector, to_vector, load.frame)
 
-    def impulse(self, name: str, blow: f.Blow) -> m.Blow[str, m.Vec]:
+    def impulse(self, name: str, blow: f.ImpulseEntry) -> m.Blow[str, m.Vec]:
         body, point = blow.body, None
         if blow.on is not None:
             body, point = blow.on.body, self.end(blow.on).point if blow.on.at is not None else None
@@ -211,7 +211,7 @@ class Resolver:
         assert blow.couple is not None
         return m.Blow(name, body, point, blow.couple, in_body, blow.time, "couple")
 
-    def section(self, section: f.Section) -> m.Section:
+    def section(self, section: f.SectionEntry) -> m.Section:
         body = self.document.bodies[section.body]
         at, start, end = (point_in(body, at_or_name) for at_or_name in (section.at, section.from_, section.to))
         normal = section.normal
@@ -233,12 +233,14 @@ class Resolver:
             return self.document.ground.points[about.rpartition(".")[2]]
         return about  # type: ignore[return-value]
 
-    def conditions(self, analysis: f.Analysis) -> tuple[m.WatchedCondition, ...]:
+    def conditions(self, analysis: f.AnalysisEntry) -> tuple[m.WatchedCondition, ...]:
         found = [(UNTIL, True, UNTIL, analysis.until)] if analysis.until is not None else []
         found += [(name, False, f"events.{name}", given) for name, given in analysis.events.items()]
         return tuple(self.condition(*row) for row in found)
 
-    def condition(self, name: str, ends: bool, path: str, given: Expression | f.OfResults) -> m.WatchedCondition:
+    def condition(
+        self, name: str, ends: bool, path: str, given: Expression | f.ResultConditionEntry
+    ) -> m.WatchedCondition:
         if isinstance(given, Expression):
             return m.Condition(name, given.source.strip(), ends, self.placed(given, f"analysis.{path}"))
         above = given.above is not None
@@ -248,13 +250,13 @@ class Resolver:
         text = f"{given.of} {'above' if above else 'below'} {number}"
         return m.ResultCondition(name, text, ends, given.of, constant(limit), above)
 
-    def expect(self, i: int, item: f.Expect) -> m.Expect:
+    def expect(self, i: int, item: f.ExpectEntry) -> m.Expect:
         location = self.locations.get(f"expect.{i}", SourceLocation("", 1, 1))
         bounds = numbers(item.below), numbers(item.above)
         return m.Expect(item.of, item.at, item.peak, numbers(item.is_), item.rel, numbers(item.abs), location, *bounds)
 
 
-def stop(name: str, given: f.Stop) -> m.Stop[str]:
+def stop(name: str, given: f.StopEntry) -> m.Stop[str]:
     """A stop that limits one coordinate."""
     found = limits_of(given)
     assert found is not None
@@ -286,7 +288,7 @@ def stiffness(value: float | f.StiffnessParts | None) -> tuple[m.Vec, m.Vec] | N
     return three(value.force), three(value.moment)
 
 
-def properties(value: f.Properties | Literal["auto"] | None) -> m.Properties | None:
+def properties(value: f.PropertiesEntry | Literal["auto"] | None) -> m.Properties | None:
     """A named shape with its sizes, the numbers themselves, or those of what is cut."""
     if value is None:
         return None

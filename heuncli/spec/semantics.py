@@ -16,7 +16,7 @@ from heuncli.joint_kinds import RATES, TYPES, Kind
 from heuncli.spec import format as f
 from heuncli.spec import models as m
 from heuncli.spec import turns
-from heuncli.spec.fields import End
+from heuncli.spec.fields import EndEntry
 
 DEFAULT_SAMPLES = 201
 # what a drive may prescribe: a coordinate, or its rate of change
@@ -62,7 +62,7 @@ def body_axes(value: f.Orientation) -> m.Matrix:
     return turns.of_matrix(value.matrix)
 
 
-def tensor(owner: f.Body | f.Piece) -> m.Matrix:
+def tensor(owner: f.BodyEntry | f.PieceEntry) -> m.Matrix:
     """The inertia tensor about the centre of mass: moments on the diagonal, deviation moments negated beside it."""
     inertia = owner.inertia
     if isinstance(inertia, float):  # planar: a flat body with this moment about z
@@ -95,7 +95,7 @@ def driven_keys(kind: Kind) -> tuple[str, ...]:
     return (*kind.drives, *(DRIVEN_RATES[quantity] for quantity in kind.drives))
 
 
-def drive_of(drive: f.Drive, joint_type: str | None) -> Driven | None:
+def drive_of(drive: f.DriveEntry, joint_type: str | None) -> Driven | None:
     """What a drive prescribes that prescribes one thing; joint_type: of its joint, None: unknown."""
     given = [key for key in DRIVEN if getattr(drive, key) is not None]
     if len(given) != 1:
@@ -109,7 +109,7 @@ def drive_of(drive: f.Drive, joint_type: str | None) -> Driven | None:
     return Driven(key, value, of[0]) if of else None  # type: ignore[arg-type]
 
 
-def limits_of(stop: f.Stop) -> tuple[Literal["angle", "travel", "length"], Limits] | None:
+def limits_of(stop: f.StopEntry) -> tuple[Literal["angle", "travel", "length"], Limits] | None:
     """Quantity and limits of a stop that limits one coordinate."""
     given: list[tuple[Literal["angle", "travel", "length"], Limits | None]] = [
         ("angle", stop.angle), ("travel", stop.travel), ("length", stop.length)
@@ -154,21 +154,21 @@ def evenly(duration: float, count: int) -> Iterator[float]:
     return (numerator * i / (denominator * (count - 1)) for i in range(count - 1))
 
 
-def span_of(analysis: f.Analysis) -> float:
+def span_of(analysis: f.AnalysisEntry) -> float:
     """How long the run lasts [s]; 0 where there is none."""
     if analysis.times:
         return max(analysis.times)
     return analysis.duration or 0.0
 
 
-def end_of(reduce_to: str | End) -> End | None:
+def end_of(reduce_to: str | EndEntry) -> EndEntry | None:
     """The point a section is reduced to, if it is one."""
-    if isinstance(reduce_to, End):
+    if isinstance(reduce_to, EndEntry):
         return reduce_to
     body, dot, point = reduce_to.partition(".")
-    return End.model_construct(body=body, at=point) if dot else None
+    return EndEntry.model_construct(body=body, at=point) if dot else None
 
 
-def point_in(body: f.Body, at: object) -> m.Vec | None:
+def point_in(body: f.BodyEntry, at: object) -> m.Vec | None:
     """A point given by coordinates or by name, in body axes."""
     return body.points.get(at) if isinstance(at, str) else at  # type: ignore[return-value]

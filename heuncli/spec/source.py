@@ -47,7 +47,7 @@ UNSEEN_NAMES = {
 
 
 @record
-class Source:
+class SourceFile:
     """Content of a file: plain data, and for every path the location of its value and of its key."""
 
     file: str
@@ -72,7 +72,7 @@ def dotted(path: Path_) -> str:
     return ".".join(map(str, path))
 
 
-def read(path: str, text: str | None) -> Source:
+def read(path: str, text: str | None) -> SourceFile:
     """The content of a file ("-" is standard input), or of a text that stands for it. Raises SpecError."""
     file = "<stdin>" if path == STANDARD_INPUT else path
     if text is None:
@@ -107,7 +107,7 @@ def position(text: str, index: int) -> tuple[int, int]:
     return text.count("\n", 0, index) + 1, index - text.rfind("\n", 0, index)
 
 
-def parse(file: str, text: str, sha256: str) -> Source:
+def parse(file: str, text: str, sha256: str) -> SourceFile:
     """The data in a text. Raises SpecError for what cannot be read on; what can be is in the source's problems."""
     if "\r" in text:  # an end of a line to YAML, alone too: so that all count the same lines
         text = text.replace("\r\n", "\n").replace("\r", "\n")
@@ -134,7 +134,7 @@ def parse(file: str, text: str, sha256: str) -> Source:
     if builder.documents == 0 or builder.root is None:
         hint = f"write the scene into it; the smallest is: {SMALLEST}"
         raise SpecError(*builder.problems, Problem("empty", "the file is empty", SourceLocation(file, 1, 1), hint))
-    return Source(file, sha256, builder.root, builder.values, builder.keys, tuple(builder.problems))
+    return SourceFile(file, sha256, builder.root, builder.values, builder.keys, tuple(builder.problems))
 
 
 def event_stream(text: str) -> Iterator[Any]:
@@ -196,7 +196,7 @@ ALIAS = (
 )
 
 
-class Frame:
+class OpenContainer:
     """An open mapping or list; skipped: the value of a key that was refused."""
 
     def __init__(self, container: dict[str, Any] | list[Any], path: Path_) -> None:
@@ -215,7 +215,7 @@ class Builder:
         self.keys: dict[Path_, Mark] = {}
         self.problems: list[Problem] = []
         self.documents = 0
-        self.stack: list[Frame] = []
+        self.stack: list[OpenContainer] = []
 
     def problem(self, code: str, message: str, event: Any, path: Path_ = (), *, hint: str) -> Problem:
         mark = event.start_mark
@@ -267,7 +267,7 @@ class Builder:
         else:
             self.put(plain(event.value) if event.implicit[0] else event.value, event)
 
-    def key(self, event: Any, top: Frame) -> None:
+    def key(self, event: Any, top: OpenContainer) -> None:
         """A key of a mapping: a plain word, once."""
         key = event.value
         path = (*top.path, key)
@@ -296,7 +296,7 @@ class Builder:
             problem = self.problem("not-yaml", message, event, top.path, hint=hint)
             raise SpecError(*self.problems, problem)
         path = self.put(container, event)
-        self.stack.append(Frame(container, path))
+        self.stack.append(OpenContainer(container, path))
         if len(self.stack) > DEEPEST:
             hint = "no value of a spec is: is a bracket too many open?"
             problem = self.problem("too-deep", f"nested more than {DEEPEST} levels deep", event, hint=hint)

@@ -12,12 +12,12 @@ import numpy as np
 from heuncli import tolerances
 from heuncli.errors import Finding, SourceLocation
 from heuncli.expressions.curves import fit
-from heuncli.expressions.programs import Table
+from heuncli.expressions.programs import TableFunction
 from heuncli.expressions.units import Dimension, parse_unit
 from heuncli.number_range import are_in_range, out_of_range
 from heuncli.records import record, replace
 from heuncli.spec.columns import Columns, CsvError, NoColumn, columns_of
-from heuncli.spec.format import Table as Entry
+from heuncli.spec.format import TableEntry
 from heuncli.spec.quantity import Scope, number
 from heuncli.spec.reading import read_bytes
 
@@ -37,7 +37,7 @@ class Wrong:
     location: SourceLocation | None = None
 
 
-def build_table(name: str, entry: Entry, scope: Scope, folder: Path) -> tuple[Table | None, list[Wrong]]:
+def build_table(name: str, entry: TableEntry, scope: Scope, folder: Path) -> tuple[TableFunction | None, list[Wrong]]:
     """The table of an entry, or what is wrong with it."""
     wrong: list[Wrong] = []
     columns = in_si(entry, scope, folder, wrong)
@@ -59,7 +59,7 @@ def build_table(name: str, entry: Entry, scope: Scope, folder: Path) -> tuple[Ta
     return table, []
 
 
-def in_si(entry: Entry, scope: Scope, folder: Path, wrong: list[Wrong]) -> Columns | None:
+def in_si(entry: TableEntry, scope: Scope, folder: Path, wrong: list[Wrong]) -> Columns | None:
     """The columns x and y of an entry in SI, from its file or its lists; what is wrong is added."""
     sizes = [unit_size(key, getattr(entry, key), wrong) for key in ("x_unit", "y_unit")]
     if entry.file is not None:
@@ -107,7 +107,7 @@ def read(item: object, size: float, scope: Scope, keys: tuple[str | int, ...], w
     return value if isinstance(item, str) else value * size
 
 
-def too_small_or_large(columns: Columns, entry: Entry) -> Iterator[Wrong]:
+def too_small_or_large(columns: Columns, entry: TableEntry) -> Iterator[Wrong]:
     """The first number of each column that is not computed with."""
     for key, column in zip(("x", "y"), columns, strict=True):
         beyond = ~are_in_range(np.frombuffer(column))
@@ -117,7 +117,7 @@ def too_small_or_large(columns: Columns, entry: Entry) -> Iterator[Wrong]:
             yield Wrong(("file",) if in_file else (key, i), out_of_range(column[i], f"number {i + 1} of {key} (SI)"))
 
 
-def shape_of(x: array[float], y: array[float], entry: Entry) -> Iterator[Wrong]:
+def shape_of(x: array[float], y: array[float], entry: TableEntry) -> Iterator[Wrong]:
     """What keeps points from being a function."""
     at = () if entry.file is None else ("file",)
     if len(x) != len(y):
@@ -151,7 +151,7 @@ def shape_of(x: array[float], y: array[float], entry: Entry) -> Iterator[Wrong]:
         yield Wrong(("period",), Finding("table-period", message, "the last point repeats the first, one period on"))
 
 
-def from_file(entry: Entry, file: str, folder: Path, wrong: list[Wrong]) -> Columns | None:
+def from_file(entry: TableEntry, file: str, folder: Path, wrong: list[Wrong]) -> Columns | None:
     """The two columns of a CSV file, as they stand there."""
     path = folder / file
     try:

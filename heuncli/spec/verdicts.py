@@ -10,7 +10,7 @@ from pydantic import ValidationError
 
 from heuncli.errors import Finding
 from heuncli.nearest import did_you_mean, nearest
-from heuncli.spec.fields import Model
+from heuncli.spec.fields import Entry
 from heuncli.spec.hints import called, elsewhere, of_form, of_key, of_missing, of_word
 from heuncli.spec.quantity import Follows, kind_of
 from heuncli.spec.rules.registry import Path_, Violation
@@ -24,7 +24,7 @@ PLACES = frozenset({"at", "from", "to", "about"})  # keys of points, by name or 
 FORMS = {"single": "a number", "list": "a list", "rows": "a list of lists", "mapping": "a mapping"}
 
 
-def verdicts(error: ValidationError, data: Any, model: type[Model]) -> Iterator[tuple[str, Violation]]:
+def verdicts(error: ValidationError, data: Any, model: type[Entry]) -> Iterator[tuple[str, Violation]]:
     """Codes and violations, one for each thing wrong in data read as a model; paths are within the data."""
     short: set[Path_] = set()
     for item in error.errors(include_url=False, include_input=True):
@@ -101,7 +101,7 @@ def as_many(path: Path_, count: int) -> str:
     return f"{key}: {named.get(key, '[x, y, z]' if count == 3 else f'{count} values')}"
 
 
-def is_there_as_another(key: str, owner: dict[str, Any], model: type[Model], path: Path_) -> bool:
+def is_there_as_another(key: str, owner: dict[str, Any], model: type[Entry], path: Path_) -> bool:
     """Whether an unknown key beside it stands for a missing one."""
     known = keys_known(path, model) if not path else []
     return any(name not in known and called(str(name), known) == key for name in owner)
@@ -177,7 +177,7 @@ def wrong_word(path: Path_, word: Any, expected: str) -> tuple[str, Violation]:
     return "unknown-word", Violation(path, message, of_word(word, known))
 
 
-def models_in(annotation: Any) -> tuple[int, list[type[Model]]]:
+def models_in(annotation: Any) -> tuple[int, list[type[Entry]]]:
     """The models that a field may hold, and how many keys or indices stand between: 1 for dict[str, X] and list[X]."""
     origin = get_origin(annotation)
     if origin is Annotated:
@@ -188,12 +188,12 @@ def models_in(annotation: Any) -> tuple[int, list[type[Model]]]:
     if origin in (dict, list):
         depth, models = models_in(get_args(annotation)[-1])
         return depth + 1, models
-    return 0, [annotation] if isinstance(annotation, type) and issubclass(annotation, Model) else []
+    return 0, [annotation] if isinstance(annotation, type) and issubclass(annotation, Entry) else []
 
 
-def keys_known(path: Path_, model: type[Model]) -> list[str]:
+def keys_known(path: Path_, model: type[Entry]) -> list[str]:
     """The keys of the mapping at a path below what a model reads."""
-    owner: type[Model] | None = model
+    owner: type[Entry] | None = model
     between = 0
     for part in path:
         if between == 0:

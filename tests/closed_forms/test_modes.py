@@ -12,7 +12,7 @@ import numpy as np
 import pytest
 
 from heuncli.commands.modes.study import modes
-from heuncli.linearisation.modes import Modes
+from heuncli.linearisation.modes import SceneModes
 from heuncli.spec.load import load
 from tests.oracle.values import to_yaml
 from tests.shared.governors import porter, spindle
@@ -22,11 +22,11 @@ DIGITS = 1e-12  # of the largest eigenvalue: sums of some dozen terms
 POINT = {"center": [0, 0, 0], "inertia": [0.1, 0.1, 0.1], "points": {"c": [0, 0, 0]}}
 
 
-def found(scene: dict[str, Any]) -> Modes:
+def found(scene: dict[str, Any]) -> SceneModes:
     return modes(load("scene.yaml", to_yaml(scene)))
 
 
-def frequencies(told: Modes) -> list[float]:
+def frequencies(told: SceneModes) -> list[float]:
     """Of what oscillates [rad/s]."""
     return [mode.eigenvalue.imag for mode in told.modes if mode.eigenvalue.imag > 0.0]
 

@@ -7,7 +7,7 @@ from typing import Any
 import numpy as np
 import pytest
 
-from heuncli.assembly.conditions import Condition, conditions_of
+from heuncli.assembly.conditions import JointCondition, conditions_of
 from heuncli.assembly.rows import Rows, acceleration_rows, missing, pose_rows, rate_rows
 from heuncli.shapes.rotations import from_vector
 from tests.shared.drafted_mechanisms import body, in_time, joint, scene
@@ -16,7 +16,7 @@ KINDS = ("ball", "pin", "universal", "weld", "slide", "cylinder", "line", "plane
 GIVEN = {"pin": {"angle": 0.7}, "slide": {"travel": 0.3}, "cylinder": {"angle": -0.4, "travel": 0.2}}
 
 
-def demand(kind: str, t: float = 0.0, **given: Any) -> Condition:
+def demand(kind: str, t: float = 0.0, **given: Any) -> JointCondition:
     if kind == "rod":
         given["length"] = 1.3
     if kind == "universal":
@@ -52,7 +52,7 @@ def test_gaps_change_as_the_rows_say_however_large_they_are(kind: str, given: bo
         assert (gaps[1] - gaps[0]) / (2 * h) == pytest.approx(speed, abs=2e-8)
 
 
-def closed(d: Condition, rng: np.random.Generator) -> tuple[Any, Any]:
+def closed(d: JointCondition, rng: np.random.Generator) -> tuple[Any, Any]:
     """A random pose in which the joint is closed, found by a few Newton steps on its own rows."""
     x = rng.normal(size=(3, 3))
     R = np.array([from_vector(a) for a in rng.normal(size=(3, 3))])

@@ -10,41 +10,41 @@ from pydantic.fields import FieldInfo
 from heuncli.expressions import units as u
 from heuncli.spec import fields
 from heuncli.spec import format as f
-from heuncli.spec.fields import Model
+from heuncli.spec.fields import Entry
 from tests.shared.manual import headings
 
 ALL = "all"  # in place of the types that have a key, where all have it
 # by heading: the model whose keys the first table below it lists, or the models by type
-CHAPTERS: dict[str, type[Model] | Mapping[str, type[Model]]] = {
-    "Tables": f.Table,
-    "Bodies": f.Body,
+CHAPTERS: dict[str, type[Entry] | Mapping[str, type[Entry]]] = {
+    "Tables": f.TableEntry,
+    "Bodies": f.BodyEntry,
     "Shapes": f.SHAPES,
     "Orientation": f.Orientation,
-    "Piece": f.Piece,
+    "Piece": f.PieceEntry,
     "Joints": f.JOINTS,
     "Initial": {"pin": f.Turning, "slide": f.Sliding, "cylinder": f.TurningAndSliding},
     "Stiffness of joints": f.StiffnessParts,
-    "Drives": f.Drive,
+    "Drives": f.DriveEntry,
     **f.LOADS,
-    "Impulses": f.Blow,
-    "Stops": f.Stop,
-    "Sections": f.Section,
-    "Properties": f.Properties,
-    "Analysis": f.Analysis,
-    "Conditions": f.OfResults,
-    "Expect": f.Expect,
+    "Impulses": f.ImpulseEntry,
+    "Stops": f.StopEntry,
+    "Sections": f.SectionEntry,
+    "Properties": f.PropertiesEntry,
+    "Analysis": f.AnalysisEntry,
+    "Conditions": f.ResultConditionEntry,
+    "Expect": f.ExpectEntry,
 }
 TOP = "Top level"
 # small mappings that are described in the row of the key that holds them
-INLINE: dict[type[Model], tuple[str, str]] = {
-    f.Ground: (TOP, "ground"),
-    f.Foundation: (TOP, "foundation"),
-    f.Near: ("Bodies", "near"),
+INLINE: dict[type[Entry], tuple[str, str]] = {
+    f.GroundEntry: (TOP, "ground"),
+    f.FoundationEntry: (TOP, "foundation"),
+    f.NearEntry: ("Bodies", "near"),
     f.VelocityInFrame: ("Bodies", "velocity"),
     f.RateInFrame: ("Bodies", "velocity"),
-    f.Circle: ("Properties", "circle"),
-    f.Tube: ("Properties", "tube"),
-    f.Rectangle: ("Properties", "rectangle"),
+    f.CircleEntry: ("Properties", "circle"),
+    f.TubeEntry: ("Properties", "tube"),
+    f.RectangleEntry: ("Properties", "rectangle"),
 }
 NEEDED = {("Tables", "x"), ("Tables", "y")}  # asked for by a rule, not by the model
 
@@ -57,7 +57,7 @@ class Place(NamedTuple):
     types: tuple[str, ...] = ()
 
 
-def named_fields(model: type[Model]) -> dict[str, FieldInfo]:
+def named_fields(model: type[Entry]) -> dict[str, FieldInfo]:
     """The fields of a model by their keys, without the `type` by which it is chosen: that stands above its table."""
     fields_of = {field.alias or name: field for name, field in model.model_fields.items()}
     return {key: field for key, field in fields_of.items() if key != "type" or not field.is_required()}
@@ -65,10 +65,10 @@ def named_fields(model: type[Model]) -> dict[str, FieldInfo]:
 
 def top_keys() -> list[str]:
     """The keys of a spec's top level."""
-    return [*named_fields(f.Head), *f.READ_BEFORE, *f.ENTRIES, *f.SINGLE, "expect"]
+    return [*named_fields(f.HeadEntry), *f.READ_BEFORE, *f.ENTRIES, *f.SINGLE, "expect"]
 
 
-def pairs(models: Mapping[str, type[Model]]) -> dict[tuple[str, str], FieldInfo]:
+def pairs(models: Mapping[str, type[Entry]]) -> dict[tuple[str, str], FieldInfo]:
     """The fields by type and key."""
     return {(kind, key): field for kind, model in models.items() for key, field in named_fields(model).items()}
 

@@ -15,7 +15,7 @@ from heuncli.expressions.grammar import LONGEST as LONGEST_EXPRESSION
 from heuncli.kinetostatics.stress import UNKNOWN_SHEAR
 from heuncli.report.export import MOST_NUMBERS
 from heuncli.spec import format as f
-from heuncli.spec.fields import Model
+from heuncli.spec.fields import Entry
 from heuncli.spec.resolve import DEFAULT_TOLERANCE
 from heuncli.spec.rules.analysis import LONGEST as LONGEST_RUN
 from heuncli.spec.rules.sections import MOST_CUTS
@@ -51,7 +51,7 @@ def cells(line: str) -> list[str]:
     return [cell.strip() for cell in re.split(r"(?<!\\)\|", line)[1:-1]]
 
 
-def kinds(row: Row, models: Mapping[str, type[Model]]) -> list[str]:
+def kinds(row: Row, models: Mapping[str, type[Entry]]) -> list[str]:
     """The types of which a row is."""
     return [*models] if row["of"] == ALL else re.findall(r"`(\w+)`", row["of"])
 
@@ -67,7 +67,7 @@ def described() -> Iterator[tuple[str, Row, FieldInfo | None]]:
             for row in rows(heading, KEYS):
                 yield heading, row, named_fields(model).get(row["key"])
     for row in rows(TOP, KEYS):
-        yield TOP, row, named_fields(f.Head).get(row["key"])
+        yield TOP, row, named_fields(f.HeadEntry).get(row["key"])
 
 
 def test_the_top_level_has_its_keys() -> None:
@@ -93,10 +93,10 @@ def test_small_mappings_are_told_in_their_row() -> None:
 
 
 def test_every_model_has_a_chapter() -> None:
-    told = {f.Head, f.AnyJoint, *INLINE}
+    told = {f.HeadEntry, f.AnyJoint, *INLINE}
     for model in CHAPTERS.values():
         told.update(model.values() if isinstance(model, Mapping) else {model})
-    models = {x for x in vars(f).values() if isinstance(x, type) and issubclass(x, Model) and x is not Model}
+    models = {x for x in vars(f).values() if isinstance(x, type) and issubclass(x, Entry) and x is not Entry}
     assert models - told == set()
 
 

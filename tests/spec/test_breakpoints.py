@@ -12,7 +12,7 @@ from heuncli.errors import LimitError
 from heuncli.expressions.curves import fit
 from heuncli.expressions.discontinuities import discontinuities, one_sided_limits
 from heuncli.expressions.grammar import Scope, compile_expression
-from heuncli.expressions.programs import Expression, Table
+from heuncli.expressions.programs import Expression, TableFunction
 from heuncli.integration.methods.dop853 import DOP853
 from heuncli.integration.methods.registry import method_of
 from heuncli.integration.segments import limits_of
@@ -20,7 +20,7 @@ from heuncli.study.solve.history import require_steps
 
 TRIANGLE = fit("triangle", [0.0, 0.25, 0.5], [0.0, 1.0, 0.0], "linear", None, 0.5)
 RAMP = fit("ramp", [1.0, 2.0, 4.0], [0.0, 1.0, 5.0], "linear", "hold", None)
-TABLES: dict[str, Table | None] = {"triangle": TRIANGLE, "ramp": RAMP}
+TABLES: dict[str, TableFunction | None] = {"triangle": TRIANGLE, "ramp": RAMP}
 
 
 def read(text: str) -> Expression:

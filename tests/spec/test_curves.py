@@ -14,7 +14,7 @@ from heuncli.errors import SpecError
 from heuncli.expressions.curves import fit
 from heuncli.expressions.discontinuities import discontinuities
 from heuncli.expressions.grammar import Scope, compile_expression
-from heuncli.expressions.programs import Expression, Pack, Table
+from heuncli.expressions.programs import Expression, Pack, TableFunction
 from heuncli.kernel.choose import expressions
 from heuncli.spec.columns import CsvError, NoColumn, columns_of
 from heuncli.spec.load import load
@@ -22,7 +22,7 @@ from heuncli.spec.load import load
 BODY = "heun: 1\nbodies: {b: {mass: 1, center: [0, 0, 0], inertia: [1, 1, 1], points: {p: [0, 0, 0]}}}\n"
 
 
-def of(table: Table, text: str = "table(f, t)") -> Expression:
+def of(table: TableFunction, text: str = "table(f, t)") -> Expression:
     return compile_expression(text, Scope(tables={"f": table}, in_time=True))
 
 

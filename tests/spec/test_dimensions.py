@@ -12,7 +12,7 @@ import pytest
 from heuncli.errors import Finding, SpecError
 from heuncli.expressions import dimensions
 from heuncli.expressions.curves import fit
-from heuncli.expressions.grammar import Given, Scope, compile_expression
+from heuncli.expressions.grammar import GivenParameter, Scope, compile_expression
 from heuncli.expressions.programs import Expression
 from heuncli.expressions.units import NUMBER, Dimension, parse_unit
 from heuncli.records import replace
@@ -25,7 +25,7 @@ WRITTEN = {
     "J": "2 kg*m^2",
 }  # fmt: skip
 DIMENSIONS = {name: parse_unit(text.partition(" ")[2])[1] for name, text in WRITTEN.items()}
-GIVEN = {name: Given(DIMENSIONS[name], text) for name, text in WRITTEN.items()}
+GIVEN = {name: GivenParameter(DIMENSIONS[name], text) for name, text in WRITTEN.items()}
 VALUES = {name: 0.7 + 0.13 * i for i, name in enumerate(WRITTEN)}
 GAS = replace(fit("gas", [0.0, 1.0], [2.0, 3.0], "linear", "hold", None), dimensions=(NUMBER, parse_unit("bar")[1]))
 SCOPE = Scope({**VALUES, "q": 3.0}, {"pin": "pin", "guide": "slide"}, {"gas": GAS}, in_time=True, given=GIVEN)

@@ -51,7 +51,7 @@ def test_start_values(kind: Kind) -> None:
 
 
 def test_drives_have_keys() -> None:
-    assert {quantity for kind in TYPES.values() for quantity in kind.drives} < set(keys_of(f.Drive))
+    assert {quantity for kind in TYPES.values() for quantity in kind.drives} < set(keys_of(f.DriveEntry))
 
 
 def test_loads_have_types() -> None:

@@ -301,7 +301,7 @@ def test_sections() -> None:
         assert found is not None
         assert found.kind == kind
     piece = "piece: {mass: 1, center: [1, 0, 0], inertia: [0, 1, 1]}"
-    expected = m.Piece(1.0, x, ((0.0, 0.0, 0.0), (0.0, 1.0, 0.0), (0.0, 0.0, 1.0)))
+    expected = m.MassProperties(1.0, x, ((0.0, 0.0, 0.0), (0.0, 1.0, 0.0), (0.0, 0.0, 1.0)))
     lumps = "mass: 2, center: [1, 0, 0], inertia: [0, 2, 2]"
     assert section(f"{{body: b, at: p, normal: [1, 0, 0], {piece}}}", lumps).piece == expected
     assert section("{body: b, at: p, normal: [1, 0, 0]}", f"{lumps}, {piece}").piece == expected

@@ -15,7 +15,7 @@ from hypothesis import strategies as st
 
 from heuncli.errors import SpecError
 from heuncli.spec.load import load
-from heuncli.spec.source import SMALLEST, Source, parse, plain, read
+from heuncli.spec.source import SMALLEST, SourceFile, parse, plain, read
 
 
 def codes(text: str) -> list[tuple[str, int, int]]:
@@ -179,7 +179,7 @@ def test_any_text_is_a_source_or_an_error(text: str) -> None:
     except SpecError as error:
         problems = error.problems
     else:
-        assert isinstance(source, Source)
+        assert isinstance(source, SourceFile)
         problems = source.problems
     lines = re.split("\r\n?|\n", text)
     for problem in problems:

@@ -6,7 +6,7 @@ import math
 from collections.abc import Iterator
 
 from heuncli.foreign_text import shown
-from heuncli.linearisation.modes import Modes, is_length
+from heuncli.linearisation.modes import SceneModes, is_length
 from heuncli.linearisation.oscillations import Mode
 from heuncli.report.digits import rough, style
 from heuncli.report.page_width import fit
@@ -26,13 +26,13 @@ SOFT = 1e-3  # [1/s]: a bound on what is free is told if it leaves motions that 
 ALMOST = 0.02  # of the largest: a smaller part of the other phase is not worth a table's room
 
 
-def table(found: Modes) -> TextTable:
+def table(found: SceneModes) -> TextTable:
     """The modes, a row each; notes say what is unstable, and what nothing holds."""
     rows = tuple(row(k, mode, found) for k, mode in enumerate(found.modes))
     return TextTable(HEADING, COLUMNS, rows, tuple(notes(found)))
 
 
-def page(found: Modes) -> list[tuple[str, str]]:
+def page(found: SceneModes) -> list[tuple[str, str]]:
     """Label and text of the lines above the table."""
     frame = FRAME if found.steady else HELD if found.held else ""
     lines = [("heun", f"{VERSION}  {found.title}"), ("modes", f"small oscillations {ABOUT[found.at]}{frame}")]
@@ -43,14 +43,14 @@ def page(found: Modes) -> list[tuple[str, str]]:
     return [*lines, ("", "unstable" if unstable else "stable, but for what nothing holds" if loose else "stable")]
 
 
-def write(found: Modes) -> str:
+def write(found: SceneModes) -> str:
     """The page as text."""
     lines = page(found)
     head = "".join(f"{label.ljust(5)}  {shown(text)}\n" for label, text in lines)
     return head + ("\n" + "".join(plain(part, WIDTH) for part in fit(table(found), WIDTH)) if found.modes else "")
 
 
-def row(k: int, mode: Mode, found: Modes) -> tuple[str, ...]:
+def row(k: int, mode: Mode, found: SceneModes) -> tuple[str, ...]:
     """A mode's cells: digits as far as its error lets them be."""
     hertz = mode.error / (2.0 * math.pi)
     frequency = style(mode.frequency, hertz).write(mode.frequency) if mode.frequency else "0"
@@ -64,7 +64,7 @@ def row(k: int, mode: Mode, found: Modes) -> tuple[str, ...]:
     return str(k + 1), frequency, period, damping, growth, mode.kind, moving(k, found)
 
 
-def moving(k: int, found: Modes) -> str:
+def moving(k: int, found: SceneModes) -> str:
     """The coordinates that move most, with their amplitudes."""
     shape = found.shapes[k]
     return ", ".join(f"{name} {amplitude(shape[name])}" for name in found.largest[k] if name in shape)
@@ -77,7 +77,7 @@ def amplitude(x: complex) -> str:
     return f"{abs(x):.3g}∠{math.degrees(math.atan2(x.imag, x.real)):.0f}°"
 
 
-def notes(found: Modes) -> Iterator[str]:
+def notes(found: SceneModes) -> Iterator[str]:
     """Sentences on what is unstable and what is free."""
     for k, mode in enumerate(found.modes):
         names = ", ".join(found.largest[k])
@@ -89,7 +89,7 @@ def notes(found: Modes) -> Iterator[str]:
             yield f"unstable: mode {k + 1}, {names}: e times as large after every {1.0 / mode.growth:.3g} s"
 
 
-def to_csv(found: Modes) -> str:
+def to_csv(found: SceneModes) -> str:
     """The modes in long form, a line a number."""
     lines = [CSV_COLUMNS]
     for k, (mode, shape) in enumerate(zip(found.modes, found.shapes, strict=True)):

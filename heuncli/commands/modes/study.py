@@ -13,7 +13,7 @@ import numpy as np
 from heuncli import tolerances
 from heuncli.errors import Problem, SolveError
 from heuncli.integration.diagnosis.solvability import Wording, require_solvable
-from heuncli.linearisation.modes import Modes, most, shape_of
+from heuncli.linearisation.modes import SceneModes, most, shape_of
 from heuncli.linearisation.oscillations import oscillations
 from heuncli.linearisation.shapes import coordinates
 from heuncli.linearisation.smooth import without_slope
@@ -28,13 +28,13 @@ NEARLY = "look for it from nearer by: draw the scene closer to where it rests"
 MOVING_HINT = "leave out the velocities, or run a motion: modes are those about a pose, or a steady motion"
 
 
-def modes(spec: Spec) -> Modes:
+def modes(spec: Spec) -> SceneModes:
     """The modes of a spec. Raises SolveError where there is no state to oscillate about."""
     with placed(spec):
         return found_in(spec)
 
 
-def found_in(spec: Spec) -> Modes:
+def found_in(spec: Spec) -> SceneModes:
     """The same, with errors that have names in place of places."""
     setup = set_up(spec, reduce=False)
     require_no_time(setup)
@@ -43,7 +43,7 @@ def found_in(spec: Spec) -> Modes:
     found = oscillations(here.system)
     rows = coordinates(here.layout, here.found)
     shapes = [shape_of(mode.shape, rows) for mode in found]
-    return Modes(
+    return SceneModes(
         title=spec.title,
         at=at,
         steady=moves(here) and bool(found),  # with nothing free nothing was compared at later instants

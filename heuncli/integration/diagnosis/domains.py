@@ -7,7 +7,7 @@ from collections.abc import Iterator, Mapping
 
 from heuncli import tolerances
 from heuncli.errors import Problem
-from heuncli.expressions.programs import KNOT, TABLE, Expression, Table, outside
+from heuncli.expressions.programs import KNOT, TABLE, Expression, TableFunction, outside
 from heuncli.mechanism.model import Mechanism
 from heuncli.number_range import out_of_range
 from heuncli.records import replace
@@ -120,7 +120,7 @@ def _problem(expression: Expression, t: float, values: list[float], not_finite: 
     return Problem("no-value", f"{subject} {what} at t = {t:.9g} s{at}", expression.location, hint)
 
 
-def _table_left(expression: Expression, t: float, values: list[float]) -> Table | None:
+def _table_left(expression: Expression, t: float, values: list[float]) -> TableFunction | None:
     """The table whose range was left: the one that, extended by its end values, makes the expression finite."""
     for index, table in enumerate(expression.tables):
         code = list(expression.code)

@@ -24,7 +24,7 @@ Pairs = list[tuple[int, int, float]]  # place in the scene's state, in the flat 
 
 
 @record
-class Turn:
+class PlaneTurn:
     """A turn of the plane's tree: of which body, the place of its parent, the sign of its axis, where it stands.
 
     start: its value at the start; program: of its drive, else None.
@@ -40,7 +40,7 @@ class Turn:
 
 
 @record
-class Ball:
+class FreeTurns:
     """A body of the scene whose turns are all free: its place, where attitude and angular velocity stand."""
 
     body: int
@@ -59,7 +59,7 @@ class States:
         self.turns = _turns(self.small)
         bodies = full.bodies
         self.balls = [
-            Ball(i, int(b["attitude_at"]), int(b["rate_at"]), full.y0[b["attitude_at"] : b["attitude_at"] + 4])
+            FreeTurns(i, int(b["attitude_at"]), int(b["rate_at"]), full.y0[b["attitude_at"] : b["attitude_at"] + 4])
             for i, b in enumerate(bodies)
             if b["ball"]
         ]
@@ -107,7 +107,7 @@ class States:
                 rate[i] = rate[up] + turn.sign * float(u[0])
         return found
 
-    def _of_turn(self, turn: Turn, times: Array, states: Array) -> tuple[Array, Array]:
+    def _of_turn(self, turn: PlaneTurn, times: Array, states: Array) -> tuple[Array, Array]:
         """Angle and rate of a turn: of the states, or as its drive prescribes."""
         if turn.q >= 0:
             return states[:, turn.q], states[:, turn.u]
@@ -123,19 +123,19 @@ def angle_about(n: Array, attitude: Array, start: Array) -> float:
     return 2.0 * float(np.arctan2(n @ turn[1:], turn[0]))
 
 
-def _turns(small: Layout) -> list[Turn]:
+def _turns(small: Layout) -> list[PlaneTurn]:
     """One of each body, tree order; of a body that turns with its parent one that stands nowhere."""
     found = []
     starts = small.starts
     for i, body in enumerate(small.bodies):
-        turn = Turn(i, int(body["parent"]), 1.0, -1, -1, 0.0, None)
+        turn = PlaneTurn(i, int(body["parent"]), 1.0, -1, -1, 0.0, None)
         for k in range(body["first_freedom"], body["end_freedom"]):
             row, freedom = small.tables["freedoms"][k], small.freedoms[k]
             if row["kind"] != kernel.SHIFT:
                 sign = float(np.sign(row["direction"]["z"]))
                 start = starts[freedom.joint].angle if freedom.joint >= 0 else 0.0
                 program = (int(row["program"]["start"]), int(row["program"]["count"])) if row["driven"] else None
-                turn = Turn(i, int(body["parent"]), sign, freedom.q, freedom.u, start, program)
+                turn = PlaneTurn(i, int(body["parent"]), sign, freedom.q, freedom.u, start, program)
         found.append(turn)
     return found
 

@@ -66,12 +66,12 @@ def not_positive(draft: DraftDocument) -> Iterator[Violation]:
         for i, shape in enumerate(body.shapes or []):
             at = (*path, "shapes", i)
             yield from positive(at, shape, "mass", "density", "line_density")
-            if not isinstance(shape, f.Cone):
+            if not isinstance(shape, f.ConeShape):
                 yield from positive(at, shape, "radius", "inner_radius")
             elif min(shape.radius, shape.to_radius) < 0.0 or max(shape.radius, shape.to_radius) == 0.0:
                 message = "a cone's radii must not be negative, nor both 0"
                 yield Violation((*at, "radius"), message, "to_radius: 0 is a tip")
-            if isinstance(shape, f.Box) and min(shape.size) <= 0.0:
+            if isinstance(shape, f.BoxShape) and min(shape.size) <= 0.0:
                 yield Violation((*at, "size"), f"a size must be more than 0, not {min(shape.size):g}", EDGES)
     for name, joint in draft.document.joints.items():
         path = ("joints", name)
@@ -86,7 +86,7 @@ def not_positive(draft: DraftDocument) -> Iterator[Violation]:
             yield Violation((*path, "stiffness"), message, "0: the joint gives way there to what others hold")
     for name, load in draft.document.forces.items():
         path = ("forces", name)
-        if isinstance(load, f.Friction) and load.speed.constant is not None and load.speed.constant <= 0.0:
+        if isinstance(load, f.FrictionEntry) and load.speed.constant is not None and load.speed.constant <= 0.0:
             yield Violation((*path, "speed"), f"speed must be more than 0, not {load.speed.constant:g}", FULL)
     for name, section in draft.document.sections.items():
         path = ("sections", name)
@@ -135,20 +135,24 @@ def shape_form(draft: DraftDocument) -> Iterator[Violation]:
     for name, body in draft.document.bodies.items():
         for i, shape in enumerate(body.shapes or []):
             path = ("bodies", name, "shapes", i)
-            density = "line_density" if isinstance(shape, f.Rod) else "density"
-            if not isinstance(shape, f.Point):
+            density = "line_density" if isinstance(shape, f.RodShape) else "density"
+            if not isinstance(shape, f.PointShape):
                 given = [key for key in ("mass", density) if getattr(shape, key) is not None]
                 if len(given) != 1:
                     what = "both mass and" if given else "neither mass nor"
                     yield Violation(path, f"{what} {density}", "give one of the two")
-            if isinstance(shape, f.Rod | f.Cylinder | f.Cone) and shape.from_ == shape.to:
+            if isinstance(shape, f.RodShape | f.CylinderShape | f.ConeShape) and shape.from_ == shape.to:
                 yield Violation((*path, "to"), "from and to are the same point", "without a length it is type: point")
-            if isinstance(shape, f.Cylinder) and shape.inner_radius is not None and shape.inner_radius >= shape.radius:
+            if (
+                isinstance(shape, f.CylinderShape)
+                and shape.inner_radius is not None
+                and shape.inner_radius >= shape.radius
+            ):
                 message = f"inner_radius {shape.inner_radius:g} is not less than radius {shape.radius:g}"
                 yield Violation((*path, "inner_radius"), message, "a full one has no inner_radius")
 
 
-def tensors(draft: DraftDocument) -> Iterator[tuple[Path_, f.Body | f.Piece]]:
+def tensors(draft: DraftDocument) -> Iterator[tuple[Path_, f.BodyEntry | f.PieceEntry]]:
     """Every body and piece with an inertia."""
     for name, body in draft.document.bodies.items():
         if body.inertia is not None:
@@ -247,7 +251,7 @@ def orientations(draft: DraftDocument) -> Iterator[tuple[Path_, f.Orientation]]:
         if body.near is not None and body.near.orientation is not None:
             yield ("bodies", name, "near", "orientation"), body.near.orientation
         for i, shape in enumerate(body.shapes or []):
-            if isinstance(shape, f.Box) and shape.orientation is not None:
+            if isinstance(shape, f.BoxShape) and shape.orientation is not None:
                 yield ("bodies", name, "shapes", i, "orientation"), shape.orientation
 
 

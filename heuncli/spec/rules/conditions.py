@@ -24,9 +24,9 @@ def conditions(draft: DraftDocument) -> Iterator[tuple[Path_, object]]:
         yield ("analysis", "events", name), given
 
 
-def on_results(draft: DraftDocument) -> Iterator[tuple[Path_, f.OfResults, Result]]:
+def on_results(draft: DraftDocument) -> Iterator[tuple[Path_, f.ResultConditionEntry, Result]]:
     """Those on numbers of the results, with what their paths lead to; None where only the run can tell."""
-    on_paths = [(path, given) for path, given in conditions(draft) if isinstance(given, f.OfResults)]
+    on_paths = [(path, given) for path, given in conditions(draft) if isinstance(given, f.ResultConditionEntry)]
     if on_paths:
         from heuncli.spec.rules.outcome import result, runs_of  # a run without any starts faster
 
@@ -62,13 +62,13 @@ def event_path(draft: DraftDocument) -> Iterator[Violation]:
     """`of` leads to a number at each instant: of a vector its magnitude counts, of a run of cuts its whole stretch."""
     runs: dict[str, bool] | None = None
     for path, given, found in on_results(draft):
-        from heuncli.spec.rules.outcome import Outcome, runs_of, wrong_path
+        from heuncli.spec.rules.outcome import NumberKind, runs_of, wrong_path
 
         where = (*path, "of")
         runs = runs if runs is not None else runs_of(draft)
         if (wrong := wrong_path(given.of, draft.names, runs)) is not None:
             yield Violation(where, *wrong)
-        elif not isinstance(found, Outcome) or not found.known or given.of.split(".")[0] in AFTER_THE_RUN:
+        elif not isinstance(found, NumberKind) or not found.known or given.of.split(".")[0] in AFTER_THE_RUN:
             if given.of.split(".")[0] not in draft.unread:
                 message = f"'{given.of}': only the run can tell what that is"
                 yield Violation(where, message, "name a number of joints, sections, coordinates, energy, ...")
@@ -90,7 +90,7 @@ def event_limit(draft: DraftDocument) -> Iterator[Violation]:
             yield Violation(path, message, hint)
         else:
             from heuncli.spec.rules.expect import dimensions
-            from heuncli.spec.rules.outcome import Outcome
+            from heuncli.spec.rules.outcome import NumberKind
 
-            known = found.dimensions if isinstance(found, Outcome) else ()
+            known = found.dimensions if isinstance(found, NumberKind) else ()
             yield from dimensions((*path, limits[0]), getattr(given, limits[0]), known)

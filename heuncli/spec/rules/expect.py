@@ -16,21 +16,21 @@ from heuncli.spec.semantics import instants_of, type_of
 
 if TYPE_CHECKING:
     from heuncli.results_schema import Shape
-    from heuncli.spec.rules.outcome import Outcome
+    from heuncli.spec.rules.outcome import NumberKind
 
 RAGGED = -1  # the length of a list whose members have different ones
 Lengths = tuple[int | None, ...]  # of nested lists, the outer first; None: not known before the run
 
 
-def outcomes(draft: DraftDocument) -> Iterator[tuple[Path_, f.Expect, Outcome | None]]:
+def outcomes(draft: DraftDocument) -> Iterator[tuple[Path_, f.ExpectEntry, NumberKind | None]]:
     """Every expectation with the quantity at its path; None where there is none."""
     if draft.document.expect:
-        from heuncli.spec.rules.outcome import Outcome, result, runs_of  # a run without expectations starts faster
+        from heuncli.spec.rules.outcome import NumberKind, result, runs_of  # a run without expectations starts faster
 
         runs = runs_of(draft)
         for i, item in draft.document.expect.items():
             found = result(item.of.split("."), draft.names, runs)
-            yield ("expect", i), item, found if isinstance(found, Outcome) else None
+            yield ("expect", i), item, found if isinstance(found, NumberKind) else None
 
 
 @rule("expect-path")
@@ -66,7 +66,7 @@ def expect_form(draft: DraftDocument) -> Iterator[Violation]:
                 yield from dimensions((*path, key), getattr(item, key), quantity.dimensions)
 
 
-def over_instants(path: Path_, item: f.Expect, quantity: Outcome) -> Iterator[Violation]:
+def over_instants(path: Path_, item: f.ExpectEntry, quantity: NumberKind) -> Iterator[Violation]:
     """Only what runs over the instants is one at one of them or has a peak, and only one number has an extreme."""
     for key in ("at", "peak") if not quantity.timed else ():
         if getattr(item, key) is not None:
@@ -78,7 +78,7 @@ def over_instants(path: Path_, item: f.Expect, quantity: Outcome) -> Iterator[Vi
             yield Violation((*path, "of"), f"{item.of} is {described(tuple(x.size for x in quantity.axes))}", hint)
 
 
-def bounds(path: Path_, item: f.Expect) -> Iterator[Violation]:
+def bounds(path: Path_, item: f.ExpectEntry) -> Iterator[Violation]:
     """Bounds stand alone and leave room between them."""
     if not item.is_bounded:
         return
@@ -150,7 +150,7 @@ def output_instants(draft: DraftDocument, asked: int) -> int | None:
     return None if may_stop and asked > 1 else asked
 
 
-def sizes(path: Path_, item: f.Expect, quantity: Outcome, instants: int | None) -> Iterator[Violation]:
+def sizes(path: Path_, item: f.ExpectEntry, quantity: NumberKind, instants: int | None) -> Iterator[Violation]:
     """As many numbers as the result has there, in the same lists."""
     over_instants = quantity.timed and item.at is None and item.peak is None and instants != 1
     axes: Shape = () if item.peak is not None else quantity.axes

@@ -9,7 +9,7 @@ from heuncli import tolerances
 from heuncli.expressions.discontinuities import first_not_positive, jumps
 from heuncli.joint_kinds import RATES, TYPES, named
 from heuncli.spec import format as f
-from heuncli.spec.fields import End
+from heuncli.spec.fields import EndEntry
 from heuncli.spec.rules.registry import DraftDocument, Path_, Violation, rule
 from heuncli.spec.semantics import DRIVEN, Driven, drive_of, driven_keys, point_in, span_of
 
@@ -53,13 +53,13 @@ def same_point(draft: DraftDocument) -> Iterator[Violation]:
     Within one body a spring moves nothing, but the cuts between its points carry it.
     """
     for name, load in draft.document.forces.items():
-        if isinstance(load, f.Distributed):
+        if isinstance(load, f.DistributedEntry):
             owner = draft.document.bodies.get(load.on)
             start = None if owner is None else point_in(owner, load.from_)
             if owner is not None and start is not None and start == point_in(owner, load.to):
                 message = "from and to are the same point"
                 yield Violation(("forces", name, "to"), message, "a force at one point is type: force, in N")
-        if not isinstance(load, f.Actuator | f.Spring) or load.from_.body != load.to.body:
+        if not isinstance(load, f.ActuatorEntry | f.SpringEntry) or load.from_.body != load.to.body:
             continue
         path, body = ("forces", name, "to"), draft.document.bodies.get(load.to.body)
         if load.to.body == "ground":
@@ -68,7 +68,7 @@ def same_point(draft: DraftDocument) -> Iterator[Violation]:
             yield Violation(path, "from and to are the same point", "its force has no direction")
 
 
-def end_key(end: End) -> tuple[str, object]:
+def end_key(end: EndEntry) -> tuple[str, object]:
     return end.body, end.at
 
 

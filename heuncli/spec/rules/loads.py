@@ -14,7 +14,7 @@ ON_MOTION = {"turning": "about a", "sliding": "along a"}
 FRICTION = {"turning": "torque", "sliding": "force"}  # the key of each motion
 
 
-InJoint = f.Torque | f.TurnSpring | f.Damper | f.Friction
+InJoint = f.TorqueEntry | f.TurnSpringEntry | f.DamperEntry | f.FrictionEntry
 
 
 def loads(draft: DraftDocument) -> Iterator[tuple[str, InJoint, Kind]]:
@@ -30,16 +30,16 @@ def load_joint(draft: DraftDocument) -> Iterator[Violation]:
     """A joint moves in the way that the load drives or resists."""
     for name, load, kind in loads(draft):
         path = ("forces", name)
-        if isinstance(load, f.Torque):
+        if isinstance(load, f.TorqueEntry):
             if not kind.takes("torque"):
                 where = " or ".join(f"{ON_MOTION[fit.motions[0]]} {fit.name}" for fit in taking("torque"))
                 hint = "between two points use actuator, on a body couple"
                 yield Violation((*path, "joint"), f"a torque acts {where}, not in a {kind.name}", hint)
-        elif isinstance(load, f.TurnSpring):
+        elif isinstance(load, f.TurnSpringEntry):
             if not kind.takes("turn_spring"):
                 message = f"a turn_spring acts about a {named(taking('turn_spring'), 'or')}, not in a {kind.name}"
                 yield Violation((*path, "joint"), message, "between two points use a spring")
-        elif isinstance(load, f.Damper):
+        elif isinstance(load, f.DamperEntry):
             of_both = [fit for fit in taking("damper") if len(fit.motions) == 2]
             if not kind.takes("damper"):
                 hint = "between two points use a spring with damping"
@@ -69,11 +69,11 @@ def load_dimension(draft: DraftDocument) -> Iterator[Violation]:
     """Where the joint decides between turning and sliding, the unit fits."""
     for name, load, kind in loads(draft):
         sliding = kind.motions == ("sliding",)
-        if isinstance(load, f.Torque):
+        if isinstance(load, f.TorqueEntry):
             checks = [("value", load.value, u.FORCE if sliding else u.MOMENT)]
-        elif isinstance(load, f.TurnSpring):
+        elif isinstance(load, f.TurnSpringEntry):
             checks = []
-        elif isinstance(load, f.Damper):
+        elif isinstance(load, f.DamperEntry):
             given = [load.coefficient] if load.coefficient is not None else []
             checks = [("coefficient", value, u.DAMPING if sliding else u.TURNING_DAMPING) for value in given]
         else:
@@ -92,7 +92,7 @@ def couple_point(draft: DraftDocument) -> Iterator[Violation]:
     on_bodies = [
         (("forces", name, "on"), load.on.body)
         for name, load in draft.document.forces.items()
-        if isinstance(load, f.Couple) and load.on.at is None
+        if isinstance(load, f.CoupleEntry) and load.on.at is None
     ]
     for name, blow in draft.document.impulses.items():
         if blow.couple is not None and blow.on is None and blow.body is not None:

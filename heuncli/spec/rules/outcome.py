@@ -27,7 +27,7 @@ NUMBER = "NUMBER"
 IN_TWO_WORDS, EVERYWHERE = ".", ".."  # places of keys that no path has
 
 
-class Outcome(NamedTuple):
+class NumberKind(NamedTuple):
     """Numbers: the dimensions they may have, the axes of one instant, and whether they run over the instants.
 
     instant: the number of the instant that the path names. known: whether dimensions and axes are, before the run.
@@ -51,8 +51,8 @@ class Words(NamedTuple):
     """What stands there is text, or names: no number."""
 
 
-Result: TypeAlias = Outcome | UnknownWord | Words | None  # None: of what could not be read
-ONLY_THE_RUN_TELLS = Outcome((), (), timed=False, known=False)
+Result: TypeAlias = NumberKind | UnknownWord | Words | None  # None: of what could not be read
+ONLY_THE_RUN_TELLS = NumberKind((), (), timed=False, known=False)
 
 
 class Reached(NamedTuple):
@@ -83,7 +83,7 @@ def result(path: list[str], names: Names, runs: Mapping[str, bool]) -> Result:
         run = runs[keys[1]]
     dimensions = tuple(u.parse_unit(unit)[1] for unit in reached.quantity.units)
     timed = reached.quantity.timed and not at_a_blow
-    return part(Outcome(dimensions, reached.quantity.axes(run), timed), reached.rest)
+    return part(NumberKind(dimensions, reached.quantity.axes(run), timed), reached.rest)
 
 
 def follow(path: list[str], names: Names) -> Reached | UnknownWord | None:
@@ -145,7 +145,7 @@ def wrong_path(path: str, names: Names, runs: Mapping[str, bool]) -> tuple[str, 
         return None
     from heuncli.path_hints import meant  # only on the way to an error
 
-    likely = meant(path, lambda words: isinstance(found := result(words, names, runs), Outcome) and found.known)
+    likely = meant(path, lambda words: isinstance(found := result(words, names, runs), NumberKind) and found.known)
     what = f"'{path}': '{reached.word}' is not a result" if reached.word else f"'{path}' is not a number"
     if likely is not None:
         return what, f"did you mean {likely}?"
@@ -219,7 +219,7 @@ def named(word: str, names: Names) -> list[str]:
     return [word]
 
 
-def part(whole: Outcome, words: list[str]) -> Outcome | UnknownWord:
+def part(whole: NumberKind, words: list[str]) -> NumberKind | UnknownWord:
     """What is left of a quantity where indices are given: along its axes, or along the instants first."""
     axes, timed, instant = whole.axes, whole.timed, None
     if timed and len(words) == len(axes) + 1:

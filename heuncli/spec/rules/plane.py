@@ -41,7 +41,7 @@ def not_planar(draft: DraftDocument) -> Iterator[Violation]:
                     (*path, "vector") if framed else path, given.vector if framed else given, forbidden
                 )
     for name, load in draft.document.forces.items():
-        if isinstance(load, f.PointForce | f.Couple | f.Distributed):
+        if isinstance(load, f.ForceEntry | f.CoupleEntry | f.DistributedEntry):
             for key in ("vector", "to_vector"):
                 given = getattr(load, key, None)
                 vector = tuple(x.constant for x in given or ())

@@ -58,7 +58,7 @@ def places(draft: DraftDocument) -> Iterator[tuple[float, ...]]:
         yield (body.near.position if body.near is not None else None) or ()
 
 
-def moments(body: f.Body) -> tuple[float, ...]:
+def moments(body: f.BodyEntry) -> tuple[float, ...]:
     """The elements of the inertia that is given [kg m^2]."""
     given, off = body.inertia, body.deviation or ()
     if given is None or isinstance(given, float):
@@ -67,43 +67,43 @@ def moments(body: f.Body) -> tuple[float, ...]:
     return (*(element for row in rows for element in row), *off)
 
 
-def extent(shape: f.Shape) -> tuple[float, ...]:
+def extent(shape: f.ShapeEntry) -> tuple[float, ...]:
     """Lengths of which none of the shape's coordinates exceeds the sum [m]."""
     match shape:
-        case f.Rod():
+        case f.RodShape():
             return (*shape.from_, *shape.to)
-        case f.Cylinder():
+        case f.CylinderShape():
             return (*shape.from_, *shape.to, shape.radius)
-        case f.Cone():
+        case f.ConeShape():
             return (*shape.from_, *shape.to, shape.radius, shape.to_radius)
-        case f.Box():
+        case f.BoxShape():
             return (*shape.center, *shape.size)
-        case f.Sphere():
+        case f.SphereShape():
             return (*shape.center, shape.radius)
-        case f.Point():
+        case f.PointShape():
             return shape.at
 
 
-def mass_of(shape: f.Shape) -> float:
+def mass_of(shape: f.ShapeEntry) -> float:
     """The mass [kg]: as given, or the density times the volume."""
     if shape.mass is not None:
         return shape.mass
-    if isinstance(shape, f.Rod):
+    if isinstance(shape, f.RodShape):
         return (shape.line_density or 0.0) * math.dist(shape.from_, shape.to)
-    assert not isinstance(shape, f.Point)
+    assert not isinstance(shape, f.PointShape)
     return (shape.density or 0.0) * volume(shape)
 
 
-def volume(shape: f.Cylinder | f.Cone | f.Box | f.Sphere) -> float:
+def volume(shape: f.CylinderShape | f.ConeShape | f.BoxShape | f.SphereShape) -> float:
     """The volume [m^3]."""
     match shape:
-        case f.Cylinder():
+        case f.CylinderShape():
             inner = shape.inner_radius or 0.0
             return math.pi * (shape.radius - inner) * (shape.radius + inner) * math.dist(shape.from_, shape.to)
-        case f.Cone():
+        case f.ConeShape():
             a, b = shape.radius, shape.to_radius
             return math.pi / 3.0 * (a * a + a * b + b * b) * math.dist(shape.from_, shape.to)
-        case f.Box():
+        case f.BoxShape():
             return math.prod(shape.size)
-        case f.Sphere():
+        case f.SphereShape():
             return 4.0 / 3.0 * math.pi * shape.radius**3

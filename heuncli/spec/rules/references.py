@@ -6,22 +6,22 @@ from collections.abc import Collection, Iterator
 
 from heuncli.nearest import did_you_mean
 from heuncli.spec import format as f
-from heuncli.spec.fields import End
+from heuncli.spec.fields import EndEntry
 from heuncli.spec.names import GROUND, mapping
 from heuncli.spec.rules.registry import DraftDocument, Path_, Violation, rule
 from heuncli.spec.semantics import end_of
 
 
-def ends(draft: DraftDocument) -> Iterator[tuple[Path_, End]]:
+def ends(draft: DraftDocument) -> Iterator[tuple[Path_, EndEntry]]:
     """Every end in the document with its path."""
     document = draft.document
     for name, joint in document.joints.items():
         yield ("joints", name, "from"), joint.from_
         yield ("joints", name, "to"), joint.to
     for name, load in document.forces.items():
-        if isinstance(load, f.PointForce | f.Couple):
+        if isinstance(load, f.ForceEntry | f.CoupleEntry):
             yield ("forces", name, "on"), load.on
-        elif isinstance(load, f.Actuator | f.Spring):
+        elif isinstance(load, f.ActuatorEntry | f.SpringEntry):
             yield ("forces", name, "from"), load.from_
             yield ("forces", name, "to"), load.to
     for name, blow in document.impulses.items():
@@ -37,7 +37,7 @@ def ends(draft: DraftDocument) -> Iterator[tuple[Path_, End]]:
     yield from ends_unread(draft)
 
 
-def ends_unread(draft: DraftDocument) -> Iterator[tuple[Path_, End]]:
+def ends_unread(draft: DraftDocument) -> Iterator[tuple[Path_, EndEntry]]:
     """Ends written as body.point in joints, forces and impulses in which something else is in error."""
     document = draft.document
     for block, read in (("joints", document.joints), ("forces", document.forces), ("impulses", document.impulses)):
@@ -46,13 +46,13 @@ def ends_unread(draft: DraftDocument) -> Iterator[tuple[Path_, End]]:
                 value = mapping(data).get(key)
                 body, _, point = value.partition(".") if isinstance(value, str) else ("", "", "")
                 if body and point and "." not in point:
-                    yield (block, name, key), End.model_construct(body=body, at=point)
+                    yield (block, name, key), EndEntry.model_construct(body=body, at=point)
 
 
-def ground_end(about: str) -> End:
+def ground_end(about: str) -> EndEntry:
     """'ground.O' or 'O' as an end."""
     body, dot, point = about.partition(".")
-    return End.model_construct(body=body if dot else GROUND, at=point if dot else body)
+    return EndEntry.model_construct(body=body if dot else GROUND, at=point if dot else body)
 
 
 def bodies_spoken_of(draft: DraftDocument) -> Iterator[tuple[Path_, str, bool]]:
@@ -63,7 +63,7 @@ def bodies_spoken_of(draft: DraftDocument) -> Iterator[tuple[Path_, str, bool]]:
     for name, section in draft.document.sections.items():
         yield ("sections", name, "body"), section.body, False
     for name, load in draft.document.forces.items():
-        if isinstance(load, f.Distributed):
+        if isinstance(load, f.DistributedEntry):
             yield ("forces", name, "on"), load.on, False
     for name, blow in draft.document.impulses.items():
         if blow.body is not None:
@@ -119,7 +119,7 @@ def points_of_bodies(draft: DraftDocument) -> Iterator[tuple[Path_, str, object]
         for key, value in (("at", section.at), ("from", section.from_), ("to", section.to)):
             yield ("sections", name, key), section.body, value
     for name, load in draft.document.forces.items():
-        if isinstance(load, f.Distributed) and load.on != GROUND:
+        if isinstance(load, f.DistributedEntry) and load.on != GROUND:
             for key, value in (("from", load.from_), ("to", load.to)):
                 yield ("forces", name, key), load.on, value
 

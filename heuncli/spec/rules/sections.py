@@ -16,7 +16,7 @@ MOST_CUTS = 50_000  # of a run: no reader tells more apart, and validate cuts th
 EVENLY = "1 is a stress that is spread evenly; of a rectangle it is 1.5, of a circle 4/3"
 
 
-def is_run(section: f.Section) -> bool:
+def is_run(section: f.SectionEntry) -> bool:
     """Whether it is a run of cuts."""
     return section.from_ is not None or section.to is not None or section.count is not None
 
@@ -53,7 +53,7 @@ def section_form(draft: DraftDocument) -> Iterator[Violation]:
             )
 
 
-def run_of_cuts(draft: DraftDocument, name: str, section: f.Section) -> Iterator[Violation]:
+def run_of_cuts(draft: DraftDocument, name: str, section: f.SectionEntry) -> Iterator[Violation]:
     """A run has two ends, two cuts at least, and decides the sides by itself."""
     path = ("sections", name)
     if section.count is not None and not 2 <= section.count <= MOST_CUTS:
@@ -142,7 +142,7 @@ def properties_form(draft: DraftDocument) -> Iterator[Violation]:
             )
 
 
-def shear_factor(properties: f.Properties, path: tuple[str, ...]) -> Iterator[Violation]:
+def shear_factor(properties: f.PropertiesEntry, path: tuple[str, ...]) -> Iterator[Violation]:
     """The largest shear stress over the mean: of a section given by numbers, and no less than 1."""
     factor = properties.shear_factor
     if factor is None:

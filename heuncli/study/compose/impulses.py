@@ -17,7 +17,7 @@ from heuncli.integration.check.shared_blows import matched
 from heuncli.integration.contacts.blows import DRIVES, Jump
 from heuncli.integration.diagnosis.solvability import Wording, require_solvable
 from heuncli.integration.evaluator import Recovered
-from heuncli.kinetostatics.actions import Action, End
+from heuncli.kinetostatics.actions import Action, ActionEnd
 from heuncli.kinetostatics.balance import balance_residual
 from heuncli.kinetostatics.magnitudes import magnitudes
 from heuncli.mechanism.model import Mechanism
@@ -185,7 +185,7 @@ def actions(mechanism: Mechanism, jumps: Sequence[Jump]) -> list[Action]:
                 if given.blow == i:
                     force[k], moment[k], at[k] = given.force, given.moment, given.at
         point = blow.point if blow.point is not None else mechanism.bodies[blow.body].center
-        found.append(Action("load", blow.name, End(blow.body, at, point), None, force, moment))
+        found.append(Action("load", blow.name, ActionEnd(blow.body, at, point), None, force, moment))
     return found
 
 

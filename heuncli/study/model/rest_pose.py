@@ -12,7 +12,7 @@ from heuncli.mechanism.model import Mechanism
 from heuncli.records import record, replace
 from heuncli.rest.digits import beside, softened
 from heuncli.rest.pose import bearing
-from heuncli.rest.search import Found, Search
+from heuncli.rest.search import FoundPose, RestSearch
 from heuncli.rest.stability import Stability, stability
 from heuncli.rest.steady import going_on, require_constant, require_steady, require_together
 from heuncli.rest.still import require_still
@@ -45,7 +45,7 @@ def at_rest(scene: PreparedScene, runner: Runner) -> tuple[PreparedScene, Runner
     require_constant(scene.mechanism)
     first = runner.recovered(np.zeros(1), runner.layout.y0[None, :])
     require_solvable(scene, first, Wording("accelerations of the start"))
-    search = Search(runner, 0.0)
+    search = RestSearch(runner, 0.0)
     require_together(runner, search.coordinates, search.begun())
     found = search.found()
     require_steady(runner, found.coordinates, found.pose, found.slopes)
@@ -63,7 +63,7 @@ def at_rest(scene: PreparedScene, runner: Runner) -> tuple[PreparedScene, Runner
     return replace(scene, layout=layout), again, rest
 
 
-def sentences(mechanism: Mechanism, found: Found, own: Stability) -> list[str]:
+def sentences(mechanism: Mechanism, found: FoundPose, own: Stability) -> list[str]:
     """How the scene rests, in sentences: in which frame, stable or not, and along which motions it is indifferent."""
     drives = some([f"drives.{name}" for name in going_on(mechanism)])
     told = [f"at rest in the frame that goes along with {drives}"] if drives else []

@@ -9,7 +9,7 @@ import numpy as np
 from heuncli.commands.modes.study import modes
 from heuncli.errors import HeunError
 from heuncli.linearisation.oscillations import oscillations
-from heuncli.linearisation.reduced import Reduced
+from heuncli.linearisation.reduced import ReducedEquations
 from heuncli.linearisation.steady import off_balance
 from heuncli.spec.load import load
 from tests.honesty.boundaries.part import Part, Row
@@ -19,14 +19,14 @@ from tests.shared.scenes import near
 def soft_beside_stiff(x: float) -> str:
     """Two motions, one of stiffness 1, the other of 2 x: the kind of the softer."""
     f = np.zeros((2, 2))
-    system = Reduced(np.eye(2), f, np.eye(2), f, -np.diag([2.0 * x, 1.0]), f, np.zeros(2), 0.0, 0.0)
+    system = ReducedEquations(np.eye(2), f, np.eye(2), f, -np.diag([2.0 * x, 1.0]), f, np.zeros(2), 0.0, 0.0)
     return oscillations(system)[0].kind
 
 
 def pushed_freely(x: float) -> str:
     """What nothing holds, pushed by x of the loads there."""
     f, one = np.zeros((1, 1)), np.eye(1)
-    here = SimpleNamespace(system=Reduced(one, f, one, f, f, f, np.array([x]), 1.0, 0.0), weights=np.ones(1))
+    here = SimpleNamespace(system=ReducedEquations(one, f, one, f, f, f, np.array([x]), 1.0, 0.0), weights=np.ones(1))
     return "falls" if np.isinf(off_balance(here)) else "rests"  # type: ignore[arg-type]
 
 
