@@ -103,7 +103,7 @@ class EndingCondition:
         self.was: float | None = None
 
     def ends(self, t: float, state: Array) -> bool:
-        """Whether it became true at t, by the state of what is integrated (n',); at the start it may be true already."""
+        """Whether it became true at t, by the state of what is integrated (n',); at the start it may be so already."""
         branches = self.layout.pack.expressions.branches()
         now = self.conditions.held(t, branches, coordinates_in(self.layout, t, state))[self.number]
         became = self.was == 0.0 and now == 1.0 and t > 0.0
