@@ -1,6 +1,6 @@
 """Enclosures of programs: what an expression, its rate and its second derivative may be over a stretch of time.
 
-A program runs on spans as expressions.py runs it on numbers (`value`) and on derivatives (`jet`): natural interval
+A program runs on spans as evaluator.py runs it on numbers (`value`) and on derivatives (`jet`): natural interval
 arithmetic with the chain rules of the jets. No value of the stretch is outside, seen or not. `ranges` says what t and
 the coordinates may be. Functions are taken over the part of a span on which they have values.
 
@@ -25,7 +25,58 @@ from collections.abc import Sequence
 if not cython.compiled:
     from math import fabs, sqrt
 
-    from heuncli.kernel.expressions import (
+    from heuncli.kernel.evaluator import (
+        angle_on,
+        integral,
+        integrated,
+        piece,
+        piece_counted,
+        side_of_cut,
+        summed_at,
+        table_at,
+        takes_two,
+    )
+    from heuncli.kernel.expressions import Expressions
+    from heuncli.kernel.intervals import (
+        angle,
+        anything,
+        arccosine,
+        arcsine,
+        arctangent,
+        cosine,
+        distance,
+        exact_times,
+        exponential_of,
+        hull,
+        hyperbolic_cosine,
+        hyperbolic_sine,
+        hyperbolic_tangent,
+        is_nothing,
+        is_zero,
+        less,
+        logarithm,
+        magnitude,
+        meet,
+        minus,
+        more,
+        negative,
+        nothing,
+        off_the_cut,
+        over,
+        plus,
+        point,
+        root,
+        scaled,
+        sine,
+        squared,
+        tangent,
+        times,
+        to_number,
+        to_power,
+        to_whole,
+    )
+    from heuncli.kernel.libm import INFINITY, floor
+    from heuncli.kernel.programs import (
         ABS,
         ADD,
         ASIN,
@@ -68,57 +119,12 @@ if not cython.compiled:
         TANH,
         UNLESS,
         VAR,
-        Expressions,
-        angle_on,
-        integral,
-        integrated,
-        piece,
-        piece_counted,
-        side_of_cut,
-        summed_at,
-        table_at,
-        takes_two,
+        Bounds,
+        Program,
+        Programs,
+        Span,
+        Table,
     )
-    from heuncli.kernel.intervals import (
-        angle,
-        anything,
-        arccosine,
-        arcsine,
-        arctangent,
-        cosine,
-        distance,
-        exact_times,
-        exponential_of,
-        hull,
-        hyperbolic_cosine,
-        hyperbolic_sine,
-        hyperbolic_tangent,
-        is_nothing,
-        is_zero,
-        less,
-        logarithm,
-        magnitude,
-        meet,
-        minus,
-        more,
-        negative,
-        nothing,
-        off_the_cut,
-        over,
-        plus,
-        point,
-        root,
-        scaled,
-        sine,
-        squared,
-        tangent,
-        times,
-        to_number,
-        to_power,
-        to_whole,
-    )
-    from heuncli.kernel.libm import INFINITY, floor
-    from heuncli.kernel.programs import Bounds, Program, Programs, Span, Table
     from heuncli.kernel.shadow import cython
 
 

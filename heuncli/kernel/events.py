@@ -1,6 +1,6 @@
 """Events: where within a step a branch of an expression changes, or a load does what no stage has seen.
 
-Within a step the branches of all expressions are held (kernel/expressions.py), so that the step is smooth. Whether one
+Within a step the branches of all expressions are held (kernel/evaluator.py), so that the step is smooth. Whether one
 of them changes is decided, not sampled: interval arithmetic takes the bounds of the coordinates' courses (course.py)
 through the programs (enclosure.py). Parts of the step that leave a branch in doubt are divided, from left to right,
 down to where rounding leaves it open. In the same way a load's bounds are compared with what the stages saw of it.
@@ -19,11 +19,11 @@ if not cython.compiled:
 
     from heuncli.kernel.course import derivatives_over, instant, range_over, set_time, stand_at
     from heuncli.kernel.enclosure import enclose, enclose_closely
-    from heuncli.kernel.expressions import ATAN2, HELD, HOLD, TAKEN, value
+    from heuncli.kernel.evaluator import value
     from heuncli.kernel.intervals import anything, magnitude
     from heuncli.kernel.jets import jet
     from heuncli.kernel.libm import INFINITY
-    from heuncli.kernel.programs import Bounds, Program, Programs, Span
+    from heuncli.kernel.programs import ATAN2, HELD, HOLD, TAKEN, Bounds, Program, Programs, Span
     from heuncli.kernel.scene import Scene, Watch
     from heuncli.kernel.shadow import cython
     from heuncli.kernel.stepping import Course

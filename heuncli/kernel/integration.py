@@ -16,9 +16,9 @@ if not cython.compiled:
     from heuncli.kernel.chosen import chosen_width
     from heuncli.kernel.dense import clipped
     from heuncli.kernel.events import PARTS, take_branches, watch_afresh
-    from heuncli.kernel.expressions import FREE, HELD
     from heuncli.kernel.following import stand_here
     from heuncli.kernel.memory import Memory
+    from heuncli.kernel.programs import FREE, HELD
     from heuncli.kernel.response import evaluate
     from heuncli.kernel.scene import SHIFT, Body, Freedom, Group, Scene
     from heuncli.kernel.shadow import cython
@@ -207,10 +207,10 @@ class Integration:
         run.track.most = len(output["ends"])
         run.samples.times = self.memory.doubles(output["times"])
         run.samples.states = self.memory.over(output["samples"], run.samples.count, run.n)
-        run.track.ends = self.memory.over(output["ends"], 1, run.track.most)[0]
-        run.track.settled = self.memory.over(output["settled"], 1, run.track.most)[0]
-        run.track.pivots = self.memory.over(output["pivots"], 1, run.track.most)[0]
-        run.track.turned = self.memory.over(output["turned"], 1, run.track.most)[0]
+        run.track.ends = self.memory.whole(output["ends"])
+        run.track.settled = self.memory.whole(output["settled"])
+        run.track.pivots = self.memory.whole(output["pivots"])
+        run.track.turned = self.memory.whole(output["turned"])
         held: cython.int = self.workspace.scene.held_count
         run.track.branches = self.memory.over(output["branches"], run.track.most if held else 0, held)
         run.track.passed = self.memory.over(output["passed"], 0 if run.following else run.track.most, self.record_width)

@@ -18,7 +18,7 @@ except ImportError:
 if not cython.compiled:
     from math import acos, asin, atan, atan2, fabs, log, sqrt, tanh
 
-    from heuncli.kernel.expressions import length
+    from heuncli.kernel.evaluator import length
     from heuncli.kernel.libm import INFINITY, NAN, cos, cosh, exp, floor, pow, sin, sinh, tan
     from heuncli.kernel.programs import Bounds
     from heuncli.kernel.shadow import cython

@@ -1,6 +1,6 @@
 """Programs with their derivatives: what an expression's value changes by as the time, or a coordinate, moves.
 
-A program runs on jets (value, first and second derivative) as expressions.py runs it on numbers, by the chain rule of
+A program runs on jets (value, first and second derivative) as evaluator.py runs it on numbers, by the chain rule of
 each operation. `jet` carries the derivatives in time along: those of the chosen branches; at a jump or kink they are
 those of the piece that begins there. `slope` is the first derivative along any direction of the variables.
 """
@@ -18,7 +18,26 @@ from collections.abc import Sequence
 if not cython.compiled:
     from math import atan2, log, sqrt
 
-    from heuncli.kernel.expressions import (
+    from heuncli.kernel.evaluator import (
+        compare,
+        exponential,
+        in_range,
+        integral,
+        integrated,
+        length,
+        on_branch,
+        piece,
+        piece_counted,
+        piecewise,
+        power,
+        real_power,
+        table_at,
+        takes_two,
+        trigonometric,
+    )
+    from heuncli.kernel.expressions import Expressions, where
+    from heuncli.kernel.libm import NAN, cos, cosh, floor, sin, sinh
+    from heuncli.kernel.programs import (
         ABS,
         ADD,
         ASIN,
@@ -56,26 +75,11 @@ if not cython.compiled:
         TANH,
         UNLESS,
         VAR,
-        Expressions,
-        compare,
-        exponential,
-        in_range,
-        integral,
-        integrated,
-        length,
-        on_branch,
-        piece,
-        piece_counted,
-        piecewise,
-        power,
-        real_power,
-        table_at,
-        takes_two,
-        trigonometric,
-        where,
+        Jet,
+        Program,
+        Programs,
+        Table,
     )
-    from heuncli.kernel.libm import NAN, cos, cosh, floor, sin, sinh
-    from heuncli.kernel.programs import Jet, Program, Programs, Table
     from heuncli.kernel.shadow import cython
 
 

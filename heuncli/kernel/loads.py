@@ -14,7 +14,7 @@ if not cython.compiled:
     from math import atan2, tanh
 
     from heuncli.kernel.algebra import Vec3, cross, dot, norm, scaled, sub
-    from heuncli.kernel.expressions import value
+    from heuncli.kernel.evaluator import value
     from heuncli.kernel.scene import (
         ACTUATOR,
         COUPLE,

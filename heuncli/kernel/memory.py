@@ -22,7 +22,7 @@ def compiled_from() -> str:
 
 
 class Memory:
-    """The arrays behind the pointers that were handed out."""
+    """The arrays behind the pointers that were handed out; in plain Python those whose rows were."""
 
     def __init__(self) -> None:
         self.kept: list[Any] = []
@@ -50,20 +50,35 @@ class Memory:
         return self.doubles(bytes(8 * count))
 
     def over(self, numbers: Any, rows: cython.Py_ssize_t, n: cython.Py_ssize_t) -> cython.pp_double:
-        """The rows of a flat array: compiled, in its own memory; plain, zeros to be fetched from later."""
+        """Rows of a caller's flat array: compiled its own memory, in plain Python lists that `fetch` writes back."""
         i: cython.Py_ssize_t
         if not cython.compiled:
-            return [[0.0] * n for _ in range(rows)]
+            lists = [numbers[i * n : i * n + n].tolist() for i in range(rows)]
+            self.kept.append((numbers, lists))
+            return lists
         begin: cython.pp_double = cython.cast(cython.pp_double, self.zeros(rows))
         self.kept.append(numbers)
-        if rows:
+        if rows and n:
             view: cython.double[::1] = numbers
             for i in range(rows):
                 begin[i] = cython.address(view[i * n])
         return begin
 
+    def whole(self, numbers: Any) -> cython.p_double:
+        """A caller's flat array as one row."""
+        return self.over(numbers, 1, len(numbers))[0]
+
+    def fetch(self) -> None:
+        """Bring what was written to rows into the arrays that they are of; compiled it stands there."""
+        if not cython.compiled:
+            for numbers, lists in self.kept:
+                for i, row in enumerate(lists):
+                    numbers[i * len(row) : (i + 1) * len(row)] = row
+
     def matrix(self, rows: cython.Py_ssize_t, n: cython.Py_ssize_t) -> cython.pp_double:
         """Rows of zeros."""
+        if not cython.compiled:
+            return [[0.0] * n for _ in range(rows)]
         return self.over(array("d", bytes(8 * max(rows * n, 1))), rows, n)
 
     def rows(self, table: Any, size: cython.Py_ssize_t) -> cython.p_void:

@@ -2,6 +2,7 @@
 
 MODULES = (
     "memory",
+    "evaluator",
     "expressions",
     "jets",
     "intervals",
@@ -21,6 +22,8 @@ MODULES = (
     "tangent_closures",
     "tangent",
     "jacobian",
+    "answers",
+    "room",
     "workspace",
     "attitudes",
     "dense",

@@ -1,10 +1,24 @@
-"""The structs of expressions: programs, what they run on and what they give (expressions.py, jets.py, enclosure.py)."""
+"""The structs of expressions: programs, what they run on and what they give (evaluator.py, jets.py, enclosure.py)."""
 
 from __future__ import annotations
 
 from array import array
 
 from heuncli.kernel.structs import Size, Struct, Value
+
+# Operations, in the order in which they are told apart: without operands, of two, of one, and the others.
+CONST, VAR = range(2)
+ADD, SUB, MUL, DIV, POW, ATAN2, HYPOT, MIN, MAX = range(2, 11)
+NEG, POWER, ABS, SIGN, STEP = range(11, 16)
+SIN, COS, TAN, ASIN, ACOS, ATAN = range(16, 22)
+SINH, COSH, TANH, EXP, LOG, SQRT = range(22, 28)
+TABLE, KNOT, JUMP, UNLESS = range(28, 32)
+LT, LE, GT, GE, EQ, NE = range(32, 38)
+HOLD, INTEGRAL = range(38, 40)
+NODES = 8  # of the quadrature: exact for polynomials of degree 15
+
+FREE, HELD, TAKEN = range(3)  # what HOLD means
+REFUSED, EXTENDED, PERIODIC = range(3)  # what a table says beyond its ends
 
 
 class Instruction(Value):

@@ -30,8 +30,8 @@ if not cython.compiled:
         interpolate,
         need_interpolant,
     )
+    from heuncli.kernel.evaluator import value
     from heuncli.kernel.events import follow_angles, take_branches
-    from heuncli.kernel.expressions import HELD, TAKEN, value
     from heuncli.kernel.following import find_between, follow, is_determined, stand_here
     from heuncli.kernel.judging import (
         ACCEPTED,
@@ -54,6 +54,7 @@ if not cython.compiled:
         norm_of,
     )
     from heuncli.kernel.landing import begin_to_see, in_flurry, meet, see_stage
+    from heuncli.kernel.programs import HELD, TAKEN
     from heuncli.kernel.response import evaluate, evaluate_settled, must_choose_anew, settle, settle_evaluated
     from heuncli.kernel.scene import Body, Group, Scene
     from heuncli.kernel.selection import select_independent_rows

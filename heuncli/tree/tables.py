@@ -1,7 +1,7 @@
 """The kernel's structs as NumPy types: tables whose rows are its memory, and the parts of its flat answers.
 
 The types follow from the fields of kernel/scene.py; the order of an answer's parts is that in which
-kernel/workspace.py writes them.
+kernel/answers.py writes them.
 """
 
 from __future__ import annotations

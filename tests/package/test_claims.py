@@ -253,8 +253,6 @@ LONG_FUNCTIONS = {
 }
 LONG_FILES = {
     "heuncli/kernel/enclosure.py": "calls across compiled modules are not inlined: to be parted when that is measured",
-    "heuncli/kernel/expressions.py": "the instructions and their evaluator are one loop",
-    "heuncli/kernel/workspace.py": "being parted into tables and doors",
 }
 
 

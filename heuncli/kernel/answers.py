@@ -1,0 +1,212 @@
+"""What the sweep knows at a state, found and written down as flat numbers (tree/tables.py names their parts)."""
+
+from __future__ import annotations
+
+try:
+    import cython
+except ImportError:
+    from heuncli.kernel.shadow import cython
+
+if not cython.compiled:
+    from heuncli.kernel.algebra import Mat3, Vec3
+    from heuncli.kernel.chosen import choose_afresh
+    from heuncli.kernel.closures import acceleration_of, measure_rows, push_closures, size_of_answer
+    from heuncli.kernel.columns import answer_causes, measure_answers, put, unmet
+    from heuncli.kernel.orthogonal import doubt_multipliers
+    from heuncli.kernel.programs import FREE, HELD
+    from heuncli.kernel.response import evaluate, must_choose_anew, settle
+    from heuncli.kernel.scene import APART, CARRIES, LEANS, Body, Closure, Contact, Freedom, Instants, Load, Scene
+    from heuncli.kernel.selection import jacobian_row, order_all, select_independent_rows
+    from heuncli.kernel.shadow import cython
+    from heuncli.kernel.tree import balance
+
+
+def put_matrix(out: cython.p_double, at: cython.Py_ssize_t, R: Mat3) -> cython.Py_ssize_t:
+    """Write a matrix by rows."""
+    at = put(out, at, Vec3(R.xx, R.xy, R.xz))
+    at = put(out, at, Vec3(R.yx, R.yy, R.yz))
+    return put(out, at, Vec3(R.zx, R.zy, R.zz))
+
+
+def put_body(out: cython.p_double, at: cython.Py_ssize_t, body: cython.pointer[Body]) -> cython.Py_ssize_t:
+    """A body's motion and joint load, as tables.BODY_ANSWER."""
+    at = put_matrix(out, at, body.R)
+    at = put(out, at, body.r)
+    at = put(out, at, body.omega)
+    at = put(out, at, body.v)
+    at = put(out, at, body.alpha)
+    at = put(out, at, body.a)
+    at = put(out, at, body.M_joint)
+    return put(out, at, body.f_joint)
+
+
+def put_load(out: cython.p_double, at: cython.Py_ssize_t, load: cython.pointer[Load]) -> cython.Py_ssize_t:
+    """An applied load, as tables.LOAD_ANSWER."""
+    at = put(out, at, load.force)
+    at = put(out, at, load.moment)
+    at = put(out, at, load.at)
+    at = put(out, at, load.from_at)
+    out[at] = load.value
+    out[at + 1] = load.span
+    out[at + 2] = load.rate
+    out[at + 3] = load.power
+    return at + 4
+
+
+def put_row(
+    scene: cython.pointer[Scene], out: cython.p_double, at: cython.Py_ssize_t, row: cython.pointer[Closure]
+) -> cython.Py_ssize_t:
+    """A closure row's unit load, multiplier and motion, as tables.CLOSURE_ANSWER."""
+    at = put(out, at, row.f)
+    at = put(out, at, row.m)
+    out[at] = row.multiplier
+    out[at + 1] = row.doubt
+    out[at + 2] = row.gap
+    out[at + 3] = row.rank >= 0
+    out[at + 4] = row.mode != APART
+    out[at + 5] = row.rate
+    out[at + 6] = acceleration_of(scene, row)
+    out[at + 7] = size_of_answer(scene, row)
+    return at + 8
+
+
+def put_answers(scene: cython.pointer[Scene], out: cython.p_double, at: cython.Py_ssize_t) -> cython.Py_ssize_t:
+    """All bodies, freedoms, loads and closure rows, one after the other."""
+    i: cython.Py_ssize_t
+    for i in range(scene.body_count):
+        at = put_body(out, at, cython.address(scene.bodies[i]))
+    for i in range(scene.freedom_count):
+        freedom: cython.pointer[Freedom] = cython.address(scene.freedoms[i])
+        out[at] = freedom.q
+        out[at + 1] = freedom.u
+        out[at + 2] = freedom.udot
+        out[at + 3] = freedom.drive
+        at += 4
+    for i in range(scene.load_count):
+        at = put_load(out, at, cython.address(scene.loads[i]))
+    for i in range(scene.closure_count):
+        at = put_row(scene, out, at, cython.address(scene.closures[i]))
+    return at
+
+
+def recover_state(
+    scene: cython.pointer[Scene], t: cython.double, y: cython.p_double, dy: cython.p_double, afresh: cython.bint
+) -> cython.int:
+    """Settle y on the closures and find accelerations, multipliers and joint loads there; as `evaluate` gives.
+
+    Leaves the gap over all rows in scene.gap; what `judge_closures` finds.
+    """
+    scene.gap = 0.0
+    scene.pivot_recovered = 1.0
+    if scene.closure_count:
+        if afresh:
+            choose_afresh(scene, t, y)
+        scene.gap = settle(scene, t, y)
+        if must_choose_anew(scene, scene.gap):
+            select_independent_rows(scene, t, y, False)
+            scene.gap = settle(scene, t, y)
+    idle: cython.int = evaluate(scene, t, y, dy)
+    if not scene.driven:
+        push_closures(scene)
+        balance(scene, True)
+    judge_closures(scene, t)
+    return idle
+
+
+def judge_closures(scene: cython.pointer[Scene], t: cython.double) -> cython.void:
+    """How well the answer found meets all rows, those left out too; how independent the others are, and their doubt."""
+    measure_rows(scene, t)
+    if scene.selected_count:
+        doubt_multipliers(scene)
+        scene.pivot_recovered = order_all(scene, 0.0)
+        scene.pivot_recovered *= scene.pivot_recovered
+    measure_answers(scene)
+    scene.residual = unmet(scene)
+
+
+def take_holding(scene: cython.pointer[Scene], holding: cython.p_double, at: cython.Py_ssize_t) -> cython.bint:
+    """Open and close the contacts by the numbers from `at`; whether that is a change.
+
+    Of each contact 0 where it is open, 1 where it is closed, 2 where others close it.
+    """
+    i: cython.Py_ssize_t
+    k: cython.Py_ssize_t
+    mode: cython.int
+    changed: cython.bint = False
+    for i in range(scene.contact_count):
+        contact: cython.pointer[Contact] = cython.address(scene.contacts[i])
+        if contact.opens:
+            k = at + contact.opens - 1
+            mode = APART
+            if holding[k] > 0.0:
+                mode = CARRIES if holding[k] < 1.5 else LEANS
+            changed = changed or scene.closures[contact.row].mode != mode
+            scene.closures[contact.row].mode = mode
+    if changed:  # multipliers are found for the rows that carry; of the others they are 0
+        for i in range(scene.closure_count):
+            scene.closures[i].multiplier = 0.0
+    return changed
+
+
+def recover_states(scene: cython.pointer[Scene], instants: cython.pointer[Instants]) -> cython.void:
+    """Recover one state after the other, each by itself; unless afresh, the rows chosen at one are the next one's."""
+    j: cython.Py_ssize_t
+    i: cython.Py_ssize_t
+    at: cython.Py_ssize_t
+    idle: cython.int
+    n: cython.Py_ssize_t = instants.n
+    opened: cython.bint = False
+    for j in range(instants.count):
+        if instants.opening:
+            opened = take_holding(scene, instants.holding, j * instants.opening)
+        for i in range(n):
+            instants.y[i] = instants.states[j * n + i]
+        if instants.held:
+            scene.programs.holding = HELD
+            for i in range(scene.held_count):
+                scene.programs.held[i] = instants.branches[j * scene.held_count + i]
+        idle = recover_state(scene, instants.times[j], instants.y, instants.dy, j == 0 or instants.afresh or opened)
+        for i in range(n):
+            instants.states[j * n + i] = instants.y[i]
+        at = put_answers(scene, instants.out, j * instants.width)
+        instants.out[at] = scene.gap
+        instants.out[at + 1] = idle
+        instants.out[at + 2] = scene.pivot_recovered
+        instants.out[at + 3] = scene.residual
+        if instants.causes:
+            answer_causes(scene, instants.times[j], instants.y, instants.out, at + 4)
+    scene.programs.holding = FREE
+
+
+def carry(scene: cython.pointer[Scene], multipliers: cython.p_double, out: cython.p_double) -> cython.void:
+    """Joint loads (moment about the joint point, force; a body each) that hold closure multipliers at rest."""
+    i: cython.Py_ssize_t
+    at: cython.Py_ssize_t = 0
+    zero: Vec3 = Vec3(0.0, 0.0, 0.0)
+    for i in range(scene.body_count):
+        scene.bodies[i].M_applied = zero
+        scene.bodies[i].f_applied = zero
+        scene.bodies[i].alpha = zero
+        scene.bodies[i].a = zero
+    for i in range(scene.closure_count):
+        scene.closures[i].multiplier = multipliers[i]
+    push_closures(scene)
+    balance(scene, False)
+    for i in range(scene.body_count):
+        at = put(out, at, scene.bodies[i].M_joint)
+        at = put(out, at, scene.bodies[i].f_joint)
+    for i in range(scene.closure_count):
+        scene.closures[i].multiplier = 0.0  # where no row is independent none is solved for, and they stay as they are
+
+
+def put_jacobian(scene: cython.pointer[Scene], out: cython.p_double) -> cython.void:
+    """J of all rows, each on the freedoms of its path, one after the other."""
+    r: cython.Py_ssize_t
+    k: cython.Py_ssize_t
+    at: cython.Py_ssize_t = 0
+    for r in range(scene.closure_count):
+        row: cython.pointer[Closure] = cython.address(scene.closures[r])
+        jacobian_row(scene, row)
+        for k in range(row.answer_count):
+            out[at] = scene.spread[scene.indices[row.answers + k]]
+            at += 1

@@ -1,0 +1,147 @@
+"""A scene in the kernel's memory: copies of its tables, whose rows are the structs, and room for the work."""
+
+from __future__ import annotations
+
+from array import array
+from typing import Any
+
+try:
+    import cython
+except ImportError:
+    from heuncli.kernel.shadow import cython
+
+if not cython.compiled:
+    from heuncli.kernel.algebra import Vec3
+    from heuncli.kernel.events import find_angles
+    from heuncli.kernel.memory import Memory
+    from heuncli.kernel.scene import (
+        Body,
+        BodyAtState,
+        BodyTangent,
+        Closure,
+        Contact,
+        Counter,
+        Freedom,
+        FreedomTangent,
+        Island,
+        Lent,
+        Limits,
+        Load,
+        Scene,
+        Variable,
+        Watch,
+    )
+    from heuncli.kernel.shadow import cython
+
+
+def take_numbers(scene: cython.pointer[Scene], tables: dict[str, Any], numbers: dict[str, Any]) -> None:
+    """The single numbers of a scene, and how many rows its tables have."""
+    x, y, z = numbers["gravity"]
+    scene.gravity = Vec3(x, y, z)
+    scene.size = numbers["size"]
+    scene.rank_of_gap = numbers["rank_of_gap"]
+    scene.driven = numbers["driven"]
+    scene.work_at = numbers["work_at"]
+    scene.answer_count = numbers["answer_count"]
+    scene.pivot_chosen = 1.0
+    scene.pivot = 1.0
+    scene.pivot_of_step = 1.0
+    scene.own_share = 1.0
+    scene.lent_part = 1.0
+    scene.body_count = len(tables["bodies"])
+    scene.freedom_count = len(tables["freedoms"])
+    scene.load_count = len(tables["loads"])
+    scene.closure_count = len(tables["closures"])
+    scene.counter_count = len(tables["counters"])
+    scene.variable_count = len(tables["variables"])
+    scene.lent_count = len(tables["lents"])
+    scene.island_count = len(tables["islands"])
+    scene.watch_count = len(tables["watches"])
+    scene.contact_count = len(tables["contacts"])
+    scene.flat = numbers["flat"] and scene.lent_count == 0
+
+
+def take_tables(scene: cython.pointer[Scene], memory: Memory, tables: dict[str, Any]) -> None:
+    """Copy the tables: compiled their rows are the structs, in plain Python they become objects."""
+    if cython.compiled:
+        scene.bodies = cython.cast(cython.pointer[Body], memory.rows(tables["bodies"], cython.sizeof(Body)))
+        scene.freedoms = cython.cast(cython.pointer[Freedom], memory.rows(tables["freedoms"], cython.sizeof(Freedom)))
+        scene.loads = cython.cast(cython.pointer[Load], memory.rows(tables["loads"], cython.sizeof(Load)))
+        scene.closures = cython.cast(cython.pointer[Closure], memory.rows(tables["closures"], cython.sizeof(Closure)))
+        scene.counters = cython.cast(cython.pointer[Counter], memory.rows(tables["counters"], cython.sizeof(Counter)))
+        scene.variables = cython.cast(
+            cython.pointer[Variable], memory.rows(tables["variables"], cython.sizeof(Variable))
+        )
+        scene.lents = cython.cast(cython.pointer[Lent], memory.rows(tables["lents"], cython.sizeof(Lent)))
+        scene.islands = cython.cast(cython.pointer[Island], memory.rows(tables["islands"], cython.sizeof(Island)))
+        scene.watches = cython.cast(cython.pointer[Watch], memory.rows(tables["watches"], cython.sizeof(Watch)))
+        scene.contacts = cython.cast(cython.pointer[Contact], memory.rows(tables["contacts"], cython.sizeof(Contact)))
+        limits: cython.pointer[Limits] = cython.cast(
+            cython.pointer[Limits], memory.rows(tables["limits"], cython.sizeof(Limits))
+        )
+        scene.limits = limits[0]
+    else:
+        scene.bodies = [Body(row) for row in tables["bodies"].tolist()]
+        scene.freedoms = [Freedom(row) for row in tables["freedoms"].tolist()]
+        scene.loads = [Load(row) for row in tables["loads"].tolist()]
+        scene.closures = [Closure(row) for row in tables["closures"].tolist()]
+        scene.counters = [Counter(row) for row in tables["counters"].tolist()]
+        scene.variables = [Variable(row) for row in tables["variables"].tolist()]
+        scene.lents = [Lent(row) for row in tables["lents"].tolist()]
+        scene.islands = [Island(row) for row in tables["islands"].tolist()]
+        scene.watches = [Watch(row) for row in tables["watches"].tolist()]
+        scene.contacts = [Contact(row) for row in tables["contacts"].tolist()]
+        scene.limits = Limits(tables["limits"].tolist()[0])
+
+
+def make_room(scene: cython.pointer[Scene], memory: Memory, indices: array[int], numbers: dict[str, Any]) -> None:
+    """Copy the indices and the measures of the answers, make room for the work."""
+    answers: cython.Py_ssize_t = scene.answer_count
+    rows: cython.Py_ssize_t = scene.closure_count
+    scene.indices = memory.ints(indices)
+    scene.selected = memory.ints(bytes(4 * rows))
+    scene.envelope = memory.ints(bytes(4 * rows))
+    scene.support = memory.ints(bytes(4 * numbers["column_count"]))
+    scene.coupled = memory.ints(bytes(4 * len(indices)))
+    scene.taken = memory.ints(bytes(4 * answers))
+    scene.measure = memory.doubles(numbers["measure"])
+    scene.e = memory.zeros(answers)
+    scene.root = memory.zeros(answers)
+    scene.spread = memory.zeros(answers)
+    scene.columns = memory.zeros(numbers["column_count"])
+    scene.R = memory.zeros(rows * rows)
+    scene.J = memory.zeros(numbers["island_room"])
+    scene.y = memory.zeros(rows)
+    scene.is_angle = memory.ints(bytes(4 * scene.held_count))
+    find_angles(scene)
+    scene.least = memory.zeros(scene.variable_count)
+    scene.most = memory.zeros(scene.variable_count)
+    scene.own = memory.zeros(scene.lent_count * scene.lent_count)
+    make_tangents(scene, memory)
+
+
+def make_tangents(scene: cython.pointer[Scene], memory: Memory) -> None:
+    """Room for what the scene changes by along a direction of its state."""
+    n: cython.Py_ssize_t = 2 * scene.freedom_count + scene.counter_count + 1
+    i: cython.Py_ssize_t
+    for i in range(scene.body_count):
+        n += 7 * scene.bodies[i].ball
+    scene.along = memory.zeros(n)
+    scene.slopes = memory.zeros(scene.variable_count)
+    scene.multipliers = memory.zeros(scene.closure_count)
+    bodies: cython.Py_ssize_t = scene.body_count
+    freedoms: cython.Py_ssize_t = scene.freedom_count
+    if cython.compiled:
+        scene.at_state = cython.cast(
+            cython.pointer[BodyAtState], memory.zeros(bodies * cython.sizeof(BodyAtState) // 8)
+        )
+        scene.tangents = cython.cast(
+            cython.pointer[BodyTangent], memory.zeros(bodies * cython.sizeof(BodyTangent) // 8)
+        )
+        scene.freedom_tangents = cython.cast(
+            cython.pointer[FreedomTangent], memory.zeros(freedoms * cython.sizeof(FreedomTangent) // 8)
+        )
+    else:
+        scene.at_state = [BodyAtState.blank() for _ in range(bodies)]
+        scene.tangents = [BodyTangent.blank() for _ in range(bodies)]
+        scene.freedom_tangents = [FreedomTangent.blank() for _ in range(freedoms)]
