@@ -41,7 +41,7 @@ class ReaderGone(HeunError):
     exit_code = 141
 
 
-class Place(NamedTuple):
+class FilePlace(NamedTuple):
     """Where content goes: an open descriptor, else a file by its path, with what stands there (None: nothing yet)."""
 
     path: str
@@ -70,7 +70,7 @@ def write(content: bytes, name: str) -> None:
         raise OutputError(failed(name, reason)) from None
 
 
-def place_of(name: str) -> Place:
+def place_of(name: str) -> FilePlace:
     """Where a name leads. Raises OutputError where nothing could be written there, as far as that is seen before."""
     try:
         place = _place(name)
@@ -103,7 +103,7 @@ def write_all(number: int, content: bytes) -> None:
             select.select([], [number], [])
 
 
-def replace(content: bytes, place: Place) -> None:
+def replace(content: bytes, place: FilePlace) -> None:
     """Write beside the place, then rename into it."""
     temporary = str(Path(place.path).with_name(f".heun-{os.urandom(8).hex()}"))
     remove = partial(Path(temporary).unlink, missing_ok=True)
@@ -138,20 +138,20 @@ def _into(content: bytes, path: str) -> None:
         os.close(number)
 
 
-def _place(name: str) -> Place:
+def _place(name: str) -> FilePlace:
     number = _descriptor(name)
     if number is not None:
-        return Place(name, os.fstat(number), number)
+        return FilePlace(name, os.fstat(number), number)
     try:
         state = Path(name).stat()
     except FileNotFoundError:
         state = None
     if state is not None and not stat.S_ISREG(state.st_mode):
-        return Place(name, state)
+        return FilePlace(name, state)
     path = os.path.realpath(name)  # which takes gone/../scene.yaml for scene.yaml; the system does not, nor the guard
     if state is None and Path(path).exists():
         raise FileNotFoundError(errno.ENOENT, os.strerror(errno.ENOENT))
-    return Place(path, state)
+    return FilePlace(path, state)
 
 
 def _descriptor(name: str) -> int | None:
@@ -167,7 +167,7 @@ def _descriptor(name: str) -> int | None:
     return None
 
 
-def _require_room(name: str, place: Place) -> None:
+def _require_room(name: str, place: FilePlace) -> None:
     """Refuse what could not be replaced as a whole."""
     path = Path(place.path)
     shown = (path if Path(name).is_symlink() else Path(name)).parent

@@ -44,7 +44,7 @@ def keys_of(model: type[Entry]) -> tuple[str, ...]:
     return tuple(str(field.alias or name) for name, field in model.model_fields.items())
 
 
-class Value:
+class ReadValue:
     """A value that is read by `read`; in the JSON Schema a number or a text."""
 
     def __init__(self, dimension: u.Dimension | None = None) -> None:
@@ -61,7 +61,7 @@ class Value:
         return {"anyOf": [{"type": "number"}, {"type": "string"}], **description}
 
 
-class Si(Value):
+class Si(ReadValue):
     """A number of a dimension, in SI."""
 
     def read(self, value: Any, info: Any) -> float:
@@ -78,28 +78,28 @@ class Component(Si):
         return number(value, None, info.context.load) if is_expression else super().read(value, info)
 
 
-class InTime(Value):
+class InTime(ReadValue):
     """A value in time of a dimension."""
 
     def read(self, value: Any, info: Any) -> Expression:
         return in_time(value, self.dimension, info.context.time)
 
 
-class Truth(Value):
+class Truth(ReadValue):
     """A condition in time."""
 
     def read(self, value: Any, info: Any) -> Expression:
         return condition(value, info.context.time)
 
 
-class OfEither(Value):
+class OfEither(ReadValue):
     """A number whose dimension depends on another key: an expression that knows its dimension."""
 
     def read(self, value: Any, info: Any) -> Expression:
         return in_time(value, None, info.context.load)
 
 
-class InParts(Value):
+class InParts(ReadValue):
     """A list whose parts are read by themselves, each by the model of its type; here only that it is a list."""
 
     def read(self, value: Any, info: Any) -> list[Any]:
@@ -108,7 +108,7 @@ class InParts(Value):
         return value
 
 
-class Whole(Value):
+class Whole(ReadValue):
     """A whole number."""
 
     def read(self, value: Any, info: Any) -> int:
@@ -118,7 +118,7 @@ class Whole(Value):
         return int(count)
 
 
-class Version(Value):
+class Version(ReadValue):
     """The version of the format."""
 
     def read(self, value: Any, info: Any) -> int:
@@ -128,7 +128,7 @@ class Version(Value):
         return 1
 
 
-class NumbersOrOpen(Value):
+class NumbersOrOpen(ReadValue):
     """A number, lists of them, or null for what is open; the numbers as expressions that know their dimension."""
 
     def read(self, value: Any, info: Any) -> Any:

@@ -19,7 +19,7 @@ from functools import partial
 from pathlib import Path
 from typing import Any
 
-from heuncli.integration.run.request import Request
+from heuncli.integration.run.request import MotionTask
 
 os.environ.setdefault("OPENBLAS_NUM_THREADS", "1")  # as the command sets it, before NumPy is loaded
 
@@ -91,7 +91,7 @@ def one_motion(name: str, scene: PreparedScene, runner: Runner, times: Any, goal
     """The loosest tolerance that reaches the goal [m], and what it costs."""
     repeats = 15 if KERNEL == "compiled" else 1
     for tolerance in (10.0 ** (-0.5 * k) for k in range(8, 29)):
-        run = runner.trajectory(Request(times, tolerance))
+        run = runner.trajectory(MotionTask(times, tolerance))
         off = error(name, scene, runner, times, run.states)
         if off <= goal:
             break
@@ -113,7 +113,7 @@ def charted() -> None:
         times = np.array(spec.analysis.times)
         points = runs[name[0] if name != "crank" else "k"] = []
         for tolerance in (10.0 ** (-0.5 * k) for k in range(8, 27)):
-            run = runner.trajectory(Request(times, tolerance))
+            run = runner.trajectory(MotionTask(times, tolerance))
             off = max(error(name, scene, runner, times, run.states), 1e-14)
             points.append((median_ms(partial(runner.trajectory, times, tolerance), 7), off))
     print("d double, t top, c chain10, k crank: error at the end against time of integration")
@@ -126,7 +126,7 @@ def chains() -> None:
     for n in (10, 100, 1000):
         spec = load("chain.yaml", chain(n, duration=0.05))
         runner = set_up(spec).runner
-        run = runner.trajectory(Request([0.05], 1e-6))
+        run = runner.trajectory(MotionTask([0.05], 1e-6))
         cost[n] = median_ms(partial(runner.trajectory, [0.05], 1e-6), 15) / run.evaluations / n
         print(f"chain of {n:5d}: {1e6 * cost[n]:.0f} ns a body and evaluation, {cost[n] / cost[10]:.2f} times 10's")
     begun = time.perf_counter()
@@ -134,7 +134,7 @@ def chains() -> None:
     read = time.perf_counter()
     scene = set_up(spec).scene
     built = time.perf_counter()
-    run = Runner(scene.layout).trajectory(Request([0.05], 1e-6))
+    run = Runner(scene.layout).trajectory(MotionTask([0.05], 1e-6))
     print(
         f"chain of 10000: read {read - begun:.2f} s, assembled and laid out {built - read:.2f} s, "
         f"0.05 s of motion in {run.seconds:.2f} s, {run.steps} steps"

@@ -23,7 +23,7 @@ from heuncli.integration.check.estimate import recovered_at
 from heuncli.integration.check.instants import interleaved
 from heuncli.integration.methods.method import Method
 from heuncli.integration.methods.registry import method_of
-from heuncli.integration.run.request import Request
+from heuncli.integration.run.request import MotionTask
 from heuncli.integration.run.runner import Runner
 from heuncli.integration.segments import discontinuities_of
 from heuncli.integration.trajectory import Trajectory
@@ -58,7 +58,7 @@ class Scene(NamedTuple):
         """Evaluations and true error of one run; no error where it takes more, or fails."""
         most = int(most_evaluations)
         with suppress(HeunError):
-            request = Request(
+            request = MotionTask(
                 self.exact.times, local, method, self.jumps, most_steps=most // max(len(method.nodes) - 1, 1) + 10
             )
             run = self.runner.trajectory(request)
@@ -96,7 +96,7 @@ def prepared(name: str, text: str | None) -> Scene | None:
     method = method_of("Radau9" if name in STIFF_SCENES else DEFAULT)
     for local in (FINEST * 10.0**k for k in range(4)):
         with suppress(HeunError):
-            exact = setup.runner.trajectory(Request(times, local, discontinuities=jumps, method=method))
+            exact = setup.runner.trajectory(MotionTask(times, local, discontinuities=jumps, method=method))
             return Scene(name, setup, jumps, exact)
     return None
 

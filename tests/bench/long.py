@@ -20,7 +20,7 @@ from heuncli.errors import HeunError, LimitError, SolveError
 from heuncli.integration.evaluator import Recovered
 from heuncli.integration.methods.method import Method
 from heuncli.integration.methods.registry import method_of
-from heuncli.integration.run.request import Request
+from heuncli.integration.run.request import MotionTask
 from heuncli.integration.run.runner import Runner
 from heuncli.method_rows import METHODS
 from heuncli.results import Array
@@ -134,7 +134,7 @@ def errors(known: Known, runner: Runner, method: Method, local: float, periods: 
     """A run over whole periods."""
     times = known.period * np.arange(periods + 1)
     begun = time.process_time()
-    run = runner.trajectory(Request(times, local, method=method))
+    run = runner.trajectory(MotionTask(times, local, method=method))
     seconds = time.process_time() - begun
     found = runner.recovered(run.times, run.states)
     energy, momentum = known.off(found)

@@ -105,7 +105,7 @@ def test_what_goes_out_goes_out_whole(heun: Heun, folder: Path, monkeypatch: pyt
     """The limit passes while the file is being written."""
     replace = files.replace
 
-    def slowly(content: bytes, place: files.Place) -> None:
+    def slowly(content: bytes, place: files.FilePlace) -> None:
         time.sleep(2.0)
         replace(content, place)
 

@@ -16,12 +16,12 @@ from heuncli.commands.charting import runs as chart_runs
 from heuncli.commands.charting.motion import motion_of
 from heuncli.commands.charting.plan import Wanted
 from heuncli.commands.charting.reference import refer
-from heuncli.commands.charting.results import Chart, Charted, Row
+from heuncli.commands.charting.results import Charted, ChartResults, Row
 from heuncli.commands.charting.runs import Charting
 from heuncli.commands.charting.study import chart
 from heuncli.integration.check.runs import Runs
 from heuncli.integration.methods.dop853 import DOP853
-from heuncli.integration.run.request import Request
+from heuncli.integration.run.request import MotionTask
 from heuncli.integration.trajectory import Trajectory
 from heuncli.spec.load import load
 
@@ -65,18 +65,18 @@ def pivot_force(angle: Any, rate: Any) -> Any:
 
 
 @pytest.fixture(scope="module")
-def pendulum() -> Chart:
+def pendulum() -> ChartResults:
     return chart(load("pendulum.yaml", PENDULUM), Wanted(("DOP853",), TOLERANCES))
 
 
-def test_the_errors_of_a_pendulum_are_those_of_the_closed_form(pendulum: Chart) -> None:
+def test_the_errors_of_a_pendulum_are_those_of_the_closed_form(pendulum: ChartResults) -> None:
     """The tip's distance from where it should be, and the pivot's force."""
     motion = motion_of(load("pendulum.yaml", PENDULUM), None)
     angle, rate = swing(motion.times)
     wanted = pivot_force(angle, rate)
     size = motion.setup.scene.layout.size
     for run, tolerance in zip(pendulum.runs, TOLERANCES, strict=True):
-        own = motion.setup.runner.trajectory(Request(motion.times, tolerance, method=DOP853))
+        own = motion.setup.runner.trajectory(MotionTask(motion.times, tolerance, method=DOP853))
         answers = motion.setup.runner.recovered(motion.times, own.states)
         off = np.abs(answers.freedoms["q"][:, 0] - angle)
         tip = float(np.max(2.0 * np.sin(off / 2.0))) / size
@@ -85,7 +85,7 @@ def test_the_errors_of_a_pendulum_are_those_of_the_closed_form(pendulum: Chart) 
         assert run.error["reactions"] == pytest.approx(force / np.linalg.norm(wanted, axis=1).max(), rel=1e-3)
 
 
-def test_sections_stand_where_there_are_some(pendulum: Chart) -> None:
+def test_sections_stand_where_there_are_some(pendulum: ChartResults) -> None:
     assert pendulum.kinds == ("motion", "reactions", "sections")
     for run in pendulum.runs:
         motion, sections = run.error["motion"] or 0.0, run.error["sections"] or 0.0
@@ -168,7 +168,7 @@ analysis: {duration: 20, samples: 401}
     assert coarse > 1e-3 > fine
 
 
-def row(found: Chart, local: float) -> Charted:
+def row(found: ChartResults, local: float) -> Charted:
     return next(run for run in found.runs if run.row.local == local)
 
 

@@ -10,7 +10,7 @@ import pytest
 
 from heuncli.errors import HeunError, SolveError
 from heuncli.integration.methods.registry import method_of
-from heuncli.integration.run.request import Request
+from heuncli.integration.run.request import MotionTask
 from heuncli.results import Array
 from heuncli.spec.load import load
 from heuncli.study.model.setup import set_up
@@ -132,7 +132,7 @@ def passes(scene: str, tolerance: float, until: float) -> float | None:
     """The instant of the half turn at which the global chart ends, at a local tolerance; None where it does not."""
     runner = set_up(load("scene.yaml", scene), reduce=False).runner
     try:
-        runner.trajectory(Request([0.0, until], tolerance, method=method_of(GLOBAL)))
+        runner.trajectory(MotionTask([0.0, until], tolerance, method=method_of(GLOBAL)))
     except SolveError as error:
         assert error.problems[0].code == "half-turn"
         return error.reached
@@ -155,7 +155,7 @@ def test_tops_at_random(seed: int) -> None:
     scene = spinner("[1]", str(omega.tolist()), str(inertia))
     setup = set_up(load("scene.yaml", scene), reduce=False)
     times = np.linspace(0.0, 6.0, 2001)
-    run = setup.runner.trajectory(Request(times, 1e-12))
+    run = setup.runner.trajectory(MotionTask(times, 1e-12))
     at = int(setup.runner.layout.tables["bodies"][0]["attitude_at"])
     w: Array = run.states[:, at]
     crossed = np.flatnonzero(w[1:] * w[:-1] <= 0.0)
@@ -201,8 +201,8 @@ def test_other_instants_are_the_runs_own(method: str) -> None:
     """Asked for with others or alone: the same bits, of the steps, too."""
     runner = set_up(load("double.yaml", double("{duration: 1}"))).runner
     times = np.linspace(0.0, 1.0, 57)
-    few = runner.trajectory(Request(times[::8], 1e-10, method=method_of(method)))
-    many = runner.trajectory(Request(times, 1e-10, method=method_of(method)))
+    few = runner.trajectory(MotionTask(times[::8], 1e-10, method=method_of(method)))
+    many = runner.trajectory(MotionTask(times, 1e-10, method=method_of(method)))
     assert np.array_equal(few.ends, many.ends)
     assert np.array_equal(runner.resample(few, times), many.states)
 

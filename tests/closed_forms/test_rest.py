@@ -13,7 +13,7 @@ import pytest
 from scipy.optimize import brentq, minimize_scalar
 
 from heuncli.errors import SolveError
-from heuncli.integration.run.request import Request
+from heuncli.integration.run.request import MotionTask
 from heuncli.rest.directions import directions
 from heuncli.rest.slopes import Slopes
 from heuncli.results import Array, Results
@@ -276,7 +276,7 @@ def test_a_loop_in_space_has_the_least_energy(seed: int) -> None:
 def stays(run: Study, within: float) -> None:
     """A motion from the rest pose, over a second, does not leave it."""
     layout = run.setup.scene.layout
-    later = run.setup.runner.trajectory(Request(np.array([0.0, 1.0]), 1e-10)).states
+    later = run.setup.runner.trajectory(MotionTask(np.array([0.0, 1.0]), 1e-10)).states
     rates = np.concatenate([np.arange(g["rates"], g["end"]) for g in layout.tables["groups"]])
     near(later[1, rates] - later[0, rates], 0.0, 1.0, within)
 

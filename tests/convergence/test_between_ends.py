@@ -9,7 +9,7 @@ import numpy as np
 import pytest
 
 from heuncli.integration.methods.registry import method_of
-from heuncli.integration.run.request import Request
+from heuncli.integration.run.request import MotionTask
 from heuncli.method_rows import METHODS
 from heuncli.results import Array
 from tests.shared.bars import chain, double
@@ -34,13 +34,13 @@ def erred(name: str, scene: str) -> list[Array]:
     """Of some steps the error at PARTS of them, against the motion that goes on from the step's start."""
     runner = study(SCENES[scene]).setup.runner
     method = method_of(name)
-    run = runner.trajectory(Request(np.array([0.0, 0.8]), STEP if method.fixed else LOCAL, method=method))
+    run = runner.trajectory(MotionTask(np.array([0.0, 0.8]), STEP if method.fixed else LOCAL, method=method))
     ends = run.ends
     found = []
     for k in np.unique(np.linspace(1, len(ends) - 2, SOME).astype(int)).tolist():
         inner = ends[k - 1] + PARTS * (ends[k] - ends[k - 1])
         begin = runner.resample(run, ends[k - 1 : k])[0]
-        exact = runner.trajectory(Request(inner - ends[k - 1], 1e-14, start=begin))
+        exact = runner.trajectory(MotionTask(inner - ends[k - 1], 1e-14, start=begin))
         found.append(np.abs(runner.resample(run, inner) - exact.states).max(axis=1))
     return [error for error in found if error.max() > ROUNDED]
 

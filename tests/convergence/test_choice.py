@@ -7,7 +7,7 @@ from pathlib import Path
 import numpy as np
 import pytest
 
-from heuncli.integration.run.request import Request, StoppingRules
+from heuncli.integration.run.request import MotionTask, StoppingRules
 from heuncli.spec.load import load
 from heuncli.study.ask.study import Study
 from heuncli.study.model.options import Options
@@ -69,7 +69,9 @@ def test_looking_at_events_changes_no_bit(name: str) -> None:
     s = study(spec(name), method="DOP853")
     jumps = s.history.jumps
     runs = [
-        s.setup.runner.trajectory(Request(s.results.time, 1e-9, discontinuities=jumps), StoppingRules(events=eventful))
+        s.setup.runner.trajectory(
+            MotionTask(s.results.time, 1e-9, discontinuities=jumps), StoppingRules(events=eventful)
+        )
         for eventful in (False, True)
     ]
     assert np.array_equal(runs[0].states, runs[1].states)

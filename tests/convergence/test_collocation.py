@@ -12,7 +12,7 @@ from heuncli.errors import LimitError, SolveError
 from heuncli.integration.methods.collocation import GAUSS4, GAUSS6, RADAU5, RADAU9
 from heuncli.integration.methods.method import Method
 from heuncli.integration.methods.registry import method_of
-from heuncli.integration.run.request import Request
+from heuncli.integration.run.request import MotionTask
 from heuncli.results import Array, Results
 from tests.bench.stiff import STIFF_SCENES
 from tests.shared.bars import double
@@ -169,7 +169,7 @@ def test_specs_by_a_stiff_method(scene: str) -> None:
 def test_done_again_it_has_the_same_bits(method: str) -> None:
     """Which instants are asked for changes nothing of the steps; others than those are the run's own."""
     runner, times = study(STIFF_SCENES["friction of 1e-6"]).setup.runner, np.linspace(0.0, 1.0, 37)
-    few, many = (runner.trajectory(Request(at, 1e-7, method=method_of(method))) for at in (times[[0, -1]], times))
+    few, many = (runner.trajectory(MotionTask(at, 1e-7, method=method_of(method))) for at in (times[[0, -1]], times))
     assert few.ends.tolist() == many.ends.tolist()
     assert np.array_equal(runner.resample(few, times), many.states)
     assert np.array_equal(runner.resample(few, times[[17]]), many.states[[17]])

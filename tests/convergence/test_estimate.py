@@ -14,7 +14,7 @@ from typing import NamedTuple
 import numpy as np
 import pytest
 
-from heuncli.integration.run.request import Request
+from heuncli.integration.run.request import MotionTask
 from heuncli.results import Array
 from heuncli.spec.load import load
 from heuncli.study.ask.study import Study
@@ -64,7 +64,7 @@ def instants(study: Study) -> Array:
 def places(study: Study, local: float) -> Array:
     """The same by one run at a local tolerance."""
     runner = study.setup.runner
-    run = runner.trajectory(Request(instants(study), local))
+    run = runner.trajectory(MotionTask(instants(study), local))
     found = blocks(recover(study.setup, runner.recovered(run.times, run.states), False), {"motion", "points"})
     return read_places(found["bodies"], found["points"])
 
@@ -145,7 +145,7 @@ def test_reactions_are_judged_too() -> None:
         for tolerance in (1e-5, 1e-8, 1e-11):
             study = solve(load("scene.yaml", SCENES[name]), Options(tolerance=tolerance))
             runner = study.setup.runner
-            run = runner.trajectory(Request(study.history.times, 1e-15))
+            run = runner.trajectory(MotionTask(study.history.times, 1e-15))
             recovered = runner.recovered(run.times, run.states)
             wanted = blocks(recover(study.setup, recovered, False), {"joints"})["joints"]
             forces = {j: b["force"] for j, b in study.results.joints.items()}

@@ -13,7 +13,7 @@ import pytest
 from heuncli.errors import SolveError
 from heuncli.integration.methods.method import Method, Row
 from heuncli.integration.methods.registry import method_of
-from heuncli.integration.run.request import Request
+from heuncli.integration.run.request import MotionTask
 from heuncli.integration.run.runner import Runner
 from heuncli.method_rows import METHODS
 from heuncli.records import replace
@@ -44,9 +44,9 @@ def measured(name: str, end: float, at: Array) -> tuple[Array, Array]:
     counts, errors = [], []
     for n in COUNTS.tolist():
         times = end - (1.0 - at) * (end / n)
-        exact = runner.trajectory(Request(times, 1e-15))
+        exact = runner.trajectory(MotionTask(times, 1e-15))
         try:
-            run = runner.trajectory(Request(times, end / n, method=method))
+            run = runner.trajectory(MotionTask(times, end / n, method=method))
         except SolveError as refused:  # Newton's iteration for the stages of too long a step
             assert refused.problems[0].code == "stages-unsolved"
             continue
@@ -156,7 +156,7 @@ def test_order_of_runs(name: str, dense: bool) -> None:
     times = np.linspace(0.0, end, 101) if dense else np.array([end])
 
     def run_to(tolerance: float) -> tuple[Array, int]:
-        run = s.setup.runner.trajectory(Request(times, tolerance))
+        run = s.setup.runner.trajectory(MotionTask(times, tolerance))
         return centres(s.setup.runner, run.times, run.states), run.steps
 
     exact, _ = run_to(1e-15)

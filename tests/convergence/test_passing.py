@@ -14,7 +14,7 @@ import pytest
 from scipy.integrate import solve_ivp
 
 from heuncli.integration.check.singular_poses import singular_poses
-from heuncli.integration.run.request import Request
+from heuncli.integration.run.request import MotionTask
 from heuncli.integration.run.runner import Runner
 from heuncli.integration.trajectory import Trajectory
 from heuncli.results import Array
@@ -48,7 +48,7 @@ def pendulum(rate: float) -> tuple[float, Array]:
 
 def run(rate: float, tolerance: float) -> tuple[Trajectory, Runner]:
     runner = Runner(scene(rate).layout)
-    return runner.trajectory(Request(np.linspace(0.0, TURN, 5), tolerance, most_steps=3000)), runner
+    return runner.trajectory(MotionTask(np.linspace(0.0, TURN, 5), tolerance, most_steps=3000)), runner
 
 
 RATES = [1.0, 0.3, 2.9, *np.random.default_rng(17).uniform(0.05, 4.0, 17).tolist()]

@@ -8,7 +8,7 @@ from pathlib import Path
 import numpy as np
 import pytest
 
-from heuncli.integration.run.request import Request, StoppingRules
+from heuncli.integration.run.request import MotionTask, StoppingRules
 from heuncli.spec.load import load
 from heuncli.study.workflow import describe
 from tests.bench.stiff import FRICTION, STIFF_SCENES, WIRE
@@ -89,7 +89,7 @@ def test_the_note_on_the_model_tells_it() -> None:
 def test_watching_changes_no_bit(name: str) -> None:
     """Where nothing is begun anew; in `friction` an implicit method is tried on the way, or is not worth trying."""
     s = study((SPECS / f"{name}.yaml").read_text())
-    request = Request(s.results.time, 1e-9)
+    request = MotionTask(s.results.time, 1e-9)
     runs = [s.setup.runner.trajectory(request, StoppingRules(stiffness=watched)) for watched in (False, True)]
     assert np.array_equal(runs[0].states, runs[1].states)
     assert np.array_equal(runs[0].ends, runs[1].ends)

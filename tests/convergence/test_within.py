@@ -11,7 +11,7 @@ import pytest
 
 from heuncli.integration.check.singular_poses import singular_poses
 from heuncli.integration.run import step_records
-from heuncli.integration.run.request import Request
+from heuncli.integration.run.request import MotionTask
 from heuncli.integration.segments import discontinuities_of
 from heuncli.integration.trajectory import Trajectory
 from heuncli.results import Array
@@ -105,7 +105,7 @@ def jumps(setup: Setup) -> list[float]:
 def trajectory(setup: Setup, times: Array, tolerance: float | None = None) -> Trajectory:
     assert setup.method is not None
     tolerance = tolerance or setup.spec.analysis.tolerance
-    return setup.runner.trajectory(Request(times, tolerance, discontinuities=jumps(setup), method=setup.method))
+    return setup.runner.trajectory(MotionTask(times, tolerance, discontinuities=jumps(setup), method=setup.method))
 
 
 def others(setup: Setup, run: Trajectory) -> Array:

@@ -14,7 +14,7 @@ import pytest
 from heuncli.errors import SolveError
 from heuncli.integration.methods.method import Method
 from heuncli.integration.methods.registry import method_of
-from heuncli.integration.run.request import Request
+from heuncli.integration.run.request import MotionTask
 from heuncli.integration.run.runner import Runner
 from heuncli.integration.segments import discontinuities_of
 from heuncli.integration.trajectory import Trajectory
@@ -55,7 +55,7 @@ def run_of(scene: str, method: Method, times: Array) -> Trajectory:
     runner, end = runner_of(scene)
     jumps = discontinuities_of(runner.layout.mechanism, 0.0, end)
     return runner.trajectory(
-        Request(times, end / COUNT if method.fixed else 1e-5, discontinuities=jumps, method=method)
+        MotionTask(times, end / COUNT if method.fixed else 1e-5, discontinuities=jumps, method=method)
     )
 
 
@@ -93,6 +93,6 @@ def test_a_run_hangs_on_no_other() -> None:
     """What an actuator was seen to do, to rounding, is forgotten with the run: the first has the bits of the last."""
     setup = set_up(load("compressor.yaml", SCENES["gas"]))
     end = float(setup.spec.analysis.times[-1])
-    runs = [setup.runner.trajectory(Request([0.0, end], end / 4000, method=method_of("Euler"))) for _ in range(2)]
+    runs = [setup.runner.trajectory(MotionTask([0.0, end], end / 4000, method=method_of("Euler"))) for _ in range(2)]
     assert runs[0].ends.tolist() == runs[1].ends.tolist()
     assert np.array_equal(runs[0].states, runs[1].states)

@@ -5,7 +5,7 @@ from __future__ import annotations
 import numpy as np
 import pytest
 
-from heuncli.integration.run.request import Request
+from heuncli.integration.run.request import MotionTask
 from heuncli.spec.load import load
 from heuncli.study.model.setup import set_up
 from tests.shared.reduced import pair, same
@@ -153,7 +153,7 @@ WIRE = HEAD + bodies(
 def test_a_wire_costs_as_many_steps_as_a_rod() -> None:
     """A hundredth of a millimetre thick; in full half a million steps follow rounding over its inertia."""
     setup = set_up(load("scene.yaml", WIRE + joints(SWING) + "analysis: {duration: 1, samples: 3}\n"))
-    assert setup.runner.trajectory(Request(np.array([0.0, 0.5, 1.0]), 1e-10)).steps < 60
+    assert setup.runner.trajectory(MotionTask(np.array([0.0, 0.5, 1.0]), 1e-10)).steps < 60
 
 
 def test_the_spin_of_a_wire_does_not_change() -> None:

@@ -12,7 +12,7 @@ from heuncli.errors import SolveError
 from heuncli.integration.contacts.complementarity import complementary
 from heuncli.integration.contacts.restitution import Struck, strikes
 from heuncli.integration.contacts.touching import Touching
-from heuncli.integration.run.request import Request
+from heuncli.integration.run.request import MotionTask
 from heuncli.integration.trajectory import Trajectory
 from heuncli.results import Array
 from heuncli.spec.load import load
@@ -25,7 +25,7 @@ G = 10.0
 def motion(text: str, last: float, tolerance: float = 1e-10) -> Trajectory:
     setup = set_up(load("scene.yaml", text))
     assert setup.method is not None
-    return setup.runner.trajectory(Request(np.linspace(0.0, last, 11), tolerance, method=setup.method))
+    return setup.runner.trajectory(MotionTask(np.linspace(0.0, last, 11), tolerance, method=setup.method))
 
 
 # ---- the problem of complementarity
@@ -209,9 +209,9 @@ def test_replays_know_what_was_closed() -> None:
     text = BALL.format(at=1, speed=0, floor=0, e=0.5)
     setup = set_up(load("scene.yaml", text))
     assert setup.method is not None
-    run = setup.runner.trajectory(Request(np.linspace(0.0, 3.0, 4), 1e-9, method=setup.method))
+    run = setup.runner.trajectory(MotionTask(np.linspace(0.0, 3.0, 4), 1e-9, method=setup.method))
     times = np.unique(np.concatenate([np.linspace(0.0, 3.0, 40), run.ends[:-1]]))
-    other = setup.runner.trajectory(Request(times, 1e-9, method=setup.method))
+    other = setup.runner.trajectory(MotionTask(times, 1e-9, method=setup.method))
     assert np.array_equal(setup.runner.resample(run, times), other.states)
 
 

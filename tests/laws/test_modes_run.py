@@ -12,7 +12,7 @@ import pytest
 from heuncli.commands.modes.study import require_no_time, state_of
 from heuncli.errors import SolveError
 from heuncli.integration.methods.dop853 import DOP853
-from heuncli.integration.run.request import Request
+from heuncli.integration.run.request import MotionTask
 from heuncli.linearisation.displace import displaced
 from heuncli.linearisation.oscillations import Mode, oscillations
 from heuncli.linearisation.reduced import idle_spins
@@ -78,7 +78,7 @@ def follow(here: Looked, mode: Mode) -> None:
     start = started(here, x.real, (value * x).real)
     until = 0.3 / abs(value.real) if value.imag == 0.0 else 0.25 / mode.frequency
     times = np.array([0.0, 0.5, 1.0]) * until
-    run = here.runner.trajectory(Request(times, 1e-13, method=DOP853, start=start))
+    run = here.runner.trajectory(MotionTask(times, 1e-13, method=DOP853, start=start))
     for t, state in zip(run.times, run.states, strict=True):
         wanted = (np.exp(value * t) * x).real
         off = here.weights * (moved(here, state, here.found.state) - wanted)
@@ -128,7 +128,7 @@ def test_a_steady_run_follows_its_modes(name: str) -> None:
         times = np.array([0.0, 0.5, 1.0]) * 0.3 / abs(value)
         start = displaced(here.layout, here.found.state, amplitude * mode.shape.real, amplitude * rate.real)
         runs = [
-            here.runner.trajectory(Request(times, 1e-13, method=DOP853, start=y)) for y in (start, here.found.state)
+            here.runner.trajectory(MotionTask(times, 1e-13, method=DOP853, start=y)) for y in (start, here.found.state)
         ]
         for t, state, beside in zip(times, runs[0].states, runs[1].states, strict=True):
             wanted = (amplitude * np.exp(value * t) * mode.shape).real

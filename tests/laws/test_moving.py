@@ -10,7 +10,7 @@ import numpy as np
 import pytest
 
 from heuncli.integration.integrated_scene import IntegratedScene
-from heuncli.integration.run.request import Request
+from heuncli.integration.run.request import MotionTask
 from heuncli.integration.run.runner import Runner
 from heuncli.records import replace
 from heuncli.results import Array
@@ -46,7 +46,7 @@ def test_states_blows_and_replays(name: str) -> None:
     between = 0.5 * (times[1:] + times[:-1])
     runs, replays = [], []
     for runner in (setup.runner, elsewhere(setup.runner)):
-        runs.append(runner.trajectory(Request(times, 1e-12)))
+        runs.append(runner.trajectory(MotionTask(times, 1e-12)))
         replays.append(runner.resample(runs[-1], between))
     here, there = runs
     assert len(here.blows) == len(there.blows)

@@ -11,7 +11,7 @@ import numpy as np
 import pytest
 
 from heuncli.integration.evaluator import Recovered
-from heuncli.integration.run.request import Request
+from heuncli.integration.run.request import MotionTask
 from heuncli.integration.run.runner import Runner
 from heuncli.records import replace
 from heuncli.response import Columns, Jacobian, blows, carried, columns, jacobian
@@ -40,7 +40,7 @@ class Both:
         assert layout.flat
         self.plane, self.space = Runner(layout), Runner(replace(layout, flat=False))
         self.times = np.array(spec.analysis.times)
-        self.run = self.plane.trajectory(Request(self.times, 1e-6))
+        self.run = self.plane.trajectory(MotionTask(self.times, 1e-6))
         self.found = self.plane.recovered(self.times, self.run.states)
         self.states = self.found.states
         self.allowed = ROUNDING / float(np.sqrt(self.found.pivot.min()))
@@ -109,7 +109,7 @@ def test_runs(seed: int) -> None:
     Those that land on a strike do not count: whether a strike is met by one or three of them rounding decides.
     """
     scene = both(seed)
-    space = scene.space.trajectory(Request(scene.times, 1e-6))
+    space = scene.space.trajectory(MotionTask(scene.times, 1e-6))
     near(scene.run.states, space.states, max(1.0, float(np.abs(space.states).max())), 1e-7)
     plane_steps, space_steps = (
         np.count_nonzero(np.diff(run.ends, prepend=0.0) > LANDING * scene.times[-1]) for run in (scene.run, space)

@@ -15,7 +15,7 @@ import pytest
 
 from heuncli.integration.evaluator import Recovered
 from heuncli.integration.integrated_scene import smaller
-from heuncli.integration.run.request import Request
+from heuncli.integration.run.request import MotionTask
 from heuncli.integration.run.runner import Runner, ready
 from heuncli.reduction import held, merged, spins
 from heuncli.reduction.model import Reduced, Reduction
@@ -125,7 +125,7 @@ def test_points_accelerate_alike(name: str, seed: int) -> None:
     if not isinstance(found, Reduction):
         pytest.skip("nothing to leave out here")
     left, own = ready(found.scene)
-    run = Runner(scene.layout, smaller(own, Reduced((found,), ()))).trajectory(Request(np.array(TIMES), 1e-8))
+    run = Runner(scene.layout, smaller(own, Reduced((found,), ()))).trajectory(MotionTask(np.array(TIMES), 1e-8))
     states = np.array([found.restrict(t, state) for t, state in zip(TIMES, run.states, strict=True)])
     large, small = runner.recovered(run.times, run.states), own.recovered(run.times, states)
     assert large.gap.max() <= 1e-9 * runner.layout.size

@@ -102,7 +102,7 @@ PLACES = tuple(dict.fromkeys(places()))
 SPELLED = {"*": "·", "^2": "²", "^3": "³", "^4": "⁴"}
 
 
-def unit_of_value(name: str, value: fields.Value) -> str | None:
+def unit_of_value(name: str, value: fields.ReadValue) -> str | None:
     """The unit of a kind of values of spec/fields.py, as the manual writes it; None: one that other keys decide."""
     if value.dimension is None or isinstance(value, fields.Component):
         return None
@@ -118,7 +118,7 @@ UNITS = {
     id(value): unit_of_value(name, value)
     for name, kind in vars(fields).items()
     for value in getattr(kind, "__metadata__", ())
-    if isinstance(value, fields.Value)
+    if isinstance(value, fields.ReadValue)
 }
 
 
@@ -128,16 +128,16 @@ def unit_of(field: FieldInfo) -> str | None:
     return found.pop() if len(found) == 1 else None
 
 
-def values(field: FieldInfo) -> Iterator[fields.Value]:
+def values(field: FieldInfo) -> Iterator[fields.ReadValue]:
     """The values that stand in a field's annotation, and beside it."""
-    yield from (value for value in field.metadata if isinstance(value, fields.Value))
+    yield from (value for value in field.metadata if isinstance(value, fields.ReadValue))
     yield from within(field.annotation)
 
 
-def within(annotation: Any) -> Iterator[fields.Value]:
+def within(annotation: Any) -> Iterator[fields.ReadValue]:
     """The values within an annotation; those of models apart."""
     for value in getattr(annotation, "__metadata__", ()):
-        if isinstance(value, fields.Value):
+        if isinstance(value, fields.ReadValue):
             yield value
     for part in get_args(annotation):
         yield from within(part)

@@ -13,8 +13,8 @@ from heuncli.commands.charting import page as report
 from heuncli.commands.charting.letters import draw, letters
 from heuncli.commands.charting.results import (
     KINDS,
-    Chart,
     Charted,
+    ChartResults,
     Row,
     shown,
     with_front,
@@ -70,7 +70,7 @@ def test_what_the_reference_does_not_tell_apart_is_a_bound() -> None:
     assert error == {"motion": 2e-13, "reactions": 4e-13, "sections": None} and bounded == {"reactions"}
 
 
-def table(made: Chart) -> str:
+def table(made: ChartResults) -> str:
     return "".join(plain(part, WIDTH) for part in fit(report.table(made), WIDTH))
 
 

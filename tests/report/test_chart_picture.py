@@ -8,7 +8,7 @@ from random import Random
 
 import pytest
 
-from heuncli.commands.charting.labels import Box, crosses, inside, placed
+from heuncli.commands.charting.labels import LabelBox, crosses, inside, placed
 from heuncli.commands.charting.picture import picture, stacked
 from heuncli.drawing import by_matplotlib as picture_plot
 from heuncli.drawing.picture import Line, Mark, Picture, Text, svg
@@ -18,7 +18,7 @@ from heuncli.records import replace
 from tests.shared.fake_charts import FAILS, TOO_LONG, chart, run
 
 SVG = "{http://www.w3.org/2000/svg}"
-FIELD = Box(80.0, 100.0, 810.0, 580.0)
+FIELD = LabelBox(80.0, 100.0, 810.0, 580.0)
 METHODS = ("Euler", "Heun2", "Heun3", "RK4", "DOPRI5", "DOP853", "Verner98", "Gauss4", "Gauss6", "Radau5", "Radau9")
 MANY = chart(
     *(run(m, 1e-4 * (1 + i) * 3**k, 10.0 ** (-3 - k) / (i + 1), local=10.0**-k) for i, m in enumerate(METHODS)
@@ -121,7 +121,7 @@ def test_no_name_stands_over_another(seed: int, count: int, ending: bool) -> Non
 
 
 def test_lines_through_a_box_are_seen() -> None:
-    box = Box(0.0, 0.0, 2.0, 1.0)
+    box = LabelBox(0.0, 0.0, 2.0, 1.0)
     assert crosses(box, (-1.0, 0.5), (3.0, 0.5)) and crosses(box, (1.0, -1.0), (1.0, 3.0))
     assert crosses(box, (-1.0, -0.5), (3.0, 1.5)) and crosses(box, (0.5, 0.5), (9.0, 9.0))
     assert not crosses(box, (-1.0, 2.0), (3.0, 2.0)) and not crosses(box, (-2.0, 0.5), (-1.0, 0.5))

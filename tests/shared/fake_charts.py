@@ -6,8 +6,8 @@ from heuncli.commands.charting.results import (
     COMPLETED,
     FAILED,
     NOT_RUN,
-    Chart,
     Charted,
+    ChartResults,
     Reference,
     Row,
     with_front,
@@ -23,8 +23,8 @@ def run(method: str, seconds: float, error: float, evaluations: int = 100, local
     return Charted(row, COMPLETED, seconds, 5, 10, evaluations, errors)
 
 
-def chart(*runs: Charted, reference: Reference = REFERENCE) -> Chart:
-    return Chart("A scene", {"path": "scene.yaml", "sha256": "0"}, reference, with_front(runs), 1.0)
+def chart(*runs: Charted, reference: Reference = REFERENCE) -> ChartResults:
+    return ChartResults("A scene", {"path": "scene.yaml", "sha256": "0"}, reference, with_front(runs), 1.0)
 
 
 FAILS = Charted(

@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import numpy as np
 
-from heuncli.integration.run.request import Request
+from heuncli.integration.run.request import MotionTask
 from heuncli.results import Array, Results
 from heuncli.study.ask.study import Study
 
@@ -15,7 +15,7 @@ KNOWN = 0.3  # of what is stated: how well the truth must be known to judge by i
 def off(run: Study, shown: Results, times: Array, tolerance: float, blows: tuple[float, ...] = ()) -> Array:
     """How far the motion is from a run at a local tolerance, up to each instant, of the scene's size."""
     runner, layout = run.setup.runner, run.setup.scene.layout
-    fine = runner.recovered(times, runner.trajectory(Request(times, tolerance, discontinuities=blows)).states).bodies
+    fine = runner.recovered(times, runner.trajectory(MotionTask(times, tolerance, discontinuities=blows)).states).bodies
     worst = np.zeros(len(times))
     for i, one in enumerate(layout.mechanism.bodies):
         k = layout.place[i]

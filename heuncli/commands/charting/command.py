@@ -17,7 +17,7 @@ from heuncli.cli.target import format_of, require_room
 from heuncli.commands.charting import page as report
 from heuncli.commands.charting.plan import Wanted
 from heuncli.commands.charting.request import ChartRequest
-from heuncli.commands.charting.results import Chart
+from heuncli.commands.charting.results import ChartResults
 from heuncli.commands.charting.study import chart
 from heuncli.errors import Problem
 from heuncli.method_rows import AUTO, METHODS, row_of
@@ -57,7 +57,7 @@ def main(request: ChartRequest) -> int:
     return 0
 
 
-def text(found: Chart, form: str, output: str | None) -> str:
+def text(found: ChartResults, form: str, output: str | None) -> str:
     """The chart in one of the formats."""
     if form == "json":
         return dump(report.block(found))
@@ -77,7 +77,7 @@ def text(found: Chart, form: str, output: str | None) -> str:
     return f"{report.write_heading(found, width)}\n{rows}\n{draw(found, min(width, FIELD))}"
 
 
-def picture_format(request: ChartRequest) -> Callable[[Chart], bytes] | None:
+def picture_format(request: ChartRequest) -> Callable[[ChartResults], bytes] | None:
     """How the picture is drawn that is to be saved, by the end of its name."""
     if request.save is None:
         return None
@@ -97,14 +97,14 @@ def picture_format(request: ChartRequest) -> Callable[[Chart], bytes] | None:
     return lambda found: _plotted(found, form)
 
 
-def _svg(found: Chart) -> bytes:
+def _svg(found: ChartResults) -> bytes:
     from heuncli.commands.charting.picture import picture
     from heuncli.drawing.picture import svg
 
     return svg(picture(found)).encode()
 
 
-def _plotted(found: Chart, form: str) -> bytes:
+def _plotted(found: ChartResults, form: str) -> bytes:
     from heuncli.commands.charting.picture import picture
     from heuncli.drawing.by_matplotlib import rendered
 

@@ -18,7 +18,7 @@ CROWDED, CLOSE = 4.0, 16.0  # each other line's point so close to that which is 
 ASIDE = 12.0  # between the field and the names beside it
 
 
-class Box(NamedTuple):
+class LabelBox(NamedTuple):
     """A rectangle: left, top, right, bottom."""
 
     left: float
@@ -26,15 +26,15 @@ class Box(NamedTuple):
     right: float
     bottom: float
 
-    def meets(self, other: Box) -> bool:
+    def meets(self, other: LabelBox) -> bool:
         """Whether two of them overlap."""
         return (
             self.left < other.right and other.left < self.right and self.top < other.bottom and other.top < self.bottom
         )
 
-    def wider(self, by: float) -> Box:
+    def wider(self, by: float) -> LabelBox:
         """The same with a margin."""
-        return Box(self.left - by, self.top - by, self.right + by, self.bottom + by)
+        return LabelBox(self.left - by, self.top - by, self.right + by, self.bottom + by)
 
     def holds(self, x: float, y: float) -> bool:
         """Whether a point lies in it."""
@@ -45,7 +45,7 @@ class Label(NamedTuple):
     """A name in its box; to: the point of its line that it is joined with, if it stands apart."""
 
     text: str
-    box: Box
+    box: LabelBox
     to: tuple[float, float] | None = None
 
 
@@ -57,7 +57,9 @@ def wide(text: str, size: float) -> float:
     return WIDE * size * len(text)
 
 
-def placed(lines: Sequence[tuple[str, Points]], field: Box, size: float, taken: Sequence[Box] = ()) -> list[Label]:
+def placed(
+    lines: Sequence[tuple[str, Points]], field: LabelBox, size: float, taken: Sequence[LabelBox] = ()
+) -> list[Label]:
     """A name for each line of points, within the field or at its right; taken: where something stands already."""
     found: list[Label] = []
     aside: list[tuple[str, tuple[float, float]]] = []
@@ -77,7 +79,7 @@ def placed(lines: Sequence[tuple[str, Points]], field: Box, size: float, taken: 
     return [*found, *beside(aside, field, size)]
 
 
-def candidates(text: str, points: Points, size: float) -> Iterable[tuple[int, Box]]:
+def candidates(text: str, points: Points, size: float) -> Iterable[tuple[int, LabelBox]]:
     """Boxes for a name, and which of the points each is at; ends first."""
     w, h = wide(text, size), HIGH * size
     for k in sorted(range(len(points)), key=lambda i: min(2 * (len(points) - 1 - i), 2 * i + 1)):
@@ -86,10 +88,10 @@ def candidates(text: str, points: Points, size: float) -> Iterable[tuple[int, Bo
             (x + GAP, y - h / 2), (x - GAP - w, y - h / 2), (x - w / 2, y - GAP - h), (x - w / 2, y + GAP),
             (x + GAP, y - h - 2), (x + GAP, y + 2), (x - GAP - w, y - h - 2), (x - GAP - w, y + 2),
         ):  # fmt: skip
-            yield k, Box(left, top, left + w, top + h)
+            yield k, LabelBox(left, top, left + w, top + h)
 
 
-def inside(box: Box, field: Box) -> bool:
+def inside(box: LabelBox, field: LabelBox) -> bool:
     """Whether a box lies in the field."""
     return field.left <= box.left and box.right <= field.right and field.top <= box.top and box.bottom <= field.bottom
 
@@ -97,11 +99,11 @@ def inside(box: Box, field: Box) -> bool:
 def crowded(point: tuple[float, float], own: str, lines: Sequence[tuple[str, Points]]) -> float:
     """What speaks against a point to stand at: points of other lines beside it."""
     x, y = point
-    close = Box(x - CLOSE, y - CLOSE, x + CLOSE, y + CLOSE)
+    close = LabelBox(x - CLOSE, y - CLOSE, x + CLOSE, y + CLOSE)
     return CROWDED * sum(close.holds(*other) for text, points in lines if text != own for other in points)
 
 
-def cost(box: Box, lines: Sequence[tuple[str, Points]]) -> float:
+def cost(box: LabelBox, lines: Sequence[tuple[str, Points]]) -> float:
     """What speaks against a place: markers and lines under it."""
     total = 0.0
     wider = box.wider(GAP - 3.0)
@@ -111,7 +113,7 @@ def cost(box: Box, lines: Sequence[tuple[str, Points]]) -> float:
     return total
 
 
-def may_cross(box: Box, a: tuple[float, float], b: tuple[float, float]) -> bool:
+def may_cross(box: LabelBox, a: tuple[float, float], b: tuple[float, float]) -> bool:
     """Whether the line between two points may pass through a box: it does not lie all on one side of it."""
     return (
         min(a[0], b[0]) < box.right and max(a[0], b[0]) > box.left
@@ -119,7 +121,7 @@ def may_cross(box: Box, a: tuple[float, float], b: tuple[float, float]) -> bool:
     )  # fmt: skip
 
 
-def crosses(box: Box, a: tuple[float, float], b: tuple[float, float]) -> bool:
+def crosses(box: LabelBox, a: tuple[float, float], b: tuple[float, float]) -> bool:
     """Whether a line between two points passes through a box: what of it is left after cutting at its four sides."""
     first, last = 0.0, 1.0
     for start, change, low, high in (
@@ -134,7 +136,7 @@ def crosses(box: Box, a: tuple[float, float], b: tuple[float, float]) -> bool:
     return first < last
 
 
-def beside(left: Sequence[tuple[str, tuple[float, float]]], field: Box, size: float) -> list[Label]:
+def beside(left: Sequence[tuple[str, tuple[float, float]]], field: LabelBox, size: float) -> list[Label]:
     """Names at the right of the field, in the order of their points from above, each near its own."""
     h, found = HIGH * size, []
     order = sorted(left, key=lambda one: one[1][1])
@@ -143,6 +145,6 @@ def beside(left: Sequence[tuple[str, tuple[float, float]]], field: Box, size: fl
     for text, point in order:
         top = min(max(top, point[1] - h / 2), bottom)
         x = field.right + ASIDE
-        found.append(Label(text, Box(x, top, x + wide(text, size), top + h), point))
+        found.append(Label(text, LabelBox(x, top, x + wide(text, size), top + h), point))
         top, bottom = top + h, bottom + h
     return found

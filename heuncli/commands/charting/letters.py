@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import string
 
-from heuncli.commands.charting.results import Chart
+from heuncli.commands.charting.results import ChartResults
 from heuncli.commands.charting.scale import failures, points, power, scales, seconds
 from heuncli.report.text_table import wrapped
 
@@ -16,13 +16,13 @@ SEVERAL = "+"
 FLOOR = "."
 
 
-def letters(chart: Chart) -> dict[str, str]:
+def letters(chart: ChartResults) -> dict[str, str]:
     """A letter for each method."""
     names = string.ascii_lowercase + string.digits
     return {name: names[k % len(names)] for k, name in enumerate(chart.by_method)}
 
 
-def draw(chart: Chart, width: int = WIDTH) -> str:
+def draw(chart: ChartResults, width: int = WIDTH) -> str:
     """The chart as lines of text, no wider than the field and its labels; ends with a newline."""
     across, up = scales(chart)
     room = width - LABEL - 3

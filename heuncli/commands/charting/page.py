@@ -8,7 +8,7 @@ from collections.abc import Iterator, Sequence
 from itertools import groupby
 from typing import Any
 
-from heuncli.commands.charting.results import COMPLETED, FAILED, KINDS, UNFINISHED, Chart, Charted, Row
+from heuncli.commands.charting.results import COMPLETED, FAILED, KINDS, UNFINISHED, Charted, ChartResults, Row
 from heuncli.commands.charting.scale import power
 from heuncli.method_rows import row_of
 from heuncli.report.export import FORMAT
@@ -28,7 +28,7 @@ COLUMNS = (
 )  # fmt: skip
 
 
-def heading(chart: Chart) -> list[tuple[str, str]]:
+def heading(chart: ChartResults) -> list[tuple[str, str]]:
     """Label and text of the lines above the table."""
     reference = chart.reference
     instants = f"{reference.instants} instants" if reference.instants != 1 else "1 instant"
@@ -40,12 +40,12 @@ def heading(chart: Chart) -> list[tuple[str, str]]:
     ]
 
 
-def write_heading(chart: Chart, width: int = WIDTH) -> str:
+def write_heading(chart: ChartResults, width: int = WIDTH) -> str:
     """The same as text."""
     return labelled(heading(chart), width)
 
 
-def table(chart: Chart) -> TextTable:
+def table(chart: ChartResults) -> TextTable:
     """The runs, a row each, those of a method under its name."""
     kinds = chart.kinds
     columns = [
@@ -129,7 +129,7 @@ def brief(run: Charted) -> str:
     return remark(run)
 
 
-def reasons(chart: Chart) -> list[str]:
+def reasons(chart: ChartResults) -> list[str]:
     """Why runs failed, once for each method and reason."""
     found: dict[tuple[str, str], str] = {}
     for run in chart.runs:
@@ -154,7 +154,7 @@ def remark(run: Charted) -> str:
     return run.reason if run.code == UNFINISHED else f"not run: {run.reason}"
 
 
-def block(chart: Chart) -> dict[str, Any]:
+def block(chart: ChartResults) -> dict[str, Any]:
     """The chart as the JSON has it."""
     reference = chart.reference
     return {
@@ -192,7 +192,7 @@ def run_block(run: Charted) -> dict[str, Any]:
     }
 
 
-def to_csv(chart: Chart) -> str:
+def to_csv(chart: ChartResults) -> str:
     """The runs, a line each; what is not known is empty."""
     text = io.StringIO()
     writer = csv.writer(text, lineterminator="\n")

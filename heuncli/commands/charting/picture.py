@@ -10,9 +10,9 @@ from collections.abc import Sequence
 from itertools import pairwise
 from typing import NamedTuple
 
-from heuncli.commands.charting.labels import Box, inside, placed, wide
+from heuncli.commands.charting.labels import LabelBox, inside, placed, wide
 from heuncli.commands.charting.page import local, remark
-from heuncli.commands.charting.results import FAILED, Chart, Charted
+from heuncli.commands.charting.results import FAILED, Charted, ChartResults
 from heuncli.commands.charting.scale import Scale, failures, points, power, scales, seconds
 from heuncli.drawing.picture import SHAPES, Line, Mark, Picture, Shape, Text
 from heuncli.foreign_text import shown
@@ -40,7 +40,7 @@ MOST_NOTES = 12
 class Frame(NamedTuple):
     """The field in pixels, and its scales."""
 
-    box: Box
+    box: LabelBox
     across: Scale
     up: Scale
 
@@ -53,14 +53,14 @@ class Frame(NamedTuple):
         return self.box.bottom - self.up.at(value) * (self.box.bottom - self.box.top)
 
 
-def picture(chart: Chart) -> Picture:
+def picture(chart: ChartResults) -> Picture:
     """The drawing of a chart."""
     head = heading(chart)
     groups = failed(chart)
     across, up = scales(chart)
     levels = stacked([ends_of(group, across) for group in groups])
     top = head[-1].y + 22.0 + LINE * (max(levels, default=-1) + 1)
-    box = Box(LEFT, top, WIDTH - RIGHT, top + FIELD)
+    box = LabelBox(LEFT, top, WIDTH - RIGHT, top + FIELD)
     frame = Frame(box, across, up)
     notes = foot(chart, groups, box.bottom + BELOW)
     bottom, taken = floor(chart, frame)
@@ -70,7 +70,7 @@ def picture(chart: Chart) -> Picture:
     return Picture(WIDTH, height, f"{shown(chart.title)}: speed against accuracy", chart.reference.words, shapes)
 
 
-def heading(chart: Chart) -> list[Text]:
+def heading(chart: ChartResults) -> list[Text]:
     """The scene, and how well the reference is known."""
     title = lines_of(chart.title or "Speed against accuracy", TITLE)
     found = [Text(20.0, 28.0 + 21.0 * k, text, TITLE, bold=True) for k, text in enumerate(title)]
@@ -99,13 +99,13 @@ def grid(frame: Frame) -> list[Shape]:
     for value in frame.across.between:
         x = frame.x(value)
         found.append(Line(((x, box.top), (x, box.bottom)), FAINT, 0.8))
-    named: list[Box] = []
+    named: list[LabelBox] = []
     for value in (*frame.across.decades, *frame.across.between):
         x, text = frame.x(value), seconds(value)
         if value in frame.across.decades:
             found.append(Line(((x, box.top), (x, box.bottom)), GRID, 0.8))
         half = wide(text, SMALL) / 2 + 3.0
-        room = Box(x - half, 0.0, x + half, 1.0)
+        room = LabelBox(x - half, 0.0, x + half, 1.0)
         if not any(room.meets(other) for other in named):
             named.append(room)
             found.append(Text(x, box.bottom + 16.0, text, SMALL, "middle"))
@@ -118,7 +118,7 @@ def grid(frame: Frame) -> list[Shape]:
     return found
 
 
-def floor(chart: Chart, frame: Frame) -> tuple[list[Shape], list[Box]]:
+def floor(chart: ChartResults, frame: Frame) -> tuple[list[Shape], list[LabelBox]]:
     """What the reference may err by: below, nobody can tell. Its line, and its name with where that stands."""
     own, text = chart.reference.own["motion"], "the reference's own error"
     if not own:
@@ -126,7 +126,7 @@ def floor(chart: Chart, frame: Frame) -> tuple[list[Shape], list[Box]]:
     y, box, room = frame.y(own), frame.box, wide(text, SMALL)
     way = box.right - box.left - room - 12.0
     lefts = [box.left + 6.0 + way * k / PLACES for k in sorted(range(PLACES + 1), key=lambda k: min(k, PLACES - k))]
-    rooms = [Box(x, y + up - SMALL, x + room, y + up + 3.0) for up in (13.0, -5.0) for x in lefts]
+    rooms = [LabelBox(x, y + up - SMALL, x + room, y + up + 3.0) for up in (13.0, -5.0) for x in lefts]
     marks = [mark for runs in chart.by_method.values() for mark in along(runs, frame)]
     free = [each for each in rooms if inside(each, box)]
     best = min(free, key=lambda each: sum(each.wider(5.0).holds(*mark) for mark in marks))
@@ -142,7 +142,7 @@ def along(runs: Sequence[Charted], frame: Frame) -> list[tuple[float, float]]:
     return [*ends[:1], *between]
 
 
-def front(chart: Chart, frame: Frame) -> list[Shape]:
+def front(chart: ChartResults, frame: Frame) -> list[Shape]:
     """The front as a heavy line."""
     best = sorted((p.seconds, p.error) for p in points(chart.runs) if p.front)
     if len(best) < 2:
@@ -150,7 +150,7 @@ def front(chart: Chart, frame: Frame) -> list[Shape]:
     return [Line(tuple((frame.x(t), frame.y(e)) for t, e in best), FRONT, 9.0)]
 
 
-def curves(chart: Chart, frame: Frame, taken: Sequence[Box]) -> list[Shape]:
+def curves(chart: ChartResults, frame: Frame, taken: Sequence[LabelBox]) -> list[Shape]:
     """A line a method, with its markers and its name; taken: where no name can stand."""
     found: list[Shape] = []
     names: list[tuple[str, Sequence[tuple[float, float]]]] = []
@@ -182,22 +182,22 @@ def colour_of(name: str) -> str:
     return FIXED if row.kind == "explicit" and row.steps == "fixed" else COLOURS[row.kind]
 
 
-class Group(NamedTuple):
+class FailedRuns(NamedTuple):
     """Runs of a method that failed for one reason; the note's number."""
 
     number: int
     runs: tuple[Charted, ...]
 
 
-def failed(chart: Chart) -> list[Group]:
+def failed(chart: ChartResults) -> list[FailedRuns]:
     """What failed or was not run, by method and reason."""
     found: dict[tuple[str, str, str], list[Charted]] = {}
     for run in failures(chart.runs):
         found.setdefault((run.row.method, run.status, run.code), []).append(run)
-    return [Group(k + 1, tuple(runs)) for k, runs in enumerate(found.values())]
+    return [FailedRuns(k + 1, tuple(runs)) for k, runs in enumerate(found.values())]
 
 
-def ends_of(group: Group, across: Scale) -> list[float]:
+def ends_of(group: FailedRuns, across: Scale) -> list[float]:
     """Where the crosses of a group stand from left to right; what took no time that is known at the border."""
     right = WIDTH - RIGHT
     return sorted(LEFT + across.at(run.seconds) * (right - LEFT) if run.seconds else right for run in group.runs)
@@ -217,7 +217,7 @@ def stacked(groups: Sequence[Sequence[float]]) -> list[int]:
     return found
 
 
-def crosses(groups: Sequence[Group], levels: Sequence[int], frame: Frame) -> list[Shape]:
+def crosses(groups: Sequence[FailedRuns], levels: Sequence[int], frame: Frame) -> list[Shape]:
     """A cross for each run that failed, above the field where its time ended; beside the first its note's number."""
     found: list[Shape] = []
     for group, level in zip(groups, levels, strict=True):
@@ -230,7 +230,7 @@ def crosses(groups: Sequence[Group], levels: Sequence[int], frame: Frame) -> lis
     return found
 
 
-def foot(chart: Chart, groups: Sequence[Group], y: float) -> list[Text]:
+def foot(chart: ChartResults, groups: Sequence[FailedRuns], y: float) -> list[Text]:
     """The notes below the field."""
     lost = any(point.error >= LOST for point in points(chart.runs))
     marks = "Heavy grey: the front, which no other run beats in both."
@@ -246,7 +246,7 @@ def foot(chart: Chart, groups: Sequence[Group], y: float) -> list[Text]:
     return found
 
 
-def note(group: Group) -> str:
+def note(group: FailedRuns) -> str:
     """Which runs a cross is, and why."""
     first = group.runs[0]
     kind = "step" if first.row.fixed else "tolerance"

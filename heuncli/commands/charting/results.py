@@ -93,7 +93,7 @@ class Reference:
 
 
 @record
-class Chart:
+class ChartResults:
     """A scene's chart; size [m]: of the scene, to which errors of motion are relative; notes: sentences below it."""
 
     title: str

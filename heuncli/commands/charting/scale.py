@@ -9,7 +9,7 @@ import math
 from collections.abc import Iterable
 from typing import NamedTuple
 
-from heuncli.commands.charting.results import COMPLETED, Chart, Charted
+from heuncli.commands.charting.results import COMPLETED, Charted, ChartResults
 from heuncli.tolerances import LOST
 
 PAD = 0.08  # of a decade beside the fastest and the slowest run
@@ -69,7 +69,7 @@ def failures(runs: Iterable[Charted]) -> list[Charted]:
     return [run for run in runs if run.status != COMPLETED]
 
 
-def scales(chart: Chart) -> tuple[Scale, Scale]:
+def scales(chart: ChartResults) -> tuple[Scale, Scale]:
     """The scales of seconds and of errors: whole decades of these."""
     known = points(chart.runs)
     floor = chart.reference.own["motion"] or 0.0

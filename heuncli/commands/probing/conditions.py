@@ -5,7 +5,7 @@ from __future__ import annotations
 import numpy as np
 
 from heuncli.commands.probing.instants import Along
-from heuncli.commands.probing.numerics.condition import Conditions, conditions
+from heuncli.commands.probing.numerics.condition import ConditionNumbers, conditions
 from heuncli.commands.probing.results import NO_MASS, SINGULAR, Event, Largest
 from heuncli.rest.coordinates import Coordinates, coordinates_of
 
@@ -34,7 +34,7 @@ def conditions_of(along: Along) -> tuple[Largest | None, Largest | None, str]:
     return mass, closure, ""
 
 
-def lightest(own: Coordinates, found: Conditions, k: int) -> str:
+def lightest(own: Coordinates, found: ConditionNumbers, k: int) -> str:
     """The joint or body that moves most in the motion with the least inertia."""
     return own.owner(int(np.argmax(np.abs(found.light[k]))))[0]
 

@@ -5,7 +5,7 @@ from __future__ import annotations
 import math
 from collections.abc import Iterator
 
-from heuncli.commands.probing.results import Growing, Probe, Stiffness
+from heuncli.commands.probing.results import Growing, Probe, StiffnessResults
 from heuncli.report.page_width import fit
 from heuncli.report.text_table import WIDTH, TextColumn, TextTable, labelled, plain
 from heuncli.version import VERSION
@@ -75,7 +75,7 @@ def tables(found: Probe) -> Iterator[TextTable]:
         yield events(found)
 
 
-def steps(stiff: Stiffness, duration: float) -> TextTable:
+def steps(stiff: StiffnessResults, duration: float) -> TextTable:
     """The steps of explicit methods, those that accuracy asks for of a motion alone; longer than the run is any."""
     note = f"rates of the tangent: decay up to {stiff.decay:.3g} 1/s, oscillation up to {stiff.oscillation:.3g} 1/s"
     if not duration:

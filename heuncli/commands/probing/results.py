@@ -53,7 +53,7 @@ class Step(NamedTuple):
 
 
 @record
-class Stiffness:
+class StiffnessResults:
     """How fast what is near the motion decays and oscillates, against the motion itself.
 
     decay, oscillation [1/s]: largest over the run of -Re and |Im| of the eigenvalues of the tangent, on what the closed
@@ -101,7 +101,7 @@ class Probe:
     attitudes: tuple[Turned, ...]
     mass: Largest | None
     closure: Largest | None
-    stiffness: Stiffness | None
+    stiffness: StiffnessResults | None
     growth: Growing | None
     across: Growing | None  # out of the plane
     reasons: dict[str, str]
@@ -172,7 +172,7 @@ def growing_block(growth: Growing | None) -> dict[str, Any] | None:
     }  # fmt: skip
 
 
-def stiff_block(stiff: Stiffness | None) -> dict[str, Any] | None:
+def stiff_block(stiff: StiffnessResults | None) -> dict[str, Any] | None:
     """Rates as JSON has them."""
     if stiff is None:
         return None

@@ -13,9 +13,9 @@ import numpy as np
 
 from heuncli import tolerances
 from heuncli.commands.probing.instants import Along
-from heuncli.commands.probing.numerics.shadows import Scale
+from heuncli.commands.probing.numerics.shadows import ShadowScale
 from heuncli.commands.probing.numerics.stiffness import accurate_step, eigenvalues, motion_rate, rate_of, stable_step
-from heuncli.commands.probing.results import Step, Stiffness
+from heuncli.commands.probing.results import Step, StiffnessResults
 from heuncli.integration.evaluator import Evaluator
 from heuncli.integration.methods.dop853 import DOP853
 from heuncli.integration.methods.registry import method_of
@@ -29,7 +29,7 @@ MOST_STATE = 600  # numbers of state, of a matrix that is formed
 WINDOWS = 100  # of the run, over which the speeds change
 
 
-def stiffness_of(along: Along) -> tuple[Stiffness | None, str]:
+def stiffness_of(along: Along) -> tuple[StiffnessResults | None, str]:
     """The stiffness of a motion or a state, or why there is none."""
     study = along.study
     runner, checked = study.setup.runner, along.checked
@@ -38,7 +38,7 @@ def stiffness_of(along: Along) -> tuple[Stiffness | None, str]:
         return None, "nothing is integrated: drives and joints leave no freedom"
     if n > MOST_STATE:
         return None, f"{n} numbers of state, more than {MOST_STATE}: the tangent is not formed as a whole"
-    if not Scale(runner.moving.layout, 1.0).n:
+    if not ShadowScale(runner.moving.layout, 1.0).n:
         return None, "nothing is free to move"
     if checked is None:
         at = study.history.recovered
@@ -55,7 +55,7 @@ def stiffness_of(along: Along) -> tuple[Stiffness | None, str]:
     return of_instants(times, values_at, own, tolerance_of(along, run)), ""
 
 
-def of_instants(times: Array, values: list[Array], own: float, local: float) -> Stiffness:
+def of_instants(times: Array, values: list[Array], own: float, local: float) -> StiffnessResults:
     """The stiffness by the eigenvalues at instants; own [1/s]: the motion's rate; local: tolerance of a step."""
     stable = np.array([stable_step(DOP853, x) for x in values])
     worst = int(np.argmin(stable))
@@ -67,7 +67,7 @@ def of_instants(times: Array, values: list[Array], own: float, local: float) -> 
     ]
     asked = accurate_step(DOP853.order, local, own)
     ratio = 0.0 if math.isinf(stable[worst]) else asked / float(stable[worst])
-    return Stiffness(
+    return StiffnessResults(
         decay=max((float(np.abs(np.minimum(x.real, 0.0)).max(initial=0.0)) for x in values), default=0.0),
         oscillation=max((float(np.abs(x.imag).max(initial=0.0)) for x in values), default=0.0),
         time=float(times[worst]),
@@ -112,5 +112,5 @@ def own_rate(along: Along, run: Trajectory, times: Array, stable: Array) -> floa
         return rate_of(run.method.order, local, mean)
     layout = along.layout
     windows = np.linspace(0.0, float(run.times[-1]), WINDOWS + 1)
-    rates = motion_rate(Scale(layout, 1.0), windows, along.study.setup.runner.resample(run, windows))
+    rates = motion_rate(ShadowScale(layout, 1.0), windows, along.study.setup.runner.resample(run, windows))
     return float(np.sqrt(np.mean(rates**2)))

@@ -9,7 +9,7 @@ from heuncli.integration.check.runs import Runs
 from heuncli.integration.methods.registry import method_of
 from heuncli.integration.run.errors import Eventful
 from heuncli.integration.run.event_frequency import FEW_STAGES
-from heuncli.integration.run.request import Request, StoppingRules
+from heuncli.integration.run.request import MotionTask, StoppingRules
 
 TOLD = (
     "events: {cut} of the first {steps} steps end at one: up to t = {t:.3g} s {name} takes {few} evaluations, where "
@@ -22,7 +22,7 @@ def try_fewer_stages(runs: Runs, left: Eventful) -> bool:
     method, before = method_of(FEW_STAGES), [t for t in runs.jumps if t < left.reached]
     with suppress(SolveError, LimitError):
         most = left.evaluations // (len(method.nodes) - 1)
-        request = Request([left.reached], left.local, method, before, deadline=runs.deadline, most_steps=most)
+        request = MotionTask([left.reached], left.local, method, before, deadline=runs.deadline, most_steps=most)
         trial = runs.runner.trajectory(request, StoppingRules())
         if trial.evaluations < left.evaluations:
             left.told = TOLD.format(

@@ -13,7 +13,7 @@ from heuncli.integration.check.distance import Marks
 from heuncli.integration.methods.dop853 import DOP853
 from heuncli.integration.methods.method import Method
 from heuncli.integration.run.errors import ClosuresLost, Stiff
-from heuncli.integration.run.request import Request, StoppingRules
+from heuncli.integration.run.request import MotionTask, StoppingRules
 from heuncli.integration.run.runner import Runner
 from heuncli.integration.trajectory import Trajectory
 from heuncli.results import Array
@@ -54,7 +54,7 @@ class Runs:
         at: other instants than the asked ones, to which a check run goes: as far as the run that it checks, though the
         condition that ends the motion became true.
         """
-        request = Request(
+        request = MotionTask(
             self.times if at is None else at, local, by or self.method, self.jumps, start, self.deadline, most_steps
         )
         told = at is None

@@ -15,7 +15,7 @@ from heuncli.results import Array
 
 
 @record
-class Request:
+class MotionTask:
     """A run from t = 0 over the asked instants.
 
     times (n_t,) ascending [s]: it ends with the last of them; local: the tolerance of a step, or of a method of given

@@ -20,7 +20,7 @@ from heuncli.integration.integrated_scene import IntegratedScene, itself
 from heuncli.integration.run.errors import Eventful, Stiff
 from heuncli.integration.run.interruptions import closed_at_start
 from heuncli.integration.run.replay import resampled
-from heuncli.integration.run.request import FOR_ITS_ENDING, Request, StoppingRules
+from heuncli.integration.run.request import FOR_ITS_ENDING, MotionTask, StoppingRules
 from heuncli.integration.run.stepper import Stepper, begun
 from heuncli.integration.trajectory import Trajectory
 from heuncli.results import Array
@@ -38,7 +38,7 @@ class Runner(Evaluator):
         super().__init__(layout, closed_at_start)
         self.moving = itself(self) if moving is None else moving
 
-    def trajectory(self, request: Request, rules: StoppingRules = FOR_ITS_ENDING) -> Trajectory:
+    def trajectory(self, request: MotionTask, rules: StoppingRules = FOR_ITS_ENDING) -> Trajectory:
         """Integrate from the start at t = 0 over the asked instants.
 
         Where a rope would have to push the run ends: the instants up to there, and that one. So it does where the

@@ -21,7 +21,7 @@ from heuncli.integration.contacts.blows import rate_jumps
 from heuncli.integration.integrated_scene import IntegratedScene
 from heuncli.integration.methods.method import Method
 from heuncli.integration.run.limits import check_deadline
-from heuncli.integration.run.request import Request
+from heuncli.integration.run.request import MotionTask
 from heuncli.integration.segments import Segment, Segments, smooth_segments
 from heuncli.integration.trajectory import Kept, Trajectory
 from heuncli.method_rows import SMOOTH_ONLY
@@ -64,7 +64,7 @@ class Derivative:
         return rate
 
 
-def trajectory(layout: Layout, moving: IntegratedScene, request: Request) -> Trajectory:
+def trajectory(layout: Layout, moving: IntegratedScene, request: MotionTask) -> Trajectory:
     """A run of a scene by one of SciPy's methods, as `Runner.trajectory` gives it.
 
     Raises SpecError for what they do not run, SolveError where they give up, LimitError past the deadline.
@@ -96,7 +96,7 @@ class ScipyIntegration:
     """How SciPy integrates a run, a segment after the other."""
 
     derivative: Derivative
-    request: Request
+    request: MotionTask
     most_steps: int
 
     def run(self, segment: Segment, state: Array, done: ScipySteps) -> None:

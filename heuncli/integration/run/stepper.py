@@ -30,7 +30,7 @@ from heuncli.integration.run.kernel_loop import (
 )
 from heuncli.integration.run.limits import chunk_of, require_progress, require_time
 from heuncli.integration.run.progress import Progress
-from heuncli.integration.run.request import Request, StoppingRules
+from heuncli.integration.run.request import MotionTask, StoppingRules
 from heuncli.integration.run.step_records import GrowingRows, Steps
 from heuncli.integration.segments import Segment, Segments, just_before, smooth_segments
 from heuncli.integration.trajectory import Trajectory
@@ -53,7 +53,7 @@ class Ending(NamedTuple):
     rope: str | None = None
 
 
-def begun(scene: Evaluator, moving: IntegratedScene, request: Request, rules: StoppingRules) -> Progress:
+def begun(scene: Evaluator, moving: IntegratedScene, request: MotionTask, rules: StoppingRules) -> Progress:
     """A run at its start. Raises LimitError where its method would have to solve too many equations."""
     last, start = request.last, request.start
     # at rest under a load like t**4 all rates and accelerations vanish at first: this rate then sets the scale
@@ -71,7 +71,7 @@ class Stepper:
     pieces: the segments, cut where contacts close or open; rows as those of Segments.
     """
 
-    def __init__(self, progress: Progress, request: Request, rules: StoppingRules) -> None:
+    def __init__(self, progress: Progress, request: MotionTask, rules: StoppingRules) -> None:
         self.progress, self.request = progress, request
         self.interruptions = Interruptions(progress)
         self.segments = smooth_segments(progress.last, request.discontinuities)

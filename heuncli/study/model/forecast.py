@@ -16,7 +16,7 @@ from heuncli.integration.check.runs import Runs
 from heuncli.integration.methods.method import Method
 from heuncli.integration.run.errors import Eventful, Stiff
 from heuncli.integration.run.kernel_loop import depends
-from heuncli.integration.run.request import Request, StoppingRules
+from heuncli.integration.run.request import MotionTask, StoppingRules
 from heuncli.integration.segments import discontinuities_of
 from heuncli.integration.trajectory import Trajectory
 from heuncli.method_rows import row_of
@@ -90,5 +90,5 @@ def begun(setup: Setup, local: float, last: float, *, watched: bool = False) -> 
     jumps = tuple(discontinuities_of(setup.scene.mechanism, 0.0, last))
     assert setup.method is not None
     deadline = time.monotonic() + PATIENCE
-    request = Request([0.0, last], local, setup.method, jumps, deadline=deadline, most_steps=MOST_STEPS)
+    request = MotionTask([0.0, last], local, setup.method, jumps, deadline=deadline, most_steps=MOST_STEPS)
     return setup.runner.trajectory(request, StoppingRules(stiffness=watched, events=watched))

@@ -8,7 +8,7 @@ from typing import Any
 import numpy as np
 
 from heuncli.integration.methods.registry import method_of
-from heuncli.integration.run.request import Request
+from heuncli.integration.run.request import MotionTask
 from heuncli.spec.load import load
 from heuncli.study.model.setup import set_up
 from heuncli.version import VERSION
@@ -31,7 +31,7 @@ def ways(name: str) -> list[Way]:
         last: list[Any] = []
 
         def integrate() -> None:
-            last[:] = [runner.trajectory(Request(times, tolerance, method=method)).states[-1:]]
+            last[:] = [runner.trajectory(MotionTask(times, tolerance, method=method)).states[-1:]]
 
         def centers() -> dict[str, Any]:
             found = runner.recovered(times[-1:], last[0]).bodies[0]

@@ -34,7 +34,7 @@ def free_motions(J: Array, weights: Array) -> tuple[list[Array], Array]:
     return [v[r:].T for v, r in zip(V, rank.tolist(), strict=True)], conditions
 
 
-class Conditions(NamedTuple):
+class ConditionNumbers(NamedTuple):
     """At instants: conditions of the mass matrix and of the closures (n_t,), and the lightest motion (n_t, n)."""
 
     mass: Array
@@ -42,7 +42,7 @@ class Conditions(NamedTuple):
     light: Array
 
 
-def conditions(layout: Layout, own: Coordinates, at: Recovered) -> Conditions:
+def conditions(layout: Layout, own: Coordinates, at: Recovered) -> ConditionNumbers:
     """Conditions at recovered instants; infinite where a motion moves no mass."""
     found = twists(layout, at)
     M = mass_matrix(found)[:, own.answers][:, :, own.answers] / np.outer(own.weights, own.weights)
@@ -56,4 +56,4 @@ def conditions(layout: Layout, own: Coordinates, at: Recovered) -> Conditions:
             w, v = np.linalg.eigh(T.T @ m @ T)
             mass[t] = np.inf if w[0] <= tolerances.NO_INERTIA * w[-1] else w[-1] / w[0]
             light[t] = T @ v[:, 0]
-    return Conditions(mass, closure, light)
+    return ConditionNumbers(mass, closure, light)

@@ -99,7 +99,7 @@ def within_steps(ends: Array, marks: Array) -> Array:
     return np.asarray(np.maximum.accumulate(np.clip(marks, ends[k] + quarter, ends[k + 1] - quarter)))
 
 
-class Scale:
+class ShadowScale:
     """Small disturbances of states as scaled numbers, displacements first, and back."""
 
     def __init__(self, layout: Layout, rate: float) -> None:
@@ -137,7 +137,7 @@ class Shadows:
         self.moving = itself(Evaluator(runner.layout)) if whole else runner.moving
         self.layout, self.workspace = self.moving.layout, self.moving.workspace
         self.rate = largest_rate(runner, run)
-        self.scale = Scale(self.layout, self.rate)
+        self.scale = ShadowScale(self.layout, self.rate)
         self.beside = Runner(self.layout) if self.layout.rows else None
         self.blows = schedule(runner.layout.mechanism, float(run.times[-1]))
 

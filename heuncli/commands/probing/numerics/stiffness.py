@@ -14,7 +14,7 @@ import math
 import numpy as np
 
 from heuncli import tolerances
-from heuncli.commands.probing.numerics.shadows import Scale
+from heuncli.commands.probing.numerics.shadows import ShadowScale
 from heuncli.integration.evaluator import Evaluator, Recovered
 from heuncli.integration.methods.method import Method
 from heuncli.response import jacobian, tangent
@@ -28,7 +28,7 @@ GROWTH = 1.01  # of |R|: by a hundredth a step, which rounding of R is not, and 
 def eigenvalues(beside: Evaluator, t: float, state: Array, holding: Array) -> Array:
     """Eigenvalues [1/s] of the tangent at a state, on what the closed chains admit; holding: the contacts closed."""
     layout, workspace = beside.layout, beside.workspace
-    scale = Scale(layout, 1.0)
+    scale = ShadowScale(layout, 1.0)
     n = scale.n
     if not n:
         return np.zeros(0, dtype=complex)
@@ -53,7 +53,7 @@ def without_rounding(values: Array, largest: float) -> Array:
     return np.where(size > math.sqrt(tolerances.INDIFFERENT * largest), real + 1j * values.imag, 0.0)
 
 
-def to_states(scale: Scale, state: Array) -> Array:
+def to_states(scale: ShadowScale, state: Array) -> Array:
     """B (n_state, 2 n): the numbers of a state by scaled disturbances."""
     n, own = scale.n, scale.coordinates
     B = np.zeros((len(state), 2 * n))
@@ -67,7 +67,7 @@ def to_states(scale: Scale, state: Array) -> Array:
     return np.asarray(B / scale.by)
 
 
-def to_disturbances(scale: Scale, state: Array, of: Array) -> Array:
+def to_disturbances(scale: ShadowScale, state: Array, of: Array) -> Array:
     """L of columns (n_state, k): scaled disturbances (2 n, k)."""
     n, own = scale.n, scale.coordinates
     found = np.zeros((2 * n, of.shape[1]))
@@ -79,7 +79,7 @@ def to_disturbances(scale: Scale, state: Array, of: Array) -> Array:
     return np.asarray(found * scale.by[:, None])
 
 
-def admitted(beside: Evaluator, scale: Scale, at: Recovered) -> tuple[Array, Array]:
+def admitted(beside: Evaluator, scale: ShadowScale, at: Recovered) -> tuple[Array, Array]:
     """Scaled displacements T (n, f) that closed chains admit, orthonormal, and the rates S (n, f) that these need."""
     layout, n, state = beside.layout, scale.n, at.states[0]
     J = jacobian(beside.workspace, layout, at.times, at.states)
@@ -134,7 +134,7 @@ def rate_of(order: int, local: float, step: float) -> float:
     return float((math.factorial(order + 1) * local) ** (1.0 / (order + 1)) / step)
 
 
-def motion_rate(scale: Scale, times: Array, states: Array) -> Array:
+def motion_rate(scale: ShadowScale, times: Array, states: Array) -> Array:
     """How fast the rates of a motion change between instants, by the largest of them, (n_t - 1,) [1/s]."""
     rates = states[:, scale.coordinates.rates] * scale.coordinates.weights
     largest = float(np.sqrt(np.sum(rates**2, axis=1)).max(initial=0.0))

@@ -1,0 +1,41 @@
+"""A class name has one meaning in the whole package."""
+
+from __future__ import annotations
+
+import ast
+from collections import defaultdict
+from pathlib import Path
+
+import heuncli
+
+ROOT = Path(heuncli.__file__).parent
+# Names of structs of the kernel that are those of what they are rows of: the field's word for it, on both sides.
+OF_THE_KERNEL = {
+    "Body": "spec/models.py: a rigid body; kernel/scene.py: its row in the tree",
+    "Contact": "tree/layout.py: a rope or a limit that opens and closes; kernel/scene.py: its margin over a step",
+    "Freedom": "tree/layout.py: a freedom of a joint and its place in the state; kernel/scene.py: its row in the tree",
+    "Island": "tree/layout.py: loops that share bodies; kernel/scene.py: where their rows and freedoms are listed",
+    "Method": "integration/methods/method.py: a method by its coefficients; kernel/stepping.py: these in memory",
+}
+
+
+def classes() -> dict[str, list[str]]:
+    """The files that define a class, by its name."""
+    found = defaultdict(list)
+    for path in sorted(ROOT.rglob("*.py")):
+        for node in ast.walk(ast.parse(path.read_text(encoding="utf-8"))):
+            if isinstance(node, ast.ClassDef):
+                found[node.name].append(path.relative_to(ROOT).as_posix())
+    return found
+
+
+def test_a_class_name_has_one_meaning() -> None:
+    several = {name: files for name, files in classes().items() if len(files) > 1}
+    assert {name: files for name, files in several.items() if name not in OF_THE_KERNEL} == {}
+
+
+def test_what_two_classes_share_is_a_name_of_the_kernel() -> None:
+    found = classes()
+    for name, why in OF_THE_KERNEL.items():
+        assert len(found[name]) == 2 and sum(file.startswith("kernel/") for file in found[name]) == 1, name
+        assert all(file in why for file in found[name]), name
