@@ -23,13 +23,15 @@ from heuncli.cli.options import Request
 class Command(NamedTuple):
     """A command.
 
-    name: the word of the command line; folder: in heuncli/commands, where that is not the name; grace: seconds that it
-    may go on beyond its time limit, to tell what it has by then (others have nothing); phase: what it is doing, where
-    the time limit is reached and the modules at work do not tell.
+    name: the word of the command line; folder: in heuncli/commands, where that is not the name; page: of the manual,
+    heuncli/manual/PAGE.md, that tells of it; grace: seconds that it may go on beyond its time limit, to tell what it
+    has by then (others have nothing); phase: what it is doing, where the time limit is reached and the modules at work
+    do not tell.
     """
 
     name: str
     folder: str = ""
+    page: str = "commands"
     grace: float = GRACE
     phase: str = UNTOLD
 
@@ -57,12 +59,12 @@ class Asked(NamedTuple):
 COMMANDS = (
     Command("run"),
     Command("validate"),
-    Command("model"),
-    Command("modes"),
-    Command("chart", folder="charting", grace=0.8),
-    Command("probe", folder="probing", phase="while the neighbourhood of the motion was looked at"),
+    Command("model", page="model"),
+    Command("modes", page="modes"),
+    Command("chart", folder="charting", page="chart", grace=0.8),
+    Command("probe", folder="probing", page="probe", phase="while the neighbourhood of the motion was looked at"),
     Command("check"),
-    Command("methods"),
+    Command("methods", page="methods"),
     Command("explain"),
 )
 LATER_COMMANDS = ("balance", "lagrange", "schema", "new", "sweep", "plot")  # not in this version yet

@@ -8,7 +8,7 @@ from tests.contributing.addition import Addition, Edit, heun
 
 WEIGH = Addition(
     "A command",
-    {"heuncli/cli/registry.py": (Edit('    Command("model"),\n', '    Command("model"),\n    Command("weigh"),\n'),)},
+    {"heuncli/cli/registry.py": (Edit('    Command("check"),\n', '    Command("check"),\n    Command("weigh"),\n'),)},
     {
         "heuncli/commands/weigh/__init__.py": "",
         "heuncli/commands/weigh/request.py": '''"""What `heun weigh` is asked for: its options and arguments."""
@@ -56,6 +56,7 @@ def test_a_command(tmp_path: Path) -> None:
     assert (folder / "mass.txt").read_text() == "4.5 kg\n"
     assert heun(folder, "weigh", "nothing.yaml").returncode == 2
     assert "weigh" in heun(folder, "wheigh").stderr
+    assert heun(folder, "explain", "weigh").stdout.startswith("# Commands\n")  # the page that its row names
 
 
 def test_its_list() -> None:

@@ -7,16 +7,18 @@ from pathlib import Path
 
 from heuncli.cli.entry import UsageError
 from heuncli.cli.output import emit
+from heuncli.cli.registry import COMMANDS, command_of
 from heuncli.commands.explain.request import ExplainRequest
 from heuncli.errors import Problem
 from heuncli.nearest import did_you_mean
 
 FOLDER = Path(__file__).parents[2] / "manual"
-# in the order in which a reader may want them
-PAGES = (
-    "commands", "format", "results", "signs", "open", "stresses", "model", "rest", "modes", "methods", "accuracy",
-    "chart", "probe", "limits", "theory", "references", "decisions", "speed", "developing", "contributing", "index",
-)  # fmt: skip
+# in the order in which a reader may want them, the pages of single commands in the order of those
+PAGES = tuple(dict.fromkeys((
+    "commands", "format", "results", "signs", "open", "stresses", "rest", *(command.page for command in COMMANDS),
+    "accuracy", "limits", "theory", "references", "decisions", "speed", "developing", "contributing",
+    "index",
+)))  # fmt: skip
 
 
 def main(request: ExplainRequest) -> int:
@@ -26,7 +28,10 @@ def main(request: ExplainRequest) -> int:
 
 
 def page(topic: str) -> str:
-    """The text of a page. Raises UsageError where there is none of that name."""
+    """The text of a page, by its name or that of a command. Raises UsageError where there is none."""
+    command = command_of(topic)
+    if command is not None:
+        topic = command.page
     if topic not in PAGES:
         hint = f"{indexed(topic) or did_you_mean(topic, PAGES, 'topics')}; heun explain lists the pages"
         raise UsageError(Problem("bad-option", f"explain {topic}: no page of the manual is called that", hint=hint))

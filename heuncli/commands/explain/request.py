@@ -8,5 +8,7 @@ from heuncli.cli.options import OUTPUT, Option
 class ExplainRequest(NamedTuple):
     """Show a page of the manual, or the list of its pages."""
 
-    topic: Annotated[str | None, Option((), "The name of a page; without it, the list of them.", "TOPIC")] = None
+    topic: Annotated[
+        str | None, Option((), "The name of a page, or of a command; without it, the list of the pages.", "TOPIC")
+    ] = None
     output: Annotated[str | None, OUTPUT] = None

@@ -1,0 +1,72 @@
+"""Every command is a folder in heuncli/commands and a row in cli/registry.py, and loads nothing of another.
+
+The contracts of import-linter hold that where imports are written down; here it is seen in fresh processes.
+"""
+
+from __future__ import annotations
+
+import os
+import subprocess
+import sys
+from collections.abc import Iterator
+from pathlib import Path
+
+import pytest
+
+import heuncli
+from heuncli.cli.options import fields_of
+from heuncli.cli.registry import COMMANDS, Command
+
+PACKAGE = Path(heuncli.__file__).parent
+LINES = {"methods": (), "explain": (), "chart": ("-", "--methods", "RK4", "--steps", "0.02")}  # of others: the spec
+SWINGING = """\
+heun: 1
+gravity: [0, 0, -9.81]
+ground: {points: {O: [0, 0, 0]}}
+bodies: {bar: {mass: 1, center: [0, 0, -0.5], inertia: [0.1, 0.1, 0.01]}}
+joints: {pivot: {type: pin, axis: [1, 0, 0], from: ground.O, to: {body: bar, at: [0, 0, 0]}}}
+analysis: {duration: 0.1, samples: 3}
+"""
+LOADED = """\
+import sys
+from heuncli.cli.entry import enter
+enter(sys.argv[1:])
+print(*(name for name in sys.modules if name.startswith("heuncli.commands.")), file=sys.stderr)
+"""
+
+
+def test_every_folder_has_its_row_and_every_row_its_folder_and_its_page() -> None:
+    folders = sorted(path.parent.name for path in (PACKAGE / "commands").glob("*/__init__.py"))
+    assert sorted(command.folder or command.name for command in COMMANDS) == folders
+    assert all((PACKAGE / "manual" / f"{command.page}.md").exists() for command in COMMANDS)
+    assert all(command.request.__doc__ and fields_of(command.request) for command in COMMANDS)
+
+
+def loaded(*words: str) -> set[str]:
+    """Modules of commands that a fresh process has loaded when it has done what it was asked for."""
+    done = subprocess.run(
+        [sys.executable, "-c", LOADED, *words],
+        input=SWINGING, capture_output=True, text=True, check=True,
+        env={**os.environ, "PYTHONPATH": os.pathsep.join([str(PACKAGE.parent), os.environ.get("PYTHONPATH", "")])},
+    )  # fmt: skip
+    return set(done.stderr.splitlines()[-1].split())
+
+
+def folders_of(modules: set[str]) -> Iterator[str]:
+    """Whose they are."""
+    return (name.split(".")[2] for name in modules)
+
+
+@pytest.mark.parametrize("command", COMMANDS, ids=[command.name for command in COMMANDS])
+def test_a_command_loads_nothing_of_another(command: Command) -> None:
+    found = loaded(command.name, *LINES.get(command.name, ("-",)))
+    folder = command.folder or command.name
+    assert f"heuncli.commands.{folder}.command" in found
+    assert {*folders_of(found)} == {folder}
+
+
+def test_the_help_loads_requests_alone() -> None:
+    found = loaded("--help")
+    assert {name.split(".")[-1] for name in found} == {"request", *folders_of(found)}
+    assert {*folders_of(found)} == {command.folder or command.name for command in COMMANDS}
+    assert {*folders_of(loaded("run", "--help"))} == {"run"}
