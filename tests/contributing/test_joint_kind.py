@@ -7,7 +7,7 @@ from pathlib import Path
 
 import pytest
 
-from tests.contributing.addition import Addition, after, answers, heun
+from tests.contributing.addition import Addition, Edit, after, answers, heun
 
 SLED = Addition(  # face on face: it slides on a plane and turns about the normal
     "A kind of joint",
@@ -22,17 +22,16 @@ SLED = Addition(  # face on face: it slides on a plane and turns about the norma
 """),
         ),
         "heuncli/spec/format.py": (
-            after("""class Plane(AnyJoint):
-    type: Literal["plane"]
-    normal: Direction
-""", """
-
-class Sled(AnyJoint):
+            Edit("JointEntry = (\n", """class SledJoint(AnyJoint):
     type: Literal["sled"]
     normal: Direction
+
+
+JointEntry = (
+    SledJoint |
 """),
-            after(" | Line | Plane", " | Sled"),
-            after('"line": Line, "plane": Plane,', ' "sled": Sled,'),
+            after("JOINTS: dict[str, type[JointEntry]] = {\n", """    "sled": SledJoint,
+"""),
         ),
     },
 )  # fmt: skip

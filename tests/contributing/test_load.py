@@ -12,23 +12,18 @@ COUNTERWEIGHT = Addition(  # a rope over a pulley, whose pull is the same at any
     "A load",
     {
         "heuncli/spec/format.py": (
-            after("""class Spring(Model):
-    type: Literal["spring"]
-    from_: AnEnd = Field(alias="from")
-    to: AnEnd
-    stiffness: Stiffness
-    length: Length
-    damping: Damping = 0.0
-""", """
-
-class Counterweight(Model):
+            Edit("LoadEntry = (\n", """class CounterweightEntry(Entry):
     type: Literal["counterweight"]
     from_: AnEnd = Field(alias="from")
     to: AnEnd
     pull: Force
+
+
+LoadEntry = (
+    CounterweightEntry |
 """),
-            Edit("Load = PointForce | ", "Load = Counterweight | PointForce | "),
-            after('    "force": PointForce, ', '"counterweight": Counterweight, '),
+            after("LOADS: dict[str, type[LoadEntry]] = {\n", """    "counterweight": CounterweightEntry,
+"""),
         ),
         "heuncli/spec/models.py": (
             Edit("Force = PointForce | ", '''class Counterweight(NamedTuple):
@@ -43,16 +38,16 @@ class Counterweight(Model):
 Force = Counterweight | PointForce | '''),
         ),
         "heuncli/spec/resolve.py": (
-            Edit("            case f.TurnSpring():\n", """            case f.Counterweight():
+            Edit("            case f.TurnSpringEntry():\n", """            case f.CounterweightEntry():
                 return m.Counterweight(self.end(load.from_), self.end(load.to), load.pull)
-            case f.TurnSpring():
+            case f.TurnSpringEntry():
 """),
         ),
         "heuncli/spec/rules/references.py": (
-            Edit("load, f.Actuator | f.Spring):", "load, f.Actuator | f.Spring | f.Counterweight):"),
+            Edit("f.ActuatorEntry | f.SpringEntry):", "f.ActuatorEntry | f.SpringEntry | f.CounterweightEntry):"),
         ),
         "heuncli/spec/rules/joints.py": (
-            Edit("load, f.Actuator | f.Spring) or", "load, f.Actuator | f.Spring | f.Counterweight) or"),
+            after("not isinstance(load, f.ActuatorEntry | f.SpringEntry", " | f.CounterweightEntry"),
         ),
         "heuncli/mechanism/build.py": (
             Edit("        case m.Torque():\n", """        case m.Counterweight():
