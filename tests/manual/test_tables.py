@@ -175,6 +175,7 @@ def test_words_are_those_of_the_models() -> None:
             assert f"`{word}`" in " ".join(row.values()), f"{heading}: {row['key']} lacks {word}"
 
 
-def test_a_joint_is_told_for_each_type() -> None:
-    first, *_ = tables_below(TEXTS["format"], "Joints")
-    assert re.findall(r"^\| `(\w+)`", first, re.MULTILINE) == list(f.JOINTS)
+@pytest.mark.parametrize(("heading", "types"), [("Joints", f.JOINTS), ("Forces", f.LOADS)])
+def test_each_type_is_told_in_a_word(heading: str, types: Mapping[str, type[Model]]) -> None:
+    first, *_ = tables_below(TEXTS["format"], heading)
+    assert re.findall(r"^\| `(\w+)`", first, re.MULTILINE) == list(types)
