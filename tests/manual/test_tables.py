@@ -176,6 +176,6 @@ def test_words_are_those_of_the_models() -> None:
 
 
 @pytest.mark.parametrize(("heading", "types"), [("Joints", f.JOINTS), ("Forces", f.LOADS)])
-def test_each_type_is_told_in_a_word(heading: str, types: Mapping[str, type[Model]]) -> None:
+def test_each_type_is_told_in_a_word(heading: str, types: Mapping[str, type[Entry]]) -> None:
     first, *_ = tables_below(TEXTS["format"], heading)
     assert re.findall(r"^\| `(\w+)`", first, re.MULTILINE) == list(types)
