@@ -12,7 +12,6 @@ from __future__ import annotations
 import math
 from collections.abc import Iterator
 from contextlib import suppress
-from pathlib import Path
 from typing import NamedTuple
 
 import numpy as np
@@ -34,8 +33,8 @@ from heuncli.study.model.options import Options
 from heuncli.study.model.setup import Setup, set_up
 from heuncli.study.workflow import solve
 from tests.bench.stiff import STIFF_SCENES
+from tests.shared.folders import ROOT
 
-ROOT = Path(__file__).parents[2]
 ASKED = (1e-4, 1e-6, 1e-9, 1e-12)
 FINEST = 3e-15  # local tolerance of the reference
 MOST = 2.0  # times auto's evaluations: a method that needs more is not looked at further

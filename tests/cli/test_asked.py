@@ -31,8 +31,8 @@ from heuncli.study.solve import load_errors
 from heuncli.study.workflow import describe, solve
 from tests.shared.command import SPEC_TEXTS as SPECS_OF
 from tests.shared.command import Heun
+from tests.shared.folders import SPECS
 
-SPECS = Path(__file__).parents[2] / "specs"
 ROD = "shapes: [{type: rod, from: [0, 0, 0], to: [0, 0, -1], mass: 1}]"
 MANY = 100 if KERNEL == "compiled" else 10
 SMALL = 1e-7  # both runs keep 1e-9 of their scene's size; what is compared is of that size and some ten times as large

@@ -19,8 +19,8 @@ from heuncli.integration import evaluator
 from heuncli.spec.load import load
 from heuncli.study.workflow import solve
 from tests.shared.command import HANGING, Heun
+from tests.shared.folders import SPECS
 
-SPECS = Path(__file__).parents[2] / "specs"
 ENOUGH = 5.0  # seconds in which a command of a tenth of a second is given up, on a machine that does much else
 REST = HANGING + "analysis: {type: rest}\n"
 DRIVEN = (

@@ -21,9 +21,8 @@ from heuncli.study.model.selection import Selection
 from heuncli.study.model.setup import set_up
 from heuncli.study.workflow import solve
 from tests.shared.command import Heun
+from tests.shared.folders import SPECS
 from tests.shared.shell import shell
-
-SPECS = Path(__file__).parents[2] / "specs"
 
 
 @pytest.mark.parametrize("words", ["run", "run --format json", "run --format csv", "check"])

@@ -10,7 +10,8 @@ from pathlib import Path
 
 import pytest
 
-ROOT = Path(__file__).parents[2]
+from tests.shared.folders import ROOT
+
 # Sends itself a signal, twice, when a module is looked for or a function of `os` is called; then runs the command.
 SHOT = """\
 import os, signal, sys

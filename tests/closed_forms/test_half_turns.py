@@ -3,7 +3,6 @@
 from __future__ import annotations
 
 import math
-from pathlib import Path
 
 import numpy as np
 import pytest
@@ -15,12 +14,12 @@ from heuncli.results import Array
 from heuncli.spec.load import load
 from heuncli.study.model.setup import set_up
 from tests.shared.bars import double
+from tests.shared.folders import SPECS
 from tests.shared.scenes import near, solved, study
 from tests.shared.tops import PERIOD, free_top, heavy_top
 
 GLOBAL, ANEW = "DOP853-rodrigues", "DOP853-recentred"
 METHODS = (GLOBAL, ANEW)
-SPECS = Path(__file__).parents[2] / "specs"
 
 
 def spinner(times: str, omega: str = "[0, 0, 1]", inertia: str = "[1, 2, 3]", start: str = "") -> str:

@@ -6,7 +6,6 @@ Steady states of what drives turn; ropes and stops that bear or do not; why ther
 from __future__ import annotations
 
 import math
-from pathlib import Path
 
 import numpy as np
 import pytest
@@ -21,11 +20,11 @@ from heuncli.shapes.rotations import from_vector
 from heuncli.spec.load import load
 from heuncli.study.ask.study import Study
 from heuncli.study.workflow import solve
+from tests.shared.folders import ROOT
 from tests.shared.scenes import near, solved, study
 
 pytestmark = pytest.mark.heavy  # families: the plain kernel has the same bits (tests/package/test_kernels_agree.py)
 
-ROOT = Path(__file__).parents[2]
 G = 9.81
 HEAD = f"heun: 1\ngravity: [0, 0, -{G}]\nanalysis: {{type: rest}}\n"
 POINTS = "ground: {points: {O: [0, 0, 0], A: [1, 0, 0]}}\n"

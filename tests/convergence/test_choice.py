@@ -2,8 +2,6 @@
 
 from __future__ import annotations
 
-from pathlib import Path
-
 import numpy as np
 import pytest
 
@@ -12,9 +10,9 @@ from heuncli.spec.load import load
 from heuncli.study.ask.study import Study
 from heuncli.study.model.options import Options
 from heuncli.study.workflow import describe, solve
+from tests.shared.folders import SPECS
 from tests.shared.scenes import near, study
 
-SPECS = Path(__file__).parents[2] / "specs"
 # a ball that bounces some twenty times and lies still, beside a pendulum that swings on
 BESIDE_A_PENDULUM = """
 heun: 1

@@ -7,7 +7,6 @@ from __future__ import annotations
 
 import math
 from functools import cache
-from pathlib import Path
 from typing import Any
 
 import numpy as np
@@ -19,9 +18,9 @@ from heuncli.study.ask.study import Study
 from heuncli.study.model.options import Options
 from heuncli.study.workflow import solve
 from tests.shared.bars import HEAD, rods
+from tests.shared.folders import SPECS
 from tests.shared.scenes import solved
 
-SPECS = Path(__file__).parents[2] / "specs"
 NAMES = ("crane", "engine", "double", "chain", "friction", "lift", "four_bar", "spatial_crank", "cardan", "jib", "top")
 KINDS = ("reactions", "drives", "foundation", "sections", "energy")
 LOOSE = 1e-6

@@ -7,7 +7,6 @@ one instant what the pose's own rounding makes of them.
 from __future__ import annotations
 
 from functools import cache
-from pathlib import Path
 from typing import Any
 
 import numpy as np
@@ -18,9 +17,9 @@ from heuncli.spec.load import load
 from heuncli.study.ask.study import Study
 from heuncli.study.model.options import Options
 from heuncli.study.workflow import solve
+from tests.shared.folders import SPECS
 from tests.shared.scenes import study
 
-SPECS = Path(__file__).parents[2] / "specs"
 WANTED = frozenset({"joints", "foundation", "sections", "shares"})
 NAMES = ("crane_load", "engine", "double", "friction", "four_bar", "spatial_crank", "jib", "hammered_four_bar")
 LOOSE = 1e-6

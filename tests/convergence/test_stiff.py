@@ -3,7 +3,6 @@
 from __future__ import annotations
 
 import math
-from pathlib import Path
 
 import numpy as np
 import pytest
@@ -12,9 +11,9 @@ from heuncli.integration.run.request import MotionTask, StoppingRules
 from heuncli.spec.load import load
 from heuncli.study.workflow import describe
 from tests.bench.stiff import FRICTION, STIFF_SCENES, WIRE
+from tests.shared.folders import SPECS
 from tests.shared.scenes import near, study
 
-SPECS = Path(__file__).parents[2] / "specs"
 GOVERNOR = STIFF_SCENES["governor, 10 s"]
 # manual/references.md, "Governor": travel of the sleeve, by a reduced model; 8 digits
 TRAVEL = {1.0: 0.50142092, 2.0: 0.50590929, 5.0: 0.5355631, 10.0: 0.61962292}

@@ -3,10 +3,10 @@
 from __future__ import annotations
 
 import re
-from pathlib import Path
 from random import Random
 
-SPECS = Path(__file__).parents[2] / "specs"
+from tests.shared.folders import SPECS
+
 # a number that is no part of a name, nor of the format's version; its unit stays behind it
 NUMBER = re.compile(r"(?<![\w.])[-+]?(?:\d+\.?\d*|\.\d+)(?:[eE][-+]?\d+)?(?![\w.])")
 SPECIAL = ("0", "-0.0", "5e-324", "-2e-310", "1.8e308", "1e-60", "1e60", "-1e-60", "9.9e59")

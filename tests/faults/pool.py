@@ -16,7 +16,8 @@ from collections.abc import Iterable, Iterator
 from pathlib import Path
 from typing import Any, NamedTuple
 
-ROOT = Path(__file__).parents[2]
+from tests.shared.folders import ROOT
+
 PROCESSOR = 25.0  # seconds of the processor that a case may take altogether, and
 PATIENCE = 240.0  # of the clock: the machine may be busy, or the case wait for what never comes
 CASES = 400  # of one process: what a process keeps from case to case does not pile up

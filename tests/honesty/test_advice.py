@@ -5,7 +5,6 @@ from __future__ import annotations
 import json
 import re
 from collections.abc import Mapping
-from pathlib import Path
 from typing import Any
 
 import numpy as np
@@ -22,11 +21,11 @@ from tests.oracle.transforms import turned
 from tests.oracle.turns import random_rotation
 from tests.oracle.values import to_yaml
 from tests.shared.doubles import redundant_scene
+from tests.shared.folders import SPECS
 from tests.shared.redundant_supports import door
 from tests.shared.scenes import near
 
 KEPT = (2003, 2005, 2021, 2041, 2048, 2056, 2065, 2086, 2096)  # of the random scenes: some that have an advice
-SPECS = Path(__file__).parents[2] / "specs"
 REPLACED = re.compile(r"(\w+) as (\w+)(?: \((to_axis|axis) (\[[^]]*\])\))?")
 
 

@@ -3,7 +3,6 @@
 from __future__ import annotations
 
 import math
-from pathlib import Path
 from typing import Any, NamedTuple
 
 import numpy as np
@@ -16,11 +15,10 @@ from heuncli.report.text_table import plain
 from heuncli.study.ask.expectations import compare
 from heuncli.study.ask.study import Study
 from heuncli.study.search.extremes import ColumnSearch
+from tests.shared.folders import SPECS
 from tests.shared.scenes import near, study
 
 pytestmark = pytest.mark.heavy  # a family at random: with the compiled kernel, which has the same bits
-
-SPECS = Path(__file__).parents[2] / "specs"
 
 
 def tables(run: Study) -> str:

@@ -15,8 +15,8 @@ from heuncli.spec.load import load
 from heuncli.study.ask.study import Study
 from heuncli.study.model.options import Options
 from heuncli.study.workflow import solve
+from tests.shared.folders import SPECS
 
-SPECS = Path(__file__).parents[2] / "specs"
 SOLVED = ("double", "engine", "spatial_crank", "skew_rod", "hammered_four_bar", "crankshaft_stiff")
 WANTED = frozenset({"joints", "motion", "foundation", "shares", "impulses"})
 

@@ -3,7 +3,6 @@
 from __future__ import annotations
 
 import math
-from pathlib import Path
 from typing import Any
 
 import numpy as np
@@ -22,9 +21,9 @@ from heuncli.spec.load import load
 from heuncli.study.model.setup import set_up
 from heuncli.tree.layout import places_of_rates
 from tests.oracle.values import to_yaml
+from tests.shared.folders import ROOT
 from tests.shared.governors import porter, spindle
 
-ROOT = Path(__file__).parents[2]
 SMALL = 1e-5  # of turns, of the size, and of both a second: what is not linear is smaller by this once more
 SPECS = sorted(path.name for path in (ROOT / "specs").glob("*.yaml"))
 

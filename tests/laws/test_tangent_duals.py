@@ -6,7 +6,6 @@ kind of load, expressions in coordinates and rates on all their branches.
 
 from __future__ import annotations
 
-from pathlib import Path
 from typing import Any
 
 import numpy as np
@@ -18,6 +17,7 @@ from heuncli.study.model.setup import set_up
 from heuncli.tree.layout import Layout
 from tests.oracle.values import to_yaml
 from tests.shared.dual_tangent import dual_tangent
+from tests.shared.folders import SPECS
 from tests.shared.loops import loop_scene
 from tests.shared.parallelogram import parallelogram
 from tests.shared.planar_scenes import flat_scene
@@ -25,7 +25,6 @@ from tests.shared.thin_rods import thin_rods
 from tests.shared.trees import tree_scene
 
 pytestmark = pytest.mark.heavy
-SPECS = Path(__file__).parents[2] / "specs"
 MOVED = 0.2  # of a radian, or metre: far from where a scene was drawn
 NAMES = ("bricard", "cardan", "crane", "crankshaft", "double", "engine", "excavator", "hammered_four_bar", "lamp",
          "lift", "press", "spatial_crank", "swing")  # fmt: skip

@@ -2,8 +2,6 @@
 
 from __future__ import annotations
 
-from pathlib import Path
-
 import numpy as np
 import pytest
 
@@ -14,8 +12,8 @@ from heuncli.response import jacobian
 from heuncli.rest.coordinates import coordinates_of
 from heuncli.spec.load import load
 from heuncli.study.model.setup import Setup, set_up
+from tests.shared.folders import SPECS
 
-SPECS = Path(__file__).parents[2] / "specs"
 SCENES = ("bricard", "cardan", "crane", "double", "excavator", "lift", "slider_crank_pins", "spatial_crank", "swing")
 ROUNDED = 1e-13  # hundreds of roundings of sums whose terms are of the order of 1
 

@@ -14,7 +14,8 @@ from typing import NamedTuple
 
 import pytest
 
-ROOT = Path(__file__).parents[2]
+from tests.shared.folders import ROOT
+
 PACKAGE, TESTS, MANUAL = ROOT / "heuncli", ROOT / "tests", ROOT / "heuncli" / "manual"
 SOURCES = sorted([*PACKAGE.rglob("*.py"), *TESTS.rglob("*.py")])
 PAGES = sorted(MANUAL.glob("*.md"))

@@ -14,8 +14,8 @@ import pytest
 
 from heuncli.kernel.form import FOLDER
 from heuncli.kernel.modules import DECLARED, MODULES
+from tests.shared.folders import ROOT
 
-ROOT = Path(__file__).parents[2]
 PROJECT = tomllib.loads((ROOT / "pyproject.toml").read_text())
 
 

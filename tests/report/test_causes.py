@@ -19,8 +19,8 @@ from heuncli.study.ask.study import Study
 from heuncli.study.model.options import Options
 from heuncli.study.search.extremes import ColumnSearch
 from heuncli.study.workflow import solve
+from tests.shared.folders import SPECS
 
-SPECS = Path(__file__).parents[2] / "specs"
 WANTED = frozenset({"foundation", "joints", "sections", "shares"})
 
 

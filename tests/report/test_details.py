@@ -3,7 +3,6 @@
 from __future__ import annotations
 
 from dataclasses import replace
-from pathlib import Path
 from typing import Any
 
 import numpy as np
@@ -17,7 +16,6 @@ from heuncli.results import Magnitudes, Results
 from tests.shared.fakes import LABELS, MAGNITUDES, FakeStudy, found_extremes, pendulum, restrict
 
 ONE = np.array([0.5])
-SPECS = Path(__file__).parents[2] / "specs"
 
 
 def at_one(wanted: str, labels: Labels = LABELS, of: Magnitudes = MAGNITUDES, **changes: Any) -> list[str]:

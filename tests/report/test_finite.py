@@ -20,8 +20,8 @@ from heuncli.study.compose.finiteness import leaves, require_finite
 from heuncli.study.model.options import Options
 from heuncli.study.workflow import solve
 from tests.shared.command import Heun
+from tests.shared.folders import ROOT
 
-ROOT = Path(__file__).parents[2]
 # together they hold every quantity
 SCENES = ("door", "table", "percussion", "ladder", "door_closer", "swing", "jib", "crane", "cardan", "sprung")
 NOT_FLOATS = {"events.EVENT.begins", "events.EVENT.to", "accuracy.horizon"}

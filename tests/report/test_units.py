@@ -4,7 +4,6 @@ from __future__ import annotations
 
 import math
 import re
-from pathlib import Path
 
 import pytest
 
@@ -12,8 +11,7 @@ from heuncli.cli.entry import enter
 from heuncli.errors import Finding
 from heuncli.report.digits import Certainty, with_units
 from heuncli.report.table_units import Units, asked
-
-SPECS = Path(__file__).parents[2] / "specs"
+from tests.shared.folders import SPECS
 
 
 @pytest.mark.parametrize(("words", "unit", "shown", "size"), [

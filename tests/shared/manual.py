@@ -5,7 +5,8 @@ from __future__ import annotations
 import re
 from pathlib import Path
 
-ROOT = Path(__file__).parents[2]
+from tests.shared.folders import ROOT
+
 FOLDER = ROOT / "heuncli" / "manual"
 README = "README"
 TEXTS = {README: (ROOT / "README.md").read_text(encoding="utf-8")} | {

@@ -2,14 +2,12 @@
 
 from __future__ import annotations
 
-from pathlib import Path
-
 import pytest
 
 from heuncli.errors import Problem, SpecError
 from heuncli.spec.source import parse
+from tests.shared.folders import SPECS
 
-SPECS = Path(__file__).parents[2] / "specs"
 TEXT = """\
 heun: 1
 gravity: [0, 0, -9.81]

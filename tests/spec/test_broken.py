@@ -11,8 +11,8 @@ import pytest
 from heuncli.errors import HeunError
 from heuncli.spec.load import load
 from heuncli.study.workflow import solve
+from tests.shared.folders import ROOT
 
-ROOT = Path(__file__).parents[2]
 FILES = sorted((ROOT / "specs" / "broken").glob("*.yaml"))
 HEAD = re.compile(r"# (code|warning): ([\w-]+)(?: at (\d+):(\d+))?\n# see: (.+)\n(?:# set: (\w+)=(.*)\n)?")
 WITHOUT_A_FILE = {

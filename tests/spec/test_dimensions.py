@@ -5,7 +5,6 @@ from __future__ import annotations
 import math
 import random
 import re
-from pathlib import Path
 
 import pytest
 
@@ -17,6 +16,7 @@ from heuncli.expressions.programs import Expression
 from heuncli.expressions.units import NUMBER, Dimension, parse_unit
 from heuncli.records import replace
 from heuncli.spec.load import load
+from tests.shared.folders import ROOT
 from tests.shared.manual import TEXTS, file_of
 
 WRITTEN = {
@@ -273,7 +273,6 @@ def test_a_wrong_parameter_is_told_once() -> None:
     assert codes("free", free="L + c") == ["wrong-dimension: 'L + c' adds a length and a mass"]
 
 
-ROOT = Path(__file__).parents[2]
 YAML = re.compile(r"(heun: 1\n(?:.|\n)*?)(?:\"\"\"|```)")
 
 

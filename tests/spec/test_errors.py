@@ -12,8 +12,7 @@ from heuncli.spec.load import load
 from heuncli.spec.models import Spec
 from heuncli.spec.rules import not_yet
 from heuncli.spec.rules.every import RULES, DraftDocument
-
-ROOT = Path(__file__).parents[2]
+from tests.shared.folders import ROOT
 
 
 @pytest.fixture(autouse=True)
