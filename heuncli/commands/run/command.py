@@ -36,7 +36,7 @@ from heuncli.study.ask.study import Study
 from heuncli.study.model.error_places import placed
 from heuncli.study.model.memory_estimate import Room
 from heuncli.study.model.options import Options
-from heuncli.study.model.selection import Entry, Selection, asked_by, entries_of, entry_at
+from heuncli.study.model.selection import EntryKeys, Selection, asked_by, entries_of, entry_at
 from heuncli.study.workflow import solve
 
 ENDINGS = {".json": "json", ".csv": "csv", ".md": "markdown", ".txt": "table", "": "table"}
@@ -113,7 +113,7 @@ def _asked(
         wanted = frozenset({BLOWS})
     if spec.report is not None:
         wanted = frozenset(spec.report)
-    entries = frozenset[Entry]()
+    entries = frozenset[EntryKeys]()
     if only is not None:
         wanted, paths = only
         single = [_entry(path, spec) for path in paths]
@@ -122,7 +122,7 @@ def _asked(
     return Selection(with_shared(wanted | {SHARES} if request.by_cause else wanted), entries)
 
 
-def _entry(path: str, spec: Spec) -> Entry:
+def _entry(path: str, spec: Spec) -> EntryKeys:
     """The entry that a path of `--only` names."""
     words = path.split(".")
     known = entries_of(spec)
@@ -141,7 +141,7 @@ def _entry(path: str, spec: Spec) -> Entry:
     raise UsageError(Problem("bad-option", message, hint=hint))
 
 
-def _meant(path: str, known: Mapping[Entry, Mapping[str, Any]]) -> str:
+def _meant(path: str, known: Mapping[EntryKeys, Mapping[str, Any]]) -> str:
     """What may be meant by a path of `--only` that begins with no block."""
     from heuncli.path_hints import meant  # only on the way to an error
 

@@ -9,7 +9,7 @@ from heuncli.results_schema import REPORTS, with_shared
 from heuncli.spec.methods import unfit
 from heuncli.spec.models import Spec
 from heuncli.study.model.memory_estimate import Room
-from heuncli.study.model.selection import Entry, Selection
+from heuncli.study.model.selection import EntryKeys, Selection
 
 
 @record
@@ -23,7 +23,7 @@ class Options:
     method: str | None = None
     step: float | None = None  # of a method of fixed step [s]
     wanted: frozenset[str] | None = None
-    entries: frozenset[Entry] = frozenset()
+    entries: frozenset[EntryKeys] = frozenset()
     axes: str = "world"
     time_limit: float | None = None
     least_norm: bool = False

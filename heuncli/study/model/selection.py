@@ -14,7 +14,7 @@ from heuncli.results import CertainSum
 from heuncli.results_schema import REPORT_OF, REPORTS, SHARES, leading_key, report_of
 from heuncli.spec.models import ResultCondition, Spec, WatchedCondition
 
-Entry = tuple[str, ...]
+EntryKeys = tuple[str, ...]
 ALL_OF_IT = frozenset({"foundation", "sections"})  # of all bodies, of all sections
 
 
@@ -26,7 +26,7 @@ class Selection:
     """
 
     reports: frozenset[str] = frozenset(REPORTS)
-    entries: frozenset[Entry] = frozenset()
+    entries: frozenset[EntryKeys] = frozenset()
     axes: str = "world"
 
     @property
@@ -60,7 +60,7 @@ EVERYTHING = Selection()
 def asked_by(paths: Iterable[str], spec: Spec) -> Selection:
     """What some paths into the results need; everything where the first word of one does not say."""
     known = entries_of(spec)
-    reports, whole, entries = set[str](), set[str](), set[Entry]()
+    reports, whole, entries = set[str](), set[str](), set[EntryKeys]()
     for path in paths:
         words = path.split(".")
         report = report_of(words[0])
@@ -80,13 +80,13 @@ def needed_by(conditions: Iterable[WatchedCondition], spec: Spec) -> Selection:
     return asked_by([condition.of for condition in conditions if isinstance(condition, ResultCondition)], spec)
 
 
-def share_of(words: Sequence[str], spec: Spec) -> set[Entry]:
+def share_of(words: Sequence[str], spec: Spec) -> set[EntryKeys]:
     """The force whose share a path names: it is needed, though none of the parts that it does not reach feels it."""
     cause = words[words.index(SHARES) + 1 :][:1] if SHARES in words else []
     return {("forces", name) for name in cause if name in spec.forces}
 
 
-def entry_at(words: Sequence[str], known: Mapping[Entry, Mapping[str, Any]]) -> tuple[Entry | None, list[str]]:
+def entry_at(words: Sequence[str], known: Mapping[EntryKeys, Mapping[str, Any]]) -> tuple[EntryKeys | None, list[str]]:
     """The entry of the results to which the first words of a path lead, and the words behind it."""
     for block, names in known.items():
         if tuple(words[: len(block)]) == block:
@@ -96,7 +96,7 @@ def entry_at(words: Sequence[str], known: Mapping[Entry, Mapping[str, Any]]) -> 
     return None, list(words)
 
 
-def entries_of(spec: Spec) -> dict[Entry, dict[str, Any]]:
+def entries_of(spec: Spec) -> dict[EntryKeys, dict[str, Any]]:
     """What can be asked for by its name, by the block in which it stands: of each name what it stands on in the spec.
 
     That is a joint, a force, ..., or the name of a body.
@@ -126,7 +126,7 @@ def chosen(shown: Mapping[str, Any], asked: Selection) -> dict[str, Any]:
     return found
 
 
-def picked(block: Mapping[str, Any], entries: Sequence[Entry]) -> dict[str, Any]:
+def picked(block: Mapping[str, Any], entries: Sequence[EntryKeys]) -> dict[str, Any]:
     """What stands in a block under some keys."""
     found: dict[str, Any] = {}
     for key, value in block.items():
