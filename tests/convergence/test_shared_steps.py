@@ -11,7 +11,7 @@ import math
 import numpy as np
 import pytest
 
-from heuncli.integration.check import estimate as checked
+from heuncli.integration.check import runs
 from tests.shared.scenes import study
 
 CASES = [(10, 10), (10, 14), (10, 20), (20, 20), (20, 28), (30, 40)]  # w [1/s], jumps a second
@@ -52,13 +52,13 @@ def test_what_is_told_is_no_less_than_the_error(w: int, jumps: int, monkeypatch:
     off /= s.setup.runner.layout.size
     assert off > 1e-12  # more than rounding
     assert off <= found.accuracy["estimate"]["motion"] <= LOOSE
-    monkeypatch.setattr(checked, "shared_steps", lambda *_: False)  # by the difference of the two alone
+    monkeypatch.setattr(runs, "shared_steps", lambda *_: False)  # by the difference of the two alone
     assert study(text(w, jumps), method="DOP853").results.accuracy["estimate"]["motion"] < 1e-3 * off
 
 
 def test_a_run_that_ends_at_its_start_shares_no_step() -> None:
     """As where a rope would have to push at once, in a start moved by rounding alone."""
-    assert not checked.shared_steps(np.array([0.1, 0.2]), np.zeros(0))
+    assert not runs.shared_steps(np.array([0.1, 0.2]), np.zeros(0))
 
 
 WIDE = """
