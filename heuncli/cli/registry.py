@@ -23,10 +23,10 @@ from heuncli.cli.options import Request
 class Command(NamedTuple):
     """A command.
 
-    name: the word of the command line; folder: in heuncli/commands, where that is not the name; page: of the manual,
-    heuncli/manual/PAGE.md, that tells of it; grace: seconds that it may go on beyond its time limit, to tell what it
-    has by then (others have nothing); phase: what it is doing, where the time limit is reached and the modules at work
-    do not tell.
+    name: the word of the command line; folder: in heuncli/commands, where that is not the name; page: the name of the
+    page of the manual that tells of it; grace: seconds that it may go on beyond its time limit, to tell what it has by
+    then (others have nothing); phase: what it is doing, where the time limit is reached and the modules at work do not
+    tell.
     """
 
     name: str

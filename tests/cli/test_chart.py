@@ -13,9 +13,9 @@ from typing import Any, cast
 
 import pytest
 
-from heuncli.commands.charting.results import COMPLETED, Charted, Row
-from heuncli.commands.charting.runs import Charting, Timed
-from heuncli.drawing import by_matplotlib as picture_plot
+from heuncli.commands.charting.results import COMPLETED, ChartedRun, ChartRow
+from heuncli.commands.charting.runs import ChartRuns, TimedRun
+from heuncli.drawing import matplotlib_file
 from tests.shared.command import HANGING, SPEC_TEXTS, TURNED, Heun
 
 FEW = ("--methods", "DOP853", "--tolerances", "1e-4,1e-8")
@@ -89,7 +89,7 @@ def test_one_file_is_not_written_twice(heun: Heun) -> None:
 
 
 def test_a_missing_extra_is_told_before_the_work(heun: Heun, monkeypatch: pytest.MonkeyPatch) -> None:
-    monkeypatch.setattr(picture_plot.importlib.util, "find_spec", lambda name: None)
+    monkeypatch.setattr(matplotlib_file.importlib.util, "find_spec", lambda name: None)
     done = heun("chart", "long.yaml", "--save", "chart.png")
     assert done.returncode == 2 and "[missing-extra]" in done.stderr and 'pip install "heuncli[plot]"' in done.stderr
 
@@ -137,9 +137,9 @@ def test_a_run_that_fails_is_that_error(heun: Heun, folder: Path) -> None:
 
 
 def test_beyond_the_time_limit_rows_are_told_not_run(heun: Heun, monkeypatch: pytest.MonkeyPatch) -> None:
-    from heuncli.commands.charting.motion import Motion
+    from heuncli.commands.charting.motion import ChartedMotion
 
-    monkeypatch.setattr(Motion, "late", True)
+    monkeypatch.setattr(ChartedMotion, "late", True)
     found = json.loads(heun("chart", "swinging.yaml", *FEW, "--time-limit", "60", "--format", "json").stdout)
     assert {run["status"] for run in found["runs"]} == {"not run"} and len(found["runs"]) == 2
     assert all(run["code"] == "time-limit" and run["seconds"] is None for run in found["runs"])
@@ -170,7 +170,7 @@ def test_no_run_is_timed_again_beyond_the_limit(monkeypatch: pytest.MonkeyPatch)
         motion.late = len(again) == 2
         return 0.01
 
-    runs = Charting(cast(Any, motion), cast(Any, SimpleNamespace(seconds=1.0)), lambda done, of, what: None)
-    rows = [Row("RK4", "quaternion", True, 1e-3)] * 4
-    monkeypatch.setattr(runs, "one", lambda row: Timed(Charted(row, COMPLETED, 0.01), run, [0.01]))
+    runs = ChartRuns(cast(Any, motion), cast(Any, SimpleNamespace(seconds=1.0)), lambda done, of, what: None)
+    rows = [ChartRow("RK4", "quaternion", True, 1e-3)] * 4
+    monkeypatch.setattr(runs, "one", lambda row: TimedRun(ChartedRun(row, COMPLETED, 0.01), run, [0.01]))
     assert len(runs.all(rows)) == 4 and len(again) == 2

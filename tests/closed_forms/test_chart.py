@@ -14,10 +14,10 @@ from scipy.special import ellipj, ellipk
 
 from heuncli.commands.charting import runs as chart_runs
 from heuncli.commands.charting.motion import motion_of
-from heuncli.commands.charting.plan import Wanted
+from heuncli.commands.charting.plan import ChartOptions
 from heuncli.commands.charting.reference import refer
-from heuncli.commands.charting.results import Charted, ChartResults, Row
-from heuncli.commands.charting.runs import Charting
+from heuncli.commands.charting.results import ChartedRun, ChartResults, ChartRow
+from heuncli.commands.charting.runs import ChartRuns
 from heuncli.commands.charting.study import chart
 from heuncli.integration.check.runs import Runs
 from heuncli.integration.methods.dop853 import DOP853
@@ -66,7 +66,7 @@ def pivot_force(angle: Any, rate: Any) -> Any:
 
 @pytest.fixture(scope="module")
 def pendulum() -> ChartResults:
-    return chart(load("pendulum.yaml", PENDULUM), Wanted(("DOP853",), TOLERANCES))
+    return chart(load("pendulum.yaml", PENDULUM), ChartOptions(("DOP853",), TOLERANCES))
 
 
 def test_the_errors_of_a_pendulum_are_those_of_the_closed_form(pendulum: ChartResults) -> None:
@@ -118,7 +118,7 @@ analysis: {times: [1, 10]}
 
 def test_a_free_top_has_no_reactions_and_turns_as_it_should() -> None:
     """Momentum stays: what the chart calls the error of the motion is that of where the axes point."""
-    found = chart(load("free.yaml", FREE), Wanted(("DOP853",), (1e-4, 1e-8)))
+    found = chart(load("free.yaml", FREE), ChartOptions(("DOP853",), (1e-4, 1e-8)))
     assert found.kinds == ("motion",)
     coarse, fine = (run.error["motion"] or 0.0 for run in found.runs)
     assert fine < 1e-5 and coarse > 1e3 * fine
@@ -139,7 +139,7 @@ analysis: {duration: 1.5, samples: 151}
 
 
 def test_strikes_are_met_by_all_and_errors_do_not_see_the_jump() -> None:
-    found = chart(load("ball.yaml", BALL), Wanted(("DOP853",), (1e-4, 1e-8)))
+    found = chart(load("ball.yaml", BALL), ChartOptions(("DOP853",), (1e-4, 1e-8)))
     for run in found.runs:
         assert run.status == "completed" and (run.error["motion"] or 1.0) < 1e-10
 
@@ -159,7 +159,7 @@ joints:
   q: {type: pin, axis: [0, 1, 0], from: a.e, to: b.o, initial: {angle: 0}}
 analysis: {duration: 20, samples: 401}
 """
-    found = chart(load("chaotic.yaml", scene), Wanted(("DOP853",), (1e-6, 1e-12)))
+    found = chart(load("chaotic.yaml", scene), ChartOptions(("DOP853",), (1e-6, 1e-12)))
     reference = found.reference
     assert reference.horizon is not None and 12.0 < reference.horizon < 18.0
     assert 0.4 * reference.horizon < reference.until < reference.horizon and (reference.own["motion"] or 1) <= 1e-8
@@ -168,55 +168,55 @@ analysis: {duration: 20, samples: 401}
     assert coarse > 1e-3 > fine
 
 
-def row(found: ChartResults, local: float) -> Charted:
+def row(found: ChartResults, local: float) -> ChartedRun:
     return next(run for run in found.runs if run.row.local == local)
 
 
 def test_a_row_that_would_take_too_long_is_not_run() -> None:
     motion = motion_of(load("pendulum.yaml", PENDULUM), None)
-    charting = Charting(motion, refer(motion), lambda done, of, what: None)
-    found = charting.one(Row("DOP853", "quaternion", True, 1e-9))
-    assert isinstance(found, Charted) and found.status == "not run" and found.code == "too-long"
+    charting = ChartRuns(motion, refer(motion), lambda done, of, what: None)
+    found = charting.one(ChartRow("DOP853", "quaternion", True, 1e-9))
+    assert isinstance(found, ChartedRun) and found.status == "not run" and found.code == "too-long"
     assert found.reason.startswith("about 4e9 steps") and found.seconds is not None and found.seconds > 1.0
 
 
-def charting_of(text: str) -> Charting:
+def charting_of(text: str) -> ChartRuns:
     motion = motion_of(load("scene.yaml", text), None)
-    return Charting(motion, refer(motion), lambda done, of, what: None)
+    return ChartRuns(motion, refer(motion), lambda done, of, what: None)
 
 
 def test_what_a_coarser_tolerance_did_not_finish_is_not_run_at_a_finer_one() -> None:
     charting = charting_of(PENDULUM)
     charting.limit = -1.0
-    first, second = (charting.one(Row("DOP853", "quaternion", False, local)) for local in (1e-4, 1e-6))
-    assert isinstance(first, Charted) and first.code == "unfinished"
-    assert isinstance(second, Charted) and second.code == "too-long" and "0.0001 was not finished" in second.reason
+    first, second = (charting.one(ChartRow("DOP853", "quaternion", False, local)) for local in (1e-4, 1e-6))
+    assert isinstance(first, ChartedRun) and first.code == "unfinished"
+    assert isinstance(second, ChartedRun) and second.code == "too-long" and "0.0001 was not finished" in second.reason
 
 
 def test_a_run_may_take_its_time_where_the_machine_does_other_work(monkeypatch: pytest.MonkeyPatch) -> None:
     """Of a limit of 40 ms on the clock 80 ms are slept away: no part of it, so that the run is done once more."""
     charting = charting_of(PENDULUM)
-    run, slept = Charting.run, []
+    run, slept = ChartRuns.run, []
 
-    def interrupted(self: Charting, row: Row, runs: Runs) -> Trajectory:
+    def interrupted(self: ChartRuns, row: ChartRow, runs: Runs) -> Trajectory:
         if not slept:
             time.sleep(0.08)
             slept.append(row)
         return run(self, row, runs)
 
-    monkeypatch.setattr(Charting, "run", interrupted)
+    monkeypatch.setattr(ChartRuns, "run", interrupted)
     charting.limit = 0.04
-    found = charting.one(Row("DOP853", "quaternion", False, 1e-6))
-    assert slept and not isinstance(found, Charted) and found.charted.status == "completed"
+    found = charting.one(ChartRow("DOP853", "quaternion", False, 1e-6))
+    assert slept and not isinstance(found, ChartedRun) and found.charted.status == "completed"
 
 
 def test_no_import_is_in_the_time_of_a_run(monkeypatch: pytest.MonkeyPatch) -> None:
     """What SciPy takes to load, half a second, would else be all of the first row's time."""
     done: list[str] = []
     monkeypatch.setattr(chart_runs, "import_module", lambda name: done.append(name))
-    run = Charting.run
-    monkeypatch.setattr(Charting, "run", lambda self, row, runs: done.append("run") or run(self, row, runs))
-    charting_of(PENDULUM).one(Row("SciPy-BDF", "quaternion", False, 1e-3))
+    run = ChartRuns.run
+    monkeypatch.setattr(ChartRuns, "run", lambda self, row, runs: done.append("run") or run(self, row, runs))
+    charting_of(PENDULUM).one(ChartRow("SciPy-BDF", "quaternion", False, 1e-3))
     assert done[:2] == ["scipy.integrate", "run"]
 
 
@@ -230,7 +230,7 @@ joints: {pivot: {type: pin, from: ground.O, to: bar.top, axis: [0, 1, 0], initia
 forces: {oil: {type: damper, joint: pivot, coefficient: 1e5}}
 analysis: {duration: 2, samples: 21}
 """
-    found = chart(load("scene.yaml", scene), Wanted(methods=("RK4",), steps=(0.3,)))
+    found = chart(load("scene.yaml", scene), ChartOptions(methods=("RK4",), steps=(0.3,)))
     (run,) = found.runs
     assert run.error["motion"] is not None and run.error["motion"] > 1.0
     assert run.error["reactions"] is not None and run.error["reactions"] > 1.0

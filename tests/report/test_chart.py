@@ -13,9 +13,9 @@ from heuncli.commands.charting import page as report
 from heuncli.commands.charting.letters import draw, letters
 from heuncli.commands.charting.results import (
     KINDS,
-    Charted,
+    ChartedRun,
     ChartResults,
-    Row,
+    ChartRow,
     shown,
     with_front,
 )  # fmt: skip
@@ -28,7 +28,7 @@ from heuncli.tolerances import LOST
 from tests.shared.fake_charts import FAILS, REFERENCE, TOO_LONG, chart, run
 
 
-def front(*runs: Charted) -> list[bool]:
+def front(*runs: ChartedRun) -> list[bool]:
     return [each.front for each in with_front(runs)]
 
 
@@ -144,8 +144,8 @@ def test_scales_hold_their_values() -> None:
 
 
 def test_rows_of_a_method_that_tell_the_same_are_one() -> None:
-    refused = [replace(TOO_LONG, row=Row("BDF", "quaternion", False, local), code="method-scene", reason="no stops")
-               for local in (1e-4, 1e-6, 1e-8)]  # fmt: skip
+    rows = (ChartRow("BDF", "quaternion", False, local) for local in (1e-4, 1e-6, 1e-8))
+    refused = [replace(TOO_LONG, row=row, code="method-scene", reason="no stops") for row in rows]
     text = plain(report.table(chart(run("A", 1e-3, 1e-6), *refused, FAILS)))
     assert "     1e-4 to 1e-8 " in text and text.count("not run: no stops") == 1 and "1e-6 " in text
     assert json.loads(dump(report.block(chart(*refused))))["runs"][2]["reason"] == "no stops"

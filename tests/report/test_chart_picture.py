@@ -10,7 +10,7 @@ import pytest
 
 from heuncli.commands.charting.labels import LabelBox, crosses, inside, placed
 from heuncli.commands.charting.picture import picture, stacked
-from heuncli.drawing import by_matplotlib as picture_plot
+from heuncli.drawing import matplotlib_file
 from heuncli.drawing.picture import Line, Mark, Picture, Text, svg
 from heuncli.errors import HeunError
 from heuncli.foreign_text import shown
@@ -129,9 +129,9 @@ def test_lines_through_a_box_are_seen() -> None:
 
 
 def test_without_its_extra_a_picture_is_refused_with_the_way_to_it(monkeypatch: pytest.MonkeyPatch) -> None:
-    monkeypatch.setattr(picture_plot.importlib.util, "find_spec", lambda name: None)
+    monkeypatch.setattr(matplotlib_file.importlib.util, "find_spec", lambda name: None)
     with pytest.raises(HeunError) as refused:
-        picture_plot.rendered(Picture(10.0, 10.0, "", "", ()), "png")
+        matplotlib_file.rendered(Picture(10.0, 10.0, "", "", ()), "png")
     problem = refused.value.problems[0]
     assert problem.code == "missing-extra" and 'pip install "heuncli[plot]"' in str(problem.hint)
 
@@ -139,7 +139,7 @@ def test_without_its_extra_a_picture_is_refused_with_the_way_to_it(monkeypatch: 
 @pytest.mark.parametrize(("form", "begins"), [("png", b"\x89PNG"), ("pdf", b"%PDF")])
 def test_with_its_extra_it_is_drawn_the_same_every_time(form: str, begins: bytes) -> None:
     pytest.importorskip("matplotlib")
-    first, second = (picture_plot.rendered(picture(MANY), form) for _ in range(2))
+    first, second = (matplotlib_file.rendered(picture(MANY), form) for _ in range(2))
     assert first.startswith(begins) and first == second
 
 

@@ -15,7 +15,7 @@ from heuncli.cli.progress import progress
 from heuncli.cli.solving import overrides, warn
 from heuncli.cli.target import format_of, require_room
 from heuncli.commands.charting import page as report
-from heuncli.commands.charting.plan import Wanted
+from heuncli.commands.charting.plan import ChartOptions
 from heuncli.commands.charting.request import ChartRequest
 from heuncli.commands.charting.results import ChartResults
 from heuncli.commands.charting.study import chart
@@ -39,7 +39,7 @@ def main(request: ChartRequest) -> int:
     require_other_file(request.output, [request.spec])
     form = format_of(request.format, request.output, ENDINGS, FORMATS)
     drawn = picture_format(request)
-    wanted = Wanted(
+    wanted = ChartOptions(
         methods(request.methods),
         numbers("--tolerances", request.tolerances, 1.0),
         numbers("--steps", request.steps, math.inf),
@@ -91,7 +91,7 @@ def picture_format(request: ChartRequest) -> Callable[[ChartResults], bytes] | N
         raise UsageError(Problem("bad-option", message, hint="name another file"))
     if form == "svg":
         return _svg
-    from heuncli.drawing.by_matplotlib import require_plot
+    from heuncli.drawing.matplotlib_file import require_plot
 
     require_plot(f"--save {request.save}")
     return lambda found: _plotted(found, form)
@@ -106,7 +106,7 @@ def _svg(found: ChartResults) -> bytes:
 
 def _plotted(found: ChartResults, form: str) -> bytes:
     from heuncli.commands.charting.picture import picture
-    from heuncli.drawing.by_matplotlib import rendered
+    from heuncli.drawing.matplotlib_file import rendered
 
     return rendered(picture(found), form)
 

@@ -100,7 +100,7 @@ def _most(values: Array) -> float:
 
 
 def judge_of(runs: Runs, setup: Setup, reference: Trajectory, count: int) -> Judge:
-    """What holds runs against a reference, at the first so many of its instants."""
+    """The judge of runs by a reference, at the first `count` of its instants."""
     setup = replace(setup, asked=OF_LOADS)
     times, states = reference.times[:count], reference.states[:count]
     shown: dict[str, Any] = {}

@@ -33,7 +33,7 @@ class LabelBox(NamedTuple):
         )
 
     def wider(self, by: float) -> LabelBox:
-        """The same with a margin."""
+        """The rectangle with a margin [pixels] at each side."""
         return LabelBox(self.left - by, self.top - by, self.right + by, self.bottom + by)
 
     def holds(self, x: float, y: float) -> bool:

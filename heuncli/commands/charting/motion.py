@@ -29,7 +29,7 @@ NEEDS_MOTION = "a chart compares how a motion is integrated; ask for one: analys
 
 
 @record
-class Motion:
+class ChartedMotion:
     """A scene set up to move.
 
     times: asked ones [s], up to where a condition on results ends it; jumps: its discontinuities in time; deadline:
@@ -76,7 +76,7 @@ class Motion:
         return self.deadline is not None and time.monotonic() > self.deadline
 
 
-def motion_of(spec: Spec, deadline: float | None) -> Motion:
+def motion_of(spec: Spec, deadline: float | None) -> ChartedMotion:
     """The motion of a spec. Raises SpecError where it asks for none, SolveError where nothing can move."""
     if spec.analysis.type != "motion":
         what = {"rest": "a rest pose is looked for, not integrated", "impulse": "an impulse is one instant"}
@@ -87,7 +87,7 @@ def motion_of(spec: Spec, deadline: float | None) -> Motion:
     if BY_JOINTS in setup.model.get("reduced", ()):
         raise SolveError(Problem("nothing-to-chart", BY_JOINTS, hint="free a joint, or drive one"))
     jumps = begin(setup)
-    return Motion(setup, np.array(spec.analysis.times, dtype=float), jumps, deadline, ends)
+    return ChartedMotion(setup, np.array(spec.analysis.times, dtype=float), jumps, deadline, ends)
 
 
 def up_to_its_end(spec: Spec, deadline: float | None) -> tuple[Spec, str]:

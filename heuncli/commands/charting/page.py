@@ -8,7 +8,7 @@ from collections.abc import Iterator, Sequence
 from itertools import groupby
 from typing import Any
 
-from heuncli.commands.charting.results import COMPLETED, FAILED, KINDS, UNFINISHED, Charted, ChartResults, Row
+from heuncli.commands.charting.results import COMPLETED, FAILED, KINDS, UNFINISHED, ChartedRun, ChartResults, ChartRow
 from heuncli.commands.charting.scale import power
 from heuncli.method_rows import row_of
 from heuncli.report.export import FORMAT
@@ -41,7 +41,7 @@ def heading(chart: ChartResults) -> list[tuple[str, str]]:
 
 
 def write_heading(chart: ChartResults, width: int = WIDTH) -> str:
-    """The same as text."""
+    """The heading as text of so many columns."""
     return labelled(heading(chart), width)
 
 
@@ -68,8 +68,8 @@ def table(chart: ChartResults) -> TextTable:
     return TextTable(HEADING, tuple(columns), tuple(rows), tuple(notes))
 
 
-def alike(runs: Sequence[Charted]) -> Iterator[list[Charted]]:
-    """The runs of a method, those together one after the other of which nothing but the same remark is told."""
+def alike(runs: Sequence[ChartedRun]) -> Iterator[list[ChartedRun]]:
+    """The runs of a method in groups: neighbours of one remark (failed, not run) share a row, others have their own."""
     for remarks, group in groupby(runs, key=brief):
         if remarks:
             yield list(group)
@@ -83,7 +83,7 @@ def title(name: str) -> str:
     return name if row is None else f"{row.name}  order {row.order}, {row.kind}, {row.steps}: {row.purpose}"
 
 
-def cells(run: Charted, kinds: Sequence[str], last: Charted) -> Iterator[str]:
+def cells(run: ChartedRun, kinds: Sequence[str], last: ChartedRun) -> Iterator[str]:
     """A run's cells but for the remark; last: of those that are told in one row."""
     known = run.status == COMPLETED
     yield "*" if run.front else ""
@@ -101,7 +101,7 @@ def milliseconds(seconds: float) -> str:
     return f"{value:.0f}" if value >= 100.0 else f"{value:.3g}"
 
 
-def local(row: Row) -> str:
+def local(row: ChartRow) -> str:
     """The tolerance, or the step with its unit."""
     if row.local == 0.0:
         return "-"
@@ -113,7 +113,7 @@ def is_round(value: float) -> bool:
     return float(f"{value:.0e}") == value
 
 
-def error(run: Charted, kind: str) -> str:
+def error(run: ChartedRun, kind: str) -> str:
     """An error to two digits, or its bound."""
     value = run.error[kind]
     if value is None:
@@ -121,7 +121,7 @@ def error(run: Charted, kind: str) -> str:
     return f"{AT_MOST if kind in run.bounded else ' '}{value:.1e}"
 
 
-def brief(run: Charted) -> str:
+def brief(run: ChartedRun) -> str:
     """What kept a run from its end, in a few words; of what failed the reason stands below the table."""
     if run.status == FAILED:
         at = f" at t = {run.at:.6g} s" if run.at is not None else ""
@@ -138,13 +138,13 @@ def reasons(chart: ChartResults) -> list[str]:
     return [f"[{code}] {method}: {reason}" for (method, code), reason in found.items()]
 
 
-def without_instant(run: Charted) -> str:
+def without_instant(run: ChartedRun) -> str:
     """A run's reason without the instant that it may begin with."""
     begin, colon, reason = run.reason.partition(": ")
     return reason if colon and begin.startswith("at t = ") else run.reason
 
 
-def remark(run: Charted) -> str:
+def remark(run: ChartedRun) -> str:
     """What kept a run from its end, and why."""
     if run.status == COMPLETED:
         return ""
@@ -171,7 +171,7 @@ def block(chart: ChartResults) -> dict[str, Any]:
     }
 
 
-def run_block(run: Charted) -> dict[str, Any]:
+def run_block(run: ChartedRun) -> dict[str, Any]:
     """A run as the JSON has it; at_most: the kinds of which the error is a bound."""
     row, done = run.row, run.status == COMPLETED
     return {

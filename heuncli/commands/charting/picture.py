@@ -12,7 +12,7 @@ from typing import NamedTuple
 
 from heuncli.commands.charting.labels import LabelBox, inside, placed, wide
 from heuncli.commands.charting.page import local, remark
-from heuncli.commands.charting.results import FAILED, Charted, ChartResults
+from heuncli.commands.charting.results import FAILED, ChartedRun, ChartResults
 from heuncli.commands.charting.scale import Scale, failures, points, power, scales, seconds
 from heuncli.drawing.picture import SHAPES, Line, Mark, Picture, Shape, Text
 from heuncli.foreign_text import shown
@@ -134,7 +134,7 @@ def floor(chart: ChartResults, frame: Frame) -> tuple[list[Shape], list[LabelBox
     return [Line(((box.left, y), (box.right, y)), GREY, 1.2, (1.5, 3.0)), name], [best]
 
 
-def along(runs: Sequence[Charted], frame: Frame) -> list[tuple[float, float]]:
+def along(runs: Sequence[ChartedRun], frame: Frame) -> list[tuple[float, float]]:
     """Places along the line of a method, its markers among them."""
     ends = [(frame.x(p.seconds), frame.y(p.error)) for p in points(runs)]
     parts = [k / ON_LINE for k in range(1, ON_LINE + 1)]
@@ -186,12 +186,12 @@ class FailedRuns(NamedTuple):
     """Runs of a method that failed for one reason; the note's number."""
 
     number: int
-    runs: tuple[Charted, ...]
+    runs: tuple[ChartedRun, ...]
 
 
 def failed(chart: ChartResults) -> list[FailedRuns]:
     """What failed or was not run, by method and reason."""
-    found: dict[tuple[str, str, str], list[Charted]] = {}
+    found: dict[tuple[str, str, str], list[ChartedRun]] = {}
     for run in failures(chart.runs):
         found.setdefault((run.row.method, run.status, run.code), []).append(run)
     return [FailedRuns(k + 1, tuple(runs)) for k, runs in enumerate(found.values())]

@@ -10,8 +10,8 @@ import contextlib
 import math
 from collections.abc import Sequence
 
-from heuncli.commands.charting.motion import Motion
-from heuncli.commands.charting.results import Row
+from heuncli.commands.charting.motion import ChartedMotion
+from heuncli.commands.charting.results import ChartRow
 from heuncli.errors import LimitError, Problem, SolveError, SpecError
 from heuncli.integration.methods.registry import method_of
 from heuncli.integration.trajectory import Trajectory
@@ -27,7 +27,7 @@ QUATERNION = "quaternion"
 
 
 @record
-class Wanted:
+class ChartOptions:
     """What a chart is asked for; None: as the scene suggests."""
 
     methods: tuple[str, ...] | None = None
@@ -37,14 +37,14 @@ class Wanted:
 
 
 @record
-class Plan:
+class ChartPlan:
     """The rows to run, in their order, and what is left out, in sentences."""
 
-    rows: tuple[Row, ...]
+    rows: tuple[ChartRow, ...]
     notes: tuple[str, ...] = ()
 
 
-def plan(motion: Motion, wanted: Wanted) -> Plan:
+def plan(motion: ChartedMotion, wanted: ChartOptions) -> ChartPlan:
     """What is run. Raises SpecError for tolerances that no method takes, or steps."""
     methods = [row for row in METHODS if wanted.methods is None or row.name in wanted.methods]
     notes: list[str] = []
@@ -57,15 +57,15 @@ def plan(motion: Motion, wanted: Wanted) -> Plan:
     steps = wanted.steps
     if steps is None and any(row.steps == "fixed" for row in methods):
         steps = own_steps(motion)
-    rows = [Row(FOLLOWED, QUATERNION, False, 0.0)] if motion.determined and wanted.methods is None else []
+    rows = [ChartRow(FOLLOWED, QUATERNION, False, 0.0)] if motion.determined and wanted.methods is None else []
     for row in methods:
         fixed = row.steps == "fixed"
         values = (steps or ()) if fixed else wanted.tolerances or TOLERANCES
-        rows += [Row(row.name, row.attitude, fixed, value) for value in sorted(set(values), reverse=True)]
-    return Plan(tuple(rows), tuple(notes))
+        rows += [ChartRow(row.name, row.attitude, fixed, value) for value in sorted(set(values), reverse=True)]
+    return ChartPlan(tuple(rows), tuple(notes))
 
 
-def require_use(methods: Sequence[MethodRow], wanted: Wanted) -> None:
+def require_use(methods: Sequence[MethodRow], wanted: ChartOptions) -> None:
     """Raise SpecError where what is given would do nothing."""
     kinds = {row.steps for row in methods}
     for given, of, option, what in (
@@ -78,12 +78,12 @@ def require_use(methods: Sequence[MethodRow], wanted: Wanted) -> None:
             raise SpecError(Problem("bad-option", message, hint=f"those that do: {known or 'none'}"))
 
 
-def has_attitudes(motion: Motion) -> bool:
+def has_attitudes(motion: ChartedMotion) -> bool:
     """Whether the attitude of some body is integrated: of one on a ball joint, or on nothing."""
     return bool(motion.setup.runner.moving.layout.bodies["ball"].any())
 
 
-def own_steps(motion: Motion) -> tuple[float, ...]:
+def own_steps(motion: ChartedMotion) -> tuple[float, ...]:
     """Steps for the methods that take given ones, descending by thirds [s]: 0.03, 0.01, 0.003, ..."""
     last = float(motion.times[-1])
     mean = last / 100.0

@@ -13,7 +13,7 @@ import numpy as np
 
 from heuncli import tolerances
 from heuncli.commands.charting.judge import Judge, judge_of
-from heuncli.commands.charting.motion import NO_TIME, Motion
+from heuncli.commands.charting.motion import NO_TIME, ChartedMotion
 from heuncli.commands.charting.results import KINDS, Errors, Reference
 from heuncli.errors import HeunError, LimitError, Problem, SolveError
 from heuncli.integration.check.estimate import errors
@@ -39,7 +39,7 @@ WORDS = {"motion": "motion to {} of the scene's size", "reactions": "reactions t
 
 
 @record
-class Referred:
+class JudgedReference:
     """A reference, and what holds runs against it; seconds: what its run took."""
 
     reference: Reference
@@ -48,7 +48,7 @@ class Referred:
 
 
 @record
-class Pair:
+class ReferencePair:
     """Two runs of a motion; error (n,): by how much the motion of the first may err at its instants."""
 
     runs: Runs
@@ -62,9 +62,9 @@ class Pair:
         return float(self.error.max(initial=0.0))
 
 
-def refer(motion: Motion) -> Referred:
+def refer(motion: ChartedMotion) -> JudgedReference:
     """The reference of a motion. Raises what kept all pairs from it."""
-    best: Pair | None = None
+    best: ReferencePair | None = None
     failed: HeunError | None = None
     stiff = motion.stiff
     for first, second in pairs(motion, stiff is not None):
@@ -93,7 +93,7 @@ def no_reference(failed: HeunError) -> HeunError:
     return LimitError(Problem("no-reference", message, hint="a shorter duration; heun run says how long a run takes"))
 
 
-def pairs(motion: Motion, stiff: bool) -> Iterator[tuple[str, str]]:
+def pairs(motion: ChartedMotion, stiff: bool) -> Iterator[tuple[str, str]]:
     """The pairs of methods that there are, by their names, those first that suit the motion."""
     if motion.determined:
         yield FOLLOWED.name, DEFAULT
@@ -101,17 +101,17 @@ def pairs(motion: Motion, stiff: bool) -> Iterator[tuple[str, str]]:
     yield from (known[::-1] if stiff else known) or [(DEFAULT, DEFAULT)]
 
 
-def pair(motion: Motion, first: str, second: str) -> Pair:
+def pair(motion: ChartedMotion, first: str, second: str) -> ReferencePair:
     """Two runs by two methods. Raises SolveError, LimitError."""
     runs, a = finest(motion, first)
     b = beside(motion, second, a)
     n = common(a, b)
     with np.errstate(all="ignore"):
         error, _ = errors(runs, a, a.times[:n], (a.states[:n], b.states[:n]))
-    return Pair(runs, a, b, error)
+    return ReferencePair(runs, a, b, error)
 
 
-def finest(motion: Motion, name: str) -> tuple[Runs, Trajectory]:
+def finest(motion: ChartedMotion, name: str) -> tuple[Runs, Trajectory]:
     """The run by a method at the least of the tolerances at which it comes to its end."""
     method = FOLLOWED if name == FOLLOWED.name else method_of(name)
     failed: HeunError | None = None
@@ -127,7 +127,7 @@ def finest(motion: Motion, name: str) -> tuple[Runs, Trajectory]:
     raise failed
 
 
-def beside(motion: Motion, name: str, a: Trajectory) -> Trajectory:
+def beside(motion: ChartedMotion, name: str, a: Trajectory) -> Trajectory:
     """The run that checks the reference: by another method, from a start moved by rounding where that can be run.
 
     What is followed and cannot be integrated is followed once more.
@@ -156,8 +156,8 @@ def common(a: Trajectory, b: Trajectory) -> int:
     return int(np.sum(a.times[:n] == b.times[:n]))
 
 
-def referred(motion: Motion, best: Pair, more: tuple[str, ...]) -> Referred:
-    """The reference as it is told, with what may be judged by it; more: what else is worth knowing."""
+def referred(motion: ChartedMotion, best: ReferencePair, more: tuple[str, ...]) -> JudgedReference:
+    """The reference of a pair of runs: what the chart tells of it, and what judges runs by it; more: further notes."""
     count, horizon = judged_instants(best)
     setup = motion.setup
     judge = judge_of(best.runs, setup, best.first, count)
@@ -169,10 +169,10 @@ def referred(motion: Motion, best: Pair, more: tuple[str, ...]) -> Referred:
     if horizon is not None:
         notes = (beyond(horizon, until, own["motion"]), *notes)
     reference = Reference(words(best, own), own, until, count, horizon, notes)
-    return Referred(reference, judge, best.first.seconds)
+    return JudgedReference(reference, judge, best.first.seconds)
 
 
-def judged_instants(best: Pair) -> tuple[int, float | None]:
+def judged_instants(best: ReferencePair) -> tuple[int, float | None]:
     """How many of the instants are judged, and the horizon. Raises SolveError where there are too few."""
     late = np.flatnonzero(best.error > tolerances.CLAIMED)
     if not len(late):
@@ -186,7 +186,7 @@ def judged_instants(best: Pair) -> tuple[int, float | None]:
     raise SolveError(Problem("no-reference", FEW.format(last), hint=FEW_HINT))
 
 
-def words(best: Pair, own: Errors) -> str:
+def words(best: ReferencePair, own: Errors) -> str:
     """Which runs agree how well."""
     a, b = best.first, best.second
     names = [ITSELF if run.method.determined else f"{run.method.name} at {run.local:.0e}" for run in (a, b)]

@@ -27,7 +27,7 @@ SHOWN = 2  # digits of seconds and errors that are compared: those that tables s
 
 
 @record
-class Row:
+class ChartRow:
     """A method at one tolerance, or one step.
 
     attitude: how it is held within a step; fixed: whether `local` is the step [s], else the local tolerance.
@@ -40,7 +40,7 @@ class Row:
 
 
 @record
-class Charted:
+class ChartedRun:
     """A row with what came of it.
 
     seconds: processor time of the integration alone, the median of so many repeats; of what failed, until it did; of
@@ -48,7 +48,7 @@ class Charted:
     [s] at which it failed; code, reason: why it failed or was not run.
     """
 
-    row: Row
+    row: ChartRow
     status: Status
     seconds: float | None = None
     repeats: int = 0
@@ -99,7 +99,7 @@ class ChartResults:
     title: str
     spec: Mapping[str, str]
     reference: Reference
-    runs: tuple[Charted, ...]
+    runs: tuple[ChartedRun, ...]
     size: float
     notes: tuple[str, ...] = ()
 
@@ -109,15 +109,15 @@ class ChartResults:
         return tuple(kind for kind in KINDS if self.reference.own[kind] is not None)
 
     @property
-    def by_method(self) -> dict[str, list[Charted]]:
+    def by_method(self) -> dict[str, list[ChartedRun]]:
         """The runs of each method, in their order."""
-        found: dict[str, list[Charted]] = {}
+        found: dict[str, list[ChartedRun]] = {}
         for run in self.runs:
             found.setdefault(run.row.method, []).append(run)
         return found
 
 
-def with_front(runs: Sequence[Charted]) -> tuple[Charted, ...]:
+def with_front(runs: Sequence[ChartedRun]) -> tuple[ChartedRun, ...]:
     """The runs, those marked that no other one beats: at least as fast, at least as accurate, and better in one.
 
     Seconds are measured and errors estimated: both are compared with the digits that are shown. Of runs that are equal
@@ -136,13 +136,13 @@ def with_front(runs: Sequence[Charted]) -> tuple[Charted, ...]:
     return tuple(replace(run, front=id(run) in front) for run in runs)
 
 
-def is_near(run: Charted) -> bool:
+def is_near(run: ChartedRun) -> bool:
     """Whether the motion is known to be no more than the scene's size away."""
     error = run.error["motion"]
     return error is not None and error < tolerances.LOST
 
 
-def merit(run: Charted) -> tuple[float, float, int]:
+def merit(run: ChartedRun) -> tuple[float, float, int]:
     """Seconds, error of the motion, as shown, and evaluations: less is better."""
     error = run.error["motion"]
     assert run.seconds is not None and error is not None

@@ -14,9 +14,9 @@ from importlib import import_module
 
 from heuncli import tolerances
 from heuncli.commands.charting import plan as chart_plan
-from heuncli.commands.charting.motion import Motion
-from heuncli.commands.charting.reference import Referred
-from heuncli.commands.charting.results import COMPLETED, FAILED, NOT_RUN, UNFINISHED, Charted, Row
+from heuncli.commands.charting.motion import ChartedMotion
+from heuncli.commands.charting.reference import JudgedReference
+from heuncli.commands.charting.results import COMPLETED, FAILED, NOT_RUN, UNFINISHED, ChartedRun, ChartRow
 from heuncli.errors import HeunError, LimitError, SolveError
 from heuncli.integration.check.runs import Runs
 from heuncli.integration.methods.followed import FOLLOWED
@@ -35,10 +35,10 @@ Tell = Callable[[int, int, str], None]  # how much of how much is done, and what
 
 
 @record
-class Timed:
+class TimedRun:
     """A run under repetition: its row, what is repeated, and the processor seconds so far."""
 
-    charted: Charted
+    charted: ChartedRun
     again: Callable[[], float]
     seconds: list[float]
 
@@ -55,27 +55,27 @@ class Timed:
         return high - low <= SPREAD * middle
 
     @property
-    def done(self) -> Charted:
-        """The row with its time."""
+    def done(self) -> ChartedRun:
+        """The run with the median of its times."""
         return replace(self.charted, seconds=statistics.median(self.seconds), repeats=len(self.seconds))
 
 
-class Charting:
+class ChartRuns:
     """Runs the rows of a plan on a motion. Impure: keeps what earlier rows of a method took."""
 
-    def __init__(self, motion: Motion, referred: Referred, tell: Tell) -> None:
+    def __init__(self, motion: ChartedMotion, referred: JudgedReference, tell: Tell) -> None:
         self.motion, self.referred, self.tell = motion, referred, tell
         self.limit = max(SECONDS, TIMES * referred.seconds)
-        self.before: dict[str, Charted] = {}  # of each method the last row that came to its end
-        self.unfinished: dict[str, Row] = {}  # and the first that did not within the limit
+        self.before: dict[str, ChartedRun] = {}  # of each method the last row that came to its end
+        self.unfinished: dict[str, ChartRow] = {}  # and the first that did not within the limit
 
-    def all(self, rows: Sequence[Row]) -> tuple[Charted, ...]:
-        """The rows with what came of them."""
-        found: list[Charted | Timed] = []
+    def all(self, rows: Sequence[ChartRow]) -> tuple[ChartedRun, ...]:
+        """Each row's run, in the order of the rows: completed, with its time; failed; or not run, with the reason."""
+        found: list[ChartedRun | TimedRun] = []
         for k, row in enumerate(rows):
             self.tell(k, 2 * len(rows), row.method)
             found.append(self.one(row))
-        waiting = [each for each in found if isinstance(each, Timed) and not each.settled]
+        waiting = [each for each in found if isinstance(each, TimedRun) and not each.settled]
         many = len(waiting)
         while waiting and not self.motion.late:
             self.tell(2 * len(rows) - len(rows) * len(waiting) // many, 2 * len(rows), "times")
@@ -84,9 +84,9 @@ class Charting:
                     break
                 each.seconds.append(each.again())
             waiting = [each for each in waiting if not each.settled]
-        return tuple(each.done if isinstance(each, Timed) else each for each in found)
+        return tuple(each.done if isinstance(each, TimedRun) else each for each in found)
 
-    def one(self, row: Row) -> Charted | Timed:
+    def one(self, row: ChartRow) -> ChartedRun | TimedRun:
         """One row: not run, failed, or timed once."""
         too_long = self.too_long(row)
         if too_long is not None:
@@ -98,7 +98,7 @@ class Charting:
         except HeunError as error:
             return self.failed(row, error, time.process_time() - begun)
 
-    def first(self, row: Row) -> tuple[Runs, Trajectory, float]:
+    def first(self, row: ChartRow) -> tuple[Runs, Trajectory, float]:
         """The first run of a row and its time; once more where other work on the machine took the time it may take."""
         patience = 1.0
         while True:
@@ -112,55 +112,55 @@ class Charting:
                     raise
                 patience = min(1.0 / max(share, 1e-3), MOST_PATIENCE)
 
-    def judged(self, row: Row, runs: Runs, run: Trajectory, seconds: float) -> Charted | Timed:
+    def judged(self, row: ChartRow, runs: Runs, run: Trajectory, seconds: float) -> ChartedRun | TimedRun:
         """A row that came to its end, or to where a rope would push."""
-        charted = Charted(row, COMPLETED, seconds, 1, run.steps, run.evaluations)
+        charted = ChartedRun(row, COMPLETED, seconds, 1, run.steps, run.evaluations)
         self.before[row.method] = charted
         last = float(self.referred.judge.times[-1])
         if float(run.times[-1]) < last:
             reason = f"the rope {run.stopped} would have to push; the reference goes on to t = {last:.6g} s"
             return replace(charted, status=FAILED, at=float(run.times[-1]), code="stopped", reason=reason)
         error, bounded = self.referred.reference.judged(self.referred.judge.apart(run))
-        return Timed(replace(charted, error=error, bounded=bounded), lambda: self.seconds(row, runs), [seconds])
+        return TimedRun(replace(charted, error=error, bounded=bounded), lambda: self.seconds(row, runs), [seconds])
 
-    def runs(self, row: Row, patience: float) -> Runs:
+    def runs(self, row: ChartRow, patience: float) -> Runs:
         """Runs by a row's method, with what is made ready once."""
         return self.motion.runs(method_by(row), patience * self.limit)
 
-    def run(self, row: Row, runs: Runs) -> Trajectory:
-        """The motion by a row's method, as far as it is judged."""
+    def run(self, row: ChartRow, runs: Runs) -> Trajectory:
+        """The motion by a row's method, over the instants at which it is compared with the reference."""
         return runs.run(row.local or LOCAL, self.referred.judge.times)
 
-    def seconds(self, row: Row, runs: Runs) -> float:
+    def seconds(self, row: ChartRow, runs: Runs) -> float:
         """Processor time of one more run, which has come to its end before."""
         runs.deadline = None
         begun = time.process_time()
         self.run(row, runs)
         return time.process_time() - begun
 
-    def failed(self, row: Row, error: HeunError, seconds: float) -> Charted:
+    def failed(self, row: ChartRow, error: HeunError, seconds: float) -> ChartedRun:
         """A row that did not come to its end: it failed, was cut short, or its method takes no such scene."""
         problem = error.problems[0]
         if isinstance(error, LimitError):
             late = self.motion.late
             self.unfinished.setdefault(row.method, row)
             reason = "the time limit was reached" if late else f"not finished within {self.limit:.2g} s"
-            return Charted(row, NOT_RUN, seconds, code=UNFINISHED, reason=f"{reason}:{progress(problem.message)}")
+            return ChartedRun(row, NOT_RUN, seconds, code=UNFINISHED, reason=f"{reason}:{progress(problem.message)}")
         status = FAILED if isinstance(error, SolveError) else NOT_RUN
         at = getattr(error, "reached", None)
-        return Charted(row, status, seconds, at=at, code=problem.code, reason=problem.message)
+        return ChartedRun(row, status, seconds, at=at, code=problem.code, reason=problem.message)
 
-    def too_long(self, row: Row) -> Charted | None:
+    def too_long(self, row: ChartRow) -> ChartedRun | None:
         """The row as one that is not run, where it would take longer than it may."""
         if self.motion.late:
-            return Charted(row, NOT_RUN, code="time-limit", reason="the time limit was reached before")
+            return ChartedRun(row, NOT_RUN, code="time-limit", reason="the time limit was reached before")
         last = float(self.referred.judge.times[-1])
         if row.fixed and row.local > last:
-            return Charted(row, NOT_RUN, code="step", reason=f"the step is longer than the run of {last:.6g} s")
+            return ChartedRun(row, NOT_RUN, code="step", reason=f"the step is longer than the run of {last:.6g} s")
         longer = self.unfinished.get(row.method)
         if longer is not None and row.local <= longer.local:
             of = "step" if row.fixed else "tolerance"
-            return Charted(row, NOT_RUN, code="too-long", reason=f"a {of} of {longer.local:g} was not finished")
+            return ChartedRun(row, NOT_RUN, code="too-long", reason=f"a {of} of {longer.local:g} was not finished")
         before = self.before.get(row.method)
         steps = self.projected(row, before)
         if steps is None:
@@ -173,9 +173,9 @@ class Charting:
             return None
         about = f"about {steps:.0e} steps".replace("e+0", "e").replace("e+", "e")
         reason = f"{about}, {seconds:.2g} s" if steps <= tolerances.MOST_STEPS else f"{about}, more than are taken"
-        return Charted(row, NOT_RUN, seconds, code="too-long", reason=reason)
+        return ChartedRun(row, NOT_RUN, seconds, code="too-long", reason=reason)
 
-    def projected(self, row: Row, before: Charted | None) -> float | None:
+    def projected(self, row: ChartRow, before: ChartedRun | None) -> float | None:
         """How many steps a row will take; None where nothing tells."""
         if row.fixed:
             return float(math.ceil(self.referred.judge.times[-1] / row.local))
@@ -184,12 +184,12 @@ class Charting:
         return float(before.steps * (before.row.local / row.local) ** (1.0 / chart_plan.order_of(row.method)))
 
 
-def method_by(row: Row) -> Method:
+def method_by(row: ChartRow) -> Method:
     """A row's method."""
     return FOLLOWED if row.method == chart_plan.FOLLOWED else method_of(row.method)
 
 
-def ready(row: Row) -> None:
+def ready(row: ChartRow) -> None:
     """Load what is no part of a run's time: SciPy takes half a second, which the first run by it would have."""
     if method_by(row).foreign:
         import_module("scipy.integrate")

@@ -9,7 +9,7 @@ import math
 from collections.abc import Iterable
 from typing import NamedTuple
 
-from heuncli.commands.charting.results import COMPLETED, Charted, ChartResults
+from heuncli.commands.charting.results import COMPLETED, ChartedRun, ChartResults
 from heuncli.tolerances import LOST
 
 PAD = 0.08  # of a decade beside the fastest and the slowest run
@@ -54,7 +54,7 @@ class Point(NamedTuple):
     front: bool
 
 
-def points(runs: Iterable[Charted]) -> list[Point]:
+def points(runs: Iterable[ChartedRun]) -> list[Point]:
     """The runs that came to their end, from the fastest on as they were asked for."""
     found = []
     for run in runs:
@@ -64,7 +64,7 @@ def points(runs: Iterable[Charted]) -> list[Point]:
     return found
 
 
-def failures(runs: Iterable[Charted]) -> list[Charted]:
+def failures(runs: Iterable[ChartedRun]) -> list[ChartedRun]:
     """The runs that have no place on the chart."""
     return [run for run in runs if run.status != COMPLETED]
 

@@ -8,10 +8,10 @@ from __future__ import annotations
 import time
 
 from heuncli.commands.charting.motion import motion_of
-from heuncli.commands.charting.plan import Wanted, plan
+from heuncli.commands.charting.plan import ChartOptions, plan
 from heuncli.commands.charting.reference import refer
 from heuncli.commands.charting.results import ChartResults, with_front
-from heuncli.commands.charting.runs import Charting, Tell
+from heuncli.commands.charting.runs import ChartRuns, Tell
 from heuncli.spec.models import Spec
 from heuncli.study.model.error_places import placed
 
@@ -21,20 +21,20 @@ DRIVEN = (
 )
 
 
-def chart(spec: Spec, wanted: Wanted, tell: Tell = lambda done, of, what: None) -> ChartResults:
+def chart(spec: Spec, wanted: ChartOptions, tell: Tell = lambda done, of, what: None) -> ChartResults:
     """The chart of a spec. Raises SpecError, SolveError, LimitError where there is none."""
     with placed(spec):
         return charted(spec, wanted, tell)
 
 
-def charted(spec: Spec, wanted: Wanted, tell: Tell) -> ChartResults:
-    """The same, with errors that have names in place of places."""
+def charted(spec: Spec, wanted: ChartOptions, tell: Tell) -> ChartResults:
+    """The chart of a spec. Errors name bodies, joints and sections, but not where these stand in the file."""
     deadline = None if wanted.time_limit is None else time.monotonic() + wanted.time_limit
     motion = motion_of(spec, deadline)
     rows = plan(motion, wanted)
     tell(0, 1, "reference")
     referred = refer(motion)
-    runs = Charting(motion, referred, tell).all(rows.rows)
+    runs = ChartRuns(motion, referred, tell).all(rows.rows)
     return ChartResults(
         title=spec.title,
         spec={"path": spec.path, "sha256": spec.sha256},

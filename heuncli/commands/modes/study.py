@@ -35,7 +35,7 @@ def modes(spec: Spec) -> SceneModes:
 
 
 def found_in(spec: Spec) -> SceneModes:
-    """The same, with errors that have names in place of places."""
+    """The modes of a spec. Errors name bodies, joints and sections, but not where these stand in the file."""
     setup = set_up(spec, reduce=False)
     require_no_time(setup)
     here, at = state_of(setup)

@@ -4,9 +4,9 @@ from __future__ import annotations
 
 import numpy as np
 
-from heuncli.commands.probing.instants import Along
+from heuncli.commands.probing.instants import SearchedMotion
 from heuncli.commands.probing.numerics.condition import ConditionNumbers, conditions
-from heuncli.commands.probing.results import NO_MASS, SINGULAR, Event, Largest
+from heuncli.commands.probing.results import NO_MASS, SINGULAR, Event, LargestCondition
 from heuncli.rest.coordinates import Coordinates, coordinates_of
 
 MOST_FREEDOMS = 400  # of matrices that are looked at as a whole
@@ -14,7 +14,7 @@ ROOM = 20_000_000  # numbers of these at a time
 INSTANTS = 400  # at which they are looked at
 
 
-def conditions_of(along: Along) -> tuple[Largest | None, Largest | None, str]:
+def conditions_of(along: SearchedMotion) -> tuple[LargestCondition | None, LargestCondition | None, str]:
     """The largest condition of the mass matrix and of the closures; why they are not told."""
     layout = along.layout
     own, n = coordinates_of(layout), layout.answer_count
@@ -29,8 +29,8 @@ def conditions_of(along: Along) -> tuple[Largest | None, Largest | None, str]:
     if not found.light.any():
         return None, None, "drives and joints leave nothing free to move"
     k, m = int(np.argmax(found.mass)), int(np.argmax(found.closure))
-    mass = Largest(float(found.mass[k]), float(times[k]), lightest(own, found, k))
-    closure = Largest(float(found.closure[m]), float(times[m])) if layout.rows else None
+    mass = LargestCondition(float(found.mass[k]), float(times[k]), lightest(own, found, k))
+    closure = LargestCondition(float(found.closure[m]), float(times[m])) if layout.rows else None
     return mass, closure, ""
 
 
@@ -39,7 +39,7 @@ def lightest(own: Coordinates, found: ConditionNumbers, k: int) -> str:
     return own.owner(int(np.argmax(np.abs(found.light[k]))))[0]
 
 
-def singular_events(along: Along) -> list[Event]:
+def singular_events(along: SearchedMotion) -> list[Event]:
     """Singular poses that the motion passes or begins in, and bodies without inertia about an axis."""
     study = along.study
     loops = f"joints.{study.setup.scene.mechanism.joints[along.layout.rows[0]].name}" if along.layout.rows else ""

@@ -7,10 +7,10 @@ import math
 import numpy as np
 
 from heuncli import tolerances
-from heuncli.commands.probing.instants import Along
+from heuncli.commands.probing.instants import SearchedMotion
 from heuncli.commands.probing.numerics.shadows import Growth, Shadows
 from heuncli.commands.probing.numerics.twists import twists
-from heuncli.commands.probing.results import Growing
+from heuncli.commands.probing.results import GrowthResults
 from heuncli.integration.methods.dop853 import DOP853
 from heuncli.integration.methods.method import QUATERNION, Method
 from heuncli.integration.run.runner import Runner
@@ -24,7 +24,7 @@ ONE_INSTANT = "one instant: nothing goes on; heun modes tells what grows about a
 FOLLOWED = "nothing is integrated: drives and joints leave no freedom"
 
 
-def growing(along: Along) -> tuple[Growing | None, str]:
+def growing(along: SearchedMotion) -> tuple[GrowthResults | None, str]:
     """The growth of disturbances of what is integrated; or why it is not told."""
     checked, runner = along.checked, along.study.setup.runner
     if checked is None:
@@ -51,7 +51,7 @@ def method_beside(run: Trajectory) -> Method:
     return own if not own.fixed and own.attitude == QUATERNION else DOP853
 
 
-def across_plane(along: Along) -> tuple[Growing | None, str]:
+def across_plane(along: SearchedMotion) -> tuple[GrowthResults | None, str]:
     """The growth out of the plane that the scene was found to stay in; or why there is none."""
     study = along.study
     checked, layout = along.checked, along.layout
@@ -96,8 +96,8 @@ def across(shadows: Shadows) -> Array | None:
     return np.block([[T, np.zeros_like(T)], [np.zeros_like(T), T]])
 
 
-def told(growth: Growth, directions: int) -> tuple[Growing | None, str]:
-    """The growth in numbers."""
+def told(growth: Growth, directions: int) -> tuple[GrowthResults | None, str]:
+    """A growth with its rate and the instant from which on no digit is certain; or None, and why it is not told."""
     times, log = growth.times, growth.logarithm
     last = float(times[-1])
     if len(times) < 2:
@@ -109,7 +109,7 @@ def told(growth: Growth, directions: int) -> tuple[Growing | None, str]:
     if horizon is None and exponential and rate > 0.0:
         left = math.log(tolerances.CLAIMED / (tolerances.EPS * math.sqrt(growth.steps[-1]))) - float(log[-1])
         expected = last + left / rate
-    found = Growing(rate, float(log[-1]), exponential, directions, horizon, expected, last, growth.stopped)
+    found = GrowthResults(rate, float(log[-1]), exponential, directions, horizon, expected, last, growth.stopped)
     return found, growth.stopped or ""
 
 

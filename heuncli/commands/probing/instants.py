@@ -15,7 +15,7 @@ import numpy as np
 from heuncli import tolerances
 from heuncli.commands.probing.numerics.attitudes import SEQUENCES, condition, off_upright, quaternions
 from heuncli.commands.probing.numerics.shares import Loop, continued, loops_of, motions
-from heuncli.commands.probing.results import DEAD_CENTRE, GIMBAL, HALF_TURN, Event, Turned
+from heuncli.commands.probing.results import DEAD_CENTRE, GIMBAL, HALF_TURN, AttitudeResults, Event
 from heuncli.integration.evaluator import Recovered
 from heuncli.redundancy.neighbours import neighbours
 from heuncli.results import Array, Indices, Mask
@@ -29,7 +29,7 @@ NEWTON = 12  # steps towards the nearest approach
 Track = Callable[[Recovered], Array]  # of recovered instants the vector there, (n_t, d), of any sign
 
 
-class Along:
+class SearchedMotion:
     """The instants of a motion at which it is looked at, and the kernel's answers at any of it."""
 
     def __init__(self, study: Study) -> None:
@@ -50,14 +50,14 @@ class Along:
         return [self.at(self.times[i : i + many]) for i in range(0, len(self.times), many)]
 
 
-class Passed(NamedTuple):
-    """Where a component passes zero, or stays there: from, to [s]."""
+class ZeroStretch(NamedTuple):
+    """Where a component is zero, from one instant to another [s]: equal ones where it passes, others where it stays."""
 
     begin: float
     end: float
 
 
-def zeros(along: Along, track: Track, x: Array, component: int) -> list[Passed]:
+def zeros(along: SearchedMotion, track: Track, x: Array, component: int) -> list[ZeroStretch]:
     """Where a component of a continued vector (n_t, d) is zero."""
     h, times = x[:, component], along.times
     # of unit vectors; a pose that is assembled is known to nine digits
@@ -65,7 +65,7 @@ def zeros(along: Along, track: Track, x: Array, component: int) -> list[Passed]:
     found = []
     for run in np.split(np.flatnonzero(still), np.flatnonzero(np.diff(np.flatnonzero(still)) > 1) + 1):
         if len(run):
-            found.append(Passed(float(times[run[0]]), float(times[run[-1]])))
+            found.append(ZeroStretch(float(times[run[0]]), float(times[run[-1]])))
     k = np.flatnonzero((h[1:] * h[:-1] < 0.0) & ~still[1:] & ~still[:-1])
     if len(k):
 
@@ -76,11 +76,11 @@ def zeros(along: Along, track: Track, x: Array, component: int) -> list[Passed]:
             return np.asarray(found[:, component] * np.where(np.sum(found * left, axis=1) < 0.0, -1.0, 1.0))
 
         at = roots(aligned, Bracket(times[k], times[k + 1], h[k], h[k + 1]), 0.0)
-        found += [Passed(t, t) for t in at.tolist()]
+        found += [ZeroStretch(t, t) for t in at.tolist()]
     return sorted(found)
 
 
-def attitudes(along: Along) -> tuple[list[Event], list[Turned]]:
+def attitudes(along: SearchedMotion) -> tuple[list[Event], list[AttitudeResults]]:
     """Half turns and gimbal locks of the bodies whose turns are all free."""
     layout = along.layout
     balls = [k for k in range(len(layout.place)) if layout.bodies["ball"][k]]
@@ -98,7 +98,7 @@ def attitudes(along: Along) -> tuple[list[Event], list[Turned]]:
             locks, worst = nearest_to_lock(along, k, axis, (R[:, i], omega[:, i]))
             events += [locked(name, sequence, one, along) for one in locks]
             euler[sequence] = worst
-        rows.append(Turned(name, len(passed), euler))
+        rows.append(AttitudeResults(name, len(passed), euler))
     return events, rows
 
 
@@ -107,14 +107,14 @@ def attitude_of(place: int) -> Track:
     return lambda at: quaternions(at.bodies["R"][:, place])
 
 
-def half_turn(name: str, passed: Passed, along: Along) -> Event:
-    """A half turn, or a stay there."""
+def half_turn(name: str, passed: ZeroStretch, along: SearchedMotion) -> Event:
+    """The event of a half turn at an instant, or of an attitude that stays at one."""
     what = "is turned by 180 deg against the drawing: its global Rodrigues parameters are without bound"
     return Event(passed.begin, HALF_TURN, f"bodies.{name}", f"{name} {what}{until(passed, along)}")
 
 
-def until(passed: Passed, along: Along) -> str:
-    """How long it stays there."""
+def until(passed: ZeroStretch, along: SearchedMotion) -> str:
+    """Words on until when it stays there; none where it only passes."""
     if passed.end - passed.begin <= tolerances.SAME_INSTANT * along.span:
         return ""
     return ", all the time" if passed.end - passed.begin >= along.span else f", until t = {passed.end:.6g} s"
@@ -123,19 +123,19 @@ def until(passed: Passed, along: Along) -> str:
 class Lock(NamedTuple):
     """A nearest approach to a gimbal lock, or a stay there; sine of the angle that is left."""
 
-    passed: Passed
+    passed: ZeroStretch
     sine: float
 
 
 def nearest_to_lock(
-    along: Along, k: int, axis: int, known: tuple[Array, Array]
+    along: SearchedMotion, k: int, axis: int, known: tuple[Array, Array]
 ) -> tuple[list[Lock], tuple[float, float]]:
     """The approaches of a body to a lock within GIMBAL, and the largest condition of its angles with its instant."""
     times = along.times
     p, _ = off_upright(*known, axis)
     s = np.sqrt(np.sum(p * p, axis=1))
     stays = runs_of(s <= tolerances.GIMBAL)
-    locks = [Lock(Passed(float(times[i]), float(times[j])), float(s[i : j + 1].min())) for i, j in stays]
+    locks = [Lock(ZeroStretch(float(times[i]), float(times[j])), float(s[i : j + 1].min())) for i, j in stays]
     padded = np.concatenate([[np.inf], s, [np.inf]])
     low = np.flatnonzero((s <= padded[:-2]) & (s < padded[2:]))
     for i, j in stays:
@@ -145,7 +145,7 @@ def nearest_to_lock(
         at, found = approach(along, k, axis, low)
         best = min(best, (float(found.min()), float(at[np.argmin(found)])))
         passed = found <= tolerances.GIMBAL
-        locks += [Lock(Passed(t, t), x) for t, x in zip(at[passed].tolist(), found[passed].tolist(), strict=True)]
+        locks += [Lock(ZeroStretch(t, t), x) for t, x in zip(at[passed].tolist(), found[passed].tolist(), strict=True)]
     return locks, (float(condition(best[0])), best[1])
 
 
@@ -156,7 +156,7 @@ def runs_of(held: Mask) -> list[tuple[int, int]]:
     return [(int(run[0]), int(run[-1])) for run in stretches if len(run) > 1]
 
 
-def approach(along: Along, k: int, axis: int, low: Indices) -> tuple[Array, Array]:
+def approach(along: SearchedMotion, k: int, axis: int, low: Indices) -> tuple[Array, Array]:
     """The nearest approaches about instants of the grid, and the sines there: p . p' = 0 by Gauss and Newton."""
     times = along.times
     first, last = times[np.maximum(low - 1, 0)], times[np.minimum(low + 1, len(times) - 1)]
@@ -174,7 +174,7 @@ def approach(along: Along, k: int, axis: int, low: Indices) -> tuple[Array, Arra
     return best, least
 
 
-def locked(name: str, sequence: str, lock: Lock, along: Along) -> Event:
+def locked(name: str, sequence: str, lock: Lock, along: SearchedMotion) -> Event:
     """A lock, or a pose so near to it that digits are lost."""
     k = float(condition(lock.sine))
     how = f"condition {k:.2g} of its angle matrix" if np.isfinite(k) and k < 1.0 / tolerances.EPS else "locked"
@@ -182,7 +182,7 @@ def locked(name: str, sequence: str, lock: Lock, along: Along) -> Event:
     return Event(lock.passed.begin, GIMBAL, f"bodies.{name}", what)
 
 
-def dead_centres(along: Along) -> tuple[list[Event], list[str]]:
+def dead_centres(along: SearchedMotion) -> tuple[list[Event], list[str]]:
     """Dead centres of the closed chains; and of which loops none are looked for, why."""
     loops = loops_of(along.layout)
     if not loops:
@@ -203,7 +203,7 @@ def dead_centres(along: Along) -> tuple[list[Event], list[str]]:
     return events, left
 
 
-def several(along: Along, loop: Loop, count: int) -> str:
+def several(along: SearchedMotion, loop: Loop, count: int) -> str:
     """Why no dead centre of a loop is looked for."""
     names = named(along, loop)
     if count == 0:
@@ -211,12 +211,12 @@ def several(along: Along, loop: Loop, count: int) -> str:
     return f"the coordinates of {names} take part in {count} motions at once: no single one is driven through another"
 
 
-def named(along: Along, loop: Loop) -> str:
+def named(along: SearchedMotion, loop: Loop) -> str:
     """The joints of a loop."""
     return ", ".join(dict.fromkeys(along.layout.mechanism.joints[k].name for k, _ in loop.coordinates))
 
 
-def poses_around(along: Along) -> Recovered | None:
+def poses_around(along: SearchedMotion) -> Recovered | None:
     """Poses beside the only one of a scene, which tell what moves at all; None of a motion."""
     if len(along.times) > 1:
         return None
@@ -226,7 +226,7 @@ def poses_around(along: Along) -> Recovered | None:
     )
 
 
-def of_loop(along: Along, loop: Loop, shares: Array, moves: Mask) -> list[Event]:
+def of_loop(along: SearchedMotion, loop: Loop, shares: Array, moves: Mask) -> list[Event]:
     """The dead centres of one loop; moves: which of its coordinates move at all."""
     joints, events = along.layout.mechanism.joints, []
     for i, (k, name) in enumerate(loop.coordinates):

@@ -5,7 +5,7 @@ from __future__ import annotations
 import math
 from collections.abc import Iterator
 
-from heuncli.commands.probing.results import Growing, Probe, StiffnessResults
+from heuncli.commands.probing.results import GrowthResults, Probe, StiffnessResults
 from heuncli.report.page_width import fit
 from heuncli.report.text_table import WIDTH, TextColumn, TextTable, labelled, plain
 from heuncli.version import VERSION
@@ -101,13 +101,13 @@ def columns(heads: tuple[str, ...], words: int) -> tuple[TextColumn, ...]:
     return tuple(TextColumn(head, "left") if k < words else TextColumn(head) for k, head in enumerate(heads))
 
 
-def growths(found: Probe) -> tuple[tuple[str, Growing | None], ...]:
+def growths(found: Probe) -> tuple[tuple[str, GrowthResults | None], ...]:
     """The growths that are told, and of what."""
     own = "motion in the plane" if found.across is not None else "motion"
     return (own, found.growth), ("out of the plane", found.across)
 
 
-def growth_row(name: str, growth: Growing) -> tuple[str, ...]:
+def growth_row(name: str, growth: GrowthResults) -> tuple[str, ...]:
     """A growth's cells."""
     every = f"{1.0 / growth.rate:.3g}" if growth.exponential and growth.rate > 0.0 else "no faster than the time"
     if growth.rate < 0.0 and growth.times < 0.0:

@@ -22,7 +22,7 @@ class Event(NamedTuple):
     message: str
 
 
-class Turned(NamedTuple):
+class AttitudeResults(NamedTuple):
     """Of a body whose turns are all free: its name, its half turns, and the largest conditions of its Euler angles."""
 
     body: str
@@ -35,7 +35,7 @@ class Turned(NamedTuple):
         return {"half_turns": self.half_turns, **euler}
 
 
-class Largest(NamedTuple):
+class LargestCondition(NamedTuple):
     """The largest of a condition number over the run, when, and where; infinite of what is singular."""
 
     value: float
@@ -72,7 +72,7 @@ class StiffnessResults:
 
 
 @record
-class Growing:
+class GrowthResults:
     """How a disturbance grows: rate [1/s], how many times until an instant, whether exponentially; directions: how many
     there are; horizon [s]: of double precision; expected: the one beyond the run, if it goes on so.
     """
@@ -89,7 +89,7 @@ class Growing:
 
 @record
 class Probe:
-    """All that was found. reasons: why something is not told, by its key in JSON; more: events beyond those listed."""
+    """What a probe found. reasons: why something is not told, by its key in JSON; more: events beyond those listed."""
 
     title: str
     duration: float
@@ -98,12 +98,12 @@ class Probe:
     error: float  # estimate of the run's motion
     status: str
     events: tuple[Event, ...]
-    attitudes: tuple[Turned, ...]
-    mass: Largest | None
-    closure: Largest | None
+    attitudes: tuple[AttitudeResults, ...]
+    mass: LargestCondition | None
+    closure: LargestCondition | None
     stiffness: StiffnessResults | None
-    growth: Growing | None
-    across: Growing | None  # out of the plane
+    growth: GrowthResults | None
+    across: GrowthResults | None  # out of the plane
     reasons: dict[str, str]
     more: tuple[tuple[str, str, int], ...]
     trouble: tuple[str, ...] = ()  # of the default method, worst first
@@ -147,8 +147,8 @@ class Probe:
             "not_told": dict(self.reasons),
         }
 
-    def conditions(self) -> list[tuple[str, Largest]]:
-        """Those that are known, by name."""
+    def conditions(self) -> list[tuple[str, LargestCondition]]:
+        """The largest condition numbers that are known, with what of: mass matrix, closures."""
         return [(name, at) for name, at in (("mass", self.mass), ("closure", self.closure)) if at is not None]
 
 
@@ -157,12 +157,12 @@ def number(x: float) -> float | None:
     return x if math.isfinite(x) else None
 
 
-def number_of(largest: Largest | None) -> float | None:
+def number_of(largest: LargestCondition | None) -> float | None:
     """The largest as JSON has it."""
     return number(largest.value) if largest is not None else None
 
 
-def growing_block(growth: Growing | None) -> dict[str, Any] | None:
+def growing_block(growth: GrowthResults | None) -> dict[str, Any] | None:
     """A growth as JSON has it."""
     if growth is None:
         return None

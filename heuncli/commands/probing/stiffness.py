@@ -12,7 +12,7 @@ import math
 import numpy as np
 
 from heuncli import tolerances
-from heuncli.commands.probing.instants import Along
+from heuncli.commands.probing.instants import SearchedMotion
 from heuncli.commands.probing.numerics.shadows import ShadowScale
 from heuncli.commands.probing.numerics.stiffness import accurate_step, eigenvalues, motion_rate, rate_of, stable_step
 from heuncli.commands.probing.results import Step, StiffnessResults
@@ -29,7 +29,7 @@ MOST_STATE = 600  # numbers of state, of a matrix that is formed
 WINDOWS = 100  # of the run, over which the speeds change
 
 
-def stiffness_of(along: Along) -> tuple[StiffnessResults | None, str]:
+def stiffness_of(along: SearchedMotion) -> tuple[StiffnessResults | None, str]:
     """The stiffness of a motion or a state, or why there is none."""
     study = along.study
     runner, checked = study.setup.runner, along.checked
@@ -85,7 +85,7 @@ def looked_at(run: Trajectory) -> Array:
     return np.unique(marks[np.linspace(0, len(marks) - 1, min(LOOKS, len(marks))).astype(int)])
 
 
-def spectra(along: Along, times: Array) -> list[Array]:
+def spectra(along: SearchedMotion, times: Array) -> list[Array]:
     """Eigenvalues of what is integrated, at instants."""
     runner, checked = along.study.setup.runner, along.study.history.checked
     assert checked is not None
@@ -97,12 +97,12 @@ def spectra(along: Along, times: Array) -> list[Array]:
     return found
 
 
-def tolerance_of(along: Along, run: Trajectory) -> float:
+def tolerance_of(along: SearchedMotion, run: Trajectory) -> float:
     """The local tolerance that accuracy is asked by; a run of given steps has none of its own."""
     return along.study.spec.analysis.tolerance if run.method.fixed else run.local
 
 
-def own_rate(along: Along, run: Trajectory, times: Array, stable: Array) -> float:
+def own_rate(along: SearchedMotion, run: Trajectory, times: Array, stable: Array) -> float:
     """The motion's own rate [1/s]: that of a sine for which accuracy asks for the steps of the run."""
     local, mean = tolerance_of(along, run), float(run.times[-1]) / max(run.steps, 1)
     lengths = np.diff(np.concatenate([[0.0], run.ends]))

@@ -10,7 +10,7 @@ from collections.abc import Sequence
 
 from heuncli.commands.probing.conditions import conditions_of, singular_events
 from heuncli.commands.probing.growth import across_plane, growing
-from heuncli.commands.probing.instants import Along, attitudes, dead_centres, distinct_events
+from heuncli.commands.probing.instants import SearchedMotion, attitudes, dead_centres, distinct_events
 from heuncli.commands.probing.results import Event, Probe
 from heuncli.commands.probing.stiffness import stiffness_of
 from heuncli.commands.probing.verdict import others, trouble
@@ -30,9 +30,9 @@ def probe(spec: Spec, options: Options) -> Probe:
 
 
 def probed(spec: Spec, options: Options) -> Probe:
-    """The same, with errors that have names in place of places."""
+    """The probe of a spec. Errors name bodies, joints and sections, but not where these stand in the file."""
     study = solve(spec, replace(options, wanted=frozenset({"motion"})))
-    along = Along(study)
+    along = SearchedMotion(study)
     turns, turned = attitudes(along)
     centres, left = dead_centres(along)
     mass, closure, why = conditions_of(along)

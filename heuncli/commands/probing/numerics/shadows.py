@@ -232,7 +232,7 @@ class Shadows:
 
 
 def growth_of(found: list[tuple[float, float, float]], stopped: str | None) -> Growth:
-    """The growth from its rows."""
+    """The growth from its rows, (instant, ln G, steps) each."""
     times, logarithm, steps = np.array(found).T
     return Growth(times, logarithm, steps, stopped)
 

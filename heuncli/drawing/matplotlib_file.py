@@ -1,4 +1,4 @@
-"""The same drawing as PNG or PDF, by matplotlib, which is an extra of its own."""
+"""A drawing as PNG or PDF, by matplotlib, which is an extra of its own (heuncli[plot])."""
 
 from __future__ import annotations
 
