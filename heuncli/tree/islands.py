@@ -15,7 +15,7 @@ from heuncli.mechanism.model import GROUND
 from heuncli.records import replace
 from heuncli.results import Array
 from heuncli.tree.layout import Island, Layout
-from heuncli.tree.tables import table
+from heuncli.tree.rows import IslandRow, table_of
 
 
 def with_islands(layout: Layout) -> Layout:
@@ -29,8 +29,8 @@ def with_islands(layout: Layout) -> Layout:
         at = len(layout.indices)
         layout.indices.extend(island.rows.tolist() + island.freedoms.tolist())
         n = len(island.rows)
-        rows.append({"rows": at, "row_count": n, "freedoms": at + n, "freedom_count": len(island.freedoms)})
-    tables = layout.tables | {"islands": table(kernel.Island, rows)}
+        rows.append(IslandRow(rows=at, row_count=n, freedoms=at + n, freedom_count=len(island.freedoms)))
+    tables = layout.tables | {"islands": table_of(kernel.Island, rows)}
     return replace(layout, islands=tuple(found), measure=measure, tables=tables)
 
 

@@ -3,9 +3,7 @@
 from __future__ import annotations
 
 import math
-from array import array
 from collections.abc import Sequence
-from typing import Any
 
 import numpy as np
 
@@ -14,16 +12,33 @@ from heuncli.expressions.programs import Expression, Pack
 from heuncli.joint_kinds import JOINTS, Direction
 from heuncli.kernel.choose import scene as kernel
 from heuncli.mechanism.model import GROUND, Assembly, Joint, JointLoad, Mechanism, PairLoad, PointLoad, Stop
+from heuncli.records import replace
 from heuncli.results import Array
 from heuncli.shapes.rotations import cross_rows, perpendicular, to_quaternion
+from heuncli.tree.closure_paths import places_of
 from heuncli.tree.flat import about_z, in_plane, moves_in_plane
 from heuncli.tree.islands import with_islands
 from heuncli.tree.layout import Contact, Freedom, Layout
+from heuncli.tree.rows import (
+    NO_PROGRAM,
+    ZERO,
+    BodyRow,
+    ClosureRow,
+    ContactRow,
+    CounterRow,
+    FreedomRow,
+    GroupRow,
+    LoadRow,
+    Program,
+    VariableRow,
+    Vector,
+    WatchRow,
+    table_of,
+)
 from heuncli.tree.spanning import Hang, Spanning, span
 from heuncli.tree.starts import GivenTree, JointStart, Z, joint_frame, joint_start, pose, to_direction
-from heuncli.tree.tables import limits, symmetric, table
+from heuncli.tree.tables import limits, symmetric
 
-NO_PROGRAM = (0, 0)
 JOINT_LOADS = {  # of the turning, of the sliding
     "torque": (kernel.TORQUE, kernel.THRUST),
     "turn_spring": (kernel.TURN_SPRING, kernel.THRUST),
@@ -78,7 +93,7 @@ def lay_out_like(
     return builder.layout(layout.work_at >= 0)
 
 
-def _programs(mechanism: Mechanism, pack: Pack) -> tuple[dict[int, tuple[int, int]], set[tuple[str, str]]]:
+def _programs(mechanism: Mechanism, pack: Pack) -> tuple[dict[int, Program], set[tuple[str, str]]]:
     """Put every expression in time into the pack; where each stands, by identity, and the coordinates they name."""
     expressions = [value for load in mechanism.loads for value in load.values]
     expressions += [condition.value for condition in mechanism.conditions]
@@ -99,19 +114,19 @@ class _Builder:
         inertias: Array,
         size: float,
         pack: Pack,
-        programs: dict[int, tuple[int, int]],
+        programs: dict[int, Program],
     ) -> None:
         self.mechanism, self.start, self.spanning, self.starts = mechanism, start, spanning, starts
         self.inertias, self.pack, self.programs = inertias, pack, programs
         self.place = {h.body: i for i, h in enumerate(spanning.hangs)}
         self.size = size
         self.reference = np.array([self._reference(h) for h in spanning.hangs]).reshape(-1, 3)
-        self.body_rows: list[dict[str, Any]] = []
-        self.freedom_rows: list[dict[str, Any]] = []
+        self.body_rows: list[BodyRow] = []
+        self.freedom_rows: list[FreedomRow] = []
         self.freedoms: list[Freedom] = []
         self.y: list[float] = []
         self.weights: list[float] = []
-        self.groups: list[dict[str, Any]] = []
+        self.groups: list[GroupRow] = []
         self.answer_count = 0
 
     def layout(self, work: bool) -> Layout:
@@ -139,69 +154,58 @@ class _Builder:
         """Bodies, freedoms and the start."""
         for i, h in enumerate(self.spanning.hangs):
             body = self.mechanism.bodies[h.body]
-            _, R, _, w = pose(self.start, h.body)
             joint_point, R_ref, ball, freedoms = self._hang(h)
             c = body.center - self.reference[i]
             J = self.inertias[h.body] + body.mass * ((c @ c) * np.eye(3) - np.outer(c, c))
-            f0, g0 = len(self.freedoms), len(self.y)
-            driven = [self._driven(h, quantity) for _, _, quantity, _, _ in freedoms]
-            q = 4 * ball + len([d for d in driven if d is None])
-            if ball:
-                self.y += to_quaternion(R).tolist()
-                self.weights += [1.0] * 4
-            n_q = g0 + 4 * ball
-            n_u = g0 + q + 3 * ball
-            rates: list[float] = []
-            weights: list[float] = []
-            for (kind, direction, quantity, x, u), drive in zip(freedoms, driven, strict=True):
-                weight = 1.0 / self.size if kind == kernel.SHIFT else 1.0
-                at_q = at_u = -1
-                if drive is None:
-                    at_q, at_u = n_q, n_u
-                    n_q, n_u = n_q + 1, n_u + 1
-                    self.y.append(x)
-                    self.weights.append(weight)
-                    rates.append(u)
-                    weights.append(weight)
-                self.freedom_rows.append(
-                    {
-                        "kind": kind,
-                        "q_at": at_q,
-                        "u_at": at_u,
-                        "driven": int(drive is not None),
-                        "answer_at": self.answer_count + 3 * ball + len(self.freedoms) - f0,
-                        "body": i,
-                        "program": drive or NO_PROGRAM,
-                        "direction": direction,
-                    }
-                )
-                self.freedoms.append(Freedom(h.joint, quantity, at_q, at_u))
-            if ball:
-                self.y += w.tolist()
-                self.weights += [1.0] * 3
-            self.y += rates
-            self.weights += weights
-            self.groups.append({"coordinates": g0, "rates": g0 + q, "end": len(self.y)})
+            first, group = len(self.freedoms), self._state_of(i, h, ball, freedoms)
+            self.groups.append(group)
             self.body_rows.append(
-                {
-                    "parent": self.in_tree(h.parent),
-                    "ball": int(ball),
-                    "attitude_at": g0,
-                    "rate_at": g0 + q,
-                    "first_freedom": f0,
-                    "end_freedom": len(self.freedoms),
-                    "answer_at": self.answer_count,
-                    "framed": int(not np.array_equal(R_ref, np.eye(3))),
-                    "mass": body.mass,
-                    "first_moment": body.mass * c,
-                    "inertia": symmetric(J),
-                    "joint_in_parent": joint_point,
-                    "frame": R_ref.ravel(),
-                }
+                BodyRow(
+                    parent=self.in_tree(h.parent),
+                    ball=int(ball),
+                    attitude_at=group.coordinates,
+                    rate_at=group.rates,
+                    first_freedom=first,
+                    end_freedom=len(self.freedoms),
+                    answer_at=self.answer_count,
+                    framed=int(not np.array_equal(R_ref, np.eye(3))),
+                    mass=body.mass,
+                    first_moment=body.mass * c,
+                    inertia=symmetric(J),
+                    joint_in_parent=joint_point,
+                    frame=R_ref.ravel(),
+                )
             )
             self.answer_count += 3 * ball + len(freedoms)
 
-    def _driven(self, h: Hang, quantity: str) -> tuple[int, int] | None:
+    def _state_of(self, i: int, h: Hang, ball: bool, freedoms: list[Scalar]) -> GroupRow:
+        """Add a body's part of the state and its freedoms; where it stands.
+
+        Of a ball the attitude comes first, then the coordinates; then the angular velocity and the rates.
+        """
+        _, R, _, w = pose(self.start, h.body)
+        begin = len(self.y)
+        programs = [self._driven(h, quantity) for _, _, quantity, _, _ in freedoms]
+        rates_at = begin + 4 * ball + sum(program is None for program in programs)
+        at_q, at_u = begin + 4 * ball, rates_at + 3 * ball
+        coordinates, rates, weights = (to_quaternion(R).tolist(), w.tolist(), [1.0] * 3) if ball else ([], [], [])
+        own: list[float] = []  # weights of the coordinates, and of the rates
+        for k, ((kind, direction, quantity, x, u), program) in enumerate(zip(freedoms, programs, strict=True)):
+            places = (-1, -1)
+            if program is None:
+                places, at_q, at_u = (at_q, at_u), at_q + 1, at_u + 1
+                coordinates.append(x)
+                rates.append(u)
+                own.append(1.0 / self.size if kind == kernel.SHIFT else 1.0)
+            answer = self.answer_count + 3 * ball + k
+            driven, program = int(program is not None), program or NO_PROGRAM
+            self.freedom_rows.append(FreedomRow(kind, *places, driven, answer, i, program, direction))
+            self.freedoms.append(Freedom(h.joint, quantity, *places))
+        self.y += coordinates + rates
+        self.weights += [1.0] * (4 * ball) + own + weights + own
+        return GroupRow(begin, rates_at, len(self.y))
+
+    def _driven(self, h: Hang, quantity: str) -> Program | None:
         drive = self.mechanism.joints[h.joint].drive if h.joint >= 0 else None
         return self.programs[id(drive.value)] if drive is not None and drive.quantity == quantity else None
 
@@ -273,28 +277,26 @@ class _Builder:
     def rows(self) -> None:
         """Closure rows of the cut joints and of stops, their paths, freedoms and couplings, and counted angles."""
         self.row_joint: list[int] = []
-        self.closure_rows: list[dict[str, Any]] = []
+        self.closure_rows: list[ClosureRow] = []
         self.paths: list[list[int]] = []
         self.counters: dict[int, int] = {}
         self.contacts: list[Contact] = []
-        self.one_sided: list[dict[str, int]] = []
+        self.one_sided: list[ContactRow] = []
         loose = {stop.joint for stop in self.mechanism.stops if stop.quantity == "length"}
         for k in self.spanning.cut:
             joint, s = self.mechanism.joints[k], self.starts[k]
             kind = JOINTS[joint.kind]
-            common = self._ends_of(joint)
             if kind.keeps_distance and k not in loose:
-                drive = self.programs[id(joint.drive.value)] if joint.drive is not None else NO_PROGRAM
-                length = 0.0 if drive[1] else joint.length if joint.length is not None else self._distance(joint)
-                row = {"kind": kernel.ROD, "program": drive, "length": length}
+                program = self.programs[id(joint.drive.value)] if joint.drive is not None else NO_PROGRAM
+                length = 0.0 if program[1] else joint.length if joint.length is not None else self._distance(joint)
                 if joint.tension_only:
                     self._rope(k)
-                self._row(k, common | row | {"weight": 1.0})
+                self._row(k, kernel.ROD, program=program, length=length)
             for d in kind.guides:
-                self._row(k, common | {"kind": kernel.GUIDE, "e": joint_frame(joint, d), "weight": 1.0})
+                self._row(k, kernel.GUIDE, e=joint_frame(joint, d))
             for d, e in kind.dots:
                 f = to_direction(joint, s.R_ref, e)
-                self._row(k, common | {"kind": kernel.DOT, "e": joint_frame(joint, d), "g": f, "weight": self.size})
+                self._row(k, kernel.DOT, e=joint_frame(joint, d), g=f, weight=self.size)
             if "angle" in kind.coordinates:
                 self.counters[k] = -1
         for stop in self.mechanism.stops:
@@ -309,30 +311,20 @@ class _Builder:
         if joint.restitution is not None:
             self.contacts.append(Contact(joint.name, True, k, row, 1, joint.restitution))
         opens = len(self.contacts) if joint.restitution is not None else 0
-        self.one_sided.append({"row": row, "sense": 1, "opens": opens})
+        self.one_sided.append(ContactRow(row, 1, opens))
 
     def _limit(self, stop: Stop, limit: float, sense: int) -> None:
         """The row of one limit of a stop."""
         joint, row = self.mechanism.joints[stop.joint], len(self.row_joint)
         self.contacts.append(Contact(stop.name, False, stop.joint, row, sense, stop.restitution))
-        self.one_sided.append({"row": row, "sense": sense, "opens": len(self.contacts)})
-        common = self._ends_of(joint) | {"length": limit, "weight": 1.0}
+        self.one_sided.append(ContactRow(row, sense, len(self.contacts)))
         if stop.quantity == "length":
-            self._row(stop.joint, common | {"kind": kernel.ROD})
+            self._row(stop.joint, kernel.ROD, length=limit)
         elif stop.quantity == "travel":
-            self._row(stop.joint, common | {"kind": kernel.GUIDE, "e": joint.axis})
+            self._row(stop.joint, kernel.GUIDE, length=limit, e=joint.axis)
         else:
             turn = next(i for i, f in enumerate(self.freedoms) if (f.joint, f.quantity) == (stop.joint, "angle"))
-            self._row(stop.joint, common | {"kind": kernel.TURN, "e": joint.axis, "freedom": turn, "weight": self.size})
-
-    def _ends_of(self, joint: Joint) -> dict[str, Any]:
-        """Bodies and points of a closure row."""
-        return {
-            "a": self.in_tree(joint.a),
-            "b": self.in_tree(joint.b),
-            "p": self.relative(joint.a, joint.p),
-            "q": self.relative(joint.b, joint.q),
-        }
+            self._row(stop.joint, kernel.TURN, length=limit, e=joint.axis, freedom=turn, weight=self.size)
 
     def _distance(self, joint: Joint) -> float:
         """Of the joint's two points at the start [m]."""
@@ -341,21 +333,36 @@ class _Builder:
         D = xb + Rb @ joint.q - xa - Ra @ joint.p
         return math.sqrt(float(D @ D))
 
-    def _row(self, joint: int, row: dict[str, Any]) -> None:
+    def _row(
+        self,
+        joint: int,
+        kind: int,
+        *,
+        e: Vector = ZERO,
+        g: Vector = ZERO,
+        length: float = 0.0,
+        program: Program = NO_PROGRAM,
+        freedom: int = 0,
+        weight: float = 1.0,
+    ) -> None:
+        """A closure row of a joint; weight: of its gap [m per unit]."""
+        own = self.mechanism.joints[joint]
+        a, b = self.in_tree(own.a), self.in_tree(own.b)
+        p, q = self.relative(own.a, own.p), self.relative(own.b, own.q)
         self.row_joint.append(joint)
-        self.closure_rows.append(row)
-        self.paths.append(sorted(set(self._path(row["a"])) | set(self._path(row["b"])), reverse=True))
+        self.closure_rows.append(ClosureRow(kind, a, b, p, q, weight, freedom, program, e, g, length))
+        self.paths.append(sorted(set(self._path(a)) | set(self._path(b)), reverse=True))
 
     def _path(self, i: int) -> list[int]:
         path = []
         while i >= 0:
             path.append(i)
-            i = self.body_rows[i]["parent"]
+            i = self.body_rows[i].parent
         return path
 
     def loads(self) -> None:
         """Applied loads."""
-        self.load_rows: list[dict[str, Any]] = []
+        self.load_rows: list[LoadRow] = []
         for load in self.mechanism.loads:
             if isinstance(load, PointLoad):
                 self._point_load(load)
@@ -364,33 +371,32 @@ class _Builder:
             else:
                 self._joint_load(load)
 
-    def _load(self, values: list[Expression | float], **given: Any) -> None:
-        """A load with up to three components; what is not given is zero."""
-        programs: list[tuple[int, int]] = []
-        constants: list[float] = []
-        for value in [*values, *([0.0] * (3 - len(values)))]:
-            constant = value if isinstance(value, float) else value.constant
-            programs.append(self.programs[id(value)] if constant is None else NO_PROGRAM)
-            constants.append(constant if constant is not None else 0.0)
-        self.load_rows.append(dict(zip("xyz", programs, strict=True)) | {"vector": constants} | given)
+    def _values(self, values: Sequence[Expression]) -> tuple[Program, Program, Program, list[float]]:
+        """The programs of up to three components that vary, and the numbers of those that do not."""
+        constants = [value.constant for value in values] + [0.0] * (3 - len(values))
+        programs = [self.programs[id(value)] if value.constant is None else NO_PROGRAM for value in values]
+        x, y, z = programs + [NO_PROGRAM] * (3 - len(values))
+        return x, y, z, [constant if constant is not None else 0.0 for constant in constants]
 
     def _point_load(self, load: PointLoad) -> None:
         q = np.zeros(3) if load.point is None else self.relative(load.body, load.point)
         kind = kernel.FORCE if load.kind == "force" else kernel.COUPLE
-        body, in_body = self.in_tree(load.body), int(load.in_body)
-        self._load(list(load.vector), kind=kind, a=GROUND, b=body, in_body=in_body, q=q, factor=load.factor)
+        body, in_body, values = self.in_tree(load.body), int(load.in_body), self._values(load.vector)
+        self.load_rows.append(LoadRow(kind, GROUND, body, *values, in_body=in_body, q=q, factor=load.factor))
 
     def _pair_load(self, load: PairLoad) -> None:
-        self._load(
-            [] if load.value is None else [load.value],
-            kind=kernel.SPRING if load.value is None else kernel.ACTUATOR,
-            a=self.in_tree(load.a),
-            b=self.in_tree(load.b),
-            p=self.relative(load.a, load.p),
-            q=self.relative(load.b, load.q),
-            stiffness=load.stiffness,
-            length=load.length,
-            coefficient=load.damping,
+        self.load_rows.append(
+            LoadRow(
+                kernel.SPRING if load.value is None else kernel.ACTUATOR,
+                self.in_tree(load.a),
+                self.in_tree(load.b),
+                *self._values(load.values),
+                p=self.relative(load.a, load.p),
+                q=self.relative(load.b, load.q),
+                stiffness=load.stiffness,
+                length=load.length,
+                coefficient=load.damping,
+            )
         )
 
     def _joint_load(self, load: JointLoad) -> None:
@@ -398,39 +404,39 @@ class _Builder:
         kind = JOINTS[joint.kind]
         turns, slides = JOINT_LOADS[load.kind]
         parts = {"turning": (turns, load.turning), "sliding": (slides, load.sliding)}
-        spring = self._turn_spring(load) if load.kind == "turn_spring" else {}
         for motion in kind.moved_by(load.kind):
             number, coefficient = parts[motion]
-            self._load(
-                [] if load.value is None else [load.value],
-                kind=number,
-                a=self.in_tree(joint.a),
-                b=self.in_tree(joint.b),
+            row = LoadRow(
+                number,
+                self.in_tree(joint.a),
+                self.in_tree(joint.b),
+                *self._values(load.values),
                 in_body=int(kind.has_one_axis),
                 p=self.relative(joint.a, joint.p),
                 q=self.relative(joint.b, joint.q),
                 coefficient=coefficient,
                 axis=joint.axis,
                 speed=load.speed,
-                **spring,
             )
+            self.load_rows.append(self._turn_spring(load, row) if load.kind == "turn_spring" else row)
 
-    def _turn_spring(self, load: JointLoad) -> dict[str, Any]:
+    def _turn_spring(self, load: JointLoad, row: LoadRow) -> LoadRow:
         """What a spring about a joint's axis has of its own: where its angle stands, or tells it where that was cut."""
         joint, start = self.mechanism.joints[load.joint], self.starts[load.joint]
         named = enumerate(self.freedoms)
         freedom = next((i for i, f in named if f.joint == load.joint and f.quantity in ("angle", "first")), -1)
         across = perpendicular(joint.axis)[0]
-        return {
-            "stiffness": load.stiffness,
-            "length": load.angle,
-            "freedom": freedom,
-            "counter": list(self.counters).index(load.joint) if load.joint in self.counters else -1,
+        return replace(
+            row,
+            stiffness=load.stiffness,
+            length=load.angle,
+            freedom=freedom,
+            counter=list(self.counters).index(load.joint) if load.joint in self.counters else -1,
             # a universal's coordinate is counted from the start; without any the angle stays what it is there
-            "offset": 0.0 if freedom >= 0 and self.freedoms[freedom].quantity == "angle" else start.angle,
-            "across": across,
-            "mark": start.R_ref.T @ across,
-        }
+            offset=0.0 if freedom >= 0 and self.freedoms[freedom].quantity == "angle" else start.angle,
+            across=across,
+            mark=start.R_ref.T @ across,
+        )
 
     def finish(self, work: bool) -> Layout:
         """Counted angles and the work join the state; the tables are made."""
@@ -447,19 +453,19 @@ class _Builder:
             if driven:
                 # the drives' work may vary where the motion does not: it has a say in the step
                 energy_group = len(self.groups)
-                self.groups.append({"coordinates": work_at, "rates": work_at, "end": work_at + 1})
-        indices, column_count = self._index_rows()
+                self.groups.append(GroupRow(work_at, work_at, work_at + 1))
+        places, indices, column_count = places_of(self.paths, self.body_rows)
         tables = {
-            "bodies": table(kernel.Body, self.body_rows),
-            "freedoms": table(kernel.Freedom, self.freedom_rows),
-            "loads": table(kernel.Load, self.load_rows),
-            "closures": table(kernel.Closure, self.closure_rows),
-            "counters": table(kernel.Counter, self._counter_rows()),
-            "variables": table(kernel.Variable, self._variable_rows()),
-            "watches": table(kernel.Watch, self._watch_rows()),
-            "contacts": table(kernel.Contact, self.one_sided),
-            "groups": table(kernel.Group, self.groups),
-            "lents": table(kernel.Lent, []),
+            "bodies": table_of(kernel.Body, self.body_rows),
+            "freedoms": table_of(kernel.Freedom, self.freedom_rows),
+            "loads": table_of(kernel.Load, self.load_rows),
+            "closures": table_of(kernel.Closure, self.closure_rows, places),
+            "counters": table_of(kernel.Counter, self._counter_rows()),
+            "variables": table_of(kernel.Variable, self._variable_rows()),
+            "watches": table_of(kernel.Watch, self._watch_rows()),
+            "contacts": table_of(kernel.Contact, self.one_sided),
+            "groups": table_of(kernel.Group, self.groups),
+            "lents": table_of(kernel.Lent, []),
             "limits": limits(tolerances.KERNEL),
         }
         layout = Layout(
@@ -486,47 +492,14 @@ class _Builder:
         )
         return with_islands(layout)
 
-    def _index_rows(self) -> tuple[array[int], int]:
-        """Paths, answers and couplings of the closure rows, which rows of one path share; the columns' length."""
-        indices = array("i")
-        shared: dict[tuple[int, ...], dict[str, int]] = {}
-        column = 0
-        coupled, filled = fill_in(self.paths)
-
-        def put(data: list[int]) -> int:
-            indices.extend(data)
-            return len(indices) - len(data)
-
-        for r, (row, path) in enumerate(zip(self.closure_rows, self.paths, strict=True)):
-            key = (*path, -1, *filled[r])
-            if key not in shared:
-                answers = [n for i in path for n in self._answers(i)]
-                more = [n for i in filled[r] for n in self._answers(i)]
-                shared[key] = {
-                    "path": put(path),
-                    "path_count": len(path),
-                    "answers": put(answers + more),
-                    "answer_count": len(answers),
-                    "filled_count": len(answers) + len(more),
-                }
-            row |= shared[key] | {"column": column, "rank": -1}
-            row |= {"couplings": put(coupled[r]), "coupling_count": len(coupled[r])}
-            column += row["filled_count"]
-        return indices, column
-
-    def _answers(self, i: int) -> range:
-        """The answers of a body's freedoms."""
-        row = self.body_rows[i]
-        return range(row["answer_at"], row["answer_at"] + 3 * row["ball"] + row["end_freedom"] - row["first_freedom"])
-
-    def _counter_rows(self) -> list[dict[str, Any]]:
+    def _counter_rows(self) -> list[CounterRow]:
         joints = self.mechanism.joints
         return [
-            {"a": self.in_tree(joints[k].a), "b": self.in_tree(joints[k].b), "at": at, "axis": joints[k].axis}
+            CounterRow(self.in_tree(joints[k].a), self.in_tree(joints[k].b), at, joints[k].axis)
             for k, at in self.counters.items()
         ]
 
-    def _watch_rows(self) -> list[dict[str, Any]]:
+    def _watch_rows(self) -> list[WatchRow]:
         """The programs of loads and drives: what they do between the stages of a step must not be passed over.
 
         Of conditions only where they change.
@@ -534,47 +507,19 @@ class _Builder:
         driven = {id(j.drive.value): j.drive.value for j in self.mechanism.joints if j.drive is not None}
         loads = {id(e): e for load in self.mechanism.loads for e in load.values}
         watched = [
-            {"program": self.programs[key], "curved": int(key in driven), "condition": 0}
+            WatchRow(self.programs[key], curved=int(key in driven), condition=0)
             for key, e in (loads | driven).items()
             if e.constant is None
         ]
         conditions = (self.programs[id(condition.value)] for condition in self.mechanism.conditions)
-        return watched + [{"program": program, "curved": 0, "condition": 1} for program in conditions]
+        return watched + [WatchRow(program, curved=0, condition=1) for program in conditions]
 
-    def _variable_rows(self) -> list[dict[str, Any]]:
+    def _variable_rows(self) -> list[VariableRow]:
         """The first is the time, which is no coordinate."""
         joints = self.mechanism.joints
         by_name = {(joints[f.joint].name, f.quantity): i for i, f in enumerate(self.freedoms) if f.joint >= 0}
-        rows = [{"freedom": 0, "is_rate": 0}]
+        rows = [VariableRow(0, 0)]
         for name, quantity in (use for use in self.pack.variables if not isinstance(use, str)):
             base = {"rate": "angle", "speed": "travel"}.get(quantity, quantity)
-            rows.append({"freedom": by_name[name, base], "is_rate": int(base != quantity)})
+            rows.append(VariableRow(by_name[name, base], int(base != quantity)))
         return rows
-
-
-def fill_in(paths: list[list[int]]) -> tuple[list[list[int]], list[list[int]]]:
-    """For each row the earlier rows (and itself) that may fill it when they are taken out of it, and what they fill.
-
-    A row meets the earlier ones whose bodies are on its path, or on what those have filled. Filled are the bodies that
-    are not on its own path, tips first.
-    """
-    group: dict[int, int] = {}  # body -> the group of rows that reaches it
-    rows: dict[int, list[int]] = {}
-    bodies: dict[int, set[int]] = {}
-    coupled: list[list[int]] = []
-    filled: list[list[int]] = []
-    for r, path in enumerate(paths):
-        met = sorted({group[i] for i in path if i in group})
-        into = met[0] if met else r
-        rows.setdefault(into, [])
-        bodies.setdefault(into, set())
-        for other in met[1:]:
-            rows[into] += rows.pop(other)
-            bodies[into] |= bodies.pop(other)
-        rows[into].append(r)
-        bodies[into] |= set(path)
-        for i in bodies[into]:
-            group[i] = into
-        coupled.append(sorted(rows[into]))
-        filled.append(sorted(bodies[into] - set(path), reverse=True))
-    return coupled, filled

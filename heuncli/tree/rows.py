@@ -1,0 +1,192 @@
+"""The rows that a scene is laid out in for the kernel: of each struct the fields that are given, with their types.
+
+What the fields mean stands in kernel/scene.py. Numbers of bodies are places in the tree, -1 is the ground; vectors are
+(3,), matrices (3, 3). What has a default is zero where it is not given. Yes and no are 1 and 0.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+
+from heuncli.kernel.choose import structs
+from heuncli.records import record
+from heuncli.results import Array
+from heuncli.tree.tables import Table, table
+
+Program = tuple[int, int]  # of a value in time: where it starts among the pack's, and how long it is
+NO_PROGRAM: Program = (0, 0)
+ZERO = (0.0, 0.0, 0.0)
+Vector = Array | Sequence[float]
+
+
+@record
+class BodyRow:
+    """A body on its joint; inertia as Sym3."""
+
+    parent: int
+    ball: int
+    attitude_at: int
+    rate_at: int
+    first_freedom: int
+    end_freedom: int
+    answer_at: int
+    framed: int
+    mass: float
+    first_moment: Array
+    inertia: tuple[float, ...]
+    joint_in_parent: Array
+    frame: Array
+
+    @property
+    def answers(self) -> range:
+        """Which answers of the freedoms are this body's."""
+        return range(self.answer_at, self.answer_at + 3 * self.ball + self.end_freedom - self.first_freedom)
+
+
+@record
+class FreedomRow:
+    """A scalar freedom of a joint."""
+
+    kind: int
+    q_at: int
+    u_at: int
+    driven: int
+    answer_at: int
+    body: int
+    program: Program
+    direction: Array
+
+
+@record
+class LoadRow:
+    """An applied load: x, y, z and vector are the components that vary and those that do not."""
+
+    kind: int
+    a: int
+    b: int
+    x: Program
+    y: Program
+    z: Program
+    vector: Vector
+    in_body: int = 0
+    freedom: int = 0
+    counter: int = 0
+    p: Vector = ZERO
+    q: Vector = ZERO
+    stiffness: float = 0.0
+    length: float = 0.0
+    coefficient: float = 0.0
+    axis: Vector = ZERO
+    speed: float = 0.0
+    factor: float = 0.0
+    offset: float = 0.0
+    across: Vector = ZERO
+    mark: Vector = ZERO
+
+
+@record
+class ClosureRow:
+    """A closure row: what it asks for."""
+
+    kind: int
+    a: int
+    b: int
+    p: Array
+    q: Array
+    weight: float
+    freedom: int = 0
+    program: Program = NO_PROGRAM
+    e: Vector = ZERO
+    g: Vector = ZERO
+    length: float = 0.0
+
+
+@record
+class ClosurePlaces:
+    """Where the path, the answers and the couplings of a closure row stand in `indices`, its column in `columns`."""
+
+    path: int
+    path_count: int
+    column: int
+    answers: int
+    answer_count: int
+    filled_count: int
+    couplings: int
+    coupling_count: int
+    rank: int
+
+
+@record
+class ContactRow:
+    """A one-sided closure row."""
+
+    row: int
+    sense: int
+    opens: int
+
+
+@record
+class CounterRow:
+    """The angle of a pin that was cut."""
+
+    a: int
+    b: int
+    at: int
+    axis: Array
+
+
+@record
+class VariableRow:
+    """A coordinate that expressions use; of the time, which is none, zero."""
+
+    freedom: int
+    is_rate: int
+
+
+@record
+class WatchRow:
+    """A program that is watched over the steps."""
+
+    program: Program
+    curved: int
+    condition: int
+
+
+@record
+class GroupRow:
+    """Components of the state whose errors are measured together."""
+
+    coordinates: int
+    rates: int
+    end: int
+
+
+@record
+class IslandRow:
+    """Where the rows and the freedoms of an island are listed in `indices`."""
+
+    rows: int
+    row_count: int
+    freedoms: int
+    freedom_count: int
+
+
+Row = (
+    BodyRow
+    | FreedomRow
+    | LoadRow
+    | ClosureRow
+    | ClosurePlaces
+    | ContactRow
+    | CounterRow
+    | VariableRow
+    | WatchRow
+    | GroupRow
+    | IslandRow
+)
+
+
+def table_of(struct: type[structs.Record], *columns: Sequence[Row]) -> Table:
+    """The kernel's table of rows; several sequences are parts of the same rows."""
+    rows = zip(*columns, strict=True)
+    return table(struct, [{name: value for part in row for name, value in vars(part).items()} for row in rows])
