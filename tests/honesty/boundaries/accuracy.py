@@ -8,13 +8,12 @@ from typing import Any
 import numpy as np
 
 from heuncli.commands.charting.reference import judged_instants
-from heuncli.commands.charting.results import COMPLETED, ChartedRun, with_front
-from heuncli.commands.charting.results import ChartRow as RowOfChart
+from heuncli.commands.charting.results import COMPLETED, ChartedRun, ChartRow, with_front
 from heuncli.integration.check.runs import shared_steps
 from heuncli.integration.run.pace import hopeless
 from heuncli.report.labels import labels_of
 from heuncli.report.page import page_of
-from tests.honesty.boundaries.part import ChartRow, Part
+from tests.honesty.boundaries.part import Part, Row
 from tests.honesty.boundaries.scenes import bar, read
 from tests.shared.scenes import near, study
 
@@ -48,7 +47,7 @@ def judged(x: float) -> str:
 
 def off_by(x: float) -> str:
     """A run that came to its end, alone in its chart."""
-    row = RowOfChart("RK4", "quaternion", True, 0.1)
+    row = ChartRow("RK4", "quaternion", True, 0.1)
     (run,) = with_front([ChartedRun(row, COMPLETED, 1.0, 1, 10, 40, {"motion": x, "reactions": x, "sections": None})])
     return "on the front" if run.front else "lost"
 
@@ -79,15 +78,15 @@ forces:
 PART = Part(
     ("", "accuracy"),
     rows=(
-        ChartRow("LEAST_ASKED", tolerance, "refused: tolerance", "fine"),
-        ChartRow("MOST_ASKED", tolerance, "fine", "refused: tolerance"),
-        ChartRow("WRITTEN", left_of, "0", "a number"),
-        ChartRow("JUDGED", judged, "judged", "not judged"),
-        ChartRow("LOST", off_by, "on the front", "lost"),
-        ChartRow("MOST_STEPS", steps_given, "fine", "refused: step"),
-        ChartRow("HOPELESS", steady_pace, "goes on", "told"),
-        ChartRow("SHARED_STEP", step_in_common, "apart", "shared"),
-        ChartRow("SAME_STEP", step_beside, "shared", "apart"),
+        Row("LEAST_ASKED", tolerance, "refused: tolerance", "fine"),
+        Row("MOST_ASKED", tolerance, "fine", "refused: tolerance"),
+        Row("WRITTEN", left_of, "0", "a number"),
+        Row("JUDGED", judged, "judged", "not judged"),
+        Row("LOST", off_by, "on the front", "lost"),
+        Row("MOST_STEPS", steps_given, "fine", "refused: step"),
+        Row("HOPELESS", steady_pace, "goes on", "told"),
+        Row("SHARED_STEP", step_in_common, "apart", "shared"),
+        Row("SAME_STEP", step_beside, "shared", "apart"),
     ),
     exempt={
         "MOST_FOREIGN": "when an independent check is given up that does not get on: after minutes, or more of them",
