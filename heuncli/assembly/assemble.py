@@ -2,12 +2,12 @@
 
 from __future__ import annotations
 
-from heuncli.assembly.chosen import chosen, pose_choices, rate_choices
 from heuncli.assembly.conditions import JointCondition, conditions_of
+from heuncli.assembly.displaced_bodies import moved
 from heuncli.assembly.gaps import size_of
-from heuncli.assembly.moved import moved
 from heuncli.assembly.poses import Placing
 from heuncli.assembly.rates import Moving
+from heuncli.assembly.start_choices import chosen, pose_choices, rate_choices
 from heuncli.mechanism.model import Assembly, Mechanism
 from heuncli.records import replace
 from heuncli.shapes.rotations import cross_rows
@@ -20,7 +20,7 @@ def assemble(mechanism: Mechanism, t0: float = 0.0) -> Assembly:
     """
     found, size = conditions_of(mechanism, t0), size_of(mechanism)
     if mechanism.stops or any(joint.restitution is not None for joint in mechanism.joints):
-        from heuncli.assembly.one_sided import assembled  # few scenes have them
+        from heuncli.assembly.slack_ropes import assembled  # few scenes have them
 
         return assembled(mechanism, found, size, lambda asking: _assembled(mechanism, asking, size))
     return _assembled(mechanism, found, size)

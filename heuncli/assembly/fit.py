@@ -8,7 +8,7 @@
         where that stalls with a gap (links in line have no slope), again with small fixed pseudo-random turns
     (3) polish: least Σθ² from the start of (2), then least Σd², among the poses that are closed
 θ turns of left-out attitudes, d shifts of left-out pivots, L the scene's size, l the island's own; y, C, e as in
-reduced.py.
+row_reduction.py.
 """
 
 from __future__ import annotations
@@ -20,9 +20,9 @@ import numpy as np
 
 from heuncli import tolerances
 from heuncli.assembly.conditions import JointCondition
-from heuncli.assembly.following import stages
+from heuncli.assembly.continuation import stages
 from heuncli.assembly.islands import AssemblyIsland
-from heuncli.assembly.reduced import ReducedIsland, least, rank_of
+from heuncli.assembly.row_reduction import ReducedIsland, least, rank_of
 from heuncli.assembly.rows import Rows, pose_rows
 from heuncli.assembly.walk import AssemblyPoses, place
 from heuncli.results import Array
@@ -214,7 +214,7 @@ class Fit:
         return True, kick
 
     def follow(self, drawn: tuple[Array, Array], asked: Mapping[int, tuple[bool, bool]], limit: float) -> bool:
-        """Whether it closes as drawn but for the coordinates asked for, and all the way to these (following.py)."""
+        """Whether it closes as drawn but for the coordinates asked for, and all the way to these (continuation.py)."""
         self.restore(drawn)
         last, lever, here = self.found, self.lever(), {k: asked[k] for k in self.joints if k in asked}
         followed = False

@@ -8,9 +8,9 @@ import numpy as np
 
 from heuncli import tolerances
 from heuncli.assembly.conditions import JointCondition
+from heuncli.assembly.continuation import given
 from heuncli.assembly.errors import does_not_fit, no_length, too_many
 from heuncli.assembly.fit import Fit
-from heuncli.assembly.following import given
 from heuncli.assembly.gaps import JointGaps
 from heuncli.assembly.islands import TOGETHER, AssemblyIsland, Islands, settle
 from heuncli.assembly.walk import AssemblyPoses, Tree, place, spanning, start, walk

@@ -17,7 +17,7 @@ from heuncli import tolerances
 from heuncli.assembly.conditions import JointCondition
 from heuncli.assembly.errors import rates_do_not_fit, singular_pose, too_many
 from heuncli.assembly.islands import TOGETHER, AssemblyIsland, Islands, settle
-from heuncli.assembly.reduced import ReducedIsland, least, solve
+from heuncli.assembly.row_reduction import ReducedIsland, least, solve
 from heuncli.assembly.rows import Rows, acceleration_rows, missing, rate_rows
 from heuncli.assembly.walk import AssemblyPoses, spanning
 from heuncli.mechanism.model import GROUND, Directed, Mechanism

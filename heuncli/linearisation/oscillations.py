@@ -14,7 +14,7 @@ from typing import Literal
 import numpy as np
 
 from heuncli import tolerances
-from heuncli.linearisation.reduced import ReducedEquations
+from heuncli.linearisation.reduced_equations import ReducedEquations
 from heuncli.records import record
 from heuncli.results import Array
 

@@ -16,7 +16,7 @@ import numpy as np
 
 from heuncli.joint_kinds import JOINTS
 from heuncli.records import record
-from heuncli.reduction.restated import Parts
+from heuncli.reduction.smaller_scene import Parts
 from heuncli.results import Array, Indices
 from heuncli.shapes.rotations import cross_rows
 from heuncli.tree.layout import Layout

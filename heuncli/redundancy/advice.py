@@ -2,7 +2,7 @@
 
 A looser joint holds part of what the one before held, so where the freedoms stay the same the motion does. Joints that
 are driven, loaded, named in an expression or hold a start value keep their kind: they need it. They may give way to the
-moments that others hold (giving_way.py).
+moments that others hold (zero_stiffness.py).
 """
 
 from __future__ import annotations

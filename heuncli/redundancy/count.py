@@ -70,8 +70,8 @@ def left_open(stress: SelfStress, joints: Sequence[Joint], states: BodyStates) -
     """How many self-stresses are left at each pose once joints have given way, and what these do, in words."""
     if all(joint.stiffness is None for joint in joints):
         return int(stress.count.min()), ()
-    from heuncli.redundancy.giving_way import soft_maps, told, vanishing
     from heuncli.redundancy.split import with_least_strain
+    from heuncli.redundancy.zero_stiffness import soft_maps, told, vanishing
 
     maps = vanishing(stress, soft_maps(joints, states, stress.length))
     _, left = with_least_strain(stress, maps)

@@ -1,7 +1,7 @@
 """A split of what redundancy leaves indeterminate, on request: by the joints' stiffness, by the least norm.
 
 Neither follows from the laws of rigid bodies; both add self-stresses to one solution. Before either, joints that give
-way do so (giving_way.py): that is no choice. Stiffness: least sum of
+way do so (zero_stiffness.py): that is no choice. Stiffness: least sum of
 F^2/k + M^2/k over the joints that have one, components in `from` axes; what they do not feel stays open. Least norm:
 least sum F^2 + (M/length)^2 over all joints; independent of the units. manual/theory.md, "Redundancy".
 """
@@ -16,8 +16,8 @@ from heuncli import tolerances
 from heuncli.kinetostatics.bodies import BodyStates
 from heuncli.kinetostatics.reactions import JointLoads, StopLoad, constrained_part
 from heuncli.records import record, replace
-from heuncli.redundancy.giving_way import gives_way, reached, soft_maps, vanishing
 from heuncli.redundancy.self_stress import SelfStress
+from heuncli.redundancy.zero_stiffness import gives_way, reached, soft_maps, vanishing
 from heuncli.results import Array
 
 

@@ -10,7 +10,7 @@ import numpy as np
 from heuncli import tolerances
 from heuncli.integration.evaluator import Evaluator, Recovered
 from heuncli.kernel.choose import scene as kernel
-from heuncli.linearisation.displace import displaced
+from heuncli.linearisation.displacements import displaced
 from heuncli.records import record
 from heuncli.results import Array, Indices, Mask
 from heuncli.tree.layout import Layout

@@ -9,7 +9,7 @@ import numpy as np
 import pytest
 
 from heuncli.integration.run.runner import Runner
-from heuncli.linearisation.displace import displaced
+from heuncli.linearisation.displacements import displaced
 from heuncli.linearisation.linearise import Linearised, linearised
 from heuncli.results import Array
 from heuncli.study.solve.singular_start import rates_of

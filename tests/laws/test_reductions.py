@@ -17,7 +17,7 @@ from heuncli.integration.evaluator import Recovered
 from heuncli.integration.integrated_scene import smaller
 from heuncli.integration.run.request import MotionTask
 from heuncli.integration.run.runner import Runner, ready
-from heuncli.reduction import held, merged, spins
+from heuncli.reduction import immobile_bodies, spins, welded_bodies
 from heuncli.reduction.model import Reduced, Reduction
 from heuncli.results import Array
 from heuncli.spec.load import load
@@ -112,7 +112,11 @@ def wires(rng: np.random.Generator, kind: type[Wires] = Wires) -> Maker:
     return maker
 
 
-FAMILIES = {"merged": (welds, merged.step), "held": (structures, held.step), "spins": (wires, spins.step)}
+FAMILIES = {
+    "merged": (welds, welded_bodies.step),
+    "held": (structures, immobile_bodies.step),
+    "spins": (wires, spins.step),
+}
 CASES = [pytest.param(name, seed, marks=pytest.mark.heavy) for name in FAMILIES for seed in SEEDS]
 
 

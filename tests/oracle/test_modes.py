@@ -13,8 +13,8 @@ import numpy as np
 
 from heuncli.commands.modes.study import state_of
 from heuncli.kinetostatics.bodies import body_states
-from heuncli.linearisation.displace import displaced
-from heuncli.linearisation.steady import Looked
+from heuncli.linearisation.displacements import displaced
+from heuncli.linearisation.steady_motion import Looked
 from heuncli.results import Array
 from heuncli.spec.load import load
 from heuncli.study.model.setup import set_up

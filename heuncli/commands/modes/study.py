@@ -16,8 +16,8 @@ from heuncli.integration.diagnosis.solvability import Wording, require_solvable
 from heuncli.linearisation.modes import SceneModes, most, shape_of
 from heuncli.linearisation.oscillations import oscillations
 from heuncli.linearisation.shapes import coordinates
-from heuncli.linearisation.smooth import without_slope
-from heuncli.linearisation.steady import Looked, fastest, goes_on_as_it_is, look, off_balance
+from heuncli.linearisation.smoothness import without_slope
+from heuncli.linearisation.steady_motion import Looked, fastest, goes_on_as_it_is, look, off_balance
 from heuncli.redundancy.neighbours import neighbours
 from heuncli.spec.models import Spec
 from heuncli.study.model.error_places import placed

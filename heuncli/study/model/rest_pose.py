@@ -12,10 +12,10 @@ from heuncli.mechanism.model import Mechanism
 from heuncli.records import record, replace
 from heuncli.rest.digits import beside, softened
 from heuncli.rest.pose import bearing
+from heuncli.rest.rest_check import require_still
 from heuncli.rest.search import FoundPose, RestSearch
 from heuncli.rest.stability import Stability, stability
-from heuncli.rest.steady import going_on, require_constant, require_steady, require_together
-from heuncli.rest.still import require_still
+from heuncli.rest.steady_states import going_on, require_constant, require_steady, require_together
 from heuncli.results import Array, Status
 from heuncli.study.model.counts_and_lists import count, some
 from heuncli.tree.prepare import PreparedScene

@@ -9,8 +9,8 @@ import numpy as np
 from heuncli.commands.modes.study import modes
 from heuncli.errors import HeunError
 from heuncli.linearisation.oscillations import oscillations
-from heuncli.linearisation.reduced import ReducedEquations
-from heuncli.linearisation.steady import off_balance
+from heuncli.linearisation.reduced_equations import ReducedEquations
+from heuncli.linearisation.steady_motion import off_balance
 from heuncli.spec.load import load
 from tests.honesty.boundaries.part import Part, Row
 from tests.shared.scenes import near

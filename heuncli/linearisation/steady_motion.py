@@ -13,10 +13,10 @@ from heuncli import tolerances
 from heuncli.errors import Problem, SolveError
 from heuncli.integration.evaluator import Evaluator, Recovered
 from heuncli.integration.run.runner import Runner
-from heuncli.linearisation.displace import displaced
+from heuncli.linearisation.displacements import displaced
 from heuncli.linearisation.linearise import Linearised, linearised
 from heuncli.linearisation.oscillations import norm, null_space
-from heuncli.linearisation.reduced import ReducedEquations, balls, on_basis, reduced
+from heuncli.linearisation.reduced_equations import ReducedEquations, balls, on_basis, reduced
 from heuncli.records import record
 from heuncli.results import Array
 from heuncli.shapes.rotations import from_vector

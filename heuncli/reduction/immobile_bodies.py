@@ -16,11 +16,11 @@ import numpy as np
 from heuncli import tolerances
 from heuncli.mechanism.model import GROUND, Joint
 from heuncli.records import record, replace
-from heuncli.reduction.merged import listed
 from heuncli.reduction.model import Reduction
-from heuncli.reduction.restated import Parts, PlaceInBody, restated
 from heuncli.reduction.slots import slots
+from heuncli.reduction.smaller_scene import Parts, PlaceInBody, restated
 from heuncli.reduction.spins import spins_of
+from heuncli.reduction.welded_bodies import listed
 from heuncli.response import Jacobian, jacobian, settled, workspace_of
 from heuncli.results import Array, Mask
 from heuncli.tree.layout import Island, Layout

@@ -15,7 +15,7 @@ import numpy as np
 from heuncli import tolerances
 from heuncli.kernel.choose import expressions as evaluator
 from heuncli.kernel.choose import jets
-from heuncli.linearisation.steady import Looked
+from heuncli.linearisation.steady_motion import Looked
 from heuncli.mechanism.model import PairLoad
 from heuncli.results import Array
 

@@ -17,8 +17,8 @@ from heuncli.joint_kinds import JOINTS
 from heuncli.mechanism.model import GROUND, Body, Mechanism
 from heuncli.records import replace
 from heuncli.reduction.model import Reduction
-from heuncli.reduction.restated import Parts, PlaceInBody, bound_to_axes, restated
 from heuncli.reduction.slots import slots
+from heuncli.reduction.smaller_scene import Parts, PlaceInBody, bound_to_axes, restated
 from heuncli.results import Array
 from heuncli.shapes.inertia import properties, pseudo_inertia
 from heuncli.tree.layout import Layout
