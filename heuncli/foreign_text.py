@@ -25,7 +25,7 @@ def shown(text: str) -> str:
 
 
 def shown_lines(text: str) -> str:
-    """The same of a text of several lines, which stay lines."""
+    """A foreign text of several lines as `shown` shows each of them."""
     return "\n".join(map(shown, text.split("\n")))
 
 

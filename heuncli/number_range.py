@@ -21,7 +21,7 @@ def is_in_range(value: float) -> bool:
 
 
 def are_in_range(values: Array) -> Mask:
-    """The same of many numbers at once."""
+    """Of which numbers `is_in_range` holds, an array of their shape."""
     sizes = abs(values)
     fits: Mask = (values == 0.0) | ((sizes >= tolerances.LEAST_MAGNITUDE) & (sizes <= tolerances.MOST_MAGNITUDE))
     return fits

@@ -88,7 +88,10 @@ def _inverse_jacobian(phi: Array) -> Array:
 
 
 def _axis_gap(d: JointCondition, Ra: Array, Rb: Array) -> tuple[Array, Array]:
-    """The same for one axis: t = φ m, from the axis of `from` to that of `to`, in the two directions across."""
+    """T and minus the gap of two axes that are to agree, in the two directions across.
+
+    The gap is the turn t = φ m from the axis of `from` to that of `to`.
+    """
     E = d.across @ Ra.T
     n, n_b = Ra @ d.axis, Rb @ d.to_axis
     m = cross(n, n_b)

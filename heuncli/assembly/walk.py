@@ -108,7 +108,7 @@ class AssemblyPoses:
     turns: list[bool]
 
     def copy(self) -> AssemblyPoses:
-        """The same, to be changed apart."""
+        """Poses that may be changed while these stay; pivots and what may move are shared."""
         return AssemblyPoses(self.x.copy(), self.R.copy(), self.pivot, self.shifts, self.turns)
 
     def turn(self, body: int, new: Array) -> None:

@@ -26,8 +26,9 @@ from heuncli.tree.starts import joint_frame
 
 @record
 class Slots:
-    """The same numbers at other places: larger[at] = smaller; constant (n,): what all the others are.
+    """Where the numbers of a smaller scene's state stand in the larger one's: larger[at] = smaller.
 
+    constant (n,): the numbers of the larger state that the smaller one does not have.
     mixed: pairs of places in the larger state that take C times those of the smaller, (places, C (2, 2)); centres:
     bodies that nothing carries, with their new centres.
     """
@@ -139,7 +140,10 @@ def in_space(states: Array, at: tuple[int, int], d: Array) -> tuple[Array, Array
 
 
 def in_plane(states: Array, at: tuple[int, int], d: Array) -> tuple[Array, Array]:
-    """The same of a body that turns about z only, by an angle from where d is as given."""
+    """R d and omega x (R d), (n_t, 2) each, of a body that turns about z only; angle and rate stand at those places.
+
+    At angle zero R d is d.
+    """
     angle, rate = states[:, at[0]], states[:, at[1]]
     cosine, sine = np.cos(angle), np.sin(angle)
     x, y = cosine * d[0] - sine * d[1], sine * d[0] + cosine * d[1]

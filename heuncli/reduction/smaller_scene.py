@@ -101,7 +101,7 @@ def restated(scene: PreparedScene, parts: Parts, bodies: Sequence[Body]) -> Prep
 
 
 def tree_of(layout: Layout, parts: Parts, number: dict[int, int], joint_number: dict[int, int]) -> GivenTree:
-    """The same tree of what is left of its bodies."""
+    """The tree of the smaller scene: the larger one's without the bodies that have become part of others."""
     hangs = [
         Hang(number[h.body], number[parts.at(h.parent).body], joint_number.get(h.joint, -1), h.reverse)
         for h in layout.spanning.hangs

@@ -38,7 +38,7 @@ def pose_at(evaluator: Evaluator, coordinates: Coordinates, t: float, state: Arr
 
 
 def bearing(evaluator: Evaluator, coordinates: Coordinates, t: float, state: Array) -> Pose:
-    """The same, with the contacts closed that touch there and bear."""
+    """The pose at a state, its contacts closed where they touch and bear, open elsewhere."""
     none = np.zeros(len(evaluator.layout.contacts))
     if not len(none):
         return pose_at(evaluator, coordinates, t, state, none)

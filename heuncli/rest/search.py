@@ -178,7 +178,7 @@ class RestSearch:
         return new, by
 
     def counted(self, before: Pose, new: Pose) -> Pose:
-        """The same pose with the angles of cut pins counted on."""
+        """The new pose with the angles of cut pins counted on from where they stood before, over half turns."""
         layout = self.evaluator.layout
         if not layout.counters:
             return new

@@ -325,7 +325,10 @@ class Condition(NamedTuple):
 
 
 class ResultCondition(NamedTuple):
-    """The same of the results: the number at the path `of` is below the limit, or above it."""
+    """What is watched for in the results: the number at the path `of` is below the limit, or above it; text: as written.
+
+    ends: whether the motion ends where it becomes true.
+    """
 
     name: str
     text: str

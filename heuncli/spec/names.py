@@ -51,7 +51,7 @@ class Names(NamedTuple):
 
 
 def names_in(spec: Spec) -> Names:
-    """The same of a scene that was read."""
+    """The names of a scene that was loaded."""
     entries: dict[str, dict[str, Any]] = {block: dict(getattr(spec, block)) for block in NAMED}
     entries["events"] = {condition.name: condition for condition in spec.analysis.conditions}
     points = {name: dict(body.points) for name, body in spec.bodies.items()} | {GROUND: dict(spec.ground.points)}

@@ -43,7 +43,7 @@ def in_time(value: Any, dimension: Dimension | None, scope: Scope) -> Expression
 
 
 def as_written(value: Any, dimension: Dimension | None, scope: Scope) -> Expression:
-    """The same, of any magnitude."""
+    """A value in time as `in_time` reads it, also where it is too large or too small to be computed with."""
     if type(value) is float or type(value) is int:
         return Expression.of(finite(value))
     if type(value) is not str:

@@ -35,7 +35,7 @@ def about_z(R: Array) -> Array:
 
 
 def in_plane(kind: int, direction: Array) -> Array:
-    """A freedom's direction likewise: along z of a turn, across it of a shift."""
+    """A freedom's direction (3,) without what rounding tilts it by: along z of a turn, across z of a shift."""
     if kind != kernel.SHIFT:
         return np.array([0.0, 0.0, math.copysign(1.0, direction[2])])
     return np.array([direction[0], direction[1], 0.0]) / math.hypot(direction[0], direction[1])

@@ -178,7 +178,7 @@ def _cosine(c: float) -> float:
 
 
 def _others(full: Layout, small: Layout) -> Pairs:
-    """The same of angles that are counted beside the tree, and of the work."""
+    """Pairs of places, full and small, with factor 1: of the counted angles of cut pins, and of the work."""
     found = [(at, small.counters[joint], 1.0) for joint, at in full.counters.items() if joint in small.counters]
     return found + ([(full.work_at, small.work_at, 1.0)] if full.work_at >= 0 else [])
 
