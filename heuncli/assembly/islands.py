@@ -94,7 +94,7 @@ class Islands:
         return None if deeper == GROUND else self.group(deeper)
 
     def widened(self, joint: int) -> int | None:
-        """Who stands for the island of a closure, merged with all that its bodies hang on; None where both of them stay."""
+        """Who stands for the island of a closure, merged with all that its bodies hang on; None where both stay."""
         self._merge(joint, to_root=True)
         return self.of(joint)
 

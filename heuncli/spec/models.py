@@ -325,9 +325,9 @@ class Condition(NamedTuple):
 
 
 class ResultCondition(NamedTuple):
-    """What is watched for in the results: the number at the path `of` is below the limit, or above it; text: as written.
+    """What is watched for in the results: the number at the path `of` is below the limit, or above it.
 
-    ends: whether the motion ends where it becomes true.
+    text: as written. ends: whether the motion ends where it becomes true.
     """
 
     name: str
