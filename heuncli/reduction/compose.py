@@ -11,8 +11,8 @@ from heuncli.tree.prepare import PreparedScene
 
 # in their order: the module under this one whose `step` it is, and whether it may concern a scene at all
 STEPS: tuple[tuple[str, Callable[[PreparedScene], bool]], ...] = (
-    ("merged", lambda scene: any(JOINTS[joint.kind].is_rigid for joint in scene.mechanism.joints)),
-    ("held", lambda scene: bool(scene.layout.rows)),
+    ("welded_bodies", lambda scene: any(JOINTS[joint.kind].is_rigid for joint in scene.mechanism.joints)),
+    ("immobile_bodies", lambda scene: bool(scene.layout.rows)),
     ("spins", lambda scene: bool(scene.layout.bodies["ball"].any())),
     ("plane.step", lambda scene: bool(scene.mechanism.bodies)),
 )

@@ -7,6 +7,7 @@ from collections import defaultdict
 from pathlib import Path
 
 import heuncli
+from heuncli.reduction.compose import STEPS
 
 ROOT = Path(heuncli.__file__).parent
 # Names of structs of the kernel that are those of what they are rows of: the field's word for it, on both sides.
@@ -39,3 +40,7 @@ def test_what_two_classes_share_is_a_name_of_the_kernel() -> None:
     for name, why in OF_THE_KERNEL.items():
         assert len(found[name]) == 2 and sum(file.startswith("kernel/") for file in found[name]) == 1, name
         assert all(file in why for file in found[name]), name
+
+
+def test_the_steps_of_reduction_stand_where_they_are_looked_for() -> None:
+    assert [name for name, _ in STEPS if not (ROOT / "reduction" / f"{name.replace('.', '/')}.py").exists()] == []
