@@ -343,7 +343,7 @@ def estimate(method: cython.pointer[Method], run: cython.pointer[Run], first: cy
 def estimate_again(
     scene: cython.pointer[Scene], method: cython.pointer[Method], run: cython.pointer[Run]
 ) -> cython.void:
-    """The same filtered twice: of a stiff part once is too little where the start is off its slow motion."""
+    """The error filtered twice: once is too little of a stiff part where the start is off its slow motion."""
     i: cython.Py_ssize_t
     newton: cython.pointer[Newton] = cython.address(run.newton)
     for i in range(run.n):

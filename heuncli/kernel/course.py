@@ -202,7 +202,7 @@ def derivatives_over(
     x0: cython.double,
     x1: cython.double,
 ) -> cython.void:
-    """The same for the rates of the variables, and for the rates of those."""
+    """Ranges of the rates of the variables over a part of the stretch, and of the rates of those."""
     i: cython.Py_ssize_t
     n: cython.int = course.degree
     for i in range(1, scene.variable_count):

@@ -137,7 +137,7 @@ def enclose(programs: cython.pointer[Programs], program: Program) -> Span:
 
 
 def enclose_closely(programs: cython.pointer[Programs], program: Program) -> Span:
-    """The same with closer bounds, from those at a point of the stretch, where `middles` are the ranges."""
+    """Closer bounds than `enclose` gives, from those at a point of the stretch, where `middles` are the ranges."""
     whole: Span = enclose(programs, program)
     there: Span = run_on(programs, programs.middles, program, 0, no_span())
     if is_nothing(whole.value) or is_nothing(there.value):
@@ -764,7 +764,7 @@ def close_span_of(
     ranges: Sequence[Sequence[float]],
     middles: Sequence[Sequence[float]],
 ) -> tuple[float, ...]:
-    """The same, with closer bounds from the ranges at an instant of the stretch."""
+    """What `span_of` gives, in closer bounds from the ranges at an instant of the stretch."""
     programs: cython.pointer[Programs] = cython.address(expressions.programs)
     set_ranges(expressions, start, count, programs.ranges, ranges)
     set_ranges(expressions, start, count, programs.middles, middles)

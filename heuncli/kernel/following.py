@@ -166,7 +166,7 @@ def bends_between(scene: cython.pointer[Scene], run: cython.pointer[Run]) -> cyt
 
 
 def bends(scene: cython.pointer[Scene], run: cython.pointer[Run], program: Program) -> cython.bint:
-    """The same of one drive: its acceleration in the middle is off that of the quintic by the values at both ends.
+    """Whether the acceleration of a drive is off, in the middle, that of the quintic by the values at both ends.
 
     That is 3 (v1 - v0) / 2h - (a0 + a1) / 4. A drive whose rate hardly changes bends nowhere.
     """

@@ -182,7 +182,7 @@ def explicit_error(
 def implicit_error(
     scene: cython.pointer[Scene], method: cython.pointer[Method], run: cython.pointer[Run]
 ) -> cython.double:
-    """The same of an implicit method; where no stages were found, what halves the step."""
+    """Error of the step tried by an implicit method; where no stages were found, what halves the step."""
     if not run.newton.solved:
         return pow(UNSOLVED_ERROR, 1.0 / method.exponent)
     estimate(method, run, run.K[0])

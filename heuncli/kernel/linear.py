@@ -99,7 +99,7 @@ def swap(x: cython.p_double, pivots: cython.p_int, n: cython.int) -> cython.void
 
 
 def factor_complex(A: cython.p_double, B: cython.p_double, n: cython.int, pivots: cython.p_int) -> cython.bint:
-    """The same of A + i B."""
+    """L and U in the place of A + i B, as `factor_real` gives them."""
     i: cython.Py_ssize_t
     j: cython.Py_ssize_t
     k: cython.Py_ssize_t

@@ -169,7 +169,7 @@ def give_way_to_turn(body: cython.pointer[Body], freedom: cython.pointer[Freedom
 
 
 def give_way_to_shift(body: cython.pointer[Body], freedom: cython.pointer[Freedom], least: cython.double) -> cython.int:
-    """The same of a shift."""
+    """What `give_way_to_turn` does, for a shift."""
     sx: cython.double = freedom.s.x
     sy: cython.double = freedom.s.y
     turn: cython.double = body.A.xy * sx + body.A.xz * sy
@@ -221,7 +221,7 @@ def load_in_plane(scene: cython.pointer[Scene], inertial: cython.bint) -> cython
 
 
 def load_all_in_plane(scene: cython.pointer[Scene]) -> cython.void:
-    """The same with all that the bodies resist if no freedom accelerates, gravity among it; alpha_zero and a_zero."""
+    """What `load_in_plane` gives with all that bodies resist if no freedom accelerates; alpha_zero and a_zero."""
     i: cython.Py_ssize_t
     for i in range(scene.body_count):
         body: cython.pointer[Body] = cython.address(scene.bodies[i])

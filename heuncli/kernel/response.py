@@ -77,7 +77,7 @@ def respond(scene: cython.pointer[Scene], inertial: cython.bint) -> cython.void:
 
 
 def answer_loads(scene: cython.pointer[Scene], inertial: cython.bint, apart: cython.bint) -> cython.void:
-    """The same for given loads of what is lent; apart: without the accelerations if no freedom accelerated."""
+    """What answers given loads of what is lent; apart: less the accelerations if no freedom accelerated."""
     i: cython.Py_ssize_t
     if apart:
         put_all_loads(scene)
@@ -201,7 +201,7 @@ def evaluate(scene: cython.pointer[Scene], t: cython.double, y: cython.p_double,
 def evaluate_settled(
     scene: cython.pointer[Scene], t: cython.double, y: cython.p_double, dy: cython.p_double
 ) -> cython.void:
-    """The same of what `settle` has just left; in the plane its factors stand, for only rates have changed since."""
+    """The derivative of what `settle` has just left; in the plane its factors stand: only rates have changed since."""
     i: cython.Py_ssize_t
     if not scene.flat or scene.selected_count == 0:
         evaluate(scene, t, y, dy)
@@ -269,7 +269,7 @@ def settle(scene: cython.pointer[Scene], t: cython.double, y: cython.p_double) -
 
 
 def settle_evaluated(scene: cython.pointer[Scene], t: cython.double, y: cython.p_double) -> cython.double:
-    """The same of the state that `evaluate` saw last: in the plane, where nothing is a ball, its factors stand."""
+    """Settle the state that `evaluate` saw last: in the plane, where nothing is a ball, its factors stand."""
     if not scene.flat or scene.selected_count == 0:
         return settle(scene, t, y)
     measure_moving_rows(scene, t)

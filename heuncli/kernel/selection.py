@@ -64,7 +64,7 @@ def order_all(scene: cython.pointer[Scene], least: cython.double) -> cython.doub
 
 
 def order_rows(scene: cython.pointer[Scene], island: cython.pointer[Island], least: cython.double) -> cython.double:
-    """The same in one island."""
+    """Put the rows of one island in the order of their pivots; the least pivot."""
     k: cython.Py_ssize_t
     n: cython.int = 0
     found: cython.double = 1.0

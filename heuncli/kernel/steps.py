@@ -333,7 +333,7 @@ def sample(scene: cython.pointer[Scene], method: cython.pointer[Method], run: cy
 def sample_by_steps(
     scene: cython.pointer[Scene], method: cython.pointer[Method], run: cython.pointer[Run]
 ) -> cython.void:
-    """The same where there is no dense output: a step of its own to each."""
+    """The asked instants within a step of a method without dense output: a step of its own to each."""
     seeing: cython.bint = run.seeing
     run.seeing = 0
     run.has_interpolant = 1  # the scene does not stand at the step's end any more

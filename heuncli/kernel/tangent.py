@@ -144,7 +144,7 @@ def respond_along(scene: cython.pointer[Scene]) -> cython.void:
 
 
 def answer_along(scene: cython.pointer[Scene]) -> cython.void:
-    """The same for given loads of what is lent."""
+    """Accelerations and multipliers that answer the change, the loads of what is lent given."""
     i: cython.Py_ssize_t
     for i in range(scene.body_count):
         scene.bodies[i].M_branch = scene.tangents[i].M

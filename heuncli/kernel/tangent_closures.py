@@ -173,7 +173,7 @@ def alpha_at(scene: cython.pointer[Scene], body: cython.int) -> Vec3:
 
 
 def alpha_along(scene: cython.pointer[Scene], body: cython.int) -> Vec3:
-    """And what that changes by."""
+    """What the angular acceleration of a body changes by."""
     if body < 0:
         return Vec3(0.0, 0.0, 0.0)
     return scene.tangents[body].alpha

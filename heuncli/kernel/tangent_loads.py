@@ -222,7 +222,7 @@ def resistance(load: cython.pointer[Load], speed: cython.double) -> cython.doubl
 
 
 def resistance_along(load: cython.pointer[Load], speed: cython.double) -> cython.double:
-    """And what that changes by with the speed; of friction (F (1 - tanh^2) / v0 - F tanh / v) / v."""
+    """What `resistance` changes by with the speed; of friction (F (1 - tanh^2) / v0 - F tanh / v) / v."""
     if load.kind < TURN_FRICTION or not speed > 0.0:
         return 0.0
     f: cython.double = tanh(speed / load.speed)
