@@ -112,12 +112,12 @@ WITHIN = """
 import json, sys
 import numpy as np
 from heuncli.integration.methods.registry import method_of
-from heuncli.integration.run.request import Request
+from heuncli.integration.run.request import MotionTask
 from heuncli.spec.load import load
 from heuncli.study.model.setup import set_up
 setup = set_up(load(sys.argv[1]))
 method = setup.method if sys.argv[2] == "auto" else method_of(sys.argv[2])
-run = setup.runner.trajectory(Request(np.linspace(0.0, 0.8, 3), 1e-6, method=method))
+run = setup.runner.trajectory(MotionTask(np.linspace(0.0, 0.8, 3), 1e-6, method=method))
 times = np.unique(np.concatenate([np.linspace(0.0, 0.8, 17), run.ends, np.nextafter(run.ends[:-1], 1.0)]))
 states = setup.runner.resample(run, times)
 found = setup.runner.recovered(times, states)
