@@ -205,4 +205,4 @@ def pow(x: Any, y: Any) -> Any:
     return value if isinstance(gradient, float) else Dual(value, gradient)
 
 
-inf, nan = math.inf, math.nan
+INFINITY, NAN = math.inf, math.nan
