@@ -109,8 +109,10 @@ def hermite(method: cython.pointer[Method], run: cython.pointer[Run]) -> cython.
     change: cython.double
     last: cython.p_double = run.chart.K[method.stages]
     first: cython.p_double = run.chart.K[0]
+    y: cython.p_double = run.chart.y
+    z: cython.p_double = run.chart.z
     for i in range(run.n):
-        change = run.chart.z[i] - run.chart.y[i]
+        change = z[i] - y[i]
         run.dense[0][i] = change
         run.dense[1][i] = run.h * first[i] - change
         run.dense[2][i] = 2.0 * change - run.h * (last[i] + first[i])
@@ -141,10 +143,11 @@ def interpolant(scene: cython.pointer[Scene], method: cython.pointer[Method], ru
     """The interpolating polynomial over the step y -> z, in nested form: its rows of coefficients."""
     s: cython.int
     i: cython.Py_ssize_t
+    y: cython.p_double = run.chart.y
     for s in range(method.stages + 1, method.stages + 1 + method.extra):
         combine(method, s, run.chart.K, run.n, run.stage)
         for i in range(run.n):
-            run.stage[i] = run.chart.y[i] + run.h * run.stage[i]
+            run.stage[i] = y[i] + run.h * run.stage[i]
         near: cython.bint = scene.closure_count > 0 and scene.pivot_of_step < scene.limits.near_singular
         evaluate_stage(scene, method, run, s, near)
     run.evaluations += method.extra
@@ -189,6 +192,7 @@ def interpolate(
     i: cython.Py_ssize_t
     k: cython.int
     factor: cython.double
+    y: cython.p_double = run.chart.y
     for i in range(run.n):
         out[i] = 0.0
     for k in range(2 + method.dense_rows, -1, -1):
@@ -197,6 +201,6 @@ def interpolate(
         for i in range(run.n):
             out[i] = (out[i] + row[i]) * factor
     for i in range(run.n):
-        out[i] = run.chart.y[i] + out[i]
+        out[i] = y[i] + out[i]
     if method.attitude:
         leave_chart(scene, method.attitude, run.y, out)

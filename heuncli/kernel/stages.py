@@ -28,10 +28,11 @@ def take_stages(scene: cython.pointer[Scene], method: cython.pointer[Method], ru
     i: cython.Py_ssize_t
     trouble: cython.int
     worst: cython.int = 0
+    y: cython.p_double = run.chart.y
     for s in range(1, method.stages):
         combine(method, s, run.chart.K, run.n, run.stage)
         for i in range(run.n):
-            run.stage[i] = run.chart.y[i] + run.h * run.stage[i]
+            run.stage[i] = y[i] + run.h * run.stage[i]
         trouble = evaluate_stage(scene, method, run, s, run.near)
         if trouble < worst:
             worst = trouble

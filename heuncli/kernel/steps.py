@@ -261,11 +261,13 @@ def attempt(scene: cython.pointer[Scene], method: cython.pointer[Method], run: c
     if method.attitude:
         enter(scene, method, run)
     worst: cython.int = take_stages(scene, method, run)
-    combine(method, method.stages, run.chart.K, run.n, run.chart.z)
+    y: cython.p_double = run.chart.y
+    z: cython.p_double = run.chart.z
+    combine(method, method.stages, run.chart.K, run.n, z)
     for i in range(run.n):
-        change = run.h * run.chart.z[i] + run.carry[i]
-        run.chart.z[i] = run.chart.y[i] + change
-        run.z_carry[i] = change - (run.chart.z[i] - run.chart.y[i])
+        change = run.h * z[i] + run.carry[i]
+        z[i] = y[i] + change
+        run.z_carry[i] = change - (z[i] - y[i])
     if method.attitude:
         leave(scene, method, run)
     run.evaluations += method.stages
