@@ -58,9 +58,9 @@ def enter(argv: Sequence[str]) -> int:
 
 
 def contained(work: Callable[[], Given], argv: Sequence[str]) -> Given:
-    """What the work of these words gives. Raises HeunError whatever goes wrong: Bug, LimitError where memory ends.
+    """What the work of a command line gives. Raises HeunError whatever goes wrong: Bug, LimitError where memory ends.
 
-    It is raised once what was thrown is let go of, with all the memory that its frames hold.
+    It is raised outside of the `except`: by then the exception that was caught is freed, with all that its frames hold.
     """
     error: HeunError
     try:

@@ -130,7 +130,7 @@ def _fill(temporary: str, content: bytes, old: os.stat_result | None) -> None:
 
 
 def _into(content: bytes, path: str) -> None:
-    """Write into what has no whole: a pipe, a device."""
+    """Write into what cannot be replaced as a whole: a pipe, a device."""
     number = os.open(path, os.O_WRONLY | getattr(os, "O_NOCTTY", 0))
     try:
         write_all(number, content)

@@ -2,8 +2,8 @@
 
 The folder of a command holds what it alone needs:
 
-    request.py   the named tuple of its options, NameRequest; imports the vocabulary of cli/options.py and nothing else,
-                 for `--help` reads the requests of all commands
+    request.py   the named tuple of its options, such as RunRequest of `heun run`; imports the vocabulary of
+                 cli/options.py and nothing else, for `--help` reads the requests of all commands
     command.py   main(request) -> exit code; the one module that knows the command line, files and the terminal
     study.py     what it finds out; page.py: how that is told; results.py: the rows of what is found; and the like
 
@@ -24,9 +24,9 @@ class Command(NamedTuple):
     """A command.
 
     name: the word of the command line; folder: in heuncli/commands, where that is not the name; page: the name of the
-    page of the manual that tells of it; grace: seconds that it may go on beyond its time limit, to tell what it has by
-    then (others have nothing); phase: what it is doing, where the time limit is reached and the modules at work do not
-    tell.
+    page of the manual that tells of it; grace [s]: how long it may go on beyond its time limit, longer for a command
+    that then tells the part that is done; phase: what the error of the time limit says was under way, where
+    cli/alarm.py has no words for the modules at work.
     """
 
     name: str

@@ -26,7 +26,7 @@ def styled() -> bool:
 
 
 def width() -> int:
-    """Its columns; of what tells none, or nonsense, 80."""
+    """The columns of the terminal, LEAST_WIDTH at least; 80 where it tells none."""
     return max(shutil.get_terminal_size().columns, LEAST_WIDTH)
 
 

@@ -89,9 +89,9 @@ def _contacts(sentences: Sequence[str]) -> list[tuple[str, str]]:
 
 
 def _anew(reasons: Sequence[str]) -> list[tuple[str, str]]:
-    """Why the run was begun anew by an implicit method, if it was: the scene is another one than was meant, perhaps.
+    """Why the run was begun anew by an implicit method, if it was: stiffness nobody meant may be a slip in the spec.
 
-    That one of fewer stages took over where events end the steps is nothing to know of it: `heun model` tells it.
+    That a method of fewer stages took over, where events end most steps, points to no slip: `heun model` tells it.
     """
     return [("stiff", text.removeprefix(STIFF)) for text in reasons if text.startswith(STIFF)]
 

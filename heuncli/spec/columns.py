@@ -80,7 +80,7 @@ def columns_of(text: str, *wanted: object) -> Columns:
 
 
 def numbered(text: str, before: int = 0) -> Iterator[tuple[int, list[str]]]:
-    """The lines of a text but for the first ones, many at a time, and the number of the first of them, from 1."""
+    """The lines of a text behind the first `before`, many at a time, and the number of the first of them, from 1."""
     begin, line = 0, 1
     while begin < len(text):
         end = text.find("\n", begin + PIECE) + 1 or len(text)

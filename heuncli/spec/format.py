@@ -239,7 +239,7 @@ class Sliding(Entry):
 
 
 class TurningAndSliding(Turning, Sliding):
-    """All four, of a cylinder."""
+    """Held start values of a cylinder, which turns and slides."""
 
 
 class BallJoint(AnyJoint):

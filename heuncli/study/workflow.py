@@ -6,8 +6,8 @@
     between the instants          search/    extremes, crossings of zero
     Study                         ask/       the solved scene: measures, expectations, events
 
-Each room imports those above it in this list alone, and the workflow all of them. Here both the spec and
-the kernel are seen. Impure: looks at the clock.
+Each folder imports those above it in this list alone, and the workflow all of them. The way of one number, from the
+kernel's answer to the cell of a table, stands in compose/blocks.py. Impure: looks at the clock.
 """
 
 from __future__ import annotations
@@ -56,7 +56,7 @@ def solve(spec: Spec, options: Options | None = None) -> Study:
 
 
 def by(options: Options, deadline: float | None) -> Callable[[Spec], Study]:
-    """How a spec is solved that differs from the one asked for in its instants or conditions alone."""
+    """What solves the spec with other instants or conditions, by the same options and the same deadline."""
     return lambda spec: solved(spec, options, deadline)
 
 
@@ -75,12 +75,13 @@ def solved(spec: Spec, options: Options, deadline: float | None) -> Study:
     built = time.perf_counter()
     by_cause = SHARES in options.reports
     history = integrate(setup, spec.analysis.tolerance, deadline, by_cause=by_cause, room=options.room)
+    # conditions on results may need more of them than is told: `whole` has it all, `setup` what was asked for
     whole, setup = setup, replace(setup, asked=options.asked) if conditions else setup
     moved = time.perf_counter()
     recovery = recover(setup, history.recovered, options.least_norm)
     impulses = impulses_of(setup, history, options.least_norm, by_cause)
     results = compose(setup, history, recovery, options.reports, impulses)
-    looked_for = setup.rest.seconds if setup.rest is not None else 0.0
+    looked_for = setup.rest.seconds if setup.rest is not None else 0.0  # counted as integration by the history
     seconds = {"load": options.load_seconds, "build": built - begun - looked_for, **history.seconds}
     results.work["seconds"] = seconds | {"recover": time.perf_counter() - moved}
     study = Study(spec, options, setup, history, recovery, results, impulses)

@@ -196,6 +196,6 @@ def ready(row: ChartRow) -> None:
 
 
 def progress(message: str) -> str:
-    """Where a run was cut short, of the message that says so."""
+    """The words of a message that tell at which instant a run was cut short, and what follows them; else empty."""
     _, at, behind = message.partition(" at t = ")
     return f"{at}{behind}" if at else ""

@@ -107,7 +107,10 @@ def _only(words: str) -> tuple[frozenset[str], tuple[str, ...]]:
 def _asked(
     request: RunRequest, only: tuple[frozenset[str], tuple[str, ...]] | None, spec: Spec, form: str
 ) -> Selection:
-    """What is asked for; who asks for the impulses alone sees them alone."""
+    """What is asked for: by --only, else by the spec's `report`, else what the format shows by default.
+
+    Of a spec of blows at time 0 alone tables show the blows by default.
+    """
     wanted = TABLE_DEFAULT if form in TABLES else EXPORT_DEFAULT
     if form in TABLES and spec.analysis.type == "impulse":
         wanted = frozenset({BLOWS})
@@ -185,7 +188,7 @@ def _report(request: RunRequest, form: str, study: Study, labels: Labels, wanted
 def _writer(request: RunRequest) -> Callable[[list[TextTable]], list[str]]:
     """How tables become text: fitted to a terminal where one is written to, else to a page."""
     if request.output is None:
-        from heuncli.cli import terminal  # rich is worth its 44 ms only where somebody looks
+        from heuncli.cli import terminal  # a file needs nothing of it
 
         if terminal.present():
             return terminal.write

@@ -68,7 +68,7 @@ def stop_form(draft: DraftDocument) -> Iterator[Violation]:
 
 @rule("stop-joint")
 def stop_joint(draft: DraftDocument) -> Iterator[Violation]:
-    """What a stop limits can reach the limit by itself, and no other stop stands there already."""
+    """What a stop limits is neither driven nor given, and no other stop stands on that side of it."""
     driven: dict[tuple[str, str], str] = {}
     for name, drive in draft.document.drives.items():
         prescribed = drive_of(drive, draft.names.joints.get(drive.joint))

@@ -205,7 +205,7 @@ def of_one(block: Block, k: int) -> Block:
 
 
 def only_of(block: Block, causes: Sequence[str]) -> Block:
-    """A block with the shares of some causes alone: of all that strikes at some blow those of this one."""
+    """A block with the shares of these causes alone; one blow has at first a share of all that strikes in the run."""
     return {
         name: {cause: value[cause] for cause in causes} if are_shares(name, value)
         else only_of(value, causes) if isinstance(value, dict) else value
@@ -221,7 +221,10 @@ def is_open(block: Block, path: str) -> bool:
 
 
 def apart(own: Impulses, others: Sequence[Impulses]) -> dict[tuple[str, str], float]:
-    """Estimated errors of the impulses by kind and unit, by the check runs; of a blow those do not have, all of it."""
+    """Estimated errors of the impulses by kind and unit: twice the largest difference from a check run.
+
+    A blow that a check run does not have errs by the whole of its numbers.
+    """
     found: dict[tuple[str, str], float] = {}
     parts = {"": whole_of, f" {BY_CAUSE}": shares_of} if own.recovery.causes is not None else {"": whole_of}
     for end, part in parts.items():

@@ -142,7 +142,7 @@ def set_up_at_rest(setup: Setup, left_out: tuple[str, ...], looked_for: bool) ->
 
 
 def with_slack_ropes(mechanism: Mechanism) -> Mechanism:
-    """Ropes that may go slack: at rest they bear or do not, and nothing ends where they would push."""
+    """Every rope as one that may go slack: at rest it bears or does not, and ends no run by being pushed."""
     joints = [replace(j, restitution=0.0) if j.tension_only and j.restitution is None else j for j in mechanism.joints]
     return replace(mechanism, joints=tuple(joints))
 

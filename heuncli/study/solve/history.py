@@ -140,8 +140,9 @@ def checked_motion(
 ) -> CheckedRun:
     """The motion asked for with its check run.
 
-    Where it cannot be followed, at a singular pose or beyond what the loops can do, it is integrated: there what moves
-    has a say in how it goes on, or the error is told.
+    A motion that its drives determine is followed. Where that fails, at a singular pose or where the loops cannot do
+    what the drives ask, it is integrated instead: there the velocities decide on which branch it goes on, or the error
+    of the integration is raised.
     """
     assert setup.method is not None
     times, method = np.array(setup.spec.analysis.times, dtype=float), setup.method
@@ -178,9 +179,9 @@ def checked_between_events(runs: Runs, setup: Setup, tolerance: float, by_cause:
 def begun_anew(
     runs: Runs, left: Stiff | Eventful, method: Method, setup: Setup, tolerance: float, by_cause: bool
 ) -> CheckedRun:
-    """A motion by the method of the runs, another than a run was left with, or, if need be, as it was begun after all.
+    """A motion by the method of `runs`, after a run by `method` was left for the reason that `left` tells.
 
-    That is where the other one does not come through, or events become rare.
+    Where the method of `runs` does not come to the end either, or events become rare in its run, `method` runs it all.
     """
     lost, why = left.seconds, None if runs.method is method else left.told
     try:
