@@ -128,7 +128,10 @@ def columns_of(rows: Array, n_b: int, n_f: int) -> Columns:
 
 @record
 class Blows:
-    """What answers blows at a settled state: columns of jumps; unmet (n_c,): of J dV = -jumps, of its terms; idle."""
+    """What answers blows at a settled state: columns of jumps of velocities, and of the joints' impulses.
+
+    unmet (n_c,): what is left of J dV = -jumps, relative to its terms; idle: how many freedoms have no inertia.
+    """
 
     columns: Columns
     unmet: Array
@@ -198,7 +201,8 @@ def tangent(at: workspace.Workspace, t: float, state: Array) -> Array:
 class Motions:
     """A state's derivative and what it hangs on, along each direction of the state; n_b bodies, tree order.
 
-    turn (n_b, 3, n): of the attitude, as a small turn; r, omega, v likewise: of joint point and angular velocity.
+    turn (n_b, 3, n): of the attitude, as a small turn; likewise r and v: of the joint point's place and velocity;
+    omega: of the angular velocity. World axes.
     """
 
     derivative: Array  # (n,)

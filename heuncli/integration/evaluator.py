@@ -20,7 +20,11 @@ CAUSES = ("motion", "drives", "gravity")  # beside the loads: velocity terms, wh
 
 @record
 class Recovered:
-    """The kernel's answers at the instants, tables (n_t, n) in tree order; their fields: tree/tables.py."""
+    """The kernel's answers at the instants, tables (n_t, n) in tree order; their fields: tree/tables.py.
+
+    times (n_t,) [s]; states (n_t, n_state), settled on the closures; gap (n_t,): the largest left [m]; idle (n_t,): how
+    many freedoms have no inertia behind them.
+    """
 
     times: Array
     states: Array
@@ -33,7 +37,7 @@ class Recovered:
     pivot: Array  # square of the least pivot of the independent closure rows; 1: far from singular
     residual: Array  # of all rows, J Vdot + gamma at the accelerations found, of the terms it is the sum of
     may_stay: Array  # what of it rows may keep that were left out as dependent
-    holding: Array  # (n_t, contacts): 0 open, 1 closed, 2 closed by others
+    holding: Array  # (n_t, contacts): 0 open, 1 closed, also where others close it
     causes: Columns | None = None  # (n_t, n_c): each row of the table of loads alone, then CAUSES; their sum is all
 
     def at(self, which: Mask | Indices) -> Recovered:
@@ -86,8 +90,8 @@ class Evaluator:
         Each state by itself, whatever others are asked with it: its independent closure rows are chosen anew.
         branches (n_t, n): those that the expressions hold; without them branches are as the states say.
         hold_rows: those of the first serve the others too, as long as they can, for pivots that are comparable.
-        causes: with a column a cause. holding (n_t, n) or (n,): which contacts are closed; by default as at the
-        start.
+        causes: with a column a cause. holding (n_t, contacts) or (contacts,): which are closed, above 0; by default as
+        at the start.
         """
         layout, n_t = self.layout, len(times)
         sizes = answer_sizes(layout)

@@ -39,7 +39,8 @@ class Cuts:
     n: normal; e1, e2: axes in the plane, (e1, e2, n) right-handed; points (k, 3); s (k,): distance along the run, None
     for a single cut; side (k,): +1 just before what lies in the plane, -1 just beyond, 0 nothing there; near: what
     counts as in it; pieces (k, 4, 4): pseudo-inertias about the body's origin; centroids (k, 3) of the cross-sections,
-    None without shapes; about: where moments are taken: "at", "centroid", or (body, point);
+    None without shapes; about: where moments are taken: "at", "centroid", or (body, point); line: whether the
+    reduction line (`sections.reduction_line`) is told, too; warnings: sentences on what the planes meet;
     properties, strength [Pa]: for stresses, None where not given (of kind `auto` those of the form); form: the shapes
     that are cut.
 

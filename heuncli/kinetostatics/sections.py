@@ -73,6 +73,7 @@ def attachments(body: int, states: BodyStates, actions: Sequence[Action]) -> lis
 
 
 def in_body_axes(R: Array, v: Array) -> Array:
+    """R' v: body components of vectors v (..., n_t, 3) in world axes; R (n_t, 3, 3), body to world."""
     components = np.empty(v.shape)
     for i in range(3):
         components[..., i] = R[:, 0, i] * v[..., 0] + R[:, 1, i] * v[..., 1] + R[:, 2, i] * v[..., 2]
@@ -207,7 +208,11 @@ def shifted(force: Array, moment: Array, by: Array) -> Array:
 
 @record
 class CutPlaces:
-    """Where the cuts are and where their moments are taken: body axes, (3, n_t, k)."""
+    """Where the cuts of a body are and where their moments are taken: at, about, centre (3, n_t, k), body axes [m].
+
+    at: the cuts' own points; about: where moments are told; centre: the centroids, where there are shapes, else `at`.
+    R (n_t, 3, 3), origin (n_t, 3): the body's attitude and place.
+    """
 
     cuts: Cuts
     R: Array
@@ -302,7 +307,7 @@ def section(
 ) -> Block:
     """The block of one section: a single cut without its axis of cuts, a run with `s` and `side`.
 
-    is_open: masks of the indeterminate among the components of `Planes.components`: they become nan.
+    is_open: masks of the indeterminate among the components of `CutPlaces.components`: they become nan.
     """
     where = planes(cuts, states)
     force, moment = piece_loads(cuts, acceleration_matrix(cuts.body, states, gravity), on)

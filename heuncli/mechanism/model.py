@@ -89,7 +89,10 @@ class PointLoad:
 
 @record
 class PairLoad:
-    """A spring or actuator along the line between two points; value None for a spring. Positive pushes apart [N]."""
+    """A spring or actuator along the line between two points; value [N], positive pushes apart; None for a spring.
+
+    p, q: the points on the bodies a and b, their axes [m]; stiffness [N/m], length: relaxed [m], damping [N s/m].
+    """
 
     name: str
     a: int
@@ -152,7 +155,7 @@ Load = PointLoad | PairLoad | JointLoad
 
 @record
 class Mechanism:
-    """A scene, ready to be assembled."""
+    """A scene, ready to be assembled; gravity (3,): acceleration, world axes [m/s^2]."""
 
     title: str
     planar: bool

@@ -1,4 +1,4 @@
-"""The size of a scene, which errors are relative to, and the points by which a body's motion is judged."""
+"""The size of a scene, which errors are relative to, and the points that stand for a body's extent."""
 
 from __future__ import annotations
 
@@ -21,7 +21,7 @@ def size_of_scene(mechanism: Mechanism, start: Assembly) -> float:
 
 
 def marks(body: Body) -> list[Array]:
-    """Points by which a body's motion is judged: its named ones and its centre of mass, body axes.
+    """Points that stand for a body's extent: its centre of mass and its named ones, body axes.
 
     Where none of them is as far from the centre as the radius of gyration, points so far along the axes stand for its
     extent.

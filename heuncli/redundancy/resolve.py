@@ -33,9 +33,9 @@ SUMS_FROM = 9  # instants whose self-stresses certain sums are read from
 
 @record
 class Resolution:
-    """The joints' loads after the split described in words; the self-stresses it chose from, and those it left.
+    """The joints' loads after a split, told in `words`, by its `choices`.
 
-    None: none.
+    stress: the self-stresses it chose from; left: those it left open; None where there are none of them.
     """
 
     joints: list[JointLoads]

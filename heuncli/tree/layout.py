@@ -20,7 +20,7 @@ class Freedom:
     """A scalar freedom of the tree: which joint's which coordinate, and where it stands in the state (-1: driven)."""
 
     joint: int
-    quantity: str  # angle | travel | first | second (of line, plane, free bodies)
+    quantity: str  # angle, travel; of a universal first, second; of line and plane a direction; of free ones x y z turn
     q: int
     u: int
 
@@ -64,6 +64,8 @@ class Layout:
     state there. tables: the kernel's structs by name (kernel/scene.py); indices: what the closure rows point into.
     energy_group: which of the groups of components is the drives' work (-1: none). measure (answers,): of each freedom
     in its island's J, 1 of a shift, 1 / length of a turn, 0 of one that is in none. contacts: what opens and closes.
+    size: of the scene [m]. weights (n_state,): by which components of the state are measured, 1 of angles and turns,
+    1 / size of shifts, 0 of what has no say in a step. column_count: numbers in the columns of all closure rows.
     flat: the kernel moves it in the plane (kernel/plane.py), and finds no loads across it; without, as any scene.
     """
 

@@ -56,7 +56,11 @@ def lay_out(
     work: bool = True,
     tree: GivenTree | None = None,
 ) -> Layout:
-    """Lay the scene out. size: of the scene [m]; inertias (n, 3, 3): about the centres of mass, of the motion."""
+    """Lay the scene out from its assembled start.
+
+    inertias (n, 3, 3): about the centres of mass, body axes, with what was lent for the motion; size: of the scene [m];
+    work: whether that of drives and of loads without potential joins the state; tree: of a larger scene, to be kept.
+    """
     pack = Pack()
     programs, uses = _programs(mechanism, pack)
     names = {j.name: k for k, j in enumerate(mechanism.joints)}

@@ -19,7 +19,8 @@ This is the top of the package. From here down, each room imports those below it
     diagnosis/  why no motion or no acceleration exists, in sentences; mostly loaded on the way to an error
     contacts/   blows, and which contacts close, are struck and let go
     methods/    Runge-Kutta methods as tables of coefficients
-trajectory.py is the record that a run leaves, evaluator.py the answer at a state, which all of them ask for.
+trajectory.py is the record that a run leaves, evaluator.py the answer at a state, which all of them ask for;
+integrated_scene.py is what is integrated in a scene's place, segments.py the stretches of time without discontinuities.
 """
 
 from __future__ import annotations
@@ -98,8 +99,9 @@ class CheckedRun:
 class Compared:
     """Runs seen at the same instants: A, and beside it B and, where it was made, M.
 
-    states: of each run; error (n,): of A's motion there; horizon: where that passes CLAIMED. several: the answers, at
-    each instant those of all runs, where they are few enough to be kept.
+    times (n,) [s]; states (n, n_state): of each run; asked (n,): which of them are told; error (n,): of A's motion
+    there; horizon: where that passes CLAIMED [s], None: nowhere; seconds: that the other runs and the comparison took.
+    several: the answers, at each instant those of all runs, where they are few enough to be kept.
     """
 
     runs: tuple[Trajectory, ...]

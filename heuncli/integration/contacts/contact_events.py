@@ -34,7 +34,11 @@ AT_ONCE = 16  # events at one instant, and four a contact: more follow each othe
 
 @record
 class Pressed:
-    """The touching contacts: A, which of them move anything, and the rates that what is given adds."""
+    """The touching contacts, and what they answer.
+
+    A (k, k): the rates of opening that unit impulses make (restitution.py); moves (k,): whether one that bears moves
+    anything; rates (k,): those of opening that given impulses and drives add.
+    """
 
     touch: Touching
     A: Array

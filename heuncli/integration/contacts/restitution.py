@@ -25,14 +25,13 @@ class Struck:
     """Impulses of touching contacts (k,), the rates of opening behind them, and what is worth telling.
 
     depends (k,): those that others hold, so that how they share is not known; equal (k,): those that took the least
-    restitution of all that feel each other; rounds (k,).
+    restitution of all that feel each other.
     """
 
     impulses: Array
     rate: Array
     depends: Mask
     equal: Mask
-    rounds: Indices
 
     @property
     def closed(self) -> Mask:
@@ -49,7 +48,7 @@ def strikes(touch: Touching, A: Array, moves: Mask, pressed: Array, plastic: Mas
     """
     k = len(touch.which)
     none = np.zeros(k, dtype=bool)
-    found = Struck(np.zeros(k), touch.rate.copy(), none.copy(), none.copy(), np.zeros(k, dtype=int))
+    found = Struck(np.zeros(k), touch.rate.copy(), none.copy(), none.copy())
     for own in feeling(A):
         part = struck_together(touch.some(own), A[np.ix_(own, own)], moves[own], pressed[own], plastic[own])
         for name, values in fields(part).items():
@@ -103,7 +102,7 @@ def struck_together(touch: Touching, A: Array, moves: Mask, pressed: Array, plas
         total[own] -= np.linalg.lstsq(A[np.ix_(own, own)], v[own], rcond=tolerances.CONTACT_DEPENDS)[0]
         v[own] = 0.0
     every = np.ones(len(v), dtype=bool)
-    return Struck(total, v, depends & (total == 0.0), equal & every, rounds * every)
+    return Struck(total, v, depends & (total == 0.0), equal & every)
 
 
 def one_round(A: Array, v: Array, pressed: Array, own: Indices, e: Array, noise: Array) -> Pivots:

@@ -14,10 +14,8 @@ from heuncli.records import replace
 from heuncli.tree.layout import Layout
 from heuncli.tree.tables import Table as Rows
 
-NEAREST, FARTHEST = (
-    52,
-    20,
-)  # an expression may lose its value only just after t: instants from 2**-52 to 2**-20 of the run's length later
+# An expression may lose its value only just after t: instants from 2**-52 to 2**-20 of the run's length later.
+NEAREST, FARTHEST = 52, 20
 HELD = 1  # a table's kind (expressions/programs.py)
 DERIVATIVES = ("value", "rate", "acceleration")
 

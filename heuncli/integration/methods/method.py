@@ -31,18 +31,16 @@ class Method:
     extra: tuple[Row, ...] = ()  # further stages, for the dense output
     estimates: tuple[Row, ...] = ()  # of the error: one, or two
     error_order: int = 1  # of the estimate in h
-    dense: tuple[
-        Row, ...
-    ] = ()  # of an implicit method: of what stages are beyond the start, from 1 on, then F0, F1, F2
+    # of F3, F4, ...; in them an implicit method combines what stages 1, 2, ... are beyond the start, then F0, F1, F2
+    dense: tuple[Row, ...] = ()
     determined: bool = False  # nothing is integrated: every instant follows from the drives
     fixed: bool = False  # steps are given, and none is judged
     by_step: bool = False  # no dense output: an instant within a step is reached by a step of its own from the start
     implicit: bool = False  # the stages are solved for (kernel/collocation.py), by the numbers in `collocation`
     attitude: int = QUATERNION  # how attitudes are held within a step
     foreign: str = ""  # its name in SciPy, where its steps are taken (integration/run/scipy_loop.py)
-    stable: float = (
-        0.0  # the largest h |lambda| at which it lets decay what goes as exp(lambda t): |R(-h |lambda|)| = 1
-    )
+    # the largest h |lambda| at which it lets decay what goes as exp(lambda t): |R(-h |lambda|)| = 1; 0: not watched
+    stable: float = 0.0
     # where in a step its interpolation errs most, on open and closed chains (tests/convergence/test_between_ends.py)
     within: tuple[float, ...] = (0.5, 0.85)
     collocation: Mapping[str, Any] | None = None

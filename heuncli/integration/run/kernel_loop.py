@@ -26,7 +26,9 @@ STIFF_AFTER = 15  # steps held short by stability, as in Hairer's DOP853 ...
 EASY_AFTER = 6  # ... and steps on end that were not, after which their count begins anew
 LOOK_AFTER = 1_000  # steps; then each time that they have doubled
 UNWATCHED = {"stiff_after": 0, "easy_after": 0, "look_after": 0, "stable": 0.0}
-PER_STEP = ("ends", "settled", "pivots", "turned")  # what is put down of each step
+# What is put down of each step: its end [s], whether its stages were settled on the closures, the least pivot of these,
+# whether branches turned at its end.
+PER_STEP = ("ends", "settled", "pivots", "turned")
 
 
 @record

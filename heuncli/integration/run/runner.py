@@ -3,7 +3,8 @@
 To be read in this order: request.py, what is asked for; stepper.py, from segment to segment, and what is looked at on
 the way; kernel_loop.py, the steps themselves (kernel/integration.py takes them); interruptions.py, blows and contacts
 between them; step_records.py, what is put down; progress.py, how far a run has come, for all that look at it:
-limits.py, stiffness.py, event_frequency.py, conditions.py and, where it ends too soon, failure.py and errors.py.
+limits.py with pace.py, stiffness.py with fastest_motion.py, event_frequency.py, conditions.py and, where it ends too
+soon, failure.py and errors.py.
 replay.py takes the same steps again for other instants. scipy_loop.py stands in for all of it where a method of SciPy
 is asked for.
 

@@ -40,7 +40,7 @@ class GrowingRows:
 
 
 class Steps:
-    """The steps done: of each its end, its least pivot, whether its stages were settled; for replays some records."""
+    """The steps done: of each what PER_STEP names, and the branches it held; for replays some records."""
 
     def __init__(self, start: Array, width: int) -> None:
         self.rows, self.count = GrowingRows(len(PER_STEP)), 0
@@ -111,7 +111,7 @@ class Steps:
         return list(zip(instants.tolist(), kept.records[some, :n], strict=True))
 
     def column(self, name: str) -> Array:
-        """Ends, least pivots, or which were settled, (n_steps,)."""
+        """What was put down of each step under a name of PER_STEP, (n_steps,); a copy."""
         return self.rows.rows[:, PER_STEP.index(name)].copy()
 
     def held_branches(self) -> Array:

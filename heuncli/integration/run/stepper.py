@@ -1,8 +1,9 @@
 """A run from its start to its end: the kernel's steps through one smooth segment of time after the other.
 
 Between two segments, and where contacts close or open within one, the motion is interrupted (run/interruptions.py) and
-goes on from the state behind. After each call of the kernel, which does some hundred steps, is looked at: whether the
-condition that ends the run became true, the limits, whether events end most steps, whether the motion is stiff.
+goes on from the state behind. After each call of the kernel, of `chunk_of` (run/limits.py) steps at most, is looked at:
+whether the condition that ends the run became true, the limits, whether events end most steps, whether the motion is
+stiff.
 """
 
 from __future__ import annotations

@@ -56,9 +56,8 @@ class StiffnessWatch:
         h = float(ends[-1] - ends[-1 - RECENT]) / RECENT
         taken, left = kernel.loop.evaluations, progress.last - t
         explicit = taken / kernel.loop.steps * left / h
-        beside = n + FACTORS * n * n * (
-            len(method.nodes) - 1
-        )  # of a step: the tangent, by differences, and its factors
+        # of a step: the tangent, counted as n evaluations, and its factors
+        beside = n + FACTORS * n * n * (len(method.nodes) - 1)
         one = beside + CORRECTIONS * (len(method.nodes) - 1)
         if sum(TRIED) * one > MOST_TRIED * explicit:
             return

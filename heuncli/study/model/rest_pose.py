@@ -13,7 +13,7 @@ from heuncli.records import record, replace
 from heuncli.rest.digits import beside, softened
 from heuncli.rest.pose import bearing
 from heuncli.rest.rest_check import require_still
-from heuncli.rest.search import FoundPose, RestSearch
+from heuncli.rest.search import RestSearch
 from heuncli.rest.stability import Stability, stability
 from heuncli.rest.steady_states import going_on, require_constant, require_steady, require_together
 from heuncli.results import Array, Status
@@ -57,13 +57,13 @@ def at_rest(scene: PreparedScene, runner: Runner) -> tuple[PreparedScene, Runner
     require_still(again, found.coordinates, bearing(again, found.coordinates, 0.0, layout.y0))
     rest = Rest(
         steps=found.steps, evaluations=found.evaluations, seconds=time.perf_counter() - begun,
-        beside=tuple(states), told=tuple(sentences(scene.mechanism, found, own)),
+        beside=tuple(states), told=tuple(sentences(scene.mechanism, own)),
         warnings=unstable(own),
     )  # fmt: skip
     return replace(scene, layout=layout), again, rest
 
 
-def sentences(mechanism: Mechanism, found: FoundPose, own: Stability) -> list[str]:
+def sentences(mechanism: Mechanism, own: Stability) -> list[str]:
     """How the scene rests, in sentences: in which frame, stable or not, and along which motions it is indifferent."""
     drives = some([f"drives.{name}" for name in going_on(mechanism)])
     told = [f"at rest in the frame that goes along with {drives}"] if drives else []
