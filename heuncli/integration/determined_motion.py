@@ -34,7 +34,7 @@ def determined(moving: IntegratedScene) -> Determined:
     Closed chains that are held more than once leave no freedom as well; a singular start does, and is integrated.
     """
     layout = moving.layout
-    free = sum(1 for f in layout.freedoms if f.q >= 0) + 3 * int(layout.bodies["ball"].sum())
+    free = layout.tree_freedoms
     if free > len(layout.rows):
         return NOT_DETERMINED
     left = free - moving.workspace.chosen_count(0.0, layout.y0) if layout.rows else free

@@ -102,12 +102,12 @@ class Load(Record):
     z: Program
     p: Vec3  # point of a, from its joint point, its axes
     q: Vec3  # point of b
-    vector: Vec3
-    stiffness: float
-    length: float
-    coefficient: float
+    vector: Vec3  # force [N], couple [N m]; a single value (torque, thrust, actuator) stands in x
+    stiffness: float  # of a spring [N/m], of a turn spring [N m/rad]
+    length: float  # of a spring without load [m]; of a turn spring its free angle [rad]
+    coefficient: float  # of damping [N s/m], [N m s]; of friction its force [N], torque [N m]
     axis: Vec3  # in a
-    speed: float
+    speed: float  # of friction: below which it falls off, tanh(rate/speed) [m/s], [rad/s]
     factor: float  # of a force or couple: by which the vector is to be multiplied
     offset: float
     across: Vec3  # of a joint that was cut: a direction across the axis, in a
@@ -402,22 +402,22 @@ class MotionTangent(Value):
 
 
 class Instants(Value):
-    """States to recover, and room for the work."""
+    """States to recover, and room for the work; what is told of one after the other stands end to end."""
 
-    count: Size
-    n: Size
-    width: Size
-    afresh: bool
-    held: bool
-    causes: bool
-    opening: int
-    branches: list[float]
-    holding: list[float]
+    count: Size  # how many states
+    n: Size  # numbers of a state
+    width: Size  # numbers of the answers of one
+    afresh: bool  # the closure rows are chosen anew at each
+    held: bool  # `branches` are given
+    causes: bool  # a column a cause is answered, too
+    opening: int  # numbers of `holding` a state; 0: the contacts stay as they are
+    branches: list[float]  # that expressions hold
+    holding: list[float]  # which contacts are closed, and how
     times: list[float]
-    states: list[float]
-    out: list[float]
-    y: list[float]
-    dy: list[float]
+    states: list[float]  # settled in place
+    out: list[float]  # the answers
+    y: list[float]  # the state under way
+    dy: list[float]  # and its derivative
 
 
 class Scene(Struct):

@@ -19,8 +19,8 @@ class Collocation(Struct):
     """An implicit method by its numbers: the stages Z = T W, with A^-1 = T L T^-1 (collocation.py)."""
 
     stages: int
-    pair_count: int  # pairs of L
-    real: float  # number of L; 0: it has none
+    pair_count: int  # complex pairs of eigenvalues in L
+    real: float  # the real eigenvalue in L; 0: it has none
     parts: list[float]  # real and imaginary part of each pair
     into: list[float]  # T^-1 by rows
     back: list[float]  # T by rows
@@ -46,9 +46,9 @@ class Newton(Struct):
     tangent: Tangent  # at the start of the step
     real: Factors  # of L - h J
     pairs: tuple[Factors, Factors]
-    Z: list[list[float]]  # of each stage what its state is beyond the start
+    Z: list[list[float]]  # (stages, n): of each stage what its state is beyond the start
     known: list[list[float]]  # the same from 1 on, then the first rows of the interpolating polynomial
-    W: list[list[float]]
+    W: list[list[float]]  # (stages, n): T^-1 Z, in which the equations of the stages come apart
     step: list[list[float]]  # a correction of W
     error: list[float]
 
@@ -229,11 +229,11 @@ class Run(Struct):
     weights: list[float]  # of the components: 1, or 1 / size
     y: list[float]  # the state reached
     z: list[float]  # the solution tried
-    carry: list[float]  # small parts of y that its digits do not hold
-    z_carry: list[float]
-    K: list[list[float]]  # derivatives at the stages
+    carry: list[float]  # what rounding took off y when it was summed up (compensated summation)
+    z_carry: list[float]  # the same of z
+    K: list[list[float]]  # (stages + 1 + extra, n): derivatives at the stages
     beside: list[list[float]]  # the same of steps to asked instants within the step under way
     coarse: list[float]  # error estimates
     fine: list[float]
-    dense: list[list[float]]  # rows of the interpolating polynomial
+    dense: list[list[float]]  # (3 + dense_rows, n): rows of the interpolating polynomial
     stage: list[float]  # a state under way

@@ -18,7 +18,7 @@ from heuncli.joint_kinds import ABOUT_Z, JOINTS, POINT
 from heuncli.kinetostatics.bodies import body_states
 from heuncli.mechanism.model import GROUND, Joint, JointLoad
 from heuncli.records import replace
-from heuncli.redundancy.count import freedoms_of_tree, redundancy
+from heuncli.redundancy.count import redundancy
 from heuncli.redundancy.neighbours import neighbours
 from heuncli.redundancy.self_stress import self_stress
 from heuncli.results import Array, Block
@@ -109,7 +109,7 @@ def _left(scene: PreparedScene, changed: Mapping[int, Joint], model: Block) -> i
     joints = tuple(changed.get(k, j) for k, j in enumerate(scene.mechanism.joints))
     other, runner = ready(arranged(replace(scene.mechanism, joints=joints), scene.start))
     found = redundancy(other, runner)
-    freedoms = freedoms_of_tree(other.layout) - (found.closed - found.dependent)
+    freedoms = other.layout.tree_freedoms - (found.closed - found.dependent)
     return found.open if freedoms == model["freedoms"] and len(other.idle) <= len(scene.idle) else None
 
 

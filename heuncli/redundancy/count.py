@@ -11,16 +11,10 @@ from heuncli import tolerances
 from heuncli.integration.run.runner import Runner
 from heuncli.kinetostatics.bodies import BodyStates, body_states
 from heuncli.mechanism.model import Joint
-from heuncli.tree.layout import Layout
 from heuncli.tree.prepare import PreparedScene
 
 if TYPE_CHECKING:
     from heuncli.redundancy.self_stress import SelfStress
-
-
-def freedoms_of_tree(layout: Layout) -> int:
-    """Freedoms of the tree alone: scalar ones that are not driven, three for each ball."""
-    return sum(1 for f in layout.freedoms if f.q >= 0) + 3 * int(layout.bodies["ball"].sum())
 
 
 class Redundancy(NamedTuple):

@@ -7,8 +7,7 @@ from heuncli.expressions.discontinuities import first_not_positive
 from heuncli.expressions.integrals import begun_at
 from heuncli.mechanism.model import Assembly, Joint, Mechanism
 from heuncli.records import replace
-from heuncli.tree.limits import distance
-from heuncli.tree.starts import joint_start
+from heuncli.tree.starts import distance, joint_start
 
 
 def begun(mechanism: Mechanism, start: Assembly) -> Mechanism:

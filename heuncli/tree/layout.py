@@ -103,6 +103,11 @@ class Layout:
         return len(self.y0)
 
     @property
+    def tree_freedoms(self) -> int:
+        """Freedoms of the tree alone, before its loops close: scalar ones that are not driven, three for each ball."""
+        return sum(1 for f in self.freedoms if f.q >= 0) + 3 * int(self.bodies["ball"].sum())
+
+    @property
     def driven(self) -> bool:
         """Whether a coordinate is prescribed."""
         return any(j.drive is not None for j in self.mechanism.joints)

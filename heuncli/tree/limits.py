@@ -2,14 +2,12 @@
 
 from __future__ import annotations
 
-import math
-
 from heuncli import tolerances
 from heuncli.errors import Problem, SolveError
-from heuncli.mechanism.model import Assembly, Joint, Mechanism, Stop
+from heuncli.mechanism.model import Assembly, Mechanism, Stop
 from heuncli.records import replace
 from heuncli.tree.layout import Layout
-from heuncli.tree.starts import pose
+from heuncli.tree.starts import distance
 
 
 def start_within_limits(layout: Layout, start: Assembly) -> None:
@@ -53,14 +51,6 @@ def at_rest_on_stops(mechanism: Mechanism, layout: Layout, start: Assembly) -> M
             found = True
             joints[stop.joint] = replace(joint, **{"rate" if stop.quantity == "angle" else "speed": 0.0})
     return replace(mechanism, joints=tuple(joints)) if found else None
-
-
-def distance(start: Assembly, joint: Joint) -> float:
-    """The distance of a joint's points [m]."""
-    xa, Ra, _, _ = pose(start, joint.a)
-    xb, Rb, _, _ = pose(start, joint.b)
-    D = xb + Rb @ joint.q - xa - Ra @ joint.p
-    return math.sqrt(float(D @ D))
 
 
 def _beyond(mechanism: Mechanism, stop: Stop, value: float, limit: float, side: str) -> Problem:

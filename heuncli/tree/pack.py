@@ -2,7 +2,6 @@
 
 from __future__ import annotations
 
-import math
 from collections.abc import Sequence
 
 import numpy as np
@@ -36,7 +35,7 @@ from heuncli.tree.rows import (
     table_of,
 )
 from heuncli.tree.spanning import Hang, Spanning, span
-from heuncli.tree.starts import GivenTree, JointStart, Z, joint_frame, joint_start, pose, to_direction
+from heuncli.tree.starts import GivenTree, JointStart, Z, distance, joint_frame, joint_start, pose, to_direction
 from heuncli.tree.tables import limits, symmetric
 
 JOINT_LOADS = {  # of the turning, of the sliding
@@ -292,7 +291,8 @@ class _Builder:
             kind = JOINTS[joint.kind]
             if kind.keeps_distance and k not in loose:
                 program = self.programs[id(joint.drive.value)] if joint.drive is not None else NO_PROGRAM
-                length = 0.0 if program[1] else joint.length if joint.length is not None else self._distance(joint)
+                length = joint.length if joint.length is not None else distance(self.start, joint)
+                length = 0.0 if program[1] else length  # a drive tells it in time
                 if joint.tension_only:
                     self._rope(k)
                 self._row(k, kernel.ROD, program=program, length=length)
@@ -329,13 +329,6 @@ class _Builder:
         else:
             turn = next(i for i, f in enumerate(self.freedoms) if (f.joint, f.quantity) == (stop.joint, "angle"))
             self._row(stop.joint, kernel.TURN, length=limit, e=joint.axis, freedom=turn, weight=self.size)
-
-    def _distance(self, joint: Joint) -> float:
-        """Of the joint's two points at the start [m]."""
-        xa, Ra, _, _ = pose(self.start, joint.a)
-        xb, Rb, _, _ = pose(self.start, joint.b)
-        D = xb + Rb @ joint.q - xa - Ra @ joint.p
-        return math.sqrt(float(D @ D))
 
     def _row(
         self,

@@ -39,6 +39,14 @@ class GivenTree:
     starts: tuple[JointStart, ...] | None = None
 
 
+def distance(start: Assembly, joint: Joint) -> float:
+    """The distance of a joint's two points at the start [m]."""
+    xa, Ra, _, _ = pose(start, joint.a)
+    xb, Rb, _, _ = pose(start, joint.b)
+    D = xb + Rb @ joint.q - xa - Ra @ joint.p
+    return math.sqrt(float(D @ D))
+
+
 def joint_start(mechanism: Mechanism, start: Assembly, joint: Joint) -> JointStart:
     """Coordinates of a joint in the assembled mechanism, and its reference attitude, where its angle is zero."""
     xa, Ra, va, wa = pose(start, joint.a)

@@ -13,7 +13,7 @@ from heuncli.integration.run.runner import Runner
 from heuncli.joint_kinds import JOINTS
 from heuncli.mechanism.model import Mechanism
 from heuncli.reduction.model import Reduced
-from heuncli.redundancy.count import freedoms_of_tree, redundancy
+from heuncli.redundancy.count import redundancy
 from heuncli.results import Block, Mask
 from heuncli.study.model.counts_and_lists import count, some
 from heuncli.tree.layout import Layout
@@ -31,7 +31,7 @@ def model_note(scene: PreparedScene, runner: Runner, method: str) -> Block:
     found = redundancy(scene, runner)
     block: Block = {
         "space": "planar" if mechanism.planar else "spatial",
-        "freedoms": freedoms_of_tree(layout) - (found.closed - found.dependent),
+        "freedoms": layout.tree_freedoms - (found.closed - found.dependent),
         "driven": sum(1 for j in mechanism.joints if j.drive is not None),
         "bodies": len(mechanism.bodies), "loops": len(layout.spanning.cut), "redundant": found.generic,
         "method": method, "reasons": [], "joints": len(mechanism.joints), "grubler": grubler(mechanism),
