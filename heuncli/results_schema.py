@@ -129,7 +129,7 @@ RESULTANTS = SECTION_FORCES + SECTION_MOMENTS
 STRESSES = ("normal_max", "normal_min", "shear_torsion", "shear_mean", "shear_max", "mises", "utilisation")
 # The loads of a joint that are one number: along its axis, across it, about axes across it; of a rod.
 AXIAL_FORCES, TILTING_MOMENTS = ("axial", "radial", "tension"), ("tilting",)
-OPEN = "the components that are open at some instant, and those that a chosen split gives"
+OPEN = "the components that are open at some instant"
 NOT_YET = "not yet"
 ROWS: tuple[Quantity, ...] = (
     *at("", "what was solved, as `heun model` tells it", own_form("model")),
@@ -168,7 +168,7 @@ ROWS: tuple[Quantity, ...] = (
     *at("joints.JOINT", "of the constraint alone, `from` ON `to`; `point`, about which the moment is, is where the "
         "`to` point is now",
         vector("point", "m"), vector("force", "N"), vector("moment", "N·m")),
-    *at("joints.JOINT", OPEN, words("open"), words("chosen")),
+    *at("joints.JOINT", f"{OPEN}, and those that a chosen split gives", words("open"), words("chosen")),
     *at("joints.JOINT", "force or torque of the drive ON `to`, along or about the axis", scalar("drive", "N | N·m")),
     *at("joints.JOINT", "the force along the axis, the force across it, the moment across it",
         scalar("axial", "N"), scalar("radial", "N"), scalar("tilting", "N·m")),
