@@ -37,9 +37,13 @@ class Part:
 
 
 class Codegen:
-    """The constants, variables, tables and switches of one expression, and the parts made so far."""
+    """The constants, variables, tables and switches of one expression, and the parts made so far.
 
-    def __init__(self) -> None:
+    strict: what has a unit is not compared with the time or a coordinate of another dimension, nor added to it.
+    """
+
+    def __init__(self, strict: bool = False) -> None:
+        self.strict = strict
         self.nodes = 0
         self.constants: list[float] = []
         self.variables: dict[tuple[str, str], int] = {}
@@ -105,7 +109,7 @@ class Codegen:
             return truth
         code, uses = first.code, first.uses
         for n, (name, left, right, text) in enumerate(links):
-            combined(name, (left.measure, right.measure))
+            combined(name, (left.measure, right.measure), strict=self.strict)
             self.switch_of_comparison(name, left, right)
             again = 0 if n == len(links) - 1 else 1  # 1: the right one is needed again
             code = (*code, *right.code, *self.held_branch(text, left.uses | right.uses), OP[name], again)
@@ -138,7 +142,7 @@ class Codegen:
         for part in parts:
             code += part.code
             uses |= part.uses
-        measure = combined(name, [part.measure for part in parts], argument)
+        measure = combined(name, [part.measure for part in parts], argument, self.strict)
         if not uses:
             return self.number(self.run((*code, OP[name], argument)), measure)
         if uses <= {0}:
@@ -149,7 +153,7 @@ class Codegen:
     def choose(self, condition: Part, then: Part, otherwise: Part, text: str = "") -> Part:
         """then where the condition is not 0, else otherwise; only the chosen one is run. text: of the condition."""
         self.branches = True
-        measure = combined("choose", (then.measure, otherwise.measure))
+        measure = combined("choose", (then.measure, otherwise.measure), strict=self.strict)
         if condition.constant is not None:
             if math.isnan(condition.constant):
                 return condition

@@ -60,10 +60,10 @@ def of_literal(text: str) -> Measure:
     return WHOLE if text.isdecimal() and int(text) <= LARGEST_FACTOR else FREE
 
 
-def combined(name: str, parts: Sequence[Measure], argument: int = 0) -> Measure:
+def combined(name: str, parts: Sequence[Measure], argument: int = 0, strict: bool = False) -> Measure:
     """Of an operation on parts. Raises Finding [wrong-dimension] without the expression's text."""
     if name in SUMS:
-        whole = alike(name, *parts)
+        whole = alike(name, parts[0], parts[1], strict)
         return whole if name in KEPT else FACTOR
     if name in ("mul", "div"):
         return product(parts[0], parts[1], 1 if name == "mul" else -1)
@@ -80,10 +80,11 @@ def combined(name: str, parts: Sequence[Measure], argument: int = 0) -> Measure:
     return FACTOR  # sign, step, log, and what is true or not
 
 
-def alike(name: str, a: Measure, b: Measure) -> Measure:
-    """Of what must be of one dimension: a sum, a comparison, either branch."""
+def alike(name: str, a: Measure, b: Measure, strict: bool = False) -> Measure:
+    """Of what must be of one dimension: a sum, a comparison, either branch; strict: a coordinate's counts, too."""
     literal, moving = a.literal or b.literal, a.moving or b.moving
-    if a.kind == "known" and b.kind == "known" and a.dimension != b.dimension:
+    kinds = {a.kind, b.kind}
+    if (kinds == {"known"} or (strict and kinds == {"known", "loose"})) and a.dimension != b.dimension:
         message = f"{SUMS[name]} {describe(a.dimension)} and {describe(b.dimension)}"
         raise Finding("wrong-dimension", message, "multiply or divide one of them by what it lacks")
     for one in (a, b):

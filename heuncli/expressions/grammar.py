@@ -18,7 +18,7 @@ from heuncli.errors import Finding
 from heuncli.expressions.codegen import COMPARISONS, MOST_NODES, Codegen, Part
 from heuncli.expressions.dimensions import FACTOR, FREE, known, loose, of_literal, raised
 from heuncli.expressions.programs import Expression, TableFunction
-from heuncli.expressions.units import RATE, Dimension, describe, in_si
+from heuncli.expressions.units import RATE, UNITS, Dimension, describe, in_si, parse_unit, spelling_of
 from heuncli.joint_kinds import RATES, TYPES
 from heuncli.nearest import did_you_mean, nearest
 from heuncli.records import record, replace
@@ -82,7 +82,7 @@ class Scope:
     """The names an expression may use. A parameter or table of value None is known, but was itself in error.
 
     joints gives the type of each; time and coordinates may be used only where in_time. given: the parameters that have
-    a dimension, as they are written.
+    a dimension, as they are written. with_units: numbers may have units, and what is compared is of one dimension.
     """
 
     parameters: Mapping[str, float | None] = NONE
@@ -90,6 +90,7 @@ class Scope:
     tables: Mapping[str, TableFunction | None] = NONE
     in_time: bool = False
     given: Mapping[str, GivenParameter] = NONE
+    with_units: bool = False
 
 
 FIXED = "this one is read once, before the run: give it as a number or by parameters"
@@ -157,7 +158,7 @@ class _Parser:
         ]
         self.at = 0
         self.nested = 0
-        self.codegen = Codegen()
+        self.codegen = Codegen(strict=scope.with_units)
 
     def parse(self) -> Expression:
         if not self.tokens:
@@ -361,12 +362,7 @@ class _Parser:
         kind, token = self.kind, self.token
         if kind == "number":
             self.at += 1
-            if self.kind == "name" and self.token not in WORDS:
-                raise self.unexpected()
-            value = float(token)
-            if not math.isfinite(value):
-                raise Finding("not-computable", f"{token} is too large a number", "numbers go up to 1.8e308")
-            return self.codegen.number(value, of_literal(token))
+            return self.number(token)
         if kind == "name" and token not in WORDS:
             self.at += 1
             if self.take("("):
@@ -379,6 +375,50 @@ class _Parser:
             self.expect(")", "to close a parenthesis")
             return part
         raise self.unexpected()
+
+    def number(self, figure: str) -> Part:
+        """A number, in a condition perhaps with its unit."""
+        measure, value = of_literal(figure), float(figure)
+        has_unit = (self.kind == "name" and self.token not in WORDS) or self.token == "°" or self.is_per()
+        if has_unit and not self.scope.with_units:
+            raise self.unexpected()
+        if has_unit:
+            size, dimension = self.unit(figure)
+            measure, value = known(dimension), value * size
+        if not math.isfinite(value):
+            raise Finding("not-computable", f"{figure} is too large a number", "numbers go up to 1.8e308")
+        return self.codegen.number(value, measure)
+
+    def is_per(self) -> bool:
+        """Whether 1/s stands here: behind a number it is a unit."""
+        ahead = [token for _, token, _ in self.tokens[self.at : self.at + 3]]
+        return len(ahead) == 3 and ahead[:2] == ["1", "/"] and spelling_of(ahead[2]) in UNITS
+
+    def unit(self, figure: str) -> tuple[float, Dimension]:
+        """Size and dimension of the unit that stands here: names of units joined by * and /, with whole powers."""
+        begin = self.at
+        if spelling_of(self.token) not in UNITS and (self.token in self.scope.parameters or self.token in RESERVED):
+            raise self.unexpected()
+        self.at += 1
+        while self.at < len(self.tokens):
+            mark, after = [token for _, token, _ in (*self.tokens[self.at : self.at + 2], ("", "", 0))][:2]
+            if mark in ("^", "**") and after.isdecimal():
+                self.at += 2
+            elif mark in ("*", "/") and spelling_of(after) in UNITS:
+                self.require_no_parameter(f"{figure} {self.written(begin)}", mark, after)
+                self.at += 2
+            elif self.kind == "name" and spelling_of(mark) in UNITS:
+                self.at += 1
+            else:
+                break
+        return parse_unit(self.written(begin))
+
+    def require_no_parameter(self, quantity: str, mark: str, name: str) -> None:
+        """Refuse 2 m/s where s is a parameter, too. Raises Finding."""
+        if name in self.scope.parameters:
+            message = f"'{quantity}{mark}{name}': {name} is a unit, and a parameter of this scene"
+            hint = f"for the parameter write ({quantity}){mark}{name}; for the unit give the parameter another name"
+            raise Finding("expression-syntax", message, hint)
 
     def call(self, name: str) -> Part:
         begin = self.at - 2
@@ -485,7 +525,7 @@ class _Parser:
         message, near = f"'{name}' is not a {kind}", nearest(name, *known)
         is_near = near is not None and near.lower() == name.lower()
         if not is_near and kind == "parameter" and (unit := in_si("", name)) is not None:
-            return Finding("unknown-name", message, unit)
+            return Finding("unknown-name", message, f"as in 20 {name}" if self.scope.with_units else unit)
         listed = self.scope.parameters if kind == "parameter" else sorted(ARITY)
         hint = f"did you mean {near}?" if near else did_you_mean(name, listed, f"{kind}s")
         return Finding("unknown-name", message, hint)

@@ -150,6 +150,11 @@ def si_unit(dimension: Dimension) -> str:
     return "*".join(base if power == 1 else f"{base}^{power}" for base, power in powers)
 
 
+def spelling_of(symbol: str) -> str:
+    """A unit's symbol by its first spelling: deg for degrees; what is no other spelling as it is."""
+    return SPELLINGS.get(symbol, symbol)
+
+
 def in_si(figure: str, symbol: str, rest: str = "") -> str | None:
     """What to write for '40 mm' inside an expression: a hint; None where the word is no unit. figure may be a name."""
     symbol = SPELLINGS.get(symbol, symbol)

@@ -108,7 +108,8 @@ def condition(value: Any, scope: Scope) -> Expression:
     """The condition that stands in a spec: what is true or not, in time and coordinates."""
     if type(value) is not str:
         raise Finding("condition", f"expected a condition, found {kind_of(value)}", CONDITIONS)
-    found = in_time(value, None, scope)
+    require_length(value)
+    found = compile_expression(value, replace(scope, with_units=True))
     text = value.strip()
     if not found.is_truth and found.constant is None:
         hint = f"compare it: {text.removesuffix(' == 0')} > 0, say"

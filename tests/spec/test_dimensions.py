@@ -150,7 +150,12 @@ def test_a_certain_dimension_is_what_a_change_of_units_shows(seed: int, monkeypa
     """Where nothing without a unit is added to what has one: that is taken to have the same."""
     kinds: list[set[str]] = []
     alike = dimensions.alike
-    monkeypatch.setattr(dimensions, "alike", lambda name, a, b: kinds.append({a.kind, b.kind}) or alike(name, a, b))
+
+    def kept(name: str, a: dimensions.Measure, b: dimensions.Measure, strict: bool) -> dimensions.Measure:
+        kinds.append({a.kind, b.kind})
+        return alike(name, a, b, strict)
+
+    monkeypatch.setattr(dimensions, "alike", kept)
     draw = random.Random(seed)
     text = drawn(draw, draw.randint(1, 4))
     units = (1.7, 0.6, 2.3)
