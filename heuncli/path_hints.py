@@ -12,6 +12,7 @@ from itertools import islice, product
 
 from heuncli.nearest import afford, nearest
 from heuncli.results_schema import AFTER_THE_RUN, BLOWS, NAMES, ROWS, XYZ
+from heuncli.run_places import path_of, words_of
 
 COMMON = ("joints", "coordinates", "sections", "bodies", "points", "forces")  # tried first
 SHORT = {  # what other programs and textbooks call quantities, by what they are here, the likeliest first
@@ -48,11 +49,11 @@ EFFORT_HERE = 500_000  # of nearest.EFFORT: some thirty paths of a file are read
 
 def meant(path: str, leads: Callable[[list[str]], bool]) -> str | None:
     """The path that was meant, if there is one like it that leads to a number."""
-    words = path.split(".")
+    words = words_of(path)
     if len(words) > MOST_WORDS or not afford(EFFORT_HERE):
         return None
     tried = (reading for reading in islice(readings(words), MOST) if reading != words)
-    return next((".".join(reading) for reading in tried if leads(reading)), None)
+    return next((path_of(reading) for reading in tried if leads(reading)), None)
 
 
 def readings(words: Sequence[str]) -> Iterator[list[str]]:

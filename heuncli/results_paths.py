@@ -12,10 +12,13 @@ from typing import Any, NamedTuple
 
 import numpy as np
 
-from heuncli.errors import Problem, SpecError
+from heuncli.cut_rows import row_at
+from heuncli.errors import Finding, Problem, SpecError
 from heuncli.nearest import begin_file, nearest
-from heuncli.results import Array, Results
+from heuncli.results import Array, Block, Results
 from heuncli.results_schema import (
+    BLOWS,
+    CUT,
     INDEX,
     INSTANT,
     SPACE,
@@ -27,6 +30,7 @@ from heuncli.results_schema import (
     quantity,
     unknown_key,
 )  # fmt: skip
+from heuncli.run_places import NO_RUN, marked, names_a_cut, path_of, words_of
 
 MOST_NAMES = 12  # of the known names an error lists
 
@@ -72,7 +76,7 @@ def find(results: Results, path: str) -> Numbers:
 def _leads(results: Results, words: Sequence[str]) -> bool:
     """Whether there is a number at a path."""
     try:
-        _found(results, ".".join(words))
+        _found(results, path_of(words))
     except SpecError:
         return False
     return True
@@ -87,6 +91,8 @@ def _found(results: Results, path: str) -> Numbers:
     # a blow has one instant, and no axis for it
     timed = row is not None and row.timed and keys[0] != "impulses" and isinstance(node, np.ndarray)
     axes = _axes(results, keys, row, values.ndim, timed)
+    if CUT in axes:
+        values, axes, rest = _at_a_cut(results, path, keys, values, axes, rest)
     if len(rest) > len(axes):
         raise _unknown(path, keys, rest[len(axes)], [])
     instant = None
@@ -107,7 +113,7 @@ def _walk(results: Results, path: str) -> tuple[list[str], Any, list[str]]:
     """The keys that a path names, what stands there, and the places behind them."""
     node: Any = {f.name: getattr(results, f.name) for f in fields(results)}
     keys: list[str] = []
-    rest = path.split(".")
+    rest = words_of(path)
     while rest and isinstance(node, (dict, list, tuple)):
         if isinstance(node, dict):
             key, behind = leading_key(node, rest)
@@ -134,10 +140,39 @@ def _axes(results: Results, keys: Sequence[str], row: Quantity | None, dimension
 
 def _is_run(results: Results, keys: Sequence[str]) -> bool:
     """Whether the keys lead into a run of cuts, of the whole motion or of one blow."""
+    return "s" in _section(results, keys)
+
+
+def _section(results: Results, keys: Sequence[str]) -> Block:
+    """The section into which the keys lead, of the whole motion or of one blow; empty where they lead into none."""
     sections = results.sections
-    if keys[0] == "impulses":
+    if keys[0] == BLOWS:
         sections, keys = results.impulses[int(keys[1])].get("sections", {}), keys[2:]
-    return keys[0] == "sections" and "s" in sections[keys[1]]
+    section: Block = sections[keys[1]] if keys[0] == "sections" else {}
+    return section
+
+
+def _at_a_cut(
+    results: Results, path: str, keys: Sequence[str], values: Array, axes: Shape, rest: list[str]
+) -> tuple[Array, Shape, list[str]]:
+    """The values, axes and words that are left where one of the words names a place along the run of cuts.
+
+    A place with its @ may stand behind a component, too; the number of a cut stands in its own place.
+    """
+    k, word = axes.index(CUT), marked(rest)
+    left = rest.copy()
+    if word is not None:
+        left.remove(word)
+    elif rest:
+        word = left.pop(k if len(rest) == len(axes) else 0)
+    if word is None or not names_a_cut(word):
+        return values, axes, rest
+    section = _section(results, keys)
+    try:
+        row = row_at(word, section["s"], section.get("side") or [None] * len(section["s"]), np.moveaxis(values, k, -1))
+    except Finding as finding:
+        raise SpecError(Problem(finding.code, f"{path}: {finding.message}", hint=finding.hint)) from None
+    return np.take(values, row, axis=k), axes[:k] + axes[k + 1 :], left
 
 
 def _index(path: str, keys: Sequence[str], word: str, axis: Axis, size: int) -> int:
@@ -160,7 +195,7 @@ def _unknown(path: str, keys: Sequence[str], word: str, known: Collection[str], 
     at = ".".join(keys) or "the results"
     what = f"{at} has no '{word}'" if word else f"{at} is not a number"
     listed = ", ".join(names[:MOST_NAMES]) + (", ..." if len(names) > MOST_NAMES else "")
-    hint = empty if empty is not None else _hint(".".join(keys), word, names)
+    hint = NO_RUN if word.startswith("@") else empty if empty is not None else _hint(".".join(keys), word, names)
     return SpecError(Problem("unknown-path", f"{path}: {what}" + (f"; known: {listed}" if names else ""), hint=hint))
 
 

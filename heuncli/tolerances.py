@@ -106,6 +106,7 @@ SHORTEST_FLIGHT = 1e-12  # of the run's length: a hundred times what its instant
 SAME_INSTANT = 1e-9  # of the run's length: instants typed with ten digits
 SIDE_BY_SIDE = 1e-12  # of the run's length: thousands of roundings of an instant; what jumps between has two sides
 ONE_PLACE = 1e-12  # of the largest coordinate: a scene of less extent is one place, whose size is taken as 1 m
+SAME_CUT = 1e-9  # of a run of cuts' length: places typed with ten digits
 IN_PLANE = 1e-12  # of the body's size, or of coordinates along the normal: nearer to a cutting plane counts as in it
 LEAST_EXTENT = 1e-9  # [m] what IN_PLANE is measured by where all lies in the origin
 TOUCHING = 1e3  # times IN_PLANE: outlines of a cut that come so near are one

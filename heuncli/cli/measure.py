@@ -6,12 +6,15 @@ import math
 import re
 from collections.abc import Callable, Sequence
 from functools import partial
+from itertools import pairwise
 from typing import Any, TypeVar
 
 from heuncli.cli.entry import UsageError
-from heuncli.errors import HeunError, Problem, SpecError
+from heuncli.errors import Finding, HeunError, Problem, SpecError
 from heuncli.report.digits import OPEN, UNKNOWN
 from heuncli.report.export import dump
+from heuncli.results_paths import find
+from heuncli.run_places import marked, words_of
 from heuncli.spec.models import Spec
 from heuncli.spec.names import names_in
 from heuncli.spec.rules.outcome import wrong_path
@@ -19,7 +22,7 @@ from heuncli.study.ask.measure import NOT_CLAIMED, MeasureRequest, NotOneNumber,
 from heuncli.study.ask.study import Study
 
 T = TypeVar("T")
-PATH = re.compile(r"[\w.]+\Z")
+PATH = re.compile(r"[\w.]+(?:[@:][\w.:+-]*)*\Z")
 OTHER_WORDS = {
     "last": "final", "end": "final", "start": "first", "initial": "first", "maximum": "max", "largest": "max",
     "highest": "max", "minimum": "min", "least": "min", "lowest": "min", "maxabs": "max abs", "peak": "max abs",
@@ -72,8 +75,26 @@ def check(several: Sequence[MeasureRequest], spec: Spec) -> None:
     names = names_in(spec)
     runs = {name: section.from_ is not None for name, section in spec.sections.items()}
     wrong = [found for asked in several if (found := wrong_path(asked.path, names, runs)) is not None]
+    wrong += [found for asked in several if (found := wrong_place(asked.path, spec)) is not None]
     if wrong:
         raise SpecError(*(Problem("unknown-path", f"--measure: {what}", hint=hint) for what, hint in wrong))
+
+
+def wrong_place(path: str, spec: Spec) -> tuple[str, str] | None:
+    """What is wrong with the place along a run of cuts that a path names by its distance, and a hint."""
+    words = words_of(path)
+    place = marked(words)
+    name = next((after for word, after in pairwise(words) if word == "sections"), "")
+    section = spec.sections.get(name)
+    if place is None or section is None or section.from_ is None or section.to is None:
+        return None
+    from heuncli.cut_rows import asked_distances, rows_at
+
+    try:
+        rows_at(place, asked_distances(section.from_, section.to, section.count), None)
+    except Finding as finding:
+        return f"'{path}': {finding.message}", finding.hint
+    return None
 
 
 def write(several: Sequence[MeasureRequest], study: Study, form: str) -> str:
@@ -107,7 +128,19 @@ def block(asked: MeasureRequest, study: Study) -> dict[str, Any]:
         return found | {"value": None, "at": None, "horizon": horizon}
     if peak.place is not None and not math.isnan(peak.value):
         found |= peak.place._asdict()
+        if peak.place.cut is not None:
+            found["cut"] = number_of_cut(asked, study, peak.place.cut)
     return found
+
+
+def number_of_cut(asked: MeasureRequest, study: Study, row: int) -> int:
+    """The number of an asked cut, by which paths name it; row: in the results, which may have two of one cut."""
+    from heuncli.cut_rows import cut_numbers  # where there are runs of cuts
+
+    keys = find(study.results, asked.path).keys
+    s = next(cuts.s for cuts in study.setup.cuts if cuts.name == keys[keys.index("sections") + 1])
+    assert s is not None
+    return int(cut_numbers(s)[row])
 
 
 def measured(asked: MeasureRequest, study: Study) -> tuple[Peak, float | None]:

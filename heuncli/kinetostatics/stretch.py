@@ -122,7 +122,7 @@ class Stretch:
         # the end of a piece that is none of the corners is one that moves
         jumps = side != 0.0 and (len(corner) == 0 or bool(self.jumps[corner].any()))
         side = side if jumps else 0.0
-        close = np.abs(asked.s - s) <= tolerances.SAME_INSTANT * asked.s[-1]
+        close = np.abs(asked.s - s) <= tolerances.SAME_CUT * asked.s[-1]
         same = np.flatnonzero(close & (asked.side * side >= 0.0))
         return Place(s, {BEFORE: "before", BEYOND: "beyond"}.get(side), int(same[0]) if len(same) else None)
 

@@ -12,6 +12,7 @@ from typing import Any, NamedTuple
 
 import numpy as np
 
+from heuncli.cut_rows import cut_numbers
 from heuncli.errors import LimitError, Problem
 from heuncli.foreign_text import shown
 from heuncli.report.labels import Labels
@@ -162,8 +163,9 @@ def _cuts(row: CsvSeries) -> list[str]:
         return [f",{name},,,"] * len(series.components)
     s = [repr(float(at)) for at in row.sections[name]["s"]]
     side = [word or "" for word in row.sections[name].get("side") or [None] * len(s)]
-    numbers = [int(component.partition(".")[0]) for component in series.components]
-    return [f",{name},{cut},{s[cut]},{side[cut]}" for cut in numbers]
+    rows = [int(component.partition(".")[0]) for component in series.components]
+    cuts = cut_numbers(np.asarray(row.sections[name]["s"])).tolist()
+    return [f",{name},{cuts[k]},{s[k]},{side[k]}" for k in rows]
 
 
 def _limit(results: Results) -> None:

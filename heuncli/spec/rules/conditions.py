@@ -6,6 +6,7 @@ from collections.abc import Iterator
 from typing import TYPE_CHECKING
 
 from heuncli.results_schema import AFTER_THE_RUN, beside_magnitudes, spelled_first
+from heuncli.run_places import words_of
 from heuncli.spec import format as f
 from heuncli.spec.names import UNTIL, is_name
 from heuncli.spec.rules.registry import DraftDocument, Path_, Violation, rule
@@ -31,7 +32,7 @@ def on_results(draft: DraftDocument) -> Iterator[tuple[Path_, f.ResultConditionE
         from heuncli.spec.rules.outcome import result, runs_of  # a run without any starts faster
 
         runs = runs_of(draft)
-        yield from ((path, given, result(given.of.split("."), draft.names, runs)) for path, given in on_paths)
+        yield from ((path, given, result(words_of(given.of), draft.names, runs)) for path, given in on_paths)
 
 
 @rule("event-name")

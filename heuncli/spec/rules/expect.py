@@ -10,6 +10,7 @@ from heuncli import tolerances
 from heuncli.expressions import units as u
 from heuncli.expressions.programs import Expression
 from heuncli.results_schema import INDEX, INSTANT, beside_magnitudes, spelled_first
+from heuncli.run_places import words_of
 from heuncli.spec import format as f
 from heuncli.spec.rules.registry import DraftDocument, Path_, Violation, rule
 from heuncli.spec.semantics import instants_of, type_of
@@ -29,7 +30,7 @@ def outcomes(draft: DraftDocument) -> Iterator[tuple[Path_, f.ExpectEntry, Numbe
 
         runs = runs_of(draft)
         for i, item in draft.document.expect.items():
-            found = result(item.of.split("."), draft.names, runs)
+            found = result(words_of(item.of), draft.names, runs)
             yield ("expect", i), item, found if isinstance(found, NumberKind) else None
 
 

@@ -5,11 +5,13 @@ from __future__ import annotations
 from collections.abc import Collection, Mapping
 from typing import NamedTuple, TypeAlias
 
+from heuncli.errors import Finding
 from heuncli.expressions import units as u
 from heuncli.joint_kinds import RATES, TYPES
 from heuncli.nearest import did_you_mean, listed, nearest
 from heuncli.results_schema import (
     BLOWS,
+    CUT,
     INSTANT,
     TREE,
     Node,
@@ -19,6 +21,7 @@ from heuncli.results_schema import (
     counted,
     leading_key,
 )  # fmt: skip
+from heuncli.run_places import NO_RUN, marked, names_a_cut, words_of
 from heuncli.spec.names import GROUND, Names
 from heuncli.spec.rules.registry import DraftDocument
 from heuncli.spec.rules.sections import is_run
@@ -51,7 +54,8 @@ class Words(NamedTuple):
     """What stands there is text, or names: no number."""
 
 
-Result: TypeAlias = NumberKind | UnknownWord | Words | None  # None: of what could not be read
+# a Finding tells what is wrong with the place along a run of cuts; None: of what could not be read
+Result: TypeAlias = NumberKind | UnknownWord | Words | Finding | None
 ONLY_THE_RUN_TELLS = NumberKind((), (), timed=False, known=False)
 
 
@@ -83,7 +87,11 @@ def result(path: list[str], names: Names, runs: Mapping[str, bool]) -> Result:
         run = runs[keys[1]]
     dimensions = tuple(u.parse_unit(unit)[1] for unit in reached.quantity.units)
     timed = reached.quantity.timed and not at_a_blow
-    return part(NumberKind(dimensions, reached.quantity.axes(run), timed), reached.rest)
+    whole = NumberKind(dimensions, reached.quantity.axes(run), timed)
+    try:
+        return part(*at_a_cut(whole, reached.rest))
+    except Finding as finding:
+        return finding
 
 
 def follow(path: list[str], names: Names) -> Reached | UnknownWord | None:
@@ -138,7 +146,9 @@ def has_coordinate(joint: list[str], key: str, names: Names) -> bool:
 
 def wrong_path(path: str, names: Names, runs: Mapping[str, bool]) -> tuple[str, str] | None:
     """What is wrong with a path into the results, and a hint; None: nothing, or only the run can tell."""
-    reached = result(path.split("."), names, runs)
+    reached = result(words_of(path), names, runs)
+    if isinstance(reached, Finding):
+        return f"'{path}': {reached.message}", reached.hint
     if isinstance(reached, Words):
         return f"'{path}' is words, not a number", words_hint(path)
     if not isinstance(reached, UnknownWord):
@@ -149,7 +159,7 @@ def wrong_path(path: str, names: Names, runs: Mapping[str, bool]) -> tuple[str, 
     what = f"'{path}': '{reached.word}' is not a result" if reached.word else f"'{path}' is not a number"
     if likely is not None:
         return what, f"did you mean {likely}?"
-    return what, names_hint(path.split("."), reached, names)
+    return what, names_hint(words_of(path), reached, names)
 
 
 def words_hint(path: str) -> str:
@@ -165,6 +175,8 @@ def names_hint(path: list[str], reached: UnknownWord, names: Names) -> str:
     block, *rest = path
     if not reached.word:
         return f"it goes on with one of {listed(reached.known)}"
+    if reached.word.startswith("@"):
+        return NO_RUN
     if not reached.known:
         of_scene = block in names.entries and not names.entries[block]
         return f"the scene has no {block}" if of_scene and rest else "leave it out: the path ends before it"
@@ -217,6 +229,21 @@ def named(word: str, names: Names) -> list[str]:
         case "CAUSE":
             return ["gravity", *entries["forces"], "drives", "motion"]
     return [word]
+
+
+def at_a_cut(whole: NumberKind, words: list[str]) -> tuple[NumberKind, list[str]]:
+    """What is left of a quantity along a run of cuts, and of the words, where one names a place. Raises Finding."""
+    word = marked(words)
+    if CUT not in whole.axes or not words:
+        return whole, words
+    left = words.copy()
+    k = words.index(word) if word is not None else int(whole.timed and len(words) > len(whole.axes))
+    if not names_a_cut(words[k]):
+        return whole, words
+    from heuncli.cut_rows import place_of  # few paths name one
+
+    place_of(left.pop(k))
+    return whole._replace(axes=tuple(axis for axis in whole.axes if axis is not CUT)), left
 
 
 def part(whole: NumberKind, words: list[str]) -> NumberKind | UnknownWord:

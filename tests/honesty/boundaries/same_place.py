@@ -6,6 +6,8 @@ import math
 
 import numpy as np
 
+from heuncli.cut_rows import rows_at
+from heuncli.errors import Finding
 from heuncli.kinetostatics.auto_properties import Cutting, joined
 from heuncli.kinetostatics.section_axes import nearest_axis
 from heuncli.results import Results
@@ -43,6 +45,14 @@ def needs_side(x: float) -> str:
         near(found.sections["s"]["N"][0], 0.7 * WEIGHT, WEIGHT)
 
     return verdict(text, right)
+
+
+def beside_a_cut(x: float) -> str:
+    """A place x of its length off the middle of a run of three cuts."""
+    try:
+        return f"row {rows_at(f'@{0.5 + x!r}', np.array([0.0, 0.5, 1.0]), None)[0]}"
+    except Finding as finding:
+        return f"refused: {finding.code}"
 
 
 def two_legs(x: float) -> str:
@@ -91,6 +101,7 @@ PART = Part(
         Row("EQUAL_COMPONENTS", equal, "x", "y"),
         Row("PRINCIPAL", askew, "taken", "refused"),
         Row("IN_PLANE", needs_side, "refused: needs-side", "fine"),
+        Row("SAME_CUT", beside_a_cut, "row 1", "refused: unknown-path"),
         Row("OUTLINES_APART", two_legs, "fine", "warned: sections.s: the plane meets the body bar"),
         Row("ONE_PLACE", one_place, "1 m", "its extent"),
     ),
