@@ -20,11 +20,13 @@ class SceneModes:
     modes: tuple[Mode, ...]
     shapes: tuple[dict[str, complex], ...]
     largest: tuple[tuple[str, ...], ...]  # of each mode the coordinates that move most, lengths by the scene's size
+    without: tuple[str, ...] = ()  # forces that were left out and drives that were held, as `forces.push`
 
     def block(self) -> dict[str, Any]:
         """As JSON has it."""
         rows = [row(mode, shape) for mode, shape in zip(self.modes, self.shapes, strict=True)]
-        return {"at": self.at, "steady": self.steady, "modes": rows}
+        without = {"without": list(self.without)} if self.without else {}
+        return {"at": self.at, "steady": self.steady, **without, "modes": rows}
 
 
 def row(mode: Mode, shape: dict[str, complex]) -> dict[str, Any]:

@@ -114,6 +114,61 @@ joints:
     assert "give way to the first order only" in caught.value.problems[0].message
 
 
+EXCITED = """
+  push: {type: force, on: bob.b, vector: ["3*sin(5*t)", 0, 0]}
+  k: {type: spring, from: ground.W, to: cart.c, stiffness: 90, length: 1}
+  pull: {type: torque, joint: hinge, value: "cos(5*t)"}
+"""
+
+
+def test_without_what_excites(heun: Heun, folder: Path) -> None:
+    """The modes of the scene in which those forces do not stand, to the bit, and what was left out is told."""
+    spring = EXCITED.splitlines()[2]
+    (folder / "free.yaml").write_text(f"{SCENE}forces:\n{spring}\n{ASKED}")
+    (folder / "excited.yaml").write_text(f"{SCENE}forces:{EXCITED}{ASKED}")
+    free = json.loads(heun("modes", "free.yaml", "--format", "json").stdout)
+    for words in (["--without", "push,pull"], ["--without", "forces.push", "--without", "pull, push"]):
+        found = json.loads(heun("modes", "excited.yaml", *words, "--format", "json").stdout)
+        assert found.pop("without") == ["forces.push", "forces.pull"] and found == free
+    assert "without forces.push, forces.pull\n" in heun("modes", "excited.yaml", "--without", "push,pull").stdout
+    refused = heun("modes", "excited.yaml")
+    assert refused.returncode == 3 and "--without push,pull leaves out what excites" in refused.stderr
+
+
+@pytest.mark.parametrize(
+    ("drive", "rests"),
+    [
+        ("travel: 0.2*sin(20*t)", "travel: 0"),
+        ("travel: 0.2*cos(20*t)", "travel: 0.2"),
+        ("speed: 0.2*cos(20*t)", "speed: 0"),
+        ("speed: 3", "speed: 0"),
+    ],
+)
+@pytest.mark.parametrize("analysis", ["analysis: {type: rest}\n", "analysis: {duration: 1}\n"])
+def test_a_drive_is_held_where_it_starts(heun: Heun, folder: Path, drive: str, rests: str, analysis: str) -> None:
+    """A pendulum on a driven cart in a spring to the ground: that of a cart that stands there."""
+    head = f"{SCENE}forces: {{k: {{type: spring, from: ground.W, to: bob.b, stiffness: 9, length: 1.5}}}}\n{analysis}"
+    for name, value in (("shaken", drive), ("still", rests)):
+        (folder / f"{name}.yaml").write_text(f"{head}drives: {{base: {{joint: rail, {value}}}}}\n")
+    found = json.loads(heun("modes", "shaken.yaml", "--without", "base", "--format", "json").stdout)
+    still = json.loads(heun("modes", "still.yaml", "--format", "json").stdout)
+    assert found.pop("without") == ["drives.base"] and found == still
+    if "sin" in drive or "cos" in drive:
+        refused = heun("modes", "shaken.yaml")
+        assert refused.returncode == 3 and "--without base" in refused.stderr
+
+
+def test_a_name_left_out_is_one_of_the_scene(heun: Heun, folder: Path) -> None:
+    drive = "drives: {push: {joint: rail, travel: 0}}\n"
+    (folder / "excited.yaml").write_text(f"{SCENE}forces:{EXCITED}{drive}{ASKED}")
+    done = heun("modes", "excited.yaml", "--without", "psh,forces.pusch", "--without", "push,rail")
+    assert done.returncode == 2 and done.stderr.count("[bad-option]") == 4
+    assert "did you mean forces.push?" in done.stderr
+    assert "forces.push and drives.push have this name" in done.stderr
+    (folder / "bare.yaml").write_text(SCENE + ASKED)
+    assert "has no forces and no drives" in heun("modes", "bare.yaml", "--without", "push").stderr
+
+
 def test_a_motion_is_looked_at_about_the_pose_that_rests() -> None:
     """Drawn askew and let go, or looked for: the same pose, hanging, and the same frequencies as drawn so."""
     spring = "forces: {k: {type: spring, from: ground.W, to: cart.c, stiffness: 90, length: 1}}\n"

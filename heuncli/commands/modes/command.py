@@ -9,6 +9,7 @@ from heuncli.cli.target import format_of
 from heuncli.commands.modes import page as report
 from heuncli.commands.modes.request import ModesRequest
 from heuncli.commands.modes.study import modes
+from heuncli.commands.modes.without import named, without
 from heuncli.report.export import dump
 from heuncli.spec.load import load
 
@@ -21,8 +22,9 @@ def main(request: ModesRequest) -> int:
     require_other_file(request.output, [request.spec])
     form = format_of(request.format, request.output, ENDINGS, FORMATS)
     spec = load(request.spec, overrides=overrides(request.set), checking=False)
+    entries = named(spec, request.without)
     require_other_file(request.output, [request.spec])
-    found = modes(spec)
+    found = modes(without(spec, entries), entries)
     if form == "json":
         text = dump(found.block())
     else:

@@ -36,11 +36,18 @@ def page(found: SceneModes) -> list[tuple[str, str]]:
     """Label and text of the lines above the table."""
     frame = FRAME if found.steady else HELD if found.held else ""
     lines = [("heun", f"{VERSION}  {found.title}"), ("modes", f"small oscillations {ABOUT[found.at]}{frame}")]
+    if found.without:
+        lines.append(("", f"without {', '.join(map(left_out, found.without))}"))
     if not found.modes:
         return [*lines, ("", "nothing is free to oscillate")]
     unstable = any(mode.growth > 0.0 for mode in found.modes)
     loose = any(mode.kind == "free" for mode in found.modes)
     return [*lines, ("", "unstable" if unstable else "stable, but for what nothing holds" if loose else "stable")]
+
+
+def left_out(entry: str) -> str:
+    """An entry that was left out, or is held, in words."""
+    return f"{entry}'s motion, held where it starts" if entry.startswith("drives.") else entry
 
 
 def write(found: SceneModes) -> str:

@@ -19,5 +19,13 @@ class ModesRequest(NamedTuple):
     ] = None
     output: Annotated[str | None, OUTPUT] = None
     set: Annotated[tuple[str, ...], SET] = ()
+    without: Annotated[
+        tuple[str, ...],
+        Option(
+            ("--without",),
+            "Leave out these forces, and hold these drives where they start. May be repeated.",
+            "NAME,...",
+        ),
+    ] = ()
     time_limit: Annotated[float | None, TIME_LIMIT] = None
     quiet: Annotated[bool, QUIET] = False

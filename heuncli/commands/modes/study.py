@@ -6,6 +6,7 @@ about itself alone. In steady motions, where drives turn at constant rates, mode
 
 from __future__ import annotations
 
+from collections.abc import Sequence
 from typing import Literal
 
 import numpy as np
@@ -18,7 +19,9 @@ from heuncli.linearisation.oscillations import oscillations
 from heuncli.linearisation.shapes import coordinates
 from heuncli.linearisation.smoothness import without_slope
 from heuncli.linearisation.steady_motion import Looked, fastest, goes_on_as_it_is, look, off_balance
+from heuncli.records import replace
 from heuncli.redundancy.neighbours import neighbours
+from heuncli.rest.steady_states import is_steady
 from heuncli.spec.models import Spec
 from heuncli.study.model.error_places import placed
 from heuncli.study.model.setup import Setup, set_up
@@ -28,15 +31,18 @@ NEARLY = "look for it from nearer by: draw the scene closer to where it rests"
 MOVING_HINT = "leave out the velocities, or run a motion: modes are those about a pose, or a steady motion"
 
 
-def modes(spec: Spec) -> SceneModes:
-    """The modes of a spec. Raises SolveError where there is no state to oscillate about."""
+def modes(spec: Spec, without: Sequence[str] = ()) -> SceneModes:
+    """The modes of a spec; without: entries that were left out of it or held, which is told.
+
+    Raises SolveError where there is no state to oscillate about.
+    """
     with placed(spec):
-        return found_in(spec)
+        return replace(found_in(spec), without=tuple(without))
 
 
 def found_in(spec: Spec) -> SceneModes:
     """The modes of a spec. Errors name bodies, joints and sections, but not where these stand in the file."""
-    setup = set_up(spec, reduce=False)
+    setup = set_up_at_rest(spec) if spec.analysis.type == "rest" else set_up(spec, reduce=False)
     require_no_time(setup)
     here, at = state_of(setup)
     require_slopes(here)
@@ -54,16 +60,30 @@ def found_in(spec: Spec) -> SceneModes:
     )
 
 
+def set_up_at_rest(spec: Spec) -> Setup:
+    """The scene at its rest pose. Raises SolveError, of what depends on the time with what to leave out."""
+    try:
+        return set_up(spec, reduce=False)
+    except SolveError:
+        asked = spec.analysis._replace(type="state", times=(0.0,))
+        start = set_up(spec._replace(analysis=asked), reduce=False)
+        require_no_time(start)
+        require_resting_drives(start)
+        raise
+
+
 def require_no_time(setup: Setup) -> None:
     """Raise SolveError for loads that depend on the time."""
+    names = [load.name for load in setup.scene.mechanism.loads if any(value.time_dependent for value in load.values)]
+    names = list(dict.fromkeys(names))
+    hint = f"--without {','.join(names)} leaves out what excites; or give it the value that it has there, by --set"
     problems = [
         Problem(
             "no-modes",
-            f"forces.{load.name} depends on t: small oscillations are those about a state at which nothing changes",
-            hint="give it the value that it has there, by --set forces... or a parameter",
+            f"forces.{name} depends on t: small oscillations are those about a state at which nothing changes",
+            hint=hint,
         )
-        for load in setup.scene.mechanism.loads
-        if any(value.time_dependent for value in load.values)
+        for name in names
     ]
     if problems:
         raise SolveError(*problems)
@@ -78,9 +98,32 @@ def state_of(setup: Setup) -> tuple[Looked, Literal["rest", "state"]]:
         return here, "rest" if kind == "rest" else "state"
     if kind in ("state", "rest"):
         what = "state is not at rest" if kind == "state" else "pose found is not quite at rest"
-        hint = MOVING_HINT if moves(here) else REST_HINT
+        hint = (MOVING_HINT if moves(here) else REST_HINT) + "".join(f"; {x}" for x in held_hints(setup.spec))
         raise SolveError(Problem("not-at-rest", f"the {what}: {reason}", hint=hint if kind == "state" else NEARLY))
+    require_resting_drives(setup)
     return state_of(at_rest(setup.spec))
+
+
+def held_hints(spec: Spec) -> list[str]:
+    """What to write to have the drives that move held where they start."""
+    moving = ",".join(name for name, drive in spec.drives.items() if drive.by_rate or drive.value.time_dependent)
+    return (
+        [f"--without {moving} holds {'them where they start' if ',' in moving else 'it where it starts'}"]
+        if moving
+        else []
+    )
+
+
+def require_resting_drives(setup: Setup) -> None:
+    """Raise SolveError where a drive neither rests nor goes on at a constant rate, so that nothing rests beside it."""
+    joints = setup.scene.mechanism.joints
+    drives = [joint.drive for joint in joints if joint.drive is not None and not is_steady(joint.drive.value)]
+    if drives:
+        hint = f"--without {','.join(drive.name for drive in drives)}: modes with it held where it starts"
+        raise SolveError(*(
+            Problem("no-modes", f"drives.{drive.name} does not go on at a constant rate", hint=hint)
+            for drive in drives
+        ))  # fmt: skip
 
 
 def looked_at(setup: Setup) -> Looked:
