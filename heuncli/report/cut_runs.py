@@ -212,8 +212,11 @@ def extremes_table(
     styles = _styles(run, certain, extremes)
     span = float(np.ptp(times))
     rows: list[tuple[str, ...]] = []
-    for i, own in enumerate(run.quantities[: len(extremes.low)]):
+    quantities = run.quantities[: len(extremes.low)]
+    for i, own in enumerate(quantities):
         low, high = write([float(extremes.low[i]), float(extremes.high[i])], styles[own.unit])
+        if low == high == "0":
+            continue
         label, unit = own.label, own.unit if own.unit != "1" else ""
         if low == high:
             rows.append((label, unit, low, "", "", high, "", ""))
@@ -230,8 +233,10 @@ def extremes_table(
     columns = (TextColumn("", "left"), TextColumn("", "left"), *(TextColumn(head) for head in heads))
     if len(times) == 1:
         columns, rows = columns[:4] + columns[5:7], [(*row[:4], *row[5:7]) for row in rows]
-    is_open = any(OPEN in row for row in rows)
-    return TextTable(run.heading, columns, tuple(rows), (STRETCH_NOTE, *((OPEN_NOTE,) if is_open else ())))
+    if not rows:
+        return TextTable(run.heading, notes=("0 throughout",))
+    notes = (STRETCH_NOTE, *[OPEN_NOTE] * any(OPEN in row for row in rows))
+    return TextTable(run.heading, columns, tuple(rows), (*notes, *[ZERO_NOTE] * (len(rows) < len(quantities))))
 
 
 def instants_tables(
@@ -242,7 +247,7 @@ def instants_tables(
     kept = np.arange(len(run.s)) if every else thinned(run)
     if len(times) == 1:
         diagram = _diagram(run, run.values[:, 0, :], kept, styles, [_rest(run, kept).lstrip("; ")])
-        return [TextTable(run.heading, diagram.columns, diagram.rows, diagram.notes)]
+        return [_without_zero(run, diagram._replace(heading=run.heading))]
     clock = write_times(times.tolist(), float(np.ptp(times)))
     rows: list[tuple[str, ...] | str] = []
     table = TextTable("")
@@ -252,7 +257,7 @@ def instants_tables(
         table = _diagram(run, run.values[:, i, :], kept, styles, [_rest(run, kept).lstrip("; ")], lost)
         rows += [f"t = {clock[i]} s", *table.rows]
         notes += table.notes
-    return [TextTable(run.heading, table.columns, tuple(rows), tuple(dict.fromkeys(notes)))]
+    return [_without_zero(run, TextTable(run.heading, table.columns, tuple(rows), tuple(dict.fromkeys(notes))))]
 
 
 def thinned(run: CutRun) -> Indices:
@@ -288,6 +293,17 @@ def _diagram(
     columns = [TextColumn(head(own.label, own.unit), vector="loads") for own in run.loads]
     columns += [TextColumn(head(own.label, own.unit)) for own in run.stresses]
     return _at_cuts(run, kept, columns, texts, below)
+
+
+def _without_zero(run: CutRun, table: TextTable) -> TextTable:
+    """The diagrams without the quantities that are 0 throughout, if there are others."""
+    cells = [row for row in table.rows if not isinstance(row, str)]
+    lead = len(table.columns) - len(run.quantities)
+    kept = [i for i in range(len(table.columns)) if i < lead or {row[i] for row in cells} != {"0"}]
+    if len(kept) in (lead, len(table.columns)):
+        return table
+    rows = tuple(row if isinstance(row, str) else tuple(row[i] for i in kept) for row in table.rows)
+    return TextTable(table.heading, tuple(table.columns[i] for i in kept), rows, (*table.notes, ZERO_NOTE))
 
 
 def _styles(run: CutRun, certain: Certainty, extremes: Extremes | None = None) -> dict[str, Style]:

@@ -20,12 +20,12 @@ PLANAR = "; what points out of the xy plane does not exist and reads 0"
 STIFF = "stiff: "  # how the reason begins for which a run was begun anew by an implicit method
 
 
-def heading(results: Results) -> list[tuple[str, str]]:
-    """Label and text of each line."""
+def heading(results: Results, every: bool = False) -> list[tuple[str, str]]:
+    """Label and text of each line; every: what was made smaller, too, which `heun model` tells."""
     lines = [
         ("heun", f"{results.version}  {results.title}"),
         ("model", _model(results)),
-        *_reduced(results.model.get("reduced", ())),
+        *(_labelled("reduced", results.model.get("reduced", ())) if every else ()),
         *(("unseen", sentence) for sentence in results.model.get("cannot_tell", ())),
         *_moved(results.model.get("moved", ())),
         ("run", _run(results)),
@@ -50,22 +50,16 @@ def heading(results: Results) -> list[tuple[str, str]]:
     return [line for line in lines if line[1]]
 
 
-def write_heading(results: Results) -> str:
+def write_heading(results: Results, every: bool = False) -> str:
     """The heading as aligned text."""
-    return labelled(heading(results))
+    return labelled(heading(results, every))
 
 
-def write_heading_markdown(results: Results) -> str:
+def write_heading_markdown(results: Results, every: bool = False) -> str:
     """The heading as markdown."""
-    lines = heading(results)
+    lines = heading(results, every)
     body = "".join(f"- {label + ': ' if label else ''}{shown(text)}\n" for label, text in lines[1:])
     return f"## {shown(results.title)}\n\n- heun: {results.version}\n{body}\n"
-
-
-def _reduced(sentences: Sequence[str]) -> list[tuple[str, str]]:
-    """What the model leaves out, in one line."""
-    more = f"; {len(sentences) - 1} more in heun model" if len(sentences) > 1 else ""
-    return [("reduced", f"{sentences[0]}{more}")] if sentences else []
 
 
 def _labelled(label: str, sentences: Sequence[str]) -> list[tuple[str, str]]:

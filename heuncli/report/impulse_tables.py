@@ -13,6 +13,7 @@ from typing import Any, NamedTuple
 import numpy as np
 
 from heuncli.report import cut_runs
+from heuncli.report.blow_table import blow_table
 from heuncli.report.certain_sums import sums_table
 from heuncli.report.digits import UNKNOWN, Certainty, largest, with_axis, write, write_times
 from heuncli.report.instants_tables import instants_tables
@@ -31,13 +32,17 @@ ENERGIES = ("energy_before", "energy_after", "energy_jump")
 
 
 class BlowReport(NamedTuple):
-    """The blows of a run and what is known of its numbers; along: of each the extremes along its runs of cuts."""
+    """The blows of a run and what is known of its numbers; along: of each the extremes along its runs of cuts.
+
+    details: whether tables are shown that only those want who ask for them.
+    """
 
     results: Results
     labels: Labels
     certain: Certainty
     of: Magnitudes
     along: Sequence[Mapping[str, Extremes]] = ()
+    details: bool = True
 
 
 def impulse_tables(blows: BlowReport, *, every: bool = False) -> list[TextTable]:
@@ -103,22 +108,25 @@ def listing(blows: BlowReport, sizes: Array, shown: Indices, every: bool) -> Tex
 
 
 def tables_of(blows: BlowReport, number: int, every: bool = False) -> list[TextTable]:
-    """The tables of one blow."""
+    """The tables of one blow: one of all that it loads, the central axis, the runs of cuts, causes, certain sums."""
     impulse = blows.results.impulses[number]
-    at = float(impulse["time"])
     view, labels = at_one_instant(blows.results, impulse), blows.labels
-    lead = f"IMPULSE at t = {at:.6g} s ({', '.join(impulse['names'])})  "
+    called = f"IMPULSE at t = {float(impulse['time']):.6g} s ({', '.join(impulse['names'])})"
+    lead = f"{called}  "
     horizon = blows.results.accuracy.get("horizon")
     certain = with_axis(blows.certain, view, blows.of, labels.units, UNIT)
     series = in_units(walk_impulse(impulse, labels), labels.units)
     by_cause = any(item.cause for item in series)
-    tables, more = list[TextTable](), list[TextTable]()
+    blocks, tables, more = list[TableBlock](), list[TextTable](), list[TextTable]()
     for plan in IMPULSES:
-        block = build(plan, view, labels, series)
-        if block is not None:
-            named = block._replace(heading=lead + block.heading)
-            tables += instants_tables(named, view.time, horizon, certain)
-            more += shares_of(named, view, series, certain, horizon) if by_cause else []
+        block = build(plan, view, labels, series) if blows.details or not plan.detail else None
+        if block is None:
+            continue
+        named = block._replace(heading=lead + block.heading)
+        blocks += [block] * plan.lasting
+        tables += instants_tables(named, view.time, horizon, certain) if not plan.lasting else []
+        more += shares_of(named, view, series, certain, horizon) if by_cause else []
+    tables[:0] = [blow_table(called, blocks, view.time, horizon, certain)] if blocks else []
     along = blows.along[number] if blows.along else {}
     for run in cut_runs.runs_of(view, labels, AT_A_BLOW):
         made = cut_runs.instants_tables(run, view.time, horizon, certain, every=every)

@@ -23,7 +23,7 @@ def instants_tables(block: TableBlock, times: Array, horizon: float | None, cert
     notes = list(block.notes)
     lay = _at_one if len(times) == 1 else _one_below_the_other
     for groups in _same_columns(block.groups):
-        cells = {group.name: _group_texts(block, group, times, horizon, certain) for group in groups}
+        cells = {group.name: group_texts(block, group, times, horizon, certain) for group in groups}
         units = {row.label: row.unit for group in groups for row in group.rows}
         labels = _not_zero(groups, cells) if word == OPEN else _in_order(groups)
         if len(labels) < len(units):
@@ -78,7 +78,7 @@ def _in_order(groups: Sequence[RowGroup]) -> list[str]:
     return order
 
 
-def _group_texts(
+def group_texts(
     block: TableBlock, group: RowGroup, times: Array, horizon: float | None, certain: Certainty
 ) -> dict[str, list[str]]:
     """The cells of a group by label, one an instant."""

@@ -48,7 +48,8 @@ class Page(NamedTuple):
     """The tables of a run: blocks and runs of cuts up to the horizon, before they are laid out.
 
     of: what its numbers are summed from; beyond: the last instant alone, where the run ends beyond its horizon; struck:
-    of each blow the extremes along its runs of cuts; along_runs: of the whole run, what else was searched of them.
+    of each blow the extremes along its runs of cuts; along_runs: of the whole run, what else was searched of them;
+    details: whether tables are shown that only those want who ask for them.
     """
 
     results: Results
@@ -58,6 +59,7 @@ class Page(NamedTuple):
     beyond: Results | None = None
     struck: Sequence[Mapping[str, Extremes]] = ()
     along_runs: Mapping[str, RunExtremes] = NONE
+    details: bool = True
 
     def columns(self, results: Results) -> Array:
         """What is searched, (n_t, n): all rows of all blocks, magnitudes squared."""
@@ -161,7 +163,7 @@ class Page(NamedTuple):
         unknown = frozenset(results.accuracy.get("unknown", ()))
         certain = with_axis(self.certain._replace(beside=unknown), results, self.of, self.labels.units)
         tables: list[TextTable] = []
-        for block in _blocks(results, self.labels):
+        for block in self._blocks(results):
             tables += instants_tables(block, results.time, horizon, certain)
         for k, run in enumerate(cut_runs.runs_of(results, self.labels)):
             if searched is not None:
@@ -182,7 +184,7 @@ class Page(NamedTuple):
 
         horizon = self.results.accuracy.get("horizon")
         shared, tables = self._shared(results), list[TextTable]()
-        for block in _blocks(results, self.labels):
+        for block in self._blocks(results):
             tables += cause_tables.instants_table(block, shared, results.time, horizon, certain)
         for k, run in enumerate(cut_runs.runs_of(results, self.labels)):
             if searched is not None:
@@ -208,7 +210,13 @@ class Page(NamedTuple):
         return [row for block in self._lasting(results) for group in block.groups for row in group.rows]
 
     def _lasting(self, results: Results) -> list[TableBlock]:
-        return _blocks(results, self.labels, lasting=True)
+        return self._blocks(results, lasting=True)
+
+    def _blocks(self, results: Results, *, lasting: bool = False) -> list[TableBlock]:
+        series: Sequence[Series] = in_units(walk(results, self.labels), self.labels.units)
+        plans = [plan for plan in PLANS if (plan.lasting or not lasting) and (self.details or not plan.detail)]
+        made = [block for plan in plans if (block := build(plan, results, self.labels, series)) is not None]
+        return [abridged(block) for block in made] if lasting else made
 
     def _ending(self, every: bool = False) -> list[TextTable]:
         sums = sums_table(self.results, self.certain, self.beyond, self.labels.units.of("N"))
@@ -226,17 +234,19 @@ class Page(NamedTuple):
             return []
         from heuncli.report.impulse_tables import BlowReport, impulse_tables  # where something strikes
 
-        return impulse_tables(BlowReport(self.results, self.labels, self.certain, self.of, self.struck), every=every)
+        of = BlowReport(self.results, self.labels, self.certain, self.of, self.struck, self.details)
+        return impulse_tables(of, every=every)
 
 
-def page_of(results: Results, labels: Labels, of: Magnitudes) -> Page:
+def page_of(results: Results, labels: Labels, of: Magnitudes, *, details: bool = True) -> Page:
     """The page of a run, ending before its horizon; `of`: what its numbers are summed from."""
     horizon = results.accuracy.get("horizon")
     certain = certainty(results, labels, of)
     if horizon is None or results.time[-1] < horizon:
-        return Page(results, labels, certain, of)
+        return Page(results, labels, certain, of, details=details)
     known = max(1, int(np.searchsorted(results.time, horizon)))
-    return Page(some_instants(results, slice(known)), labels, certain, of, some_instants(results, slice(-1, None)))
+    beyond = some_instants(results, slice(-1, None))
+    return Page(some_instants(results, slice(known)), labels, certain, of, beyond, details=details)
 
 
 def some_instants(results: Results, which: slice) -> Results:
@@ -259,10 +269,3 @@ def _some_of_sum(block: CertainSum, which: slice) -> CertainSum:
         path: factor[which] if isinstance(factor, np.ndarray) else factor for path, factor in block["terms"].items()
     }
     return {"terms": factors, "value": block["value"][which]}
-
-
-def _blocks(results: Results, labels: Labels, *, lasting: bool = False) -> list[TableBlock]:
-    series: Sequence[Series] = in_units(walk(results, labels), labels.units)
-    blocks = [build(plan, results, labels, series) for plan in PLANS if plan.lasting or not lasting]
-    made = [block for block in blocks if block is not None]
-    return [abridged(block) for block in made] if lasting else made

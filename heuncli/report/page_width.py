@@ -21,6 +21,9 @@ def fit(table: TextTable, width: int) -> list[TextTable]:
         return [table]
     if len(widths) > 1 and table.columns[-1].align == "left" and widths[-1] - len(GAP) - over >= LEAST_TEXT:
         return [table._replace(rows=tuple(in_lines(table, widths[-1] - len(GAP) - over)))]
+    if table.columns[-1].spare:
+        rest = tuple(row if isinstance(row, str) else row[:-1] for row in table.rows)
+        return fit(table._replace(columns=table.columns[:-1], rows=rest), width)
     lead = 1 + max((i for i, column in enumerate(table.columns[:3]) if column.align == "left"), default=0)
     again = [i for i in range(lead) if not table.columns[i].once]
     room = [width - indent + len(GAP) - sum(widths[i] for i in columns) for columns in (range(lead), again)]

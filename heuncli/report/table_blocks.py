@@ -179,7 +179,7 @@ def _supports(groups: list[RowGroup], results: Results) -> tuple[list[RowGroup],
     """Groups and notes of the foundation: a support alone is the total, apart from the point of its moment."""
     supports, elements = results.foundation.get("supports", {}), results.foundation.get("elements", {})
     if not supports and not elements:
-        return groups, (FREE,)
+        return groups, (FREE,) * ("supports" in results.foundation)
     if len(supports) == 1 and not elements and "force" in results.foundation:
         only = f"all of it goes through {next(iter(supports))}, the only support"
         return [group for group in groups if group.whole], (only,)

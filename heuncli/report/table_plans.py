@@ -23,7 +23,7 @@ class TablePlan(NamedTuple):
     """How a kind of results becomes a block: the quantities in their order, and the text about it.
 
     `only` takes one name of the kind. What is not `lasting` (a line in space) has no extremes: it is shown at instants.
-    `missing`: what stands for nan, and the note that explains it.
+    `missing`: what stands for nan, and the note that explains it. A `detail` is shown to those who name its report.
     """
 
     key: str
@@ -35,6 +35,7 @@ class TablePlan(NamedTuple):
     only: str | None = None
     lasting: bool = True
     missing: tuple[str, str] = (OPEN, OPEN_NOTE)
+    detail: bool = False
 
     @property
     def of_foundation(self) -> bool:
@@ -108,6 +109,7 @@ MASS_EFFECT = TablePlan(
         f" world axes, about {_about(results, labels)}"
     ),
     only="mass_effect",
+    detail=True,
 )
 AXIS = TablePlan(
     "foundation",
@@ -118,6 +120,7 @@ AXIS = TablePlan(
     only="axis",
     lasting=False,
     missing=NO_AXIS,
+    detail=True,
 )
 JOINTS = TablePlan(
     "joints",

@@ -17,13 +17,15 @@ Align = Literal["left", "point"]  # `point`: decimal points stand under each oth
 class TextColumn(NamedTuple):
     """A column's head and how its cells stand.
 
-    Where a table is too wide for a page: neighbours of one `vector` stay together; what stands `once` is not repeated.
+    Where a table is too wide for a page: neighbours of one `vector` stay together; what stands `once` is not repeated;
+    a last one that is `spare` is left out.
     """
 
     head: str
     align: Align = "point"
     vector: str = ""
     once: bool = False
+    spare: bool = False
 
 
 class TextTable(NamedTuple):

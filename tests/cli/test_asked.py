@@ -256,7 +256,8 @@ def test_entries_are_asked_for_by_their_paths(heun: Heun) -> None:
     ("joints.pivto", "did you mean joints.pivot?"),
     ("joints.pivot.force", "say joints.pivot; --measure prints single numbers"),
     ("sections.middle", "the scene has no sections"),
-    ("foundation.force", "known entries: foundation.supports.pivot"),
+    ("foundation.force", "say foundation; --measure prints single numbers"),
+    ("foundation.axes", "did you mean foundation.axis?"),
     ("nothing.else", "known: motion"),
 ])  # fmt: skip
 def test_what_is_no_entry_is_refused(heun: Heun, words: str, told: str) -> None:
@@ -265,13 +266,34 @@ def test_what_is_no_entry_is_refused(heun: Heun, words: str, told: str) -> None:
     assert words in done.stderr and told in done.stderr
 
 
+def test_the_axis_and_the_mass_effect_are_shown_where_they_are_asked_for(heun: Heun, folder: Path) -> None:
+    def tables(*words: str, spec: str = "hanging.yaml") -> set[str]:
+        text = heun("run", spec, *words).stdout
+        return {name for name in ("FOUNDATION", "CENTRAL AXIS", "MASS EFFECT") if f"\n{name}  " in text}
+
+    assert tables() == tables("--by-cause") == {"FOUNDATION"}
+    assert tables("--only", "foundation") == {"FOUNDATION", "CENTRAL AXIS", "MASS EFFECT"}
+    assert tables("--only", "joints,foundation.axis") == {"FOUNDATION", "CENTRAL AXIS"}
+    assert tables("--only", "foundation.mass_effect") == {"MASS EFFECT"}
+    (folder / "named.yaml").write_text(SPECS_OF["hanging"] + "report: [foundation]\n")
+    assert tables(spec="named.yaml") == {"FOUNDATION", "CENTRAL AXIS", "MASS EFFECT"}
+    told = heun("run", "swinging.yaml", "--only", "foundation.axis").stdout
+    assert "the central axis is shown at instants, by --at or --all" in told
+    assert "CENTRAL AXIS" in heun("run", "swinging.yaml", "--only", "foundation.axis", "--at", "0.5").stdout
+    written = json.loads(heun("run", "hanging.yaml", "--format", "json").stdout)["foundation"]
+    assert {"axis", "mass_effect"} <= written.keys()
+    alone = json.loads(heun("run", "hanging.yaml", "--only", "foundation.axis", "--format", "json").stdout)
+    assert alone["foundation"] == {key: written[key] for key in ("about", "force", "moment", "axis")}
+
+
 def test_what_is_left_out_is_told(heun: Heun, folder: Path) -> None:
     more = "  other: {mass: 1, center: [0, 0, 0], inertia: [1, 1, 1], points: {o: [0, 0, 0]}}\njoints:\n"
     (folder / "two.yaml").write_text(SPECS_OF["swinging"].replace("joints:\n", more) + "report: [joints]\n")
     line = "reduced   left out, because nothing that is asked for depends on it: other"
-    assert line in heun("run", "two.yaml").stdout
-    assert line not in heun("run", "two.yaml", "--no-reduce").stdout
-    assert line not in heun("run", "two.yaml", "--only", "energy").stdout
+    assert line in heun("run", "two.yaml", "--verbose").stdout
+    assert "reduced" not in heun("run", "two.yaml").stdout
+    assert line not in heun("run", "two.yaml", "--verbose", "--no-reduce").stdout
+    assert line not in heun("run", "two.yaml", "--verbose", "--only", "energy").stdout
     assert "Left out, or made smaller\n  - left out, because" in heun("model", "two.yaml").stdout
 
 

@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import csv
 import io
+import re
 from dataclasses import replace
 from typing import Any
 
@@ -83,19 +84,59 @@ def of_blow(whole: str) -> str:
 
 def test_a_blow_has_all_its_tables_in_newton_seconds() -> None:
     found = of_blow(text(struck(blow())))
-    for heading in (
-        "BODIES  jumps", "FOUNDATION  impulse", "CENTRAL AXIS", "JOINTS  impulse", "STOPS  impulse ON",
-        "SECTIONS  impulse of", "SECTION along lower  impulse of", "ENERGY  kinetic", "CERTAIN SUMS",
-    ):  # fmt: skip
-        assert f"IMPULSE at t = 0.5 s (blow)  {heading}" in found
-    assert "[N·s]" in found
-    assert "[N·m·s]" in found
-    assert "[N]" not in found
-    assert "[N·m]" not in found
+    lead = "IMPULSE at t = 0.5 s (blow)"
+    for heading in ("CENTRAL AXIS", "SECTION along lower  impulse of", "CERTAIN SUMS"):
+        assert f"{lead}  {heading}" in found
+    whole = found[found.index(f"{lead}\n") :].partition(f"\n{lead}")[0]
+    for part in ("BODIES  jumps", "FOUNDATION  impulse", "JOINTS  impulse", "STOPS  impulse ON",
+                 "SECTIONS  impulse of", "ENERGY  kinetic"):  # fmt: skip
+        assert f"\n{part}" in whole
+    assert {"N·s", "N·m·s"} <= set(whole.split())
+    assert not {"N·m", "[N]", "[N·m]"} & set(found.split())
     assert "guide.travel to 0.2 m" in found
-    assert "stop, guide.travel" in found
     assert "joints.pivot Fy + joints.elbow Fy = 0.5 N·s; the split is open" in found
     assert "IMPULSES  the blows" not in found
+
+
+def lines_of(found: str) -> dict[str, list[str]]:
+    """The cells of the lines of a blow's table, by part, name and label; a name stands before its first line alone."""
+    lines, name, title = dict[str, list[str]](), "", ""
+    for line in found.splitlines():
+        title = line.split()[0] if line[:1].strip() else title
+        if line.startswith("  ") and title.isupper():
+            name = line[2:].partition("  ")[0] or name
+            cells = line[2:].removeprefix(name).split()
+            lines[f"{title} {name} {cells[0] if cells else ''}"] = cells[1:]
+    return lines
+
+
+def test_a_blow_is_told_in_one_table_without_what_it_does_not_load() -> None:
+    one = blow()
+    one["joints"]["elbow"] |= {"force": np.array([0.0, 0.0, -2.0]), "axial": 0.0, "radial": 2.0, "tilting": 0.0}
+    one["joints"]["idle"] = {"point": np.zeros(3), "force": np.zeros(3), "moment": np.zeros(3), "open": []}
+    page = page_of(struck(one), labels(), OF, details=False)
+    tables = [plain(table) for table in page.instants(page.results)]
+    assert not any("CENTRAL AXIS" in table or "MASS EFFECT" in table for table in tables)
+    (whole,) = [table for table in tables if table.startswith("IMPULSE at t = 0.5 s (blow)\n")]
+    told = lines_of(whole)
+    for line, cells in {
+        "BODIES upper Δv": ["m/s", 0.25, 0.0, 2.0, 2.01556],
+        "FOUNDATION total F": ["N·s", -0.25, 0.0, -2.0, 2.01556],
+        "JOINTS pivot F": ["N·s", 0.25, "open", 2.0, "open"],
+        "JOINTS elbow F": ["N·s", 0.0, 0.0, -2.0, 2.0],  # radial is all of it: told once
+        "JOINTS elbow drive": ["N·m·s", 0.75],
+        "STOPS buffer force": ["N·s", 3.0],
+    }.items():
+        numbers = [float(cell) if cell[-1].isdigit() else cell for cell in told[line][: len(cells)]]
+        assert numbers == cells
+    assert not any("idle" in name or "Δω" in name or "radial" in name for name in told)
+    assert "what is 0 throughout is left out" in whole
+
+
+def test_a_blow_that_loads_nothing_says_so() -> None:
+    idle = {"point": np.zeros(3), "force": np.zeros(3), "moment": np.zeros(3), "open": []}
+    one: Block = {"time": 0.5, "names": ["blow"], "joints": {"pivot": idle}}
+    assert of_blow(text(struck(one))) == "IMPULSE at t = 0.5 s (blow)\n0 throughout\n"
 
 
 def test_what_is_open_in_a_blow_reads_open_and_fails_strict() -> None:
@@ -109,7 +150,8 @@ def test_what_is_open_in_a_blow_reads_open_and_fails_strict() -> None:
 def test_tables_are_written_as_markdown() -> None:
     page = page_of(struck(blow()), labels(), OF)
     written = "\n".join(markdown(table) for table in page.instants(page.results))
-    assert "### IMPULSE at t = 0.5 s (blow)  JOINTS" in written
+    assert "### IMPULSE at t = 0.5 s (blow)\n" in written
+    assert "| **JOINTS  impulse" in written
 
 
 def test_of_many_blows_all_are_listed_and_the_largest_shown() -> None:
@@ -146,10 +188,12 @@ def test_the_heading_tells_of_contacts() -> None:
 def test_beyond_the_horizon_nothing_is_told_of_a_blow() -> None:
     accuracy = {**ACCURATE, "horizon": 0.7}
     results = struck(blow(0.5, 1.0, "early"), blow(1.5, 2.0, "late"), accuracy=accuracy)
-    late = of_blow(text(results)).partition("(late)  BODIES")[2]
-    numbers = [cell for line in late.splitlines() if line.startswith("upper") for cell in line.split()[1:]]
-    assert set(numbers) <= {"?", "0"}
-    assert "?" in numbers
+    late = of_blow(text(results)).partition("(late)\n")[2].partition("\nIMPULSE")[0]
+    told = lines_of(late)
+    assert told["BODIES upper Δv"] == ["m/s", "?", "0", "?", "?"]
+    assert told["JOINTS elbow drive"][:2] == ["N·m·s", "?"]
+    numbers = {cell for line in told.values() for cell in line[1:5] if re.fullmatch(r"[-\d.?]+", cell)}
+    assert numbers - {"0.2"} == {"?", "0"}  # the limit of the stop is none of them
     study = FakeStudy(T, {"impulses": results.impulses, "accuracy": accuracy})
     assert measure.write([measure.parse("impulses.0.energy_jump")], study, "table") == "0.25\n"
     assert measure.write([measure.parse("impulses.1.energy_jump")], study, "table") == "?\n"

@@ -278,10 +278,10 @@ def test_a_blow_has_tables_of_its_own_in_newton_seconds() -> None:
     }
     study = FakeStudy(T, {"impulses": [blow]})
     text = extremes_page(study)
-    assert "IMPULSE at t = 0.5 s (blow)  JOINTS" in text
-    part = text[text.index("IMPULSE at") :]
-    assert "[N·s]" in part
-    assert "[N]" not in part
+    part = text[text.index("IMPULSE at t = 0.5 s (blow)\n") :]
+    assert 'JOINTS  impulse that "from" exerts ON "to"' in part
+    assert {"N·s", "N·m·s"} <= set(part.split())
+    assert not {"N", "N·m"} & set(part.split())
 
 
 def test_the_heading_tells_what_was_solved_and_how_accurate_it_is() -> None:

@@ -29,7 +29,7 @@ from heuncli.report.page_width import fit
 from heuncli.report.table_units import Units
 from heuncli.report.text_table import WIDTH, TextTable, markdown, plain
 from heuncli.results import Results
-from heuncli.results_schema import BLOWS, REPORT_OF, REPORTS, SHARES, with_shared
+from heuncli.results_schema import BLOWS, REPORT_OF, REPORTS, SHARES, quantity, with_shared
 from heuncli.spec.load import load
 from heuncli.spec.models import Spec
 from heuncli.study.ask.study import Study
@@ -41,6 +41,8 @@ from heuncli.study.workflow import solve
 
 ENDINGS = {".json": "json", ".csv": "csv", ".md": "markdown", ".txt": "table", "": "table"}
 NOT_SEARCHED = "extremes among the samples only: too many quantities to search between them"
+AXIS: EntryKeys = ("foundation", "axis")
+AT_INSTANTS = "a line in space has no extremes: the central axis is shown at instants, by --at or --all"
 TABLES = ("table", "markdown")
 
 
@@ -76,7 +78,8 @@ def main(request: RunRequest) -> int:
         if asked:
             text = measure.write(asked, study, form)
         else:
-            text = _report(request, form, study, replace(labels_of(spec), units=shown), what.reports)
+            named = (request.only is not None or spec.report is not None) and "foundation" in what.reports
+            text = _report(request, form, study, replace(labels_of(spec), units=shown), what, details=named)
     emit(text, request.output)
     if request.units is not None and not request.quiet and (asked or form not in TABLES):
         say(f"heun: --units is of tables: {'--measure' if asked else form} stays in SI")
@@ -136,6 +139,8 @@ def _entry(path: str, spec: Spec) -> EntryKeys:
     message = f"--only {path}: not an entry of the results"
     if entry is not None:
         hint = f"say {'.'.join(entry)}; --measure prints single numbers"
+    elif quantity(words) is not None and REPORT_OF.get(words[0]):
+        hint = f"say {words[0]}; --measure prints single numbers"
     elif words[0] not in REPORT_OF:
         message = f"--only {path}: known: {', '.join((*REPORTS, SHARES))}, or entries of them, as joints.NAME"
         hint = _meant(path, known)
@@ -155,14 +160,15 @@ def _meant(path: str, known: Mapping[EntryKeys, Mapping[str, Any]]) -> str:
     return f"did you mean {near}?" if near else "such as --only foundation,joints.NAME"
 
 
-def _report(request: RunRequest, form: str, study: Study, labels: Labels, wanted: frozenset[str]) -> str:
+def _report(request: RunRequest, form: str, study: Study, labels: Labels, what: Selection, *, details: bool) -> str:
+    wanted = what.reports
     at = instants(request.at, study.results.time) if request.at is not None else None
     shown = study.results if at is None else study.resample(at)
     if form not in TABLES:
         from heuncli.report.export import to_csv, to_json  # tables do without
 
         return to_json(shown) if form == "json" else to_csv(shown, labels)
-    page = page_of(study.results, labels, study.magnitudes)
+    page = page_of(study.results, labels, study.magnitudes, details=details)
     if study.results.impulses:
         page = page._replace(struck=study.struck_along([load.name for load in LOADS]))
     one = len(study.results.time) == 1
@@ -178,11 +184,13 @@ def _report(request: RunRequest, form: str, study: Study, labels: Labels, wanted
         tables = page.extremes(extremes, shares)
         if not extremes.searched:
             tables.append(TextTable("", notes=(NOT_SEARCHED,)))
+        if AXIS in what.entries:
+            tables.append(TextTable("", notes=(AT_INSTANTS,)))
     if not tables:
         tables = [TextTable("", notes=(f"nothing to show of {', '.join(sorted(wanted))}: the scene has none",))]
     if form == "markdown":
-        return write_heading_markdown(study.results) + "\n".join(map(markdown, tables))
-    return write_heading(study.results) + "".join("\n" + text for text in _writer(request)(tables))
+        return write_heading_markdown(study.results, request.verbose) + "\n".join(map(markdown, tables))
+    return write_heading(study.results, request.verbose) + "".join("\n" + text for text in _writer(request)(tables))
 
 
 def _writer(request: RunRequest) -> Callable[[list[TextTable]], list[str]]:

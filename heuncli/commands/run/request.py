@@ -25,7 +25,7 @@ class RunRequest(NamedTuple):
         Option(
             ("--only",),
             "Only these: motion, points, foundation, joints, sections, forces, energy, impulses, events, shares; or "
-            "entries: joints.NAME, sections.NAME, ...",
+            "entries: joints.NAME, foundation.axis, ...",
             "REPORT,...",
         ),
     ] = None
@@ -63,4 +63,6 @@ class RunRequest(NamedTuple):
     strict: Annotated[bool, Option(("--strict",), "Leave with 1 if there are warnings or open reactions.")] = False
     time_limit: Annotated[float | None, TIME_LIMIT] = None
     quiet: Annotated[bool, QUIET] = False
-    verbose: Annotated[bool, Option(("--verbose", "-v"), "Tell on standard error where the time went.")] = False
+    verbose: Annotated[
+        bool, Option(("--verbose", "-v"), "Also what was made smaller; on standard error where the time went.")
+    ] = False

@@ -100,6 +100,8 @@ def roots(spec: Spec, asked: Selection) -> set[str] | None:
     known = entries_of(spec)
     items = [item for report in whole for block in OF_SOME[report] for item in known[block].values()]
     items += [known[entry[:-1]][entry[-1]] for entry in asked.entries]
+    if None in items:
+        return None
     watched = [c.value for c in spec.analysis.conditions if isinstance(c, Condition)]
     items += [spec.joints[joint] for value in watched for joint, _ in value.uses]
     return set().union(*(bodies_of(item, spec) for item in items))

@@ -15,6 +15,8 @@ from heuncli.results_schema import REPORT_OF, REPORTS, SHARES, leading_key, repo
 from heuncli.spec.models import ResultCondition, Spec, WatchedCondition
 
 EntryKeys = tuple[str, ...]
+WRENCH = ("about", "force", "moment")
+PARTS = ("axis", "mass_effect")  # of the foundation, that are asked for by name
 ALL_OF_IT = frozenset({"foundation", "sections"})  # of all bodies, of all sections
 
 
@@ -99,7 +101,7 @@ def entry_at(words: Sequence[str], known: Mapping[EntryKeys, Mapping[str, Any]])
 def entries_of(spec: Spec) -> dict[EntryKeys, dict[str, Any]]:
     """What can be asked for by its name, by the block in which it stands: of each name what it stands on in the spec.
 
-    That is a joint, a force, ..., or the name of a body.
+    That is a joint, a force, ..., or the name of a body; nothing where it stands on the scene as a whole.
     """
     bodies = {name: name for name in spec.bodies}
     points = {f"{name}.{point}": name for name, body in spec.bodies.items() for point in body.points}
@@ -107,6 +109,7 @@ def entries_of(spec: Spec) -> dict[EntryKeys, dict[str, Any]]:
     elements = {**spec.drives, **spec.forces, **spec.stops, **own}
     return {
         ("bodies",): bodies, ("points",): dict(points), ("coordinates",): dict(spec.joints),
+        ("foundation",): dict.fromkeys(PARTS),
         ("foundation", "supports"): dict(spec.joints), ("foundation", "elements"): elements,
         ("joints",): dict(spec.joints), ("stops",): dict(spec.stops), ("sections",): dict(spec.sections),
         ("forces",): dict(spec.forces), ("system_vector", "bodies"): bodies,
@@ -122,7 +125,8 @@ def chosen(shown: Mapping[str, Any], asked: Selection) -> dict[str, Any]:
         if REPORT_OF[block] not in asked.partial:
             found[block] = value
         elif own := picked(value, [entry[1:] for entry in asked.entries if entry[0] == block]):
-            found[block] = {"about": value["about"], **own} if "about" in value else own
+            beside = WRENCH if "axis" in own else WRENCH[:1]  # an axis is as well known as the wrench that it is of
+            found[block] = {key: value[key] for key in beside if key in value} | own if block == "foundation" else own
     return found
 
 
