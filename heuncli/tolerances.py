@@ -50,6 +50,10 @@ FLAT = 64.0 * EPS
 NEARLY_FLAT = 1e-3  # the same: a drawing off by less was meant to be flat, which is told
 
 # -- small oscillations
+# times what scenes and poses moved by START_ROUNDING differ by, in an entry of the stiffness or in a push: the entry
+# itself errs by roundings of its terms, which are some tenths of those, so what is left where terms cancel is a
+# stiffness from some 64 EPS of them on
+HELD = 8.0
 EIGENVALUE = 64.0 * EPS  # of the norm, times the number of motions: what some dozen roundings make of each entry
 FREELY_PUSHED = 1e-9  # of the loads along a motion that nothing holds: a sum of poses that are closed to OPEN_GAP
 OFF_BALANCE = 1e-9  # [rad] or of the size: so far a start may be from the pose that rests; frequencies keep nine digits
@@ -182,7 +186,6 @@ TURNS_ON = 63.0  # rad: ten turns have seen every pose of a turn, several times
 PUSHED_BY_ROUNDING = 50.0  # times what START_ROUNDING of a pose makes of its accelerations: some hundred steps' worth,
 # so that a scene drawn alike on both sides comes to rest so, stable or not
 STEADY = 1e-9  # of the terms of an acceleration, of the fastest drive: axes typed with ten digits turn on themselves
-GROWS = 1e-6  # of the fastest exponent: their squares are known to some dozen roundings of the largest
 INDIFFERENT = 1024.0 * EPS  # of the terms of an eigenvalue: exact slopes, of a pose known to its rounding
 NEARLY_DEFECTIVE = 1e-6  # of unit eigenvectors, across each other: apart by more they keep ten digits, as a block all
 NOT_HELD = 1e-6  # of the terms of an acceleration: a rest leaves rounding of them, loads that jump leave their part

@@ -8,6 +8,7 @@ from __future__ import annotations
 
 from array import array
 from collections.abc import Sequence
+from copy import copy
 from functools import cached_property
 
 from heuncli.errors import SourceLocation
@@ -152,6 +153,12 @@ class Pack:
     def held(self) -> int:
         """How many branches in coordinates there are."""
         return len(self.branches)
+
+    def with_constants(self, constants: array[float]) -> Pack:
+        """The same programs with other constants; nothing is to be added to them."""
+        other = copy(self)
+        other.constants, other._expressions = constants, None
+        return other
 
     def add(self, expression: Expression) -> tuple[int, int]:
         """Append a program; gives its first pair and its number of pairs."""

@@ -14,6 +14,7 @@ from typing import Literal
 import numpy as np
 
 from heuncli import tolerances
+from heuncli.linearisation.indifference import Loose
 from heuncli.linearisation.reduced_equations import ReducedEquations
 from heuncli.records import record
 from heuncli.results import Array
@@ -50,14 +51,14 @@ class Mode:
         return 0.0 - self.eigenvalue.real / abs(self.eigenvalue) if self.eigenvalue else 0.0
 
 
-def oscillations(system: ReducedEquations) -> list[Mode]:
+def oscillations(system: ReducedEquations, loose: Loose) -> list[Mode]:
     """All motions: what is free, what creeps or diverges, and oscillations by their frequency."""
     if system.count == 0:
         return []
     if not system.A11.any() and not system.A22.any():
-        found = without_rates(-system.A21, system.terms)
+        found = without_rates(system, loose)
     else:
-        found = with_rates(system)
+        found = with_rates(system, loose)
     modes = [mode_of(system, value, float(error), x, free) for value, error, x, free in found]
     return sorted(modes, key=lambda mode: (mode.kind != "free", mode.frequency, abs(mode.growth)))
 
@@ -83,22 +84,58 @@ def cancelled(M: Array, v: Array) -> float:
 Row = tuple[complex, float, Array, bool]
 
 
-def without_rates(K: Array, terms: float) -> list[Row]:
-    """x'' + K x = 0: l^2 = -k of the eigenvalues k of K; terms: of what size those are whose sum it is."""
-    rounding = tolerances.EIGENVALUE * len(K) * max(norm(K), terms)
-    free, rest = invariant(K, null_space(K, rounding)[0], rounding)
-    rows: list[Row] = [(0j, float(np.sqrt(rounding)), x, True) for x in free.T]
+def without_rates(system: ReducedEquations, loose: Loose) -> list[Row]:
+    """x'' + K x = 0: l^2 = -k of the eigenvalues k of K."""
+    K = -system.A21
+    rounding = tolerances.EIGENVALUE * len(K) * max(norm(K), system.terms)
+    rows: list[Row] = [(0j, float(np.sqrt(loose.unsure)), x, True) for x in loose.right.T]
+    taken, rest = completed(sooner_or_later(loose))
     if not rest.shape[1]:
         return rows
     B = rest.T @ K @ rest
     if np.abs(B - B.T).max() <= rounding:
-        values, vectors = np.linalg.eigh(0.5 * (B + B.T))
-        condition = np.ones(len(values))
+        values, vectors = symmetric(B, loose, rest)
+        errors = np.minimum(rounding, loose.hidden(rest @ vectors))
     else:
         values, vectors, condition = eigenvalues(B)
-    for k, c, v in zip(values, condition, whole(K, free, rest, values, vectors).T, strict=True):
-        rows += roots(complex(k), c * rounding, v)
+        errors = condition * rounding
+    for k, error, v in zip(values, errors, whole(K, taken, rest, values, vectors).T, strict=True):
+        rows += roots(complex(k), float(error), v)
     return rows
+
+
+def stiffnesses(system: ReducedEquations, loose: Loose) -> tuple[Array, Array]:
+    """The eigenvalues of K, per unit mass, of all that is held or pushed off, real parts (m,), and shapes x (f, m)."""
+    K = system.stiffness
+    _, rest = completed(sooner_or_later(loose))
+    if not rest.shape[1]:
+        return np.zeros(0), rest
+    B = rest.T @ K @ rest
+    rounding = tolerances.EIGENVALUE * len(K) * max(norm(K), system.terms)
+    values, vectors = symmetric(B, loose, rest) if np.abs(B - B.T).max() <= rounding else np.linalg.eig(B)
+    return values.real, rest @ vectors
+
+
+def symmetric(B: Array, loose: Loose, rest: Array) -> tuple[Array, Array]:
+    """Eigenvalues and vectors of a symmetric B = rest' K rest, small ones to their own digits beside large ones.
+
+    k = v' K v - sum (v' K w)^2 / (l - k)    over the other vectors w: what is left of their rounding, at second order
+    """
+    _, V = np.linalg.eigh(0.5 * (B + B.T))
+    own = loose.between(rest @ V)
+    values = np.diag(own).copy()
+    apart = values[None, :] - values[:, None]
+    coupled = 0.5 * (own + own.T) - np.diag(values)
+    far = np.abs(apart) > np.abs(coupled)
+    return values - np.where(far, coupled**2 / np.where(far, apart, 1.0), 0.0).sum(axis=1), V
+
+
+def sooner_or_later(loose: Loose) -> Array:
+    """What K takes to nothing, and what it takes to that, (f, m): the other halves of a double eigenvalue 0."""
+    found = [loose.right]
+    while (again := found[-1] @ null_space(loose.left.T @ found[-1], tolerances.NEARLY_DEFECTIVE)[0]).shape[1]:
+        found.append(unit(loose.held @ again))
+    return np.concatenate(found, axis=1)
 
 
 def roots(k: complex, error: float, x: Array) -> list[Row]:
@@ -116,16 +153,14 @@ def roots(k: complex, error: float, x: Array) -> list[Row]:
     return [(root, off, x, False), (-root.conjugate(), off, x.conj(), False)]
 
 
-def with_rates(system: ReducedEquations) -> list[Row]:
+def with_rates(system: ReducedEquations, loose: Loose) -> list[Row]:
     """(x, z)' = A (x, z), rates in units of the fastest of its motions, what is free taken out first."""
-    f = system.count
-    K = system.stiffness
+    f, K = system.count, system.stiffness
     scale = max(float(np.sqrt(max(norm(K), system.terms))), norm(system.A22), norm(system.A11))
     A = np.block([[system.A11, scale * np.eye(f)], [system.A21 / scale, system.A22]])
     rounding = tolerances.EIGENVALUE * len(A) * scale
-    free, _ = null_space(K, rounding * scale)
-    rows: list[Row] = [(0j, rounding, x, True) for x in free.T]
-    taken, rest = invariant(A, np.concatenate([free, -system.A11 @ free / scale]), rounding)
+    rows: list[Row] = [(0j, float(np.sqrt(loose.unsure)), x, True) for x in loose.right.T]
+    taken, rest = completed(left_alone(system, loose, scale))
     if not rest.shape[1]:
         return rows
     values, vectors, condition = eigenvalues(rest.T @ A @ rest)
@@ -139,18 +174,28 @@ def with_rates(system: ReducedEquations) -> list[Row]:
     return rows
 
 
-def invariant(A: Array, null: Array, rounding: float) -> tuple[Array, Array]:
-    """Orthonormal bases of all that A takes to nothing sooner or later, begun with its null space, and of the rest.
+def left_alone(system: ReducedEquations, loose: Loose, scale: float) -> Array:
+    """All (x, z / scale) that A takes to nothing sooner or later, (2 f, m): begun with what stays, x' = z' = 0.
 
-    What A takes to nothing only on the rest goes with it: the other half of a double eigenvalue 0.
+    A w_k = w_(k-1):   K x_k = A22 x_(k-1) - z_(k-1),  z_k = x_(k-1) - A11 x_k,  where the left null space of K lets it
     """
-    taken, rest = completed(null)
-    while rest.shape[1]:
-        again, _ = null_space(rest.T @ A @ rest, rounding)
-        if not again.shape[1]:
-            break
-        taken, rest = completed(np.concatenate([taken, rest @ again], axis=1))
-    return taken, rest
+    A11, A22 = system.A11, system.A22
+    X, Z = loose.right, -A11 @ loose.right
+    found = [np.concatenate([X, Z / scale])]
+    small = tolerances.EIGENVALUE * system.count * (norm(A11) + norm(A22))
+    while X.shape[1]:
+        asked = A22 @ X - Z
+        on = null_space(loose.left.T @ asked, small)[0]
+        new = loose.held @ asked @ on
+        X, Z = new, X @ on - A11 @ new
+        found.append(np.concatenate([X, Z / scale]))
+        small = tolerances.NEARLY_DEFECTIVE * norm(np.concatenate([X, Z, A22 @ X - Z]))
+    return unit(np.concatenate(found, axis=1))
+
+
+def unit(columns: Array) -> Array:
+    """Columns of length 1."""
+    return np.asarray(columns / np.sqrt(np.sum(columns**2, axis=0)))
 
 
 def completed(columns: Array) -> tuple[Array, Array]:

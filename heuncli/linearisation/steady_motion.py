@@ -14,8 +14,9 @@ from heuncli.errors import Problem, SolveError
 from heuncli.integration.evaluator import Evaluator, Recovered
 from heuncli.integration.run.runner import Runner
 from heuncli.linearisation.displacements import displaced
+from heuncli.linearisation.indifference import Loose, indifference, loose
 from heuncli.linearisation.linearise import Linearised, linearised
-from heuncli.linearisation.oscillations import norm, null_space
+from heuncli.linearisation.oscillations import completed, norm
 from heuncli.linearisation.reduced_equations import ReducedEquations, balls, on_basis, reduced
 from heuncli.records import record
 from heuncli.results import Array
@@ -37,6 +38,8 @@ class Looked:
     found: Linearised
     at: Recovered
     system: ReducedEquations
+    loose: Loose
+    reach: float  # how far rounding moves the pose that rests [rad, or of the size]
 
     @property
     def layout(self) -> Layout:
@@ -59,7 +62,9 @@ def look(scene: PreparedScene, runner: Runner, t: float, state: Array, holding: 
         raise SolveError(
             Problem("no-modes", f"{message}: oscillations about it are not linear, however small", hint=hint)
         )
-    return Looked(scene, runner, t, holding, found, at, reduced(scene, found, at))
+    system = reduced(scene, found, at)
+    what = indifference(scene, t, holding, found)
+    return Looked(scene, runner, t, holding, found, at, system, loose(system, what), what.reach)
 
 
 def equations(evaluator: Evaluator, t: float, state: Array, holding: Array) -> tuple[Linearised, Recovered]:
@@ -83,8 +88,7 @@ def off_balance(here: Looked) -> float:
     if not system.count:
         return 0.0
     K = system.stiffness
-    rounding = tolerances.EIGENVALUE * len(K) * max(norm(K), system.terms)
-    _, rest = null_space(K, rounding)
+    _, rest = completed(here.loose.right)
     x = rest @ np.linalg.lstsq(K @ rest, system.pushed, rcond=None)[0]
     if norm((system.pushed - K @ x)[:, None]) > tolerances.FREELY_PUSHED * system.loads:
         return np.inf

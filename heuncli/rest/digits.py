@@ -11,22 +11,22 @@ import numpy as np
 
 from heuncli import tolerances
 from heuncli.integration.evaluator import Evaluator
-from heuncli.linearisation.linearise import linearised
-from heuncli.records import replace
-from heuncli.rest.coordinates import Coordinates, resting, rounding_of
+from heuncli.integration.run.runner import Runner
+from heuncli.linearisation.indifference import SCENES, Indifference
+from heuncli.linearisation.rounded_scenes import rounded_scene
+from heuncli.rest.coordinates import resting, rounding_of
 from heuncli.rest.search import FoundPose
-from heuncli.rest.slopes import Slopes
 from heuncli.results import Array, Mask
 
-TWICE = 2.0  # the change of an eigenvalue between two poses that rounding does not tell apart
 BESIDE = 2  # poses moved by rounding
 REACHES = 10.0 ** np.arange(-8.0, -2.0)  # rad, or of the size: how far out directions without stiffness are tried
 THRICE = 3.0  # of Newton's steps: so far away is the rest of what is held by a cubic force alone
+LEVERS = 10.0  # how far a motion turns on a way, at most, of what the way is
 BACK = 6  # of Newton's steps by the slopes of the pose itself: beside it each errs by as much as that is away
 
 
-def beside(evaluator: Evaluator, found: FoundPose) -> tuple[list[Array], Mask]:
-    """States (n_state,) of such poses; which directions (f,) without stiffness are held, or pushed, by what bends."""
+def beside(evaluator: Evaluator, found: FoundPose, what: Indifference) -> tuple[list[Array], Mask]:
+    """States (n_state,) of such poses; which motions (g,) without stiffness are held, or pushed, by what bends."""
     at, own, coordinates = found.pose, found.slopes, found.coordinates
     by = np.array([rounding_of(coordinates, at.state, k) for k in range(BESIDE)])
     states = coordinates.displaced(np.repeat(at.state[None, :], BESIDE, axis=0), by)
@@ -34,7 +34,7 @@ def beside(evaluator: Evaluator, found: FoundPose) -> tuple[list[Array], Mask]:
     back = np.array([own.newton(a) for a in coordinates.accelerations(there)])
     again = resting(evaluator, at.t, coordinates.displaced(there.states, back), at.holding)
     sums = coordinates.displaced(at.state[None, :], rounding_of_sums(found)[None, :])
-    far, bends = bent(evaluator, found)
+    far, bends = bent(evaluator, found, what)
     return [*again.states, *resting(evaluator, at.t, sums, at.holding).states, *far], bends
 
 
@@ -47,38 +47,41 @@ def rounding_of_sums(found: FoundPose) -> Array:
     return way / max(1.0, found.coordinates.size(way))  # a radian, or the size: nothing is known beyond that
 
 
-def bent(evaluator: Evaluator, found: FoundPose) -> tuple[list[Array], Mask]:
-    """The farthest poses along directions without stiffness at which accelerations are rounding, but are none farther.
+def bent(evaluator: Evaluator, found: FoundPose, what: Indifference) -> tuple[list[Array], Mask]:
+    """The farthest poses along motions without stiffness at which nothing pushes, where it does farther out.
 
-    And which directions (f,) these are; none in which accelerations are rounding as far as one looks: indifferent ones.
+    And in which motions (g,) it does: by more than in scenes that rounding does not tell from this one.
     """
-    own, coordinates, states = found.slopes, found.coordinates, []
-    bends = np.zeros(len(own.known), dtype=bool)
-    for k in np.flatnonzero(~own.decided).tolist():
-        shape = own.T @ own.V[:, k].real
-        size = coordinates.size(shape)
+    states, shapes = [], what.free
+    bends = np.zeros(shapes.shape[1], dtype=bool)
+    others = [Runner(rounded_scene(evaluator.layout, number)) for number in range(SCENES)] if len(bends) else []
+    for k, shape in enumerate(shapes.T):
+        size = found.coordinates.size(shape)
         for sign in (1.0, -1.0) if size > 0.0 else ():
-            out, push = beyond(evaluator, found, sign * REACHES[:, None] * shape / size)
-            held = np.flatnonzero(np.abs(push[:, k]) > own.noise[k])
-            if len(held):
-                states.append(out[max(held[0] - 1, 0)])
+            out, a = beyond(evaluator, found, sign * REACHES[:, None] * shape / size)
+            pushes = [along(found, shapes, b) for b in (a, *(accelerations(other, found, out) for other in others))]
+            unsure = tolerances.HELD * np.abs(np.array(pushes[1:]) - pushes[0]).max(axis=0)
+            # a push along what is held shows in them by as much as the motion has turned there
+            turned = LEVERS * REACHES[:, None] * (np.abs(a) @ np.abs(found.slopes.law.mass) @ np.abs(shapes))
+            seen = np.flatnonzero((np.abs(pushes[0]) > unsure + turned).any(axis=1))
+            if len(seen):
+                states.append(out[max(seen[0] - 1, 0)])
                 bends[k] = True
     return states, bends
 
 
-def softened(found: FoundPose, states: list[Array]) -> Slopes:
-    """The slopes at a pose, with eigenvalues known no better than they stay as far off as rounding leaves the pose."""
-    at, own, coordinates = found.pose, found.slopes, found.coordinates
-    if not own.decided.any():
-        return own
-    farthest = max(states, key=lambda state: off(coordinates, at.state, state))
-    there = linearised(coordinates.layout, at.t, farthest, at.holding)
-    change = own.inverse @ (own.back @ there.by_place @ own.T - own.A) @ own.V
-    return replace(own, known=own.known + TWICE * np.abs(np.diag(change)))
+def along(found: FoundPose, shapes: Array, accelerations: Array) -> Array:
+    """What accelerations (k, n) push along motions (n, g), (k, g)."""
+    return np.asarray(accelerations @ found.slopes.law.mass @ shapes)
+
+
+def accelerations(evaluator: Evaluator, found: FoundPose, states: Array) -> Array:
+    """Those of states at rest, (k, n)."""
+    return found.coordinates.accelerations(resting(evaluator, found.pose.t, states, found.pose.holding))
 
 
 def beyond(evaluator: Evaluator, found: FoundPose, way: Array) -> tuple[Array, Array]:
-    """States displaced by ways (k, n) at which all directions but those without stiffness rest, and c there, (k, f)."""
+    """States displaced by ways (k, n) at which all that is held rests, and the accelerations there, (k, n)."""
     at, own, coordinates = found.pose, found.slopes, found.coordinates
     states = coordinates.displaced(np.repeat(at.state[None, :], len(way), axis=0), way)
     for _ in range(BACK):
@@ -87,12 +90,4 @@ def beyond(evaluator: Evaluator, found: FoundPose, way: Array) -> tuple[Array, A
             there.states, np.array([own.newton(a) for a in coordinates.accelerations(there)])
         )
     there = resting(evaluator, at.t, states, at.holding)
-    return there.states, np.array([own.along(a) for a in coordinates.accelerations(there)])
-
-
-def off(coordinates: Coordinates, state: Array, other: Array) -> float:
-    """How far a state is off another one: the largest of turns, and of shifts by the scene's size."""
-    change = np.abs(other - state)
-    balls = [change[a : a + 4].max() for a in coordinates.layout.bodies["attitude_at"][coordinates.balls].tolist()]
-    shifts = change[coordinates.layout.tables["freedoms"]["q_at"][coordinates.freedoms]]
-    return float(np.max([*balls, *(shifts * coordinates.weights[coordinates.numbers])], initial=0.0))
+    return there.states, coordinates.accelerations(there)

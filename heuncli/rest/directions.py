@@ -113,6 +113,28 @@ def directions(A: Array, mass: Array) -> Directions:
     return Directions(values, np.linalg.solve(L.T, X), back @ L.T, B, lost)
 
 
+def split(A: Array, mass: Array, right: Array, left: Array) -> Directions | None:
+    """Those of a matrix (f, f) of which A right = 0 = left' mass A is known, (f, g): the null space has 0 exactly.
+
+    Its directions come behind those that stand alone. None where the rest is not apart from it: A is defective there.
+    """
+    f, g = right.shape
+    if not g or g == f:
+        return directions(A if not g else np.zeros((f, f)), mass)
+    least = tolerances.NO_INERTIA * float(np.trace(mass))
+    across = (0.5 * (mass + mass.T) + (least if least > 0.0 else 1.0) * np.eye(f)) @ left
+    kept = np.linalg.svd(across / np.sqrt(np.sum(across**2, axis=0)), full_matrices=True)[0][:, g:]
+    free = right / np.sqrt(np.sum(right**2, axis=0))
+    if np.linalg.svd(np.hstack([kept, free]), compute_uv=False)[-1] <= tolerances.NEARLY_DEFECTIVE:
+        return None
+    rest = directions(np.linalg.lstsq(kept, A @ kept, rcond=None)[0], kept.T @ mass @ kept)
+    X = kept @ rest.X
+    alone = rest.alone
+    X = np.hstack([X[:, :alone], free, X[:, alone:]])
+    values = np.concatenate([rest.eigenvalues[:alone], np.zeros(g), rest.eigenvalues[alone:]])
+    return Directions(values, X, np.asarray(np.linalg.inv(X), dtype=X.dtype), rest.B, rest.lost)
+
+
 def apart(S: Array, eigenvalues: Array, shares: Array) -> tuple[Mask, Array]:
     """Which eigenvectors are apart from all others, and an orthonormal basis of what the others span with their like.
 

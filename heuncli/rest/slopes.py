@@ -14,11 +14,12 @@ from heuncli import tolerances
 from heuncli.errors import SolveError
 from heuncli.integration.evaluator import Evaluator
 from heuncli.kernel.choose import scene as kernel
+from heuncli.linearisation.indifference import Indifference
 from heuncli.linearisation.linearise import Linearised, linearised
-from heuncli.records import record
+from heuncli.records import record, replace
 from heuncli.response import columns
 from heuncli.rest.coordinates import Coordinates, resting, rounding_of
-from heuncli.rest.directions import Directions, directions
+from heuncli.rest.directions import Directions, directions, split
 from heuncli.rest.pose import Pose
 from heuncli.rest.reasons import no_value
 from heuncli.results import Array, Mask
@@ -115,6 +116,19 @@ def slopes(evaluator: Evaluator, coordinates: Coordinates, at: Pose) -> Slopes:
     rough = np.abs(inverse) @ (np.abs(back) @ (np.abs(law.by_place) @ np.abs(by).max(axis=0)))
     noise = tolerances.PUSHED_BY_ROUNDING * (noise + summed)
     return Slopes(law, T, back, A, own, c, noise, known, summed, bent, rough)
+
+
+def decided_by(own: Slopes, what: Indifference) -> Slopes:
+    """The same law by the directions that nothing holds, and those of all that is held: which these are is known."""
+    right, left = own.back @ what.free, own.back @ what.T @ what.found.left
+    own_directions = split(own.A, own.T.T @ own.law.mass @ own.T, right, left)
+    if own_directions is None:
+        return own
+    change = np.abs(own_directions.inverse @ own.V)
+    noise, summed, bent, rough = (change @ x for x in (own.noise, own.summed, own.bent, own.rough))
+    known = np.where(own_directions.eigenvalues == 0.0, 1.0, 0.0)
+    c = own_directions.inverse @ (own.V @ own.c)
+    return replace(own, directions=own_directions, c=c, noise=noise, known=known, summed=summed, bent=bent, rough=rough)
 
 
 def known_to(own: Directions, terms: Array, spin: float) -> Array:

@@ -184,12 +184,12 @@ def test_a_motion_is_looked_at_about_the_pose_that_rests() -> None:
     assert caught.value.problems[0].code == "not-at-rest" and "type: rest" in str(caught.value.problems[0].hint)
 
 
-@pytest.mark.parametrize(("stiffness", "shown"), [(1e9, " 0.47529 "), (1e13, " 0.5 "), (1e15, "too softly to tell")])
-def test_no_false_digits_beside_what_is_stiff(heun: Heun, folder: Path, stiffness: float, shown: str) -> None:
-    """A pendulum of 0.47529 Hz on a light carriage in an ever stiffer spring: fewer digits, then a bound."""
+@pytest.mark.parametrize("stiffness", [1e9, 1e13, 1e15])
+def test_no_false_digits_beside_what_is_stiff(heun: Heun, folder: Path, stiffness: float) -> None:
+    """A pendulum of 0.47529 Hz on a light carriage in an ever stiffer spring keeps its digits: K has them."""
     spring = f"{{type: spring, from: ground.W, to: cart.c, stiffness: {stiffness}, length: 1}}"
     (folder / "stiff.yaml").write_text(with_force(spring).replace("mass: 4", "mass: 0.1"))
-    assert shown in heun("modes", "stiff.yaml").stdout
+    assert " 0.47529" in heun("modes", "stiff.yaml").stdout
 
 
 @pytest.mark.heavy

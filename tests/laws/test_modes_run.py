@@ -64,7 +64,7 @@ def test_a_run_follows_its_modes(name: str) -> None:
         pytest.skip("neither at rest nor steady")
     if here.layout.driven or here.found.omega.any() or here.found.velocities.any():
         pytest.skip("is driven, or moves")
-    for mode in oscillations(here.system):
+    for mode in oscillations(here.system, here.loose):
         if mode.kind != "free":
             follow(here, mode)
 
@@ -117,7 +117,7 @@ def test_a_steady_run_follows_its_modes(name: str) -> None:
     """Beside a motion that goes on steadily another one, seen by what turns along: exp(l t), rates to fit."""
     here, _ = state_of(set_up(load("scene.yaml", to_yaml(STEADY[name])), reduce=False))
     system = here.system
-    for mode in oscillations(system):
+    for mode in oscillations(system, here.loose):
         if mode.kind == "free":
             continue
         value = mode.eigenvalue

@@ -46,7 +46,7 @@ def found_in(spec: Spec) -> SceneModes:
     require_no_time(setup)
     here, at = state_of(setup)
     require_slopes(here)
-    found = oscillations(here.system)
+    found = oscillations(here.system, here.loose)
     rows = coordinates(here.layout, here.found)
     shapes = [shape_of(mode.shape, rows) for mode in found]
     return SceneModes(
@@ -93,7 +93,7 @@ def state_of(setup: Setup) -> tuple[Looked, Literal["rest", "state"]]:
     """The scene in the state that it oscillates about."""
     kind = setup.spec.analysis.type
     here = looked_at(setup)
-    reason = restless(here)
+    reason = restless(here, kind == "rest")
     if reason is None:
         return here, "rest" if kind == "rest" else "state"
     if kind in ("state", "rest"):
@@ -146,12 +146,12 @@ def moves(here: Looked) -> bool:
     return fastest(here) > tolerances.AT_REST
 
 
-def restless(here: Looked) -> str | None:
-    """Why a state is no rest and no steady motion; None where it is one."""
+def restless(here: Looked, found: bool) -> str | None:
+    """Why a state is no rest and no steady motion; None where it is one. found: a pose known to its rounding."""
     if not here.system.count:
         return None
     off = off_balance(here)
-    if not off <= tolerances.OFF_BALANCE:
+    if not off <= max(tolerances.OFF_BALANCE, tolerances.HELD * here.reach if found else 0.0):
         return f"{pushed_most(here)} is pushed" + (f", some {off:.2g} from where it would rest" if off < 1.0 else "")
     if moves(here) and not goes_on_as_it_is(here):
         return "its motion is not steady: loads change as it goes on, also in the frame that turns along"

@@ -8,16 +8,18 @@ import numpy as np
 
 from heuncli.integration.diagnosis.solvability import Wording, require_solvable
 from heuncli.integration.run.runner import Runner
+from heuncli.linearisation.indifference import indifference
 from heuncli.mechanism.model import Mechanism
 from heuncli.records import record, replace
-from heuncli.rest.digits import beside, softened
+from heuncli.rest.digits import beside
 from heuncli.rest.pose import bearing
 from heuncli.rest.rest_check import require_still
 from heuncli.rest.search import RestSearch
-from heuncli.rest.stability import Stability, stability
+from heuncli.rest.slopes import decided_by
+from heuncli.rest.stability import Motion, Stability, stability
 from heuncli.rest.steady_states import going_on, require_constant, require_steady, require_together
 from heuncli.results import Array, Status
-from heuncli.study.model.counts_and_lists import count, some
+from heuncli.study.model.counts_and_lists import MOST_NAMES, count, some
 from heuncli.tree.prepare import PreparedScene
 
 
@@ -49,9 +51,11 @@ def at_rest(scene: PreparedScene, runner: Runner) -> tuple[PreparedScene, Runner
     require_together(runner, search.coordinates, search.begun())
     found = search.found()
     require_steady(runner, found.coordinates, found.pose, found.slopes)
-    states, bends = beside(runner, found)
-    firm = softened(found, states)
-    own = stability(replace(found, slopes=firm), bends | (found.slopes.decided & ~firm.decided))
+    law = found.slopes.law
+    what = indifference(scene, 0.0, found.pose.holding, law)
+    found = replace(found, slopes=decided_by(found.slopes, what))
+    states, bends = beside(runner, found, what)
+    own = stability(scene, found.coordinates, law, found.pose.recovered, what, bends)
     layout = replace(scene.layout, y0=found.pose.state)
     again = Runner(layout)
     require_still(again, found.coordinates, bearing(again, found.coordinates, 0.0, layout.y0))
@@ -68,19 +72,44 @@ def sentences(mechanism: Mechanism, own: Stability) -> list[str]:
     drives = some([f"drives.{name}" for name in going_on(mechanism)])
     told = [f"at rest in the frame that goes along with {drives}"] if drives else []
     least = f"the least eigenvalue of stiffness over inertia is {own.least:.4g} 1/s² ({own.slowest})"
+    loose = own.indifferent + own.flat
     if own.growth > 0.0:
         told.append(f"unstable: {own.grows} leaves it by exp({own.growth:.4g} t); {least}")
     elif own.slowest:
         swings = f", the slowest small oscillation has {own.frequency:.4g} Hz" if own.frequency else ""
-        told.append(f"stable: {least}{swings}")
-    elif not own.indifferent and not own.flat:
+        told.append(f"stable{' but for what is indifferent' if loose else ''}: {least}{swings}")
+    elif not loose:
         told.append("nothing is free to move")
     if own.indifferent:
-        elsewhere = f"{some(list(own.indifferent))} would stay elsewhere as well"
-        told.append(f"indifferent: {elsewhere}; where along it is by the way it came")
+        what = f"{listed(own.indifferent)}, which nothing holds or pushes{by_itself(own)}"
+        told.append(f"indifferent: {what}; where along it is by the way it came")
     if own.flat:
-        told.append(f"indifferent to first order: {some(list(own.flat))}, which what bends alone holds or pushes off")
+        told.append(f"indifferent to first order: {listed(own.flat)}, which what bends alone holds or pushes off")
     return told
+
+
+def listed(motions: tuple[Motion, ...]) -> str:
+    """Motions by what moves in them: one alone, or several in step."""
+    return some(list(dict.fromkeys(in_step(motion) for motion in motions)))
+
+
+def in_step(motion: Motion) -> str:
+    """A motion by what moves in it, and by how much against the first."""
+    if len(motion.names) == 1:
+        return motion.names[0]
+    units = motion.units if len(set(motion.units)) > 1 else ("",) * len(motion.units)
+    shares = [f"{share:.3g} {unit}".strip() for share, unit in zip(motion.shares, units, strict=True)]
+    more = len(motion.names) - MOST_NAMES
+    names = " and ".join(motion.names[:MOST_NAMES]) + (f" and {more} more" if more > 0 else "")
+    return f"{names} moved together as {' : '.join(shares[:MOST_NAMES])}"
+
+
+def by_itself(own: Stability) -> str:
+    """That what is held, or pushed off, moves in what nothing holds, too, but not by itself."""
+    together = {name for motion in own.indifferent if len(motion.names) > 1 for name in motion.names}
+    if own.slowest not in together:
+        return ""
+    return f" ({own.slowest} by itself is {'held' if own.least > 0.0 else 'pushed off'})"
 
 
 def unstable(own: Stability) -> tuple[str, ...]:

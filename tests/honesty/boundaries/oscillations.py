@@ -6,27 +6,70 @@ from types import SimpleNamespace
 
 import numpy as np
 
+from heuncli import tolerances
 from heuncli.commands.modes.study import modes
 from heuncli.errors import HeunError
-from heuncli.linearisation.oscillations import oscillations
+from heuncli.linearisation.indifference import Indifference, Loose, indifference
+from heuncli.linearisation.linearise import linearised
+from heuncli.linearisation.oscillations import Mode, oscillations
 from heuncli.linearisation.reduced_equations import ReducedEquations
 from heuncli.linearisation.steady_motion import off_balance
 from heuncli.spec.load import load
+from heuncli.study.model.setup import set_up
 from tests.honesty.boundaries.part import Part, Row
-from tests.shared.scenes import near
+from tests.shared.scenes import near, solved
 
 
-def soft_beside_stiff(x: float) -> str:
-    """Two motions, one of stiffness 1, the other of 2 x: the kind of the softer."""
-    f = np.zeros((2, 2))
-    system = ReducedEquations(np.eye(2), f, np.eye(2), f, -np.diag([2.0 * x, 1.0]), f, np.zeros(2), 0.0, 0.0)
-    return oscillations(system)[0].kind
+def turning_force(x: float) -> str:
+    """Two motions of stiffness 1, and a force 4 x across each displacement: whether they grow."""
+    K, f, none = np.array([[1.0, 4.0 * x], [-4.0 * x, 1.0]]), np.zeros((2, 2)), np.zeros((2, 0))
+    system = ReducedEquations(np.eye(2), f, np.eye(2), f, -K, f, np.zeros(2), 0.0, 0.0)
+    return max(oscillations(system, Loose(none, none, 0.0, np.linalg.inv(K), np.eye(2), K, f)), key=growth).kind
+
+
+def growth(mode: Mode) -> float:
+    return mode.growth
+
+
+def beside_its_rounding(x: float) -> str:
+    """Two carts on a spring, of which one is held by x times what rounding makes of that: as rest and modes tell it."""
+    found = indifference_of(carts(0.0)).found
+    unit = float(found.unsure.max() / found.K[0, 0]) * 3.0 / tolerances.HELD
+    text = carts(x * unit)
+    free = any(mode.kind == "free" for mode in modes(load("scene.yaml", text)).modes)
+    told = any("indifferent" in sentence for sentence in solved(text).model["rest"])
+    assert free == told
+    return "indifferent" if told else "held"
+
+
+def carts(k: float) -> str:
+    """Of 1 kg, in line, on a spring of 3 N/m between them; the first is held by k N/m, both are together."""
+    mass = "mass: 1, center: [0, 0, 0], inertia: [1, 1, 1], points: {c: [0, 0, 0]}"
+    slide = "type: slide, axis: [1, 0, 0]"
+    return f"""
+heun: 1
+ground: {{points: {{O: [0, 0, 0], A: [0.7, 0, 0]}}}}
+bodies: {{a: {{{mass}}}, b: {{{mass}, position: [0.7, 0, 0]}}}}
+joints: {{u: {{{slide}, from: ground.O, to: a.c}}, v: {{{slide}, from: ground.A, to: b.c}}}}
+forces:
+  s: {{type: spring, from: a.c, to: b.c, stiffness: 3, length: 0.7}}
+  h: {{type: torque, joint: u, value: "-{k!r}*u.travel"}}
+analysis: {{type: rest}}
+"""
+
+
+def indifference_of(text: str) -> Indifference:
+    """What of a scene at rest nothing holds."""
+    setup = set_up(load("scene.yaml", text), reduce=False)
+    layout = setup.scene.layout
+    return indifference(setup.scene, 0.0, np.zeros(0), linearised(layout, 0.0, layout.y0))
 
 
 def pushed_freely(x: float) -> str:
     """What nothing holds, pushed by x of the loads there."""
     f, one = np.zeros((1, 1)), np.eye(1)
-    here = SimpleNamespace(system=ReducedEquations(one, f, one, f, f, f, np.array([x]), 1.0, 0.0), weights=np.ones(1))
+    system = ReducedEquations(one, f, one, f, f, f, np.array([x]), 1.0, 0.0)
+    here = SimpleNamespace(system=system, weights=np.ones(1), loose=Loose(one, one, 0.0, f, one, f, f))
     return "falls" if np.isinf(off_balance(here)) else "rests"  # type: ignore[arg-type]
 
 
@@ -62,7 +105,8 @@ def beside_a_kink(x: float) -> str:
 PART = Part(
     ("small oscillations",),
     rows=(
-        Row("EIGENVALUE", soft_beside_stiff, "free", "oscillation"),
+        Row("HELD", beside_its_rounding, "indifferent", "held"),
+        Row("EIGENVALUE", turning_force, "oscillation", "flutter"),
         Row("FREELY_PUSHED", pushed_freely, "rests", "falls"),
         Row("OFF_BALANCE", hanging, "fine", "refused: not-at-rest"),
         Row("KINK", beside_a_kink, "refused: no-modes", "fine"),
