@@ -32,10 +32,15 @@ Workspace = workspace.Workspace
 
 
 def workspace_of(layout: Layout, holding: Array | None = None) -> workspace.Workspace:
-    """The kernel's copy of a scene, with its work arrays; holding (contacts,): which are closed, none if not given."""
+    """The kernel's copy of a scene, with its work arrays; holding (contacts,): which are closed, none if not given.
+
+    The rank of the closures is judged at the start, where contacts that close later stand open: without them.
+    """
     made = workspace.Workspace(layout.tables, layout.indices, layout.pack.expressions, numbers_of(layout))
-    made.hold([0.0] * len(layout.contacts) if holding is None else holding.tolist())
+    made.hold([0.0] * len(layout.contacts))
     made.start(0.0, layout.y0)
+    if holding is not None:
+        made.hold(holding.tolist())
     return made
 
 
