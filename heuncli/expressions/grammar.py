@@ -22,7 +22,7 @@ from heuncli.expressions.units import RATE, UNITS, Dimension, describe, in_si, p
 from heuncli.joint_kinds import RATES, TYPES
 from heuncli.nearest import did_you_mean, nearest
 from heuncli.records import record, replace
-from heuncli.results_schema import REPORT_OF
+from heuncli.results_schema import REPORT_OF, ROWS, SHARED
 
 LONGEST, DEEPEST = 2000, 48
 LARGEST_POWER = 64  # whole powers up to this one are multiplied out
@@ -67,6 +67,16 @@ OTHER_NAMES = {  # what people write who come from elsewhere
     "heaviside": "step", "time": "t", "PI": "pi", "Pi": "pi", "π": "pi", "degrees": "deg", "pow": "**", "sqr": "**2",
     "interp": "table(NAME, ...)", "lookup": "table(NAME, ...)", "spline": "table(NAME, ...)",
 }  # fmt: skip
+LOADS = SHARED | {"stops"}  # blocks of the results that are found from the motion
+REACTIONS = frozenset(
+    row.path.split(".")[2]
+    for row in ROWS
+    if row.path.startswith(("joints.JOINT.", "stops.STOP.")) and set(row.units) & {"N", "N·m"}
+) - {"shares"}
+LAWS = (
+    "a law takes t, parameters and coordinates, as shaft.angle, shaft.rate, guide.travel, guide.speed; "
+    "a condition takes {of: joints.NAME.force.z, below: 0}"
+)
 LIBRARIES = frozenset({"math", "np", "numpy", "sp", "Math"})  # whose functions are written with a dot elsewhere
 
 TOKEN = re.compile(
@@ -480,6 +490,11 @@ class _Parser:
             raise self.unexpected()
         self.at += 1
         joints = self.scope.joints
+        if quantity in REACTIONS or (joint in LOADS and joint not in joints):
+            message = (
+                f"'{joint}.{quantity}': reactions cannot enter laws or other expressions, they follow from the motion"
+            )
+            raise Finding("unknown-name", message, LAWS)
         if not self.scope.in_time:
             message = f"{joint}.{quantity} may stand only in a value in time (forces, drives)"
             raise Finding("not-in-time", message, FIXED)
