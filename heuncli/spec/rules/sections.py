@@ -10,6 +10,7 @@ from heuncli.spec.rules.registry import DraftDocument, Violation, rule
 from heuncli.spec.semantics import point_in
 from heuncli.spec.turns import cross, length, unit
 
+MOST_MEANT = 1e4  # MPa that a number may be meant in: some times what the hardest steel bears
 GENERAL = ("area", "I1", "I2", "J", "c1", "c2")
 REDUCED_TO = ("at", "centroid", "line")
 MOST_CUTS = 50_000  # of a run: no reader tells more apart, and validate cuts these in a second
@@ -102,6 +103,17 @@ def first_axis(draft: DraftDocument) -> Iterator[Violation]:
         if length(cross(unit(section.first_axis), unit(normal))) < tolerances.PARALLEL:
             hint = "it is made perpendicular to the normal, and must not vanish by that"
             yield Violation(("sections", name, "first_axis"), "first_axis points along the normal", hint)
+
+
+@rule("strength-small", is_warning=True)
+def strength_small(draft: DraftDocument) -> Iterator[Violation]:
+    """A plain number is in Pa: one of hundreds is meant in MPa."""
+    for name, section in draft.document.sections.items():
+        strength = section.strength
+        if strength is not None and 0.0 < strength < tolerances.LEAST_STRENGTH:
+            meant = f"{strength:g} MPa" if strength <= MOST_MEANT else "235 MPa"
+            message = f"a strength of {strength:g} Pa is less than any bar's: a plain number is in Pa"
+            yield Violation(("sections", name, "strength"), message, f"with its unit, as {meant}")
 
 
 @rule("properties-form")

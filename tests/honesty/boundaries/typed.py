@@ -51,6 +51,13 @@ def periodic(x: float) -> str:
     return read(bar(tail=f"tables: {{w: {{x: [0, 1, 2], y: [0, 1, 0], period: {2 * (1 + x)!r}}}}}"))
 
 
+def strength(x: float) -> str:
+    cut = (
+        "{body: bar, at: [0, 0, -0.4], normal: [0, 0, -1], piece: {mass: 0.6, center: [0, 0, -0.7], inertia: [1, 1, 1]}"
+    )
+    return read(bar(tail=f"sections: {{c: {cut}, properties: {{circle: {{radius: 0.01}}}}, strength: {x!r}}}}}"))
+
+
 def expectation(wanted: str) -> str:
     done = study(bar(tail=f"expect: [{wanted}]"))
     return "passed" if compare(done, done.spec.expect[0]).passed else "failed"
@@ -73,6 +80,7 @@ PART = Part(
         Row("INERTIA_TYPED", principal, "fine", "warned: inertia-rounded"),
         Row("INERTIA_TYPED", unsymmetric, "fine", "refused: inertia-form"),
         Row("TABLE_ENDS", periodic, "fine", "refused: table-period"),
+        Row("LEAST_STRENGTH", strength, "warned: strength-small", "fine"),
         Row("EXPECTED_RELATIVE", relatively_off, "passed", "failed"),
         Row("EXPECTED_ABSOLUTE", absolutely_off, "passed", "failed"),
         Row("AT_LIMIT", start_beyond, "fine", "refused: beyond-stop"),
