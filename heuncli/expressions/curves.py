@@ -21,6 +21,7 @@ def fit(
 ) -> TableFunction:
     """The table through points of ascending x; with a period the last point is the first one again.
 
+    interpolation: linear, or one of SLOPES.
     Slopes of points that lie too close together may come out infinite.
     """
     xs, ys = (column if isinstance(column, array) else array("d", column) for column in (x, y))
@@ -68,6 +69,16 @@ def spline(x: Array, h: Array, d: Array, periodic: bool) -> Array:
     span = x[-1] - x[-3]
     diagonal[-1], lower[-1] = h[-2], span
     right[-1] = (h[-1] ** 2 * d[-2] + (2.0 * span + h[-1]) * h[-2] * d[-1]) / span
+    return tridiagonal(lower, diagonal, upper, right)
+
+
+def natural_spline(x: Array, h: Array, d: Array, periodic: bool) -> Array:
+    """Slopes at the points of the cubic with continuous second derivative, which is 0 at the ends (natural)."""
+    lower, diagonal, upper, right = (np.zeros(len(x)) for _ in range(4))
+    lower[1:-1], diagonal[1:-1], upper[1:-1] = h[1:], 2.0 * (h[:-1] + h[1:]), h[:-1]
+    right[1:-1] = 3.0 * (h[1:] * d[:-1] + h[:-1] * d[1:])
+    diagonal[[0, -1]], upper[0], lower[-1] = 2.0, 1.0, 1.0  # of a piece 2 a + b = 3 d, where its bend begins with 0
+    right[0], right[-1] = 3.0 * d[0], 3.0 * d[-1]
     return tridiagonal(lower, diagonal, upper, right)
 
 
@@ -143,4 +154,6 @@ def outer(h0: float, h1: float, d0: float, d1: float) -> float:
     return 3.0 * d0 if d0 * d1 <= 0.0 and abs(slope) > 3.0 * abs(d0) else slope
 
 
-SLOPES: dict[str, Callable[[Array, Array, Array, bool], Array]] = {"cubic": spline, "pchip": monotone}
+SLOPES: dict[str, Callable[[Array, Array, Array, bool], Array]] = {
+    "cubic": spline, "natural": natural_spline, "pchip": monotone,
+}  # fmt: skip

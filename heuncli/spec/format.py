@@ -488,6 +488,7 @@ class TableEntry(Entry):
     y_unit: str | None = None
     period: Anything | None = None
     interpolation: Literal["linear", "cubic", "pchip"] = "linear"
+    ends: Literal["not-a-knot", "natural"] | None = None
     outside: Literal["hold"] | None = None
 
 

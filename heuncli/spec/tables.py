@@ -39,7 +39,7 @@ class Wrong:
 
 def build_table(name: str, entry: TableEntry, scope: Scope, folder: Path) -> tuple[TableFunction | None, list[Wrong]]:
     """The table of an entry, or what is wrong with it."""
-    wrong: list[Wrong] = []
+    wrong = [Wrong(("ends",), told) for told in ends_of(entry)]
     columns = in_si(entry, scope, folder, wrong)
     if columns is None or wrong:
         return None, wrong
@@ -50,13 +50,27 @@ def build_table(name: str, entry: TableEntry, scope: Scope, folder: Path) -> tup
         return None, wrong
     if entry.period is not None:
         x[-1], y[-1] = x[0] + entry.period, y[0]
-    table = fit(name, x, y, entry.interpolation, entry.outside, entry.period)
+    curve = entry.ends if entry.ends == "natural" else entry.interpolation
+    table = fit(name, x, y, curve, entry.outside, entry.period)
     table = replace(table, dimensions=(dimension_of(entry.x_unit), dimension_of(entry.y_unit)))
     if not np.isfinite(np.frombuffer(table.numbers)).all():
         return None, [
             Wrong((), Finding("table-shape", "its points lie too close together or too far apart for a slope", SLOPES))
         ]
     return table, []
+
+
+def ends_of(entry: TableEntry) -> Iterator[Finding]:
+    """What keeps a table from ending as it is asked to."""
+    if entry.ends is None:
+        return
+    if entry.interpolation != "cubic":
+        hint = "interpolation: cubic, or leave ends out"
+        yield Finding("table-form", f"a {entry.interpolation} table has no condition at its ends", hint)
+    elif entry.period is not None:
+        yield Finding(
+            "table-form", "a periodic table has no ends: it goes on smoothly there", "leave ends or period out"
+        )
 
 
 def in_si(entry: TableEntry, scope: Scope, folder: Path, wrong: list[Wrong]) -> Columns | None:

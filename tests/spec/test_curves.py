@@ -5,6 +5,7 @@ from __future__ import annotations
 import math
 import tracemalloc
 from pathlib import Path
+from typing import Any
 
 import numpy as np
 import pytest
@@ -44,6 +45,42 @@ def test_curves_are_scipys(n: int, kind: str) -> None:
             continue
         assert value == curve.value(t)
         assert [value, first, second] == pytest.approx([float(oracle(t, k)) for k in range(3)], rel=1e-9, abs=1e-9)
+
+
+@pytest.mark.parametrize("n", [2, 3, 4, 5, 17])
+def test_a_natural_spline_is_scipys(n: int) -> None:
+    x, y = points(n, seed=n)
+    curve, oracle = of(fit("f", x, y, "natural", "hold", None)), CubicSpline(x, y, bc_type="natural")
+    for t in np.linspace(x[0], x[-1], 101)[1:-1].tolist():
+        found, known = list(curve.derivatives(t)), [float(oracle(t, k)) for k in range(3)]
+        assert found == pytest.approx(known, rel=1e-9, abs=1e-9)
+    held = [curve.value(t) for t in (x[0] - 1.0, x[-1] + 1.0)]
+    assert held == pytest.approx([y[0], y[-1]], rel=1e-12, abs=1e-12)
+
+
+def test_ends_of_a_cubic_table() -> None:
+    """Natural ends bend nothing there; not-a-knot, in words or by default, goes on as one cubic."""
+    head = "interpolation: cubic, x: [0, 1, 3, 4, 6], y: [0, 2, 1, 3, 2]"
+    x, y = [0.0, 1.0, 3.0, 4.0, 6.0], [0.0, 2.0, 1.0, 3.0, 2.0]
+    for more, kind in ((", ends: natural", "natural"), (", ends: not-a-knot", "not-a-knot"), ("", "not-a-knot")):
+        tail = "forces: {p: {type: force, on: b.p, vector: ['table(f, t)', 0, 0]}}\nanalysis: {duration: 6}\n"
+        force: Any = load("x.yaml", f"{BODY}tables: {{f: {{{head}{more}}}}}\n{tail}").forces["p"]
+        curve = force.vector[0]
+        oracle = CubicSpline(x, y, bc_type=kind)
+        for t in (0.01, 0.7, 2.0, 3.5, 5.99):
+            known = [float(oracle(t, k)) for k in range(3)]
+            assert list(curve.derivatives(t)) == pytest.approx(known, rel=1e-9, abs=1e-9)
+
+
+@pytest.mark.parametrize(("more", "told"), [
+    ("", "a linear table has no condition at its ends"),
+    (", interpolation: pchip", "a pchip table has no condition at its ends"),
+    (", interpolation: cubic, period: 2", "a periodic table has no ends"),
+])  # fmt: skip
+def test_ends_are_of_cubic_tables_that_have_some(more: str, told: str) -> None:
+    with pytest.raises(SpecError, match=told) as caught:
+        load("x.yaml", f"{BODY}tables: {{f: {{x: [0, 1, 2], y: [0, 1, 0], ends: natural{more}}}}}\n")
+    assert [(p.code, p.location.path) for p in caught.value.problems if p.location] == [("table-form", "tables.f.ends")]
 
 
 @pytest.mark.parametrize("n", [3, 4, 5, 17])
