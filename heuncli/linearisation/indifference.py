@@ -96,8 +96,11 @@ class Loose:
         return np.asarray(np.sum(size * (self.known @ size), axis=0))
 
 
-def indifference(scene: PreparedScene, t: float, holding: Array, law: Linearised) -> Indifference:
-    """Of a scene about a state at which it rests; law: its linear equations there."""
+def indifference(
+    scene: PreparedScene, t: float, holding: Array, law: Linearised, *, rests: bool = True
+) -> Indifference:
+    """Of a scene about a state; law: its linear equations there. rests: the state is as good as rounding lets it be, so
+    that what is as soft as rounding moves the pose along it is not told from nothing."""
     layout = scene.layout
     weights = weights_of(layout)
     tangent, drift = with_inertia(scene, law)
@@ -109,7 +112,7 @@ def indifference(scene: PreparedScene, t: float, holding: Array, law: Linearised
     states = [rounded_state(layout, law.state, number) for number in range(SCENES)]
     beside, pushes = moved(scenes, t, states, holding, weights, pivots)
     first, reach = eliminated(K, beside - K), 0.0
-    if len(first.rows):
+    if rests and len(first.rows):
         ways = [T @ first.answer(push[:, None])[:, 0] for push in pushes]
         reach = max(float(np.abs(way * weights).max()) for way in ways)
         states = [displaced(layout, state, bounded(way, weights)) for state, way in zip(states, ways, strict=True)]

@@ -19,12 +19,14 @@ from heuncli.errors import Problem, SolveError
 from heuncli.integration.evaluator import Evaluator
 from heuncli.kinetostatics.bodies import body_states
 from heuncli.kinetostatics.coordinates import coordinates as joint_coordinates
+from heuncli.linearisation.indifference import indifference
 from heuncli.records import record, replace
 from heuncli.rest.coordinates import Coordinates, coordinates_of
 from heuncli.rest.pose import Pose, bearing, dependent, opening, pose_at
 from heuncli.rest.reasons import endless, jumps, run_away, singular
-from heuncli.rest.slopes import SAMPLES, Slopes, slopes
+from heuncli.rest.slopes import SAMPLES, Slopes, decided_by, slopes
 from heuncli.results import Array
+from heuncli.tree.prepare import PreparedScene
 
 MOST_STEPS = 2_000
 FASTER, SLOWER = 10.0, 0.2  # by how much s grows or shrinks from step to step at most
@@ -47,8 +49,8 @@ class FoundPose:
 class RestSearch:
     """A search under way. Changes with every step."""
 
-    def __init__(self, evaluator: Evaluator, t: float) -> None:
-        self.evaluator, self.t = evaluator, t
+    def __init__(self, scene: PreparedScene, evaluator: Evaluator, t: float) -> None:
+        self.scene, self.evaluator, self.t = scene, evaluator, t
         self.coordinates = coordinates_of(evaluator.layout)
         self.start = evaluator.layout.y0
         self.passed = np.zeros(self.coordinates.count)
@@ -193,17 +195,22 @@ class RestSearch:
 
     def polished(self, at: Pose, own: Slopes) -> tuple[Pose, Slopes]:
         """The pose behind Newton's steps along all directions that are not indifferent, as long as they better it."""
+        own = self.decided(at, own)
         while own.decided.any():
             by = own.newton(at.accelerations)
             new = self.moved(at, by)
             if new is None or self.push(new) >= 0.5 * self.push(at):
                 break
             at = self.counted(at, new)
-            own = slopes(self.evaluator, self.coordinates, at)
+            own = self.decided(at, slopes(self.evaluator, self.coordinates, at))
             self.evaluations += 3 + SAMPLES
             if self.coordinates.size(by) <= tolerances.PLACE_ROUNDING:
                 break  # a force that bends alone leads on through all the numbers below
         return at, own
+
+    def decided(self, at: Pose, own: Slopes) -> Slopes:
+        """The slopes at a pose, by what is held there by more than rounding."""
+        return decided_by(own, indifference(self.scene, self.t, at.holding, own.law, rests=False))
 
     def push(self, at: Pose) -> float:
         """The largest acceleration left [rad/s^2, or sizes a s^2]."""

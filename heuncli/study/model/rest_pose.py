@@ -47,7 +47,7 @@ def at_rest(scene: PreparedScene, runner: Runner) -> tuple[PreparedScene, Runner
     require_constant(scene.mechanism)
     first = runner.recovered(np.zeros(1), runner.layout.y0[None, :])
     require_solvable(scene, first, Wording("accelerations of the start"))
-    search = RestSearch(runner, 0.0)
+    search = RestSearch(scene, runner, 0.0)
     require_together(runner, search.coordinates, search.begun())
     found = search.found()
     require_steady(runner, found.coordinates, found.pose, found.slopes)

@@ -1,0 +1,96 @@
+"""What nothing holds is told so, and what something holds is not, however softly: by rest poses and modes alike.
+
+Scenes of parts whose motions are known (indifferent.py), as drawn, in other units, typed with three digits.
+"""
+
+from __future__ import annotations
+
+from typing import Any
+
+import numpy as np
+import pytest
+
+from heuncli.commands.modes.study import modes
+from heuncli.spec.load import load
+from tests.honesty.indifferent import PARTS, TYPED, Bench, law, spring_arm, turntable
+from tests.oracle.values import to_yaml
+from tests.shared.scenes import near, solved
+
+SCENES = 8  # of each way of writing: thousands by raising it
+WAYS: dict[str, dict[str, Any]] = {
+    "plane": {},
+    "space": {"space": True},
+    "mm and t": {"metre": 1e-3, "kilogram": 1e3},
+    "three digits": {"digits": 3},
+}
+
+
+def text_of(bench: Bench) -> str:
+    scene = bench.scene()
+    del scene["heun"]
+    return to_yaml(scene)
+
+
+def told(bench: Bench) -> tuple[bool, bool, int]:
+    """Whether a rest pose is told to be held in something, indifferent in something, and how many modes are free."""
+    text = text_of(bench)
+    sentences = solved(text).model["rest"]
+    assert not any("first order" in sentence for sentence in sentences), sentences
+    free = sum(mode.kind == "free" for mode in modes(load("scene.yaml", text)).modes)
+    begun = {sentence.split()[0].strip(":") for sentence in sentences}
+    return bool(begun & {"stable", "unstable"}), "indifferent" in begun, free
+
+
+@pytest.mark.heavy
+@pytest.mark.parametrize("seed", range(SCENES))
+@pytest.mark.parametrize("way", WAYS)
+def test_the_null_space_is_told(way: str, seed: int) -> None:
+    bench = Bench(seed, **WAYS[way])
+    pool = TYPED if way == "three digits" else PARTS
+    for k in range(int(bench.rng.integers(1, 4))):
+        part = pool[int(bench.rng.integers(len(pool)))]
+        part(bench, np.array([4.0 * k, bench.drawn(-1.0, 1.0), bench.drawn(-1.0, 1.0)]))
+    assert told(bench) == (bench.held > 0, bench.free > 0, bench.free)
+
+
+@pytest.mark.heavy
+@pytest.mark.parametrize("off", [1e-3, -1e-3, 1e-6, 1e-9, -1e-9, 1e-11])
+def test_what_nearly_cancels_is_told_by_its_own_eigenvalue(off: float) -> None:
+    """Beside what cancels, and what is 1e8 times as stiff: its rounding is that of its own terms."""
+    bench = Bench(3)
+    wanted = spring_arm(bench, np.zeros(3), off)
+    turntable(bench, np.array([4.0, 0.0, 0.0]))
+    body = bench.body(1.0, [0.0, 0.0, 0.0], np.array([8.0, 0.0, 0.0]))
+    joint = bench.joint("pin", bench.on_ground(np.array([8.0, 0.0, 0.0])), f"{body}.a")
+    bench.force(type="turn_spring", joint=joint, stiffness=1e8)
+    text = text_of(bench)
+    first, second = solved(text).model["rest"]
+    assert first.startswith("stable" if off > 0.0 else "unstable") and second.startswith("indifferent: joints.j1,")
+    values = [mode.eigenvalue for mode in modes(load("scene.yaml", text)).modes if mode.kind != "free"]
+    near((-(min(values, key=abs) ** 2)).real, wanted, abs(wanted), max(1e-13 / abs(off), 1e-9))
+
+
+@pytest.mark.heavy
+@pytest.mark.parametrize("seed", range(4))
+def test_what_nothing_pushes_stays_as_drawn(seed: int) -> None:
+    """Also where rounding leaves a stiffness: a step along it would lead anywhere."""
+    bench = Bench(seed, space=True)
+    spring_arm(bench, np.zeros(3))
+    law(bench, np.array([4.0, 0.0, 0.0]))
+    for of in solved(text_of(bench)).coordinates.values():
+        near(of["angle"], [0.0], 1.0, 1e-13)
+
+
+def test_a_joint_that_is_held_by_itself_and_free_in_step() -> None:
+    """Two pins in line and a spring on q + 2 r: one motion of the two is indifferent, told with its proportion."""
+    bench = Bench(0)
+    wheel = bench.body(1.0, [0.0, 0.0, 0.0], np.zeros(3))
+    other = bench.body(1.0, [0.0, 0.0, 0.0], np.zeros(3))
+    bench.joint("pin", bench.on_ground(np.zeros(3)), f"{wheel}.a")
+    bench.joint("pin", f"{wheel}.a", f"{other}.a")
+    for joint, k in (("j0", 3.0), ("j1", 6.0)):
+        bench.force(type="torque", joint=joint, value=f"-{k}*(j0.angle + 2*j1.angle)")
+    first, second = solved(text_of(bench)).model["rest"]
+    assert first.startswith("stable but for what is indifferent: the least eigenvalue") and " is 15 1/s²" in first
+    assert second.startswith("indifferent: joints.j0 and joints.j1 moved together as 1 : -0.5, which nothing holds")
+    assert "(joints.j1 by itself is held)" in second
