@@ -12,7 +12,7 @@ from typing import Any
 import numpy as np
 
 from heuncli import tolerances
-from heuncli.kernel.choose import workspace
+from heuncli.kernel.choose import expressions, workspace
 from heuncli.records import record
 from heuncli.results import Array, Indices, Mask
 from heuncli.tree.layout import Layout
@@ -42,6 +42,14 @@ def workspace_of(layout: Layout, holding: Array | None = None) -> workspace.Work
     if holding is not None:
         made.hold(holding.tolist())
     return made
+
+
+def variables_at(layout: Layout, t: float, state: Array) -> list[float]:
+    """What the variables of the expressions are at a state, asked of a kernel of their own."""
+    pack = layout.pack
+    own = expressions.Expressions(pack.code, pack.constants, len(pack.variables), pack.held, pack.starts, pack.tables)
+    made = workspace.Workspace(layout.tables, layout.indices, own, numbers_of(layout))
+    return list(made.variables(t, np.array(state, dtype=float)))
 
 
 def numbers_of(layout: Layout) -> dict[str, Any]:

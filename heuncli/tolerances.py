@@ -249,6 +249,8 @@ KERNEL: dict[str, float] = {
     "one_instant": 4.0 * EPS,  # what an event is off by adds up over many: no more than instants are rounded
     "finest": 1e-10,  # of a step: pulses a ten-thousandth of a millionth of it long are met, and its error not
     "window": 1e-4,  # interpolants err by 50 tolerances, 5e-8 of a step's way; a parabola about its end by a cube
+    # rad: between stages a third of it apart a circle leaves what they see by 1/70 of a radius, a quarter of it is 1/32
+    "seen_turn": 1.0,
     "near_kink": 1e-9,  # a load is then off by 1e-9 of what a step changes it, for 1e-9 of the step
     "no_jump": 1e-9,  # a kink's branches differ by its width in x, 1e-14, times any slope
     "leaving_first": 1e-13,  # of a step's way: some hundred roundings

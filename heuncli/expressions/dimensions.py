@@ -12,7 +12,7 @@ from collections.abc import Sequence
 from typing import Literal, NamedTuple
 
 from heuncli.errors import Finding
-from heuncli.expressions.units import NUMBER, RATE, TIME, Dimension, describe
+from heuncli.expressions.units import LENGTH, NUMBER, RATE, TIME, VELOCITY, Dimension, describe
 
 LARGEST_FACTOR = 9  # whole numbers up to it are plain factors; a 10 may well be the acceleration of gravity
 LARGEST_POWER = 64  # beyond it no dimension is told
@@ -34,7 +34,10 @@ class Measure(NamedTuple):
 FREE = Measure("free")
 FACTOR = Measure("factor")
 WHOLE = Measure("factor", literal=True)
-COORDINATES = {"angle": NUMBER, "rate": RATE, "travel": (0, 1, 0), "speed": (0, 1, -1)}
+COORDINATES = {  # of joints, and of points
+    "angle": NUMBER, "rate": RATE, "travel": LENGTH, "speed": VELOCITY,
+    **dict.fromkeys("xyz", LENGTH), **dict.fromkeys(("vx", "vy", "vz"), VELOCITY),
+}  # fmt: skip
 OF_TIME = Measure("loose", TIME, moving=True)
 OF_NUMBERS = frozenset({"sin", "cos", "tan", "asin", "acos", "atan", "sinh", "cosh", "tanh", "exp"})
 SUMS = {  # operations on what has one dimension, and what they do with it, in words

@@ -10,14 +10,15 @@ from __future__ import annotations
 
 import math
 import re
-from collections.abc import Mapping
+from collections.abc import Collection, Mapping
 from types import MappingProxyType
 from typing import Any, NamedTuple
 
 from heuncli.errors import Finding
 from heuncli.expressions.codegen import COMPARISONS, MOST_NODES, Codegen, Part
 from heuncli.expressions.dimensions import FACTOR, FREE, known, loose, of_literal, raised
-from heuncli.expressions.programs import Expression, TableFunction
+from heuncli.expressions.point_names import FORM, point_meant
+from heuncli.expressions.programs import POINTS, Expression, TableFunction
 from heuncli.expressions.units import RATE, UNITS, Dimension, describe, in_si, parse_unit, spelling_of
 from heuncli.joint_kinds import RATES, TYPES
 from heuncli.nearest import did_you_mean, nearest
@@ -91,7 +92,8 @@ NONE: Mapping[str, Any] = MappingProxyType({})
 class Scope:
     """The names an expression may use. A parameter or table of value None is known, but was itself in error.
 
-    joints gives the type of each; time and coordinates may be used only where in_time. given: the parameters that have
+    joints gives the type of each, points those of each body and of the ground; time, coordinates and points may be used
+    only where in_time. given: the parameters that have
     a dimension, as they are written. with_units: numbers may have units, and what is compared is of one dimension.
     """
 
@@ -100,6 +102,7 @@ class Scope:
     tables: Mapping[str, TableFunction | None] = NONE
     in_time: bool = False
     given: Mapping[str, GivenParameter] = NONE
+    points: Mapping[str, Collection[str]] = NONE
     with_units: bool = False
 
 
@@ -378,7 +381,7 @@ class _Parser:
             if self.take("("):
                 return self.call(token)
             if self.take("."):
-                return self.coordinate(token)
+                return self.point() if token == POINTS and self.is_point() else self.coordinate(token)
             return self.name(token)
         if self.take("("):
             part = self.expression()
@@ -500,6 +503,8 @@ class _Parser:
             raise Finding("not-in-time", message, FIXED)
         if joint not in joints:
             hint = f"write {quantity}" if joint in LIBRARIES else did_you_mean(joint, joints, "joints")
+            if joint in self.scope.points:
+                hint = f"a point is {POINTS}.{joint}.{quantity}.x" if quantity in self.scope.points[joint] else FORM
             if joint in REPORT_OF:
                 hint = "paths of results stand in {of: joints.NAME.force.z, below: 0}; in expressions NAME.angle"
             raise Finding("unknown-name", f"'{joint}.{quantity}': '{joint}' is not a joint", hint)
@@ -510,6 +515,24 @@ class _Parser:
             message = f"'{joint}.{quantity}': a joint of type {joints[joint]} {has}, not '{quantity}'"
             raise Finding("unknown-coordinate", message, f"coordinates of joints: {known}")
         return self.codegen.coordinate(joint, quantity)
+
+    def is_point(self) -> bool:
+        """Whether a point stands here, and not a coordinate of a joint that is called points."""
+        ahead = [token for _, token, _ in self.tokens[self.at + 1 : self.at + 2]]
+        return POINTS not in self.scope.joints or ahead == ["."]
+
+    def point(self) -> Part:
+        """points.BODY.POINT.quantity; points.POINT.quantity where one body alone has a point of that name."""
+        words = [self.token]
+        self.at += 1
+        while self.take("."):
+            words.append(self.token)
+            self.at += 1
+        written = ".".join((POINTS, *words))
+        if not self.scope.in_time:
+            raise Finding("not-in-time", f"{written} may stand only in a value in time (forces, conditions)", FIXED)
+        body, point, quantity = point_meant(written, words, self.scope.points)
+        return self.codegen.coordinate(f"{POINTS}.{body}.{point}", quantity)
 
     def name(self, name: str) -> Part:
         if name in self.scope.parameters:

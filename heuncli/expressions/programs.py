@@ -21,7 +21,13 @@ INTEGRAL = OPS["integral"]
 
 TIME = "t"
 Variable = str | tuple[str, str]  # the time, or (joint, quantity)
+POINTS = "points"  # begins the name of a point, as in points.drill.bit
 Code = tuple[int, ...]  # pairs (operation, argument), one after another
+
+
+def is_of_point(name: str) -> bool:
+    """Whether it is a point's name in `uses`, and not a joint's."""
+    return name.startswith(f"{POINTS}.")
 
 
 @record
@@ -65,7 +71,8 @@ class Expression:
     """A number that may depend on time and on coordinates of joints; SI.
 
     constant is its value when it depends on neither. uses lists the coordinates, as (joint, quantity) with quantity one
-    of angle, rate, travel, speed. code refers to constants, tables, and to variables: 0 is t, 1 + i is uses[i].
+    of angle, rate, travel, speed, or (points.BODY.POINT, quantity) with one of x, y, z, vx, vy, vz. code refers to
+    constants, tables, and to variables: 0 is t, 1 + i is uses[i].
     held says for each branch in coordinates, by the number of its HOLD instruction, what it is a branch of.
     """
 

@@ -15,73 +15,25 @@ except ImportError:
     from heuncli.kernel.shadow import cython
 
 if not cython.compiled:
+    from heuncli.kernel.bernstein import differentiate, of_rows, range_of
     from heuncli.kernel.dense import clipped
     from heuncli.kernel.enclosure import enclose
     from heuncli.kernel.intervals import anything
     from heuncli.kernel.jets import jet
+    from heuncli.kernel.points import lay_states, lay_states_about_end, range_points, stand_points
     from heuncli.kernel.programs import Bounds, Jet, Programs, Span
     from heuncli.kernel.scene import Freedom, Scene
     from heuncli.kernel.shadow import cython
     from heuncli.kernel.stepping import Course, Method, Run
 
 
-# Polynomials
-
-
-def raise_by_x(b: cython.p_double, n: cython.int) -> cython.void:
-    """x times the polynomial of degree n, of degree n + 1."""
-    k: cython.int
-    for k in range(n + 1, 0, -1):
-        b[k] = b[k - 1] * k / (n + 1)
-    b[0] = 0.0
-
-
-def raise_by_rest(b: cython.p_double, n: cython.int) -> cython.void:
-    """1 - x times the polynomial of degree n, of degree n + 1."""
-    k: cython.int
-    for k in range(n + 1):
-        b[k] = b[k] * (n + 1 - k) / (n + 1)
-    b[n + 1] = 0.0
-
-
-def differentiate(value: cython.p_double, rate: cython.p_double, n: cython.int, length: cython.double) -> cython.void:
-    """The rate of a polynomial of degree n over a stretch of time of some length."""
-    k: cython.int
-    for k in range(n):
-        rate[k] = n * (value[k + 1] - value[k]) / length
-
-
-def range_of(b: cython.p_double, n: cython.int, x0: cython.double, x1: cython.double, work: cython.p_double) -> Bounds:
-    """Bounds of a polynomial of degree n between x0 and x1: its coefficients over that part (de Casteljau)."""
-    i: cython.int
-    k: cython.int
-    x: cython.double
-    bounds: Bounds
-    for k in range(n + 1):
-        work[k] = b[k]
-    for i in range(1, n + 1):  # its right part, from x0
-        for k in range(n + 1 - i):
-            work[k] = work[k] + x0 * (work[k + 1] - work[k])
-    if x1 > x0:
-        x = (x1 - x0) / (1.0 - x0) if x0 < 1.0 else 0.0
-        for i in range(1, n + 1):  # of that the left part
-            for k in range(n, i - 1, -1):
-                work[k] = work[k - 1] + x * (work[k] - work[k - 1])
-    bounds = Bounds(work[0], work[0])
-    if x1 > x0:
-        for k in range(1, n + 1):
-            if work[k] < bounds.low:
-                bounds.low = work[k]
-            if work[k] > bounds.high:
-                bounds.high = work[k]
-    return bounds
-
-
 # Laying a course
 
 
 def component(scene: cython.pointer[Scene], i: cython.Py_ssize_t) -> cython.int:
-    """Where a variable stands in the state; -1 of a driven one."""
+    """Where a variable stands in the state; -1: it is driven; -2: it is of a point."""
+    if scene.variables[i].is_point:
+        return -2
     of: cython.pointer[Freedom] = cython.address(scene.freedoms[scene.variables[i].freedom])
     return of.u_at if scene.variables[i].is_rate else of.q_at
 
@@ -97,30 +49,14 @@ def lay_course(scene: cython.pointer[Scene], run: cython.pointer[Run], rows: cyt
     course.late = run.late
     course.finest = scene.limits.finest
     course.degree = rows
+    if scene.point_count:
+        lay_states(run, rows)
     for i in range(1, scene.variable_count):
         at = component(scene, i)
         if at >= 0:
-            lay_component(run, at, rows, course.value[i])
+            of_rows(run.y[at], run.dense, rows, at, course.value[i])
             differentiate(course.value[i], course.rate[i], rows, run.h)
             differentiate(course.rate[i], course.second[i], rows - 1, run.h)
-
-
-def lay_component(run: cython.pointer[Run], c: cython.int, rows: cython.int, b: cython.p_double) -> cython.void:
-    """One component of the state over the step: y + x (F0 + (1 - x) (F1 + x (F2 + ...)))."""
-    k: cython.int
-    i: cython.int
-    n: cython.int = 0
-    b[0] = 0.0
-    for k in range(rows - 1, -1, -1):
-        for i in range(n + 1):
-            b[i] = b[i] + run.dense[k][c]
-        if k % 2 == 0:
-            raise_by_x(b, n)
-        else:
-            raise_by_rest(b, n)
-        n += 1
-    for i in range(n + 1):
-        b[i] = run.y[c] + b[i]
 
 
 def lay_window(scene: cython.pointer[Scene], method: cython.pointer[Method], run: cython.pointer[Run]) -> cython.void:
@@ -138,6 +74,8 @@ def lay_window(scene: cython.pointer[Scene], method: cython.pointer[Method], run
     course.late = run.late
     course.finest = scene.limits.window * scene.limits.window * scene.limits.window  # of the step, a rounding
     course.degree = 2
+    if scene.point_count:
+        lay_states_about_end(scene, method, run, half)
     for i in range(1, scene.variable_count):
         at = component(scene, i)
         if at < 0:
@@ -179,10 +117,12 @@ def range_over(
     set_time(scene.programs, instant(course, x0), instant(course, x1))
     ranges[0] = scene.programs.ranges[0]
     for i in range(1, scene.variable_count):
-        if component(scene, i) < 0:
+        if component(scene, i) == -1:
             ranges[i] = driven_span(scene, i)
-        else:
+        elif component(scene, i) >= 0:
             ranges[i] = Span(range_of(course.value[i], course.degree, x0, x1, course.work), anything(), anything())
+    if scene.point_count:
+        range_points(scene, course, ranges, x0, x1, False)
 
 
 def driven_span(scene: cython.pointer[Scene], i: cython.Py_ssize_t) -> Span:
@@ -212,17 +152,21 @@ def derivatives_over(
                 range_of(course.rate[i], n - 1, x0, x1, course.work),
                 range_of(course.second[i], n - 2, x0, x1, course.work),
             )
+    if scene.point_count:
+        range_points(scene, course, ranges, x0, x1, True)
 
 
 def stand_at(scene: cython.pointer[Scene], course: cython.pointer[Course], x: cython.double) -> cython.void:
     """The variables at x of the stretch."""
     i: cython.Py_ssize_t
     at: cython.double = instant(course, x)
+    if scene.point_count:
+        stand_points(scene, course, at, x)
     scene.programs.variables[0] = at
     for i in range(1, scene.variable_count):
-        if component(scene, i) < 0:
+        if component(scene, i) == -1:
             of: cython.pointer[Freedom] = cython.address(scene.freedoms[scene.variables[i].freedom])
             given: Jet = jet(scene.programs, of.program, at)
             scene.programs.variables[i] = given.rate if scene.variables[i].is_rate else given.value + of.offset
-        else:
+        elif component(scene, i) >= 0:
             scene.programs.variables[i] = range_of(course.value[i], course.degree, x, x, course.work).low

@@ -23,6 +23,7 @@ if not cython.compiled:
     from heuncli.kernel.intervals import anything, magnitude
     from heuncli.kernel.jets import jet
     from heuncli.kernel.libm import INFINITY
+    from heuncli.kernel.points import turned_far
     from heuncli.kernel.programs import ATAN2, HELD, HOLD, TAKEN, Bounds, Program, Programs, Span
     from heuncli.kernel.scene import Scene, Watch
     from heuncli.kernel.shadow import cython
@@ -109,6 +110,8 @@ def quiet(scene: cython.pointer[Scene], begin: cython.double, end: cython.double
     i: cython.Py_ssize_t
     width: cython.double
     found: cython.int = CLEAR
+    if scene.point_count and turned_far(scene, end - begin):
+        return BRANCH_IN_DOUBT
     programs: cython.pointer[Programs] = scene.programs
     for i in range(scene.variable_count):
         width = 0.25 * (scene.most[i] - scene.least[i])

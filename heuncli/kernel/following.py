@@ -45,13 +45,14 @@ if not cython.compiled:
     from heuncli.kernel.landing import begin_to_see, see_stage
     from heuncli.kernel.libm import INFINITY
     from heuncli.kernel.loads import turned_by
+    from heuncli.kernel.points import look_at
     from heuncli.kernel.programs import Bounds, Jet, Program
     from heuncli.kernel.response import evaluate, respond, settle
     from heuncli.kernel.scene import SHIFT, SPRING, TURN_SPRING, Body, Counter, Freedom, Load, Scene
     from heuncli.kernel.selection import order_all
     from heuncli.kernel.shadow import cython
     from heuncli.kernel.stepping import Branch, Method, Run
-    from heuncli.kernel.tree import coordinates, direction_of, kinematics
+    from heuncli.kernel.tree import direction_of, kinematics
 
     LOOKED_AT = 2  # parts of a step at whose ends loads are seen
 
@@ -353,7 +354,7 @@ def see_between(scene: cython.pointer[Scene], method: cython.pointer[Method], ru
     for k in range(1, LOOKED_AT):
         part = k
         interpolate(scene, method, run, part / LOOKED_AT, run.stage)
-        coordinates(scene, clipped(run, run.t + part / LOOKED_AT * run.h), run.stage)
+        look_at(scene, clipped(run, run.t + part / LOOKED_AT * run.h), run.stage)
         see(scene)
 
 

@@ -22,7 +22,7 @@ if not cython.compiled:
     from heuncli.kernel.response import evaluate
     from heuncli.kernel.scene import SHIFT, Body, Freedom, Group, Scene
     from heuncli.kernel.shadow import cython
-    from heuncli.kernel.stepping import Branch, Collocation, Course, Method, Newton, Run
+    from heuncli.kernel.stepping import Branch, Collocation, Course, Method, Newton, Orbits, Run
     from heuncli.kernel.steps import run_steps, take_record
     from heuncli.kernel.workspace import Workspace
 
@@ -128,12 +128,36 @@ class Integration:
         course.rate = self.memory.matrix(scene.variable_count, rows)
         course.second = self.memory.matrix(scene.variable_count, rows)
         course.work = self.memory.zeros(rows)
+        self.make_orbits(rows if scene.point_count else 0)
         course.begins = self.memory.zeros(PARTS)
         course.ends = self.memory.zeros(PARTS)  # more than halvings
         course.promise = self.memory.zeros(PARTS)
         course.before = self.memory.zeros(scene.held_count)
         course.turned = self.memory.zeros(scene.held_count)
         course.resting = self.memory.zeros(scene.held_count)
+
+    def make_orbits(self, rows: cython.Py_ssize_t) -> None:
+        """Room for what points move on; rows: of a component of the state, 0 where no expression uses points."""
+        scene: cython.pointer[Scene] = cython.address(self.workspace.scene)
+        points: cython.pointer[Orbits] = cython.address(self.run.course.points)
+        variables: cython.Py_ssize_t = scene.variable_count if rows else 0
+        bodies: cython.Py_ssize_t = scene.body_count if rows else 0
+        points.n = self.run.n
+        points.chart = self.method.attitude
+        points.origin = self.run.y
+        points.states = self.memory.matrix(points.n if rows else 0, rows)
+        points.slopes = self.memory.zeros(rows)
+        points.at = self.memory.zeros(points.n)
+        points.kept = self.memory.zeros(variables)
+        points.first_place = self.memory.zeros(variables)
+        points.first_rate = self.memory.zeros(variables)
+        points.last_place = self.memory.zeros(variables)
+        points.last_rate = self.memory.zeros(variables)
+        points.spin = self.memory.zeros(bodies)
+        points.twist = self.memory.zeros(bodies)
+        points.pull = self.memory.zeros(bodies)
+        points.reach = self.memory.zeros(bodies)
+        points.speed = self.memory.zeros(bodies)
 
     def make_branch(self) -> None:
         """Room for what is known of a branch, with the drives of its loops and the length that shifts are measured by.

@@ -40,11 +40,11 @@ if not cython.compiled:
         see,
         take_branches,
     )
+    from heuncli.kernel.points import look_at
     from heuncli.kernel.response import evaluate
     from heuncli.kernel.scene import Scene
     from heuncli.kernel.shadow import cython
     from heuncli.kernel.stepping import Course, Method, Run
-    from heuncli.kernel.tree import coordinates
 
     FLURRY = 16  # events that gather at an instant
 
@@ -56,7 +56,7 @@ def begin_to_see(scene: cython.pointer[Scene], run: cython.pointer[Run]) -> cyth
     """The start of a step is the first that is seen of it."""
     if scene.watch_count:
         forget(scene)
-        coordinates(scene, clipped(run, run.t), run.y)
+        look_at(scene, clipped(run, run.t), run.y)
         see(scene)
     if run.watching:
         see_start(scene)

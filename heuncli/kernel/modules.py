@@ -27,6 +27,8 @@ MODULES = (
     "workspace",
     "attitudes",
     "dense",
+    "bernstein",
+    "points",
     "course",
     "events",
     "contacts",

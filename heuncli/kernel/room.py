@@ -54,6 +54,7 @@ def take_numbers(scene: cython.pointer[Scene], tables: dict[str, Any], numbers: 
     scene.closure_count = len(tables["closures"])
     scene.counter_count = len(tables["counters"])
     scene.variable_count = len(tables["variables"])
+    scene.point_count = tables["variables"]["is_point"].tolist().count(1)
     scene.lent_count = len(tables["lents"])
     scene.island_count = len(tables["islands"])
     scene.watch_count = len(tables["watches"])
@@ -80,7 +81,14 @@ def take_tables(scene: cython.pointer[Scene], memory: Memory, tables: dict[str, 
             cython.pointer[Limits], memory.rows(tables["limits"], cython.sizeof(Limits))
         )
         scene.limits = limits[0]
+        scene.bodies_beside, scene.freedoms_beside = scene.bodies, scene.freedoms
+        if scene.point_count:
+            scene.bodies_beside = cython.cast(cython.pointer[Body], memory.rows(tables["bodies"], cython.sizeof(Body)))
+            freedoms: cython.p_void = memory.rows(tables["freedoms"], cython.sizeof(Freedom))
+            scene.freedoms_beside = cython.cast(cython.pointer[Freedom], freedoms)
     else:
+        scene.bodies_beside = [Body(row) for row in tables["bodies"].tolist()]
+        scene.freedoms_beside = [Freedom(row) for row in tables["freedoms"].tolist()]
         scene.bodies = [Body(row) for row in tables["bodies"].tolist()]
         scene.freedoms = [Freedom(row) for row in tables["freedoms"].tolist()]
         scene.loads = [Load(row) for row in tables["loads"].tolist()]

@@ -210,10 +210,15 @@ class Counter(Record):
 
 
 class Variable(Record):
-    """A coordinate that expressions use: of which freedom, and its rate (1) or itself (0)."""
+    """What expressions use: a freedom's coordinate, or (is_point) a point's place along a direction; or its rate."""
 
     freedom: int
     is_rate: int
+    is_point: int
+    body: int  # of the point; -1: the ground
+    q: Vec3  # the point, from the body's joint point, its axes
+    direction: Vec3  # unit vector, world axes
+    offset: float  # of its place along the direction
 
 
 class Watch(Record):
@@ -293,6 +298,7 @@ class Limits(Record):
     one_instant: float  # of the time: rounding of an instant
     finest: float  # part of a step down to which events are told apart
     window: float  # of a step, on either side of its end: an event that the step before found lies there
+    seen_turn: float  # of a point's body in a step [rad]: with more the stages do not show where its places went
     near_kink: float  # of a step: so near to a kink a step may end, for branches go on smoothly beyond it
     no_jump: float  # of a load's scale: branches that agree so far meet in a kink
     leaving_first: float  # of a step: how far from its start rounding may tell a branch wrong, at least ...
@@ -429,6 +435,7 @@ class Scene(Struct):
     closure_count: int
     counter_count: int
     variable_count: int
+    point_count: int  # variables that are of points
     lent_count: int
     island_count: int
     watch_count: int
@@ -460,6 +467,8 @@ class Scene(Struct):
     closures: list[Closure]
     counters: list[Counter]
     variables: list[Variable]
+    bodies_beside: list[Body]  # others of the same kind, on which points are looked at without a trace
+    freedoms_beside: list[Freedom]
     lents: list[Lent]
     islands: list[Island]
     watches: list[Watch]

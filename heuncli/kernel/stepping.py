@@ -72,6 +72,31 @@ class Method(Struct):
     collocation: Collocation  # of an implicit one
 
 
+class Orbits(Struct):
+    """What points move on over a stretch of time: the state's components, and bounds of how bodies carry points.
+
+    The bounds are one a body, of magnitudes over the part that is looked at.
+    """
+
+    n: int  # length of the state
+    chart: int  # as Method.attitude: which numbers attitudes stand in over a step
+    charted: int  # the same over the stretch: 0 about the end of a step
+    origin: list[float]  # the state at which a chart begins
+    states: list[list[float]]  # of each component its coefficients in Bernstein's form over the stretch
+    slopes: list[float]  # those of a component's rate
+    at: list[float]  # a state of the stretch
+    kept: list[float]  # variables put aside
+    first_place: list[float]  # of each variable that is of a point: its place at the begin of a part, and its rate
+    first_rate: list[float]
+    last_place: list[float]  # at the end of it
+    last_rate: list[float]
+    spin: list[float]  # angular velocity
+    twist: list[float]  # angular acceleration
+    pull: list[float]  # acceleration of the joint point
+    reach: list[float]  # how far it is from the origin
+    speed: list[float]  # its velocity
+
+
 class Course(Struct):
     """The course of the coordinates over a stretch of time."""
 
@@ -90,6 +115,7 @@ class Course(Struct):
     rate: list[list[float]]  # and those of its rate, and of the rate of that
     second: list[list[float]]
     work: list[float]
+    points: Orbits  # of the points that expressions use
     begins: list[float]  # of the parts to be looked at
     ends: list[float]
     promise: list[float]  # and what they may hold

@@ -54,6 +54,7 @@ if not cython.compiled:
         norm_of,
     )
     from heuncli.kernel.landing import begin_to_see, in_flurry, meet, see_stage
+    from heuncli.kernel.points import look_at
     from heuncli.kernel.programs import HELD, TAKEN
     from heuncli.kernel.response import evaluate, evaluate_settled, must_choose_anew, settle, settle_evaluated
     from heuncli.kernel.scene import Body, Group, Scene
@@ -62,7 +63,6 @@ if not cython.compiled:
     from heuncli.kernel.stages import step_to, take_stages
     from heuncli.kernel.stepping import Method, Run
     from heuncli.kernel.stiffness import estimate_swiftness, is_held_short
-    from heuncli.kernel.tree import coordinates
 
 CODES = {
     "reached": REACHED,
@@ -442,7 +442,7 @@ def turn_branches(scene: cython.pointer[Scene], run: cython.pointer[Run]) -> cyt
     if run.landing.turns:
         take_branches(scene, run.course.turned)
     elif scene.angle_count:
-        coordinates(scene, clipped(run, run.t), run.y)
+        look_at(scene, clipped(run, run.t), run.y)
         follow_angles(scene, cython.address(run.course))
     return changed
 

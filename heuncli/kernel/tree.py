@@ -101,17 +101,38 @@ def coordinates(scene: cython.pointer[Scene], t: cython.double, y: cython.p_doub
     scene.programs.variables[0] = t
     for i in range(1, scene.variable_count):
         variable: cython.pointer[Variable] = cython.address(scene.variables[i])
-        of: cython.pointer[Freedom] = cython.address(scene.freedoms[variable.freedom])
-        scene.programs.variables[i] = of.u if variable.is_rate else of.q
+        if not variable.is_point:
+            of: cython.pointer[Freedom] = cython.address(scene.freedoms[variable.freedom])
+            scene.programs.variables[i] = of.u if variable.is_rate else of.q
 
 
 def kinematics(scene: cython.pointer[Scene], t: cython.double, y: cython.p_double) -> cython.void:
     """Attitudes, joint points, velocities (46) and velocity terms of all bodies at y; clears the applied loads."""
-    i: cython.Py_ssize_t
     coordinates(scene, t, y)
     if scene.flat:
         move_in_plane(scene)
-        return
+    else:
+        move_in_space(scene, y)
+    if scene.point_count:
+        put_points(scene)
+
+
+def put_points(scene: cython.pointer[Scene]) -> cython.void:
+    """The variables that are places and velocities of points, as the bodies stand."""
+    i: cython.Py_ssize_t
+    for i in range(1, scene.variable_count):
+        variable: cython.pointer[Variable] = cython.address(scene.variables[i])
+        if variable.is_point:
+            there: PointMotion = point_of(scene, variable.body, variable.q)
+            if variable.is_rate:
+                scene.programs.variables[i] = dot(variable.direction, there.v)
+            else:
+                scene.programs.variables[i] = dot(variable.direction, there.x) + variable.offset
+
+
+def move_in_space(scene: cython.pointer[Scene], y: cython.p_double) -> cython.void:
+    """Attitudes, joint points, velocities and velocity terms from the freedoms and the attitudes in y."""
+    i: cython.Py_ssize_t
     for i in range(scene.body_count):
         body: cython.pointer[Body] = cython.address(scene.bodies[i])
         hang(scene, body)

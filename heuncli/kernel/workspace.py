@@ -89,6 +89,13 @@ class Workspace:
 
     # What is asked of it
 
+    def variables(self, t: float, state: Any) -> list[float]:
+        """The variables of the expressions at a state, which is not changed."""
+        scene: cython.pointer[Scene] = cython.address(self.scene)
+        memory: Memory = Memory()
+        kinematics(scene, t, memory.doubles(state))
+        return [scene.programs.variables[i] for i in range(scene.variable_count)]
+
     def recover(self, arrays: dict[str, Any], afresh: cython.bint, causes: cython.bint) -> None:
         """Everything the sweep knows at given states: flat arrays `times`, `states`, which are settled in place, `out`.
 

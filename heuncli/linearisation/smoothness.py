@@ -17,6 +17,7 @@ from heuncli.kernel.choose import expressions as evaluator
 from heuncli.kernel.choose import jets
 from heuncli.linearisation.steady_motion import Looked
 from heuncli.mechanism.model import PairLoad
+from heuncli.response import variables_at
 from heuncli.results import Array
 
 
@@ -69,10 +70,8 @@ def expressions(here: Looked) -> Any:
 
 
 def values(here: Looked) -> Array:
-    """What the expressions' variables are: t, then coordinates and rates."""
-    freedoms = here.at.freedoms
-    table = here.layout.tables["variables"][1:]
-    return np.array([here.t, *(freedoms["u" if row["is_rate"] else "q"][0, row["freedom"]] for row in table)])
+    """What the expressions' variables are: t, then coordinates and rates, of joints and of points."""
+    return np.array(variables_at(here.layout, here.t, here.at.states[0]))
 
 
 def programs_of(here: Looked) -> list[tuple[str, int, int]]:

@@ -2,10 +2,12 @@
 
 from __future__ import annotations
 
+from collections.abc import Sequence
 from typing import TYPE_CHECKING
 
 import numpy as np
 
+from heuncli.expressions.programs import Expression, is_of_point
 from heuncli.joint_kinds import TYPES, Kind
 from heuncli.mechanism.model import (
     GROUND,
@@ -16,6 +18,7 @@ from heuncli.mechanism.model import (
     JointLoad,
     Load,
     Mechanism,
+    NamedPoint,
     PairLoad,
     PointLoad,
     Spread,
@@ -51,9 +54,12 @@ def build(spec: m.Spec, forms: dict[str, Form]) -> Mechanism:
     made = tuple(joint(j, index, drives.get(name), planar, last) for name, j in spec.joints.items())
     loads = tuple(part for name, f in spec.forces.items() for part in parts_of(name, f, index, joints))
     conditions = tuple(c for c in spec.analysis.conditions if isinstance(c, m.Condition))
+    values = [*(e for load in loads for e in load.values), *(c.value for c in conditions)]
+    points = points_used(spec, values, index)
     if planar:
-        told = {joints[stop.joint][0] for stop in spec.stops.values()} | coordinates_used(loads, joints)
-        told |= {joints[name][0] for condition in conditions for name, _ in condition.value.uses}
+        told = {joints[stop.joint][0] for stop in spec.stops.values()} | coordinates_used(loads, values, joints)
+        seen = {point.body for point in points.values()}
+        told |= {k for k, j in enumerate(made) if not seen.isdisjoint((j.a, j.b))}
         made = tuple(spun(j, bodies) if k not in told else j for k, j in enumerate(made))
     return Mechanism(
         title=spec.title,
@@ -67,6 +73,7 @@ def build(spec: m.Spec, forms: dict[str, Form]) -> Mechanism:
             Stop(s.name, joints[s.joint][0], s.quantity, s.low, s.high, s.restitution) for s in spec.stops.values()
         ),
         conditions=conditions,
+        points=points,
     )
 
 
@@ -126,10 +133,22 @@ def joint(j: m.Joint[str, m.Vec], index: dict[str, int], drive: m.Drive | None, 
     )  # fmt: skip
 
 
-def coordinates_used(loads: tuple[Load, ...], joints: dict[str, tuple[int, Kind]]) -> set[int]:
-    """The joints in which loads act, or whose coordinates they name."""
+def coordinates_used(
+    loads: tuple[Load, ...], values: Sequence[Expression], joints: dict[str, tuple[int, Kind]]
+) -> set[int]:
+    """The joints in which loads act, or whose coordinates values name."""
     acting = {load.joint for load in loads if isinstance(load, JointLoad)}
-    return acting | {joints[name][0] for load in loads for e in load.values for name, _ in e.uses}
+    return acting | {joints[name][0] for e in values for name, _ in e.uses if name in joints}
+
+
+def points_used(spec: m.Spec, values: Sequence[Expression], index: dict[str, int]) -> dict[str, NamedPoint]:
+    """The points that values name, by their names there."""
+    found = {}
+    for name in dict.fromkeys(name for e in values for name, _ in e.uses if is_of_point(name)):
+        _, body, point = name.split(".")
+        owner = spec.ground.points if body == "ground" else spec.bodies[body].points
+        found[name] = NamedPoint(index[body], np.array(owner[point]), np.eye(3), np.zeros(3))
+    return found
 
 
 def spun(joint: Joint, bodies: tuple[Body, ...]) -> Joint:

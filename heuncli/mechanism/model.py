@@ -7,7 +7,8 @@ have the classes of the spec (spec/models.py); its nine kinds of loads become th
 
 from __future__ import annotations
 
-from collections.abc import Iterator
+from collections.abc import Iterator, Mapping
+from types import MappingProxyType
 from typing import Literal
 
 import numpy as np
@@ -154,8 +155,25 @@ Load = PointLoad | PairLoad | JointLoad
 
 
 @record
+class NamedPoint:
+    """A point whose place and velocity expressions name; place: on the body, its axes [m].
+
+    axes (3, 3): the directions x, y, z along which it is told, as rows, in the axes of the mechanism; offset (3,): of
+    its place along them, where these are not the world's (reduction/plane).
+    """
+
+    body: int
+    place: Array
+    axes: Array
+    offset: Array
+
+
+@record
 class Mechanism:
-    """A scene, ready to be assembled; gravity (3,): acceleration, world axes [m/s^2]."""
+    """A scene, ready to be assembled; gravity (3,): acceleration, world axes [m/s^2].
+
+    points: those that expressions name, by their names there.
+    """
 
     title: str
     planar: bool
@@ -166,6 +184,7 @@ class Mechanism:
     blows: tuple[Blow, ...] = ()
     stops: tuple[Stop, ...] = ()
     conditions: tuple[Condition, ...] = ()
+    points: Mapping[str, NamedPoint] = MappingProxyType({})
 
     def load_rows(self) -> Iterator[tuple[Load, slice]]:
         """The loads, each with its rows in the kernel's table of loads: of a load in a joint one a motion."""

@@ -21,6 +21,7 @@ from heuncli.mechanism.model import (
     Joint,
     Load,
     Mechanism,
+    NamedPoint,
     PairLoad,
     PointLoad,
 )
@@ -85,6 +86,7 @@ def restated(scene: PreparedScene, parts: Parts, bodies: Sequence[Body]) -> Prep
         loads=tuple(load_of(load, parts, number, joint_number) for load in mechanism.loads),
         blows=tuple(blow_of(blow, parts, number) for blow in mechanism.blows),
         stops=tuple(replace(stop, joint=joint_number[stop.joint]) for stop in mechanism.stops),
+        points={name: point_of(point, parts, number) for name, point in mechanism.points.items()},
     )
     idle = tuple(replace(spin, body=number[spin.body]) for spin in scene.idle if spin.body in number)
     inertias = np.array([body.inertia for body in bodies]).reshape(-1, 3, 3)
@@ -168,6 +170,12 @@ def bound_to_axes(mechanism: Mechanism) -> set[int]:
         for load in mechanism.loads
         if isinstance(load, PointLoad) and load.in_body and any(value.constant is None for value in load.vector)
     }
+
+
+def point_of(point: NamedPoint, parts: Parts, number: dict[int, int]) -> NamedPoint:
+    """A point that expressions name on what its body is part of."""
+    part = parts.at(point.body)
+    return replace(point, body=number[part.body], place=part.point(point.place))
 
 
 def blow_of(blow: Blow, parts: Parts, number: dict[int, int]) -> Blow:

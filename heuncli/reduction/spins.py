@@ -196,6 +196,8 @@ def free_to_turn(mechanism: Mechanism) -> dict[int, list[Array]]:
         elif "turning" in JOINTS[mechanism.joints[load.joint].kind].motions:
             acts(mechanism.joints[load.joint].a, None)
             acts(mechanism.joints[load.joint].b, None)
+    for named in mechanism.points.values():
+        acts(named.body, named.place)
     for blow in mechanism.blows:
         acts(blow.body, blow.point if blow.kind == "impulse" else None)
     return points

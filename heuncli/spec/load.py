@@ -88,7 +88,7 @@ class Loading:
         names = Names.of(self.data)
         scope = Scope(parameters, given=given)
         tables = self.tables(scope)
-        in_time = Scope(parameters, names.joints, tables, in_time=True, given=given)
+        in_time = Scope(parameters, names.joints, tables, in_time=True, given=given, points=names.points)
         context = Context(scope, in_time, names.points)
         reader = Reader(self.data, context, self.report)
         draft = DraftDocument(reader.document(), names, frozenset(self.unread))

@@ -78,6 +78,9 @@ def attachments(mechanism: Mechanism) -> tuple[dict[int, list[Array]], dict[int,
         for end, point in load.points:
             if end >= 0:
                 points[end].append(point)
+    for named in mechanism.points.values():
+        if named.body >= 0:
+            points[named.body].append(named.place)
     return points, free
 
 

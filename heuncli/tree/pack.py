@@ -10,7 +10,17 @@ from heuncli import tolerances
 from heuncli.expressions.programs import Expression, Pack
 from heuncli.joint_kinds import JOINTS, Direction
 from heuncli.kernel.choose import scene as kernel
-from heuncli.mechanism.model import GROUND, Assembly, Joint, JointLoad, Mechanism, PairLoad, PointLoad, Stop
+from heuncli.mechanism.model import (
+    GROUND,
+    Assembly,
+    Joint,
+    JointLoad,
+    Mechanism,
+    NamedPoint,
+    PairLoad,
+    PointLoad,
+    Stop,
+)
 from heuncli.records import replace
 from heuncli.results import Array
 from heuncli.shapes.rotations import cross_rows, perpendicular, to_quaternion
@@ -63,7 +73,9 @@ def lay_out(
     pack = Pack()
     programs, uses = _programs(mechanism, pack)
     names = {j.name: k for k, j in enumerate(mechanism.joints)}
-    kept = {names[joint] for joint, _ in uses} | {s.joint for s in mechanism.stops if s.quantity != "length"}
+    kept = {names[joint] for joint, _ in uses if joint in names} | {
+        s.joint for s in mechanism.stops if s.quantity != "length"
+    }
     kept |= {k for k, j in enumerate(mechanism.joints) if j.drive is not None and j.drive.quantity != "length"}
     # of a universal that is cut nothing tells the angle
     kept |= {k for k in sprung(mechanism) if len(JOINTS[mechanism.joints[k].kind].turns) == 2}
@@ -496,6 +508,18 @@ class _Builder:
             for k, at in self.counters.items()
         ]
 
+    def _point_row(self, point: NamedPoint, quantity: str) -> VariableRow:
+        """The variable that is a point's place or velocity along one of its axes."""
+        axis = "xyz".index(quantity[-1])
+        return VariableRow(
+            is_rate=int(quantity.startswith("v")),
+            is_point=1,
+            body=self.in_tree(point.body),
+            q=self.relative(point.body, point.place),
+            direction=point.axes[axis],
+            offset=float(point.offset[axis]),
+        )
+
     def _watch_rows(self) -> list[WatchRow]:
         """The programs of loads and drives: what they do between the stages of a step must not be passed over.
 
@@ -515,8 +539,11 @@ class _Builder:
         """The first is the time, which is no coordinate."""
         joints = self.mechanism.joints
         by_name = {(joints[f.joint].name, f.quantity): i for i, f in enumerate(self.freedoms) if f.joint >= 0}
-        rows = [VariableRow(0, 0)]
+        rows = [VariableRow()]
         for name, quantity in (use for use in self.pack.variables if not isinstance(use, str)):
+            if name in self.mechanism.points:
+                rows.append(self._point_row(self.mechanism.points[name], quantity))
+                continue
             base = {"rate": "angle", "speed": "travel"}.get(quantity, quantity)
             rows.append(VariableRow(by_name[name, base], int(base != quantity)))
         return rows

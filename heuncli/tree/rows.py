@@ -137,10 +137,18 @@ class CounterRow:
 
 @record
 class VariableRow:
-    """A coordinate that expressions use; of the time, which is none, zero."""
+    """A coordinate that expressions use, or a point's place along a direction; of the time, which is neither, zero.
 
-    freedom: int
-    is_rate: int
+    q: the point from its body's joint point, its axes; direction: world axes.
+    """
+
+    freedom: int = 0
+    is_rate: int = 0
+    is_point: int = 0
+    body: int = 0
+    q: Vector = ZERO
+    direction: Vector = ZERO
+    offset: float = 0.0
 
 
 @record

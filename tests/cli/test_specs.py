@@ -49,7 +49,7 @@ def path_of(name: str) -> str:
 @cache
 def study_of(name: str) -> Study:
     spec = load(path_of(name))
-    return solve(spec, Options(wanted=EVERYTHING | ({"shares"} & set(spec.report or ()))))
+    return solve(spec, Options(wanted=EVERYTHING | ({"shares", "events"} & set(spec.report or ()))))
 
 
 @each

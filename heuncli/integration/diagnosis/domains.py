@@ -8,22 +8,24 @@ from collections.abc import Iterator, Mapping
 from heuncli import tolerances
 from heuncli.errors import Problem
 from heuncli.expressions.programs import KNOT, TABLE, Expression, TableFunction, outside
+from heuncli.integration.evaluator import Recovered
+from heuncli.integration.named_points import motion_of
 from heuncli.mechanism.model import Mechanism
 from heuncli.number_range import out_of_range
 from heuncli.records import replace
 from heuncli.tree.layout import Layout
-from heuncli.tree.tables import Table as Rows
 
 # An expression may lose its value only just after t: instants from 2**-52 to 2**-20 of the run's length later.
 NEAREST, FARTHEST = 52, 20
 HELD = 1  # a table's kind (expressions/programs.py)
 DERIVATIVES = ("value", "rate", "acceleration")
 
-Moving = Mapping[tuple[str, str], tuple[float, float]]  # a joint's coordinate and its rate of change
+Moving = Mapping[tuple[str, str], tuple[float, float]]  # a joint's coordinate or a point's, and its rate of change
 
 
-def joint_coordinates(layout: Layout, freedoms: Rows) -> Moving:
-    """The coordinates of the joints at one instant; freedoms (n_f,): evaluator.Recovered."""
+def coordinates_at(layout: Layout, recovered: Recovered, instant: int) -> Moving:
+    """The coordinates of the joints, and of the points that expressions name, at one of the instants."""
+    freedoms = recovered.freedoms[instant]
     coordinates: dict[tuple[str, str], tuple[float, float]] = {}
     joints = layout.mechanism.joints
     for freedom, (q, u, a, _) in zip(layout.freedoms, freedoms.tolist(), strict=True):
@@ -31,6 +33,9 @@ def joint_coordinates(layout: Layout, freedoms: Rows) -> Moving:
             name = joints[freedom.joint].name
             coordinates[name, freedom.quantity] = q, u
             coordinates[name, "rate" if freedom.quantity == "angle" else "speed"] = u, a if math.isfinite(a) else 0.0
+    for name, point in layout.mechanism.points.items():
+        jets = motion_of(layout, point, recovered.bodies[instant : instant + 1])[0]
+        coordinates |= {(name, quantity): (x, rate) for quantity, (x, rate, _) in jets.items()}
     return coordinates
 
 

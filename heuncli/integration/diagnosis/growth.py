@@ -9,7 +9,7 @@ import numpy as np
 
 from heuncli import tolerances
 from heuncli.errors import HeunError, LimitError, Problem, SolveError
-from heuncli.integration.diagnosis.domains import grown, joint_coordinates
+from heuncli.integration.diagnosis.domains import coordinates_at, grown
 from heuncli.integration.evaluator import Evaluator, Recovered
 from heuncli.mechanism.model import Mechanism
 from heuncli.results import Array
@@ -19,7 +19,7 @@ def growing(scene: Evaluator, t: float, state: Array, kept: Sequence[tuple[float
     """The expressions that have grown so since a quarter of the time; kept: instants and states passed, ascending."""
     earlier, then = next((k for k in reversed(kept) if k[0] <= 0.25 * t), kept[0])
     pair = scene.recovered(np.array([earlier, t]), np.array([then, state]))
-    coordinates = [joint_coordinates(scene.layout, row) for row in pair.freedoms]
+    coordinates = [coordinates_at(scene.layout, pair, k) for k in range(2)]
     return grown(scene.layout.mechanism, (t, coordinates[1]), (earlier, coordinates[0]))
 
 

@@ -80,10 +80,10 @@ def require_range(scene: PreparedScene, recovered: Recovered) -> None:
 
 def too_large(scene: PreparedScene, recovered: Recovered, instant: int) -> list[Problem]:
     """The problems of values in time that are too large there, else the one of the largest load, or of the motion."""
-    from heuncli.integration.diagnosis.domains import joint_coordinates, large_values  # only on the way to an error
+    from heuncli.integration.diagnosis.domains import coordinates_at, large_values  # only on the way to an error
 
     t, mechanism = float(recovered.times[instant]), scene.mechanism
-    problems = large_values(mechanism, t, joint_coordinates(scene.layout, recovered.freedoms[instant]))
+    problems = large_values(mechanism, t, coordinates_at(scene.layout, recovered, instant))
     if problems:
         return problems
     sizes = np.abs(recovered.loads[instant]["value"])
@@ -126,10 +126,10 @@ def unmet_rows(recovered: Recovered, instant: int, wording: Wording) -> Problem:
 
 def not_finite(scene: PreparedScene, recovered: Recovered, instant: int) -> list[Problem]:
     """Problems of the expressions without a value there, else one that says that no acceleration exists."""
-    from heuncli.integration.diagnosis.domains import joint_coordinates, without_value  # only on the way to an error
+    from heuncli.integration.diagnosis.domains import coordinates_at, without_value  # only on the way to an error
 
     t, length = float(recovered.times[instant]), float(recovered.times[-1])
-    problems = without_value(scene.mechanism, t, length, joint_coordinates(scene.layout, recovered.freedoms[instant]))
+    problems = without_value(scene.mechanism, t, length, coordinates_at(scene.layout, recovered, instant))
     message = f"at t = {t:.9g} s no finite acceleration exists"
     return problems or [Problem("not-a-number", message, hint="look at points that coincide, and at very large values")]
 

@@ -12,14 +12,15 @@ from collections.abc import Mapping, Sequence
 
 from heuncli.expressions.programs import Pack
 from heuncli.integration.evaluator import Evaluator
+from heuncli.integration.named_points import Jet, motion_of
 from heuncli.kernel.choose import expressions as kernel
+from heuncli.response import variables_at
 from heuncli.results import Array
 from heuncli.spec.models import Condition
 from heuncli.tree.layout import Layout
 
 HELD, FREE = kernel.HOLDING["held"], kernel.HOLDING["free"]
-Jet = tuple[float, float, float]  # value, rate, second derivative
-Coordinates = Mapping[tuple[str, str], Jet]  # of a joint and a quantity
+Coordinates = Mapping[tuple[str, str], Jet]  # of a joint or point, and a quantity
 
 
 class Conditions:
@@ -52,7 +53,8 @@ class Conditions:
 
 
 def coordinates_in(layout: Layout, t: float, state: Array) -> Coordinates:
-    """The coordinates of the joints at a state, by their places in it, without their second derivatives.
+    """The coordinates of the joints at a state, by their places in it, without their second derivatives; of points as
+    they stand there, without any.
 
     Nothing is asked of the kernel, which may be under way.
     """
@@ -67,6 +69,10 @@ def coordinates_in(layout: Layout, t: float, state: Array) -> Coordinates:
             assert joint.drive is not None
             q, u, _ = joint.drive.value.derivatives(t)
         put(found, joint.name, freedom.quantity, (q, u, 0.0))
+    if layout.mechanism.points:
+        for use, x in zip(layout.pack.variables, variables_at(layout, t, state), strict=True):
+            if not isinstance(use, str) and use[0] in layout.mechanism.points:
+                found[use] = x, 0.0, 0.0
     return found
 
 
@@ -81,13 +87,14 @@ def coordinates_at(scene: Evaluator, times: Array, states: Array) -> list[Coordi
     """The coordinates of the joints at states of a scene, as they go on from there."""
     if not any(condition.value.uses for condition in scene.layout.mechanism.conditions):
         return [{}] * len(times)
-    answers = scene.recovered(times, states)
+    layout, answers = scene.layout, scene.recovered(times, states)
+    points = {name: motion_of(layout, point, answers.bodies) for name, point in layout.mechanism.points.items()}
     found: list[Coordinates] = []
-    for row in answers.freedoms:
-        own: dict[tuple[str, str], Jet] = {}
-        for freedom, (q, u, a, _) in zip(scene.layout.freedoms, row.tolist(), strict=True):
+    for i, row in enumerate(answers.freedoms):
+        own = {(name, quantity): jet for name, jets in points.items() for quantity, jet in jets[i].items()}
+        for freedom, (q, u, a, _) in zip(layout.freedoms, row.tolist(), strict=True):
             if freedom.joint >= 0 and freedom.quantity in ("angle", "travel"):
-                name = scene.layout.mechanism.joints[freedom.joint].name
+                name = layout.mechanism.joints[freedom.joint].name
                 put(own, name, freedom.quantity, (q, u, a if math.isfinite(a) else 0.0))
         found.append(own)
     return found

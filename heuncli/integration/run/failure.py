@@ -6,7 +6,7 @@ import numpy as np
 
 from heuncli.errors import Problem, SolveError
 from heuncli.expressions.programs import Expression
-from heuncli.integration.diagnosis.domains import joint_coordinates, without_value
+from heuncli.integration.diagnosis.domains import coordinates_at, without_value
 from heuncli.integration.diagnosis.growth import growing, largest_load
 from heuncli.integration.run.errors import TROUBLE, ClosuresLost
 from heuncli.integration.run.kernel_loop import CHATTERING, HALF_TURN
@@ -34,7 +34,7 @@ def without_acceleration(progress: Progress, name: str, message: str, hint: str)
     """An expression without a value there, else one that grows without bound, else what the kernel's code means."""
     t, state, scene = progress.t, progress.state, progress.scene
     mechanism, recovered = scene.layout.mechanism, scene.recovered(np.array([t]), state[None, :])
-    problems = without_value(mechanism, t, progress.last, joint_coordinates(scene.layout, recovered.freedoms[0]))
+    problems = without_value(mechanism, t, progress.last, coordinates_at(scene.layout, recovered, 0))
     problems = problems or growing(scene, t, state, progress.passed)
     if problems:
         return SolveError(*problems)

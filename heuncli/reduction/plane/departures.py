@@ -173,6 +173,6 @@ def _still(seen: View) -> Iterator[Departure]:
             yield Departure(f"stops.{stop.name} limits a coordinate out of it", 1.0, True)
     base = {"rate": "angle", "speed": "travel"}
     for load in mechanism.loads:
-        for name, quantity in dict.fromkeys(use for e in load.values for use in e.uses):
+        for name, quantity in dict.fromkeys(use for e in load.values for use in e.uses if use[0] in numbers):
             if seen.still(numbers[name], base.get(quantity, quantity)):
                 yield Departure(f"forces.{load.name} names {name}.{quantity}, a coordinate out of it", 1.0, True)

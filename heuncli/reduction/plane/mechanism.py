@@ -24,6 +24,7 @@ from heuncli.mechanism.model import (
     JointLoad,
     Load,
     Mechanism,
+    NamedPoint,
     PairLoad,
     PointLoad,
 )
@@ -183,6 +184,13 @@ class Flat:
         vector = _in_plane(vector) if blow.kind == "impulse" else vector[2] * Z
         return replace(blow, vector=vector, point=None if blow.point is None else self.place(blow.body, blow.point))
 
+    def point(self, point: NamedPoint) -> NamedPoint:
+        """A point that expressions name: its height stays, and counts along what points out of the plane."""
+        axes, n = point.axes @ self.seen.E.T, self.seen.n
+        height = self.seen.height(point.body, point.place)
+        offset = point.offset + height * (point.axes @ n)
+        return NamedPoint(point.body, self.place(point.body, point.place), _in_plane(axes), offset)
+
     def idle(self) -> tuple[IdleSpin, ...]:
         """The inertia that is lent about the normal."""
         found = [(i, self.moment(i, lent)) for i, lent in self.lent.items()]
@@ -206,6 +214,7 @@ class Flat:
             joints=tuple(self.joint(k) for k in range(len(of.joints))),
             loads=tuple(self.load(load) for load in of.loads), blows=tuple(self.blow(blow) for blow in of.blows),
             stops=of.stops, conditions=of.conditions,
+            points={name: self.point(point) for name, point in of.points.items()},
         )  # fmt: skip
 
 

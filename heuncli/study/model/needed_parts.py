@@ -11,7 +11,7 @@ from __future__ import annotations
 from collections.abc import Collection, Iterator, Mapping
 from typing import Any
 
-from heuncli.expressions.programs import Expression
+from heuncli.expressions.programs import Expression, is_of_point
 from heuncli.records import fields
 from heuncli.results_schema import BLOWS, EVENTS, SHARES
 from heuncli.spec.models import Condition, End, Spec
@@ -56,9 +56,16 @@ def expressions_in(item: Any) -> Iterator[Expression]:
 
 
 def followed(item: Any, spec: Spec) -> set[str]:
-    """The bodies whose coordinates the values of a force or drive are given in."""
-    uses = {joint for expression in expressions_in(item) for joint, _ in expression.uses}
-    return set().union(*(bodies_of(spec.joints[joint], spec) for joint in uses))
+    """The bodies in whose coordinates and points the values of a force or drive are given."""
+    uses = {name for expression in expressions_in(item) for name, _ in expression.uses}
+    return set().union(*(read_at(name, spec) for name in uses))
+
+
+def read_at(name: str, spec: Spec) -> set[str]:
+    """The bodies of a joint or point that values name."""
+    if is_of_point(name):
+        return {name.split(".")[1]} & spec.bodies.keys()
+    return bodies_of(spec.joints[name], spec)
 
 
 def ends_of(spec: Spec) -> Ends:
@@ -103,8 +110,8 @@ def roots(spec: Spec, asked: Selection) -> set[str] | None:
     if None in items:
         return None
     watched = [c.value for c in spec.analysis.conditions if isinstance(c, Condition)]
-    items += [spec.joints[joint] for value in watched for joint, _ in value.uses]
-    return set().union(*(bodies_of(item, spec) for item in items))
+    read = {name for value in watched for name, _ in value.uses}
+    return set().union(*(bodies_of(item, spec) for item in items), *(read_at(name, spec) for name in read))
 
 
 def restricted(spec: Spec, asked: Selection, *, reduce: bool = True) -> Spec:

@@ -36,6 +36,7 @@ PART = Part(
     exempt={
         "KERNEL.one_instant": "to what an event is landed on, in roundings of its instant",
         "KERNEL.window": "where the end of a step is looked at for an event; else all of the step is",
+        "KERNEL.seen_turn": "which steps bounds look through, also where stages would do: no number depends on it",
         "KERNEL.near_kink": "how near to a kink a step ends: its error, to the square, is that of the step",
         "KERNEL.no_jump": "which events are landed on to the last digit, which to near_kink",
         "KERNEL.leaving_first": "how an event's own rounding is left behind",

@@ -1,0 +1,84 @@
+"""Polynomials in Bernstein's form on [0, 1]: sum_k b_k C(n, k) x^k (1 - x)^(n - k) lies between the least and most b_k.
+
+Farouki, Rajan, On the numerical condition of polynomials in Bernstein form (1987).
+"""
+
+from __future__ import annotations
+
+try:
+    import cython
+except ImportError:
+    from heuncli.kernel.shadow import cython
+
+if not cython.compiled:
+    from heuncli.kernel.programs import Bounds
+    from heuncli.kernel.shadow import cython
+
+
+def raise_by_x(b: cython.p_double, n: cython.int) -> cython.void:
+    """x times the polynomial of degree n, of degree n + 1."""
+    k: cython.int
+    for k in range(n + 1, 0, -1):
+        b[k] = b[k - 1] * k / (n + 1)
+    b[0] = 0.0
+
+
+def raise_by_rest(b: cython.p_double, n: cython.int) -> cython.void:
+    """1 - x times the polynomial of degree n, of degree n + 1."""
+    k: cython.int
+    for k in range(n + 1):
+        b[k] = b[k] * (n + 1 - k) / (n + 1)
+    b[n + 1] = 0.0
+
+
+def differentiate(value: cython.p_double, rate: cython.p_double, n: cython.int, length: cython.double) -> cython.void:
+    """The rate of a polynomial of degree n over a stretch of time of some length."""
+    k: cython.int
+    for k in range(n):
+        rate[k] = n * (value[k + 1] - value[k]) / length
+
+
+def range_of(b: cython.p_double, n: cython.int, x0: cython.double, x1: cython.double, work: cython.p_double) -> Bounds:
+    """Bounds of a polynomial of degree n between x0 and x1: its coefficients over that part (de Casteljau)."""
+    i: cython.int
+    k: cython.int
+    x: cython.double
+    bounds: Bounds
+    for k in range(n + 1):
+        work[k] = b[k]
+    for i in range(1, n + 1):  # its right part, from x0
+        for k in range(n + 1 - i):
+            work[k] = work[k] + x0 * (work[k + 1] - work[k])
+    if x1 > x0:
+        x = (x1 - x0) / (1.0 - x0) if x0 < 1.0 else 0.0
+        for i in range(1, n + 1):  # of that the left part
+            for k in range(n, i - 1, -1):
+                work[k] = work[k - 1] + x * (work[k] - work[k - 1])
+    bounds = Bounds(work[0], work[0])
+    if x1 > x0:
+        for k in range(1, n + 1):
+            if work[k] < bounds.low:
+                bounds.low = work[k]
+            if work[k] > bounds.high:
+                bounds.high = work[k]
+    return bounds
+
+
+def of_rows(
+    y: cython.double, dense: cython.pp_double, rows: cython.int, c: cython.Py_ssize_t, b: cython.p_double
+) -> cython.void:
+    """Column c of an interpolating polynomial's rows, in Bernstein's form: y + x (F0 + (1 - x) (F1 + x (F2 + ...)))."""
+    k: cython.int
+    i: cython.int
+    n: cython.int = 0
+    b[0] = 0.0
+    for k in range(rows - 1, -1, -1):
+        for i in range(n + 1):
+            b[i] = b[i] + dense[k][c]
+        if k % 2 == 0:
+            raise_by_x(b, n)
+        else:
+            raise_by_rest(b, n)
+        n += 1
+    for i in range(n + 1):
+        b[i] = y + b[i]
