@@ -83,7 +83,7 @@ def just_after(t: float) -> float:
 
 
 def discontinuities_of(mechanism: Mechanism, t0: float, t1: float) -> list[float]:
-    """Instants in (t0, t1) of given blows, or at which some load or drive, or a derivative of it, is discontinuous."""
+    """Instants in (t0, t1) of blows given a time, or where a load, a drive or a derivative of one is discontinuous."""
     expressions = set(mechanism.expressions())
-    blows = {blow.time for blow in mechanism.blows if t0 < blow.time < t1}
+    blows = {blow.time for blow in mechanism.blows if blow.when is None and t0 < blow.time < t1}
     return sorted({t for e in expressions if e.time_dependent for t in discontinuities(e, t0, t1)} | blows)

@@ -54,6 +54,7 @@ def build(spec: m.Spec, forms: dict[str, Form]) -> Mechanism:
     made = tuple(joint(j, index, drives.get(name), planar, last) for name, j in spec.joints.items())
     loads = tuple(part for name, f in spec.forces.items() for part in parts_of(name, f, index, joints))
     conditions = tuple(c for c in spec.analysis.conditions if isinstance(c, m.Condition))
+    conditions += tuple(b.when for b in spec.impulses.values() if b.when is not None)
     values = [*(e for load in loads for e in load.values), *(c.value for c in conditions)]
     points = points_used(spec, values, index)
     if planar:
@@ -204,4 +205,6 @@ def load(name: str, f: m.Force, index: dict[str, int], joints: dict[str, tuple[i
 
 def blow(b: m.Blow[str, m.Vec], index: dict[str, int]) -> Blow:
     """One impulse or impulsive couple."""
-    return Blow(b.name, index[b.body], optional(b.point), np.array(b.vector), b.in_body, b.time, b.kind)
+    return Blow(
+        b.name, index[b.body], optional(b.point), np.array(b.vector), b.in_body, b.time, b.kind, b.when, b.every
+    )  # fmt: skip

@@ -92,6 +92,16 @@ class Truth(ReadValue):
         return condition(value, info.context.time)
 
 
+class StrikingTruth(ReadValue):
+    """A condition in time and coordinates at which a blow strikes."""
+
+    def read(self, value: Any, info: Any) -> Expression:
+        if type(value) is dict:
+            message = "a blow strikes at a condition in time and coordinates, not at a number of the results"
+            raise Finding("condition", message, "such as guide.travel > 0.2, or shaft.rate < 0 and t > 1")
+        return condition(value, info.context.time)
+
+
 class OfEither(ReadValue):
     """A number whose dimension depends on another key: an expression that knows its dimension."""
 
@@ -175,6 +185,7 @@ ForceInTime = Annotated[Expression, InTime(u.FORCE)]
 LineForceInTime = Annotated[Expression, InTime(u.LINE_FORCE)]
 MomentInTime = Annotated[Expression, InTime(u.MOMENT)]
 TruthInTime = Annotated[Expression, Truth()]
+StrikeInTime = Annotated[Expression, StrikingTruth()]
 EitherInTime = Annotated[Expression, InTime()]
 FormatVersion = Annotated[int, Version()]
 Expected = Annotated[Any, NumbersOrOpen()]

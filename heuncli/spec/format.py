@@ -53,6 +53,7 @@ from heuncli.spec.fields import (
     Rate,
     RateInTime,
     Stiffness,
+    StrikeInTime,
     Tensor,
     Time,
     TruthInTime,
@@ -419,6 +420,8 @@ class ImpulseEntry(Entry):
     body: str | None = None
     couple: tuple[AngularImpulse, AngularImpulse, AngularImpulse] | None = None
     time: Time = 0.0
+    when: StrikeInTime | None = None
+    every: StrictBool = False
     frame: Frame = "world"
 
 

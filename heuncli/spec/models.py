@@ -259,6 +259,8 @@ Force = PointForce | Couple | Torque | Actuator | Spring | TurnSpring | Distribu
 class Blow(Generic[Ref, V]):
     """An impulse [N s] at a body's point at one instant [s], or an impulsive couple [N m s] on it.
 
+    when: the condition at which it strikes, in place of an instant: the first time that it becomes true, or every time.
+
     in_body: the vector is in the body's axes. Of a couple point is where it enters, which a cut asks for, or None.
     """
 
@@ -269,6 +271,8 @@ class Blow(Generic[Ref, V]):
     in_body: bool
     time: float
     kind: Literal["impulse", "couple"] = "impulse"
+    when: Condition | None = None
+    every: bool = False
 
 
 @record

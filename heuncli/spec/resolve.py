@@ -206,10 +206,14 @@ class Resolver:
             body, point = blow.on.body, self.end(blow.on).point if blow.on.at is not None else None
         assert body is not None
         in_body = blow.frame == "body"
-        if blow.vector is not None:
-            return m.Blow(name, body, point, blow.vector, in_body, blow.time)
-        assert blow.couple is not None
-        return m.Blow(name, body, point, blow.couple, in_body, blow.time, "couple")
+        kind: Literal["impulse", "couple"] = "impulse" if blow.vector is not None else "couple"
+        vector = blow.vector if blow.vector is not None else blow.couple
+        assert vector is not None
+        when = None
+        if blow.when is not None:
+            path = f"impulses.{name}"
+            when = m.Condition(path, blow.when.source.strip(), False, self.placed(blow.when, f"{path}.when"))
+        return m.Blow(name, body, point, vector, in_body, blow.time, kind, when, blow.every)
 
     def section(self, section: f.SectionEntry) -> m.Section:
         body = self.document.bodies[section.body]

@@ -121,8 +121,12 @@ def names_of(setup: Setup) -> Block:
 
 
 def watched(spec: Spec) -> list[str]:
-    """What ends a run, and what is watched, in sentences."""
-    return [f"ends: until {c.text}" if c.ends else f"watched: {c.name} ({c.text})" for c in spec.analysis.conditions]
+    """What ends a run, what is watched, and what strikes when, in sentences."""
+    times = {True: "every time", False: "the first time"}
+    blows = [f"strikes: {b.name}, {times[b.every]} that {b.when.text}" for b in spec.impulses.values() if b.when]
+    return blows + [
+        f"ends: until {c.text}" if c.ends else f"watched: {c.name} ({c.text})" for c in spec.analysis.conditions
+    ]
 
 
 def by_another_method(setup: Setup, method: Method, why: str) -> Setup:

@@ -20,6 +20,7 @@ from heuncli.results import Array
 
 EVENLY = 200  # instants at which its slope is taken
 CONTACTS = "stops or ropes open and close, and each run meets them at instants of its own: the run's own horizon counts"
+TRIGGERS = "blows strike at a condition, and each run meets it at instants of its own: the run's own horizon counts"
 ONE_INSTANT = "one instant: nothing goes on; heun modes tells what grows about a pose that rests"
 FOLLOWED = "nothing is integrated: drives and joints leave no freedom"
 
@@ -33,6 +34,8 @@ def growing(along: SearchedMotion) -> tuple[GrowthResults | None, str]:
         return None, FOLLOWED
     if runner.moving.layout.contacts:
         return None, CONTACTS
+    if any(blow.when is not None for blow in runner.moving.layout.mechanism.blows):
+        return None, TRIGGERS
     shadows = Shadows(runner, checked.run, method_beside(checked.run))
     Q = shadows.directions()
     if not Q.shape[1]:
@@ -63,6 +66,8 @@ def across_plane(along: SearchedMotion) -> tuple[GrowthResults | None, str]:
         return None, FOLLOWED
     if layout.contacts:
         return None, CONTACTS
+    if any(blow.when is not None for blow in layout.mechanism.blows):
+        return None, TRIGGERS
     shadows = Shadows(study.setup.runner, checked.run, method_beside(checked.run), whole=True)
     Q = across(shadows)
     if Q is None or not Q.shape[1]:

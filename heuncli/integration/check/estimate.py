@@ -187,8 +187,9 @@ def compared(runs: Runs, a: Trajectory) -> Compared:
     """A with its check run, and the run beside it."""
     begun = time.perf_counter()
     at = instants_of(runs.runner, a)
-    m = runs.from_moved_start(a, at.times)
-    others = [*runs.check(a, at.times), *([] if m is None else [m])]
+    to = with_last_blow(runs, a, at.times)
+    m = runs.from_moved_start(a, to)
+    others = [*runs.check(a, to), *([] if m is None else [m])]
     n = len(at.times)
     if any(run.stopped for run in (a, *others)):
         # the runs end at instants of their own; the last of A is judged by the one before it
@@ -204,6 +205,13 @@ def compared(runs: Runs, a: Trajectory) -> Compared:
         horizon = float(sooner[0]) if len(sooner) else horizon
     seconds = time.perf_counter() - begun
     return Compared((a, *others), times, states, at.asked[:n], error, horizon, seconds, several)
+
+
+def with_last_blow(runs: Runs, a: Trajectory, times: Array) -> Array:
+    """The instants for the runs beside A: a moment more where a blow ends A, which others meet sooner or later."""
+    if not (a.ended and a.blows and a.blows[-1].time >= a.times[-1]):
+        return times
+    return np.append(times, a.reached + tolerances.CLAIMED * (float(runs.times[-1]) - a.reached))
 
 
 def errors(runs: Runs, a: Trajectory, times: Array, states: Sequence[Array]) -> tuple[Array, Recovered | None]:

@@ -82,7 +82,7 @@ def rate_jumps(value: Expression, last: float) -> list[tuple[float, float, float
 
 
 def schedule(mechanism: Mechanism, last: float) -> list[GivenBlow]:
-    """The blows that are given within [0, last], ascending; those of one instant together."""
+    """The blows that are given at instants within [0, last], ascending; those of one instant together."""
     at: dict[float, tuple[list[int], dict[int, tuple[float, float]]]] = {}
     befores: dict[float, float] = {}
     for k, joint in enumerate(mechanism.joints):
@@ -90,6 +90,8 @@ def schedule(mechanism: Mechanism, last: float) -> list[GivenBlow]:
             befores[after] = before
             at.setdefault(after, ([], {}))[1][k] = (first, then)
     for i, blow in enumerate(mechanism.blows):
+        if blow.when is not None:
+            continue  # struck where that becomes true (run/triggers.py)
         with_drive = next((t for t, before in befores.items() if before < blow.time <= t), blow.time)
         at.setdefault(with_drive, ([], {}))[0].append(i)
     return [

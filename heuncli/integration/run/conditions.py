@@ -19,7 +19,7 @@ from heuncli.results import Array
 from heuncli.spec.models import Condition
 from heuncli.tree.layout import Layout
 
-HELD, FREE = kernel.HOLDING["held"], kernel.HOLDING["free"]
+HELD, FREE, TAKEN = (kernel.HOLDING[name] for name in ("held", "free", "taken"))
 Coordinates = Mapping[tuple[str, str], Jet]  # of a joint or point, and a quantity
 
 
@@ -41,6 +41,15 @@ class Conditions:
         values = [own.evaluate(*program, self.variables(t, coordinates)) for program in self.programs]
         own.hold(FREE)
         return values
+
+    def taken(self, t: float, coordinates: Coordinates) -> list[float]:
+        """The branches as the coordinates have them, to rounding; ordered as `places`."""
+        own = self.pack.expressions
+        own.hold(TAKEN)
+        for program in self.programs:
+            own.evaluate(*program, self.variables(t, coordinates))
+        own.hold(FREE)
+        return own.branches()
 
     def free(self, number: int, t: float, d: float, coordinates: Coordinates) -> float:
         """Whether one is true at t + d, by the coordinates at t."""

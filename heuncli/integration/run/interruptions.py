@@ -53,6 +53,14 @@ class Interruptions:
             self.take(jump)
         return None
 
+    def strike(self, t: float, blows: tuple[int, ...]) -> str | None:
+        """Do the blows whose conditions became true at an instant that the run has reached; as `until` does others."""
+        jump = self.meet(GivenBlow(t, t, blows, {}), t)
+        rope = None if jump is None else pushing(self.scene.layout, jump)
+        if jump is not None and rope is None:
+            self.take(jump)
+        return rope
+
     def meet(self, given: GivenBlow, time: float, row: int | None = None) -> Jump | None:
         """The blow that is given at the state reached, and that of its contacts; row: of the one that closed."""
         state = self.moving.state(time, self.progress.integrated_state)

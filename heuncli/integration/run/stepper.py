@@ -18,6 +18,7 @@ from heuncli.integration.evaluator import Evaluator
 from heuncli.integration.integrated_scene import IntegratedScene
 from heuncli.integration.run.interruptions import Interruptions
 from heuncli.integration.run.kernel_loop import (
+    CHATTERING,
     GOES_ON,
     LET_GO,
     MORE,
@@ -42,6 +43,7 @@ if TYPE_CHECKING:  # loaded where they are watched
     from heuncli.integration.run.conditions import EndingCondition
     from heuncli.integration.run.event_frequency import EventWatch
     from heuncli.integration.run.stiffness import StiffnessWatch
+    from heuncli.integration.run.triggers import Triggers
 
 
 class Ending(NamedTuple):
@@ -78,6 +80,8 @@ class Stepper:
         self.segments = smooth_segments(progress.last, request.discontinuities)
         self.pieces = GrowingRows(3)
         self.until = until_of(progress.moving.layout) if rules.ending else None
+        self.triggers = triggers_of(progress.moving.layout, progress.last)
+        self.fresh = False  # whether a piece is to begin
         self.events = event_watch(progress, self.segments) if rules.events else None
         self.stiffness: StiffnessWatch | None = None
         self.begun = time.monotonic()
@@ -92,6 +96,8 @@ class Stepper:
         """
         reached = 0.0
         for segment in self.segments:
+            if segment.begin > 0.0:
+                self.leave()
             rope = self.interruptions.until(segment.begin, reached)
             if rope is not None:
                 return Ending(just_before(reached), rope)
@@ -106,11 +112,19 @@ class Stepper:
     def through(self, segment: Segment) -> Ending | None:
         """Steps to the end of a segment, from one event of contacts to the next."""
         code, begin = MORE, segment.begin
-        self.interruptions.begin(segment)
+        self.begin(segment)
         while code in GOES_ON:
             code = self.advance()
-            if code == TURNED and self.ends_here():
-                break
+            if code == TURNED:
+                ends, due = self.ends_here(), self.due()
+                if due:
+                    begin, rope = self.strike(begin, segment, due)
+                    if rope is not None:
+                        return Ending(just_before(begin), rope)
+                if ends:
+                    if due:
+                        self.advance()  # to the branches behind the blow; no step is taken
+                    break
             self.look(code, segment)
             if code in (STRUCK, LET_GO):
                 begin = self.meet_contact(begin, segment)
@@ -122,9 +136,42 @@ class Stepper:
         kernel, few = self.progress.kernel, len(self.progress.kernel.output["ends"])
         if self.events is not None:
             few = min(few, self.events.due_in())
-        code = kernel.loop.advance(few, True, self.until is not None)
+        code = kernel.loop.advance(few, True, self.until is not None or self.triggers is not None)
         self.progress.steps.add(kernel)
+        if self.triggers is not None and self.fresh and code == TURNED:
+            self.triggers.begin(self.progress.t, self.progress.integrated_state)
+        self.fresh = False
         return code
+
+    def begin(self, segment: Segment) -> None:
+        """A piece begins in the state reached."""
+        self.interruptions.begin(segment)
+        self.fresh = True
+
+    def leave(self) -> None:
+        """A piece ends at the instant reached: what the triggers of blows say there is kept."""
+        if self.triggers is not None:
+            self.triggers.leave()
+
+    def due(self) -> tuple[int, ...]:
+        """The blows whose conditions became true at the instant reached."""
+        if self.triggers is None:
+            return ()
+        return self.triggers.due(self.progress.t, self.progress.integrated_state)
+
+    def strike(self, begin: float, segment: Segment, due: tuple[int, ...]) -> tuple[float, str | None]:
+        """Blows at the instant reached, which end a piece; where the next one begins.
+
+        And the rope, if there is one, that would have to push in them.
+        """
+        t = self.progress.t
+        if t > begin:
+            self.pieces.add(np.array([[begin, segment.before_end, t]]))
+        self.leave()
+        rope = self.interruptions.strike(t, due)
+        if rope is None:
+            self.begin(Segment(t, segment.before_end, segment.end))
+        return t, rope
 
     def ends_here(self) -> bool:
         """Whether the condition that ends the run became true at the instant reached."""
@@ -150,8 +197,9 @@ class Stepper:
         t = self.progress.t
         if t > begin:
             self.pieces.add(np.array([[begin, segment.before_end, t]]))
+        self.leave()
         self.interruptions.settle(t, self.progress.kernel.loop.contact)
-        self.interruptions.begin(Segment(t, segment.before_end, segment.end))
+        self.begin(Segment(t, segment.before_end, segment.end))
         return t
 
     def ended(self, code: int, begin: float) -> Ending:
@@ -162,6 +210,8 @@ class Stepper:
         if code == ROPE_SLACK:
             rope = self.progress.moving.rope(self.progress.kernel.loop.contact)
             return Ending(just_before(t) if t == begin > 0.0 else t, rope)
+        if code == CHATTERING and self.triggers is not None and self.triggers.just_struck(t):
+            raise self.triggers.endless(t)
         from heuncli.integration.run.failure import failure  # only on the way to an error
 
         raise failure(self.progress, code)
@@ -180,7 +230,7 @@ class Stepper:
             stopped=ending.rope if ending is not None else None, ended=ending is not None and ending.rope is None,
             behind=np.array(progress.moving.layout.pack.expressions.branches()),
             blows=tuple(self.interruptions.done), holding=steps.holding(len(progress.scene.layout.contacts)),
-            notes=self.interruptions.notes,
+            notes=self.interruptions.notes + (self.triggers.notes if self.triggers is not None else ()),
         )  # fmt: skip
 
 
@@ -191,6 +241,15 @@ def until_of(layout: Layout) -> EndingCondition | None:
     from heuncli.integration.run.conditions import EndingCondition  # few scenes have one
 
     return EndingCondition(layout)
+
+
+def triggers_of(layout: Layout, last: float) -> Triggers | None:
+    """The blows of a scene that hang on conditions, where there are any."""
+    if all(blow.when is None for blow in layout.mechanism.blows):
+        return None
+    from heuncli.integration.run.triggers import Triggers  # few scenes have any
+
+    return Triggers(layout, last)
 
 
 def event_watch(progress: Progress, segments: Segments) -> EventWatch | None:

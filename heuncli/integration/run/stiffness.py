@@ -85,6 +85,8 @@ def tried(progress: Progress, segment: Segment, method: Method, beside: float) -
     if trial.loop.advance(TRIED[0], False, False) not in NOT_STOPPED:
         return math.inf, trial
     begun, evaluations, steps = trial.loop.t, trial.loop.evaluations, trial.loop.steps
+    if begun == t:  # the segment ends here
+        return math.inf, trial
     if begun == segment.end:  # sooner than it comes to its pace
         return float((evaluations + beside * steps) / (begun - t)), trial
     if trial.loop.advance(TRIED[1], False, False) not in NOT_STOPPED:

@@ -157,7 +157,8 @@ def _blows(seen: View, height: float) -> Iterator[Departure]:
         n, h = seen.normal_in(blow.body, blow.in_body), blow.vector
         leaving = (h @ n) * n if blow.kind == "impulse" else h - (h @ n) * n
         off = float(np.sqrt(leaving @ leaving))
-        yield from _vector(f"{name} at t = {blow.time:.6g} s", off, float(np.sqrt(h @ h)), "N s", True)
+        at = f"{name} at t = {blow.time:.6g} s" if blow.when is None else name
+        yield from _vector(at, off, float(np.sqrt(h @ h)), "N s", True)
 
 
 def _still(seen: View) -> Iterator[Departure]:

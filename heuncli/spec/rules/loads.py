@@ -8,7 +8,7 @@ from heuncli.expressions import units as u
 from heuncli.joint_kinds import FREE, POINT, TYPES, Kind, named, taking
 from heuncli.spec import format as f
 from heuncli.spec.rules.registry import DraftDocument, Violation, rule
-from heuncli.spec.semantics import span_of
+from heuncli.spec.semantics import span_of, type_of
 
 ON_MOTION = {"turning": "about a", "sliding": "along a"}
 FRICTION = {"turning": "torque", "sliding": "force"}  # the key of each motion
@@ -133,6 +133,8 @@ def impulse_time(draft: DraftDocument) -> Iterator[Violation]:
     duration = span_of(analysis)
     for name, blow in draft.document.impulses.items():
         path = ("impulses", name, "time")
+        if blow.when is not None:
+            continue
         if blow.time < 0.0:
             yield Violation(path, f"a blow before the start, at {blow.time:g} s", "the run starts at 0")
         elif blow.time > duration and "analysis" not in draft.unread:
@@ -142,3 +144,21 @@ def impulse_time(draft: DraftDocument) -> Iterator[Violation]:
                 else "without a duration only the jump at time 0 is computed"
             )
             yield Violation(path, f"a blow at {blow.time:g} s, after the end of the run at {duration:g} s", hint)
+
+
+@rule("impulse-when")
+def impulse_when(draft: DraftDocument) -> Iterator[Violation]:
+    """A blow strikes at a time or when something becomes true, and that only in a motion."""
+    kind = type_of(draft.document)
+    for name, blow in draft.document.impulses.items():
+        path = ("impulses", name)
+        if blow.when is None:
+            if blow.every and "when" not in draft.names.entries["impulses"][name]:
+                hint = "when: a condition, as shaft.angle < 0; at instants known before: an entry each"
+                yield Violation((*path, "every"), "'every' without 'when'", hint, key=True)
+        elif "time" in blow.model_fields_set:
+            hint = "leave one of them out; not before an instant: when: t > 0.1 and shaft.angle < 0"
+            yield Violation((*path, "when"), "both 'time' and 'when'", hint, key=True)
+        elif kind != "motion" and "analysis" not in draft.unread:
+            message = f"when: type: {kind} is one instant, at which nothing becomes true"
+            yield Violation((*path, "when"), message, "give analysis a duration; or the blow a time", key=True)

@@ -48,15 +48,17 @@ def named_fields(item: Any) -> Iterator[tuple[str, Any]]:
 
 
 def expressions_in(item: Any) -> Iterator[Expression]:
-    """The values in time of a force or drive."""
+    """The values in time of a force or drive, the condition of a blow."""
     for _, value in named_fields(item):
+        if isinstance(value, Condition):
+            yield value.value
         for member in value if type(value) is tuple else (value,):
             if isinstance(member, Expression):
                 yield member
 
 
 def followed(item: Any, spec: Spec) -> set[str]:
-    """The bodies in whose coordinates and points the values of a force or drive are given."""
+    """The bodies in whose coordinates and points values of a force, a drive or a blow are given."""
     uses = {name for expression in expressions_in(item) for name, _ in expression.uses}
     return set().union(*(read_at(name, spec) for name in uses))
 
@@ -81,7 +83,7 @@ def needed(spec: Spec, asked: Selection, ends: Ends) -> set[str]:
         return set(spec.bodies)
     moved = list(ends["joints"].values())  # sets of bodies of which none is solved without the others
     beside: dict[str, set[str]] = {name: set() for name in spec.bodies}
-    for block in ("forces", "drives"):
+    for block in ("forces", "drives", "impulses"):
         items: Mapping[str, Any] = getattr(spec, block)
         moved += ends[block].values()
         for name, item in items.items():
