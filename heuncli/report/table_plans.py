@@ -76,6 +76,12 @@ def _stop_note(name: str, labels: Labels) -> str:
     return f"{info.coordinate} {' '.join(told)} {unit}"
 
 
+def _exerted(labels: Labels) -> str:
+    """What the stops of a scene exert."""
+    turning = {info.coordinate.endswith(".angle") for info in labels.stops.values()}
+    return {(True,): "moment", (False,): "force"}.get(tuple(turning), "force or moment")
+
+
 def _section_note(name: str, labels: Labels) -> str:
     info = labels.sections.get(name)
     return f"{info.body}; e1 = {info.first_axis}; moments about {info.about}" if info else ""
@@ -137,7 +143,7 @@ STOPS = TablePlan(
     "stops",
     "stop",
     ("force", "moment"),
-    lambda results, labels: 'STOPS  force or moment ON "to", along the coordinate that is limited; 0 where free',
+    lambda results, labels: f'STOPS  {_exerted(labels)} ON "to", along the coordinate that is limited; 0 where free',
     _stop_note,
 )
 SECTIONS = TablePlan(

@@ -288,6 +288,8 @@ expect: [{}]
     ("{of: impulses.0.energy_jump, peak: max, is: 1}", "does not run over the instants"),
     ("{of: impulses.0.sections.run.stress.mises, is: 1}", "'stress' is not a result"),
     ("{of: stops.s.moment, at: 0, is: 1}", ""),
+    ("{of: stops.s.force, at: 0, is: 1}", "a stop of an angle exerts a moment: write moment"),
+    ("{of: impulses.0.stops.s.force, is: 1}", "a stop of an angle exerts a moment: write moment"),
     ("{of: impulses.0.foundation.elements.s.force.z, is: 1}", ""),
 ])  # fmt: skip
 def test_expectations_of_blows(item: str, message: str, monkeypatch: pytest.MonkeyPatch) -> None:
@@ -296,7 +298,7 @@ def test_expectations_of_blows(item: str, message: str, monkeypatch: pytest.Monk
     try:
         load("x.yaml", text=SCENE.format(item))
     except SpecError as error:
-        told = "\n".join(str(problem) for problem in error.problems)
+        told = "\n".join(f"{problem} {problem.hint}" for problem in error.problems)
     assert message in told
     assert bool(told) == bool(message)
 
@@ -317,7 +319,7 @@ def test_expectations_are_compared() -> None:
 def test_a_resting_stop_has_its_force_beside_the_joints() -> None:
     results = replace(pendulum(T), stops={"buffer": {"force": np.full(len(T), 4.5)}})
     found = text(results)
-    assert 'STOPS  force or moment ON "to"' in found
+    assert 'STOPS  force ON "to"' in found
     assert "4.5" in found.partition("STOPS")[2].partition("SECTIONS")[0]
     lines = list(csv.DictReader(io.StringIO(to_csv(results, labels()))))
     assert {r["unit"] for r in lines if r["kind"] == "stops"} == {"N"}

@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Collection, Mapping
-from typing import NamedTuple, TypeAlias
+from typing import Any, NamedTuple, TypeAlias
 
 from heuncli.errors import Finding
 from heuncli.expressions import units as u
@@ -121,6 +121,8 @@ def keys_in(node: Node, above: list[str], names: Names) -> Collection[str]:
         known = [key for word in node for key in named(word, names)]
         if above[:1] == ["coordinates"]:
             known = [key for key in known if has_coordinate(above[1:], key, names)]
+        if len(above) > 1 and above[-2] == "stops":
+            known = [key for key in known if key in loads_of_stop(names.entries["stops"].get(above[-1]))]
         names.keys[place] = dict.fromkeys(known)
     return names.keys[place]
 
@@ -144,6 +146,16 @@ def has_coordinate(joint: list[str], key: str, names: Names) -> bool:
     return key in {word for quantity in own for word in (quantity, RATES[quantity], "acceleration")}
 
 
+EXERTED = {"moment": "an angle", "force": "a travel or length"}
+
+
+def loads_of_stop(stop: Any) -> set[str]:
+    """What a stop exerts, by the coordinate that it limits; stop: of a spec, or as plain data that may be in error."""
+    given = {quantity for quantity in ("angle", "travel", "length") if isinstance(stop, dict) and quantity in stop}
+    quantities = given or {getattr(stop, "quantity", None)}
+    return {"force", "moment"} if None in quantities else {"moment" if q == "angle" else "force" for q in quantities}
+
+
 def wrong_path(path: str, names: Names, runs: Mapping[str, bool]) -> tuple[str, str] | None:
     """What is wrong with a path into the results, and a hint; None: nothing, or only the run can tell."""
     reached = result(words_of(path), names, runs)
@@ -153,6 +165,9 @@ def wrong_path(path: str, names: Names, runs: Mapping[str, bool]) -> tuple[str, 
         return f"'{path}' is words, not a number", words_hint(path)
     if not isinstance(reached, UnknownWord):
         return None
+    for own, limited in EXERTED.items():
+        if reached.word in EXERTED and list(reached.known) == [own]:
+            return f"'{path}': '{reached.word}' is not a result", f"a stop of {limited} exerts a {own}: write {own}"
     from heuncli.path_hints import meant  # only on the way to an error
 
     likely = meant(path, lambda words: isinstance(found := result(words, names, runs), NumberKind) and found.known)
