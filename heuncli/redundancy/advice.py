@@ -109,7 +109,7 @@ def _left(scene: PreparedScene, changed: Mapping[int, Joint], model: Block) -> i
     joints = tuple(changed.get(k, j) for k, j in enumerate(scene.mechanism.joints))
     other, runner = ready(arranged(replace(scene.mechanism, joints=joints), scene.start))
     found = redundancy(other, runner)
-    freedoms = other.layout.tree_freedoms - (found.closed - found.dependent)
+    freedoms = other.layout.tree_freedoms - (found.closed - found.dependent) - scene.undetermined
     return found.open if freedoms == model["freedoms"] and len(other.idle) <= len(scene.idle) else None
 
 

@@ -42,7 +42,9 @@ def note(title: str, model: Mapping[str, Any]) -> str:
 def _facts(model: Mapping[str, Any]) -> list[tuple[str, str]]:
     freedoms, names = model.get("freedoms"), model.get("names", {})
     grubler = model.get("grubler")
-    beside = f" (Grübler's count: {grubler})" if grubler is not None else ""
+    spins = int(model.get("undetermined", 0))
+    among = f", {count(spins, 'undetermined spin')} among them" if spins else ""
+    beside = f" (Grübler's count: {grubler}{among})" if grubler is not None else ""
     return [
         ("space", str(model.get("space", "")) + (f" ({model['plane']})" if "plane" in model else "")),
         ("bodies", _things(names.get("bodies", model.get("bodies")))),

@@ -29,6 +29,13 @@ class PreparedScene:
     idle: tuple[IdleSpin, ...]
     layout: Layout
 
+    @property
+    def undetermined(self) -> int:
+        """How many freedoms are spins that no law determines: none of them moves anything else."""
+        if not self.mechanism.planar:
+            return sum(len(spin.axes) for spin in self.idle)
+        return sum(float(np.sum(spin.axes[:, 2] ** 2)) >= tolerances.ALONG_SQUARED for spin in self.idle)
+
 
 def prepare(mechanism: Mechanism, t0: float = 0.0) -> PreparedScene:
     """Assemble at t0 and lay out. Raises SolveError where the scene does not close, or starts beyond a stop."""

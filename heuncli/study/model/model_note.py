@@ -26,12 +26,15 @@ COUNTED_FROM = {GLOBAL: "counted from the drawn ones: none can pass a half turn"
 
 
 def model_note(scene: PreparedScene, runner: Runner, method: str) -> Block:
-    """The block `model`: freedoms, loops, redundancy, and the reasons in sentences."""
+    """The block `model`: freedoms, loops, redundancy, and the reasons in sentences.
+
+    Spins that no law determines are no freedoms, though Grübler counts them.
+    """
     mechanism, layout = scene.mechanism, scene.layout
     found = redundancy(scene, runner)
     block: Block = {
         "space": "planar" if mechanism.planar else "spatial",
-        "freedoms": layout.tree_freedoms - (found.closed - found.dependent),
+        "freedoms": layout.tree_freedoms - (found.closed - found.dependent) - scene.undetermined,
         "driven": sum(1 for j in mechanism.joints if j.drive is not None),
         "bodies": len(mechanism.bodies), "loops": len(layout.spanning.cut), "redundant": found.generic,
         "method": method, "reasons": [], "joints": len(mechanism.joints), "grubler": grubler(mechanism),
@@ -50,6 +53,10 @@ def model_note(scene: PreparedScene, runner: Runner, method: str) -> Block:
     if found.generic and found.stress is not None:
         block["notes"] += held_twice(layout, found.stress)
     block["notes"] += found.giving
+    if scene.undetermined:
+        block["undetermined"] = scene.undetermined
+        spins = count(scene.undetermined, "undetermined spin")
+        block["notes"].append(f"{spins} left out of the freedoms: without inertia, and nothing else moves with them")
     if found.open < found.generic:
         block["given_way"] = found.generic - found.open
     return block
@@ -98,14 +105,16 @@ def reasons(scene: PreparedScene, model: Block) -> list[str]:
     floating = [mechanism.bodies[h.body].name for h in layout.spanning.hangs if h.joint < 0]
     if floating:
         sentences.append(f"carried by nothing, free: {some(floating)}")
+    spins = f" and {count(scene.undetermined, 'undetermined spin')}" if scene.undetermined else ""
     if model["redundant"]:
         sentences.append(
-            f"Grübler counts {model['grubler']}, there are {model['freedoms']}: "
+            f"Grübler counts {model['grubler']}, there are {model['freedoms']}{spins}: "
             f"{count(model['redundant'], 'condition holds', 'conditions hold')} what others hold already"
         )
     for spin in scene.idle:
         name = mechanism.bodies[spin.body].name
-        sentences.append(f"{name}: the spin about its own axis is undetermined and harmless; taken as zero")
+        which = "the spin about its own axis" if len(spin.axes) == 1 or mechanism.planar else "its spin"
+        sentences.append(f"{name}: {which} is undetermined and harmless; taken as zero")
     return sentences
 
 
