@@ -79,7 +79,7 @@ def _stop_note(name: str, labels: Labels) -> str:
 def _exerted(labels: Labels) -> str:
     """What the stops of a scene exert."""
     turning = {info.coordinate.endswith(".angle") for info in labels.stops.values()}
-    return {(True,): "moment", (False,): "force"}.get(tuple(turning), "force or moment")
+    return "force or moment" if len(turning) != 1 else "moment" if True in turning else "force"
 
 
 def _section_note(name: str, labels: Labels) -> str:

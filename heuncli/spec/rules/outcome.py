@@ -151,9 +151,11 @@ EXERTED = {"moment": "an angle", "force": "a travel or length"}
 
 def loads_of_stop(stop: Any) -> set[str]:
     """What a stop exerts, by the coordinate that it limits; stop: of a spec, or as plain data that may be in error."""
-    given = {quantity for quantity in ("angle", "travel", "length") if isinstance(stop, dict) and quantity in stop}
-    quantities = given or {getattr(stop, "quantity", None)}
-    return {"force", "moment"} if None in quantities else {"moment" if q == "angle" else "force" for q in quantities}
+    words = stop if isinstance(stop, dict) else {getattr(stop, "quantity", "")}
+    found = {
+        "moment" if quantity == "angle" else "force" for quantity in ("angle", "travel", "length") if quantity in words
+    }
+    return found or set(EXERTED)
 
 
 def wrong_path(path: str, names: Names, runs: Mapping[str, bool]) -> tuple[str, str] | None:
