@@ -46,4 +46,5 @@ def _coordinate(mechanism: Mechanism, start: Assembly, joint: Joint) -> float:
         return joint.length if joint.length is not None else distance(start, joint)
     at = joint_start(mechanism, start, joint)
     held, found = (joint.angle, at.angle) if joint.drive.quantity == "angle" else (joint.travel, at.travel)
-    return held if held is not None and not joint.to_axis_given else found
+    from_there = joint.to_axis_given or joint.drive.zero_assembled  # what is held is told from where it stands, too
+    return held if held is not None and not from_there else found

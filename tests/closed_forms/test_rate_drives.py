@@ -129,6 +129,47 @@ def test_a_travel_counted_from_where_it_is_drawn(drive: str) -> None:
     near(found.coordinates["j"]["travel"], [0.3, 1.3], 1.0, 1e-15)
 
 
+FROM_THE_START = {  # joint, what is driven, where it is drawn to stand, and what its results tell there
+    "pin": ("pin, axis: [0, 0, 1]", "angle", (0.0, 0.7), 0.0),
+    "slide": ("slide, axis: [1, 0, 0]", "travel", (0.3, 0.0), 0.3),
+    "cylinder": ("cylinder, axis: [1, 0, 0]", "travel", (0.3, 0.0), 0.3),
+}
+
+
+def counted(kind: str, value: str, initial: str = "") -> str:
+    """A body drawn away from where its joint's coordinate is zero, driven from the assembled start."""
+    joint, quantity, (place, turn), _ = FROM_THE_START[kind]
+    start = f"position: [{place}, 0, 0], orientation: {{axis: [0, 0, 1], angle: {turn}}}"
+    held = f", initial: {{{quantity}: {initial}}}" if initial else ""
+    return f"""{HEAD}bodies:
+  b: {{mass: 2, center: [0, 0, 0], inertia: [1, 1, 1], points: {{p: [0, 0, 0]}}, {start}}}
+joints: {{j: {{type: {joint}, from: ground.O, to: b.p{held}}}}}
+drives: {{motor: {{joint: j, {quantity}: {value}, zero: assembled}}}}
+analysis: {{times: [0, 0.5, 2]}}
+"""
+
+
+@pytest.mark.parametrize("kind", FROM_THE_START)
+def test_zero_assembled_means_one_thing(kind: str) -> None:
+    """Bodies start as assembled and move on by what is prescribed, which is 0 there; results keep their own zero."""
+    _, quantity, (place, turn), told = FROM_THE_START[kind]
+    law = np.array([0.0, 0.25, 4.0])
+    for initial in ("", "0"):
+        found = solved(counted(kind, "t**2", initial))
+        moved, turned = (law, 0.0 * law) if quantity == "travel" else (0.0 * law, law)
+        near(found.bodies["b"]["position"][:, 0], place + moved, 1.0, 1e-14)
+        near(found.bodies["b"]["rotation"][:, 1, 0], np.sin(turn + turned), 1.0, 1e-14)
+        near(found.coordinates["j"][quantity], told + law, 4.0, 1e-15)
+
+
+@pytest.mark.parametrize("kind", FROM_THE_START)
+@pytest.mark.parametrize(("value", "initial"), [("0.2 + t", ""), ("t", "0.1")])
+def test_what_is_counted_from_the_start_is_zero_there(kind: str, value: str, initial: str) -> None:
+    with pytest.raises(SolveError, match="counted from the assembled start") as caught:
+        solved(counted(kind, value, initial))
+    assert [problem.code for problem in caught.value.problems] == ["held-conflict"]
+
+
 def test_a_rod_that_is_used_up() -> None:
     """A rod that shortens to nothing is refused with the instant, whether its length is given or as assembled."""
     bodies, joints = MACHINES["a rod, as it is assembled"][:2]
