@@ -17,6 +17,7 @@ from collections.abc import Callable
 from typing import TYPE_CHECKING
 
 from heuncli.errors import SolveError
+from heuncli.joint_kinds import JOINTS
 from heuncli.records import replace
 from heuncli.results import Block
 from heuncli.results_schema import SHARES
@@ -115,9 +116,10 @@ def describe(spec: Spec, *, reduce: bool = True) -> Block:
 
 
 def names_of(setup: Setup) -> Block:
-    """The names of the bodies, and of the joints with their kinds."""
+    """The names of the bodies, and of the joints with their kinds, as specs call them."""
     mechanism = setup.scene.mechanism
-    return {"bodies": [b.name for b in mechanism.bodies], "joints": {j.name: j.kind for j in mechanism.joints}}
+    kinds = {j.name: JOINTS[j.kind].spoken or j.kind for j in mechanism.joints}
+    return {"bodies": [b.name for b in mechanism.bodies], "joints": kinds}
 
 
 def watched(spec: Spec) -> list[str]:

@@ -309,3 +309,22 @@ def test_the_note_names_bodies_and_joints(heun: Heun) -> None:
     text = heun("model", "swinging.yaml").stdout
     assert "bodies     1: bar\n" in text and "joints     1: pivot (ball)\n" in text
     assert json.loads(heun("model", "swinging.yaml", "--format", "json").stdout)["names"]["joints"] == {"pivot": "ball"}
+
+
+def test_the_model_calls_joints_as_specs_do(heun: Heun, folder: Path) -> None:
+    (folder / "flat.yaml").write_text(FLAT)
+    told = json.loads(heun("model", "flat.yaml", "--format", "json").stdout)["names"]["joints"]
+    assert told == {"rail": "line", "hinge": "pin"}
+
+
+FLAT = """
+heun: 1
+space: planar
+ground: {points: {O: [0, 0, 0]}}
+bodies:
+  cart: {mass: 5, center: [0, 0, 0], inertia: 0, points: {o: [0, 0, 0]}}
+  load: {mass: 1, center: [0, -1, 0], inertia: 0.1, points: {o: [0, 0, 0]}}
+joints:
+  rail: {type: line, from: ground.O, to: cart.o, axis: [1, 0, 0]}
+  hinge: {type: pin, from: cart.o, to: load.o, axis: [0, 0, 1]}
+"""
