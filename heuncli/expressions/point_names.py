@@ -18,16 +18,16 @@ Points = Mapping[str, Collection[str]]  # of each body and of the ground
 def point_meant(written: str, words: Sequence[str], points: Points) -> tuple[str, str, str]:
     """Body, point and quantity of the words behind `points`. Raises Finding."""
     *names, quantity = words
+    if quantity not in QUANTITIES or len(names) not in (1, 2):
+        raise Finding("unknown-coordinate", f"'{written}' is no coordinate of a point", form(names, quantity, points))
     if len(names) == 1:
         names = [of_one_body(written, names[0], points), names[0]]
-    elif len(names) == 2 and names[0] not in points:
+    elif names[0] not in points:
         hint = did_you_mean(names[0], points, "bodies")
         raise Finding("unknown-body", f"'{written}': '{names[0]}' is not a body", hint)
-    elif len(names) == 2 and names[1] not in points[names[0]]:
+    elif names[1] not in points[names[0]]:
         hint = did_you_mean(names[1], points[names[0]], f"points of {names[0]}")
         raise Finding("unknown-point", f"'{written}': {names[0]} has no point '{names[1]}'", hint)
-    if len(names) != 2 or quantity not in QUANTITIES:
-        raise Finding("unknown-coordinate", f"'{written}' is no coordinate of a point", form(names, quantity, points))
     return names[0], names[1], quantity
 
 
