@@ -13,7 +13,7 @@ from heuncli.results import Array
 from heuncli.results_schema import XYZ
 
 LEAD = 3  # columns of words: of what, which number, its unit
-HEADS = (*XYZ, "size or value")
+HEADS = (*XYZ, "value")  # of a vector its size
 NOTHING = ("", "0")
 
 
@@ -48,7 +48,7 @@ def _columns() -> tuple[TextColumn, ...]:
 def _lines(
     block: TableBlock, group: RowGroup, times: Array, horizon: float | None, certain: Certainty
 ) -> Iterator[tuple[str, ...]]:
-    """Name, label, unit, components, size or value, and what it is of: of each vector, and of each other number."""
+    """Name, label, unit, components, value, and what it is of: of each vector, and of each other number."""
     texts = {label: own[0] for label, own in group_texts(block, group, times, horizon, certain).items()}
     sizes = {row.family: texts[row.label] for row in group.rows if row.even and row.vector}
     for _, same in groupby(group.rows, key=lambda row: row.vector or row.label):
@@ -56,7 +56,10 @@ def _lines(
         if not _told_by_size(rows[0], texts, sizes):
             cells = [texts[row.label] for row in rows]
             before = [""] * (len(HEADS) - len(cells))
-            yield (group.name, rows[0].vector or rows[0].label, rows[0].unit, *before, *cells, group.note)
+            label = rows[0].vector or rows[0].label.removeprefix(
+                f"{block.key} "
+            )  # under its heading, energy after: after
+            yield (group.name, label, rows[0].unit, *before, *cells, group.note)
 
 
 def _told_by_size(row: NumberRow, texts: Mapping[str, str], sizes: Mapping[str, str]) -> bool:
