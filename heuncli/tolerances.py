@@ -178,8 +178,14 @@ FASTER_THAN_TIME = 4.0  # over the second half of a run: what grows with the squ
 
 # -- rest
 REST_FIRST = 0.01  # rad, or of the size: the first step, short against any lever
+REST_DOUBT = 0.05  # rad, or of the size: what is off by as much, grown, may be on the other side of a ridge
+REST_SAME = 1e-6  # rad, or of the size: Newton's steps bring two searches that near, other poses are farther apart
+REST_WAY = 1e-4  # the same of what nothing holds: found so far by two searches, no finer one is made
+REST_BESIDE = 0.1  # the same: farther apart two searches have not gone one way
 REST_FARTHEST = 0.5  # the same: a longer step may pass over what bends within half a turn
-REST_BENT = 0.2  # of a step: what the linear law may be off by
+REST_BENT = 0.05  # of a step: what the linear law may leave out; a fifth of it is then missed at third order
+REST_MISSED = 0.01  # of that: what closing may lead aside
+REST_FINER = 0.1  # the same of a search against the one before it, which it checks
 REST_STRAIGHT = 1e-6  # the same of a step beyond REST_FARTHEST: nothing bends there
 RUN_AWAY = 1e6  # times the scene's size: what shifts as far is held by nothing
 TURNS_ON = 63.0  # rad: ten turns have seen every pose of a turn, several times

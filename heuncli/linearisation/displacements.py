@@ -5,7 +5,7 @@ from __future__ import annotations
 import numpy as np
 
 from heuncli.results import Array
-from heuncli.shapes.rotations import quaternion_from_vector, quaternion_product
+from heuncli.shapes.rotations import quaternion_from_vector, quaternion_product, vector_of_quaternion
 from heuncli.tree.layout import Layout, places_of_rates
 
 
@@ -30,3 +30,20 @@ def displaced(layout: Layout, states: Array, by: Array, rates: Array | None = No
     if rates is not None:
         moved[..., place] += rates
     return moved
+
+
+def displacement(layout: Layout, state: Array, other: Array) -> Array:
+    """The displacement (n,) that makes a state (n_state,) another one: what displaced() undoes."""
+    place = places_of_rates(layout)
+    place = place[place >= 0]
+    number = np.zeros(layout.n_state, dtype=int)
+    number[place] = np.arange(len(place))
+    freedoms = layout.tables["freedoms"]
+    own = freedoms[freedoms["driven"] == 0]
+    by = np.zeros(len(place))
+    by[number[own["u_at"]]] = other[own["q_at"]] - state[own["q_at"]]
+    for body in layout.bodies[layout.bodies["ball"] == 1]:
+        at, first = int(body["attitude_at"]), int(number[body["rate_at"]])
+        back = state[at : at + 4] * np.array([1.0, -1.0, -1.0, -1.0])
+        by[first : first + 3] = vector_of_quaternion(quaternion_product(other[at : at + 4], back))
+    return by

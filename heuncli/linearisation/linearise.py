@@ -15,6 +15,7 @@ import numpy as np
 from heuncli.records import record
 from heuncli.response import motions, settled, workspace_of
 from heuncli.results import Array
+from heuncli.shapes.rotations import cross, cross_rows
 from heuncli.tree.layout import Layout, places_of_rates
 from heuncli.tree.tables import Table
 
@@ -108,12 +109,12 @@ def motions_of_bodies(layout: Layout, poses: Table, turns: Array, shifts: Array)
         at, own = poses[k], layout.mechanism.bodies[hang.body]
         R, turn = at["R"], turns[k]
         arm = R @ (own.center - layout.reference[k])
-        shift = shifts[k] + np.cross(turn, arm, axis=0)
+        shift = shifts[k] + cross_rows(turn.T, arm).T
         mass += own.mass * shift.T @ shift + turn.T @ (R @ own.inertia @ R.T) @ turn
         parts["twists"].append(np.concatenate([turn, shift]))
         parts["attitudes"].append(R)
         parts["centres"].append(at["r"] + arm)
         parts["arms"].append(np.sqrt(arm @ arm))
         parts["omega"].append(at["omega"])
-        parts["velocities"].append(at["v"] + np.cross(at["omega"], arm))
+        parts["velocities"].append(at["v"] + cross(at["omega"], arm))
     return {name: np.array(values) for name, values in parts.items()} | {"mass": mass}

@@ -10,9 +10,10 @@ import numpy as np
 from heuncli import tolerances
 from heuncli.integration.evaluator import Evaluator, Recovered
 from heuncli.kernel.choose import scene as kernel
-from heuncli.linearisation.displacements import displaced
+from heuncli.linearisation.displacements import displaced, displacement
 from heuncli.records import record
 from heuncli.results import Array, Indices, Mask
+from heuncli.shapes.rotations import cross
 from heuncli.tree.layout import Layout
 from heuncli.tree.tables import Table
 
@@ -44,6 +45,21 @@ class Coordinates:
     def displaced(self, states: Array, by: Array) -> Array:
         """States (k, n_state) displaced by small turns and shifts (k, n)."""
         return displaced(self.layout, states, by)
+
+    def between(self, state: Array, other: Array) -> Array:
+        """The small turns and shifts (n,) that make a state (n_state,) another one."""
+        return displacement(self.layout, state, other)
+
+    def followed(self, by: Array, velocities: Array) -> Array:
+        """How displacements (n,) from a pose change where they have led, at velocities (n,) there.
+
+        A ball's rotation vector r changes by w - r x w / 2 + ..., w its angular velocity (Bortz).
+        """
+        found = velocities.copy()
+        for first in self.turns.tolist():
+            turn = slice(first, first + 3)
+            found[turn] -= 0.5 * cross(by[turn], velocities[turn])
+        return found
 
     def accelerations(self, at: Recovered) -> Array:
         """Accelerations of the coordinates, (k, n)."""

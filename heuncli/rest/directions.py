@@ -9,6 +9,8 @@ orthonormal is so by the mass: about a rest pose under loads with a potential A 
 
 from __future__ import annotations
 
+from math import factorial
+
 import numpy as np
 
 from heuncli import tolerances
@@ -18,6 +20,8 @@ from heuncli.results import Array, Mask
 MOST_GROWTH = 300.0  # exponents beyond it are as good as infinite
 SERIES = 1e-8  # below it the series has all digits
 TERMS = 12  # of the series of the exponential, below a norm of 1/4: 0.25**13 / 13! is nothing
+NEAR_ZERO = 1.0  # below it phi is summed: above, differences keep all but a digit of it
+SUMMED = 18  # terms of that sum: 1/18! is nothing
 HALVED = 0.25
 
 
@@ -45,14 +49,16 @@ class Directions:
         middle[g:, g:] = self.B if kept[g:].any() else 0.0
         return np.asarray((self.X @ middle @ self.inverse).real)
 
-    def led(self, h: float, c: Array) -> Array:
-        """h phi(h A) c in X's coordinates, phi(x) = (e^x - 1)/x: how far dz/ds = c + A z leads in s = h, (f,)."""
+    def led(self, h: float, c: Array, order: int = 1) -> Array:
+        """h phi(h A) c in X's coordinates, (f,), by phi_1(x) = (e^x - 1)/x, phi_k+1(x) = (phi_k(x) - 1/k!)/x.
+
+        Of order 1 it is how far dz/ds = c + A z leads in s = h; of order k, times (k - 1)!, where c grows as
+        (s/h)^(k - 1).
+        """
         g = self.alone
         x = h * self.eigenvalues[:g]
         x = np.where(x.real > MOST_GROWTH, MOST_GROWTH, x)
-        small = np.abs(x) < SERIES
-        phi = np.where(small, 1.0 + 0.5 * x, np.expm1(x) / np.where(small, 1.0, x))
-        return np.concatenate([h * phi * c[:g], led_together(self.B, h, c[g:].real)])
+        return np.concatenate([h * phi(x, order) * c[:g], led_together(self.B, h, c[g:].real, order)])
 
     def softened(self, c: Array, known: Array) -> Array:
         """-A^-1 c in X's coordinates, along what is more than is known of the eigenvalues; of B, by singular values."""
@@ -67,18 +73,38 @@ class Directions:
         return np.concatenate([single, -(V.T @ along)])
 
 
-def led_together(B: Array, h: float, c: Array) -> Array:
-    """h phi(h B) c by the exponential of [[B, c], [0, 0]] h: its series, halved and squared. Not finite if it grows."""
+def phi(x: Array, order: int) -> Array:
+    """phi_k of numbers (n,): phi_1(x) = (e^x - 1)/x, phi_k+1(x) = (phi_k(x) - 1/k!)/x."""
+    small = np.abs(x) < SERIES
+    value = np.where(small, 1.0 + 0.5 * x, np.expm1(x) / np.where(small, 1.0, x))
+    if order == 1:
+        return np.asarray(value)
+    near = np.abs(x) < NEAR_ZERO
+    safe, few = np.where(near, 1.0, x), np.where(near, x, 0.0)
+    for k in range(1, order):
+        value = (value - 1.0 / factorial(k)) / safe
+    summed = np.zeros_like(value)
+    for j in reversed(range(SUMMED)):
+        summed = summed * few + 1.0 / factorial(j + order)
+    return np.where(near, summed, value)
+
+
+def led_together(B: Array, h: float, c: Array, order: int = 1) -> Array:
+    """h phi(h B) c by the exponential of [[h B, c, 0], [0, 0, 1], [0, 0, 0]] (k rows behind B for phi_k).
+
+    Its series, halved and squared. Not finite if it grows.
+    """
     m = len(B)
     if not c.any():
         return np.zeros(m)
     size = float(np.abs(c).max())
-    whole = np.zeros((m + 1, m + 1))
+    whole = np.zeros((m + order, m + order))
     whole[:m, :m] = h * B
     whole[:m, m] = c / size
+    whole[range(m, m + order - 1), range(m + 1, m + order)] = 1.0
     norm = float(np.abs(whole).sum(axis=1).max())
     halvings = max(0, int(np.ceil(np.log2(norm / HALVED)))) if norm > 0.0 else 0
-    power = np.eye(m + 1)
+    power = np.eye(m + order)
     found = power.copy()
     for k in range(1, TERMS + 1):
         power = power @ (whole / 2.0**halvings) / k
@@ -86,7 +112,7 @@ def led_together(B: Array, h: float, c: Array) -> Array:
     with np.errstate(over="ignore", invalid="ignore"):
         for _ in range(halvings):
             found = found @ found
-        return np.asarray(h * size * found[:m, m])
+        return np.asarray(h * size * found[:m, m + order - 1])
 
 
 def directions(A: Array, mass: Array) -> Directions:

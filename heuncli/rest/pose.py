@@ -53,6 +53,11 @@ def opening(contact: Contact, at: Pose) -> float:
     return -contact.sense * float(at.recovered.rows["gap"][0, contact.row])
 
 
+def carried(contact: Contact, at: Pose) -> float:
+    """What a closed contact puts on what it keeps from passing [N or N m]; one that would have to pull: negative."""
+    return -contact.sense * float(at.recovered.rows["multiplier"][0, contact.row])
+
+
 def dependent(at: Pose) -> int:
     """How many of the closed rows depend on the others."""
     rows = at.recovered.rows

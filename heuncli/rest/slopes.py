@@ -127,8 +127,17 @@ def decided_by(own: Slopes, what: Indifference) -> Slopes:
     change = np.abs(own_directions.inverse @ own.V)
     noise, summed, bent, rough = (change @ x for x in (own.noise, own.summed, own.bent, own.rough))
     known = np.where(own_directions.eigenvalues == 0.0, 1.0, 0.0)
+    known[idle(own.T @ own_directions.X, what.T)] = np.inf
     c = own_directions.inverse @ (own.V @ own.c)
     return replace(own, directions=own_directions, c=c, noise=noise, known=known, summed=summed, bent=bent, rough=rough)
+
+
+def idle(ways: Array, moving: Array) -> Mask:
+    """Which displacements (n, f) are spins without inertia: no combination of what moves mass (n, m) makes them."""
+    if not moving.shape[1]:
+        return np.ones(ways.shape[1], dtype=bool)
+    left = ways - moving @ np.linalg.lstsq(moving, ways, rcond=None)[0]
+    return np.asarray(np.sum(np.abs(left) ** 2, axis=0) > 0.5 * np.sum(np.abs(ways) ** 2, axis=0))
 
 
 def known_to(own: Directions, terms: Array, spin: float) -> Array:

@@ -29,13 +29,7 @@ def from_vector(turn: Array) -> Array:
 
 def to_vector(R: Array) -> Array:
     """Axis * angle of a rotation, (3,) [rad], angle in [0, pi]."""
-    w, x, y, z = to_quaternion(R)
-    if w < 0.0:
-        w, x, y, z = -w, -x, -y, -z
-    s = math.sqrt(x * x + y * y + z * z)
-    if s == 0.0:
-        return np.zeros(3)
-    return np.array([x, y, z]) * (2.0 * math.atan2(s, w) / s)
+    return vector_of_quaternion(to_quaternion(R))
 
 
 def to_quaternion(R: Array) -> Array:
@@ -124,6 +118,13 @@ def quaternion_from_vector(turn: Array) -> Array:
     """The unit quaternions (..., 4) of rotations by the vectors axis * angle (..., 3) [rad]."""
     half = 0.5 * np.sqrt(np.sum(turn * turn, axis=-1, keepdims=True))
     return np.concatenate([np.cos(half), 0.5 * np.sinc(half / np.pi) * turn], axis=-1)
+
+
+def vector_of_quaternion(q: Array) -> Array:
+    """The vector axis * angle (3,) [rad] of the rotation by a unit quaternion (4,), angle in [0, pi]."""
+    w, v = (float(q[0]), q[1:]) if q[0] >= 0.0 else (-float(q[0]), -q[1:])
+    s = math.sqrt(float(v @ v))
+    return np.asarray(v * (2.0 * math.atan2(s, w) / s)) if s > 0.0 else np.zeros(3)
 
 
 def quaternion_product(p: Array, q: Array) -> Array:

@@ -53,6 +53,42 @@ def unstable(results: Results) -> bool:
     return any("unstable" in warning for warning in results.warnings)
 
 
+# ---- ridges ----------------------------------------------------------------------------------------------------
+def ridge(beside: float) -> Results:
+    """x' = x + 0.3 y^2, y' = -y from y = 1, between stops at x = -1 and 1.
+
+    x e^-s goes to x(0) + 0.3/3: from x(0) = -0.1 it stays between them, from beside that it goes to one of the stops.
+    """
+    bodies = f"bodies: {{x: {{{BALL}}}, y: {{{BALL}}}}}"
+    joints = (
+        f"ux: {{type: slide, axis: [1, 0, 0], from: ground.O, to: x.c, initial: {{travel: {-0.1 + beside!r}}}}}, "
+        "uy: {type: slide, axis: [0, 1, 0], from: ground.O, to: y.c, initial: {travel: 1}}"
+    )
+    forces = (
+        "fx: {type: torque, joint: ux, value: 2*ux.travel + 0.6*uy.travel**2}, "
+        "fy: {type: torque, joint: uy, value: -2*uy.travel}"
+    )
+    stops = "stops: {x: {joint: ux, travel: [-1, 1]}}"
+    return solved(f"{HEAD}{POINTS}{bodies}\njoints: {{{joints}}}\nforces: {{{forces}}}\n{stops}\n")
+
+
+@pytest.mark.parametrize("beside", [0.1, -0.1, 1e-3, -1e-3, 1e-4, -1e-4])
+def test_beside_a_ridge_the_way_goes_to_its_side(beside: float) -> None:
+    results = ridge(beside)
+    near(results.coordinates["ux"]["travel"][0], math.copysign(1.0, beside), 1.0, 1e-12)
+    assert not results.warnings
+
+
+@pytest.mark.parametrize("beside", [1e-9, -1e-9, 1e-12, -1e-12])
+def test_on_a_ridge_the_other_pose_is_told(beside: float) -> None:
+    results = ridge(beside)
+    side = float(results.coordinates["ux"]["travel"][0])
+    near(abs(side), 1.0, 1.0, 1e-12)
+    (told,) = results.warnings
+    assert "ridge" in told
+    assert told.endswith(f"ux.travel = {-side:.6g} m")
+
+
 # ---- chains and springs ----------------------------------------------------------------------------------------
 SPAN, LENGTH = 1.0, 1.5
 

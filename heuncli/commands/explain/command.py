@@ -15,9 +15,9 @@ from heuncli.nearest import did_you_mean
 FOLDER = Path(__file__).parents[2] / "manual"
 # in the order in which a reader may want them, the pages of single commands in the order of those
 PAGES = tuple(dict.fromkeys((
-    "commands", "format", "howto", "results", "signs", "open", "stresses", "rest", *(command.page for command in COMMANDS),
-    "accuracy", "limits", "theory", "references", "decisions", "speed", "developing", "contributing",
-    "index",
+    "commands", "format", "howto", "results", "signs", "open", "stresses", "rest",
+    *(command.page for command in COMMANDS), "accuracy", "limits", "theory", "references", "decisions", "speed",
+    "developing", "contributing", "index",
 )))  # fmt: skip
 
 

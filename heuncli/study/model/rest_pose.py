@@ -6,12 +6,14 @@ import time
 
 import numpy as np
 
+from heuncli import tolerances
 from heuncli.integration.diagnosis.solvability import Wording, require_solvable
 from heuncli.integration.run.runner import Runner
 from heuncli.linearisation.indifference import indifference
 from heuncli.mechanism.model import Mechanism
 from heuncli.records import record, replace
 from heuncli.rest.digits import beside
+from heuncli.rest.finer import CheckedPose, checked
 from heuncli.rest.pose import bearing
 from heuncli.rest.rest_check import require_still
 from heuncli.rest.search import RestSearch
@@ -20,6 +22,8 @@ from heuncli.rest.stability import Motion, Stability, stability
 from heuncli.rest.steady_states import going_on, require_constant, require_steady, require_together
 from heuncli.results import Array, Status
 from heuncli.study.model.counts_and_lists import MOST_NAMES, count, some
+from heuncli.study.model.other_pose import other_pose
+from heuncli.tree.layout import Layout
 from heuncli.tree.prepare import PreparedScene
 
 
@@ -47,9 +51,10 @@ def at_rest(scene: PreparedScene, runner: Runner) -> tuple[PreparedScene, Runner
     require_constant(scene.mechanism)
     first = runner.recovered(np.zeros(1), runner.layout.y0[None, :])
     require_solvable(scene, first, Wording("accelerations of the start"))
-    search = RestSearch(scene, runner, 0.0)
+    search = RestSearch(scene, runner, 0.0, tolerances.REST_BENT)
     require_together(runner, search.coordinates, search.begun())
-    found = search.found()
+    both = checked(scene, runner, 0.0)
+    found = both.found
     require_steady(runner, found.coordinates, found.pose, found.slopes)
     law = found.slopes.law
     what = indifference(scene, 0.0, found.pose.holding, law)
@@ -60,9 +65,9 @@ def at_rest(scene: PreparedScene, runner: Runner) -> tuple[PreparedScene, Runner
     again = Runner(layout)
     require_still(again, found.coordinates, bearing(again, found.coordinates, 0.0, layout.y0))
     rest = Rest(
-        steps=found.steps, evaluations=found.evaluations, seconds=time.perf_counter() - begun,
-        beside=tuple(states), told=tuple(sentences(scene.mechanism, own)),
-        warnings=unstable(own),
+        steps=both.steps, evaluations=both.evaluations, seconds=time.perf_counter() - begun,
+        beside=(*states, *both.beside), told=tuple(sentences(scene.mechanism, own)),
+        warnings=(*unstable(own), *ridge(layout, both)),
     )  # fmt: skip
     return replace(scene, layout=layout), again, rest
 
@@ -117,3 +122,11 @@ def unstable(own: Stability) -> tuple[str, ...]:
     if not own.growth:
         return ()
     return (f"the rest pose is unstable: pushed a little, {own.grows} leaves it, by exp({own.growth:.4g} t)",)
+
+
+def ridge(layout: Layout, both: CheckedPose) -> tuple[str, ...]:
+    """A warning of a way that may end in another pose as well, with that one."""
+    if both.elsewhere is None:
+        return ()
+    told = "the way to the rest pose passes so near a ridge that what it is off by decides where it ends"
+    return (f"{told}: perhaps with {other_pose(layout, both.found.pose, both.elsewhere.pose)}",)
