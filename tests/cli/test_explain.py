@@ -34,7 +34,7 @@ def test_a_page_goes_into_a_file(heun: Heun, tmp_path: Path) -> None:
     ("topic", "told"),
     [
         ("side", "see heun explain format (Sections)"),
-        ("rope", "see heun explain format (Joints)"),
+        ("rope", "see heun explain howto (Rope) and heun explain format (Joints)"),
         ("spring", "see heun explain format (turn_spring, spring)"),
         ("axes", "see heun explain signs (Joints) and heun explain commands (heun run)"),
         ("tilting", "see heun explain results (Paths)"),

@@ -137,7 +137,9 @@ def test_the_bearing_moment_whatever_cuts_are_asked(count: int) -> None:
     lift = (PUSH * ARM + 0.5 * WEIGHT * (ARM**2 - (AT + 0.05) ** 2) + WEIGHT * 0.05 * AT) / AT
     assert measured(run, "max sections.shaft.Q2")["side"] == "before"
     assert lift > 0.0
-    assert in_table(run, "SECTION shaft", "M1")[4:] == [f"{found['value']:.4f}", "0.42 beyond"]
+    value, place = in_table(run, "SECTION shaft", "M1")[4:]
+    assert value == f"{found['value']:.4f}"
+    assert place in {"0.42 before", "0.42 beyond"}  # the moment does not jump: rounding decides which is larger
     assert len(run.results.sections["shaft"]["s"]) == count
 
 

@@ -128,5 +128,5 @@ def ridge(layout: Layout, both: CheckedPose) -> tuple[str, ...]:
     """A warning of a way that may end in another pose as well, with that one."""
     if both.elsewhere is None:
         return ()
-    told = "the way to the rest pose passes so near a ridge that what it is off by decides where it ends"
+    told = "the damped motion to the rest pose passes so near a ridge that its last digits decide where it ends"
     return (f"{told}: perhaps with {other_pose(layout, both.found.pose, both.elsewhere.pose)}",)
