@@ -24,11 +24,11 @@ SEARCHES = 4  # each ten times finer than the one before
 
 @record
 class CheckedPose:
-    """What the finest search found; beside: states (n_state,) as far off in what nothing holds as the one before ended;
-    elsewhere: another pose to which the way may lead as well; steps and evaluations of all."""
+    """What the finest search found; way (n,): to where the one before ended; elsewhere: another pose to which the start
+    may lead as well; steps and evaluations of all."""
 
     found: FoundPose
-    beside: tuple[Array, ...]
+    way: Array
     elsewhere: FoundPose | None
     steps: int
     evaluations: int
@@ -42,7 +42,7 @@ def checked(scene: PreparedScene, evaluator: Evaluator, t: float) -> CheckedPose
         new = RestSearch(scene, evaluator, t, off).found()
         all_found.append(new)
         if new.steps == 0:
-            return told(all_found, (), None)
+            return told(all_found, np.zeros(new.coordinates.count), None)
         if number == 0:
             continue
         way = new.coordinates.between(new.pose.state, all_found[-2].pose.state)
@@ -53,11 +53,13 @@ def checked(scene: PreparedScene, evaluator: Evaluator, t: float) -> CheckedPose
     other = None if same else all_found[-2]
     if other is None and not is_certain(new):
         other = beyond_the_ridge(scene, evaluator, t, new)
-    return told(all_found, beside(evaluator, new, way) if same and loose.any() else (), other)
+    return told(all_found, way if same else np.zeros(len(way)), other)
 
 
-def beside(evaluator: Evaluator, found: FoundPose, way: Array) -> tuple[Array, ...]:
-    """The states displaced by a way (n,), either way, with what is held at rest there."""
+def left_by_the_way(evaluator: Evaluator, found: FoundPose, way: Array) -> tuple[Array, ...]:
+    """The states displaced by a way (n,) to another search's pose, either way, with what is held at rest there."""
+    if not way.any():
+        return ()
     at, coordinates = found.pose, found.coordinates
     states = coordinates.displaced(np.repeat(at.state[None, :], 2, axis=0), np.array([way, -way]))
     there = resting(evaluator, at.t, states, at.holding)
@@ -87,10 +89,10 @@ def beyond_the_ridge(scene: PreparedScene, evaluator: Evaluator, t: float, found
     return None
 
 
-def told(all_found: list[FoundPose], beside: tuple[Array, ...], elsewhere: FoundPose | None) -> CheckedPose:
+def told(all_found: list[FoundPose], way: Array, elsewhere: FoundPose | None) -> CheckedPose:
     """What the last search found, and what all took."""
     steps, evaluations = sum(found.steps for found in all_found), sum(found.evaluations for found in all_found)
-    return CheckedPose(all_found[-1], beside, elsewhere, steps, evaluations)
+    return CheckedPose(all_found[-1], way, elsewhere, steps, evaluations)
 
 
 def parts(found: FoundPose, way: Array) -> tuple[Array, Array]:

@@ -13,7 +13,7 @@ from heuncli.linearisation.indifference import indifference
 from heuncli.mechanism.model import Mechanism
 from heuncli.records import record, replace
 from heuncli.rest.digits import beside
-from heuncli.rest.finer import CheckedPose, checked
+from heuncli.rest.finer import CheckedPose, checked, left_by_the_way
 from heuncli.rest.pose import bearing
 from heuncli.rest.rest_check import require_still
 from heuncli.rest.search import RestSearch
@@ -66,7 +66,7 @@ def at_rest(scene: PreparedScene, runner: Runner) -> tuple[PreparedScene, Runner
     require_still(again, found.coordinates, bearing(again, found.coordinates, 0.0, layout.y0))
     rest = Rest(
         steps=both.steps, evaluations=both.evaluations, seconds=time.perf_counter() - begun,
-        beside=(*states, *both.beside), told=tuple(sentences(scene.mechanism, own)),
+        beside=(*states, *left_by_the_way(runner, found, both.way)), told=tuple(sentences(scene.mechanism, own)),
         warnings=(*unstable(own), *ridge(layout, both)),
     )  # fmt: skip
     return replace(scene, layout=layout), again, rest
