@@ -19,6 +19,7 @@ if not cython.compiled:
     from heuncli.kernel.attitudes import weigh_in_chart
     from heuncli.kernel.collocation import estimate, estimate_again
     from heuncli.kernel.dense import combine
+    from heuncli.kernel.held import take_off_held
     from heuncli.kernel.scene import Group, Scene
     from heuncli.kernel.shadow import cython
     from heuncli.kernel.stepping import Method, Run
@@ -176,6 +177,12 @@ def explicit_error(
     if method.attitude:
         weigh_in_chart(scene, method.attitude, run.chart.y, run.coarse)
         weigh_in_chart(scene, method.attitude, run.chart.y, run.fine)
+    return free_error(scene, method, run)
+
+
+def free_error(scene: cython.pointer[Scene], method: cython.pointer[Method], run: cython.pointer[Run]) -> cython.double:
+    """Error but for the rounding that contacts hold, 1 = just allowed; not a number where one is not."""
+    take_off_held(scene, method, run)
     return step_error(scene, method, run)
 
 
@@ -186,10 +193,10 @@ def implicit_error(
     if not run.newton.solved:
         return pow(UNSOLVED_ERROR, 1.0 / method.exponent)
     estimate(method, run, run.K[0])
-    error: cython.double = step_error(scene, method, run)
+    error: cython.double = free_error(scene, method, run)
     if not error <= 1.0:
         estimate_again(scene, method, run)
-        error = step_error(scene, method, run)
+        error = free_error(scene, method, run)
     return error
 
 

@@ -34,6 +34,7 @@ MODULES = (
     "contacts",
     "landing",
     "following",
+    "held",
     "stages",
     "stiffness",
     "linear",

@@ -159,6 +159,7 @@ class Closure(Record):
     rate: float
     gamma: float  # J Vdot + gamma = 0
     multiplier: float
+    terms: float  # size of the terms of J Vdot + gamma over a step, while a contact is closed
     demand: float  # what it asks of the answer: J V = -demand
     prescribed_rate: float
     prescribed_second: float  # of a driven length; of a blow the jump of its rate

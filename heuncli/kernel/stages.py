@@ -12,6 +12,7 @@ except ImportError:
 
 if not cython.compiled:
     from heuncli.kernel.dense import combine, evaluate_stage
+    from heuncli.kernel.held import clear_accelerations
     from heuncli.kernel.landing import see_stage
     from heuncli.kernel.scene import Scene
     from heuncli.kernel.shadow import cython
@@ -38,6 +39,7 @@ def take_stages(scene: cython.pointer[Scene], method: cython.pointer[Method], ru
             worst = trouble
         if run.seeing:
             see_stage(scene, run)
+        clear_accelerations(scene, method, run.K[s], s == 1)
     return worst
 
 

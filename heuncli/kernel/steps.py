@@ -33,6 +33,7 @@ if not cython.compiled:
     from heuncli.kernel.evaluator import value
     from heuncli.kernel.events import follow_angles, take_branches
     from heuncli.kernel.following import find_between, follow, is_determined, stand_here
+    from heuncli.kernel.held import clear_accelerations
     from heuncli.kernel.judging import (
         ACCEPTED,
         AGAIN,
@@ -105,6 +106,7 @@ def begin_piece(scene: cython.pointer[Scene], method: cython.pointer[Method], ru
     start_contacts(scene, run.t)
     if run.watching and pushed_at_once(scene, run):
         return ROPE_SLACK
+    clear_accelerations(scene, method, run.K[0], True)
     if run.determined:
         run.control.proposed = run.end - run.t
         if not is_determined(scene):
@@ -276,6 +278,7 @@ def attempt(scene: cython.pointer[Scene], method: cython.pointer[Method], run: c
         enter_slopes(scene, method, run, run.z, method.stages)
     if run.seeing:
         see_stage(scene, run)
+    clear_accelerations(scene, method, run.K[method.stages], method.stages == 1)
     if run.stiffness.after:
         estimate_swiftness(method, run)
     return worst if method.fixed and worst < trouble else trouble
@@ -381,7 +384,7 @@ def accept(scene: cython.pointer[Scene], method: cython.pointer[Method], run: cy
     pivot: cython.double = scene.pivot_of_step
     turns: cython.bint = scene.held_count > 0 and turn_branches(scene, run)
     if scene.closure_count:
-        code = land(scene, run)
+        code = land(scene, method, run)
         run.control.pivot_at_start = scene.pivot
     elif turns:
         evaluate(scene, clipped(run, run.t), run.y, run.K[0])
@@ -447,7 +450,7 @@ def turn_branches(scene: cython.pointer[Scene], run: cython.pointer[Run]) -> cyt
     return changed
 
 
-def land(scene: cython.pointer[Scene], run: cython.pointer[Run]) -> cython.int:
+def land(scene: cython.pointer[Scene], method: cython.pointer[Method], run: cython.pointer[Run]) -> cython.int:
     """Bring the end of a step back onto the closures, with its derivative; CLOSURES_LOST where they cannot be held."""
     t: cython.double = clipped(run, run.t)
     gap: cython.double = settle_evaluated(scene, t, run.y) if stands_at_end(scene, run) else settle(scene, t, run.y)
@@ -460,6 +463,7 @@ def land(scene: cython.pointer[Scene], run: cython.pointer[Run]) -> cython.int:
         return CLOSURES_LOST
     evaluate_settled(scene, t, run.y, run.K[0])
     start_contacts(scene, t)
+    clear_accelerations(scene, method, run.K[0], True)
     run.evaluations += 2
     return REACHED
 
