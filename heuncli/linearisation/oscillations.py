@@ -88,8 +88,9 @@ def without_rates(system: ReducedEquations, loose: Loose) -> list[Row]:
     """x'' + K x = 0: l^2 = -k of the eigenvalues k of K."""
     K = -system.A21
     rounding = tolerances.EIGENVALUE * len(K) * max(norm(K), system.terms)
-    rows: list[Row] = [(0j, float(np.sqrt(loose.unsure)), x, True) for x in loose.right.T]
-    taken, rest = completed(sooner_or_later(loose))
+    all_taken = sooner_or_later(loose)
+    rows: list[Row] = [(0j, float(np.sqrt(loose.unsure)), x, True) for x in all_taken.T]
+    taken, rest = completed(all_taken)
     if not rest.shape[1]:
         return rows
     B = rest.T @ K @ rest

@@ -13,7 +13,7 @@ from heuncli import tolerances
 from heuncli.integration.evaluator import Recovered
 from heuncli.linearisation.indifference import Indifference, loose
 from heuncli.linearisation.linearise import Linearised
-from heuncli.linearisation.oscillations import oscillations, stiffnesses
+from heuncli.linearisation.oscillations import oscillations, sooner_or_later, stiffnesses
 from heuncli.linearisation.reduced_equations import reduced
 from heuncli.records import record
 from heuncli.rest.coordinates import Coordinates
@@ -37,7 +37,8 @@ class Stability:
     least: the least eigenvalue of stiffness over inertia of what is held, or pushed off [1/s^2]; slowest: what moves in
     it, "" where nothing does; frequency: of the slowest small oscillation [Hz], 0 where nothing swings.
     motions: how many there are, free of closures; indifferent: those that nothing holds; flat: those that it is so to
-    first order alone, what bends holds them, or pushes them off.
+    first order alone, what bends holds them, or pushes them off; edge: those that, moved aside, push what nothing
+    holds: stiffness may lose them where forces follow what they move.
     """
 
     growth: float
@@ -48,6 +49,7 @@ class Stability:
     motions: int
     indifferent: tuple[Motion, ...]
     flat: tuple[Motion, ...]
+    edge: tuple[Motion, ...]
 
 
 def stability(
@@ -72,6 +74,7 @@ def stability(
         motions=system.count,
         indifferent=motions(coordinates, own[:, massive & ~bends]),
         flat=motions(coordinates, own[:, massive & bends]),
+        edge=motions(coordinates, system.tangent @ sooner_or_later(nothing)[:, nothing.right.shape[1] :]),
     )
 
 

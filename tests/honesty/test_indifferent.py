@@ -94,3 +94,37 @@ def test_a_joint_that_is_held_by_itself_and_free_in_step() -> None:
     assert first.startswith("stable but for what is indifferent: the least eigenvalue") and " is 15 1/s²" in first
     assert second.startswith("indifferent: joints.j0 and joints.j1 moved together as 1 : -0.5, which nothing holds")
     assert "(joints.j1 by itself is held)" in second
+
+
+@pytest.mark.parametrize(("thrust", "on_edge"), [(19.0, False), (20.0, True), (21.0, False)])
+def test_a_follower_force_at_the_edge(thrust: float, on_edge: bool) -> None:
+    """Two bars in line on a free carriage, pushed along the last one: at twice the stiffness of their springs by 1 m
+    M^-1 K has a double eigenvalue 0 with one vector; below all swings, beyond a motion leaves the line."""
+    bar = {
+        "mass": 1.0,
+        "center": [0.5, 0, 0],
+        "inertia": [0.01, 0.08, 0.08],
+        "points": {"a": [0, 0, 0], "e": [1, 0, 0]},
+    }
+    cart = {"mass": 1.0, "center": [0, 0, 0], "inertia": [1, 1, 1], "points": {"a": [0, 0, 0]}}
+    scene = {
+        "ground": {"points": {"O": [0, 0, 0]}},
+        "bodies": {"c": cart, "p": bar, "q": {**bar, "position": [1, 0, 0]}},
+        "joints": {
+            "r": {"type": "slide", "axis": [0, 0, 1], "from": "ground.O", "to": "c.a"},
+            "u": {"type": "pin", "axis": [0, 1, 0], "from": "c.a", "to": "p.a"},
+            "v": {"type": "pin", "axis": [0, 1, 0], "from": "p.e", "to": "q.a"},
+        },
+        "forces": {
+            "s": {"type": "turn_spring", "joint": "u", "stiffness": 10.0},
+            "w": {"type": "turn_spring", "joint": "v", "stiffness": 10.0},
+            "f": {"type": "force", "on": "q.e", "vector": [-thrust, 0, 0], "frame": "body"},
+        },
+        "analysis": {"type": "rest"},
+    }
+    sentences = solved(scene).model["rest"]
+    assert sentences[0].startswith("unstable" if thrust > 20.0 else "stable but for what is indifferent")
+    assert sentences[1].startswith("indifferent: joints.r,")
+    assert any("at the edge of stability: joints.u and joints.v" in sentence for sentence in sentences) == on_edge
+    free = [mode for mode in modes(load("scene.yaml", to_yaml(scene))).modes if mode.kind == "free"]
+    assert len(free) == 1 + on_edge

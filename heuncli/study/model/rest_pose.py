@@ -77,7 +77,7 @@ def sentences(mechanism: Mechanism, own: Stability) -> list[str]:
     drives = some([f"drives.{name}" for name in going_on(mechanism)])
     told = [f"at rest in the frame that goes along with {drives}"] if drives else []
     least = f"the least eigenvalue of stiffness over inertia is {own.least:.4g} 1/s² ({own.slowest})"
-    loose = own.indifferent + own.flat
+    loose = own.indifferent + own.flat + own.edge
     if own.growth > 0.0:
         told.append(f"unstable: {own.grows} leaves it by exp({own.growth:.4g} t); {least}")
     elif own.slowest:
@@ -88,6 +88,10 @@ def sentences(mechanism: Mechanism, own: Stability) -> list[str]:
     if own.indifferent:
         what = f"{listed(own.indifferent)}, which nothing holds or pushes{by_itself(own)}"
         told.append(f"indifferent: {what}; where along it is by the way it came")
+    if own.edge:
+        told.append(
+            f"at the edge of stability: {listed(own.edge)}, which moved aside sets going what nothing brings back"
+        )
     if own.flat:
         told.append(f"indifferent to first order: {listed(own.flat)}, which what bends alone holds or pushes off")
     return told
