@@ -18,6 +18,7 @@ MOST_STEPS = 6_000
 MOST_SWITCHES = 200
 SLOW = 1e-8  # of the first acceleration: then Newton's steps are tried
 NEAR = 1e-6  # how far they may lead
+DRAWN = 1e-12  # how near a start is to an unstable pose that is drawn in it
 FAR = 150.0  # rad or m
 FLAT = 1e-9  # of the largest eigenvalue: what is indifferent
 
@@ -104,7 +105,7 @@ class Flow:
         flow = LSODA(self.law, 0.0, self.y, np.inf, rtol=self.rtol, atol=ATOL)
         a, lam, at = self.answer(self.y)
         due = 0
-        found = self.at_rest(a)
+        found = self.at_rest()
         if found is not None:
             return found
         while True:
@@ -127,7 +128,7 @@ class Flow:
                 raise NoRest("does not end")
             due -= 1
             if size < SLOW * self.first and due <= 0:
-                found = self.at_rest(a)
+                found = self.at_rest()
                 if found is not None:
                     return found
                 due = 10
@@ -157,7 +158,7 @@ class Flow:
         return True
 
     # ---- the pose itself ----------------------------------------------------------------------------------------
-    def at_rest(self, a: Vector) -> Rest | None:
+    def at_rest(self) -> Rest | None:
         """The rest pose next to y, if y is that near to one that holds it; None else."""
         eq, bears = self.eq, self.bears
         y = self.y.astype(np.longdouble)
@@ -180,7 +181,7 @@ class Flow:
                 break
         values = np.linalg.eigvals(A) if len(A) else np.zeros(0)
         size = float(np.abs(values).max(initial=0.0))
-        if self.steps and (values.real > FLAT * size).any() and (np.abs(a) > 1e-13 * self.first).any():
+        if (values.real > FLAT * size).any() and off > DRAWN:
             return None  # the flow passes by
         at = eq.pushed_at(y)
         slack = np.delete(at.gaps, bears)
