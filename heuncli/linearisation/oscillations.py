@@ -100,7 +100,7 @@ def without_rates(system: ReducedEquations, loose: Loose) -> list[Row]:
     else:
         values, vectors, condition = eigenvalues(B)
         errors = condition * rounding
-    for k, error, v in zip(values, errors, whole(K, taken, rest, values, vectors).T, strict=True):
+    for k, error, v in zip(values, errors, whole(K, taken, rest, values, vectors, errors).T, strict=True):
         rows += roots(complex(k), float(error), v)
     return rows
 
@@ -165,9 +165,9 @@ def with_rates(system: ReducedEquations, loose: Loose) -> list[Row]:
     if not rest.shape[1]:
         return rows
     values, vectors, condition = eigenvalues(rest.T @ A @ rest)
-    shapes = whole(A, taken, rest, values, vectors)[:f]
-    for value, c, x in zip(values, condition, shapes.T, strict=True):
-        error = float(c * rounding)
+    errors = condition * rounding
+    shapes = whole(A, taken, rest, values, vectors, errors)[:f]
+    for value, error, x in zip(values, errors.tolist(), shapes.T, strict=True):
         if abs(value.imag) <= error:  # a double root, at the aperiodic limit, is split by rounding
             rows.append((complex(value.real), error, x, False))
         elif value.imag > 0.0:
@@ -200,20 +200,27 @@ def unit(columns: Array) -> Array:
 
 
 def completed(columns: Array) -> tuple[Array, Array]:
-    """Orthonormal bases of what columns span, which are independent, and of what is left."""
+    """Orthonormal bases of what columns span, which are independent, the first m of what the first m do; of the rest."""
     n, m = columns.shape
-    U = np.linalg.svd(columns, full_matrices=True)[0] if m else np.eye(n)
-    return U[:, :m], U[:, m:]
+    Q = np.linalg.qr(columns, mode="complete")[0] if m else np.eye(n)
+    return Q[:, :m], Q[:, m:]
 
 
-def whole(A: Array, taken: Array, rest: Array, values: Array, vectors: Array) -> Array:
-    """Eigenvectors of A from those of its quotient: what they have of the subspace taken out follows."""
+def whole(A: Array, taken: Array, rest: Array, values: Array, vectors: Array, errors: Array) -> Array:
+    """Eigenvectors of A from those of its quotient: what they have of the subspace taken out follows.
+
+    (k - N) y = T' A v,  N = T' A T: A takes each column of T to those before it, so N is zero on and below its diagonal.
+    Of a k that may be 0 there is no such part: it cannot be told from what was taken out.
+    """
     found = rest @ vectors
     if not taken.shape[1]:
         return found
-    inside, across = taken.T @ A @ taken, taken.T @ A @ rest
-    one = np.eye(len(inside))
-    parts = [np.linalg.solve(k * one - inside, across @ v) for k, v in zip(values, vectors.T, strict=True)]
+    N, across = np.triu(taken.T @ A @ taken, 1), taken.T @ A @ rest
+    one = np.eye(len(N))
+    parts = [
+        np.linalg.solve(k * one - N, across @ v) if abs(k) > error else np.zeros(len(N))
+        for k, v, error in zip(values, vectors.T, errors, strict=True)
+    ]
     return np.asarray(found + taken @ np.array(parts).T)
 
 

@@ -53,12 +53,14 @@ class Directions:
         """h phi(h A) c in X's coordinates, (f,), by phi_1(x) = (e^x - 1)/x, phi_k+1(x) = (phi_k(x) - 1/k!)/x.
 
         Of order 1 it is how far dz/ds = c + A z leads in s = h; of order k, times (k - 1)!, where c grows as
-        (s/h)^(k - 1).
+        (s/h)^(k - 1). Not finite if it grows beyond all numbers.
         """
         g = self.alone
-        x = h * self.eigenvalues[:g]
-        x = np.where(x.real > MOST_GROWTH, MOST_GROWTH, x)
-        return np.concatenate([h * phi(x, order) * c[:g], led_together(self.B, h, c[g:].real, order)])
+        with np.errstate(over="ignore", invalid="ignore"):
+            x = h * self.eigenvalues[:g]
+            x = np.where(x.real > MOST_GROWTH, MOST_GROWTH, x)
+            alone = h * phi(x, order) * c[:g]
+        return np.concatenate([alone, led_together(self.B, h, c[g:].real, order)])
 
     def softened(self, c: Array, known: Array) -> Array:
         """-A^-1 c in X's coordinates, along what is more than is known of the eigenvalues; of B, by singular values."""

@@ -8,6 +8,7 @@ from heuncli import tolerances
 from heuncli.errors import SolveError
 from heuncli.integration.evaluator import Evaluator
 from heuncli.kinetostatics.bodies import body_states
+from heuncli.records import replace
 from heuncli.rest.coordinates import Coordinates, resting, rounding_of
 from heuncli.rest.pose import Pose
 from heuncli.rest.reasons import no_rest
@@ -30,6 +31,9 @@ def require_still(evaluator: Evaluator, coordinates: Coordinates, at: Pose) -> N
         looked_at[:] = False
         looked_at[coordinates.numbers] = True
     terms = rounding(evaluator, coordinates, at) + np.abs(of_springs(evaluator, coordinates, at)).sum(axis=1)
+    if at.holding.any():
+        # what closed contacts carry cancels in the accelerations, too: it is seen where they let go
+        terms = terms + rounding(evaluator, coordinates, replace(at, holding=np.zeros_like(at.holding)))
     by = np.array([rounding_of(coordinates, at.state, k) for k in range(BESIDE)])
     beside = coordinates.displaced(np.repeat(at.state[None, :], BESIDE, axis=0), by)
     moved = resting(evaluator, at.t, beside, at.holding)

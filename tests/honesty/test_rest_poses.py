@@ -10,10 +10,15 @@ from tests.shared.rest_scenes import KINDS, drawn
 QUICK = 1e-8  # of the flow: which pose it comes to; the pose itself is exact
 # two ropes, or limits of a rod, that hold where they stand far open at the start: their rows were left out
 FAR_OPEN = [("ropes", 21), ("stops", 1143), ("stops", 1265), ("stops", 1670)]
+# spins that nothing holds beside friction that makes motions creep: their eigenvalues were taken for one
+CREEPING = [("friction", 100309), ("friction", 100583)]
+# what a stop carries in a turning frame leaves rounding, of which no load makes anything beside the stop
+CARRIED = [("drives", 100229)]
+SPECIAL = [*FAR_OPEN, *CREEPING, *CARRIED]
 
 
 @pytest.mark.heavy
-@pytest.mark.parametrize(("kind", "seed"), [*((kind, seed) for kind in KINDS for seed in range(10)), *FAR_OPEN])
+@pytest.mark.parametrize(("kind", "seed"), [*((kind, seed) for kind in KINDS for seed in range(10)), *SPECIAL])
 def test_the_damped_motion_comes_to_it(kind: str, seed: int) -> None:
     """The same pose within what is stated of it, stable where that says so; no rest where it comes to none."""
     scene = drawn(kind, seed)
