@@ -200,7 +200,7 @@ def unit(columns: Array) -> Array:
 
 
 def completed(columns: Array) -> tuple[Array, Array]:
-    """Orthonormal bases of what columns span, which are independent, the first m of what the first m do; of the rest."""
+    """Orthonormal bases of what columns span, which are independent (the first m what the first m do), of the rest."""
     n, m = columns.shape
     Q = np.linalg.qr(columns, mode="complete")[0] if m else np.eye(n)
     return Q[:, :m], Q[:, m:]
@@ -209,7 +209,7 @@ def completed(columns: Array) -> tuple[Array, Array]:
 def whole(A: Array, taken: Array, rest: Array, values: Array, vectors: Array, errors: Array) -> Array:
     """Eigenvectors of A from those of its quotient: what they have of the subspace taken out follows.
 
-    (k - N) y = T' A v,  N = T' A T: A takes each column of T to those before it, so N is zero on and below its diagonal.
+    (k - N) y = T' A v,  N = T' A T: A takes each column of T to those before it: N is 0 on and below its diagonal.
     Of a k that may be 0 there is no such part: it cannot be told from what was taken out.
     """
     found = rest @ vectors
