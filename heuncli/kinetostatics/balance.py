@@ -2,7 +2,9 @@
 
     r = Σ k + m g − m ẍ,   R = Σ [(x − x_s) × k + couples] − (I σ̇ + σ × I σ)     about the centre of mass
 k: applied forces, joints and drives on the body. The residual is relative to the body's largest load, the inertia loads
-of its pieces among them: a rotor that spins about its centre has no others.
+of its pieces among them: a rotor that spins about its centre has no others. A body that an instant or a blow reaches by
+rounding alone has no load of its own: there it is relative to the least load that rounding of the instant's largest one
+leaves certain.
 """
 
 from __future__ import annotations
@@ -11,6 +13,7 @@ from collections.abc import Sequence
 
 import numpy as np
 
+from heuncli import tolerances
 from heuncli.kinetostatics.actions import Action
 from heuncli.kinetostatics.bodies import BodyStates
 from heuncli.kinetostatics.foundation import inertia_loads
@@ -23,7 +26,11 @@ AT_ONCE = 100_000  # instants times actions that are added up together
 
 
 def balance_residual(mechanism: Mechanism, states: BodyStates, actions: Sequence[Action], size: float) -> float:
-    """Largest residual of any body, relative to its largest load; moments are divided by `size` [m]."""
+    """Largest residual of any body, relative to its largest load; moments are divided by `size` [m].
+
+    What rounding of the instant's largest load makes, added up from body to body, stays below UNBALANCED, however little
+    the body bears itself.
+    """
     ma, spin = inertia_loads(mechanism, states)
     weight = np.array([b.mass for b in mechanism.bodies])[:, None] * mechanism.gravity
     force, moment = weight - ma, -spin
@@ -44,5 +51,7 @@ def balance_residual(mechanism: Mechanism, states: BodyStates, actions: Sequence
     if mechanism.planar:
         force, moment = in_plane(force, moment)
     residual = np.maximum(np.sqrt(np.sum(force**2, axis=2)), np.sqrt(np.sum(moment**2, axis=2)) / size)
-    scale = np.where(largest > 0.0, largest, 1.0)
+    rounding = tolerances.SUM_ROUNDING * len(mechanism.bodies) * largest.max(axis=1, keepdims=True, initial=0.0)
+    scale = np.maximum(largest, rounding / tolerances.UNBALANCED)
+    scale[scale == 0.0] = 1.0
     return float((residual / scale).max(initial=0.0))
