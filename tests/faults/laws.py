@@ -19,11 +19,12 @@ from heuncli.spec.load import load
 from heuncli.study.ask.study import Study
 from heuncli.study.model.options import Options
 from heuncli.study.workflow import solve
-from tests.faults import mild, retell, sources
+from tests.faults import mild, sources
 from tests.faults.agree import apart, beyond_peaks, growing, kept, state_at, turning
 from tests.faults.outcome import peak
-from tests.faults.retell import NotTold
 from tests.faults.sources import Tree
+from tests.shared import retell
+from tests.shared.retell import NotTold
 
 LIMIT = 5.0  # seconds of a run
 SEVERAL = 0.3  # of the scenes so many are random ones, the others the repository's

@@ -1,4 +1,4 @@
-"""A spec told otherwise, as a tree of text and numbers: the world turned, everything faster, another order, later.
+"""A spec told otherwise, as a tree of text and numbers: turned, mirrored, in other units, faster, renamed, reordered.
 
 What a way of telling does not know how to tell raises NotTold. Numbers with units become parameters, so that they may
 stand in expressions.
@@ -10,16 +10,16 @@ import copy
 import re
 from collections.abc import Callable, Iterator, Mapping
 from random import Random
-from typing import Any
+from typing import Any, TypeAlias
 
 import numpy as np
 
-from tests.faults.sources import Tree
 from tests.oracle.turns import Array
 
+Tree: TypeAlias = Any  # mappings, lists, numbers and words
 WITH_UNIT = re.compile(r"\s*[-+]?(\d+\.?\d*|\.\d+)([eE][-+]?\d+)?\s*[A-Za-z°µ%].*\Z")
 TIME = re.compile(r"(?<![\w.])t(?![\w.])")
-RATES = re.compile(r"(?<![\w.])([A-Za-z]\w*\.(?:rate|speed))(?!\w)")
+COORDINATE = re.compile(r"(?<![\w.])([A-Za-z]\w*)\.(rate|speed|travel)(?!\w)")
 E1 = [0.36, -0.48, 0.8]  # e1 of sections that leave it to the body's axes, which turn
 
 
@@ -98,18 +98,26 @@ def conjugated(Q: Array, M: Any) -> list[list[Any]]:
     return [combined(Q, [left[k][i] for k in range(3)]) for i in range(3)]
 
 
+AXIAL = {"angular_velocity", "couple"}  # keys of vectors that a mirror turns the other way round as well
+POLAR_AXES = ("slide", "line")  # joints whose axis is a direction to slide; a pin's is a sense of turning
+
+
 def turned(tree: Tree, Q: Array) -> Tree:
-    """World and bodies' axes turned by Q: every vector v is Q v, every attitude R is Q R Qᵀ."""
-    tree = copy.deepcopy(tree)
+    """World and bodies' axes turned by Q: every vector v is Q v, every attitude R is Q R Qᵀ.
+
+    Where det Q is -1 the scene is mirrored: axial vectors v are -Q v, angles and travels stay.
+    """
+    tree, det = copy.deepcopy(tree), float(np.sign(np.linalg.det(Q)))
     if tree.get("space", "auto") == "planar":
         raise NotTold("planar")
 
-    def turn(box: Any, *keys: str) -> None:
+    def turn(box: Any, *keys: str, axial: bool = False) -> None:
         for key in keys:
+            way = det * Q if axial or key in AXIAL else Q
             if isinstance(box.get(key), list):
-                box[key] = combined(Q, box[key])
+                box[key] = combined(way, box[key])
             elif isinstance(box.get(key), dict) and "vector" in box[key]:
-                box[key]["vector"] = combined(Q, box[key]["vector"])
+                box[key]["vector"] = combined(way, box[key]["vector"])
             elif isinstance(box.get(key), dict) and "at" in box[key]:
                 turn(box[key], "at")
 
@@ -117,7 +125,7 @@ def turned(tree: Tree, Q: Array) -> Tree:
     for _, body in [("ground", tree.get("ground", {})), *entries(tree, "bodies")]:
         turn(body, "center", "position", "velocity", "angular_velocity")
         turn(body.get("points", {}), *body.get("points", {}))
-        _turn_mass(body, Q, turn)
+        _turn_mass(body, Q)
         for pose in (body, body.get("near", {})):
             turn(pose, "position") if pose is not body else None
             if "orientation" in pose:
@@ -127,24 +135,32 @@ def turned(tree: Tree, Q: Array) -> Tree:
             if shape.get("type") == "box":
                 if "orientation" in shape:
                     raise NotTold("a box that is turned")
-                shape["orientation"] = {"matrix": Q.tolist()}
+                shape["orientation"] = {"matrix": (det * Q).tolist()}
     for _, joint in entries(tree, "joints"):
-        turn(joint, "from", "to", "axis", "to_axis", "normal")
+        if det < 0.0 and joint.get("type") == "cylinder":
+            raise NotTold("an axis with two senses")
+        turn(joint, "from", "to", "normal")
+        turn(joint, "axis", "to_axis", axial=joint.get("type") not in POLAR_AXES)
         if isinstance(joint.get("stiffness"), dict) and any(isinstance(s, list) for s in joint["stiffness"].values()):
             raise NotTold("stiffness by direction")
     for block in ("forces", "impulses"):
         for _, load in entries(tree, block):
-            turn(load, "from", "to", "on", "vector", "to_vector", "couple")
+            turn(load, "from", "to", "on", "vector", "to_vector", "couple", axial=load.get("type") == "couple")
     for _, cut in entries(tree, "sections"):
         turn(cut, "at", "from", "to", "normal", "first_axis", "reduce_to")
         if "piece" in cut:
             turn(cut["piece"], "center")
-            _turn_mass(cut["piece"], Q, turn)
+            _turn_mass(cut["piece"], Q)
     turn(tree.get("foundation", {}), "about")
+    if any(isinstance(what, dict) and str(what.get("of"))[-2:] in COMPONENTS for what in _conditions(tree)):
+        raise NotTold("a condition on a component")
     return tree
 
 
-def _turn_mass(body: dict[str, Any], Q: Array, turn: Callable[..., None]) -> None:
+COMPONENTS = {".x", ".y", ".z", ".0", ".1", ".2"}
+
+
+def _turn_mass(body: dict[str, Any], Q: Array) -> None:
     inertia = body.get("inertia")
     if inertia is None:
         return
@@ -157,13 +173,14 @@ def _turn_mass(body: dict[str, Any], Q: Array, turn: Callable[..., None]) -> Non
 
 def turned_attitude(Q: Array, told: Mapping[str, Any]) -> dict[str, Any]:
     """Q R Qᵀ of an attitude."""
+    axial = float(np.sign(np.linalg.det(Q))) * Q
     match dict(told):
         case {"axis": axis, "angle": angle}:
-            return {"axis": combined(Q, axis), "angle": angle}
+            return {"axis": combined(axial, axis), "angle": angle}
         case {"quaternion": [w, *v]}:
-            return {"quaternion": [w, *combined(Q, v)]}
+            return {"quaternion": [w, *combined(axial, v)]}
         case {"rodrigues": v}:
-            return {"rodrigues": combined(Q, v)}
+            return {"rodrigues": combined(axial, v)}
         case {"matrix": M}:
             return {"matrix": conjugated(Q, M)}
     raise NotTold("Euler's angles")
@@ -177,47 +194,106 @@ def with_first_axes(tree: Tree) -> Tree:
     return tree
 
 
-# powers of c by which numbers grow where everything goes c times as fast: Heun's k -> c² k with σ -> c σ
-FASTER: dict[str, dict[str, int]] = {
-    "force": {"vector": 2}, "couple": {"vector": 2}, "torque": {"value": 2}, "actuator": {"value": 2},
-    "spring": {"stiffness": 2, "damping": 1}, "turn_spring": {"stiffness": 2, "damping": 1},
-    "damper": {"coefficient": 1, "sliding": 1}, "friction": {"torque": 2, "force": 2, "speed": 1},
-    "distributed": {"vector": 2, "to_vector": 2},
+Powers = tuple[int, int, int]  # of mass, length, time
+MASS, LENGTH, SPEED, FORCE, MOMENT = (1, 0, 0), (0, 1, 0), (0, 1, -1), (1, 1, -2), (1, 2, -2)
+TIME_ITSELF, RATE, NOTHING, INERTIA = (0, 0, 1), (0, 0, -1), (0, 0, 0), (1, 2, 0)
+THRUST_DAMPING, TORQUE_DAMPING, PER_LENGTH = (1, 0, -1), (1, 2, -1), (1, 0, -2)
+SHAPE = {
+    **dict.fromkeys(("from", "to", "center", "at", "size", "radius", "inner_radius", "to_radius"), LENGTH),
+    "mass": MASS, "density": (1, -3, 0), "line_density": (1, -1, 0),
 }  # fmt: skip
+BODY = {
+    "mass": MASS, "center": LENGTH, "inertia": INERTIA, "deviation": INERTIA, "position": LENGTH, "velocity": SPEED,
+    "angular_velocity": RATE,
+}  # fmt: skip
+COORDINATES = {"angle": NOTHING, "rate": RATE, "travel": LENGTH, "speed": SPEED, "length": LENGTH}
+IMPULSE = {"vector": (1, 1, -1), "couple": (1, 2, -1), "time": TIME_ITSELF}
+ANALYSIS = dict.fromkeys(("duration", "times", "step"), TIME_ITSELF)
+ENDS = dict.fromkeys(("from", "to", "on", "at", "reduce_to"), LENGTH)
+# of loads along a line, and of those about an axis, which differ where a joint may slide or turn
+SLIDING: dict[str, dict[str, Powers]] = {
+    "force": {"vector": FORCE}, "couple": {"vector": MOMENT}, "torque": {"value": FORCE}, "actuator": {"value": FORCE},
+    "spring": {"stiffness": PER_LENGTH, "damping": THRUST_DAMPING, "length": LENGTH},
+    "damper": {"coefficient": THRUST_DAMPING}, "friction": {"force": FORCE, "speed": SPEED},
+    "distributed": {"vector": PER_LENGTH, "to_vector": PER_LENGTH, "from": LENGTH, "to": LENGTH},
+}  # fmt: skip
+TURNING: dict[str, dict[str, Powers]] = SLIDING | {
+    "torque": {"value": MOMENT}, "turn_spring": {"stiffness": MOMENT, "damping": TORQUE_DAMPING},
+    "damper": {"coefficient": TORQUE_DAMPING, "sliding": THRUST_DAMPING},
+    "friction": {"torque": MOMENT, "force": FORCE, "speed": RATE},
+}  # fmt: skip
+SLIDES = ("slide", "line", "plane")
+
+
+def in_units(tree: Tree, mass: float = 1.0, length: float = 1.0, time: float = 1.0) -> Tree:
+    """The same in units of which the old ones are so many: a mass of 1 is called `mass`, and so on."""
+    tree = copy.deepcopy(tree)
+
+    def tell(box: Any, table: Mapping[str, Powers]) -> None:
+        for key, (m, l, t) in table.items():
+            if key in box and not (key in ENDS and isinstance(box[key], str)):
+                box[key] = _times(mass**m * length**l * time**t, box[key])
+
+    in_expressions(tree, lambda word: _in_old_units(word, length, time))
+    tell(tree, {"gravity": (0, 1, -2)})
+    for _, body in [("ground", tree.get("ground", {})), *entries(tree, "bodies")]:
+        tell(body, BODY)
+        tell(body, {"points": LENGTH})
+        tell(body.get("near", {}), {"position": LENGTH})
+        for shape in body.get("shapes", []):
+            tell(shape, SHAPE)
+    for _, joint in entries(tree, "joints"):
+        if "stiffness" in joint and (mass, length) != (1.0, 1.0):
+            raise NotTold("stiffness of a joint")
+        tell(joint, {**ENDS, "length": LENGTH})
+        tell(joint.get("initial", {}), COORDINATES)
+    for block in ("drives", "stops"):
+        for _, entry in entries(tree, block):
+            tell(entry, COORDINATES)
+    for _, load in entries(tree, "forces"):
+        slides = tree["joints"].get(load.get("joint"), {}).get("type") in SLIDES
+        table = (SLIDING if slides else TURNING).get(str(load.get("type")), {})
+        tell(load, table)
+        tell(load, {key: powers for key, powers in ENDS.items() if key not in table})
+    for _, blow in entries(tree, "impulses"):
+        tell(blow, {**IMPULSE, "on": LENGTH})
+    for _, cut in entries(tree, "sections"):
+        cut.pop("strength", None)
+        if "properties" in cut and length != 1.0:
+            raise NotTold("a cross-section")
+        tell(cut, ENDS)
+        tell(cut.get("piece", {}), BODY)
+    tell(tree.get("foundation", {}), {"about": LENGTH})
+    if any(isinstance(value, dict) and "of" in value for value in _conditions(tree)):
+        raise NotTold("a condition on results")
+    tell(tree.get("analysis", {}), ANALYSIS)
+    return tree
+
+
+def _times(factor: float, value: Any) -> Any:
+    """Numbers and expressions many times, also in vectors, limits, named places and {body, at}."""
+    if isinstance(value, dict):
+        return {k: v if k in ("body", "frame") else _times(factor, v) for k, v in value.items()}
+    if isinstance(value, list):
+        return [_times(factor, v) for v in value]
+    return value if value is None else times(factor, value)
+
+
+def _in_old_units(word: str, length: float, time: float) -> str:
+    """An expression whose time and coordinates are told in new units."""
+    of = {"rate": 1.0 / time, "speed": length / time, "travel": length}
+
+    def coordinate(found: re.Match[str]) -> str:
+        factor = of[found[2]]
+        return found[0] if factor == 1.0 else f"({found[0]}/{factor!r})"
+
+    word = word if time == 1.0 else TIME.sub(f"(t/{time!r})", word)
+    return COORDINATE.sub(coordinate, word)
 
 
 def faster(tree: Tree, c: float) -> Tree:
-    """Everything c times as fast, and loads c² times as large."""
-    tree = copy.deepcopy(tree)
-
-    def grow(box: Any, power: int, *keys: str) -> None:
-        for key in keys:
-            value = box.get(key)
-            if isinstance(value, dict) and "vector" in value:
-                grow(value, power, "vector")
-            elif value is not None:
-                box[key] = [times(c**power, v) for v in value] if isinstance(value, list) else times(c**power, value)
-
-    in_expressions(tree, lambda word: TIME.sub(f"({c!r}*t)", RATES.sub(rf"(\1/{c!r})", word)))
-    grow(tree, 2, "gravity")
-    for _, body in entries(tree, "bodies"):
-        grow(body, 1, "velocity", "angular_velocity")
-    for _, joint in entries(tree, "joints"):
-        grow(joint.get("initial", {}), 1, "rate", "speed")
-    for _, drive in entries(tree, "drives"):
-        grow(drive, 1, "rate", "speed")
-    for _, load in entries(tree, "forces"):
-        for key, power in FASTER.get(str(load.get("type")), {}).items():
-            grow(load, power, key)
-    for _, blow in entries(tree, "impulses"):
-        grow(blow, 1, "vector", "couple")
-        grow(blow, -1, "time")
-    for _, cut in entries(tree, "sections"):
-        cut.pop("strength", None)
-    if any(isinstance(value, dict) and "of" in value for value in _conditions(tree)):
-        raise NotTold("a condition on results")
-    grow(tree.get("analysis", {}), -1, "duration", "times", "step")
-    return tree
+    """Everything c times as fast, and loads c² times as large: Heun's k -> c² k with σ -> c σ."""
+    return in_units(tree, time=1.0 / c)
 
 
 def later(tree: Tree, by: float, state: Mapping[str, Mapping[str, Any]]) -> Tree:
@@ -297,6 +373,35 @@ def _shuffled(random: Random, box: dict[str, Any]) -> dict[str, Any]:
     keys = list(box)
     random.shuffle(keys)
     return {key: box[key] for key in keys}
+
+
+NAMED_BLOCKS = ("bodies", "joints", "drives", "forces", "impulses", "stops", "sections")
+
+
+def renamed(tree: Tree, random: Random) -> tuple[Tree, dict[str, str]]:
+    """The entries under other names and in another order, and the new names by the old."""
+    names = [name for block in NAMED_BLOCKS for name, _ in entries(tree, block)]
+    if len(set(names)) < len(names) or "tables" in tree:
+        raise NotTold("one name for two")
+    new = dict(zip(names, (f"{random.choice('aZkx')}n{k}" for k in random.sample(range(900), len(names))), strict=True))
+    words = re.compile(r"(?<![\w.])(?:" + "|".join(map(re.escape, names)) + r")(?![\w])|(?<=\.)(?:"
+                       + "|".join(map(re.escape, names)) + r")(?=\.)")  # fmt: skip
+
+    def told(key: str, value: Any) -> Any:
+        if isinstance(value, dict):
+            return {k: told(k, v) for k, v in value.items()}
+        if isinstance(value, list):
+            return [told(key, v) for v in value]
+        return words.sub(lambda found: new[found[0]], value) if isinstance(value, str) and key not in WORDS else value
+
+    other = {key: told(key, value) for key, value in copy.deepcopy(tree).items()}
+    for block in NAMED_BLOCKS:
+        if block in other:
+            other[block] = {new[name]: entry for name, entry in other[block].items()}
+    return reordered(other, random), new
+
+
+WORDS = frozenset({"type", "frame", "title", "side", "space"})  # keys whose words name nothing of the scene
 
 
 def turn_of(random: Random) -> Array:
