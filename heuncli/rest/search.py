@@ -210,8 +210,10 @@ class RestSearch:
         if self.doubt <= tolerances.REST_DOUBT and push <= self.turn.push:
             self.turn = Slowest(at.state, self.astray, push)
         grown = own.directions.led(way.h, own.inverse @ (own.A @ (own.back @ self.astray)))
-        with np.errstate(over="ignore", invalid="ignore"):
-            astray = self.astray + (own.T @ (own.V @ grown)).real + np.sqrt(off) * way.correction(way.h)
+        astray = self.astray + own.by_directions(grown) + np.sqrt(off) * way.correction(way.h)
+        if not np.isfinite(astray).all():
+            self.doubt = float(np.fmax(self.doubt, self.coordinates.size(astray)))
+            return
         weights = self.coordinates.weights
         along, grows = at.accelerations * weights, own.T @ (own.A @ (own.back @ at.accelerations)) * weights
         later = float((astray * weights) @ along / (along @ along))

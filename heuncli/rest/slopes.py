@@ -81,13 +81,17 @@ class Slopes:
 
     def way(self, h: float, c: Array | None = None) -> Array:
         """How far dq/ds = a leads in s = h, by the linear law, (n,): z = V h phi(h lambda) c, phi(x) = (e^x - 1)/x."""
-        z = self.V @ self.directions.led(h, self.left if c is None else c)
-        return np.asarray(self.T @ z.real)
+        return self.by_directions(self.directions.led(h, self.left if c is None else c))
+
+    def by_directions(self, z: Array) -> Array:
+        """The displacement (n,) of coordinates z (f,) of the directions; not finite if they are not."""
+        with np.errstate(over="ignore", invalid="ignore"):
+            return np.asarray(self.T @ (self.V @ z).real)
 
     def newton(self, accelerations: Array) -> Array:
         """The displacement (n,) that takes accelerations (n,) back, along all directions that are not indifferent."""
         c = self.along(accelerations)
-        return np.asarray(self.T @ (self.V @ self.directions.softened(c, self.known)).real)
+        return self.by_directions(self.directions.softened(c, self.known))
 
 
 def slopes(evaluator: Evaluator, coordinates: Coordinates, at: Pose) -> Slopes:

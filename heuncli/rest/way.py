@@ -31,8 +31,7 @@ class Way:
         """What d adds to it, (n,)."""
         if not self.d.any():
             return np.zeros(len(self.own.T))
-        z = self.own.V @ self.own.directions.led(s, 2.0 * (s / self.h) ** 2 * self.d, order=3)
-        return np.asarray(self.own.T @ z.real)
+        return self.own.by_directions(self.own.directions.led(s, 2.0 * (s / self.h) ** 2 * self.d, order=3))
 
     def bent(self, rates: Array, by: Array, accelerations: Array) -> Way:
         """The way with d, by the rates (n,) of its coordinates met behind a displacement (n,), and those before."""
