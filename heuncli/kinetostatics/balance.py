@@ -28,8 +28,8 @@ AT_ONCE = 100_000  # instants times actions that are added up together
 def balance_residual(mechanism: Mechanism, states: BodyStates, actions: Sequence[Action], size: float) -> float:
     """Largest residual of any body, relative to its largest load; moments are divided by `size` [m].
 
-    What rounding of the instant's largest load makes, added up from body to body, stays below UNBALANCED, however little
-    the body bears itself.
+    What rounding of the instant's largest load makes, added up from body to body, stays below UNBALANCED, however
+    little the body bears itself.
     """
     ma, spin = inertia_loads(mechanism, states)
     weight = np.array([b.mass for b in mechanism.bodies])[:, None] * mechanism.gravity
