@@ -33,6 +33,7 @@ class Linearised:
     by_rate: Array  # (n, n) d accelerations / d rates
     tangent: Array  # (n, f) orthonormal, by the layout's weights: displacements that the closures admit
     drift: Array  # (n, f) change of rates that a displacement along the tangent needs: 0 where nothing moves
+    across: Array  # (n, m) the least displacement that opens one of the m independent closure rows by 1 m, others by 0
     twists: Array  # (n_b, 6, n) of each body, tree order: turn, and shift of its centre of mass; world axes
     attitudes: Array  # (n_b, 3, 3) body to world, tree order
     centres: Array  # (n_b, 3) of mass
@@ -54,7 +55,8 @@ def linearised(layout: Layout, t: float, state: Array, holding: Array | None = N
     rates = place[place >= 0]
     shown = displacements(layout, own, rates)
     # what rates of the freedoms make of a row's rate, displacements make of its gap
-    tangent, drift = admitted(found.rates[:, rates], found.rates @ shown, layout.weights[rates])
+    weights = layout.weights[rates]
+    tangent, drift, across = admitted(found.rates[:, rates], found.rates @ shown, weights)
     return Linearised(
         state=own,
         accelerations=found.derivative[rates],
@@ -62,6 +64,7 @@ def linearised(layout: Layout, t: float, state: Array, holding: Array | None = N
         by_rate=found.tangent[np.ix_(rates, rates)],
         tangent=tangent,
         drift=drift,
+        across=across / layout.tables["closures"]["weight"][at.chosen],
         **motions_of_bodies(layout, poses, found.omega[..., rates], found.v[..., rates]),
     )
 
@@ -81,19 +84,21 @@ def displacements(layout: Layout, state: Array, rates: Array) -> Array:
     return shown
 
 
-def admitted(J: Array, turned: Array, weights: Array) -> tuple[Array, Array]:
-    """The displacements that closures admit, orthonormal by weights (n, f), and the rates that these need.
+def admitted(J: Array, turned: Array, weights: Array) -> tuple[Array, Array, Array]:
+    """The displacements that closures admit, orthonormal by weights (n, f), the rates that these need, and the least
+    displacements that open one row by 1, (n, m).
 
     J, turned (m, n): of the independent rows, what gap and rate of a row change by along displacements.
     """
     n = len(weights)
     if not len(J):
-        return np.diag(1.0 / weights), np.zeros((n, n))
+        return np.diag(1.0 / weights), np.zeros((n, n)), np.zeros((n, 0))
     U, s, V = np.linalg.svd(J / weights, full_matrices=True)
     m = len(s)
     tangent = V[m:].T / weights[:, None]
     by_rows = U.T @ (turned @ tangent)
-    return tangent, -(V[:m].T @ (by_rows / s[:, None])) / weights[:, None]
+    across = (V[:m].T / s @ U.T) / weights[:, None]
+    return tangent, -(V[:m].T @ (by_rows / s[:, None])) / weights[:, None], across
 
 
 def motions_of_bodies(layout: Layout, poses: Table, turns: Array, shifts: Array) -> dict[str, Array]:

@@ -1,8 +1,9 @@
 """How well a rest pose is known: poses beside it that rounding does not tell from it.
 
 Each is found as the pose itself is, by Newton's step from a pose moved by rounding; or as far off as rounding of the
-sums pushes a soft direction; and where a direction is held by no stiffness but by what bends (a quartic potential), as
-far out along it as the accelerations are still rounding.
+sums pushes a soft direction; or as far across the closures as these are left open, which near a dead centre is far; and
+where a direction is held by no stiffness but by what bends (a quartic potential), as far out along it as the
+accelerations are still rounding.
 """
 
 from __future__ import annotations
@@ -35,7 +36,17 @@ def beside(evaluator: Evaluator, found: FoundPose, what: Indifference) -> tuple[
     again = resting(evaluator, at.t, coordinates.displaced(there.states, back), at.holding)
     sums = coordinates.displaced(at.state[None, :], rounding_of_sums(found)[None, :])
     far, bends = bent(evaluator, found, what)
-    return [*again.states, *resting(evaluator, at.t, sums, at.holding).states, *far], bends
+    open_ = coordinates.displaced(at.state[None, :], left_open(evaluator, found)[None, :])
+    return [*again.states, *resting(evaluator, at.t, sums, at.holding).states, *open_, *far], bends
+
+
+def left_open(evaluator: Evaluator, found: FoundPose) -> Array:
+    """A displacement (n,) across the closures, each open by what closing leaves, so that it is largest somewhere."""
+    across = found.slopes.law.across
+    if not across.size:
+        return np.zeros(len(across))
+    size = found.coordinates.weights * np.abs(across).sum(axis=1)
+    return np.asarray(tolerances.CLOSED * evaluator.size * (across @ np.sign(across[int(np.argmax(size))])))
 
 
 def rounding_of_sums(found: FoundPose) -> Array:
