@@ -17,6 +17,7 @@ if not cython.compiled:
     from heuncli.kernel.dense import clipped
     from heuncli.kernel.events import PARTS, take_branches, watch_afresh
     from heuncli.kernel.following import stand_here
+    from heuncli.kernel.held import clear_accelerations
     from heuncli.kernel.memory import Memory
     from heuncli.kernel.programs import FREE, HELD
     from heuncli.kernel.response import evaluate
@@ -269,6 +270,7 @@ class Integration:
             take_branches(scene, run.track.branches[0])
         scene.programs.holding = HELD
         evaluate(scene, clipped(run, t), run.y, run.K[0])
+        clear_accelerations(scene, cython.address(self.method), run.K[0], True)
         if run.determined:
             stand_here(scene, run)
 

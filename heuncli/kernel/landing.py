@@ -40,6 +40,7 @@ if not cython.compiled:
         see,
         take_branches,
     )
+    from heuncli.kernel.held import clear_accelerations
     from heuncli.kernel.points import look_at
     from heuncli.kernel.response import evaluate
     from heuncli.kernel.scene import Scene
@@ -97,7 +98,7 @@ def meet_branches(scene: cython.pointer[Scene], method: cython.pointer[Method], 
     if run.landing.attempts:
         lay_window(scene, method, run)
         if first_event(scene, course) == TURNS and course.event > 0.0:
-            return land_on(scene, run)
+            return land_on(scene, method, run)
     found = quiet(scene, run.t, clipped(run, run.stop))
     if found == CLEAR:
         return STANDS
@@ -113,7 +114,7 @@ def meet_branches(scene: cython.pointer[Scene], method: cython.pointer[Method], 
         run.undecided += course.undecided
         return STANDS
     if found == TURNS:
-        return land_on(scene, run)
+        return land_on(scene, method, run)
     return shorten(scene, run, found)
 
 
@@ -131,7 +132,7 @@ def shorten(scene: cython.pointer[Scene], run: cython.pointer[Run], found: cytho
     return AGAIN_TO
 
 
-def land_on(scene: cython.pointer[Scene], run: cython.pointer[Run]) -> cython.int:
+def land_on(scene: cython.pointer[Scene], method: cython.pointer[Method], run: cython.pointer[Run]) -> cython.int:
     """The branches turn here: at once, at the end of the step tried, or after another one that ends there."""
     course: cython.pointer[Course] = cython.address(run.course)
     near: cython.double = one_instant(scene, run)
@@ -146,6 +147,7 @@ def land_on(scene: cython.pointer[Scene], run: cython.pointer[Run]) -> cython.in
         take_branches(scene, course.turned)
         evaluate(scene, clipped(run, run.t), run.y, run.K[0])
         start_contacts(scene, run.t)
+        clear_accelerations(scene, method, run.K[0], True)
         run.evaluations += 1
         run.landing.attempts = 0
         run.landing.cut = run.t  # none
