@@ -59,7 +59,7 @@ def test_a_run_follows_its_modes(name: str) -> None:
     setup = set_up(load(ROOT / "specs" / name), reduce=False)
     try:
         require_no_time(setup)
-        here, _ = state_of(setup)
+        here, *_ = state_of(setup)
     except SolveError:
         pytest.skip("neither at rest nor steady")
     if here.layout.driven or here.found.omega.any() or here.found.velocities.any():
@@ -115,7 +115,7 @@ STEADY = {
 @pytest.mark.parametrize("name", STEADY)
 def test_a_steady_run_follows_its_modes(name: str) -> None:
     """Beside a motion that goes on steadily another one, seen by what turns along: exp(l t), rates to fit."""
-    here, _ = state_of(set_up(load("scene.yaml", to_yaml(STEADY[name])), reduce=False))
+    here, *_ = state_of(set_up(load("scene.yaml", to_yaml(STEADY[name])), reduce=False))
     system = here.system
     for mode in oscillations(system, here.loose):
         if mode.kind == "free":

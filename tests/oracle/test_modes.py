@@ -67,7 +67,7 @@ def inertia_loads(here: Looked, scene: dict[str, Any], along: Array) -> Array:
 def test_a_spatial_loop() -> None:
     scene = plate()
     setup = set_up(load("scene.yaml", to_yaml(scene)), reduce=False)
-    here, _ = state_of(setup)
+    here, *_ = state_of(setup)
     scale = np.abs(here.weights[:, None] * here.system.tangent).max(axis=0)
     T = here.system.tangent / scale
     K = np.zeros((here.system.count, here.system.count))

@@ -70,13 +70,16 @@ def in_halves(tree: Tree, rng: Generator, _: Study) -> Retold:
     return Retold(retell.in_halves(whole, Random(int(rng.integers(2**32)))), skipped=frozenset({"sections"}))
 
 
+OF_CENTRES = {"center", "center_velocity", "center_acceleration"}  # of what is left of the sawn body another one
+
+
 def sawn(tree: Tree, rng: Generator, first: Study) -> Retold:
     """A body that is cut as two, welded in the plane of the cut: the weld carries the section's load."""
     cut = list(tree["sections"].values())[int(rng.integers(len(tree["sections"])))]
     piece = mass_of(cut["piece"])
     other = saw(tree, state_at(first.results.bodies, 0), cut["body"], cut["at"], cut["normal"], piece=piece)
     other = {k: v for k, v in other.items() if v and k != "sections"}
-    return Retold(other, skipped=frozenset({"sections", "center", "mass_effect"}))
+    return Retold(other, skipped=frozenset({"sections", "mass_effect", *OF_CENTRES}))
 
 
 TELLINGS: dict[str, Callable[[Tree, Generator, Study], Retold]] = {

@@ -172,7 +172,9 @@ def largest_of(study: Study, kind: str, unit: str) -> float:
     """What an estimate of a kind is relative to: its largest force or moment, one by the other times the size."""
     block, size = getattr(study.results, TOLD_IN.get(kind, "joints")), study.magnitudes.size
     if kind == "drives":
-        return max((float(np.abs(joint.get("drive", 0.0)).max()) for joint in block.values()), default=0.0)
+        return max(
+            (float(np.nanmax(np.abs(joint.get("drive", 0.0)), initial=0.0)) for joint in block.values()), default=0.0
+        )
     wrenches = [block, *block.get("elements", {}).values()] if kind == "foundation" else [*block.values()]
     F, M = (max((largest(w[part]) for w in wrenches), default=0.0) for part in ("force", "moment"))
     if kind == "foundation":
@@ -182,4 +184,4 @@ def largest_of(study: Study, kind: str, unit: str) -> float:
 
 def largest(vectors: Any) -> float:
     """The longest of vectors (..., 3)."""
-    return float(np.sqrt(np.sum(np.asarray(vectors, dtype=float) ** 2, axis=-1)).max(initial=0.0))
+    return float(np.nanmax(np.sqrt(np.sum(np.asarray(vectors, dtype=float) ** 2, axis=-1)), initial=0.0))

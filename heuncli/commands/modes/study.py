@@ -12,6 +12,7 @@ from typing import Literal
 import numpy as np
 
 from heuncli import tolerances
+from heuncli.commands.modes.rest_digits import as_known
 from heuncli.errors import Problem, SolveError
 from heuncli.integration.diagnosis.solvability import Wording, require_solvable
 from heuncli.linearisation.modes import SceneModes, most, shape_of
@@ -22,6 +23,7 @@ from heuncli.linearisation.steady_motion import Looked, fastest, goes_on_as_it_i
 from heuncli.records import replace
 from heuncli.redundancy.neighbours import neighbours
 from heuncli.rest.steady_states import is_steady
+from heuncli.results import Array
 from heuncli.spec.models import Spec
 from heuncli.study.model.error_places import placed
 from heuncli.study.model.setup import Setup, set_up
@@ -44,9 +46,9 @@ def found_in(spec: Spec) -> SceneModes:
     """The modes of a spec. Errors name bodies, joints and sections, but not where these stand in the file."""
     setup = set_up_at_rest(spec) if spec.analysis.type == "rest" else set_up(spec, reduce=False)
     require_no_time(setup)
-    here, at = state_of(setup)
+    here, at, beside = state_of(setup)
     require_slopes(here)
-    found = oscillations(here.system, here.loose)
+    found = as_known(oscillations(here.system, here.loose), here, beside)
     rows = coordinates(here.layout, here.found)
     shapes = [shape_of(mode.shape, rows) for mode in found]
     return SceneModes(
@@ -89,13 +91,14 @@ def require_no_time(setup: Setup) -> None:
         raise SolveError(*problems)
 
 
-def state_of(setup: Setup) -> tuple[Looked, Literal["rest", "state"]]:
-    """The scene in the state that it oscillates about."""
+def state_of(setup: Setup) -> tuple[Looked, Literal["rest", "state"], tuple[Array, ...]]:
+    """The scene in the state that it oscillates about, and states that are not told from a rest pose that was found."""
     kind = setup.spec.analysis.type
     here = looked_at(setup)
     reason = restless(here, kind == "rest")
     if reason is None:
-        return here, "rest" if kind == "rest" else "state"
+        beside = () if setup.rest is None else setup.rest.beside
+        return here, "rest" if kind == "rest" else "state", beside
     if kind in ("state", "rest"):
         what = "state is not at rest" if kind == "state" else "pose found is not quite at rest"
         hint = (MOVING_HINT if moves(here) else REST_HINT) + "".join(f"; {x}" for x in held_hints(setup.spec))
