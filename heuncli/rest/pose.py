@@ -38,14 +38,19 @@ def pose_at(evaluator: Evaluator, coordinates: Coordinates, t: float, state: Arr
 
 
 def bearing(evaluator: Evaluator, coordinates: Coordinates, t: float, state: Array) -> Pose:
-    """The pose at a state, its contacts closed where they touch and bear, open elsewhere."""
+    """The pose at a state, its contacts closed where they touch and bear, open elsewhere.
+
+    What others keep closed bears nothing: of two ropes that hold a mast between them one does, by where it is pushed.
+    """
     none = np.zeros(len(evaluator.layout.contacts))
     if not len(none):
         return pose_at(evaluator, coordinates, t, state, none)
     from heuncli.integration.contacts.contact_events import held_at  # few scenes have them
+    from heuncli.integration.contacts.touching import LEANS
 
     still = pose_at(evaluator, coordinates, t, state, none).state
-    return pose_at(evaluator, coordinates, t, state, held_at(evaluator, t, still))
+    holding = held_at(evaluator, t, still)
+    return pose_at(evaluator, coordinates, t, state, np.where(holding == LEANS, 0.0, holding))
 
 
 def opening(contact: Contact, at: Pose) -> float:

@@ -16,7 +16,9 @@ CREEPING = [("friction", 100309), ("friction", 100583)]
 CARRIED = [("drives", 100229)]
 # a rope that stands nearly along the bar that it holds: what closing leaves open moves the bar by far more
 NEARLY_DEAD = [("ropes", 100034)]
-SPECIAL = [*FAR_OPEN, *CREEPING, *CARRIED, *NEARLY_DEAD]
+# two ropes that hold one bar between them: which of the two bears turns about on the way
+TURN_ABOUT = [("ropes", 100467)]
+SPECIAL = [*FAR_OPEN, *CREEPING, *CARRIED, *NEARLY_DEAD, *TURN_ABOUT]
 
 
 @pytest.mark.heavy
