@@ -9,7 +9,7 @@ from typing import Any
 from heuncli.nearest import did_you_mean, nearest
 from heuncli.spec import format as f
 from heuncli.spec.fields import keys_of
-from heuncli.spec.words import ELSEWHERE, FORMS, FORMS_OF_KINDS, KEY_WORDS, MISSING, SEVERAL, WORDS
+from heuncli.spec.words import ELSEWHERE, FORMS, FORMS_OF_KINDS, KEY_WORDS, MISSING, PLACES, SEVERAL, WORDS
 
 AXES = {"x": "[1, 0, 0]", "y": "[0, 1, 0]", "z": "[0, 0, 1]"}
 DIRECTIONS = frozenset({"axis", "to_axis", "normal", "first_axis"})
@@ -78,6 +78,8 @@ def of_form(key: str, found: Any, wanted: str) -> str:
         return "a direction, as [0, 0, 1]"
     if wanted == "a list" and isinstance(found, dict):
         return "a list has a dash before each of its entries, or [ ] around them"
+    if wanted == "a list" and key in PLACES:
+        return "three coordinates [x, y, z], as [0.5, 0, 0]"
     if wanted == "a list":
         return "three components, as [0, 0, 1]" if not isinstance(found, str) else f"a list is [{found}, ...]"
     return FORMS.get(key) or FORMS_OF_KINDS.get(wanted) or f"write {wanted} behind {key or 'it'}:"

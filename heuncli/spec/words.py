@@ -92,6 +92,9 @@ FORMS = {  # what the values of some keys look like
     "piece": "as {mass: 1, center: [0, 0, 0], inertia: [0, 0, 0]}", "title": "write a text, in quotes where it holds :",
     "of": "the path of a result: joints.NAME.force.z", "until": "a condition, as guide.travel > 0.2",
 }  # fmt: skip
+PLACES = frozenset(
+    {"from", "to", "center", "position", "at"}
+)  # lists of coordinates, in the body's axes or the world's
 FORMS_OF_KINDS = {  # what values look like of which only the kind is known
     "a mapping": "keys with their values, as {key: value}", "a text": "write a name, or a text in quotes",
     "true or false": "true or false, without quotes", "a number": "as 0.5, \"12 mm\" or \"2*L\"",

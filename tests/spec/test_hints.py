@@ -80,6 +80,7 @@ def test_a_line_more(line: str, path: str, said: str) -> None:
     ("given", "instead", "said"),
     [
         ("gravity: [0, 0, -9.81]", "gravity: -9.81", "[0, 0, -9.81]"),
+        ("from: [0, 0, 0]", "from: top", "three coordinates [x, y, z], as"),
         ("axis: [0, 1, 0]}", "axis: y}", "the y axis is [0, 1, 0]"),
         ("axis: [0, 1, 0]}", "axis: -z}", "the z axis is [0, 0, -1]"),
         ("axis: [0, 1, 0]}", "axis: [0, 1, 0], angle: 60 deg}", "initial: {angle: ...}"),

@@ -82,7 +82,7 @@ def section_matter(draft: DraftDocument) -> Iterator[Violation]:
             continue
         if body.piece is None or is_run(section):
             message = f"{section.body} has no shapes: what lies beyond the cut is not known"
-            hint = "give the body shapes" + (
+            hint = "give the body shapes, as [{type: rod, from: [0, 0, 0], to: [1, 0, 0], mass: 2}]" + (
                 "" if is_run(section) else ", or the section piece: {mass, center, inertia}"
             )
             yield Violation(("sections", name, "body"), message, hint)
