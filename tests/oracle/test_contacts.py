@@ -16,11 +16,11 @@ import pytest
 
 from heuncli.study.ask.study import Study
 from tests.oracle.contacts import TOUCHES, Contact, contacts, rest, strike, values
-from tests.oracle.read import Placed, model, placed, state_at
-from tests.oracle.rows import coordinates
+from tests.oracle.read import Placed, model, state_at
 from tests.oracle.turns import cross
 from tests.shared.scenes import near, study
-from tests.shared.trees import tree_scene, weighed
+from tests.shared.stopped_trees import stopped_tree
+from tests.shared.trees import weighed
 
 pytestmark = pytest.mark.heavy  # families at random: with the compiled kernel, which has the same bits
 
@@ -29,43 +29,17 @@ SEEDS = [s for s in range(24) if s not in LOCKED]
 END = 1.0
 MOST = 12  # strikes that are looked at of a run
 GAP = 1e-9  # of the scene's size
-STOPPED = {"pin": "angle", "slide": "travel"}
-
-
-@cache
-def scene(seed: int) -> dict[str, Any]:
-    """A tree of pins, slides and balls in motion; most pins and slides between stops, some bodies on ropes."""
-    found, state = tree_scene(seed, kinds=("pin", "slide", "pin", "slide", "ball"), n_bodies=2 + seed % 4, free=0.0,
-                              loads=("force", "spring", "torque"), in_time=False)  # fmt: skip
-    rng = np.random.default_rng(70_000 + seed)
-    stops: dict[str, Any] = {}
-    for j in model(found).joints:
-        if j.kind in STOPPED and rng.random() < 0.8:
-            q = coordinates(j, state)[STOPPED[j.kind]]
-            low, high = q - rng.uniform(0.05, 0.4), q + rng.uniform(0.05, 0.4)
-            limits = [(low, high), (low, None), (None, high)][int(rng.integers(3))]
-            e = float(rng.choice([0.0, 0.3, 0.6, 1.0]))
-            stops[f"stop_{j.name}"] = {"joint": j.name, STOPPED[j.kind]: list(limits), "restitution": e}
-    joints = dict(found["joints"])
-    for k in range(seed % 3):
-        a, b = (str(x) for x in rng.permutation([*found["bodies"], "ground"])[:2])
-        p, q = rng.uniform(-1, 1, (2, 3))
-        length = float(np.linalg.norm(placed(state, a).point(p) - placed(state, b).point(q)) * rng.uniform(1.02, 1.3))
-        ends = {"from": {"body": a, "at": p.tolist()}, "to": {"body": b, "at": q.tolist()}}
-        joints[f"rope{k}"] = {"type": "rod", **ends, "length": length, "tension_only": True,
-                              "restitution": float(rng.choice([0.0, 0.5, 1.0]))}  # fmt: skip
-    return {**found, "joints": joints, "stops": stops}
 
 
 @cache
 def plain(seed: int) -> dict[str, Any]:
     """With masses for shapes."""
-    return weighed(scene(seed))
+    return weighed(stopped_tree(seed))
 
 
 @cache
 def run_of(seed: int) -> Study:
-    return study({**scene(seed), "analysis": {"times": [0.0, END], "tolerance": 1e-10}})
+    return study({**stopped_tree(seed), "analysis": {"times": [0.0, END], "tolerance": 1e-10}})
 
 
 @cache

@@ -70,7 +70,8 @@ def in_halves(tree: Tree, rng: Generator, _: Study) -> Retold:
     return Retold(retell.in_halves(whole, Random(int(rng.integers(2**32)))), skipped=frozenset({"sections"}))
 
 
-OF_CENTRES = {"center", "center_velocity", "center_acceleration"}  # of what is left of the sawn body another one
+# of what is left of the sawn body another one
+OF_CENTRES = {"center", "center_velocity", "center_acceleration", "center_velocity_jump"}
 
 
 def sawn(tree: Tree, rng: Generator, first: Study) -> Retold:

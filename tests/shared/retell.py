@@ -343,6 +343,7 @@ def in_expressions(tree: Tree, change: Callable[[str], str]) -> None:
 IN_TIME = {
     "drives": {"angle", "travel", "length", "rate", "speed"},
     "forces": {"vector", "to_vector", "value", "stiffness", "damping", "coefficient", "torque", "force"},
+    "impulses": {"when"},
     "analysis": {"until", "events"},
 }  # fmt: skip
 

@@ -9,6 +9,7 @@ from typing import Any, NamedTuple
 
 import numpy as np
 
+from heuncli.integration.check.changes import blows_apart
 from heuncli.results import Array
 from heuncli.results_schema import KIND_OF, SPACE, TREE, Node, Quantity, below, kind_of_error
 from heuncli.study.ask.study import Study
@@ -107,6 +108,34 @@ def differences(first: Study, second: Study, told: Retold, blocks: tuple[str, ..
         one, other = (getattr(study.results, block) for study in (first, second))
         for path, row, a, b in leaves((block,), TREE[block], one, other, told):
             yield compared(first, second, told, path, row, a, b)
+
+
+def of_blows(first: Study, second: Study, told: Retold) -> Iterator[Difference]:
+    """All numbers of the blows of two runs, one by one; their instants, by what both state of them."""
+    node = TREE["impulses"]
+    assert isinstance(node, dict)
+    rows = node["NUMBER"]
+    assert isinstance(rows, dict)
+    when = [errors_of_blows(run) for run in (first, second)]
+    for k, (one, other) in enumerate(zip(first.results.impulses, second.results.impulses, strict=True)):
+        stated = when[0][k] * told.time + when[1][k]
+        off = abs(float(one["time"]) * told.time - float(other["time"]))
+        yield Difference(f"impulses.{k}.time", off, stated, ROUNDING * float(second.results.time[-1]))
+        for block in STRUCK:
+            for path, row, a, b in leaves((block,), rows.get(block), one.get(block), other.get(block), told):
+                yield compared(first, second, told, path, row, a, b)
+
+
+STRUCK = ("bodies", "foundation", "joints", "stops", "sections")
+
+
+def errors_of_blows(run: Study) -> list[float]:
+    """What is stated of the instants of a run's blows, as of events at them: by when its other runs have them."""
+    history = run.history
+    apart = [blows_apart(history.blows, other) for other in history.beside]
+    missed = 0.5 * history.estimate["motion"] * float(run.results.time[-1])
+    found = [2.0 * max((a.get(jump.time, missed) for a in apart), default=missed) for jump in history.blows]
+    return [math.inf if math.isnan(error) else error for error in found]  # not a number: another run has none there
 
 
 def compared(
