@@ -1,9 +1,9 @@
 """A split of what redundancy leaves indeterminate, on request: by the joints' stiffness, by the least norm.
 
 Neither follows from the laws of rigid bodies; both add self-stresses to one solution. Before either, joints that give
-way do so (zero_stiffness.py): that is no choice. Stiffness: least sum of
-F^2/k + M^2/k over the joints that have one, components in `from` axes; what they do not feel stays open. Least norm:
-least sum F^2 + (M/length)^2 over all joints; independent of the units. manual/theory.md, "Redundancy".
+way do so (zero_stiffness.py): that is no choice. Stiffness: least sum of F^2/k + M^2/k over the joints that have one,
+components in `from` axes, a drive's effort among them; what they do not feel stays open. Least norm: least sum
+F^2 + (M/length)^2 over all joints; independent of the units. manual/theory.md, "Redundancy".
 """
 
 from __future__ import annotations

@@ -131,8 +131,8 @@ def solve(
     """Everything at an instant.
 
     Open loads are split by least Σ|F|² + |M|²/length², or, with `stiffness` = {joint: (force, moment)} [N/m, N m/rad]
-    (scalars, or three in the axes of `from`), by least Σ|F|²/k + |M|²/k over those joints; what that leaves is split by
-    the first.
+    (scalars, or three in the axes of `from`), by least Σ|F|²/k + |M|²/k over those joints, their drives' efforts in F and
+    M; what that leaves is split by the first.
     """
     read = scene if isinstance(scene, Model) else model(scene)
     loads = pushes(read, state, t)
@@ -246,6 +246,12 @@ def wrench_map(rows: Rows, joint: Joint) -> Array:
     return G
 
 
+def whole_map(rows: Rows, joint: Joint) -> Array:
+    """All that a joint puts on `to`, its drive's effort, too, from all multipliers, (6, rows)."""
+    own = [(row.force, row.moment) if row.joint == joint.name else (np.zeros(3), np.zeros(3)) for row in rows.rows]
+    return np.array([np.concatenate(wrench) for wrench in own]).reshape(-1, 6).T
+
+
 def weight_of(joint: Joint, length: float) -> Array:
     """What makes forces of (force, moment, drive), (7,); a rod's drive is its force already."""
     drive = {None: 0.0, "angle": 1 / length, "travel": 1.0, "length": 0.0}[joint.drive and joint.drive[0]]
@@ -264,7 +270,7 @@ def chosen(
         held = []
         for j in scene.joints:
             if j.name in stiffness:
-                R, G = placed(state, j.a.body).rotation, maps[j.name]
+                R, G = placed(state, j.a.body).rotation, whole_map(found.rows, j)
                 root = np.sqrt(np.concatenate([np.broadcast_to(k, 3) for k in stiffness[j.name]]))
                 held.append(np.concatenate([R.T @ G[:3], R.T @ G[3:6]]) / root[:, None])
         costs.insert(0, np.concatenate(held))
