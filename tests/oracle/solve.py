@@ -131,7 +131,7 @@ def solve(
     """Everything at an instant.
 
     Open loads are split by least Σ|F|² + |M|²/length², or, with `stiffness` = {joint: (force, moment)} [N/m, N m/rad]
-    (scalars, or three in the axes of `from`), by least Σ|F|²/k + |M|²/k over those joints, their drives' efforts in F and
+    (scalars, or three in the axes of `from`), by least Σ|F|²/k + |M|²/k over those joints, drives' efforts in F and
     M; what that leaves is split by the first.
     """
     read = scene if isinstance(scene, Model) else model(scene)
