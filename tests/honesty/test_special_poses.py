@@ -1,0 +1,13 @@
+"""Open verdicts and certain sums at special poses: special_poses.py beside it."""
+
+from __future__ import annotations
+
+import pytest
+
+from tests.honesty.special_poses import judged
+
+
+@pytest.mark.heavy
+@pytest.mark.parametrize("seed", range(32))
+def test_open_where_the_equations_of_the_instant_leave_it_open(seed: int) -> None:
+    assert judged(seed).startswith(("same", "refused"))
