@@ -88,6 +88,7 @@ def measure_row(scene: cython.pointer[Scene], row: cython.pointer[Closure], t: c
             turn_row(scene, row)
         else:
             rod_row(scene, row)
+    row.prescribed_rate, row.prescribed_second = 0.0, 0.0  # a blow has left its jumps there
     if row.program.count:
         given: Jet = jet(scene.programs, row.program, t)
         row.gap -= given.value

@@ -15,7 +15,7 @@ from tests.oracle.turns import Array
 from tests.oracle.values import Harmonic
 from tests.shared.loops import loop_scene
 from tests.shared.redundant_supports import door
-from tests.shared.scenes import near, solved
+from tests.shared.scenes import moving, near, solved
 from tests.shared.trees import cut_through, tree_scene
 
 WANTED = frozenset({"motion", "foundation", "joints", "sections", "forces", "shares"})
@@ -421,3 +421,28 @@ def test_a_load_of_nothing_is_a_cause_of_nothing() -> None:
     assert own["gravity"]["N"].tolist() == [0.0]
     assert own["gravity"]["Q2"] == pytest.approx([-4.905])
     assert not own["none"]["direct_force"].any() and not own["none"]["force"].any()
+
+
+def test_a_strike_leaves_no_share_to_drives_that_are_not() -> None:
+    """What a stop holds behind a strike is of the weights and the motion: nothing is driven there."""
+    scene = {
+        "gravity": [0, 0, -9.81],
+        "ground": {"points": {"O": [0, 0, 0]}},
+        "bodies": {
+            "arm": {"mass": 1, "center": [0.3, 0, 0], "inertia": [0.01, 0.02, 0.03],
+                    "points": {"p": [0, 0, 0], "e": [0.5, 0, 0]}},
+            "block": {"mass": 1, "center": [0.1, 0, 0.1], "inertia": [0.02, 0.03, 0.03], "points": {"p": [0, 0, 0]}},
+        },
+        "joints": {
+            "pin": {"type": "pin", "from": "ground.O", "to": "arm.p", "axis": [0, 1, 0],
+                    "initial": {"angle": 0.2, "rate": 6}},
+            "guide": {"type": "slide", "from": "arm.e", "to": "block.p", "axis": [1, 0, 0.3],
+                      "initial": {"travel": 0.05, "speed": 1}},
+        },
+        "stops": {"end": {"joint": "guide", "travel": [None, 0.1]}},
+    }  # fmt: skip
+    found = solved(moving(scene, [0.0, 0.1, 0.2]), wanted=WANTED)
+    assert found.stops["end"]["force"][-1] < 0.0
+    shares = found.foundation["shares"]
+    assert not shares["drives"]["force"].any()
+    near(sum(share["force"] for share in shares.values()), found.foundation["force"], 100.0)
