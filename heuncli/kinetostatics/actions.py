@@ -14,6 +14,7 @@ from numpy.typing import NDArray
 
 from heuncli.integration.evaluator import Recovered
 from heuncli.joint_kinds import JOINTS
+from heuncli.kinetostatics.bodies import BodyStates
 from heuncli.kinetostatics.reactions import JointLoads
 from heuncli.mechanism.model import GROUND, Joint, JointLoad, Load, Mechanism, PairLoad, PointLoad, Spread
 from heuncli.records import record
@@ -88,8 +89,11 @@ class AppliedLoad:
     power: Array
 
 
-def applied_loads(mechanism: Mechanism, recovered: Recovered) -> list[AppliedLoad]:
-    """The applied loads in the order of the spec; of a joint's load the parts of its several motions together."""
+def applied_loads(mechanism: Mechanism, states: BodyStates, recovered: Recovered) -> list[AppliedLoad]:
+    """The applied loads in the order of the spec; of a joint's load the parts of its several motions together.
+
+    A load in a joint acts where the joint does, to the last bit: both pass a cut at one instant.
+    """
     loads: list[AppliedLoad] = []
     first: tuple[PointLoad, LoadRows] | None = None  # of a distributed load's two parts
     for load, own in mechanism.load_rows():
@@ -101,7 +105,8 @@ def applied_loads(mechanism: Mechanism, recovered: Recovered) -> list[AppliedLoa
             first = (load, rows) if first is None else None
             continue
         force, moment = rows["force"].sum(axis=1), rows["moment"].sum(axis=1)
-        to, from_ = _ends(mechanism, load, joint, rows["at"][:, 0], rows["from_at"][:, 0])
+        on_to = rows["at"][:, 0] if joint is None else states.point_position(joint.b, joint.q)
+        to, from_ = _ends(mechanism, load, joint, on_to, rows["from_at"][:, 0])
         action = Action("load", load.name, to, from_, force, moment)
         value, span, rate = (rows[name][:, 0] for name in ("value", "span", "rate"))
         loads.append(AppliedLoad(load, action, value, span, rate, rows["power"].sum(axis=1)))
@@ -130,7 +135,7 @@ def distributed(parts: Sequence[tuple[PointLoad, LoadRows]]) -> AppliedLoad:
 def _ends(
     mechanism: Mechanism, load: Load, joint: Joint | None, on_to: Array, on_from: Array
 ) -> tuple[ActionEnd, ActionEnd | None]:
-    """Where a load acts; on_to, on_from: the kernel's positions of its points, world."""
+    """Where a load acts; on_to, on_from: the positions of its points, world."""
     if isinstance(load, PointLoad):
         point = load.point if load.point is not None else mechanism.bodies[load.body].center
         return ActionEnd(load.body, on_to, point), None

@@ -84,7 +84,7 @@ class Recovery:
     @cached_property
     def loads(self) -> list[AppliedLoad]:
         """The applied loads; of a spring whose points coincide the rate at which they part: its line begins there."""
-        found = applied_loads(self.setup.scene.mechanism, self.recovered)
+        found = applied_loads(self.setup.scene.mechanism, self.states, self.recovered)
         if not any(isinstance(own.load, PairLoad) and (own.length == 0.0).any() for own in found):
             return found
         from heuncli.integration.diagnosis.coincident_points import parting  # hardly any scene needs it

@@ -74,7 +74,7 @@ class LoadErrors:
             several, asked, before = several.at(np.repeat(same, count)), asked[same], before[same]
         self.asked, self.before = asked, before
         states = body_states(self.setup.scene.layout, several)
-        loads = applied_loads(self.setup.scene.mechanism, several)
+        loads = applied_loads(self.setup.scene.mechanism, states, several)
         if self.compared & {"reactions", "foundation", "sections", "forces"}:
             self.add_loads(several, states, loads)
         if "energy" in self.compared:
