@@ -34,7 +34,7 @@ HELD_BY_OTHERS = 1e-12  # sine squared between a direction that gives way and wh
 # of 1e-8 err where they are summed from levers a hundred times as long
 STRAINED = 1e-9  # of the largest strain: RANK again, a self-stress that strains less is not decided by the stiffness
 STILL_OPEN = 1e-9  # of unit share: what is left of self-stresses after a split, if below, is rounding of their parts
-DEPENDENT_SHARES = 1e-7  # of a row's length: shares known to OPEN_SHARE, with a digit for the elimination
+DEPENDENT_SHARES = 1e-7  # of a component's largest share: known to OPEN_SHARE, with a digit for the elimination
 ABSENT_FACTOR = 1e-9  # of the largest, or of unit length: a factor below it stands for a component that is not there
 WHOLE_FACTOR = 1e-9  # a factor so near to a whole number is that number; shares are not known better
 # [rad] or of the size: poses in which a certain sum must hold too; large, for what turns must show, and several, for

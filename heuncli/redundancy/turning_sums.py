@@ -40,9 +40,7 @@ def dependent_components(poses: Shares) -> list[list[str]]:
         return []
     rows = np.stack([poses[n] for n in names], axis=1)
     rows = rows[:, :, rows.any(axis=(0, 1))]  # the self-stresses that reach some of them
-    own = np.sqrt(np.sum(rows * rows, axis=2))
-    largest = own.max(axis=0)
-    rows, own = rows / largest[None, :, None], own / largest
+    rows = rows / np.sqrt(np.sum(rows * rows, axis=2)).max(axis=0)[None, :, None]
     Q = np.zeros_like(rows)  # orthonormal in each pose, zero where a free row depends on others there
     usual = np.ones(len(rows), dtype=bool)  # poses in which all the free ones are independent
     free: list[int] = []
@@ -56,7 +54,9 @@ def dependent_components(poses: Shares) -> list[list[str]]:
             ahead = across(rows[:, i : i + TOGETHER], Q[:, :before])
         rest = across(ahead[:, i % TOGETHER, None], Q[:, before : len(free)])
         size = np.sqrt(np.einsum("tik,tik->t", rest, rest))
-        new = size > tolerances.DEPENDENT_SHARES * np.maximum(own[:, i], tolerances.DEPENDENT_SHARES)
+        new = (
+            size > tolerances.DEPENDENT_SHARES
+        )  # where a component vanishes, as of a crank on an axis, that is rounding
         if (usual & new).any():
             usual &= new
             Q[:, len(free)] = rest[:, 0] * (new / np.where(new, size, 1.0))[:, None]
@@ -90,7 +90,7 @@ def factors(rows: Array) -> Array | None:
     if R.shape[1] < n:
         R = np.pad(R, ((0, 0), (0, n - R.shape[1]), (0, 0)))
     diagonal = np.abs(np.diagonal(R, axis1=1, axis2=2))
-    most = np.abs(R).max(axis=(1, 2))
+    most = np.maximum(np.abs(R).max(axis=(1, 2)), 1.0)  # of rows that vanish at an instant only rounding is left
     usual = (diagonal[:, :-1] > tolerances.DEPENDENT_SHARES * most[:, None]).all(axis=1)
     if not usual.any() or (diagonal[usual, -1] > tolerances.DEPENDENT_SHARES * most[usual]).any():
         return None
@@ -98,7 +98,7 @@ def factors(rows: Array) -> Array | None:
     c[usual, :-1] = -np.linalg.solve(R[usual, :-1, :-1], R[usual, :-1, -1:])[:, :, 0]
     for t in np.flatnonzero(~usual):
         U, sigma, _ = np.linalg.svd(R[t].T)
-        N = U[:, sigma <= tolerances.DEPENDENT_SHARES * max(float(sigma[0]), 1e-300)]
+        N = U[:, sigma <= tolerances.DEPENDENT_SHARES * most[t]]
         if not N.shape[1]:
             return None
         known = np.flatnonzero(usual)

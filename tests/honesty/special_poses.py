@@ -68,6 +68,21 @@ def sums_are_certain(case: Case) -> None:
             near(one["value"][k], value, force * case.length * sum(abs(x) for x in terms.values()))
 
 
+def sums_are_all(case: Case) -> None:
+    """As many sums of forces, and of moments, are listed as are certain at usual instants."""
+    blocks = case.found.joints.items()
+    for part, first in (("force", 0), ("moment", 3)):
+        places = [(n, "xyz".index(p[-1])) for n, block in blocks for p in block["open"] if p.startswith(f"{part}.")]
+        listed = [s for s in case.found.certain_sums if all(f".{part}." in term for term in s["terms"])]
+        ranks = [0]
+        for oracle in case.oracle if places else ():
+            shares = np.array([oracle.reactions[name].share[first + i] for name, i in places])
+            largest = oracle.largest()
+            unit = np.where(largest > 0.0, largest, 1.0) * (oracle.length if first else 1.0)
+            ranks.append(int(np.linalg.matrix_rank(shares / unit, tol=1e-8)) if shares.size else 0)
+        assert len(listed) == len(places) - max(ranks), (part, len(listed), len(places), ranks)
+
+
 IN_SPACE = (checks.same_reactions, checks.same_parts, checks.same_accelerations, checks.same_foundation)
 
 
@@ -88,6 +103,7 @@ def judged(seed: int) -> str:
     for check in (same_in_the_plane,) if "space" in scene else IN_SPACE:
         check(case)
     sums_are_certain(case)
+    sums_are_all(case)
     return "same" if case.found.model["redundant"] else "same, nothing open"
 
 

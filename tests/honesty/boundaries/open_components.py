@@ -7,7 +7,7 @@ import math
 import numpy as np
 
 from heuncli.redundancy.certain_sums import relations, tidy
-from heuncli.redundancy.turning_sums import factors
+from heuncli.redundancy.turning_sums import dependent_components, factors
 from tests.honesty.boundaries.part import Part, Row
 from tests.honesty.boundaries.scenes import WEIGHT
 from tests.shared.scenes import near, solved
@@ -63,6 +63,12 @@ def told_by_turning(x: float) -> str:
     return "a sum" if factors(rows) is not None else "none"
 
 
+def nearly_vanishing(x: float) -> str:
+    """Of a component that vanishes in one pose what is left there beside another one is rounding, or is not."""
+    poses = {"a": np.array([[1.0, 0.0], [1.0, 0.0]]), "b": np.array([[1.0, 0.0], [0.0, x]])}
+    return "a sum" if dependent_components(poses) else "none"
+
+
 def present(x: float) -> str:
     a, b, c = np.eye(3)
     (terms,), _ = relations({"a": a, "b": b, "c": c, "sum": a + b + x * c})
@@ -80,6 +86,7 @@ PART = Part(
         Row("STRAINED", stiff, "open", "shared"),
         Row("DEPENDENT_SHARES", proportional, "a sum", "none"),
         Row("DEPENDENT_SHARES", told_by_turning, "a sum", "none"),
+        Row("DEPENDENT_SHARES", nearly_vanishing, "a sum", "none"),
         Row("ABSENT_FACTOR", present, "absent", "present"),
         Row("WHOLE_FACTOR", whole, "whole", "as found"),
     ),
