@@ -227,8 +227,11 @@ def propose(scene: cython.pointer[Scene], run: cython.pointer[Run]) -> cython.vo
 
 
 def blocked(scene: cython.pointer[Scene], run: cython.pointer[Run]) -> cython.int:
-    """Why there is no further step: the closures lock while rates grow, or the step is rounding of the time."""
-    if run.last or run.landing.has_cut:
+    """Why there is no further step: the closures lock while rates grow, or the step is rounding of the time.
+
+    One that lands on an event may be as short, and is done again as it is.
+    """
+    if run.following or run.last or run.landing.has_cut:
         return REACHED
     if scene.closure_count and scene.pivot < scene.limits.locked and run.h <= scene.limits.locked_step * fabs(run.end):
         return CLOSURES_LOST

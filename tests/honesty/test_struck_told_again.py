@@ -8,13 +8,13 @@ import pytest
 from tests.honesty.struck_told_again import FACTOR, RIGHT, all_of, answer, judged, scene
 from tests.shared.rest_told_again import TELLINGS
 
-ENDLESS = (1,)  # told in a mirror it comes to no end of steps where its condition is met; as it is drawn it does
-CASES = [seed for seed in range(21) if seed not in ENDLESS]
+# The blow comes where the condition that is watched passes: which side of it that leaves it on is rounding.
+ON_THE_EDGE = (1,)
 WAYS = list(TELLINGS)
 
 
 @pytest.mark.heavy
-@pytest.mark.parametrize("seed", CASES)
+@pytest.mark.parametrize("seed", [seed for seed in range(21) if seed not in ON_THE_EDGE])
 def test_it_is_struck_as_told_before(seed: int) -> None:
     """As many blows, and all numbers of them and of the motion within what both tellings state."""
     way = WAYS[seed % len(WAYS)]

@@ -13,7 +13,7 @@ import numpy as np
 from heuncli.errors import Problem, SolveError
 from heuncli.integration.integrated_scene import IntegratedScene
 from heuncli.integration.run.errors import TROUBLE
-from heuncli.integration.run.kernel_loop import UNSOLVED, KernelLoop, Start
+from heuncli.integration.run.kernel_loop import KernelLoop, Start
 from heuncli.integration.trajectory import Trajectory
 from heuncli.results import Array
 
@@ -45,7 +45,7 @@ def resampled(moving: IntegratedScene, run: Trajectory, times: Array) -> Array:
 def replayed(moving: IntegratedScene, run: Trajectory, record: int, last: int, times: Array) -> Array:
     """States (n_t, n') of what is integrated at instants within the steps from a kept record on to step `last`.
 
-    record: its place in `run.kept`. Raises SolveError where the equations of an implicit step are not solved again.
+    record: its place in `run.kept`. Raises SolveError where a step cannot be done again, as an implicit one.
     """
     first, state = int(run.kept.steps[record]), run.kept.records[record]
     given = Start(moving.layout.y0, math.inf, following=True)
@@ -65,8 +65,8 @@ def replayed(moving: IntegratedScene, run: Trajectory, record: int, last: int, t
             loop.begin(begin, before_end, end)
         else:
             loop.resume(t, before_end, end)
-        if loop.advance(to + 1 - first, False, False) == UNSOLVED:
-            code, message, hint = TROUBLE[UNSOLVED]
+        if (left_for := loop.advance(to + 1 - first, False, False)) in TROUBLE:
+            code, message, hint = TROUBLE[left_for]
             raise SolveError(Problem(code, f"at t = {loop.t:.9g} s: {message}", hint=hint))
         t = loop.t
         first = to + 1
