@@ -163,6 +163,22 @@ def test_one_instant() -> None:
         assert block["condition"]["mass"] >= 1.0
 
 
+@pytest.mark.parametrize(("analysis", "told"), [("{duration: 1, samples: 4}", True), ("{type: state}", False)])
+def test_a_law_without_a_slope_at_the_start(analysis: str, told: bool) -> None:
+    """A root of the squared rate, which is 0 there: the tangent is looked at elsewhere, or said to be none."""
+    block = probed(f"""
+heun: 1
+gravity: [0, 0, -9.81]
+ground: {{points: {{O: [0, 0, 0]}}}}
+bodies: {{bar: {{mass: 1, center: [0.5, 0, 0], inertia: [0.01, 0.1, 0.1], points: {{O: [0, 0, 0]}}}}}}
+joints: {{pivot: {{type: pin, from: ground.O, to: bar.O, axis: [0, 1, 0]}}}}
+forces: {{drag: {{type: torque, joint: pivot, value: "-0.1*sqrt(pivot.rate**2)"}}}}
+analysis: {analysis}
+""").block()
+    assert (block["stiffness"] is not None) == told
+    assert ("no slope" in block["not_told"].get("stiffness", "")) != told
+
+
 def test_a_flat_four_bar_is_told_as_singular() -> None:
     found = probed(FLAT.read_text(encoding="utf-8"))
     assert len(instants(found, SINGULAR)) == 2 and found.verdict.startswith("singular poses")

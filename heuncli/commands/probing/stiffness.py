@@ -27,6 +27,7 @@ EXPLICIT = ("RK4", "DOPRI5", "DOP853")
 LOOKS = 60  # instants at which eigenvalues are looked at
 MOST_STATE = 600  # numbers of state, of a matrix that is formed
 WINDOWS = 100  # of the run, over which the speeds change
+NO_SLOPE = "a law has no slope, as the root of 0: the tangent does not exist there"
 
 
 def stiffness_of(along: SearchedMotion) -> tuple[StiffnessResults | None, str]:
@@ -43,10 +44,13 @@ def stiffness_of(along: SearchedMotion) -> tuple[StiffnessResults | None, str]:
     if checked is None:
         at = study.history.recovered
         values = eigenvalues(Evaluator(runner.layout), float(at.times[0]), at.states[0], at.holding[0])
+        if values is None:
+            return None, NO_SLOPE
         return of_instants(at.times, [values], math.nan, along.study.spec.analysis.tolerance), ""
     run = checked.run
-    times = looked_at(run)
-    values_at = spectra(along, times)
+    times, values_at = spectra(along, looked_at(run))
+    if not values_at:
+        return None, NO_SLOPE
     stable = np.array([stable_step(DOP853, values) for values in values_at])
     grows = max(float(values.real.max(initial=0.0)) for values in values_at)  # what grows is followed, too
     own = max(own_rate(along, run, times, stable), grows)
@@ -85,16 +89,18 @@ def looked_at(run: Trajectory) -> Array:
     return np.unique(marks[np.linspace(0, len(marks) - 1, min(LOOKS, len(marks))).astype(int)])
 
 
-def spectra(along: SearchedMotion, times: Array) -> list[Array]:
-    """Eigenvalues of what is integrated, at instants."""
+def spectra(along: SearchedMotion, times: Array) -> tuple[Array, list[Array]]:
+    """Eigenvalues of what is integrated, at those of the instants at which all laws have a slope."""
     runner, checked = along.study.setup.runner, along.study.history.checked
     assert checked is not None
     moving, beside = runner.moving, Evaluator(runner.moving.layout)
     states, holding = runner.resample(checked.run, times), checked.run.holding_at(times)
-    found = []
-    for t, state, closed in zip(times.tolist(), states, holding, strict=True):
-        found.append(eigenvalues(beside, t, moving.restrict(t, state), closed))
-    return found
+    found = [
+        eigenvalues(beside, t, moving.restrict(t, state), closed)
+        for t, state, closed in zip(times.tolist(), states, holding, strict=True)
+    ]
+    have = np.array([values is not None for values in found])
+    return times[have], [values for values in found if values is not None]
 
 
 def tolerance_of(along: SearchedMotion, run: Trajectory) -> float:

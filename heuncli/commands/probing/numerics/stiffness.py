@@ -25,8 +25,11 @@ RAY = np.arange(0.005, 40.0, 0.005)  # |z| along a ray, beyond the boundary of a
 GROWTH = 1.01  # of |R|: by a hundredth a step, which rounding of R is not, and an estimate of errors sees after some
 
 
-def eigenvalues(beside: Evaluator, t: float, state: Array, holding: Array) -> Array:
-    """Eigenvalues [1/s] of the tangent at a state, on what the closed chains admit; holding: the contacts closed."""
+def eigenvalues(beside: Evaluator, t: float, state: Array, holding: Array) -> Array | None:
+    """Eigenvalues [1/s] of the tangent at a state, on what the closed chains admit; None where a law has no slope.
+
+    holding: the contacts closed.
+    """
     layout, workspace = beside.layout, beside.workspace
     scale = ShadowScale(layout, 1.0)
     n = scale.n
@@ -42,6 +45,8 @@ def eigenvalues(beside: Evaluator, t: float, state: Array, holding: Array) -> Ar
         P = np.block([[T, np.zeros((n, f))], [S, T]])
         back = np.block([[T.T, np.zeros((f, n))], [-T.T @ S @ T.T, T.T]])
         A = back @ A @ P
+    if not np.isfinite(A).all():
+        return None
     values: Array = np.asarray(np.linalg.eigvals(A) if A.size else np.zeros(0))
     return without_rounding(values, float(np.abs(A).max(initial=0.0)))
 
