@@ -7,12 +7,10 @@ prints what is not, and how differences are spread over the errors that both tel
 
 from __future__ import annotations
 
-import argparse
 import sys
 import time
 from collections import Counter
 from collections.abc import Iterator
-from pathlib import Path
 from typing import Any, NamedTuple
 
 import numpy as np
@@ -25,6 +23,7 @@ from heuncli.spec.load import load
 from tests.honesty.indifferent import PARTS, Bench
 from tests.honesty.rest_poses import spread
 from tests.oracle.values import to_yaml
+from tests.shared.hunts import asked_of
 from tests.shared.rest_scenes import KINDS, drawn
 from tests.shared.rest_told_again import TELLINGS
 from tests.shared.said_again import Retold
@@ -110,12 +109,7 @@ RIGHT = ("same", "refused")
 
 def main() -> int:
     """Run the cases; 1 if one is wrong."""
-    parser = argparse.ArgumentParser(prog="python -m tests.honesty.modes_told_again", description=__doc__)
-    parser.add_argument("--kind", choices=[*KINDS, INDIFFERENT], default="plane")
-    parser.add_argument("--cases", type=int, default=100)
-    parser.add_argument("--seed", type=int, default=0, help="of the first case")
-    parser.add_argument("--save", type=Path, metavar="FOLDER", help="where scenes go that are wrong")
-    asked = parser.parse_args()
+    asked = asked_of("tests.honesty.modes_told_again", __doc__, [*KINDS, INDIFFERENT])
     counts: Counter[str] = Counter()
     all_ratios: list[float] = []
     begun = time.perf_counter()

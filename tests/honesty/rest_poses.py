@@ -7,7 +7,6 @@ prints what is not as said, and how the true error of poses is spread over the o
 
 from __future__ import annotations
 
-import argparse
 import sys
 import time
 from collections import Counter
@@ -19,6 +18,7 @@ import numpy as np
 from heuncli.errors import HeunError
 from tests.oracle.values import to_yaml
 from tests.shared.damped_flow import RTOL, NoRest, Rest, rest_of
+from tests.shared.hunts import asked_of
 from tests.shared.rest_ridges import beside_a_ridge
 from tests.shared.rest_scenes import KINDS, Scene, drawn
 from tests.shared.rest_trees import Equations, Vector
@@ -170,12 +170,7 @@ def save(folder: Path, scene: Scene, verdict: Verdict) -> None:
 
 def main() -> int:
     """Run the cases; 1 if one is wrong."""
-    parser = argparse.ArgumentParser(prog="python -m tests.honesty.rest_poses", description=__doc__)
-    parser.add_argument("--kind", choices=[*KINDS, RIDGES], default="plane")
-    parser.add_argument("--cases", type=int, default=100)
-    parser.add_argument("--seed", type=int, default=0, help="of the first case")
-    parser.add_argument("--save", type=Path, metavar="FOLDER", help="where scenes go that are wrong")
-    asked = parser.parse_args()
+    asked = asked_of("tests.honesty.rest_poses", __doc__, [*KINDS, RIDGES])
     counts: Counter[str] = Counter()
     ratios: list[float] = []
     begun = time.perf_counter()

@@ -7,13 +7,11 @@ prints what is not, and how differences are spread over the errors that both tel
 
 from __future__ import annotations
 
-import argparse
 import re
 import sys
 import time
 from collections import Counter
 from collections.abc import Iterator
-from pathlib import Path
 from typing import Any, NamedTuple
 
 import numpy as np
@@ -23,6 +21,7 @@ from heuncli.study.ask.study import Study
 from tests.honesty.rest_poses import doubtful, flown, spread
 from tests.oracle.values import to_yaml
 from tests.oracle.weld import SAW as SAWN
+from tests.shared.hunts import asked_of
 from tests.shared.rest_scenes import KINDS, drawn
 from tests.shared.rest_told_again import TELLINGS, resting, section_of_the_weld
 from tests.shared.rest_trees import Equations
@@ -147,12 +146,7 @@ def triaged(found: Finding, kind: str, seed: int) -> Finding:
 
 def main() -> int:
     """Run the cases; 1 if one is wrong."""
-    parser = argparse.ArgumentParser(prog="python -m tests.honesty.rest_told_again", description=__doc__)
-    parser.add_argument("--kind", choices=[*KINDS], default="plane")
-    parser.add_argument("--cases", type=int, default=100)
-    parser.add_argument("--seed", type=int, default=0, help="of the first case")
-    parser.add_argument("--save", type=Path, metavar="FOLDER", help="where scenes go that are wrong")
-    asked = parser.parse_args()
+    asked = asked_of("tests.honesty.rest_told_again", __doc__, [*KINDS])
     counts: Counter[str] = Counter()
     ratios: list[float] = []
     begun = time.perf_counter()

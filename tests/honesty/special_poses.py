@@ -7,7 +7,6 @@ prints what is told otherwise than by the null space of the instant's own equati
 
 from __future__ import annotations
 
-import argparse
 from collections import Counter
 from typing import Any
 
@@ -18,6 +17,7 @@ from tests.oracle.read import model, state_at
 from tests.oracle.rows import gaps
 from tests.oracle.solve import solve
 from tests.shared import checks
+from tests.shared.hunts import asked_of
 from tests.shared.scenes import moving, near, study, terms_at
 from tests.shared.special_poses import TIMES, special
 from tests.shared.trees import Case, force_of, weighed
@@ -108,10 +108,7 @@ def judged(seed: int) -> str:
 
 
 def main() -> None:
-    parser = argparse.ArgumentParser()
-    parser.add_argument("--cases", type=int, default=100)
-    parser.add_argument("--seed", type=int, default=0)
-    asked = parser.parse_args()
+    asked = asked_of("tests.honesty.special_poses", __doc__)
     found: Counter[str] = Counter()
     for seed in range(asked.seed, asked.seed + asked.cases):
         try:

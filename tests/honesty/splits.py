@@ -7,7 +7,6 @@ prints what differs by more than rounding of the stiffnesses' ratios makes, and 
 
 from __future__ import annotations
 
-import argparse
 import sys
 from collections.abc import Mapping
 from typing import Any
@@ -19,6 +18,7 @@ from tests.oracle.read import state_at
 from tests.oracle.solve import solve
 from tests.oracle.tellings import TELLINGS, Telling
 from tests.shared.doubles import redundant_scene
+from tests.shared.hunts import asked_of
 from tests.shared.scenes import solved
 
 Array = np.ndarray[Any, np.dtype[np.float64]]
@@ -99,10 +99,7 @@ def differences(seed: int) -> dict[str, float]:
 
 
 def main() -> None:
-    parser = argparse.ArgumentParser()
-    parser.add_argument("--cases", type=int, default=100)
-    parser.add_argument("--seed", type=int, default=2000)
-    asked = parser.parse_args()
+    asked = asked_of("tests.honesty.splits", __doc__)
     worst: dict[str, float] = {}
     count = wrong = 0
     for seed in range(asked.seed, asked.seed + asked.cases):

@@ -7,12 +7,10 @@ prints what is not the same, and how differences are spread over the errors that
 
 from __future__ import annotations
 
-import argparse
 import sys
 import time
 from collections import Counter
 from collections.abc import Iterator
-from pathlib import Path
 from typing import Any
 
 import numpy as np
@@ -29,6 +27,7 @@ from tests.oracle.rows import coordinates
 from tests.oracle.values import to_yaml
 from tests.oracle.weld import ON_THE_SPOT
 from tests.oracle.weld import SAW as SAWN
+from tests.shared.hunts import asked_of
 from tests.shared.rest_told_again import TELLINGS, section_of_the_weld, with_cuts
 from tests.shared.said_again import ROUNDING, Difference, Retold, differences, error_of, of_blows
 from tests.shared.scenes import study
@@ -153,11 +152,7 @@ def judged(seed: int, way: str) -> tuple[str, float, str, Any, Any]:
 
 def main() -> int:
     """Run the cases; 1 if one is wrong."""
-    parser = argparse.ArgumentParser(prog="python -m tests.honesty.struck_told_again", description=__doc__)
-    parser.add_argument("--cases", type=int, default=100)
-    parser.add_argument("--seed", type=int, default=0, help="of the first case")
-    parser.add_argument("--save", type=Path, metavar="FOLDER", help="where scenes go that are wrong")
-    asked = parser.parse_args()
+    asked = asked_of("tests.honesty.struck_told_again", __doc__)
     counts: Counter[str] = Counter()
     ratios: list[float] = []
     begun = time.perf_counter()
