@@ -34,6 +34,14 @@ def of_key(key: str, known: Collection[str]) -> str:
     return belonging(key, known) or elsewhere(key) or did_you_mean(key, known, "keys here")
 
 
+def stands_for(key: str, known: Collection[str]) -> str | None:
+    """Which of the known keys an unknown one is told to be: by the name of another program, or misspelt."""
+    word = called(key, known)
+    if word is not None or key[:1].isdigit() or belonging(key, known) or elsewhere(key):
+        return word
+    return nearest(key, known)
+
+
 def belonging(key: str, known: Collection[str]) -> str | None:
     """Where a key of the format belongs that stands in a wrong place."""
     if "heun" in known:

@@ -11,7 +11,7 @@ from pydantic import ValidationError
 from heuncli.errors import Finding
 from heuncli.nearest import did_you_mean, nearest
 from heuncli.spec.fields import Entry
-from heuncli.spec.hints import called, elsewhere, of_form, of_key, of_missing, of_word
+from heuncli.spec.hints import called, elsewhere, of_form, of_key, of_missing, of_word, stands_for
 from heuncli.spec.quantity import Follows, kind_of
 from heuncli.spec.rules.registry import Path_, Violation
 from heuncli.spec.words import LATER, TYPES
@@ -103,8 +103,8 @@ def as_many(path: Path_, count: int) -> str:
 
 def is_there_as_another(key: str, owner: dict[str, Any], model: type[Entry], path: Path_) -> bool:
     """Whether an unknown key beside it stands for a missing one."""
-    known = keys_known(path, model) if not path else []
-    return any(name not in known and called(str(name), known) == key for name in owner)
+    known = keys_known(path, model)
+    return any(name not in known and stands_for(str(name), known) == key for name in owner)
 
 
 def missing(path: Path_, key: str, owner: dict[str, Any]) -> tuple[str, Violation]:

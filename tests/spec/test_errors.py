@@ -82,7 +82,6 @@ def test_all_at_once() -> None:
         "18:45 forces.push.vector.0 expression-syntax",
         "18:55 forces.push.vector.2 function-arguments",
         "19:32 forces.motor.joint load-joint",
-        "20:3 forces.ram missing-key",
         "20:31 forces.ram.from unknown-body",
         "20:50 forces.ram.valu unknown-key",
         "21:12 analysis.duratio unknown-key",

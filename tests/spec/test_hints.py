@@ -87,6 +87,7 @@ def test_a_line_more(line: str, path: str, said: str) -> None:
         ("joints:\n", "joints:\n  b: {type: ball, from: ground.O, to: ball.p, initial: {rate: 3}}\n", "orientation"),
         ("type: pin", "type: revolute", "type: pin"),
         ("type: pin", "type: fixed", "type: weld"),
+        ("radius: 10 mm", "raduis: 10 mm", "did you mean radius?"),
         ("type: pin", "typ: pin", "did you mean type where 'typ' stands?"),
         ("from: ground.O", "from: O", "did you mean ground.O?"),
         ("from: ground.O", "from: origin", "did you mean ground.O?"),
