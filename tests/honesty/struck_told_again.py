@@ -94,17 +94,22 @@ def welded(first: Study, second: Study, told: Retold) -> Iterator[Difference]:
 
 
 def of_events(first: Study, second: Study, told: Retold) -> Iterator[Difference]:
-    """The instants of events, by the errors that both runs state of them."""
+    """The instants of events, by the errors that both runs state of them.
+
+    One that is told "only just", without an error, need not be in the other run; what is certain is there as well.
+    """
+    rounding = ROUNDING * float(second.results.time[-1])
     for name, one in first.results.events.items():
         other = second.results.events[told.name(name)]
-        if len(one["time"]) != len(other["time"]):
-            yield Difference(f"events.{name}: {len(one['time'])}, {len(other['time'])}", np.inf, 0.0, 0.0)
-            continue
-        off = np.abs(one["time"] * told.time - other["time"])
-        stated = one["error"] * told.time + other["error"]
-        rounding = ROUNDING * float(second.results.time[-1])
-        for k in range(len(off)):
-            yield Difference(f"events.{name}.time.{k}", float(off[k]), float(stated[k]), rounding)
+        mine = list(zip(one["time"] * told.time, one["error"] * told.time, one["to"], strict=True))
+        theirs = list(zip(other["time"], other["error"], other["to"], strict=True))
+        for these, those in ((mine, theirs), (theirs, mine)):
+            for t, error, to in these:
+                if np.isfinite(error):
+                    alike = [(abs(t - at), own) for at, own, becomes in those if becomes == to]
+                    off, own = min(alike, default=(np.inf, 0.0))
+                    stated = float(error + (own if np.isfinite(own) else 0.0))
+                    yield Difference(f"events.{name} at {t:.9g}", float(off), stated, rounding)
 
 
 def of_extremes(first: Study, second: Study, told: Retold) -> Iterator[Difference]:
