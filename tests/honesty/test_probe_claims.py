@@ -12,39 +12,16 @@ from heuncli.commands.probing.results import DEAD_CENTRE, Probe
 from heuncli.commands.probing.study import probe
 from heuncli.spec.load import load
 from heuncli.study.model.options import Options
+from tests.shared.chains import chain
 
 
 def probed(text: str) -> Probe:
     return probe(load("scene.yaml", text), Options())
 
 
-def chain(seed: int) -> tuple[str, np.ndarray[tuple[int, int], np.dtype[np.float64]]]:
-    """Masses on slides one behind the other with springs and dampers between, and the matrix of their state."""
-    draw = random.Random(seed)
-    n = draw.randint(1, 4)
-    m = [10 ** draw.uniform(-1, 1) for _ in range(n)]
-    k = [10 ** draw.uniform(0, 4) for _ in range(n)]
-    c = [10 ** draw.uniform(-2, 2) for _ in range(n)]
-    bodies, joints, forces = [], [], []
-    before = "ground.O"
-    for i in range(n):
-        bodies.append(f"  b{i}: {{mass: {m[i]!r}, center: [0, 0, 0], inertia: [1, 1, 1], points: {{c: [0, 0, 0]}}}}")
-        joints.append(f"  s{i}: {{type: slide, axis: [1, 0, 0], from: {before}, to: b{i}.c, initial: {{travel: 0.1}}}}")
-        forces.append(f"  f{i}: {{type: torque, joint: s{i}, value: {-k[i]!r}*s{i}.travel - {c[i]!r}*s{i}.speed}}")
-        before = f"b{i}.c"
-    head = "heun: 1\nground: {points: {O: [0, 0, 0]}}\n"
-    blocks = [("bodies", bodies), ("joints", joints), ("forces", forces)]
-    text = head + "".join(f"{name}:\n" + "\n".join(rows) + "\n" for name, rows in blocks)
-    # x_i = sum of the travels up to i; the force of a travel acts on both its ends
-    to_places = np.tril(np.ones((n, n)))
-    M = to_places.T @ np.diag(m) @ to_places
-    A = np.block([[np.zeros((n, n)), np.eye(n)], [-np.linalg.solve(M, np.diag(k)), -np.linalg.solve(M, np.diag(c))]])
-    return text + "analysis: {duration: 0.2, samples: 3}\n", A
-
-
 @pytest.mark.parametrize("seed", range(24))
 def test_the_rates_of_a_chain(seed: int) -> None:
-    text, A = chain(seed)
+    text, A = chain(seed, "{duration: 0.2, samples: 3}")
     found, values = probed(text).stiffness, np.linalg.eigvals(A)
     assert found is not None
     largest = float(np.abs(values).max())
