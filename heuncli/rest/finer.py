@@ -1,8 +1,10 @@
 """A rest pose whose search is checked as a motion is: a ten times finer one has to end there, else a finer one still.
 
 Where nothing is indifferent both end in the same pose to its digits, or elsewhere. What nothing holds is where the way
-left it: there the two are apart by the error of the coarser one, which bounds that of the finer. Two searches that go
-on to different poses pass a ridge between them. Where the finest ones still do, the way depends on less than they tell.
+left it: there two are apart by the error of the coarser one, which bounds that of the finer. By accident both may err
+alike (in one scene of some thousands): so a third is made there, and a tenth of how far the first two are apart counts,
+too. Two searches that go on to different poses pass a ridge between them. Where the finest ones still do, the way
+depends on less than they tell.
 """
 
 from __future__ import annotations
@@ -20,6 +22,7 @@ from heuncli.tree.prepare import PreparedScene
 
 ACROSS = 10.0 ** np.arange(-7.0, -1.0)  # rad, or of the size: so far beside a way one looks for another
 SEARCHES = 4  # each ten times finer than the one before
+FEWEST_OF_THE_LOOSE = 2  # finer ones than the first, where something is indifferent
 
 
 @record
@@ -37,6 +40,7 @@ class CheckedPose:
 def checked(scene: PreparedScene, evaluator: Evaluator, t: float) -> CheckedPose:
     """The rest pose that the start leads to. Raises SolveError [no-rest-pose]."""
     all_found: list[FoundPose] = []
+    ways: list[Array] = []
     for number in range(SEARCHES):
         off = tolerances.REST_BENT * tolerances.REST_FINER**number
         new = RestSearch(scene, evaluator, t, off).found()
@@ -45,15 +49,22 @@ def checked(scene: PreparedScene, evaluator: Evaluator, t: float) -> CheckedPose
             return told(all_found, np.zeros(new.coordinates.count), None)
         if number == 0:
             continue
-        way = new.coordinates.between(new.pose.state, all_found[-2].pose.state)
-        held, loose = parts(new, way)
-        same = is_same(new, held, loose)
-        if same and is_certain(new) and new.coordinates.size(loose) <= tolerances.REST_WAY:
+        ways.append(new.coordinates.between(new.pose.state, all_found[-2].pose.state))
+        held, loose = parts(new, ways[-1])
+        same, apart = is_same(new, held, loose), new.coordinates.size(loose)
+        enough = number >= FEWEST_OF_THE_LOOSE or not has_loose(new)
+        if same and enough and is_certain(new) and apart <= tolerances.REST_WAY:
             break
     other = None if same else all_found[-2]
     if other is None and not is_certain(new):
         other = beyond_the_ridge(scene, evaluator, t, new)
-    return told(all_found, way if same else np.zeros(len(way)), other)
+    return told(all_found, error_of(new, ways) if same else np.zeros(len(ways[-1])), other)
+
+
+def error_of(last: FoundPose, ways: list[Array]) -> Array:
+    """How far the last search may be off, (n,): the way to the one before, or a share of the way before that one."""
+    shares = [way * tolerances.REST_FINER**back for back, way in enumerate(reversed(ways[-2:]))]
+    return max(shares, key=last.coordinates.size)
 
 
 def left_by_the_way(evaluator: Evaluator, found: FoundPose, way: Array) -> tuple[Array, ...]:
@@ -104,6 +115,11 @@ def parts(found: FoundPose, way: Array) -> tuple[Array, Array]:
     z, idle = own.inverse @ (own.back @ way), np.isinf(own.known)
     loose, spun = ((own.T @ (own.V @ np.where(which, z, 0.0))).real for which in (~own.decided & ~idle, idle))
     return way - loose - spun, loose
+
+
+def has_loose(found: FoundPose) -> bool:
+    """Whether something is indifferent, spins without inertia aside."""
+    return bool((~found.slopes.decided & ~np.isinf(found.slopes.known)).any())
 
 
 def is_same(found: FoundPose, held: Array, loose: Array) -> bool:
