@@ -60,6 +60,12 @@ OFF_BALANCE = 1e-9  # [rad] or of the size: so far a start may be from the pose 
 KINK = 1e-9  # of a coordinate, or 1: so near to where a law jumps or bends a pose is on it, closed as it is to OPEN_GAP
 GOES_ON = 1e-8  # of the stiffness and loads: what of them may change as a steady motion goes on; rounding of long ways
 
+# -- orders
+CANCELS = 1e-9  # of the sum of the bodies' own amplitudes: drawings typed with ten digits balance that well
+ORDERS_SETTLED = (
+    1e-12  # of the largest order: what the highest may be for all below them to be told; some FFT's roundings
+)
+
 # -- no inertia
 NO_INERTIA = 1e-12  # of the body's largest moment: a tensor turned into other axes keeps 14 digits, some are typed
 POINT_MASS = 1e-9  # of m L^2: a body whose radius of gyration is 3e-5 of the scene's size is no point mass yet

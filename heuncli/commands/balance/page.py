@@ -1,0 +1,238 @@
+"""A balance as tables, as JSON, and as CSV in long form."""
+
+from __future__ import annotations
+
+import math
+from collections.abc import Iterator, Mapping, Sequence
+from typing import Any
+
+import numpy as np
+
+from heuncli.commands.balance.letters import draw
+from heuncli.commands.balance.remedies_page import remedies
+from heuncli.commands.balance.results import BalanceResults, Counterbalance, OrderRow, OverCycle
+from heuncli.report.digits import style, trim
+from heuncli.report.export import FORMAT
+from heuncli.report.page_width import fit
+from heuncli.report.text_table import WIDTH, TextColumn, TextTable, head, labelled, plain
+from heuncli.results import Array, Block
+from heuncli.tolerances import WRITTEN
+from heuncli.version import VERSION
+
+UNITS = {"force": "N", "moment": "N·m", "torque": "N·m"}
+BY_RATE = {"force": "kg·m", "moment": "kg·m²", "torque": "kg·m²"}  # of 1 rad/s, where no rate is known
+LETTERS = ("x", "y", "z")
+FORCE = "FORCE  ON the foundation, world axes; order k is amplitude · cos(kφ - phase)"
+MOMENT = "MOMENT  ON the foundation, about {}; orbital and spin: what the two make of it in its phase"
+TORQUE = "TORQUE  that inertia alone takes of the drive, ½ dε/dφ ω²"
+RESIDUAL = "OVER THE CYCLE  root of the mean square, largest, and where"
+JOINTS = "joints."
+MOSTLY_GONE = 0.5  # of the bodies' own: an order of which less is left is worth a remark
+SIGNS = "minus the mass_effect of heun run, which is + sum m xdd"
+CSV_COLUMNS = "kind,order,quantity,component,unit,value"
+
+
+def heading(found: BalanceResults) -> list[tuple[str, str]]:
+    """Label and text of the lines above the tables."""
+    turns = "one turn" if found.turns == 1 else "two turns"
+    rate = f"at {found.rate:.9g} rad/s" if found.rate is not None else "at 1 rad/s: by the square of the rate, in kg·m"
+    many = "" if found.settled else "; the highest orders are not settled: a law bends on the way"
+    return [
+        ("heun", f"{VERSION}  {found.title}"),
+        ("balance", f"{turns} of {found.coordinate} {rate}, {found.samples} angles{many}"),
+        ("signs", f"force and moment of the masses ON the foundation: {SIGNS}"),
+        *((name, found.words[name]) for name in ("force", "moment")),
+        *(("", note) for note in found.notes),
+    ]
+
+
+def unit_of(found: BalanceResults, quantity: str) -> str:
+    """The unit in which a quantity's amplitudes are told."""
+    return (UNITS if found.rate is not None else BY_RATE)[quantity]
+
+
+def place_of(found: BalanceResults) -> str:
+    """The point that moments are taken about, in words."""
+    x, y, z = (f"{value:.6g}" for value in found.about + 0.0)
+    return f"{found.place or 'O' if found.place or not found.about.any() else 'the point'} = ({x}, {y}, {z}) m"
+
+
+def write(found: BalanceResults) -> str:
+    """The page as text."""
+    parts = [labelled(heading(found))]
+    for table in (*tables(found), *remedies(found)):
+        parts += [plain(part, WIDTH) for part in fit(table, WIDTH)]
+    return "\n".join([*parts, *(part for part in [draw(found, WIDTH)] if part)])
+
+
+def tables(found: BalanceResults) -> Iterator[TextTable]:
+    """The tables of the page."""
+    yield order_table(found, "force", FORCE)
+    yield order_table(found, "moment", MOMENT.format(place_of(found)))
+    yield order_table(found, "torque", TORQUE)
+    yield residual_table(found)
+
+
+def order_table(found: BalanceResults, quantity: str, heading: str) -> TextTable:
+    """The shown orders of a quantity; components that have none of them are left out."""
+    rows = [row for row in found.orders[quantity] if row.order in found.shown]
+    unit = unit_of(found, quantity)
+    columns, cells = [TextColumn("order")], [[f"{row.order:g}" for row in rows]]
+    scale = max((row.size for row in rows), default=0.0)
+    for k in range(len(rows[0].amplitude) if rows else 0):
+        if not any(row.amplitude[k] for row in rows):
+            continue
+        letter = "" if quantity == "torque" else f"{quantity[0].upper()}{LETTERS[k]}"
+        columns += [TextColumn(head(letter or quantity, unit), vector=letter), TextColumn("phase°", vector=letter)]
+        sizes = numbers([float(row.amplitude[k]) for row in rows], scale)
+        cells += [sizes, [degrees(row.phase[k]) if text != "0" else "" for row, text in zip(rows, sizes, strict=True)]]
+        if quantity == "moment":
+            for part in ("orbital", "spin"):
+                columns.append(TextColumn(part, vector=letter))
+                cells.append(numbers([in_phase(row, part, k) for row in rows], scale))
+    if any(row.with_turn or row.against for row in rows):
+        columns += [TextColumn("with turn", vector="turn"), TextColumn("against", vector="turn")]
+        cells += [
+            numbers([row.with_turn or 0.0 for row in rows], scale),
+            numbers([row.against or 0.0 for row in rows], scale),
+        ]
+    columns.append(TextColumn("", "left"))
+    cells.append([remark(row, quantity) for row in rows])
+    return TextTable(heading, tuple(columns), tuple(zip(*cells, strict=True)))
+
+
+def remark(row: OrderRow, quantity: str) -> str:
+    """What is said beside an order that is none, or of whose bodies' own most is gone."""
+    if row.verdict != "remains":
+        return row.verdict
+    share = row.size / row.own
+    return f"{100.0 * share:.2g} % of the bodies' own" if share < MOSTLY_GONE and quantity != "torque" else ""
+
+
+def in_phase(row: OrderRow, part: str, k: int) -> float:
+    """What orbital or spin makes of a moment's component, in the phase of that; where that is none, by its own."""
+    assert row.parts is not None
+    amplitude, phase = row.parts[part]
+    reference = row.phase[k] if row.amplitude[k] else row.parts["orbital"][1][k]
+    return float(amplitude[k] * math.cos(phase[k] - reference))
+
+
+def numbers(values: Sequence[float], scale: float) -> list[str]:
+    """Numbers of one family, to the digits of the largest."""
+    how = style(scale, WRITTEN * scale)
+    return trim([how.write(value) for value in values])
+
+
+def degrees(phase: float) -> str:
+    """A phase in degrees, to a hundredth."""
+    text = f"{math.degrees(phase):.2f}".rstrip("0").rstrip(".")
+    return "0" if text == "-0" else text
+
+
+def residual_table(found: BalanceResults) -> TextTable:
+    """Root of the mean square and peak of force, moment and torque."""
+    rows = []
+    for name in ("force", "moment", "torque"):
+        own, unit = found.residual[name], unit_of(found, name)
+        rms, peak = numbers([own.rms, own.peak], own.peak)
+        rows.append(
+            (f"{name} [{unit}]", rms, peak, f"{found.coordinate} = {math.degrees(own.at):.2f}°" if own.peak else "")
+        )
+    columns = TextColumn("", "left"), TextColumn("rms"), TextColumn("peak"), TextColumn("at", "left")
+    return TextTable(RESIDUAL, columns, tuple(rows))
+
+
+def block(found: BalanceResults) -> dict[str, Any]:
+    """The balance as the JSON has it."""
+    effects = found.effects
+    own: Block = {
+        "heun": FORMAT, "title": found.title, "spec": dict(found.spec), "version": VERSION,
+        "cycle": {
+            "coordinate": found.coordinate, "turns": found.turns, "rate": found.rate, "samples": found.samples,
+            "settled": found.settled,
+        },
+        "about": found.about, "axis": found.axis, "words": dict(found.words), "notes": list(found.notes),
+        "mean": dict(found.mean),
+        "harmonics": {name: [row.block() for row in rows] for name, rows in found.orders.items()},
+        "residual": {name: residual.block() for name, residual in found.residual.items()},
+        "per_rate": {
+            "angle": effects.angles,
+            "second": {
+                "force": effects.force.sum(axis=1), "moment": effects.moment.sum(axis=1),
+                "moment_orbital": effects.orbital.sum(axis=1), "moment_spin": effects.spin.sum(axis=1),
+                "torque": effects.half_slope.sum(axis=1),
+            },
+            "first": {
+                "force": effects.first_force.sum(axis=1),
+                "moment": (effects.first_orbital + effects.first_spin).sum(axis=1),
+                "moment_orbital": effects.first_orbital.sum(axis=1), "moment_spin": effects.first_spin.sum(axis=1),
+                "torque": effects.eps.sum(axis=1),
+            },
+        },
+    }  # fmt: skip
+    own["counterweights"] = []
+    if found.counterbalance is not None:
+        own |= weights_block(found.counterbalance)
+    if found.flywheel is not None:
+        own["flywheel"] = found.flywheel.block()
+    as_lists: dict[str, Any] = plain_data(own)
+    return as_lists
+
+
+def weights_block(found: Counterbalance) -> Block:
+    """The counterweights as the JSON has them, with what is left and what they cost."""
+    return {
+        "counterweights": [weight.block() for weight in found.weights],
+        "minimised": {"what": found.minimised, "lever": found.lever, "several": found.several},
+        "left": {
+            "words": dict(found.words),
+            "harmonics": {name: [row.block() for row in rows] for name, rows in found.orders.items()},
+        },
+        "cost": {name: costs(own) for name, own in (("before", found.before), ("after", found.after))},
+    }  # fmt: skip
+
+
+def costs(own: Mapping[str, OverCycle]) -> Block:
+    """The loads before or after, the joints by their names."""
+    joints = {name.removeprefix(JOINTS): spread.block() for name, spread in own.items() if name.startswith(JOINTS)}
+    return {name: spread.block() for name, spread in own.items() if not name.startswith(JOINTS)} | {"joints": joints}
+
+
+def plain_data(value: Any) -> Any:
+    """Arrays as lists, numbers as Python's."""
+    if isinstance(value, dict):
+        return {key: plain_data(member) for key, member in value.items()}
+    if isinstance(value, (list, tuple)):
+        return [plain_data(member) for member in value]
+    if isinstance(value, np.ndarray):
+        return value.tolist()
+    return value
+
+
+def to_csv(found: BalanceResults) -> str:
+    """The orders in long form, a line a number."""
+    lines = [CSV_COLUMNS]
+    for kind, rows in found.orders.items():
+        unit = unit_of(found, kind)
+        for row in rows:
+            for quantity, component, of, value in of_order(row):
+                lines.append(f"{kind},{row.order:g},{quantity},{component},{of or unit},{value!r}")
+    for kind, own in found.residual.items():
+        unit = unit_of(found, kind.partition("_")[0])
+        lines += [f"{kind},,{name},,{unit},{value!r}" for name, value in (("rms", own.rms), ("peak", own.peak))]
+        lines.append(f"{kind},,at,,rad,{own.at!r}")
+    return "\n".join(lines) + "\n"
+
+
+def of_order(row: OrderRow) -> Iterator[tuple[str, str, str, float]]:
+    """Quantity, component, unit (empty: that of the kind) and value of an order's numbers."""
+    letters = LETTERS if len(row.amplitude) == len(LETTERS) else ("",)
+    sets: list[tuple[str, Array, Array]] = [("", row.amplitude, row.phase)]
+    sets += [(f"{name}_", *both) for name, both in (row.parts or {}).items()]
+    for name, amplitude, phase in sets:
+        for letter, a, p in zip(letters, amplitude.tolist(), phase.tolist(), strict=True):
+            yield f"{name}amplitude", letter, "", a
+            yield f"{name}phase", letter, "rad", p
+    for name, value in (("with", row.with_turn), ("against", row.against)):
+        if value is not None:
+            yield name, "", "", value
