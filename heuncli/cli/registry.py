@@ -64,11 +64,12 @@ COMMANDS = (
     Command("balance", page="balance", phase="while the cycle was followed"),
     Command("chart", folder="charting", page="chart", grace=0.8),
     Command("probe", folder="probing", page="probe", phase="while the neighbourhood of the motion was looked at"),
+    Command("lagrange", page="lagrange", phase="while the equations were made"),
     Command("check"),
     Command("methods", page="methods"),
     Command("explain"),
 )
-LATER_COMMANDS = ("lagrange", "schema", "new", "sweep", "plot")  # not in this version yet
+LATER_COMMANDS = ("schema", "new", "sweep", "plot")  # not in this version yet
 
 
 def command_of(name: str) -> Command | None:

@@ -17,7 +17,7 @@ from heuncli.tree.idle_spins import IdleSpin, idle_spins, without_inertia
 from heuncli.tree.layout import Layout
 from heuncli.tree.pack import lay_out
 from heuncli.tree.spanning import Spanning
-from heuncli.tree.starts import GivenTree
+from heuncli.tree.starts import GivenTree, JointStart
 
 
 @record
@@ -57,11 +57,16 @@ def prepare(mechanism: Mechanism, t0: float = 0.0) -> PreparedScene:
 
 
 def arranged(
-    mechanism: Mechanism, start: Assembly, *, spanning: Spanning | None = None, size: float | None = None
+    mechanism: Mechanism,
+    start: Assembly,
+    *,
+    spanning: Spanning | None = None,
+    size: float | None = None,
+    starts: tuple[JointStart, ...] | None = None,
 ) -> PreparedScene:
     """Lay out an assembled mechanism; bodies with an undetermined spin get some inertia and no spin about its axis.
 
-    spanning, size: of the tree and the scene [m], where they are those of a larger scene.
+    spanning, size, starts: of the tree, the scene [m] and its joints, where they are those of another scene.
     """
     size = size_of_scene(mechanism, start) if size is None else size
     idle = tuple(idle_spins(mechanism, size))
@@ -76,7 +81,7 @@ def arranged(
     driven = any(j.drive is not None for j in mechanism.joints)
     works = works or driven or bool(mechanism.blows or mechanism.stops)
     works = works or any(j.restitution is not None for j in mechanism.joints)
-    tree = None if spanning is None else GivenTree(spanning)
+    tree = None if spanning is None else GivenTree(spanning, starts)
     return PreparedScene(mechanism, start, idle, lay_out(mechanism, start, inertias, size, works, tree))
 
 

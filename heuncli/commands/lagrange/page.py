@@ -1,0 +1,202 @@
+"""The Lagrange side as tables, as JSON, and in long form."""
+
+from __future__ import annotations
+
+from collections.abc import Iterator, Sequence
+from itertools import product
+from typing import Any
+
+import numpy as np
+
+from heuncli.commands.lagrange.results import LagrangeResults
+from heuncli.foreign_text import shown
+from heuncli.report.page_width import fit
+from heuncli.report.text_table import WIDTH, TextColumn, TextTable, plain
+from heuncli.results import Array
+from heuncli.version import VERSION
+
+HEADING = "LAGRANGE  {at}: coordinates q and rates q'; ε q'' + C = k + drive. Angles in rad, N·m; lengths in m, N"
+MASS = "MASS  ε = ∂²E/∂q'∂q', and the inertia that is seen: with the other coordinates held, and with them free"
+RECIPROCAL = "RECIPROCAL  η = 1/ε: E = p η p / 2"
+FORCES = "FORCES  k along each coordinate, by cause; C: what the masses' accelerations at q'' = 0 do there"
+CHRISTOFFEL = "CHRISTOFFEL  γ(i; l, k) = (∂ε_il/∂q_k + ∂ε_ik/∂q_l − ∂ε_lk/∂q_i) / 2 and α(i; l, k) = −Σ η_ij γ(j; l, k)"
+SECTIONS = "SECTIONS  s' along each coordinate: what the piece beyond the cut does on the rest"
+SHOWN = 6  # coordinates, of which matrices are written out
+ROUNDING = 1e-13  # of what a number is summed from, or of the largest of a matrix: less is told as 0
+COLUMNS = ("q", "q'", "p = ∂E/∂q'", "C", "k", "drive", "q''")
+CSV_COLUMNS = "name,quantity,component,unit,value"
+
+
+def write(found: LagrangeResults) -> str:
+    """The page as text."""
+    lines = [("heun", f"{VERSION}  {found.title}"), *energy_lines(found)]
+    head = "".join(f"{label.ljust(6)}  {shown(text)}\n" for label, text in lines)
+    return "\n".join([head, *("".join(plain(part, WIDTH) for part in fit(table, WIDTH)) for table in tables(found))])
+
+
+def energy_lines(found: LagrangeResults) -> Iterator[tuple[str, str]]:
+    """Label and text of the lines above the tables."""
+    free, mixed, driven = found.energies
+    parts = f": free {free:.6g}, mixed {mixed:.6g}, driven {driven:.6g} J" if any(found.driven) and free else ""
+    yield "energy", f"E = {found.energy:.6g} J, F = {found.reciprocal_energy:.6g} J{parts}"
+    yield "", f"ε q'' + C = k + drive is met to {found.residual:.1g} of what its terms are summed from"
+    for note in found.notes:
+        yield "", note
+
+
+def tables(found: LagrangeResults) -> list[TextTable]:
+    """What is told, a table each."""
+    made = [equations(found), seen(found)]
+    if len(found.names) <= SHOWN:
+        made.append(matrix(RECIPROCAL, found, found.eta))
+        made.append(forces(found))
+        if found.gamma is not None:
+            made.append(christoffel(found))
+    if found.sections:
+        made.append(sections(found))
+    return made
+
+
+def number(value: float | None, scale: float = 0.0) -> str:
+    """Six digits; 0 of what is rounding beside a scale."""
+    if value is None or np.isnan(value):
+        return ""
+    return "0" if abs(value) <= ROUNDING * scale else f"{value:.6g}"
+
+
+def label(found: LagrangeResults, i: int) -> str:
+    """A coordinate, with whether a drive moves it."""
+    return f"{found.names[i]}{'  driven' if found.driven[i] else ''}"
+
+
+def equations(found: LagrangeResults) -> TextTable:
+    """A row a coordinate."""
+    forces = np.array([found.coriolis, found.total, found.drives])
+    rows = []
+    for i in range(len(found.names)):
+        given = (found.values[i], found.rates[i], found.momenta[i])
+        rows.append((
+            label(found, i), *(number(x) for x in given), *(number(x, found.scale[i]) for x in forces[:, i]),
+            number(found.accelerations[i]),
+        ))  # fmt: skip
+    heads = (TextColumn("coordinate", "left"), *(TextColumn(name) for name in COLUMNS))
+    return TextTable(HEADING.format(at=found.at), heads, tuple(rows))
+
+
+def seen(found: LagrangeResults) -> TextTable:
+    """The mass matrix where it is small, and the inertias that are seen."""
+    shows = len(found.names) <= SHOWN and {one.name for one in found.seen} == set(found.names)
+    size = float(np.abs(found.epsilon).max())
+    rows = []
+    for one in found.seen:
+        own = [number(x, size) for x in found.epsilon[found.names.index(one.name)]] if shows else []
+        rows.append((one.name, *own, one.unit, number(one.locked), number(one.free)))
+    columns = [TextColumn(f"ε {name}") for name in found.names] if shows else []
+    heads = (TextColumn("seen at", "left"), *columns, TextColumn("unit", "left"), TextColumn("others held"))
+    return TextTable(MASS, (*heads, TextColumn("others free")), tuple(rows))
+
+
+def matrix(heading: str, found: LagrangeResults, values: Array) -> TextTable:
+    """A matrix by coordinates."""
+    size = float(np.abs(values).max())
+    rows = tuple((name, *(number(x, size) for x in row)) for name, row in zip(found.names, values, strict=True))
+    return TextTable(heading, (TextColumn("", "left"), *(TextColumn(name) for name in found.names)), rows)
+
+
+def forces(found: LagrangeResults) -> TextTable:
+    """k by cause."""
+
+    def row(cause: str, k: Array) -> tuple[str, ...]:
+        return cause, *(number(x, size) for x, size in zip(k, found.scale, strict=True))
+
+    rows = [row(cause, k) for cause, k in found.forces.items()]
+    rows += [row("k", found.total), row("C", found.coriolis)]
+    return TextTable(FORCES, (TextColumn("cause", "left"), *(TextColumn(name) for name in found.names)), tuple(rows))
+
+
+def christoffel(found: LagrangeResults) -> TextTable:
+    """The symbols that are not 0, each pair l, k once."""
+    assert found.gamma is not None and found.alpha is not None
+    sizes = [float(np.abs(x).max(initial=0.0)) for x in (found.gamma, found.alpha)]
+    rows = []
+    f = len(found.names)
+    for i, j, k in product(range(f), repeat=3):
+        if k < j:
+            continue
+        both = [number(x[i, j, k], size) for x, size in zip((found.gamma, found.alpha), sizes, strict=True)]
+        if both != ["0", "0"]:
+            rows.append((found.names[i], found.names[j], found.names[k], *both))
+    heads = (*(TextColumn(name, "left") for name in ("i", "l", "k")), TextColumn("γ"), TextColumn("α"))
+    return TextTable(CHRISTOFFEL, heads, tuple(rows), () if rows else ("all are 0",))
+
+
+def sections(found: LagrangeResults) -> TextTable:
+    """s' of each cut."""
+    rows = []
+    for name, own in found.sections.items():
+        for cut, s in cuts_of(own["s"]):
+            rows.append((name + cut, *(["open"] * len(found.names) if s is None else [number(x) for x in s])))
+    return TextTable(SECTIONS, (TextColumn("section", "left"), *(TextColumn(n) for n in found.names)), tuple(rows))
+
+
+def cuts_of(s: Any) -> list[tuple[str, Sequence[float] | None]]:
+    """The cuts of a section with their numbers: none of a single one."""
+    if s is None or not isinstance(s[0], (list, type(None))):
+        return [("", s)]
+    return [(f".{k}", own) for k, own in enumerate(s)]
+
+
+def block(found: LagrangeResults) -> dict[str, Any]:
+    """As JSON has it: lists over the coordinates; gamma and alpha by i, l, k."""
+    return {
+        "title": found.title,
+        "time": found.t,
+        "coordinates": list(found.names),
+        "units": ["m" if is_length else "rad" for is_length in found.lengths],
+        "driven": list(found.driven),
+        "values": [None if np.isnan(x) else float(x) for x in found.values],
+        "rates": found.rates.tolist(),
+        "accelerations": found.accelerations.tolist(),
+        "epsilon": found.epsilon.tolist(),
+        "eta": found.eta.tolist(),
+        "gamma": None if found.gamma is None else found.gamma.tolist(),
+        "alpha": None if found.alpha is None else found.alpha.tolist(),
+        "momenta": found.momenta.tolist(),
+        "energy": dict(zip(("total", "free", "mixed", "driven"), (found.energy, *found.energies), strict=True)),
+        "reciprocal_energy": found.reciprocal_energy,
+        "forces": {"total": found.total.tolist(), "shares": {name: k.tolist() for name, k in found.forces.items()}},
+        "drives": found.drives.tolist(),
+        "coriolis": found.coriolis.tolist(),
+        "coriolis_matrix": found.coriolis_matrix.tolist(),
+        "residual": found.residual,
+        "seen": {one.name: {"unit": one.unit, "locked": one.locked, "free": one.free} for one in found.seen},
+        "sections": {name: dict(own) for name, own in found.sections.items()},
+        "partials": dict(found.partials),
+        "left_out": list(found.left_out),
+        "notes": list(found.notes),
+    }
+
+
+def to_csv(found: LagrangeResults) -> str:
+    """In long form, a line a number; of matrices the component names the second coordinate."""
+    lines = [CSV_COLUMNS]
+    units = {True: ("m", "m/s", "m/s²", "kg·m/s", "N"), False: ("rad", "rad/s", "rad/s²", "N·m·s", "N·m")}
+    for i, name in enumerate(found.names):
+        q, rate, acceleration, momentum, force = units[found.lengths[i]]
+        for quantity, unit, values in (
+            ("value", q, found.values), ("rate", rate, found.rates),
+            ("acceleration", acceleration, found.accelerations),
+            ("momentum", momentum, found.momenta), ("coriolis", force, found.coriolis), ("force", force, found.total),
+            ("drive", force, found.drives),
+        ):  # fmt: skip
+            lines.append(f"{name},{quantity},,{unit},{float(values[i])!r}")
+        for cause, k in found.forces.items():
+            lines.append(f"{name},force,{cause},{force},{float(k[i])!r}")
+        for j, other in enumerate(found.names):
+            lines.append(f"{name},epsilon,{other},{mixed(found, i, j)},{float(found.epsilon[i, j])!r}")
+    return "\n".join(lines) + "\n"
+
+
+def mixed(found: LagrangeResults, i: int, j: int) -> str:
+    """The unit of an entry of the mass matrix."""
+    return ("kg·m²", "kg·m", "kg")[int(found.lengths[i]) + int(found.lengths[j])]

@@ -1,0 +1,189 @@
+"""The Lagrange side of a spec's scene at an instant (no. 18 to 24 of the paper)."""
+
+from __future__ import annotations
+
+from typing import Any
+
+import numpy as np
+
+from heuncli.commands.lagrange.coordinates import Chosen, accelerations, chosen, rates
+from heuncli.commands.lagrange.equations import (
+    Partials,
+    VelocityTerms,
+    forces_by_cause,
+    partials_of,
+    reciprocal,
+    size_of_terms,
+)
+from heuncli.commands.lagrange.instant import Instant, instant_of
+from heuncli.commands.lagrange.results import LagrangeResults
+from heuncli.commands.lagrange.seen import seen
+from heuncli.kinetostatics.actions import applied_loads, whole_joint_actions
+from heuncli.kinetostatics.bodies import body_states
+from heuncli.kinetostatics.coordinates import coordinates
+from heuncli.records import record
+from heuncli.results import Array
+from heuncli.spec.models import Spec
+from heuncli.study.compose.blocks import blocks
+from heuncli.study.model.error_places import placed
+
+QUASI = (
+    "{names}: rates without coordinates, components of angular velocity and of velocity along the world's axes: "
+    "Christoffel symbols and alpha are not defined for them"
+)
+
+
+@record
+class Asked:
+    """What is asked for beside the equations: coordinates, places at which inertia is seen, Christoffel symbols."""
+
+    at: float | None = None
+    coordinates: tuple[str, ...] = ()
+    seen: tuple[str, ...] = ()
+    christoffel: bool = False
+    time_limit: float | None = None
+
+
+def lagrange(spec: Spec, asked: Asked) -> LagrangeResults:
+    """Lagrange's equations of a spec's scene, in numbers. Raises SolveError."""
+    with placed(spec):
+        at = instant_of(spec, asked.at, asked.time_limit)
+        return told(spec, at, asked)
+
+
+def told(spec: Spec, at: Instant, asked: Asked) -> LagrangeResults:
+    """The results at an instant."""
+    layout = at.freed.layout
+    by = chosen(at.freed.scene, at.found, at.freed.driven, asked.coordinates)
+    epsilon = symmetric(by.S.T @ at.found.mass @ by.S)
+    eta = reciprocal(by.names, epsilon)
+    partials = partials_of(layout, at.found, by.S)
+    states = body_states(at.setup.scene.layout, at.there, at.setup.steady)
+    q1, q2 = (move(layout, by.names, states)[0] for move in (rates, accelerations))
+    terms = VelocityTerms(at.freed, by, partials, epsilon, at.t, at.state, at.holding)
+    C = terms.at(q1[None, :])[0]
+    here = body_states(layout, at.here)
+    applied = [load.action for load in applied_loads(layout.mechanism, here, at.here)]
+    k = forces_by_cause(layout, partials, applied)
+    scale = size_of_terms(layout, partials, [*applied, *whole_joint_actions(at.recovery.unsplit)], states)
+    scale = scale + np.abs(epsilon) @ np.abs(q2) + np.abs(C)
+    total = sum(k.values(), np.zeros(len(q1)))
+    Q = np.where(by.driven, epsilon @ q2 + C - total, 0.0)
+    gamma = terms.christoffel() if asked.christoffel and not any(by.quasi) else None
+    return LagrangeResults(
+        title=spec.title,
+        t=at.t,
+        at=at.words,
+        names=by.names,
+        driven=by.driven,
+        lengths=by.lengths,
+        values=values_of(at, by, here),
+        rates=q1,
+        accelerations=q2,
+        epsilon=epsilon,
+        eta=eta,
+        momenta=epsilon @ q1,
+        forces=k,
+        drives=Q,
+        coriolis=C,
+        coriolis_matrix=terms.coriolis_matrix(q1),
+        gamma=gamma,
+        alpha=None if gamma is None else -np.einsum("ij,jlk->ilk", eta, gamma),
+        energies=energies(epsilon, q1, np.array(by.driven)),
+        reciprocal_energy=float(0.5 * (epsilon @ q1) @ eta @ (epsilon @ q1)),
+        scale=scale,
+        residual=residual(at, by, epsilon @ q2 + C - total, scale),
+        seen=seen(at, by, partials, epsilon, eta, asked.seen),
+        sections=sections(at, partials),
+        partials=partials_block(at, by, partials),
+        left_out=by.left_out,
+        notes=tuple(notes(by)),
+    )
+
+
+def symmetric(M: Array) -> Array:
+    """Of a matrix that is, to rounding."""
+    return np.asarray(0.5 * (M + M.T))
+
+
+def values_of(at: Instant, by: Chosen, here: Any) -> Array:
+    """The coordinates themselves, (f,); not a number of quasi-velocities."""
+    block = coordinates(at.freed.layout, at.here, here)
+    joints = {joint.name: joint for joint in at.freed.layout.mechanism.joints}
+    found = []
+    for name in by.names:
+        owner, _, quantity = name.rpartition(".")
+        if quantity == "length":
+            joint = joints[owner]
+            D = here.point_position(joint.b, joint.q) - here.point_position(joint.a, joint.p)
+            found.append(float(np.sqrt(D[0] @ D[0])))
+        else:
+            found.append(float(block[owner][quantity][0]) if quantity in block.get(owner, {}) else np.nan)
+    return np.array(found)
+
+
+def energies(epsilon: Array, q1: Array, driven: Array) -> tuple[float, float, float]:
+    """The parts of E: of the free rates, of both, of the driven ones."""
+    a, b = np.where(driven, 0.0, q1), np.where(driven, q1, 0.0)
+    return float(0.5 * a @ epsilon @ a), float(a @ epsilon @ b), float(0.5 * b @ epsilon @ b)
+
+
+def residual(at: Instant, by: Chosen, left: Array, scale: Array) -> float:
+    """What e q'' + C - k leaves where nothing drives, and beside what drives exert, of the parts that they are sums of.
+
+    The effort of a drive is that of the joint's reactions; where supports are redundant that may be open, and is left
+    out.
+    """
+    known = ~np.array(by.driven)
+    if not at.setup.model["redundant"]:
+        loads = {load.joint.name: load for load in at.recovery.joints}
+        for i, name in enumerate(by.names):
+            load = loads.get(name.rpartition(".")[0])
+            if by.driven[i] and load is not None and load.drive is not None:
+                left, known[i] = left - float(load.drive[0]) * (np.arange(len(left)) == i), True
+    off = np.abs(left[known]) / np.maximum(scale[known], np.finfo(float).tiny)
+    return float(off.max(initial=0.0))
+
+
+def sections(at: Instant, partials: Partials) -> dict[str, dict[str, Any]]:
+    """s'_i of each section, (53): what the piece beyond the cut exerts on the rest, by the partials of its body.
+
+    A list over the cuts of a run of cuts. None where a component of the section is open.
+    """
+    if not at.setup.cuts:
+        return {}
+    block = blocks(at.recovery, {"sections"})["sections"]
+    found: dict[str, dict[str, Any]] = {}
+    for cuts in at.setup.cuts:
+        own = block[cuts.name]
+        points_, force, moment = (np.atleast_2d(own[name][0]) for name in ("point", "force", "moment"))
+        along = [
+            F @ partials.at(cuts.body, P) + M @ partials.turning(cuts.body)
+            for P, F, M in zip(points_, force, moment, strict=True)
+        ]
+        lists = [None if np.isnan(s).any() else s.tolist() for s in along]
+        found[cuts.name] = {"s": lists[0] if own["force"][0].ndim == 1 else lists}
+    return found
+
+
+def partials_block(at: Instant, by: Chosen, partials: Partials) -> dict[str, Any]:
+    """What the rates make of the velocities of named points, and of the bodies, (29) and (30)."""
+    mechanism = at.freed.layout.mechanism
+    states = body_states(at.freed.layout, at.here)
+    found: dict[str, Any] = {"points": {}, "bodies": {}}
+    for i, body in enumerate(mechanism.bodies):
+        found["bodies"][body.name] = {"turn": partials.turn[i].tolist(), "shift": partials.shift[i].tolist()}
+        for name, place in body.points.items():
+            position = states.point_position(i, place)[0]
+            found["points"][f"{body.name}.{name}"] = partials.at(i, position).tolist()
+    return found
+
+
+def notes(by: Chosen) -> list[str]:
+    """Sentences below the tables."""
+    found = []
+    quasi = [name for name, is_quasi in zip(by.names, by.quasi, strict=True) if is_quasi]
+    if quasi:
+        found.append(QUASI.format(names=", ".join(quasi)))
+    found += [f"{name}: a spin without inertia is no part of the motion" for name in by.left_out]
+    return found
