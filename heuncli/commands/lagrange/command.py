@@ -8,10 +8,12 @@ from heuncli.cli.output import emit
 from heuncli.cli.solving import overrides, warn
 from heuncli.cli.target import format_of
 from heuncli.commands.lagrange import page
+from heuncli.commands.lagrange.over import over
 from heuncli.commands.lagrange.request import LagrangeRequest
 from heuncli.commands.lagrange.study import Asked, lagrange
 from heuncli.report.export import dump
 from heuncli.spec.load import load
+from heuncli.spec.models import Spec
 
 FORMATS = ("table", "json", "csv")
 ENDINGS = {".json": "json", ".csv": "csv", ".txt": "table", "": "table"}
@@ -30,11 +32,22 @@ def main(request: LagrangeRequest) -> int:
     )
     spec = load(request.spec, overrides=overrides(request.set), checking=False)
     require_other_file(request.output, [request.spec])
-    found = lagrange(spec, asked)
-    text = dump(page.block(found)) if form == "json" else page.to_csv(found) if form == "csv" else page.write(found)
-    emit(text, request.output)
+    emit(written(spec, request, asked, form), request.output)
     warn(spec, None, request.quiet)
     return 0
+
+
+def written(spec: Spec, request: LagrangeRequest, asked: Asked, form: str) -> str:
+    """What is asked for, in one of the formats."""
+    if request.over is not None:
+        course = over(spec, request.over)
+        if form == "json":
+            return dump(page.course_block(course))
+        return page.course_csv(course) if form == "csv" else page.write_course(course)
+    found = lagrange(spec, asked)
+    if form == "json":
+        return dump(page.block(found))
+    return page.to_csv(found) if form == "csv" else page.write(found)
 
 
 def words(given: str | None) -> tuple[str, ...]:

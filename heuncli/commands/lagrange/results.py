@@ -7,7 +7,7 @@ from typing import Any
 
 import numpy as np
 
-from heuncli.records import record
+from heuncli.records import record, replace
 from heuncli.results import Array
 
 
@@ -30,7 +30,7 @@ class LagrangeResults:
 
     values: of the coordinates, not a number of quasi-velocities; rates q'; accelerations q'' of the scene as it is,
     with its drives; forces k by cause; drives Q: what drives do beside them, 0 where nothing drives; C: coriolis, with
-    its matrix; gamma[i, l, k], alpha[i, l, k]: None where they were not asked for or the rates are those of no coordinates.
+    its matrix; gamma[i, l, k], alpha[i, l, k]: None where they were not asked for, or of rates without coordinates.
     energies: of what is free, mixed, driven. scale: of what size the parts are whose sums the forces are; residual: of
     e q'' + C = k + Q where Q is known otherwise, of these.
     """
@@ -72,3 +72,39 @@ class LagrangeResults:
     def energy(self) -> float:
         """E."""
         return sum(self.energies)
+
+
+@record
+class Course:
+    """The inertia and the forces over a range of the one free coordinate, (n,) each.
+
+    epsilon, half: e and de/dq / 2; forces k by cause, at a rate of the coordinate; mean: of e, over the range.
+    """
+
+    title: str
+    name: str
+    is_length: bool
+    driven: bool
+    values: Array
+    rate: float
+    epsilon: Array
+    half: Array
+    forces: Mapping[str, Array]
+
+    @property
+    def total(self) -> Array:
+        """k."""
+        return sum(self.forces.values(), np.zeros(len(self.values)))
+
+    @property
+    def mean(self) -> float:
+        """Of e over the range; of a whole turn the mean of the turn."""
+        middle = 0.5 * (self.epsilon[1:] + self.epsilon[:-1])
+        return float(middle @ np.diff(self.values) / (self.values[-1] - self.values[0]))
+
+    @property
+    def reversed(self) -> Course:
+        """The other way round."""
+        forces = {name: k[::-1] for name, k in self.forces.items()}
+        own = {name: getattr(self, name)[::-1] for name in ("values", "epsilon", "half")}
+        return replace(self, forces=forces, **own)

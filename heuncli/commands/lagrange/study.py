@@ -141,7 +141,9 @@ def residual(at: Instant, by: Chosen, left: Array, scale: Array) -> float:
             load = loads.get(name.rpartition(".")[0])
             if by.driven[i] and load is not None and load.drive is not None:
                 left, known[i] = left - float(load.drive[0]) * (np.arange(len(left)) == i), True
-    off = np.abs(left[known]) / np.maximum(scale[known], np.finfo(float).tiny)
+    lengths = np.array(by.lengths)
+    most = np.where(lengths, scale[lengths].max(initial=0.0), scale[~lengths].max(initial=0.0))
+    off = np.abs(left[known]) / np.maximum(most[known], np.finfo(float).tiny)
     return float(off.max(initial=0.0))
 
 

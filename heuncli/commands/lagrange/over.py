@@ -1,0 +1,197 @@
+"""`--over`: inertia and forces over a range of the one coordinate that is free, without integrating.
+
+    e(q) = sum m x'^2 + w' . I w'      de/dq / 2 = sum m x' . x'' + ...: C at unit rate      k_i = sum F . x'_P
+The drives are let go, the coordinate is followed from where it stands at unit rate (x' = dx/dq), and every instant is
+answered by itself. Loads are those at the start's instant, and at the rate that the coordinate has there.
+"""
+
+from __future__ import annotations
+
+import numpy as np
+
+from heuncli.commands.lagrange.coordinates import accelerations
+from heuncli.commands.lagrange.equations import motion_alone
+from heuncli.commands.lagrange.freed import FreedScene, freed
+from heuncli.commands.lagrange.results import Course
+from heuncli.errors import Finding, Problem, SolveError
+from heuncli.expressions.grammar import Scope, compile_expression
+from heuncli.integration.determined_motion import determined
+from heuncli.integration.evaluator import Recovered
+from heuncli.integration.methods.followed import FOLLOWED
+from heuncli.integration.run.request import MotionTask
+from heuncli.joint_kinds import JOINTS, RATES
+from heuncli.kinetostatics.actions import Action, applied_loads
+from heuncli.kinetostatics.bodies import BodyStates, body_states
+from heuncli.kinetostatics.coordinates import coordinates
+from heuncli.kinetostatics.foundation import inertia_loads
+from heuncli.kinetostatics.shares import GRAVITY
+from heuncli.mechanism.model import GROUND
+from heuncli.nearest import did_you_mean
+from heuncli.records import record, replace
+from heuncli.results import Array
+from heuncli.spec.models import Analysis, Drive, Spec
+from heuncli.study.model.error_places import placed
+from heuncli.study.model.setup import set_up
+from heuncli.tree.layout import Layout, places_of_rates
+
+BAD = "bad-option"
+FORM = "such as --over main.angle=0:360deg/73"
+MOST = 100_000  # values
+FOLLOWS = ("angle", "travel")
+
+
+@record
+class Range:
+    """A coordinate, joint.quantity, and the values (n,) over which it is followed."""
+
+    name: str
+    joint: str
+    quantity: str
+    values: Array
+
+
+def range_of(words: str, spec: Spec) -> Range:
+    """The range that is asked for: NAME=FROM:TO/COUNT. Raises SolveError [bad-option]."""
+    name, equals, rest = (part.strip() for part in words.partition("="))
+    bounds, slash, count = rest.partition("/")
+    first, colon, last = bounds.partition(":")
+    if not (equals and colon) or (slash and not count.strip().isdigit()):
+        raise refused(words, "expected NAME=FROM:TO/COUNT", FORM)
+    n = int(count) if slash else 73
+    if not 2 <= n <= MOST:
+        raise refused(words, f"expected 2 to {MOST} values", FORM)
+    joint, _, quantity = name.rpartition(".")
+    known = [f"{own.name}.{q}" for own in spec.joints.values() for q in JOINTS[own.kind].coordinates if q in FOLLOWS]
+    if name not in known:
+        hint = did_you_mean(name, known, "coordinates") or "of pins, slides and cylinders"
+        raise refused(words, f"no coordinate is called {name}", hint)
+    a, b = (number(words, text) for text in (first, last))
+    if a == b:
+        raise refused(words, "both ends are the same", FORM)
+    return Range(name, joint, quantity, np.linspace(a, b, n))
+
+
+def number(words: str, text: str) -> float:
+    """A number with a unit or without, SI."""
+    try:
+        value = compile_expression(text, Scope(with_units=True)).constant
+    except Finding as finding:
+        raise refused(words, str(finding), FORM) from None
+    if value is None or not np.isfinite(value):
+        raise refused(words, f"'{text}' is no number", FORM)
+    return value
+
+
+def refused(words: str, message: str, hint: str) -> SolveError:
+    """The error of an option that cannot be met."""
+    return SolveError(Problem(BAD, f"--over {words}: {message}", hint=hint))
+
+
+def over(spec: Spec, words: str) -> Course:
+    """The course of the inertia and of the forces. Raises SolveError where more is free, or the way ends."""
+    with placed(spec):
+        asked = range_of(words, spec)
+        start, rate = begun(spec, asked)
+        t = float(spec.analysis.times[0]) if spec.analysis.type == "state" else 0.0
+        order = np.argsort(asked.values)
+        values = asked.values[order]
+        ways = [values[values < start][::-1], values[values >= start]]
+        parts = [along(*followed(spec, asked, start, way, words), t, rate, way) for way in ways if len(way)]
+        parts = [part.reversed if len(part.values) > 1 and part.values[0] > part.values[-1] else part for part in parts]
+        whole = joined(parts)
+        whole = whole if asked.values[0] < asked.values[-1] else whole.reversed
+        driven = any(drive.joint == asked.joint and drive.quantity == asked.quantity for drive in spec.drives.values())
+        return replace(whole, title=spec.title, name=asked.name, is_length=asked.quantity == "travel", driven=driven)
+
+
+def begun(spec: Spec, asked: Range) -> tuple[float, float]:
+    """Where the coordinate stands at the start, and its rate."""
+    t = float(spec.analysis.times[0]) if spec.analysis.type == "state" else 0.0
+    analysis = spec.analysis._replace(type="state", times=(t,), duration=None, conditions=())
+    setup = set_up(spec._replace(analysis=analysis), reduce=False)
+    layout = setup.scene.layout
+    there = setup.runner.recovered(np.array([t]), layout.y0[None, :])
+    own = coordinates(layout, there, body_states(layout, there))[asked.joint]
+    return float(own[asked.quantity][0]), float(own["rate" if asked.quantity == "angle" else "speed"][0])
+
+
+def followed(spec: Spec, asked: Range, start: float, way: Array, words: str) -> tuple[FreedScene, Recovered, float]:
+    """The scene without drives, it answered at the values of a way, and the rate at which it was followed.
+
+    Raises SolveError where more than the coordinate is free, or contacts open and close.
+    """
+    span = float(way[-1]) - start or 1.0
+    law = compile_expression(f"{start!r} + {span!r}*t", Scope(in_time=True))
+    drives = {"over": Drive("over", asked.joint, asked.quantity, law)}  # type: ignore[arg-type]
+    joints = dict(spec.joints)
+    joints[asked.joint] = replace(joints[asked.joint], **{RATES[asked.quantity]: None})
+    times = np.maximum((way - start) / span, 0.0)
+    analysis = Analysis("motion", tuple(times.tolist()), 1.0, spec.analysis.tolerance, "auto", None)
+    setup = set_up(spec._replace(drives=drives, joints=joints, impulses={}, analysis=analysis), reduce=False)
+    layout = setup.scene.layout
+    if layout.contacts:
+        message = f"{layout.contacts[0].name} may open and close on the way"
+        raise refused(words, message, "leave stops and ropes out")
+    if not determined(setup.runner.moving).is_so:
+        message = f"with {asked.name} held something is free: the inertia of one motion is told over it"
+        raise refused(words, message, "heun lagrange SPEC tells all of one instant; --at T of a later one")
+    run = setup.runner.trajectory(MotionTask(times, spec.analysis.tolerance, FOLLOWED))
+    return freed(setup.scene), setup.runner.answers_at(run, times), span
+
+
+def along(scene: FreedScene, there: Recovered, span: float, t: float, rate: float, values: Array) -> Course:
+    """The course over the values of a way."""
+    layout, runner = scene.layout, scene.runner
+    place = places_of_rates(layout)
+    place = place[place >= 0]
+    unit, moved = scene.states(there), scene.states(there)
+    unit[:, place] /= span
+    moved[:, place] *= rate / span
+    at, holding = np.full(len(values), t), np.zeros(len(layout.contacts))
+    answered = runner.recovered(at, unit, causes=True, holding=holding)
+    states = body_states(layout, answered)
+    turning = np.einsum("tnij,tnj->tni", states.R, body_spins(layout, states))
+    m = np.array([body.mass for body in layout.mechanism.bodies])
+    epsilon = np.sum(m * np.sum(states.v_centre**2, axis=2), axis=1) + np.sum(states.omega * turning, axis=(1, 2))
+    alone = motion_alone(layout, answered)
+    force, moment = inertia_loads(layout.mechanism, alone)
+    half = np.sum(force * states.v_centre + moment * states.omega, axis=(1, 2))
+    joint = next(joint for joint in scene.of.mechanism.joints if joint.drive is not None)
+    assert joint.drive is not None
+    half = half - epsilon * accelerations(layout, [f"{joint.name}.{joint.drive.quantity}"], alone)[:, 0]
+    loaded = runner.recovered(at, moved, holding=holding)
+    own = body_states(layout, loaded)
+    forces = {GRAVITY: states.v_centre @ layout.mechanism.gravity @ m} if layout.mechanism.gravity.any() else {}
+    for load in applied_loads(layout.mechanism, own, loaded):
+        forces[load.load.name] = forces.get(load.load.name, 0.0) + power(states, load.action)
+    return Course("", "", False, False, values, rate, epsilon, half, forces)
+
+
+def body_spins(layout: Layout, states: BodyStates) -> Array:
+    """I w of every body, (n_t, n, 3), body axes."""
+    inertia = np.array([body.inertia for body in layout.mechanism.bodies])
+    return np.einsum("nij,tnkj,tnk->tni", inertia, states.R, states.omega)
+
+
+def power(states: BodyStates, action: Action) -> Array:
+    """What an action does at the velocities of some states, (n_t,)."""
+    done = np.zeros(len(states.x))
+    for end, force, moment in action.on_bodies():
+        if end.body != GROUND:
+            done = done + np.sum(force * states.velocity(end.body, end.position), axis=1)
+            done = done + np.sum(moment * states.omega[:, end.body], axis=1)
+    return done
+
+
+def joined(parts: list[Course]) -> Course:
+    """Ways one after the other."""
+    if len(parts) == 1:
+        return parts[0]
+    first, second = parts
+    return replace(
+        first,
+        values=np.concatenate([first.values, second.values]),
+        epsilon=np.concatenate([first.epsilon, second.epsilon]),
+        half=np.concatenate([first.half, second.half]),
+        forces={name: np.concatenate([k, second.forces[name]]) for name, k in first.forces.items()},
+    )
