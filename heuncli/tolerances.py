@@ -27,6 +27,7 @@ SINGULAR_FALL = 0.5  # of the largest value in the search: on the way through a 
 PUSHED = 1e-8  # of the loads: what of them acts along a motion of a pose known to RANK, a digit above
 NEARLY_SINGULAR = 1e-6  # relative singular value: reactions err by gap / value, 1e-10 / 1e-6, and keep four digits
 
+NO_OFFSET = 1e-9  # rad/s^2, m/s^2 by the size: what a pose that rests leaves is rounding
 TELLING = 1e8  # largest over least rate of coordinates for a unit of motion: eight digits of the partials are left
 
 # -- open: which components no law of rigid bodies decides, and the sums that are certain

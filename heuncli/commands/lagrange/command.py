@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 from heuncli.cli import alarm
+from heuncli.cli.entry import UsageError
 from heuncli.cli.guard import require_other_file
 from heuncli.cli.output import emit
 from heuncli.cli.solving import overrides, warn
@@ -11,23 +12,28 @@ from heuncli.commands.lagrange import page
 from heuncli.commands.lagrange.over import over
 from heuncli.commands.lagrange.request import LagrangeRequest
 from heuncli.commands.lagrange.study import Asked, lagrange
+from heuncli.errors import Problem
 from heuncli.report.export import dump
 from heuncli.spec.load import load
 from heuncli.spec.models import Spec
 
-FORMATS = ("table", "json", "csv")
-ENDINGS = {".json": "json", ".csv": "csv", ".txt": "table", "": "table"}
+FORMATS = ("table", "json", "csv", "m")
+ENDINGS = {".json": "json", ".csv": "csv", ".m": "m", ".txt": "table", "": "table"}
 
 
 def main(request: LagrangeRequest) -> int:
     """Run the command; returns the exit code."""
     require_other_file(request.output, [request.spec])
     form = format_of(request.format, request.output, ENDINGS, FORMATS)
+    require_together(request, form)
     asked = Asked(
         at=request.at,
         coordinates=words(request.coordinates),
         seen=tuple(word.strip() for word in request.seen),
         christoffel=request.christoffel,
+        state_space=request.state_space,
+        inputs=words(request.inputs),
+        outputs=words(request.outputs),
         time_limit=alarm.remaining(),
     )
     spec = load(request.spec, overrides=overrides(request.set), checking=False)
@@ -45,9 +51,29 @@ def written(spec: Spec, request: LagrangeRequest, asked: Asked, form: str) -> st
             return dump(page.course_block(course))
         return page.course_csv(course) if form == "csv" else page.write_course(course)
     found = lagrange(spec, asked)
+    if form == "m" and found.state_space is not None:
+        return page.to_m(found.state_space)
     if form == "json":
         return dump(page.block(found))
     return page.to_csv(found) if form == "csv" else page.write(found)
+
+
+def require_together(request: LagrangeRequest, form: str) -> None:
+    """Raise UsageError for options that do not go together."""
+    wrong = []
+    if request.over is not None:
+        others = {"--at": request.at is not None, "--coordinates": request.coordinates, "--seen": request.seen}
+        others |= {"--christoffel": request.christoffel, "--state-space": request.state_space}
+        wrong += [
+            (f"--over and {name}", "the one free coordinate is told over its range")
+            for name, on in others.items()
+            if on
+        ]
+    if not request.state_space:
+        named = {"--inputs": request.inputs, "--outputs": request.outputs, "--format m, or -o FILE.m": form == "m"}
+        wrong += [(f"{name} without --state-space", "add --state-space") for name, on in named.items() if on]
+    if wrong:
+        raise UsageError(*(Problem("bad-option", message, hint=hint) for message, hint in wrong))
 
 
 def words(given: str | None) -> tuple[str, ...]:

@@ -6,16 +6,23 @@ is a state of the other: what is driven there is a number of the state here.
 
 from __future__ import annotations
 
+from collections.abc import Mapping
+from types import MappingProxyType
+
 import numpy as np
 
+from heuncli.errors import Problem, SolveError
+from heuncli.expressions.programs import Expression
 from heuncli.integration.evaluator import Recovered
 from heuncli.integration.run.runner import Runner, ready
 from heuncli.joint_kinds import JOINTS
-from heuncli.mechanism.model import Joint
+from heuncli.mechanism.model import Joint, JointLoad, Mechanism
 from heuncli.records import record, replace
 from heuncli.results import Array
 from heuncli.tree.layout import Layout
 from heuncli.tree.prepare import PreparedScene, arranged
+
+NONE: Mapping[str, float] = MappingProxyType({})
 
 
 @record
@@ -59,9 +66,14 @@ class FreedScene:
         return states
 
 
-def freed(of: PreparedScene) -> FreedScene:
-    """A scene with its drives let go."""
+def freed(of: PreparedScene, efforts: Mapping[str, float] = NONE) -> FreedScene:
+    """A scene with its drives let go; efforts: what is put on in their place, by the driven coordinates' names.
+
+    Raises SolveError for an effort where no torque may act.
+    """
     mechanism = replace(of.mechanism, joints=tuple(map(let_go, of.mechanism.joints)))
+    loads = tuple(load for name, value in efforts.items() if value for load in [effort(mechanism, name, value)])
+    mechanism = replace(mechanism, loads=(*mechanism.loads, *loads))
     scene = arranged(mechanism, of.start, spanning=of.layout.spanning, size=of.layout.size, starts=of.layout.starts)
     scene, runner = ready(scene)
     return FreedScene(scene, runner, of)
@@ -74,6 +86,16 @@ def let_go(joint: Joint) -> Joint:
     if JOINTS[joint.kind].keeps_distance:
         return replace(joint, drive=None, tension_only=True, restitution=0.0)
     return replace(joint, drive=None)
+
+
+def effort(mechanism: Mechanism, coordinate: str, value: float) -> JointLoad:
+    """The constant torque or thrust that a drive exerts."""
+    name, _, quantity = coordinate.rpartition(".")
+    k = next(i for i, joint in enumerate(mechanism.joints) if joint.name == name)
+    if JOINTS[mechanism.joints[k].kind].coordinates != (quantity,):
+        message = f"what drives {coordinate} cannot be put on as a torque"
+        raise SolveError(Problem("no-state-space", message, hint="drive a pin or a slide"))
+    return JointLoad(f"drive of {coordinate}", "torque", k, Expression.of(value))
 
 
 def contacts_of(layout: Layout) -> list[tuple[str, bool, int]]:

@@ -8,7 +8,7 @@ from typing import Any
 
 import numpy as np
 
-from heuncli.commands.lagrange.results import Course, LagrangeResults
+from heuncli.commands.lagrange.results import Course, LagrangeResults, StateSpace
 from heuncli.foreign_text import shown
 from heuncli.report.page_width import fit
 from heuncli.report.text_table import WIDTH, TextColumn, TextTable, plain
@@ -21,6 +21,8 @@ RECIPROCAL = "RECIPROCAL  η = 1/ε: E = p η p / 2"
 FORCES = "FORCES  k along each coordinate, by cause; C: what the masses' accelerations at q'' = 0 do there"
 CHRISTOFFEL = "CHRISTOFFEL  γ(i; l, k) = (∂ε_il/∂q_k + ∂ε_ik/∂q_l − ∂ε_lk/∂q_i) / 2 and α(i; l, k) = −Σ η_ij γ(j; l, k)"
 SECTIONS = "SECTIONS  s' along each coordinate: what the piece beyond the cut does on the rest"
+STATE_SPACE = "STATE SPACE  x' = A x + B u: A by the states, B by the inputs"
+OUTPUTS = "OUTPUTS  y = C x + D u"
 SHOWN = 6  # coordinates, of which matrices are written out
 ROUNDING = 1e-13  # of what a number is summed from, or of the largest of a matrix: less is told as 0
 COLUMNS = ("q", "q'", "p = ∂E/∂q'", "C", "k", "drive", "q''")
@@ -54,7 +56,21 @@ def tables(found: LagrangeResults) -> list[TextTable]:
             made.append(christoffel(found))
     if found.sections:
         made.append(sections(found))
+    if found.state_space is not None:
+        made += linear_tables(found.state_space)
     return made
+
+
+def linear_tables(linear: StateSpace) -> Iterator[TextTable]:
+    """A and B, and C and D, side by side."""
+    for heading, left, right, rows in (
+        (STATE_SPACE, linear.A, linear.B, [f"d/dt {name}" for name in linear.states]),
+        (OUTPUTS, linear.C, linear.D, linear.outputs),
+    ):
+        whole = np.hstack([left, right])
+        size = float(np.abs(whole).max(initial=0.0))
+        cells = tuple((name, *(number(x, size) for x in row)) for name, row in zip(rows, whole, strict=True))
+        yield TextTable(heading, (TextColumn("", "left"), *map(TextColumn, (*linear.states, *linear.inputs))), cells)
 
 
 def number(value: float | None, scale: float = 0.0) -> str:
@@ -146,9 +162,7 @@ def cuts_of(s: Any) -> list[tuple[str, Sequence[float] | None]]:
     return [(f".{k}", own) for k, own in enumerate(s)]
 
 
-COURSE = "OVER  ε and half its slope: C = ½ dε/dq q'²; k by cause at q' = {rate:.6g} {unit}, with the loads of the start"
-    "OVER  ε and half its slope: C = ½ dε/dq q'²; k by cause at q' = {rate:.6g} {unit}, the loads those of the start"
-)
+COURSE = "OVER  ε and half its slope: C = ½ dε/dq q'²; k by cause at q' = {rate:.6g} {unit}, loads as at the start"
 
 
 def write_course(found: Course) -> str:
@@ -241,6 +255,7 @@ def block(found: LagrangeResults) -> dict[str, Any]:
         "sections": {name: dict(own) for name, own in found.sections.items()},
         "partials": dict(found.partials),
         "left_out": list(found.left_out),
+        "state_space": None if found.state_space is None else linear_block(found.state_space),
         "notes": list(found.notes),
     }
 
@@ -268,3 +283,25 @@ def to_csv(found: LagrangeResults) -> str:
 def mixed(found: LagrangeResults, i: int, j: int) -> str:
     """The unit of an entry of the mass matrix."""
     return ("kg·m²", "kg·m", "kg")[int(found.lengths[i]) + int(found.lengths[j])]
+
+
+def linear_block(linear: StateSpace) -> dict[str, Any]:
+    """A state space as JSON has it."""
+    return {
+        "A": linear.A.tolist(), "B": linear.B.tolist(), "C": linear.C.tolist(), "D": linear.D.tolist(),
+        "states": list(linear.states), "inputs": list(linear.inputs), "outputs": list(linear.outputs),
+        "units": dict(linear.units), "offset": linear.offset.tolist(),
+    }  # fmt: skip
+
+
+def to_m(linear: StateSpace) -> str:
+    """A state space as a script for Matlab and Octave."""
+    lines = ["% " + part for part in (f"heun {VERSION}", "x' = A x + B u, y = C x + D u")]
+    for name, matrix in (("A", linear.A), ("B", linear.B), ("C", linear.C), ("D", linear.D)):
+        rows = "; ".join(" ".join(repr(float(x)) for x in row) for row in matrix)
+        size = f"zeros({matrix.shape[0]}, {matrix.shape[1]})"
+        lines.append(f"{name} = [{rows}];" if matrix.size else f"{name} = {size};")
+    for label, names in (("states", linear.states), ("inputs", linear.inputs), ("outputs", linear.outputs)):
+        lines.append(f"{label} = {{{', '.join(repr(name) for name in names)}}};")
+    lines.append(f"offset = [{'; '.join(repr(float(x)) for x in linear.offset)}];")
+    return "\n".join(lines) + "\n"

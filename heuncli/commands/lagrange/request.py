@@ -45,7 +45,7 @@ class LagrangeRequest(NamedTuple):
     format: Annotated[
         str | None,
         Option(
-            ("--format",), "How to write them. Default: by the name's end of -o FILE, else table.", "table|json|csv"
+            ("--format",), "How to write them. Default: by the name's end of -o FILE, else table.", "table|json|csv|m"
         ),
     ] = None
     output: Annotated[str | None, OUTPUT] = None

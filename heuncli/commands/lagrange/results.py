@@ -62,6 +62,7 @@ class LagrangeResults:
     partials: Mapping[str, Any]
     left_out: tuple[str, ...]
     notes: tuple[str, ...] = ()
+    state_space: StateSpace | None = None
 
     @property
     def total(self) -> Array:
@@ -72,6 +73,21 @@ class LagrangeResults:
     def energy(self) -> float:
         """E."""
         return sum(self.energies)
+
+
+@record
+class StateSpace:
+    """x. = A x + B u, y = C x + D u beside a state; offset: x. there, 0 of a rest. Names and units of x, u and y."""
+
+    A: Array
+    B: Array
+    C: Array
+    D: Array
+    states: tuple[str, ...]
+    inputs: tuple[str, ...]
+    outputs: tuple[str, ...]
+    units: Mapping[str, list[str]]
+    offset: Array
 
 
 @record

@@ -18,6 +18,7 @@ from heuncli.commands.lagrange.equations import (
 from heuncli.commands.lagrange.instant import Instant, instant_of
 from heuncli.commands.lagrange.results import LagrangeResults
 from heuncli.commands.lagrange.seen import seen
+from heuncli.commands.lagrange.state_space import state_space
 from heuncli.kinetostatics.actions import applied_loads, whole_joint_actions
 from heuncli.kinetostatics.bodies import body_states
 from heuncli.kinetostatics.coordinates import coordinates
@@ -41,6 +42,9 @@ class Asked:
     coordinates: tuple[str, ...] = ()
     seen: tuple[str, ...] = ()
     christoffel: bool = False
+    state_space: bool = False
+    inputs: tuple[str, ...] = ()
+    outputs: tuple[str, ...] = ()
     time_limit: float | None = None
 
 
@@ -69,6 +73,7 @@ def told(spec: Spec, at: Instant, asked: Asked) -> LagrangeResults:
     scale = scale + np.abs(epsilon) @ np.abs(q2) + np.abs(C)
     total = sum(k.values(), np.zeros(len(q1)))
     Q = np.where(by.driven, epsilon @ q2 + C - total, 0.0)
+    linear = state_space(at, by, Q, asked.inputs, asked.outputs) if asked.state_space else None
     gamma = terms.christoffel() if asked.christoffel and not any(by.quasi) else None
     return LagrangeResults(
         title=spec.title,
@@ -98,6 +103,7 @@ def told(spec: Spec, at: Instant, asked: Asked) -> LagrangeResults:
         partials=partials_block(at, by, partials),
         left_out=by.left_out,
         notes=tuple(notes(by)),
+        state_space=linear,
     )
 
 

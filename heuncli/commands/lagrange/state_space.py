@@ -1,0 +1,269 @@
+"""`--state-space`: A, B, C, D of small motions about a state, for a controller.
+
+    x = (dq, dq'),  x. = A x + B u,  y = C x + D u
+The coordinates are those that no drive holds, and the driven ones whose acceleration is an input. The drives are let
+go and what they exert is put on as a constant load, so that the scene without them moves as the one with them; what is
+prescribed is then held, or moved, by a change dQ of that load:
+    dq.. = a + n dQ,   a = A_q dq + A_u dq',   dq.._d = w:   dq.._f = a_f + n_fd n_dd^-1 (w - a_d)
+An input force is a change of its value: dq.. = n k, k of a value of 1.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+
+import numpy as np
+
+from heuncli import tolerances
+from heuncli.commands.lagrange.coordinates import Chosen, candidates, chosen
+from heuncli.commands.lagrange.equations import forces_by_cause, partials_of, reciprocal
+from heuncli.commands.lagrange.freed import FreedScene, freed
+from heuncli.commands.lagrange.instant import Instant
+from heuncli.commands.lagrange.results import StateSpace
+from heuncli.errors import Problem, SolveError
+from heuncli.expressions.programs import Expression
+from heuncli.joint_kinds import JOINTS, RATES
+from heuncli.kinetostatics.actions import applied_loads
+from heuncli.kinetostatics.bodies import body_states
+from heuncli.linearisation.linearise import Linearised, linearised
+from heuncli.mechanism.model import JointLoad, Load, PointLoad
+from heuncli.nearest import did_you_mean
+from heuncli.records import record, replace
+from heuncli.results import Array
+
+CODE = "no-state-space"
+UNIT = Expression.of(1.0)
+AXES = "xyz"
+
+
+@record
+class Inputs:
+    """What is put in: forces by name, and driven coordinates by their names."""
+
+    forces: tuple[str, ...]
+    drives: tuple[str, ...]
+
+
+def state_space(at: Instant, by: Chosen, Q: Array, asked: Sequence[str], outputs: Sequence[str]) -> StateSpace:
+    """The linear equations beside an instant; by: its coordinates, Q what drives exert there.
+
+    Raises SolveError [no-state-space] where the equations are not those of coordinates.
+    """
+    inputs = inputs_of(at, by, asked)
+    scene = freed(at.setup.scene, dict(zip(by.names, Q, strict=True)))
+    found = linearised(scene.layout, at.t, at.state, at.holding)
+    own = chosen(scene.scene, found, scene.driven, by.names)
+    moving = bool(np.abs(at.state[rates_at(scene)]).max(initial=0.0) > 0.0)
+    require_coordinates(scene, own, found, moving)
+    free = [i for i, name in enumerate(own.names) if not own.driven[i] or name in inputs.drives]
+    driven = [i for i, is_driven in enumerate(own.driven) if is_driven]
+    epsilon = own.S.T @ found.mass @ own.S
+    eta = reciprocal(own.names, epsilon)
+    drift = drift_of(found, own)
+    by_place = own.rows @ (found.by_place @ own.S + found.by_rate @ drift)
+    by_rate = own.rows @ found.by_rate @ own.S
+    push = (
+        np.array([eta @ unit_force(scene, at, own, found, name) for name in inputs.forces])
+        .reshape(len(inputs.forces), len(eta))
+        .T
+    )
+    moved = np.array([[float(own.names[i] == name) for name in inputs.drives] for i in driven]).reshape(
+        len(driven), len(inputs.drives)
+    )
+    hold = eta[:, driven] @ np.linalg.inv(eta[np.ix_(driven, driven)]) if driven else np.zeros((len(eta), 0))
+    # what a drive does not ask for is taken off again; what it asks for is put on
+    left = np.eye(len(eta))
+    left[:, driven] -= hold
+    A21, A22, B2 = left @ by_place, left @ by_rate, np.hstack([left @ push, hold @ moved])
+    n, m = len(free), B2.shape[1]
+    pick = np.ix_(free, free)
+    A = np.block([[np.zeros((n, n)), np.eye(n)], [A21[pick], A22[pick]]])
+    B = np.vstack([np.zeros((n, m)), B2[free]])
+    names = tuple(own.names[i] for i in free)
+    C, D, told, units = outputs_of(scene, at, own, found, free, (A, B), outputs)
+    lengths = [own.lengths[i] for i in free]
+    offset = np.concatenate([(own.rows @ velocities(scene, at))[free], (own.rows @ found.accelerations)[free]])
+    return StateSpace(
+        A=A, B=B, C=C, D=D,
+        states=(*names, *(rate_name(name) for name in names)),
+        inputs=(*inputs.forces, *(f"{name} acceleration" for name in inputs.drives)),
+        outputs=told,
+        units={
+            "states": [*("m" if x else "rad" for x in lengths), *("m/s" if x else "rad/s" for x in lengths)],
+            "inputs": [*(unit_of(at, name) for name in inputs.forces), *map(acceleration_unit, inputs.drives)],
+            "outputs": units,
+        },
+        offset=np.where(np.abs(offset) <= tolerances.NO_OFFSET * at.setup.scene.layout.size, 0.0, offset),
+    )  # fmt: skip
+
+
+def rate_name(name: str) -> str:
+    """Of a coordinate's rate: main.rate, guide.speed; of others d/dt."""
+    owner, _, quantity = name.rpartition(".")
+    return f"{owner}.{RATES[quantity]}" if quantity in RATES else f"d/dt {name}"
+
+
+def acceleration_unit(name: str) -> str:
+    """Of a driven coordinate's acceleration."""
+    return "rad/s²" if name.endswith("angle") else "m/s²"
+
+
+def unit_of(at: Instant, name: str) -> str:
+    """Of the value of a load."""
+    load = load_named(at, name)
+    if isinstance(load, PointLoad):
+        return "N·m" if load.kind == "couple" else "N"
+    if isinstance(load, JointLoad):
+        return "N·m" if "turning" in JOINTS[at.freed.layout.mechanism.joints[load.joint].kind].motions else "N"
+    return "N"
+
+
+def rates_at(scene: FreedScene) -> Array:
+    """Where the rates stand in the state."""
+    from heuncli.tree.layout import places_of_rates
+
+    place = places_of_rates(scene.layout)
+    return place[place >= 0]
+
+
+def velocities(scene: FreedScene, at: Instant) -> Array:
+    """The rates of the tree's freedoms, (n,)."""
+    return np.asarray(at.state[rates_at(scene)])
+
+
+def drift_of(found: Linearised, own: Chosen) -> Array:
+    """What closed chains ask of the rates for a displacement, (n, f), none of it along the coordinates."""
+    drift = found.drift @ np.linalg.lstsq(found.tangent, own.S, rcond=None)[0]
+    return np.asarray(drift - own.S @ (own.rows @ drift))
+
+
+def require_coordinates(scene: FreedScene, own: Chosen, found: Linearised, moving: bool) -> None:
+    """Raise SolveError where the rows of the coordinates change with the motion, and something moves or is pushed."""
+    if not moving and not np.abs(found.accelerations).max(initial=0.0) > tolerances.OFF_BALANCE:
+        return
+    freedoms = {
+        f"{scene.layout.mechanism.joints[f.joint].name}.{f.quantity}" for f in scene.layout.freedoms if f.joint >= 0
+    }
+    wrong = [name for name in own.names if name not in freedoms]
+    if wrong:
+        message = f"{', '.join(wrong)}: beside a state that moves the equations are those of coordinates of the tree"
+        hint = f"take others: {', '.join(sorted(freedoms))}; or a state at rest"
+        raise SolveError(Problem(CODE, message, hint=hint))
+
+
+def inputs_of(at: Instant, by: Chosen, asked: Sequence[str]) -> Inputs:
+    """The inputs asked for; by default all forces that have a value. Raises SolveError for a name of neither."""
+    forces = [load.name for load in at.freed.layout.mechanism.loads if has_value(load)]
+    drives = {drive_name(at, name): name for name, is_driven in zip(by.names, by.driven, strict=True) if is_driven}
+    if not asked:
+        return Inputs(tuple(dict.fromkeys(forces)), ())
+    wrong = [name for name in asked if name not in forces and name not in drives]
+    if wrong:
+        known = [*dict.fromkeys(forces), *drives]
+        raise SolveError(*(
+            Problem(
+                CODE, f"--inputs {name}: no force with a value and no drive is called so",
+                hint=did_you_mean(name, known, "inputs") or "forces, couples, torques and actuators have values",
+            )
+            for name in wrong
+        ))  # fmt: skip
+    return Inputs(tuple(n for n in asked if n in forces), tuple(drives[n] for n in asked if n not in forces))
+
+
+def drive_name(at: Instant, coordinate: str) -> str:
+    """The drive of a coordinate."""
+    joint = coordinate.rpartition(".")[0]
+    drives = (own.drive for own in at.setup.scene.mechanism.joints if own.name == joint)
+    return next(drive.name for drive in drives if drive is not None)
+
+
+def has_value(load: Load) -> bool:
+    """Whether a load is told by a value."""
+    return bool(load.values) and not (isinstance(load, PointLoad) and load.spread is not None)
+
+
+def load_named(at: Instant, name: str) -> Load:
+    """The load of a name."""
+    return next(load for load in at.freed.layout.mechanism.loads if load.name == name)
+
+
+def unit_force(scene: FreedScene, at: Instant, own: Chosen, found: Linearised, name: str) -> Array:
+    """k (f,) of a value of 1, of a force along the direction that it has."""
+    mechanism = scene.layout.mechanism
+    loads = tuple(of_one(load) for load in mechanism.loads if load.name == name)
+    layout = replace(scene.scene, mechanism=replace(mechanism, loads=loads))
+    one = freed(layout)
+    answered = one.runner.recovered(np.array([at.t]), at.state[None, :], holding=at.holding)
+    states = body_states(one.layout, answered)
+    actions = [load.action for load in applied_loads(one.layout.mechanism, states, answered)]
+    return forces_by_cause(one.layout, partials_of(one.layout, found, own.S), actions)[name]
+
+
+def of_one(load: Load) -> Load:
+    """A load with a value of 1. Raises SolveError where it has no direction."""
+    if not isinstance(load, PointLoad):
+        return replace(load, value=UNIT)
+    varying = [k for k, value in enumerate(load.vector) if value.constant != 0.0]
+    values = np.array([value.constant if value.constant is not None else np.nan for value in load.vector])
+    if np.isfinite(values).all() and values.any():
+        values = values / np.sqrt(values @ values)
+    elif len(varying) == 1:
+        values = np.eye(3)[varying[0]]
+    else:
+        message = f"--inputs {load.name}: a force of several components that vary has no one value"
+        raise SolveError(Problem(CODE, message, hint="make it several forces, each along one axis"))
+    x, y, z = (Expression.of(float(value)) for value in values)
+    return replace(load, vector=(x, y, z))
+
+
+Matrices = tuple[Array, Array]
+
+
+def outputs_of(
+    scene: FreedScene, at: Instant, own: Chosen, found: Linearised, free: Sequence[int], of: Matrices,
+    asked: Sequence[str],
+) -> tuple[Array, Array, tuple[str, ...], list[str]]:  # fmt: skip
+    """C, D, the names and the units of the outputs; by default the coordinates."""
+    A, B = of
+    n = len(free)
+    names = tuple(asked) or tuple(own.names[i] for i in free)
+    rows, through, units = [], [], []
+    all_rows = candidates(scene.layout, found)
+    for name in names:
+        kind, row, unit = output(scene, at, own, found, all_rows, name)
+        row = row[free]
+        rows.append(
+            {"place": np.concatenate([row, np.zeros(n)]), "rate": np.concatenate([np.zeros(n), row])}.get(
+                kind, row @ A[n:]
+            )
+        )
+        through.append(row @ B[n:] if kind == "acceleration" else np.zeros(B.shape[1]))
+        units.append(unit)
+    return np.array(rows).reshape(len(names), 2 * n), np.array(through).reshape(len(names), B.shape[1]), names, units
+
+
+def output(
+    scene: FreedScene, at: Instant, own: Chosen, found: Linearised, rows: dict[str, Array], name: str
+) -> tuple[str, Array, str]:
+    """Of an output whether it is a place, a rate or an acceleration; its row on the coordinates (f,); its unit."""
+    owner, _, quantity = name.rpartition(".")
+    base = {rate: place for place, rate in RATES.items()}
+    length = quantity in ("travel", "speed", "length", "dx", "dy", "dz")
+    if name in rows:
+        return "place", rows[name] @ own.S, "m" if length else "rad"
+    if quantity in base and f"{owner}.{base[quantity]}" in rows:
+        return "rate", rows[f"{owner}.{base[quantity]}"] @ own.S, "m/s" if length else "rad/s"
+    if quantity == "acceleration":
+        place = next((f"{owner}.{q}" for q in ("angle", "travel") if f"{owner}.{q}" in rows), None)
+        if place in own.names:
+            return "acceleration", rows[place] @ own.S, acceleration_unit(place)
+    mechanism = scene.layout.mechanism
+    axis = AXES.find(quantity[-1:])
+    for i, body in enumerate(mechanism.bodies):
+        point = owner.removeprefix(f"{body.name}.")
+        if owner.startswith(f"{body.name}.") and point in body.points and axis >= 0 and quantity[:-1] in ("", "v"):
+            states = body_states(at.freed.layout, at.here)
+            X = partials_of(scene.layout, found, own.S).at(i, states.point_position(i, body.points[point])[0])
+            return ("rate", X[axis], "m/s") if quantity[:-1] else ("place", X[axis], "m")
+    hint = did_you_mean(name, list(rows), "outputs") or "coordinates, their rates, BODY.POINT.x or .vx"
+    raise SolveError(Problem(CODE, f"--outputs {name}: no coordinate and no point is called so", hint=hint))
