@@ -13,6 +13,7 @@ from collections.abc import Mapping, Sequence
 import numpy as np
 
 from heuncli import tolerances
+from heuncli.commands.lagrange import rodrigues
 from heuncli.errors import Problem, SolveError
 from heuncli.joint_kinds import JOINTS
 from heuncli.kinetostatics.bodies import BodyStates
@@ -30,7 +31,7 @@ from heuncli.tree.prepare import PreparedScene
 
 CODE = "no-coordinate"
 IN_FILE_ORDER = 0.1  # of the largest pivot left: the first in the file that has as much is taken
-TRUE = ("angle", "travel", "length")  # coordinates; all others are quasi-velocities
+TRUE = ("angle", "travel", "length", *rodrigues.NAMES)  # coordinates; all others are quasi-velocities
 LENGTHS = ("travel", "length", "dx", "dy", "dz")
 
 
@@ -43,6 +44,7 @@ class Chosen:
     rows: Array
     S: Array
     left_out: tuple[str, ...]  # bodies whose spin has no inertia, and is no part of the motion
+    bodies: tuple[str, ...]
 
     @property
     def lengths(self) -> tuple[bool, ...]:
@@ -52,7 +54,10 @@ class Chosen:
     @property
     def quasi(self) -> tuple[bool, ...]:
         """Which are quasi-velocities: without a coordinate."""
-        return tuple(quantity_of(name) not in TRUE for name in self.names)
+        return tuple(
+            quantity_of(name) not in TRUE and not (name.rpartition(".")[0] in self.bodies and name[-2] == "d")
+            for name in self.names
+        )
 
 
 def quantity_of(name: str) -> str:
@@ -66,7 +71,9 @@ def chosen(scene: PreparedScene, found: Linearised, driven: Mapping[str, str], a
     driven: coordinates that drives had, of the freed scene. Raises SolveError [no-coordinate].
     """
     layout = scene.layout
-    rows = candidates(layout, found)
+    by_rodrigues = tuple(asked) == (rodrigues.WORD,)
+    asked = () if by_rodrigues else asked
+    rows = (rodrigues.rows(layout, found) if by_rodrigues else {}) | candidates(layout, found)
     T, left_out = admitted(scene, found)
     if not T.shape[1]:
         raise SolveError(Problem(CODE, "nothing is free to move: no coordinate tells anything", hint=NOTHING))
@@ -74,9 +81,10 @@ def chosen(scene: PreparedScene, found: Linearised, driven: Mapping[str, str], a
     weigh = {name: 1.0 / layout.size if quantity_of(name) in LENGTHS else 1.0 for name in rows}
     scaled = {name: weigh[name] * row @ T for name, row in rows.items()}
     names = list(asked) or picked(scaled, order_of(layout, rows, driven), T.shape[1])
+    bodies = tuple(body.name for body in layout.mechanism.bodies)
     C = np.array([rows[name] for name in names]).reshape(len(names), -1)
     require_telling(names, np.array([scaled[name] for name in names]), T.shape[1], scaled)
-    return Chosen(tuple(names), tuple(name in driven for name in names), C, T @ np.linalg.inv(C @ T), left_out)
+    return Chosen(tuple(names), tuple(name in driven for name in names), C, T @ np.linalg.inv(C @ T), left_out, bodies)
 
 
 NOTHING = "leave a joint free, or drive one: drives are freed here"
@@ -120,6 +128,7 @@ def order_of(layout: Layout, rows: Mapping[str, Array], driven: Mapping[str, str
     return [
         [name for name in rows if name in driven],
         [name for name in rows if name in named],
+        [name for name in rows if quantity_of(name) in rodrigues.NAMES],
         [name for name in rows if quantity_of(name) in TRUE],
         list(rows),
     ]
@@ -195,6 +204,12 @@ def _moved(layout: Layout, name: str, states: BodyStates) -> tuple[Array, Array]
     owner, _, quantity = name.rpartition(".")
     mechanism = layout.mechanism
     joint = next((joint for joint in mechanism.joints if joint.name == owner), None)
+    if quantity in rodrigues.NAMES:
+        body = next(i for i, own in enumerate(mechanism.bodies) if own.name == owner)
+        own = (part[:, body] for part in (states.R, states.omega, states.alpha))
+        k = rodrigues.NAMES.index(quantity)
+        rate, acceleration = rodrigues.moved(*own, owner)
+        return rate[:, k], acceleration[:, k]
     if joint is None:
         return of_body(mechanism, owner, quantity, states)
     if quantity == "length":

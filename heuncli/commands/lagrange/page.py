@@ -20,6 +20,7 @@ MASS = "MASS  ε = ∂²E/∂q'∂q', and the inertia that is seen: with the oth
 RECIPROCAL = "RECIPROCAL  η = 1/ε: E = p η p / 2"
 FORCES = "FORCES  k along each coordinate, by cause; C: what the masses' accelerations at q'' = 0 do there"
 CHRISTOFFEL = "CHRISTOFFEL  γ(i; l, k) = (∂ε_il/∂q_k + ∂ε_ik/∂q_l − ∂ε_lk/∂q_i) / 2 and α(i; l, k) = −Σ η_ij γ(j; l, k)"
+BLOWS = "BLOWS  ε [q'] = h + drives; r': what the piece beyond a cut does on the rest in the blow"
 SECTIONS = "SECTIONS  s' along each coordinate: what the piece beyond the cut does on the rest"
 STATE_SPACE = "STATE SPACE  x' = A x + B u: A by the states, B by the inputs"
 OUTPUTS = "OUTPUTS  y = C x + D u"
@@ -56,6 +57,8 @@ def tables(found: LagrangeResults) -> list[TextTable]:
             made.append(christoffel(found))
     if found.sections:
         made.append(sections(found))
+    if found.blows:
+        made.append(blows(found))
     if found.state_space is not None:
         made += linear_tables(found.state_space)
     return made
@@ -155,11 +158,33 @@ def sections(found: LagrangeResults) -> TextTable:
     return TextTable(SECTIONS, (TextColumn("section", "left"), *(TextColumn(n) for n in found.names)), tuple(rows))
 
 
+def blows(found: LagrangeResults) -> TextTable:
+    """Of each blow h, what drives exert, the jumps of the rates, and what sections pass on."""
+    rows = []
+    for blow in found.blows:
+        at = f"t = {blow.t:.6g} s"
+        named = [("h", blow.h), ("[q']", blow.jumps)]
+        named += [("drives", blow.drives)] if any(found.driven) else []
+        rows += [(at, name, *map(number, values)) for name, values in named]
+        for section, own in blow.sections.items():
+            for cut, r in cuts_of(own):
+                cells = ["open"] * len(found.names) if r is None else [number(x) for x in r]
+                rows.append((at, f"r' {section}{cut}", *cells))
+    notes = tuple(f"F = h η h / 2 = {blow.reciprocal_energy:.6g} J" for blow in found.blows)
+    heads = (TextColumn("blow", "left", once=True), TextColumn("", "left"), *map(TextColumn, found.names))
+    return TextTable(BLOWS, heads, tuple(rows), notes)
+
+
 def cuts_of(s: Any) -> list[tuple[str, Sequence[float] | None]]:
     """The cuts of a section with their numbers: none of a single one."""
     if s is None or not isinstance(s[0], (list, type(None))):
         return [("", s)]
     return [(f".{k}", own) for k, own in enumerate(s)]
+
+
+def struck(found: LagrangeResults, section: str) -> dict[str, Any]:
+    """r' of a section in the first blow, if something strikes."""
+    return {"r": found.blows[0].sections[section]} if found.blows else {}
 
 
 COURSE = "OVER  ε and half its slope: C = ½ dε/dq q'²; k by cause at q' = {rate:.6g} {unit}, loads as at the start"
@@ -252,7 +277,18 @@ def block(found: LagrangeResults) -> dict[str, Any]:
         "coriolis_matrix": found.coriolis_matrix.tolist(),
         "residual": found.residual,
         "seen": {one.name: {"unit": one.unit, "locked": one.locked, "free": one.free} for one in found.seen},
-        "sections": {name: dict(own) for name, own in found.sections.items()},
+        "sections": {name: {**own, **struck(found, name)} for name, own in found.sections.items()},
+        "blows": [
+            {
+                "time": blow.t,
+                "h": blow.h.tolist(),
+                "drives": blow.drives.tolist(),
+                "jumps": blow.jumps.tolist(),
+                "reciprocal_energy": blow.reciprocal_energy,
+                "sections": dict(blow.sections),
+            }
+            for blow in found.blows
+        ],
         "partials": dict(found.partials),
         "left_out": list(found.left_out),
         "state_space": None if found.state_space is None else linear_block(found.state_space),

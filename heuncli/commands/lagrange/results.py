@@ -25,6 +25,18 @@ class Seen:
 
 
 @record
+class BlowResults:
+    """A blow along the coordinates, (f,): h of what is given, of drives, jumps of the rates; F of h; r' of sections."""
+
+    t: float
+    h: Array
+    drives: Array
+    jumps: Array
+    reciprocal_energy: float
+    sections: Mapping[str, Any]
+
+
+@record
 class LagrangeResults:
     """The Lagrange side of a scene at an instant; f coordinates.
 
@@ -63,6 +75,7 @@ class LagrangeResults:
     left_out: tuple[str, ...]
     notes: tuple[str, ...] = ()
     state_space: StateSpace | None = None
+    blows: tuple[BlowResults, ...] = ()
 
     @property
     def total(self) -> Array:

@@ -6,6 +6,8 @@ from typing import Any
 
 import numpy as np
 
+from heuncli.commands.lagrange import rodrigues
+from heuncli.commands.lagrange.blows import blows
 from heuncli.commands.lagrange.coordinates import Chosen, accelerations, chosen, rates
 from heuncli.commands.lagrange.equations import (
     Partials,
@@ -20,12 +22,12 @@ from heuncli.commands.lagrange.results import LagrangeResults
 from heuncli.commands.lagrange.seen import seen
 from heuncli.commands.lagrange.state_space import state_space
 from heuncli.kinetostatics.actions import applied_loads, whole_joint_actions
-from heuncli.kinetostatics.bodies import body_states
+from heuncli.kinetostatics.bodies import BodyStates, body_states
 from heuncli.kinetostatics.coordinates import coordinates
 from heuncli.records import record
 from heuncli.results import Array
 from heuncli.spec.models import Spec
-from heuncli.study.compose.blocks import blocks
+from heuncli.study.compose.blocks import blocks as blocks_of
 from heuncli.study.model.error_places import placed
 
 QUASI = (
@@ -104,6 +106,7 @@ def told(spec: Spec, at: Instant, asked: Asked) -> LagrangeResults:
         left_out=by.left_out,
         notes=tuple(notes(by)),
         state_space=linear,
+        blows=blows(spec, at, by, partials, epsilon, eta),
     )
 
 
@@ -112,7 +115,7 @@ def symmetric(M: Array) -> Array:
     return np.asarray(0.5 * (M + M.T))
 
 
-def values_of(at: Instant, by: Chosen, here: Any) -> Array:
+def values_of(at: Instant, by: Chosen, here: BodyStates) -> Array:
     """The coordinates themselves, (f,); not a number of quasi-velocities."""
     block = coordinates(at.freed.layout, at.here, here)
     joints = {joint.name: joint for joint in at.freed.layout.mechanism.joints}
@@ -124,8 +127,22 @@ def values_of(at: Instant, by: Chosen, here: Any) -> Array:
             D = here.point_position(joint.b, joint.q) - here.point_position(joint.a, joint.p)
             found.append(float(np.sqrt(D[0] @ D[0])))
         else:
-            found.append(float(block[owner][quantity][0]) if quantity in block.get(owner, {}) else np.nan)
+            found.append(
+                float(block[owner][quantity][0]) if quantity in block.get(owner, {}) else of_body(at, here, name)
+            )
     return np.array(found)
+
+
+def of_body(at: Instant, here: BodyStates, name: str) -> float:
+    """A component of a body's Rodrigues vector, or of the place of its centre; not a number of a quasi-velocity."""
+    owner, _, quantity = name.rpartition(".")
+    bodies = [body.name for body in at.freed.layout.mechanism.bodies]
+    if owner not in bodies:
+        return np.nan
+    body, axis = bodies.index(owner), "xyz".index(quantity[-1])
+    if quantity in rodrigues.NAMES:
+        return float(rodrigues.vector(here.R[0, body], owner)[axis])
+    return float(here.centre[0, body, axis]) if quantity.startswith("d") else np.nan
 
 
 def energies(epsilon: Array, q1: Array, driven: Array) -> tuple[float, float, float]:
@@ -160,7 +177,7 @@ def sections(at: Instant, partials: Partials) -> dict[str, dict[str, Any]]:
     """
     if not at.setup.cuts:
         return {}
-    block = blocks(at.recovery, {"sections"})["sections"]
+    block = blocks_of(at.recovery, {"sections"})["sections"]
     found: dict[str, dict[str, Any]] = {}
     for cuts in at.setup.cuts:
         own = block[cuts.name]
