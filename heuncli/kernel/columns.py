@@ -18,12 +18,12 @@ if not cython.compiled:
     from math import sqrt
 
     from heuncli.kernel.algebra import Vec3, add_scaled, scaled
-    from heuncli.kernel.closures import measure_rows, push_closures, residual_of, size_of_answer
+    from heuncli.kernel.closures import measure_rows, residual_of, size_of_answer
     from heuncli.kernel.orthogonal import answer_of_row
-    from heuncli.kernel.response import configure, respond
+    from heuncli.kernel.response import answer_applied, configure
     from heuncli.kernel.scene import APART, SHIFT, Body, Closure, Freedom, Load, Scene
     from heuncli.kernel.shadow import cython
-    from heuncli.kernel.tree import balance, kinematics, push
+    from heuncli.kernel.tree import kinematics, push
 
 
 def put(out: cython.p_double, at: cython.Py_ssize_t, a: Vec3) -> cython.Py_ssize_t:
@@ -66,13 +66,6 @@ def apply_none(scene: cython.pointer[Scene]) -> cython.void:
     for i in range(scene.body_count):
         scene.bodies[i].M_applied = zero
         scene.bodies[i].f_applied = zero
-
-
-def answer_applied(scene: cython.pointer[Scene], inertial: cython.bint) -> cython.void:
-    """What answers the loads on the bodies; inertial: with velocity terms, prescribed accelerations and gravity."""
-    respond(scene, inertial)
-    push_closures(scene)
-    balance(scene, inertial)
 
 
 def answer_column(

@@ -118,7 +118,8 @@ def joint_load(scene: cython.pointer[Scene], load: cython.pointer[Load], given: 
     """A torque, thrust or spring about or along the joint's axis, a damper or friction against its turning or sliding.
 
     A spring's torque is -k (angle - free angle) - c rate. Friction is Coulomb's, smoothed: F tanh(rate / speed),
-    against the direction of the motion. Gives the power of what has no potential.
+    against the direction of the motion. Gives the power of what has no potential, less that of friction by what
+    presses: that is found here as it is if 1 N does, and put on no body (pressing.py).
     """
     axis: Vec3 = direction_of(scene, load.a, load.axis)
     slides: cython.bint = load.kind == THRUST or load.kind == SHIFT_DAMPER or load.kind == SHIFT_FRICTION
@@ -149,6 +150,9 @@ def joint_load(scene: cython.pointer[Scene], load: cython.pointer[Load], given: 
     else:
         load.moment = acts
     load.from_at = load.at
+    if load.presses:  # by a unit of it; what presses is found with the accelerations
+        load.unit = acts
+        return 0.0
     push(scene, load.b, load.at, load.force, load.moment)
     push(scene, load.a, load.at, scaled(-1.0, load.force), scaled(-1.0, load.moment))
     return -load.coefficient * load.rate * load.rate if load.kind == TURN_SPRING else load.power

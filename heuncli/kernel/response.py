@@ -20,7 +20,8 @@ if not cython.compiled:
     from heuncli.kernel.closures import count_turns, demanded, measure_moving_rows, measure_row, push_closures
     from heuncli.kernel.loads import apply_loads
     from heuncli.kernel.orthogonal import factor_closures, solve_closures
-    from heuncli.kernel.scene import APART, Body, Closure, Freedom, Lent, Scene
+    from heuncli.kernel.pressing import apply_kept, apply_unit, find_pressed, keep_applied, rub, see_pressing
+    from heuncli.kernel.scene import APART, Body, Closure, Freedom, Lent, Load, Scene
     from heuncli.kernel.shadow import cython
     from heuncli.kernel.tree import (
         add_zeros,
@@ -230,12 +231,43 @@ def accelerate(
 
     Where something is driven the joint loads are found too, for the work of the drives.
     """
+    if scene.rub_count:
+        power += press(scene)
     respond(scene, True)
     if scene.driven:
         push_closures(scene)
         balance(scene, True)
         power += driving_power(scene)
     derivative(scene, y, dy, power)
+
+
+def answer_applied(scene: cython.pointer[Scene], inertial: cython.bint) -> cython.void:
+    """What answers the loads on the bodies; inertial: with velocity terms, prescribed accelerations and gravity."""
+    respond(scene, inertial)
+    push_closures(scene)
+    balance(scene, inertial)
+
+
+def press(scene: cython.pointer[Scene]) -> cython.double:
+    """Find what presses where friction hangs on that, by the factors that stand, and apply that friction; its power."""
+    k: cython.Py_ssize_t
+    power: cython.double = 0.0
+    keep_applied(scene)
+    answer_applied(scene, True)
+    see_pressing(scene, 0)
+    for k in range(scene.rub_count):
+        apply_unit(scene, k)
+        answer_applied(scene, False)
+        see_pressing(scene, k + 1)
+    find_pressed(scene)
+    apply_kept(scene)
+    for k in range(scene.rub_count):
+        load: cython.pointer[Load] = cython.address(scene.loads[scene.rubs[k]])
+        rub(scene, load, load.pressed)
+        load.value *= load.pressed
+        load.power *= load.pressed
+        power += load.power
+    return power
 
 
 def driving_power(scene: cython.pointer[Scene]) -> cython.double:

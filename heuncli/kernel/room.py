@@ -125,7 +125,21 @@ def make_room(scene: cython.pointer[Scene], memory: Memory, indices: array[int],
     scene.least = memory.zeros(scene.variable_count)
     scene.most = memory.zeros(scene.variable_count)
     scene.own = memory.zeros(scene.lent_count * scene.lent_count)
+    make_rubs(scene, memory)
     make_tangents(scene, memory)
+
+
+def make_rubs(scene: cython.pointer[Scene], memory: Memory) -> None:
+    """Which loads are friction by what presses, and room to find that."""
+    rubs = [k for k in range(scene.load_count) if scene.loads[k].presses]
+    n: cython.Py_ssize_t = len(rubs)
+    scene.rub_count = n
+    scene.rubs = memory.ints(rubs)
+    scene.carried = memory.zeros(6 * n * (n + 2))
+    scene.kept = memory.zeros(6 * scene.body_count if n else 0)
+    scene.bound = memory.zeros(n * n)
+    scene.newton = memory.zeros(n * n)
+    scene.trial = memory.zeros(5 * n)
 
 
 def make_tangents(scene: cython.pointer[Scene], memory: Memory) -> None:

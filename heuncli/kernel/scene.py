@@ -19,6 +19,8 @@ FORCE, COUPLE, SPRING, ACTUATOR, TORQUE, THRUST, TURN_SPRING = range(7)
 TURN_DAMPER, SHIFT_DAMPER, TURN_FRICTION, SHIFT_FRICTION = range(7, 11)
 GUIDE, DOT, ROD, TURN = range(4)
 CARRIES, APART, LEANS = range(3)  # modes of closure rows
+GIVEN, WHOLE, ACROSS, ENDS = range(4)  # what presses where a load rubs: nothing found, the joint's force or parts of it
+FOUND, JAMS, TWO, UNPROVED = range(4)  # of the answers to friction by what presses: one, none, two, perhaps not one
 
 
 class Body(Record):
@@ -112,15 +114,22 @@ class Load(Record):
     offset: float
     across: Vec3  # of a joint that was cut: a direction across the axis, in a
     mark: Vec3  # and the one in b that agrees with it at angle 0
+    presses: int  # of friction: GIVEN, or what of the joint's own load presses; the coefficient is then by that
+    held_by: int  # the body whose joint it is; -1: the joint was cut
+    row: int  # of a joint that was cut: its first closure row
+    row_count: int
+    reach: float  # of ENDS: the distance between the two ends [m]
 
     force: Vec3  # on b
     moment: Vec3
     at: Vec3  # where on b
     from_at: Vec3  # where on a
     value: float
-    span: float  # distance of the two points; of a turn spring its angle
+    span: float  # distance of the two points; of a turn spring its angle; of what presses whether it was FOUND
     rate: float
     power: float
+    unit: Vec3  # of friction by what presses: force or moment on b where that is 1
+    pressed: float  # what presses [N]
 
 
 class Closure(Record):
@@ -319,6 +328,7 @@ class Limits(Record):
     newton_part: float  # ... or so large of the tolerance ...
     newton_noise: float  # ... or, of a method of fixed step, so large
     newton_stalls: float  # times the best contraction so far: corrections of that size do not contract, but tremble
+    friction_left: float  # of 1, by what friction adds to what presses: with less the answer is not taken for one
     newton_diverges: float  # a ratio of two corrections, the first ones, beyond which the iteration will not turn round
 
 
@@ -445,6 +455,10 @@ class Scene(Struct):
     angle_count: int  # of them those of atan2
     answer_count: int  # freedoms, a ball's three turns among them
     selected_count: int  # independent closure rows
+    rub_count: int  # loads of friction by what presses
+    jammed: int  # what was last found of them where no one answer was: JAMS, TWO, UNPROVED
+    jammed_load: int  # and which load it is that says so
+    jammed_at: float  # when
     driven: int  # something is driven: the work of drives counts
     flat: int  # bodies turn about z and shift across it: plane.py moves them
     work_at: int  # where the work stands in the state; -1: it is not asked for
@@ -499,4 +513,10 @@ class Scene(Struct):
     multipliers: list[float]  # at the state
     slopes: list[float]  # of the variables of the expressions, along the direction
     sloping: int  # some of them are not 0
+    rubs: list[int]  # the loads of friction by what presses
+    carried: list[float]  # of each cause, of each of them: the two vectors whose lengths press (kernel/pressing.py)
+    kept: list[float]  # moment and force applied to each body, while others are asked
+    bound: list[float]  # by how much what presses one can grow by a unit of another; then its elimination
+    newton: list[float]  # 1 - the slope of that at the answer
+    trial: list[float]  # rows of a number each of them: the answer tried, what it leaves, a weight, the terms' size
     along: list[float]  # a direction of the state

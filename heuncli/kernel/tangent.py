@@ -26,7 +26,6 @@ if not cython.compiled:
         dot,
         quaternion_rate,
         rotate_back,
-        scaled,
         sub,
         turned,
     )
@@ -50,6 +49,7 @@ if not cython.compiled:
     from heuncli.kernel.tangent_closures import closures_along
     from heuncli.kernel.tangent_loads import loads_along
     from heuncli.kernel.tangent_motion import move_along, omega_along, swung
+    from heuncli.kernel.tangent_pressing import carry_along, press_along
     from heuncli.kernel.tree import balance, direction_of, downward, load_along, push_lent
 
 
@@ -95,6 +95,9 @@ def change_along(
     closures_along(scene)
     branches_along(scene)
     respond_along(scene)
+    if scene.rub_count:
+        power += press_along(scene)
+        respond_along(scene)
     if scene.driven and scene.work_at >= 0:
         power += drives_along(scene)
     rates_along(scene, y, along, out)
@@ -195,11 +198,7 @@ def drives_along(scene: cython.pointer[Scene]) -> cython.double:
     """What the power of all drives changes by: their rates are given, their loads change with those of the joints."""
     i: cython.Py_ssize_t
     power: cython.double = 0.0
-    for i in range(scene.body_count):
-        scene.bodies[i].M_applied = scaled(-1.0, scene.tangents[i].M)
-        scene.bodies[i].f_applied = scaled(-1.0, scene.tangents[i].f)
-    push_closures(scene)
-    balance(scene, False)
+    carry_along(scene)
     for i in range(scene.freedom_count):
         freedom: cython.pointer[Freedom] = cython.address(scene.freedoms[i])
         if freedom.driven:

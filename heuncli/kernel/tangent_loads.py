@@ -216,9 +216,10 @@ def resistance(load: cython.pointer[Load], speed: cython.double) -> cython.doubl
     """Of a damper or friction: the load by the speed."""
     if load.kind < TURN_FRICTION:
         return load.coefficient
+    size: cython.double = load.coefficient * (load.pressed if load.presses else 1.0)
     if speed > 0.0:
-        return load.coefficient * tanh(speed / load.speed) / speed
-    return load.coefficient / load.speed
+        return size * tanh(speed / load.speed) / speed
+    return size / load.speed
 
 
 def resistance_along(load: cython.pointer[Load], speed: cython.double) -> cython.double:
@@ -226,4 +227,5 @@ def resistance_along(load: cython.pointer[Load], speed: cython.double) -> cython
     if load.kind < TURN_FRICTION or not speed > 0.0:
         return 0.0
     f: cython.double = tanh(speed / load.speed)
-    return load.coefficient * ((1.0 - f * f) / load.speed - f / speed) / speed
+    size: cython.double = load.coefficient * (load.pressed if load.presses else 1.0)
+    return size * ((1.0 - f * f) / load.speed - f / speed) / speed

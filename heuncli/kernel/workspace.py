@@ -277,6 +277,11 @@ class Workspace:
         return self.scene.least_row
 
     @property
+    def jammed(self) -> tuple[int, int, float]:
+        """Where friction had not one answer last: what was found in place of it, of which load, when [s]."""
+        return self.scene.jammed, self.scene.jammed_load, self.scene.jammed_at
+
+    @property
     def freedom_count(self) -> int:
         """Scalar freedoms."""
         return self.scene.freedom_count

@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Sequence
-from typing import TYPE_CHECKING
+from typing import TYPE_CHECKING, Literal
 
 import numpy as np
 
@@ -198,9 +198,21 @@ def load(name: str, f: m.Force, index: dict[str, int], joints: dict[str, tuple[i
             sliding = f.coefficient if kind.motions == ("sliding",) else f.sliding or 0.0
             return JointLoad(name, "damper", k, None, f.coefficient, sliding, 1.0)
         case m.Friction():
-            return JointLoad(name, "friction", joints[f.joint][0], None, f.torque or 0.0, f.force or 0.0, f.speed)
+            return friction(name, f, joints[f.joint][0])
         case m.Distributed():
             raise TypeError("a distributed load is two loads")
+
+
+def friction(name: str, f: m.Friction, joint: int) -> JointLoad:
+    """Friction of a given size, or by what of the joint's own load presses."""
+    if f.coefficient is None:
+        return JointLoad(name, "friction", joint, None, f.torque or 0.0, f.force or 0.0, f.speed)
+    turning, speed = f.coefficient * (f.radius or 0.0), f.speed
+    if f.radius is not None:
+        return JointLoad(name, "friction", joint, None, turning, 0.0, speed, presses="whole")
+    presses: Literal["across", "ends"] = "across" if f.length is None else "ends"
+    reach = f.length or 0.0
+    return JointLoad(name, "friction", joint, None, 0.0, f.coefficient, speed, presses=presses, reach=reach)
 
 
 def blow(b: m.Blow[str, m.Vec], index: dict[str, int]) -> Blow:

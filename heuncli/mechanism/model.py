@@ -134,6 +134,9 @@ class JointLoad:
     speed: float = 1.0  # friction: where tanh(rate/speed) bends
     stiffness: float = 0.0  # turn spring: N m/rad
     angle: float = 0.0  # turn spring: where it is relaxed [rad]
+    # friction: what of the joint's own load presses, if that tells its size; turning is then by it [m], sliding [1]
+    presses: Literal["whole", "across", "ends"] | None = None
+    reach: float = 0.0  # of two ends that press: their distance [m]
 
     @property
     def values(self) -> tuple[Expression, ...]:
@@ -195,6 +198,11 @@ class Mechanism:
                 count = len(JOINTS[self.joints[load.joint].kind].moved_by(load.kind))
             yield load, slice(at, at + count)
             at += count
+
+    @property
+    def rubbing(self) -> tuple[JointLoad, ...]:
+        """Friction that hangs on what its joint carries."""
+        return tuple(load for load in self.loads if isinstance(load, JointLoad) and load.presses is not None)
 
     def expressions(self) -> Iterator[Expression]:
         """The values in time of the loads, then those of the drives, then the conditions."""

@@ -19,7 +19,12 @@ STEPS: tuple[tuple[str, Callable[[PreparedScene], bool]], ...] = (
 
 
 def reduce(scene: PreparedScene) -> Reduced:
-    """The smallest scene that moves as this one does."""
+    """The smallest scene that moves as this one does.
+
+    Where friction hangs on what joints carry nothing is left out, for in a smaller scene they carry less.
+    """
+    if scene.mechanism.rubbing:
+        return Reduced((), ())
     steps: list[Reduction] = []
     kept: list[str] = []
     for name, concerns in STEPS:

@@ -112,7 +112,7 @@ def labels_of(spec: Spec) -> Labels:
 
 
 def _force(force: Force) -> ForceInfo:
-    turning = force.torque is not None if isinstance(force, Friction) else None
+    turning = force.torque is not None or force.radius is not None if isinstance(force, Friction) else None
     return ForceInfo(force.type, getattr(force, "joint", None), turning)
 
 

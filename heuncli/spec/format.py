@@ -387,6 +387,9 @@ class FrictionEntry(Entry):
     joint: str
     torque: Moment | None = None
     force: Force | None = None
+    coefficient: Number | None = None
+    radius: Length | None = None
+    length: Length | None = None
     speed: Either
 
 

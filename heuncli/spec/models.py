@@ -243,12 +243,19 @@ class Damper(NamedTuple):
 
 
 class Friction(NamedTuple):
-    """Coulomb friction in a joint, torque [N m] or force [N] times tanh(rate/speed)."""
+    """Coulomb friction in a joint, torque [N m] or force [N] times tanh(rate/speed).
+
+    Or coefficient: of what presses, the joint's own force; about a pin at a radius [m]. length [m]: of a guide at whose
+    two ends it presses.
+    """
 
     joint: str
     torque: float | None
     force: float | None
     speed: float
+    coefficient: float | None = None
+    radius: float | None = None
+    length: float | None = None
     type: Literal["friction"] = "friction"
 
 

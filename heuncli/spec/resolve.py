@@ -189,7 +189,8 @@ class Resolver:
                 coefficient = constant(load.coefficient) if load.coefficient is not None else 0.0
                 return m.Damper(load.joint, coefficient, load.sliding)
             case _:
-                return m.Friction(load.joint, load.torque, load.force, constant(load.speed))
+                by_load = load.coefficient, load.radius, load.length
+                return m.Friction(load.joint, load.torque, load.force, constant(load.speed), *by_load)
 
     def distributed(self, load: f.DistributedEntry, path: str) -> m.Distributed:
         body = self.document.bodies[load.on]

@@ -123,7 +123,7 @@ ELSEWHERE = {  # keys that stand in another place than the one where they were w
     "on": "a torque acts in a joint; what acts on a body is a couple, type: couple",
     "dt": "steps are chosen by the tolerance; samples is the number of instants told, times lists them",
     "units": "units stand with the numbers, as 12 mm; plain numbers are SI; for tables: --units",
-    "mu": "friction takes the torque or force itself, as a number: mu times the load that presses",
+    "mu": "coefficient: of the joint's own force; friction of a given size has torque or force instead",
     "motor": "a pin or slide that is driven: drives: {motor: {joint: NAME, rate: 1500 rpm}}, or a force of type torque",
     "material": "a shape takes density: 7850 kg/m^3",
     "color": "shapes have no looks",

@@ -54,6 +54,7 @@ JOINT_LOADS = {  # of the turning, of the sliding
     "damper": (kernel.TURN_DAMPER, kernel.SHIFT_DAMPER),
     "friction": (kernel.TURN_FRICTION, kernel.SHIFT_FRICTION),
 }
+PRESSES = {"whole": kernel.WHOLE, "across": kernel.ACROSS, "ends": kernel.ENDS}
 Scalar = tuple[int, Array, str, float, float]  # of a freedom: kind, direction, quantity, coordinate, rate
 
 
@@ -427,7 +428,19 @@ class _Builder:
                 axis=joint.axis,
                 speed=load.speed,
             )
-            self.load_rows.append(self._turn_spring(load, row) if load.kind == "turn_spring" else row)
+            if load.kind == "turn_spring":
+                row = self._turn_spring(load, row)
+            elif load.presses is not None:
+                row = self._pressed(load, row)
+            self.load_rows.append(row)
+
+    def _pressed(self, load: JointLoad, row: LoadRow) -> LoadRow:
+        """Where what presses is found: in the balance of the branch on the joint, or in the rows of a cut one."""
+        held = next((i for i, h in enumerate(self.spanning.hangs) if h.joint == load.joint), GROUND)
+        own = [r for r, joint in enumerate(self.row_joint) if joint == load.joint]
+        own = own[: JOINTS[self.mechanism.joints[load.joint].kind].rows]  # those of its stops come after
+        presses, first = PRESSES[load.presses or "whole"], own[0] if own else 0
+        return replace(row, presses=presses, held_by=held, row=first, row_count=len(own), reach=load.reach)
 
     def _turn_spring(self, load: JointLoad, row: LoadRow) -> LoadRow:
         """What a spring about a joint's axis has of its own: where its angle stands, or tells it where that was cut."""

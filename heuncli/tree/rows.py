@@ -82,6 +82,11 @@ class LoadRow:
     offset: float = 0.0
     across: Vector = ZERO
     mark: Vector = ZERO
+    presses: int = 0
+    held_by: int = 0
+    row: int = 0
+    row_count: int = 0
+    reach: float = 0.0
 
 
 @record

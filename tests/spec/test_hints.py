@@ -67,7 +67,7 @@ def test_a_key_of_the_analysis_at_the_top_is_sent_there(key: str) -> None:
         ("forces: [{type: torque}]", "forces [wrong-kind]", "forces: {NAME: {...}}"),
         ("forces: {f: {type: torque, on: bar, value: 5}}", "forces.f.on [unknown-key]", "couple"),
         ("forces: {f: {type: damper, joint: pivot, damping: 5}}", "forces.f.damping [unknown-key]", "coefficient"),
-        ("forces: {f: {type: friction, joint: pivot, mu: 5, speed: 1}}", "forces.f.mu [unknown-key]", "mu times"),
+        ("forces: {f: {type: friction, joint: pivot, mu: 5, speed: 1}}", "forces.f.mu [unknown-key]", "coefficient"),
         ("forces: {f: {type: force, on: bar, vector: [0, 0, 1]}}", "forces.f.on [end]", "bar.top, or bar.end?"),
         ("forces: {f: {type: force, on: bar.end, vector: 5}}", "forces.f.vector [wrong-kind]", "three components"),
     ],

@@ -130,6 +130,10 @@ def not_finite(scene: PreparedScene, recovered: Recovered, instant: int) -> list
 
     t, length = float(recovered.times[instant]), float(recovered.times[-1])
     problems = without_value(scene.mechanism, t, length, coordinates_at(scene.layout, recovered, instant))
+    if not problems and scene.mechanism.rubbing:
+        from heuncli.integration.diagnosis.jamming import jammed_at
+
+        problems = jammed_at(scene.mechanism, recovered, instant)
     message = f"at t = {t:.9g} s no finite acceleration exists"
     return problems or [Problem("not-a-number", message, hint="look at points that coincide, and at very large values")]
 

@@ -8,6 +8,7 @@ from heuncli.errors import Problem, SolveError
 from heuncli.expressions.programs import Expression
 from heuncli.integration.diagnosis.domains import coordinates_at, without_value
 from heuncli.integration.diagnosis.growth import growing, largest_load
+from heuncli.integration.diagnosis.jamming import jammed_beyond
 from heuncli.integration.run.errors import TROUBLE, ClosuresLost
 from heuncli.integration.run.kernel_loop import CHATTERING, HALF_TURN
 from heuncli.integration.run.progress import Progress
@@ -35,6 +36,8 @@ def without_acceleration(progress: Progress, name: str, message: str, hint: str)
     t, state, scene = progress.t, progress.state, progress.scene
     mechanism, recovered = scene.layout.mechanism, scene.recovered(np.array([t]), state[None, :])
     problems = without_value(mechanism, t, progress.last, coordinates_at(scene.layout, recovered, 0))
+    if not problems and mechanism.rubbing:
+        problems = jammed_beyond(mechanism, progress.moving.workspace, t)
     problems = problems or growing(scene, t, state, progress.passed)
     if problems:
         return SolveError(*problems)

@@ -86,6 +86,8 @@ def not_positive(draft: DraftDocument) -> Iterator[Violation]:
             yield Violation((*path, "stiffness"), message, "0: the joint gives way there to what others hold")
     for name, load in draft.document.forces.items():
         path = ("forces", name)
+        if isinstance(load, f.FrictionEntry):
+            yield from positive(path, load, "radius", "length")
         if isinstance(load, f.FrictionEntry) and load.speed.constant is not None and load.speed.constant <= 0.0:
             yield Violation((*path, "speed"), f"speed must be more than 0, not {load.speed.constant:g}", FULL)
     for name, section in draft.document.sections.items():

@@ -51,17 +51,43 @@ def load_joint(draft: DraftDocument) -> Iterator[Violation]:
                 message = f"sliding is for a {named(of_both, 'or')}, not for a {kind.name}"
                 yield Violation((*path, "sliding"), message, "use coefficient", key=True)
         else:
-            given = [key for key in FRICTION.values() if getattr(load, key) is not None]
+            given = [key for key in (*FRICTION.values(), "coefficient") if getattr(load, key) is not None]
             fitting = [FRICTION[motion] for motion in kind.motions]
             if not kind.takes("friction"):
                 message = f"friction acts in a {named(taking('friction'), 'or')}, not in a {kind.name}"
                 yield Violation((*path, "joint"), message, "between two points use a spring with damping")
             elif len(given) != 1:
-                what = "both torque and force" if given else "neither torque nor force"
-                yield Violation(path, f"friction of {what}", f"a {kind.name} takes {' or '.join(fitting)}", key=True)
+                what = f"both {' and '.join(given[-2:])}" if given else "neither torque nor force nor coefficient"
+                hint = f"a {kind.name} takes {' or '.join([*fitting, 'coefficient'])}"
+                yield Violation(path, f"friction of {what}", hint, key=True)
+            elif given[0] == "coefficient":
+                yield from by_coefficient(name, load, kind)
+            elif load.radius is not None or load.length is not None:
+                key = "radius" if load.radius is not None else "length"
+                message = f"{key} is for friction with a coefficient, not with a {given[0]}"
+                yield Violation((*path, key), message, "leave it out, or write coefficient", key=True)
             elif given[0] not in fitting:
                 message = f"friction of a {kind.name} is a {fitting[0]}"
                 yield Violation((*path, given[0]), message, f"write {fitting[0]}", key=True)
+
+
+def by_coefficient(name: str, load: f.FrictionEntry, kind: Kind) -> Iterator[Violation]:
+    """Friction by a coefficient: about a pin at a radius, along a slide between two ends or none."""
+    path = ("forces", name)
+    if len(kind.motions) != 1:
+        message = f"friction with a coefficient acts in a pin or slide, not in a {kind.name}"
+        hint = "its turning and its sliding rub as one: a pin and a slide, or torque and force of a given size"
+        yield Violation((*path, "joint"), message, hint)
+    elif kind.motions == ("turning",):
+        if load.radius is None:
+            hint = "radius: of the journal, at which the force on the joint rubs, as 20 mm"
+            yield Violation(path, f"friction with a coefficient about a {kind.name} needs its radius", hint, key=True)
+        if load.length is not None:
+            hint = "leave it out: a pin rubs at its radius"
+            yield Violation((*path, "length"), "length is for a slide: the distance of its ends", hint, key=True)
+    elif load.radius is not None:
+        hint = "leave it out; a slide may have a length, at whose ends it carries tilting moments"
+        yield Violation((*path, "radius"), "radius is for a pin", hint, key=True)
 
 
 @rule("dimension")
@@ -77,7 +103,8 @@ def load_dimension(draft: DraftDocument) -> Iterator[Violation]:
             given = [load.coefficient] if load.coefficient is not None else []
             checks = [("coefficient", value, u.DAMPING if sliding else u.TURNING_DAMPING) for value in given]
         else:
-            checks = [("speed", load.speed, u.VELOCITY if load.force is not None else u.RATE)]
+            by_way = load.force is not None or (load.coefficient is not None and sliding)
+            checks = [("speed", load.speed, u.VELOCITY if by_way else u.RATE)]
         for key, value, dimension in checks:
             if value.dimension is not None and value.dimension != dimension:
                 message = f"'{value.source.strip()}' is {u.describe(value.dimension)}, expected {u.describe(dimension)}"

@@ -156,7 +156,12 @@ def recover(setup: Setup, recovered: Recovered, least_norm: bool) -> Recovery:
     """What follows from the kernel's answers. Raises SolveError where no acceleration exists."""
     require_solvable(setup.scene, recovered)
     require_directions(setup.scene, recovered)
-    return Recovery(setup, recovered, least_norm)
+    found = Recovery(setup, recovered, least_norm)
+    if setup.scene.mechanism.rubbing and found.decided is not None:
+        from heuncli.redundancy.rubbing import require_certain  # few scenes need it
+
+        require_certain(setup.scene.mechanism, found.decided.searched, found.states, recovered.times)
+    return found
 
 
 def certain_sums(recovery: Recovery) -> list[CertainSum]:

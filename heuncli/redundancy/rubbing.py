@@ -1,0 +1,35 @@
+"""Friction by what a joint carries, where redundant joints leave that open: refused, for nobody can tell it."""
+
+from __future__ import annotations
+
+import numpy as np
+
+from heuncli.errors import SolveError
+from heuncli.kinetostatics.bodies import BodyStates
+from heuncli.kinetostatics.reactions import constrained_part
+from heuncli.mechanism.model import JointLoad, Mechanism
+from heuncli.redundancy.self_stress import SelfStress
+from heuncli.results import Array, Mask
+
+
+def require_certain(mechanism: Mechanism, stress: SelfStress | None, states: BodyStates, times: Array) -> None:
+    """Raise SolveError where a self-stress has a share in what presses, whether a stiffness splits it or not."""
+    if stress is None or not stress.count.any():
+        return
+    is_open = {(load.name, load.joint): open_in(mechanism, load, stress, states) for load in mechanism.rubbing}
+    at = np.flatnonzero(np.any(list(is_open.values()), axis=0))
+    if len(at):
+        from heuncli.integration.diagnosis.jamming import rubs_openly  # only on the way to an error
+
+        names = [(name, mechanism.joints[k].name) for (name, k), mask in is_open.items() if mask[at[0]]]
+        raise SolveError(rubs_openly(names, float(times[at[0]])))
+
+
+def open_in(mechanism: Mechanism, load: JointLoad, stress: SelfStress, states: BodyStates) -> Mask:
+    """Whether what presses in a load's joint is open, (n_t,): its force, and of two ends what tilts it."""
+    shares = np.moveaxis(stress.shares[load.joint], 2, 0)
+    force, moment = constrained_part(mechanism.joints[load.joint], states, shares[..., :3], shares[..., 3:])
+    found = stress.reaches(np.moveaxis(force, 0, 2)).any(axis=-1)
+    if load.presses == "ends":
+        found = found | stress.reaches(np.moveaxis(moment, 0, 2), stress.length).any(axis=-1)
+    return np.asarray(found)
