@@ -8,8 +8,9 @@ from typing import Any
 import numpy as np
 import pytest
 
+from heuncli.commands.lagrange.options import range_of
 from heuncli.commands.lagrange.over import over
-from heuncli.commands.lagrange.results import Course
+from heuncli.commands.lagrange.results import InertiaCourse
 from heuncli.errors import SolveError
 from heuncli.shapes.rotations import hat
 from heuncli.spec.load import load
@@ -75,8 +76,9 @@ TURN = {  # degrees: inertia at the crank, half its slope
 MEAN = 0.01642669572178526
 
 
-def course(name: str = "slider_crank", words: str = "main.angle=0:360deg/73") -> Course:
-    return over(load(str(ROOT / "specs" / f"{name}.yaml")), words)
+def course(name: str = "slider_crank", words: str = "main.angle=0:360deg/73") -> InertiaCourse:
+    spec = load(str(ROOT / "specs" / f"{name}.yaml"))
+    return over(spec, range_of(words, spec))
 
 
 @pytest.mark.parametrize("name", ["slider_crank", "slider_crank_pins"])

@@ -11,7 +11,7 @@ from heuncli.commands.lagrange.coordinates import candidates, chosen, picked
 from heuncli.commands.lagrange.equations import VelocityTerms, partials_of
 from heuncli.commands.lagrange.instant import Instant, instant_of
 from heuncli.commands.lagrange.results import LagrangeResults
-from heuncli.commands.lagrange.study import Asked
+from heuncli.commands.lagrange.study import LagrangeQuestion
 from heuncli.commands.lagrange.study import told as told_at
 from heuncli.linearisation.displacements import displaced
 from heuncli.linearisation.linearise import linearised
@@ -41,7 +41,7 @@ def scene_of(kind: str, seed: int) -> dict[str, Any]:
 def looked_at(kind: str, seed: int, **asked: Any) -> tuple[Instant, LagrangeResults]:
     spec = load("scene.yaml", to_yaml(scene_of(kind, seed)))
     at = instant_of(spec, None, None)
-    return at, told_at(spec, at, Asked(**asked))
+    return at, told_at(spec, at, LagrangeQuestion(**asked))
 
 
 @pytest.mark.parametrize(("kind", "seed"), SCENES)
@@ -114,7 +114,7 @@ def test_other_coordinates(seed: int) -> None:
     scaled = {name: row @ by.S for name, row in rows.items()}
     others = picked(scaled, [[name for name in scaled if name not in found.names], list(scaled)], len(found.names))
     R = np.linalg.inv(np.array([scaled[name] for name in others]))
-    second = told_at(spec, at, Asked(coordinates=tuple(others)))
+    second = told_at(spec, at, LagrangeQuestion(coordinates=tuple(others)))
     size = np.abs(R).max() ** 2 * np.abs(found.epsilon).max()
     assert np.abs(second.epsilon - R.T @ found.epsilon @ R).max() <= 1e-9 * size
     assert np.abs(second.total - R.T @ found.total).max() <= 1e-9 * np.abs(R).max() * max(

@@ -7,7 +7,7 @@ from pathlib import Path
 from typing import Any
 
 from heuncli.commands.lagrange.results import LagrangeResults
-from heuncli.commands.lagrange.study import Asked, lagrange
+from heuncli.commands.lagrange.study import LagrangeQuestion, lagrange
 from heuncli.spec.load import load
 from tests.oracle.values import to_yaml
 
@@ -35,5 +35,5 @@ def double(more: str = "analysis: {type: state}", u: tuple[float, float] = (1.5,
 def told(scene: str | Path | Mapping[str, Any], **asked: Any) -> LagrangeResults:
     """The Lagrange side of a scene: a file, a text, or the oracle's dict."""
     if isinstance(scene, Path):
-        return lagrange(load(str(scene)), Asked(**asked))
-    return lagrange(load("scene.yaml", scene if isinstance(scene, str) else to_yaml(scene)), Asked(**asked))
+        return lagrange(load(str(scene)), LagrangeQuestion(**asked))
+    return lagrange(load("scene.yaml", scene if isinstance(scene, str) else to_yaml(scene)), LagrangeQuestion(**asked))

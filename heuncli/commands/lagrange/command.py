@@ -3,16 +3,15 @@
 from __future__ import annotations
 
 from heuncli.cli import alarm
-from heuncli.cli.entry import UsageError
 from heuncli.cli.guard import require_other_file
 from heuncli.cli.output import emit
 from heuncli.cli.solving import overrides, warn
 from heuncli.cli.target import format_of
 from heuncli.commands.lagrange import page
+from heuncli.commands.lagrange.options import range_of, require_instant, require_together, words
 from heuncli.commands.lagrange.over import over
 from heuncli.commands.lagrange.request import LagrangeRequest
-from heuncli.commands.lagrange.study import Asked, lagrange
-from heuncli.errors import Problem
+from heuncli.commands.lagrange.study import LagrangeQuestion, lagrange
 from heuncli.report.export import dump
 from heuncli.spec.load import load
 from heuncli.spec.models import Spec
@@ -26,7 +25,7 @@ def main(request: LagrangeRequest) -> int:
     require_other_file(request.output, [request.spec])
     form = format_of(request.format, request.output, ENDINGS, FORMATS)
     require_together(request, form)
-    asked = Asked(
+    asked = LagrangeQuestion(
         at=request.at,
         coordinates=words(request.coordinates),
         seen=tuple(word.strip() for word in request.seen),
@@ -38,15 +37,16 @@ def main(request: LagrangeRequest) -> int:
     )
     spec = load(request.spec, overrides=overrides(request.set), checking=False)
     require_other_file(request.output, [request.spec])
+    require_instant(request.at, spec)
     emit(written(spec, request, asked, form), request.output)
     warn(spec, None, request.quiet)
     return 0
 
 
-def written(spec: Spec, request: LagrangeRequest, asked: Asked, form: str) -> str:
+def written(spec: Spec, request: LagrangeRequest, asked: LagrangeQuestion, form: str) -> str:
     """What is asked for, in one of the formats."""
     if request.over is not None:
-        course = over(spec, request.over)
+        course = over(spec, range_of(request.over, spec))
         if form == "json":
             return dump(page.course_block(course))
         return page.course_csv(course) if form == "csv" else page.write_course(course)
@@ -56,26 +56,3 @@ def written(spec: Spec, request: LagrangeRequest, asked: Asked, form: str) -> st
     if form == "json":
         return dump(page.block(found))
     return page.to_csv(found) if form == "csv" else page.write(found)
-
-
-def require_together(request: LagrangeRequest, form: str) -> None:
-    """Raise UsageError for options that do not go together."""
-    wrong = []
-    if request.over is not None:
-        others = {"--at": request.at is not None, "--coordinates": request.coordinates, "--seen": request.seen}
-        others |= {"--christoffel": request.christoffel, "--state-space": request.state_space}
-        wrong += [
-            (f"--over and {name}", "the one free coordinate is told over its range")
-            for name, on in others.items()
-            if on
-        ]
-    if not request.state_space:
-        named = {"--inputs": request.inputs, "--outputs": request.outputs, "--format m, or -o FILE.m": form == "m"}
-        wrong += [(f"{name} without --state-space", "add --state-space") for name, on in named.items() if on]
-    if wrong:
-        raise UsageError(*(Problem("bad-option", message, hint=hint) for message, hint in wrong))
-
-
-def words(given: str | None) -> tuple[str, ...]:
-    """Names with commas between them."""
-    return tuple(word.strip() for word in given.split(",")) if given else ()

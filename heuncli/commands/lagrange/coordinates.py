@@ -206,9 +206,8 @@ def _moved(layout: Layout, name: str, states: BodyStates) -> tuple[Array, Array]
     joint = next((joint for joint in mechanism.joints if joint.name == owner), None)
     if quantity in rodrigues.NAMES:
         body = next(i for i, own in enumerate(mechanism.bodies) if own.name == owner)
-        own = (part[:, body] for part in (states.R, states.omega, states.alpha))
         k = rodrigues.NAMES.index(quantity)
-        rate, acceleration = rodrigues.moved(*own, owner)
+        rate, acceleration = rodrigues.moved(states.R[:, body], states.omega[:, body], states.alpha[:, body], owner)
         return rate[:, k], acceleration[:, k]
     if joint is None:
         return of_body(mechanism, owner, quantity, states)

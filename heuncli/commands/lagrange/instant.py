@@ -48,9 +48,6 @@ def instant_of(spec: Spec, at: float | None, time_limit: float | None) -> Instan
         setup, there = moved_to(spec, at, time_limit)
         words, t = f"at t = {at:.6g} s", at
     else:
-        if at not in (None, 0.0) and kind != "motion":
-            message = f"--at {at:g}: the analysis is no motion ({kind})"
-            raise SolveError(Problem("bad-option", message, hint="leave it out, or ask for a motion"))
         if kind != "rest":
             t = float(spec.analysis.times[0]) if kind == "state" else 0.0
             spec = spec._replace(

@@ -12,21 +12,20 @@ import numpy as np
 from heuncli.commands.lagrange.coordinates import accelerations
 from heuncli.commands.lagrange.equations import motion_alone
 from heuncli.commands.lagrange.freed import FreedScene, freed
-from heuncli.commands.lagrange.results import Course
-from heuncli.errors import Finding, Problem, SolveError
+from heuncli.commands.lagrange.results import InertiaCourse
+from heuncli.errors import Problem, SolveError
 from heuncli.expressions.grammar import Scope, compile_expression
 from heuncli.integration.determined_motion import determined
 from heuncli.integration.evaluator import Recovered
 from heuncli.integration.methods.followed import FOLLOWED
 from heuncli.integration.run.request import MotionTask
-from heuncli.joint_kinds import JOINTS, RATES
+from heuncli.joint_kinds import RATES
 from heuncli.kinetostatics.actions import Action, applied_loads
 from heuncli.kinetostatics.bodies import BodyStates, body_states
 from heuncli.kinetostatics.coordinates import coordinates
 from heuncli.kinetostatics.foundation import inertia_loads
 from heuncli.kinetostatics.shares import GRAVITY
 from heuncli.mechanism.model import GROUND
-from heuncli.nearest import did_you_mean
 from heuncli.records import record, replace
 from heuncli.results import Array
 from heuncli.spec.models import Analysis, Drive, Spec
@@ -34,9 +33,6 @@ from heuncli.study.model.error_places import placed
 from heuncli.study.model.setup import set_up
 from heuncli.tree.layout import Layout, places_of_rates
 
-BAD = "bad-option"
-FORM = "such as --over main.angle=0:360deg/73"
-MOST = 100_000  # values
 FOLLOWS = ("angle", "travel")
 
 
@@ -50,53 +46,20 @@ class Range:
     values: Array
 
 
-def range_of(words: str, spec: Spec) -> Range:
-    """The range that is asked for: NAME=FROM:TO/COUNT. Raises SolveError [bad-option]."""
-    name, equals, rest = (part.strip() for part in words.partition("="))
-    bounds, slash, count = rest.partition("/")
-    first, colon, last = bounds.partition(":")
-    if not (equals and colon) or (slash and not count.strip().isdigit()):
-        raise refused(words, "expected NAME=FROM:TO/COUNT", FORM)
-    n = int(count) if slash else 73
-    if not 2 <= n <= MOST:
-        raise refused(words, f"expected 2 to {MOST} values", FORM)
-    joint, _, quantity = name.rpartition(".")
-    known = [f"{own.name}.{q}" for own in spec.joints.values() for q in JOINTS[own.kind].coordinates if q in FOLLOWS]
-    if name not in known:
-        hint = did_you_mean(name, known, "coordinates") or "of pins, slides and cylinders"
-        raise refused(words, f"no coordinate is called {name}", hint)
-    a, b = (number(words, text) for text in (first, last))
-    if a == b:
-        raise refused(words, "both ends are the same", FORM)
-    return Range(name, joint, quantity, np.linspace(a, b, n))
+def refused(asked: Range, message: str, hint: str) -> SolveError:
+    """The error of a range that cannot be followed."""
+    return SolveError(Problem("no-course", f"{asked.name}: {message}", hint=hint))
 
 
-def number(words: str, text: str) -> float:
-    """A number with a unit or without, SI."""
-    try:
-        value = compile_expression(text, Scope(with_units=True)).constant
-    except Finding as finding:
-        raise refused(words, str(finding), FORM) from None
-    if value is None or not np.isfinite(value):
-        raise refused(words, f"'{text}' is no number", FORM)
-    return value
-
-
-def refused(words: str, message: str, hint: str) -> SolveError:
-    """The error of an option that cannot be met."""
-    return SolveError(Problem(BAD, f"--over {words}: {message}", hint=hint))
-
-
-def over(spec: Spec, words: str) -> Course:
+def over(spec: Spec, asked: Range) -> InertiaCourse:
     """The course of the inertia and of the forces. Raises SolveError where more is free, or the way ends."""
     with placed(spec):
-        asked = range_of(words, spec)
         start, rate = begun(spec, asked)
         t = float(spec.analysis.times[0]) if spec.analysis.type == "state" else 0.0
         order = np.argsort(asked.values)
         values = asked.values[order]
         ways = [values[values < start][::-1], values[values >= start]]
-        parts = [along(*followed(spec, asked, start, way, words), t, rate, way) for way in ways if len(way)]
+        parts = [along(*followed(spec, asked, start, way), t, rate, way) for way in ways if len(way)]
         parts = [part.reversed if len(part.values) > 1 and part.values[0] > part.values[-1] else part for part in parts]
         whole = joined(parts)
         whole = whole if asked.values[0] < asked.values[-1] else whole.reversed
@@ -115,7 +78,7 @@ def begun(spec: Spec, asked: Range) -> tuple[float, float]:
     return float(own[asked.quantity][0]), float(own["rate" if asked.quantity == "angle" else "speed"][0])
 
 
-def followed(spec: Spec, asked: Range, start: float, way: Array, words: str) -> tuple[FreedScene, Recovered, float]:
+def followed(spec: Spec, asked: Range, start: float, way: Array) -> tuple[FreedScene, Recovered, float]:
     """The scene without drives, it answered at the values of a way, and the rate at which it was followed.
 
     Raises SolveError where more than the coordinate is free, or contacts open and close.
@@ -131,15 +94,15 @@ def followed(spec: Spec, asked: Range, start: float, way: Array, words: str) -> 
     layout = setup.scene.layout
     if layout.contacts:
         message = f"{layout.contacts[0].name} may open and close on the way"
-        raise refused(words, message, "leave stops and ropes out")
+        raise refused(asked, message, "leave stops and ropes out")
     if not determined(setup.runner.moving).is_so:
         message = f"with {asked.name} held something is free: the inertia of one motion is told over it"
-        raise refused(words, message, "heun lagrange SPEC tells all of one instant; --at T of a later one")
+        raise refused(asked, message, "heun lagrange SPEC tells all of one instant; --at T of a later one")
     run = setup.runner.trajectory(MotionTask(times, spec.analysis.tolerance, FOLLOWED))
     return freed(setup.scene), setup.runner.answers_at(run, times), span
 
 
-def along(scene: FreedScene, there: Recovered, span: float, t: float, rate: float, values: Array) -> Course:
+def along(scene: FreedScene, there: Recovered, span: float, t: float, rate: float, values: Array) -> InertiaCourse:
     """The course over the values of a way."""
     layout, runner = scene.layout, scene.runner
     place = places_of_rates(layout)
@@ -164,13 +127,13 @@ def along(scene: FreedScene, there: Recovered, span: float, t: float, rate: floa
     forces = {GRAVITY: states.v_centre @ layout.mechanism.gravity @ m} if layout.mechanism.gravity.any() else {}
     for load in applied_loads(layout.mechanism, own, loaded):
         forces[load.load.name] = forces.get(load.load.name, 0.0) + power(states, load.action)
-    return Course("", "", False, False, values, rate, epsilon, half, forces)
+    return InertiaCourse("", "", False, False, values, rate, epsilon, half, forces)
 
 
 def body_spins(layout: Layout, states: BodyStates) -> Array:
     """I w of every body, (n_t, n, 3), body axes."""
     inertia = np.array([body.inertia for body in layout.mechanism.bodies])
-    return np.einsum("nij,tnkj,tnk->tni", inertia, states.R, states.omega)
+    return np.asarray(np.einsum("nij,tnkj,tnk->tni", inertia, states.R, states.omega))
 
 
 def power(states: BodyStates, action: Action) -> Array:
@@ -183,7 +146,7 @@ def power(states: BodyStates, action: Action) -> Array:
     return done
 
 
-def joined(parts: list[Course]) -> Course:
+def joined(parts: list[InertiaCourse]) -> InertiaCourse:
     """Ways one after the other."""
     if len(parts) == 1:
         return parts[0]

@@ -8,7 +8,7 @@ from typing import Any
 
 import numpy as np
 
-from heuncli.commands.lagrange.results import Course, LagrangeResults, StateSpace
+from heuncli.commands.lagrange.results import InertiaCourse, LagrangeResults, StateSpace
 from heuncli.foreign_text import shown
 from heuncli.report.page_width import fit
 from heuncli.report.text_table import WIDTH, TextColumn, TextTable, plain
@@ -190,7 +190,7 @@ def struck(found: LagrangeResults, section: str) -> dict[str, Any]:
 COURSE = "OVER  ε and half its slope: C = ½ dε/dq q'²; k by cause at q' = {rate:.6g} {unit}, loads as at the start"
 
 
-def write_course(found: Course) -> str:
+def write_course(found: InertiaCourse) -> str:
     """The page of a course as text."""
     lines = [("heun", f"{VERSION}  {found.title}")]
     kind, length = ("kg", "m") if found.is_length else ("kg·m²", "rad")
@@ -201,7 +201,7 @@ def write_course(found: Course) -> str:
     return head + "\n" + "".join(plain(part, WIDTH) for part in fit(course_table(found), WIDTH))
 
 
-def course_table(found: Course) -> TextTable:
+def course_table(found: InertiaCourse) -> TextTable:
     """A row a value."""
     unit = "m" if found.is_length else "rad"
     kind, force = ("kg", "N") if found.is_length else ("kg·m²", "N·m")
@@ -216,7 +216,7 @@ def course_table(found: Course) -> TextTable:
     return TextTable(heading, tuple(TextColumn(head) for head in heads), rows)
 
 
-def course_block(found: Course) -> dict[str, Any]:
+def course_block(found: InertiaCourse) -> dict[str, Any]:
     """As JSON has it: what lists over coordinates are of an instant, with an axis of the values before."""
     return {
         "title": found.title,
@@ -239,7 +239,7 @@ def course_block(found: Course) -> dict[str, Any]:
     }
 
 
-def course_csv(found: Course) -> str:
+def course_csv(found: InertiaCourse) -> str:
     """A line a value and quantity."""
     unit = "m" if found.is_length else "rad"
     kind, force = ("kg", "N") if found.is_length else ("kg·m²", "N·m")

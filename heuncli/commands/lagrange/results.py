@@ -104,7 +104,7 @@ class StateSpace:
 
 
 @record
-class Course:
+class InertiaCourse:
     """The inertia and the forces over a range of the one free coordinate, (n,) each.
 
     epsilon, half: e and de/dq / 2; forces k by cause, at a rate of the coordinate; mean: of e, over the range.
@@ -132,7 +132,7 @@ class Course:
         return float(middle @ np.diff(self.values) / (self.values[-1] - self.values[0]))
 
     @property
-    def reversed(self) -> Course:
+    def reversed(self) -> InertiaCourse:
         """The other way round."""
         forces = {name: k[::-1] for name, k in self.forces.items()}
         own = {name: getattr(self, name)[::-1] for name in ("values", "epsilon", "half")}

@@ -61,14 +61,7 @@ def along_point(at: Instant, partials: Partials, place: str, direction: str, wor
     if place not in points:
         hint = did_you_mean(place, list(points), "points") or ""
         raise SolveError(Problem("no-coordinate", f"--seen {words}: no point is called {place}", hint=hint))
-    try:
-        n = np.array([float(word) for word in direction.split(",")])
-    except ValueError:
-        n = np.zeros(0)
-    size = float(np.sqrt(n @ n))
-    if len(n) != 3 or not (np.isfinite(size) and size > 0.0):
-        message = f"--seen {words}: expected a direction of three numbers"
-        raise SolveError(Problem("bad-option", message, hint=f"such as --seen {place}:0,0,1"))
+    n = np.array([float(word) for word in direction.split(",")])
     body, point = points[place]
     states = body_states(at.freed.layout, at.here)
-    return np.asarray(n / size @ partials.at(body, states.point_position(body, point)[0]))
+    return np.asarray(n / np.sqrt(n @ n) @ partials.at(body, states.point_position(body, point)[0]))

@@ -37,7 +37,7 @@ QUASI = (
 
 
 @record
-class Asked:
+class LagrangeQuestion:
     """What is asked for beside the equations: coordinates, places at which inertia is seen, Christoffel symbols."""
 
     at: float | None = None
@@ -50,14 +50,14 @@ class Asked:
     time_limit: float | None = None
 
 
-def lagrange(spec: Spec, asked: Asked) -> LagrangeResults:
+def lagrange(spec: Spec, asked: LagrangeQuestion) -> LagrangeResults:
     """Lagrange's equations of a spec's scene, in numbers. Raises SolveError."""
     with placed(spec):
         at = instant_of(spec, asked.at, asked.time_limit)
         return told(spec, at, asked)
 
 
-def told(spec: Spec, at: Instant, asked: Asked) -> LagrangeResults:
+def told(spec: Spec, at: Instant, asked: LagrangeQuestion) -> LagrangeResults:
     """The results at an instant."""
     layout = at.freed.layout
     by = chosen(at.freed.scene, at.found, at.freed.driven, asked.coordinates)

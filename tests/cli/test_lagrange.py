@@ -1,0 +1,134 @@
+"""`heun lagrange`: what it writes, and what it refuses."""
+
+from __future__ import annotations
+
+import csv
+import io
+import json
+from pathlib import Path
+
+import numpy as np
+import pytest
+
+from heuncli.commands.lagrange.study import LagrangeQuestion, lagrange
+from heuncli.errors import HeunError
+from heuncli.spec.load import load
+from tests.shared.command import Heun
+from tests.shared.folders import ROOT
+from tests.shared.lagrange import double
+
+SPECS = sorted((ROOT / "specs").glob("*.yaml"))
+NAMES = {
+    "coordinates", "rates", "epsilon", "eta", "gamma", "alpha", "momenta", "reciprocal_energy", "forces", "coriolis",
+    "energy", "sections", "units", "driven", "accelerations", "drives", "coriolis_matrix", "seen", "partials",
+    "residual", "left_out", "state_space",
+}  # fmt: skip
+NOTHING_FREE = {"overhang"}
+
+
+@pytest.fixture
+def pendulum(folder: Path) -> str:
+    loads = "forces: {push: {type: force, on: b.e, vector: [3, 0, 0]}}"
+    (folder / "double.yaml").write_text(double(f"{loads}\nanalysis: {{duration: 1, samples: 11}}"))
+    return "double.yaml"
+
+
+def test_json_keeps_to_the_contract(heun: Heun, pendulum: str) -> None:
+    done = heun("lagrange", pendulum, "--format", "json", "--christoffel")
+    found = json.loads(done.stdout)
+    assert done.returncode == 0 and found.keys() >= NAMES
+    assert found["coordinates"] == ["A.angle", "B.angle"] and found["units"] == ["rad", "rad"]
+    assert np.shape(found["gamma"]) == np.shape(found["alpha"]) == (2, 2, 2)
+    shares = found["forces"]["shares"]
+    assert shares.keys() == {"gravity", "push"}
+    assert np.allclose(np.sum(list(shares.values()), axis=0), found["forces"]["total"], rtol=1e-15)
+    assert found["seen"]["A.angle"].keys() == {"unit", "locked", "free"}
+    assert np.shape(found["partials"]["points"]["b.e"]) == (3, 2) == np.shape(found["partials"]["bodies"]["a"]["turn"])
+    assert json.loads(heun("lagrange", pendulum, "--format", "json").stdout)["gamma"] is None
+
+
+def test_long_form_says_the_same(heun: Heun, pendulum: str) -> None:
+    found = json.loads(heun("lagrange", pendulum, "--format", "json").stdout)
+    rows = list(csv.DictReader(io.StringIO(heun("lagrange", pendulum, "--format", "csv").stdout)))
+    own = {(row["name"], row["quantity"], row["component"]): float(row["value"]) for row in rows}
+    for i, name in enumerate(found["coordinates"]):
+        assert own[name, "coriolis", ""] == found["coriolis"][i]
+        assert own[name, "force", "push"] == found["forces"]["shares"]["push"][i]
+        assert own[name, "epsilon", "B.angle"] == found["epsilon"][i][1]
+
+
+def test_an_instant_of_a_motion(heun: Heun, pendulum: str) -> None:
+    """The same coordinates, rates and accelerations as the run tells there; and the turns are counted."""
+    run = json.loads(heun("run", pendulum, "--format", "json").stdout)
+    found = json.loads(heun("lagrange", pendulum, "--format", "json", "--at", "0.7").stdout)
+    assert run["time"][7] == pytest.approx(0.7, rel=1e-15)
+    for i, joint in enumerate("AB"):
+        own = run["coordinates"][joint]
+        told = (found["values"][i], found["rates"][i], found["accelerations"][i])
+        for name, value in zip(("angle", "rate", "acceleration"), told, strict=True):
+            assert own[name][7] == pytest.approx(value, abs=1e-6)
+    late = heun("lagrange", pendulum, "--at", "0.7").stdout
+    assert "at t = 0.7 s" in late
+
+
+def test_tables(heun: Heun, pendulum: str) -> None:
+    text = heun("lagrange", pendulum, "--christoffel", "--seen", "A.angle", "--seen", "b.e:1,0,0").stdout
+    for words in ("LAGRANGE", "MASS", "RECIPROCAL", "FORCES", "CHRISTOFFEL", "SECTIONS", "push", "b.e:1,0,0"):
+        assert words in text
+
+
+def test_a_script_for_matlab(heun: Heun, pendulum: str, folder: Path) -> None:
+    done = heun("lagrange", pendulum, "--state-space", "--at", "0", "-o", "double.m")
+    assert done.returncode == 0
+    text = (folder / "double.m").read_text()
+    assert "A = [" in text and "inputs = {'push'};" in text
+    linear = json.loads(heun("lagrange", pendulum, "--state-space", "--format", "json").stdout)["state_space"]
+    rows = text.split("A = [")[1].split("]")[0].split(";")
+    assert [[float(x) for x in row.split()] for row in rows] == linear["A"]
+
+
+def test_over_in_all_forms(heun: Heun) -> None:
+    spec, words = str(ROOT / "specs" / "slider_crank.yaml"), "main.angle=0:90deg/4"
+    found = json.loads(heun("lagrange", spec, "--over", words, "--format", "json").stdout)
+    assert found["over"]["coordinate"] == "main.angle" and len(found["over"]["values"]) == 4
+    assert np.shape(found["epsilon"]) == (4, 1, 1)
+    rows = list(csv.DictReader(io.StringIO(heun("lagrange", spec, "--over", words, "--format", "csv").stdout)))
+    told = [float(row["value"]) for row in rows if row["quantity"] == "epsilon"]
+    assert told == np.ravel(found["epsilon"]).tolist()
+    assert "1.0472" in heun("lagrange", spec, "--over", words).stdout
+
+
+@pytest.mark.parametrize(
+    ("words", "code", "says"),
+    [
+        (["--coordinates", "A.angel,B.angle"], 3, "A.angel"),
+        (["--coordinates", "A.angle"], 3, "2 motions are free"),
+        (["--seen", "b.f:1,0,0"], 3, "b.f"),
+        (["--seen", "b.e:1,0"], 2, "three numbers"),
+        (["--over", "A.angle=0:1"], 3, "something is free"),
+        (["--over", "A.angle=0"], 2, "FROM:TO"),
+        (["--over", "A.angle=0:1 kg"], 2, "kg"),
+        (["--over", "A.angle=0:1", "--christoffel"], 2, "--over and --christoffel"),
+        (["--inputs", "push"], 2, "without --state-space"),
+        (["--state-space", "--inputs", "pull"], 3, "pull"),
+        (["--state-space", "--outputs", "b.e.q"], 3, "b.e.q"),
+        (["--at", "-1"], 2, "--at"),
+    ],
+)
+def test_what_is_refused(heun: Heun, pendulum: str, words: list[str], code: int, says: str) -> None:
+    done = heun("lagrange", pendulum, *words)
+    assert done.returncode == code and done.stdout == ""
+    assert says in done.stderr and "hint:" in done.stderr
+
+
+@pytest.mark.heavy
+@pytest.mark.parametrize("path", SPECS, ids=lambda path: path.stem)
+def test_every_spec_has_its_equations(path: Path) -> None:
+    try:
+        found = lagrange(load(str(path), checking=False), LagrangeQuestion())
+    except HeunError as error:
+        assert path.stem in NOTHING_FREE, error
+        return
+    assert path.stem not in NOTHING_FREE
+    assert found.residual < 1e-12
+    assert np.linalg.eigvalsh(found.epsilon).min() > 0.0
