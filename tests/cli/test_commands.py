@@ -177,7 +177,7 @@ def test_what_is_expected_at_an_instant_that_was_set_away_stops_no_run(heun: Heu
         (["model", "hanging.yaml", "--format", "csv"], "known: text, json"),
         (["check", "nosuch.yaml"], "nosuch.yaml"),
         (["check", "hanging.yaml", "--junit", "x"], "not in this version yet"),
-        (["balance", "hanging.yaml"], "not in this version yet"),
+        (["schema", "hanging.yaml"], "not in this version yet"),
     ],
 )
 def test_bad_usage_and_bad_specs_leave_with_2(heun: Heun, words: list[str], told: str) -> None:

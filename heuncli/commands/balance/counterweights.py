@@ -1,10 +1,7 @@
 """Counterweights that leave the least force and moment over a cycle: of each body mass times radius, and its angle.
 
-A point mass m at place + ρ û of a body adds what is linear in its moments (m, m p, m p p^T), p from the body's origin:
-    m p = m place + U,   m p p^T = m place place^T + place U^T + U place^T + ρ U U^T/|U|,   U = m ρ û,  m = |U|/ρ
-Of a body that turns evenly about an axis fixed in the ground the terms in m and ρ do nothing (they turn with it and
-make nothing), so F and M are linear in U: one system of linear least squares over the angles, of least |U| where
-several U serve as well. Else Gauss and Newton's iteration begins there. U stands across the axis of the body.
+What a weight does is linear in its moments (candidates.py), of the angles of the cycle alone; the least squares of it
+stand in least_squares.py. U stands across the axis that the body turns about.
 """
 
 from __future__ import annotations
@@ -15,31 +12,17 @@ from collections.abc import Sequence
 import numpy as np
 
 from heuncli import tolerances
+from heuncli.commands.balance.candidates import Candidate, WeightPlace
 from heuncli.commands.balance.cycle import Cycle
 from heuncli.commands.balance.effects import mass_effects
 from heuncli.commands.balance.harmonics import plane_across
+from heuncli.commands.balance.least_squares import solved
 from heuncli.errors import Problem, SolveError
 from heuncli.mechanism.model import Body, Mechanism
 from heuncli.records import record, replace
 from heuncli.results import Array
 from heuncli.shapes.inertia import assembled, properties, pseudo_inertia
 from heuncli.shapes.rotations import cross_rows
-
-MOST_ITERATIONS = 100
-CONVERGED = 1e-13  # of |U|: a step that rounding makes
-DEPENDENT = 1e-10  # of the largest singular value: places that serve as well as each other
-NO_EFFECT = 1e-10  # of what the moments of first order make: rounding of a cycle's accelerations
-HALVINGS = 40
-
-
-@record
-class WeightPlace:
-    """Where a counterweight may stand: a body's point, and how far from it (None: the body's farthest joint)."""
-
-    body: int
-    name: str
-    place: Array
-    radius: float | None
 
 
 @record
@@ -69,105 +52,23 @@ class Balanced:
     linear: bool
 
 
-@record
-class Candidate:
-    """A place with the two directions across its body's axis, and the answers to the moments of a weight there.
-
-    by_mass (n, 6), by_product (n, 6, 2), by_square (n, 6, 2, 2): force and moment (times what they are weighed by) that
-    a mass at the place, a product along each direction, and moments of second order make ON the foundation at unit
-    rate.
-    """
-
-    at: WeightPlace
-    radius: float
-    across: Array
-    by_mass: Array
-    by_product: Array
-    by_square: Array
-
-    def effect(self, U: Array) -> Array:
-        """What a weight of product U (2,) adds, (n, 6)."""
-        size = math.sqrt(float(U @ U))
-        if size == 0.0:
-            return np.zeros_like(self.by_mass)
-        square = self.radius / size * np.einsum("tkij,i,j->tk", self.by_square, U, U)
-        return np.asarray(size / self.radius * self.by_mass + self.by_product @ U + square)
-
-    def slope(self, U: Array) -> Array:
-        """Its derivative by U, (n, 6, 2)."""
-        size = math.sqrt(float(U @ U))
-        if size == 0.0:
-            return self.by_product
-        u = U / size
-        square = np.einsum("tkij,j->tki", self.by_square, u) + np.einsum("tkij,i->tkj", self.by_square, u)
-        whole = np.einsum("tkij,i,j->tk", self.by_square, u, u)
-        own = self.by_mass[..., None] * u / self.radius + self.by_product
-        return np.asarray(own + self.radius * (square - whole[..., None] * u))
-
-    @property
-    def is_linear(self) -> bool:
-        """Whether mass and second moments do nothing that counts beside the product."""
-        size = float(np.abs(self.by_product).max(initial=0.0))
-        other = (
-            np.abs(self.by_mass).max(initial=0.0) / self.radius,
-            self.radius * np.abs(self.by_square).max(initial=0.0),
-        )
-        return bool(max(other) <= NO_EFFECT * size)
-
-
 def least(cycle: Cycle, places: Sequence[WeightPlace], about: Array, force: float, moment: float) -> Balanced:
     """The weights with the least mean of |force F|² + |moment M|² over the cycle; moment [1/m] counts against force."""
     found = mass_effects(cycle, about)
     weigh = np.repeat([force, moment], 3)
     left = -np.concatenate([found.force.sum(axis=1), found.moment.sum(axis=1)], axis=1) * weigh
+    unit = max(force, moment * (cycle.size + float(np.abs(about - cycle.states.centre).max())))
     candidates = [candidate(cycle, place, about, weigh) for place in places]
-    A = np.concatenate([one.by_product for one in candidates], axis=2).reshape(left.size, -1)
-    U, several = solved_least(A, left.ravel())
-    linear = all(one.is_linear for one in candidates)
-    if not linear:
-        require_radii(candidates)
-        U = iterated(candidates, left, U)
-    weights = tuple(weight(one, U[2 * k : 2 * k + 2]) for k, one in enumerate(candidates))
-    return Balanced(weights, several, linear)
-
-
-def solved_least(A: Array, left: Array) -> tuple[Array, bool]:
-    """The U of least |A U + left|, of these the least; whether there are several."""
-    size = float(np.abs(A).max(initial=0.0))
-    if size == 0.0:
-        return np.zeros(A.shape[1]), True
-    U, _, rank, _ = np.linalg.lstsq(A / size, -left / size, rcond=DEPENDENT)
-    return np.asarray(U), int(rank) < A.shape[1]
-
-
-def iterated(candidates: Sequence[Candidate], left: Array, start: Array) -> Array:
-    """Gauss and Newton's iteration from a start, each step halved until it leads down."""
-
-    def rest(U: Array) -> Array:
-        effects = (one.effect(U[2 * k : 2 * k + 2]) for k, one in enumerate(candidates))
-        return np.asarray(left + sum(effects, np.zeros_like(left))).ravel()
-
-    U, r = start, rest(start)
-    for _ in range(MOST_ITERATIONS):
-        slopes = [one.slope(U[2 * k : 2 * k + 2]) for k, one in enumerate(candidates)]
-        step, _ = solved_least(np.concatenate(slopes, axis=2).reshape(left.size, -1), r)
-        for _ in range(HALVINGS):
-            tried = rest(U + step)
-            if tried @ tried <= r @ r:
-                break
-            step = 0.5 * step
-        else:
-            return U
-        U, r = U + step, tried
-        if np.abs(step).max() <= CONVERGED * np.abs(U).max():
-            return U
-    message = "the counterweights are not found: their least squares do not settle"
-    raise SolveError(Problem("counterweights-unsettled", message, hint="another radius, or fewer places"))
+    linear = [one.is_linear(unit) for one in candidates]
+    require_radii([one for one, easy in zip(candidates, linear, strict=True) if not easy])
+    U, several = solved(left, candidates, linear, unit)
+    weights = tuple(weight(one, own) for one, own in zip(candidates, U, strict=True))
+    return Balanced(weights, several, all(linear))
 
 
 def require_radii(candidates: Sequence[Candidate]) -> None:
     """Raise SolveError where a weight's own mass counts and nobody said how far out it stands."""
-    wanting = [one.at.name for one in candidates if not one.is_linear and one.at.radius is None]
+    wanting = [one.at.name for one in candidates if one.at.radius is None]
     if wanting:
         raise SolveError(*(
             Problem("radius-needed", f"{name}: what a weight does there hangs on its radius, too",
@@ -202,7 +103,8 @@ def candidate(cycle: Cycle, at: WeightPlace, about: Array, weigh: Array) -> Cand
             square[:, 3:, i, j] = -0.5 * both
     return Candidate(
         replace(at, place=place), radius, across,
-        by_mass * weigh, by_product * weigh[:, None], square * weigh[:, None, None],
+        (by_mass * weigh).ravel(), (by_product * weigh[:, None]).reshape(-1, 2),
+        (square * weigh[:, None, None]).reshape(-1, 2, 2),
     )  # fmt: skip
 
 

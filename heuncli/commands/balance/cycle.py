@@ -56,23 +56,33 @@ class FollowedScene:
         except (SolveError, LimitError) as error:
             if isinstance(error, LimitError) and error.problems[0].code != "step-limit":
                 raise
-            raise SolveError(not_round(error)) from None
+            raise SolveError(self.not_round(error)) from None
         found = self.runner.recovered(times, run.states)
         states = at_unit_rate(body_states(self.scene.layout, found), self.rate)
         require_closed(self.scene, states, self.turns)
         order = np.arange(count) if self.rate > 0.0 else (-np.arange(count)) % count
         own = BodyStates(**{name: values[order] for name, values in fields(states).items()})
-        return Cycle(self.scene.mechanism, self.turns, self.begin + length * shares[:-1], own)
+        angles = self.begin + length * shares[:-1]
+        return Cycle(self.scene.mechanism, self.turns, angles, own, self.scene.layout.size)
+
+    def not_round(self, error: SolveError | LimitError) -> Problem:
+        """What is told of a scene that cannot be followed over its cycle."""
+        reached = error.reached if isinstance(error, SolveError) else None
+        where = "" if reached is None else f", it ends at {math.degrees(self.begin + self.rate * reached):.6g}°"
+        message = f"the scene does not go round its cycle{where}: it locks there, or passes a dead centre"
+        hint = "--cycle names an angle that turns all the way; heun probe tells what a motion of it comes near to"
+        return Problem("no-cycle", message, hint=hint, about=error.problems[0].about)
 
 
 @record
 class Cycle:
-    """A scene at equal angles (n,) over a cycle, moved at unit rate; behind the last it is as at the first."""
+    """A scene of a size [m] at equal angles (n,) over a cycle, moved at unit rate; behind them as at first."""
 
     mechanism: Mechanism
     turns: int
     angles: Array
     states: BodyStates
+    size: float
 
 
 def turning(scene: PreparedScene, plan: CyclePlan) -> FollowedScene:
@@ -120,13 +130,6 @@ def require_determined(runner: Runner, plan: CyclePlan) -> None:
         raise SolveError(Problem("several-freedoms", message, hint=hint, about=f"joints.{plan.joint}"))
     message = f"joints.{plan.joint}: its angle does not determine the motion"
     raise SolveError(Problem("no-cycle", message, hint="--cycle names another angle", about=f"joints.{plan.joint}"))
-
-
-def not_round(error: SolveError | LimitError) -> Problem:
-    """What is told of a scene that cannot be followed over its cycle."""
-    message = f"the scene does not go round its cycle: {error.problems[0].message}"
-    hint = "--cycle names an angle that turns all the way; a dead centre on the way needs another one, too"
-    return Problem("no-cycle", message, hint=hint, about=error.problems[0].about)
 
 
 def at_unit_rate(states: BodyStates, rate: float) -> BodyStates:

@@ -9,6 +9,8 @@ x from where moments are taken; σ' and σ'' are angular velocity and accelerati
 
 from __future__ import annotations
 
+from collections.abc import Mapping
+
 import numpy as np
 
 from heuncli.commands.balance.cycle import Cycle
@@ -23,8 +25,8 @@ from heuncli.shapes.rotations import cross_rows
 class MassEffects:
     """What the masses of a cycle do at unit rate, of every body: (n, bodies, 3), world axes.
 
-    second: what ω² multiplies; first: what ω̇ does. eps, half_slope (n, bodies): of every
-    body its part of the reduced inertia [kg m2], and of ½ dε/dφ.
+    first_...: what ω̇ multiplies, the others what ω² does. eps, half_slope (n, bodies): the bodies' parts of the reduced
+    inertia [kg m2] and of ½ dε/dφ. terms: what force, moment and torque are sums of, whose rounding is none of theirs.
     """
 
     angles: Array
@@ -36,6 +38,7 @@ class MassEffects:
     first_spin: Array
     eps: Array
     half_slope: Array
+    terms: Mapping[str, float]
 
     @property
     def moment(self) -> Array:
@@ -59,4 +62,12 @@ def mass_effects(cycle: Cycle, about: Array) -> MassEffects:
         _, first_orbital = in_plane(momentum, first_orbital)
     eps = np.einsum("tni,tni->tn", momentum, states.v_centre) + np.einsum("tni,tni->tn", turning, states.omega)
     slope = np.einsum("tni,tni->tn", ma, states.v_centre) + np.einsum("tni,tni->tn", spin, states.omega)
-    return MassEffects(cycle.angles, ma, orbital, spin, momentum, first_orbital, turning, eps, slope)
+    return MassEffects(
+        cycle.angles, ma, orbital, spin, momentum, first_orbital, turning, eps, slope, terms_of(cycle, masses, arms)
+    )
+
+
+def terms_of(cycle: Cycle, masses: Array, arms: Array) -> dict[str, float]:
+    """How large terms of force, moment and torque are at unit rate: all masses, moved by the scene's size."""
+    force = float(masses.sum()) * cycle.size
+    return {"force": force, "moment": force * (cycle.size + float(np.abs(arms).max())), "torque": force * cycle.size}

@@ -134,7 +134,7 @@ def course_of(cycle: LoadedCycle) -> tuple[WorkCourse, float]:
     Simpson's rule over each interval, whose ends are every other instant.
     """
     mechanism, states, begin = cycle.setup.scene.mechanism, cycle.states, cycle.angles
-    effects = mass_effects(Cycle(mechanism, 1, begin, states), np.zeros(3))
+    effects = mass_effects(Cycle(mechanism, 1, begin, states, cycle.setup.scene.layout.size), np.zeros(3))
     weight = np.array([body.mass for body in mechanism.bodies])
     k = np.einsum("n,tni,i->t", weight, states.v_centre, mechanism.gravity)
     for load in cycle.recovery.loads:

@@ -9,6 +9,7 @@ from __future__ import annotations
 
 import numpy as np
 
+from heuncli import tolerances
 from heuncli.records import record
 from heuncli.results import Array
 
@@ -41,13 +42,15 @@ def orders_of(values: Array, angles: Array, turns: int) -> Orders:
     return Orders(turns, found * back.reshape(-1, *[1] * (values.ndim - 1)))
 
 
-def tail(values: Array, quarter: int) -> float:
-    """How large the highest orders of values (n, ...) are against the largest but the mean; 0 of what is none."""
+def tail(values: Array, quarter: int, terms: float) -> float:
+    """How large the highest orders of values (n, ...) are against the largest but the mean; 0 of what is rounding.
+
+    terms: what the values are sums of.
+    """
     n = len(values)
-    sizes = np.abs(np.fft.rfft(values, axis=0)).reshape(n // 2 + 1, -1)[1:].max(axis=1)
-    top = len(sizes) - len(sizes) // quarter
-    largest = float(sizes.max(initial=0.0))
-    return float(sizes[top:].max()) / largest if largest > 0.0 else 0.0
+    sizes = np.abs(np.fft.rfft(values, axis=0)).reshape(n // 2 + 1, -1)[1:].max(axis=1) * 2.0 / n
+    highest = float(sizes[len(sizes) - len(sizes) // quarter :].max())
+    return highest / float(sizes.max()) if highest > tolerances.SUM_ROUNDING * terms else 0.0
 
 
 def plane_across(axis: Array) -> tuple[Array, Array]:

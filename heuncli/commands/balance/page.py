@@ -78,9 +78,12 @@ def order_table(found: BalanceResults, quantity: str, heading: str) -> TextTable
     rows = [row for row in found.orders[quantity] if row.order in found.shown]
     unit = unit_of(found, quantity)
     columns, cells = [TextColumn("order")], [[f"{row.order:g}" for row in rows]]
-    scale = max((row.size for row in rows), default=0.0)
+    scale = max(
+        (max(row.size, *(float(part.max()) for part, _ in (row.parts or {}).values()), 0.0) for row in rows),
+        default=0.0,
+    )
     for k in range(len(rows[0].amplitude) if rows else 0):
-        if not any(row.amplitude[k] for row in rows):
+        if not any(row.amplitude[k] or any(part[k] for part, _ in (row.parts or {}).values()) for row in rows):
             continue
         letter = "" if quantity == "torque" else f"{quantity[0].upper()}{LETTERS[k]}"
         columns += [TextColumn(head(letter or quantity, unit), vector=letter), TextColumn("phase°", vector=letter)]

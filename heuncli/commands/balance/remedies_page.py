@@ -50,6 +50,8 @@ def weights_table(found: Counterbalance) -> TextTable:
     )  # fmt: skip
     notes = [f"left of force: {found.words['force']}", f"left of moment: {found.words['moment']}"]
     notes += [SEVERAL] if found.several else []
+    idle = [f"{weight.body}.{weight.place}" for weight in found.weights if weight.product == 0.0]
+    notes += [f"no weight at {' or '.join(idle)} leaves less"] if idle else []
     return TextTable(WEIGHTS.format(OF[found.minimised].format(found.lever or 0.0)), columns, rows, tuple(notes))
 
 

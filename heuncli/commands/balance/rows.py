@@ -3,6 +3,8 @@
 from __future__ import annotations
 
 import math
+from collections.abc import Mapping
+from types import MappingProxyType
 
 import numpy as np
 
@@ -13,6 +15,8 @@ from heuncli.commands.balance.results import OrderRow, Residual
 from heuncli.commands.balance.verdicts import verdict_of
 from heuncli.records import record, replace
 from heuncli.results import Array
+
+NO_PARTS: Mapping[str, Array] = MappingProxyType({})
 
 
 @record
@@ -37,57 +41,58 @@ class CycleTurning:
 def all_rows(effects: MassEffects, turning: CycleTurning) -> dict[str, tuple[OrderRow, ...]]:
     """The orders of force, moment and torque at the rate, ON the foundation, and of the drive."""
     scale = turning.scale
+    least = {name: tolerances.ORDERS_SETTLED * scale * value for name, value in effects.terms.items()}
+    angles, torque = effects.angles, scale * effects.half_slope[:, :, None]
+    parts = {"orbital": -scale * effects.orbital, "spin": -scale * effects.spin}
     return {
-        "force": order_rows(-scale * effects.force, effects.angles, turning),
-        "moment": moment_rows(-scale * effects.orbital, -scale * effects.spin, effects.angles, turning),
-        "torque": order_rows(scale * effects.half_slope[:, :, None], effects.angles, replace(turning, axis=None)),
+        "force": order_rows(-scale * effects.force, angles, turning, least["force"]),
+        "moment": order_rows(-scale * effects.moment, angles, turning, least["moment"], parts),
+        "torque": order_rows(torque, angles, replace(turning, axis=None), least["torque"]),
     }
 
 
-def order_rows(values: Array, angles: Array, turning: CycleTurning) -> tuple[OrderRow, ...]:
-    """The orders of the sum over the bodies of values (n, bodies, c), up to the last that is no rounding."""
-    turns, axis = turning.turns, turning.axis
+def order_rows(
+    values: Array, angles: Array, turning: CycleTurning, least: float, parts: Mapping[str, Array] = NO_PARTS
+) -> tuple[OrderRow, ...]:
+    """The orders of the sum over the bodies of values (n, bodies, c), up to the last that is no rounding.
+
+    least: what is below is rounding of what moves; parts: of which the values are sums, told beside them.
+    """
+    turns = turning.turns
     amplitudes = orders_of(values, angles, turns).values
-    whole = amplitudes.sum(axis=1)
-    sizes = lengths(whole)
-    own = lengths(amplitudes).sum(axis=1)
+    apart = {name: orders_of(part, angles, turns).values for name, part in parts.items()}
+    whole, own = amplitudes.sum(axis=1), lengths(amplitudes).sum(axis=1)
     largest = float(own[1:].max(initial=0.0))
-    told = np.flatnonzero(own > tolerances.ORDERS_SETTLED * largest)
-    last = int(told.max(initial=0)) if largest > 0.0 else 0
-    P, N = turning_vectors(whole, axis) if axis is not None else (None, None)
-    if turning.backwards:
-        P, N = N, P
+    rounding = max(tolerances.ORDERS_SETTLED * largest, least)
+    terms = own + sum((lengths(part).sum(axis=1) for part in apart.values()), np.zeros_like(own))
+    last = int(np.flatnonzero(terms > rounding).max(initial=turns))
     rows = []
-    for k in range(1, max(last, turns) + 1):
-        verdict = verdict_of(float(sizes[k]), float(own[k]), largest)
-        least = tolerances.CANCELS * own[k] if verdict == "remains" else math.inf  # below it stands rounding
-        a = np.where(np.abs(whole[k]) > least, whole[k], 0.0)
-        rows.append(OrderRow(
-            order=k / turns, amplitude=np.abs(a), phase=phases(a), size=float(lengths(a)), own=float(own[k]),
-            verdict=verdict,
-            with_turn=None if P is None else clean(P[k], least), against=None if N is None else clean(N[k], least),
-            across=axis is not None and bool(abs(a @ axis) <= least),
-        ))  # fmt: skip
+    for k in range(1, last + 1):
+        verdict = verdict_of(float(lengths(whole[k])), float(own[k]), largest, least)
+        none = max(tolerances.CANCELS * float(own[k]), rounding) if verdict == "remains" else math.inf
+        a = above(whole[k], none)
+        row = OrderRow(k / turns, np.abs(a), phases(a), float(lengths(a)), float(own[k]), verdict)
+        row = in_the_plane(row, whole[k], turning, none)
+        none = max(tolerances.CANCELS * float(terms[k]), rounding)
+        split = {name: above(part[k].sum(axis=0), none) for name, part in apart.items()}
+        told = {name: (np.abs(part), phases(part)) for name, part in split.items()}
+        rows.append(replace(row, parts=told) if told else row)
     return tuple(rows)
 
 
-def moment_rows(orbital: Array, spin: Array, angles: Array, turning: CycleTurning) -> tuple[OrderRow, ...]:
-    """The orders of the moment, with those of its two parts beside them."""
-    rows = order_rows(orbital + spin, angles, turning)
-    both = {"orbital": orbital, "spin": spin}
-    parts = {name: orders_of(own, angles, turning.turns).values for name, own in both.items()}
-    found = []
-    for row in rows:
-        k = round(row.order * turning.turns)
-        own = float(sum(lengths(part[k]).sum() for part in parts.values()))
-        least = tolerances.CANCELS * own if row.verdict != "does not arise" else math.inf
-        split = {}
-        for name, part in parts.items():
-            a = part[k].sum(axis=0)
-            a = np.where(np.abs(a) > least, a, 0.0)
-            split[name] = (np.abs(a), phases(a))
-        found.append(replace(row, parts=split))
-    return tuple(found)
+def in_the_plane(row: OrderRow, a: Array, turning: CycleTurning, none: float) -> OrderRow:
+    """The row with the vectors that turn across the cycle's axis; none: what is no more is rounding."""
+    if turning.axis is None:
+        return row
+    P, N = (abs(one[0]) if abs(one[0]) > none else 0.0 for one in turning_vectors(a[None, :], turning.axis))
+    with_turn, against = (N, P) if turning.backwards else (P, N)
+    across = bool(abs(a @ turning.axis) <= none)
+    return replace(row, with_turn=float(with_turn), against=float(against), across=across)
+
+
+def above(a: Array, none: float) -> Array:
+    """Complex numbers, 0 where they are no larger than rounding."""
+    return np.asarray(np.where(np.abs(a) > none, a, 0.0))
 
 
 def phases(a: Array) -> Array:
@@ -96,20 +101,15 @@ def phases(a: Array) -> Array:
     return np.asarray(np.where(found <= -math.pi, math.pi, found) + 0.0)
 
 
-def clean(value: complex, least: float) -> float:
-    """A magnitude, 0 where it is no larger than rounding."""
-    return float(abs(value)) if abs(value) > least else 0.0
-
-
 def lengths(vectors: Array) -> Array:
     """The magnitudes of complex vectors (..., c)."""
     return np.asarray(np.sqrt(np.sum(np.abs(vectors) ** 2, axis=-1)))
 
 
-def residual(values: Array, angles: Array) -> Residual:
+def residual(values: Array, angles: Array, least: float) -> Residual:
     """Root of the mean square of the sum over the bodies of values (n, bodies, c), the largest and where."""
     sizes = lengths(values.sum(axis=1))
     k = int(np.argmax(sizes))
-    if sizes[k] <= tolerances.CANCELS * float(lengths(values).sum(axis=1).max()):
+    if sizes[k] <= max(tolerances.CANCELS * float(lengths(values).sum(axis=1).max()), least):
         return Residual(0.0, 0.0, float(angles[0]))
     return Residual(float(np.sqrt(np.mean(sizes**2))), float(sizes[k]), float(angles[k]))

@@ -67,7 +67,8 @@ def sampled(followed: FollowedScene, about: Array) -> tuple[Cycle, bool]:
     while True:
         cycle = followed.at(count)
         found = mass_effects(cycle, about)
-        highest = max(tail(own, QUARTER) for own in (found.force, found.moment, found.half_slope))
+        kinds = {"force": found.force, "moment": found.moment, "torque": found.half_slope}
+        highest = max(tail(own, QUARTER, found.terms[name]) for name, own in kinds.items())
         rounding = highest < tolerances.CANCELS and highest * GOING_DOWN > before
         if highest <= tolerances.ORDERS_SETTLED or rounding or count >= MOST_SAMPLES:
             return cycle, count < MOST_SAMPLES
@@ -88,13 +89,14 @@ def told(
         "moment_orbital": -scale * effects.orbital, "moment_spin": -scale * effects.spin,
         "torque": scale * effects.half_slope[:, :, None],
     }  # fmt: skip
+    least = {name: tolerances.ORDERS_SETTLED * scale * terms for name, terms in effects.terms.items()}
     return BalanceResults(
         title=spec.title, spec={"path": spec.path, "sha256": spec.sha256},
         coordinate=plan.coordinate, turns=plan.turns, rate=plan.rate, samples=len(cycle.angles), settled=settled,
         about=about, place=asked.place, axis=turning_so.axis, effects=effects, orders=found,
         words={name: in_words(rows) for name, rows in found.items()},
         mean={name: own.sum(axis=1).mean(axis=0) for name, own in values.items()},
-        residual={name: residual(own, effects.angles) for name, own in values.items()},
+        residual={name: residual(own, effects.angles, least[name.partition("_")[0]]) for name, own in values.items()},
         shown=shown(found) if asked.orders is None else asked.orders,
     )  # fmt: skip
 

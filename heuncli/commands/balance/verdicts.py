@@ -17,11 +17,14 @@ SMALLER = "smaller ones"
 LETTERS = ("x", "y", "z")
 
 
-def verdict_of(left: float, own: float, largest: float) -> Verdict:
-    """What is left of an order whose bodies make `own` between them; largest: that any order's bodies make."""
-    if own <= tolerances.CANCELS * largest:
+def verdict_of(left: float, own: float, largest: float, least: float = 0.0) -> Verdict:
+    """What is left of an order whose bodies make `own` between them; largest: that any order's bodies make.
+
+    least: what is below is rounding of what moves.
+    """
+    if own <= max(tolerances.CANCELS * largest, least):
         return "does not arise"
-    rounding = tolerances.ORDERS_SETTLED * largest
+    rounding = max(tolerances.ORDERS_SETTLED * largest, least)
     return "cancels" if left <= max(tolerances.CANCELS * own, rounding) else "remains"
 
 

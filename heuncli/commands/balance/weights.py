@@ -7,9 +7,10 @@ import math
 import numpy as np
 
 from heuncli.commands.balance.asked import AskedWeight, BalanceOptions
+from heuncli.commands.balance.candidates import WeightPlace
 from heuncli.commands.balance.choice import CyclePlan
 from heuncli.commands.balance.cost import cost
-from heuncli.commands.balance.counterweights import Weight, WeightPlace, applied, least
+from heuncli.commands.balance.counterweights import Weight, applied, least
 from heuncli.commands.balance.cycle import Cycle, axis_of, turning
 from heuncli.commands.balance.effects import mass_effects
 from heuncli.commands.balance.results import Counterbalance, PlacedWeight

@@ -1,0 +1,92 @@
+"""The flywheel of `heun balance` against closed forms, and against a run with that wheel."""
+
+from __future__ import annotations
+
+import math
+from pathlib import Path
+from typing import Any
+
+import pytest
+
+from heuncli.commands.balance.asked import AskedWheel, BalanceOptions
+from heuncli.commands.balance.results import Flywheel
+from heuncli.commands.balance.study import balance
+from heuncli.errors import SolveError
+from heuncli.spec.load import load
+from heuncli.study.workflow import solve
+from tests.shared.cycling import RPM, balance_of
+
+SPECS = Path(__file__).parents[2] / "specs"
+SHAFT = """\
+heun: 1
+ground: {points: {O: [0, 0, 0]}}
+bodies:
+  shaft: {mass: 100, center: [0, 0, 0], inertia: [50, 50, 50], points: {main: [0, 0, 0]}}
+joints:
+  shaft: {type: pin, from: ground.O, to: shaft.main, axis: [0, 0, 1]}
+forces:
+  tool: {type: torque, joint: shaft, value: "LAW"}
+"""
+TORQUE = "2200*sin(2*shaft.angle) - 1800*cos(2*shaft.angle)"
+SWING = math.hypot(2200.0, 1800.0)  # J: of a wave of that amplitude, twice a turn
+
+
+def wheel(scene: str, **asked: Any) -> Flywheel:
+    found = balance_of(scene, **asked).flywheel
+    assert found is not None
+    return found
+
+
+def test_a_shaft_of_constant_inertia() -> None:
+    """J (ω_max² - ω_min²)/2 is the work of a half wave; at 1 % the mean in time is that of both extremes to 5e-5/8."""
+    found = wheel(SHAFT.replace("LAW", TORQUE), rate=200.0 * RPM, flywheel=AskedWheel("shaft", 0.01))
+    assert found.energy == pytest.approx(SWING, rel=1e-9)
+    assert found.textbook + 50.0 == pytest.approx(648.0200646028352, rel=1e-9)
+    assert found.fastest - found.slowest == pytest.approx(0.01 * 200.0 * RPM, rel=1e-9)
+    both = 0.5 * (found.fastest + found.slowest)
+    assert found.added + 50.0 == pytest.approx(SWING / (0.01 * 200.0 * RPM * both), rel=1e-9)  # exact for constant J
+    assert found.own == pytest.approx(50.0, rel=1e-12) and found.even == 0.0
+
+
+def test_work_that_does_not_come_back_is_evened_out_and_told() -> None:
+    told = balance_of(SHAFT.replace("LAW", f"300 + {TORQUE}"), rate=20.0, flywheel=AskedWheel("", 0.01))
+    plain = wheel(SHAFT.replace("LAW", TORQUE), rate=20.0, flywheel=AskedWheel("", 0.01))
+    assert told.flywheel is not None and told.flywheel.even == pytest.approx(-300.0, rel=1e-9)
+    assert told.flywheel.added == pytest.approx(plain.added, rel=1e-9)
+    assert "an even torque of -300 N·m on shaft" in " ".join(told.notes)
+
+
+def test_what_runs_evenly_needs_no_wheel() -> None:
+    told = balance_of(SHAFT.replace("LAW", TORQUE), rate=2000.0, flywheel=AskedWheel("", 0.01))
+    assert told.flywheel is not None and told.flywheel.added == 0.0 and told.flywheel.present < 0.01
+    assert "no flywheel is needed" in " ".join(told.notes)
+
+
+def test_the_engine_runs_as_a_run_has_it() -> None:
+    """Two turns of a free run with the wheel, from the start told, between the extremes told."""
+    text = (SPECS / "engine.yaml").read_text()
+    engine = load(str(SPECS / "engine.yaml"), checking=False)
+    asked = BalanceOptions(rate=1500.0 * RPM, flywheel=AskedWheel("main", 0.01))
+    found = balance(engine, asked).flywheel
+    assert found is not None
+    assert found.present == pytest.approx(0.0332636676, rel=1e-6)
+    assert found.added == pytest.approx(1.20397003, rel=1e-6)
+    assert found.textbook == pytest.approx(1.2023025, rel=1e-5)
+    assert found.start / RPM == pytest.approx(1501.817352, rel=1e-8)
+    m = found.added / 0.09
+    points = "    points: {main: [0, 0, 0], pin: [0, 0, r]}\n"
+    shape = f"{{type: cylinder, from: [-0.001, 0, 0], to: [0, 0, 0], radius: {math.sqrt(0.18)!r}, mass: {m!r}}}"
+    text = text.replace(points, f"      - {shape}\n{points}", 1)
+    text = text.replace("rate: n}", f"rate: {found.start!r}}}").partition("expect:")[0]
+    rates = solve(load(str(SPECS / "engine.yaml"), text)).results.coordinates["main"]["rate"]
+    assert rates.max() == pytest.approx(found.fastest, rel=1e-5)  # between the samples it is a little more
+    assert rates.max() <= found.fastest * (1.0 + 1e-7) and rates.min() >= found.slowest * (1.0 - 1e-7)
+    assert rates.min() == pytest.approx(found.slowest, rel=1e-5)
+
+
+@pytest.mark.parametrize(
+    ("law", "why"), [(f"{TORQUE} - 2*shaft.rate", "depends on a rate"), (f"{TORQUE} + sin(t)", "depends on t")]
+)
+def test_loads_that_the_angle_does_not_tell_are_refused(law: str, why: str) -> None:
+    with pytest.raises(SolveError, match=why):
+        balance_of(SHAFT.replace("LAW", law), rate=20.0, flywheel=AskedWheel("shaft", 0.01))
