@@ -16,6 +16,7 @@ from heuncli.shapes.rotations import hat
 from heuncli.spec.load import load
 from tests.shared.folders import ROOT
 from tests.shared.lagrange import double, told
+from tests.shared.scenes import solved
 
 DIGITS = 2e-14  # of the largest: a dozen sums
 CRANK = ROOT / "specs" / "slider_crank.yaml"
@@ -219,3 +220,23 @@ def test_a_rod_across_a_shaft_that_is_driven() -> None:
     near(found.drives, [6.565385020081387, 0.0])
     free, mixed, driven = found.energies
     near([free, mixed, driven], [0.5 / 3 * 4, 0.0, 0.5 * found.epsilon[0, 0] * 100], 7.0)
+
+
+def test_friction_by_what_a_driven_joint_carries() -> None:
+    """k of it is that of the scene as it is driven: without its drive the joints would carry other loads."""
+    rubs = "forces: {rub: {type: friction, joint: guide, coefficient: 0.2, speed: 1e-3}}\n"
+    text = CRANK.read_text().split("expect:")[0] + rubs
+    found = told(text)
+    results = solved(text)
+    carried = np.abs(results.joints["guide"]["force"][0, 1])
+    speed = results.coordinates["guide"]["speed"][0]
+    assert found.forces["rub"][0] == pytest.approx(-0.2 * carried * abs(speed) / 100.0, rel=1e-12)
+    near(found.drives, [results.joints["main"]["drive"][0]])
+    assert found.residual <= DIGITS
+    for asked in ({"state_space": True}, {}):
+        with pytest.raises(SolveError, match=r"hangs on what its joint carries"):
+            if asked:
+                told(text, **asked)
+            else:
+                spec = load("scene.yaml", text)
+                over(spec, range_of("main.angle=0:1", spec))

@@ -92,13 +92,22 @@ def followed(spec: Spec, asked: Range, start: float, way: Array) -> tuple[FreedS
     analysis = Analysis("motion", tuple(times.tolist()), 1.0, spec.analysis.tolerance, "auto", None)
     setup = set_up(spec._replace(drives=drives, joints=joints, impulses={}, analysis=analysis), reduce=False)
     layout = setup.scene.layout
+    for load in layout.mechanism.rubbing:
+        message = f"forces.{load.name} hangs on what its joint carries: it is told of an instant, not over a range"
+        raise refused(asked, message, "leave it out; or take one instant")
     if layout.contacts:
         message = f"{layout.contacts[0].name} may open and close on the way"
         raise refused(asked, message, "leave stops and ropes out")
     if not determined(setup.runner.moving).is_so:
         message = f"with {asked.name} held something is free: the inertia of one motion is told over it"
         raise refused(asked, message, "heun lagrange SPEC tells all of one instant; --at T of a later one")
-    run = setup.runner.trajectory(MotionTask(times, spec.analysis.tolerance, FOLLOWED))
+    try:
+        run = setup.runner.trajectory(MotionTask(times, spec.analysis.tolerance, FOLLOWED))
+    except SolveError as error:
+        ends = "" if error.reached is None else f" beyond {start + span * error.reached:.6g}"
+        why = error.problems[0].message
+        message = f"it cannot be followed{ends}: {why.partition(' s: ')[2] or why}"
+        raise refused(asked, message, "a shorter range; or another coordinate, that turns all the way") from None
     return freed(setup.scene), setup.runner.answers_at(run, times), span
 
 

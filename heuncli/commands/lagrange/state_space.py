@@ -49,6 +49,7 @@ def state_space(at: Instant, by: Chosen, Q: Array, asked: Sequence[str], outputs
 
     Raises SolveError [no-state-space] where the equations are not those of coordinates.
     """
+    require_given_loads(at)
     inputs = inputs_of(at, by, asked)
     scene = freed(at.setup.scene, dict(zip(by.names, Q, strict=True)))
     found = linearised(scene.layout, at.t, at.state, at.holding)
@@ -95,6 +96,13 @@ def state_space(at: Instant, by: Chosen, Q: Array, asked: Sequence[str], outputs
         },
         offset=np.where(np.abs(offset) <= tolerances.NO_OFFSET * at.setup.scene.layout.size, 0.0, offset),
     )  # fmt: skip
+
+
+def require_given_loads(at: Instant) -> None:
+    """Raise SolveError for friction that hangs on what its joint carries: it would answer the inputs, too."""
+    for load in at.setup.scene.mechanism.rubbing:
+        message = f"forces.{load.name} hangs on what its joint carries, and so on the inputs: no state space has it yet"
+        raise SolveError(Problem(CODE, message, hint="give friction a size: friction: {type: friction, force: 20 N}"))
 
 
 def rate_name(name: str) -> str:

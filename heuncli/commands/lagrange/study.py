@@ -69,7 +69,8 @@ def told(spec: Spec, at: Instant, asked: LagrangeQuestion) -> LagrangeResults:
     terms = VelocityTerms(at.freed, by, partials, epsilon, at.t, at.state, at.holding)
     C = terms.at(q1[None, :])[0]
     here = body_states(layout, at.here)
-    applied = [load.action for load in applied_loads(layout.mechanism, here, at.here)]
+    # as they act with the drives: friction hangs on what the joint carries then
+    applied = [load.action for load in applied_loads(layout.mechanism, states, at.there)]
     k = forces_by_cause(layout, partials, applied)
     scale = size_of_terms(layout, partials, [*applied, *whole_joint_actions(at.recovery.unsplit)], states)
     scale = scale + np.abs(epsilon) @ np.abs(q2) + np.abs(C)
