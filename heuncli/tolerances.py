@@ -230,7 +230,8 @@ KERNEL: dict[str, float] = {
     # what it moves, and accelerations are known to rounding / s^2
     "own_share": 1e-12,
     "much_lent": 1e-3,  # three digits lost
-    # what presses is found as a sum over what is left of 1: eight digits of sixteen
+    # -- friction
+    # of 1, by what friction adds to what presses: the sum over what is left keeps eight digits of sixteen
     "friction_left": 1e-8,
     # -- rank
     "across": 0.01,  # a row's answer across its arms counts to a tenth of the arm, in any pose

@@ -178,7 +178,7 @@ def find_pressed(scene: cython.pointer[Scene]) -> cython.void:
     elif scene.bound[n * at_fault + at_fault] != scene.bound[n * at_fault + at_fault]:
         scene.trial[0] = NAN  # loads without a value: nothing is found, and friction is not why
     else:
-        found = alone(scene) if n == 1 else UNPROVED
+        found = UNPROVED if n > 1 or scene.bound[0] > 0.0 else alone(scene)
     if found != FOUND:
         scene.jammed = found
         scene.jammed_load = scene.rubs[at_fault]

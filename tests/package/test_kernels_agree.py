@@ -24,6 +24,7 @@ SCENES = {
     "cardan": ("analysis.duration=0.05", "analysis.samples=4"),
     "lift": ("analysis.duration=0.1", "analysis.samples=4"),
     "punch": ("analysis.duration=1", "analysis.samples=4"),
+    "drawer": ("analysis.duration=0.1", "analysis.samples=4"),
 }
 
 
@@ -136,7 +137,9 @@ def test_same_bits_between_the_samples(scene: str) -> None:
 
 
 @pytest.mark.skipif(KERNEL == "pure", reason="there is no compiled kernel to compare with")
-@pytest.mark.parametrize(("scene", "method"), [("double", "Radau9"), ("friction", "Radau5"), ("door_closer", "Radau5")])
+@pytest.mark.parametrize(
+    ("scene", "method"), [("double", "Radau9"), ("friction", "Radau5"), ("door_closer", "Radau5"), ("drawer", "Radau5")]
+)
 def test_same_bits_by_collocation(scene: str, method: str) -> None:
     """Dense equations, real and complex, Newton's iteration, and its steps done again."""
     assert within(scene, method, "compiled") == within(scene, method, "pure")

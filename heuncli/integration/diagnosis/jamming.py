@@ -21,7 +21,7 @@ SAID = {  # code, what was found, what to do next
     ),
     kernel.UNPROVED: (
         "friction-not-unique",
-        "with the other friction it presses joints by so much that one answer is not certain",
+        "what rubs presses joints by nearly as much as it is itself, or by more: one answer is not certain",
         "smaller coefficients or radii, longer guides, or friction of a given size in one of the joints",
     ),
 }
