@@ -1,6 +1,6 @@
 """Speed, printed: `python -m tests.bench [PART ...] [--against PATH]`. Nothing here asserts a time.
 
-Parts: motion, chart, chain, process, export, sections, causes, reduced; each line: what, how far from the truth, time.
+Parts: motion, chart, chain, process, export, sections, causes, reduced, balance; each line: what, error, time.
 figures: the few that matter in one table, with --against beside those of another checkout (tests/bench/figures.py).
 honesty: no times, but true error over estimate of each kind of number, over random scenes (tests/bench/honesty.py).
 """
@@ -34,6 +34,7 @@ from heuncli.study.model.setup import set_up
 from heuncli.study.workflow import solve
 from heuncli.tree.prepare import PreparedScene
 from tests.bench.auto import table
+from tests.bench.balance import balanced
 from tests.bench.causes import by_cause
 from tests.bench.chart import chart
 from tests.bench.figures import figures
@@ -190,7 +191,7 @@ def sections() -> None:
 
 PARTS = {
     "motion": motion, "chart": charted, "chain": chains, "process": process, "export": export, "sections": sections,
-    "causes": by_cause, "reduced": reduced,
+    "causes": by_cause, "reduced": reduced, "balance": lambda: balanced(median_ms),
 }  # fmt: skip
 
 if __name__ == "__main__":

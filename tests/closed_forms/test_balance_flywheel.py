@@ -56,6 +56,18 @@ def test_work_that_does_not_come_back_is_evened_out_and_told() -> None:
     assert "an even torque of -300 N·m on shaft" in " ".join(told.notes)
 
 
+def test_orders_of_the_loads() -> None:
+    """The law's own waves, of one turn; half orders where it takes two; friction of a rate at the cycle's."""
+    law = f"300 + {TORQUE} + 70*sin(shaft.angle/2) - 2*shaft.rate"
+    told = balance_of(SHAFT.replace("LAW", law), rate=20.0)
+    assert told.turns == 2 and told.mean["load"] == pytest.approx(300.0 - 2.0 * 20.0, rel=1e-12)
+    found = {row.order: row for row in told.orders["load"] if row.verdict == "remains"}
+    assert found.keys() == {0.5, 2.0}
+    assert found[0.5].amplitude == pytest.approx([70.0]) and found[0.5].phase == pytest.approx([math.pi / 2.0])
+    assert found[2.0].amplitude == pytest.approx([SWING], rel=1e-12)
+    assert found[2.0].phase == pytest.approx([math.atan2(2200.0, -1800.0)], rel=1e-12)
+
+
 def test_what_runs_evenly_needs_no_wheel() -> None:
     told = balance_of(SHAFT.replace("LAW", TORQUE), rate=2000.0, flywheel=AskedWheel("", 0.01))
     assert told.flywheel is not None and told.flywheel.added == 0.0 and told.flywheel.present < 0.01

@@ -125,17 +125,18 @@ def own_rate(mechanism: Mechanism, scene: PreparedScene, joint: Joint) -> float 
 
 def turns_of(mechanism: Mechanism, joint: Joint) -> int:
     """Two where a law in the cycle's angle comes back after two turns and not after one, else one."""
-    use = (joint.name, "angle")
-    values = [value for load in mechanism.loads for value in load.values]
-    own = [value for value in values if value.uses == (use,) and not value.time_dependent]
+    values = [value for load in mechanism.loads for value in load.values if not value.time_dependent]
+    own = [value for value in values if value.uses and all(name == joint.name for name, _ in value.uses)]
     return 2 if any(takes_two(value) for value in own) else 1
 
 
 def takes_two(value: Expression) -> bool:
-    """Whether an expression of one angle has the period of two turns."""
+    """Whether an expression of one joint's angle, and of its rate, which is held, has the period of two turns."""
     turn = 2.0 * math.pi
     angles: Sequence[float] = [x + turn * k for x in LOOKED_AT for k in range(3)]
-    found = np.array([value.value(0.0, (x,)) for x in angles]).reshape(-1, 3)
+    uses = [quantity for _, quantity in value.uses]
+    at = ([x if quantity == "angle" else 1.0 for quantity in uses] for x in angles)
+    found = np.array([value.value(0.0, each) for each in at]).reshape(-1, 3)
     size = float(np.abs(found).max())
     same = tolerances.SAME_VALUE * size
     return bool(np.abs(found[:, 2] - found[:, 0]).max() <= same < np.abs(found[:, 1] - found[:, 0]).max())

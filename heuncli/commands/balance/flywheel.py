@@ -18,6 +18,7 @@ from heuncli import tolerances
 from heuncli.commands.balance.cost import LoadedCycle
 from heuncli.commands.balance.cycle import Cycle
 from heuncli.commands.balance.effects import mass_effects
+from heuncli.commands.balance.load_torque import torques
 from heuncli.commands.balance.results import Flywheel
 from heuncli.errors import Problem, SolveError
 from heuncli.expressions.programs import Expression
@@ -135,10 +136,7 @@ def course_of(cycle: LoadedCycle) -> tuple[WorkCourse, float]:
     """
     mechanism, states, begin = cycle.setup.scene.mechanism, cycle.states, cycle.angles
     effects = mass_effects(Cycle(mechanism, 1, begin, states, cycle.setup.scene.layout.size), np.zeros(3))
-    weight = np.array([body.mass for body in mechanism.bodies])
-    k = np.einsum("n,tni,i->t", weight, states.v_centre, mechanism.gravity)
-    for load in cycle.recovery.loads:
-        k = k + load.power
+    k = torques(cycle, mechanism).sum(axis=1)
     ends, middles = np.append(k[0::2], k[0]), k[1::2]
     step = float(begin[2] - begin[0])
     parts = step / 6.0 * (ends[:-1] + 4.0 * middles + ends[1:])

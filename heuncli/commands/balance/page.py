@@ -11,6 +11,7 @@ import numpy as np
 from heuncli.commands.balance.letters import draw
 from heuncli.commands.balance.remedies_page import remedies
 from heuncli.commands.balance.results import BalanceResults, Counterbalance, OrderRow, OverCycle
+from heuncli.records import replace
 from heuncli.report.digits import style, trim
 from heuncli.report.export import FORMAT
 from heuncli.report.page_width import fit
@@ -19,12 +20,17 @@ from heuncli.results import Array, Block
 from heuncli.tolerances import WRITTEN
 from heuncli.version import VERSION
 
-UNITS = {"force": "N", "moment": "N·m", "torque": "N·m"}
-BY_RATE = {"force": "kg·m", "moment": "kg·m²", "torque": "kg·m²"}  # of 1 rad/s, where no rate is known
+UNITS = {"force": "N", "moment": "N·m", "torque": "N·m", "load": "N·m"}
+BY_RATE = {"force": "kg·m", "moment": "kg·m²", "torque": "kg·m²", "load": "N·m"}  # of 1 rad/s, where no rate is known
+RPM = 30.0 / math.pi
+AT_ONE = "at 1 rad/s: by the square of the rate, in kg·m"
 LETTERS = ("x", "y", "z")
 FORCE = "FORCE  ON the foundation, world axes; order k is amplitude · cos(kφ - phase)"
 MOMENT = "MOMENT  ON the foundation, about {}; orbital and spin: what the two make of it in its phase"
 TORQUE = "TORQUE  that inertia alone takes of the drive, ½ dε/dφ ω²"
+LOAD = "LOADS  the torque that loads and weight put on the shaft: their power by its rate"
+SURE_OF_LOADS = 1e-4  # of the largest order: laws with kinks and jumps are seen at samples
+LEAST_SHOWN, MOST_LOADS = 1e-3, 12  # of the largest order; of how many
 RESIDUAL = "OVER THE CYCLE  root of the mean square, largest, and where"
 JOINTS = "joints."
 MOSTLY_GONE = 0.5  # of the bodies' own: an order of which less is left is worth a remark
@@ -35,7 +41,11 @@ CSV_COLUMNS = "kind,order,quantity,component,unit,value"
 def heading(found: BalanceResults) -> list[tuple[str, str]]:
     """Label and text of the lines above the tables."""
     turns = "one turn" if found.turns == 1 else "two turns"
-    rate = f"at {found.rate:.9g} rad/s" if found.rate is not None else "at 1 rad/s: by the square of the rate, in kg·m"
+    rate = (
+        f"at {found.rate:.6g} rad/s ({found.rate * RPM:.6g} rpm)"
+        if found.rate is not None
+        else "at 1 rad/s: by the square of the rate, in kg·m"
+    )
     many = "" if found.settled else "; the highest orders are not settled: a law bends on the way"
     return [
         ("heun", f"{VERSION}  {found.title}"),
@@ -70,24 +80,24 @@ def tables(found: BalanceResults) -> Iterator[TextTable]:
     yield order_table(found, "force", FORCE)
     yield order_table(found, "moment", MOMENT.format(place_of(found)))
     yield order_table(found, "torque", TORQUE)
+    if "load" in found.orders:
+        yield load_table(found)
     yield residual_table(found)
 
 
 def order_table(found: BalanceResults, quantity: str, heading: str) -> TextTable:
     """The shown orders of a quantity; components that have none of them are left out."""
     rows = [row for row in found.orders[quantity] if row.order in found.shown]
+    if not rows:
+        return TextTable(heading, notes=("of no order",))
     unit = unit_of(found, quantity)
     columns, cells = [TextColumn("order")], [[f"{row.order:g}" for row in rows]]
-    scale = max(
-        (max(row.size, *(float(part.max()) for part, _ in (row.parts or {}).values()), 0.0) for row in rows),
-        default=0.0,
-    )
-    for k in range(len(rows[0].amplitude) if rows else 0):
-        if not any(row.amplitude[k] or any(part[k] for part, _ in (row.parts or {}).values()) for row in rows):
-            continue
-        letter = "" if quantity == "torque" else f"{quantity[0].upper()}{LETTERS[k]}"
+    sure = SURE_OF_LOADS if quantity == "load" else WRITTEN
+    scale = max(max(row.size, *(float(part.max()) for part, _ in (row.parts or {}).values()), 0.0) for row in rows)
+    for k in components(rows):
+        letter = "" if quantity in ("torque", "load") else f"{quantity[0].upper()}{LETTERS[k]}"
         columns += [TextColumn(head(letter or quantity, unit), vector=letter), TextColumn("phase°", vector=letter)]
-        sizes = numbers([float(row.amplitude[k]) for row in rows], scale)
+        sizes = numbers([float(row.amplitude[k]) for row in rows], scale, sure)
         cells += [sizes, [degrees(row.phase[k]) if text != "0" else "" for row, text in zip(rows, sizes, strict=True)]]
         if quantity == "moment":
             for part in ("orbital", "spin"):
@@ -104,12 +114,31 @@ def order_table(found: BalanceResults, quantity: str, heading: str) -> TextTable
     return TextTable(heading, tuple(columns), tuple(zip(*cells, strict=True)))
 
 
+def load_table(found: BalanceResults) -> TextTable:
+    """The orders of what loads and weight put on the shaft, the first of them, and their mean."""
+    rows = found.orders["load"]
+    largest = max((row.size for row in rows), default=0.0)
+    told = tuple(row.order for row in rows if row.size > LEAST_SHOWN * largest)[:MOST_LOADS]
+    table = order_table(replace(found, shown=told), "load", LOAD)
+    how = style(max(largest, abs(found.mean["load"])), SURE_OF_LOADS * largest)
+    return table._replace(notes=(*table.notes, f"mean: {how.write(found.mean['load'])} N·m"))
+
+
+def components(rows: Sequence[OrderRow]) -> list[int]:
+    """The components that have some order; where none has, those of which orbital and spin have."""
+    every = range(len(rows[0].amplitude))
+    found = [k for k in every if any(row.amplitude[k] for row in rows)]
+    return found or [k for k in every if any(part[k] for row in rows for part, _ in (row.parts or {}).values())]
+
+
 def remark(row: OrderRow, quantity: str) -> str:
     """What is said beside an order that is none, or of whose bodies' own most is gone."""
     if row.verdict != "remains":
         return row.verdict
     share = row.size / row.own
-    return f"{100.0 * share:.2g} % of the bodies' own" if share < MOSTLY_GONE and quantity != "torque" else ""
+    return (
+        f"{100.0 * share:.2g} % of the bodies' own" if share < MOSTLY_GONE and quantity in ("force", "moment") else ""
+    )
 
 
 def in_phase(row: OrderRow, part: str, k: int) -> float:
@@ -120,9 +149,9 @@ def in_phase(row: OrderRow, part: str, k: int) -> float:
     return float(amplitude[k] * math.cos(phase[k] - reference))
 
 
-def numbers(values: Sequence[float], scale: float) -> list[str]:
-    """Numbers of one family, to the digits of the largest."""
-    how = style(scale, WRITTEN * scale)
+def numbers(values: Sequence[float], scale: float, sure: float = WRITTEN) -> list[str]:
+    """Numbers of one family, to the digits of the largest of which so much is sure."""
+    how = style(scale, sure * scale)
     return trim([how.write(value) for value in values])
 
 

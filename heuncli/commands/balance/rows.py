@@ -98,7 +98,7 @@ def above(a: Array, none: float) -> Array:
 def phases(a: Array) -> Array:
     """The phases of complex amplitudes of cos(kφ - phase), in (-π, π]; 0 of what is none."""
     found = -np.angle(a)
-    return np.asarray(np.where(found <= -math.pi, math.pi, found) + 0.0)
+    return np.asarray(np.where(found <= tolerances.SAME_VALUE - math.pi, found + 2.0 * math.pi, found) + 0.0)
 
 
 def lengths(vectors: Array) -> Array:

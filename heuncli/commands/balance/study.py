@@ -42,7 +42,7 @@ def balanced(spec: Spec, asked: BalanceOptions) -> BalanceResults:
     followed = turning(scene, plan)
     cycle, settled = sampled(followed, about)
     effects = mass_effects(cycle, about)
-    found = told(spec, plan, cycle, effects, about, settled, asked)
+    found = with_loads(told(spec, plan, cycle, effects, about, settled, asked), spec, scene, plan, asked)
     if asked.weights:
         from heuncli.commands.balance.weights import counterbalanced  # where they are asked for
 
@@ -52,6 +52,21 @@ def balanced(spec: Spec, asked: BalanceOptions) -> BalanceResults:
 
         found = with_wheel(found, spec, scene, plan, asked.flywheel)
     return found
+
+
+def with_loads(
+    found: BalanceResults, spec: Spec, scene: PreparedScene, plan: CyclePlan, asked: BalanceOptions
+) -> BalanceResults:
+    """The results with the orders of what loads put on the shaft, where there are any."""
+    if not scene.mechanism.loads and not scene.mechanism.gravity.any():
+        return found
+    from heuncli.commands.balance.load_torque import load_torque  # with all that solves loads
+
+    own = load_torque(spec, scene, plan)
+    if own.note or not own.rows:
+        return replace(found, notes=(*found.notes, own.note) if own.note else found.notes)
+    rows = tuple(row for row in own.rows if asked.orders is None or is_asked(row.order, asked.orders))
+    return replace(found, orders={**found.orders, "load": rows}, mean={**found.mean, "load": own.mean})
 
 
 def drawn(spec: Spec) -> PreparedScene:
@@ -82,6 +97,7 @@ def told(
     turning_so = CycleTurning(plan.turns, axis_of(cycle, plan.joint), plan.rate)
     scale = turning_so.scale
     found = all_rows(effects, turning_so)
+    words = {name: in_words(rows) for name, rows in found.items()}
     if asked.orders is not None:
         found = {name: tuple(row for row in rows if is_asked(row.order, asked.orders)) for name, rows in found.items()}
     values = {
@@ -94,7 +110,7 @@ def told(
         title=spec.title, spec={"path": spec.path, "sha256": spec.sha256},
         coordinate=plan.coordinate, turns=plan.turns, rate=plan.rate, samples=len(cycle.angles), settled=settled,
         about=about, place=asked.place, axis=turning_so.axis, effects=effects, orders=found,
-        words={name: in_words(rows) for name, rows in found.items()},
+        words=words,
         mean={name: own.sum(axis=1).mean(axis=0) for name, own in values.items()},
         residual={name: residual(own, effects.angles, least[name.partition("_")[0]]) for name, own in values.items()},
         shown=shown(found) if asked.orders is None else asked.orders,
