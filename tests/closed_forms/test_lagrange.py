@@ -14,6 +14,7 @@ from heuncli.commands.lagrange.results import InertiaCourse
 from heuncli.errors import SolveError
 from heuncli.shapes.rotations import hat
 from heuncli.spec.load import load
+from tests.oracle.published import START, andrews
 from tests.shared.folders import ROOT
 from tests.shared.lagrange import double, told
 from tests.shared.scenes import solved
@@ -240,3 +241,22 @@ def test_friction_by_what_a_driven_joint_carries() -> None:
             else:
                 spec = load("scene.yaml", text)
                 over(spec, range_of("main.angle=0:1", spec))
+
+
+@pytest.mark.parametrize(("name", "coordinate"), [("slider_crank", "main.angle"), ("four_bar_balanced", "crank.angle")])
+def test_the_slope_of_the_inertia_over_a_turn(name: str, coordinate: str) -> None:
+    """Half of de/dq by the accelerations is that of the trigonometric polynomial through e; over a turn it vanishes."""
+    found = course(name, f"{coordinate}=0:360deg/181")
+    e = found.epsilon[:-1]
+    n = len(e)
+    slope = np.fft.irfft(1j * np.arange(n // 2 + 1) * np.fft.rfft(e) * (np.arange(n // 2 + 1) < n // 2), n)
+    assert np.abs(0.5 * slope - found.half[:-1]).max() <= 1e-11 * np.abs(e).max()
+    assert abs(found.half[:-1].mean()) <= DIGITS * np.abs(found.half).max() * 10.0
+
+
+def test_the_inertia_of_the_squeezing_mechanism() -> None:
+    """Andrews at his start: the published b'' follows from it and the motor's torque."""
+    found = told({**andrews(START, dict.fromkeys(START, 0.0)), "analysis": {"type": "state"}})
+    assert found.names == ("O.angle",)
+    assert found.epsilon[0, 0] == pytest.approx(2.32027633125e-6, rel=1e-11)
+    assert found.total[0] / found.epsilon[0, 0] == pytest.approx(14222.4439199541, rel=1e-7)

@@ -13,6 +13,7 @@ from heuncli.commands.lagrange.instant import Instant, instant_of
 from heuncli.commands.lagrange.results import LagrangeResults
 from heuncli.commands.lagrange.study import LagrangeQuestion
 from heuncli.commands.lagrange.study import told as told_at
+from heuncli.integration.evaluator import CAUSES
 from heuncli.linearisation.displacements import displaced
 from heuncli.linearisation.linearise import linearised
 from heuncli.spec.load import load
@@ -121,3 +122,24 @@ def test_other_coordinates(seed: int) -> None:
         np.abs(found.total).max(), 1.0
     )
     assert second.energy == pytest.approx(found.energy, rel=1e-9)
+
+
+WITH_BALLS = {1, 5, 1004}  # among the loops: turns about the world's axes have no column of their own
+
+
+@pytest.mark.parametrize(("kind", "seed"), [case for case in PROPER if case[1] not in WITH_BALLS])
+def test_forces_are_what_their_causes_accelerate(kind: str, seed: int) -> None:
+    """k by virtual work is e times the accelerations that each cause alone makes of the scene without drives."""
+    at, found = looked_at(kind, seed)
+    layout, mechanism = at.freed.layout, at.freed.layout.mechanism
+    by = chosen(at.freed.scene, at.found, at.freed.driven, found.names)
+    causes = at.freed.runner.recovered(np.array([at.t]), at.state[None, :], causes=True, holding=at.holding).causes
+    assert causes is not None
+    made = found.epsilon @ by.rows @ causes.freedoms["udot"][0].T  # (f, causes)
+    alone: dict[str, Any] = {}
+    for applied, own in mechanism.load_rows():
+        alone[applied.name] = alone.get(applied.name, 0.0) + made[:, own].sum(axis=1)
+    alone["gravity"] = made[:, len(layout.tables["loads"]) + CAUSES.index("gravity")]
+    size = max(float(np.abs(k).max()) for k in alone.values()) + 1e-12
+    for name, k in found.forces.items():
+        assert np.abs(alone[name] - k).max() <= 1e-9 * size
