@@ -10,6 +10,7 @@ from pathlib import Path
 import numpy as np
 import pytest
 
+from heuncli.commands.lagrange.forms import KEYS
 from heuncli.commands.lagrange.study import LagrangeQuestion, lagrange
 from heuncli.errors import HeunError
 from heuncli.spec.load import load
@@ -77,6 +78,14 @@ def test_tables(heun: Heun, pendulum: str) -> None:
         assert words in text
 
 
+def test_only_some_parts(heun: Heun, pendulum: str) -> None:
+    text = heun("lagrange", pendulum, "--only", "mass,forces").stdout
+    assert "MASS" in text and "FORCES" in text and "RECIPROCAL" not in text and "LAGRANGE" not in text
+    found = json.loads(heun("lagrange", pendulum, "--only", "mass", "--format", "json").stdout)
+    assert found.keys() >= {"coordinates", "epsilon", "seen"} and "eta" not in found
+    assert {key for keys in KEYS.values() for key in keys} <= NAMES | {"values", "blows"}
+
+
 def test_a_script_for_matlab(heun: Heun, pendulum: str, folder: Path) -> None:
     done = heun("lagrange", pendulum, "--state-space", "--at", "0", "-o", "double.m")
     assert done.returncode == 0
@@ -109,6 +118,7 @@ def test_over_in_all_forms(heun: Heun) -> None:
         (["--over", "A.angle=0"], 2, "FROM:TO"),
         (["--over", "A.angle=0:1 kg"], 2, "kg"),
         (["--over", "A.angle=0:1", "--christoffel"], 2, "--over and --christoffel"),
+        (["--only", "masses"], 2, "masses"),
         (["--inputs", "push"], 2, "without --state-space"),
         (["--state-space", "--inputs", "pull"], 3, "pull"),
         (["--state-space", "--outputs", "b.e.q"], 3, "b.e.q"),

@@ -7,7 +7,7 @@ from heuncli.cli.guard import require_other_file
 from heuncli.cli.output import emit
 from heuncli.cli.solving import overrides, warn
 from heuncli.cli.target import format_of
-from heuncli.commands.lagrange import page
+from heuncli.commands.lagrange import course_page, forms, page
 from heuncli.commands.lagrange.options import range_of, require_instant, require_together, words
 from heuncli.commands.lagrange.over import over
 from heuncli.commands.lagrange.request import LagrangeRequest
@@ -48,11 +48,11 @@ def written(spec: Spec, request: LagrangeRequest, asked: LagrangeQuestion, form:
     if request.over is not None:
         course = over(spec, range_of(request.over, spec))
         if form == "json":
-            return dump(page.course_block(course))
-        return page.course_csv(course) if form == "csv" else page.write_course(course)
+            return dump(course_page.block(course))
+        return course_page.to_csv(course) if form == "csv" else course_page.write(course)
     found = lagrange(spec, asked)
     if form == "m" and found.state_space is not None:
-        return page.to_m(found.state_space)
+        return forms.to_m(found.state_space)
     if form == "json":
-        return dump(page.block(found))
-    return page.to_csv(found) if form == "csv" else page.write(found)
+        return dump(forms.block(found, words(request.only)))
+    return forms.to_csv(found) if form == "csv" else page.write(found, words(request.only))

@@ -7,6 +7,7 @@ import math
 import numpy as np
 
 from heuncli.cli.entry import UsageError
+from heuncli.commands.lagrange.forms import KEYS
 from heuncli.commands.lagrange.over import FOLLOWS, Range
 from heuncli.commands.lagrange.request import LagrangeRequest
 from heuncli.errors import Finding, Problem
@@ -32,12 +33,14 @@ def require_together(request: LagrangeRequest, form: str) -> None:
     wrong = []
     if request.over is not None:
         others = {"--at": request.at is not None, "--coordinates": request.coordinates, "--seen": request.seen}
-        others |= {"--christoffel": request.christoffel, "--state-space": request.state_space}
+        others |= {"--christoffel": request.christoffel, "--state-space": request.state_space, "--only": request.only}
         told = "the one free coordinate is told over its range"
         wrong += [(f"--over and {name}", told) for name, on in others.items() if on]
     if not request.state_space:
         named = {"--inputs": request.inputs, "--outputs": request.outputs, "--format m, or -o FILE.m": form == "m"}
         wrong += [(f"{name} without --state-space", "add --state-space") for name, on in named.items() if on]
+    unknown = [part for part in words(request.only) if part not in KEYS]
+    wrong += [(f"--only {part}: no part is called so", f"known: {', '.join(KEYS)}") for part in unknown]
     for place in request.seen:
         wrong += seen_wrongly(place)
     if wrong:

@@ -1,4 +1,4 @@
-"""The Lagrange side as tables, as JSON, and in long form."""
+"""The Lagrange side of an instant as tables."""
 
 from __future__ import annotations
 
@@ -8,7 +8,7 @@ from typing import Any
 
 import numpy as np
 
-from heuncli.commands.lagrange.results import InertiaCourse, LagrangeResults, StateSpace
+from heuncli.commands.lagrange.results import LagrangeResults, StateSpace
 from heuncli.foreign_text import shown
 from heuncli.report.page_width import fit
 from heuncli.report.text_table import WIDTH, TextColumn, TextTable, plain
@@ -27,14 +27,14 @@ OUTPUTS = "OUTPUTS  y = C x + D u"
 SHOWN = 6  # coordinates, of which matrices are written out
 ROUNDING = 1e-13  # of what a number is summed from, or of the largest of a matrix: less is told as 0
 COLUMNS = ("q", "q'", "p = ∂E/∂q'", "C", "k", "drive", "q''")
-CSV_COLUMNS = "name,quantity,component,unit,value"
 
 
-def write(found: LagrangeResults) -> str:
-    """The page as text."""
+def write(found: LagrangeResults, only: Sequence[str] = ()) -> str:
+    """The page as text; only: parts, as forms.KEYS names them."""
     lines = [("heun", f"{VERSION}  {found.title}"), *energy_lines(found)]
     head = "".join(f"{label.ljust(6)}  {shown(text)}\n" for label, text in lines)
-    return "\n".join([head, *("".join(plain(part, WIDTH) for part in fit(table, WIDTH)) for table in tables(found))])
+    asked = [table for part, table in tables(found) if not only or part in only]
+    return "\n".join([head, *("".join(plain(part, WIDTH) for part in fit(table, WIDTH)) for table in asked)])
 
 
 def energy_lines(found: LagrangeResults) -> Iterator[tuple[str, str]]:
@@ -47,21 +47,21 @@ def energy_lines(found: LagrangeResults) -> Iterator[tuple[str, str]]:
         yield "", note
 
 
-def tables(found: LagrangeResults) -> list[TextTable]:
-    """What is told, a table each."""
-    made = [equations(found), seen(found)]
+def tables(found: LagrangeResults) -> Iterator[tuple[str, TextTable]]:
+    """The parts that are told, a table each; matrices of few coordinates."""
+    yield "equations", equations(found)
+    yield "mass", seen(found)
     if len(found.names) <= SHOWN:
-        made.append(matrix(RECIPROCAL, found, found.eta))
-        made.append(forces(found))
+        yield "reciprocal", matrix(RECIPROCAL, found, found.eta)
+        yield "forces", forces(found)
         if found.gamma is not None:
-            made.append(christoffel(found))
+            yield "christoffel", christoffel(found)
     if found.sections:
-        made.append(sections(found))
+        yield "sections", sections(found)
     if found.blows:
-        made.append(blows(found))
+        yield "blows", blows(found)
     if found.state_space is not None:
-        made += linear_tables(found.state_space)
-    return made
+        yield from (("state_space", table) for table in linear_tables(found.state_space))
 
 
 def linear_tables(linear: StateSpace) -> Iterator[TextTable]:
@@ -180,164 +180,3 @@ def cuts_of(s: Any) -> list[tuple[str, Sequence[float] | None]]:
     if s is None or not isinstance(s[0], (list, type(None))):
         return [("", s)]
     return [(f".{k}", own) for k, own in enumerate(s)]
-
-
-def struck(found: LagrangeResults, section: str) -> dict[str, Any]:
-    """r' of a section in the first blow, if something strikes."""
-    return {"r": found.blows[0].sections[section]} if found.blows else {}
-
-
-COURSE = "OVER  ε and half its slope: C = ½ dε/dq q'²; k by cause at q' = {rate:.6g} {unit}, loads as at the start"
-
-
-def write_course(found: InertiaCourse) -> str:
-    """The page of a course as text."""
-    lines = [("heun", f"{VERSION}  {found.title}")]
-    kind, length = ("kg", "m") if found.is_length else ("kg·m²", "rad")
-    low, high = int(np.argmin(found.epsilon)), int(np.argmax(found.epsilon))
-    least, most = (f"{found.epsilon[i]:.6g} {kind} at {found.values[i]:.6g} {length}" for i in (low, high))
-    lines.append(("inertia", f"ε mean {found.mean:.6g} {kind}, least {least}, largest {most}"))
-    head = "".join(f"{label.ljust(7)}  {shown(text)}\n" for label, text in lines)
-    return head + "\n" + "".join(plain(part, WIDTH) for part in fit(course_table(found), WIDTH))
-
-
-def course_table(found: InertiaCourse) -> TextTable:
-    """A row a value."""
-    unit = "m" if found.is_length else "rad"
-    kind, force = ("kg", "N") if found.is_length else ("kg·m²", "N·m")
-    heads = [f"{found.name} [{unit}]", f"ε [{kind}]", f"½ dε/dq [{kind}/{unit}]", f"k [{force}]"]
-    columns = [found.values, found.epsilon, found.half, found.total]
-    for cause, k in found.forces.items():
-        heads.append(f"{cause} [{force}]")
-        columns.append(k)
-    sizes = [float(np.abs(column).max(initial=0.0)) for column in columns]
-    rows = tuple(tuple(number(x, size) for x, size in zip(row, sizes, strict=True)) for row in np.array(columns).T)
-    heading = COURSE.format(rate=found.rate, unit=f"{unit}/s")
-    return TextTable(heading, tuple(TextColumn(head) for head in heads), rows)
-
-
-def course_block(found: InertiaCourse) -> dict[str, Any]:
-    """As JSON has it: what lists over coordinates are of an instant, with an axis of the values before."""
-    return {
-        "title": found.title,
-        "over": {"coordinate": found.name, "values": found.values.tolist()},
-        "coordinates": [found.name],
-        "units": ["m" if found.is_length else "rad"],
-        "driven": [found.driven],
-        "rates": [[found.rate]] * len(found.values),
-        "epsilon": found.epsilon[:, None, None].tolist(),
-        "eta": (1.0 / found.epsilon)[:, None, None].tolist(),
-        "gamma": found.half[:, None, None, None].tolist(),
-        "momenta": (found.epsilon * found.rate)[:, None].tolist(),
-        "coriolis": (found.half * found.rate**2)[:, None].tolist(),
-        "half_slope": found.half.tolist(),
-        "forces": {
-            "total": found.total[:, None].tolist(),
-            "shares": {name: k[:, None].tolist() for name, k in found.forces.items()},
-        },
-        "mean": found.mean,
-    }
-
-
-def course_csv(found: InertiaCourse) -> str:
-    """A line a value and quantity."""
-    unit = "m" if found.is_length else "rad"
-    kind, force = ("kg", "N") if found.is_length else ("kg·m²", "N·m")
-    lines = ["coordinate,at,quantity,component,unit,value"]
-    for i, value in enumerate(found.values.tolist()):
-        head = f"{found.name},{value!r}"
-        lines.append(f"{head},epsilon,,{kind},{float(found.epsilon[i])!r}")
-        lines.append(f"{head},half_slope,,{kind}/{unit},{float(found.half[i])!r}")
-        lines.append(f"{head},force,,{force},{float(found.total[i])!r}")
-        lines += [f"{head},force,{name},{force},{float(k[i])!r}" for name, k in found.forces.items()]
-    return "\n".join(lines) + "\n"
-
-
-def block(found: LagrangeResults) -> dict[str, Any]:
-    """As JSON has it: lists over the coordinates; gamma and alpha by i, l, k."""
-    return {
-        "title": found.title,
-        "time": found.t,
-        "coordinates": list(found.names),
-        "units": ["m" if is_length else "rad" for is_length in found.lengths],
-        "driven": list(found.driven),
-        "values": [None if np.isnan(x) else float(x) for x in found.values],
-        "rates": found.rates.tolist(),
-        "accelerations": found.accelerations.tolist(),
-        "epsilon": found.epsilon.tolist(),
-        "eta": found.eta.tolist(),
-        "gamma": None if found.gamma is None else found.gamma.tolist(),
-        "alpha": None if found.alpha is None else found.alpha.tolist(),
-        "momenta": found.momenta.tolist(),
-        "energy": dict(zip(("total", "free", "mixed", "driven"), (found.energy, *found.energies), strict=True)),
-        "reciprocal_energy": found.reciprocal_energy,
-        "forces": {"total": found.total.tolist(), "shares": {name: k.tolist() for name, k in found.forces.items()}},
-        "drives": found.drives.tolist(),
-        "coriolis": found.coriolis.tolist(),
-        "coriolis_matrix": found.coriolis_matrix.tolist(),
-        "residual": found.residual,
-        "seen": {one.name: {"unit": one.unit, "locked": one.locked, "free": one.free} for one in found.seen},
-        "sections": {name: {**own, **struck(found, name)} for name, own in found.sections.items()},
-        "blows": [
-            {
-                "time": blow.t,
-                "h": blow.h.tolist(),
-                "drives": blow.drives.tolist(),
-                "jumps": blow.jumps.tolist(),
-                "reciprocal_energy": blow.reciprocal_energy,
-                "sections": dict(blow.sections),
-            }
-            for blow in found.blows
-        ],
-        "partials": dict(found.partials),
-        "left_out": list(found.left_out),
-        "state_space": None if found.state_space is None else linear_block(found.state_space),
-        "notes": list(found.notes),
-    }
-
-
-def to_csv(found: LagrangeResults) -> str:
-    """In long form, a line a number; of matrices the component names the second coordinate."""
-    lines = [CSV_COLUMNS]
-    units = {True: ("m", "m/s", "m/s²", "kg·m/s", "N"), False: ("rad", "rad/s", "rad/s²", "N·m·s", "N·m")}
-    for i, name in enumerate(found.names):
-        q, rate, acceleration, momentum, force = units[found.lengths[i]]
-        for quantity, unit, values in (
-            ("value", q, found.values), ("rate", rate, found.rates),
-            ("acceleration", acceleration, found.accelerations),
-            ("momentum", momentum, found.momenta), ("coriolis", force, found.coriolis), ("force", force, found.total),
-            ("drive", force, found.drives),
-        ):  # fmt: skip
-            lines.append(f"{name},{quantity},,{unit},{float(values[i])!r}")
-        for cause, k in found.forces.items():
-            lines.append(f"{name},force,{cause},{force},{float(k[i])!r}")
-        for j, other in enumerate(found.names):
-            lines.append(f"{name},epsilon,{other},{mixed(found, i, j)},{float(found.epsilon[i, j])!r}")
-    return "\n".join(lines) + "\n"
-
-
-def mixed(found: LagrangeResults, i: int, j: int) -> str:
-    """The unit of an entry of the mass matrix."""
-    return ("kg·m²", "kg·m", "kg")[int(found.lengths[i]) + int(found.lengths[j])]
-
-
-def linear_block(linear: StateSpace) -> dict[str, Any]:
-    """A state space as JSON has it."""
-    return {
-        "A": linear.A.tolist(), "B": linear.B.tolist(), "C": linear.C.tolist(), "D": linear.D.tolist(),
-        "states": list(linear.states), "inputs": list(linear.inputs), "outputs": list(linear.outputs),
-        "units": dict(linear.units), "offset": linear.offset.tolist(),
-    }  # fmt: skip
-
-
-def to_m(linear: StateSpace) -> str:
-    """A state space as a script for Matlab and Octave."""
-    lines = ["% " + part for part in (f"heun {VERSION}", "x' = A x + B u, y = C x + D u")]
-    for name, matrix in (("A", linear.A), ("B", linear.B), ("C", linear.C), ("D", linear.D)):
-        rows = "; ".join(" ".join(repr(float(x)) for x in row) for row in matrix)
-        size = f"zeros({matrix.shape[0]}, {matrix.shape[1]})"
-        lines.append(f"{name} = [{rows}];" if matrix.size else f"{name} = {size};")
-    for label, names in (("states", linear.states), ("inputs", linear.inputs), ("outputs", linear.outputs)):
-        lines.append(f"{label} = {{{', '.join(repr(name) for name in names)}}};")
-    lines.append(f"offset = [{'; '.join(repr(float(x)) for x in linear.offset)}];")
-    return "\n".join(lines) + "\n"

@@ -42,6 +42,10 @@ class LagrangeRequest(NamedTuple):
     outputs: Annotated[
         str | None, Option(("--outputs",), "Of the state space: coordinates, their rates, points.", "NAME,...")
     ] = None
+    only: Annotated[
+        str | None,
+        Option(("--only",), "Parts of tables and JSON: equations, mass, forces, sections and others.", "PART,..."),
+    ] = None
     format: Annotated[
         str | None,
         Option(
