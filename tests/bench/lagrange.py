@@ -1,0 +1,29 @@
+"""What Lagrange's equations cost beside the results of their state, and over a turn."""
+
+from __future__ import annotations
+
+from collections.abc import Callable
+from typing import Any
+
+from heuncli.commands.lagrange.options import range_of
+from heuncli.commands.lagrange.over import over
+from heuncli.commands.lagrange.study import LagrangeQuestion, lagrange
+from heuncli.spec.load import load
+from heuncli.study.workflow import solve
+from tests.shared.folders import ROOT
+
+SPECS = ("slider_crank", "excavator", "chain")
+
+
+def equations(median_ms: Callable[[Callable[[], Any], int], float]) -> None:
+    """Print both, start-up left out; median_ms: of a call that is repeated so often [ms]."""
+    for name in SPECS:
+        spec = load(str(ROOT / "specs" / f"{name}.yaml"))
+        state = spec._replace(analysis=spec.analysis._replace(type="state", times=(0.0,), duration=None, conditions=()))
+        own = median_ms(lambda state=state: lagrange(state, LagrangeQuestion()), 9)  # type: ignore[misc]
+        run = median_ms(lambda state=state: solve(state), 9)  # type: ignore[misc]
+        print(f"{name}: lagrange {own:.1f} ms, the results of its state {run:.1f} ms")
+    spec = load(str(ROOT / "specs" / "slider_crank.yaml"))
+    asked = range_of("main.angle=0:360deg/73", spec)
+    found = median_ms(lambda: over(spec, asked), 9)
+    print(f"slider-crank: lagrange over 73 values of a turn {found:.1f} ms")
