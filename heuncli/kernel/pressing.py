@@ -178,7 +178,7 @@ def find_pressed(scene: cython.pointer[Scene]) -> cython.void:
     elif scene.bound[n * at_fault + at_fault] != scene.bound[n * at_fault + at_fault]:
         scene.trial[0] = NAN  # loads without a value: nothing is found, and friction is not why
     else:
-        found = UNPROVED if n > 1 or scene.bound[0] > 0.0 else alone(scene)
+        found = alone(scene) if n == 1 else UNPROVED
     if found != FOUND:
         scene.jammed = found
         scene.jammed_load = scene.rubs[at_fault]
@@ -315,9 +315,12 @@ def alone(scene: cython.pointer[Scene]) -> cython.int:
     """Of a single N beyond the bound: FOUND where nothing presses, else two answers or none.
 
     From below Newton's method on the convex |E(N)| - N falls short of its first zero; where it rises there is none.
+    Just before the bound there is one: it is on its way to where there is none, or a second one comes from far away.
     """
     i: cython.int
     left: cython.double
+    if scene.bound[0] > 0.0 and pressed_far(scene) > 0.0:
+        return JAMS
     scene.trial[0] = 0.0
     scene.trial[2] = 1.0
     for i in range(MOST):
@@ -328,6 +331,19 @@ def alone(scene: cython.pointer[Scene]) -> cython.int:
             return JAMS
         scene.trial[0] += scene.trial[1] / scene.newton[0]
     return TWO
+
+
+def pressed_far(scene: cython.pointer[Scene]) -> cython.double:
+    """What |E(N)| has beyond B N where N is large: where that is positive N is beyond all numbers at the bound."""
+    end: cython.int
+    found: cython.double = 0.0
+    for end in range(2):
+        A: Vec3 = part(scene, 1, 0, end)
+        if norm(A) > 0.0:
+            found += dot(part(scene, 0, 0, end), A) / norm(A)
+        else:
+            found += norm(part(scene, 0, 0, end))
+    return found
 
 
 # Along a direction of the state

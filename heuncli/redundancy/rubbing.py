@@ -5,11 +5,13 @@ from __future__ import annotations
 import numpy as np
 
 from heuncli.errors import SolveError
-from heuncli.kinetostatics.bodies import BodyStates
+from heuncli.integration.run.runner import Runner
+from heuncli.kinetostatics.bodies import BodyStates, body_states
 from heuncli.kinetostatics.reactions import constrained_part
 from heuncli.mechanism.model import JointLoad, Mechanism
-from heuncli.redundancy.self_stress import SelfStress
+from heuncli.redundancy.self_stress import SelfStress, self_stress
 from heuncli.results import Array, Mask
+from heuncli.tree.prepare import PreparedScene
 
 
 def require_certain(mechanism: Mechanism, stress: SelfStress | None, states: BodyStates, times: Array) -> None:
@@ -23,6 +25,13 @@ def require_certain(mechanism: Mechanism, stress: SelfStress | None, states: Bod
 
         names = [(name, mechanism.joints[k].name) for (name, k), mask in is_open.items() if mask[at[0]]]
         raise SolveError(rubs_openly(names, float(times[at[0]])))
+
+
+def require_certain_start(scene: PreparedScene, runner: Runner, t: float) -> None:
+    """Raise SolveError for what is open so at the start."""
+    at = runner.recovered(np.array([t]), scene.layout.y0[None, :])
+    states = body_states(scene.layout, at)
+    require_certain(scene.mechanism, self_stress(runner, at, states), states, at.times)
 
 
 def open_in(mechanism: Mechanism, load: JointLoad, stress: SelfStress, states: BodyStates) -> Mask:

@@ -170,7 +170,7 @@ def test_a_rod_that_turns_into_the_paradox(method: str) -> None:
     with pytest.raises(SolveError) as error:
         solved(text.replace("samples: 2", "samples: 2" + step))
     problem = error.value.problems[0]
-    assert problem.code in ("friction-jams", "friction-not-unique")
+    assert problem.code == "friction-jams"  # it turns so fast that it lifts its foot: what presses grows without bound
     t = float(problem.message.split("t = ")[1].split(" s ")[0])
     before = solved(text.replace("duration: 1.0", f"duration: {t - 2e-3}"))
     angle = float(before.coordinates["hinge"]["angle"][-1] + 2e-3 * before.coordinates["hinge"]["rate"][-1])

@@ -19,7 +19,7 @@ from heuncli.integration.contacts.blows import (
     right_sides,
     state_behind,
 )
-from heuncli.integration.contacts.resting import rests, short_flights
+from heuncli.integration.contacts.resting import rests, short_flights, undecided_by_friction
 from heuncli.integration.contacts.restitution import Struck, strikes, undecided
 from heuncli.integration.contacts.touching import Touching, answerable, answers, touching
 from heuncli.integration.evaluator import Evaluator, Recovered
@@ -158,12 +158,28 @@ class Contacts:
             if not short.any():
                 break
             at_rest = at_rest | short
+        if self.layout.mechanism.rubbing:
+            self.require_decided(given.after, after, pressed, holding, struck.rate)
         if struck.impulses.any():
             struck, columns, whole = self.refined(given, sides, Unrefined(touch, struck, units))
             after, work = state_behind(self.layout, given, sides, whole)
         work += float(struck.impulses @ (0.5 * (touch.rate + struck.rate)))
         self.bring_to_rest(sides.still.states[0], after)
         return ContactOutcome(struck, holding, at_rest, columns, after, work)
+
+    def require_decided(self, t: float, after: Array, pressed: Pressed, holding: Array, rate: Array) -> None:
+        """Raise SolveError where friction by what joints carry makes other contacts bear than those that are held."""
+        touch, held = pressed.touch, np.zeros(len(self.holding))
+        held[touch.which] = holding
+        at = self.evaluator.recovered(np.array([t]), after[None, :], holding=held)
+        wrong = undecided_by_friction(touch, pressed.A, holding, rate, at, self.layout)
+        if wrong.any():
+            names = ", ".join(self.layout.contacts[i].name for i in touch.which[wrong])
+            message = (
+                f"at t = {t:.9g} s friction by what joints carry decides whether {names} bears, and changes as it does"
+            )
+            hint = "friction of a given size, or contacts that are not touched there together"
+            raise SolveError(Problem("friction-not-unique", message, hint=hint))
 
     def refined(self, given: GivenBlow, sides: RightSides, found: Unrefined) -> tuple[Struck, Columns, Columns]:
         """The impulses and columns, and all in one, with the digits that A loses between very unequal masses.

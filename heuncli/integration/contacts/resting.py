@@ -36,6 +36,22 @@ def rests(touch: Touching, A: Array, moves: Mask, rate: Array, at: Recovered, la
     return holding, q + A @ spread(found.z, own, len(contacts))
 
 
+def undecided_by_friction(
+    touch: Touching, A: Array, holding: Array, rate: Array, at: Recovered, layout: Layout
+) -> Mask:
+    """Which of the touching contacts do not what `rests` found, (k,): w and z of that are those of given loads.
+
+    Friction by what a joint carries changes as they bear. at: the state with those held that are said to be.
+    """
+    contacts = [layout.contacts[i] for i in touch.which.tolist()]
+    rows = at.rows[0]
+    noise = tolerances.CONTACT_ACCELERATION * acceleration_terms(layout, touch, A, at)
+    z = np.array([-c.sense * float(rows["multiplier"][c.row]) for c in contacts])
+    w = np.array([-c.sense * float(rows["acceleration"][c.row]) for c in contacts])
+    pulls = (holding == CLOSED) & (z * np.diag(A) < -noise)
+    return np.asarray(pulls | ((holding == OPEN) & (rate == 0.0) & (w < -noise)))
+
+
 def acceleration_terms(layout: Layout, touch: Touching, A: Array, at: Recovered) -> Array:
     """Sizes of the terms that accelerations of opening are sums of (k,): of motion, and of all loads and weights.
 

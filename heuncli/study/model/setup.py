@@ -99,6 +99,10 @@ def set_up(
     if not reduce:  # what is declared planar is moved as in space, too
         prepared = replace(prepared, layout=replace(prepared.layout, flat=False))
     scene, runner = ready(prepared)
+    if scene.mechanism.rubbing and scene.layout.rows:
+        from heuncli.redundancy.rubbing import require_certain_start  # few scenes have such friction
+
+        require_certain_start(scene, runner, spec.analysis.times[0] if spec.analysis.type == "state" else 0.0)
     if spec.analysis.type == "rest":
         return set_up_at_rest(Setup(spec, scene, cuts, runner, None, {}, None, asked), left_out, looked_for)
     asked_method = method or spec.analysis.method
