@@ -199,3 +199,11 @@ def test_what_comes_back_after_two_turns_alone_is_told(heun: Heun, folder: Path)
     told = found(heun, "half.yaml", "--cycle", "first", "--turns", "2")
     verdicts = {row["order"]: row["verdict"] for row in told["harmonics"]["force"]}
     assert verdicts[1.0] == verdicts[1.5] == "remains" and verdicts[0.5] == "does not arise"
+
+
+def test_a_title_forges_nothing(heun: Heun, folder: Path) -> None:
+    title = '"A\\n\\u001b[31mforce    none"'
+    (folder / "evil.yaml").write_text(SCENE.replace("A crank that turns its rod about", title) + DRIVE)
+    done = heun("balance", "evil.yaml", "--save", "evil.svg")
+    assert done.returncode == 0 and "\x1b" not in done.stdout and "\x1b" not in (folder / "evil.svg").read_text()
+    assert done.stdout.count("\nforce  ") == 1

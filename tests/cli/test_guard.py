@@ -15,7 +15,7 @@ from tests.shared.command import HANGING, Heun
 TABLE = "tables: {g: {file: data/t.csv, x: 1, y: 2}}\n"
 WRITERS = (
     ("run", "-o"), ("model", "-o"), ("check", "-o"), ("modes", "-o"), ("probe", "-o"), ("chart", "-o"),
-    ("chart", "--save"),
+    ("chart", "--save"), ("balance", "-o"), ("balance", "--save"),
 )  # fmt: skip
 
 
@@ -67,14 +67,14 @@ def test_what_is_read_stays(
     for module in ("run", "check"):
         monkeypatch.setattr(f"heuncli.commands.{module}.command.solve", None)
     before, inode = (scene / read).read_bytes(), (scene / read).stat().st_ino
-    form = () if writer == ("chart", "--save") else ("--format", "json")
+    form = () if writer[1] == "--save" else ("--format", "json")
     done = heun(writer[0], "scene.yaml", writer[1], named(scene / read), *form)
     assert (done.returncode, done.stdout) == (2, "")
     assert "[bad-option]" in done.stderr
     assert ((scene / read).read_bytes(), (scene / read).stat().st_ino) == (before, inode)
 
 
-@pytest.mark.parametrize("command", ["run", "model", "check", "modes", "probe", "chart", "validate"])
+@pytest.mark.parametrize("command", ["run", "model", "check", "modes", "probe", "chart", "balance", "validate"])
 def test_standard_output_at_the_end_of_the_spec(
     scene: Path, monkeypatch: pytest.MonkeyPatch, capsys: pytest.CaptureFixture[str], command: str
 ) -> None:

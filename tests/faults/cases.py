@@ -20,6 +20,7 @@ FOLLOWING = (
     (*AS_JSON, "--by-cause"), (*AS_JSON, "--least-norm", "--axes", "from"), (*AS_JSON, "--no-reduce"),
     ("model", SPEC, "--format", "json"), ("model", SPEC), ("modes", SPEC, "--format", "json"),
     ("probe", SPEC, "--time-limit", LIMIT, "--format", "json"),
+    ("balance", SPEC, "--time-limit", LIMIT, "--format", "json"),
 )  # fmt: skip
 
 

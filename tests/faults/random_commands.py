@@ -13,7 +13,7 @@ from tests.faults.random_expressions import random_expression
 
 SPEC = "spec.yaml"
 LIMIT = "2"  # seconds that a run may take
-QUICK = ("run", "run", "run", "run", "validate", "model", "model", "modes", "probe", "check", "methods")
+QUICK = ("run", "run", "run", "run", "validate", "model", "model", "modes", "balance", "probe", "check", "methods")
 # of chart one cheap curve; all of them would take a minute a case
 CHEAP = {"chart": ("--methods", "RK4", "--steps", "0.01", "--time-limit", LIMIT)}
 NUMBERS = (

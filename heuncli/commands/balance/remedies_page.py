@@ -18,6 +18,8 @@ OF = {
     "force": "force", "moment": "moment", "mix": "force² + moment²/lever², lever {:.6g} m",
 }  # fmt: skip
 SEVERAL = "others leave as little: these are the least; a second plane, --minimise mix or moment tells them apart"
+NO_RATE = "at 1 rad/s, for no rate is known: --rate tells one"
+LEFT_OPEN = "open: redundant joints leave it so (heun explain open)"
 LABELS = {"force": "force of the masses [N]", "moment": "moment of the masses [N·m]", "drive": "drive [N·m]"}
 BY_RATE = {"force": "force of the masses [kg·m]", "moment": "moment of the masses [kg·m²]", "drive": "drive [N·m]"}
 AXES = ("x", "y", "z")
@@ -76,7 +78,9 @@ def cost_table(found: Counterbalance, all_found: BalanceResults) -> TextTable:
         largest = max((x for x in (before.peak, after.peak) if x is not None), default=0.0)
         cells = [number(value, largest) for value in (before.rms, after.rms, before.peak, after.peak)]
         rows.append((labels.get(name, f"{name} [N]"), *cells, factor(before, after)))
-    return TextTable(COST, columns, tuple(rows))
+    notes = [NO_RATE] if all_found.rate is None else []
+    notes += [LEFT_OPEN] if any(own.rms is None for own in found.before.values()) else []
+    return TextTable(COST, columns, tuple(rows), tuple(notes))
 
 
 def factor(before: OverCycle, after: OverCycle) -> str:
