@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import math
 from pathlib import Path
 
 import numpy as np
@@ -131,3 +132,28 @@ def test_v_twin_on_one_throw_turns_with_the_shaft() -> None:
     assert first.with_turn == pytest.approx(4386.490844928604, rel=DIGITS) and first.against == 0.0
     assert second.amplitude[0] == 0.0 and second.amplitude[1] == pytest.approx(1575.827798727024, rel=DIGITS)
     assert "with the turn" in found.words["force"]
+
+
+def test_schlicks_engine_is_left_with_little() -> None:
+    found = balance(load(str(SPECS / "schlick.yaml"), checking=False))
+    for quantity, order in (("force", 1), ("force", 2), ("moment", 1)):
+        row = row_of(found, quantity, order)
+        assert row is not None and row.verdict == "cancels" and row.own > 1000.0
+    assert np.abs(amplitude(found, "force", 4)).max() == pytest.approx(50.88688241, rel=1e-9)
+    assert np.abs(amplitude(found, "moment", 2)).max() == pytest.approx(4317.15684, rel=1e-9)
+    assert np.abs(amplitude(found, "moment", 4)).max() == pytest.approx(31.8135909, rel=1e-8)
+
+
+def test_schlicks_angles_and_masses() -> None:
+    """Those that he printed the conditions for: the spec's own solution of them, at two pairs of pitches."""
+    for given, (alpha, beta, ratio) in (
+        ({}, (26.3657391591801, -123.921031470062, 1.60555127546399)),
+        ({"zo": "2.0", "zi": "0.8"}, (29.631794312065, -125.115593917444, 1.51108924951913)),
+    ):
+        own = load(str(SPECS / "schlick.yaml"), overrides=given, checking=False).parameters
+        assert math.degrees(own["alpha"]) == pytest.approx(alpha, rel=1e-12)
+        assert math.degrees(own["beta"]) == pytest.approx(beta, rel=1e-12)
+        assert own["inner"] / own["outer"] == pytest.approx(ratio, rel=1e-12)
+        orders = balance(load(str(SPECS / "schlick.yaml"), overrides=given, checking=False))
+        rows = [row_of(orders, quantity, order) for quantity, order in (("force", 1), ("force", 2), ("moment", 1))]
+        assert [row.verdict for row in rows if row is not None] == ["cancels"] * 3
