@@ -12,10 +12,12 @@ from heuncli.response import tangent, workspace_of
 from heuncli.spec.load import load
 from heuncli.study.model.setup import set_up
 from heuncli.tree.layout import Layout
+from tests.oracle.tellings import TELLINGS
 from tests.oracle.values import to_yaml
 from tests.shared.dual_tangent import dual_tangent
+from tests.shared.retellings import same_results
 from tests.shared.rubbing import rubbing_scene, rubs_of
-from tests.shared.scenes import near, solved
+from tests.shared.scenes import moving, near, solved
 
 PENDULUM = """
 heun: 1
@@ -139,3 +141,14 @@ def test_its_share_is_its_own_value(seed: int) -> None:
         near(sum(share["force"] for share in block["shares"].values()), block["force"], size)
         for cause in rubs_of(scene):
             near(block["shares"][cause]["force"], told.joints[name]["shares"][cause]["force"], size)
+
+
+@pytest.mark.heavy
+@pytest.mark.parametrize("seed", range(4))
+@pytest.mark.parametrize("way", ["turned", "mirrored", "inches, pounds", "faster", "renamed", "other origins"])
+def test_told_otherwise_it_is_the_same(way: str, seed: int) -> None:
+    scene, _ = rubbing_scene(seed)
+    times = np.array([0.0, 0.1, 0.25])
+    other = TELLINGS[way](scene, np.random.default_rng(seed))
+    first, second = solved(moving(scene, times, 1e-12)), solved(moving(other.scene, times * other.time, 1e-12))
+    same_results(other, first, second, 1e-9)

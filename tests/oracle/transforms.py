@@ -155,7 +155,7 @@ def units_changed(scene: Scene, length: float = 1.0, mass: float = 1.0, time: fl
             "damper": {"coefficient": mass / time if sliding else moment * time, "sliding": mass / time},
             "distributed": {"vector": force / length, "to_vector": force / length},
             "turn_spring": {"stiffness": moment, "damping": moment * time},
-            "friction": {"torque": moment, "force": force, "speed": speed},
+            "friction": {"torque": moment, "force": force, "speed": speed, "radius": length, "length": length},
         }[spec["type"]]
         for key, factor in factors.items():
             if key in spec:

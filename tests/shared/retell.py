@@ -214,13 +214,13 @@ ENDS = dict.fromkeys(("from", "to", "on", "at", "reduce_to"), LENGTH)
 SLIDING: dict[str, dict[str, Powers]] = {
     "force": {"vector": FORCE}, "couple": {"vector": MOMENT}, "torque": {"value": FORCE}, "actuator": {"value": FORCE},
     "spring": {"stiffness": PER_LENGTH, "damping": THRUST_DAMPING, "length": LENGTH},
-    "damper": {"coefficient": THRUST_DAMPING}, "friction": {"force": FORCE, "speed": SPEED},
+    "damper": {"coefficient": THRUST_DAMPING}, "friction": {"force": FORCE, "speed": SPEED, "length": LENGTH},
     "distributed": {"vector": PER_LENGTH, "to_vector": PER_LENGTH, "from": LENGTH, "to": LENGTH},
 }  # fmt: skip
 TURNING: dict[str, dict[str, Powers]] = SLIDING | {
     "torque": {"value": MOMENT}, "turn_spring": {"stiffness": MOMENT, "damping": TORQUE_DAMPING},
     "damper": {"coefficient": TORQUE_DAMPING, "sliding": THRUST_DAMPING},
-    "friction": {"torque": MOMENT, "force": FORCE, "speed": RATE},
+    "friction": {"torque": MOMENT, "force": FORCE, "speed": RATE, "radius": LENGTH},
 }  # fmt: skip
 SLIDES = ("slide", "line", "plane")
 
