@@ -1,6 +1,7 @@
 """Speed, printed: `python -m tests.bench [PART ...] [--against PATH]`. Nothing here asserts a time.
 
-Parts: motion, chart, chain, process, export, sections, causes, reduced, balance, lagrange; each line: what, error, time.
+Parts: motion, chart, chain, process, export, sections, causes, reduced, balance, lagrange; each line: what,
+error, time.
 figures: the few that matter in one table, with --against beside those of another checkout (tests/bench/figures.py).
 honesty: no times, but true error over estimate of each kind of number, over random scenes (tests/bench/honesty.py).
 """
@@ -192,7 +193,8 @@ def sections() -> None:
 
 PARTS = {
     "motion": motion, "chart": charted, "chain": chains, "process": process, "export": export, "sections": sections,
-    "causes": by_cause, "reduced": reduced, "balance": lambda: balanced(median_ms), "lagrange": lambda: equations(median_ms),
+    "causes": by_cause, "reduced": reduced, "balance": lambda: balanced(median_ms),
+    "lagrange": lambda: equations(median_ms),
 }  # fmt: skip
 
 if __name__ == "__main__":
