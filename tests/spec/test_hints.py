@@ -68,6 +68,27 @@ def test_a_key_of_the_analysis_at_the_top_is_sent_there(key: str) -> None:
         ("forces: {f: {type: torque, on: bar, value: 5}}", "forces.f.on [unknown-key]", "couple"),
         ("forces: {f: {type: damper, joint: pivot, damping: 5}}", "forces.f.damping [unknown-key]", "coefficient"),
         ("forces: {f: {type: friction, joint: pivot, mu: 5, speed: 1}}", "forces.f.mu [unknown-key]", "coefficient"),
+        ("forces: {f: {type: friction, joint: pivot, coefficient: 0.1, speed: 1}}", "forces.f [load-joint]", "20 mm"),
+        (
+            "forces: {f: {type: friction, joint: pivot, coefficient: 0.1, torque: 1, radius: 0.1, speed: 1}}",
+            "forces.f [load-joint]",
+            "a pin takes torque or coefficient",
+        ),
+        (
+            "forces: {f: {type: friction, joint: pivot, torque: 1, radius: 0.1, speed: 1}}",
+            "forces.f.radius [load-joint]",
+            "or write coefficient",
+        ),
+        (
+            "forces: {f: {type: friction, joint: pivot, coefficient: 0.1, radius: 0.1, length: 1, speed: 1}}",
+            "forces.f.length [load-joint]",
+            "a pin rubs at its radius",
+        ),
+        (
+            "forces: {f: {type: friction, joint: pivot, coefficient: 0.1, radius: 0, speed: 1}}",
+            "forces.f.radius [not-positive]",
+            "above 0",
+        ),
         ("forces: {f: {type: force, on: bar, vector: [0, 0, 1]}}", "forces.f.on [end]", "bar.top, or bar.end?"),
         ("forces: {f: {type: force, on: bar.end, vector: 5}}", "forces.f.vector [wrong-kind]", "three components"),
     ],
