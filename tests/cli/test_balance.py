@@ -78,6 +78,7 @@ def test_orders_rate_and_turns_are_asked_for(heun: Heun, crank: str) -> None:
     assert two["harmonics"]["force"][1]["amplitude"] == pytest.approx(plain["harmonics"]["force"][0]["amplitude"])
 
 
+@pytest.mark.heavy
 def test_two_turns_where_a_load_has_them(heun: Heun, folder: Path) -> None:
     (folder / "gas.yaml").write_text(SCENE + GAS)
     told = found(heun, "gas.yaml")
@@ -106,6 +107,7 @@ def test_a_counterweight_and_its_cost(heun: Heun, crank: str) -> None:
     assert "COUNTERWEIGHTS  of least force" in text and "COST  the scene solved again" in text
 
 
+@pytest.mark.heavy
 def test_a_flywheel(heun: Heun, folder: Path) -> None:
     (folder / "gas.yaml").write_text(SCENE + GAS)
     told = found(heun, "gas.yaml", "--rate", "500rpm", "--flywheel", "main=2%")["flywheel"]
