@@ -71,6 +71,9 @@ class BodyBlock(TypedDict):
     center_acceleration: Array
     angular_velocity: Array
     angular_acceleration: Array
+    rodrigues: Array
+    momentum: Array
+    moment_of_momentum: Array
 
 
 class JointBlock(TypedDict, total=False):
@@ -133,6 +136,7 @@ class Results:
     sections: Block = field(default_factory=dict)
     forces: dict[str, ForceBlock] = field(default_factory=dict)
     energy: Block = field(default_factory=dict)
+    momentum: Block = field(default_factory=dict)
     system_vector: Block = field(default_factory=dict)
     impulses: list[Block] = field(default_factory=list)
     events: Block = field(default_factory=dict)

@@ -139,9 +139,13 @@ ROWS: tuple[Quantity, ...] = (
     *at("bodies.BODY", "attitude of the body; the columns are its axes", scalar("rotation", "1", (SPACE, SPACE))),
     *at("bodies.BODY", "the attitude as unit quaternion `w`, `x`, `y`, `z`; w ≥ 0 at the start, its sign does not jump",
         scalar("quaternion", "1", (QUATERNION,))),
+    *at("bodies.BODY", "Rodrigues' vector of the attitude: tan(half the turn) times its axis, of the turn from the "
+        "world's axes; null at half a turn", vector("rodrigues", "1")),
     *at("bodies.BODY", "of the centre of mass",
         vector("center", "m"), vector("center_velocity", "m/s"), vector("center_acceleration", "m/s²")),
     *at("bodies.BODY", "of the body", vector("angular_velocity", "rad/s"), vector("angular_acceleration", "rad/s²")),
+    *at("bodies.BODY", "momentum (16); moment of momentum (17) about `foundation.about`",
+        vector("momentum", "N·s"), vector("moment_of_momentum", "N·m·s")),
     *at("points.POINT", "of a named point, `body.point`",
         vector("position", "m"), vector("velocity", "m/s"), vector("acceleration", "m/s²")),
     *at("coordinates.JOINT", "turning of `to` against `from` about the axis, turns counted",
@@ -193,6 +197,7 @@ ROWS: tuple[Quantity, ...] = (
     *at("sections.SECTION.stress",
         "extremes over the section, [on the safe side](stresses.md); `utilisation` is `mises` over `strength`",
         *(cut_scalar(name, "1" if name == "utilisation" else "Pa") for name in STRESSES)),
+    *at("sections.SECTION", "kinetic energy of the piece", cut_scalar("energy", "J")),
     *at("sections.SECTION", "of a run of cuts: from its first point to each cut",
         scalar("s", "m", (CUT,), timed=False)),
     *at("sections.SECTION", "of a run: before or beyond what acts in the plane of the cut", words("side")),
@@ -207,8 +212,14 @@ ROWS: tuple[Quantity, ...] = (
     *at("forces.FORCE", "that it puts into the bodies", scalar("power", "W")),
     *at("energy", "kinetic + potential − work is constant",
         scalar("kinetic", "J"), scalar("potential", "J"), scalar("work", "J")),
+    *at("momentum", "sums over the bodies: momentum, Σ m x × ẋ and Σ I σ about `foundation.about`; their rates are "
+        "the mass effects",
+        vector("total", "N·s"), vector("moment_orbital", "N·m·s"), vector("moment_spin", "N·m·s")),
     *at("system_vector", "Heun's B (44)", vector("total", "N·m/s")),
     *at("system_vector.bodies", "each body's part in it", vector("BODY", "N·m/s")),
+    *at("system_vector.energy_part", "of that part 2 E σ, E the energy of its spin", vector("BODY", "N·m/s")),
+    *at("system_vector.deviation_part", "and G = T (σ × σ̇); 0 where the body turns on about one axis: its vector then "
+        "lies on the momentary axis", vector("BODY", "N·m/s")),
     *at("impulses.NUMBER", "its instant", scalar("time", "s", timed=False)),
     *at("impulses.NUMBER", "what struck: blows, drives whose rate jumps, ropes that caught, stops", words("names")),
     *at("impulses.NUMBER.bodies.BODY", "jumps of the body's velocities",
@@ -249,6 +260,7 @@ REPORT_OF = {
     "sections": "sections",
     "forces": "forces",
     "energy": "energy",
+    "momentum": "motion",
     "system_vector": "motion",
 }
 BLOWS, EVENTS = "impulses", "events"  # the reports of what does not run over the instants
@@ -266,9 +278,9 @@ KIND_OF = {"forces": "reactions", "axis": "foundation"}
 NAMES = ("BODY", "POINT", "JOINT", "ELEMENT", "STOP", "SECTION", "FORCE", "CAUSE", "EVENT", "NUMBER")
 BY_CAUSE = "by cause"  # of kinds of errors
 AT_A_BLOW = {"N": "N·s", "N·m": "N·m·s"}  # units of the loads in `impulses`
-# what a blow has besides its own quantities, as at one instant; stresses are no matter of impulses
+# what a blow has besides its own quantities, as at one instant; stresses and energies are no matter of impulses
 STRUCK = ("foundation", "joints", "stops", "sections", "certain_sums")
-UNSTRUCK = "sections.SECTION.stress."
+UNSTRUCK = ("sections.SECTION.stress.", "sections.SECTION.energy")
 
 Node: TypeAlias = "dict[str, Node | Quantity]"
 

@@ -27,9 +27,6 @@ SINGULAR_FALL = 0.5  # of the largest value in the search: on the way through a 
 PUSHED = 1e-8  # of the loads: what of them acts along a motion of a pose known to RANK, a digit above
 NEARLY_SINGULAR = 1e-6  # relative singular value: reactions err by gap / value, 1e-10 / 1e-6, and keep four digits
 
-NO_OFFSET = 1e-9  # rad/s^2, m/s^2 by the size: what a pose that rests leaves is rounding
-TELLING = 1e8  # largest over least rate of coordinates for a unit of motion: eight digits of the partials are left
-
 # -- open: which components no law of rigid bodies decides, and the sums that are certain
 NO_SELF_STRESS = 1e-13  # of unit multipliers: a null vector that puts less into every joint is rounding
 OPEN_SHARE = 1e-8  # of a self-stress's largest share: a null vector is known to RANK, ten times better
@@ -68,6 +65,11 @@ CANCELS = 1e-9  # of the sum of the bodies' own amplitudes: drawings typed with 
 ORDERS_SETTLED = (
     1e-12  # of the largest order: what the highest may be for all below them to be told; some FFT's roundings
 )
+
+# -- coordinates of Lagrange's equations
+TELLING = 1e8  # largest over least rate of coordinates for a unit of motion: eight digits of the partials are left
+NO_OFFSET = 1e-9  # rad/s^2, or of the size: what a pose that rests leaves of accelerations is rounding
+HALF_TURN = 1e-9  # of the scalar part of a quaternion, known to 1e-15: six digits of its Rodrigues vector are left
 
 # -- no inertia
 NO_INERTIA = 1e-12  # of the body's largest moment: a tensor turned into other axes keeps 14 digits, some are typed

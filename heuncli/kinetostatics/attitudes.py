@@ -33,6 +33,12 @@ def quaternions(layout: Layout, recovered: Recovered) -> Array:
     return np.asarray((now * signs[:, None])[:, [layout.place[i] for i in range(len(layout.bodies))]])
 
 
+def rodrigues(q: Array) -> Array:
+    """Rodrigues' vectors tan(half the turn) n = (x, y, z) / w of quaternions (..., 4); nan beside half a turn."""
+    w = np.where(np.abs(q[..., :1]) < tolerances.HALF_TURN, np.nan, q[..., :1])
+    return np.asarray(q[..., 1:] / w)
+
+
 def start_angles(layout: Layout) -> Array:
     """The coordinates of the freedoms at the start, (n,), as far as they are turns."""
     driven = [layout.starts[freedom.joint].angle if freedom.q < 0 else 0.0 for freedom in layout.freedoms]

@@ -42,7 +42,7 @@ class Cuts:
     None without shapes; about: where moments are taken: "at", "centroid", or (body, point); line: whether the
     reduction line (`sections.reduction_line`) is told, too; warnings: sentences on what the planes meet;
     properties, strength [Pa]: for stresses, None where not given (of kind `auto` those of the form); form: the shapes
-    that are cut.
+    that are cut. struck: a blow is what they are looked at for, in which nothing is stressed or moves yet.
 
     Where cuts move along a body from instant to instant, points, pieces and centroids have an axis of instants first.
     """
@@ -64,6 +64,7 @@ class Cuts:
     strength: float | None
     warnings: tuple[str, ...]
     form: Form | None = None
+    struck: bool = False
 
     @cached_property
     def taken(self) -> CutProperties:
@@ -87,8 +88,8 @@ class Cuts:
 
     @property
     def without_stresses(self) -> Cuts:
-        """The cuts without properties of their sections, so that no stresses are told."""
-        return replace(self, properties=None)
+        """The cuts as they meet a blow: of impulses no stresses are told, and no energies."""
+        return replace(self, properties=None, struck=True)
 
 
 def attached(mechanism: Mechanism, body: int) -> list[tuple[str, Array]]:

@@ -40,7 +40,8 @@ def energy(layout: Layout, recovered: Recovered, states: BodyStates, loads: Sequ
 def system_vector(mechanism: Mechanism, states: BodyStates) -> Block:
     """B = m x_s. x x_s.. + (sigma.I sigma) sigma + T_s (sigma x sigma.), T_s = tr(I)/2 - I; (44) of any body.
 
-    manual/theory.md, "System vector".
+    Its second part is that of the energy, 2 E sigma, the third the deviation G, which vanishes where the axis of the
+    turn stays. manual/theory.md, "System vector".
     """
     m = np.array([b.mass for b in mechanism.bodies])
     inertia = np.array([b.inertia for b in mechanism.bodies])
@@ -48,9 +49,12 @@ def system_vector(mechanism: Mechanism, states: BodyStates) -> Block:
     u = np.einsum("tnji,tnj->tni", states.R, states.alpha)
     T = 0.5 * np.trace(inertia, axis1=1, axis2=2)[:, None, None] * np.eye(3) - inertia
     twice_e = np.einsum("tni,nij,tnj->tn", w, inertia, w)
-    own: Array = twice_e[:, :, None] * w + np.einsum("nij,tnj->tni", T, cross_rows(w, u))
-    B = m[:, None] * cross_rows(states.v_centre, states.a_centre) + np.einsum("tnij,tnj->tni", states.R, own)
-    return {"total": B.sum(axis=1), "bodies": {b.name: B[:, i] for i, b in enumerate(mechanism.bodies)}}
+    by_energy = twice_e[:, :, None] * states.omega
+    G = np.einsum("tnij,njk,tnk->tni", states.R, T, cross_rows(w, u))
+    B = m[:, None] * cross_rows(states.v_centre, states.a_centre) + by_energy + G
+    parts = {"bodies": B, "energy_part": by_energy, "deviation_part": G}
+    own = {key: {b.name: part[:, i] for i, b in enumerate(mechanism.bodies)} for key, part in parts.items()}
+    return {"total": B.sum(axis=1)} | own
 
 
 def power_imbalance(

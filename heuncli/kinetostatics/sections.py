@@ -119,6 +119,19 @@ def line_on_piece(cuts: Cuts, start: Array, end: Array) -> tuple[Array, Array]:
     return part, part[..., None] * start + run[..., None] * (end - start)
 
 
+def piece_energy(cuts: Cuts, states: BodyStates) -> Array:
+    """E' = tr(V P V') / 2 of the pieces (n_t, k) [J], V = [hat(sigma), x_o.] in body axes, P their pseudo-inertias."""
+    R = states.R[:, cuts.body]
+    w, v = in_body_axes(R, states.omega[:, cuts.body]), in_body_axes(R, states.v[:, cuts.body])
+    V = np.zeros((len(w), 3, 4))
+    for i in range(3):
+        V[:, i, (i + 1) % 3] = -w[:, (i + 2) % 3]
+        V[:, i, (i + 2) % 3] = w[:, (i + 1) % 3]
+    V[:, :, 3] = v
+    pieces = "tkab" if cuts.pieces.ndim == 4 else "kab"
+    return np.asarray(0.5 * np.einsum(f"tia,{pieces},tib->tk", V, cuts.pieces, V))
+
+
 def acceleration_matrix(body: int, states: BodyStates, gravity: Array) -> Array:
     """Acc = [hat(sigma.) + hat(sigma)^2, x_o.. - g] in body axes, rows first: (3, n_t, 4)."""
     R = states.R[:, body]
@@ -324,6 +337,8 @@ def section(
         "first_axis": where.R @ cuts.e1,
         "open": [],
     } | components
+    if not cuts.struck:
+        block["energy"] = piece_energy(cuts, states)
     if cuts.properties is not None:
         block["stress"] = stress(cuts, {name: components[name] for name in ("N", "Q1", "Q2")} | about_centroid)
     if cuts.line:
@@ -331,7 +346,7 @@ def section(
         line = reduction_line(where, force, moment)
         block["line"] = {k: np.where(sure[..., None] if v.ndim == 3 else sure, v, np.nan) for k, v in line.items()}
     if cuts.s is None:
-        for key in ("point", *components):
+        for key in ({"point", "energy"} & block.keys()) | components.keys():
             block[key] = block[key][:, 0]
         for part in {"line", "stress"} & block.keys():
             block[part] = {key: value[:, 0] for key, value in block[part].items()}

@@ -94,7 +94,7 @@ def state_space(at: Instant, by: Chosen, Q: Array, asked: Sequence[str], outputs
             "inputs": [*(unit_of(at, name) for name in inputs.forces), *map(acceleration_unit, inputs.drives)],
             "outputs": units,
         },
-        offset=np.where(np.abs(offset) <= tolerances.NO_OFFSET * at.setup.scene.layout.size, 0.0, offset),
+        offset=beside_rounding(offset, at.setup.scene.layout.size),
     )  # fmt: skip
 
 
@@ -103,6 +103,11 @@ def require_given_loads(at: Instant) -> None:
     for load in at.setup.scene.mechanism.rubbing:
         message = f"forces.{load.name} hangs on what its joint carries, and so on the inputs: no state space has it yet"
         raise SolveError(Problem(CODE, message, hint="give friction a size: friction: {type: friction, force: 20 N}"))
+
+
+def beside_rounding(offset: Array, size: float) -> Array:
+    """The rates and accelerations of a state; 0 of one that rests to rounding."""
+    return np.where(np.abs(offset) <= tolerances.NO_OFFSET * max(size, 1.0), 0.0, offset)
 
 
 def rate_name(name: str) -> str:

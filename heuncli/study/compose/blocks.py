@@ -22,6 +22,7 @@ from heuncli.kinetostatics.coordinates import coordinates, points
 from heuncli.kinetostatics.energy import system_vector
 from heuncli.kinetostatics.foundation import foundation
 from heuncli.kinetostatics.joint_axes import axes_at, put_in_axes
+from heuncli.kinetostatics.momentum import Momenta, momenta
 from heuncli.kinetostatics.reactions import JointLoads
 from heuncli.mechanism.model import JointLoad, PairLoad
 from heuncli.results import Array, Block, BodyBlock, ForceBlock, JointBlock, Mask
@@ -56,10 +57,13 @@ def blocks(recovery: Recovery, wanted: Set[str]) -> dict[str, Any]:
     if "energy" in wanted:
         shown["energy"] = recovery.energy
     if "motion" in wanted:
-        from heuncli.kinetostatics.attitudes import quaternions  # tables do not show them
+        from heuncli.kinetostatics.attitudes import quaternions, rodrigues  # tables do not show them
 
         turns = quaternions(layout, recovered)
-        shown["bodies"] = {b.name: body_block(states, turns, i) for i, b in enumerate(mechanism.bodies)}
+        vectors = rodrigues(turns)
+        moved = momenta(mechanism, states, recovery.setup.about)
+        shown["bodies"] = {b.name: body_block(states, turns, vectors, moved, i) for i, b in enumerate(mechanism.bodies)}
+        shown["momentum"] = moved.totals()
         shown["coordinates"] = coordinates(layout, recovered, states)
         shown["system_vector"] = system_vector(mechanism, states)
     if "points" in wanted:
@@ -76,8 +80,8 @@ def blocks_asked_for(recovery: Recovery, wanted: Set[str]) -> dict[str, Any]:
     return chosen(blocks(recovery, wanted), recovery.setup.asked)
 
 
-def body_block(states: BodyStates, turns: Array, i: int) -> BodyBlock:
-    """Motion of one body."""
+def body_block(states: BodyStates, turns: Array, vectors: Array, moved: Momenta, i: int) -> BodyBlock:
+    """Motion of one body; turns, vectors: quaternions and Rodrigues' vectors of all."""
     return {
         "position": states.x[:, i],
         "velocity": states.v[:, i],
@@ -88,6 +92,9 @@ def body_block(states: BodyStates, turns: Array, i: int) -> BodyBlock:
         "center_acceleration": states.a_centre[:, i],
         "angular_velocity": states.omega[:, i],
         "angular_acceleration": states.alpha[:, i],
+        "rodrigues": vectors[:, i],
+        "momentum": moved.linear[:, i],
+        "moment_of_momentum": moved.orbital[:, i] + moved.spin[:, i],
     }
 
 

@@ -1,0 +1,42 @@
+"""Coordinates that tell a motion hardly, states that rest to rounding, and turns that are nearly half a turn."""
+
+from __future__ import annotations
+
+import numpy as np
+
+from heuncli.commands.lagrange.coordinates import require_telling
+from heuncli.commands.lagrange.state_space import beside_rounding
+from heuncli.errors import SolveError
+from heuncli.kinetostatics.attitudes import rodrigues
+from tests.honesty.boundaries.part import Part, Row
+
+
+def told(x: float) -> str:
+    """Two motions of which the second coordinate sees an x-th part."""
+    rates = {"a.angle": np.array([1.0, 0.0]), "b.angle": np.array([0.0, 1.0 / x]), "c.angle": np.array([0.0, 1.0])}
+    try:
+        require_telling(["a.angle", "b.angle"], np.array([rates["a.angle"], rates["b.angle"]]), 2, rates)
+    except SolveError as error:
+        assert "b.angle cannot tell" in str(error) and "c.angle moves" in str(error)
+        return "refused"
+    return "told"
+
+
+def rests(x: float) -> str:
+    """An acceleration of x rad/s^2 in a scene of a metre."""
+    return "moves" if beside_rounding(np.array([x]), 1.0).any() else "rests"
+
+
+def vector(x: float) -> str:
+    """A turn whose quaternion has the scalar part x."""
+    return "none" if np.isnan(rodrigues(np.array([x, 0.0, 0.0, 1.0]))).all() else "told"
+
+
+PART = Part(
+    headings=("coordinates of Lagrange's equations",),
+    rows=(
+        Row("TELLING", told, "told", "refused"),
+        Row("NO_OFFSET", rests, "rests", "moves"),
+        Row("HALF_TURN", vector, "none", "told"),
+    ),
+)
