@@ -175,11 +175,11 @@ def require_telling(names: Sequence[str], by: Array, count: int, scaled: Mapping
         few = "motion is" if count == 1 else "motions are"
         message = f"{count} {few} free, and {len(names)} coordinate{'s are' if len(names) != 1 else ' is'} named"
         raise SolveError(Problem(CODE, message, hint=f"name {count} of {', '.join(list(scaled)[:8])}"))
-    _, s, V = np.linalg.svd(by)
+    U, s, V = np.linalg.svd(by)
     if s[-1] * tolerances.TELLING < s[0] or (count == 1 and s[0] * tolerances.TELLING < largest_of(scaled)):
         along = {name: abs(float(row @ V[-1])) for name, row in scaled.items()}
         moves = max(along, key=lambda name: along[name])
-        still = names[int(np.argmin([abs(float(row @ V[-1])) for row in by]))] if count > 1 else names[0]
+        still = names[int(np.argmax(np.abs(U[:, -1])))]
         message = f"{still} cannot tell the motion here: it stands while {moves} moves (dead centre)"
         raise SolveError(Problem(CODE, message, hint=f"take another coordinate: --coordinates {moves}"))
 
