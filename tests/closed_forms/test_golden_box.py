@@ -63,6 +63,40 @@ def test_system_vector() -> None:
     near(found["bodies"]["box"][0], vector, 10.0, EXACT)
 
 
+def test_momenta() -> None:
+    """(16), (17) about the fixed point: m σ × x_s, and Jσ with J of a box about the centre of a face."""
+    found = box("at")
+    m, sigma = 2.0 * 1.0 * 0.6, np.array([1.0, 2.0, -0.5])
+    J = m / 12.0 * np.array([1.0 + 0.36, 16.0 + 0.36, 16.0 + 1.0])  # 4 · 2² / 12 about an end
+    near(found.momentum["total"][0], m * np.array([0.0, -0.5, -2.0]), 1.0, EXACT)
+    near(found.bodies["box"]["momentum"][0], m * np.array([0.0, -0.5, -2.0]), 1.0, EXACT)
+    near(found.bodies["box"]["moment_of_momentum"][0], J * sigma, 1.0, EXACT)
+    near(found.momentum["moment_orbital"][0] + found.momentum["moment_spin"][0], J * sigma, 1.0, EXACT)
+
+
+def test_parts_of_the_system_vector() -> None:
+    """2E σ and G = T σ × σ̇ about the centre of mass, T = Σ m x xᵀ."""
+    found = box("at")
+    m, sigma = 1.2, np.array([1.0, 2.0, -0.5])
+    own = m / 12.0 * np.array([1.36, 4.36, 5.0])
+    T = m / 12.0 * np.array([4.0, 1.0, 0.36])
+    near(found.system_vector["energy_part"]["box"][0], float(own @ sigma**2) * sigma, 10.0, EXACT)
+    across = T * np.cross(sigma, found.bodies["box"]["angular_acceleration"][0])
+    near(found.system_vector["deviation_part"]["box"][0], across, 10.0, EXACT)
+
+
+def test_on_the_momentary_axis() -> None:
+    """Where σ̇ is along σ there is no G, and B of a body whose centre stays is along σ."""
+    found = solved("""
+heun: 1
+bodies: {wheel: {mass: 2, center: [0, 0, 0], inertia: [1, 2, 3], angular_velocity: [0, 0, 4]}}
+forces: {motor: {type: couple, on: wheel, vector: [0, 0, 5]}}
+""").system_vector
+    near(found["energy_part"]["wheel"][0], [0.0, 0.0, 3.0 * 4.0**3], 192.0, EXACT)
+    assert not found["deviation_part"]["wheel"].any()
+    near(found["total"][0], found["energy_part"]["wheel"][0], 192.0, EXACT)
+
+
 @pytest.mark.parametrize("turn", [0.0, 1.1])
 def test_turned_round(turn: float) -> None:
     """The same with the plane's other side and another first axis: −s', and components in the other frame."""

@@ -369,6 +369,8 @@ def family(path: str) -> str:
         return "velocity"
     if last in ("position", "center", "point", "length", "travel", "angle", "rotation", "s"):
         return "place"
+    if path.startswith("momentum") or "momentum" in last:
+        return "momentum"
     if path.startswith("system_vector"):
         return "system_vector"
     return "load"

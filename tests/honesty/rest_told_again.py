@@ -43,6 +43,8 @@ RATES = {
     "angular_acceleration",
     "rate",
     "speed",
+    "momentum",
+    "moment_of_momentum",
 }  # fmt: skip  (what is left of them is the search's affair)
 NUMBERS = ((LEAST, -2), (GROWS, -1), (SWINGS, -1))  # with their powers of time
 

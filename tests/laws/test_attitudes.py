@@ -10,6 +10,7 @@ import pytest
 from heuncli.spec.load import load
 from heuncli.study.model.options import Options
 from heuncli.study.workflow import solve
+from tests.shared.scenes import solved
 
 SPECS = sorted((Path(__file__).parents[2] / "specs").glob("*.yaml"))
 MOTION = Options(wanted=frozenset({"motion"}))
@@ -23,6 +24,24 @@ def rotation(q: np.ndarray) -> np.ndarray:
     return np.eye(3) + 2.0 * w[:, None, None] * hat + 2.0 * hat @ hat
 
 
+def cayley(kappa: np.ndarray, R: np.ndarray) -> np.ndarray:
+    """R (1 - hat(kappa)) - (1 + hat(kappa)) over 1 + |kappa|, where there is a kappa; (n, 3, 3)."""
+    told = np.isfinite(kappa).all(axis=1)
+    x, y, z = kappa[told].T
+    O = np.zeros_like(x)
+    hat = np.array([[O, -z, y], [z, O, -x], [-y, x, O]]).transpose(2, 0, 1)
+    return (R[told] @ (np.eye(3) - hat) - (np.eye(3) + hat)) / (1.0 + np.abs(kappa[told]).max(axis=1))[:, None, None]
+
+
+def test_rodrigues_numbers_as_typed() -> None:
+    """They are those that an orientation is given by, and at half a turn there are none."""
+    body = "{mass: 1, center: [0, 0, 0], inertia: [1, 2, 3], orientation: {rodrigues: [0.3, -0.7, 2.5]}}"
+    turned = "{mass: 1, center: [0, 0, 0], inertia: [1, 2, 3], orientation: {axis: [1, 2, 2], angle: 180 deg}}"
+    found = solved(f"heun: 1\nbodies: {{given: {body}, turned: {turned}}}\n").bodies
+    np.testing.assert_allclose(found["given"]["rodrigues"], [[0.3, -0.7, 2.5]], rtol=0, atol=1e-14)
+    assert np.isnan(found["turned"]["rodrigues"]).all()
+
+
 @pytest.mark.heavy
 @pytest.mark.parametrize("path", SPECS, ids=lambda path: path.stem)
 def test_they_are_the_rotations_and_go_on(path: Path) -> None:
@@ -32,6 +51,7 @@ def test_they_are_the_rotations_and_go_on(path: Path) -> None:
         q = body["quaternion"]
         np.testing.assert_allclose(np.sum(q * q, axis=1), 1.0, rtol=1e-15)
         np.testing.assert_allclose(rotation(q), body["rotation"], atol=1e-13)
+        np.testing.assert_allclose(cayley(body["rodrigues"], body["rotation"]), 0.0, atol=1e-12)
         assert np.all(np.sum(q[1:] * q[:-1], axis=1) > 0.5)  # less than 120 degrees between two instants
     first = [body["quaternion"][0, 0] for body in study.results.bodies.values()]
     assert min(first) >= -1e-12

@@ -103,6 +103,13 @@ def test_mass_effects_energy_and_system_vector(seed: int) -> None:
         for name, B in vectors.items():
             near(found.system_vector["bodies"][name][k], B, size)
         near(found.system_vector["total"][k], sum(vectors.values()), size * len(vectors))
+        for name, m in c.read.masses.items():  # its parts: 2E σ, and G, which is across σ where T is a number
+            body, told = state[name], found.system_vector
+            orbital = m.mass * np.cross(body.speed(m.center), o.acceleration[name])
+            spin = body.rotation @ m.inertia @ body.rotation.T @ body.angular_velocity
+            along = float(spin @ body.angular_velocity) * body.angular_velocity
+            near(told["energy_part"][name][k], along, size)
+            near(told["deviation_part"][name][k], vectors[name] - orbital - along, size)
 
 
 @pytest.mark.parametrize("seed", SEEDS)

@@ -104,6 +104,7 @@ def pendulum(t: Array, **changes: Any) -> Results:
             "motor": {"value": np.cos(t), "rate": np.sin(t), "power": np.cos(t) * np.sin(t)},
         },
         "energy": {"kinetic": 0.5 * np.sin(t) ** 2, "potential": 0.5 * np.cos(t) ** 2, "work": 0.0 * t},
+        "momentum": dict.fromkeys(("total", "moment_orbital", "moment_spin"), zero),
         "system_vector": {"total": zero, "bodies": {"upper": zero}},
         "accuracy": ACCURATE,
     }

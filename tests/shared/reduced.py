@@ -19,7 +19,8 @@ from heuncli.study.workflow import solve
 BLOCKS = ("bodies", "points", "coordinates", "foundation", "joints", "stops", "sections", "forces", "energy",
           "system_vector")  # fmt: skip
 ROUNDING = 1e-11  # of the largest of a kind, beside what both runs say of themselves
-UNTOLD = ("axis", "line", "stress")  # directions of what may be zero; the rest are functions of what is compared
+# directions of what may be zero; the rest are functions of what is compared, of half turns beyond all bounds
+UNTOLD = ("axis", "line", "stress", "rodrigues")
 SPINS = ("moment", "M1", "M2", "T")
 
 
@@ -168,7 +169,19 @@ def scales_of(study: Study, largest: Mapping[str, float]) -> dict[str, float]:
     forces, moments = ([largest.get(name, 0.0) for name in names] for names in (FORCES, MOMENTS))
     F = max([mass * a, *forces, *(moment / L for moment in moments)])
     v = max(largest["center_velocity"], L * largest["angular_velocity"], math.sqrt(F / mass * L))
-    return {"L": L, "a": F / mass, "v": v, "F": F, "FL": F * L, "w": v / L, "al": F / mass / L, "1": 1.0, "Fv": F * v}
+    return {
+        "L": L,
+        "a": F / mass,
+        "v": v,
+        "F": F,
+        "FL": F * L,
+        "w": v / L,
+        "al": F / mass / L,
+        "1": 1.0,
+        "Fv": F * v,
+        "mv": mass * v,
+        "mvL": mass * v * L,
+    }
 
 
 OF_THE_RUN = ("the tolerance 0 was not reached", "of 0 steps it could not be decided")
@@ -189,6 +202,7 @@ MEASURED: dict[str, tuple[str, ...]] = {  # by scales_of: all kinds that may be 
     **dict.fromkeys(("angular_velocity", "angular_velocity_jump"), ("w",)), "rate": ("v", "w"),
     "angle": ("1",), "rotation": ("1",), "normal": ("1",), "first_axis": ("1",),
     **dict.fromkeys(("acceleration", "center_acceleration"), ("a", "al")), "angular_acceleration": ("al",),
+    "momentum": ("mv",), "moment_of_momentum": ("mvL",),
     "total": ("Fv",), "value": ("F", "FL"), "power": ("Fv",), "drive": ("F", "FL"),
     **dict.fromkeys(("energy_before", "energy_after", "energy_jump"), ("FL",)),
 }  # fmt: skip

@@ -16,10 +16,12 @@ POLAR, AXIAL, TENSOR, SCALAR, SECOND, THIRD = "polar", "axial", "tensor", "scala
 LENGTH, SPEED, ACCELERATION = (0, 1, 0), (0, 1, -1), (0, 1, -2)
 ANGLE, SPIN, SPIN_RATE = (0, 0, 0), (0, 0, -1), (0, 0, -2)
 FORCE, MOMENT, ENERGY, POWER = (1, 1, -2), (1, 2, -2), (1, 2, -2), (1, 2, -3)
+MOMENTUM, MOMENT_OF_MOMENTUM, SYSTEM = (1, 1, -1), (1, 2, -1), (1, 2, -3)
 
 BODY = {
     "center": (POLAR, LENGTH), "center_velocity": (POLAR, SPEED), "center_acceleration": (POLAR, ACCELERATION),
     "rotation": (TENSOR, ANGLE), "angular_velocity": (AXIAL, SPIN), "angular_acceleration": (AXIAL, SPIN_RATE),
+    "momentum": (POLAR, MOMENTUM), "moment_of_momentum": (AXIAL, MOMENT_OF_MOMENTUM),
 }  # fmt: skip
 POINT = {"position": (POLAR, LENGTH), "velocity": (POLAR, SPEED), "acceleration": (POLAR, ACCELERATION)}
 WRENCH = {"force": (POLAR, FORCE), "moment": (AXIAL, MOMENT)}
@@ -31,6 +33,10 @@ EFFECT = {"force": (POLAR, FORCE), "moment_orbital": (AXIAL, MOMENT), "moment_sp
 SECTION = {
     **WRENCH, "point": (POLAR, LENGTH), "normal": (POLAR, ANGLE), "first_axis": (POLAR, ANGLE), "N": (SCALAR, FORCE),
     "Q1": (SCALAR, FORCE), "Q2": (SECOND, FORCE), "T": (THIRD, MOMENT), "M1": (THIRD, MOMENT), "M2": (SCALAR, MOMENT),
+}  # fmt: skip
+TOTALS = {
+    "total": (POLAR, MOMENTUM),
+    **dict.fromkeys(("moment_orbital", "moment_spin"), (AXIAL, MOMENT_OF_MOMENTUM)),
 }  # fmt: skip
 POWERS = {"kinetic": (SCALAR, ENERGY), "potential": (SCALAR, ENERGY), "work": (SCALAR, ENERGY)}
 
@@ -101,5 +107,9 @@ def same_results(told: Telling, first: Results, second: Results, tolerance: floa
     blocks(first.foundation.get("supports", {}), second.foundation.get("supports", {}), WRENCH, told.joints)
     blocks({"": first.foundation}, {"": second.foundation}, WRENCH, {})
     blocks({"": first.foundation["mass_effect"]}, {"": second.foundation["mass_effect"]}, EFFECT, {})
+    blocks({"": first.momentum}, {"": second.momentum}, TOTALS, {})
+    for part in ("energy_part", "deviation_part"):  # as moments about a spin, they turn as spins do
+        own = {told.bodies.get(name, name): B for name, B in first.system_vector[part].items()}
+        blocks({"": own}, {"": second.system_vector[part]}, dict.fromkeys(own, (AXIAL, SYSTEM)), {})
     blocks({"": first.energy}, {"": second.energy}, POWERS, {})
     return max(worst)

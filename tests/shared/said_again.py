@@ -25,10 +25,11 @@ AXIAL = frozenset({
     "angular_velocity_jump",
 })  # fmt: skip
 IN_A_MIRROR = frozenset({"Q2", "T", "M1"})  # scalars that change their sign: along e2 = n × e1, about n and e1
-# attitudes are seen by points; lines are nowhere defined where loads vanish; B is a moment and a spin at once
+# attitudes are seen by points, momenta by velocities; lines are nowhere defined where loads vanish; B is a moment and
+# a spin at once
 SKIPPED = frozenset({
     "quaternion", "rotation", "normal", "first_axis", "axis", "line", "about", "system_vector", "kind", "condition",
-    "begins", "to",
+    "begins", "to", "rodrigues", "momentum", "moment_of_momentum",
 })  # fmt: skip
 RUNS = ("bodies", "points", "coordinates", "foundation", "joints", "stops", "sections", "forces", "energy")
 ROUNDING = 64.0 * float(np.finfo(float).eps)  # of what a number is summed from: some dozen sums of some dozen terms
