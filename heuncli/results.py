@@ -92,6 +92,7 @@ class JointBlock(TypedDict, total=False):
     radial: Array
     tilting: Array
     tension: Array
+    pressure: Array
     shares: Block
 
 

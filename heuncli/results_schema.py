@@ -176,6 +176,7 @@ ROWS: tuple[Quantity, ...] = (
     *at("joints.JOINT", "force or torque of the drive ON `to`, along or about the axis", scalar("drive", "N | N·m")),
     *at("joints.JOINT", "the force along the axis, the force across it, the moment across it",
         scalar("axial", "N"), scalar("radial", "N"), scalar("tilting", "N·m")),
+    *at("joints.JOINT", "mean pressure of its `bearing`: \\|force\\| / (diameter · width)", scalar("pressure", "Pa")),
     *at("joints.JOINT", "force of a rod, > 0 where it pulls", scalar("tension", "N")),
     *shares("joints.JOINT", vector("force", "N"), vector("moment", "N·m"), scalar("drive", "N | N·m"),
         scalar("tension", "N")),
@@ -268,7 +269,9 @@ REPORTS = (*dict.fromkeys(REPORT_OF.values()), BLOWS, EVENTS)
 SHARES = "shares"  # no block of its own, but beside every wrench of these:
 SHARED = frozenset({"foundation", "joints", "sections"})
 # Magnitudes: never negative, with a kink at zero that their squares do not have.
-MAGNITUDES = frozenset({"radial", "tilting", "shear_torsion", "shear_mean", "shear_max", "mises", "utilisation"})
+MAGNITUDES = frozenset(
+    {"radial", "tilting", "shear_torsion", "shear_mean", "shear_max", "mises", "utilisation", "pressure"}
+)
 AFTER_THE_RUN = frozenset({"certain_sums", "accuracy"})  # of numbers that no spec foretells
 ESTIMATES = {
     "foundation": "foundation", "joints": "reactions", "stops": "reactions", "sections": "sections", "energy": "energy",
@@ -278,9 +281,9 @@ KIND_OF = {"forces": "reactions", "axis": "foundation"}
 NAMES = ("BODY", "POINT", "JOINT", "ELEMENT", "STOP", "SECTION", "FORCE", "CAUSE", "EVENT", "NUMBER")
 BY_CAUSE = "by cause"  # of kinds of errors
 AT_A_BLOW = {"N": "N·s", "N·m": "N·m·s"}  # units of the loads in `impulses`
-# what a blow has besides its own quantities, as at one instant; stresses and energies are no matter of impulses
+# what a blow has besides its own quantities, as at one instant; of impulses no stresses, pressures, energies are told
 STRUCK = ("foundation", "joints", "stops", "sections", "certain_sums")
-UNSTRUCK = ("sections.SECTION.stress.", "sections.SECTION.energy")
+UNSTRUCK = ("joints.JOINT.pressure", "sections.SECTION.stress.", "sections.SECTION.energy")
 
 Node: TypeAlias = "dict[str, Node | Quantity]"
 

@@ -129,7 +129,7 @@ def joint(j: m.Joint[str, m.Vec], index: dict[str, int], drive: m.Drive | None, 
         axis=axis, to_axis=unit(j.to_axis) if j.to_axis_given else axis, to_axis_given=j.to_axis_given,
         angle=j.angle, rate=j.rate, travel=j.travel, speed=j.speed, length=j.length, tension_only=j.tension_only,
         stiffness=(np.array(j.stiffness[0]), np.array(j.stiffness[1])) if j.stiffness is not None else None,
-        drive=with_values(drive, last) if drive is not None else None, restitution=j.restitution,
+        drive=with_values(drive, last) if drive is not None else None, restitution=j.restitution, bearing=j.bearing,
         p_name=j.p_name, q_name=j.q_name,
     )  # fmt: skip
 

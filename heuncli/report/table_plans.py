@@ -132,7 +132,7 @@ JOINTS = TablePlan(
     "joints",
     "joints",
     "joint",
-    ("force", "moment", "axial", "radial", "tilting", "tension", "drive"),
+    ("force", "moment", "axial", "radial", "tilting", "tension", "pressure", "drive"),
     lambda results, labels: (
         f'JOINTS  what "from" exerts ON "to" (drive, friction apart), {_axes(results)}, moment about the "to" point'
     ),

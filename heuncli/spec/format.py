@@ -229,6 +229,17 @@ class AnyJoint(Entry):
     ) = None
 
 
+class BearingEntry(Entry):
+    diameter: Length
+    width: Length
+
+
+class Bearing(AnyJoint):
+    """A joint that may have a bearing."""
+
+    bearing: BearingEntry | None = None
+
+
 class Turning(Entry):
     angle: Angle | None = None
     rate: Rate | None = None
@@ -243,11 +254,11 @@ class TurningAndSliding(Turning, Sliding):
     """Held start values of a cylinder, which turns and slides."""
 
 
-class BallJoint(AnyJoint):
+class BallJoint(Bearing):
     type: Literal["ball"]
 
 
-class PinJoint(AnyJoint):
+class PinJoint(Bearing):
     type: Literal["pin"]
     axis: Direction
     to_axis: Direction | None = None
@@ -261,7 +272,7 @@ class SlideJoint(AnyJoint):
     initial: Sliding | None = None
 
 
-class CylinderJoint(AnyJoint):
+class CylinderJoint(Bearing):
     type: Literal["cylinder"]
     axis: Direction
     to_axis: Direction | None = None
@@ -278,7 +289,7 @@ class WeldJoint(AnyJoint):
     type: Literal["weld"]
 
 
-class LineJoint(AnyJoint):
+class LineJoint(Bearing):
     type: Literal["line"]
     axis: Direction
 

@@ -139,7 +139,7 @@ class Joint(Generic[Ref, V]):
     length: of a rod [m], None = as assembled. stiffness: what shares out redundant reactions, of force [N/m] and moment
     [N m/rad] along the world's axes at the start, infinite where not given. drive: in a mechanism; a spec lists its
     drives by themselves. restitution: of a rope that goes slack and catches; None: the run ends where it would push.
-    p_name, q_name: of the two points, where they have names.
+    bearing: of its bearing diameter times width [m^2]. p_name, q_name: of the two points, where they have names.
     """
 
     name: str
@@ -160,6 +160,7 @@ class Joint(Generic[Ref, V]):
     stiffness: tuple[V, V] | None
     drive: Drive | None
     restitution: float | None = None
+    bearing: float | None = None
     p_name: str | None = None
     q_name: str | None = None
 

@@ -157,6 +157,7 @@ class Resolver:
             stiffness=stiffness(joint.stiffness),
             drive=None,
             restitution=getattr(joint, "restitution", None),
+            bearing=area(getattr(joint, "bearing", None)),
             p_name=a.name,
             q_name=b.name,
         )
@@ -276,6 +277,11 @@ def directed(value: m.Vec | f.VelocityInFrame | f.RateInFrame | None) -> m.Direc
     if isinstance(value, f.VelocityInFrame | f.RateInFrame):
         return m.Directed(value.vector, value.frame == "body")
     return m.Directed(value, False)
+
+
+def area(bearing: f.BearingEntry | None) -> float | None:
+    """Diameter times width of a bearing [m^2]: what a mean pressure stands on."""
+    return bearing.diameter * bearing.width if bearing is not None else None
 
 
 def stiffness(value: float | f.StiffnessParts | None) -> tuple[m.Vec, m.Vec] | None:

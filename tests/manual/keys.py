@@ -22,6 +22,7 @@ CHAPTERS: dict[str, type[Entry] | Mapping[str, type[Entry]]] = {
     "Orientation": f.Orientation,
     "Piece": f.PieceEntry,
     "Joints": f.JOINTS,
+    "Bearing of joints": f.BearingEntry,
     "Initial": {"pin": f.Turning, "slide": f.Sliding, "cylinder": f.TurningAndSliding},
     "Stiffness of joints": f.StiffnessParts,
     "Drives": f.DriveEntry,

@@ -33,7 +33,8 @@ bodies:
   bar: {shapes: [{type: rod, from: [0, 0, 0], to: [0, 0, -1], mass: 1}], points: {top: [0, 0, 0], end: [0, 0, -1]}}
   block: {mass: 1, center: [0, 0, 0], inertia: [1, 1, 1], points: {c: [0, 0, 0]}, position: [1, 0, 0]}
 joints:
-  pivot: {type: pin, from: ground.O, to: bar.top, axis: [0, 1, 0], initial: {angle: 0.5}}
+  pivot:
+    {type: pin, from: ground.O, to: bar.top, axis: [0, 1, 0], initial: {angle: 0.5}, bearing: {diameter: 1, width: 1}}
   guide: {type: slide, from: ground.wall, to: block.c, axis: [0, 0, 1]}
 forces: {coil: {type: spring, from: ground.wall, to: bar.end, stiffness: 10, length: 1}}
 stops: {buffer: {joint: pivot, angle: [0.1, null]}, floor: {joint: guide, travel: [0, null]}}

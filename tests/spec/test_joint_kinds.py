@@ -7,7 +7,7 @@ from typing import get_args
 
 import pytest
 
-from heuncli.joint_kinds import FLAT, JOINTS, RATES, SYNONYMS, TYPES, Kind
+from heuncli.joint_kinds import ABOUT_AXIS, FLAT, FREE, JOINTS, LINE, POINT, RATES, SYNONYMS, TYPES, Kind
 from heuncli.spec import format as f
 from heuncli.spec.fields import keys_of
 
@@ -29,6 +29,7 @@ def test_keys(kind: Kind) -> None:
     keys |= {"to_axis"} if kind.to_axis != "never" else set()
     keys |= {"initial"} if kind.coordinates else set()
     keys |= {"length", "tension_only", "restitution"} if kind.keeps_distance else set()
+    keys |= {"bearing"} if kind.hold in (POINT, LINE) and kind.turn in (FREE, ABOUT_AXIS) else set()  # a journal turns
     assert set(keys_of(f.JOINTS[kind.name])) == keys
 
 

@@ -190,6 +190,8 @@ ENDS = "from: ground.O, to: b.q"
     (f"{{type: ball, {ENDS}}}", {}),
     (f"{{type: pin, {ENDS}, axis: [0, 0, 2], to_axis: [0, 1, 0], initial: {{angle: 90 deg, rate: 60 rpm}}}}",
      {"axis": (0.0, 0.0, 2.0), "to_axis": (0.0, 1.0, 0.0), "angle": math.pi / 2, "rate": 2.0 * math.pi}),
+    (f"{{type: pin, {ENDS}, axis: [0, 0, 1], bearing: {{diameter: 20 mm, width: 50 mm}}}}",
+     {"axis": (0.0, 0.0, 1.0), "bearing": 0.02 * 0.05}),
     (f"{{type: slide, {ENDS}, axis: [1, 0, 0], initial: {{travel: 1 mm, speed: 2}}}}",
      {"axis": (1.0, 0.0, 0.0), "travel": 1e-3, "speed": 2.0}),
     (f"{{type: cylinder, {ENDS}, axis: [1, 0, 0], initial: {{travel: 1, rate: 2}}}}",
@@ -208,7 +210,7 @@ ENDS = "from: ground.O, to: b.q"
 def test_joints(text: str, expected: dict[str, Any]) -> None:
     found = joint(text)
     kind: Any = text.split()[1].rstrip(",")
-    none = dict.fromkeys(("angle", "rate", "travel", "speed", "length", "stiffness", "drive", "restitution"))
+    none = dict.fromkeys(("angle", "rate", "travel", "speed", "length", "stiffness", "drive", "restitution", "bearing"))
     ends = {"a": "ground", "p": (0.0, 0.0, 0.0), "p_name": "O", "b": "b", "q": (1.0, 2.0, 3.0), "q_name": "q"}
     axis = expected.get("axis", (0.0, 0.0, 1.0))
     axes = {"axis": axis, "to_axis": axis, "to_axis_given": "to_axis" in expected, "tension_only": False}

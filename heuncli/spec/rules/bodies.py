@@ -76,6 +76,8 @@ def not_positive(draft: DraftDocument) -> Iterator[Violation]:
     for name, joint in draft.document.joints.items():
         path = ("joints", name)
         yield from positive(path, joint, "length")
+        if isinstance(joint, f.Bearing) and joint.bearing is not None:
+            yield from positive((*path, "bearing"), joint.bearing, "diameter", "width")
         if isinstance(joint.stiffness, float) and joint.stiffness <= 0.0:
             message = f"a stiffness must be more than 0, not {joint.stiffness:g}"
             yield Violation((*path, "stiffness"), message, "{moment: 0} gives way to what others hold; {force: 0}, too")

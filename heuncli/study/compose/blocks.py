@@ -112,6 +112,8 @@ def joint_block(load: JointLoads) -> JointBlock:
         block["tilting"] = np.sqrt(np.sum(tilting**2, axis=1))
     if load.tension is not None:
         block["tension"] = load.tension
+    if load.joint.bearing is not None:
+        block["pressure"] = np.sqrt(np.sum(load.force**2, axis=1)) / load.joint.bearing
     return block
 
 

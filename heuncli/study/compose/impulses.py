@@ -45,7 +45,8 @@ KINDS = (  # of estimated errors, the block they are of, and its numbers by unit
 def at_rest(setup: Setup) -> Setup:
     """The scene without weight and loads: what a blow meets; its cuts have no stresses."""
     scene = setup.scene
-    mechanism = replace(scene.mechanism, gravity=np.zeros(3), loads=())
+    joints = tuple(replace(joint, bearing=None) for joint in scene.mechanism.joints)
+    mechanism = replace(scene.mechanism, gravity=np.zeros(3), loads=(), joints=joints)
     cuts = tuple(cuts.without_stresses for cuts in setup.cuts)
     scene = replace(scene, mechanism=mechanism, layout=replace(scene.layout, mechanism=mechanism))
     return replace(setup, scene=scene, cuts=cuts)
