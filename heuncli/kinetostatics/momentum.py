@@ -9,6 +9,7 @@ from __future__ import annotations
 import numpy as np
 
 from heuncli.kinetostatics.bodies import BodyStates
+from heuncli.kinetostatics.reactions import in_plane
 from heuncli.mechanism.model import Mechanism
 from heuncli.records import record
 from heuncli.results import Array, Block
@@ -36,4 +37,8 @@ def momenta(mechanism: Mechanism, states: BodyStates, about: Array) -> Momenta:
     w = np.einsum("tnji,tnj->tni", states.R, states.omega)
     linear = m[:, None] * states.v_centre
     spin: Array = np.einsum("tnij,njk,tnk->tni", states.R, inertia, w)
-    return Momenta(linear, cross_rows(states.centre - about, linear), spin)
+    orbital = cross_rows(states.centre - about, linear)
+    if mechanism.planar:
+        linear, orbital = in_plane(linear, orbital)
+        _, spin = in_plane(linear, spin)
+    return Momenta(linear, orbital, spin)

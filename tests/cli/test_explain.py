@@ -52,5 +52,25 @@ def test_an_unknown_topic_is_told(heun: Heun, topic: str, told: str) -> None:
     assert told in done.stderr
 
 
+@pytest.mark.parametrize("topic", ["31", "(31)"])
+def test_a_number_leads_to_its_equation(heun: Heun, topic: str) -> None:
+    done = heun("explain", topic)
+    assert (done.returncode, done.stderr) == (0, "")
+    assert done.stdout.startswith("equation  (31), (32)\nsays      momenta p_i")
+    assert [line.split()[0] for line in done.stdout.splitlines()] == ["equation", "says", "seen", "code", "tests"]
+
+
+@pytest.mark.parametrize("number", ["15", "(62)", "0"])
+def test_a_number_that_no_equation_has_is_told(heun: Heun, number: str) -> None:
+    done = heun("explain", number)
+    assert (done.returncode, done.stdout) == (2, "")
+    assert "(16) to (61)" in done.stderr
+
+
+def test_every_number_has_its_equation(heun: Heun) -> None:
+    for number in range(16, 62):
+        assert f"({number})" in heun("explain", str(number)).stdout.splitlines()[0]
+
+
 def test_a_word_too_many_is_bad_usage(heun: Heun) -> None:
     assert heun("explain", "signs", "open").returncode == 2

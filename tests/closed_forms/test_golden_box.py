@@ -74,6 +74,21 @@ def test_momenta() -> None:
     near(found.momentum["moment_orbital"][0] + found.momentum["moment_spin"][0], J * sigma, 1.0, EXACT)
 
 
+def test_a_scene_declared_planar_has_no_momenta_out_of_its_plane() -> None:
+    """Its centre above the foundation's point, and a deviation moment: what of M_v lies in the plane is not there."""
+    found = solved("""
+heun: 1
+space: planar
+ground: {points: {O: [0, 0, 0]}}
+bodies:
+  crank: {mass: 2, center: [0.1, 0, 0.3], inertia: [2, 2, 3], deviation: [0.2, 0.1, 0], points: {hub: [0, 0, 0]}}
+joints: {shaft: {type: pin, from: ground.O, to: crank.hub, initial: {rate: 5}}}
+foundation: {about: [0, 0, 0]}
+""")
+    near(found.bodies["crank"]["moment_of_momentum"][0], [0.0, 0.0, (3.0 + 2.0 * 0.1**2) * 5.0], 15.1, EXACT)
+    near(found.momentum["total"][0], [0.0, 2.0 * 0.1 * 5.0, 0.0], 1.0, EXACT)
+
+
 def test_parts_of_the_system_vector() -> None:
     """2E σ and G = T σ × σ̇ about the centre of mass, T = Σ m x xᵀ."""
     found = box("at")

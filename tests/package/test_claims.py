@@ -1,6 +1,6 @@
 """Claims that are checked: what comments, docstrings and the manual cite exists, and every equation has code and tests.
 
-Read as text: nothing is imported, so that a claim about a file that nobody runs is checked, too.
+Sources are read as text, so that a claim about a file that nobody runs is checked, too.
 """
 
 from __future__ import annotations
@@ -14,6 +14,9 @@ from typing import NamedTuple
 
 import pytest
 
+from heuncli.cli.options import fields_of
+from heuncli.cli.registry import command_of
+from heuncli.results_schema import quantity
 from tests.shared.folders import ROOT
 
 PACKAGE, TESTS, MANUAL = ROOT / "heuncli", ROOT / "tests", ROOT / "heuncli" / "manual"
@@ -28,8 +31,7 @@ SECTION = re.compile(r'manual/(\w+)\.md(?:, "([^"]+)")?')
 STANDS_FOR = re.compile(r"\b(?!README)[A-Z]+\.(?:py|md)$")
 CASE = re.compile(r'"Closed cases" (\d+(?:, \d+)*)')
 
-# Equations that no result has yet: the Lagrange side. A row leaves this set when its code comes.
-NOT_YET = frozenset({*range(29, 40), 51, 52, 53})
+NOT_YET: frozenset[int] = frozenset()  # equations that no result has: a row leaves this set when its code comes
 IDENTITIES = frozenset({19, *range(22, 29), 41})
 
 
@@ -180,9 +182,10 @@ def test_the_digits_of_closed_cases_are_compared() -> None:
 
 
 class Row(NamedTuple):
-    """A row of the index: its numbers, what stands in place of code, functions and tests as (path, name)."""
+    """A row of the index: its numbers, how it is seen, what stands in place of code, functions and tests."""
 
     numbers: tuple[int, ...]
+    seen: str
     instead: str
     code: tuple[tuple[Path, str], ...]
     tests: tuple[tuple[Path, str], ...]
@@ -202,9 +205,9 @@ def named(cell: str, base: Path) -> tuple[tuple[Path, str], ...]:
 @cache
 def index() -> tuple[Row, ...]:
     rows = []
-    for equation, _, code, tests in cells(page_section("theory", "Index of equations")):
+    for equation, _, seen, code, tests in cells(page_section("equations", "Index of equations")):
         numbers = tuple(int(n) for n in NUMBER.findall(equation))
-        rows.append(Row(numbers, "" if "`" in code else code, named(code, PACKAGE), named(tests, TESTS)))
+        rows.append(Row(numbers, seen, "" if "`" in code else code, named(code, PACKAGE), named(tests, TESTS)))
     return tuple(rows)
 
 
@@ -226,6 +229,23 @@ def test_an_equation_names_a_function_and_a_test(row: Row) -> None:
     assert row.tests and all(name.startswith("test_") for _, name in row.tests)
     for path, name in (*row.code, *row.tests):
         assert path.exists() and name in functions(path), f"{path.relative_to(ROOT)}: {name}"
+
+
+@pytest.mark.parametrize("row", index(), ids=lambda row: "-".join(map(str, row.numbers)))
+def test_an_equation_is_seen_where_the_index_says(row: Row) -> None:
+    """By paths into the results, which the schema has, and by commands with options that there are."""
+    places = re.findall(r"`([^`]+)`", row.seen)
+    if not places:
+        assert row.seen == {"identity": "in the others", "not yet": "not yet"}[row.instead]
+    for place in places:
+        program, *words = place.split()
+        if program == "heun":
+            command = command_of(words[0])
+            assert command is not None, place
+            assert {*words[1:]} <= {word for field in fields_of(command.request) for word in field.option.words}, place
+        else:
+            found = quantity(place.split("."))
+            assert found is not None and found.path == place, place
 
 
 def test_every_number_cited_in_the_code_leads_there() -> None:

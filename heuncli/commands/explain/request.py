@@ -9,6 +9,9 @@ class ExplainRequest(NamedTuple):
     """Show a page of the manual, or the list of its pages."""
 
     topic: Annotated[
-        str | None, Option((), "The name of a page, or of a command; without it, the list of the pages.", "TOPIC")
+        str | None,
+        Option(
+            (), "The name of a page or a command, or the number of an equation; without it, the list of pages.", "TOPIC"
+        ),
     ] = None
     output: Annotated[str | None, OUTPUT] = None

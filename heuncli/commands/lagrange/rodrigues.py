@@ -1,7 +1,7 @@
 """Rodrigues-Cayley vectors as coordinates of bodies that turn freely (no. 20, and the end of no. 22).
 
     k = tan(angle / 2) n, of the turn from where the body's axes are those of the world
-    w = W k',   W = 2/(1 + k^2) (1 + k^),   W^-1 = (1 + k k' - k^) / 2                    (40)
+    w = W k',   W = 2/(1 + k^2) (1 + k^),   W^-1 = (1 + k k' - k^) / 2              (42), (43)
     w. = W (k'' - 2 k . k' / (1 + k^2) k'),   so   k'' = W^-1 w. + 2 k . k' / (1 + k^2) k'
 They are coordinates proper: with them the quasi-velocities of a ball have Lagrange's equations, too.
 """
