@@ -19,7 +19,7 @@ SAME = 1e-9  # of the last instant
 FLOOR = 1e-7  # of the largest of a unit: what is hunted here are wrong numbers, not last digits
 BLOCKS = ("bodies", "points", "coordinates", "foundation", "joints", "stops", "sections", "forces", "energy")
 # not everywhere defined, told elsewhere, or of a strength that is not told otherwise
-SKIPPED = frozenset({"quaternion", "axis", "line", "shares", "about", "pitch", "utilisation"})
+SKIPPED = frozenset({"quaternion", "rodrigues", "axis", "line", "shares", "about", "pitch", "utilisation"})
 LEAST = {"rad": 1.0, "1": 1.0, "Pa": 1e3}  # numbers far below these are rounding of what is 0
 # powers of time in units
 RATES = {
@@ -139,7 +139,10 @@ def _compared(path: str, wanted: Array, told: Array, row: Quantity, first: Study
 
 def _size(study: Study, unit: str, sizes: dict[str, float]) -> float:
     """What numbers of a unit are summed from, or the largest of them, if that is more."""
-    return max(sizes.get(unit, 0.0), study.magnitudes.by_unit.get(unit, 0.0), LEAST.get(unit, 0.0))
+    by_unit = study.magnitudes.by_unit
+    momentum = sum(body.mass for body in study.setup.scene.mechanism.bodies) * by_unit.get("m/s", 0.0)
+    summed = {"N·s": momentum, "N·m·s": momentum * by_unit.get("m", 0.0)}.get(unit, 0.0)
+    return max(sizes.get(unit, 0.0), by_unit.get(unit, 0.0), summed, LEAST.get(unit, 0.0))
 
 
 def sizes_of(*studies: Study) -> dict[str, float]:

@@ -197,8 +197,8 @@ def within_extremes(random: Random, tree: Tree, study: Study) -> Twins:
 
 
 def in_halves(random: Random, tree: Tree, _: Study) -> Twins:
-    twin = retell.in_halves(tree, random)
-    return Twins(tree, twin, lambda a, b: apart(a, b, kept, more=True, same_open=False))
+    twin, halved = retell.in_halves(tree, random), frozenset({"momentum", "moment_of_momentum"})
+    return Twins(tree, twin, lambda a, b: apart(a, b, kept, more=True, same_open=False, skipped=halved))
 
 
 def from_the_other_end(random: Random, tree: Tree, _: Study) -> Twins:

@@ -193,7 +193,7 @@ ESTIMATED = {
 }  # fmt: skip
 FORCES = ("force", "N", "Q1", "Q2", "axial", "radial", "tension")
 MOMENTS = ("moment", "T", "M1", "M2", "tilting", "moment_orbital", "moment_spin")
-ENERGIES = ("kinetic", "potential", "work")
+ENERGIES = ("kinetic", "potential", "work", "energy")
 ALIKE = {kind: among for among in (FORCES, MOMENTS, ENERGIES) for kind in among}
 MEASURED: dict[str, tuple[str, ...]] = {  # by scales_of: all kinds that may be nothing but rounding
     **dict.fromkeys(FORCES, ("F",)), **dict.fromkeys(MOMENTS, ("FL",)), **dict.fromkeys(ENERGIES, ("FL",)),
