@@ -143,6 +143,7 @@ def least_by_unit(recovery: Recovery, near: Indices) -> dict[str, Array]:
     return {
         "m": size * one, "m/s": v, "m/s²": a, "rad": one, "rad/s": v / size, "rad/s²": a / size, "1": one,
         "N": mass * a, "N·m": mass * a * size, "J": mass * a * size, "W": mass * a * v, "N·m/s": mass * a * v,
+        "N·s": mass * v, "N·m·s": mass * v * size,
     }  # fmt: skip
 
 
