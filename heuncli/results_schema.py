@@ -144,7 +144,7 @@ ROWS: tuple[Quantity, ...] = (
     *at("bodies.BODY", "of the centre of mass",
         vector("center", "m"), vector("center_velocity", "m/s"), vector("center_acceleration", "m/s²")),
     *at("bodies.BODY", "of the body", vector("angular_velocity", "rad/s"), vector("angular_acceleration", "rad/s²")),
-    *at("bodies.BODY", "momentum (16); moment of momentum (17) about `foundation.about`",
+    *at("bodies.BODY", "momentum; moment of momentum (16) about `foundation.about`",
         vector("momentum", "N·s"), vector("moment_of_momentum", "N·m·s")),
     *at("points.POINT", "of a named point, `body.point`",
         vector("position", "m"), vector("velocity", "m/s"), vector("acceleration", "m/s²")),

@@ -1,7 +1,7 @@
 """Momentum and moment of momentum of the bodies: Heun (1901), (16) and (17).
 
     sum m x_s.        sum m x_s x x_s. + sum I sigma       about a point that rests
-Their rates are the mass effects (56).
+Their rates are the mass effects.
 """
 
 from __future__ import annotations

@@ -12,13 +12,12 @@ from heuncli.commands.explain.request import ExplainRequest
 from heuncli.errors import Problem
 from heuncli.nearest import did_you_mean
 
-NUMBER = re.compile(r"\d+|\(\d+\)")  # of an equation, as it is typed
 FOLDER = Path(__file__).parents[2] / "manual"
 # in the order in which a reader may want them, the pages of single commands in the order of those
 PAGES = tuple(dict.fromkeys((
     "commands", "format", "howto", "results", "signs", "open", "stresses", "rest",
-    *(command.page for command in COMMANDS), "accuracy", "limits", "theory", "equations", "references",
-    "decisions", "speed", "developing", "contributing", "index",
+    *(command.page for command in COMMANDS), "accuracy", "limits", "theory", "equations", "references", "decisions",
+    "speed", "developing", "contributing", "index",
 )))  # fmt: skip
 
 
@@ -29,12 +28,12 @@ def main(request: ExplainRequest) -> int:
 
 
 def page(topic: str) -> str:
-    """The text of a page, by its name or that of a command, or an equation. Raises UsageError where there is none."""
+    """The text of a page, by its name or that of a command. Raises UsageError where there is none."""
     command = command_of(topic)
     if command is not None:
         topic = command.page
-    if NUMBER.fullmatch(topic):
-        return equation(topic.strip("()"))
+    if (number := re.fullmatch(r"\(?(\d+)\)?", topic)) is not None:
+        return equation(number[1])
     if topic not in PAGES:
         hint = f"{indexed(topic) or did_you_mean(topic, PAGES, 'topics')}; heun explain lists the pages"
         raise UsageError(Problem("bad-option", f"explain {topic}: no page of the manual is called that", hint=hint))
@@ -42,15 +41,15 @@ def page(topic: str) -> str:
 
 
 def equation(number: str) -> str:
-    """A numbered equation of the paper: its row of the page on them, a line a cell. Raises UsageError."""
-    head, _, *rows = (line for line in page("equations").splitlines() if line.startswith("|"))
-    for row in rows:
-        cells = [cell.strip() for cell in row[1:-1].split(" | ")]
-        if f"({number})" in cells[0]:
-            names = [cell.strip() for cell in head[1:-1].split(" | ")]
-            return "".join(f"{name:<10}{cell}\n" for name, cell in zip(names, cells, strict=True))
-    hint = "the paper's numbers are (16) to (61); heun explain equations lists them"
-    raise UsageError(Problem("bad-option", f"explain {number}: no equation of the paper has that number", hint=hint))
+    """The row of a numbered equation, a line a cell. Raises UsageError for a number that the page does not have."""
+    rows = [line.strip("|").split(" | ") for line in page("equations").splitlines() if line.startswith("| ")]
+    heads, *equations = [[cell.strip() for cell in row] for row in rows]
+    own = next((row for row in equations if f"({number})" in row[0]), None)
+    if own is None:
+        message = f"explain {number}: no equation of the paper has this number"
+        raise UsageError(Problem("bad-option", message, hint="they are (16) to (61): heun explain equations"))
+    width = max(map(len, heads))
+    return "".join(f"{head:<{width}}  {cell}\n" for head, cell in zip(heads, own, strict=True))
 
 
 def indexed(word: str) -> str:

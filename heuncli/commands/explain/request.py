@@ -10,8 +10,6 @@ class ExplainRequest(NamedTuple):
 
     topic: Annotated[
         str | None,
-        Option(
-            (), "The name of a page or a command, or the number of an equation; without it, the list of pages.", "TOPIC"
-        ),
+        Option((), "A page, a command, or the number of an equation; without it, the list of the pages.", "TOPIC"),
     ] = None
     output: Annotated[str | None, OUTPUT] = None
