@@ -7,6 +7,7 @@ A table is known by its page, its heading and its first line; what stands around
 
 from __future__ import annotations
 
+import re
 from collections.abc import Iterator, Sequence
 from itertools import groupby
 from typing import NamedTuple
@@ -22,8 +23,10 @@ from heuncli.results_schema import NOT_YET, ROWS, SPACE, Quantity, is_share
 from heuncli.spec import format as f
 from heuncli.spec.words import FORCE_WORDS, SHAPE_WORDS
 from tests.manual.keys import PLACES
+from tests.shared.cited_texts import equations
 from tests.shared.manual import README, anchor, below, file_of, tables_below
 
+SEEN = 3  # words by which a group of equations is seen
 SOLVED = [row for row in ROWS if row.meaning != NOT_YET]
 
 
@@ -192,7 +195,18 @@ def pages() -> Iterator[tuple[str, str]]:
         yield f"[{name}](heuncli/manual/{name}.md)", summary(name)
 
 
+def groups_of_equations() -> Iterator[tuple[str, str, str]]:
+    """The headings of the page on equations with their numbers, and the first words by which users see them."""
+    for heading, rows in equations().items():
+        numbers = [int(n) for row in rows for n in re.findall(r"\((\d+)\)", row[0])]
+        first, last = min(numbers), max(numbers)
+        words = [word for row in rows for word in re.findall(r"`([^`]+)`", row[2])]
+        seen = dict.fromkeys(word for word in words if "." in word or word.startswith("heun "))
+        yield f"({first})–({last})" if first < last else f"({first})", heading, quoted([*seen][:SEEN])
+
+
 TABLES = (
+    Table(README, "The paper", ("equations", "of", "seen in"), list(groups_of_equations())),
     Table(README, "The manual", ("page", "about"), list(pages())),
     Table("results", "Paths", ("path", "SI unit", ""), list(results())),
     Table("results", "What is no number", ("path", "meaning"), list(no_numbers())),

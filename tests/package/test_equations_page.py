@@ -14,7 +14,7 @@ import pytest
 from heuncli.cli.registry import command_of
 from heuncli.commands.lagrange.forms import ALWAYS, KEYS
 from heuncli.results_schema import quantity
-from tests.shared.cited_texts import PACKAGE, TESTS, cells, page_section, scopes, texts, tree
+from tests.shared.cited_texts import PACKAGE, TESTS, equations, scopes, texts, tree
 from tests.shared.folders import ROOT
 
 NUMBER = re.compile(r"\((1[6-9]|[2-5]\d|6[01])\)")  # of an equation of the paper
@@ -40,7 +40,7 @@ def named(cell: str, base: Path) -> tuple[tuple[Path, str], ...]:
 @cache
 def index() -> tuple[Row, ...]:
     rows = []
-    for equation, _, seen, code, tests in cells(page_section("equations", "Numbers")):
+    for equation, _, seen, code, tests in (row for group in equations().values() for row in group):
         numbers = tuple(int(n) for n in NUMBER.findall(equation))
         instead, *_ = code.split(",") if not code.startswith("`") else [""]
         rows.append(Row(numbers, seen, instead, named(code, PACKAGE), named(tests, TESTS)))

@@ -79,6 +79,14 @@ def page_section(page: str, title: str) -> str:
     return text.split(f"\n## {title}\n", 1)[1].split("\n## ", 1)[0]
 
 
+@cache
+def equations() -> dict[str, list[list[str]]]:
+    """The rows of the page on equations, (equation, says, seen, code, tests) each, by their headings."""
+    text = (MANUAL / "equations.md").read_text(encoding="utf-8")
+    headings = re.findall(r"^## (.*)$", text, re.MULTILINE)
+    return {heading: cells(page_section("equations", heading)) for heading in headings}
+
+
 def cells(section: str) -> list[list[str]]:
     """The rows of a section's last table, without its head; a bar within a cell is written \\|."""
     rows = [line.strip()[1:-1] for line in section.splitlines() if line.startswith("|")]
