@@ -165,11 +165,13 @@ def require_coordinates(scene: FreedScene, own: Chosen, found: Linearised, movin
 
 
 def inputs_of(at: Instant, by: Chosen, asked: Sequence[str]) -> Inputs:
-    """The inputs asked for; by default all forces that have a value. Raises SolveError for a name of neither."""
+    """The inputs asked for; by default all loads that have one value. Raises SolveError for a name of neither."""
     forces = [load.name for load in at.freed.layout.mechanism.loads if has_value(load)]
     drives = {drive_name(at, name): name for name, is_driven in zip(by.names, by.driven, strict=True) if is_driven}
     if not asked:
-        return Inputs(tuple(dict.fromkeys(forces)), ())
+        loads = at.freed.layout.mechanism.loads
+        plain = [own.name for own in loads if not isinstance(own, PointLoad) or direction(own) is not None]
+        return Inputs(tuple(dict.fromkeys(name for name in forces if name in plain)), ())
     wrong = [name for name in asked if name not in forces and name not in drives]
     if wrong:
         known = [*dict.fromkeys(forces), *drives]
@@ -191,8 +193,17 @@ def drive_name(at: Instant, coordinate: str) -> str:
 
 
 def has_value(load: Load) -> bool:
-    """Whether a load is told by a value."""
+    """Whether a load is told by values."""
     return bool(load.values) and not (isinstance(load, PointLoad) and load.spread is not None)
+
+
+def direction(load: PointLoad) -> Array | None:
+    """Of a force along which its value counts: that of a constant one, or the only axis along which it varies."""
+    varying = [k for k, value in enumerate(load.vector) if value.constant != 0.0]
+    values = np.array([value.constant if value.constant is not None else np.nan for value in load.vector])
+    if np.isfinite(values).all() and values.any():
+        return np.asarray(values / np.sqrt(values @ values))
+    return np.eye(3)[varying[0]] if len(varying) == 1 else None
 
 
 def load_named(at: Instant, name: str) -> Load:
@@ -216,13 +227,8 @@ def of_one(load: Load) -> Load:
     """A load with a value of 1. Raises SolveError where it has no direction."""
     if not isinstance(load, PointLoad):
         return replace(load, value=UNIT)
-    varying = [k for k, value in enumerate(load.vector) if value.constant != 0.0]
-    values = np.array([value.constant if value.constant is not None else np.nan for value in load.vector])
-    if np.isfinite(values).all() and values.any():
-        values = values / np.sqrt(values @ values)
-    elif len(varying) == 1:
-        values = np.eye(3)[varying[0]]
-    else:
+    values = direction(load)
+    if values is None:
         message = f"--inputs {load.name}: a force of several components that vary has no one value"
         raise SolveError(Problem(CODE, message, hint="make it several forces, each along one axis"))
     x, y, z = (Expression.of(float(value)) for value in values)

@@ -1,0 +1,59 @@
+"""A of a state space is how the accelerations change beside the state, also where that moves: by central differences."""
+
+from __future__ import annotations
+
+from typing import Any
+
+import numpy as np
+import pytest
+
+from heuncli.commands.lagrange.coordinates import accelerations, chosen
+from heuncli.commands.lagrange.instant import Instant, instant_of
+from heuncli.commands.lagrange.study import LagrangeQuestion, told
+from heuncli.kinetostatics.bodies import body_states
+from heuncli.linearisation.displacements import displaced
+from heuncli.linearisation.linearise import linearised
+from heuncli.spec.load import load
+from heuncli.tree.layout import places_of_rates
+from tests.oracle.values import to_yaml
+from tests.shared.loops import loop_scene
+from tests.shared.trees import tree_scene
+
+H = 1e-5  # [rad], [m], and of their rates: its square, and rounding over it, are below SAME
+SAME = 1e-6  # of the largest entry
+PINS: dict[str, Any] = {"kinds": ("pin", "slide"), "free": 0.0}
+
+
+def at_rates(at: Instant, names: tuple[str, ...], dq: Any, rates: Any) -> Any:
+    """q'' at coordinates moved by dq, with these rates."""
+    layout, runner = at.freed.layout, at.freed.runner
+    by = chosen(at.freed.scene, at.found, at.freed.driven, names)
+    moved = displaced(layout, at.state, by.S @ dq)
+    times = np.array([at.t])
+    y = runner.recovered(times, moved[None], holding=at.holding).states[0].copy()
+    there = chosen(at.freed.scene, linearised(layout, at.t, y, at.holding), at.freed.driven, names)
+    place = places_of_rates(layout)
+    y[place[place >= 0]] = there.S @ rates
+    found = runner.recovered(times, y[None], holding=at.holding)
+    return accelerations(layout, names, body_states(layout, found))[0]
+
+
+@pytest.mark.parametrize(("kind", "seed"), [*(("tree", k) for k in range(10)), *(("loop", k) for k in range(10))])
+def test_by_differences(kind: str, seed: int) -> None:
+    scene, _ = tree_scene(seed, **PINS) if kind == "tree" else loop_scene(seed, **PINS)
+    spec = load("scene.yaml", to_yaml({**scene, "analysis": {"type": "state"}}))
+    at = instant_of(spec, None, None)
+    found = told(spec, at, LagrangeQuestion(state_space=True))
+    assert found.state_space is not None
+    f = len(found.names)
+    steps = H * np.eye(f)
+    still = np.zeros(f)
+    columns = [(at_rates(at, found.names, e, found.rates) - at_rates(at, found.names, -e, found.rates)) for e in steps]
+    columns += [
+        at_rates(at, found.names, still, found.rates + e) - at_rates(at, found.names, still, found.rates - e)
+        for e in steps
+    ]
+    A = found.state_space.A[f:]
+    size = max(float(np.abs(A).max()), float(np.abs(found.accelerations).max()), 1.0)
+    assert np.abs(np.array(columns).T / (2.0 * H) - A).max() <= SAME * size
+    assert np.abs(found.state_space.offset - np.concatenate([found.rates, found.accelerations])).max() <= 1e-9 * size
