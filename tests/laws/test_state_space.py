@@ -1,4 +1,4 @@
-"""A of a state space is how the accelerations change beside the state, also where that moves: by central differences."""
+"""A of a state space is how accelerations change beside the state, also where that moves: by central differences."""
 
 from __future__ import annotations
 
