@@ -9,9 +9,8 @@ from typing import Any
 import numpy as np
 
 from heuncli.commands.lagrange.results import LagrangeResults, StateSpace
-from heuncli.foreign_text import shown
 from heuncli.report.page_width import fit
-from heuncli.report.text_table import WIDTH, TextColumn, TextTable, plain
+from heuncli.report.text_table import WIDTH, TextColumn, TextTable, labelled, plain
 from heuncli.results import Array
 from heuncli.version import VERSION
 
@@ -31,8 +30,7 @@ COLUMNS = ("q", "q'", "p = ∂E/∂q'", "C", "k", "drive", "q''")
 
 def write(found: LagrangeResults, only: Sequence[str] = ()) -> str:
     """The page as text; only: parts, as forms.KEYS names them."""
-    lines = [("heun", f"{VERSION}  {found.title}"), *energy_lines(found)]
-    head = "".join(f"{label.ljust(6)}  {shown(text)}\n" for label, text in lines)
+    head = labelled([("heun", f"{VERSION}  {found.title}"), *energy_lines(found)])
     asked = [table for part, table in tables(found) if not only or part in only]
     return "\n".join([head, *("".join(plain(part, WIDTH) for part in fit(table, WIDTH)) for table in asked)])
 
@@ -91,12 +89,13 @@ def label(found: LagrangeResults, i: int) -> str:
 def equations(found: LagrangeResults) -> TextTable:
     """A row a coordinate."""
     forces = np.array([found.coriolis, found.total, found.drives])
+    reached = np.abs(found.eta) @ found.scale
     rows = []
     for i in range(len(found.names)):
         given = (found.values[i], found.rates[i], found.momenta[i])
         rows.append((
             label(found, i), *(number(x) for x in given), *(number(x, found.scale[i]) for x in forces[:, i]),
-            number(found.accelerations[i]),
+            number(found.accelerations[i], reached[i]),
         ))  # fmt: skip
     heads = (TextColumn("coordinate", "left"), *(TextColumn(name) for name in COLUMNS))
     return TextTable(HEADING.format(at=found.at), heads, tuple(rows))
