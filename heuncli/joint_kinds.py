@@ -242,6 +242,7 @@ FLAT: dict[tuple[str, bool], Kind] = {
     if kind.hold in held and kind.turn in turns
 }  # fmt: skip
 JOINTS |= {kind.name: kind for kind in FLAT.values()}
+LENGTHS = frozenset(("travel", "length", "dx", "dy", "dz"))  # of the coordinates; all others are angles
 RATES = {"angle": "rate", "travel": "speed"}  # of the coordinates
 SYNONYMS = {word: kind.name for kind in TYPES.values() for word in kind.synonyms}
 
@@ -255,3 +256,8 @@ def named(kinds: list[Kind], last: str) -> str:
     """Kinds in words: "pin, slide and cylinder"; last: "and" or "or"."""
     names = [kind.name for kind in kinds]
     return f" {last} ".join([", ".join(names[:-1]), names[-1]] if len(names) > 1 else names)
+
+
+def is_length(coordinate: str) -> bool:
+    """Whether a coordinate, owner.quantity, is a length."""
+    return coordinate.rpartition(".")[2] in LENGTHS

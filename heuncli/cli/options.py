@@ -26,6 +26,7 @@ OUTPUT = Option(("--output", "-o"), "Write there, whole or not at all.", "FILE")
 QUIET = Option(("--quiet", "-q"), "No warnings on standard error.")
 TIME_LIMIT = Option(("--time-limit",), "Give up after that long.", "SECONDS")
 TIME_LIMIT_EACH = Option(("--time-limit",), "Give up on a spec after that long; the others go on.", "SECONDS")
+UNITS = Option(("--units",), "Units of tables, such as kN,mm,deg,rpm; all other forms stay SI.", "UNIT,...")
 NO_REDUCE = Option(("--no-reduce",), "Solve all of the scene, in full.")
 SPEC = Option((), "The scene's YAML file; - reads standard input.", "SPEC")
 

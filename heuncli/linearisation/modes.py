@@ -4,6 +4,7 @@ from __future__ import annotations
 
 from typing import Any, Literal
 
+from heuncli.joint_kinds import is_length
 from heuncli.linearisation.oscillations import Mode
 from heuncli.records import record
 from heuncli.results import Array
@@ -54,9 +55,3 @@ def most(shape: dict[str, complex], size: float) -> tuple[str, ...]:
     largest = max(by.values(), default=0.0)
     names = sorted((name for name, x in by.items() if x >= 0.5 * largest), key=lambda name: -round(by[name], 9))
     return tuple(names[:3]) or ("nothing",)
-
-
-def is_length(name: str) -> bool:
-    """Whether a coordinate is a length."""
-    end = name.rpartition(".")[2]
-    return end == "travel" or end.startswith("d")

@@ -18,6 +18,7 @@ from tests.shared.command import Heun
 from tests.shared.folders import ROOT
 from tests.shared.lagrange import double
 
+EXCAVATOR = ROOT / "specs" / "excavator.yaml"
 SPECS = sorted((ROOT / "specs").glob("*.yaml"))
 NAMES = {
     "coordinates", "rates", "epsilon", "eta", "gamma", "alpha", "momenta", "reciprocal_energy", "forces", "coriolis",
@@ -73,9 +74,67 @@ def test_an_instant_of_a_motion(heun: Heun, pendulum: str) -> None:
 
 
 def test_tables(heun: Heun, pendulum: str) -> None:
-    text = heun("lagrange", pendulum, "--christoffel", "--seen", "A.angle", "--seen", "b.e:1,0,0").stdout
-    for words in ("LAGRANGE", "MASS", "RECIPROCAL", "FORCES", "CHRISTOFFEL", "SECTIONS", "push", "b.e:1,0,0"):
+    text = heun("lagrange", pendulum, "--christoffel", "--seen", "A.angle,b.e:1,0,0", "--seen", "B.angle").stdout
+    for words in (
+        "LAGRANGE",
+        "MASS",
+        "RECIPROCAL",
+        "FORCES",
+        "CHRISTOFFEL",
+        "SECTIONS",
+        "push",
+        "b.e:1,0,0",
+        "\nB.angle",
+    ):
         assert words in text
+
+
+def test_units_of_tables(heun: Heun, pendulum: str) -> None:
+    """Values, rates, forces and energies in the units asked for; inertias stay."""
+    si, other = (heun("lagrange", pendulum, *words).stdout for words in ((), ("--units", "deg,kN,mm")))
+    row = [next(line for line in text.splitlines() if line.startswith("A.angle")).split()[1:] for text in (si, other)]
+    by = (180 / np.pi, 180 / np.pi, 1, 1, 1, 1, 180 / np.pi)
+    assert [float(x) * y for x, y in zip(row[0], by, strict=True)] == pytest.approx(list(map(float, row[1])), rel=1e-5)
+    assert "q [deg]" in other and "p = ∂E/∂q' [kN·mm·s]" in other and "A.angle [kN·mm]" in other
+    part = [text[text.index("MASS") : text.index("FORCES")] for text in (si, other)]
+    assert part[0] == part[1]
+    wrong = heun("lagrange", pendulum, "--units", "deg,kg")
+    assert wrong.returncode == 2 and "--units deg,kg" in wrong.stderr
+    told = heun("lagrange", pendulum, "--units", "deg", "--format", "csv")
+    assert told.returncode == 0 and "csv stays in SI" in told.stderr and ",rad," in told.stdout
+
+
+def test_units_of_a_course(heun: Heun) -> None:
+    words = (
+        "lagrange",
+        str(ROOT / "specs/slider_crank.yaml"),
+        "--over",
+        "main.angle=0:180deg/7",
+        "--units",
+        "deg,rpm,kN,mm",
+    )
+    text = heun(*words).stdout
+    assert "largest 0.0266127 kg·m² at 60 deg" in text and "q' = 954.93 rpm" in text and "k [kN·mm]" in text
+
+
+def test_drives_along_other_coordinates(heun: Heun) -> None:
+    """The pins' angles in place of the cylinders' lengths: their moments hold those of the weights, by hand."""
+    words = ("lagrange", str(EXCAVATOR), "--coordinates", "foot.angle,elbow.angle")
+    found = json.loads(heun(*words, "--format", "json").stdout)
+    assert found["drives"] == pytest.approx([7720 * 9.81, 1120 * 9.81], rel=1e-12) and found["residual"] < 1e-12
+    assert found["energy"] == {"total": 0.0, "free": None, "mixed": None, "driven": None}
+    refused = heun(*words, "--state-space")
+    assert refused.returncode == 3 and "boom_cylinder.length, stick_cylinder.length: what is driven" in refused.stderr
+
+
+def test_a_length_that_is_seen(heun: Heun) -> None:
+    """A cylinder's stroke is seen in kg, chosen or not."""
+    words = ("lagrange", str(EXCAVATOR), "--seen", "boom_cylinder.length,foot.angle", "--format", "json")
+    one, two = (json.loads(heun(*words, "--coordinates", own).stdout)["seen"] for own in (
+        "foot.angle,stick_cylinder.length", "boom_cylinder.length,stick_cylinder.length",
+    ))  # fmt: skip
+    assert one["boom_cylinder.length"]["unit"] == "kg" and one["foot.angle"]["unit"] == "kg·m²"
+    assert one["boom_cylinder.length"]["free"] == pytest.approx(two["boom_cylinder.length"]["free"], rel=1e-12)
 
 
 def test_only_some_parts(heun: Heun, pendulum: str) -> None:

@@ -62,10 +62,10 @@ def test_forces_stand_beside_each_other() -> None:
 
 def test_what_a_section_passes_on() -> None:
     """s' of the outer 0.6 m of rod two: what is applied to it less what its motion takes, along each coordinate."""
-    near(told(double()).sections["cut"]["s"], [-1.426414518612498, -0.4933319119650378])
+    near(told(double()).sections["cut"].s[0], [-1.426414518612498, -0.4933319119650378])
     blow = told(double("impulses: {hit: {on: b.e, vector: [2, 0, 0]}}\nanalysis: {type: impulse}", (0, 0))).blows[0]
     near(blow.h, [3.371806362574747, 1.842121988005770])
-    near(blow.sections["cut"], [0.4896150774109775, 0.1229984346168536])
+    near(blow.sections["cut"].s[0], [0.4896150774109775, 0.1229984346168536])
     near(blow.reciprocal_energy, 5.122498738676783)
     near(blow.jumps, [0.2343598901213223, 5.132548968130854])
 

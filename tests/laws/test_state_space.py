@@ -57,3 +57,44 @@ def test_by_differences(kind: str, seed: int) -> None:
     size = max(float(np.abs(A).max()), float(np.abs(found.accelerations).max()), 1.0)
     assert np.abs(np.array(columns).T / (2.0 * H) - A).max() <= SAME * size
     assert np.abs(found.state_space.offset - np.concatenate([found.rates, found.accelerations])).max() <= 1e-9 * size
+
+
+ARM = """
+heun: 1
+gravity: [{sideways}, 0, -9.81]
+ground: {{points: {{foot: [0, 0, 0.1], top: [-0.2, 0, 0.9]}}}}
+bodies:
+  arm:
+    {{mass: 2, center: [0.3, 0, 0.1], inertia: [0.1, 0.3, 0.25],
+      points: {{foot: [0, 0, 0.1], mid: [0.4, 0, 0.1], far: [0.6, 0, 0.1]}}}}
+  bob: {{mass: 0.7, center: [0.6, 0, -0.3], inertia: [0.02, 0.03, 0.01], points: {{far: [0.6, 0, 0.1]}}}}
+joints:
+  {stand}
+  hang: {{type: pin, from: arm.far, to: bob.far, axis: [0, 1, 0], initial: {{rate: {rate}}}}}
+drives:
+  oil: {{joint: stand, {law} + {{acceleration}}*t**2/2}}
+analysis: {{type: state}}
+"""
+HELD = {  # an arm that is driven, and a pendulum that hangs on it: the one moves, the other rests
+    "cylinder": ARM.format(
+        sideways=1.0, rate=-1.1, law="travel: -0.3*t",
+        stand="stand: {type: cylinder, from: ground.foot, to: arm.foot, axis: [0, 0, 1], initial: {rate: 0.4}}",
+    ),
+    "rod": ARM.format(
+        sideways=0.0, rate=0.0, law="length: 1",
+        stand="hinge: {type: pin, from: ground.foot, to: arm.foot, axis: [0, 1, 0]}\n"
+        "  stand: {type: rod, from: ground.top, to: arm.mid}",
+    ),
+}  # fmt: skip
+
+
+@pytest.mark.parametrize("driven", HELD)
+def test_what_a_drive_exerts_holds_it(driven: str) -> None:
+    still, moved = (load("scene.yaml", HELD[driven].replace("{acceleration}", word)) for word in ("0", "1"))
+    at = instant_of(still, None, None)
+    given, held = (told(still, at, LagrangeQuestion(state_space=True, inputs=words)) for words in (("oil",), ()))
+    assert given.state_space is not None and held.state_space is not None
+    free = [i for i, is_driven in enumerate(given.driven) if not is_driven]
+    assert np.allclose(held.state_space.offset[len(free) :], given.accelerations[free], rtol=1e-11, atol=1e-11)
+    jump = told(moved, instant_of(moved, None, None), LagrangeQuestion()).accelerations - given.accelerations
+    assert np.allclose(given.state_space.B[len(jump) :, 0], jump, rtol=1e-11, atol=1e-11)

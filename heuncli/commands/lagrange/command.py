@@ -7,12 +7,14 @@ from heuncli.cli.guard import require_other_file
 from heuncli.cli.output import emit
 from heuncli.cli.solving import overrides, warn
 from heuncli.cli.target import format_of
+from heuncli.cli.units import say_what_stays, units
 from heuncli.commands.lagrange import course_page, forms, page
-from heuncli.commands.lagrange.options import range_of, require_instant, require_together, words
+from heuncli.commands.lagrange.options import places, range_of, require_instant, require_together, words
 from heuncli.commands.lagrange.over import over
 from heuncli.commands.lagrange.request import LagrangeRequest
 from heuncli.commands.lagrange.study import LagrangeQuestion, lagrange
 from heuncli.report.export import dump
+from heuncli.report.table_units import Units
 from heuncli.spec.load import load
 from heuncli.spec.models import Spec
 
@@ -25,10 +27,11 @@ def main(request: LagrangeRequest) -> int:
     require_other_file(request.output, [request.spec])
     form = format_of(request.format, request.output, ENDINGS, FORMATS)
     require_together(request, form)
+    shown = units(request.units)
     asked = LagrangeQuestion(
         at=request.at,
         coordinates=words(request.coordinates),
-        seen=tuple(word.strip() for word in request.seen),
+        seen=places(request.seen),
         christoffel=request.christoffel,
         state_space=request.state_space,
         inputs=words(request.inputs),
@@ -38,21 +41,22 @@ def main(request: LagrangeRequest) -> int:
     spec = load(request.spec, overrides=overrides(request.set), checking=False)
     require_other_file(request.output, [request.spec])
     require_instant(request.at, spec)
-    emit(written(spec, request, asked, form), request.output)
+    emit(written(spec, request, asked, form, shown), request.output)
+    say_what_stays(request.units, form, request.quiet)
     warn(spec, None, request.quiet)
     return 0
 
 
-def written(spec: Spec, request: LagrangeRequest, asked: LagrangeQuestion, form: str) -> str:
-    """What is asked for, in one of the formats."""
+def written(spec: Spec, request: LagrangeRequest, asked: LagrangeQuestion, form: str, shown: Units) -> str:
+    """What is asked for, in one of the formats; tables in the units shown."""
     if request.over is not None:
         course = over(spec, range_of(request.over, spec))
         if form == "json":
             return dump(course_page.block(course))
-        return course_page.to_csv(course) if form == "csv" else course_page.write(course)
+        return course_page.to_csv(course) if form == "csv" else course_page.write(course, shown)
     found = lagrange(spec, asked)
     if form == "m" and found.state_space is not None:
         return forms.to_m(found.state_space)
     if form == "json":
         return dump(forms.block(found, words(request.only)))
-    return forms.to_csv(found) if form == "csv" else page.write(found, words(request.only))
+    return forms.to_csv(found) if form == "csv" else page.write(found, words(request.only), shown)

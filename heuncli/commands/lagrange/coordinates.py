@@ -15,7 +15,7 @@ import numpy as np
 from heuncli import tolerances
 from heuncli.commands.lagrange import rodrigues
 from heuncli.errors import Problem, SolveError
-from heuncli.joint_kinds import JOINTS
+from heuncli.joint_kinds import JOINTS, is_length
 from heuncli.kinetostatics.bodies import BodyStates
 from heuncli.linearisation.linearise import Linearised
 from heuncli.linearisation.reduced_equations import complement, idle_spins
@@ -32,7 +32,6 @@ from heuncli.tree.prepare import PreparedScene
 CODE = "no-coordinate"
 IN_FILE_ORDER = 0.1  # of the largest pivot left: the first in the file that has as much is taken
 TRUE = ("angle", "travel", "length", *rodrigues.NAMES)  # coordinates; all others are quasi-velocities
-LENGTHS = ("travel", "length", "dx", "dy", "dz")
 
 
 @record
@@ -45,11 +44,6 @@ class Chosen:
     S: Array
     left_out: tuple[str, ...]  # bodies whose spin has no inertia, and is no part of the motion
     bodies: tuple[str, ...]
-
-    @property
-    def lengths(self) -> tuple[bool, ...]:
-        """Which are lengths [m], not angles [rad]."""
-        return tuple(quantity_of(name) in LENGTHS for name in self.names)
 
     @property
     def quasi(self) -> tuple[bool, ...]:
@@ -78,7 +72,7 @@ def chosen(scene: PreparedScene, found: Linearised, driven: Mapping[str, str], a
     if not T.shape[1]:
         raise SolveError(Problem(CODE, "nothing is free to move: no coordinate tells anything", hint=NOTHING))
     require_known(asked, rows)
-    weigh = {name: 1.0 / layout.size if quantity_of(name) in LENGTHS else 1.0 for name in rows}
+    weigh = {name: 1.0 / layout.size if is_length(name) else 1.0 for name in rows}
     scaled = {name: weigh[name] * row @ T for name, row in rows.items()}
     names = list(asked) or picked(scaled, order_of(layout, rows, driven), T.shape[1])
     bodies = tuple(body.name for body in layout.mechanism.bodies)

@@ -7,11 +7,15 @@ from typing import Any
 
 import numpy as np
 
+from heuncli.commands.lagrange.kinds import MIXED, units_of
 from heuncli.commands.lagrange.results import LagrangeResults, StateSpace
+from heuncli.commands.lagrange.section_forces import lists
+from heuncli.joint_kinds import is_length
 from heuncli.version import VERSION
 
 CSV_COLUMNS = "name,quantity,component,unit,value"
 ALWAYS = ("title", "time", "coordinates", "units", "driven", "notes")
+PARTS = ("free", "mixed", "driven")  # of the energy
 KEYS = {  # of JSON, by what --only names
     "equations": ("values", "rates", "accelerations", "momenta", "coriolis", "drives", "energy", "reciprocal_energy",
                   "residual"),
@@ -24,6 +28,11 @@ KEYS = {  # of JSON, by what --only names
     "partials": ("partials",),
     "state_space": ("state_space",),
 }  # fmt: skip
+
+
+def beside_nan(x: float) -> float | None:
+    """A number, or None."""
+    return None if np.isnan(x) else float(x)
 
 
 def block(found: LagrangeResults, only: Sequence[str] = ()) -> dict[str, Any]:
@@ -39,9 +48,9 @@ def everything(found: LagrangeResults) -> dict[str, Any]:
         "title": found.title,
         "time": found.t,
         "coordinates": list(found.names),
-        "units": ["m" if is_length else "rad" for is_length in found.lengths],
+        "units": [units_of(name).value for name in found.names],
         "driven": list(found.driven),
-        "values": [None if np.isnan(x) else float(x) for x in found.values],
+        "values": [beside_nan(x) for x in found.values],
         "rates": found.rates.tolist(),
         "accelerations": found.accelerations.tolist(),
         "epsilon": found.epsilon.tolist(),
@@ -49,7 +58,10 @@ def everything(found: LagrangeResults) -> dict[str, Any]:
         "gamma": None if found.gamma is None else found.gamma.tolist(),
         "alpha": None if found.alpha is None else found.alpha.tolist(),
         "momenta": found.momenta.tolist(),
-        "energy": dict(zip(("total", "free", "mixed", "driven"), (found.energy, *found.energies), strict=True)),
+        "energy": {
+            "total": found.energy,
+            **{name: beside_nan(x) for name, x in zip(PARTS, found.energies, strict=True)},
+        },
         "reciprocal_energy": found.reciprocal_energy,
         "forces": {"total": found.total.tolist(), "shares": {name: k.tolist() for name, k in found.forces.items()}},
         "drives": found.drives.tolist(),
@@ -57,7 +69,7 @@ def everything(found: LagrangeResults) -> dict[str, Any]:
         "coriolis_matrix": found.coriolis_matrix.tolist(),
         "residual": found.residual,
         "seen": {one.name: {"unit": one.unit, "locked": one.locked, "free": one.free} for one in found.seen},
-        "sections": {name: {**own, **struck(found, name)} for name, own in found.sections.items()},
+        "sections": {name: {"s": lists(own), **struck(found, name)} for name, own in found.sections.items()},
         "blows": [
             {
                 "time": blow.t,
@@ -65,7 +77,7 @@ def everything(found: LagrangeResults) -> dict[str, Any]:
                 "drives": blow.drives.tolist(),
                 "jumps": blow.jumps.tolist(),
                 "reciprocal_energy": blow.reciprocal_energy,
-                "sections": dict(blow.sections),
+                "sections": {name: lists(own) for name, own in blow.sections.items()},
             }
             for blow in found.blows
         ],
@@ -79,26 +91,21 @@ def everything(found: LagrangeResults) -> dict[str, Any]:
 def to_csv(found: LagrangeResults) -> str:
     """In long form, a line a number; of matrices the component names the second coordinate."""
     lines = [CSV_COLUMNS]
-    units = {True: ("m", "m/s", "m/s²", "kg·m/s", "N"), False: ("rad", "rad/s", "rad/s²", "N·m·s", "N·m")}
     for i, name in enumerate(found.names):
-        q, rate, acceleration, momentum, force = units[found.lengths[i]]
+        units = units_of(name)
         for quantity, unit, values in (
-            ("value", q, found.values), ("rate", rate, found.rates),
-            ("acceleration", acceleration, found.accelerations),
-            ("momentum", momentum, found.momenta), ("coriolis", force, found.coriolis), ("force", force, found.total),
-            ("drive", force, found.drives),
+            ("value", units.value, found.values), ("rate", units.rate, found.rates),
+            ("acceleration", units.acceleration, found.accelerations), ("momentum", units.momentum, found.momenta),
+            ("coriolis", units.force, found.coriolis), ("force", units.force, found.total),
+            ("drive", units.force, found.drives),
         ):  # fmt: skip
             lines.append(f"{name},{quantity},,{unit},{float(values[i])!r}")
         for cause, k in found.forces.items():
-            lines.append(f"{name},force,{cause},{force},{float(k[i])!r}")
+            lines.append(f"{name},force,{cause},{units.force},{float(k[i])!r}")
         for j, other in enumerate(found.names):
-            lines.append(f"{name},epsilon,{other},{mixed(found, i, j)},{float(found.epsilon[i, j])!r}")
+            unit = units.inertia if is_length(name) == is_length(other) else MIXED
+            lines.append(f"{name},epsilon,{other},{unit},{float(found.epsilon[i, j])!r}")
     return "\n".join(lines) + "\n"
-
-
-def mixed(found: LagrangeResults, i: int, j: int) -> str:
-    """The unit of an entry of the mass matrix."""
-    return ("kg·m²", "kg·m", "kg")[int(found.lengths[i]) + int(found.lengths[j])]
 
 
 def linear_block(linear: StateSpace) -> dict[str, Any]:
@@ -125,4 +132,4 @@ def to_m(linear: StateSpace) -> str:
 
 def struck(found: LagrangeResults, section: str) -> dict[str, Any]:
     """r' of a section in the first blow, if something strikes."""
-    return {"r": found.blows[0].sections[section]} if found.blows else {}
+    return {"r": lists(found.blows[0].sections[section])} if found.blows else {}

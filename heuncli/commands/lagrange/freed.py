@@ -11,12 +11,11 @@ from types import MappingProxyType
 
 import numpy as np
 
-from heuncli.errors import Problem, SolveError
 from heuncli.expressions.programs import Expression
 from heuncli.integration.evaluator import Recovered
 from heuncli.integration.run.runner import Runner, ready
 from heuncli.joint_kinds import JOINTS
-from heuncli.mechanism.model import Joint, JointLoad, Mechanism
+from heuncli.mechanism.model import GROUND, Joint, JointLoad, Load, Mechanism, PairLoad, PointLoad
 from heuncli.records import record, replace
 from heuncli.results import Array
 from heuncli.tree.layout import Layout
@@ -67,12 +66,9 @@ class FreedScene:
 
 
 def freed(of: PreparedScene, efforts: Mapping[str, float] = NONE) -> FreedScene:
-    """A scene with its drives let go; efforts: what is put on in their place, by the driven coordinates' names.
-
-    Raises SolveError for an effort where no torque may act.
-    """
+    """A scene with its drives let go; efforts: what is put on in their place, by the driven coordinates' names."""
     mechanism = replace(of.mechanism, joints=tuple(map(let_go, of.mechanism.joints)))
-    loads = tuple(load for name, value in efforts.items() if value for load in [effort(mechanism, name, value)])
+    loads = (load for name, value in efforts.items() if value for load in effort(mechanism, name, value))
     mechanism = replace(mechanism, loads=(*mechanism.loads, *loads))
     scene = arranged(mechanism, of.start, spanning=of.layout.spanning, size=of.layout.size, starts=of.layout.starts)
     scene, runner = ready(scene)
@@ -88,14 +84,23 @@ def let_go(joint: Joint) -> Joint:
     return replace(joint, drive=None)
 
 
-def effort(mechanism: Mechanism, coordinate: str, value: float) -> JointLoad:
-    """The constant torque or thrust that a drive exerts."""
-    name, _, quantity = coordinate.rpartition(".")
-    k = next(i for i, joint in enumerate(mechanism.joints) if joint.name == name)
-    if JOINTS[mechanism.joints[k].kind].coordinates != (quantity,):
-        message = f"what drives {coordinate} cannot be put on as a torque"
-        raise SolveError(Problem("no-state-space", message, hint="drive a pin or a slide"))
-    return JointLoad(f"drive of {coordinate}", "torque", k, Expression.of(value))
+def effort(mechanism: Mechanism, coordinate: str, value: float) -> tuple[Load, ...]:
+    """The constant torque [N m] or thrust [N] of a drive along its coordinate, on `to`, and opposite on `from`."""
+    joint_name, _, quantity = coordinate.rpartition(".")
+    k = next(i for i, joint in enumerate(mechanism.joints) if joint.name == joint_name)
+    joint, name = mechanism.joints[k], f"drive of {coordinate}"
+    if quantity == "length":
+        return (PairLoad(name, joint.a, joint.p, joint.b, joint.q, Expression.of(value), 0.0, 0.0, 0.0),)
+    if JOINTS[joint.kind].coordinates == (quantity,):
+        return (JointLoad(name, "torque", k, Expression.of(value)),)
+    # a cylinder slides along the axis that both bodies have
+    ends = ((joint.b, joint.q, joint.to_axis, value), (joint.a, joint.p, joint.axis, -value))
+    return tuple(
+        PointLoad(name, "force", body, point, (x, y, z), True)
+        for body, point, axis, along in ends
+        if body != GROUND
+        for x, y, z in [[Expression.of(float(component)) for component in along * axis]]
+    )
 
 
 def contacts_of(layout: Layout) -> list[tuple[str, bool, int]]:

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import math
+from collections.abc import Sequence
 
 import numpy as np
 
@@ -28,6 +29,26 @@ def words(given: str | None) -> tuple[str, ...]:
     return tuple(word.strip() for word in given.split(",")) if given else ()
 
 
+def places(given: Sequence[str]) -> tuple[str, ...]:
+    """Of --seen: main.angle,bucket.tip:0,0,1 names two; numbers belong to the direction before them."""
+    found: list[str] = []
+    for word in (part.strip() for own in given for part in own.split(",")):
+        if found and ":" in found[-1] and is_number(word):
+            found[-1] += f",{word}"
+        elif word:
+            found.append(word)
+    return tuple(found)
+
+
+def is_number(word: str) -> bool:
+    """Whether a word is one."""
+    try:
+        float(word)
+    except ValueError:
+        return False
+    return True
+
+
 def require_together(request: LagrangeRequest, form: str) -> None:
     """Raise UsageError for options that do not go together."""
     wrong = []
@@ -41,7 +62,7 @@ def require_together(request: LagrangeRequest, form: str) -> None:
         wrong += [(f"{name} without --state-space", "add --state-space") for name, on in named.items() if on]
     unknown = [part for part in words(request.only) if part not in KEYS]
     wrong += [(f"--only {part}: no part is called so", f"known: {', '.join(KEYS)}") for part in unknown]
-    for place in request.seen:
+    for place in places(request.seen):
         wrong += seen_wrongly(place)
     if wrong:
         raise UsageError(*(Problem("bad-option", message, hint=hint) for message, hint in wrong))
@@ -52,11 +73,8 @@ def seen_wrongly(place: str) -> list[tuple[str, str]]:
     point, colon, direction = place.partition(":")
     if not colon:
         return []
-    try:
-        n = [float(word) for word in direction.split(",")]
-    except ValueError:
-        n = []
-    if len(n) == 3 and all(map(math.isfinite, n)) and any(n):
+    n = [float(word) for word in direction.split(",") if is_number(word)]
+    if len(n) == 3 == len(direction.split(",")) and all(map(math.isfinite, n)) and any(n):
         return []
     return [(f"--seen {place}: expected a direction of three numbers", f"such as --seen {point}:0,0,1")]
 

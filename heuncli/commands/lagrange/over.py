@@ -64,7 +64,7 @@ def over(spec: Spec, asked: Range) -> InertiaCourse:
         whole = joined(parts)
         whole = whole if asked.values[0] < asked.values[-1] else whole.reversed
         driven = any(drive.joint == asked.joint and drive.quantity == asked.quantity for drive in spec.drives.values())
-        return replace(whole, title=spec.title, name=asked.name, is_length=asked.quantity == "travel", driven=driven)
+        return replace(whole, title=spec.title, name=asked.name, driven=driven)
 
 
 def begun(spec: Spec, asked: Range) -> tuple[float, float]:
@@ -136,7 +136,7 @@ def along(scene: FreedScene, there: Recovered, span: float, t: float, rate: floa
     forces = {GRAVITY: states.v_centre @ layout.mechanism.gravity @ m} if layout.mechanism.gravity.any() else {}
     for load in applied_loads(layout.mechanism, own, loaded):
         forces[load.load.name] = forces.get(load.load.name, 0.0) + power(states, load.action)
-    return InertiaCourse("", "", False, False, values, rate, epsilon, half, forces)
+    return InertiaCourse("", "", False, values, rate, epsilon, half, forces)
 
 
 def body_spins(layout: Layout, states: BodyStates) -> Array:

@@ -2,7 +2,7 @@
 
 from typing import Annotated, NamedTuple
 
-from heuncli.cli.options import OUTPUT, QUIET, SET, SPEC, TIME_LIMIT, Option
+from heuncli.cli.options import OUTPUT, QUIET, SET, SPEC, TIME_LIMIT, UNITS, Option
 
 
 class LagrangeRequest(NamedTuple):
@@ -28,8 +28,8 @@ class LagrangeRequest(NamedTuple):
         tuple[str, ...],
         Option(
             ("--seen",),
-            "Where inertia is seen: coordinates, points in a direction. May be repeated.",
-            "NAME|POINT:X,Y,Z",
+            "Where inertia is seen: coordinates, points in a direction.",
+            "NAME|POINT:X,Y,Z,...",
         ),
     ] = ()
     christoffel: Annotated[bool, Option(("--christoffel",), "Christoffel symbols as well.")] = False
@@ -53,6 +53,7 @@ class LagrangeRequest(NamedTuple):
         ),
     ] = None
     output: Annotated[str | None, OUTPUT] = None
+    units: Annotated[str | None, UNITS] = None
     set: Annotated[tuple[str, ...], SET] = ()
     time_limit: Annotated[float | None, TIME_LIMIT] = None
     quiet: Annotated[bool, QUIET] = False

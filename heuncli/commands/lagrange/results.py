@@ -25,6 +25,18 @@ class Seen:
 
 
 @record
+class SectionForces:
+    """What a section's piece exerts along the coordinates, s (cuts, f), nan where the section is open.
+
+    reach (f,): of what size such loads are along what the coordinates move most; is_run: of several cuts.
+    """
+
+    s: Array
+    reach: Array
+    is_run: bool
+
+
+@record
 class BlowResults:
     """A blow along the coordinates, (f,): h of what is given, of drives, jumps of the rates; F of h; r' of sections."""
 
@@ -33,7 +45,7 @@ class BlowResults:
     drives: Array
     jumps: Array
     reciprocal_energy: float
-    sections: Mapping[str, Any]
+    sections: Mapping[str, SectionForces]
 
 
 @record
@@ -43,8 +55,9 @@ class LagrangeResults:
     values: of the coordinates, not a number of quasi-velocities; rates q'; accelerations q'' of the scene as it is,
     with its drives; forces k by cause; drives Q: what drives do beside them, 0 where nothing drives; C: coriolis, with
     its matrix; gamma[i, l, k], alpha[i, l, k]: None where they were not asked for, or of rates without coordinates.
-    energies: of what is free, mixed, driven. scale: of what size the parts are whose sums the forces are; residual: of
-    e q'' + C = k + Q where Q is known otherwise, of these.
+    energy: E; energies: of what is free, mixed, driven, nan where driven coordinates are not among these.
+    scale: of what size the parts are whose sums the forces are; residual: of e q'' + C = k + Q where Q is known
+    otherwise, of these.
     """
 
     title: str
@@ -52,7 +65,6 @@ class LagrangeResults:
     at: str
     names: tuple[str, ...]
     driven: tuple[bool, ...]
-    lengths: tuple[bool, ...]
     values: Array
     rates: Array
     accelerations: Array
@@ -65,12 +77,13 @@ class LagrangeResults:
     coriolis_matrix: Array
     gamma: Array | None
     alpha: Array | None
+    energy: float
     energies: tuple[float, float, float]
     reciprocal_energy: float
     scale: Array
     residual: float
     seen: tuple[Seen, ...]
-    sections: Mapping[str, Mapping[str, Any]]
+    sections: Mapping[str, SectionForces]
     partials: Mapping[str, Any]
     left_out: tuple[str, ...]
     notes: tuple[str, ...] = ()
@@ -81,11 +94,6 @@ class LagrangeResults:
     def total(self) -> Array:
         """k: the sum of all causes."""
         return sum(self.forces.values(), np.zeros(len(self.names)))
-
-    @property
-    def energy(self) -> float:
-        """E."""
-        return sum(self.energies)
 
 
 @record
@@ -112,7 +120,6 @@ class InertiaCourse:
 
     title: str
     name: str
-    is_length: bool
     driven: bool
     values: Array
     rate: float

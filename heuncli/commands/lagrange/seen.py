@@ -12,6 +12,7 @@ import numpy as np
 from heuncli.commands.lagrange.coordinates import Chosen, candidates
 from heuncli.commands.lagrange.equations import Partials
 from heuncli.commands.lagrange.instant import Instant
+from heuncli.commands.lagrange.kinds import units_of
 from heuncli.commands.lagrange.results import Seen
 from heuncli.errors import Problem, SolveError
 from heuncli.kinetostatics.bodies import body_states
@@ -26,7 +27,7 @@ def seen(
 ) -> tuple[Seen, ...]:
     """What is seen along all coordinates, or at the places asked for: coordinates, or POINT:nx,ny,nz."""
     own = {
-        name: Seen(name, "kg" if by.lengths[i] else "kg·m²", float(epsilon[i, i]), float(1.0 / eta[i, i]))
+        name: Seen(name, units_of(name).inertia, float(epsilon[i, i]), float(1.0 / eta[i, i]))
         for i, name in enumerate(by.names)
     }
     if not asked:
@@ -44,7 +45,7 @@ def beside(at: Instant, by: Chosen, partials: Partials, eta: Array, name: str) -
         if name not in rows:
             hint = did_you_mean(name, list(rows), "coordinates") or "or BODY.POINT:nx,ny,nz"
             raise SolveError(Problem("no-coordinate", f"--seen {name}: no coordinate is called so", hint=hint))
-        row, unit = rows[name] @ by.S, "kg" if name.rpartition(".")[2] in ("travel", "dx", "dy", "dz") else "kg·m²"
+        row, unit = rows[name] @ by.S, units_of(name).inertia
     inverse = float(row @ eta @ row)
     if inverse <= STILL * float(np.abs(eta).max()) * max(float(row @ row), STILL):
         message = f"--seen {name}: it cannot move there: the inertia seen is without bound"

@@ -19,6 +19,7 @@ from heuncli.commands.lagrange.coordinates import Chosen, candidates, chosen
 from heuncli.commands.lagrange.equations import forces_by_cause, partials_of, reciprocal
 from heuncli.commands.lagrange.freed import FreedScene, freed
 from heuncli.commands.lagrange.instant import Instant
+from heuncli.commands.lagrange.kinds import units_of
 from heuncli.commands.lagrange.results import StateSpace
 from heuncli.errors import Problem, SolveError
 from heuncli.expressions.programs import Expression
@@ -50,6 +51,7 @@ def state_space(at: Instant, by: Chosen, Q: Array, asked: Sequence[str], outputs
     Raises SolveError [no-state-space] where the equations are not those of coordinates.
     """
     require_given_loads(at)
+    require_driven(at, by)
     inputs = inputs_of(at, by, asked)
     scene = freed(at.setup.scene, dict(zip(by.names, Q, strict=True)))
     found = linearised(scene.layout, at.t, at.state, at.holding)
@@ -82,7 +84,7 @@ def state_space(at: Instant, by: Chosen, Q: Array, asked: Sequence[str], outputs
     B = np.vstack([np.zeros((n, m)), B2[free]])
     names = tuple(own.names[i] for i in free)
     C, D, told, units = outputs_of(scene, at, own, found, free, (A, B), outputs)
-    lengths = [own.lengths[i] for i in free]
+    along = [units_of(own.names[i]) for i in free]
     offset = np.concatenate([(own.rows @ velocities(scene, at))[free], (own.rows @ found.accelerations)[free]])
     return StateSpace(
         A=A, B=B, C=C, D=D,
@@ -90,12 +92,23 @@ def state_space(at: Instant, by: Chosen, Q: Array, asked: Sequence[str], outputs
         inputs=(*inputs.forces, *(f"{name} acceleration" for name in inputs.drives)),
         outputs=told,
         units={
-            "states": [*("m" if x else "rad" for x in lengths), *("m/s" if x else "rad/s" for x in lengths)],
-            "inputs": [*(unit_of(at, name) for name in inputs.forces), *map(acceleration_unit, inputs.drives)],
+            "states": [*(unit.value for unit in along), *(unit.rate for unit in along)],
+            "inputs": [
+                *(unit_of(at, name) for name in inputs.forces),
+                *(units_of(name).acceleration for name in inputs.drives),
+            ],
             "outputs": units,
         },
         offset=beside_rounding(offset, at.setup.scene.layout.size),
     )  # fmt: skip
+
+
+def require_driven(at: Instant, by: Chosen) -> None:
+    """Raise SolveError where a driven coordinate, which is held or an input, is not among the chosen ones."""
+    missing = [name for name in at.freed.driven if name not in by.names]
+    if missing:
+        message = f"{', '.join(missing)}: what is driven has to be among the coordinates of a state space"
+        raise SolveError(Problem(CODE, message, hint=f"--coordinates {','.join(missing)},...; or leave it out"))
 
 
 def require_given_loads(at: Instant) -> None:
@@ -114,11 +127,6 @@ def rate_name(name: str) -> str:
     """Of a coordinate's rate: main.rate, guide.speed; of others d/dt."""
     owner, _, quantity = name.rpartition(".")
     return f"{owner}.{RATES[quantity]}" if quantity in RATES else f"d/dt {name}"
-
-
-def acceleration_unit(name: str) -> str:
-    """Of a driven coordinate's acceleration."""
-    return "rad/s²" if name.endswith("angle") else "m/s²"
 
 
 def unit_of(at: Instant, name: str) -> str:
@@ -267,15 +275,15 @@ def output(
     """Of an output whether it is a place, a rate or an acceleration; its row on the coordinates (f,); its unit."""
     owner, _, quantity = name.rpartition(".")
     base = {rate: place for place, rate in RATES.items()}
-    length = quantity in ("travel", "speed", "length", "dx", "dy", "dz")
     if name in rows:
-        return "place", rows[name] @ own.S, "m" if length else "rad"
-    if quantity in base and f"{owner}.{base[quantity]}" in rows:
-        return "rate", rows[f"{owner}.{base[quantity]}"] @ own.S, "m/s" if length else "rad/s"
+        return "place", rows[name] @ own.S, units_of(name).value
+    moved = f"{owner}.{base.get(quantity, quantity)}"
+    if moved in rows:
+        return "rate", rows[moved] @ own.S, units_of(moved).rate
     if quantity == "acceleration":
         place = next((f"{owner}.{q}" for q in ("angle", "travel") if f"{owner}.{q}" in rows), None)
         if place in own.names:
-            return "acceleration", rows[place] @ own.S, acceleration_unit(place)
+            return "acceleration", rows[place] @ own.S, units_of(place).acceleration
     mechanism = scene.layout.mechanism
     axis = AXES.find(quantity[-1:])
     for i, body in enumerate(mechanism.bodies):

@@ -9,6 +9,7 @@ import numpy as np
 from heuncli.commands.lagrange import rodrigues
 from heuncli.commands.lagrange.blows import blows
 from heuncli.commands.lagrange.coordinates import Chosen, accelerations, chosen, rates
+from heuncli.commands.lagrange.drives import drive_rows, left_by_reactions
 from heuncli.commands.lagrange.equations import (
     Partials,
     VelocityTerms,
@@ -18,9 +19,11 @@ from heuncli.commands.lagrange.equations import (
     size_of_terms,
 )
 from heuncli.commands.lagrange.instant import Instant, instant_of
-from heuncli.commands.lagrange.results import LagrangeResults
+from heuncli.commands.lagrange.results import LagrangeResults, SectionForces
+from heuncli.commands.lagrange.section_forces import section_forces
 from heuncli.commands.lagrange.seen import seen
 from heuncli.commands.lagrange.state_space import state_space
+from heuncli.joint_kinds import is_length
 from heuncli.kinetostatics.actions import applied_loads, whole_joint_actions
 from heuncli.kinetostatics.bodies import BodyStates, body_states
 from heuncli.kinetostatics.coordinates import coordinates
@@ -75,16 +78,18 @@ def told(spec: Spec, at: Instant, asked: LagrangeQuestion) -> LagrangeResults:
     scale = size_of_terms(layout, partials, [*applied, *whole_joint_actions(at.recovery.unsplit)], states)
     scale = scale + np.abs(epsilon) @ np.abs(q2) + np.abs(C)
     total = sum(k.values(), np.zeros(len(q1)))
-    Q = np.where(by.driven, epsilon @ q2 + C - total, 0.0)
+    drives = drive_rows(at, by)
+    left = epsilon @ q2 + C - total
+    Q = drives.along(left)
     linear = state_space(at, by, Q, asked.inputs, asked.outputs) if asked.state_space else None
     gamma = terms.christoffel() if asked.christoffel and not any(by.quasi) else None
     return LagrangeResults(
+        energy=float(0.5 * q1 @ epsilon @ q1),
         title=spec.title,
         t=at.t,
         at=at.words,
         names=by.names,
         driven=by.driven,
-        lengths=by.lengths,
         values=values_of(at, by, here),
         rates=q1,
         accelerations=q2,
@@ -97,17 +102,17 @@ def told(spec: Spec, at: Instant, asked: LagrangeQuestion) -> LagrangeResults:
         coriolis_matrix=terms.coriolis_matrix(q1),
         gamma=gamma,
         alpha=None if gamma is None else -np.einsum("ij,jlk->ilk", eta, gamma),
-        energies=energies(epsilon, q1, np.array(by.driven)),
+        energies=energies(epsilon, q1, np.array(by.driven), all(name in by.names for name in drives.names)),
         reciprocal_energy=float(0.5 * (epsilon @ q1) @ eta @ (epsilon @ q1)),
         scale=scale,
-        residual=residual(at, by, epsilon @ q2 + C - total, scale),
+        residual=residual(by, *left_by_reactions(at, drives, left), scale),
         seen=seen(at, by, partials, epsilon, eta, asked.seen),
         sections=sections(at, partials),
         partials=partials_block(at, by, partials),
         left_out=by.left_out,
         notes=tuple(notes(by)),
         state_space=linear,
-        blows=blows(spec, at, by, partials, epsilon, eta),
+        blows=blows(spec, at, drives, by, partials, epsilon, eta),
     )
 
 
@@ -146,50 +151,28 @@ def of_body(at: Instant, here: BodyStates, name: str) -> float:
     return float(here.centre[0, body, axis]) if quantity.startswith("d") else np.nan
 
 
-def energies(epsilon: Array, q1: Array, driven: Array) -> tuple[float, float, float]:
-    """The parts of E: of the free rates, of both, of the driven ones."""
+def energies(epsilon: Array, q1: Array, driven: Array, is_split: bool) -> tuple[float, float, float]:
+    """The parts of E: of the free rates, of both, of the driven ones; nan where these are no coordinates."""
+    if not is_split:
+        return np.nan, np.nan, np.nan
     a, b = np.where(driven, 0.0, q1), np.where(driven, q1, 0.0)
     return float(0.5 * a @ epsilon @ a), float(a @ epsilon @ b), float(0.5 * b @ epsilon @ b)
 
 
-def residual(at: Instant, by: Chosen, left: Array, scale: Array) -> float:
-    """What e q'' + C - k leaves where nothing drives, and beside what drives exert, of the parts that they are sums of.
-
-    The effort of a drive is that of the joint's reactions; where supports are redundant that may be open, and is left
-    out.
-    """
-    known = ~np.array(by.driven)
-    if not at.setup.model["redundant"]:
-        loads = {load.joint.name: load for load in at.recovery.joints}
-        for i, name in enumerate(by.names):
-            load = loads.get(name.rpartition(".")[0])
-            if by.driven[i] and load is not None and load.drive is not None:
-                left, known[i] = left - float(load.drive[0]) * (np.arange(len(left)) == i), True
-    lengths = np.array(by.lengths)
+def residual(by: Chosen, left: Array, known: Array, scale: Array) -> float:
+    """What the equations leave where it is known, of the largest of the parts that they are sums of."""
+    lengths = np.array([is_length(name) for name in by.names])
     most = np.where(lengths, scale[lengths].max(initial=0.0), scale[~lengths].max(initial=0.0))
     off = np.abs(left[known]) / np.maximum(most[known], np.finfo(float).tiny)
     return float(off.max(initial=0.0))
 
 
-def sections(at: Instant, partials: Partials) -> dict[str, dict[str, Any]]:
-    """s'_i of each section, (53): what the piece beyond the cut exerts on the rest, by the partials of its body.
-
-    A list over the cuts of a run of cuts. None where a component of the section is open.
-    """
+def sections(at: Instant, partials: Partials) -> dict[str, SectionForces]:
+    """s'_i of each section: what the piece beyond the cut exerts on the rest."""
     if not at.setup.cuts:
         return {}
     block = blocks_of(at.recovery, {"sections"})["sections"]
-    found: dict[str, dict[str, Any]] = {}
-    for cuts in at.setup.cuts:
-        own = block[cuts.name]
-        points_, force, moment = (np.atleast_2d(own[name][0]) for name in ("point", "force", "moment"))
-        along = [
-            F @ partials.at(cuts.body, P) + M @ partials.turning(cuts.body)
-            for P, F, M in zip(points_, force, moment, strict=True)
-        ]
-        lists = [None if np.isnan(s).any() else s.tolist() for s in along]
-        found[cuts.name] = {"s": lists[0] if own["force"][0].ndim == 1 else lists}
-    return found
+    return {cuts.name: section_forces(block[cuts.name], 0, partials, cuts.body) for cuts in at.setup.cuts}
 
 
 def partials_block(at: Instant, by: Chosen, partials: Partials) -> dict[str, Any]:

@@ -6,7 +6,8 @@ import math
 from collections.abc import Iterator
 
 from heuncli.foreign_text import shown
-from heuncli.linearisation.modes import SceneModes, is_length
+from heuncli.joint_kinds import is_length
+from heuncli.linearisation.modes import SceneModes
 from heuncli.linearisation.oscillations import Mode
 from heuncli.report.digits import rough, style
 from heuncli.report.page_width import fit

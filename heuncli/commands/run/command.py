@@ -14,19 +14,18 @@ from heuncli.cli.guard import require_other_file
 from heuncli.cli.output import emit, say
 from heuncli.cli.solving import choice, instants, overrides, positive, timings, tolerance, warn
 from heuncli.cli.target import format_of
+from heuncli.cli.units import TABLES, say_what_stays, units
 from heuncli.commands.run import searches
 from heuncli.commands.run.request import FORMATS, RunRequest
-from heuncli.errors import Finding, Problem
+from heuncli.errors import Problem
 from heuncli.kinetostatics.joint_axes import JOINT_AXES
 from heuncli.nearest import did_you_mean, nearest
 from heuncli.records import replace
-from heuncli.report import table_units
 from heuncli.report.cut_runs import LOADS
 from heuncli.report.heading import write_heading, write_heading_markdown
 from heuncli.report.labels import Labels, labels_of
 from heuncli.report.page import EXPORT_DEFAULT, TABLE_DEFAULT, page_of
 from heuncli.report.page_width import fit
-from heuncli.report.table_units import Units
 from heuncli.report.text_table import WIDTH, TextTable, markdown, plain
 from heuncli.results import Results
 from heuncli.results_schema import BLOWS, REPORT_OF, REPORTS, SHARES, quantity, with_shared
@@ -43,7 +42,6 @@ ENDINGS = {".json": "json", ".csv": "csv", ".md": "markdown", ".txt": "table", "
 NOT_SEARCHED = "extremes among the samples only: too many quantities to search between them"
 AXIS: EntryKeys = ("foundation", "axis")
 AT_INSTANTS = "a line in space has no extremes: the central axis is shown at instants, by --at or --all"
-TABLES = ("table", "markdown")
 
 
 def main(request: RunRequest) -> int:
@@ -56,7 +54,7 @@ def main(request: RunRequest) -> int:
 
         asked = measure.parse_all(request.measure)
     only = _only(request.only) if request.only is not None else None
-    shown = Units() if request.units is None else _units(request.units)
+    shown = units(request.units)
     options = Options(
         tolerance=tolerance(request.tolerance),
         method=request.method,
@@ -81,20 +79,12 @@ def main(request: RunRequest) -> int:
             named = (request.only is not None or spec.report is not None) and "foundation" in what.reports
             text = _report(request, form, study, replace(labels_of(spec), units=shown), what, details=named)
     emit(text, request.output)
-    if request.units is not None and not request.quiet and (asked or form not in TABLES):
-        say(f"heun: --units is of tables: {'--measure' if asked else form} stays in SI")
+    say_what_stays(request.units, "--measure" if asked else form, request.quiet)
     later = [*study.later_warnings, *(measure.warnings(asked, study) if asked else ())]
     warnings = warn(spec, study.results, request.quiet, later=later)
     if request.verbose:
         say(f"heun: {timings(study.results.work)}")
     return _strict(study.results, warnings) if request.strict else 0
-
-
-def _units(words: str) -> Units:
-    try:
-        return table_units.asked(words)
-    except Finding as finding:
-        raise UsageError(Problem("bad-option", f"--units {words}: {finding.message}", hint=finding.hint)) from None
 
 
 def _only(words: str) -> tuple[frozenset[str], tuple[str, ...]]:

@@ -2,7 +2,7 @@
 
 from typing import Annotated, NamedTuple
 
-from heuncli.cli.options import NO_REDUCE, OUTPUT, QUIET, SET, SPEC, TIME_LIMIT, Option
+from heuncli.cli.options import NO_REDUCE, OUTPUT, QUIET, SET, SPEC, TIME_LIMIT, UNITS, Option
 
 FORMATS = ("table", "json", "csv", "markdown")
 
@@ -56,10 +56,7 @@ class RunRequest(NamedTuple):
         str | None,
         Option(("--axes",), "Joint loads in the axes of the one or the other body, as it turns.", "world|from|to"),
     ] = None
-    units: Annotated[
-        str | None,
-        Option(("--units",), "Units of tables, such as kN,mm,deg,rpm; JSON, CSV and --measure stay SI.", "UNIT,..."),
-    ] = None
+    units: Annotated[str | None, UNITS] = None
     strict: Annotated[bool, Option(("--strict",), "Leave with 1 if there are warnings or open reactions.")] = False
     time_limit: Annotated[float | None, TIME_LIMIT] = None
     quiet: Annotated[bool, QUIET] = False
