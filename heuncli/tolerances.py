@@ -87,7 +87,7 @@ NO_MOMENT = 1e-9  # of the loads at a body: a smaller moment about its thin axis
 # -- gaps of poses and rates that are assembled
 OPEN_GAP = 1e-10  # of the size, or rad: a quadratic iteration goes below at once, a joint that cannot close stays above
 GAP_ROUNDING = 64.0 * EPS  # of the largest coordinate: some dozen roundings far from the origin
-OPEN_RATE = 1e-10  # of the scene's speed: as OPEN_GAP
+OPEN_RATE = 1e-10  # of the scene's speed, with that of its drives over its size: as OPEN_GAP
 AT_REST = 1e-6  # [rad/s] the least speed a scene is taken to have: rounding about rest opens no joint
 SOLVABLE = 1e-8  # of the acceleration asked for: what may stay unsolved, a digit above RANK
 NO_ACCELERATION = 1e-12  # of speed^2/size: accelerations below are asked for by rounding of the rates alone

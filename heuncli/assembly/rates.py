@@ -8,6 +8,7 @@ then least Σv². Then accelerations must exist for them: J a = −γ − g̈_t.
 
 from __future__ import annotations
 
+import math
 from collections.abc import Sequence
 from functools import cached_property
 
@@ -44,6 +45,11 @@ class Rates:
     def scale(self, size: float) -> float:
         """The scene's speed [m/s]."""
         return float(np.max(np.abs(self.v)) + size * (np.max(np.abs(self.w)) + tolerances.AT_REST))
+
+    @property
+    def are_zero(self) -> bool:
+        """Whether nothing moves."""
+        return not (self.v.any() or self.w.any())
 
 
 def start_rates(mechanism: Mechanism, poses: AssemblyPoses) -> Rates:
@@ -99,7 +105,7 @@ class Moving:
     def at_rest(self) -> bool:
         """Whether nothing is given a motion, or a start of one."""
         given = any(any(d.spin) or any(d.slip) or any(d.stretch) for d in self.found)
-        return not given and self.rates.scale(self.size) == 0.0
+        return not given and self.rates.are_zero
 
     def fit(self) -> None:
         """Meet all joints. Raises SolveError: rates-do-not-fit."""
@@ -137,8 +143,19 @@ class Moving:
         lack = [missing(d, row, self.rates.v, self.rates.w) for d, row in zip(self.found, self.rows, strict=True)]
         return np.array([_norm(hold) for hold, _ in lack]), np.array([_norm(turn) for _, turn in lack])
 
+    @cached_property
+    def driven(self) -> float:
+        """The speed [m/s] that the drives' accelerations give over the scene's size.
+
+        A law that turns back at the start, as cos(w t) does, has a rate of 0 there that is rounding of such speeds.
+        """
+        most = max(
+            (max(abs(d.slip[1]), abs(d.stretch[1]), self.size * abs(d.spin[1])) for d in self.found), default=0.0
+        )
+        return math.sqrt(self.size * most)
+
     def _limit(self) -> float:
-        return tolerances.OPEN_RATE * self.rates.scale(self.size)
+        return tolerances.OPEN_RATE * (self.rates.scale(self.size) + self.driven)
 
     def _open(self) -> list[int]:
         speed, spin = self._lacking()

@@ -68,6 +68,13 @@ def rates(slip: float, spin: float) -> str:
     return verdict(bar(more), lambda found: near(found.joints["pivot"]["force"][0, 2], WEIGHT + spin**2 / 2, WEIGHT))
 
 
+def rates_of_a_beginning(slip: float) -> str:
+    """The bar's top told to move, while a drive sets it going from rest at 1 rad/s^2."""
+    tail = "drives: {m: {joint: pivot, angle: t**2/2}}\nanalysis: {type: state}"
+    text = bar(f", position: [0, 0, 0], velocity: [{slip!r}, 0, 0]", tail, kind="pin, axis: [0, 1, 0]")
+    return verdict(text, lambda found: near(found.joints["pivot"]["drive"][0], 0.08 + 0.25, 1.0))
+
+
 def rates_at_flat(more: float) -> str:
     """Flat bars of 1 m, the right one told to turn faster: no accelerations would keep the coupler's length.
 
@@ -88,6 +95,7 @@ PART = Part(
         Row("GAP_ROUNDING", lambda x: too_far(x * 1e5, 1e5), "fine", "refused: does-not-fit", (1 / 3, 3.0, 100.0)),
         Row("NO_LENGTH", no_length, "refused: no-length", "fine"),
         Row("OPEN_RATE", lambda x: rates(x * BAR_SIZE * 2.0, 2.0), "fine", "refused: rates-do-not-fit"),
+        Row("OPEN_RATE", lambda x: rates_of_a_beginning(x * BAR_SIZE), "fine", "refused: rates-do-not-fit"),
         Row("AT_REST", lambda x: rates(x * 1e-10 * BAR_SIZE, 0.0), "fine", "refused: rates-do-not-fit"),
         Row("SOLVABLE", lambda x: rates_at_flat(x / 4), "warned: singular pose", "refused: singular-pose"),
     ),
