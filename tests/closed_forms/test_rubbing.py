@@ -202,3 +202,39 @@ def test_work_is_what_friction_took() -> None:
     assert r.forces["gib"]["power"] == pytest.approx(power, rel=DIGITS)
     sums = r.energy["kinetic"] + r.energy["potential"] - r.energy["work"]
     assert all(abs(b - a) < 1e-9 for a, b in pairwise(sums.tolist()))
+
+
+WEDGE = """
+heun: 1
+space: planar
+parameters: {{alpha: 0.17, mu: {mu}, F: 1000}}
+ground: {{points: {{floor: [0, 0], wall: [0, 1]}}}}
+bodies:
+  wedge: {{mass: 1, inertia: 0.1, center: [0, 0], points: {{sole: [0, 0], face: [0, 0.2]}}}}
+  ram: {{mass: 1, inertia: 0.1, center: [0, 1], points: {{foot: [0, 0.2], side: [0, 1]}}}}
+joints:
+  floor: {{type: slide, from: ground.floor, to: wedge.sole, axis: [1, 0]}}
+  face: {{type: slide, from: wedge.face, to: ram.foot, axis: [cos(alpha), -sin(alpha)]}}
+  wall: {{type: slide, from: ground.wall, to: ram.side, axis: [0, 1]}}
+drives: {{push: {{joint: floor, speed: {speed}}}}}
+forces:
+  load: {{type: force, on: ram.side, vector: [0, -F]}}
+  sole: {{type: friction, joint: floor, coefficient: mu, speed: 1e-9}}
+  incline: {{type: friction, joint: face, coefficient: mu, speed: 1e-9}}
+  gib: {{type: friction, joint: wall, coefficient: mu, speed: 1e-9}}
+"""
+
+
+@pytest.mark.parametrize("mu", [0.05, 0.1])
+@pytest.mark.parametrize("sense", [1.0, -1.0])
+def test_a_wedge_lifts_and_lets_down(mu: float, sense: float) -> None:
+    """R at the friction angle p beside the face's normal; below alpha = 2 p a wedge, as a screw, holds by itself.
+
+    The moments of three slides in a loop are open, the forces that press are not.
+    """
+    r = solved(WEDGE.format(mu=mu, speed=0.01 * sense))
+    alpha, p, m = 0.17, sense * np.arctan(mu), sense * mu
+    R = 1000.0 / (np.cos(alpha + p) - m * np.sin(alpha + p))
+    push = R * np.sin(alpha + p) + m * R * np.cos(alpha + p)
+    assert r.joints["floor"]["drive"][0] == pytest.approx(push, rel=1e-11)
+    assert (push < 0.0) == (sense < 0.0 and alpha < 2.0 * np.arctan(mu))
