@@ -190,6 +190,11 @@ def test_what_is_refused(heun: Heun, pendulum: str, words: list[str], code: int,
     assert says in done.stderr and "hint:" in done.stderr
 
 
+def test_coordinates_that_all_stand(heun: Heun) -> None:
+    done = heun("lagrange", str(ROOT / "specs" / "table.yaml"), "--coordinates", "A.x,A.y,A.dz")
+    assert done.returncode == 3 and "cannot tell the motion here" in done.stderr and "(dead centre)" in done.stderr
+
+
 @pytest.mark.heavy
 @pytest.mark.parametrize("path", SPECS, ids=lambda path: path.stem)
 def test_every_spec_has_its_equations(path: Path) -> None:

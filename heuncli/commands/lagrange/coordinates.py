@@ -170,7 +170,7 @@ def require_telling(names: Sequence[str], by: Array, count: int, scaled: Mapping
         message = f"{count} {few} free, and {len(names)} coordinate{'s are' if len(names) != 1 else ' is'} named"
         raise SolveError(Problem(CODE, message, hint=f"name {count} of {', '.join(list(scaled)[:8])}"))
     U, s, V = np.linalg.svd(by)
-    if s[-1] * tolerances.TELLING < s[0] or (count == 1 and s[0] * tolerances.TELLING < largest_of(scaled)):
+    if s[-1] * tolerances.TELLING < max(s[0], largest_of(scaled)):
         along = {name: abs(float(row @ V[-1])) for name, row in scaled.items()}
         moves = max(along, key=lambda name: along[name])
         still = names[int(np.argmax(np.abs(U[:, -1])))]
