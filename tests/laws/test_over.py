@@ -2,11 +2,15 @@
 
 from __future__ import annotations
 
+import numpy as np
 import pytest
 
+from heuncli.commands.lagrange import course_page
 from heuncli.commands.lagrange.options import range_of
 from heuncli.commands.lagrange.over import over
+from heuncli.report.table_units import Units
 from heuncli.spec.load import load
+from tests.shared.folders import ROOT
 from tests.shared.lagrange import told
 
 FOUR_BAR = """\
@@ -61,3 +65,46 @@ def test_a_range_is_its_instants(way: str) -> None:
         assert found.forces.keys() == one.forces.keys()
         for name, k in found.forces.items():
             assert k[i] == pytest.approx(one.forces[name][0], abs=DIGITS)
+
+
+SLIDER_CRANK = load(str(ROOT / "specs" / "slider_crank.yaml"))
+TURN = 0.01642669572178526  # kg m^2, of its crank over a whole turn
+
+
+@pytest.mark.parametrize("words", ["0:360deg/73", "0:360deg/2", "720deg:0/5", "0:180deg/7", "-360deg:0/18"])
+def test_the_mean_is_of_the_range_not_of_its_values(words: str) -> None:
+    assert over(SLIDER_CRANK, range_of(f"main.angle={words}", SLIDER_CRANK)).mean == pytest.approx(TURN, rel=1e-7)
+
+
+def test_a_mean_that_does_not_settle_is_not_told() -> None:
+    """Beside dead centres, at 0.2 and 0.4 m, the inertia of the slider is without bound."""
+    found = over(SLIDER_CRANK, range_of("guide.travel=0.2001:0.39999/4", SLIDER_CRANK))
+    assert np.isnan(found.mean) and course_page.block(found)["mean"] is None
+    assert "no mean that settles" in course_page.write(found, Units())
+
+
+TIPPER = """
+heun: 1
+space: planar
+gravity: [0, -9.81]
+ground: {points: {hinge: [0, 0], foot: [1.2, -0.5]}}
+bodies: {bed: {mass: 900, center: [1.5, 0.4], inertia: 700, points: {hinge: [0, 0], lift: [1.6, 0]}}}
+joints:
+  hinge: {type: pin, from: ground.hinge, to: bed.hinge}
+  ram: {type: rod, from: ground.foot, to: bed.lift}
+drives: {oil: {joint: ram, speed: 0.1}}
+"""
+
+
+def test_over_the_length_of_a_rod() -> None:
+    """What a tipper's cylinder moves: J (dphi/dl)^2 by the triangle of hinge, foot and lift; its weight m g dy/dl."""
+    spec = load("tipper.yaml", TIPPER)
+    found = over(spec, range_of("ram.length=0.7 m:1.2/6", spec))
+    a, b, J = 1.3, 1.6, 700 + 900 * (1.5**2 + 0.4**2)
+    l = found.values
+    at_hinge = np.arccos((a**2 + b**2 - l**2) / (2 * a * b))  # between hinge-foot and hinge-lift
+    turned = at_hinge - np.arctan2(0.5, 1.2)
+    by_length = l / (a * b * np.sin(at_hinge))
+    assert found.epsilon == pytest.approx(J * by_length**2, rel=1e-11)
+    lever = 1.5 * np.cos(turned) - 0.4 * np.sin(turned)
+    assert found.total == pytest.approx(-900 * 9.81 * lever * by_length, rel=1e-11)

@@ -240,6 +240,13 @@ def of_body(mechanism: Mechanism, name: str, quantity: str, states: BodyStates) 
     return states.omega[:, body, k], states.alpha[:, body, k]
 
 
+def length_of(layout: Layout, states: BodyStates, name: str) -> float:
+    """The distance of a rod's two points at the first of some instants [m]."""
+    joint = next(joint for joint in layout.mechanism.joints if joint.name == name)
+    D = states.point_position(joint.b, joint.q)[0] - states.point_position(joint.a, joint.p)[0]
+    return float(np.sqrt(D @ D))
+
+
 def of_length(joint: Joint, states: BodyStates) -> tuple[Array, Array]:
     """Of the distance of two points D: e . v, and e . a + (v^2 - (e . v)^2) / |D|."""
     A, B = states.point_position(joint.a, joint.p), states.point_position(joint.b, joint.q)

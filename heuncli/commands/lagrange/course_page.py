@@ -6,13 +6,12 @@ from typing import Any
 
 import numpy as np
 
-from heuncli.commands.lagrange.kinds import units_of
+from heuncli.commands.lagrange.kinds import LENGTH, units_of
 from heuncli.commands.lagrange.page import number
 from heuncli.commands.lagrange.results import InertiaCourse
-from heuncli.foreign_text import shown
 from heuncli.report.page_width import fit
 from heuncli.report.table_units import Units
-from heuncli.report.text_table import WIDTH, TextColumn, TextTable, head, plain
+from heuncli.report.text_table import WIDTH, TextColumn, TextTable, head, labelled, plain
 from heuncli.version import VERSION
 
 COURSE = "OVER  ε and half its slope: C = ½ dε/dq q'²; k by cause at q' = {rate:.6g} {unit}, loads as at the start"
@@ -25,27 +24,29 @@ def write(found: InertiaCourse, shown_in: Units) -> str:
     unit, size = shown_in.of(own.value)
     low, high = int(np.argmin(found.epsilon)), int(np.argmax(found.epsilon))
     least, most = (f"{found.epsilon[i]:.6g} {own.inertia} at {found.values[i] * size:.6g} {unit}" for i in (low, high))
-    lines.append(("inertia", f"ε mean {found.mean:.6g} {own.inertia}, least {least}, largest {most}"))
-    above = "".join(f"{label.ljust(7)}  {shown(text)}\n" for label, text in lines)
-    return above + "\n" + "".join(plain(part, WIDTH) for part in fit(table(found, shown_in), WIDTH))
+    mean = "has no mean that settles" if np.isnan(found.mean) else f"mean {found.mean:.6g} {own.inertia} over the range"
+    lines.append(("inertia", f"ε {mean}; of the values least {least}, largest {most}"))
+    return labelled(lines) + "\n" + "".join(plain(part, WIDTH) for part in fit(table(found, shown_in), WIDTH))
 
 
 def table(found: InertiaCourse, shown_in: Units) -> TextTable:
     """A row a value."""
     own = units_of(found.name)
+    per = np.abs(found.values).max() if own is LENGTH else 1.0
+    most = float(found.epsilon.max())
     named = [
-        (found.name, own.value, found.values),
-        ("ε", own.inertia, found.epsilon),
-        ("½ dε/dq", own.slope, found.half),
+        (found.name, own.value, found.values, 0.0),
+        ("ε", own.inertia, found.epsilon, 0.0),
+        ("½ dε/dq", own.slope, found.half, most / per),
     ]
-    named += [(name, own.force, k) for name, k in {"k": found.total, **found.forces}.items()]
-    heads, columns = [], []
-    for name, unit, values in named:
+    named += [(name, own.force, k, found.reach) for name, k in {"k": found.total, **found.forces}.items()]
+    heads, cells = [], []
+    for name, unit, values, scale in named:
         shown_unit, size = shown_in.of(unit)
         heads.append(head(name, shown_unit))
-        columns.append(values * size)
-    sizes = [float(np.abs(column).max(initial=0.0)) for column in columns]
-    rows = tuple(tuple(number(x, size) for x, size in zip(row, sizes, strict=True)) for row in np.array(columns).T)
+        largest = max(scale, float(np.abs(values).max(initial=0.0)))
+        cells.append([number(x * size, largest * size) for x in values])
+    rows = tuple(zip(*cells, strict=True))
     unit, size = shown_in.of(own.rate)
     return TextTable(COURSE.format(rate=found.rate * size, unit=unit), tuple(map(TextColumn, heads)), rows)
 
@@ -69,7 +70,7 @@ def block(found: InertiaCourse) -> dict[str, Any]:
             "total": found.total[:, None].tolist(),
             "shares": {name: k[:, None].tolist() for name, k in found.forces.items()},
         },
-        "mean": found.mean,
+        "mean": None if np.isnan(found.mean) else found.mean,
     }
 
 

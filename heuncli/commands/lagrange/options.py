@@ -9,12 +9,12 @@ import numpy as np
 
 from heuncli.cli.entry import UsageError
 from heuncli.commands.lagrange.forms import KEYS
-from heuncli.commands.lagrange.over import FOLLOWS, Range
+from heuncli.commands.lagrange.over import Range
 from heuncli.commands.lagrange.request import LagrangeRequest
 from heuncli.errors import Finding, Problem
 from heuncli.expressions.grammar import Scope
-from heuncli.expressions.units import LENGTH, NUMBER
-from heuncli.joint_kinds import JOINTS
+from heuncli.expressions.units import LENGTH, NUMBER, Dimension
+from heuncli.joint_kinds import JOINTS, is_length
 from heuncli.nearest import did_you_mean
 from heuncli.spec.models import Spec
 from heuncli.spec.quantity import number
@@ -103,20 +103,20 @@ def range_of(given: str, spec: Spec) -> Range:
     if not 2 <= n <= MOST:
         raise refused(given, f"expected 2 to {MOST} values", FORM)
     joint, _, quantity = name.rpartition(".")
-    known = [f"{own.name}.{q}" for own in spec.joints.values() for q in JOINTS[own.kind].coordinates if q in FOLLOWS]
+    known = [f"{own.name}.{q}" for own in spec.joints.values() for q in JOINTS[own.kind].drives if not own.tension_only]
     if name not in known:
-        hint = did_you_mean(name, known, "coordinates") or "of pins, slides and cylinders"
+        hint = did_you_mean(name, known, "coordinates") or "of pins, slides, cylinders and rods"
         raise refused(given, f"no coordinate is called {name}", hint)
-    a, b = (bound(given, text, quantity) for text in (first, last))
+    a, b = (bound(given, text, LENGTH if is_length(name) else NUMBER) for text in (first, last))
     if a == b:
         raise refused(given, "both ends are the same", FORM)
     return Range(name, joint, quantity, np.linspace(a, b, n))
 
 
-def bound(given: str, text: str, quantity: str) -> float:
+def bound(given: str, text: str, dimension: Dimension) -> float:
     """An end of a range, a number with a unit or without, SI."""
     try:
-        return number(text, LENGTH if quantity == "travel" else NUMBER, Scope())
+        return number(text, dimension, Scope())
     except Finding as finding:
         raise refused(given, str(finding), f"{finding.hint}; {FORM}" if finding.hint else FORM) from None
 

@@ -9,11 +9,11 @@ from __future__ import annotations
 
 import numpy as np
 
-from heuncli.commands.lagrange.coordinates import accelerations
+from heuncli.commands.lagrange.coordinates import accelerations, length_of, rates
 from heuncli.commands.lagrange.equations import motion_alone
 from heuncli.commands.lagrange.freed import FreedScene, freed
 from heuncli.commands.lagrange.results import InertiaCourse
-from heuncli.errors import Problem, SolveError
+from heuncli.errors import LimitError, Problem, SolveError
 from heuncli.expressions.grammar import Scope, compile_expression
 from heuncli.integration.determined_motion import determined
 from heuncli.integration.evaluator import Recovered
@@ -33,7 +33,8 @@ from heuncli.study.model.error_places import placed
 from heuncli.study.model.setup import set_up
 from heuncli.tree.layout import Layout, places_of_rates
 
-FOLLOWS = ("angle", "travel")
+MEAN = 1e-7  # of the mean of e: what half as many values may change, below the six digits that are told
+FEW, MANY = 17, 4097  # values, at least and at most, by which the mean is taken
 
 
 @record
@@ -54,17 +55,47 @@ def refused(asked: Range, message: str, hint: str) -> SolveError:
 def over(spec: Spec, asked: Range) -> InertiaCourse:
     """The course of the inertia and of the forces. Raises SolveError where more is free, or the way ends."""
     with placed(spec):
-        start, rate = begun(spec, asked)
-        t = float(spec.analysis.times[0]) if spec.analysis.type == "state" else 0.0
-        order = np.argsort(asked.values)
-        values = asked.values[order]
-        ways = [values[values < start][::-1], values[values >= start]]
-        parts = [along(*followed(spec, asked, start, way), t, rate, way) for way in ways if len(way)]
-        parts = [part.reversed if len(part.values) > 1 and part.values[0] > part.values[-1] else part for part in parts]
-        whole = joined(parts)
-        whole = whole if asked.values[0] < asked.values[-1] else whole.reversed
-        driven = any(drive.joint == asked.joint and drive.quantity == asked.quantity for drive in spec.drives.values())
-        return replace(whole, title=spec.title, name=asked.name, driven=driven)
+        found = finer = course(spec, asked)
+        mean, off = mean_of(found)
+        while off > MEAN * abs(mean) and 2 * len(finer.values) <= MANY:
+            count = max(2 * len(finer.values) - 1, FEW)
+            finer = course(spec, replace(asked, values=np.linspace(asked.values[0], asked.values[-1], count)))
+            mean, off = mean_of(finer)
+        return replace(found, mean=mean if off <= MEAN * abs(mean) else np.nan)
+
+
+def mean_of(found: InertiaCourse) -> tuple[float, float]:
+    """The mean of e over the range, and what it is off from that by every other value: Euler and Maclaurin's sum.
+
+        integral = sum h (e_i + e_i+1)/2 + h^2 (e'_i - e'_i+1)/12
+    Of a whole turn the slopes cancel, and its trapezoids are as good as e is smooth.
+    """
+    e, slope, length = found.epsilon, 2.0 * found.half, float(found.values[-1] - found.values[0])
+
+    def by(every: int) -> float:
+        f = e[::every]
+        h = length / (len(f) - 1)
+        ends = h * (slope[0] - slope[-1]) / 12.0
+        return float((0.5 * (f[0] + f[-1]) + f[1:-1].sum() + ends) / (len(f) - 1))
+
+    if len(e) < FEW or len(e) % 2 == 0:
+        return by(1), np.inf
+    return by(1), abs(by(1) - by(2))
+
+
+def course(spec: Spec, asked: Range) -> InertiaCourse:
+    """The course at the values asked for."""
+    start, rate = begun(spec, asked)
+    t = float(spec.analysis.times[0]) if spec.analysis.type == "state" else 0.0
+    order = np.argsort(asked.values)
+    values = asked.values[order]
+    ways = [values[values < start][::-1], values[values >= start]]
+    parts = [along(*followed(spec, asked, start, way), t, rate, way) for way in ways if len(way)]
+    parts = [part.reversed if len(part.values) > 1 and part.values[0] > part.values[-1] else part for part in parts]
+    whole = joined(parts)
+    whole = whole if asked.values[0] < asked.values[-1] else whole.reversed
+    driven = any(drive.joint == asked.joint and drive.quantity == asked.quantity for drive in spec.drives.values())
+    return replace(whole, title=spec.title, name=asked.name, driven=driven)
 
 
 def begun(spec: Spec, asked: Range) -> tuple[float, float]:
@@ -74,8 +105,11 @@ def begun(spec: Spec, asked: Range) -> tuple[float, float]:
     setup = set_up(spec._replace(analysis=analysis), reduce=False)
     layout = setup.scene.layout
     there = setup.runner.recovered(np.array([t]), layout.y0[None, :])
-    own = coordinates(layout, there, body_states(layout, there))[asked.joint]
-    return float(own[asked.quantity][0]), float(own["rate" if asked.quantity == "angle" else "speed"][0])
+    states = body_states(layout, there)
+    rate = float(rates(layout, [f"{asked.joint}.{asked.quantity}"], states)[0, 0])
+    if asked.quantity == "length":
+        return length_of(layout, states, asked.joint), rate
+    return float(coordinates(layout, there, states)[asked.joint][asked.quantity][0]), rate
 
 
 def followed(spec: Spec, asked: Range, start: float, way: Array) -> tuple[FreedScene, Recovered, float]:
@@ -87,7 +121,8 @@ def followed(spec: Spec, asked: Range, start: float, way: Array) -> tuple[FreedS
     law = compile_expression(f"{start!r} + {span!r}*t", Scope(in_time=True))
     drives = {"over": Drive("over", asked.joint, asked.quantity, law)}  # type: ignore[arg-type]
     joints = dict(spec.joints)
-    joints[asked.joint] = replace(joints[asked.joint], **{RATES[asked.quantity]: None})
+    if asked.quantity in RATES:
+        joints[asked.joint] = replace(joints[asked.joint], **{RATES[asked.quantity]: None})
     times = np.maximum((way - start) / span, 0.0)
     analysis = Analysis("motion", tuple(times.tolist()), 1.0, spec.analysis.tolerance, "auto", None)
     setup = set_up(spec._replace(drives=drives, joints=joints, impulses={}, analysis=analysis), reduce=False)
@@ -103,6 +138,10 @@ def followed(spec: Spec, asked: Range, start: float, way: Array) -> tuple[FreedS
         raise refused(asked, message, "heun lagrange SPEC tells all of one instant; --at T of a later one")
     try:
         run = setup.runner.trajectory(MotionTask(times, spec.analysis.tolerance, FOLLOWED))
+    except LimitError as error:
+        if error.problems[0].code != "step-limit":
+            raise
+        raise refused(asked, "it takes too many steps to be followed so far", "a shorter range") from None
     except SolveError as error:
         ends = "" if error.reached is None else f" beyond {start + span * error.reached:.6g}"
         why = error.problems[0].message
@@ -133,10 +172,24 @@ def along(scene: FreedScene, there: Recovered, span: float, t: float, rate: floa
     half = half - epsilon * accelerations(layout, [f"{joint.name}.{joint.drive.quantity}"], alone)[:, 0]
     loaded = runner.recovered(at, moved, holding=holding)
     own = body_states(layout, loaded)
-    forces = {GRAVITY: states.v_centre @ layout.mechanism.gravity @ m} if layout.mechanism.gravity.any() else {}
+    speeds = np.sqrt(np.sum(states.v_centre**2, axis=2)), np.sqrt(np.sum(states.omega**2, axis=2))
+    gravity = layout.mechanism.gravity
+    forces = {GRAVITY: states.v_centre @ gravity @ m} if gravity.any() else {}
+    reach = float((speeds[0] @ m).max()) * float(np.sqrt(gravity @ gravity))
     for load in applied_loads(layout.mechanism, own, loaded):
         forces[load.load.name] = forces.get(load.load.name, 0.0) + power(states, load.action)
-    return InertiaCourse("", "", False, values, rate, epsilon, half, forces)
+        reach = max(reach, largest_power(speeds, load.action))
+    return InertiaCourse("", "", False, 0.0, values, rate, epsilon, half, forces, reach)
+
+
+def largest_power(speeds: tuple[Array, Array], action: Action) -> float:
+    """What an action could do at most at the speeds of the bodies' centres and of their turning, (n_t, n) each."""
+    most = 0.0
+    for end, force, moment in action.on_bodies():
+        if end.body != GROUND:
+            sizes = (np.sqrt(np.sum(load**2, axis=-1)) for load in (force, moment))
+            most += sum(float((size * speed[:, end.body]).max()) for size, speed in zip(sizes, speeds, strict=True))
+    return most
 
 
 def body_spins(layout: Layout, states: BodyStates) -> Array:
@@ -166,4 +219,5 @@ def joined(parts: list[InertiaCourse]) -> InertiaCourse:
         epsilon=np.concatenate([first.epsilon, second.epsilon]),
         half=np.concatenate([first.half, second.half]),
         forces={name: np.concatenate([k, second.forces[name]]) for name, k in first.forces.items()},
+        reach=max(first.reach, second.reach),
     )

@@ -115,28 +115,25 @@ class StateSpace:
 class InertiaCourse:
     """The inertia and the forces over a range of the one free coordinate, (n,) each.
 
-    epsilon, half: e and de/dq / 2; forces k by cause, at a rate of the coordinate; mean: of e, over the range.
+    epsilon, half: e and de/dq / 2; forces k by cause, at a rate of the coordinate; reach: of what size the
+    products are that they are sums of; mean: of e, over the range, nan where it does not settle.
     """
 
     title: str
     name: str
     driven: bool
+    mean: float
     values: Array
     rate: float
     epsilon: Array
     half: Array
     forces: Mapping[str, Array]
+    reach: float
 
     @property
     def total(self) -> Array:
         """k."""
         return sum(self.forces.values(), np.zeros(len(self.values)))
-
-    @property
-    def mean(self) -> float:
-        """Of e over the range; of a whole turn the mean of the turn."""
-        middle = 0.5 * (self.epsilon[1:] + self.epsilon[:-1])
-        return float(middle @ np.diff(self.values) / (self.values[-1] - self.values[0]))
 
     @property
     def reversed(self) -> InertiaCourse:

@@ -8,7 +8,7 @@ import numpy as np
 
 from heuncli.commands.lagrange import rodrigues
 from heuncli.commands.lagrange.blows import blows
-from heuncli.commands.lagrange.coordinates import Chosen, accelerations, chosen, rates
+from heuncli.commands.lagrange.coordinates import Chosen, accelerations, chosen, length_of, rates
 from heuncli.commands.lagrange.drives import drive_rows, left_by_reactions
 from heuncli.commands.lagrange.equations import (
     Partials,
@@ -124,14 +124,11 @@ def symmetric(M: Array) -> Array:
 def values_of(at: Instant, by: Chosen, here: BodyStates) -> Array:
     """The coordinates themselves, (f,); not a number of quasi-velocities."""
     block = coordinates(at.freed.layout, at.here, here)
-    joints = {joint.name: joint for joint in at.freed.layout.mechanism.joints}
     found = []
     for name in by.names:
         owner, _, quantity = name.rpartition(".")
         if quantity == "length":
-            joint = joints[owner]
-            D = here.point_position(joint.b, joint.q) - here.point_position(joint.a, joint.p)
-            found.append(float(np.sqrt(D[0] @ D[0])))
+            found.append(length_of(at.freed.layout, here, owner))
         else:
             found.append(
                 float(block[owner][quantity][0]) if quantity in block.get(owner, {}) else of_body(at, here, name)
