@@ -62,6 +62,7 @@ GOES_ON = 1e-8  # of the stiffness and loads: what of them may change as a stead
 
 # -- orders
 CANCELS = 1e-9  # of the sum of the bodies' own amplitudes: drawings typed with ten digits balance that well
+COMES_BACK = 1e-2  # of the largest force or moment: two periods that differ more have no order to two digits
 ORDERS_SETTLED = (
     1e-12  # of the largest order: what the highest may be for all below them to be told; some FFT's roundings
 )

@@ -37,6 +37,7 @@ class BalanceOptions:
     minimise: str | None = None
     lever: float | None = None
     flywheel: AskedWheel | None = None
+    period: float | None = None
 
 
 NOTHING_ASKED = BalanceOptions()

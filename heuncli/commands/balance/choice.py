@@ -61,7 +61,7 @@ def require_no_contacts(mechanism: Mechanism) -> None:
     """Raise SolveError for what may open and close: no pose tells whether it is closed."""
     names = [f"stops.{stop.name}" for stop in mechanism.stops]
     names += [f"joints.{joint.name}" for joint in mechanism.joints if joint.tension_only]
-    hint = "leave it out, or run the motion: heun run tells its mass effects over time"
+    hint = "leave it out; or --period tells orders of time, of a motion that comes back"
     if names:
         raise SolveError(*(
             Problem("opens-and-closes", f"{name} may open and close: a cycle by the angle does not tell when",

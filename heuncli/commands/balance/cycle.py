@@ -126,7 +126,7 @@ def require_determined(runner: Runner, plan: CyclePlan) -> None:
     if left > 0:
         also = "another freedom is" if left == 1 else f"{left} other freedoms are"
         message = f"joints.{plan.joint}: with its angle driven {also} left: how they move is not told by the cycle"
-        hint = "drive them, too, or hold them; a rod on two balls needs one `universal` for its idle spin"
+        hint = "drive them, too, or hold them (a rod on two balls: one `universal`); or --period T, orders of time"
         raise SolveError(Problem("several-freedoms", message, hint=hint, about=f"joints.{plan.joint}"))
     message = f"joints.{plan.joint}: its angle does not determine the motion"
     raise SolveError(Problem("no-cycle", message, hint="--cycle names another angle", about=f"joints.{plan.joint}"))

@@ -18,6 +18,8 @@ def draw(found: BalanceResults, width: int) -> str:
     room = min(WIDTH, width - LABEL - 2)
     field = {order: [" "] * room for order in found.shown}
     for name, letter in LETTER.items():
+        if name not in found.orders:
+            continue
         rows = [row for row in found.orders[name] if row.order in field]
         largest = max((row.size for row in found.orders[name]), default=0.0)
         for row in rows:

@@ -10,7 +10,7 @@ from heuncli.commands.balance.asked import AskedWeight, AskedWheel, BalanceOptio
 from heuncli.commands.balance.request import BalanceRequest
 from heuncli.errors import Finding, Problem
 from heuncli.expressions.grammar import Scope
-from heuncli.expressions.units import LENGTH, RATE, Dimension
+from heuncli.expressions.units import LENGTH, RATE, TIME, Dimension
 from heuncli.nearest import did_you_mean
 from heuncli.results import Array
 from heuncli.spec.models import Spec
@@ -22,6 +22,7 @@ MINIMISED = ("force", "moment", "mix")
 
 def options(request: BalanceRequest, spec: Spec) -> BalanceOptions:
     """What is asked for."""
+    require_alone(request)
     turns = None if request.turns is None else int(choice("--turns", request.turns, TURNS))
     about, place = about_of(request.about, spec)
     rate = None if request.rate is None else quantity("--rate", request.rate, RATE, "1500rpm")
@@ -33,13 +34,35 @@ def options(request: BalanceRequest, spec: Spec) -> BalanceOptions:
         weights=tuple(weight_asked(words) for words in request.counterweight),
         minimise=None if request.minimise is None else choice("--minimise", request.minimise, MINIMISED),
         lever=lever, flywheel=None if request.flywheel is None else wheel_asked(request.flywheel),
+        period=None if request.period is None else period_of(request.period),
     )  # fmt: skip
 
 
-def positive(option: str, value: float) -> float:
+def require_alone(request: BalanceRequest) -> None:
+    """Raise UsageError for what is of an angle's cycle, where orders of time are asked for."""
+    if request.period is None:
+        return
+    given = {
+        "--cycle": request.cycle, "--turns": request.turns, "--rate": request.rate,
+        "--counterweight": request.counterweight, "--minimise": request.minimise, "--lever": request.lever,
+        "--flywheel": request.flywheel,
+    }  # fmt: skip
+    hint = "leave out the one or the other: orders of time are of the motion as it is"
+    wrong = [Problem("bad-option", f"--period and {name}", hint=hint) for name, value in given.items() if value]
+    if wrong:
+        raise UsageError(*wrong)
+
+
+def period_of(words: str) -> float:
+    """The seconds of --period."""
+    return positive("--period", quantity("--period", words, TIME, "20 ms"), "time", "20 ms")
+
+
+def positive(option: str, value: float, what: str = "length", example: str = "60mm") -> float:
     """The value, if it is above 0."""
     if value <= 0.0:
-        raise UsageError(Problem("bad-option", f"{option} {value:g}: expected a length above 0", hint="such as 60mm"))
+        message = f"{option} {value:g}: expected a {what} above 0"
+        raise UsageError(Problem("bad-option", message, hint=f"such as {example}"))
     return value
 
 

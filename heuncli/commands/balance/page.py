@@ -10,7 +10,7 @@ import numpy as np
 
 from heuncli.commands.balance.letters import draw
 from heuncli.commands.balance.remedies_page import remedies
-from heuncli.commands.balance.results import BalanceResults, Counterbalance, OrderRow, OverCycle
+from heuncli.commands.balance.results import BalanceResults, Counterbalance, OrderRow, OverCycle, Period
 from heuncli.records import replace
 from heuncli.report.digits import style, trim
 from heuncli.report.export import FORMAT
@@ -40,20 +40,29 @@ CSV_COLUMNS = "kind,order,quantity,component,unit,value"
 
 def heading(found: BalanceResults) -> list[tuple[str, str]]:
     """Label and text of the lines above the tables."""
+    many = "" if found.settled else "; the highest orders are not settled: a law bends on the way"
+    return [
+        ("heun", f"{VERSION}  {found.title}"),
+        ("balance", f"{cycle_of(found)}{many}"),
+        ("signs", f"force and moment of the masses ON the foundation: {SIGNS}"),
+        *((name, found.words[name]) for name in ("force", "moment")),
+        *(("", note) for note in found.notes),
+    ]
+
+
+def cycle_of(found: BalanceResults) -> str:
+    """The cycle in words."""
+    if found.period is not None:
+        own = found.period
+        back = f"the period before differs by {own.off:.1g} of the largest"
+        return f"the last {own.seconds:.6g} s of the motion, {found.samples} instants; order k is k/T; {back}"
     turns = "one turn" if found.turns == 1 else "two turns"
     rate = (
         f"at {found.rate:.6g} rad/s ({found.rate * RPM:.6g} rpm)"
         if found.rate is not None
         else "at 1 rad/s: by the square of the rate, in kg·m"
     )
-    many = "" if found.settled else "; the highest orders are not settled: a law bends on the way"
-    return [
-        ("heun", f"{VERSION}  {found.title}"),
-        ("balance", f"{turns} of {found.coordinate} {rate}, {found.samples} angles{many}"),
-        ("signs", f"force and moment of the masses ON the foundation: {SIGNS}"),
-        *((name, found.words[name]) for name in ("force", "moment")),
-        *(("", note) for note in found.notes),
-    ]
+    return f"{turns} of {found.coordinate} {rate}, {found.samples} angles"
 
 
 def unit_of(found: BalanceResults, quantity: str) -> str:
@@ -79,7 +88,8 @@ def tables(found: BalanceResults) -> Iterator[TextTable]:
     """The tables of the page."""
     yield order_table(found, "force", FORCE)
     yield order_table(found, "moment", MOMENT.format(place_of(found)))
-    yield order_table(found, "torque", TORQUE)
+    if "torque" in found.orders:
+        yield order_table(found, "torque", TORQUE)
     if "load" in found.orders:
         yield load_table(found)
     yield residual_table(found)
@@ -165,13 +175,19 @@ def residual_table(found: BalanceResults) -> TextTable:
     """Root of the mean square and peak of force, moment and torque."""
     rows = []
     for name in ("force", "moment", "torque"):
-        own, unit = found.residual[name], unit_of(found, name)
-        rms, peak = numbers([own.rms, own.peak], own.peak)
-        rows.append(
-            (f"{name} [{unit}]", rms, peak, f"{found.coordinate} = {math.degrees(own.at):.2f}°" if own.peak else "")
-        )
+        if name in found.residual:
+            own = found.residual[name]
+            rms, peak = numbers([own.rms, own.peak], own.peak)
+            rows.append((f"{name} [{unit_of(found, name)}]", rms, peak, where(found, own.at) if own.peak else ""))
     columns = TextColumn("", "left"), TextColumn("rms"), TextColumn("peak"), TextColumn("at", "left")
     return TextTable(RESIDUAL, columns, tuple(rows))
+
+
+def where(found: BalanceResults, at: float) -> str:
+    """An angle of the cycle, or an instant of the period."""
+    if found.period is not None:
+        return f"t = {at * found.period.seconds / math.tau:.6g} s"
+    return f"{found.coordinate} = {math.degrees(at):.2f}°"
 
 
 def block(found: BalanceResults) -> dict[str, Any]:
@@ -181,13 +197,15 @@ def block(found: BalanceResults) -> dict[str, Any]:
         "heun": FORMAT, "title": found.title, "spec": dict(found.spec), "version": VERSION,
         "cycle": {
             "coordinate": found.coordinate, "turns": found.turns, "rate": found.rate, "samples": found.samples,
-            "settled": found.settled,
+            "settled": found.settled, **period_block(found.period),
         },
         "about": found.about, "axis": found.axis, "words": dict(found.words), "notes": list(found.notes),
         "mean": dict(found.mean),
         "harmonics": {name: [row.block() for row in rows] for name, rows in found.orders.items()},
         "residual": {name: residual.block() for name, residual in found.residual.items()},
-        "per_rate": {
+    }  # fmt: skip
+    if found.period is None:
+        own["per_rate"] = {
             "angle": effects.angles,
             "second": {
                 "force": effects.force.sum(axis=1), "moment": effects.moment.sum(axis=1),
@@ -200,8 +218,7 @@ def block(found: BalanceResults) -> dict[str, Any]:
                 "moment_orbital": effects.first_orbital.sum(axis=1), "moment_spin": effects.first_spin.sum(axis=1),
                 "torque": effects.eps.sum(axis=1),
             },
-        },
-    }  # fmt: skip
+        }  # fmt: skip
     own["counterweights"] = []
     if found.counterbalance is not None:
         own |= weights_block(found.counterbalance)
@@ -209,6 +226,11 @@ def block(found: BalanceResults) -> dict[str, Any]:
         own["flywheel"] = found.flywheel.block()
     as_lists: dict[str, Any] = plain_data(own)
     return as_lists
+
+
+def period_block(own: Period | None) -> Block:
+    """A period of time, and how much the last one differs from the one before, of the largest."""
+    return {} if own is None else {"period": own.seconds, "differs_by": own.off}
 
 
 def weights_block(found: Counterbalance) -> Block:

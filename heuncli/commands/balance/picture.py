@@ -24,7 +24,8 @@ def picture(found: BalanceResults) -> Picture:
     shapes: list[Shape] = []
     title = found.title or "Balance"
     rate = f" at {found.rate:.6g} rad/s" if found.rate is not None else ""
-    told = f"orders of {found.coordinate}{rate}; force: {found.words['force']}; moment: {found.words['moment']}"
+    cycle = f"{found.coordinate}{rate}" if found.period is None else f"time, 1/T = {1.0 / found.period.seconds:.6g} Hz"
+    told = f"orders of {cycle}; force: {found.words['force']}; moment: {found.words['moment']}"
     y = 28.0
     for text in wrapped(shown(title), int((WIDTH - 40.0) / (LETTER * TITLE)), 0):
         shapes.append(Text(20.0, y, text, TITLE, bold=True))
@@ -32,7 +33,7 @@ def picture(found: BalanceResults) -> Picture:
     for text in wrapped(told, int((WIDTH - 40.0) / (LETTER * SMALL)), 0):
         shapes.append(Text(20.0, y, text, SMALL, colour=GREY))
         y += LINE
-    for quantity in NAMES:
+    for quantity in (name for name in NAMES if name in found.orders):
         y += GAP - 24.0
         shapes += panel(found, quantity, y)
         y += PANEL + 24.0

@@ -31,6 +31,10 @@ class BalanceRequest(NamedTuple):
     rate: Annotated[
         str | None, Option(("--rate",), "How fast it turns, such as 1500rpm. Default: as at the start.", "RATE")
     ] = None
+    period: Annotated[
+        str | None,
+        Option(("--period",), "Orders of time instead, of a motion that comes back with this period.", "SECONDS"),
+    ] = None
     orders: Annotated[str | None, Option(("--orders",), "These alone, counted per turn.", "NUMBER,...")] = None
     about: Annotated[
         str | None, Option(("--about",), "Where moments are taken. Default: as foundation.about.", "POINT|X,Y,Z")

@@ -136,6 +136,14 @@ class Flywheel:
 
 
 @record
+class Period:
+    """A period of time [s] with which a motion comes back; off: how much the last differs from the one before."""
+
+    seconds: float
+    off: float
+
+
+@record
 class BalanceResults:
     """A scene's balance over a cycle; forces at `rate` [rad/s], where none is known at 1 rad/s.
 
@@ -162,3 +170,4 @@ class BalanceResults:
     notes: tuple[str, ...] = ()
     counterbalance: Counterbalance | None = None
     flywheel: Flywheel | None = None
+    period: Period | None = None

@@ -38,10 +38,16 @@ class CycleTurning:
         return self.rate is not None and self.rate < 0.0
 
 
-def all_rows(effects: MassEffects, turning: CycleTurning) -> dict[str, tuple[OrderRow, ...]]:
-    """The orders of force, moment and torque at the rate, ON the foundation, and of the drive."""
+def rounding_of(effects: MassEffects, scale: float) -> dict[str, float]:
+    """What is rounding of force, moment and torque at a rate of which `scale` is the square."""
+    return {name: tolerances.ORDERS_SETTLED * scale * terms for name, terms in effects.terms.items()}
+
+
+def all_rows(
+    effects: MassEffects, turning: CycleTurning, least: Mapping[str, float]
+) -> dict[str, tuple[OrderRow, ...]]:
+    """The orders of force and moment ON the foundation, and of torque, at the rate; below `least` is none."""
     scale = turning.scale
-    least = {name: tolerances.ORDERS_SETTLED * scale * value for name, value in effects.terms.items()}
     angles, torque = effects.angles, scale * effects.half_slope[:, :, None]
     parts = {"orbital": -scale * effects.orbital, "spin": -scale * effects.spin}
     return {

@@ -3,7 +3,6 @@
 from __future__ import annotations
 
 import math
-from collections.abc import Sequence
 
 import numpy as np
 
@@ -11,11 +10,11 @@ from heuncli import tolerances
 from heuncli.commands.balance.asked import NOTHING_ASKED, BalanceOptions
 from heuncli.commands.balance.choice import CyclePlan, planned
 from heuncli.commands.balance.cycle import MOST_SAMPLES, QUARTER, SAMPLES, Cycle, FollowedScene, axis_of, turning
-from heuncli.commands.balance.effects import MassEffects, mass_effects
+from heuncli.commands.balance.effects import mass_effects
 from heuncli.commands.balance.harmonics import tail
-from heuncli.commands.balance.results import BalanceResults, OrderRow
-from heuncli.commands.balance.rows import CycleTurning, all_rows, residual
-from heuncli.commands.balance.verdicts import in_words
+from heuncli.commands.balance.results import BalanceResults
+from heuncli.commands.balance.rows import CycleTurning
+from heuncli.commands.balance.told import is_asked, told
 from heuncli.records import replace
 from heuncli.results import Array
 from heuncli.spec.models import Spec
@@ -23,8 +22,6 @@ from heuncli.study.model.error_places import placed
 from heuncli.study.model.setup import draw
 from heuncli.tree.prepare import PreparedScene, prepare
 
-IN_TABLE = 1e-4  # of the largest order: smaller ones do not stand in a table unless they are asked for
-MOST_ROWS = 12
 GOING_DOWN = 2.0  # times: samples doubled must lower the highest orders by as much, else these are rounding
 
 
@@ -36,13 +33,19 @@ def balance(spec: Spec, asked: BalanceOptions = NOTHING_ASKED) -> BalanceResults
 
 def balanced(spec: Spec, asked: BalanceOptions) -> BalanceResults:
     """The balance of a spec. Errors name bodies, joints and sections, but not where these stand in the file."""
+    about = asked.about if asked.about is not None else np.array(spec.foundation.about or (0.0, 0.0, 0.0))
+    if asked.period is not None:
+        from heuncli.commands.balance.period import over_period  # with all that solves motions
+
+        return over_period(spec, asked.period, asked, about)
     scene = drawn(spec)
     plan = planned(scene, asked.cycle, asked.turns, asked.rate)
-    about = asked.about if asked.about is not None else np.array(spec.foundation.about or (0.0, 0.0, 0.0))
     followed = turning(scene, plan)
     cycle, settled = sampled(followed, about)
     effects = mass_effects(cycle, about)
-    found = with_loads(told(spec, plan, cycle, effects, about, settled, asked), spec, scene, plan, asked)
+    turns = CycleTurning(plan.turns, axis_of(cycle, plan.joint), plan.rate)
+    found = replace(told(spec, plan.coordinate, turns, effects, about, asked), settled=settled)
+    found = with_loads(found, spec, scene, plan, asked)
     if asked.weights:
         from heuncli.commands.balance.weights import counterbalanced  # where they are asked for
 
@@ -88,46 +91,3 @@ def sampled(followed: FollowedScene, about: Array) -> tuple[Cycle, bool]:
         if highest <= tolerances.ORDERS_SETTLED or rounding or count >= MOST_SAMPLES:
             return cycle, count < MOST_SAMPLES
         count, before = 2 * count, highest
-
-
-def told(
-    spec: Spec, plan: CyclePlan, cycle: Cycle, effects: MassEffects, about: Array, settled: bool, asked: BalanceOptions
-) -> BalanceResults:
-    """What was found, by orders at the cycle's rate."""
-    turning_so = CycleTurning(plan.turns, axis_of(cycle, plan.joint), plan.rate)
-    scale = turning_so.scale
-    found = all_rows(effects, turning_so)
-    words = {name: in_words(rows) for name, rows in found.items()}
-    if asked.orders is not None:
-        found = {name: tuple(row for row in rows if is_asked(row.order, asked.orders)) for name, rows in found.items()}
-    values = {
-        "force": -scale * effects.force, "moment": -scale * effects.moment,
-        "moment_orbital": -scale * effects.orbital, "moment_spin": -scale * effects.spin,
-        "torque": scale * effects.half_slope[:, :, None],
-    }  # fmt: skip
-    least = {name: tolerances.ORDERS_SETTLED * scale * terms for name, terms in effects.terms.items()}
-    return BalanceResults(
-        title=spec.title, spec={"path": spec.path, "sha256": spec.sha256},
-        coordinate=plan.coordinate, turns=plan.turns, rate=plan.rate, samples=len(cycle.angles), settled=settled,
-        about=about, place=asked.place, axis=turning_so.axis, effects=effects, orders=found,
-        words=words,
-        mean={name: own.sum(axis=1).mean(axis=0) for name, own in values.items()},
-        residual={name: residual(own, effects.angles, least[name.partition("_")[0]]) for name, own in values.items()},
-        shown=shown(found) if asked.orders is None else asked.orders,
-    )  # fmt: skip
-
-
-def is_asked(order: float, orders: Sequence[float]) -> bool:
-    """Whether an order is among those."""
-    return any(abs(order - one) < tolerances.SAME_VALUE for one in orders)
-
-
-def shown(found: dict[str, tuple[OrderRow, ...]]) -> tuple[float, ...]:
-    """The orders that a table shows: up to the last that is no small part of the largest of its quantity."""
-    last = 0.0
-    for rows in found.values():
-        largest = max((row.size for row in rows), default=0.0)
-        last = max([last, *(row.order for row in rows if row.size > IN_TABLE * largest)])
-    every = sorted({row.order for rows in found.values() for row in rows if row.order <= last})
-    some = {row.order for rows in found.values() for row in rows if row.size > 0.0}
-    return tuple(order for order in every if order == round(order) or order in some)[:MOST_ROWS]

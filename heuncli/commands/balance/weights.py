@@ -14,7 +14,7 @@ from heuncli.commands.balance.counterweights import Weight, applied, least
 from heuncli.commands.balance.cycle import Cycle, axis_of, turning
 from heuncli.commands.balance.effects import mass_effects
 from heuncli.commands.balance.results import Counterbalance, PlacedWeight
-from heuncli.commands.balance.rows import CycleTurning, all_rows
+from heuncli.commands.balance.rows import CycleTurning, all_rows, rounding_of
 from heuncli.commands.balance.verdicts import in_words
 from heuncli.errors import Problem, SolveError
 from heuncli.mechanism.model import Mechanism
@@ -36,7 +36,8 @@ def counterbalanced(
     found = least(cycle, places, about, *parts)
     heavier = applied(scene.mechanism, found.weights)
     there = turning(replace(scene, mechanism=heavier), plan).at(len(cycle.angles))
-    rows = all_rows(mass_effects(there, about), CycleTurning(plan.turns, axis_of(cycle, plan.joint), plan.rate))
+    effects, turns = mass_effects(there, about), CycleTurning(plan.turns, axis_of(cycle, plan.joint), plan.rate)
+    rows = all_rows(effects, turns, rounding_of(effects, turns.scale))
     before, after = cost(spec, scene, heavier, plan, about, len(cycle.angles))
     return Counterbalance(
         weights=tuple(told(scene.mechanism, weight) for weight in found.weights),
