@@ -47,7 +47,12 @@ def linearised(layout: Layout, t: float, state: Array, holding: Array | None = N
     """Linearise at a state, which is brought onto the closures first.
 
     holding (contacts,): which contacts are closed; none if it is not given.
+
+    Raises ValueError for a state of another layout: the compiled kernel takes a length on trust.
     """
+    if len(state) != layout.n_state:
+        message = f"a state of {layout.n_state} numbers is wanted, one of {len(state)} was given"
+        raise ValueError(message)
     at = workspace_of(layout, None if holding is None else (np.asarray(holding) > 0.0).astype(float))
     own, poses = settled(at, layout, t, state)
     found = motions(at, layout, t, own)

@@ -131,3 +131,12 @@ def test_a_spring_without_length_pulls_back_from_the_first() -> None:
     """Its points coincide, and it has no direction: but its force is k times the distance, from 0 on."""
     found = slider(s={"type": "spring", "from": "ground.O", "to": "m.c", "stiffness": 8.0, "length": 0})
     assert found.by_place.tolist() == [[-8.0 / 2.0]] and found.accelerations.tolist() == [0.0]
+
+
+@pytest.mark.parametrize("more", [-1, 1])
+def test_a_state_of_another_layout_is_refused(more: int) -> None:
+    """Whether the work of loads is counted hangs on a scene's loads: two scenes of one mechanism differ in length."""
+    layout = study(beam(2)).setup.runner.layout
+    state = np.concatenate([layout.y0, np.zeros(1)])[: layout.n_state + more]
+    with pytest.raises(ValueError, match=f"{layout.n_state} numbers"):
+        linearised(layout, 0.0, state)

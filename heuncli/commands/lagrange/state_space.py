@@ -54,9 +54,10 @@ def state_space(at: Instant, by: Chosen, Q: Array, asked: Sequence[str], outputs
     require_driven(at, by)
     inputs = inputs_of(at, by, asked)
     scene = freed(at.setup.scene, dict(zip(by.names, Q, strict=True)))
-    found = linearised(scene.layout, at.t, at.state, at.holding)
+    state = settled(scene, at)
+    found = linearised(scene.layout, at.t, state, at.holding)
     own = chosen(scene.scene, found, scene.driven, by.names)
-    moving = bool(np.abs(at.state[rates_at(scene)]).max(initial=0.0) > 0.0)
+    moving = bool(np.abs(state[rates_at(scene)]).max(initial=0.0) > 0.0)
     require_coordinates(scene, own, found, moving)
     free = [i for i, name in enumerate(own.names) if not own.driven[i] or name in inputs.drives]
     driven = [i for i, is_driven in enumerate(own.driven) if is_driven]
@@ -85,7 +86,7 @@ def state_space(at: Instant, by: Chosen, Q: Array, asked: Sequence[str], outputs
     names = tuple(own.names[i] for i in free)
     C, D, told, units = outputs_of(scene, at, own, found, free, (A, B), outputs)
     along = [units_of(own.names[i]) for i in free]
-    offset = np.concatenate([(own.rows @ velocities(scene, at))[free], (own.rows @ found.accelerations)[free]])
+    offset = np.concatenate([(own.rows @ state[rates_at(scene)])[free], (own.rows @ found.accelerations)[free]])
     return StateSpace(
         A=A, B=B, C=C, D=D,
         states=(*names, *(rate_name(name) for name in names)),
@@ -147,9 +148,10 @@ def rates_at(scene: FreedScene) -> Array:
     return place[place >= 0]
 
 
-def velocities(scene: FreedScene, at: Instant) -> Array:
-    """The rates of the tree's freedoms, (n,)."""
-    return np.asarray(at.state[rates_at(scene)])
+def settled(scene: FreedScene, at: Instant) -> Array:
+    """The instant's state in a scene that has other loads, (n,): whether the work of loads is counted hangs on them."""
+    states = scene.states(at.there)
+    return np.asarray(scene.runner.recovered(np.array([at.t]), states, holding=at.holding).states[0])
 
 
 def drift_of(found: Linearised, own: Chosen) -> Array:
@@ -225,7 +227,7 @@ def unit_force(scene: FreedScene, at: Instant, own: Chosen, found: Linearised, n
     loads = tuple(of_one(load) for load in mechanism.loads if load.name == name)
     layout = replace(scene.scene, mechanism=replace(mechanism, loads=loads))
     one = freed(layout)
-    answered = one.runner.recovered(np.array([at.t]), at.state[None, :], holding=at.holding)
+    answered = one.runner.recovered(np.array([at.t]), one.states(at.there), holding=at.holding)
     states = body_states(one.layout, answered)
     actions = [load.action for load in applied_loads(one.layout.mechanism, states, answered)]
     return forces_by_cause(one.layout, partials_of(one.layout, found, own.S), actions)[name]
