@@ -1,0 +1,164 @@
+"""The numbers of a run as they are kept to be compared with later ones: a golden file, one number a line, keys sorted.
+
+A value is a number, or a word in its place: `open` (the laws of rigid bodies leave it open), `unknown` (beside a
+singular pose), `beyond` (the horizon, past which nothing is claimed).
+"""
+
+from __future__ import annotations
+
+import json
+from typing import Annotated, Any, Literal
+
+from pydantic import BaseModel, ConfigDict, Field, ValidationError
+
+from heuncli.errors import Finding
+
+FORMAT = 1  # of the file; a reader of another says so
+MOST_BYTES = 64_000_000
+OPEN, UNKNOWN, BEYOND = "open", "unknown", "beyond"
+WORDS = (OPEN, UNKNOWN, BEYOND)
+Number = Annotated[float, Field(allow_inf_nan=False, strict=True)]
+Value = Number | Literal["open", "unknown", "beyond"]
+EVEN = 11  # instants at which every quantity is kept, evenly over the run
+ANOTHER = "remove it, and let --update write it anew"
+
+
+class Kept(BaseModel):
+    """A part of what is kept; no other keys than its own."""
+
+    model_config = ConfigDict(extra="forbid")
+
+
+class KeptNumber(Kept):
+    """One quantity over a run: its values at the ends, the extremes with their instants, and at the even instants.
+
+    error: what its run states of it, absolute, rounding included. What is the same throughout is `constant`. A place
+    stands where the extreme is one along a run of cuts. drift: its rate at the last instant, where that is an event's.
+    """
+
+    unit: str
+    error: float
+    constant: Value | None = None
+    first: Value | None = None
+    last: Value | None = None
+    least: Value | None = None
+    least_at: Number | None = None
+    least_place: str | None = None
+    greatest: Value | None = None
+    greatest_at: Number | None = None
+    greatest_place: str | None = None
+    even: list[Value] = []
+    drift: Number | None = None
+
+    @property
+    def values(self) -> dict[str, Value]:
+        """The values that decide, by their words; those at even instants by their number."""
+        if self.constant is not None:
+            return dict.fromkeys((*ENDS, *BOUNDS, *range(EVEN)), self.constant)  # type: ignore[arg-type]
+        named = {word: getattr(self, word) for word in (*ENDS, *BOUNDS)}
+        return {word: value for word, value in (*named.items(), *enumerate(self.even)) if value is not None}  # type: ignore[misc]
+
+
+ENDS, BOUNDS = ("first", "last"), ("least", "greatest")
+
+
+class KeptSum(Kept):
+    """A certain sum: its factors at the first instant with their error, and its value in the samples."""
+
+    factors: dict[str, Value]
+    error: Number
+    value: KeptNumber
+
+
+class KeptEvent(Kept):
+    """The instants of an event with their errors, and what its condition becomes there."""
+
+    condition: str
+    begins: bool
+    time: list[Number]
+    error: list[Value]
+    to: list[bool]
+
+
+class KeptBlow(Kept):
+    """A blow: its instant with its error, what struck, and its numbers."""
+
+    time: Number
+    time_error: Number
+    names: list[str]
+    numbers: dict[str, KeptNumber]
+
+
+class KeptRun(Kept):
+    """The numbers of one run. time: its first and last instant, the error of the last where an event ends it."""
+
+    status: str
+    model: dict[str, int]
+    time: dict[str, Number]
+    even_at: list[Number]
+    horizon: Number | None = None
+    open: list[str]
+    numbers: dict[str, KeptNumber]
+    certain_sums: dict[str, KeptSum] = {}
+    events: dict[str, KeptEvent] = {}
+    blows: int = 0
+    impulses: list[KeptBlow] = []
+
+
+class KeptSpec(Kept):
+    """The spec that the numbers are of: as it was named, and its digest."""
+
+    path: str
+    sha256: str
+
+
+class KeptFile(Kept):
+    """A golden file: the numbers of a spec as it stands and of its cases; the version; digests of what was read."""
+
+    format: Literal[1]
+    heun: str
+    spec: KeptSpec
+    tables: dict[str, str] = {}
+    base: KeptRun
+    cases: dict[str, KeptRun] = {}
+
+
+def text_of(kept: KeptFile) -> str:
+    """The file's text: keys sorted, one number a line; what is not given is left out."""
+    data = kept.model_dump(exclude_defaults=True)
+    return json.dumps(data, indent=1, sort_keys=True, ensure_ascii=False, allow_nan=False) + "\n"
+
+
+def read_kept(text: str) -> KeptFile:
+    """The file of a text. Raises Finding [not-golden] with what is wrong with it."""
+    try:
+        data = json.loads(text)
+    except (ValueError, RecursionError) as error:
+        where = f"line {error.lineno}: " if isinstance(error, json.JSONDecodeError) else ""
+        whole = "it ends before it is complete; " * text_ends_early(text, error)
+        raise Finding("not-golden", f"this is not JSON: {whole}{where}{_said(error)}", ANOTHER) from None
+    return of_data(data)
+
+
+def of_data(data: Any) -> KeptFile:
+    """The file that stands in decoded JSON. Raises Finding [not-golden]."""
+    if not isinstance(data, dict) or "format" not in data:
+        raise Finding("not-golden", "this is no golden file: it has no 'format'", ANOTHER)
+    if data["format"] != FORMAT:
+        message = f"kept in format {data['format']!r:.40}; this version reads {FORMAT}"
+        raise Finding("not-golden", message, ANOTHER)
+    try:
+        return KeptFile.model_validate(data)
+    except ValidationError as error:
+        first = error.errors(include_url=False, include_input=False)[0]
+        place = ".".join(map(str, first["loc"]))
+        raise Finding("not-golden", f"{place}: {first['msg']}", ANOTHER) from None
+
+
+def text_ends_early(text: str, error: Exception) -> bool:
+    """Whether a text was cut off: its error stands at its end."""
+    return isinstance(error, json.JSONDecodeError) and error.pos >= len(text.rstrip()) - 1
+
+
+def _said(error: Exception) -> str:
+    return error.msg if isinstance(error, json.JSONDecodeError) else "nested too deeply"
