@@ -77,8 +77,13 @@ def contained(work: Callable[[], Given], argv: Sequence[str]) -> Given:
 
 def report_problems(problems: Sequence[Problem], label: str = "") -> None:
     """Every problem on standard error, as place, finding, code and hint."""
-    for problem in problems:
-        say(f"{'' if problem.location else 'heun: '}{shown(label)}{problem}")
+    for line in lines_of(problems, label):
+        say(line)
+
+
+def lines_of(problems: Sequence[Problem], label: str = "") -> list[str]:
+    """Every problem as it is told."""
+    return [f"{'' if problem.location else 'heun: '}{shown(label)}{problem}" for problem in problems]
 
 
 def worst(codes: Sequence[int]) -> int:

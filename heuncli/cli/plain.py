@@ -5,11 +5,13 @@ It reads what it fully understands, as typer would, and gives up on the rest.
 
 from __future__ import annotations
 
-from collections.abc import Sequence
+from collections.abc import Callable, Sequence
 from typing import Any
 
 from heuncli.cli.options import fields_of
 from heuncli.cli.registry import Asked, command_of
+
+NUMBERS: dict[object, Callable[[str], float]] = {float | None: float, int | None: int}
 
 
 def read(argv: Sequence[str]) -> Asked | None:
@@ -38,9 +40,9 @@ def read(argv: Sequence[str]) -> Asked | None:
             values[field.name] = True
         elif field.type == tuple[str, ...]:
             values[field.name] = (*values.get(field.name, ()), text)
-        elif field.type == float | None:
+        elif field.type in NUMBERS:
             try:
-                values[field.name] = float(text)
+                values[field.name] = NUMBERS[field.type](text)
             except ValueError:
                 return None
         else:

@@ -24,8 +24,8 @@ class Change(NamedTuple):
     path: str
     what: str
     unit: str
-    old: Value | None
-    new: Value | None
+    old: Value | str | None
+    new: Value | str | None
     allowed: float | None = None
     why: str = ""
     alike: int = 0
@@ -193,7 +193,7 @@ def _elsewhere(instants: Sequence[Sequence[float]]) -> bool:
     return bool(old) and any(abs(a - b) > 1e-6 * (old[-1] - old[0]) for a, b in zip(old, new, strict=True))
 
 
-def _became(old: Value | None, new: Value | None) -> str:
+def _became(old: Value | str | None, new: Value | str | None) -> str:
     """In words what became of a value."""
     if old is None or new is None:
         return _gone(old, new)
@@ -247,8 +247,8 @@ def _events(name: str, old: KeptEvent | None, new: KeptEvent | None) -> Iterator
         for t, error, to in zip(one.time, one.error, one.to, strict=True):
             if not isinstance(error, str) and not any(_same_instant(t, error, to, other)):
                 told = "it becomes true" if to else "it becomes false"
-                pair = (t, None) if one is old else (None, t)
-                yield Change(path, told, "s", *pair, None, why)
+                before, after = (t, None) if one is old else (None, t)
+                yield Change(path, told, "s", before, after, why=why)
 
 
 def _same_instant(t: float, error: float, to: bool, other: KeptEvent) -> Iterator[bool]:

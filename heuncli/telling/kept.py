@@ -7,7 +7,8 @@ singular pose), `beyond` (the horizon, past which nothing is claimed).
 from __future__ import annotations
 
 import json
-from typing import Annotated, Any, Literal
+from collections.abc import Mapping, Sequence
+from typing import Annotated, Any, Final, Literal
 
 from pydantic import BaseModel, ConfigDict, Field, ValidationError
 
@@ -15,7 +16,9 @@ from heuncli.errors import Finding
 
 FORMAT = 1  # of the file; a reader of another says so
 MOST_BYTES = 64_000_000
-OPEN, UNKNOWN, BEYOND = "open", "unknown", "beyond"
+OPEN: Final = "open"
+UNKNOWN: Final = "unknown"
+BEYOND: Final = "beyond"
 WORDS = (OPEN, UNKNOWN, BEYOND)
 Number = Annotated[float, Field(allow_inf_nan=False, strict=True)]
 Value = Number | Literal["open", "unknown", "beyond"]
@@ -23,13 +26,13 @@ EVEN = 11  # instants at which every quantity is kept, evenly over the run
 ANOTHER = "remove it, and let --update write it anew"
 
 
-class Kept(BaseModel):
+class KeptPart(BaseModel):
     """A part of what is kept; no other keys than its own."""
 
     model_config = ConfigDict(extra="forbid")
 
 
-class KeptNumber(Kept):
+class KeptNumber(KeptPart):
     """One quantity over a run: its values at the ends, the extremes with their instants, and at the even instants.
 
     error: what its run states of it, absolute, rounding included. What is the same throughout is `constant`. A place
@@ -54,7 +57,7 @@ class KeptNumber(Kept):
     def values(self) -> dict[str, Value]:
         """The values that decide, by their words; those at even instants by their number."""
         if self.constant is not None:
-            return dict.fromkeys((*ENDS, *BOUNDS, *range(EVEN)), self.constant)  # type: ignore[arg-type]
+            return dict.fromkeys((*ENDS, *BOUNDS, *range(EVEN)), self.constant)
         named = {word: getattr(self, word) for word in (*ENDS, *BOUNDS)}
         return {word: value for word, value in (*named.items(), *enumerate(self.even)) if value is not None}  # type: ignore[misc]
 
@@ -62,25 +65,25 @@ class KeptNumber(Kept):
 ENDS, BOUNDS = ("first", "last"), ("least", "greatest")
 
 
-class KeptSum(Kept):
+class KeptSum(KeptPart):
     """A certain sum: its factors at the first instant with their error, and its value in the samples."""
 
-    factors: dict[str, Value]
+    factors: Mapping[str, Value]
     error: Number
     value: KeptNumber
 
 
-class KeptEvent(Kept):
+class KeptEvent(KeptPart):
     """The instants of an event with their errors, and what its condition becomes there."""
 
     condition: str
     begins: bool
     time: list[Number]
-    error: list[Value]
+    error: Sequence[Value]
     to: list[bool]
 
 
-class KeptBlow(Kept):
+class KeptBlow(KeptPart):
     """A blow: its instant with its error, what struck, and its numbers."""
 
     time: Number
@@ -89,7 +92,7 @@ class KeptBlow(Kept):
     numbers: dict[str, KeptNumber]
 
 
-class KeptRun(Kept):
+class KeptRun(KeptPart):
     """The numbers of one run. time: its first and last instant, the error of the last where an event ends it."""
 
     status: str
@@ -105,14 +108,14 @@ class KeptRun(Kept):
     impulses: list[KeptBlow] = []
 
 
-class KeptSpec(Kept):
+class KeptSpec(KeptPart):
     """The spec that the numbers are of: as it was named, and its digest."""
 
     path: str
     sha256: str
 
 
-class KeptFile(Kept):
+class KeptFile(KeptPart):
     """A golden file: the numbers of a spec as it stands and of its cases; the version; digests of what was read."""
 
     format: Literal[1]

@@ -176,7 +176,9 @@ def test_what_is_expected_at_an_instant_that_was_set_away_stops_no_run(heun: Heu
         (["validate", "hanging.yaml", "wrong.yaml"], "wrong.yaml:9:"),
         (["model", "hanging.yaml", "--format", "csv"], "known: text, json"),
         (["check", "nosuch.yaml"], "nosuch.yaml"),
-        (["check", "hanging.yaml", "--junit", "x"], "not in this version yet"),
+        (["check", "hanging.yaml", "--jobs", "0"], "expected 1 or more"),
+        (["check", "hanging.yaml", "-k", "nosuch"], "none of 1 specs"),
+        (["check", "hanging.yaml", "--update"], "--update without --golden"),
         (["schema", "hanging.yaml"], "not in this version yet"),
     ],
 )
@@ -349,7 +351,8 @@ def test_what_goes_wrong_in_one_file_is_told_of_it_alone(
             raise trouble
         return load(path, **words)
 
-    monkeypatch.setattr(f"heuncli.commands.{command}.command.load", fail_once)
+    module = {"check": "checking"}.get(command, "command")
+    monkeypatch.setattr(f"heuncli.commands.{command}.{module}.load", fail_once)
     monkeypatch.delenv("HEUN_DEBUG", raising=False)
     done = heun(command, "expecting.yaml", "swinging.yaml", "failing.yaml", "wrong.yaml")
     assert done.returncode == (code if code == 70 else 2)

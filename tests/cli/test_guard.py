@@ -14,8 +14,8 @@ from tests.shared.command import HANGING, Heun
 
 TABLE = "tables: {g: {file: data/t.csv, x: 1, y: 2}}\n"
 WRITERS = (
-    ("run", "-o"), ("model", "-o"), ("check", "-o"), ("modes", "-o"), ("probe", "-o"), ("chart", "-o"),
-    ("chart", "--save"), ("balance", "-o"), ("balance", "--save"),
+    ("run", "-o"), ("model", "-o"), ("check", "-o"), ("check", "--junit"), ("modes", "-o"), ("probe", "-o"),
+    ("chart", "-o"), ("chart", "--save"), ("balance", "-o"), ("balance", "--save"),
 )  # fmt: skip
 
 
@@ -64,10 +64,10 @@ def test_what_is_read_stays(
     named: Callable[[Path], str],
 ) -> None:  # fmt: skip
     """Refused before anything is solved."""
-    for module in ("run", "check"):
-        monkeypatch.setattr(f"heuncli.commands.{module}.command.solve", None)
+    for module in ("run.command", "check.checking"):
+        monkeypatch.setattr(f"heuncli.commands.{module}.solve", None)
     before, inode = (scene / read).read_bytes(), (scene / read).stat().st_ino
-    form = () if writer[1] == "--save" else ("--format", "json")
+    form = () if writer[1] != "-o" else ("--format", "json")
     done = heun(writer[0], "scene.yaml", writer[1], named(scene / read), *form)
     assert (done.returncode, done.stdout) == (2, "")
     assert "[bad-option]" in done.stderr

@@ -16,6 +16,7 @@ from tests.shared.loaded_modules import loaded_by
 WORDS = {
     str | None: ["x", "0.5,1", "-1", "a b", "k=v=w", ""],
     float | None: ["1e-9", "3", "0.5"],
+    int | None: ["1", "12"],
     tuple[str, ...]: ["L=1", "a.b=2 mm"],
 }
 

@@ -1,176 +1,152 @@
-"""`heun check`: specs and folders of specs against what they expect."""
+"""`heun check`: specs and folders of specs against what they expect, and against numbers that were kept."""
 
 from __future__ import annotations
 
 from collections.abc import Sequence
 from functools import partial
-from typing import Any
+from pathlib import Path
 
-import numpy as np
-
-from heuncli.cli import alarm, memory
-from heuncli.cli.entry import UsageError, contained, report_problems, worst
-from heuncli.cli.guard import require_other_file
-from heuncli.cli.output import emit, say
-from heuncli.cli.solving import warn
-from heuncli.cli.target import format_of
+from heuncli.cli import files, jobs
+from heuncli.cli.entry import BUG, UsageError, lines_of, worst
+from heuncli.cli.guard import require_other_file, same_file
+from heuncli.cli.output import as_bytes, emit, say
+from heuncli.cli.progress import progress
+from heuncli.cli.target import format_of, require_room
+from heuncli.commands.check import goldens
+from heuncli.commands.check.checked import FAILED, Checked
+from heuncli.commands.check.checking import Task, check
 from heuncli.commands.check.folders import Found, PassedBy, specs_below
-from heuncli.commands.check.request import CheckRequest
-from heuncli.errors import HeunError, Problem, SpecError
+from heuncli.commands.check.picking import picked
+from heuncli.commands.check.request import FORMATS, CheckRequest
+from heuncli.commands.check.told import FORMS, AllChecked
+from heuncli.errors import HeunError, Problem
 from heuncli.foreign_text import shown
-from heuncli.records import record
-from heuncli.report.digits import OPEN
-from heuncli.report.export import dump
-from heuncli.report.plurals import count
-from heuncli.report.text_table import TextColumn, TextTable, plain
-from heuncli.results import Array
-from heuncli.spec.load import load
-from heuncli.study.ask.expectations import Case, compare
-from heuncli.study.model.memory_estimate import Room
-from heuncli.study.model.options import Options
-from heuncli.study.model.selection import EVERYTHING, asked_by
-from heuncli.study.workflow import solve
 
-FORMATS = ("table", "json")
-ENDINGS = {".json": "json", ".txt": "table", "": "table"}
-FAILED = 1
+ENDINGS = {".json": "json", ".txt": "table", ".md": "markdown", "": "table"}
 NAMED = "name a folder of specs, or the files themselves; folders named broken and hidden ones are passed by"
-
-
-@record
-class Checked:
-    """One file: its cases, or the error that kept it from being solved."""
-
-    path: str
-    cases: tuple[Case, ...]
-    error: HeunError | None = None
-
-    @property
-    def exit_code(self) -> int:
-        """What this file alone would leave with."""
-        if self.error is not None:
-            return self.error.exit_code
-        return 0 if all(case.passed for case in self.cases) else FAILED
+OF_A_JOB = ("markdown", "github")  # formats that tell errors, too: nobody sees standard error beside them
 
 
 def main(request: CheckRequest) -> int:
     """Run the command; returns the exit code."""
+    _require_sense(request)
     skipped: list[PassedBy] = []
     found = [one for argument in request.paths for one in specs_below(argument, skipped)]
-    paths = [one.path for one in found]
     for folder in skipped if not request.quiet else ():
         if folder.reason:
             say(f"heun: {shown(folder.path)} passed by: {shown(folder.reason)}")
-    if not paths:
+    if not found:
         raise UsageError(Problem("nothing-to-check", f"no *.yaml in {', '.join(request.paths)}", hint=NAMED))
-    require_other_file(request.output, paths)
     form = format_of(request.format, request.output, ENDINGS, FORMATS)
-    checked = [_check(one, request) for one in found]
-    require_other_file(request.output, paths)  # the tables of specs that are wrong, too
-    if any(one.error is None for one in checked):  # with errors alone there is no result
-        emit(_json(checked) if form == "json" else _table(checked, skipped), request.output)
-    return worst([one.exit_code for one in checked])
+    kept = goldens.files_of(found, request.golden) if request.golden is not None else {}
+    orphans = _without_spec(request, found, kept)
+    chosen = picked(found, request.select) if request.select is not None else found
+    paths = [one.path for one in chosen]
+    _require_other_files(request, paths)
+    checked = _all(chosen, kept, request)
+    _require_other_files(request, paths)  # the tables of specs that are wrong, too
+    told = AllChecked(checked, skipped, orphans, request.strict)
+    if form in OF_A_JOB or any(not one.error for one in checked):  # with errors alone there is no result
+        emit(FORMS[form](told), request.output)
+    if request.junit is not None:
+        from heuncli.commands.check.junit import junit_text
+
+        files.write(as_bytes(junit_text(checked, orphans, request.strict)), request.junit)
+    _say_slowest(checked, request.durations)
+    codes = [one.exit_code for one in checked] + [FAILED] * (request.strict and bool(orphans))
+    return worst([*codes, *_written(checked, request)])
 
 
-def _check(found: Found, request: CheckRequest) -> Checked:
-    path = found.path
-    try:
-        if found.problem is not None:
-            raise SpecError(found.problem)
-        work = partial(alarm.limited, partial(_compared, path, request), request.time_limit_each)
-        return contained(work, ("check", path))
-    except UsageError:
-        raise
-    except HeunError as error:
-        report_problems(error.problems, label="" if _placed(error) else f"{path}: ")
-        return Checked(path, (), error.with_traceback(None))  # whose frames hold all that was solved
+def _require_sense(request: CheckRequest) -> None:
+    """Raise UsageError where options do not go together, or numbers mean nothing."""
+    goldens.require_sense(request)
+    for word, number in (("--jobs", request.jobs), ("--durations", request.durations)):
+        if number is not None and number < 1:
+            raise UsageError(Problem("bad-option", f"{word} {number}: expected 1 or more", hint=f"such as {word} 2"))
+    if request.junit is not None:
+        require_room(request.junit, "--junit")
+        if request.output is not None and same_file(request.junit, request.output):
+            raise UsageError(Problem("bad-option", "--junit and -o name the same file", hint="name another file"))
 
 
-def _compared(path: str, request: CheckRequest) -> Checked:
-    spec = load(path)
-    require_other_file(request.output, [path])
-    asked = asked_by([item.of for item in spec.expect], spec) if spec.expect else EVERYTHING
-    room = Room(*memory.room("table"))
-    options = Options(wanted=asked.reports, entries=asked.entries, time_limit=alarm.remaining(), room=room)
-    study = solve(spec, options)
-    cases = tuple(compare(study, item) for item in spec.expect)
-    alarm.disarm()
-    warn(spec, study.results, request.quiet, f"heun: {path}", study.later_warnings)
-    return Checked(path, cases)
+def _require_other_files(request: CheckRequest, paths: Sequence[str]) -> None:
+    require_other_file(request.output, paths)
+    if request.junit is not None:
+        require_other_file(request.junit, paths, "--junit")
 
 
-def _placed(error: HeunError) -> bool:
-    return all(problem.location for problem in error.problems)
+def _without_spec(request: CheckRequest, found: Sequence[Found], kept: dict[str, str]) -> list[str]:
+    """Golden files of no spec, told; where single specs are named nothing is known of the others."""
+    if request.golden is None or any(one.below is None for one in found):
+        return []
+    orphans = goldens.without_spec(request.golden, kept.values())
+    for path in orphans if not request.quiet or request.strict else ():
+        say(f"{'heun' if request.strict else 'warning'}: {shown(path)}: a golden file without a spec")
+    return orphans
 
 
-def _table(checked: Sequence[Checked], skipped: Sequence[PassedBy]) -> str:
-    cases = [case for one in checked for case in one.cases]
-    rows = tuple(
-        (
-            f"{one.path}:{case.location.line}",
-            case.of,
-            case.when,
-            _expected(case),
-            _text(case.found),
-            case.failure or "",
-        )
-        for one in checked
-        for case in one.cases
-        if not case.passed
-    )
-    heads = ("file", "of", "at", "expected", "found", "why it fails")
-    failures = TextTable("FAILED", tuple(TextColumn(head, "left") for head in heads), rows)
-    errors = sum(one.error is not None for one in checked)
-    silent = sum(not one.cases and one.error is None for one in checked)
-    parts = [count(len(checked), "spec"), f"{sum(case.passed for case in cases)} passed", f"{len(rows)} failed"]
-    parts += [f"{count(errors, 'spec')} not solved"] if errors else []
-    parts += [f"{count(silent, 'spec')} ran with nothing expected"] if silent else []
-    parts += [f"{shown(folder.path)} passed by" for folder in skipped]
-    return (plain(failures) + "\n" if rows else "") + ", ".join(parts) + "\n"
+def _all(chosen: Sequence[Found], kept: dict[str, str], request: CheckRequest) -> list[Checked]:
+    """What was found of each, in their order; what there is to say is said as they come."""
+    tasks = [_task(one, kept.get(one.path), request) for one in chosen]
+    at_once = jobs.how_many(request.jobs, len(tasks))
+    checked: list[Checked] = []
+    work = partial(check, request=request, jobs=at_once)
+    is_last = _fails if request.first else _none
+    with progress(request.quiet) as tell:
+        for one in jobs.each(work, tasks, at_once, _dead, is_last):
+            if one.refused:
+                raise UsageError(*one.problems)
+            checked.append(one)
+            for line in one.said:
+                say(line)
+            tell(len(checked), len(tasks), one.path)
+    return checked
 
 
-def _json(checked: Sequence[Checked]) -> str:
-    cases: list[dict[str, Any]] = []
-    for one in checked:
-        if one.error is not None:
-            cases.append({"file": one.path, "passed": False, "exit": one.exit_code, "message": str(one.error)})
-        elif not one.cases:
-            cases.append({"file": one.path, "passed": True, "message": "ran; nothing expected"})
-        for case in one.cases:
-            cases.append(
-                {
-                    "file": one.path,
-                    "line": case.location.line,
-                    "of": case.of,
-                    "when": case.when,
-                    **_wanted(case),
-                    "passed": case.passed,
-                    "message": case.failure or "",
-                }
-            )
-    passed = sum(bool(case["passed"]) for case in cases)
-    return dump({"passed": passed, "failed": len(cases) - passed, "cases": cases})
+def _task(one: Found, file: str | None, request: CheckRequest) -> Task:
+    if file is None or request.golden is None or one.problem is not None:
+        return Task(one)
+    return Task(one, file, goldens.name_of(file, one.path, request.golden))
 
 
-def _wanted(case: Case) -> dict[str, Any]:
-    """What was expected and found; of bounds the extreme that decides, with its instant and place."""
-    if case.below is None and case.above is None:
-        return {"expected": case.expected, "found": case.found, "tolerance": case.tolerance}
-    bounds = {"below": case.below, "above": case.above}
-    block: dict[str, Any] = {key: bound for key, bound in bounds.items() if bound is not None}
-    block |= {"found": case.found, "at": case.extreme.at if case.extreme is not None else None}
-    return block | (case.extreme.place._asdict() if case.extreme is not None and case.extreme.place is not None else {})
+def _fails(one: Checked) -> bool:
+    return bool(one.exit_code)
 
 
-def _expected(case: Case) -> str:
-    bounds = [f"{word} {bound:.9g}" for word, bound in (("above", case.above), ("below", case.below))
-              if bound is not None]  # fmt: skip
-    return ", ".join(bounds) or _text(case.expected)
+def _none(one: Checked) -> bool:
+    return False
 
 
-def _text(values: Array | None) -> str:
-    if values is None:
-        return ""
-    texts = [OPEN if np.isnan(value) else f"{value:.9g}" for value in np.ravel(values)[:6]]
-    more = ", ..." if values.size > len(texts) else ""
-    return texts[0] if values.ndim == 0 else f"[{', '.join(texts)}{more}]"
+def _dead(task: Task, how: str) -> Checked:
+    """What stands for a spec whose process died."""
+    path = task.found.path
+    hint = "the memory may not have sufficed: --jobs 1; else please report it with the spec"
+    problem = Problem("bug", f"the process that checked it was {how}", hint=hint)
+    return Checked(path, problems=(problem,), error=BUG, said=tuple(lines_of([problem], f"{path}: ")))
+
+
+def _say_slowest(checked: Sequence[Checked], most: int | None) -> None:
+    """The slowest specs, on standard error: times differ from run to run, results do not."""
+    if most is None:
+        return
+    say(f"slowest {min(most, len(checked))} of {len(checked)}:")
+    for one in sorted(checked, key=lambda one: -one.seconds)[:most]:
+        say(f"{one.seconds:9.3f} s  {shown(one.path)}")
+
+
+def _written(checked: Sequence[Checked], request: CheckRequest) -> list[int]:
+    """Write the golden files that are to be written, none where one that stands there cannot be used; exit codes."""
+    given = [one.golden for one in checked if one.golden is not None and one.golden.text is not None]
+    if any(problem.code == "not-golden" for one in checked for problem in one.problems):
+        if given:
+            say("heun: no golden file was written: one that stands there cannot be used")
+        return []
+    for golden in given:
+        try:
+            Path(golden.path).parent.mkdir(parents=True, exist_ok=True)
+        except OSError as reason:
+            raise HeunError(files.failed(golden.path, reason)) from None
+        files.write(as_bytes(golden.text or ""), golden.path)
+        if not request.quiet:
+            say(f"heun: {shown(golden.path)} {'written' if golden.is_new else 'written anew'}")
+    return []

@@ -19,9 +19,13 @@ SKIPPED = "broken"  # folders of specs that are wrong on purpose
 
 
 class Found(NamedTuple):
-    """A spec; or a folder that cannot be looked into, and why."""
+    """A spec, and the folder in which it was looked for (None: it was named itself).
+
+    problem: why a folder cannot be looked into, in place of a spec.
+    """
 
     path: str
+    below: str | None = None
     problem: Problem | None = None
 
 
@@ -42,7 +46,7 @@ def specs_below(argument: str, passed_by: list[PassedBy]) -> Iterator[Found]:
     while waiting:
         path, is_folder = waiting.pop()
         if not is_folder:
-            yield Found(path)
+            yield Found(path, argument)
             continue
         try:
             state = Path(path).stat()
@@ -52,7 +56,7 @@ def specs_below(argument: str, passed_by: list[PassedBy]) -> Iterator[Found]:
             else:
                 passed_by.append(PassedBy(path, f"it is the folder {known} once more"))
         except OSError as error:
-            yield Found(path, cannot_look_into(path, error))
+            yield Found(path, argument, cannot_look_into(path, error))
 
 
 def entries_of(folder: str, passed_by: list[PassedBy]) -> list[tuple[str, bool]]:

@@ -24,11 +24,11 @@ from heuncli.records import replace
 from heuncli.report.cut_runs import LOADS
 from heuncli.report.heading import write_heading, write_heading_markdown
 from heuncli.report.labels import Labels, labels_of
-from heuncli.report.page import EXPORT_DEFAULT, TABLE_DEFAULT, page_of
+from heuncli.report.page import EXPORT_DEFAULT, page_of
 from heuncli.report.page_width import fit
 from heuncli.report.text_table import WIDTH, TextTable, markdown, plain
 from heuncli.results import Results
-from heuncli.results_schema import BLOWS, REPORT_OF, REPORTS, SHARES, quantity, with_shared
+from heuncli.results_schema import REPORT_OF, REPORTS, SHARES, quantity, with_shared
 from heuncli.spec.load import load
 from heuncli.spec.models import Spec
 from heuncli.study.ask.study import Study
@@ -37,6 +37,7 @@ from heuncli.study.model.memory_estimate import Room
 from heuncli.study.model.options import Options
 from heuncli.study.model.selection import EntryKeys, Selection, asked_by, entries_of, entry_at
 from heuncli.study.workflow import solve
+from heuncli.telling.selection import told_by_default
 
 ENDINGS = {".json": "json", ".csv": "csv", ".md": "markdown", ".txt": "table", "": "table"}
 NOT_SEARCHED = "extremes among the samples only: too many quantities to search between them"
@@ -100,15 +101,8 @@ def _only(words: str) -> tuple[frozenset[str], tuple[str, ...]]:
 def _asked(
     request: RunRequest, only: tuple[frozenset[str], tuple[str, ...]] | None, spec: Spec, form: str
 ) -> Selection:
-    """What is asked for: by --only, else by the spec's `report`, else what the format shows by default.
-
-    Of a spec of blows at time 0 alone tables show the blows by default.
-    """
-    wanted = TABLE_DEFAULT if form in TABLES else EXPORT_DEFAULT
-    if form in TABLES and spec.analysis.type == "impulse":
-        wanted = frozenset({BLOWS})
-    if spec.report is not None:
-        wanted = frozenset(spec.report)
+    """What is asked for: by --only, else by the spec's `report`, else what the format shows by default."""
+    wanted = told_by_default(spec) if form in TABLES or spec.report is not None else EXPORT_DEFAULT
     entries = frozenset[EntryKeys]()
     if only is not None:
         wanted, paths = only

@@ -1,0 +1,189 @@
+"""One spec against what it expects, and against what was kept of it. Runs in a process of its own, or in this one."""
+
+from __future__ import annotations
+
+import hashlib
+import time
+from functools import partial
+from pathlib import Path
+from typing import Any, NamedTuple
+
+import numpy as np
+
+from heuncli.cli import alarm, memory
+from heuncli.cli.entry import UsageError, contained, lines_of
+from heuncli.cli.guard import require_other_file
+from heuncli.cli.solving import warn
+from heuncli.commands.check import goldens
+from heuncli.commands.check.checked import EXPECTED, Checked, Outcome
+from heuncli.commands.check.folders import Found
+from heuncli.commands.check.kept_outcomes import kept_outcomes
+from heuncli.commands.check.request import CheckRequest
+from heuncli.errors import Finding, HeunError, SpecError
+from heuncli.report.digits import OPEN
+from heuncli.results import Array
+from heuncli.spec.load import load
+from heuncli.spec.models import Expect, Spec
+from heuncli.spec.reading import read_bytes
+from heuncli.study.ask.expectations import Case, compare
+from heuncli.study.ask.study import Study
+from heuncli.study.model.memory_estimate import Room
+from heuncli.study.model.options import Options
+from heuncli.study.model.selection import EVERYTHING, Selection, asked_by
+from heuncli.study.workflow import solve
+from heuncli.telling.keep import keep
+from heuncli.telling.kept import MOST_BYTES, KeptFile, KeptRun, KeptSpec, read_kept
+from heuncli.telling.selection import told_by_default
+from heuncli.version import VERSION
+
+STOPPED = "the scene was not solved"
+
+
+class Task(NamedTuple):
+    """A spec to be checked, and its golden file, if it is held against one; name: of the spec in that file."""
+
+    found: Found
+    file: str | None = None
+    name: str = ""
+
+
+def check(task: Task, request: CheckRequest, jobs: int) -> Checked:
+    """Check one spec; jobs: among how many at work memory is shared."""
+    path, begun = task.found.path, time.perf_counter()
+    items: list[Expect] = []
+    try:
+        if task.found.problem is not None:
+            raise SpecError(task.found.problem)
+        work = partial(alarm.limited, partial(_compared, task, request, jobs, items), request.time_limit_each)
+        checked = contained(work, ("check", path))
+    except UsageError as error:
+        return Checked(path, problems=error.problems, error=error.exit_code, refused=True)
+    except HeunError as error:
+        placed = all(problem.location for problem in error.problems)
+        lines = lines_of(error.problems, label="" if placed else f"{path}: ")
+        outcomes = () if isinstance(error, goldens.GoldenError) else tuple(map(_skipped, items))
+        checked = Checked(path, outcomes, error.problems, error.exit_code, said=tuple(lines))
+    return checked._replace(seconds=time.perf_counter() - begun)
+
+
+def _skipped(item: Expect) -> Outcome:
+    """What would have been compared, of a spec that was not solved."""
+    line, column = item.location.line, item.location.column
+    return Outcome(EXPECTED, item.of, STOPPED, line, column, skipped=True)
+
+
+def _compared(task: Task, request: CheckRequest, jobs: int, items: list[Expect]) -> Checked:
+    """What was found of a spec; items: what it expects, as soon as that is known."""
+    path = task.found.path
+    spec = load(path)
+    items += spec.expect
+    require_other_file(request.output, [path])
+    require_other_file(request.junit, [path], "--junit")
+    old = _golden(task, request) if task.file is not None else None
+    asked = _asked(spec, task.file is not None)
+    room, each = memory.room("table")
+    options = Options(
+        wanted=asked.reports, entries=asked.entries, time_limit=alarm.remaining(), room=Room(room / jobs, each),
+        reduce=not request.no_reduce,
+    )  # fmt: skip
+    study = solve(spec, options)
+    outcomes = [outcome_of(compare(study, item), path) for item in spec.expect]
+    golden = None
+    if task.file is not None:
+        new = _kept(task, spec, study, old)
+        more, golden = kept_outcomes(task.file, old, new, request)
+        outcomes += more
+    alarm.disarm()
+    told = warn(spec, study.results, True, f"heun: {path}", study.later_warnings)
+    said = () if request.quiet else tuple(f"warning: {text}" for text in told)
+    return Checked(path, tuple(outcomes), said=said, golden=golden)
+
+
+def _asked(spec: Spec, keeps: bool) -> Selection:
+    """What of the results is needed: all that is expected, all that tables tell where that is kept."""
+    asked = asked_by([item.of for item in spec.expect], spec) if spec.expect else None
+    if not keeps:
+        return asked or EVERYTHING
+    told = Selection(told_by_default(spec))
+    return told if asked is None else told.with_all(asked)
+
+
+def _golden(task: Task, request: CheckRequest) -> KeptFile | None:
+    """What was kept of a spec; None where there is no file. Raises GoldenError."""
+    assert task.file is not None and request.golden is not None
+    goldens.require_inside(task.file, request.golden)
+    if not Path(task.file).exists():
+        return None
+    try:
+        kept = read_kept(read_bytes(task.file, MOST_BYTES).decode("utf-8"))
+    except UnicodeDecodeError as error:
+        raise goldens.told(task.file, Finding("not-golden", f"this is not UTF-8: {error.reason}", "")) from None
+    except Finding as finding:
+        raise goldens.told(task.file, finding) from None
+    if kept.spec.path != task.name:
+        message = f"kept of another spec: {kept.spec.path}, not {task.name}"
+        raise goldens.told(task.file, Finding("not-golden", message, "move it back, or remove it and --update"))
+    return kept
+
+
+def _kept(task: Task, spec: Spec, study: Study, old: KeptFile | None) -> KeptFile:
+    """The golden file of a spec as it would be written now."""
+    tables = {name: _digest(table.x.tobytes() + table.y.tobytes()) for name, table in spec.tables.items()}
+    base = _run(study, spec, old.base if old is not None else None)
+    of = KeptSpec(path=task.name, sha256=spec.sha256)
+    return KeptFile(format=1, heun=VERSION, spec=of, tables=tables, base=base)
+
+
+def _run(study: Study, spec: Spec, old: KeptRun | None) -> KeptRun:
+    return keep(study, told_by_default(spec), old.even_at if old is not None else ())
+
+
+def _digest(content: bytes) -> str:
+    return hashlib.sha256(content).hexdigest()
+
+
+def outcome_of(case: Case, path: str) -> Outcome:
+    """An expectation's comparison as plain values."""
+    block = {"file": path, "line": case.location.line, "of": case.of, "when": case.when, **_wanted(case)}
+    block |= {"passed": case.passed, "message": case.failure or ""}
+    bounded = case.below is not None or case.above is not None
+    return Outcome(
+        EXPECTED, case.of, case.failure, case.location.line, case.location.column, when=case.when,
+        expected=_expected(case), found=_text(case.found), allowed="" if bounded else f"{case.tolerance:.3g}",
+        block=_plain(block),
+    )  # fmt: skip
+
+
+def _plain(value: Any) -> Any:
+    """Without arrays, which are more to send."""
+    if isinstance(value, dict):
+        return {key: _plain(member) for key, member in value.items()}
+    if isinstance(value, np.ndarray):
+        return _plain(value.tolist())
+    if isinstance(value, (list, tuple)):
+        return [_plain(member) for member in value]
+    return value
+
+
+def _wanted(case: Case) -> dict[str, Any]:
+    """What was expected and found; of bounds the extreme that decides, with its instant and place."""
+    if case.below is None and case.above is None:
+        return {"expected": case.expected, "found": case.found, "tolerance": case.tolerance}
+    bounds = {"below": case.below, "above": case.above}
+    block: dict[str, Any] = {key: bound for key, bound in bounds.items() if bound is not None}
+    block |= {"found": case.found, "at": case.extreme.at if case.extreme is not None else None}
+    return block | (case.extreme.place._asdict() if case.extreme is not None and case.extreme.place is not None else {})
+
+
+def _expected(case: Case) -> str:
+    bounds = [f"{word} {bound:.9g}" for word, bound in (("above", case.above), ("below", case.below))
+              if bound is not None]  # fmt: skip
+    return ", ".join(bounds) or _text(case.expected)
+
+
+def _text(values: Array | None) -> str:
+    if values is None:
+        return ""
+    texts = [OPEN if np.isnan(value) else f"{value:.9g}" for value in np.ravel(values)[:6]]
+    more = ", ..." if values.size > len(texts) else ""
+    return texts[0] if values.ndim == 0 else f"[{', '.join(texts)}{more}]"
