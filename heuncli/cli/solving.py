@@ -74,14 +74,23 @@ def instants(words: str, times: Array) -> Array:
 
 def warn(spec: Spec, results: Results | None, quiet: bool, place: str = "heun", later: Iterable[str] = ()) -> list[str]:
     """Tell the warnings of reading, of solving (of which `place`) and of what came later, once each; returns them."""
-    read = [str(problem) for problem in spec.warnings]
+    read, solved = _warnings(spec, results, later)
+    for line in warning_lines(spec, results, place, later) if not quiet else ():
+        say(line)
+    return read + solved
+
+
+def warning_lines(spec: Spec, results: Results | None, place: str, later: Iterable[str] = ()) -> list[str]:
+    """The warnings as they are told, a line each, with their places."""
+    read, solved = _warnings(spec, results, later)
+    return [f"warning: {text}" for text in read + [shown(f"{place}: {text}") for text in solved]]
+
+
+def _warnings(spec: Spec, results: Results | None, later: Iterable[str]) -> tuple[list[str], list[str]]:
+    """Those of reading, and those of solving that are not among them."""
     known = {problem.message for problem in spec.warnings}
     solved = [text for text in results.warnings if text not in known] if results else []
-    solved += later
-    if not quiet:
-        for text in read + [shown(f"{place}: {text}") for text in solved]:
-            say(f"warning: {text}")
-    return read + solved
+    return [str(problem) for problem in spec.warnings], solved + list(later)
 
 
 def timings(work: Mapping[str, Any]) -> str:

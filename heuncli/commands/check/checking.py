@@ -13,7 +13,7 @@ import numpy as np
 from heuncli.cli import alarm, memory
 from heuncli.cli.entry import UsageError, contained, lines_of
 from heuncli.cli.guard import require_other_file
-from heuncli.cli.solving import warn
+from heuncli.cli.solving import warning_lines
 from heuncli.commands.check import goldens
 from heuncli.commands.check.checked import EXPECTED, Checked, Outcome
 from heuncli.commands.check.folders import Found
@@ -94,9 +94,8 @@ def _compared(task: Task, request: CheckRequest, jobs: int, items: list[Expect])
         more, golden = kept_outcomes(task.file, old, new, request)
         outcomes += more
     alarm.disarm()
-    told = warn(spec, study.results, True, f"heun: {path}", study.later_warnings)
-    said = () if request.quiet else tuple(f"warning: {text}" for text in told)
-    return Checked(path, tuple(outcomes), said=said, golden=golden)
+    said = [] if request.quiet else warning_lines(spec, study.results, f"heun: {path}", study.later_warnings)
+    return Checked(path, tuple(outcomes), said=tuple(said), golden=golden)
 
 
 def _asked(spec: Spec, keeps: bool) -> Selection:
