@@ -47,12 +47,13 @@ def read(argv: Sequence[str]) -> Asked | None:
                 return None
         else:
             values[field.name] = text
-    target = next((field for field in fields if not field.option.words), None)
-    many = target is not None and target.type == tuple[str, ...]
-    if len(arguments) > (target is not None) and not many:
+    targets = [field for field in fields if not field.option.words]
+    if any(target.type == tuple[str, ...] for target in targets):
+        values |= {targets[0].name: tuple(arguments)} if arguments else {}
+    elif len(arguments) > len(targets):
         return None
-    if target is not None and arguments:
-        values[target.name] = tuple(arguments) if many else arguments[0]
-    elif target is not None and target.name not in request._field_defaults:
+    else:
+        values |= {target.name: argument for target, argument in zip(targets, arguments, strict=False)}
+    if any(target.name not in values and target.name not in request._field_defaults for target in targets):
         return None
     return Asked(command, request(**values))

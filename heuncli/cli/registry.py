@@ -65,7 +65,8 @@ COMMANDS = (
     Command("chart", folder="charting", page="chart", grace=0.8),
     Command("probe", folder="probing", page="probe", phase="while the neighbourhood of the motion was looked at"),
     Command("lagrange", page="lagrange", phase="while the equations were made"),
-    Command("check"),
+    Command("check", page="pipelines"),
+    Command("diff", page="pipelines"),
     Command("methods", page="methods"),
     Command("explain"),
 )

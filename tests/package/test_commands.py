@@ -18,7 +18,9 @@ from heuncli.cli.options import fields_of
 from heuncli.cli.registry import COMMANDS, Command
 
 PACKAGE = Path(heuncli.__file__).parent
-LINES = {"methods": (), "explain": (), "chart": ("-", "--methods", "RK4", "--steps", "0.02")}  # of others: the spec
+LINES = {  # of others: the spec
+    "methods": (), "explain": (), "diff": ("-", "nosuch.json"), "chart": ("-", "--methods", "RK4", "--steps", "0.02"),
+}  # fmt: skip
 SWINGING = """\
 heun: 1
 gravity: [0, 0, -9.81]

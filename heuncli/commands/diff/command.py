@@ -1,0 +1,52 @@
+"""`heun diff`: what changed between two specs, golden files or results by more than both state."""
+
+from __future__ import annotations
+
+from collections.abc import Mapping, Sequence
+
+from heuncli.cli.guard import require_other_file
+from heuncli.cli.output import emit, say
+from heuncli.cli.target import format_of
+from heuncli.commands.diff.request import FORMATS, DiffRequest
+from heuncli.commands.diff.sides import RESULT, Side, require_alike, side_of, solved
+from heuncli.commands.diff.told import FORMS, Difference, ordered
+from heuncli.telling.changes import EXTRA, MISSING, Change, changes
+from heuncli.telling.kept import KeptRun
+
+ENDINGS = {".json": "json", ".txt": "table", ".md": "markdown", "": "table"}
+CHANGED = 1
+SAMPLED = "extremes of results in JSON are those of their samples, and these lie at other instants"
+
+
+def main(request: DiffRequest) -> int:
+    """Run the command; returns the exit code."""
+    form = format_of(request.format, request.output, ENDINGS, FORMATS)
+    require_other_file(request.output, [request.before, request.after])
+    before, after = side_of(request.before), side_of(request.after)
+    require_alike(before, after)
+    before, said = solved(before, _even(after), request.time_limit_each)
+    after, more = solved(after, _even(before), request.time_limit_each)
+    for line in [] if request.quiet else dict.fromkeys([*said, *more]):
+        say(line)
+    require_other_file(request.output, [request.before, request.after])  # the tables of specs, too
+    found = [(case, change) for case, one, other in _pairs(before, after) for change in _changes(one, other)]
+    compared = sum(len(run.numbers) + len(run.certain_sums) + len(run.open) for run in after.runs.values())
+    notes = [SAMPLED] if before.kind == RESULT and _even(before) != _even(after) else []
+    emit(FORMS[form](Difference(request.before, request.after, ordered(found), compared, notes)), request.output)
+    return CHANGED if found and request.exit_code else 0
+
+
+def _even(side: Side) -> Mapping[str, Sequence[float]]:
+    """The even instants at which a side is known, by load case."""
+    return {case: run.even_at for case, run in side.runs.items()}
+
+
+def _pairs(before: Side, after: Side) -> list[tuple[str, KeptRun | None, KeptRun | None]]:
+    names = dict.fromkeys([*before.runs, *after.runs])
+    return [(name, before.runs.get(name), after.runs.get(name)) for name in names]
+
+
+def _changes(before: KeptRun | None, after: KeptRun | None) -> list[Change]:
+    if before is None or after is None:
+        return [Change("the case", "", "", None, None, why=EXTRA if before is None else MISSING)]
+    return changes(before, after)
