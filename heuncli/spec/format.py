@@ -494,6 +494,7 @@ class SectionEntry(Entry):
     piece: PieceEntry | None = None
 
 
+ColumnName = str | int
 Column = Annotated[Annotated[list[Any], Tag("list")] | Annotated[str | int, Tag("single")], FORM]
 
 
@@ -547,6 +548,12 @@ class ExpectEntry(Entry):
     abs: Either | None = None
     below: Either | None = None
     above: Either | None = None
+    curve: str | None = None
+    x: ColumnName | None = None
+    y: ColumnName | None = None
+    x_unit: str | None = None
+    y_unit: str | None = None
+    within: Number | None = None
 
     @property
     def is_bounded(self) -> bool:
@@ -556,10 +563,10 @@ class ExpectEntry(Entry):
     @model_validator(mode="before")
     @classmethod
     def says_what(cls, data: Any) -> Any:
-        """It is something, or it stays below or above something: null is something, too."""
-        if type(data) is dict and not {"is", "below", "above"} & data.keys() and "of" in data:
+        """It is something, stays below or above something, or follows a curve: null is something, too."""
+        if type(data) is dict and not {"is", "below", "above", "curve"} & data.keys() and "of" in data:
             other = next((key for key in data if {"is", "below", "above"} & {*SEVERAL.get(str(key), ())}), None)
-            hint = "is: a number, a list or null; or below: and above: bounds"
+            hint = "is: a number, a list or null; below: and above: bounds; or curve: a file"
             raise Finding("missing-key", "'is' is missing", f"{hint} ('{other}' means nothing)" if other else hint)
         return data
 

@@ -2,9 +2,9 @@
 
 from __future__ import annotations
 
-from collections.abc import Callable, Mapping
+from collections.abc import Callable, Mapping, Sequence
 from pathlib import Path
-from typing import Any
+from typing import TYPE_CHECKING, Any
 
 from heuncli.errors import Problem, SourceLocation, SpecError
 from heuncli.expressions.grammar import GivenParameter
@@ -13,7 +13,7 @@ from heuncli.nearest import begin_file
 from heuncli.spec import format as f
 from heuncli.spec.document import Reader
 from heuncli.spec.fields import Context
-from heuncli.spec.models import Spec
+from heuncli.spec.models import Curve, Spec
 from heuncli.spec.names import NAMED, Names, mapping
 from heuncli.spec.overrides import override, taken_in_si
 from heuncli.spec.parameters import evaluate_parameters
@@ -22,8 +22,12 @@ from heuncli.spec.quantity import Scope, kind_of
 from heuncli.spec.reading import STANDARD_INPUT
 from heuncli.spec.resolve import Meaning, resolve
 from heuncli.spec.rules.every import RULES, DraftDocument, Violation, violations
+from heuncli.spec.semantics import instants_of
 from heuncli.spec.source import Path_, SourceFile, dotted, read
 from heuncli.spec.verdicts import is_primary
+
+if TYPE_CHECKING:
+    from heuncli.spec.tables import Wrong
 
 PLACED = ("analysis", "drives", "expect", "forces")  # blocks of which later stages can locate every value
 
@@ -46,7 +50,7 @@ class Loading:
     """One spec on its way; gathers problems as it goes."""
 
     def __init__(self, path: str, source: SourceFile, overrides: Mapping[str, str], checking: bool) -> None:
-        self.path, self.source = path, source
+        self.path, self.source, self.checking = path, source, checking
         self.rules = [rule for rule in RULES if checking or not rule.for_check]
         self.problems = list(source.problems)
         self.warnings: list[Problem] = []
@@ -93,13 +97,14 @@ class Loading:
         reader = Reader(self.data, context, self.report)
         draft = DraftDocument(reader.document(), names, frozenset(self.unread))
         self.judge(draft, reader.follows)
+        curves = self.curves(draft)
         if self.problems:
             raise SpecError(*in_order(self.problems))
         values = {name: value for name, value in parameters.items() if value is not None}
         built = {name: table for name, table in tables.items() if table is not None}
         warnings = tuple(in_order(self.warnings))
         source = self.source
-        meaning = Meaning(source.file, source.sha256, values, built, warnings, self.locations())
+        meaning = Meaning(source.file, source.sha256, values, built, warnings, self.locations(), curves)
         return resolve(draft.document, meaning)
 
     def parameters(self) -> tuple[dict[str, float | None], dict[str, GivenParameter]]:
@@ -116,22 +121,53 @@ class Loading:
             return {}
         from heuncli.spec.tables import build_table, outside_folder  # with csv 2 ms that few scenes need
 
-        folder = Path() if self.path == STANDARD_INPUT else Path(self.path).parent
         reader = Reader(self.data, Context(scope, scope), self.report)
         tables: dict[str, TableFunction | None] = {}
         for name, data in entries.items():
             path = ("tables", name)
             entry = reader.model(path, data, f.TableEntry)
-            tables[name], wrong = build_table(name, entry, scope, folder) if entry is not None else (None, [])
-            if entry is not None and entry.file is not None and (told := outside_folder(folder, entry.file)):
+            tables[name], wrong = build_table(name, entry, scope, self.folder) if entry is not None else (None, [])
+            if entry is not None and entry.file is not None and (told := outside_folder(self.folder, entry.file)):
                 self.warnings.append(Problem(told.code, told.message, self.location((*path, "file")), told.hint))
-            for item in wrong:
-                finding = item.finding
-                if item.location is not None:
-                    self.problems.append(Problem(finding.code, finding.message, item.location, finding.hint))
-                else:
-                    self.report(finding.code, Violation((*path, *item.keys), finding.message, finding.hint))
+            self.report_read(path, wrong)
         return tables
+
+    def curves(self, draft: DraftDocument) -> dict[int, Curve]:
+        """The curves of expectations, by their places in the list; those in error are left out."""
+        asked = {i: item for i, item in draft.document.expect.items() if item.curve is not None}
+        if not asked:
+            return {}
+        from heuncli.spec.measured import build_curve  # as for tables
+        from heuncli.spec.rules.curves import abscissa
+        from heuncli.spec.tables import outside_folder
+
+        instants = instants_of(draft.document) if self.checking else ()
+        run = (min(instants), max(instants)) if len(instants) > 1 else None
+        curves: dict[int, Curve] = {}
+        for i, item in asked.items():
+            path, file = ("expect", i), str(item.curve)
+            across = abscissa(item, draft)
+            curve, wrong = build_curve(item, None if across is None else str(item.x), run, self.folder)
+            if curve is not None:
+                curves[i] = curve
+            if told := outside_folder(self.folder, file):
+                self.warnings.append(Problem(told.code, told.message, self.location((*path, "curve")), told.hint))
+            self.report_read(path, wrong)
+        return curves
+
+    @property
+    def folder(self) -> Path:
+        """Where the files that a spec names are looked for."""
+        return Path() if self.path == STANDARD_INPUT else Path(self.path).parent
+
+    def report_read(self, path: Path_, wrong: Sequence[Wrong]) -> None:
+        """Add what is wrong with an entry that names a file: at its keys, or in the file."""
+        for item in wrong:
+            finding = item.finding
+            if item.location is not None:
+                self.problems.append(Problem(finding.code, finding.message, item.location, finding.hint))
+            else:
+                self.report(finding.code, Violation((*path, *item.keys), finding.message, finding.hint))
 
     def block(self, name: str) -> dict[str, Any]:
         """A block of named values; empty where it is none."""

@@ -9,6 +9,7 @@ types; named tuples, because they are made faster at the start than dataclasses.
 from __future__ import annotations
 
 import math
+from array import array
 from collections.abc import Mapping
 from types import MappingProxyType
 from typing import Generic, Literal, NamedTuple, TypeVar
@@ -375,8 +376,23 @@ class Foundation(NamedTuple):
     about: Vec | None
 
 
+class Curve(NamedTuple):
+    """A measured curve: points x, y (n,) in SI, of the lines of a file; x is time, or the number at a path (x_of).
+
+    within: the share of the points that must lie within the tolerance.
+    """
+
+    file: str
+    x: array[float]
+    y: array[float]
+    lines: array[int]
+    x_of: str | None
+    within: float
+
+
 class Expect(NamedTuple):
-    """One expectation: the value found at `of` is `is_` (None: must be open) within rel and abs, or within bounds."""
+    """One expectation: the value found at `of` is `is_` (None: must be open) within rel and abs, or within bounds, or
+    follows a curve within rel and abs."""
 
     of: str
     at: float | None
@@ -387,6 +403,12 @@ class Expect(NamedTuple):
     location: SourceLocation
     below: float | None = None
     above: float | None = None
+    curve: Curve | None = None
+
+    @property
+    def paths(self) -> tuple[str, ...]:
+        """The paths into the results that it needs."""
+        return (self.of,) if self.curve is None or self.curve.x_of is None else (self.of, self.curve.x_of)
 
 
 class Spec(NamedTuple):

@@ -32,11 +32,12 @@ class Meaning:
     tables: Mapping[str, TableFunction]
     warnings: tuple[Problem, ...]
     locations: Mapping[str, SourceLocation]
+    curves: Mapping[int, m.Curve]
 
 
 def resolve(document: f.Document, meaning: Meaning) -> m.Spec:
     """The scene that a document without errors means."""
-    r = Resolver(document, meaning.locations)
+    r = Resolver(document, meaning.locations, meaning.curves)
     analysis = document.analysis
     instants = instants_of(document)
     kind = type_of(document)
@@ -74,8 +75,10 @@ def resolve(document: f.Document, meaning: Meaning) -> m.Spec:
 class Resolver:
     """Follows the references of one document."""
 
-    def __init__(self, document: f.Document, locations: Mapping[str, SourceLocation]) -> None:
-        self.document, self.locations = document, locations
+    def __init__(
+        self, document: f.Document, locations: Mapping[str, SourceLocation], curves: Mapping[int, m.Curve]
+    ) -> None:
+        self.document, self.locations, self.curves = document, locations, curves
 
     def point(self, body: str, name: str) -> m.Vec:
         points = self.document.ground.points if body == GROUND else self.document.bodies[body].points
@@ -258,8 +261,10 @@ class Resolver:
 
     def expect(self, i: int, item: f.ExpectEntry) -> m.Expect:
         location = self.locations.get(f"expect.{i}", SourceLocation("", 1, 1))
-        bounds = numbers(item.below), numbers(item.above)
-        return m.Expect(item.of, item.at, item.peak, numbers(item.is_), item.rel, numbers(item.abs), location, *bounds)
+        return m.Expect(
+            item.of, item.at, item.peak, numbers(item.is_), item.rel, numbers(item.abs), location,
+            numbers(item.below), numbers(item.above), self.curves.get(i),
+        )  # fmt: skip
 
 
 def stop(name: str, given: f.StopEntry) -> m.Stop[str]:

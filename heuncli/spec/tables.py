@@ -81,7 +81,8 @@ def in_si(entry: TableEntry, scope: Scope, folder: Path, wrong: list[Wrong]) -> 
             hint = "with a file, x and y name its columns"
             wrong.append(Wrong((), Finding("table-form", "both a file and lists of numbers", hint)))
             return None
-        columns = from_file(entry, entry.file, folder, wrong)
+        wanted = (entry.x if entry.x is not None else 1, entry.y if entry.y is not None else 2)
+        columns = from_file(wanted, entry.file, folder, wrong)
         for column, size in zip(columns or (), sizes, strict=False):
             values = np.frombuffer(column)  # the same memory
             with np.errstate(over="ignore"):  # judged below, with its place
@@ -165,8 +166,8 @@ def shape_of(x: array[float], y: array[float], entry: TableEntry) -> Iterator[Wr
         yield Wrong(("period",), Finding("table-period", message, "the last point repeats the first, one period on"))
 
 
-def from_file(entry: TableEntry, file: str, folder: Path, wrong: list[Wrong]) -> Columns | None:
-    """The two columns of a CSV file, as they stand there."""
+def from_file(wanted: tuple[object, object], file: str, folder: Path, wrong: list[Wrong]) -> Columns | None:
+    """The columns x and y of a CSV file by their names or numbers, as they stand there."""
     path = folder / file
     try:
         text = text_of(path)
@@ -174,7 +175,7 @@ def from_file(entry: TableEntry, file: str, folder: Path, wrong: list[Wrong]) ->
         wrong.append(Wrong(("file",), finding))
         return None
     try:
-        return columns_of(text, entry.x if entry.x is not None else 1, entry.y if entry.y is not None else 2)
+        return columns_of(text, *wanted)
     except NoColumn as error:
         key = ("x", "y")[error.number]
         absent = error.finding

@@ -100,7 +100,7 @@ def _compared(task: Task, request: CheckRequest, jobs: int, items: list[Expect])
 
 def _asked(spec: Spec, keeps: bool) -> Selection:
     """What of the results is needed: all that is expected, all that tables tell where that is kept."""
-    asked = asked_by([item.of for item in spec.expect], spec) if spec.expect else None
+    asked = asked_by([path for item in spec.expect for path in item.paths], spec) if spec.expect else None
     if not keeps:
         return asked or EVERYTHING
     told = Selection(told_by_default(spec))
@@ -167,7 +167,8 @@ def _plain(value: Any) -> Any:
 def _wanted(case: Case) -> dict[str, Any]:
     """What was expected and found; of bounds the extreme that decides, with its instant and place."""
     if case.below is None and case.above is None:
-        return {"expected": case.expected, "found": case.found, "tolerance": case.tolerance}
+        told = {"expected": case.expected, "found": case.found, "tolerance": case.tolerance}
+        return told | (case.worst_point if case.curve is not None else {})
     bounds = {"below": case.below, "above": case.above}
     block: dict[str, Any] = {key: bound for key, bound in bounds.items() if bound is not None}
     block |= {"found": case.found, "at": case.extreme.at if case.extreme is not None else None}

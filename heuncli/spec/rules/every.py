@@ -6,6 +6,7 @@ from heuncli.spec.rules import (
     analysis,
     bodies,
     conditions,
+    curves,
     expect,
     joints,
     loads,
@@ -22,7 +23,7 @@ from heuncli.spec.rules.registry import RULES, DraftDocument, Rule, Violation, v
 
 MODULES = (
     naming, references, bodies, products, joints, plane, loads, stops, sections, analysis, methods, conditions,
-    expect, not_yet,
+    expect, curves, not_yet,
 )  # fmt: skip
 
 __all__ = ["MODULES", "RULES", "DraftDocument", "Rule", "Violation", "violations"]

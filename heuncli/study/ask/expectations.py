@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from typing import Any, Literal
+from typing import TYPE_CHECKING, Any, Literal
 
 import numpy as np
 
@@ -15,12 +15,16 @@ from heuncli.spec.models import Expect
 from heuncli.study.ask.measure import NOT_CLAIMED, MeasureRequest, Peak, lost_from, peak
 from heuncli.study.ask.study import Study
 
+if TYPE_CHECKING:
+    from heuncli.study.ask.curves import CurveFound
+
 
 @record
 class Case:
     """One comparison: what was expected where, what was found (nan is open), and if they differ why that fails.
 
-    extreme: of what is expected to stay below or above something, that which comes nearest to it.
+    extreme: of what is expected to stay below or above something, that which comes nearest to it. curve: of a measured
+    curve its worst point, which expected and found are of.
     """
 
     location: SourceLocation
@@ -33,23 +37,36 @@ class Case:
     below: float | None = None
     above: float | None = None
     extreme: Peak | None = None
+    curve: CurveFound | None = None
 
     @property
     def passed(self) -> bool:
         """Whether the expectation holds."""
         return self.failure is None
 
+    @property
+    def worst_point(self) -> dict[str, Any]:
+        """Of a measured curve how many points lie outside, and where the worst of all stands."""
+        keys = ("points", "outside", "at", "x", "file", "line")
+        of = self.curve._asdict() if self.curve is not None else {}
+        return {f"curve_{key}" if key in ("file", "line") else key: of[key] for key in keys if key in of}
+
 
 def compare(study: Study, item: Expect) -> Case:
     """One expectation against the study."""
     expected = np.asarray(np.nan if item.is_ is None else _with_nan(item.is_), dtype=np.float64)
+    if item.curve is not None:
+        expected = np.array(item.curve.y)
     when = f"{item.peak} over the run" if item.peak else f"t = {item.at:.6g} s" if item.at is not None else ""
+    when = when if item.curve is None else "curve"
     tolerance = _tolerance(expected, item.rel, item.abs)
     case = Case(item.location, item.of, when, expected, None, tolerance, None, item.below, item.above)
     try:
-        horizon = _lost_from(study, item)
+        horizon = _lost_from(study, item) if item.curve is None else None  # a curve may end before it
         if horizon is not None:
             return replace(case, failure=NOT_CLAIMED.format(horizon))
+        if item.curve is not None:
+            return _followed(case, study, item)
         if item.below is not None or item.above is not None:
             return _bounded(case, study, item)
         found = _found(study, item)
@@ -65,6 +82,19 @@ def _bounded(case: Case, study: Study, item: Expect) -> Case:
 
     extreme, failure = bounded(study, item)
     return replace(case, found=np.asarray(extreme.value), failure=failure, extreme=extreme)
+
+
+def _followed(case: Case, study: Study, item: Expect) -> Case:
+    """The comparison of a number that is expected to follow a measured curve."""
+    from heuncli.study.ask.curves import NotComparable, held_against  # as for bounds
+
+    try:
+        own = held_against(study, item, case.tolerance)
+    except NotComparable as error:
+        return replace(case, expected=error.expected, failure=error.problems[0].message)
+    when = f"t = {own.at:.6g} s ({own.file}:{own.line})"
+    expected, found = np.asarray(own.expected), np.asarray(own.found)
+    return replace(case, when=when, expected=expected, found=found, failure=own.failure, curve=own)
 
 
 def _found(study: Study, item: Expect) -> Array:

@@ -49,7 +49,7 @@ class Crossings(NamedTuple):
 
 
 class Bracket(NamedTuple):
-    """Instants a before b (n,), at one of which h is above zero; f, g: h there."""
+    """Instants a before b (n,), on two sides of what is searched; f, g: h there."""
 
     a: Array
     b: Array
@@ -69,7 +69,8 @@ def crossings(sample: NumberAt, times: Array, h: Array, error: float) -> Crossin
     at, smooth = times[k + 1].copy(), ~jumps[k]
     if smooth.any():
         i = k[smooth]
-        at[smooth] = roots(sample, Bracket(times[i], times[i + 1], h[i], h[i + 1]), error)
+        of = Bracket(times[i], times[i + 1], h[i], h[i + 1])
+        at[smooth] = roots(sample, of, np.where((of.f > 0.0) == (of.g > 0.0), error, 0.0))  # else its own error
     off = np.full(len(k), tolerances.EPS) * np.abs(at)
     off[smooth] = errors(sample, at[smooth], error, (float(times[0]), float(times[-1])))
     begins = bool(above[known][0]) if known.any() else False
@@ -118,14 +119,13 @@ def joined(times: list[Array], h: list[Array], *, complete: bool) -> tuple[Array
     return t[order][new], values[order][new], complete
 
 
-def roots(sample: NumberAt, of: Bracket, error: float) -> Array:
-    """The instant in each bracket at which h passes zero, or its own error where it does not pass zero itself.
+def roots(sample: NumberAt, of: Bracket, level: Array) -> Array:
+    """The instant in each bracket at which h passes its level (n,).
 
     By inverse quadratic interpolation where that is safe, else by halves: T. R. Chandrupatla, Adv. Eng. Softw. 28
     (1997).
     """
-    own = np.where((of.f > 0.0) == (of.g > 0.0), error, 0.0)
-    a, b, f, g = of.b.copy(), of.a.copy(), of.g - own, of.f - own  # a: the newest, b: on its other side
+    a, b, f, g = of.b.copy(), of.a.copy(), of.g - level, of.f - level  # a: the newest, b: on its other side
     c, e = b.copy(), g.copy()
     share = np.full(len(a), 0.5)
     width = 2.0 * tolerances.EPS * np.maximum(np.abs(of.b), 0.01 * np.abs(of.b).max(initial=0.0))
@@ -136,7 +136,7 @@ def roots(sample: NumberAt, of: Bracket, error: float) -> Array:
         x = a + share * (b - a)
         instants = distinct(x[going])
         y = np.where(going, 0.0, f)
-        y[going] = sample(instants)[np.searchsorted(instants, x[going])] - own[going]
+        y[going] = sample(instants)[np.searchsorted(instants, x[going])] - level[going]
         same = (y > 0.0) == (f > 0.0)
         c, e = np.where(going, np.where(same, a, b), c), np.where(going, np.where(same, f, g), e)
         b, g = np.where(going & ~same, a, b), np.where(going & ~same, f, g)
