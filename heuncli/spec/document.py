@@ -9,6 +9,7 @@ from pydantic import ValidationError
 
 from heuncli.nearest import misspelt
 from heuncli.spec import format as f
+from heuncli.spec import format_shapes as fs
 from heuncli.spec.fields import Context, Entry, keys_of
 from heuncli.spec.quantity import kind_of
 from heuncli.spec.rules.registry import Path_, Violation
@@ -107,7 +108,7 @@ class Reader:
     def with_shapes(self, path: Path_, body: f.BodyEntry) -> f.BodyEntry | None:
         """A body with its shapes read; None where one is in error."""
         shapes = [
-            self.typed((*path, "shapes", i), shape, f.SHAPES, "shapes") for i, shape in enumerate(body.shapes or [])
+            self.typed((*path, "shapes", i), shape, fs.SHAPES, "shapes") for i, shape in enumerate(body.shapes or [])
         ]
         return None if None in shapes else body.model_copy(update={"shapes": shapes})
 

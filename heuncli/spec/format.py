@@ -25,7 +25,6 @@ from heuncli.spec.fields import (
     BodyOrEnd,
     Count,
     Damping,
-    Density,
     Direction,
     Either,
     EitherInTime,
@@ -40,10 +39,8 @@ from heuncli.spec.fields import (
     Length,
     LengthInTime,
     LengthLimits,
-    LineDensity,
     LineForceInTime,
     Mass,
-    Matrix,
     Moment,
     MomentInTime,
     Number,
@@ -62,6 +59,7 @@ from heuncli.spec.fields import (
     Velocity,
     VelocityInTime,
 )
+from heuncli.spec.format_shapes import Orientation, ShapeEntry
 from heuncli.spec.words import SEVERAL
 
 Frame = Literal["world", "body"]
@@ -71,80 +69,12 @@ Report = Literal[
 Points = dict[str, Position]
 
 
-class Orientation(Entry):
-    """An attitude, in one of its forms."""
-
-    axis: Direction | None = None
-    angle: Angle | None = None
-    quaternion: tuple[Number, Number, Number, Number] | None = None
-    rodrigues: Direction | None = None
-    euler: tuple[Angle, Angle, Angle] | None = None
-    sequence: str | None = None
-    matrix: Matrix | None = None
-
-
 class GroundEntry(Entry):
     """What does not move."""
 
     points: Points = Field(default_factory=dict)
 
 
-class RodShape(Entry):
-    type: Literal["rod"]
-    from_: Position = Field(alias="from")
-    to: Position
-    mass: Mass | None = None
-    line_density: LineDensity | None = None
-
-
-class CylinderShape(Entry):
-    type: Literal["cylinder"]
-    from_: Position = Field(alias="from")
-    to: Position
-    radius: Length
-    inner_radius: Length | None = None
-    mass: Mass | None = None
-    density: Density | None = None
-
-
-class ConeShape(Entry):
-    type: Literal["cone"]
-    from_: Position = Field(alias="from")
-    to: Position
-    radius: Length
-    to_radius: Length
-    mass: Mass | None = None
-    density: Density | None = None
-
-
-class BoxShape(Entry):
-    type: Literal["box"]
-    center: Position
-    size: Position
-    orientation: Orientation | None = None
-    mass: Mass | None = None
-    density: Density | None = None
-
-
-class SphereShape(Entry):
-    type: Literal["sphere"]
-    center: Position
-    radius: Length
-    mass: Mass | None = None
-    density: Density | None = None
-
-
-class PointShape(Entry):
-    type: Literal["point"]
-    at: Position
-    mass: Mass
-
-
-ShapeEntry = RodShape | CylinderShape | ConeShape | BoxShape | SphereShape | PointShape
-SHAPES: dict[str, type[ShapeEntry]] = {
-    "rod": RodShape, "cylinder": CylinderShape, "cone": ConeShape, "box": BoxShape, "sphere": SphereShape,
-    "point": PointShape,
-}  # fmt: skip
 InertiaForms = Annotated[
     Annotated[Inertia, Tag("single")]
     | Annotated[tuple[Inertia, Inertia, Inertia], Tag("list")]

@@ -66,9 +66,7 @@ def lines_of(text: str, points: int) -> array[int]:
     return array("q", [n for n, _ in rows_of(text)][-points:] if points else [])
 
 
-def faults(
-    columns: Columns, sizes: list[float], run: tuple[float, float] | None
-) -> Iterator[tuple[int, Finding]]:
+def faults(columns: Columns, sizes: list[float], run: tuple[float, float] | None) -> Iterator[tuple[int, Finding]]:
     """What keeps points from being a curve within a run: the place of a point, and what is wrong with it."""
     x, y = (np.frombuffer(column) for column in columns)
     for name, values in (("x", x), ("y", y)):
@@ -90,4 +88,7 @@ def faults(
         if outside.any():
             i = int(outside.argmax())
             message = f"{x[i]:.9g} s is out of the run, which goes from {run[0]:.9g} to {run[1]:.9g} s"
-            yield i, Finding("curve-points", message, "leave these rows out, or run longer; a file in ms has x_unit: ms")
+            yield (
+                i,
+                Finding("curve-points", message, "leave these rows out, or run longer; of ms say x_unit: ms"),
+            )

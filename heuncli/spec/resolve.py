@@ -13,6 +13,7 @@ from heuncli.expressions.programs import Expression, TableFunction
 from heuncli.method_rows import canonical
 from heuncli.records import record
 from heuncli.spec import format as f
+from heuncli.spec import format_shapes as fs
 from heuncli.spec import models as m
 from heuncli.spec.fields import EndEntry
 from heuncli.spec.names import GROUND, UNTIL
@@ -97,7 +98,7 @@ class Resolver:
         x, y, z = (self.placed(value, f"{path}.{key}.{i}") for i, value in enumerate(values))
         return x, y, z
 
-    def shape(self, shape: f.ShapeEntry) -> m.Shape:
+    def shape(self, shape: fs.ShapeEntry) -> m.Shape:
         keys = (
             "mass",
             "density",
@@ -112,7 +113,7 @@ class Resolver:
             "to_radius",
         )
         rotation = None
-        if isinstance(shape, f.BoxShape):
+        if isinstance(shape, fs.BoxShape):
             rotation = body_axes(shape.orientation) if shape.orientation is not None else IDENTITY
         return m.Shape(type=shape.type, rotation=rotation, **{key: getattr(shape, key, None) for key in keys})
 

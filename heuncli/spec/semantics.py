@@ -14,6 +14,7 @@ from heuncli.errors import Finding
 from heuncli.expressions.programs import Expression
 from heuncli.joint_kinds import RATES, TYPES, Kind
 from heuncli.spec import format as f
+from heuncli.spec import format_shapes as fs
 from heuncli.spec import models as m
 from heuncli.spec import turns
 from heuncli.spec.fields import EndEntry
@@ -32,7 +33,7 @@ ORIENTATIONS: dict[str, tuple[str, ...]] = {
 }
 
 
-def body_axes(value: f.Orientation) -> m.Matrix:
+def body_axes(value: fs.Orientation) -> m.Matrix:
     """The rotation an orientation means. Raises Finding."""
     given = {key for keys in ORIENTATIONS.values() for key in keys if getattr(value, key) is not None}
     forms = [name for name, keys in ORIENTATIONS.items() if given & set(keys)]

@@ -8,7 +8,11 @@ from tests.contributing.addition import Addition, Edit, heun
 
 WEIGH = Addition(
     "A command",
-    {"heuncli/cli/registry.py": (Edit('    Command("check", page="pipelines"),\n', '    Command("check"),\n    Command("weigh"),\n'),)},
+    {
+        "heuncli/cli/registry.py": (
+            Edit('    Command("explain"),\n', '    Command("explain"),\n    Command("weigh"),\n'),
+        )
+    },
     {
         "heuncli/commands/weigh/__init__.py": "",
         "heuncli/commands/weigh/request.py": '''"""What `heun weigh` is asked for: its options and arguments."""

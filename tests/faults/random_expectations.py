@@ -47,7 +47,7 @@ def results(name: str) -> dict[str, Any]:
         for table, content in sources.tables().items():
             (Path(folder) / table).write_bytes(content)
         path = Path(folder) / "spec.yaml"
-        path.write_bytes(sources.text(sources.tree(name)))
+        path.write_bytes(sources.text({key: value for key, value in sources.tree(name).items() if key != "expect"}))
         told: dict[str, Any] = json.loads(to_json(solve(load(str(path)), Options()).results))
     return told
 

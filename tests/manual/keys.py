@@ -10,6 +10,7 @@ from pydantic.fields import FieldInfo
 from heuncli.expressions import units as u
 from heuncli.spec import fields
 from heuncli.spec import format as f
+from heuncli.spec import format_shapes as fs
 from heuncli.spec.fields import Entry
 from tests.shared.manual import headings
 
@@ -18,8 +19,8 @@ ALL = "all"  # in place of the types that have a key, where all have it
 CHAPTERS: dict[str, type[Entry] | Mapping[str, type[Entry]]] = {
     "Tables": f.TableEntry,
     "Bodies": f.BodyEntry,
-    "Shapes": f.SHAPES,
-    "Orientation": f.Orientation,
+    "Shapes": fs.SHAPES,
+    "Orientation": fs.Orientation,
     "Piece": f.PieceEntry,
     "Joints": f.JOINTS,
     "Bearing of joints": f.BearingEntry,

@@ -21,6 +21,7 @@ from heuncli.joint_kinds import SYNONYMS, TYPES, Kind
 from heuncli.method_rows import METHODS
 from heuncli.results_schema import NOT_YET, ROWS, SPACE, Quantity, is_share
 from heuncli.spec import format as f
+from heuncli.spec import format_shapes as fs
 from heuncli.spec.words import FORCE_WORDS, SHAPE_WORDS
 from tests.manual.keys import PLACES
 from tests.shared.cited_texts import equations
@@ -150,7 +151,7 @@ def types() -> Iterator[tuple[str, str]]:
     blocks = (
         ("a joint", f.JOINTS, SYNONYMS, "Joints"),
         ("a load", f.LOADS, FORCE_WORDS, None),
-        ("a shape", f.SHAPES, SHAPE_WORDS, "Shapes"),
+        ("a shape", fs.SHAPES, SHAPE_WORDS, "Shapes"),
     )
     for what, models, meant, heading in blocks:
         for name in models:

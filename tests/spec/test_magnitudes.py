@@ -8,7 +8,7 @@ import pytest
 from heuncli.errors import SpecError
 from heuncli.number_range import are_in_range, is_in_range
 from heuncli.shapes.forms import form
-from heuncli.spec import format as f
+from heuncli.spec import format_shapes as fs
 from heuncli.spec.load import load
 from heuncli.spec.rules.products import mass_of
 from tests.shared.solids import SOLIDS
@@ -72,14 +72,14 @@ def test_all_are_told_at_once() -> None:
 @pytest.mark.parametrize("name", SOLIDS)
 def test_masses_of_shapes_are_those_that_are_computed_with(name: str) -> None:
     shape = SOLIDS[name]
-    written = f.SHAPES[shape.type]
+    written = fs.SHAPES[shape.type]
     keys = {key: getattr(shape, key) for key in written.model_fields if hasattr(shape, key)}
     mass = float(form([shape]).whole()[3, 3])
     assert mass_of(written.model_construct(**keys)) == pytest.approx(mass, rel=1e-13)
 
 
 def test_all_kinds_of_shapes_are_among_them() -> None:
-    assert {shape.type for shape in SOLIDS.values()} | {"point"} == set(f.SHAPES)
+    assert {shape.type for shape in SOLIDS.values()} | {"point"} == set(fs.SHAPES)
 
 
 def test_many_numbers_are_judged_as_one() -> None:

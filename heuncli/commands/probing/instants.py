@@ -75,7 +75,7 @@ def zeros(along: SearchedMotion, track: Track, x: Array, component: int) -> list
             left = x[np.searchsorted(times, instants, side="right") - 1]
             return np.asarray(found[:, component] * np.where(np.sum(found * left, axis=1) < 0.0, -1.0, 1.0))
 
-        at = roots(aligned, Bracket(times[k], times[k + 1], h[k], h[k + 1]), 0.0)
+        at = roots(aligned, Bracket(times[k], times[k + 1], h[k], h[k + 1]), np.zeros(len(k)))
         found += [ZeroStretch(t, t) for t in at.tolist()]
     return sorted(found)
 

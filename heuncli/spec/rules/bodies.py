@@ -7,6 +7,7 @@ from collections.abc import Iterator
 from heuncli import tolerances
 from heuncli.errors import Finding
 from heuncli.spec import format as f
+from heuncli.spec import format_shapes as fs
 from heuncli.spec.rules.registry import DraftDocument, Path_, Violation, rule
 from heuncli.spec.semantics import body_axes, tensor
 from heuncli.spec.turns import principal
@@ -66,12 +67,12 @@ def not_positive(draft: DraftDocument) -> Iterator[Violation]:
         for i, shape in enumerate(body.shapes or []):
             at = (*path, "shapes", i)
             yield from positive(at, shape, "mass", "density", "line_density")
-            if not isinstance(shape, f.ConeShape):
+            if not isinstance(shape, fs.ConeShape):
                 yield from positive(at, shape, "radius", "inner_radius")
             elif min(shape.radius, shape.to_radius) < 0.0 or max(shape.radius, shape.to_radius) == 0.0:
                 message = "a cone's radii must not be negative, nor both 0"
                 yield Violation((*at, "radius"), message, "to_radius: 0 is a tip")
-            if isinstance(shape, f.BoxShape) and min(shape.size) <= 0.0:
+            if isinstance(shape, fs.BoxShape) and min(shape.size) <= 0.0:
                 yield Violation((*at, "size"), f"a size must be more than 0, not {min(shape.size):g}", EDGES)
     for name, joint in draft.document.joints.items():
         path = ("joints", name)
@@ -139,16 +140,16 @@ def shape_form(draft: DraftDocument) -> Iterator[Violation]:
     for name, body in draft.document.bodies.items():
         for i, shape in enumerate(body.shapes or []):
             path = ("bodies", name, "shapes", i)
-            density = "line_density" if isinstance(shape, f.RodShape) else "density"
-            if not isinstance(shape, f.PointShape):
+            density = "line_density" if isinstance(shape, fs.RodShape) else "density"
+            if not isinstance(shape, fs.PointShape):
                 given = [key for key in ("mass", density) if getattr(shape, key) is not None]
                 if len(given) != 1:
                     what = "both mass and" if given else "neither mass nor"
                     yield Violation(path, f"{what} {density}", "give one of the two")
-            if isinstance(shape, f.RodShape | f.CylinderShape | f.ConeShape) and shape.from_ == shape.to:
+            if isinstance(shape, fs.RodShape | fs.CylinderShape | fs.ConeShape) and shape.from_ == shape.to:
                 yield Violation((*path, "to"), "from and to are the same point", "without a length it is type: point")
             if (
-                isinstance(shape, f.CylinderShape)
+                isinstance(shape, fs.CylinderShape)
                 and shape.inner_radius is not None
                 and shape.inner_radius >= shape.radius
             ):
@@ -247,7 +248,7 @@ def orientation(draft: DraftDocument) -> Iterator[Violation]:
             yield Violation(path, finding.message, finding.hint)
 
 
-def orientations(draft: DraftDocument) -> Iterator[tuple[Path_, f.Orientation]]:
+def orientations(draft: DraftDocument) -> Iterator[tuple[Path_, fs.Orientation]]:
     """Every orientation in the document."""
     for name, body in draft.document.bodies.items():
         if body.orientation is not None:
@@ -255,7 +256,7 @@ def orientations(draft: DraftDocument) -> Iterator[tuple[Path_, f.Orientation]]:
         if body.near is not None and body.near.orientation is not None:
             yield ("bodies", name, "near", "orientation"), body.near.orientation
         for i, shape in enumerate(body.shapes or []):
-            if isinstance(shape, f.BoxShape) and shape.orientation is not None:
+            if isinstance(shape, fs.BoxShape) and shape.orientation is not None:
                 yield ("bodies", name, "shapes", i, "orientation"), shape.orientation
 
 

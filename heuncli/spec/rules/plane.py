@@ -8,6 +8,7 @@ from collections.abc import Iterator
 from heuncli import tolerances
 from heuncli.joint_kinds import ABOUT_AXIS, TYPES
 from heuncli.spec import format as f
+from heuncli.spec import format_shapes as fs
 from heuncli.spec.rules.registry import DraftDocument, Path_, Violation, rule
 from heuncli.spec.semantics import body_axes
 from heuncli.spec.turns import IDENTITY, unit
@@ -78,7 +79,7 @@ def _joints(draft: DraftDocument) -> Iterator[Violation]:
                 yield Violation((*path, key), f"in a planar scene {key} of a {joint.type} {wants}", OR_ELSE)
 
 
-def upright(orientation: f.Orientation) -> float:
+def upright(orientation: fs.Orientation) -> float:
     """The cosine between the body's z axis and the world's; 1 where the orientation is in error."""
     try:
         return body_axes(orientation)[2][2]

@@ -11,6 +11,7 @@ from collections.abc import Iterator
 
 from heuncli.number_range import is_in_range, out_of_range
 from heuncli.spec import format as f
+from heuncli.spec import format_shapes as fs
 from heuncli.spec.rules.registry import DraftDocument, Path_, Violation, rule
 
 
@@ -67,43 +68,43 @@ def moments(body: f.BodyEntry) -> tuple[float, ...]:
     return (*(element for row in rows for element in row), *off)
 
 
-def extent(shape: f.ShapeEntry) -> tuple[float, ...]:
+def extent(shape: fs.ShapeEntry) -> tuple[float, ...]:
     """Lengths of which none of the shape's coordinates exceeds the sum [m]."""
     match shape:
-        case f.RodShape():
+        case fs.RodShape():
             return (*shape.from_, *shape.to)
-        case f.CylinderShape():
+        case fs.CylinderShape():
             return (*shape.from_, *shape.to, shape.radius)
-        case f.ConeShape():
+        case fs.ConeShape():
             return (*shape.from_, *shape.to, shape.radius, shape.to_radius)
-        case f.BoxShape():
+        case fs.BoxShape():
             return (*shape.center, *shape.size)
-        case f.SphereShape():
+        case fs.SphereShape():
             return (*shape.center, shape.radius)
-        case f.PointShape():
+        case fs.PointShape():
             return shape.at
 
 
-def mass_of(shape: f.ShapeEntry) -> float:
+def mass_of(shape: fs.ShapeEntry) -> float:
     """The mass [kg]: as given, or the density times the volume."""
     if shape.mass is not None:
         return shape.mass
-    if isinstance(shape, f.RodShape):
+    if isinstance(shape, fs.RodShape):
         return (shape.line_density or 0.0) * math.dist(shape.from_, shape.to)
-    assert not isinstance(shape, f.PointShape)
+    assert not isinstance(shape, fs.PointShape)
     return (shape.density or 0.0) * volume(shape)
 
 
-def volume(shape: f.CylinderShape | f.ConeShape | f.BoxShape | f.SphereShape) -> float:
+def volume(shape: fs.CylinderShape | fs.ConeShape | fs.BoxShape | fs.SphereShape) -> float:
     """The volume [m^3]."""
     match shape:
-        case f.CylinderShape():
+        case fs.CylinderShape():
             inner = shape.inner_radius or 0.0
             return math.pi * (shape.radius - inner) * (shape.radius + inner) * math.dist(shape.from_, shape.to)
-        case f.ConeShape():
+        case fs.ConeShape():
             a, b = shape.radius, shape.to_radius
             return math.pi / 3.0 * (a * a + a * b + b * b) * math.dist(shape.from_, shape.to)
-        case f.BoxShape():
+        case fs.BoxShape():
             return math.prod(shape.size)
-        case f.SphereShape():
+        case fs.SphereShape():
             return 4.0 / 3.0 * math.pi * shape.radius**3

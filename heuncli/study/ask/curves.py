@@ -105,7 +105,11 @@ def instants_where(study: Study, curve: Curve, x: Array) -> Array:
     error = error_of(study, path, q)
     turned = highest - h > 2.0 * error
     if turned.any():
-        refuse(f"{path} turns back by t = {times[int(turned.argmax())]:.6g} s: a curve over it has no one instant", curve, None)
+        refuse(
+            f"{path} turns back by t = {times[int(turned.argmax())]:.6g} s: a curve over it has no one instant",
+            curve,
+            None,
+        )
     wanted, slack = sign * x, max(error, tolerances.SAME_INSTANT * float(highest[-1] - highest[0]))
     outside = (wanted < highest[0] - slack) | (wanted > highest[-1] + slack)
     if outside.any():
@@ -116,14 +120,15 @@ def instants_where(study: Study, curve: Curve, x: Array) -> Array:
     k = np.searchsorted(highest, wanted, side="right")
     at = np.where(k == 0, times[0], times[-1])
     inside = (k > 0) & (k < len(times))
-    i = k[inside]
-    jumps = sides_of_jumps(times)[i - 1]
+    right = k[inside]
+    left = right - 1
+    jumps = sides_of_jumps(times)[left]
     if jumps.any():
         j = int(np.flatnonzero(inside)[jumps.argmax()])
         refuse(f"{path} jumps past {x[j]:.6g} at t = {times[k[j]]:.6g} s", curve, j)
-    bracket = Bracket(times[i - 1], times[i], h[i - 1], h[i])
+    bracket = Bracket(times[left], times[right], h[left], h[right])
     at[inside] = roots(lambda t: sign * numbers_at(study, path, t), bracket, wanted[inside])
-    return at
+    return np.asarray(at)
 
 
 def error_of(study: Study, path: str, values: Array) -> float:
@@ -172,5 +177,3 @@ def refuse(message: str, curve: Curve, i: int | None) -> NoReturn:
 def place(curve: Curve, i: int) -> str:
     """A point of a curve by its line."""
     return f"{curve.file}:{curve.lines[i]}"
-
-
