@@ -484,6 +484,7 @@ class ExpectEntry(Entry):
     x_unit: str | None = None
     y_unit: str | None = None
     within: Number | None = None
+    case: str | None = None
 
     @property
     def is_bounded(self) -> bool:
@@ -501,6 +502,13 @@ class ExpectEntry(Entry):
         return data
 
 
+class CaseEntry(Entry):
+    """A load case: values that hold in it in the place of others, by the names that --set takes."""
+
+    title: str = ""
+    set: dict[str, Any]
+
+
 class HeadEntry(Entry):
     """What a spec has beside its blocks of entries."""
 
@@ -513,7 +521,7 @@ class HeadEntry(Entry):
 
 ENTRIES: dict[str, type[Entry] | Mapping[str, type[Entry]]] = {  # blocks of named entries: their models, or by type
     "bodies": BodyEntry, "joints": JOINTS, "drives": DriveEntry, "forces": LOADS, "impulses": ImpulseEntry,
-    "stops": StopEntry, "sections": SectionEntry,
+    "stops": StopEntry, "sections": SectionEntry, "cases": CaseEntry,
 }  # fmt: skip
 SINGLE: dict[str, type[Entry]] = {"ground": GroundEntry, "analysis": AnalysisEntry, "foundation": FoundationEntry}
 READ_BEFORE = ("parameters", "tables")  # by themselves: the rest refers to them
@@ -531,6 +539,7 @@ class Document(NamedTuple):
     impulses: dict[str, ImpulseEntry]
     stops: dict[str, StopEntry]
     sections: dict[str, SectionEntry]
+    cases: dict[str, CaseEntry]
     analysis: AnalysisEntry
     foundation: FoundationEntry
     expect: dict[int, ExpectEntry]

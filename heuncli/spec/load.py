@@ -2,20 +2,21 @@
 
 from __future__ import annotations
 
-from collections.abc import Callable, Mapping, Sequence
+from collections.abc import Callable, Iterator, Mapping, Sequence
 from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
 from heuncli.errors import Problem, SourceLocation, SpecError
 from heuncli.expressions.grammar import GivenParameter
 from heuncli.expressions.programs import TableFunction
-from heuncli.nearest import begin_file
+from heuncli.nearest import begin_file, did_you_mean
 from heuncli.spec import format as f
+from heuncli.spec.cases import CASES, faults, settings_of
 from heuncli.spec.document import Reader
 from heuncli.spec.fields import Context
 from heuncli.spec.models import Curve, Spec
 from heuncli.spec.names import NAMED, Names, mapping
-from heuncli.spec.overrides import override, taken_in_si
+from heuncli.spec.overrides import of_words, override, taken_in_si
 from heuncli.spec.parameters import evaluate_parameters
 from heuncli.spec.planar import in_the_plane
 from heuncli.spec.quantity import Scope, kind_of
@@ -33,24 +34,31 @@ PLACED = ("analysis", "drives", "expect", "forces")  # blocks of which later sta
 
 
 def load(
-    path: str | Path, text: str | None = None, overrides: Mapping[str, str] | None = None, checking: bool = True
+    path: str | Path,
+    text: str | None = None,
+    overrides: Mapping[str, str] | None = None,
+    checking: bool = True,
+    case: str | None = None,
 ) -> Spec:
     """The scene in a file ("-" is standard input), or in a text that stands for it.
 
-    overrides are parameters or dotted keys with their new values, as text. Files of tables are looked for beside the
-    spec, for standard input in the working directory. Without `checking` expectations need not fit the instants asked
-    for, which may have been overridden. Raises SpecError with all problems, in the order of the lines.
+    overrides are parameters or dotted keys with their new values, as text; case: a load case, whose values they go on
+    top of. Files of tables are looked for beside the spec, for standard input in the working directory. Without
+    `checking` expectations need not fit the instants asked for, which may have been overridden. Raises SpecError with
+    all problems, in the order of the lines.
     """
     path = str(path)
     begin_file()
-    return Loading(path, read(path, text), overrides or {}, checking).spec()
+    return Loading(path, read(path, text), overrides or {}, checking, case).spec()
 
 
 class Loading:
     """One spec on its way; gathers problems as it goes."""
 
-    def __init__(self, path: str, source: SourceFile, overrides: Mapping[str, str], checking: bool) -> None:
-        self.path, self.source, self.checking = path, source, checking
+    def __init__(
+        self, path: str, source: SourceFile, overrides: Mapping[str, str], checking: bool, case: str | None
+    ) -> None:
+        self.path, self.source, self.checking, self.case = path, source, checking, case
         self.rules = [rule for rule in RULES if checking or not rule.for_check]
         self.problems = list(source.problems)
         self.warnings: list[Problem] = []
@@ -62,8 +70,12 @@ class Loading:
                 *self.problems, Problem("not-a-scene", message, source.location(()), "it starts with 'heun: 1'")
             )
         without_empty = {k: {} if v is None and k in (*NAMED, "ground") else v for k, v in source.data.items()}
-        given, self.set, problems = override(without_empty, overrides)
+        settings, problems = of_words(overrides)
+        settings = [*(settings_of(case, source) if case is not None else ()), *settings]
+        given, self.set, unset = override(without_empty, settings)
         self.warnings += taken_in_si(without_empty, given, self.set) if self.set else ()
+        problems += unset
+        problems += faults(without_empty, source) if CASES in source.data else ()
         self.data = in_the_plane(given) if given.get("space") == "planar" else given
         self.problems += problems
 
@@ -95,7 +107,9 @@ class Loading:
         in_time = Scope(parameters, names.joints, tables, in_time=True, given=given, points=names.points)
         context = Context(scope, in_time, names.points)
         reader = Reader(self.data, context, self.report)
-        draft = DraftDocument(reader.document(), names, frozenset(self.unread))
+        document = reader.document()
+        expected = dict(self.expected(document))
+        draft = DraftDocument(document._replace(expect=expected), names, frozenset(self.unread))
         self.judge(draft, reader.follows)
         curves = self.curves(draft)
         if self.problems:
@@ -104,7 +118,7 @@ class Loading:
         built = {name: table for name, table in tables.items() if table is not None}
         warnings = tuple(in_order(self.warnings))
         source = self.source
-        meaning = Meaning(source.file, source.sha256, values, built, warnings, self.locations(), curves)
+        meaning = Meaning(source.file, source.sha256, values, built, warnings, self.locations(), curves, self.case)
         return resolve(draft.document, meaning)
 
     def parameters(self) -> tuple[dict[str, float | None], dict[str, GivenParameter]]:
@@ -168,6 +182,17 @@ class Loading:
                 self.problems.append(Problem(finding.code, finding.message, item.location, finding.hint))
             else:
                 self.report(finding.code, Violation((*path, *item.keys), finding.message, finding.hint))
+
+    def expected(self, document: f.Document) -> Iterator[tuple[int, f.ExpectEntry]]:
+        """What is expected in the case at hand, by its place in the list; cases that are none are reported."""
+        known = self.block(CASES)
+        for i, item in document.expect.items():
+            if item.case is not None and item.case not in known:
+                hint = did_you_mean(item.case, known, "cases") if known else "cases: {NAME: {set: {...}}}"
+                violation = Violation(("expect", i, "case"), f"there is no load case '{item.case}'", hint)
+                self.report("unknown-case", violation)
+            elif item.case is None or item.case == self.case:
+                yield i, item
 
     def block(self, name: str) -> dict[str, Any]:
         """A block of named values; empty where it is none."""

@@ -30,6 +30,7 @@ ZERO: Vec = (0.0, 0.0, 0.0)
 Z: Vec = (0.0, 0.0, 1.0)
 RIGID: Vec = (math.inf, math.inf, math.inf)  # a stiffness that is not given
 NOWHERE: Mapping[str, SourceLocation] = MappingProxyType({})
+NO_CASES: Mapping[str, str] = MappingProxyType({})
 
 
 class End(NamedTuple):
@@ -412,7 +413,10 @@ class Expect(NamedTuple):
 
 
 class Spec(NamedTuple):
-    """A validated scene. `location("joints.elbow")`: where in the file a value stands, for errors of later stages."""
+    """A validated scene. `location("joints.elbow")`: where in the file a value stands, for errors of later stages.
+
+    cases: the titles of the load cases by their names; case: the one whose values hold; expect: what holds in it.
+    """
 
     title: str
     path: str
@@ -435,6 +439,8 @@ class Spec(NamedTuple):
     expect: tuple[Expect, ...]
     warnings: tuple[Problem, ...]
     locations: Mapping[str, SourceLocation] = NOWHERE
+    cases: Mapping[str, str] = NO_CASES
+    case: str | None = None
 
     def location(self, path: str) -> SourceLocation:
         """Where a dotted path stands, or the nearest thing around it that does."""

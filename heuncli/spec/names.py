@@ -11,7 +11,7 @@ from heuncli.spec.format import BodyEntry, GroundEntry
 from heuncli.spec.models import Spec
 
 GROUND = "ground"
-NAMED = ("parameters", "bodies", "joints", "drives", "forces", "impulses", "stops", "sections", "tables")
+NAMED = ("parameters", "bodies", "joints", "drives", "forces", "impulses", "stops", "sections", "tables", "cases")
 UNTIL = "until"  # the condition that ends a motion, beside the events that have names
 CAUSES = frozenset({"gravity", "drives", "motion"})  # of shares, beside the entries' own names
 RESERVED_FOR: dict[str, frozenset[str]] = {

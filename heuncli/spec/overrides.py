@@ -3,8 +3,8 @@
 from __future__ import annotations
 
 import copy
-from collections.abc import Iterator, Mapping
-from typing import Any
+from collections.abc import Iterator, Mapping, Sequence
+from typing import Any, NamedTuple
 
 from heuncli.errors import Finding, Problem, SourceLocation, SpecError
 from heuncli.nearest import did_you_mean
@@ -15,29 +15,46 @@ from heuncli.spec.source import Path_, parse
 OWN = ("title", "gravity", "space", "report")  # keys without a dot, beside the parameters
 
 
+class Setting(NamedTuple):
+    """A value in the place of another: a parameter's name or a dotted key, the value, and where both stand."""
+
+    key: str
+    value: Any
+    location: SourceLocation
+    key_location: SourceLocation
+
+
+def of_words(given: Mapping[str, str]) -> tuple[list[Setting], list[Problem]]:
+    """What the command line sets, as YAML; and what cannot be read of it."""
+    settings: list[Setting] = []
+    problems: list[Problem] = []
+    for key, text in given.items():
+        word = f"--set {key}={text}"
+        place = SourceLocation(word, 1, len(key) + 2, key)
+        try:
+            value = parse(word, text if text.strip() else "''", "").data
+        except SpecError as error:
+            problems += [Problem(p.code, p.message, place, p.hint) for p in error.problems]
+            continue
+        settings.append(Setting(key, value, place, SourceLocation(word, 1, 1)))
+    return settings, problems
+
+
 def override(
-    data: dict[str, Any], given: Mapping[str, str]
+    data: dict[str, Any], settings: Sequence[Setting]
 ) -> tuple[dict[str, Any], dict[Path_, SourceLocation], list[Problem]]:
     """The data with values replaced, the locations of these, and the problems with them."""
-    if not given:
+    if not settings:
         return data, {}, []
     data = copy.deepcopy(data)
     locations: dict[Path_, SourceLocation] = {}
     problems: list[Problem] = []
-    for key, text in given.items():
-        word = f"--set {key}={text}"
-        try:
-            value = parse(word, text if text.strip() else "''", "").data
-        except SpecError as error:
-            problems += [
-                Problem(p.code, p.message, SourceLocation(word, 1, len(key) + 2, key), p.hint) for p in error.problems
-            ]
-            continue
+    for key, value, location, key_location in settings:
         path = path_of(key, data)
         reason = put(data, path, value)
         if reason is not None:
-            problems.append(Problem("no-such-key", reason[0], SourceLocation(word, 1, 1), reason[1]))
-        locations[path] = SourceLocation(word, 1, len(key) + 2, ".".join(map(str, path)))
+            problems.append(Problem("no-such-key", reason[0], key_location, reason[1]))
+        locations[path] = location._replace(path=".".join(map(str, path)))
     return data, locations, problems
 
 

@@ -34,6 +34,7 @@ class Meaning:
     warnings: tuple[Problem, ...]
     locations: Mapping[str, SourceLocation]
     curves: Mapping[int, m.Curve]
+    case: str | None
 
 
 def resolve(document: f.Document, meaning: Meaning) -> m.Spec:
@@ -68,6 +69,8 @@ def resolve(document: f.Document, meaning: Meaning) -> m.Spec:
         report=tuple(document.head.report) if document.head.report is not None else None,
         foundation=m.Foundation(r.about(document.foundation.about)),
         expect=tuple(r.expect(i, item) for i, item in document.expect.items()),
+        cases={name: case.title for name, case in document.cases.items()},
+        case=meaning.case,
         warnings=meaning.warnings,
         locations=meaning.locations,
     )  # fmt: skip

@@ -13,6 +13,7 @@ from heuncli.errors import HeunError, SpecError
 from heuncli.foreign_text import shown
 from heuncli.report.plurals import count
 from heuncli.spec.load import load
+from heuncli.spec.load_cases import require_sound_cases
 from heuncli.spec.models import Spec
 
 
@@ -42,6 +43,7 @@ def _judged(path: str) -> tuple[Spec, list[str]]:
     """A spec that is fine, and its warnings. Raises SpecError, LimitError."""
     spec = load(path)
     warnings = [*map(str, spec.warnings), *_of_cuts(spec)]
+    require_sound_cases(spec)
     alarm.disarm()
     return spec, warnings
 
