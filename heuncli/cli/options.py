@@ -22,6 +22,7 @@ class Option(NamedTuple):
 
 
 SET = Option(("--set",), "Set a parameter, or a dotted key of the spec. May be repeated.", "NAME=VALUE")
+CASE = Option(("--case",), "In a load case of the spec; what --set says goes on top.", "NAME")
 OUTPUT = Option(("--output", "-o"), "Write there, whole or not at all.", "FILE")
 QUIET = Option(("--quiet", "-q"), "No warnings on standard error.")
 TIME_LIMIT = Option(("--time-limit",), "Give up after that long.", "SECONDS")

@@ -52,6 +52,28 @@ def load(
     return Loading(path, read(path, text), overrides or {}, checking, case).spec()
 
 
+def load_with_cases(
+    path: str, overrides: Mapping[str, str] | None = None, checking: bool = True
+) -> tuple[Spec, dict[str, Spec]]:
+    """The scene, and each of its load cases by its name, of one reading of the file.
+
+    Raises SpecError with all problems of the scene, else with those of all cases, which are named in them.
+    """
+    begin_file()
+    source = read(path, None)
+    spec = Loading(path, source, overrides or {}, checking, None).spec()
+    cases: dict[str, Spec] = {}
+    problems: list[Problem] = []
+    for name in spec.cases:
+        try:
+            cases[name] = Loading(path, source, overrides or {}, checking, name).spec()
+        except SpecError as error:
+            problems += [each._replace(message=f"in case {name}: {each.message}") for each in error.problems]
+    if problems:
+        raise SpecError(*problems)
+    return spec, cases
+
+
 class Loading:
     """One spec on its way; gathers problems as it goes."""
 

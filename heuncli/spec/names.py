@@ -12,6 +12,7 @@ from heuncli.spec.models import Spec
 
 GROUND = "ground"
 NAMED = ("parameters", "bodies", "joints", "drives", "forces", "impulses", "stops", "sections", "tables", "cases")
+ALL_CASES = "all"  # what --case takes for every one of them
 UNTIL = "until"  # the condition that ends a motion, beside the events that have names
 CAUSES = frozenset({"gravity", "drives", "motion"})  # of shares, beside the entries' own names
 RESERVED_FOR: dict[str, frozenset[str]] = {
@@ -22,6 +23,7 @@ RESERVED_FOR: dict[str, frozenset[str]] = {
     "forces": CAUSES,
     "impulses": CAUSES,
     "stops": CAUSES,
+    "cases": frozenset({ALL_CASES}),
 }
 
 

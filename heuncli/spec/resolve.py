@@ -44,7 +44,7 @@ def resolve(document: f.Document, meaning: Meaning) -> m.Spec:
     instants = instants_of(document)
     kind = type_of(document)
     return m.Spec(
-        title=document.head.title,
+        title=titled(document, meaning.case),
         path=meaning.path,
         sha256=meaning.sha256,
         space=document.head.space,
@@ -74,6 +74,14 @@ def resolve(document: f.Document, meaning: Meaning) -> m.Spec:
         warnings=meaning.warnings,
         locations=meaning.locations,
     )  # fmt: skip
+
+
+def titled(document: f.Document, case: str | None) -> str:
+    """The title of a scene, in a load case with that of the case."""
+    if case is None:
+        return document.head.title
+    own = document.cases[case].title if case in document.cases else ""
+    return f"{document.head.title} (case {case}{': ' if own else ''}{own})".strip()
 
 
 class Resolver:

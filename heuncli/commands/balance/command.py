@@ -30,7 +30,7 @@ def main(request: BalanceRequest) -> int:
     require_other_file(request.output, [request.spec])
     form = format_of(request.format, request.output, ENDINGS, FORMATS)
     drawn = picture_format(request)
-    spec = load(request.spec, overrides=overrides(request.set), checking=False)
+    spec = load(request.spec, overrides=overrides(request.set), checking=False, case=request.case)
     require_other_file(request.output, [request.spec])
     if request.save is not None:
         require_other_file(request.save, [request.spec], "--save")

@@ -2,7 +2,7 @@
 
 from typing import Annotated, NamedTuple
 
-from heuncli.cli.options import OUTPUT, QUIET, SET, SPEC, TIME_LIMIT, Option
+from heuncli.cli.options import CASE, OUTPUT, QUIET, SET, SPEC, TIME_LIMIT, Option
 
 
 class BalanceRequest(NamedTuple):
@@ -60,5 +60,6 @@ class BalanceRequest(NamedTuple):
         str | None, Option(("--flywheel",), "Find the wheel for this unevenness of the rate.", "[J=]DELTA")
     ] = None
     set: Annotated[tuple[str, ...], SET] = ()
+    case: Annotated[str | None, CASE] = None
     time_limit: Annotated[float | None, TIME_LIMIT] = None
     quiet: Annotated[bool, QUIET] = False

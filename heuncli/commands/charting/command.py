@@ -44,7 +44,7 @@ def main(request: ChartRequest) -> int:
         numbers("--tolerances", request.tolerances, 1.0),
         numbers("--steps", request.steps, math.inf),
     )
-    spec = load(request.spec, overrides=overrides(request.set), checking=False)
+    spec = load(request.spec, overrides=overrides(request.set), checking=False, case=request.case)
     require_other_file(request.output, [request.spec])
     if request.save is not None:
         require_other_file(request.save, [request.spec], "--save")

@@ -2,7 +2,7 @@
 
 from typing import Annotated, NamedTuple
 
-from heuncli.cli.options import OUTPUT, QUIET, SET, SPEC, Option
+from heuncli.cli.options import CASE, OUTPUT, QUIET, SET, SPEC, Option
 
 
 class ChartRequest(NamedTuple):
@@ -27,6 +27,7 @@ class ChartRequest(NamedTuple):
     ] = None
     steps: Annotated[str | None, Option(("--steps",), "Steps of methods of fixed step [s].", "NUMBER,...")] = None
     set: Annotated[tuple[str, ...], SET] = ()
+    case: Annotated[str | None, CASE] = None
     time_limit: Annotated[
         float | None, Option(("--time-limit",), "After that long no run is begun; what is left is told.", "SECONDS")
     ] = None

@@ -4,7 +4,9 @@ from __future__ import annotations
 
 import hashlib
 import time
+from collections.abc import Mapping, Sequence
 from functools import partial
+from itertools import starmap
 from pathlib import Path
 from typing import Any, NamedTuple
 
@@ -22,7 +24,7 @@ from heuncli.commands.check.request import CheckRequest
 from heuncli.errors import Finding, HeunError, SpecError
 from heuncli.report.digits import OPEN
 from heuncli.results import Array
-from heuncli.spec.load import load
+from heuncli.spec.load import load_with_cases
 from heuncli.spec.models import Expect, Spec
 from heuncli.spec.reading import read_bytes
 from heuncli.study.ask.expectations import Case, compare
@@ -50,7 +52,7 @@ class Task(NamedTuple):
 def check(task: Task, request: CheckRequest, jobs: int) -> Checked:
     """Check one spec; jobs: among how many at work memory is shared."""
     path, begun = task.found.path, time.perf_counter()
-    items: list[Expect] = []
+    items: list[tuple[str, Expect]] = []
     try:
         if task.found.problem is not None:
             raise SpecError(task.found.problem)
@@ -61,41 +63,53 @@ def check(task: Task, request: CheckRequest, jobs: int) -> Checked:
     except HeunError as error:
         placed = all(problem.location for problem in error.problems)
         lines = lines_of(error.problems, label="" if placed else f"{path}: ")
-        outcomes = () if isinstance(error, goldens.GoldenError) else tuple(map(_skipped, items))
+        outcomes = () if isinstance(error, goldens.GoldenError) else tuple(starmap(_skipped, items))
         checked = Checked(path, outcomes, error.problems, error.exit_code, said=tuple(lines))
     return checked._replace(seconds=time.perf_counter() - begun)
 
 
-def _skipped(item: Expect) -> Outcome:
+def _skipped(case: str, item: Expect) -> Outcome:
     """What would have been compared, of a spec that was not solved."""
     line, column = item.location.line, item.location.column
-    return Outcome(EXPECTED, item.of, STOPPED, line, column, skipped=True)
+    return Outcome(EXPECTED, item.of, STOPPED, line, column, case=case, skipped=True)
 
 
-def _compared(task: Task, request: CheckRequest, jobs: int, items: list[Expect]) -> Checked:
+def _compared(task: Task, request: CheckRequest, jobs: int, items: list[tuple[str, Expect]]) -> Checked:
     """What was found of a spec; items: what it expects, as soon as that is known."""
     path = task.found.path
-    spec = load(path)
-    items += spec.expect
+    spec, cases = load_with_cases(path)
+    scenes = {"": spec, **cases}
+    items += [(name, item) for name, one in scenes.items() for item in one.expect]
     require_other_file(request.output, [path])
     require_other_file(request.junit, [path], "--junit")
     old = _golden(task, request) if task.file is not None else None
+    outcomes: list[Outcome] = []
+    said: list[str] = []
+    runs: dict[str, KeptRun] = {}
+    for name, one in scenes.items():
+        study = _solved(one, task, request, jobs)
+        outcomes += [outcome_of(compare(study, item), path, name) for item in one.expect]
+        if task.file is not None:
+            runs[name] = keep(study, told_by_default(one), _even_at(old, name))
+        place = f"heun: {path}: case {name}" if name else f"heun: {path}"
+        said += [] if request.quiet else warning_lines(one, study.results, place, study.later_warnings)
+    golden = None
+    if task.file is not None:
+        more, golden = kept_outcomes(task.file, old, _file(task, spec, runs), request)
+        outcomes += more
+    alarm.disarm()
+    return Checked(path, tuple(outcomes), said=tuple(said), golden=golden)
+
+
+def _solved(spec: Spec, task: Task, request: CheckRequest, jobs: int) -> Study:
+    """A scene with all that is to be compared."""
     asked = _asked(spec, task.file is not None)
     room, each = memory.room("table")
     options = Options(
         wanted=asked.reports, entries=asked.entries, time_limit=alarm.remaining(), room=Room(room / jobs, each),
         reduce=not request.no_reduce,
     )  # fmt: skip
-    study = solve(spec, options)
-    outcomes = [outcome_of(compare(study, item), path) for item in spec.expect]
-    golden = None
-    if task.file is not None:
-        new = _kept(task, spec, study, old)
-        more, golden = kept_outcomes(task.file, old, new, request)
-        outcomes += more
-    alarm.disarm()
-    said = [] if request.quiet else warning_lines(spec, study.results, f"heun: {path}", study.later_warnings)
-    return Checked(path, tuple(outcomes), said=tuple(said), golden=golden)
+    return solve(spec, options)
 
 
 def _asked(spec: Spec, keeps: bool) -> Selection:
@@ -125,29 +139,38 @@ def _golden(task: Task, request: CheckRequest) -> KeptFile | None:
     return kept
 
 
-def _kept(task: Task, spec: Spec, study: Study, old: KeptFile | None) -> KeptFile:
+def _file(task: Task, spec: Spec, runs: Mapping[str, KeptRun]) -> KeptFile:
     """The golden file of a spec as it would be written now."""
     tables = {name: _digest(table.x.tobytes() + table.y.tobytes()) for name, table in spec.tables.items()}
-    base = _run(study, spec, old.base if old is not None else None)
+    cases = {name: run for name, run in runs.items() if name}
     of = KeptSpec(path=task.name, sha256=spec.sha256)
-    return KeptFile(format=1, heun=VERSION, spec=of, tables=tables, base=base)
+    return KeptFile(format=1, heun=VERSION, spec=of, tables=tables, base=runs[""], cases=cases)
 
 
-def _run(study: Study, spec: Spec, old: KeptRun | None) -> KeptRun:
-    return keep(study, told_by_default(spec), old.even_at if old is not None else ())
+def _even_at(old: KeptFile | None, case: str) -> Sequence[float]:
+    """The even instants at which a run was kept."""
+    run = None if old is None else old.cases.get(case) if case else old.base
+    return run.even_at if run is not None else ()
 
 
 def _digest(content: bytes) -> str:
     return hashlib.sha256(content).hexdigest()
 
 
-def outcome_of(case: Case, path: str) -> Outcome:
-    """An expectation's comparison as plain values."""
-    block = {"file": path, "line": case.location.line, "of": case.of, "when": case.when, **_wanted(case)}
+def outcome_of(case: Case, path: str, of: str = "") -> Outcome:
+    """An expectation's comparison as plain values; of: the load case."""
+    block = {
+        **({"case": of} if of else {}),
+        "file": path,
+        "line": case.location.line,
+        "of": case.of,
+        "when": case.when,
+        **_wanted(case),
+    }
     block |= {"passed": case.passed, "message": case.failure or ""}
     bounded = case.below is not None or case.above is not None
     return Outcome(
-        EXPECTED, case.of, case.failure, case.location.line, case.location.column, when=case.when,
+        EXPECTED, case.of, case.failure, case.location.line, case.location.column, case=of, when=case.when,
         expected=_expected(case), found=_text(case.found), allowed="" if bounded else f"{case.tolerance:.3g}",
         block=_plain(block),
     )  # fmt: skip

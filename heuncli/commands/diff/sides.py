@@ -12,7 +12,7 @@ from heuncli.cli import alarm
 from heuncli.cli.entry import UsageError, contained
 from heuncli.cli.solving import warning_lines
 from heuncli.errors import Finding, HeunError, Problem, SourceLocation
-from heuncli.spec.load import load
+from heuncli.spec.load import load_with_cases
 from heuncli.spec.reading import STANDARD_INPUT, read_bytes
 from heuncli.study.model.options import Options
 from heuncli.study.model.selection import Selection
@@ -82,12 +82,17 @@ def solved(side: Side, even_at: Mapping[str, Sequence[float]], limit: float | No
 
 
 def _solved(path: str, even_at: Mapping[str, Sequence[float]]) -> tuple[dict[str, KeptRun], list[str]]:
-    spec = load(path)
-    wanted = told_by_default(spec)
-    study = solve(spec, Options(wanted=Selection(wanted).reports, time_limit=alarm.remaining()))
-    run = keep(study, wanted, even_at.get("", ()))
+    spec, cases = load_with_cases(path, checking=False)
+    runs: dict[str, KeptRun] = {}
+    said: list[str] = []
+    for name, one in {"": spec, **cases}.items():
+        wanted = told_by_default(one)
+        study = solve(one, Options(wanted=Selection(wanted).reports, time_limit=alarm.remaining()))
+        runs[name] = keep(study, wanted, even_at.get(name, ()))
+        place = f"heun: {path}: case {name}" if name else f"heun: {path}"
+        said += warning_lines(one, study.results, place, study.later_warnings)
     alarm.disarm()
-    return {"": run}, warning_lines(spec, study.results, f"heun: {path}", study.later_warnings)
+    return runs, said
 
 
 def require_alike(before: Side, after: Side) -> None:

@@ -38,7 +38,7 @@ def main(request: LagrangeRequest) -> int:
         outputs=words(request.outputs),
         time_limit=alarm.remaining(),
     )
-    spec = load(request.spec, overrides=overrides(request.set), checking=False)
+    spec = load(request.spec, overrides=overrides(request.set), checking=False, case=request.case)
     require_other_file(request.output, [request.spec])
     require_instant(request.at, spec)
     emit(written(spec, request, asked, form, shown), request.output)

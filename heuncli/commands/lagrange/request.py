@@ -2,7 +2,7 @@
 
 from typing import Annotated, NamedTuple
 
-from heuncli.cli.options import OUTPUT, QUIET, SET, SPEC, TIME_LIMIT, UNITS, Option
+from heuncli.cli.options import CASE, OUTPUT, QUIET, SET, SPEC, TIME_LIMIT, UNITS, Option
 
 
 class LagrangeRequest(NamedTuple):
@@ -55,5 +55,6 @@ class LagrangeRequest(NamedTuple):
     output: Annotated[str | None, OUTPUT] = None
     units: Annotated[str | None, UNITS] = None
     set: Annotated[tuple[str, ...], SET] = ()
+    case: Annotated[str | None, CASE] = None
     time_limit: Annotated[float | None, TIME_LIMIT] = None
     quiet: Annotated[bool, QUIET] = False

@@ -23,7 +23,7 @@ def main(request: ModelRequest) -> int:
     """Run the command; returns the exit code."""
     require_other_file(request.output, [request.spec])
     form = format_of(request.format, request.output, ENDINGS, FORMATS)
-    spec = load(request.spec, overrides=overrides(request.set), checking=False)
+    spec = load(request.spec, overrides=overrides(request.set), checking=False, case=request.case)
     require_other_file(request.output, [request.spec])
     model: Mapping[str, Any] = describe(spec, reduce=not request.no_reduce)
     emit(dump(dict(model)) if form == "json" else note(spec.title, model), request.output)

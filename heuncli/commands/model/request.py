@@ -2,7 +2,7 @@
 
 from typing import Annotated, NamedTuple
 
-from heuncli.cli.options import NO_REDUCE, OUTPUT, QUIET, SET, SPEC, TIME_LIMIT, Option
+from heuncli.cli.options import CASE, NO_REDUCE, OUTPUT, QUIET, SET, SPEC, TIME_LIMIT, Option
 
 
 class ModelRequest(NamedTuple):
@@ -12,6 +12,7 @@ class ModelRequest(NamedTuple):
     format: Annotated[str | None, Option(("--format",), "How to write it. Default: text.", "text|json")] = None
     output: Annotated[str | None, OUTPUT] = None
     set: Annotated[tuple[str, ...], SET] = ()
+    case: Annotated[str | None, CASE] = None
     no_reduce: Annotated[bool, NO_REDUCE] = False
     time_limit: Annotated[float | None, TIME_LIMIT] = None
     quiet: Annotated[bool, QUIET] = False

@@ -21,7 +21,7 @@ def main(request: ModesRequest) -> int:
     """Run the command; returns the exit code."""
     require_other_file(request.output, [request.spec])
     form = format_of(request.format, request.output, ENDINGS, FORMATS)
-    spec = load(request.spec, overrides=overrides(request.set), checking=False)
+    spec = load(request.spec, overrides=overrides(request.set), checking=False, case=request.case)
     entries = named(spec, request.without)
     require_other_file(request.output, [request.spec])
     found = modes(without(spec, entries), entries)

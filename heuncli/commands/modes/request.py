@@ -2,7 +2,7 @@
 
 from typing import Annotated, NamedTuple
 
-from heuncli.cli.options import OUTPUT, QUIET, SET, SPEC, TIME_LIMIT, Option
+from heuncli.cli.options import CASE, OUTPUT, QUIET, SET, SPEC, TIME_LIMIT, Option
 
 
 class ModesRequest(NamedTuple):
@@ -19,6 +19,7 @@ class ModesRequest(NamedTuple):
     ] = None
     output: Annotated[str | None, OUTPUT] = None
     set: Annotated[tuple[str, ...], SET] = ()
+    case: Annotated[str | None, CASE] = None
     without: Annotated[
         tuple[str, ...],
         Option(

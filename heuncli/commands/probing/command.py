@@ -22,7 +22,7 @@ def main(request: ProbeRequest) -> int:
     """Run the command; returns the exit code."""
     require_other_file(request.output, [request.spec])
     form = format_of(request.format, request.output, ENDINGS, FORMATS)
-    spec = load(request.spec, overrides=overrides(request.set), checking=False)
+    spec = load(request.spec, overrides=overrides(request.set), checking=False, case=request.case)
     require_other_file(request.output, [request.spec])
     found = probe(spec, Options(time_limit=alarm.remaining()))
     emit(dump(found.block()) if form == "json" else report.write(found), request.output)

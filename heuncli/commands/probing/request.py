@@ -2,7 +2,7 @@
 
 from typing import Annotated, NamedTuple
 
-from heuncli.cli.options import OUTPUT, QUIET, SET, SPEC, TIME_LIMIT, Option
+from heuncli.cli.options import CASE, OUTPUT, QUIET, SET, SPEC, TIME_LIMIT, Option
 
 
 class ProbeRequest(NamedTuple):
@@ -15,5 +15,6 @@ class ProbeRequest(NamedTuple):
     ] = None
     output: Annotated[str | None, OUTPUT] = None
     set: Annotated[tuple[str, ...], SET] = ()
+    case: Annotated[str | None, CASE] = None
     time_limit: Annotated[float | None, TIME_LIMIT] = None
     quiet: Annotated[bool, QUIET] = False

@@ -3,8 +3,8 @@
 from __future__ import annotations
 
 import time
-from collections.abc import Callable, Mapping
-from typing import Any
+from collections.abc import Callable, Mapping, Sequence
+from typing import TYPE_CHECKING, Any, NamedTuple
 
 import numpy as np
 
@@ -26,11 +26,13 @@ from heuncli.report.heading import write_heading, write_heading_markdown
 from heuncli.report.labels import Labels, labels_of
 from heuncli.report.page import EXPORT_DEFAULT, page_of
 from heuncli.report.page_width import fit
+from heuncli.report.table_units import Units
 from heuncli.report.text_table import WIDTH, TextTable, markdown, plain
 from heuncli.results import Results
 from heuncli.results_schema import REPORT_OF, REPORTS, SHARES, quantity, with_shared
-from heuncli.spec.load import load
+from heuncli.spec.load import load, load_with_cases
 from heuncli.spec.models import Spec
+from heuncli.spec.names import ALL_CASES
 from heuncli.study.ask.study import Study
 from heuncli.study.model.error_places import placed
 from heuncli.study.model.memory_estimate import Room
@@ -38,6 +40,9 @@ from heuncli.study.model.options import Options
 from heuncli.study.model.selection import EntryKeys, Selection, asked_by, entries_of, entry_at
 from heuncli.study.workflow import solve
 from heuncli.telling.selection import told_by_default
+
+if TYPE_CHECKING:
+    from heuncli.study.ask.measure import MeasureRequest
 
 ENDINGS = {".json": "json", ".csv": "csv", ".md": "markdown", ".txt": "table", "": "table"}
 NOT_SEARCHED = "extremes among the samples only: too many quantities to search between them"
@@ -49,7 +54,7 @@ def main(request: RunRequest) -> int:
     """Run the command; returns the exit code."""
     require_other_file(request.output, [request.spec])
     form = format_of(request.format, request.output, ENDINGS, FORMATS)
-    asked = []
+    asked: list[MeasureRequest] = []
     if request.measure:
         from heuncli.cli import measure  # with paths and JSON 2 ms that tables do not need
 
@@ -65,27 +70,65 @@ def main(request: RunRequest) -> int:
         axes="world" if request.axes is None else choice("--axes", request.axes, JOINT_AXES),
     )
     begun = time.perf_counter()
-    spec = load(request.spec, overrides=overrides(request.set), checking=False)
+    given = overrides(request.set)
+    if request.case == ALL_CASES:
+        spec, cases = load_with_cases(request.spec, given, checking=False)
+    else:
+        spec, cases = load(request.spec, overrides=given, checking=False, case=request.case), {}
     require_other_file(request.output, [request.spec])
     options = replace(options, load_seconds=time.perf_counter() - begun, time_limit=alarm.remaining())
     options = replace(options, room=Room(*memory.room("table" if asked else form)))
     if asked:
         measure.check(asked, spec)
     what = asked_by([each.path for each in asked], spec) if asked else _asked(request, only, spec, form)
-    with placed(spec):
-        study = solve(spec, replace(options, wanted=what.reports, entries=what.entries))
-        if asked:
-            text = measure.write(asked, study, form)
-        else:
-            named = (request.only is not None or spec.report is not None) and "foundation" in what.reports
-            text = _report(request, form, study, replace(labels_of(spec), units=shown), what, details=named)
+    options = replace(options, wanted=what.reports, entries=what.entries)
+    task = Task(request, form, options, what, asked, shown)
+    if request.case == ALL_CASES:
+        from heuncli.commands.run.cases import run_all  # of few runs
+
+        return run_all(task, spec, cases)
+    study, text = solved(task, spec)
     emit(text, request.output)
     say_what_stays(request.units, "--measure" if asked else form, request.quiet)
-    later = [*study.later_warnings, *(measure.warnings(asked, study) if asked else ())]
-    warnings = warn(spec, study.results, request.quiet, later=later)
-    if request.verbose:
-        say(f"heun: {timings(study.results.work)}")
-    return _strict(study.results, warnings) if request.strict else 0
+    return leave(task, spec, study)
+
+
+class Task(NamedTuple):
+    """What is to be told of a scene: the options, what is asked for, and in which units tables show it."""
+
+    request: RunRequest
+    form: str
+    options: Options
+    what: Selection
+    asked: Sequence[MeasureRequest]
+    units: Units
+
+
+def solved(task: Task, spec: Spec) -> tuple[Study, str]:
+    """A scene solved, and what is told of it as text."""
+    request, what = task.request, task.what
+    with placed(spec):
+        study = solve(spec, task.options)
+        if task.asked:
+            from heuncli.cli import measure
+
+            return study, measure.write(task.asked, study, task.form)
+        named = (request.only is not None or spec.report is not None) and "foundation" in what.reports
+        labels = replace(labels_of(spec), units=task.units)
+        return study, _report(request, task.form, study, labels, what, details=named)
+
+
+def leave(task: Task, spec: Spec, study: Study, place: str = "heun") -> int:
+    """Tell warnings and times; returns the exit code."""
+    later = list(study.later_warnings)
+    if task.asked:
+        from heuncli.cli import measure
+
+        later += measure.warnings(task.asked, study)
+    warnings = warn(spec, study.results, task.request.quiet, place, later)
+    if task.request.verbose:
+        say(f"{place}: {timings(study.results.work)}")
+    return _strict(study.results, warnings) if task.request.strict else 0
 
 
 def _only(words: str) -> tuple[frozenset[str], tuple[str, ...]]:

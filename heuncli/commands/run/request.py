@@ -30,6 +30,10 @@ class RunRequest(NamedTuple):
         ),
     ] = None
     set: Annotated[tuple[str, ...], SET] = ()
+    case: Annotated[
+        str | None,
+        Option(("--case",), "In a load case, or in all with their envelope; --set goes on top.", "NAME|all"),
+    ] = None
     at: Annotated[str | None, Option(("--at",), "Show these instants instead of the extremes.", "T,...")] = None
     all: Annotated[bool, Option(("--all",), "Show every instant, and every cut of a run of cuts.")] = False
     measure: Annotated[

@@ -1,0 +1,160 @@
+"""`heun run --case all`: what each load case tells, and the envelope: every extreme with the case that governs it."""
+
+from __future__ import annotations
+
+import json
+from collections.abc import Iterator, Mapping, Sequence
+from typing import Any, NamedTuple
+
+from heuncli.cli.entry import UsageError, worst
+from heuncli.cli.output import emit
+from heuncli.cli.units import TABLES, say_what_stays
+from heuncli.commands.run.command import Task, leave, solved
+from heuncli.errors import Problem
+from heuncli.foreign_text import shown
+from heuncli.report.export import dump
+from heuncli.report.page_width import fit
+from heuncli.report.table_units import Units
+from heuncli.report.text_table import WIDTH, TextColumn, TextTable, markdown, plain
+from heuncli.spec.models import Spec
+from heuncli.telling.keep import keep
+from heuncli.telling.kept import BEYOND, KeptNumber, KeptRun
+
+HEADS = ("of", "unit", "least", "at [s]", "case", "greatest", "at [s]", "case")
+DIGITS = 6
+STRUCK = "without blows: these stand in the tables of each case"
+
+
+class Bound(NamedTuple):
+    """The lowest or highest of all cases: its value, its instant where it is not throughout, and the case."""
+
+    value: float
+    at: float | None
+    case: str
+
+
+class Enveloped(NamedTuple):
+    """One number over all cases, in SI; unclear: by case what stands in the place of an extreme there."""
+
+    path: str
+    unit: str
+    least: Bound | None
+    greatest: Bound | None
+    unclear: Mapping[str, str]
+
+    @property
+    def lacks(self) -> str:
+        """In which cases it is not known, and why."""
+        words = dict.fromkeys(self.unclear.values())
+        return "; ".join(f"{word} in {', '.join(c for c, w in self.unclear.items() if w == word)}" for word in words)
+
+
+def run_all(task: Task, spec: Spec, cases: Mapping[str, Spec]) -> int:
+    """Solve every case and tell of them; returns the exit code."""
+    if not cases:
+        hint = "cases: {NAME: {set: {PARAMETER: VALUE}}}"
+        raise UsageError(Problem("unknown-case", "--case all: the spec has no load cases", hint=hint))
+    told: dict[str, str] = {}
+    runs: dict[str, KeptRun] = {}
+    codes = [0]
+    for name, one in cases.items():
+        study, told[name] = solved(task, one)
+        if not task.asked:
+            runs[name] = keep(study, task.what.reports)
+        codes.append(leave(task, one, study, f"heun: case {name}"))
+    emit(_text(task, cases, told, runs), task.request.output)
+    say_what_stays(task.request.units, "--measure" if task.asked else task.form, task.request.quiet)
+    return worst(codes)
+
+
+def _text(task: Task, cases: Mapping[str, Spec], told: Mapping[str, str], runs: Mapping[str, KeptRun]) -> str:
+    """All cases and their envelope in the form that is asked for."""
+    if task.form == "json":
+        blocks = {name: json.loads(text) for name, text in told.items()}
+        return dump({"cases": blocks} | ({"envelope": dict(_blocks(runs))} if runs else {}))
+    if task.asked:
+        return "".join(f"{name} {line}\n" for name, text in told.items() for line in text.splitlines())
+    if task.form == "csv":
+        return "".join(_csv(told))
+    table = _table(envelope(runs), task.units, _notes(runs))
+    if task.form == "markdown":
+        return "\n".join([*told.values(), markdown(table)])
+    assert task.form in TABLES
+    return "\n".join([*told.values(), *(plain(part, WIDTH) for part in fit(table, WIDTH))])
+
+
+def _csv(told: Mapping[str, str]) -> Iterator[str]:
+    """The lines of all cases, each behind the name of its case; the row of names once."""
+    for number, (name, text) in enumerate(told.items()):
+        head, *lines = text.splitlines(keepends=True)
+        yield from [f"case,{head}"] if not number else []
+        yield from (f"{name},{line}" for line in lines)
+
+
+def envelope(runs: Mapping[str, KeptRun]) -> list[Enveloped]:
+    """Every number of the cases: the lowest and the highest of all, and the cases of which that is not known."""
+    paths = dict.fromkeys(path for run in runs.values() for path in run.numbers)
+    return [_enveloped(path, {name: run.numbers.get(path) for name, run in runs.items()}) for path in paths]
+
+
+def _enveloped(path: str, numbers: Mapping[str, KeptNumber | None]) -> Enveloped:
+    least: Bound | None = None
+    greatest: Bound | None = None
+    unclear: dict[str, str] = {}
+    unit = next(number.unit for number in numbers.values() if number is not None)
+    for case, number in numbers.items():
+        if number is None:
+            unclear[case] = "missing"
+            continue
+        values = number.values
+        low, high = values.get("least"), values.get("greatest")
+        words = [value for value in (low, high, *values.values()) if isinstance(value, str) and value != BEYOND]
+        if words:
+            unclear[case] = words[0]
+        if isinstance(low, float) and (least is None or low < least.value):
+            least = Bound(low, number.least_at, case)
+        if isinstance(high, float) and (greatest is None or high > greatest.value):
+            greatest = Bound(high, number.greatest_at, case)
+    return Enveloped(path, unit, least, greatest, unclear)
+
+
+def _blocks(runs: Mapping[str, KeptRun]) -> Iterator[tuple[str, dict[str, Any]]]:
+    """The envelope for JSON."""
+    beyond = {name: run.horizon for name, run in runs.items() if run.horizon is not None}
+    for row in envelope(runs):
+        block: dict[str, Any] = {"unit": row.unit}
+        block |= {"min": row.least._asdict() if row.least else None}
+        block |= {"max": row.greatest._asdict() if row.greatest else None}
+        block |= {"not_in": dict(row.unclear)} if row.unclear else {}
+        yield row.path, block | ({"horizon": beyond} if beyond else {})
+
+
+def _table(rows: Sequence[Enveloped], units: Units, notes: Sequence[str]) -> TextTable:
+    """The envelope as a table; what is 0 in all cases is left out."""
+    told = [row for row in rows if row.unclear or any(bound and bound.value for bound in (row.least, row.greatest))]
+    columns = tuple(TextColumn(head, "left" if head in ("of", "unit", "case") else "point") for head in HEADS)
+    unclear = [f"{row.path}: {row.lacks}" for row in told if row.unclear]
+    body = tuple(_row(row, units) for row in told if row.least or row.greatest)
+    return TextTable("ENVELOPE  of all load cases", columns, body, notes=(*notes, *map(shown, unclear)))
+
+
+def _row(row: Enveloped, units: Units) -> tuple[str, ...]:
+    unit, size = units.of(row.unit)
+    ends: list[str] = []
+    for bound in (row.least, row.greatest):
+        if bound is None:
+            ends += ["", "", ""]
+            continue
+        at = "" if bound.at is None else f"{bound.at:.6g}"
+        ends += [f"{bound.value * size:.{DIGITS}g}", at, shown(bound.case)]
+    return (shown(row.path), unit, *ends)
+
+
+def _notes(runs: Mapping[str, KeptRun]) -> list[str]:
+    """Which cases are not known to their end, and what stands in their own tables alone."""
+    struck = [STRUCK] if any(run.blows for run in runs.values()) else []
+    return struck + [
+        f"{name}: nothing is claimed from its horizon on, t = {run.horizon:.6g} s"
+        for name, run in runs.items()
+        if run.horizon is not None
+    ]
