@@ -13,6 +13,7 @@ from typing import NamedTuple
 from heuncli.telling.kept import EVEN, KeptBlow, KeptEvent, KeptNumber, KeptRun, KeptSum, Value
 
 MISSING, EXTRA = "missing", "extra"
+THROUGHOUT = "throughout"  # the word for a number that is the same at all instants
 
 
 class Change(NamedTuple):
@@ -151,6 +152,10 @@ def _numbers(
     if old.unit != new.unit:
         yield Change(path, "unit", "", None, None, why=f"{old.unit} became {new.unit}")
         return
+    if old.constant is not None and new.constant is not None:
+        change = _value(path, THROUGHOUT, (old, new), allowance, runs)
+        yield from (change,) if change is not None else ()
+        return
     found = [
         change for word in (*old.values.keys(), *(new.values.keys() - old.values.keys()))
         if (change := _value(path, word, (old, new), allowance, runs)) is not None
@@ -168,7 +173,7 @@ def _value(
 ) -> Change | None:
     """One value of a quantity, where it differs."""
     old, new = pair
-    before, after = old.values.get(word), new.values.get(word)
+    before, after = (old.constant, new.constant) if word == THROUGHOUT else (old.values.get(word), new.values.get(word))
     instants = [run.even_at for run in runs]
     if isinstance(word, int) and _elsewhere(instants):
         return None  # of runs of other lengths: their ends are told

@@ -12,7 +12,7 @@ import pytest
 
 from heuncli.cli.entry import enter
 from heuncli.errors import SpecError
-from heuncli.spec.load import load
+from heuncli.spec.load import load_with_cases
 from tests.shared.command import HANGING, SPEC_TEXTS, Heun
 
 
@@ -349,10 +349,10 @@ def test_what_goes_wrong_in_one_file_is_told_of_it_alone(
     def fail_once(path: str, **words: Any) -> Any:
         if path == "swinging.yaml":
             raise trouble
-        return load(path, **words)
+        return load_with_cases(path, **words)
 
     module = {"check": "checking"}.get(command, "command")
-    monkeypatch.setattr(f"heuncli.commands.{command}.{module}.load", fail_once)
+    monkeypatch.setattr(f"heuncli.commands.{command}.{module}.load_with_cases", fail_once)
     monkeypatch.delenv("HEUN_DEBUG", raising=False)
     done = heun(command, "expecting.yaml", "swinging.yaml", "failing.yaml", "wrong.yaml")
     assert done.returncode == (code if code == 70 else 2)

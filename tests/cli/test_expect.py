@@ -32,6 +32,7 @@ def expectation(of: str, is_: Any, **more: Any) -> Any:
             "rel": None,
             "abs": None,
             "below": None,
+            "curve": None,
             "above": None,
             "location": PLACE,
             **more,

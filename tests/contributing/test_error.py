@@ -11,7 +11,7 @@ LONG_TITLE = Addition(
     {
         "heuncli/spec/rules/every.py": (
             Edit("    stops,\n)\n", "    stops,\n    titles,\n)\n"),
-            Edit("expect, not_yet,\n", "expect, not_yet, titles,\n"),
+            Edit("expect, curves, not_yet,\n", "expect, curves, not_yet, titles,\n"),
         ),
     },
     {

@@ -35,6 +35,7 @@ CHAPTERS: dict[str, type[Entry] | Mapping[str, type[Entry]]] = {
     "Analysis": f.AnalysisEntry,
     "Conditions": f.ResultConditionEntry,
     "Expect": f.ExpectEntry,
+    "Cases": f.CaseEntry,
 }
 TOP = "Top level"
 # small mappings that are described in the row of the key that holds them

@@ -34,7 +34,7 @@ from heuncli.study.model.options import Options
 from heuncli.study.model.selection import EVERYTHING, Selection, asked_by
 from heuncli.study.workflow import solve
 from heuncli.telling.keep import keep
-from heuncli.telling.kept import MOST_BYTES, KeptFile, KeptRun, KeptSpec, read_kept
+from heuncli.telling.kept import ANOTHER, MOST_BYTES, KeptFile, KeptRun, KeptSpec, read_kept
 from heuncli.telling.selection import told_by_default
 from heuncli.version import VERSION
 
@@ -130,7 +130,7 @@ def _golden(task: Task, request: CheckRequest) -> KeptFile | None:
     try:
         kept = read_kept(read_bytes(task.file, MOST_BYTES).decode("utf-8"))
     except UnicodeDecodeError as error:
-        raise goldens.told(task.file, Finding("not-golden", f"this is not UTF-8: {error.reason}", "")) from None
+        raise goldens.told(task.file, Finding("not-golden", f"this is not UTF-8: {error.reason}", ANOTHER)) from None
     except Finding as finding:
         raise goldens.told(task.file, finding) from None
     if kept.spec.path != task.name:

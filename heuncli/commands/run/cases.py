@@ -9,7 +9,7 @@ from typing import Any, NamedTuple
 from heuncli.cli.entry import UsageError, worst
 from heuncli.cli.output import emit
 from heuncli.cli.units import TABLES, say_what_stays
-from heuncli.commands.run.command import Task, leave, solved
+from heuncli.commands.run.command import RunTask, leave, solved
 from heuncli.errors import Problem
 from heuncli.foreign_text import shown
 from heuncli.report.export import dump
@@ -49,7 +49,7 @@ class Enveloped(NamedTuple):
         return "; ".join(f"{word} in {', '.join(c for c, w in self.unclear.items() if w == word)}" for word in words)
 
 
-def run_all(task: Task, spec: Spec, cases: Mapping[str, Spec]) -> int:
+def run_all(task: RunTask, spec: Spec, cases: Mapping[str, Spec]) -> int:
     """Solve every case and tell of them; returns the exit code."""
     if not cases:
         hint = "cases: {NAME: {set: {PARAMETER: VALUE}}}"
@@ -67,7 +67,7 @@ def run_all(task: Task, spec: Spec, cases: Mapping[str, Spec]) -> int:
     return worst(codes)
 
 
-def _text(task: Task, cases: Mapping[str, Spec], told: Mapping[str, str], runs: Mapping[str, KeptRun]) -> str:
+def _text(task: RunTask, cases: Mapping[str, Spec], told: Mapping[str, str], runs: Mapping[str, KeptRun]) -> str:
     """All cases and their envelope in the form that is asked for."""
     if task.form == "json":
         blocks = {name: json.loads(text) for name, text in told.items()}

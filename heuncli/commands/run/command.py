@@ -82,7 +82,7 @@ def main(request: RunRequest) -> int:
         measure.check(asked, spec)
     what = asked_by([each.path for each in asked], spec) if asked else _asked(request, only, spec, form)
     options = replace(options, wanted=what.reports, entries=what.entries)
-    task = Task(request, form, options, what, asked, shown)
+    task = RunTask(request, form, options, what, asked, shown)
     if request.case == ALL_CASES:
         from heuncli.commands.run.cases import run_all  # of few runs
 
@@ -93,7 +93,7 @@ def main(request: RunRequest) -> int:
     return leave(task, spec, study)
 
 
-class Task(NamedTuple):
+class RunTask(NamedTuple):
     """What is to be told of a scene: the options, what is asked for, and in which units tables show it."""
 
     request: RunRequest
@@ -104,7 +104,7 @@ class Task(NamedTuple):
     units: Units
 
 
-def solved(task: Task, spec: Spec) -> tuple[Study, str]:
+def solved(task: RunTask, spec: Spec) -> tuple[Study, str]:
     """A scene solved, and what is told of it as text."""
     request, what = task.request, task.what
     with placed(spec):
@@ -118,7 +118,7 @@ def solved(task: Task, spec: Spec) -> tuple[Study, str]:
         return study, _report(request, task.form, study, labels, what, details=named)
 
 
-def leave(task: Task, spec: Spec, study: Study, place: str = "heun") -> int:
+def leave(task: RunTask, spec: Spec, study: Study, place: str = "heun") -> int:
     """Tell warnings and times; returns the exit code."""
     later = list(study.later_warnings)
     if task.asked:

@@ -42,7 +42,7 @@ class NotComparable(HeunError):
     exit_code = 1
 
     def __init__(self, message: str, expected: float | None) -> None:
-        super().__init__(Problem("curve-points", message))
+        super().__init__(Problem("curve-points", message, hint="leave that point out, or let the run go there"))
         self.expected = np.asarray([] if expected is None else expected)
 
 
