@@ -159,8 +159,10 @@ def of_data(data: Any) -> KeptFile:
 
 
 def text_ends_early(text: str, error: Exception) -> bool:
-    """Whether a text was cut off: its error stands at its end."""
-    return isinstance(error, json.JSONDecodeError) and error.pos >= len(text.rstrip()) - 1
+    """Whether a text was cut off: its error stands at its end, or in a string that does not end."""
+    if not isinstance(error, json.JSONDecodeError):
+        return False
+    return error.pos >= len(text.rstrip()) - 1 or error.msg.startswith("Unterminated string")
 
 
 def _said(error: Exception) -> str:

@@ -1,0 +1,211 @@
+"""Golden files: what two honest runs differ by passes, three times of it fails; files that cannot be used; writing."""
+
+from __future__ import annotations
+
+import json
+import os
+from collections.abc import Iterator
+from pathlib import Path
+from typing import Any
+
+import pytest
+
+from heuncli.cli import files
+from heuncli.spec.load import load
+from heuncli.study.model.options import Options
+from heuncli.study.workflow import solve
+from heuncli.telling.changes import changes
+from heuncli.telling.keep import keep
+from heuncli.telling.kept import KeptNumber, KeptRun, read_kept, text_of
+from heuncli.telling.selection import told_by_default
+from tests.shared.command import Heun
+from tests.shared.folders import ROOT
+
+WORDS = ("first", "last", "least", "greatest", "constant")
+
+
+def run_of(name: str, **options: Any) -> KeptRun:
+    """The numbers of a spec of specs/."""
+    spec = load(str(ROOT / "specs" / f"{name}.yaml"))
+    wanted = told_by_default(spec)
+    return keep(solve(spec, Options(wanted=wanted, **options)), wanted)
+
+
+def moved(run: KeptRun, share: float) -> Iterator[tuple[str, KeptRun]]:
+    """The run with each of its numbers in turn moved by a share of what two runs of its errors may differ by."""
+    for path, number in run.numbers.items():
+        for word in WORDS:
+            value = getattr(number, word)
+            if isinstance(value, float) and number.error > 0.0:
+                shift = share * 2.0 * number.error + (2.0**-50 * abs(value) if share > 1.0 else 0.0)
+                other = number.model_copy(update={word: value + shift})
+                yield f"{path} {word}", with_number(run, path, other)
+        for i, value in enumerate(number.even):
+            if isinstance(value, float) and number.error > 0.0 and i < len(number.even) - 1:
+                even = [*number.even[:i], value + share * 2.0 * number.error, *number.even[i + 1 :]]
+                yield f"{path} even {i}", with_number(run, path, number.model_copy(update={"even": even}))
+
+
+def with_number(run: KeptRun, path: str, number: KeptNumber) -> KeptRun:
+    return run.model_copy(update={"numbers": run.numbers | {path: number}})
+
+
+@pytest.mark.parametrize("name", ["double", "crankshaft", "hammered_four_bar"])
+def test_each_number_moved_by_three_times_what_is_allowed_fails(name: str) -> None:
+    run = run_of(name)
+    for what, other in moved(run, 3.0):
+        found = changes(run, other)
+        assert [change.path for change in found] == [what.split()[0]], what
+
+
+@pytest.mark.parametrize("name", ["double", "crankshaft", "hammered_four_bar"])
+def test_each_number_moved_by_a_third_of_what_is_allowed_passes(name: str) -> None:
+    run = run_of(name)
+    for what, other in moved(run, 0.3):
+        assert changes(run, other) == [], what
+
+
+@pytest.mark.parametrize("name", ["double", "slider_crank", "hammered_four_bar", "four_bar"])
+def test_a_run_of_the_whole_scene_passes(name: str) -> None:
+    """Two models of one scene differ by no more than both state."""
+    assert [change for change in changes(run_of(name), run_of(name, reduce=False)) if "model." not in change.path] == []
+
+
+def test_what_one_of_them_lacks_is_told_by_name() -> None:
+    run = run_of("double")
+    path = next(path for path, number in run.numbers.items() if number.greatest is not None)
+    others = {
+        "missing": run.model_copy(update={"numbers": {k: v for k, v in run.numbers.items() if k != path}}),
+        "is open": with_number(run, path, run.numbers[path].model_copy(update={"greatest": "open"})),
+        "beyond the horizon": with_number(run, path, run.numbers[path].model_copy(update={"last": "beyond"})),
+        "became open": run.model_copy(update={"open": [*run.open, path]}),
+    }
+    for word, other in others.items():
+        (change,) = changes(run, other)
+        assert change.path == path
+        assert word in change.why
+        (back,) = changes(other, run)
+        assert back.path == path
+    assert "model.freedoms" in {
+        c.path for c in changes(run, run.model_copy(update={"model": run.model | {"freedoms": 9}}))
+    }
+
+
+def test_a_file_reads_back_as_it_was_and_has_one_number_a_line(heun: Heun, folder: Path) -> None:
+    assert heun("check", "swinging.yaml", "--golden", "g", "--update", "--force").returncode == 0
+    text = (folder / "g" / "swinging.json").read_text()
+    assert text_of(read_kept(text)) == text
+    assert all(line.count(",") <= 1 for line in text.splitlines())
+    assert json.dumps(json.loads(text), indent=1, sort_keys=True, ensure_ascii=False) + "\n" == text
+
+
+def test_what_was_kept_passes_and_what_changed_fails_with_the_change_of_the_spec(heun: Heun, folder: Path) -> None:
+    assert heun("check", "hanging.yaml", "swinging.yaml", "--golden", "g", "--update", "--force").returncode == 0
+    assert heun("check", "hanging.yaml", "swinging.yaml", "--golden", "g").returncode == 0
+    spec = folder / "hanging.yaml"
+    spec.write_text(spec.read_text().replace("m: 1.0", "m: 1.001"))
+    done = heun("check", "hanging.yaml", "swinging.yaml", "--golden", "g")
+    assert done.returncode == 1
+    assert "the spec changed since it was kept" in done.stdout
+    assert "+0.1 %" in done.stdout
+    assert heun("check", "hanging.yaml", "--golden", "g", "--golden-tolerance", "0.01").returncode == 0
+
+
+def test_update_writes_only_what_left_its_bounds_and_tells_what_changed(heun: Heun, folder: Path) -> None:
+    heun("check", "hanging.yaml", "swinging.yaml", "--golden", "g", "--update", "--force")
+    before = {path.name: path.stat().st_mtime_ns for path in (folder / "g").iterdir()}
+    spec = folder / "hanging.yaml"
+    spec.write_text(spec.read_text().replace("m: 1.0", "m: 2.0"))
+    done = heun("check", "hanging.yaml", "swinging.yaml", "--golden", "g", "--update", "--force")
+    assert done.returncode == 0
+    assert "CHANGED" in done.stdout
+    after = {path.name: path.stat().st_mtime_ns for path in (folder / "g").iterdir()}
+    assert {name for name in after if after[name] != before[name]} == {"hanging.json"}
+
+
+def test_a_pipeline_does_not_approve_itself(heun: Heun, folder: Path, monkeypatch: pytest.MonkeyPatch) -> None:
+    monkeypatch.setenv("CI", "true")
+    done = heun("check", "hanging.yaml", "--golden", "g", "--update")
+    assert (done.returncode, (folder / "g").exists()) == (2, False)
+    monkeypatch.setenv("CI", "false")
+    assert heun("check", "hanging.yaml", "--golden", "g", "--update").returncode == 0
+
+
+def test_a_golden_file_without_a_spec_and_a_spec_without_one(heun: Heun, folder: Path) -> None:
+    (folder / "specs").mkdir()
+    (folder / "hanging.yaml").rename(folder / "specs" / "hanging.yaml")
+    (folder / "g").mkdir()
+    (folder / "g" / "old.json").write_text("{}")
+    done = heun("check", "specs", "--golden", "g")
+    assert done.returncode == 0
+    assert "g/old.json: a golden file without a spec" in done.stderr
+    strict = heun("check", "specs", "--golden", "g", "--strict")
+    assert strict.returncode == 1
+    assert "no golden file" in strict.stdout
+
+
+def cut_off(text: str) -> str:
+    return text[: len(text) // 2]
+
+
+def of_another_format(text: str) -> str:
+    return text.replace('"format": 1', '"format": 2')
+
+
+def of_another_spec(text: str) -> str:
+    return text.replace('"path": "hanging.yaml"', '"path": "other.yaml"')
+
+
+@pytest.mark.parametrize(
+    ("spoilt", "told"),
+    [
+        (lambda text: "hello", "this is not JSON"), (cut_off, "ends before it is complete"),
+        (lambda text: "[1]", "no golden file"), (of_another_format, "this version reads 1"),
+        (of_another_spec, "kept of another spec: other.yaml"),
+        (lambda text: text.replace('"status"', '"stat"'), "base.sta"),
+    ],
+)  # fmt: skip
+@pytest.mark.parametrize("update", [False, True])
+def test_a_file_that_cannot_be_used_is_told_and_nothing_is_written(
+    heun: Heun, folder: Path, spoilt: Any, told: str, update: bool
+) -> None:
+    heun("check", "hanging.yaml", "swinging.yaml", "--golden", "g", "--update", "--force")
+    file, other = folder / "g" / "hanging.json", folder / "g" / "swinging.json"
+    file.write_text(spoilt(file.read_text()))
+    other.unlink()
+    before = file.read_bytes()
+    done = heun("check", "hanging.yaml", "swinging.yaml", "--golden", "g", *(["--update", "--force"] if update else []))
+    assert done.returncode == 2
+    assert "g/hanging.json:1:1: " in done.stderr
+    assert told in done.stderr
+    assert (file.read_bytes(), other.exists()) == (before, False)
+
+
+def test_a_folder_or_a_way_out_in_the_place_of_a_file(heun: Heun, folder: Path, tmp_path_factory: Any) -> None:
+    outside = tmp_path_factory.mktemp("outside") / "hanging.json"
+    outside.write_text("{}")
+    (folder / "g" / "swinging.json").mkdir(parents=True)
+    (folder / "g" / "hanging.json").symlink_to(outside)
+    done = heun("check", "hanging.yaml", "swinging.yaml", "--golden", "g", "--update", "--force")
+    assert done.returncode == 2
+    assert "this is a folder" in done.stderr
+    assert "this leads out of g" in done.stderr
+    assert outside.read_text() == "{}"
+
+
+def test_a_full_disk_leaves_what_was_there(heun: Heun, folder: Path, monkeypatch: pytest.MonkeyPatch) -> None:
+    heun("check", "hanging.yaml", "--golden", "g", "--update", "--force")
+    file = folder / "g" / "hanging.json"
+    before = file.read_bytes()
+    spec = folder / "hanging.yaml"
+    spec.write_text(spec.read_text().replace("m: 1.0", "m: 2.0"))
+
+    def full(*_: object, **__: object) -> int:
+        raise OSError(28, os.strerror(28))
+
+    monkeypatch.setattr(files.os, "fsync", full)
+    monkeypatch.setattr(files.os, "write", full)
+    done = heun("check", "hanging.yaml", "--golden", "g", "--update", "--force")
+    assert (done.returncode, "[output-failed]" in done.stderr) == (5, True)
+    assert file.read_bytes() == before
+    assert [path.name for path in (folder / "g").iterdir()] == ["hanging.json"]

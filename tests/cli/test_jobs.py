@@ -1,0 +1,106 @@
+"""Several processes: the same bytes whatever their number; one that dies costs its one spec; picking, ending early."""
+
+from __future__ import annotations
+
+import contextlib
+import os
+import signal
+import subprocess
+import sys
+import time
+from pathlib import Path
+
+import pytest
+
+from heuncli.cli import jobs
+from heuncli.commands.check import command
+from tests.shared.command import HANGING, SPEC_TEXTS, Heun
+
+
+@pytest.fixture
+def many(folder: Path) -> Path:
+    """A folder of twelve specs, some of which fail or are wrong."""
+    below = folder / "many"
+    below.mkdir()
+    for number in range(12):
+        kind = ("expecting", "failing", "wrong", "swinging")[number % 4]
+        (below / f"{number:02}.yaml").write_text(f"title: scene {number}\n" + SPEC_TEXTS[kind].replace("title:", "#"))
+    return below
+
+
+@pytest.mark.parametrize("form", ["table", "json", "markdown", "github"])
+def test_what_is_told_does_not_depend_on_the_number_of_processes(heun: Heun, many: Path, form: str) -> None:
+    one, *others = (heun("check", "many", "--format", form, "--jobs", n) for n in ("1", "2", "5"))
+    assert one.returncode == 2
+    assert all(other == one for other in others)
+
+
+def test_a_process_that_dies_costs_its_one_spec(heun: Heun, many: Path, monkeypatch: pytest.MonkeyPatch) -> None:
+    at_work = command.check
+
+    def dying(task, request, jobs):  # type: ignore[no-untyped-def]
+        if task.found.path.endswith("04.yaml"):
+            os.kill(os.getpid(), signal.SIGKILL)
+        return at_work(task, request, jobs)
+
+    monkeypatch.setattr(command, "check", dying)
+    done = heun("check", "many", "--jobs", "3", "--format", "json")
+    assert done.returncode == 70
+    assert "many/04.yaml: the process that checked it was killed by signal 9 [bug]" in done.stderr
+    assert done.stdout.count('"file"') == 12
+
+
+def test_x_ends_at_the_first_that_fails(heun: Heun, many: Path) -> None:
+    one, several = (heun("check", "many", "-x", "--jobs", n) for n in ("1", "3"))
+    assert one == several
+    assert one.stdout.splitlines()[-1] == "2 specs, 1 passed, 1 failed"
+
+
+def test_k_picks_by_path_and_title(heun: Heun, many: Path) -> None:
+    assert heun("check", "many", "-k", "SCENE 11").stdout.startswith("1 spec, ")
+    assert heun("check", "many", "-k", "many/0").stdout.splitlines()[-1].startswith("10 specs, ")
+    assert heun("check", "many", "-k", "nothing").returncode == 2
+
+
+def test_the_slowest_are_told_apart_from_the_results(heun: Heun, many: Path) -> None:
+    done = heun("check", "many", "--durations", "3")
+    assert "slowest 3 of 12:" in done.stderr
+    assert "slowest" not in done.stdout
+
+
+@pytest.mark.parametrize("words", [("--jobs", "0"), ("--jobs", "-2"), ("--durations", "0"), ("--jobs", "two")])
+def test_numbers_that_mean_nothing(heun: Heun, words: tuple[str, str]) -> None:
+    assert heun("check", "hanging.yaml", *words).returncode == 2
+
+
+def test_as_many_processes_as_processors_where_there_is_enough_to_do() -> None:
+    assert jobs.how_many(None, jobs.WORTH - 1) == 1
+    assert jobs.how_many(None, jobs.WORTH) == min(jobs.processors(), jobs.WORTH)
+    assert jobs.how_many(9, 3) == 3
+
+
+def at_work_in(group: int) -> list[str]:
+    """The processes of a group that still run; those that ended and that nobody asked for are none."""
+    found = []
+    for stat in Path("/proc").glob("[0-9]*/stat"):
+        with contextlib.suppress(OSError):
+            state, _, its_group = stat.read_text().rpartition(")")[2].split()[:3]
+            found += [str(stat)] if int(its_group) == group and state != "Z" else []
+    return found
+
+
+@pytest.mark.skipif(not Path("/proc/self/stat").exists(), reason="the processes of a group are read from /proc")
+def test_an_interrupt_ends_all_processes_and_leaves_no_file(tmp_path: Path) -> None:
+    for number in range(4):
+        text = HANGING.replace("top: [0, 0, 0]}", "top: [0, 0, 0]}, orientation: {axis: [1, 0, 0], angle: 60 deg}")
+        (tmp_path / f"{number}.yaml").write_text(text + "analysis: {duration: 100000, samples: 11}\n")
+    words = [sys.executable, "-m", "heuncli", "check", ".", "--jobs", "2", "--golden", "g", "--update", "--force"]
+    with subprocess.Popen(
+        words, cwd=tmp_path, stdout=subprocess.PIPE, stderr=subprocess.PIPE, start_new_session=True
+    ) as process:
+        time.sleep(1.5)
+        os.killpg(process.pid, signal.SIGINT)
+        process.communicate(timeout=10)
+        assert process.returncode in (130, -signal.SIGINT)
+        assert at_work_in(process.pid) == []
+    assert sorted(path.name for path in tmp_path.iterdir()) == [f"{number}.yaml" for number in range(4)]
