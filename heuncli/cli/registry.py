@@ -69,8 +69,10 @@ COMMANDS = (
     Command("diff", page="pipelines"),
     Command("methods", page="methods"),
     Command("explain"),
+    Command("schema"),
+    Command("new"),
 )
-LATER_COMMANDS = ("schema", "new", "sweep", "plot")  # not in this version yet
+LATER_COMMANDS = ("sweep", "plot")  # not in this version yet
 
 
 def command_of(name: str) -> Command | None:

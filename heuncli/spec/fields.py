@@ -57,6 +57,10 @@ class ReadValue:
         return core_schema.with_info_plain_validator_function(self.read)
 
     def __get_pydantic_json_schema__(self, schema: Any, handler: Any) -> dict[str, Any]:
+        return self.in_json_schema()
+
+    def in_json_schema(self) -> dict[str, Any]:
+        """What a value may be: a number, or a text that is a number with a unit, or an expression."""
         description = {"description": u.describe(self.dimension)} if self.dimension is not None else {}
         return {"anyOf": [{"type": "number"}, {"type": "string"}], **description}
 
@@ -117,6 +121,9 @@ class InParts(ReadValue):
             raise Finding("wrong-kind", f"expected a list, found {kind_of(value)}", FORMS["shapes"])
         return value
 
+    def in_json_schema(self) -> dict[str, Any]:
+        return {"type": "array"}
+
 
 class Whole(ReadValue):
     """A whole number."""
@@ -137,6 +144,9 @@ class Version(ReadValue):
             raise Finding("version", message, "write 'heun: 1', or use a newer heun")
         return 1
 
+    def in_json_schema(self) -> dict[str, Any]:
+        return {"const": 1}
+
 
 class NumbersOrOpen(ReadValue):
     """A number, lists of them, or null for what is open; the numbers as expressions that know their dimension."""
@@ -150,6 +160,20 @@ class NumbersOrOpen(ReadValue):
                               "null is for what must be open")  # fmt: skip
             return tuple(self.read(member, info) for member in value)
         return in_time(value, None, info.context.load)
+
+    def in_json_schema(self) -> dict[str, Any]:
+        return {"type": ["number", "string", "array", "null"]}
+
+
+class AsText:
+    """A mapping that may be written as one word instead: body.point."""
+
+    def __get_pydantic_core_schema__(self, source: Any, handler: Any) -> core_schema.CoreSchema:
+        schema: core_schema.CoreSchema = handler(source)
+        return schema
+
+    def __get_pydantic_json_schema__(self, schema: Any, handler: Any) -> dict[str, Any]:
+        return {"anyOf": [{"type": "string", "description": "body.point"}, handler(schema)]}
 
 
 Anything = Annotated[float, Si()]
@@ -259,7 +283,7 @@ def two_limits(value: Any) -> Any:
     return value
 
 
-AnEnd = Annotated[EndEntry, BeforeValidator(split_end)]
-BodyOrEnd = Annotated[EndEntry, BeforeValidator(split_body_or_end)]
+AnEnd = Annotated[EndEntry, BeforeValidator(split_end), AsText()]
+BodyOrEnd = Annotated[EndEntry, BeforeValidator(split_body_or_end), AsText()]
 AngleLimits = Annotated[tuple[Angle | None, Angle | None], BeforeValidator(two_limits)]
 LengthLimits = Annotated[tuple[Length | None, Length | None], BeforeValidator(two_limits)]

@@ -10,45 +10,11 @@ from pydantic.fields import FieldInfo
 from heuncli.expressions import units as u
 from heuncli.spec import fields
 from heuncli.spec import format as f
-from heuncli.spec import format_shapes as fs
+from heuncli.spec.chapters import CHAPTERS, INLINE, TOP
 from heuncli.spec.fields import Entry
 from tests.shared.manual import headings
 
 ALL = "all"  # in place of the types that have a key, where all have it
-# by heading: the model whose keys the first table below it lists, or the models by type
-CHAPTERS: dict[str, type[Entry] | Mapping[str, type[Entry]]] = {
-    "Tables": f.TableEntry,
-    "Bodies": f.BodyEntry,
-    "Shapes": fs.SHAPES,
-    "Orientation": fs.Orientation,
-    "Piece": f.PieceEntry,
-    "Joints": f.JOINTS,
-    "Bearing of joints": f.BearingEntry,
-    "Initial": {"pin": f.Turning, "slide": f.Sliding, "cylinder": f.TurningAndSliding},
-    "Stiffness of joints": f.StiffnessParts,
-    "Drives": f.DriveEntry,
-    **f.LOADS,
-    "Impulses": f.ImpulseEntry,
-    "Stops": f.StopEntry,
-    "Sections": f.SectionEntry,
-    "Properties": f.PropertiesEntry,
-    "Analysis": f.AnalysisEntry,
-    "Conditions": f.ResultConditionEntry,
-    "Expect": f.ExpectEntry,
-    "Cases": f.CaseEntry,
-}
-TOP = "Top level"
-# small mappings that are described in the row of the key that holds them
-INLINE: dict[type[Entry], tuple[str, str]] = {
-    f.GroundEntry: (TOP, "ground"),
-    f.FoundationEntry: (TOP, "foundation"),
-    f.NearEntry: ("Bodies", "near"),
-    f.VelocityInFrame: ("Bodies", "velocity"),
-    f.RateInFrame: ("Bodies", "velocity"),
-    f.CircleEntry: ("Properties", "circle"),
-    f.TubeEntry: ("Properties", "tube"),
-    f.RectangleEntry: ("Properties", "rectangle"),
-}
 NEEDED = {("Tables", "x"), ("Tables", "y")}  # asked for by a rule, not by the model
 
 

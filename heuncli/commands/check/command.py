@@ -19,7 +19,7 @@ from heuncli.commands.check.folders import Found, PassedBy, specs_below
 from heuncli.commands.check.picking import picked
 from heuncli.commands.check.request import FORMATS, CheckRequest
 from heuncli.commands.check.told import FORMS, AllChecked
-from heuncli.errors import HeunError, Problem
+from heuncli.errors import OutputError, Problem
 from heuncli.foreign_text import shown
 
 ENDINGS = {".json": "json", ".txt": "table", ".md": "markdown", "": "table"}
@@ -145,7 +145,7 @@ def _written(checked: Sequence[Checked], request: CheckRequest) -> list[int]:
         try:
             Path(golden.path).parent.mkdir(parents=True, exist_ok=True)
         except OSError as reason:
-            raise HeunError(files.failed(golden.path, reason)) from None
+            raise OutputError(files.failed(golden.path, reason)) from None
         files.write(as_bytes(golden.text or ""), golden.path)
         if not request.quiet:
             say(f"heun: {shown(golden.path)} {'written' if golden.is_new else 'written anew'}")

@@ -1,0 +1,69 @@
+"""`heun new KIND [FILE]`: a spec to start from, written where nothing stands; without arguments the kinds."""
+
+from __future__ import annotations
+
+import os
+from pathlib import Path
+
+from heuncli.cli import files
+from heuncli.cli.entry import UsageError
+from heuncli.cli.output import emit, say
+from heuncli.commands.new.request import NewRequest
+from heuncli.errors import OutputError, Problem
+from heuncli.foreign_text import shown
+from heuncli.nearest import did_you_mean
+
+FOLDER = Path(__file__).parents[2] / "starters"
+STANDARD_OUTPUT = "-"
+SCHEMA = """\
+# yaml-language-server: $schema=heun.schema.json
+# An editor completes and underlines by that line, once `heun schema -o heun.schema.json` has written the file here.
+"""
+
+
+def main(request: NewRequest) -> int:
+    """Run the command; returns the exit code."""
+    known = kinds()
+    if request.kind is None:
+        width = max(map(len, known))
+        emit("".join(f"{kind:<{width}}  {title}\n" for kind, title in known.items()))
+        return 0
+    if request.kind not in known:
+        hint = f"{did_you_mean(request.kind, known, 'kinds')}; heun new lists them"
+        raise UsageError(Problem("bad-option", f"new {request.kind}: there is no such kind", hint=hint))
+    text = SCHEMA + (FOLDER / f"{request.kind}.yaml").read_text(encoding="utf-8")
+    file = request.file if request.file is not None else f"{request.kind}.yaml"
+    if file == STANDARD_OUTPUT:
+        emit(text)
+        return 0
+    _write(text, file)
+    say(f"heun: {shown(file)} written; next: heun run {shown(file)}")
+    return 0
+
+
+def kinds() -> dict[str, str]:
+    """The kinds, with their titles."""
+    found = {path.stem: path.read_text(encoding="utf-8") for path in sorted(FOLDER.glob("*.yaml"))}
+    return {kind: text.splitlines()[0].removeprefix("# ") for kind, text in found.items()}
+
+
+def _write(text: str, file: str) -> None:
+    """A new file, whole or not at all. Raises UsageError where something stands, OutputError."""
+    taken = UsageError(
+        Problem("bad-option", f"new: {file}: something stands there", hint="name another file; none is written over")
+    )
+    try:
+        number = os.open(file, os.O_WRONLY | os.O_CREAT | os.O_EXCL, 0o666)  # not through a link, either
+    except (FileExistsError, IsADirectoryError):
+        raise taken from None
+    except OSError as reason:
+        raise OutputError(files.failed(file, reason)) from None
+    try:
+        files.write_all(number, text.encode())
+    except BaseException as reason:
+        Path(file).unlink()
+        if isinstance(reason, OSError):
+            raise OutputError(files.failed(file, reason)) from None
+        raise
+    finally:
+        os.close(number)

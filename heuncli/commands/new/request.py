@@ -1,0 +1,12 @@
+"""What `heun new` is asked for: its arguments."""
+
+from typing import Annotated, NamedTuple
+
+from heuncli.cli.options import Option
+
+
+class NewRequest(NamedTuple):
+    """Write a spec to start from; without arguments list the kinds."""
+
+    kind: Annotated[str | None, Option((), "Of the machine: pendulum, crane, engine, ...", "KIND")] = None
+    file: Annotated[str | None, Option((), "Where; - is standard output. Default: KIND.yaml.", "FILE")] = None

@@ -1,0 +1,12 @@
+"""What `heun schema` is asked for: its options."""
+
+from typing import Annotated, NamedTuple
+
+from heuncli.cli.options import OUTPUT, Option
+
+
+class SchemaRequest(NamedTuple):
+    """Print the JSON Schema of specs, for editors."""
+
+    results: Annotated[bool, Option(("--results",), "That of the results of heun run --format json.")] = False
+    output: Annotated[str | None, OUTPUT] = None

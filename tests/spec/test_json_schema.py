@@ -1,0 +1,124 @@
+"""The JSON Schemas: what editors are told of specs and results is what the models take and the runs write."""
+
+from __future__ import annotations
+
+import json
+import subprocess
+import sys
+from functools import cache
+from pathlib import Path
+from typing import Any
+
+import pytest
+import yaml
+from jsonschema import Draft7Validator
+
+from heuncli.joint_kinds import TYPES
+from heuncli.report.export import to_json
+from heuncli.results_json_schema import results_schema
+from heuncli.results_schema import REPORTS, SHARES
+from heuncli.spec.json_schema import spec_schema
+from heuncli.spec.load import load
+from heuncli.study.model.options import Options
+from heuncli.study.workflow import solve
+from tests.manual.keys import PLACES
+from tests.shared.folders import ROOT
+
+SPECS = sorted((ROOT / "specs").glob("*.yaml"))
+BROKEN = sorted((ROOT / "specs" / "broken").glob("*.yaml"))
+OF_STRUCTURE = {  # codes of specs in specs/broken that are wrong in keys, types and forms
+    "missing-key", "not-a-scene", "unknown-key", "unknown-joint-type", "unknown-force-type", "unknown-shape-type",
+    "unknown-word", "wrong-kind", "version",
+}  # fmt: skip
+
+
+@cache
+def of_specs() -> Draft7Validator:
+    schema = spec_schema()
+    Draft7Validator.check_schema(schema)
+    return Draft7Validator(schema)
+
+
+@cache
+def of_results() -> Draft7Validator:
+    schema = results_schema()
+    Draft7Validator.check_schema(schema)
+    return Draft7Validator(schema)
+
+
+def test_check_jsonschema_passes_every_spec_and_starter(tmp_path: Path) -> None:
+    schema = tmp_path / "heun.schema.json"
+    schema.write_text(json.dumps(spec_schema()))
+    starters = sorted((ROOT / "heuncli" / "starters").glob("*.yaml"))
+    words = [sys.executable, "-m", "check_jsonschema", "--schemafile", str(schema), *map(str, [*SPECS, *starters])]
+    done = subprocess.run(words, capture_output=True, text=True, check=False)
+    assert done.returncode == 0, done.stdout
+
+
+@pytest.mark.parametrize("path", BROKEN, ids=lambda path: path.stem)
+def test_what_is_wrong_in_structure_fails(path: Path) -> None:
+    """And what is refused for another reason, such as a name, passes: a schema cannot know it."""
+    if path.stem not in OF_STRUCTURE:
+        return
+    assert not of_specs().is_valid(yaml.safe_load(path.read_text()))
+
+
+def test_every_code_of_structure_has_its_spec() -> None:
+    assert {path.stem for path in BROKEN} >= OF_STRUCTURE
+
+
+def keys_in(schema: Any) -> set[str]:
+    """All keys that a schema knows."""
+    if isinstance(schema, list):
+        return set().union(*map(keys_in, schema))
+    if not isinstance(schema, dict):
+        return set()
+    own = set(schema.get("properties", {})) if isinstance(schema.get("properties"), dict) else set()
+    return own.union(*map(keys_in, schema.values()))
+
+
+def test_every_key_of_the_manual_is_in_it_with_its_words() -> None:
+    schema = of_specs().schema
+    assert isinstance(schema, dict)
+    assert {place.key for place in PLACES} <= keys_in(schema)
+    described = [key for key, block in schema["properties"].items() if "description" in block]
+    assert sorted(described) == sorted(schema["properties"])
+    lacking = [
+        f"{name}.{key}" for name, block in schema["definitions"].items() for key, own in block["properties"].items()
+        if "description" not in own and key not in ("type", "body", "at", "frame", "value", "x", "y", "z")
+    ]  # fmt: skip
+    assert len(lacking) < 25, lacking
+
+
+def test_joint_kinds_are_named() -> None:
+    text = json.dumps(of_specs().schema)
+    assert all(f'"const": "{kind}"' in text for kind in TYPES)
+
+
+@pytest.mark.parametrize(
+    "change",
+    [{"bodys": {}}, {"gravity": 9.81}, {"heun": None}, {"expect": {}}, {"joints": {"a": {"type": "hinge"}}},
+     {"analysis": {"durations": 1}}, {"cases": {"a": {}}}, {"drives": {"m": {"angle": [1]}}}],
+    ids=lambda change: next(iter(change)),
+)  # fmt: skip
+def test_an_editor_underlines(change: dict[str, Any]) -> None:
+    scene = yaml.safe_load((ROOT / "specs" / "double.yaml").read_text())
+    assert of_specs().is_valid(scene)
+    assert not of_specs().is_valid({**scene, **change})
+
+
+@pytest.mark.heavy
+@pytest.mark.parametrize("path", SPECS, ids=lambda path: path.stem)
+def test_every_result_is_what_the_schema_of_results_says(path: Path) -> None:
+    wanted = frozenset({*REPORTS, SHARES})
+    results = json.loads(to_json(solve(load(str(path)), Options(wanted=wanted)).results))
+    assert [error.json_path for error in of_results().iter_errors(results)] == []
+
+
+def test_the_schema_of_results_refuses_what_is_none() -> None:
+    results = json.loads(to_json(solve(load(str(ROOT / "specs" / "double.yaml")), Options()).results))
+    assert of_results().is_valid(results)
+    for spoilt in ({"joint": {}}, {"status": 3}, {"energy": {"kinetic": ["x"]}}):
+        assert not of_results().is_valid({**results, **spoilt})
+    del results["time"]
+    assert not of_results().is_valid(results)
