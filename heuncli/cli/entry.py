@@ -79,6 +79,15 @@ def report_problems(problems: Sequence[Problem], label: str = "") -> None:
     """Every problem on standard error, as place, finding, code and hint."""
     for line in lines_of(problems, label):
         say(line)
+    say_what_explains(problems)
+
+
+def say_what_explains(problems: Sequence[Problem]) -> None:
+    """Where the manual tells of these problems, for somebody at a terminal."""
+    if sys.stderr is not None and sys.stderr.isatty() and problems:
+        codes = list(dict.fromkeys(problem.code for problem in problems))
+        others = f" (and of {', '.join(codes[1:4])})" if codes[1:] else ""
+        say(f"heun explain {codes[0]} tells more{others}")
 
 
 def lines_of(problems: Sequence[Problem], label: str = "") -> list[str]:

@@ -23,6 +23,7 @@ from heuncli.results_schema import NOT_YET, ROWS, SPACE, Quantity, is_share
 from heuncli.spec import format as f
 from heuncli.spec import format_shapes as fs
 from heuncli.spec.words import FORCE_WORDS, SHAPE_WORDS
+from tests.manual import codes
 from tests.manual.keys import PLACES
 from tests.shared.cited_texts import equations
 from tests.shared.manual import README, anchor, below, file_of, tables_below
@@ -236,3 +237,4 @@ def renew(table: Table) -> None:
 if __name__ == "__main__":
     for each in TABLES:
         renew(each)
+    codes.PAGE.write_text(codes.written(), encoding="utf-8")

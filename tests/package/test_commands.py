@@ -19,7 +19,8 @@ from heuncli.cli.registry import COMMANDS, Command
 
 PACKAGE = Path(heuncli.__file__).parent
 LINES = {  # of others: the spec
-    "methods": (), "explain": (), "schema": (), "new": (), "diff": ("-", "nosuch.json"), "chart": ("-", "--methods", "RK4", "--steps", "0.02"),
+    "methods": (), "explain": (), "schema": (), "new": (),
+    "diff": ("-", "nosuch.json"), "chart": ("-", "--methods", "RK4", "--steps", "0.02"),
 }  # fmt: skip
 SWINGING = """\
 heun: 1

@@ -3,7 +3,6 @@
 from __future__ import annotations
 
 import ast
-import re
 from pathlib import Path
 
 import pytest
@@ -11,23 +10,15 @@ import pytest
 from heuncli.errors import HeunError
 from heuncli.spec.load import load
 from heuncli.study.workflow import solve
+from tests.shared.broken import FILES, cured, head, is_in_words
 from tests.shared.folders import ROOT
 
-FILES = sorted((ROOT / "specs" / "broken").glob("*.yaml"))
-HEAD = re.compile(r"# (code|warning): ([\w-]+)(?: at (\d+):(\d+))?\n# see: (.+)\n(?:# set: (\w+)=(.*)\n)?")
 WITHOUT_A_FILE = {
     "unreadable": "there is no file",
     "too-large": "64 MB",
     "too-many-jumps": "found when the run is prepared",
     "outside-folder": "a file outside the folder of the spec",
 }
-
-
-def head(path: Path) -> re.Match[str]:
-    """What the first lines of a file promise."""
-    found = HEAD.match(path.read_bytes().decode("latin-1"))
-    assert found is not None, f"{path.name} does not begin with '# code: x at line:column' and '# see: ...'"
-    return found
 
 
 @pytest.mark.parametrize("path", FILES, ids=lambda path: path.stem)
@@ -84,3 +75,17 @@ def test_every_code_has_its_file() -> None:
 def test_every_file_says_what_to_see() -> None:
     assert len(FILES) > 70
     assert all(len(head(path)[5]) > 5 for path in FILES)
+
+
+@pytest.mark.parametrize("path", [path for path in FILES if not is_in_words(path)], ids=lambda path: path.stem)
+def test_each_is_mended_by_its_cure(path: Path) -> None:
+    """Read and solved without an error or a warning."""
+    spec = load(str(path), cured(path))
+    solve(spec)
+    assert spec.warnings == ()
+
+
+def test_few_cures_are_told_in_words_alone() -> None:
+    assert {path.stem for path in FILES if is_in_words(path)} == {
+        "empty", "not-a-scene", "not-utf8", "several-documents", "too-deep",
+    }  # fmt: skip

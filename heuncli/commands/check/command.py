@@ -7,7 +7,7 @@ from functools import partial
 from pathlib import Path
 
 from heuncli.cli import files, jobs
-from heuncli.cli.entry import BUG, UsageError, lines_of, worst
+from heuncli.cli.entry import BUG, UsageError, lines_of, say_what_explains, worst
 from heuncli.cli.guard import require_other_file, same_file
 from heuncli.cli.output import as_bytes, emit, say
 from heuncli.cli.progress import progress
@@ -52,6 +52,7 @@ def main(request: CheckRequest) -> int:
         from heuncli.commands.check.junit import junit_text
 
         files.write(as_bytes(junit_text(checked, orphans, request.strict)), request.junit)
+    say_what_explains([problem for one in checked for problem in one.problems])
     _say_slowest(checked, request.durations)
     codes = [one.exit_code for one in checked] + [FAILED] * (request.strict and bool(orphans))
     return worst([*codes, *_written(checked, request)])

@@ -6,8 +6,9 @@ import re
 from pathlib import Path
 
 from heuncli.cli.entry import UsageError
-from heuncli.cli.output import emit
+from heuncli.cli.pager import show
 from heuncli.cli.registry import COMMANDS, command_of
+from heuncli.commands.explain.codes import codes_of
 from heuncli.commands.explain.request import ExplainRequest
 from heuncli.errors import Problem
 from heuncli.nearest import did_you_mean
@@ -16,15 +17,37 @@ FOLDER = Path(__file__).parents[2] / "manual"
 # in the order in which a reader may want them, the pages of single commands in the order of those
 PAGES = tuple(dict.fromkeys((
     "commands", "format", "howto", "results", "signs", "open", "stresses", "rest",
-    *(command.page for command in COMMANDS), "accuracy", "limits", "theory", "equations", "references", "decisions",
-    "speed", "developing", "contributing", "index",
+    *(command.page for command in COMMANDS), "accuracy", "codes", "limits", "theory", "equations", "references",
+    "decisions", "speed", "developing", "contributing", "index",
 )))  # fmt: skip
+
+OTHERS = (
+    ("CODE", "An error or a warning, such as unknown-key: what it says, why, an example, the cure."),
+    ("PATH", "A number of the results, such as joints.main.tilting: meaning, unit, sign, frame, error."),
+    ("NUMBER", "An equation of the paper, such as 31."),
+)
 
 
 def main(request: ExplainRequest) -> int:
     """Run the command; returns the exit code."""
-    emit(contents() if request.topic is None else page(request.topic), request.output)
+    show(contents() if request.topic is None else told(request.topic), request.output, not request.no_pager)
     return 0
+
+
+def told(topic: str) -> str:
+    """What is told of a code, a path of the results, or a topic of the manual. Raises UsageError where it is none."""
+    codes = codes_of((FOLDER / "codes.md").read_text(encoding="utf-8"))
+    if (code := topic.strip("[]")) in codes:
+        return codes[code]
+    if "." in topic:
+        from heuncli.commands.explain.paths import explained
+
+        if (text := explained(topic)) is not None:
+            return text
+    if topic not in PAGES and "-" in topic:
+        near = did_you_mean(topic, codes, "codes")
+        raise UsageError(Problem("bad-option", f"explain {topic}: there is no such code", hint=f"{near}; or a page"))
+    return page(topic)
 
 
 def page(topic: str) -> str:
@@ -67,7 +90,8 @@ def indexed(word: str) -> str:
 def contents() -> str:
     """The name of each page, and what it is about."""
     width = max(map(len, PAGES))
-    return "".join(f"{name:<{width}}  {summary(name)}\n" for name in PAGES)
+    pages = "".join(f"{name:<{width}}  {summary(name)}\n" for name in PAGES)
+    return pages + "\n" + "".join(f"{name:<{width}}  {text}\n" for name, text in OTHERS)
 
 
 def summary(topic: str) -> str:

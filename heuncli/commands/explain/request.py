@@ -6,10 +6,11 @@ from heuncli.cli.options import OUTPUT, Option
 
 
 class ExplainRequest(NamedTuple):
-    """Show a page of the manual, or the list of its pages."""
+    """Tell of a code, a path of the results, a topic of the manual; or list them."""
 
     topic: Annotated[
         str | None,
-        Option((), "A page, a command, or the number of an equation; without it, the list of the pages.", "TOPIC"),
+        Option((), "A page, a command, a code, a path of results, an equation's number; without it, a list.", "TOPIC"),
     ] = None
     output: Annotated[str | None, OUTPUT] = None
+    no_pager: Annotated[bool, Option(("--no-pager",), "All at once on a terminal, too.")] = False
