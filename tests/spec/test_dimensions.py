@@ -283,7 +283,7 @@ YAML = re.compile(r"(heun: 1\n(?:.|\n)*?)(?:\"\"\"|```)")
 
 def test_no_scene_of_ours_is_refused() -> None:
     texts = [path.read_text() for path in (ROOT / "specs").glob("*.yaml")]
-    for path in [*map(file_of, TEXTS), *(ROOT / "tests").rglob("*.py")]:
+    for path in [*map(file_of, TEXTS.keys() - {"codes"}), *(ROOT / "tests").rglob("*.py")]:
         texts += [found for found in YAML.findall(path.read_text()) if "{{" not in found]
     assert len(texts) > 60
     for text in texts:

@@ -12,6 +12,7 @@ from heuncli.commands.explain.codes import codes_of
 from heuncli.commands.explain.request import ExplainRequest
 from heuncli.errors import Problem
 from heuncli.nearest import did_you_mean
+from heuncli.results_schema import TREE
 
 FOLDER = Path(__file__).parents[2] / "manual"
 # in the order in which a reader may want them, the pages of single commands in the order of those
@@ -44,6 +45,9 @@ def told(topic: str) -> str:
 
         if (text := explained(topic)) is not None:
             return text
+        if (block := topic.split(".", 1)[0]) in TREE:
+            hint = f"heun explain {block}.NAME lists what there is"
+            raise UsageError(Problem("unknown-path", f"explain {topic}: this leads to no result", hint=hint))
     if topic not in PAGES and "-" in topic:
         near = did_you_mean(topic, codes, "codes")
         raise UsageError(Problem("bad-option", f"explain {topic}: there is no such code", hint=f"{near}; or a page"))

@@ -41,7 +41,7 @@ def explained(path: str) -> str | None:
 def _spellings(words: Sequence[str]) -> Iterator[tuple[str, ...]]:
     """The words as keys; the name of a point holds a dot."""
     yield tuple(words)
-    if len(words) > 2:
+    if words[0] == "points" and len(words) > 2:
         yield (words[0], f"{words[1]}.{words[2]}", *words[3:])
 
 
