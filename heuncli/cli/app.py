@@ -9,6 +9,7 @@ from typing import Annotated, Any
 import typer
 
 from heuncli.cli import registry
+from heuncli.cli.completion import BY_WORD
 from heuncli.cli.options import RequestField, fields_of
 from heuncli.cli.registry import Asked, Command
 
@@ -62,7 +63,9 @@ def _parameter(field: RequestField, defaults: Mapping[str, Any]) -> inspect.Para
     kind: Any = list[str] if field.type == tuple[str, ...] else field.type
     option = field.option
     if not option.words:
-        argument = typer.Argument(help=option.help, metavar=option.metavar, show_default=False)
+        argument = typer.Argument(
+            help=option.help, metavar=option.metavar, show_default=False, autocompletion=BY_WORD.get(option.completes)
+        )
         default = defaults.get(field.name, inspect.Parameter.empty)
         annotation = Annotated[kind, argument]
         return inspect.Parameter(field.name, inspect.Parameter.KEYWORD_ONLY, default=default, annotation=annotation)
@@ -74,7 +77,12 @@ def _parameter(field: RequestField, defaults: Mapping[str, Any]) -> inspect.Para
         annotation=Annotated[
             kind,
             typer.Option(
-                *option.words, help=option.help, metavar=option.metavar, show_default=False, hidden=option.later
+                *option.words,
+                help=option.help,
+                metavar=option.metavar,
+                show_default=False,
+                hidden=option.later,
+                autocompletion=BY_WORD.get(option.completes),
             ),
         ],
     )

@@ -12,24 +12,28 @@ from typing import Any, ClassVar, NamedTuple, Protocol
 class Option(NamedTuple):
     """The words of an option (none: an argument), what it does, and what stands for its value in the help.
 
-    later: not in this version yet: hidden in the help, and refused by name.
+    later: not in this version yet: hidden in the help, and refused by name; completes: by which of the words of
+    cli/completion.py a shell completes it.
     """
 
     words: tuple[str, ...]
     help: str
     metavar: str | None = None
     later: bool = False
+    completes: str = ""
 
 
-SET = Option(("--set",), "Set a parameter, or a dotted key of the spec. May be repeated.", "NAME=VALUE")
-CASE = Option(("--case",), "In a load case of the spec; what --set says goes on top.", "NAME")
+SET = Option(
+    ("--set",), "Set a parameter, or a dotted key of the spec. May be repeated.", "NAME=VALUE", completes="set"
+)
+CASE = Option(("--case",), "In a load case of the spec; what --set says goes on top.", "NAME", completes="case")
 OUTPUT = Option(("--output", "-o"), "Write there, whole or not at all.", "FILE")
 QUIET = Option(("--quiet", "-q"), "No warnings on standard error.")
 TIME_LIMIT = Option(("--time-limit",), "Give up after that long.", "SECONDS")
 TIME_LIMIT_EACH = Option(("--time-limit",), "Give up on a spec after that long; the others go on.", "SECONDS")
 UNITS = Option(("--units",), "Units of tables, such as kN,mm,deg,rpm; all other forms stay SI.", "UNIT,...")
 NO_REDUCE = Option(("--no-reduce",), "Solve all of the scene, in full.")
-SPEC = Option((), "The scene's YAML file; - reads standard input.", "SPEC")
+SPEC = Option((), "The scene's YAML file; - reads standard input.", "SPEC", completes="spec")
 
 
 class Request(Protocol):

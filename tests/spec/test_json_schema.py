@@ -15,7 +15,7 @@ from jsonschema import Draft7Validator
 
 from heuncli.joint_kinds import TYPES
 from heuncli.report.export import to_json
-from heuncli.results_json_schema import results_schema
+from heuncli.report.results_json_schema import results_schema
 from heuncli.results_schema import REPORTS, SHARES
 from heuncli.spec.json_schema import spec_schema
 from heuncli.spec.load import load

@@ -12,7 +12,12 @@ class CheckRequest(NamedTuple):
 
     paths: Annotated[
         tuple[str, ...],
-        Option((), "YAML files, and folders: every *.yaml below, but for folders named broken.", "PATH..."),
+        Option(
+            (),
+            "YAML files, and folders: every *.yaml below, but for folders named broken.",
+            "PATH...",
+            completes="spec",
+        ),
     ]
     format: Annotated[str | None, Option(("--format",), "How to write it. Default: table.", "|".join(FORMATS))] = None
     output: Annotated[str | None, OUTPUT] = None

@@ -9,7 +9,7 @@ from typing import Any, NamedTuple
 from heuncli.cli.entry import UsageError, worst
 from heuncli.cli.output import emit
 from heuncli.cli.units import TABLES, say_what_stays
-from heuncli.commands.run.command import RunTask, leave, solved
+from heuncli.commands.run.scene import RunTask, leave, solved
 from heuncli.errors import Problem
 from heuncli.foreign_text import shown
 from heuncli.report.export import dump

@@ -3,55 +3,44 @@
 from __future__ import annotations
 
 import time
-from collections.abc import Callable, Mapping, Sequence
-from typing import TYPE_CHECKING, Any, NamedTuple
-
-import numpy as np
+from collections.abc import Mapping
+from typing import TYPE_CHECKING, Any
 
 from heuncli.cli import alarm, memory
 from heuncli.cli.entry import UsageError
 from heuncli.cli.guard import require_other_file
-from heuncli.cli.output import emit, say
-from heuncli.cli.solving import choice, instants, overrides, positive, timings, tolerance, warn
+from heuncli.cli.output import emit
+from heuncli.cli.solving import choice, overrides, positive, tolerance
 from heuncli.cli.target import format_of
 from heuncli.cli.units import TABLES, say_what_stays, units
-from heuncli.commands.run import searches
 from heuncli.commands.run.request import FORMATS, RunRequest
+from heuncli.commands.run.scene import RunTask, leave, solved
 from heuncli.errors import Problem
 from heuncli.kinetostatics.joint_axes import JOINT_AXES
 from heuncli.nearest import did_you_mean, nearest
 from heuncli.records import replace
-from heuncli.report.cut_runs import LOADS
-from heuncli.report.heading import write_heading, write_heading_markdown
-from heuncli.report.labels import Labels, labels_of
-from heuncli.report.page import EXPORT_DEFAULT, page_of
-from heuncli.report.page_width import fit
-from heuncli.report.table_units import Units
-from heuncli.report.text_table import WIDTH, TextTable, markdown, plain
-from heuncli.results import Results
+from heuncli.report.page import EXPORT_DEFAULT
 from heuncli.results_schema import REPORT_OF, REPORTS, SHARES, quantity, with_shared
 from heuncli.spec.load import load, load_with_cases
 from heuncli.spec.models import Spec
 from heuncli.spec.names import ALL_CASES
-from heuncli.study.ask.study import Study
-from heuncli.study.model.error_places import placed
 from heuncli.study.model.memory_estimate import Room
 from heuncli.study.model.options import Options
 from heuncli.study.model.selection import EntryKeys, Selection, asked_by, entries_of, entry_at
-from heuncli.study.workflow import solve
 from heuncli.telling.selection import told_by_default
 
 if TYPE_CHECKING:
     from heuncli.study.ask.measure import MeasureRequest
 
 ENDINGS = {".json": "json", ".csv": "csv", ".md": "markdown", ".txt": "table", "": "table"}
-NOT_SEARCHED = "extremes among the samples only: too many quantities to search between them"
-AXIS: EntryKeys = ("foundation", "axis")
-AT_INSTANTS = "a line in space has no extremes: the central axis is shown at instants, by --at or --all"
 
 
 def main(request: RunRequest) -> int:
     """Run the command; returns the exit code."""
+    if request.watch:
+        from heuncli.commands.run.watching import watch  # of few runs
+
+        watch(request, main)
     require_other_file(request.output, [request.spec])
     form = format_of(request.format, request.output, ENDINGS, FORMATS)
     asked: list[MeasureRequest] = []
@@ -91,44 +80,6 @@ def main(request: RunRequest) -> int:
     emit(text, request.output)
     say_what_stays(request.units, "--measure" if asked else form, request.quiet)
     return leave(task, spec, study)
-
-
-class RunTask(NamedTuple):
-    """What is to be told of a scene: the options, what is asked for, and in which units tables show it."""
-
-    request: RunRequest
-    form: str
-    options: Options
-    what: Selection
-    asked: Sequence[MeasureRequest]
-    units: Units
-
-
-def solved(task: RunTask, spec: Spec) -> tuple[Study, str]:
-    """A scene solved, and what is told of it as text."""
-    request, what = task.request, task.what
-    with placed(spec):
-        study = solve(spec, task.options)
-        if task.asked:
-            from heuncli.cli import measure
-
-            return study, measure.write(task.asked, study, task.form)
-        named = (request.only is not None or spec.report is not None) and "foundation" in what.reports
-        labels = replace(labels_of(spec), units=task.units)
-        return study, _report(request, task.form, study, labels, what, details=named)
-
-
-def leave(task: RunTask, spec: Spec, study: Study, place: str = "heun") -> int:
-    """Tell warnings and times; returns the exit code."""
-    later = list(study.later_warnings)
-    if task.asked:
-        from heuncli.cli import measure
-
-        later += measure.warnings(task.asked, study)
-    warnings = warn(spec, study.results, task.request.quiet, place, later)
-    if task.request.verbose:
-        say(f"{place}: {timings(study.results.work)}")
-    return _strict(study.results, warnings) if task.request.strict else 0
 
 
 def _only(words: str) -> tuple[frozenset[str], tuple[str, ...]]:
@@ -185,64 +136,3 @@ def _meant(path: str, known: Mapping[EntryKeys, Mapping[str, Any]]) -> str:
         return f"did you mean {'.'.join(entry_at(entry.split('.'), known)[0] or ())}?"
     near = nearest(path, (*REPORTS, SHARES))
     return f"did you mean {near}?" if near else "such as --only foundation,joints.NAME"
-
-
-def _report(request: RunRequest, form: str, study: Study, labels: Labels, what: Selection, *, details: bool) -> str:
-    wanted = what.reports
-    at = instants(request.at, study.results.time) if request.at is not None else None
-    shown = study.results if at is None else study.resample(at)
-    if form not in TABLES:
-        from heuncli.report.export import to_csv, to_json  # tables do without
-
-        return to_json(shown) if form == "json" else to_csv(shown, labels)
-    page = page_of(study.results, labels, study.magnitudes, details=details)
-    if study.results.impulses:
-        page = page._replace(struck=study.struck_along([load.name for load in LOADS]))
-    one = len(study.results.time) == 1
-    extremes = None
-    if not (request.all or at is not None or (one and not page.has_runs)):
-        extremes = searches.rows(page, study, wanted)
-        if page.has_runs:
-            page = page._replace(along_runs=searches.along_runs(page, study))
-    shares = study if SHARES in wanted else None
-    if extremes is None or one:
-        tables = page.instants(shown, every_cut=request.all, searched=extremes, shares=shares)
-    else:
-        tables = page.extremes(extremes, shares)
-        if not extremes.searched:
-            tables.append(TextTable("", notes=(NOT_SEARCHED,)))
-        if AXIS in what.entries:
-            tables.append(TextTable("", notes=(AT_INSTANTS,)))
-    if not tables:
-        tables = [TextTable("", notes=(f"nothing to show of {', '.join(sorted(wanted))}: the scene has none",))]
-    if form == "markdown":
-        return write_heading_markdown(study.results, request.verbose) + "\n".join(map(markdown, tables))
-    return write_heading(study.results, request.verbose) + "".join("\n" + text for text in _writer(request)(tables))
-
-
-def _writer(request: RunRequest) -> Callable[[list[TextTable]], list[str]]:
-    """How tables become text: fitted to a terminal where one is written to, else to a page."""
-    if request.output is None:
-        from heuncli.cli import terminal  # a file needs nothing of it
-
-        if terminal.present():
-            return terminal.write
-    return lambda tables: [plain(part, WIDTH) for table in tables for part in fit(table, WIDTH)]
-
-
-def _strict(results: Results, warnings: list[str]) -> int:
-    """1 if there are warnings or open reactions, and why."""
-    loads = [results.joints, results.sections, results.foundation.get("supports", {})]
-    for struck in results.impulses:
-        supports = struck.get("foundation", {}).get("supports", {})
-        loads += [struck.get("joints", {}), struck.get("sections", {}), supports]
-    unsure = [name for block in loads for name, part in block.items() if part.get("open") or _has_open(part)]
-    if warnings:
-        say(f"heun: --strict: {len(warnings)} warning{'s' * (len(warnings) > 1)}")
-    if unsure:
-        say(f"heun: --strict: open reactions in {', '.join(dict.fromkeys(unsure))}")
-    return int(bool(warnings or unsure))
-
-
-def _has_open(part: dict[str, Any]) -> bool:
-    return any(isinstance(part.get(key), np.ndarray) and np.isnan(part[key]).any() for key in ("force", "moment", "N"))

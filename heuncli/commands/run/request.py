@@ -27,12 +27,18 @@ class RunRequest(NamedTuple):
             "Only these: motion, points, foundation, joints, sections, forces, energy, impulses, events, shares; or "
             "entries: joints.NAME, foundation.axis, ...",
             "REPORT,...",
+            completes="only",
         ),
     ] = None
     set: Annotated[tuple[str, ...], SET] = ()
     case: Annotated[
         str | None,
-        Option(("--case",), "In a load case, or in all with their envelope; --set goes on top.", "NAME|all"),
+        Option(
+            ("--case",),
+            "In a load case, or in all with their envelope; --set goes on top.",
+            "NAME|all",
+            completes="case",
+        ),
     ] = None
     at: Annotated[str | None, Option(("--at",), "Show these instants instead of the extremes.", "T,...")] = None
     all: Annotated[bool, Option(("--all",), "Show every instant, and every cut of a run of cuts.")] = False
@@ -42,6 +48,7 @@ class RunRequest(NamedTuple):
             ("--measure",),
             "Print one number: 'max abs sections.middle.M1', 'final energy.kinetic', 'at 0.5 PATH'. May be repeated.",
             "WHAT",
+            completes="measure",
         ),
     ] = ()
     method: Annotated[
@@ -61,6 +68,7 @@ class RunRequest(NamedTuple):
         Option(("--axes",), "Joint loads in the axes of the one or the other body, as it turns.", "world|from|to"),
     ] = None
     units: Annotated[str | None, UNITS] = None
+    watch: Annotated[bool, Option(("--watch",), "Again at each save of the spec, until Ctrl-C.")] = False
     strict: Annotated[bool, Option(("--strict",), "Leave with 1 if there are warnings or open reactions.")] = False
     time_limit: Annotated[float | None, TIME_LIMIT] = None
     quiet: Annotated[bool, QUIET] = False

@@ -11,7 +11,7 @@ from heuncli.commands.schema.request import SchemaRequest
 def main(request: SchemaRequest) -> int:
     """Run the command; returns the exit code."""
     if request.results:
-        from heuncli.results_json_schema import results_schema
+        from heuncli.report.results_json_schema import results_schema
 
         schema = results_schema()
     else:

@@ -8,6 +8,6 @@ from heuncli.cli.options import TIME_LIMIT_EACH, Option
 class ValidateRequest(NamedTuple):
     """Read specs and report every error of every file."""
 
-    specs: Annotated[tuple[str, ...], Option((), "YAML files; - reads standard input.", "SPEC...")]
+    specs: Annotated[tuple[str, ...], Option((), "YAML files; - reads standard input.", "SPEC...", completes="spec")]
     time_limit_each: Annotated[float | None, TIME_LIMIT_EACH] = None
     quiet: Annotated[bool, Option(("--quiet", "-q"), "Nothing but errors.")] = False
