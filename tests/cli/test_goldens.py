@@ -4,6 +4,8 @@ from __future__ import annotations
 
 import json
 import os
+import subprocess
+import sys
 from collections.abc import Iterator
 from pathlib import Path
 from typing import Any
@@ -209,3 +211,13 @@ def test_a_full_disk_leaves_what_was_there(heun: Heun, folder: Path, monkeypatch
     assert (done.returncode, "[output-failed]" in done.stderr) == (5, True)
     assert file.read_bytes() == before
     assert [path.name for path in (folder / "g").iterdir()] == ["hanging.json"]
+
+
+@pytest.mark.parametrize("name", ["double", "slider_crank", "hammered_four_bar"])
+def test_the_plain_kernel_passes_what_the_compiled_one_kept(heun: Heun, folder: Path, name: str) -> None:
+    spec = str(ROOT / "specs" / f"{name}.yaml")
+    assert heun("check", spec, "--golden", "g", "--update", "--force").returncode == 0
+    env = {**os.environ, "HEUN_KERNEL": "pure"}
+    words = [sys.executable, "-m", "heuncli", "check", spec, "--golden", "g"]
+    done = subprocess.run(words, cwd=folder, env=env, capture_output=True, text=True, check=False)
+    assert (done.returncode, done.stderr) == (0, "")

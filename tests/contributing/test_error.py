@@ -38,6 +38,7 @@ def long_title(draft: DraftDocument) -> Iterator[Violation]:
 heun: 1
 title: {"a crank, " * 10}
 bodies: {{a: {{mass: 4, center: [0, 0, 0], inertia: [1, 1, 1]}}}}
+# cure: {"a crank, " * 10} => a crank
 """,
     },
 )
