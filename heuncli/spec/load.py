@@ -207,7 +207,7 @@ class Loading:
 
     def expected(self, document: f.Document) -> Iterator[tuple[int, f.ExpectEntry]]:
         """What is expected in the case at hand, by its place in the list; cases that are none are reported."""
-        known = self.block(CASES)
+        known = mapping(self.data.get(CASES))
         for i, item in document.expect.items():
             if item.case is not None and item.case not in known:
                 hint = did_you_mean(item.case, known, "cases") if known else "cases: {NAME: {set: {...}}}"

@@ -99,6 +99,7 @@ def test_a_golden_file_holds_all_cases(heun: Heun, scene: Path) -> None:
         (("m: 3 kg", "m: 3 m"), "bodies.bar.mass", "in case heavy: "),
         (("m: 3 kg", "cases.tilted.set.m: 2"), "cases.heavy.set", "in a load case [no-such-key]"),
         (("  heavy:", "  all:"), "cases.all", "[reserved-name]"),
+        (("  heavy: {title: with its load, set: {m: 3 kg}}", "  heavy: 3"), "cases.heavy", "[wrong-kind]"),
     ],
 )
 def test_what_is_wrong_in_a_case_is_told_at_its_place(

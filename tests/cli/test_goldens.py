@@ -140,6 +140,8 @@ def test_a_golden_file_without_a_spec_and_a_spec_without_one(heun: Heun, folder:
     (folder / "g" / "old.json").write_text("{}")
     done = heun("check", "specs", "--golden", "g")
     assert done.returncode == 0
+    assert "1 spec without a golden file" in done.stdout
+    assert "warning: specs/hanging.yaml: no golden file: --update writes it" in done.stderr
     assert "g/old.json: a golden file without a spec" in done.stderr
     strict = heun("check", "specs", "--golden", "g", "--strict")
     assert strict.returncode == 1

@@ -19,9 +19,10 @@ from heuncli.cli.solving import warning_lines
 from heuncli.commands.check import goldens
 from heuncli.commands.check.checked import EXPECTED, Checked, Outcome
 from heuncli.commands.check.folders import Found
-from heuncli.commands.check.kept_outcomes import kept_outcomes
+from heuncli.commands.check.kept_outcomes import NO_FILE, kept_outcomes
 from heuncli.commands.check.request import CheckRequest
 from heuncli.errors import Finding, HeunError, SpecError
+from heuncli.foreign_text import shown
 from heuncli.report.digits import OPEN
 from heuncli.results import Array
 from heuncli.spec.load import load_with_cases
@@ -97,6 +98,8 @@ def _compared(task: Task, request: CheckRequest, jobs: int, items: list[tuple[st
     if task.file is not None:
         more, golden = kept_outcomes(task.file, old, _file(task, spec, runs), request)
         outcomes += more
+        if old is None and not request.update and not request.strict and not request.quiet:
+            said.append(f"warning: {shown(path)}: {NO_FILE}")
     alarm.disarm()
     return Checked(path, tuple(outcomes), said=tuple(said), golden=golden)
 

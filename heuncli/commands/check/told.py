@@ -78,6 +78,8 @@ def summary(told: AllChecked) -> str:
     parts = [count(len(told.checked), "spec"), f"{len(held)} passed", f"{len(failed)} failed"]
     parts += [f"{count(errors, 'spec')} not solved"] if errors else []
     parts += [f"{count(silent, 'spec')} ran with nothing expected"] if silent else []
+    bare = sum(outcome.kind == KEPT and outcome.warned and not _is_written(outcome) for outcome in outcomes)
+    parts += [f"{count(bare, 'spec')} without a golden file"] if bare else []
     parts += [f"{shown(folder.path)} passed by" for folder in told.skipped]
     return ", ".join(parts)
 
