@@ -8,6 +8,7 @@ In the message % and the ends of lines are written as %25, %0D and %0A, in a pro
 from __future__ import annotations
 
 from collections.abc import Iterable, Iterator
+from pathlib import PurePath
 from typing import NamedTuple
 
 from heuncli.foreign_text import shown_lines
@@ -28,7 +29,8 @@ class Annotation(NamedTuple):
     column: int = 0
 
     def __str__(self) -> str:
-        given = (("file", self.file), ("line", self.line), ("col", self.column), ("title", self.title))
+        file = PurePath(self.file).as_posix() if self.file else ""  # a workflow finds none that begins with ./
+        given = (("file", file), ("line", self.line), ("col", self.column), ("title", self.title))
         properties = ",".join(f"{name}={_written(str(value), IN_PROPERTIES)}" for name, value in given if value)
         message = _written(self.message, IN_MESSAGES)
         return f"::{self.kind}{' ' * bool(properties)}{properties}::{message}"

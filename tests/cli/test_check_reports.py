@@ -102,6 +102,13 @@ def test_failures_and_errors_as_lines_of_a_workflow(heun: Heun) -> None:
     assert done.stdout.splitlines()[-1] == "3 specs, 1 passed, 1 failed, 1 spec not solved"
 
 
+def test_files_are_named_as_a_pipeline_finds_them(heun: Heun, folder: Path) -> None:
+    (folder / "wrong.yaml").unlink()
+    done = heun("check", ".", "--format", "github", "--junit", "report.xml", "-k", "failing")
+    assert "::error file=failing.yaml,line=11" in done.stdout
+    assert [suite.name for suite in JUnitXml.fromfile(str(folder / "report.xml"))] == ["failing.yaml"]
+
+
 def test_markdown_for_the_summary_of_a_job(heun: Heun) -> None:
     done = heun("check", "expecting.yaml", "failing.yaml", "--format", "markdown")
     assert done.stdout.startswith("### heun check: failed\n\n2 specs, 1 passed, 1 failed\n")

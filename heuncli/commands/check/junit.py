@@ -31,7 +31,7 @@ def junit_text(checked: Sequence[Checked], orphans: Sequence[str], strict: bool)
 def _suite(one: Checked) -> ET.Element:
     name = PurePath(one.path).with_suffix("").as_posix()
     cases = [_solves(one, name), *(_case(one, name, outcome) for outcome in one.outcomes)]
-    return _counted({"name": legible(one.path), "file": legible(one.path), "time": f"{one.seconds:.3f}"}, cases)
+    return _counted({"name": _place(one.path), "file": _place(one.path), "time": f"{one.seconds:.3f}"}, cases)
 
 
 def _counted(given: dict[str, str], cases: Sequence[ET.Element]) -> ET.Element:
@@ -81,8 +81,13 @@ def _of_orphans(orphans: Sequence[str], strict: bool) -> ET.Element:
 
 
 def _element(classname: str, name: str, file: str, line: int, seconds: float) -> ET.Element:
-    given = {"classname": legible(classname), "name": legible(name), "file": legible(file), "line": str(line)}
+    given = {"classname": legible(classname), "name": legible(name), "file": _place(file), "line": str(line)}
     return ET.Element("testcase", given | {"time": f"{seconds:.3f}"})
+
+
+def _place(path: str) -> str:
+    """A path as those who read a report look for it: without a ./ before it."""
+    return legible(PurePath(path).as_posix())
 
 
 def legible(text: str) -> str:
