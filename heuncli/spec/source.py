@@ -21,6 +21,8 @@ from heuncli.spec.reading import STANDARD_INPUT, read_bytes
 
 LARGEST = 64_000_000  # bytes, and characters; a scene of 100,000 bodies has about 40 million
 DEEPEST = 64
+TOO_DEEP = f"nested more than {DEEPEST} levels deep"
+TOO_DEEP_HINT = "no value of a spec is: is a bracket too many open?"
 
 SMALLEST = "{heun: 1, bodies: {ball: {mass: 1, center: [0, 0, 0], inertia: [0, 0, 0]}}}"
 
@@ -158,11 +160,24 @@ def not_yaml(file: str, text: str, error: yaml.MarkedYAMLError) -> list[Problem]
     line, column = (mark.line + 1, mark.column + 1) if mark else (1, 1)
     # what is opened after the place where the parser stopped was not its reason
     stopped = sum(len(shown) + 1 for shown in text.split("\n")[: line - 1]) + column - 1
+    if "nesting depth" in (error.problem or ""):  # a bound of the parser's own, met before its events come
+        place = position(text, deep_bracket(text[:stopped]))
+        return [Problem("too-deep", TOO_DEEP, SourceLocation(file, *place), TOO_DEEP_HINT)]
     if found := mismatches(text, stopped):
         at = [SourceLocation(file, *position(text, one.at)) for one in found]
         return [Problem("not-yaml", f"not YAML: {one.message}", at[k], one.hint) for k, one in enumerate(found)]
     what = error.problem or str(error)
     return [Problem("not-yaml", f"not YAML: {what}", SourceLocation(file, line, column), yaml_hint(text, line, what))]
+
+
+def deep_bracket(text: str) -> int:
+    """Where the bracket stands that is nested one level too deep."""
+    depth = 0
+    for index, letter in enumerate(text):
+        depth += (letter in "[{") - (letter in "]}")
+        if depth > DEEPEST:
+            return index
+    return len(text)
 
 
 def yaml_hint(text: str, line: int, what: str) -> str:
@@ -298,8 +313,7 @@ class Builder:
         path = self.put(container, event)
         self.stack.append(OpenContainer(container, path))
         if len(self.stack) > DEEPEST:
-            hint = "no value of a spec is: is a bracket too many open?"
-            problem = self.problem("too-deep", f"nested more than {DEEPEST} levels deep", event, hint=hint)
+            problem = self.problem("too-deep", TOO_DEEP, event, hint=TOO_DEEP_HINT)
             raise SpecError(*self.problems, problem)
 
     def put(self, value: Any, event: Any) -> Path_:

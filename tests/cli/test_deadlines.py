@@ -69,7 +69,7 @@ def forever(*_: Any, **__: Any) -> Any:
             "run swinging.yaml",
             "while extremes between the samples were searched",
         ),
-        ("heuncli.commands.run.command._report", "run swinging.yaml", "before the work was done"),
+        ("heuncli.commands.run.scene._report", "run swinging.yaml", "before the work was done"),
         (
             "heuncli.commands.probing.study.growing",
             "probe swinging.yaml",

@@ -64,7 +64,7 @@ def test_what_is_read_stays(
     named: Callable[[Path], str],
 ) -> None:  # fmt: skip
     """Refused before anything is solved."""
-    for module in ("run.command", "check.checking"):
+    for module in ("run.scene", "check.checking"):
         monkeypatch.setattr(f"heuncli.commands.{module}.solve", None)
     before, inode = (scene / read).read_bytes(), (scene / read).stat().st_ino
     form = () if writer[1] != "-o" else ("--format", "json")

@@ -12,6 +12,7 @@ from pathlib import Path
 import pytest
 
 from tests.shared.command import HANGING, Heun
+from tests.shared.processes import heard
 
 TABLED = (
     HANGING
@@ -27,7 +28,8 @@ class Watching:
         self.told = folder / "told.txt"
         self.output = self.told.open("w")
         words = [sys.executable, "-u", "-m", "heuncli", "run", "scene.yaml", *WORDS]
-        self.process = subprocess.Popen(words, cwd=folder, stdout=self.output, stderr=subprocess.STDOUT)
+        with heard():
+            self.process = subprocess.Popen(words, cwd=folder, stdout=self.output, stderr=subprocess.STDOUT)
 
     def wait_for(self, text: str, times: int = 1) -> None:
         """Until it was written so often."""

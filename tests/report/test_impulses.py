@@ -13,7 +13,7 @@ import pytest
 
 from heuncli.cli import measure
 from heuncli.cli.entry import UsageError
-from heuncli.commands.run.command import _strict
+from heuncli.commands.run.scene import _strict
 from heuncli.errors import SpecError
 from heuncli.report.export import to_csv, to_json
 from heuncli.report.heading import write_heading
