@@ -7,6 +7,7 @@ What a schema cannot say is left to `heun validate`: that a name is there, that 
 from __future__ import annotations
 
 from collections.abc import Iterator, Mapping
+from pathlib import Path
 from typing import Any
 
 from pydantic import BaseModel
@@ -17,7 +18,9 @@ from heuncli.spec import format_shapes as fs
 from heuncli.spec.chapters import CHAPTERS, INLINE, TOP
 from heuncli.spec.fields import Entry
 from heuncli.spec.key_rows import KeyRow, rows_by_chapter
+from heuncli.spec.source import read
 
+STARTERS = Path(__file__).parents[1] / "starters"
 DRAFT = "http://json-schema.org/draft-07/schema#"
 REF = "#/definitions/{model}"
 NULL = {"type": "null"}
@@ -41,6 +44,8 @@ def spec_schema() -> dict[str, Any]:
     own = definitions[f.BodyEntry.__name__]["properties"]["shapes"]
     own.pop("anyOf", None)
     own |= {"type": "array", "items": {"oneOf": shapes}}
+    for model, entry in _examples():
+        definitions[model.__name__].setdefault("examples", [entry])
     head = definitions.pop("HeadEntry")
     top = head["properties"] | dict(_blocks())
     schema = {
@@ -71,6 +76,18 @@ def _needing(kind: str, keys: list[str]) -> dict[str, Any]:
 def _all_models() -> Iterator[type[BaseModel]]:
     for of in (*f.ENTRIES.values(), *f.SINGLE.values(), f.HeadEntry, f.ExpectEntry, f.TableEntry, fs.SHAPES):
         yield from of.values() if isinstance(of, Mapping) else [of]
+
+
+def _examples() -> Iterator[tuple[type[Entry], Any]]:
+    """Entries of the specs to start from, with the models that read them."""
+    for path in sorted(STARTERS.glob("*.yaml")):
+        spec = read(str(path), None).data
+        for block, of in f.ENTRIES.items():
+            for entry in spec.get(block, {}).values():
+                yield of[entry["type"]] if isinstance(of, Mapping) else of, entry
+        for key, model in f.SINGLE.items():
+            yield from [(model, spec[key])] if key in spec else []
+        yield from ((f.ExpectEntry, item) for item in spec.get("expect", ()))
 
 
 def _ref(model: type[Entry]) -> dict[str, Any]:

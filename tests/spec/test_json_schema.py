@@ -90,6 +90,25 @@ def test_every_key_of_the_manual_is_in_it_with_its_words() -> None:
     assert len(lacking) < 25, lacking
 
 
+def test_entries_have_examples_that_are_such_entries() -> None:
+    """Of the specs to start from: all kinds of entries that stand in them."""
+    schema = of_specs().schema
+    assert isinstance(schema, dict)
+    found = {name: block["examples"] for name, block in schema["definitions"].items() if "examples" in block}
+    assert {
+        "BodyEntry",
+        "PinJoint",
+        "DriveEntry",
+        "SpringEntry",
+        "SectionEntry",
+        "AnalysisEntry",
+        "CaseEntry",
+    } <= found.keys()
+    for name, examples in found.items():
+        own = Draft7Validator({**schema["definitions"][name], "definitions": schema["definitions"]})
+        assert all(own.is_valid(example) for example in examples), name
+
+
 def test_joint_kinds_are_named() -> None:
     text = json.dumps(of_specs().schema)
     assert all(f'"const": "{kind}"' in text for kind in TYPES)
