@@ -505,6 +505,8 @@ class Scene(Struct):
     columns: list[float]  # e_r of all rows, one after the other; then the reflectors that make R of them
     R: list[float]  # R' over the independent rows, the diagonal inverted
     J: list[float]  # one island's rows of J on its freedoms, scaled
+    left: list[float]  # of each of these rows the square of what the rows chosen before have left of it
+    filled: list[int]  # the freedoms that the pivot row has something of
     y: list[float]  # a number an independent row
     own: list[float]  # 1 - T of the lent inertias, and its Cholesky factor
     at_state: list[BodyAtState]  # what stands at the state whose directions are looked at

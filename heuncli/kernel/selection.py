@@ -70,12 +70,13 @@ def order_rows(scene: cython.pointer[Scene], island: cython.pointer[Island], lea
     found: cython.double = 1.0
     for k in range(island.row_count):
         scaled_row(scene, island, k)
+        scene.left[k] = square_left(scene, island, k, 0)
     while n < island.row_count and n < island.freedom_count:
-        best: cython.int = next_pivot(scene, island, n, least)
+        best: cython.int = next_pivot(scene, island, least)
         if best < 0:
             break
         row: cython.pointer[Closure] = cython.address(scene.closures[scene.indices[island.rows + best]])
-        left: cython.double = sqrt(square_left(scene, island, best, n))
+        left: cython.double = sqrt(scene.left[best])
         if left < found:
             found = left
         row.chosen = n
@@ -150,19 +151,17 @@ def square_left(
 
 
 def next_pivot(
-    scene: cython.pointer[Scene], island: cython.pointer[Island], n: cython.Py_ssize_t, least: cython.double
+    scene: cython.pointer[Scene], island: cython.pointer[Island], least: cython.double
 ) -> cython.int:
     """The row with most left of it; an earlier one is preferred a little, which keeps the choice steady. -1: none."""
     k: cython.Py_ssize_t
-    left: cython.double
     best: cython.int = -1
     most: cython.double = least * least / scene.limits.preference
     for k in range(island.row_count):
         row: cython.pointer[Closure] = cython.address(scene.closures[scene.indices[island.rows + k]])
         if row.chosen < 0 and row.rank >= 0:
-            left = square_left(scene, island, k, n)
-            if left > most * scene.limits.preference:
-                most = left
+            if scene.left[k] > most * scene.limits.preference:
+                most = scene.left[k]
                 best = k
     return best
 
@@ -170,25 +169,48 @@ def next_pivot(
 def take_out(
     scene: cython.pointer[Scene], island: cython.pointer[Island], best: cython.Py_ssize_t, n: cython.Py_ssize_t
 ) -> cython.void:
-    """Reflect what is left of the pivot row onto the n-th direction, and all rows not yet chosen with it."""
+    """Reflect what is left of the pivot row onto the n-th direction, and all rows not yet chosen with it.
+
+    A loop meets few of the freedoms: only where the pivot row has something is there anything to reflect, and a row
+    that has nothing there stays as it is, and as much is left of it.
+    """
     i: cython.Py_ssize_t
     k: cython.Py_ssize_t
+    at: cython.Py_ssize_t
     width: cython.Py_ssize_t = island.freedom_count
     J: cython.p_double = scene.J
     v: cython.Py_ssize_t = width * best
     x: cython.double
-    square: cython.double = square_left(scene, island, best, n)
-    left: cython.double = sqrt(square)
-    reflector: cython.double = 1.0 / (square + left * fabs(J[v + n]))
+    left: cython.double = sqrt(scene.left[best])
+    reflector: cython.double = 1.0 / (scene.left[best] + left * fabs(J[v + n]))
     J[v + n] += left if J[v + n] > 0.0 else -left
+    filled: cython.Py_ssize_t = list_filled(scene, v, n, width)
     for k in range(island.row_count):
-        if scene.closures[scene.indices[island.rows + k]].chosen < 0:
-            x = 0.0
-            for i in range(n, width):
-                x += J[v + i] * J[width * k + i]
+        if scene.left[k] == 0.0 or scene.closures[scene.indices[island.rows + k]].chosen >= 0:
+            continue
+        at = width * k
+        x = 0.0
+        for i in range(filled):
+            x += J[v + scene.filled[i]] * J[at + scene.filled[i]]
+        if x != 0.0:
             x *= reflector
-            for i in range(n, width):
-                J[width * k + i] -= x * J[v + i]
+            for i in range(filled):
+                J[at + scene.filled[i]] -= x * J[v + scene.filled[i]]
+        if x != 0.0 or J[at + n] != 0.0:
+            scene.left[k] = square_left(scene, island, k, n + 1)
+
+
+def list_filled(
+    scene: cython.pointer[Scene], v: cython.Py_ssize_t, n: cython.Py_ssize_t, width: cython.Py_ssize_t
+) -> cython.Py_ssize_t:
+    """The freedoms from the n-th on that the row of J at v has something of, ascending; how many."""
+    i: cython.Py_ssize_t
+    found: cython.Py_ssize_t = 0
+    for i in range(n, width):
+        if scene.J[v + i] != 0.0:
+            scene.filled[found] = i
+            found += 1
+    return found
 
 
 def scale_pose(scene: cython.pointer[Scene], row: cython.pointer[Closure], afresh: cython.bint) -> cython.void:
