@@ -40,6 +40,11 @@ class Recovered:
     holding: Array  # (n_t, contacts): 0 open, 1 closed, also where others close it
     causes: Columns | None = None  # (n_t, n_c): each row of the table of loads alone, then CAUSES; their sum is all
 
+    @property
+    def dependent(self) -> Array:
+        """How many of the closure rows that carry depend on others and are left out, (n_t,)."""
+        return np.asarray((self.rows["closed"] - self.rows["chosen"]).sum(axis=1))
+
     def at(self, which: Mask | Indices) -> Recovered:
         """At some of the instants."""
         own = fields(self)

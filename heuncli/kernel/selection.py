@@ -150,9 +150,7 @@ def square_left(
     return found
 
 
-def next_pivot(
-    scene: cython.pointer[Scene], island: cython.pointer[Island], least: cython.double
-) -> cython.int:
+def next_pivot(scene: cython.pointer[Scene], island: cython.pointer[Island], least: cython.double) -> cython.int:
     """The row with most left of it; an earlier one is preferred a little, which keeps the choice steady. -1: none."""
     k: cython.Py_ssize_t
     best: cython.int = -1

@@ -9,7 +9,7 @@ from typing import TYPE_CHECKING
 
 import numpy as np
 
-from heuncli.records import record, replace
+from heuncli.records import record
 from heuncli.results import Accuracy, Array, Block, Extremes, Magnitudes, Place, Results
 from heuncli.results_schema import REPORTS, SHARED, SHARES, with_shared
 from heuncli.spec.models import Spec
@@ -28,6 +28,7 @@ from heuncli.study.solve.history import History, resample
 if TYPE_CHECKING:  # loaded where there are conditions, or something strikes
     from heuncli.integration.check.changes import Changes
     from heuncli.study.compose.impulses import Impulses
+    from heuncli.study.compose.near_singular import TellsOpen
 
 MOST_SEARCHED = 1_000_000  # numbers to look at for the extremes of a whole report; one measure has no such bound
 NONE: frozenset[str] = frozenset()
@@ -111,14 +112,36 @@ class Study:
 
     def reports_at(self, times: Array, wanted: frozenset[str], setup: Setup | None = None) -> Results:
         """Some reports' blocks at other instants of the same run, and nothing beside them; setup: with other cuts."""
-        recovery = self._recovery(times, wanted)
-        recovery = recovery if setup is None else replace(recovery, setup=setup)
+        return self.reports_of(self.recovery_at(times, wanted, setup), wanted)
+
+    def reports_of(self, recovery: Recovery, wanted: frozenset[str], tells: TellsOpen | None = None) -> Results:
+        """Some reports' blocks of what was recovered; tells: puts in what is open, where that was not looked for."""
         own = self.results
-        shown, unknown = known_blocks(self.history, recovery, wanted)
+        shown, unknown = known_blocks(self.history, recovery, wanted, tells)
         accuracy: Accuracy = {"unknown": unknown.tolist()} if len(unknown) else {}
         times = recovery.recovered.times
         results = Results(own.title, own.spec, own.version, own.model, own.status, times, accuracy=accuracy, **shown)
         return require_finite(results)
+
+    def recovery_at(
+        self, times: Array, wanted: frozenset[str], setup: Setup | None = None, *, keep: bool = False
+    ) -> Recovery:
+        """What follows from the kernel's answers at some instants of the run, (n,) ascending; setup: with other cuts.
+
+        keep: for the next search, which begins at the same instants.
+        """
+        key = times.tobytes(), SHARES in wanted
+        found = self.kept.get(key)
+        if found is None:
+            found = self._recovery(times, wanted)
+            if keep:
+                self.kept[key] = found
+        return found if setup is None else found.with_cuts(setup)
+
+    @cached_property
+    def kept(self) -> dict[tuple[bytes, bool], Recovery]:
+        """What was recovered and is asked for again, by its instants and whether loads are told by cause."""
+        return {}
 
     def shares_at(self, times: Array) -> Results:
         """Loads by cause at other instants of the same run, (n,) ascending."""

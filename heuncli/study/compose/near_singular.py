@@ -10,7 +10,7 @@ where that is more than a table's digits of the largest of its kind.
 from __future__ import annotations
 
 from collections.abc import Iterator, Mapping, Sequence, Set
-from typing import Any, NamedTuple
+from typing import Any, NamedTuple, Protocol
 
 import numpy as np
 
@@ -30,6 +30,13 @@ OF_ACCELERATIONS = frozenset({"m/s²", "rad/s²", "N", "N·m", "Pa", "W", "N·m/
 PathAndUnit = tuple[str, str]  # numbers of one kind: the path of the schema, and the unit
 
 
+class TellsOpen(Protocol):
+    """What knows what is open at some instants without a look at them (study/search/open_between.py)."""
+
+    def put(self, shown: dict[str, Any], times: Array) -> None:
+        """Mark what is open in the blocks of these instants, in place."""
+
+
 class Leaf(NamedTuple):
     """An array over the instants: the block it stands in, its name there, and of which kind it is."""
 
@@ -39,15 +46,21 @@ class Leaf(NamedTuple):
 
 
 def without_unknown(
-    recovery: Recovery, wanted: Set[str], run: Trajectory, jumps: Sequence[float]
+    recovery: Recovery, wanted: Set[str], run: Trajectory, jumps: Sequence[float], tells: TellsOpen | None = None
 ) -> tuple[dict[str, Any], Array]:
-    """The blocks of a motion, nan where rounding reaches a number beside a singular pose; the instants of such."""
+    """The blocks of a motion, nan where rounding reaches a number beside a singular pose; the instants of such.
+
+    tells: puts in what is open, where the recovery does not look for it.
+    """
     shown = blocks_asked_for(recovery, wanted)
+    if tells is not None:
+        tells.put(shown, recovery.recovered.times)
     near = nearly_singular(recovery, wanted)
     if not len(near):
         return shown, np.zeros(0)
     moved = moved_states(recovery, near, run, jumps)
-    other = blocks_asked_for(Recovery(recovery.setup, moved, recovery.least_norm), wanted)
+    told = recovery.told and np.array_equal(moved.dependent, recovery.recovered.dependent[near].repeat(DIRECTIONS))
+    other = blocks_asked_for(Recovery(recovery.setup, moved, recovery.least_norm, told=told), wanted)
     unknown = np.zeros(len(near), dtype=bool)
     known = [
         (leaf, leaf.block[leaf.name][near], error(leaf.block[leaf.name][near], elsewhere.block[leaf.name]))

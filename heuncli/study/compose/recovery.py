@@ -19,7 +19,7 @@ from heuncli.kinetostatics.magnitudes import magnitudes
 from heuncli.kinetostatics.reactions import JointLoads, joint_loads
 from heuncli.mechanism.model import PairLoad
 from heuncli.records import record, replace
-from heuncli.results import Array, Block, CertainSum, Magnitudes
+from heuncli.results import Array, Block, CertainSum, Magnitudes, Mask
 from heuncli.results_schema import BLOWS, SHARED
 from heuncli.study.model.setup import Setup
 
@@ -31,6 +31,8 @@ if TYPE_CHECKING:  # loaded where a scene has closed chains, or sections, or loa
 
 HUNG_ON_RANK = SHARED  # reports that ask for the rank of the closures
 OF_ENERGY = frozenset({"energy", BLOWS})  # reports that tell energies
+WITHOUT_VERDICTS = frozenset({"states", "unsplit", "loads", "energy"})  # what is open has no say in them
+WITHOUT_CUTS = WITHOUT_VERDICTS | {"decided", "shares"}
 
 
 @record
@@ -38,7 +40,8 @@ class Recovery:
     """What follows from the kernel's answers at some instants; each thing is computed when it is first asked for.
 
     given: actions from outside that are no loads of the mechanism: the impulses of blows. causes: the names of the
-    kernel's columns, where these are not those of the mechanism.
+    kernel's columns, where these are not those of the mechanism. told: what is open at these instants is told
+    elsewhere, by what it is on either side of each (study/search/open_between.py), and not looked for.
     """
 
     setup: Setup
@@ -46,6 +49,24 @@ class Recovery:
     least_norm: bool
     given: tuple[Action, ...] = ()
     causes: tuple[str, ...] | None = None
+    told: bool = False
+
+    def with_cuts(self, setup: Setup) -> Recovery:
+        """The same of the scene with other cuts; what was computed stays."""
+        return self._sharing(replace(self, setup=setup), WITHOUT_CUTS)
+
+    def at(self, which: Mask) -> Recovery:
+        """At some of the instants."""
+        found: Recovery = replace(self, recovered=self.recovered.at(which))
+        return found
+
+    def as_told(self) -> Recovery:
+        """The same without a look for what is open; what was computed stays."""
+        return self._sharing(replace(self, told=True), WITHOUT_VERDICTS)
+
+    def _sharing(self, other: Recovery, names: frozenset[str]) -> Recovery:
+        other.__dict__.update({name: value for name, value in self.__dict__.items() if name in names})
+        return other
 
     @cached_property
     def states(self) -> BodyStates:
@@ -58,8 +79,10 @@ class Recovery:
         layout = self.setup.scene.layout
         if not layout.rows:
             return None
-        from heuncli.redundancy.resolve import resolve  # a tree starts faster without it
+        from heuncli.redundancy.resolve import Resolution, resolve  # a tree starts faster without it
 
+        if self.told:
+            return Resolution(self.unsplit)
         return resolve(self.setup.runner, self.recovered, self.states, self.unsplit, self.least_norm)
 
     @property

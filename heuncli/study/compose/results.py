@@ -23,6 +23,7 @@ from heuncli.version import VERSION
 
 if TYPE_CHECKING:  # loaded where something strikes
     from heuncli.study.compose.impulses import Impulses
+    from heuncli.study.compose.near_singular import TellsOpen
 
 
 def compose(
@@ -62,13 +63,18 @@ def compose(
     return require_finite(results)
 
 
-def known_blocks(history: History, recovery: Recovery, wanted: frozenset[str]) -> tuple[dict[str, Any], Array]:
-    """The blocks of the reports that are wanted, and the instants of a motion at which some of it is not known: nan."""
+def known_blocks(
+    history: History, recovery: Recovery, wanted: frozenset[str], tells: TellsOpen | None = None
+) -> tuple[dict[str, Any], Array]:
+    """The blocks of the reports that are wanted, and the instants of a motion at which some of it is not known: nan.
+
+    tells: puts in what is open, where the recovery does not look for it.
+    """
     if history.checked is None or not recovery.setup.scene.layout.rows:
         return blocks_asked_for(recovery, wanted), np.zeros(0)
     from heuncli.study.compose.near_singular import without_unknown  # only closed chains have singular poses
 
-    return without_unknown(recovery, wanted, history.checked.run, history.jumps)
+    return without_unknown(recovery, wanted, history.checked.run, history.jumps, tells)
 
 
 def impulses_of(setup: Setup, history: History, least_norm: bool, by_cause: bool) -> Impulses | None:

@@ -3,14 +3,20 @@
 from __future__ import annotations
 
 import math
-from typing import Protocol
+from functools import cached_property
+from typing import TYPE_CHECKING, Protocol
 
 import numpy as np
 
 from heuncli.results import Array, Extremes, Place, Results
+from heuncli.study.compose.recovery import Recovery
 from heuncli.study.model.setup import Setup
 from heuncli.study.search import extremes
 from heuncli.study.search.extremes import ColumnSearch
+
+if TYPE_CHECKING:  # loaded where a scene has closed chains
+    from heuncli.study.compose.near_singular import TellsOpen
+    from heuncli.study.search.open_between import OpenBetween
 
 
 class Sampleable(Protocol):
@@ -27,16 +33,26 @@ class Sampleable(Protocol):
     def reports_at(self, times: Array, wanted: frozenset[str], setup: Setup | None = None) -> Results:
         """Some reports' blocks at other instants; setup: with other cuts."""
 
+    def recovery_at(
+        self, times: Array, wanted: frozenset[str], setup: Setup | None = None, *, keep: bool = False
+    ) -> Recovery:
+        """What follows from the kernel's answers at other instants; keep: for the next search."""
+
+    def reports_of(self, recovery: Recovery, wanted: frozenset[str], tells: TellsOpen | None = None) -> Results:
+        """Some reports' blocks of what was recovered; tells: what knows what is open, if that is not looked for."""
+
 
 class StudyColumns:
     """A study as the columns that are searched; keeps the instants at which rounding reached some of them.
 
     setup: with runs of cuts as whole stretches, of which each quantity is two columns, its lowest and its highest.
+    The first instants asked for are the grid of the search: between these what is open follows from what it is there.
     """
 
     def __init__(self, study: Sampleable, searched: ColumnSearch, wanted: frozenset[str], setup: Setup | None) -> None:
         self.study, self.searched, self.wanted, self.setup = study, searched, wanted, setup
         self.unknown: list[float] = []
+        self.grid: list[Recovery] = []
         first = sum(map(len, searched.groups))
         runs = len(searched.errors) - len(searched.groups)
         self.groups = [*searched.groups, *([first + 2 * k, first + 2 * k + 1] for k in range(runs))]
@@ -46,17 +62,55 @@ class StudyColumns:
         study, setup = self.study, setup or self.setup
         if setup is None and np.array_equal(at, study.results.time):
             return study.results
-        results = study.reports_at(at, self.wanted, setup)
-        self.unknown.extend(results.accuracy.get("unknown", []))
-        return results
+        return self._noted(study.reports_at(at, self.wanted, setup))
 
     def columns(self, at: Array) -> Array:
         """The columns at some instants."""
         most = self.study.instants_at_once
-        return np.concatenate([self._part(at[i : i + most]) for i in range(0, len(at), most)])
+        parts = [at[i : i + most] for i in range(0, len(at), most)]
+        if self.grid:
+            return np.concatenate([self._between(part) for part in parts])
+        self.grid = [self.study.recovery_at(part, self.wanted, self.setup, keep=len(parts) == 1) for part in parts]
+        return np.concatenate([self._rows(self._of(recovery)) for recovery in self.grid])
 
-    def _part(self, at: Array) -> Array:
-        results = self.results(at)
+    @cached_property
+    def verdicts(self) -> OpenBetween | None:
+        """What is open between the instants of the grid; None where it has to be looked for at each."""
+        if any(recovery.decided is None for recovery in self.grid):  # a tree
+            return None
+        from heuncli.study.search.open_between import OpenBetween, verdicts  # where there are closed chains
+
+        found = [verdicts(recovery, self.wanted) for recovery in self.grid]
+        known = [own for own in found if own is not None]
+        return OpenBetween(known) if len(known) == len(found) else None
+
+    def _between(self, at: Array) -> Array:
+        """The columns at instants between those of the grid."""
+        recovery, tells = self.study.recovery_at(at, self.wanted, self.setup), self.verdicts
+        if tells is None:
+            return self._rows(self._of(recovery))
+        told = tells.tells(recovery.recovered)
+        if told.all():
+            return self._rows(self._of(recovery.as_told(), tells))
+        if not told.any():
+            return self._rows(self._of(recovery))
+        some = self._rows(self._of(recovery.at(told).as_told(), tells))
+        others = self._rows(self._of(recovery.at(~told)))
+        rows = np.empty((len(at), some.shape[1]))
+        rows[told], rows[~told] = some, others
+        return rows
+
+    def _of(self, recovery: Recovery, tells: OpenBetween | None = None) -> Results:
+        results = self.study.results
+        if self.setup is None and tells is None and np.array_equal(recovery.recovered.times, results.time):
+            return results
+        return self._noted(self.study.reports_of(recovery, self.wanted, tells))
+
+    def _noted(self, results: Results) -> Results:
+        self.unknown.extend(results.accuracy.get("unknown", []))
+        return results
+
+    def _rows(self, results: Results) -> Array:
         if self.searched.along is None:
             return self.searched.columns(results)
         from heuncli.study.search.stretches import envelope

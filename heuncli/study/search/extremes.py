@@ -26,6 +26,7 @@ FEW = 5  # instants of a smooth stretch, the least that show how it bends, and h
 MOST_ROUNDS = 60  # at a jump that nobody told of: halvings down to rounding
 MOST_PROBES = 100_000  # instants asked for in one search
 MOST_COLUMNS = 400  # of quantities that vary, in tables; beyond, the grid's own values stand
+SAME = 1e-4  # of an interval: how near two instants in it are asked as one; a summit is missed by the square of it
 GOOD_ENOUGH = 0.1  # of a quantity's own error: what a higher summit is not looked for beyond
 
 
@@ -74,6 +75,13 @@ class Targets(NamedTuple):
         """Promises of targets, where they are possible: no square is below 0."""
         bounded = np.tile(self.even, 2)[target] & (target < self.n)
         return np.asarray(np.where(bounded, np.minimum(promise, 0.0), promise))
+
+
+class Grid(NamedTuple):
+    """How many instants a search begins with, and the time from the first to the last [s]."""
+
+    count: int
+    span: float
 
 
 class Best(NamedTuple):
@@ -127,7 +135,8 @@ def search(
         between = between and len(distinct(owner[_varies(values[:, column])])) <= most
     complete = True
     if between and len(times) > 1:
-        complete = refined(sample, intervals_of(times, values, asked, found), asked, found, float(np.ptp(times)))
+        grid = Grid(len(times), float(np.ptp(times)))
+        complete = refined(sample, intervals_of(times, values, asked, found), asked, found, grid)
     value = np.repeat([-1.0, 1.0], n) * found.height
     at, column = found.at, found.column
     return Extremes(value[:n], at[:n], column[:n], value[n:], at[n:], column[n:], between, complete)
@@ -207,12 +216,15 @@ def _rises(heights: Array, step: Array, smooth: Mask) -> tuple[Array, Array]:
     return slope[:-2] * step[:, None], -slope[2:] * step[:, None]
 
 
-def refined(sample: ColumnsAt, pool: Intervals, asked: Targets, found: Best, span: float) -> bool:
-    """Divide the intervals until none promises more than what was found, which is kept up in place; whether so."""
+def refined(sample: ColumnsAt, pool: Intervals, asked: Targets, found: Best, grid: Grid) -> bool:
+    """Divide the intervals until none promises more than what was found, which is kept up in place; whether so.
+
+    Where more instants would be asked at once than the grid has, those next to each other are asked as one.
+    """
     probes = 0
     for turn in range(MOST_ROUNDS):
         promise = asked.possible(pool.promise(), pool.target)
-        wide = pool.t[:, 2] - pool.t[:, 1] > tolerances.SIDE_BY_SIDE * span
+        wide = pool.t[:, 2] - pool.t[:, 1] > tolerances.SIDE_BY_SIDE * grid.span
         worth = wide & (promise > (found.height + asked.enough(found.height))[pool.target])
         pool, promise = pool.some(worth), promise[worth]
         if not len(promise):
@@ -223,12 +235,28 @@ def refined(sample: ColumnsAt, pool: Intervals, asked: Targets, found: Best, spa
         some, rest = pool.some(now), pool.some(~now)
         at = some.probe()
         instants = distinct(at)
+        if len(instants) > grid.count:
+            at = together(at, some.t[:, 2] - some.t[:, 1])
+            instants = distinct(at)
         side = np.where(some.target < asked.n, -1.0, 1.0)
         height = side * sample(instants)[np.searchsorted(instants, at), some.column]
         probes += len(instants)
         found.take(height, at, some.column, some.target)
         pool = joined([rest, some.divided(at, height)])
     return False
+
+
+def together(at: Array, width: Array) -> Array:
+    """Instants in intervals of some width (n,), those next to each other as one.
+
+    What a machine has several of, as cylinders and wheels, has its extremes together but for rounding.
+    """
+    order = np.argsort(at, kind="stable")
+    ascending = at[order]
+    apart = np.append(True, np.diff(ascending) > SAME * np.minimum(width[order][1:], width[order][:-1]))
+    found = np.empty_like(at)
+    found[order] = ascending[np.maximum.accumulate(np.where(apart, np.arange(len(at)), 0))]
+    return found
 
 
 def _first(worth: Array, target: Indices, most: int) -> Mask:
