@@ -80,7 +80,7 @@ class Targets(NamedTuple):
 class Grid(NamedTuple):
     """How many instants a search begins with, and the time from the first to the last [s]."""
 
-    count: int
+    instants: int
     span: float
 
 
@@ -235,7 +235,7 @@ def refined(sample: ColumnsAt, pool: Intervals, asked: Targets, found: Best, gri
         some, rest = pool.some(now), pool.some(~now)
         at = some.probe()
         instants = distinct(at)
-        if len(instants) > grid.count:
+        if len(instants) > grid.instants:
             at = together(at, some.t[:, 2] - some.t[:, 1])
             instants = distinct(at)
         side = np.where(some.target < asked.n, -1.0, 1.0)
