@@ -1,7 +1,7 @@
 """Speed, printed: `python -m tests.bench [PART ...] [--against PATH]`. Nothing here asserts a time.
 
-Parts: motion, chart, chain, process, export, sections, causes, reduced, balance, lagrange, pipeline; each line:
-what, error, time.
+Parts: motion, chart, chain, process, export, sections, causes, reduced, balance, lagrange, pipeline, growth; each
+line: what, error, time; growth: counts, no times.
 figures: the few that matter in one table, with --against beside those of another checkout (tests/bench/figures.py).
 honesty: no times, but true error over estimate of each kind of number, over random scenes (tests/bench/honesty.py).
 """
@@ -40,6 +40,7 @@ from tests.bench.causes import by_cause
 from tests.bench.chart import chart
 from tests.bench.figures import figures
 from tests.bench.generated import chain
+from tests.bench.growth import growth
 from tests.bench.honesty import honesty
 from tests.bench.lagrange import equations
 from tests.bench.long import long
@@ -196,7 +197,7 @@ PARTS = {
     "motion": motion, "chart": charted, "chain": chains, "process": process, "export": export, "sections": sections,
     "causes": by_cause, "reduced": reduced, "balance": lambda: balanced(median_ms),
     "lagrange": lambda: equations(median_ms),
-    "pipeline": pipeline,
+    "pipeline": pipeline, "growth": growth,
 }  # fmt: skip
 
 if __name__ == "__main__":

@@ -49,7 +49,7 @@ class OpenBetween:
         same &= (holding[1:] == holding[:-1]).all(axis=1)
         for mask in self.open:
             if mask is not None:
-                same &= (mask[1:] == mask[:-1]).reshape(len(same), -1).all(axis=1)
+                same &= (mask[1:] == mask[:-1]).all(axis=tuple(range(1, mask.ndim)))
         self.same = same
 
     def tells(self, recovered: Recovered) -> Mask:
