@@ -77,7 +77,7 @@ class Targets(NamedTuple):
         return np.asarray(np.where(bounded, np.minimum(promise, 0.0), promise))
 
 
-class Grid(NamedTuple):
+class AtFirst(NamedTuple):
     """How many instants a search begins with, and the time from the first to the last [s]."""
 
     instants: int
@@ -135,8 +135,8 @@ def search(
         between = between and len(distinct(owner[_varies(values[:, column])])) <= most
     complete = True
     if between and len(times) > 1:
-        grid = Grid(len(times), float(np.ptp(times)))
-        complete = refined(sample, intervals_of(times, values, asked, found), asked, found, grid)
+        first = AtFirst(len(times), float(np.ptp(times)))
+        complete = refined(sample, intervals_of(times, values, asked, found), asked, found, first)
     value = np.repeat([-1.0, 1.0], n) * found.height
     at, column = found.at, found.column
     return Extremes(value[:n], at[:n], column[:n], value[n:], at[n:], column[n:], between, complete)
@@ -216,15 +216,15 @@ def _rises(heights: Array, step: Array, smooth: Mask) -> tuple[Array, Array]:
     return slope[:-2] * step[:, None], -slope[2:] * step[:, None]
 
 
-def refined(sample: ColumnsAt, pool: Intervals, asked: Targets, found: Best, grid: Grid) -> bool:
+def refined(sample: ColumnsAt, pool: Intervals, asked: Targets, found: Best, first: AtFirst) -> bool:
     """Divide the intervals until none promises more than what was found, which is kept up in place; whether so.
 
-    Where more instants would be asked at once than the grid has, those next to each other are asked as one.
+    Where more instants would be asked at once than at first, those next to each other are asked as one.
     """
     probes = 0
     for turn in range(MOST_ROUNDS):
         promise = asked.possible(pool.promise(), pool.target)
-        wide = pool.t[:, 2] - pool.t[:, 1] > tolerances.SIDE_BY_SIDE * grid.span
+        wide = pool.t[:, 2] - pool.t[:, 1] > tolerances.SIDE_BY_SIDE * first.span
         worth = wide & (promise > (found.height + asked.enough(found.height))[pool.target])
         pool, promise = pool.some(worth), promise[worth]
         if not len(promise):
@@ -235,7 +235,7 @@ def refined(sample: ColumnsAt, pool: Intervals, asked: Targets, found: Best, gri
         some, rest = pool.some(now), pool.some(~now)
         at = some.probe()
         instants = distinct(at)
-        if len(instants) > grid.instants:
+        if len(instants) > first.instants:
             at = together(at, some.t[:, 2] - some.t[:, 1])
             instants = distinct(at)
         side = np.where(some.target < asked.n, -1.0, 1.0)
