@@ -6,7 +6,7 @@ from typing import Any, NamedTuple
 
 from heuncli.expressions.grammar import RESERVED
 from heuncli.nearest import misspelt
-from heuncli.spec.fields import Entry, keys_of
+from heuncli.spec.entries import Entry, keys_of
 from heuncli.spec.format import BodyEntry, GroundEntry
 from heuncli.spec.models import Spec
 
