@@ -12,9 +12,11 @@ from __future__ import annotations
 
 from collections.abc import Callable, Iterator
 from functools import cache
-from typing import Any, NamedTuple, TypeVar, get_args, get_type_hints
+from typing import Any, TypeVar, get_args, get_type_hints
 
 from pydantic_core import core_schema
+
+from heuncli.named_tuples import NamedTuple
 
 E = TypeVar("E", bound="Entry")
 V = TypeVar("V")
@@ -113,7 +115,7 @@ class Tag(NamedTuple):
     name: str
 
 
-class Form:
+class OneOf:
     """A value of several forms, each a type with a Tag: `tag_of` says which one a value has."""
 
     def __init__(self, tag_of: Callable[[Any], str]) -> None:

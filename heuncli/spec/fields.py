@@ -19,7 +19,7 @@ from heuncli.expressions.programs import Expression
 from heuncli.nearest import afford
 from heuncli.number_range import is_in_range
 from heuncli.records import record
-from heuncli.spec.entries import Before, Entry, Form, Tag
+from heuncli.spec.entries import Before, Entry, OneOf, Tag
 from heuncli.spec.quantity import Scope, condition, in_time, kind_of, number, unit_in
 from heuncli.spec.words import FORMS
 
@@ -221,7 +221,7 @@ def kind_of_form(value: Any) -> str:
     return "single" if value is None or isinstance(value, str | int | float) else "mapping"
 
 
-FORM = Form(kind_of_form)
+FORM = OneOf(kind_of_form)
 PointOrName = Annotated[Annotated[Position, Tag("list")] | Annotated[str, Tag("single")], FORM]
 
 

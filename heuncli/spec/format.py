@@ -8,9 +8,10 @@ outside `spec` sees these models.
 from __future__ import annotations
 
 from collections.abc import Mapping
-from typing import Annotated, Any, Literal, NamedTuple
+from typing import Annotated, Any, Literal
 
 from heuncli.errors import Finding
+from heuncli.named_tuples import NamedTuple
 from heuncli.spec.entries import Entry, Tag, key
 from heuncli.spec.fields import (
     FORM,

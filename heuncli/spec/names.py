@@ -2,9 +2,10 @@
 
 from __future__ import annotations
 
-from typing import Any, NamedTuple
+from typing import Any
 
 from heuncli.expressions.grammar import RESERVED
+from heuncli.named_tuples import NamedTuple
 from heuncli.nearest import misspelt
 from heuncli.spec.entries import Entry, keys_of
 from heuncli.spec.format import BodyEntry, GroundEntry
