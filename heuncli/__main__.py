@@ -17,7 +17,7 @@ import os
 import sys
 import warnings
 
-from heuncli.cli import leaving
+from heuncli.cli import at_once, leaving
 
 os.environ.setdefault("OPENBLAS_NUM_THREADS", "1")
 MANY = 500_000  # objects made between two searches for dead cycles; 700 by default: 20 ms while modules are loaded
@@ -30,9 +30,11 @@ def main() -> None:
     fill_gaps()
     if not sys.warnoptions and os.environ.get("HEUN_DEBUG") != "1":
         warnings.simplefilter("ignore")  # a net: what warns is mended where it arises, and is an error in tests
-    from heuncli.cli.entry import enter  # after the environment is set
+    code = 0
+    if not at_once.answered(sys.argv[1:]):
+        from heuncli.cli.entry import enter  # after the environment is set
 
-    code = enter(sys.argv[1:])
+        code = enter(sys.argv[1:])
     leaving.deafen()
     gc.freeze()  # all memory goes with the process: the search at its end would take 30 ms
     sys.exit(code)

@@ -124,7 +124,7 @@ class BuildKernel(build_ext):
             extension.optional = self.kernel not in ("require", "compiled")
             self.forget(extension, but=Path(self.get_ext_fullpath(extension.name)).name)
             if extension.name.endswith(f".{KEEPER}"):
-                extension.define_macros.append(("HEUN_SOURCES", digest(FOLDER)))
+                extension.define_macros.append(("HEUN_SOURCES", digest(str(FOLDER))))
                 self.forget(extension)  # whatever was edited, it holds the digest of it all
         super().build_extensions()
         if not self.is_compiled():  # compiled modules call each other as C functions: all of them, or none

@@ -8,13 +8,13 @@ a cut there are two rows for it: there the side has to be named, unless both row
 from __future__ import annotations
 
 from collections.abc import Sequence
-from typing import NamedTuple
 
 import numpy as np
 
 from heuncli import tolerances
 from heuncli.errors import Finding
 from heuncli.expressions import units as u
+from heuncli.named_tuples import NamedTuple
 from heuncli.results import Array, Indices
 from heuncli.results_schema import counted
 from heuncli.run_places import COUNTED, MARKED

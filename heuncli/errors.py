@@ -5,9 +5,8 @@ Named tuples: to import dataclasses would take 10 ms, and `heun --version` needs
 
 from __future__ import annotations
 
-from typing import NamedTuple
-
 from heuncli.foreign_text import shown
+from heuncli.named_tuples import NamedTuple
 
 LONGEST = 5000  # characters of a message that are told: an expression of the longest, twice, and what is said of it
 

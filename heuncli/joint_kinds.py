@@ -11,7 +11,9 @@ declared planar `z` is the world's and `across` is z × axis. Lies below the spe
 
 from __future__ import annotations
 
-from typing import Literal, NamedTuple
+from typing import Literal
+
+from heuncli.named_tuples import NamedTuple
 
 Direction = Literal["axis", "to_axis", "first", "second", "z", "across"]
 Motion = Literal["turning", "sliding"]

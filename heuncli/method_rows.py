@@ -6,7 +6,9 @@ heuncli/integration/methods, a family to a file.
 
 from __future__ import annotations
 
-from typing import Literal, NamedTuple
+from typing import Literal
+
+from heuncli.named_tuples import NamedTuple
 
 
 class MethodRow(NamedTuple):

@@ -9,10 +9,12 @@ from __future__ import annotations
 
 from collections.abc import Mapping
 from dataclasses import dataclass, field
-from typing import Any, NamedTuple, TypedDict
+from typing import Any, TypedDict
 
 import numpy as np
 from numpy.typing import NDArray
+
+from heuncli.named_tuples import NamedTuple
 
 Array = NDArray[np.float64]
 Mask = NDArray[np.bool_]

@@ -8,12 +8,13 @@ from __future__ import annotations
 
 from collections.abc import Collection, Sequence
 from dataclasses import fields
-from typing import Any, NamedTuple
+from typing import Any
 
 import numpy as np
 
 from heuncli.cut_rows import row_at
 from heuncli.errors import Finding, Problem, SpecError
+from heuncli.named_tuples import NamedTuple
 from heuncli.nearest import begin_file, nearest
 from heuncli.results import Array, Block, Results
 from heuncli.results_schema import (

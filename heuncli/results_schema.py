@@ -9,7 +9,9 @@ three cuts is no vector. A word in capitals stands for a name of the scene; a na
 from __future__ import annotations
 
 from collections.abc import Collection, Iterable, Sequence
-from typing import NamedTuple, TypeAlias
+from typing import TypeAlias
+
+from heuncli.named_tuples import NamedTuple
 
 
 class Axis(NamedTuple):

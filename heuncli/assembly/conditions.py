@@ -7,7 +7,7 @@ angle, a held travel and drives only make the two stricter, so that no later ste
 from __future__ import annotations
 
 import math
-from typing import Literal, NamedTuple
+from typing import Literal
 
 import numpy as np
 
@@ -16,6 +16,7 @@ from heuncli.assembly.drives import CoordinateJet, drive_jet
 from heuncli.errors import Problem, SolveError
 from heuncli.joint_kinds import JOINTS
 from heuncli.mechanism.model import GROUND, Joint, Mechanism
+from heuncli.named_tuples import NamedTuple
 from heuncli.records import record
 from heuncli.results import Array
 from heuncli.shapes.rotations import about, perpendicular, turn_onto

@@ -2,9 +2,8 @@
 
 from __future__ import annotations
 
-from typing import NamedTuple
-
 from heuncli.expressions.programs import Expression
+from heuncli.named_tuples import NamedTuple
 
 
 class CoordinateJet(NamedTuple):

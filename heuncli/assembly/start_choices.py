@@ -4,7 +4,6 @@ from __future__ import annotations
 
 from collections import defaultdict
 from collections.abc import Iterable
-from typing import NamedTuple
 
 import numpy as np
 
@@ -12,6 +11,7 @@ from heuncli import tolerances
 from heuncli.assembly.rates import Rates
 from heuncli.assembly.walk import AssemblyPoses, Tree
 from heuncli.mechanism.model import Mechanism
+from heuncli.named_tuples import NamedTuple
 from heuncli.results import Array
 from heuncli.shapes.rotations import to_vector
 

@@ -12,7 +12,7 @@ from collections.abc import Callable, Sequence
 from pathlib import Path
 from typing import TypeVar
 
-from heuncli.cli import alarm, memory, plain, registry
+from heuncli.cli import alarm, at_once, memory, plain, registry
 from heuncli.cli.files import ReaderGone
 from heuncli.cli.options import fields_of
 from heuncli.cli.output import emit, say
@@ -100,16 +100,9 @@ def worst(codes: Sequence[int]) -> int:
     return next((code for code in OF_SEVERAL if code in codes), 0)
 
 
-def version() -> str:
-    """The version, and which kernel runs."""
-    from heuncli.kernel.form import KERNEL
-
-    return f"heun {VERSION} ({KERNEL} kernel, Python {sys.version.split()[0]})"
-
-
 def _command(argv: list[str]) -> int:
-    if argv[:1] == ["--version"]:
-        emit(version() + "\n")
+    if (text := at_once.text_for(argv)) is not None:
+        emit(text)
         return 0
     if argv and argv[0] in registry.LATER_COMMANDS:
         known = ", ".join(command.name for command in registry.COMMANDS)

@@ -11,10 +11,10 @@ import os
 import stat
 from functools import partial
 from pathlib import Path
-from typing import NamedTuple
 
 from heuncli.cli.leaving import Undoing
 from heuncli.errors import HeunError, OutputError, Problem
+from heuncli.named_tuples import NamedTuple
 
 STDOUT = "-"  # what stands for standard output where a file is named
 MOST_LINKS = 40  # that lead to one file; the system follows no more

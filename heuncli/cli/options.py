@@ -6,7 +6,9 @@ help and usage errors. Named tuples here and in report/, not dataclasses: those 
 command pays.
 """
 
-from typing import Any, ClassVar, NamedTuple, Protocol
+from typing import Any, ClassVar, Protocol
+
+from heuncli.named_tuples import NamedTuple
 
 
 class Option(NamedTuple):

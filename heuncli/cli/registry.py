@@ -14,10 +14,11 @@ and one command loads nothing of another. What two commands need stands below th
 from __future__ import annotations
 
 from importlib import import_module
-from typing import Any, NamedTuple
+from typing import Any
 
 from heuncli.cli.alarm import GRACE, UNTOLD
 from heuncli.cli.options import Request
+from heuncli.named_tuples import NamedTuple
 
 
 class Command(NamedTuple):

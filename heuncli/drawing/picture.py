@@ -3,7 +3,9 @@
 from __future__ import annotations
 
 from collections.abc import Sequence
-from typing import Literal, NamedTuple
+from typing import Literal
+
+from heuncli.named_tuples import NamedTuple
 
 FONT = "sans-serif"
 SHAPES: dict[str, tuple[tuple[float, float], ...]] = {  # corners about the middle, of unit size; "circle" has none

@@ -9,10 +9,11 @@ together with such parameters: `v*t` is a length, `3*t` and `v*t/2` may be anyth
 from __future__ import annotations
 
 from collections.abc import Sequence
-from typing import Literal, NamedTuple
+from typing import Literal
 
 from heuncli.errors import Finding
 from heuncli.expressions.units import LENGTH, NUMBER, RATE, TIME, VELOCITY, Dimension, describe
+from heuncli.named_tuples import NamedTuple
 
 LARGEST_FACTOR = 9  # whole numbers up to it are plain factors; a 10 may well be the acceleration of gravity
 LARGEST_POWER = 64  # beyond it no dimension is told

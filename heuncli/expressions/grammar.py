@@ -12,7 +12,7 @@ import math
 import re
 from collections.abc import Collection, Mapping
 from types import MappingProxyType
-from typing import Any, NamedTuple
+from typing import Any
 
 from heuncli.errors import Finding
 from heuncli.expressions.codegen import COMPARISONS, MOST_NODES, Codegen, Part
@@ -21,6 +21,7 @@ from heuncli.expressions.point_names import FORM, point_meant
 from heuncli.expressions.programs import POINTS, Expression, TableFunction
 from heuncli.expressions.units import RATE, UNITS, Dimension, describe, in_si, parse_unit, spelling_of
 from heuncli.joint_kinds import RATES, TYPES
+from heuncli.named_tuples import NamedTuple
 from heuncli.nearest import did_you_mean, nearest
 from heuncli.records import record, replace
 from heuncli.results_schema import REPORT_OF, ROWS, SHARED

@@ -5,12 +5,12 @@ from __future__ import annotations
 import math
 from collections.abc import Iterator, Sequence
 from functools import cached_property
-from typing import NamedTuple
 
 import numpy as np
 
 from heuncli.expressions.discontinuities import discontinuities
 from heuncli.mechanism.model import Mechanism
+from heuncli.named_tuples import NamedTuple
 from heuncli.records import record
 from heuncli.results import Array
 

@@ -13,19 +13,21 @@ from __future__ import annotations
 
 import os
 import sys
-from collections.abc import Sequence
 from importlib.machinery import EXTENSION_SUFFIXES, SOURCE_SUFFIXES, FileFinder, ModuleSpec, SourceFileLoader
-from pathlib import Path
-from types import ModuleType
-from typing import Literal
 
 from heuncli.errors import HeunError, Problem
 from heuncli.kernel.modules import MODULES
 from heuncli.kernel.sources import digest, newer_than_compiled
 
+TYPE_CHECKING = False  # `heun --version` does without typing and pathlib
+if TYPE_CHECKING:
+    from collections.abc import Sequence
+    from types import ModuleType
+    from typing import Literal
+
 PACKAGE = __package__ or "heuncli.kernel"
-FOLDER = Path(__file__).parent
-FILES = frozenset(os.listdir(FOLDER))  # noqa: PTH208 (names alone)
+FOLDER = os.path.dirname(__file__)
+FILES = frozenset(os.listdir(FOLDER))
 MOST_NAMED = 5  # files in a message: a line's worth
 
 
@@ -39,7 +41,7 @@ class PlainFiles:
     """A finder for sys.meta_path that sees the kernel's source files and not the compiled ones beside them."""
 
     def __init__(self) -> None:
-        self.finder = FileFinder(str(FOLDER), (SourceFileLoader, SOURCE_SUFFIXES))
+        self.finder = FileFinder(FOLDER, (SourceFileLoader, SOURCE_SUFFIXES))
 
     def find_spec(self, name: str, path: Sequence[str] | None, target: ModuleType | None = None) -> ModuleSpec | None:
         return self.finder.find_spec(name) if name.startswith(f"{PACKAGE}.") else None
@@ -55,7 +57,7 @@ def edited_since_compiled() -> list[str]:
 
     Only a checkout is looked at: what is installed is not edited, and the times of its files mean nothing.
     """
-    if not (FOLDER.parents[1] / "pyproject.toml").exists():
+    if not os.path.exists(os.path.join(FOLDER, "..", "..", "pyproject.toml")):
         return []
     newer = newer_than_compiled(FOLDER, FILES)
     if not newer:

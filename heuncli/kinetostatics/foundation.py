@@ -7,7 +7,6 @@ s and M_s act ON the foundation; k is what is applied from outside: weight, forc
 from __future__ import annotations
 
 from collections.abc import Sequence
-from typing import NamedTuple
 
 import numpy as np
 
@@ -16,6 +15,7 @@ from heuncli.kinetostatics.actions import Action
 from heuncli.kinetostatics.bodies import BodyStates
 from heuncli.kinetostatics.reactions import in_plane
 from heuncli.mechanism.model import Mechanism
+from heuncli.named_tuples import NamedTuple
 from heuncli.results import Array, Block
 from heuncli.shapes.rotations import cross_rows
 

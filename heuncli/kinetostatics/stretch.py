@@ -14,12 +14,13 @@ from __future__ import annotations
 
 from collections.abc import Sequence
 from functools import cached_property
-from typing import TYPE_CHECKING, NamedTuple
+from typing import TYPE_CHECKING
 
 import numpy as np
 
 from heuncli import tolerances
 from heuncli.kinetostatics.cuts import BEFORE, BEYOND, Cuts
+from heuncli.named_tuples import NamedTuple
 from heuncli.records import record, replace
 from heuncli.results import Array, Indices, Mask, Place
 

@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Sequence
-from typing import TYPE_CHECKING, NamedTuple
+from typing import TYPE_CHECKING
 
 import numpy as np
 
@@ -11,6 +11,7 @@ from heuncli import tolerances
 from heuncli.integration.run.runner import Runner
 from heuncli.kinetostatics.bodies import BodyStates, body_states
 from heuncli.mechanism.model import Joint
+from heuncli.named_tuples import NamedTuple
 from heuncli.tree.prepare import PreparedScene
 
 if TYPE_CHECKING:

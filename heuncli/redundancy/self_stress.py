@@ -10,14 +10,13 @@ One sweep of statics carries a null vector to all joints. manual/theory.md, "Red
 
 from __future__ import annotations
 
-from typing import NamedTuple
-
 import numpy as np
 
 from heuncli import tolerances
 from heuncli.integration.evaluator import Recovered
 from heuncli.integration.run.runner import Runner
 from heuncli.kinetostatics.bodies import BodyStates
+from heuncli.named_tuples import NamedTuple
 from heuncli.records import record
 from heuncli.response import carried, jacobian
 from heuncli.results import Array, Indices, Mask

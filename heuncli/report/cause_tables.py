@@ -7,10 +7,10 @@ responsible. The share of a magnitude is the part along the whole vector, so tha
 from __future__ import annotations
 
 from collections.abc import Iterable, Mapping, Sequence
-from typing import NamedTuple
 
 import numpy as np
 
+from heuncli.named_tuples import NamedTuple
 from heuncli.report.cut_runs import CutRun, RunQuantity, position
 from heuncli.report.digits import (
     OPEN,

@@ -3,10 +3,10 @@
 from __future__ import annotations
 
 from collections.abc import Mapping, Sequence
-from typing import NamedTuple
 
 import numpy as np
 
+from heuncli.named_tuples import NamedTuple
 from heuncli.report.digits import (
     OPEN,
     OPEN_NOTE,

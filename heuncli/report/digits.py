@@ -14,11 +14,12 @@ from __future__ import annotations
 import math
 from collections.abc import Iterable, Mapping, Sequence
 from itertools import chain
-from typing import Literal, NamedTuple
+from typing import Literal
 
 import numpy as np
 
 from heuncli import tolerances
+from heuncli.named_tuples import NamedTuple
 from heuncli.report.labels import Labels
 from heuncli.report.series import Series, walk, walk_impulse
 from heuncli.report.table_units import Units

@@ -8,13 +8,14 @@ from __future__ import annotations
 import json
 from collections.abc import Iterable, Iterator, Sequence
 from dataclasses import fields
-from typing import Any, NamedTuple
+from typing import Any
 
 import numpy as np
 
 from heuncli.cut_rows import cut_numbers
 from heuncli.errors import LimitError, Problem
 from heuncli.foreign_text import shown
+from heuncli.named_tuples import NamedTuple
 from heuncli.report.labels import Labels
 from heuncli.report.series import Series, walk, walk_impulse
 from heuncli.results import Block, Results

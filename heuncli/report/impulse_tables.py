@@ -8,10 +8,11 @@ from __future__ import annotations
 
 from collections.abc import Mapping, Sequence
 from dataclasses import replace
-from typing import Any, NamedTuple
+from typing import Any
 
 import numpy as np
 
+from heuncli.named_tuples import NamedTuple
 from heuncli.report import cut_runs
 from heuncli.report.blow_table import blow_table
 from heuncli.report.certain_sums import sums_table

@@ -7,13 +7,14 @@ from __future__ import annotations
 
 from collections.abc import Mapping
 from types import MappingProxyType
-from typing import Any, NamedTuple
+from typing import Any
 
 import numpy as np
 
 from heuncli import tolerances
 from heuncli.joint_kinds import TYPES, Kind
 from heuncli.kinetostatics.section_axes import default_axis, nearest_axis
+from heuncli.named_tuples import NamedTuple
 from heuncli.records import record
 from heuncli.report.table_units import Units
 from heuncli.spec.models import End, Force, Friction, Section, Spec, Vec

@@ -8,10 +8,11 @@ from __future__ import annotations
 
 from collections.abc import Mapping, Sequence
 from dataclasses import replace
-from typing import TYPE_CHECKING, Any, NamedTuple, Protocol
+from typing import TYPE_CHECKING, Any, Protocol
 
 import numpy as np
 
+from heuncli.named_tuples import NamedTuple
 from heuncli.report import cut_runs
 from heuncli.report.certain_sums import sums_table
 from heuncli.report.digits import Certainty, certainty, with_axis

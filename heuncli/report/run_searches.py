@@ -7,10 +7,10 @@ from __future__ import annotations
 
 from collections.abc import Mapping, Sequence
 from types import MappingProxyType
-from typing import NamedTuple
 
 import numpy as np
 
+from heuncli.named_tuples import NamedTuple
 from heuncli.report.cut_runs import CutRun, RunQuantity, runs_of, thinned
 from heuncli.report.digits import Certainty
 from heuncli.report.labels import Labels

@@ -6,10 +6,10 @@ A block is one table of the report, a group what belongs to one name in it, a ro
 from __future__ import annotations
 
 from collections.abc import Iterable, Sequence
-from typing import NamedTuple
 
 import numpy as np
 
+from heuncli.named_tuples import NamedTuple
 from heuncli.report.digits import OPEN, OPEN_NOTE, Certainty, Style, kind_of, largest, write
 from heuncli.report.labels import Labels
 from heuncli.report.series import Series

@@ -6,10 +6,10 @@ A plan is one table of the report: of one kind of results it takes the named qua
 from __future__ import annotations
 
 from collections.abc import Callable
-from typing import NamedTuple
 
 import numpy as np
 
+from heuncli.named_tuples import NamedTuple
 from heuncli.report.digits import OPEN, OPEN_NOTE
 from heuncli.report.labels import Labels
 from heuncli.results import Results

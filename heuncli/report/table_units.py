@@ -9,9 +9,9 @@ from __future__ import annotations
 
 from collections.abc import Mapping
 from types import MappingProxyType
-from typing import NamedTuple
 
 from heuncli.errors import Finding
+from heuncli.named_tuples import NamedTuple
 
 Shown = tuple[str, float]  # a unit, and how many of it make one SI unit
 STRESS: Mapping[str, Shown] = MappingProxyType({"Pa": ("MPa", 1e-6)})

@@ -3,9 +3,10 @@
 from __future__ import annotations
 
 from collections.abc import Iterable, Sequence
-from typing import Literal, NamedTuple
+from typing import Literal
 
 from heuncli.foreign_text import shown
+from heuncli.named_tuples import NamedTuple
 
 GAP = "  "
 INDENT = "  "

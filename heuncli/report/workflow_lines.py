@@ -9,9 +9,9 @@ from __future__ import annotations
 
 from collections.abc import Iterable, Iterator
 from pathlib import PurePath
-from typing import NamedTuple
 
 from heuncli.foreign_text import shown_lines
+from heuncli.named_tuples import NamedTuple
 
 MOST = 9  # of a kind: a step shows ten, of which the last says how many more there are
 IN_MESSAGES = {"%": "%25", "\r": "%0D", "\n": "%0A"}

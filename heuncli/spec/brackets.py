@@ -7,7 +7,8 @@ more by what people write: a new key at the margin of the line that opened a bra
 from __future__ import annotations
 
 import re
-from typing import NamedTuple
+
+from heuncli.named_tuples import NamedTuple
 
 CLOSING = {"[": "]", "{": "}"}
 # the begin of a line in block style: indentation, dashes of lists, a key with its colon

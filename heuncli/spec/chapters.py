@@ -4,7 +4,7 @@ from collections.abc import Mapping
 
 from heuncli.spec import format as f
 from heuncli.spec import format_shapes as fs
-from heuncli.spec.fields import Entry
+from heuncli.spec.entries import Entry
 
 # by heading: the model whose keys the first table below it lists, or the models by type
 CHAPTERS: dict[str, type[Entry] | Mapping[str, type[Entry]]] = {

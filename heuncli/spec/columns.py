@@ -13,11 +13,11 @@ import re
 from array import array
 from collections.abc import Iterator, Sequence
 from itertools import islice
-from typing import NamedTuple
 
 import numpy as np
 
 from heuncli.errors import Finding
+from heuncli.named_tuples import NamedTuple
 from heuncli.nearest import LONGEST, listed, nearest
 from heuncli.results_schema import counted
 

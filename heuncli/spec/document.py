@@ -5,12 +5,14 @@ from __future__ import annotations
 from collections.abc import Callable, Mapping
 from typing import Any
 
-from pydantic import ValidationError
+from pydantic_core import ValidationError
 
 from heuncli.nearest import misspelt
 from heuncli.spec import format as f
 from heuncli.spec import format_shapes as fs
-from heuncli.spec.fields import Context, Entry, keys_of
+from heuncli.spec.entries import Entry, fields_of, keys_of
+from heuncli.spec.fields import Context
+from heuncli.spec.judging import judged
 from heuncli.spec.quantity import kind_of
 from heuncli.spec.rules.registry import Path_, Violation
 from heuncli.spec.verdicts import unknown_key, unknown_type, verdicts
@@ -35,7 +37,7 @@ class Reader:
     def model(self, path: Path_, data: Any, model: type[Entry]) -> Any:
         """One model; what is wrong in it is reported and the rest read; None where the rest is not enough."""
         try:
-            return model.model_validate(data, context=self.context)
+            return judged(model, data, self.context)
         except ValidationError as error:
             for code, violation in verdicts(error, data, model):
                 self.report(code, violation._replace(path=(*path, *violation.path)))
@@ -47,7 +49,7 @@ class Reader:
             return None
         right = {key: value for key, value in data.items() if key not in wrong}
         try:
-            entry = model.model_validate({**misspelt(data, keys_of(model)), **right}, context=self.context)
+            entry = judged(model, {**misspelt(data, keys_of(model)), **right}, self.context)
         except ValidationError:
             return None
         self.partial[path] = frozenset(right)
@@ -75,8 +77,8 @@ class Reader:
         """The keys that are no blocks."""
         blocks = {*f.ENTRIES, *f.SINGLE, *f.READ_BEFORE, "expect"}
         own = {key: value for key, value in self.data.items() if key not in blocks}
-        known = [*f.HeadEntry.model_fields, *f.SINGLE, *f.READ_BEFORE, *f.ENTRIES, "expect"]
-        for key in [key for key in own if key not in f.HeadEntry.model_fields]:
+        known = [*fields_of(f.HeadEntry), *f.SINGLE, *f.READ_BEFORE, *f.ENTRIES, "expect"]
+        for key in [key for key in own if key not in fields_of(f.HeadEntry)]:
             del own[key]
             self.report(*unknown_key((key,), known))
         return self.model((), own, f.HeadEntry) or f.HeadEntry.model_construct(heun=1)

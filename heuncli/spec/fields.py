@@ -10,7 +10,6 @@ from collections.abc import Collection, Mapping
 from itertools import chain, islice
 from typing import Annotated, Any
 
-from pydantic import BaseModel, BeforeValidator, ConfigDict, Discriminator, Tag
 from pydantic_core import core_schema
 
 from heuncli.errors import Finding
@@ -20,6 +19,7 @@ from heuncli.expressions.programs import Expression
 from heuncli.nearest import afford
 from heuncli.number_range import is_in_range
 from heuncli.records import record
+from heuncli.spec.entries import Before, Entry, OneOf, Tag
 from heuncli.spec.quantity import Scope, condition, in_time, kind_of, number, unit_in
 from heuncli.spec.words import FORMS
 
@@ -31,17 +31,6 @@ class Context:
     load: Scope
     time: Scope
     points: Mapping[str, Collection[str]] = NONE
-
-
-class Entry(BaseModel):
-    """A mapping with known keys."""
-
-    model_config = ConfigDict(extra="forbid", frozen=True, defer_build=True, arbitrary_types_allowed=True)
-
-
-def keys_of(model: type[Entry]) -> tuple[str, ...]:
-    """The keys of a mapping, as users write them."""
-    return tuple(str(field.alias or name) for name, field in model.model_fields.items())
 
 
 class ReadValue:
@@ -148,6 +137,13 @@ class Version(ReadValue):
         return {"const": 1}
 
 
+class YesOrNo:
+    """`true` or `false`, and nothing that could be taken for them."""
+
+    def __get_pydantic_core_schema__(self, source: Any, handler: Any) -> core_schema.CoreSchema:
+        return core_schema.bool_schema(strict=True)
+
+
 class NumbersOrOpen(ReadValue):
     """A number, lists of them, or null for what is open; the numbers as expressions that know their dimension."""
 
@@ -167,10 +163,6 @@ class NumbersOrOpen(ReadValue):
 
 class AsText:
     """A mapping that may be written as one word instead: body.point."""
-
-    def __get_pydantic_core_schema__(self, source: Any, handler: Any) -> core_schema.CoreSchema:
-        schema: core_schema.CoreSchema = handler(source)
-        return schema
 
     def __get_pydantic_json_schema__(self, schema: Any, handler: Any) -> dict[str, Any]:
         return {"anyOf": [{"type": "string", "description": "body.point"}, handler(schema)]}
@@ -211,6 +203,7 @@ MomentInTime = Annotated[Expression, InTime(u.MOMENT)]
 TruthInTime = Annotated[Expression, Truth()]
 StrikeInTime = Annotated[Expression, StrikingTruth()]
 EitherInTime = Annotated[Expression, InTime()]
+Switch = Annotated[bool, YesOrNo()]
 FormatVersion = Annotated[int, Version()]
 Expected = Annotated[Any, NumbersOrOpen()]
 
@@ -228,7 +221,7 @@ def kind_of_form(value: Any) -> str:
     return "single" if value is None or isinstance(value, str | int | float) else "mapping"
 
 
-FORM = Discriminator(kind_of_form)
+FORM = OneOf(kind_of_form)
 PointOrName = Annotated[Annotated[Position, Tag("list")] | Annotated[str, Tag("single")], FORM]
 
 
@@ -249,7 +242,7 @@ def split_end(value: Any, info: Any) -> Any:
     body, dot, point = value.partition(".")
     if not dot or not body or not point or "." in point:
         raise Finding("end", f"'{value}' is not an end", end_hint(value, info.context.points))
-    return EndEntry.model_construct(body=body, at=point)
+    return {"body": body, "at": point}
 
 
 def in_brackets(values: list[Any]) -> str:
@@ -271,11 +264,11 @@ def end_hint(word: str, points: Mapping[str, Collection[str]]) -> str:
 def split_body_or_end(value: Any, info: Any) -> Any:
     """'crank' as {body: crank}, 'crank.pin' as {body: crank, at: pin}."""
     if type(value) is str and "." not in value:
-        return EndEntry.model_construct(body=value, at=None)
+        return {"body": value}
     return split_end(value, info)
 
 
-def two_limits(value: Any) -> Any:
+def two_limits(value: Any, info: Any) -> Any:
     """[low, high], either of them null."""
     if type(value) is not list or len(value) != 2:
         found = f"{len(value)} values" if type(value) is list else kind_of(value)
@@ -283,7 +276,7 @@ def two_limits(value: Any) -> Any:
     return value
 
 
-AnEnd = Annotated[EndEntry, BeforeValidator(split_end), AsText()]
-BodyOrEnd = Annotated[EndEntry, BeforeValidator(split_body_or_end), AsText()]
-AngleLimits = Annotated[tuple[Angle | None, Angle | None], BeforeValidator(two_limits)]
-LengthLimits = Annotated[tuple[Length | None, Length | None], BeforeValidator(two_limits)]
+AnEnd = Annotated[EndEntry, Before(split_end), AsText()]
+BodyOrEnd = Annotated[EndEntry, Before(split_body_or_end), AsText()]
+AngleLimits = Annotated[tuple[Angle | None, Angle | None], Before(two_limits)]
+LengthLimits = Annotated[tuple[Length | None, Length | None], Before(two_limits)]

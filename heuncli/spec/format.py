@@ -5,12 +5,14 @@ at one value at a time; what concerns several of them together stands in `rules`
 outside `spec` sees these models.
 """
 
-from collections.abc import Mapping
-from typing import Annotated, Any, Literal, NamedTuple
+from __future__ import annotations
 
-from pydantic import Field, StrictBool, Tag, model_validator
+from collections.abc import Mapping
+from typing import Annotated, Any, Literal
 
 from heuncli.errors import Finding
+from heuncli.named_tuples import NamedTuple
+from heuncli.spec.entries import Entry, Tag, key
 from heuncli.spec.fields import (
     FORM,
     Acceleration,
@@ -28,7 +30,6 @@ from heuncli.spec.fields import (
     Direction,
     Either,
     EitherInTime,
-    Entry,
     Expected,
     Force,
     ForceInTime,
@@ -51,6 +52,7 @@ from heuncli.spec.fields import (
     RateInTime,
     Stiffness,
     StrikeInTime,
+    Switch,
     Tensor,
     Time,
     TruthInTime,
@@ -72,7 +74,7 @@ Points = dict[str, Position]
 class GroundEntry(Entry):
     """What does not move."""
 
-    points: Points = Field(default_factory=dict)
+    points: Points = key(default_factory=dict)
 
 
 InertiaForms = Annotated[
@@ -115,7 +117,7 @@ class BodyEntry(Entry):
     inertia: InertiaForms | None = None
     deviation: tuple[Inertia, Inertia, Inertia] | None = None
     shapes: Annotated[list[ShapeEntry], InParts()] | None = None
-    points: Points = Field(default_factory=dict)
+    points: Points = key(default_factory=dict)
     position: Position | None = None
     orientation: Orientation | None = None
     near: NearEntry | None = None
@@ -152,7 +154,7 @@ class StiffnessParts(Entry):
 class AnyJoint(Entry):
     """What all joints have."""
 
-    from_: AnEnd = Field(alias="from")
+    from_: AnEnd = key(alias="from")
     to: AnEnd
     stiffness: (
         Annotated[Annotated[Stiffness, Tag("single")] | Annotated[StiffnessParts, Tag("mapping")], FORM] | None
@@ -232,7 +234,7 @@ class PlaneJoint(AnyJoint):
 class RodJoint(AnyJoint):
     type: Literal["rod"]
     length: Length | None = None
-    tension_only: StrictBool = False
+    tension_only: Switch = False
     restitution: Number | None = None
 
 
@@ -284,14 +286,14 @@ class TorqueEntry(Entry):
 
 class ActuatorEntry(Entry):
     type: Literal["actuator"]
-    from_: AnEnd = Field(alias="from")
+    from_: AnEnd = key(alias="from")
     to: AnEnd
     value: ForceInTime
 
 
 class SpringEntry(Entry):
     type: Literal["spring"]
-    from_: AnEnd = Field(alias="from")
+    from_: AnEnd = key(alias="from")
     to: AnEnd
     stiffness: Stiffness
     length: Length
@@ -309,7 +311,7 @@ class TurnSpringEntry(Entry):
 class DistributedEntry(Entry):
     type: Literal["distributed"]
     on: str
-    from_: PointOrName = Field(alias="from")
+    from_: PointOrName = key(alias="from")
     to: PointOrName
     vector: tuple[LineForceInTime, LineForceInTime, LineForceInTime]
     to_vector: tuple[LineForceInTime, LineForceInTime, LineForceInTime] | None = None
@@ -365,7 +367,7 @@ class ImpulseEntry(Entry):
     couple: tuple[AngularImpulse, AngularImpulse, AngularImpulse] | None = None
     time: Time = 0.0
     when: StrikeInTime | None = None
-    every: StrictBool = False
+    every: Switch = False
     frame: Frame = "world"
 
 
@@ -411,7 +413,7 @@ class SectionEntry(Entry):
     body: str
     at: PointOrName | None = None
     normal: Direction | None = None
-    from_: PointOrName | None = Field(default=None, alias="from")
+    from_: PointOrName | None = key(default=None, alias="from")
     to: PointOrName | None = None
     count: Count | None = None
     first_axis: Direction | None = None
@@ -462,7 +464,7 @@ class AnalysisEntry(Entry):
     method: str = "auto"
     step: Time | None = None
     until: ConditionEntry | None = None
-    events: dict[str, ConditionEntry] = Field(default_factory=dict)
+    events: dict[str, ConditionEntry] = key(default_factory=dict)
 
 
 class FoundationEntry(Entry):
@@ -473,7 +475,7 @@ class ExpectEntry(Entry):
     of: str
     at: Time | None = None
     peak: Literal["max", "min", "abs"] | None = None
-    is_: Expected = Field(default=None, alias="is")
+    is_: Expected = key(default=None, alias="is")
     rel: Number | None = None
     abs: Either | None = None
     below: Either | None = None
@@ -491,9 +493,8 @@ class ExpectEntry(Entry):
         """Whether it is expected to stay below or above something, and not to be something."""
         return self.below is not None or self.above is not None
 
-    @model_validator(mode="before")
     @classmethod
-    def says_what(cls, data: Any) -> Any:
+    def before(cls, data: Any) -> Any:
         """It is something, stays below or above something, or follows a curve: null is something, too."""
         if type(data) is dict and not {"is", "below", "above", "curve"} & data.keys() and "of" in data:
             other = next((key for key in data if {"is", "below", "above"} & {*SEVERAL.get(str(key), ())}), None)

@@ -1,10 +1,11 @@
 """The attitude of something, and the shapes of which a body's mass may be given: a part of the file format."""
 
+from __future__ import annotations
+
 from typing import Literal
 
-from pydantic import Field
-
-from heuncli.spec.fields import Angle, Density, Direction, Entry, Length, LineDensity, Mass, Matrix, Number, Position
+from heuncli.spec.entries import Entry, key
+from heuncli.spec.fields import Angle, Density, Direction, Length, LineDensity, Mass, Matrix, Number, Position
 
 
 class Orientation(Entry):
@@ -21,7 +22,7 @@ class Orientation(Entry):
 
 class RodShape(Entry):
     type: Literal["rod"]
-    from_: Position = Field(alias="from")
+    from_: Position = key(alias="from")
     to: Position
     mass: Mass | None = None
     line_density: LineDensity | None = None
@@ -29,7 +30,7 @@ class RodShape(Entry):
 
 class CylinderShape(Entry):
     type: Literal["cylinder"]
-    from_: Position = Field(alias="from")
+    from_: Position = key(alias="from")
     to: Position
     radius: Length
     inner_radius: Length | None = None
@@ -39,7 +40,7 @@ class CylinderShape(Entry):
 
 class ConeShape(Entry):
     type: Literal["cone"]
-    from_: Position = Field(alias="from")
+    from_: Position = key(alias="from")
     to: Position
     radius: Length
     to_radius: Length

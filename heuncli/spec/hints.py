@@ -8,7 +8,7 @@ from typing import Any
 
 from heuncli.nearest import did_you_mean, nearest
 from heuncli.spec import format as f
-from heuncli.spec.fields import keys_of
+from heuncli.spec.entries import keys_of
 from heuncli.spec.words import ELSEWHERE, FORMS, FORMS_OF_KINDS, KEY_WORDS, MISSING, PLACES, SEVERAL, WORDS
 
 AXES = {"x": "[1, 0, 0]", "y": "[0, 1, 0]", "z": "[0, 0, 1]"}

@@ -1,4 +1,4 @@
-"""The format as a JSON Schema (draft-07, which editors read), from the models that read a spec and the manual's words.
+"""The format as a JSON Schema (draft-07, which editors read), from the classes that read a spec and the manual's words.
 
 What a schema cannot say is left to `heun validate`: that a name is there, that a unit fits, what goes with what. Where
 `space: planar` lets vectors have two components and a pin no axis, both are allowed.
@@ -10,14 +10,14 @@ from collections.abc import Iterator, Mapping
 from pathlib import Path
 from typing import Any
 
-from pydantic import BaseModel
 from pydantic.json_schema import models_json_schema
 
 from heuncli.spec import format as f
 from heuncli.spec import format_shapes as fs
 from heuncli.spec.chapters import CHAPTERS, INLINE, TOP
-from heuncli.spec.fields import Entry
+from heuncli.spec.entries import Entry
 from heuncli.spec.key_rows import KeyRow, rows_by_chapter
+from heuncli.spec.pydantic_models import model_of
 from heuncli.spec.source import read
 
 STARTERS = Path(__file__).parents[1] / "starters"
@@ -30,7 +30,7 @@ IN_A_PLANE = frozenset({"axis", "normal"})  # directions that follow from `space
 def spec_schema() -> dict[str, Any]:
     """The schema of a spec."""
     models = [*_all_models()]
-    _, made = models_json_schema([(model, "validation") for model in models], ref_template=REF)
+    _, made = models_json_schema([(model_of(model), "validation") for model in models], ref_template=REF)
     definitions = {name: _draft_07(block) for name, block in made["$defs"].items()}
     rows = rows_by_chapter()
     for heading, of in CHAPTERS.items():
@@ -73,7 +73,7 @@ def _needing(kind: str, keys: list[str]) -> dict[str, Any]:
     return {"if": {"properties": {"type": {"const": kind}}, "required": ["type"]}, "then": {"required": keys}}
 
 
-def _all_models() -> Iterator[type[BaseModel]]:
+def _all_models() -> Iterator[type[Entry]]:
     for of in (*f.ENTRIES.values(), *f.SINGLE.values(), f.HeadEntry, f.ExpectEntry, f.TableEntry, fs.SHAPES):
         yield from of.values() if isinstance(of, Mapping) else [of]
 

@@ -5,7 +5,8 @@ from __future__ import annotations
 import re
 from collections.abc import Iterator
 from pathlib import Path
-from typing import NamedTuple
+
+from heuncli.named_tuples import NamedTuple
 
 PAGE = Path(__file__).parents[1] / "manual" / "format.md"
 HEADING = re.compile(r"^#+ (.+)$", re.MULTILINE)

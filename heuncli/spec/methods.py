@@ -3,10 +3,10 @@
 from __future__ import annotations
 
 from collections.abc import Iterator
-from typing import NamedTuple
 
 from heuncli import tolerances
 from heuncli.method_rows import AUTO, METHODS, NAMES, row_of
+from heuncli.named_tuples import NamedTuple
 from heuncli.nearest import did_you_mean
 from heuncli.spec.words import METHOD_WORDS
 

@@ -12,10 +12,11 @@ import math
 from array import array
 from collections.abc import Mapping
 from types import MappingProxyType
-from typing import Generic, Literal, NamedTuple, TypeVar
+from typing import Generic, Literal, TypeVar
 
 from heuncli.errors import Problem, SourceLocation
 from heuncli.expressions.programs import Expression, TableFunction
+from heuncli.named_tuples import NamedTuple
 from heuncli.records import record
 
 Vec = tuple[float, float, float]

@@ -2,11 +2,12 @@
 
 from __future__ import annotations
 
-from typing import Any, NamedTuple
+from typing import Any
 
 from heuncli.expressions.grammar import RESERVED
+from heuncli.named_tuples import NamedTuple
 from heuncli.nearest import misspelt
-from heuncli.spec.fields import Entry, keys_of
+from heuncli.spec.entries import Entry, keys_of
 from heuncli.spec.format import BodyEntry, GroundEntry
 from heuncli.spec.models import Spec
 

@@ -4,9 +4,10 @@ from __future__ import annotations
 
 import copy
 from collections.abc import Iterator, Mapping, Sequence
-from typing import Any, NamedTuple
+from typing import Any
 
 from heuncli.errors import Finding, Problem, SourceLocation, SpecError
+from heuncli.named_tuples import NamedTuple
 from heuncli.nearest import did_you_mean
 from heuncli.results_schema import counted
 from heuncli.spec.names import NAMED, mapping

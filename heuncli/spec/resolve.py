@@ -322,11 +322,10 @@ def properties(value: f.PropertiesEntry | Literal["auto"] | None) -> m.Propertie
         return None
     if isinstance(value, str):
         return m.Properties("auto", {})
-    given = value.model_dump(exclude_none=True)
     for kind in ("circle", "tube", "rectangle"):
-        if kind in given:
-            return m.Properties(kind, given[kind])
-    return m.Properties("general", given)
+        if (sizes := getattr(value, kind)) is not None:
+            return m.Properties(kind, vars(sizes))
+    return m.Properties("general", {name: given for name, given in vars(value).items() if given is not None})
 
 
 def numbers(value: Any) -> Any:

@@ -8,11 +8,12 @@ from __future__ import annotations
 import math
 from collections.abc import Iterator
 from decimal import Decimal
-from typing import Any, Literal, NamedTuple
+from typing import Any, Literal
 
 from heuncli.errors import Finding
 from heuncli.expressions.programs import Expression
 from heuncli.joint_kinds import RATES, TYPES, Kind
+from heuncli.named_tuples import NamedTuple
 from heuncli.spec import format as f
 from heuncli.spec import format_shapes as fs
 from heuncli.spec import models as m

@@ -6,11 +6,11 @@ import types
 from collections.abc import Iterator
 from typing import Annotated, Any, Union, get_args, get_origin
 
-from pydantic import ValidationError
+from pydantic_core import ValidationError
 
 from heuncli.errors import Finding
 from heuncli.nearest import did_you_mean, nearest
-from heuncli.spec.fields import Entry
+from heuncli.spec.entries import Entry, fields_of, keys_of
 from heuncli.spec.hints import called, elsewhere, of_form, of_key, of_missing, of_word, stands_for
 from heuncli.spec.quantity import Follows, kind_of
 from heuncli.spec.rules.registry import Path_, Violation
@@ -197,10 +197,10 @@ def keys_known(path: Path_, model: type[Entry]) -> list[str]:
     between = 0
     for part in path:
         if between == 0:
-            fields = owner.model_fields if owner is not None else {}
+            fields = fields_of(owner) if owner is not None else {}
             field = next((field for name, field in fields.items() if (field.alias or name) == part), None)
             between, models = models_in(field.annotation) if field is not None else (0, [])
             owner = models[0] if models else None
         else:
             between -= 1
-    return [field.alias or name for name, field in owner.model_fields.items()] if owner is not None else []
+    return [*keys_of(owner)] if owner is not None else []

@@ -8,8 +8,8 @@ from __future__ import annotations
 
 from collections.abc import Iterator, Mapping, Sequence
 from itertools import chain
-from typing import NamedTuple
 
+from heuncli.named_tuples import NamedTuple
 from heuncli.telling.kept import EVEN, KeptBlow, KeptEvent, KeptNumber, KeptRun, KeptSum, Value
 
 MISSING, EXTRA = "missing", "extra"

@@ -6,10 +6,10 @@ Of a run of cuts the highest and the lowest of its cuts, with the extremes of th
 from __future__ import annotations
 
 from collections.abc import Iterable, Iterator
-from typing import NamedTuple
 
 import numpy as np
 
+from heuncli.named_tuples import NamedTuple
 from heuncli.report.cut_runs import CutRun, RunQuantity, runs_of
 from heuncli.report.digits import Certainty, kind_of
 from heuncli.report.labels import Labels

@@ -3,10 +3,11 @@
 from __future__ import annotations
 
 from collections.abc import Iterator, Mapping
-from typing import Any, NamedTuple
+from typing import Any
 
 import numpy as np
 
+from heuncli.named_tuples import NamedTuple
 from heuncli.report.cut_runs import runs_of
 from heuncli.report.digits import largest
 from heuncli.report.impulse_tables import MOST_LISTED, at_one_instant

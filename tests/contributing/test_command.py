@@ -11,7 +11,10 @@ WEIGH = Addition(
     {
         "heuncli/cli/registry.py": (
             Edit('    Command("explain"),\n', '    Command("explain"),\n    Command("weigh"),\n'),
-        )
+        ),
+        "heuncli/cli/help.txt": (
+            Edit("  schema    Print", "  weigh     The mass of all bodies together.\n  schema    Print"),
+        ),
     },
     {
         "heuncli/commands/weigh/__init__.py": "",
@@ -55,6 +58,7 @@ def test_a_command(tmp_path: Path) -> None:
     """It is helped with, does its work, writes where it is told to, and its misspelt name is known."""
     folder = WEIGH.made_in(tmp_path)
     assert "The mass of all bodies together." in heun(folder, "weigh", "--help").stdout
+    assert "The mass of all bodies together." in heun(folder, "--help").stdout
     assert heun(folder, "weigh", "two.yaml").stdout == "4.5 kg\n"
     assert heun(folder, "weigh", "two.yaml", "-o", "mass.txt").returncode == 0
     assert (folder / "mass.txt").read_text() == "4.5 kg\n"

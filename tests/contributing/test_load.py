@@ -14,7 +14,7 @@ COUNTERWEIGHT = Addition(  # a rope over a pulley, whose pull is the same at any
         "heuncli/spec/format.py": (
             Edit("LoadEntry = (\n", """class CounterweightEntry(Entry):
     type: Literal["counterweight"]
-    from_: AnEnd = Field(alias="from")
+    from_: AnEnd = key(alias="from")
     to: AnEnd
     pull: Force
 

@@ -14,12 +14,12 @@ from types import ModuleType
 import numpy as np
 import pytest
 
-from heuncli.kernel.form import FOLDER
 from heuncli.results import Array
 from heuncli.spec.load import load
 from heuncli.study.model.setup import set_up
 from heuncli.tolerances import EPS
 from tests.shared.bars import double
+from tests.shared.folders import KERNEL as FOLDER
 from tests.shared.scenes import near
 
 STEP = 1e-30

@@ -5,13 +5,11 @@ from __future__ import annotations
 from collections.abc import Iterator, Mapping
 from typing import Any, NamedTuple, get_args
 
-from pydantic.fields import FieldInfo
-
 from heuncli.expressions import units as u
 from heuncli.spec import fields
 from heuncli.spec import format as f
 from heuncli.spec.chapters import CHAPTERS, INLINE, TOP
-from heuncli.spec.fields import Entry
+from heuncli.spec.entries import Entry, Field, fields_of
 from tests.shared.manual import headings
 
 ALL = "all"  # in place of the types that have a key, where all have it
@@ -26,10 +24,10 @@ class Place(NamedTuple):
     types: tuple[str, ...] = ()
 
 
-def named_fields(model: type[Entry]) -> dict[str, FieldInfo]:
+def named_fields(model: type[Entry]) -> dict[str, Field]:
     """The fields of a model by their keys, without the `type` by which it is chosen: that stands above its table."""
-    fields_of = {field.alias or name: field for name, field in model.model_fields.items()}
-    return {key: field for key, field in fields_of.items() if key != "type" or not field.is_required()}
+    by_key = {field.alias or name: field for name, field in fields_of(model).items()}
+    return {key: field for key, field in by_key.items() if key != "type" or not field.is_required}
 
 
 def top_keys() -> list[str]:
@@ -37,7 +35,7 @@ def top_keys() -> list[str]:
     return [*named_fields(f.HeadEntry), *f.READ_BEFORE, *f.ENTRIES, *f.SINGLE, "expect"]
 
 
-def pairs(models: Mapping[str, type[Entry]]) -> dict[tuple[str, str], FieldInfo]:
+def pairs(models: Mapping[str, type[Entry]]) -> dict[tuple[str, str], Field]:
     """The fields by type and key."""
     return {(kind, key): field for kind, model in models.items() for key, field in named_fields(model).items()}
 
@@ -91,15 +89,14 @@ UNITS = {
 }
 
 
-def unit_of(field: FieldInfo) -> str | None:
+def unit_of(field: Field) -> str | None:
     """The unit of a field; None where it has none, or several."""
     found = {UNITS[id(value)] for value in values(field) if id(value) in UNITS}
     return found.pop() if len(found) == 1 else None
 
 
-def values(field: FieldInfo) -> Iterator[fields.ReadValue]:
-    """The values that stand in a field's annotation, and beside it."""
-    yield from (value for value in field.metadata if isinstance(value, fields.ReadValue))
+def values(field: Field) -> Iterator[fields.ReadValue]:
+    """The values that stand in a field's annotation."""
     yield from within(field.annotation)
 
 

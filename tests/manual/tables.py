@@ -1,6 +1,6 @@
 """The tables of the manual that follow from rows of the code: what they should be, and a command that writes them.
 
-    python -m tests.manual.tables        # renews them all in the pages, after a row has changed
+    python -m tests.manual.tables        # renews them all in the pages, after a row has changed, and the help
 
 A table is known by its page, its heading and its first line; what stands around it is written by hand.
 """
@@ -26,6 +26,7 @@ from heuncli.spec.words import FORCE_WORDS, SHAPE_WORDS
 from tests.manual import codes
 from tests.manual.keys import PLACES
 from tests.shared.cited_texts import equations
+from tests.shared.help_text import HELP, help_of_typer
 from tests.shared.manual import README, anchor, below, file_of, tables_below
 
 SEEN = 3  # words by which a group of equations is seen
@@ -238,3 +239,4 @@ if __name__ == "__main__":
     for each in TABLES:
         renew(each)
     codes.PAGE.write_text(codes.written(), encoding="utf-8")
+    HELP.write_text(help_of_typer(), encoding="utf-8")

@@ -6,7 +6,6 @@ import re
 import signal
 
 import pytest
-from pydantic import BaseModel
 
 from heuncli.cli.entry import INTERRUPTED, OF_SEVERAL
 from heuncli.cli.files import ReaderGone
@@ -15,6 +14,7 @@ from heuncli.commands.explain.command import PAGES
 from heuncli.expressions.grammar import ARITY, CONSTANTS
 from heuncli.expressions.units import UNITS
 from heuncli.spec import format as document
+from heuncli.spec.entries import Entry, keys_of
 from tests.shared.manual import FENCED, README, ROOT, TEXTS, anchor, file_of, headings, tables_below
 
 LINK = re.compile(r"\]\(([^()\s]+)\)")
@@ -61,8 +61,8 @@ def test_the_specs_that_are_named_exist(name: str) -> None:
 
 
 def keys() -> set[str]:
-    models = [m for m in vars(document).values() if isinstance(m, type) and issubclass(m, BaseModel)]
-    return {field.alias or name for model in models for name, field in model.model_fields.items()}
+    models = [m for m in vars(document).values() if isinstance(m, type) and issubclass(m, Entry)]
+    return {key for model in models for key in keys_of(model)}
 
 
 def test_every_key_unit_function_and_command_is_named() -> None:

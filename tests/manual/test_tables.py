@@ -7,15 +7,14 @@ from collections.abc import Iterator, Mapping
 from typing import Any
 
 import pytest
-from pydantic.fields import FieldInfo
-from pydantic_core import PydanticUndefined
 
 from heuncli import tolerances
 from heuncli.expressions.grammar import LONGEST as LONGEST_EXPRESSION
 from heuncli.kinetostatics.stress import UNKNOWN_SHEAR
 from heuncli.report.export import MOST_NUMBERS
 from heuncli.spec import format as f
-from heuncli.spec.fields import Entry
+from heuncli.spec.entries import NEEDED as NO_DEFAULT
+from heuncli.spec.entries import Entry, Field
 from heuncli.spec.resolve import DEFAULT_TOLERANCE
 from heuncli.spec.rules.analysis import LONGEST as LONGEST_RUN
 from heuncli.spec.rules.sections import MOST_CUTS
@@ -56,7 +55,7 @@ def kinds(row: Row, models: Mapping[str, type[Entry]]) -> list[str]:
     return [*models] if row["of"] == ALL else re.findall(r"`(\w+)`", row["of"])
 
 
-def described() -> Iterator[tuple[str, Row, FieldInfo | None]]:
+def described() -> Iterator[tuple[str, Row, Field | None]]:
     """Every row of a table of keys, with the field that it describes."""
     for heading, model in CHAPTERS.items():
         if isinstance(model, Mapping):
@@ -115,17 +114,17 @@ def test_defaults_are_those_of_the_models() -> None:
         if field is None or (heading, row["key"]) in NEEDED:
             continue
         cell = row["default"]
-        if field.is_required() != (cell == "required"):
-            wrong.append(f"{heading}: {row['key']} is {'required' if field.is_required() else 'not required'}")
+        if field.is_required != (cell == "required"):
+            wrong.append(f"{heading}: {row['key']} is {'required' if field.is_required else 'not required'}")
         elif (told := default(field)) is not None and told not in cell:
             wrong.append(f"{heading}: the default of {row['key']} is {told}, not {cell}")
     assert wrong == []
 
 
-def default(field: FieldInfo) -> str | None:
+def default(field: Field) -> str | None:
     """The default of a field as the manual writes it; None where there is none to be told."""
     value: Any = field.default
-    if value is PydanticUndefined or value is None or value == "":
+    if value is NO_DEFAULT or value is None or value == "":
         return None
     if isinstance(value, bool):
         return f"`{str(value).lower()}`"

@@ -68,7 +68,9 @@ def test_a_command_loads_nothing_of_another(command: Command) -> None:
     assert {*folders_of(found)} == {folder}
 
 
-def test_the_help_loads_requests_alone() -> None:
+def test_the_help_as_typer_makes_it_loads_requests_alone(monkeypatch: pytest.MonkeyPatch) -> None:
+    assert loaded("--help") == set()  # where it is at hand
+    monkeypatch.setenv("COLUMNS", "70")
     found = loaded("--help")
     assert {name.split(".")[-1] for name in found} == {"request", *folders_of(found)}
     assert {*folders_of(found)} == {command.folder or command.name for command in COMMANDS}

@@ -14,7 +14,7 @@ import pytest
 
 from heuncli.kernel import choose, form
 
-ROOT = form.FOLDER.parent.parent
+ROOT = Path(form.FOLDER).parent.parent
 REPORT = """\
 import json, sys
 from heuncli.kernel import choose, form

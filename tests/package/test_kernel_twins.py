@@ -11,9 +11,9 @@ import pytest
 
 from heuncli.kernel import headers
 from heuncli.kernel.choose import scene, structs
-from heuncli.kernel.form import FOLDER
 from heuncli.kernel.modules import DECLARED, MODULES
 from heuncli.tree import tables as records
+from tests.shared.folders import KERNEL as FOLDER
 
 FOR_C = {"int": "int", "float": "double"}
 FUNCTIONS = [

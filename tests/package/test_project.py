@@ -12,8 +12,8 @@ from pathlib import Path
 
 import pytest
 
-from heuncli.kernel.form import FOLDER
 from heuncli.kernel.modules import DECLARED, MODULES
+from tests.shared.folders import KERNEL as FOLDER
 from tests.shared.folders import ROOT
 
 PROJECT = tomllib.loads((ROOT / "pyproject.toml").read_text())

@@ -57,7 +57,14 @@ RARE = {
     "heuncli.report.export",
     "heuncli.cli.app",
 }
-STRANGE = {"scipy", "rich", "typer", "numpy.ma"}
+STRANGE = {
+    "scipy",
+    "rich",
+    "typer",
+    "numpy.ma",
+    "pydantic",
+    "importlib.metadata",
+}  # pydantic loads the last for plugins
 
 
 def loaded(*words: str, text: str = "") -> set[str]:
@@ -79,7 +86,7 @@ def loaded(*words: str, text: str = "") -> set[str]:
 
 def test_a_plain_run_loads_what_it_needs() -> None:
     found = loaded("run", "-", text=CHAIN)
-    assert {"numpy", "pydantic", "yaml", "heuncli.study.compose.recovery"} <= found
+    assert {"numpy", "pydantic_core", "yaml", "heuncli.study.compose.recovery"} <= found
     assert not (found - loaded_by("numpy")) & (STRANGE | SHAPED | REDUNDANT | RARE)
 
 
@@ -114,5 +121,15 @@ def test_help_and_version_do_without_the_heavy_ones(words: tuple[str, ...]) -> N
     assert not found & {"numpy", "scipy", "yaml", "rich", "heuncli.spec.load"}
 
 
-def test_the_version_asks_only_which_kernel_there_is() -> None:
-    assert not loaded("--version") & {"typer", "pydantic", "dataclasses", "inspect"}
+@pytest.mark.parametrize("words", ["--version", "--help"])
+def test_what_is_answered_at_once_needs_next_to_nothing(words: str) -> None:
+    """Beside what Python loads when it starts."""
+    code = "import os, sys; before = {*sys.modules}; from heuncli.cli import at_once; at_once.answered(sys.argv[1:])"
+    shown = "print(*sorted({*sys.modules} - before), file=sys.stderr)"
+    path = os.pathsep.join([str(ROOT), os.environ.get("PYTHONPATH", "")])
+    run = subprocess.run(
+        [sys.executable, "-S", "-c", f"{code}\n{shown}", words],
+        capture_output=True, text=True, check=True, env={**os.environ, "PYTHONPATH": path, "COLUMNS": "80"},
+    )  # fmt: skip
+    costly = {"typing", "collections", "enum", "functools", "re", "contextlib", "pathlib", "dataclasses", "inspect"}
+    assert run.stdout and not (costly | {"typer", "numpy", "yaml", "pydantic_core"}) & {*run.stderr.split()}

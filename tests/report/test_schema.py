@@ -15,6 +15,7 @@ from heuncli.report.page import some_instants
 from heuncli.results import Results
 from heuncli.results_paths import find
 from heuncli.results_schema import REPORTS, ROWS, TREE, Node, Quantity, quantity
+from heuncli.spec.entries import fields_of
 from heuncli.spec.format import HeadEntry
 from heuncli.spec.load import load
 from tests.shared.fakes import LABELS, FakeStudy, pendulum, vectors
@@ -140,7 +141,7 @@ def test_every_row_is_found_by_its_path() -> None:
 
 
 def test_the_format_asks_for_the_reports_there_are() -> None:
-    (words,) = (kind for kind in get_args(HeadEntry.model_fields["report"].annotation) if kind is not type(None))
+    (words,) = (kind for kind in get_args(fields_of(HeadEntry)["report"].annotation) if kind is not type(None))
     assert get_args(get_args(words)[0]) == (*REPORTS, "shares")
 
 

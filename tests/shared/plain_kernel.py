@@ -11,7 +11,8 @@ from importlib.machinery import SourceFileLoader
 from types import ModuleType
 from typing import Any
 
-from heuncli.kernel.form import FOLDER, PACKAGE
+from heuncli.kernel.form import PACKAGE
+from tests.shared.folders import KERNEL as FOLDER
 
 AS_THEY_ARE = frozenset({"modules", "shadow"})  # nothing is computed there
 

@@ -9,7 +9,7 @@ import pytest
 
 from heuncli.joint_kinds import ABOUT_AXIS, FLAT, FREE, JOINTS, LINE, POINT, RATES, SYNONYMS, TYPES, Kind
 from heuncli.spec import format as f
-from heuncli.spec.fields import keys_of
+from heuncli.spec.entries import fields_of, keys_of
 
 IN_PLANE = {kind.name: kind for kind in FLAT.values()}
 IN_SPACE = {name: kind for name, kind in JOINTS.items() if name not in IN_PLANE}
@@ -35,8 +35,8 @@ def test_keys(kind: Kind) -> None:
 
 @WRITTEN
 def test_what_must_be_given(kind: Kind) -> None:
-    fields = f.JOINTS[kind.name].model_fields
-    must = {key for key in ("axis", "normal", "to_axis") if key in fields and fields[key].is_required()}
+    fields = fields_of(f.JOINTS[kind.name])
+    must = {key for key in ("axis", "normal", "to_axis") if key in fields and fields[key].is_required}
     wanted = {kind.axis_key, "to_axis" if kind.to_axis == "required" else None}
     assert must == wanted - {None}
 
@@ -44,7 +44,7 @@ def test_what_must_be_given(kind: Kind) -> None:
 @WRITTEN
 def test_start_values(kind: Kind) -> None:
     """Each coordinate and its rate may be held at the start."""
-    fields = f.JOINTS[kind.name].model_fields
+    fields = fields_of(f.JOINTS[kind.name])
     parts = get_args(fields["initial"].annotation) if "initial" in fields else ()
     models = [part for part in parts if part is not NoneType]
     held = {key for model in models for key in keys_of(model)}

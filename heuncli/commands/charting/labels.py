@@ -7,7 +7,8 @@ from __future__ import annotations
 
 from collections.abc import Iterable, Sequence
 from itertools import pairwise
-from typing import NamedTuple
+
+from heuncli.named_tuples import NamedTuple
 
 WIDE, HIGH = 0.7, 1.15  # of the size of letters: the mean width of one of a sans-serif font, bold; and a line's height
 GAP = 8.0  # between a point and its name

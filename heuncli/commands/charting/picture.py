@@ -8,7 +8,6 @@ from __future__ import annotations
 
 from collections.abc import Sequence
 from itertools import pairwise
-from typing import NamedTuple
 
 from heuncli.commands.charting.labels import LabelBox, inside, placed, wide
 from heuncli.commands.charting.page import local, remark
@@ -17,6 +16,7 @@ from heuncli.commands.charting.scale import Scale, failures, points, power, scal
 from heuncli.drawing.picture import SHAPES, Line, Mark, Picture, Shape, Text
 from heuncli.foreign_text import shown
 from heuncli.method_rows import row_of
+from heuncli.named_tuples import NamedTuple
 from heuncli.report.text_table import wrapped
 from heuncli.tolerances import LOST
 

@@ -7,9 +7,9 @@ from __future__ import annotations
 
 import math
 from collections.abc import Iterable
-from typing import NamedTuple
 
 from heuncli.commands.charting.results import COMPLETED, ChartedRun, ChartResults
+from heuncli.named_tuples import NamedTuple
 from heuncli.tolerances import LOST
 
 PAD = 0.08  # of a decade beside the fastest and the slowest run

@@ -4,9 +4,10 @@ from __future__ import annotations
 
 from collections.abc import Mapping
 from types import MappingProxyType
-from typing import Any, NamedTuple
+from typing import Any
 
 from heuncli.errors import Problem
+from heuncli.named_tuples import NamedTuple
 
 FAILED = 1
 NONE: Mapping[str, Any] = MappingProxyType({})

@@ -8,7 +8,7 @@ from collections.abc import Mapping, Sequence
 from functools import partial
 from itertools import starmap
 from pathlib import Path
-from typing import Any, NamedTuple
+from typing import Any
 
 import numpy as np
 
@@ -23,6 +23,7 @@ from heuncli.commands.check.kept_outcomes import NO_FILE, kept_outcomes
 from heuncli.commands.check.request import CheckRequest
 from heuncli.errors import Finding, HeunError, SpecError
 from heuncli.foreign_text import shown
+from heuncli.named_tuples import NamedTuple
 from heuncli.report.digits import OPEN
 from heuncli.results import Array
 from heuncli.spec.load import load_with_cases

@@ -9,9 +9,9 @@ from __future__ import annotations
 import os
 from collections.abc import Iterator
 from pathlib import Path
-from typing import NamedTuple
 
 from heuncli.errors import Problem, SourceLocation
+from heuncli.named_tuples import NamedTuple
 from heuncli.spec.reading import STANDARD_INPUT
 
 SPECS = frozenset({".yaml", ".yml"})

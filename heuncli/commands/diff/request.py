@@ -1,8 +1,9 @@
 """What `heun diff` is asked for: its options and arguments."""
 
-from typing import Annotated, NamedTuple
+from typing import Annotated
 
 from heuncli.cli.options import OUTPUT, QUIET, TIME_LIMIT_EACH, Option
+from heuncli.named_tuples import NamedTuple
 
 FORMATS = ("table", "json", "markdown", "github")
 

@@ -6,12 +6,13 @@ import json
 from collections.abc import Mapping, Sequence
 from functools import partial
 from pathlib import PurePath
-from typing import Any, NamedTuple
+from typing import Any
 
 from heuncli.cli import alarm
 from heuncli.cli.entry import UsageError, contained
 from heuncli.cli.solving import warning_lines
 from heuncli.errors import Finding, HeunError, Problem, SourceLocation
+from heuncli.named_tuples import NamedTuple
 from heuncli.spec.load import load_with_cases
 from heuncli.spec.reading import STANDARD_INPUT, read_bytes
 from heuncli.study.model.options import Options

@@ -3,9 +3,10 @@
 from __future__ import annotations
 
 from collections.abc import Mapping, Sequence
-from typing import Any, NamedTuple
+from typing import Any
 
 from heuncli.foreign_text import shown
+from heuncli.named_tuples import NamedTuple
 from heuncli.report.export import dump
 from heuncli.report.plurals import count
 from heuncli.report.text_table import TextColumn, TextTable, markdown, plain

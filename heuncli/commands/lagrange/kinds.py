@@ -2,9 +2,8 @@
 
 from __future__ import annotations
 
-from typing import NamedTuple
-
 from heuncli.joint_kinds import is_length
+from heuncli.named_tuples import NamedTuple
 
 
 class CoordinateUnits(NamedTuple):

@@ -1,8 +1,9 @@
 """What `heun modes` is asked for: its options and arguments."""
 
-from typing import Annotated, NamedTuple
+from typing import Annotated
 
 from heuncli.cli.options import CASE, OUTPUT, QUIET, SET, SPEC, TIME_LIMIT, Option
+from heuncli.named_tuples import NamedTuple
 
 
 class ModesRequest(NamedTuple):

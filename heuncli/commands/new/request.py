@@ -1,8 +1,9 @@
 """What `heun new` is asked for: its arguments."""
 
-from typing import Annotated, NamedTuple
+from typing import Annotated
 
 from heuncli.cli.options import Option
+from heuncli.named_tuples import NamedTuple
 
 
 class NewRequest(NamedTuple):

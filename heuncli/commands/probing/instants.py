@@ -8,7 +8,6 @@ where its sign changes.
 from __future__ import annotations
 
 from collections.abc import Callable, Sequence
-from typing import NamedTuple
 
 import numpy as np
 
@@ -17,6 +16,7 @@ from heuncli.commands.probing.numerics.attitudes import SEQUENCES, condition, of
 from heuncli.commands.probing.numerics.shares import Loop, continued, loops_of, motions
 from heuncli.commands.probing.results import DEAD_CENTRE, GIMBAL, HALF_TURN, AttitudeResults, Event
 from heuncli.integration.evaluator import Recovered
+from heuncli.named_tuples import NamedTuple
 from heuncli.redundancy.neighbours import neighbours
 from heuncli.results import Array, Indices, Mask
 from heuncli.study.ask.study import Study

@@ -3,9 +3,10 @@
 from __future__ import annotations
 
 import math
-from typing import Any, NamedTuple
+from typing import Any
 
 from heuncli.method_rows import row_of
+from heuncli.named_tuples import NamedTuple
 from heuncli.records import record
 
 HALF_TURN, GIMBAL, DEAD_CENTRE, SINGULAR, NO_MASS = (

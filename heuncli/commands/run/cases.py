@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import json
 from collections.abc import Iterator, Mapping, Sequence
-from typing import Any, NamedTuple
+from typing import Any
 
 from heuncli.cli.entry import UsageError, worst
 from heuncli.cli.output import emit
@@ -12,6 +12,7 @@ from heuncli.cli.units import TABLES, say_what_stays
 from heuncli.commands.run.scene import RunTask, leave, solved
 from heuncli.errors import Problem
 from heuncli.foreign_text import shown
+from heuncli.named_tuples import NamedTuple
 from heuncli.report.export import dump
 from heuncli.report.page_width import fit
 from heuncli.report.table_units import Units

@@ -1,8 +1,9 @@
 """What `heun run` is asked for: its options and arguments."""
 
-from typing import Annotated, NamedTuple
+from typing import Annotated
 
 from heuncli.cli.options import NO_REDUCE, OUTPUT, QUIET, SET, SPEC, TIME_LIMIT, UNITS, Option
+from heuncli.named_tuples import NamedTuple
 
 FORMATS = ("table", "json", "csv", "markdown")
 

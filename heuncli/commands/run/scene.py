@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Callable, Sequence
-from typing import TYPE_CHECKING, Any, NamedTuple
+from typing import TYPE_CHECKING, Any
 
 import numpy as np
 
@@ -12,6 +12,7 @@ from heuncli.cli.solving import instants, timings, warn
 from heuncli.cli.units import TABLES
 from heuncli.commands.run import searches
 from heuncli.commands.run.request import RunRequest
+from heuncli.named_tuples import NamedTuple
 from heuncli.records import replace
 from heuncli.report.cut_runs import LOADS
 from heuncli.report.heading import write_heading, write_heading_markdown

@@ -1,8 +1,9 @@
 """What `heun schema` is asked for: its options."""
 
-from typing import Annotated, NamedTuple
+from typing import Annotated
 
 from heuncli.cli.options import OUTPUT, Option
+from heuncli.named_tuples import NamedTuple
 
 
 class SchemaRequest(NamedTuple):

@@ -1,8 +1,9 @@
 """What `heun validate` is asked for: its options and arguments."""
 
-from typing import Annotated, NamedTuple
+from typing import Annotated
 
 from heuncli.cli.options import TIME_LIMIT_EACH, Option
+from heuncli.named_tuples import NamedTuple
 
 
 class ValidateRequest(NamedTuple):

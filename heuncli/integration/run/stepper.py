@@ -9,7 +9,7 @@ stiff.
 from __future__ import annotations
 
 import time
-from typing import TYPE_CHECKING, NamedTuple
+from typing import TYPE_CHECKING
 
 import numpy as np
 
@@ -36,6 +36,7 @@ from heuncli.integration.run.request import MotionTask, StoppingRules
 from heuncli.integration.run.step_records import GrowingRows, Steps
 from heuncli.integration.segments import Segment, Segments, just_before, smooth_segments
 from heuncli.integration.trajectory import Trajectory
+from heuncli.named_tuples import NamedTuple
 from heuncli.results import Array
 from heuncli.tree.layout import Layout
 

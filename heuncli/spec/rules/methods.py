@@ -74,7 +74,7 @@ def not_smooth(draft: DraftDocument) -> Iterator[tuple[Path_, str]]:
             yield ("drives", name), f"the drive {name}, whose rate jumps"
     for block, entries in (("drives", document.drives), ("forces", document.forces)):
         for name, entry in entries.items():
-            for field, value in entry:
+            for field, value in vars(entry).items():
                 for part in value if isinstance(value, tuple) else (value,):
                     if isinstance(part, Expression) and part.uses and part.held:
                         source = part.source.strip()

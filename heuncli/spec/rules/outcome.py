@@ -3,11 +3,12 @@
 from __future__ import annotations
 
 from collections.abc import Collection, Mapping
-from typing import Any, NamedTuple, TypeAlias
+from typing import Any, TypeAlias
 
 from heuncli.errors import Finding
 from heuncli.expressions import units as u
 from heuncli.joint_kinds import RATES, TYPES
+from heuncli.named_tuples import NamedTuple
 from heuncli.nearest import did_you_mean, listed, nearest
 from heuncli.results_schema import (
     BLOWS,

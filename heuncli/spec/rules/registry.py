@@ -3,8 +3,8 @@
 from __future__ import annotations
 
 from collections.abc import Callable, Iterable, Iterator
-from typing import NamedTuple
 
+from heuncli.named_tuples import NamedTuple
 from heuncli.spec.format import Document
 from heuncli.spec.names import Names
 

@@ -3,10 +3,10 @@
 from __future__ import annotations
 
 from collections.abc import Callable, Collection, Iterator
-from typing import NamedTuple
 
 from heuncli import tolerances
 from heuncli.joint_kinds import TYPES, Kind, named
+from heuncli.named_tuples import NamedTuple
 from heuncli.spec import format as f
 from heuncli.spec.rules.registry import DraftDocument, Violation, rule
 from heuncli.spec.semantics import Limits, drive_of, limits_of

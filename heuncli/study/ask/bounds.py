@@ -7,10 +7,11 @@ neither below nor above it; what is open or not known meets none.
 from __future__ import annotations
 
 import math
-from typing import Literal, NamedTuple
+from typing import Literal
 
 import numpy as np
 
+from heuncli.named_tuples import NamedTuple
 from heuncli.results import Place
 from heuncli.results_paths import Numbers, find
 from heuncli.results_schema import BLOWS

@@ -6,12 +6,13 @@ roots between the samples, not read off a line through them.
 
 from __future__ import annotations
 
-from typing import NamedTuple, NoReturn
+from typing import NoReturn
 
 import numpy as np
 
 from heuncli import tolerances
 from heuncli.errors import HeunError, Problem
+from heuncli.named_tuples import NamedTuple
 from heuncli.results import Array, Mask
 from heuncli.results_paths import find
 from heuncli.spec.models import Curve, Expect

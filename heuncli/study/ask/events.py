@@ -11,13 +11,13 @@ import contextlib
 import math
 from collections.abc import Callable, Mapping, Sequence
 from dataclasses import replace as changed
-from typing import NamedTuple
 
 import numpy as np
 
 from heuncli import tolerances
 from heuncli.errors import SolveError
 from heuncli.integration.check.changes import Changes, blows_apart
+from heuncli.named_tuples import NamedTuple
 from heuncli.records import replace
 from heuncli.results import Array, Block, Results, Status
 from heuncli.results_paths import find

@@ -4,12 +4,13 @@ from __future__ import annotations
 
 from collections.abc import Sequence
 from dataclasses import replace
-from typing import Literal, NamedTuple
+from typing import Literal
 
 import numpy as np
 
 from heuncli import results_schema, tolerances
 from heuncli.errors import HeunError, Problem
+from heuncli.named_tuples import NamedTuple
 from heuncli.results import Array, Place, Results
 from heuncli.results_paths import Numbers, find
 from heuncli.results_schema import (

@@ -10,7 +10,7 @@ where that is more than a table's digits of the largest of its kind.
 from __future__ import annotations
 
 from collections.abc import Iterator, Mapping, Sequence, Set
-from typing import Any, NamedTuple, Protocol
+from typing import Any, Protocol
 
 import numpy as np
 
@@ -18,6 +18,7 @@ from heuncli import tolerances
 from heuncli.integration.check.estimate import recovered_at
 from heuncli.integration.evaluator import Recovered
 from heuncli.integration.trajectory import Trajectory
+from heuncli.named_tuples import NamedTuple
 from heuncli.results import Array, Indices, Mask
 from heuncli.results_schema import quantity
 from heuncli.study.compose.blocks import blocks_asked_for

@@ -11,11 +11,11 @@ Numbers only: knows nothing of joints, units or text.
 from __future__ import annotations
 
 from collections.abc import Callable
-from typing import NamedTuple
 
 import numpy as np
 
 from heuncli import tolerances
+from heuncli.named_tuples import NamedTuple
 from heuncli.results import Array, Mask
 from heuncli.study.search.extremes import (
     MOST_PROBES,

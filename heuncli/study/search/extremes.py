@@ -10,12 +10,13 @@ sides of a jump: nothing is searched between them. Numbers only: knows nothing o
 from __future__ import annotations
 
 from collections.abc import Callable, Sequence
-from typing import Any, NamedTuple
+from typing import Any
 
 import numpy as np
 from numpy.typing import NDArray
 
 from heuncli import tolerances
+from heuncli.named_tuples import NamedTuple
 from heuncli.results import Array, Extremes, Indices, Mask, Results
 from heuncli.study.search.intervals import FOURTH, Intervals, completed, joined, promised
 

@@ -14,10 +14,10 @@ meet, at a jump a quantity goes on as before it: there these promise more.
 from __future__ import annotations
 
 from collections.abc import Sequence
-from typing import NamedTuple
 
 import numpy as np
 
+from heuncli.named_tuples import NamedTuple
 from heuncli.results import Array, Indices, Mask
 
 DIFFERENCE = 0.5  # of what the two bends differ by, on top of the larger: for third derivatives that change sign

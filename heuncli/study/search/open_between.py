@@ -11,11 +11,12 @@ either side is a singular one.
 from __future__ import annotations
 
 from collections.abc import Sequence
-from typing import Any, NamedTuple
+from typing import Any
 
 import numpy as np
 
 from heuncli.integration.evaluator import Recovered
+from heuncli.named_tuples import NamedTuple
 from heuncli.redundancy.open_components import names_of, opened
 from heuncli.results import Array, Indices, Mask
 from heuncli.study.compose.blocks import blocks_asked_for

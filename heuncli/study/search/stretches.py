@@ -8,12 +8,12 @@ the place leaps, which no extreme is at.
 from __future__ import annotations
 
 from collections.abc import Sequence
-from typing import NamedTuple
 
 import numpy as np
 
 from heuncli.kinetostatics.cuts import BEFORE, BEYOND, Cuts, attached, spread_on
 from heuncli.kinetostatics.stretch import DEGREE, Stretch, laid, stretch_of, summits
+from heuncli.named_tuples import NamedTuple
 from heuncli.records import replace
 from heuncli.results import Array, Block, Extremes, Place
 from heuncli.study.model.setup import Setup

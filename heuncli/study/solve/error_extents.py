@@ -2,11 +2,10 @@
 
 from __future__ import annotations
 
-from typing import NamedTuple
-
 import numpy as np
 
 from heuncli import tolerances
+from heuncli.named_tuples import NamedTuple
 from heuncli.results import Array, Mask
 
 

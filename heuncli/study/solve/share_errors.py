@@ -7,7 +7,6 @@ themselves, kind by kind, as it does the loads.
 from __future__ import annotations
 
 from collections.abc import Iterator, Sequence, Set
-from typing import NamedTuple
 
 import numpy as np
 
@@ -17,6 +16,7 @@ from heuncli.kinetostatics.bodies import BodyStates
 from heuncli.kinetostatics.joint_axes import in_axes
 from heuncli.kinetostatics.reactions import JointLoads
 from heuncli.kinetostatics.shares import Column, Shares, foundation_shares, members_of, shares_of
+from heuncli.named_tuples import NamedTuple
 from heuncli.results import Array
 from heuncli.study.model.setup import Setup
 from heuncli.study.solve.balance_terms import BalanceTerms

@@ -8,13 +8,12 @@ touched by neither; a code that factors M or J M^-1 J' is.
 
 from __future__ import annotations
 
-from typing import NamedTuple
-
 import numpy as np
 
 from heuncli import tolerances
 from heuncli.commands.probing.numerics.twists import closure_rows, mass_matrix, twists
 from heuncli.integration.evaluator import Recovered
+from heuncli.named_tuples import NamedTuple
 from heuncli.rest.coordinates import Coordinates
 from heuncli.results import Array
 from heuncli.tree.layout import Layout

@@ -1,0 +1,58 @@
+"""What is answered before anything is imported: as the rest would, and left to the rest where that cannot be."""
+
+from __future__ import annotations
+
+import os
+import subprocess
+import sys
+from pathlib import Path
+
+import pytest
+
+from heuncli.cli import at_once
+from heuncli.cli.entry import enter
+from tests.shared.help_text import HELP, help_of_typer
+from tests.shared.shell import shell
+
+RENEW = "renew it: python -m tests.manual.tables"
+
+
+@pytest.mark.parametrize("columns", [80, 81, 200])
+def test_the_help_is_what_typer_makes_of_the_registry(columns: int) -> None:
+    assert help_of_typer(columns) == HELP.read_text("ascii"), RENEW
+
+
+def answer(*words: str, code: str = "pass", **environment: str) -> str:
+    """What is answered at once in a process of its own; nothing where it is left to the rest."""
+    call = f"import sys; from heuncli.cli import at_once; {code}; sys.exit(not at_once.answered(sys.argv[1:]))"
+    line = [sys.executable, "-c", call, *words]
+    return subprocess.run(line, capture_output=True, text=True, env={**os.environ, **environment}, check=False).stdout
+
+
+def test_help_and_version_and_nothing_else(capsys: pytest.CaptureFixture[str]) -> None:
+    assert enter(["--version"]) == 0
+    assert answer("--version") == capsys.readouterr().out != ""
+    assert answer("--help", COLUMNS="80") == HELP.read_text("ascii")
+    for words in ((), ("run",), ("--help", "run"), ("run", "--help"), ("-h",), ("--", "--help")):
+        assert answer(*words, COLUMNS="80") == ""
+
+
+@pytest.mark.parametrize("columns", ["79", "40"])
+def test_narrow_terminals_are_left_to_typer(columns: str) -> None:
+    assert answer("--help", COLUMNS=columns) == ""
+    assert help_of_typer(int(columns)) != HELP.read_text("ascii")
+
+
+@pytest.mark.parametrize("given", ["", "0", "-5", "wide"])
+def test_widths_that_are_none(given: str, monkeypatch: pytest.MonkeyPatch) -> None:
+    monkeypatch.setenv("COLUMNS", given)
+    monkeypatch.setattr("os.get_terminal_size", lambda number: os.terminal_size((66, 20)))
+    assert at_once.width() == 66
+
+
+def test_what_goes_wrong_is_told_by_the_rest(tmp_path: Path) -> None:
+    assert answer("--version", HEUN_KERNEL="nonsense") == answer("--version", code="sys.stdout = None") == ""
+    done = shell("HEUN_KERNEL=nonsense heun --version", tmp_path)
+    assert (done.returncode, "[unknown-kernel]" in done.stderr) == (2, True)
+    done = shell("heun --help >&-", tmp_path)
+    assert (done.returncode, "[output-closed]" in done.stderr) == (5, True)

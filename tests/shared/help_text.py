@@ -1,0 +1,21 @@
+"""The help of all of heun as typer makes it of the registry, and the file that has it ready."""
+
+from __future__ import annotations
+
+import os
+import subprocess
+import sys
+from pathlib import Path
+
+from heuncli.cli import at_once
+
+HELP = Path(at_once.HELP)
+CODE = "import sys; from heuncli.cli import app; sys.exit(app.read(['--help']))"
+
+
+def help_of_typer(columns: int = at_once.USUAL) -> str:
+    """What typer answers to `heun --help` on a terminal of that width."""
+    environment = {**os.environ, "COLUMNS": str(columns)}
+    return subprocess.run(
+        [sys.executable, "-c", CODE], capture_output=True, text=True, check=True, env=environment
+    ).stdout
