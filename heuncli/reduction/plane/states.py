@@ -87,14 +87,19 @@ class States:
         The last is the ground.
         """
         by = np.zeros((self.body_count, 2, len(times)))
+        free = [turn for turn in self.turns if turn.q >= 0]
+        own, sign = [turn.body for turn in free], np.array([turn.sign for turn in free])
+        start = np.array([turn.start for turn in free])
+        by[own, 0] = (sign * (states[:, [turn.q for turn in free]] - start)).T
+        by[own, 1] = (sign * states[:, [turn.u for turn in free]]).T
         for turn in self.turns:
-            if turn.q >= 0 or turn.program is not None:
+            if turn.q < 0 and turn.program is not None:
                 q, u = self._of_turn(turn, times, states)
                 by[turn.body] = turn.sign * (q - turn.start), turn.sign * u
-        turned = np.zeros((self.body_count + 1, 2, len(times)))
+        turned = [np.zeros((2, len(times)))] * (self.body_count + 1)
         for turn in self.turns:
-            np.add(turned[turn.parent], by[turn.body], out=turned[turn.body])
-        return turned.swapaxes(0, 1)
+            turned[turn.body] = turned[turn.parent] + by[turn.body]
+        return np.array(turned).swapaxes(0, 1)
 
     def restrict(self, t: float, state: Array) -> Array:
         """The state of the flat scene, (n',), from one of the scene."""
