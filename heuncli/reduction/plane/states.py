@@ -14,7 +14,7 @@ from heuncli.kernel.choose import scene as kernel
 from heuncli.mechanism.model import GROUND
 from heuncli.records import record
 from heuncli.reduction.plane.view import View
-from heuncli.results import Array
+from heuncli.results import Array, Indices
 from heuncli.shapes.rotations import about_axis, quaternion_product
 from heuncli.tree.layout import Layout
 from heuncli.tree.prepare import PreparedScene
@@ -46,9 +46,9 @@ class FreeTurns:
     body (b,); attitude_at (b, 4); rate_at (b, 3): places in the state; start (b, 4): quaternions.
     """
 
-    body: Array
-    attitude_at: Array
-    rate_at: Array
+    body: Indices
+    attitude_at: Indices
+    rate_at: Indices
     start: Array
 
 
@@ -141,7 +141,7 @@ def angles_about(n: Array, attitudes: Array, starts: Array) -> list[float]:
     """The angles about n, within two turns, that take quaternions (b, 4) to others, their signs with them."""
     turns = quaternion_product(attitudes, starts * np.array([1.0, -1.0, -1.0, -1.0]))
     sines = np.array([n @ turn for turn in turns[:, 1:]])
-    return np.multiply(2.0, np.arctan2(sines, turns[:, 0])).tolist()
+    return [2.0 * angle for angle in np.arctan2(sines, turns[:, 0]).tolist()]
 
 
 def _free_turns(full: Layout) -> FreeTurns:
