@@ -22,16 +22,18 @@ def record(cls: type[T]) -> type[T]:
     first_optional = max((i + 1 for i, name in enumerate(names) if name in required), default=0)
 
     def __init__(self: T, *values: Any, **named: Any) -> None:
-        if not named and first_optional <= len(values) <= len(names):
-            self.__dict__.update(zip(names, values))  # noqa: B905 - the others have defaults
-            return
-        given = dict(zip(names, values)) if values else {}  # noqa: B905 - too many are seen by their number
-        given.update(named)
-        if len(given) != len(values) + len(named) or not required <= given.keys() <= known:
-            twice = [*names[: len(values)], *named]
-            wrong = (required - given.keys()) or (given.keys() - known) or {n for n in twice if twice.count(n) > 1}
-            raise TypeError(f"{cls.__name__}: fields missing, unknown or given twice: {', '.join(sorted(wrong))}")
-        self.__dict__.update(given)
+        own = self.__dict__
+        own.update(zip(names, values))  # noqa: B905 - too many are seen by their number
+        if not named:
+            if first_optional <= len(values) <= len(names):
+                return
+        else:
+            own.update(named)
+            if len(own) == len(values) + len(named) and known.issuperset(named) and required.issubset(own):
+                return
+        twice = [*names[: len(values)], *named]
+        wrong = (required - own.keys()) or (own.keys() - known) or {n for n in twice if twice.count(n) > 1}
+        raise TypeError(f"{cls.__name__}: fields missing, unknown or given twice: {', '.join(sorted(wrong))}")
 
     made: Any = cls
     made.__init__, made.__repr__ = __init__, _text
