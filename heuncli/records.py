@@ -19,31 +19,39 @@ def record(cls: type[T]) -> type[T]:
     names = tuple(cls.__annotations__)
     known = frozenset(names)
     required = frozenset(name for name in names if name not in cls.__dict__)
+    first_optional = max((i + 1 for i, name in enumerate(names) if name in required), default=0)
 
     def __init__(self: T, *values: Any, **named: Any) -> None:
-        if len(values) == len(names) and not named:
-            self.__dict__.update(zip(names, values))  # noqa: B905 - as many as there are fields
-            return
-        given = dict(zip(names, values)) if values else {}  # noqa: B905 - too many are seen by their number
-        given.update(named)
-        if len(given) != len(values) + len(named) or not required <= given.keys() <= known:
-            twice = [*names[: len(values)], *named]
-            wrong = (required - given.keys()) or (given.keys() - known) or {n for n in twice if twice.count(n) > 1}
-            raise TypeError(f"{cls.__name__}: fields missing, unknown or given twice: {', '.join(sorted(wrong))}")
-        self.__dict__.update(given)
+        own = self.__dict__
+        own.update(zip(names, values))  # noqa: B905 - too many are seen by their number
+        if not named:
+            if first_optional <= len(values) <= len(names):
+                return
+        else:
+            own.update(named)
+            if len(own) == len(values) + len(named) and known.issuperset(named) and required.issubset(own):
+                return
+        twice = [*names[: len(values)], *named]
+        wrong = (required - own.keys()) or (own.keys() - known) or {n for n in twice if twice.count(n) > 1}
+        raise TypeError(f"{cls.__name__}: fields missing, unknown or given twice: {', '.join(sorted(wrong))}")
 
     made: Any = cls
     made.__init__, made.__repr__ = __init__, _text
     made.__setattr__ = made.__delattr__ = _frozen
-    made.__record_fields__ = names
+    made.__record_fields__, made.__record_known__ = names, known
     return cls
 
 
 def replace(one: T, **changes: Any) -> T:
     """A record like this one but for some fields."""
     cls: Any = type(one)
-    given = {name: getattr(one, name) for name in cls.__record_fields__}
-    made: T = cls(**{**given, **changes})
+    if not changes.keys() <= cls.__record_known__:
+        raise TypeError(f"{cls.__name__}: fields unknown: {', '.join(sorted(changes.keys() - cls.__record_known__))}")
+    made: T = object.__new__(cls)
+    given = made.__dict__  # complete, as that of `one` is
+    for name in cls.__record_fields__:
+        given[name] = getattr(one, name)
+    given.update(changes)
     return made
 
 

@@ -7,6 +7,7 @@ from __future__ import annotations
 
 import math
 from array import array
+from functools import cache
 
 from heuncli.errors import Finding
 from heuncli.expressions.dimensions import COORDINATES, FACTOR, FREE, OF_TIME, Measure, combined, looked_up, loose
@@ -34,6 +35,13 @@ class Part:
     constant: float | None = None
     is_truth: bool = False
     measure: Measure = FREE
+
+
+@cache
+def operation(name: str, argument: int, operands: int) -> expressions.Expressions:
+    """The program of one operation, whose operands are its variables: made once, for however many numbers."""
+    code = [*(x for k in range(operands) for x in (OP["var"], k)), OP[name], argument]
+    return expressions.Expressions(array("i", code), array("d"), operands)
 
 
 class Codegen:
@@ -91,7 +99,7 @@ class Codegen:
         operation = (OP["table"], self.tables.index(table), table.pieces, table.kind)
         code = (*argument.code, *self.held_branch(text, argument.uses), *operation)
         if argument.constant is not None:
-            value = self.run(code, table)
+            value = self.looked_up(code, table)
             if math.isnan(value) and math.isfinite(argument.constant):
                 message, hint = outside(table)
                 self.out_of_range = Finding("not-computable", f"{message}, not {argument.constant:.9g}", hint)
@@ -127,12 +135,10 @@ class Codegen:
             raise Finding("expression-limit", message, "put its values in a table: tables: {gas: {file: ...}}")
         return part
 
-    def run(self, code: Code, table: TableFunction | None = None) -> float:
-        """The number that constant code gives; a table of it is the one given."""
-        tables: tuple[array[float], ...] = ()
-        if table is not None:
-            code, tables = (*code[:-3], 0, *code[-2:]), (table.numbers,)
-        programs = expressions.Expressions(array("i", code), array("d", self.constants), 0, tables=tables)
+    def looked_up(self, code: Code, table: TableFunction) -> float:
+        """The number that the code of a table at a constant gives."""
+        code = (*code[:-3], 0, *code[-2:])
+        programs = expressions.Expressions(array("i", code), array("d", self.constants), 0, tables=(table.numbers,))
         return float(programs.evaluate(0, len(code) // 2, ()))
 
     def apply(self, name: str, *parts: Part, argument: int = 0, text: str = "") -> Part:
@@ -144,7 +150,9 @@ class Codegen:
             uses |= part.uses
         measure = combined(name, [part.measure for part in parts], argument, self.strict)
         if not uses:
-            return self.number(self.run((*code, OP[name], argument)), measure)
+            operands = [part.constant for part in parts if part.constant is not None]
+            program = operation(name, argument, len(operands))
+            return self.number(program.evaluate(0, len(operands) + 1, operands), measure)
         if uses <= {0}:
             self.switch(name, parts)
         held = self.held_branch(text, uses) if text and name in BRANCHING else ()

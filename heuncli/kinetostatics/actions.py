@@ -68,8 +68,11 @@ class Action:
 
     def on_ground(self) -> tuple[Array, Array, Array] | None:
         """Force and moment ON the ground and the position that the moment is about; None where it acts elsewhere."""
-        ends = ((force, moment, end.position) for end, force, moment in self.on_bodies() if end.body == GROUND)
-        return next(ends, None)
+        if self.to.body == GROUND:
+            return self.force, self.moment, self.to.position
+        if self.from_ is not None and self.from_.body == GROUND:
+            return -self.force, -self.moment, self.from_.position
+        return None
 
 
 @record
@@ -148,7 +151,8 @@ def _ends(
 def _joint_ends(joint: Joint, position: Array) -> tuple[ActionEnd, ActionEnd]:
     """The ends of what acts in a joint, at its `to` point."""
     point = None if JOINTS[joint.kind].wanders else joint.p
-    return ActionEnd(joint.b, position, joint.q), ActionEnd(joint.a, position, point, apart=True)
+    apart = True
+    return ActionEnd(joint.b, position, joint.q), ActionEnd(joint.a, position, point, apart)
 
 
 def joint_actions(joints: Sequence[JointLoads]) -> list[Action]:

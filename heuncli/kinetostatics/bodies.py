@@ -5,7 +5,7 @@ Rigid-body kinematics: v_P = v + σ × (P − O), a_P = a + σ̇ × (P − O) + 
 
 from __future__ import annotations
 
-from collections.abc import Mapping
+from collections.abc import Mapping, Sequence
 from types import MappingProxyType
 
 import numpy as np
@@ -42,6 +42,16 @@ class BodyStates:
         if body == GROUND:
             return np.broadcast_to(point, (len(self.x), 3))
         return self.x[:, body] + self.R[:, body] @ point
+
+    def point_positions(self, bodies: Sequence[int], points: Sequence[Array]) -> list[Array]:
+        """World positions of a point each of bodies, as of `point_position`."""
+        own = [i for i, body in enumerate(bodies) if body != GROUND]
+        of, q = [bodies[i] for i in own], np.array([points[i] for i in own]).reshape(-1, 3, 1)
+        moving = self.x[:, of].swapaxes(0, 1) + (self.R[:, of].swapaxes(0, 1) @ q[:, None])[..., 0]
+        found = [np.broadcast_to(point, (len(self.x), 3)) for point in points]
+        for i, position in zip(own, moving, strict=True):
+            found[i] = position
+        return found
 
     def velocity(self, body: int, position: Array) -> Array:
         """Velocity of the body's point that is at a world position, (n_t, 3)."""

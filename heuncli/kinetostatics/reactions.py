@@ -122,21 +122,23 @@ class Answers(Protocol):
 def joint_loads(layout: Layout, recovered: Answers, states: BodyStates) -> list[JointLoads]:
     """Reactions of all joints, in the order of the spec."""
     hang_of = {h.joint: (i, h) for i, h in enumerate(layout.spanning.hangs) if h.joint >= 0}
+    driven = {freedom.joint: n for n, freedom in enumerate(layout.freedoms) if freedom.q < 0}
+    on_to = [recovered.bodies[name] for name in ("joint_force", "joint_moment")]
+    joints = layout.mechanism.joints
+    points = states.point_positions([joint.b for joint in joints], [joint.q for joint in joints])
     loads = []
-    for k, joint in enumerate(layout.mechanism.joints):
+    for k, (joint, point) in enumerate(zip(joints, points, strict=True)):
         kind = JOINTS[joint.kind]
-        point = states.point_position(joint.b, joint.q)
         axis = states.direction(joint.a, joint.axis) if kind.has_axis else None
         drive = tension = None
         if k in hang_of:
             i, h = hang_of[k]
-            force, moment = (recovered.bodies[name][..., i, :] for name in ("joint_force", "joint_moment"))
+            force, moment = (of[..., i, :] for of in on_to)
             if h.reverse:
                 arm = states.point_position(joint.a, joint.p) - point
                 force, moment = -force, -moment - cross_rows(arm, force)
-            for n, freedom in enumerate(layout.freedoms):
-                if freedom.joint == k and freedom.q < 0:
-                    drive = recovered.freedoms["drive"][..., n]
+            if k in driven:
+                drive = recovered.freedoms["drive"][..., driven[k]]
         else:
             force, moment = (_of_joint(layout, k, recovered.rows, of) for of in ("f", "m"))
             own = rows_of(layout, k)

@@ -62,7 +62,7 @@ def attachments(body: int, states: BodyStates, actions: Sequence[Action]) -> lis
                 attached.append(Attachment(along.spread.start, F, np.zeros_like(F), along.spread.end))
             if action.spread:
                 continue
-            F, M = in_body_axes(R, force), in_body_axes(R, moment)
+            F, M = in_body_axes(R, np.array([force, moment]))
             if end.point is None:
                 attached.append(Attachment(in_body_axes(R, end.position - states.x[:, body]), F, M))
                 continue
@@ -122,7 +122,7 @@ def line_on_piece(cuts: Cuts, start: Array, end: Array) -> tuple[Array, Array]:
 def piece_energy(cuts: Cuts, states: BodyStates) -> Array:
     """E' = tr(V P V') / 2 of the pieces (n_t, k) [J], V = [hat(sigma), x_o.] in body axes, P their pseudo-inertias."""
     R = states.R[:, cuts.body]
-    w, v = in_body_axes(R, states.omega[:, cuts.body]), in_body_axes(R, states.v[:, cuts.body])
+    w, v = in_body_axes(R, np.array([states.omega[:, cuts.body], states.v[:, cuts.body]]))
     V = np.zeros((len(w), 3, 4))
     for i in range(3):
         V[:, i, (i + 1) % 3] = -w[:, (i + 2) % 3]
@@ -135,8 +135,8 @@ def piece_energy(cuts: Cuts, states: BodyStates) -> Array:
 def acceleration_matrix(body: int, states: BodyStates, gravity: Array) -> Array:
     """Acc = [hat(sigma.) + hat(sigma)^2, x_o.. - g] in body axes, rows first: (3, n_t, 4)."""
     R = states.R[:, body]
-    w, u = in_body_axes(R, states.omega[:, body]), in_body_axes(R, states.alpha[:, body])
-    return accelerations_as_matrix(w, u, in_body_axes(R, states.a[:, body] - gravity))
+    vectors = np.array([states.omega[:, body], states.alpha[:, body], states.a[:, body] - gravity])
+    return accelerations_as_matrix(*in_body_axes(R, vectors))
 
 
 def accelerations_as_matrix(w: Array, u: Array, a: Array) -> Array:

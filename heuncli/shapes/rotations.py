@@ -109,9 +109,9 @@ def cross_rows(a: Array, b: Array) -> Array:
 
 
 def about_axis(n: Array, angle: Array) -> Array:
-    """The quaternions (n_t, 4) of turns by angles (n_t,) about a unit vector."""
-    half = 0.5 * angle[:, None]
-    return np.concatenate([np.cos(half), np.sin(half) * n], axis=1)
+    """The quaternions (..., 4) of turns by angles (...) about a unit vector."""
+    half = 0.5 * angle[..., None]
+    return np.concatenate([np.cos(half), np.sin(half) * n], axis=-1)
 
 
 def quaternion_from_vector(turn: Array) -> Array:

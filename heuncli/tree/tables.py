@@ -7,6 +7,7 @@ kernel/answers.py writes them.
 from __future__ import annotations
 
 from collections.abc import Iterable, Mapping
+from functools import cache
 from typing import Any
 
 import numpy as np
@@ -19,6 +20,7 @@ Table = np.ndarray[Any, np.dtype[np.void]]
 NUMBERS = {"int": np.dtype(np.intc), "float": np.dtype(np.float64)}
 
 
+@cache
 def type_of(struct: type[structs.Struct]) -> np.dtype[np.void]:
     """The NumPy type of a struct of numbers and of structs that `kernel/scene.py` knows."""
     known = vars(scene)
@@ -31,9 +33,12 @@ def table(record: type[structs.Record], rows: list[dict[str, Any]]) -> Table:
     found: Table = np.zeros(len(rows), type_of(record))
     for name in dict.fromkeys(name for row in rows for name in row):
         kind = found.dtype[name]
-        column = {i: row[name] for i, row in enumerate(rows) if name in row}
-        values = [tuple(map(float, value)) for value in column.values()] if kind.names else list(column.values())
-        found[name][list(column)] = np.array(values, dtype=kind)
+        which = [i for i, row in enumerate(rows) if name in row]
+        values = [rows[i][name] for i in which]
+        if kind.names:
+            found[name][which] = np.array([tuple(map(float, value)) for value in values], dtype=kind)
+        else:
+            found[name][which] = values
     return found
 
 

@@ -14,7 +14,7 @@ from heuncli.kernel.choose import scene as kernel
 from heuncli.mechanism.model import GROUND
 from heuncli.records import record
 from heuncli.reduction.plane.view import View
-from heuncli.results import Array
+from heuncli.results import Array, Indices
 from heuncli.shapes.rotations import about_axis, quaternion_product
 from heuncli.tree.layout import Layout
 from heuncli.tree.prepare import PreparedScene
@@ -41,12 +41,15 @@ class PlaneTurn:
 
 @record
 class FreeTurns:
-    """A body of the scene whose turns are all free: its place, where attitude and angular velocity stand."""
+    """The b bodies of the scene whose turns are all free: their places, where attitudes and angular velocities stand.
 
-    body: int
-    attitude_at: int
-    rate_at: int
-    start: Array  # quaternion
+    body (b,); attitude_at (b, 4); rate_at (b, 3): places in the state; start (b, 4): quaternions.
+    """
+
+    body: Indices
+    attitude_at: Indices
+    rate_at: Indices
+    start: Array
 
 
 class States:
@@ -57,13 +60,8 @@ class States:
         self.n = seen.n
         self.n_state = full.n_state
         self.turns = _turns(self.small)
-        bodies = full.bodies
-        self.balls = [
-            FreeTurns(i, int(b["attitude_at"]), int(b["rate_at"]), full.y0[b["attitude_at"] : b["attitude_at"] + 4])
-            for i, b in enumerate(bodies)
-            if b["ball"]
-        ]
-        self.body_count = len(bodies)
+        self.balls = _free_turns(full)
+        self.body_count = len(full.bodies)
         pairs = [*_scalars(seen, flat), *_others(full, self.small)]
         self.own = np.array([own for own, _, _ in pairs], dtype=int)
         self.of = np.array([of for _, of, _ in pairs], dtype=int)
@@ -74,30 +72,45 @@ class States:
         """States of the scene, (n_t, n), from those of the flat one."""
         found = np.broadcast_to(self.constant, (len(times), self.n_state)).copy()
         np.add.at(found.T, self.own, (self.factor * states[:, self.of]).T)
-        if not self.balls:
+        balls = self.balls
+        if not len(balls.body):
             return found
-        phi, rate = np.zeros((2, len(times), self.body_count + 1))  # the last one: the ground
-        for turn in self.turns:
-            q, u = self._of_turn(turn, times, states)
-            phi[:, turn.body] = phi[:, turn.parent] + turn.sign * (q - turn.start)
-            rate[:, turn.body] = rate[:, turn.parent] + turn.sign * u
-        for ball in self.balls:
-            at = slice(ball.attitude_at, ball.attitude_at + 4)
-            found[:, at] = quaternion_product(about_axis(self.n, phi[:, ball.body]), ball.start[None])
-            found[:, ball.rate_at : ball.rate_at + 3] = rate[:, ball.body, None] * self.n
+        phi, rate = self._turned(times, states)[:, balls.body]
+        turns = quaternion_product(about_axis(self.n, phi), balls.start[:, None])
+        found[:, balls.attitude_at] = turns.transpose(1, 0, 2)
+        found[:, balls.rate_at] = (rate[..., None] * self.n).transpose(1, 0, 2)
         return found
+
+    def _turned(self, times: Array, states: Array) -> Array:
+        """Angles that the bodies of the flat scene have turned by since the start, and rates, (2, bodies + 1, n_t).
+
+        The last is the ground.
+        """
+        by = np.zeros((self.body_count, 2, len(times)))
+        free = [turn for turn in self.turns if turn.q >= 0]
+        own, sign = [turn.body for turn in free], np.array([turn.sign for turn in free])
+        start = np.array([turn.start for turn in free])
+        by[own, 0] = (sign * (states[:, [turn.q for turn in free]] - start)).T
+        by[own, 1] = (sign * states[:, [turn.u for turn in free]]).T
+        for turn in self.turns:
+            if turn.q < 0 and turn.program is not None:
+                q, u = self._of_turn(turn, times, states)
+                by[turn.body] = turn.sign * (q - turn.start), turn.sign * u
+        turned = [np.zeros((2, len(times)))] * (self.body_count + 1)
+        for turn in self.turns:
+            turned[turn.body] = turned[turn.parent] + by[turn.body]
+        return np.array(turned).swapaxes(0, 1)
 
     def restrict(self, t: float, state: Array) -> Array:
         """The state of the flat scene, (n',), from one of the scene."""
         found = np.zeros(self.small.n_state)
         np.add.at(found, self.of, self.factor * (state - self.constant)[self.own])
-        phi, rate = np.zeros((2, self.body_count + 1))
-        balls = {ball.body: ball for ball in self.balls}
+        phi, rate = [0.0] * (self.body_count + 1), [0.0] * (self.body_count + 1)
+        balls = self._turned_freely(state)
         for turn in self.turns:
             i, up = turn.body, turn.parent
             if i in balls:
-                phi[i] = angle_about(self.n, state[balls[i].attitude_at :][:4], balls[i].start)
-                rate[i] = float(self.n @ state[balls[i].rate_at :][:3])
+                phi[i], rate[i] = balls[i]
                 if turn.q >= 0:
                     found[turn.q] = turn.start + turn.sign * (phi[i] - phi[up])
                     found[turn.u] = turn.sign * (rate[i] - rate[up])
@@ -106,6 +119,13 @@ class States:
                 phi[i] = phi[up] + turn.sign * float(q[0] - turn.start)
                 rate[i] = rate[up] + turn.sign * float(u[0])
         return found
+
+    def _turned_freely(self, state: Array) -> dict[int, tuple[float, float]]:
+        """Of each body whose turns are all free its angle and rate about the normal, in a state of the scene."""
+        balls = self.balls
+        angles = angles_about(self.n, state[balls.attitude_at], balls.start)
+        rates = [float(self.n @ omega) for omega in state[balls.rate_at]]
+        return dict(zip(balls.body.tolist(), zip(angles, rates, strict=True), strict=True))
 
     def _of_turn(self, turn: PlaneTurn, times: Array, states: Array) -> tuple[Array, Array]:
         """Angle and rate of a turn: of the states, or as its drive prescribes."""
@@ -117,10 +137,18 @@ class States:
         return given[:, 0], given[:, 1]
 
 
-def angle_about(n: Array, attitude: Array, start: Array) -> float:
-    """The angle about n, within two turns, that takes a quaternion to another, its sign with it."""
-    turn = quaternion_product(attitude, start * np.array([1.0, -1.0, -1.0, -1.0]))
-    return 2.0 * float(np.arctan2(n @ turn[1:], turn[0]))
+def angles_about(n: Array, attitudes: Array, starts: Array) -> list[float]:
+    """The angles about n, within two turns, that take quaternions (b, 4) to others, their signs with them."""
+    turns = quaternion_product(attitudes, starts * np.array([1.0, -1.0, -1.0, -1.0]))
+    sines = np.array([n @ turn for turn in turns[:, 1:]])
+    return [2.0 * angle for angle in np.arctan2(sines, turns[:, 0]).tolist()]
+
+
+def _free_turns(full: Layout) -> FreeTurns:
+    """What of the scene's state is of bodies whose turns are all free."""
+    body = np.flatnonzero(full.bodies["ball"])
+    attitude_at = full.bodies["attitude_at"][body, None] + np.arange(4)
+    return FreeTurns(body, attitude_at, full.bodies["rate_at"][body, None] + np.arange(3), full.y0[attitude_at])
 
 
 def _turns(small: Layout) -> list[PlaneTurn]:

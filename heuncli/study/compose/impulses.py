@@ -7,6 +7,7 @@ forces. So reactions, verdicts, sums, foundation and sections are those of the s
 
 from __future__ import annotations
 
+import sys
 from collections.abc import Sequence
 from functools import cached_property
 from typing import Any
@@ -228,12 +229,13 @@ def apart(own: Impulses, others: Sequence[Impulses]) -> dict[tuple[str, str], fl
     """
     found: dict[tuple[str, str], float] = {}
     parts = {"": whole_of, f" {BY_CAUSE}": shares_of} if own.recovery.causes is not None else {"": whole_of}
+    same = [matched(own.jumps, other.jumps) for other in others]
     for end, part in parts.items():
         for kind, block, units in KINDS:
             for unit, names in units.items():
                 differences = [
-                    difference(mine, its, matched(own.jumps, other.jumps))
-                    for other in others
+                    difference(mine, its, shared)
+                    for other, shared in zip(others, same, strict=True)
                     for mine, its in pairs(part(own.shown.get(block, {})), part(other.shown.get(block, {})), names)
                 ]
                 found[f"{kind}{end}", unit] = 2.0 * max(differences, default=0.0)
@@ -260,7 +262,8 @@ def difference(mine: Array, its: Array, same: Sequence[tuple[int, int]]) -> floa
     reference = np.zeros_like(mine)
     for i, k in same:
         reference[i] = its[k]
-    return float(np.nan_to_num(np.abs(mine - reference)).max(initial=0.0))
+    largest = float(np.fmax.reduce(np.abs(mine - reference), axis=None, initial=0.0))  # of what is not open
+    return min(largest, sys.float_info.max)
 
 
 def pairs(a: Block, b: Block, names: Sequence[str]) -> list[tuple[Array, Array]]:
