@@ -188,19 +188,37 @@ def interpolate(
     x: cython.double,
     out: cython.p_double,
 ) -> cython.void:
-    """State at the fraction x of the step: y + x (F0 + (1 - x) (F1 + x (F2 + (1 - x) (F3 + ...))))."""
-    i: cython.Py_ssize_t
+    """State at the fraction x of the step: y + x (F0 + (1 - x) (F1 + x (F2 + (1 - x) (F3 + ...)))).
+
+    Four components at a time, as in `combine`.
+    """
+    i: cython.Py_ssize_t = 0
     k: cython.int
-    factor: cython.double
+    n: cython.Py_ssize_t = run.n
     y: cython.p_double = run.chart.y
-    for i in range(run.n):
-        out[i] = 0.0
-    for k in range(2 + method.dense_rows, -1, -1):
-        factor = x if k % 2 == 0 else 1.0 - x
-        row: cython.p_double = run.dense[k]
-        for i in range(run.n):
-            out[i] = (out[i] + row[i]) * factor
-    for i in range(run.n):
-        out[i] = y[i] + out[i]
+    while i < n and n >= 4:
+        i = i if i + 4 <= n else n - 4
+        a: cython.double = 0.0
+        b: cython.double = 0.0
+        c: cython.double = 0.0
+        d: cython.double = 0.0
+        for k in range(2 + method.dense_rows, -1, -1):
+            factor: cython.double = x if k % 2 == 0 else 1.0 - x
+            row: cython.p_double = run.dense[k]
+            a = (a + row[i]) * factor
+            b = (b + row[i + 1]) * factor
+            c = (c + row[i + 2]) * factor
+            d = (d + row[i + 3]) * factor
+        out[i] = y[i] + a
+        out[i + 1] = y[i + 1] + b
+        out[i + 2] = y[i + 2] + c
+        out[i + 3] = y[i + 3] + d
+        i += 4
+    while i < n:
+        a = 0.0
+        for k in range(2 + method.dense_rows, -1, -1):
+            a = (a + run.dense[k][i]) * (x if k % 2 == 0 else 1.0 - x)
+        out[i] = y[i] + a
+        i += 1
     if method.attitude:
         leave_chart(scene, method.attitude, run.y, out)
