@@ -46,7 +46,10 @@ DIRECTIVES = {
 # No error numbers from sqrt: nobody reads them, and the call that would set one stands in the way of its loop.
 GNU_FLAGS = ("-O3", "-ffp-contract=off", "-fno-tree-slp-vectorize", "-fno-math-errno")
 # The operations of expressions, a line or two each, go into the loop that runs them, as if C's `inline` stood there.
-INLINED, INLINE_FLAGS = ("evaluator", "jets"), ("--param=max-inline-insns-auto=200",)
+INLINED = ("--param=max-inline-insns-auto=200",)
+# Rows of numbers that stages are combined of are no structs: two of them go as one vector.
+PAIRED = ("-ftree-slp-vectorize",)
+GNU_FLAGS_OF = {"evaluator": INLINED, "jets": INLINED, "dense": PAIRED}
 # What would be memory of another, or has no meaning in C (as NaN made a whole number), ends the process with its place.
 SANITIZED_FLAGS = (
     "-O1", "-g", "-fno-omit-frame-pointer", "-ffp-contract=off", "-fno-wrapv",
@@ -118,7 +121,7 @@ class BuildKernel(build_ext):
             flags = SANITIZED_FLAGS
         headers.write(FOLDER, self.headers)
         for extension in self.extensions:
-            more = INLINE_FLAGS if flags == GNU_FLAGS and extension.name.rpartition(".")[2] in INLINED else ()
+            more = GNU_FLAGS_OF.get(extension.name.rpartition(".")[2], ()) if flags == GNU_FLAGS else ()
             extension.extra_compile_args = [*flags, *more]
             extension.extra_link_args = [flag for flag in flags if flag.startswith("-fsanitize=")]
             extension.optional = self.kernel not in ("require", "compiled")

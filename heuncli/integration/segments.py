@@ -53,6 +53,8 @@ def smooth_segments(last: float, jumps: Sequence[float]) -> Segments:
 
     Each ends with the left limits of what jumps, the next one begins with the right limits.
     """
+    if not len(jumps):
+        return Segments(np.array([[0.0, just_before(last), last]]))
     within = np.asarray(jumps, dtype=float)
     left, right = limits_of(within[(within > 0.0) & (within < last)])
     begins, ends = np.append(0.0, right), np.append(left, just_before(last))

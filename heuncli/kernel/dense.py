@@ -25,36 +25,83 @@ if not cython.compiled:
 def combine(
     method: cython.pointer[Method], row: cython.int, K: cython.pp_double, n: cython.int, out: cython.p_double
 ) -> cython.void:
-    """out = sum over stages of the row's coefficients times K, four components at a time, which stay in registers.
+    """out = sum over stages of the row's coefficients times K, as many components at a time as stay in registers.
 
-    Where the last are fewer than four, earlier ones are made again beside them.
+    Where the last are fewer, earlier ones are made again beside them.
     """
     i: cython.Py_ssize_t = 0
     j: cython.Py_ssize_t
-    while i < n and n >= 4:
-        i = i if i + 4 <= n else n - 4
-        a: cython.double = 0.0
-        b: cython.double = 0.0
-        c: cython.double = 0.0
-        d: cython.double = 0.0
-        for j in range(method.begin[row], method.begin[row + 1]):
-            factor: cython.double = method.coefficient[j]
-            k: cython.p_double = K[method.stage[j]]
-            a += factor * k[i]
-            b += factor * k[i + 1]
-            c += factor * k[i + 2]
-            d += factor * k[i + 3]
-        out[i] = a
-        out[i + 1] = b
-        out[i + 2] = c
-        out[i + 3] = d
-        i += 4
     while i < n:
-        a = 0.0
-        for j in range(method.begin[row], method.begin[row + 1]):
-            a += method.coefficient[j] * K[method.stage[j]][i]
-        out[i] = a
-        i += 1
+        if n >= 8:
+            i = i if i + 8 <= n else n - 8
+            combine_eight(method, row, K, i, out)
+            i += 8
+        elif n >= 4:
+            i = i if i + 4 <= n else n - 4
+            combine_four(method, row, K, i, out)
+            i += 4
+        else:
+            a: cython.double = 0.0
+            for j in range(method.begin[row], method.begin[row + 1]):
+                a += method.coefficient[j] * K[method.stage[j]][i]
+            out[i] = a
+            i += 1
+
+
+def combine_four(
+    method: cython.pointer[Method], row: cython.int, K: cython.pp_double, i: cython.Py_ssize_t, out: cython.p_double
+) -> cython.void:
+    """Four components from i on."""
+    j: cython.Py_ssize_t
+    a: cython.double = 0.0
+    b: cython.double = 0.0
+    c: cython.double = 0.0
+    d: cython.double = 0.0
+    for j in range(method.begin[row], method.begin[row + 1]):
+        factor: cython.double = method.coefficient[j]
+        k: cython.p_double = K[method.stage[j]]
+        a += factor * k[i]
+        b += factor * k[i + 1]
+        c += factor * k[i + 2]
+        d += factor * k[i + 3]
+    out[i] = a
+    out[i + 1] = b
+    out[i + 2] = c
+    out[i + 3] = d
+
+
+def combine_eight(
+    method: cython.pointer[Method], row: cython.int, K: cython.pp_double, i: cython.Py_ssize_t, out: cython.p_double
+) -> cython.void:
+    """Eight components from i on."""
+    j: cython.Py_ssize_t
+    a: cython.double = 0.0
+    b: cython.double = 0.0
+    c: cython.double = 0.0
+    d: cython.double = 0.0
+    e: cython.double = 0.0
+    f: cython.double = 0.0
+    g: cython.double = 0.0
+    h: cython.double = 0.0
+    for j in range(method.begin[row], method.begin[row + 1]):
+        factor: cython.double = method.coefficient[j]
+        k: cython.p_double = K[method.stage[j]]
+        a += factor * k[i]
+        b += factor * k[i + 1]
+        c += factor * k[i + 2]
+        d += factor * k[i + 3]
+        e += factor * k[i + 4]
+        f += factor * k[i + 5]
+        g += factor * k[i + 6]
+        h += factor * k[i + 7]
+    out[i] = a
+    out[i + 1] = b
+    out[i + 2] = c
+    out[i + 3] = d
+    out[i + 4] = e
+    out[i + 5] = f
+    out[i + 6] = g
+    out[i + 7] = h
 
 
 def clipped(run: cython.pointer[Run], t: cython.double) -> cython.double:
@@ -188,19 +235,37 @@ def interpolate(
     x: cython.double,
     out: cython.p_double,
 ) -> cython.void:
-    """State at the fraction x of the step: y + x (F0 + (1 - x) (F1 + x (F2 + (1 - x) (F3 + ...))))."""
-    i: cython.Py_ssize_t
+    """State at the fraction x of the step: y + x (F0 + (1 - x) (F1 + x (F2 + (1 - x) (F3 + ...)))).
+
+    Four components at a time, as in `combine`.
+    """
+    i: cython.Py_ssize_t = 0
     k: cython.int
-    factor: cython.double
+    n: cython.Py_ssize_t = run.n
     y: cython.p_double = run.chart.y
-    for i in range(run.n):
-        out[i] = 0.0
-    for k in range(2 + method.dense_rows, -1, -1):
-        factor = x if k % 2 == 0 else 1.0 - x
-        row: cython.p_double = run.dense[k]
-        for i in range(run.n):
-            out[i] = (out[i] + row[i]) * factor
-    for i in range(run.n):
-        out[i] = y[i] + out[i]
+    while i < n and n >= 4:
+        i = i if i + 4 <= n else n - 4
+        a: cython.double = 0.0
+        b: cython.double = 0.0
+        c: cython.double = 0.0
+        d: cython.double = 0.0
+        for k in range(2 + method.dense_rows, -1, -1):
+            factor: cython.double = x if k % 2 == 0 else 1.0 - x
+            row: cython.p_double = run.dense[k]
+            a = (a + row[i]) * factor
+            b = (b + row[i + 1]) * factor
+            c = (c + row[i + 2]) * factor
+            d = (d + row[i + 3]) * factor
+        out[i] = y[i] + a
+        out[i + 1] = y[i + 1] + b
+        out[i + 2] = y[i + 2] + c
+        out[i + 3] = y[i + 3] + d
+        i += 4
+    while i < n:
+        a = 0.0
+        for k in range(2 + method.dense_rows, -1, -1):
+            a = (a + run.dense[k][i]) * (x if k % 2 == 0 else 1.0 - x)
+        out[i] = y[i] + a
+        i += 1
     if method.attitude:
         leave_chart(scene, method.attitude, run.y, out)

@@ -25,9 +25,9 @@ from heuncli.kernel.modules import DECLARED, MODULES
 
 PACKAGE = "heuncli.kernel"
 NUMBERS = {"int": "int", "float": "double", "bool": "bint", "Size": "Py_ssize_t"}
-OBJECTS = ("dict", "list", "tuple")
+OBJECTS = ("bytearray", "dict", "list", "tuple")
 EXTENSION_TYPES = ("Expressions", "Integration", "Memory", "Workspace")
-POINTERS = {"p_void": "void *", "p_int": "int *", "p_double": "double *", "pp_double": "double **"}
+POINTERS = {"p_void": "void *", "p_char": "char *", "p_int": "int *", "p_double": "double *", "pp_double": "double **"}
 # What the build gives as a macro, as text: where it does not, the text is "none".
 GIVEN = '''cdef extern from *:
     """

@@ -49,10 +49,13 @@ class Integration:
         self.workspace: Workspace = workspace
         self.output: dict[str, Any] = output
         self.memory: Memory = Memory()
+        scene: cython.pointer[Scene] = cython.address(self.workspace.scene)
         self.take_method(method)
         self.take_start(start)
-        self.make_room()
-        self.make_branch()
+        if scene.watch_count or scene.held_count or scene.contact_count:
+            self.make_room()
+        if self.run.determined:
+            self.make_branch()
         if method["implicit"]:
             self.make_newton(method["collocation"])
         self.take_output(output)
@@ -99,7 +102,8 @@ class Integration:
         run.fine = self.memory.zeros(n)
         run.stage = self.memory.zeros(n)
         run.K = self.memory.matrix(self.method.stages + 1 + self.method.extra, n)
-        run.beside = self.memory.matrix(self.method.stages if self.method.by_step else 0, n)
+        if self.method.by_step:
+            run.beside = self.memory.matrix(self.method.stages, n)
         run.dense = self.memory.matrix(3 + self.method.dense_rows, n)
         self.make_chart(n)
         watch_afresh(cython.address(self.workspace.scene))
@@ -114,14 +118,14 @@ class Integration:
         """Room for the numbers that steps are taken in, where those are not the state's own."""
         run: cython.pointer[Run] = cython.address(self.run)
         run.chart.y, run.chart.z, run.chart.K = run.y, run.z, run.K
-        run.chart.ways = self.memory.zeros(self.workspace.scene.body_count)
         if self.method.attitude:
+            run.chart.ways = self.memory.zeros(self.workspace.scene.body_count)
             run.chart.y = self.memory.zeros(n)
             run.chart.z = self.memory.zeros(n)
             run.chart.K = self.memory.matrix(self.method.stages + 1 + self.method.extra, n)
 
     def make_room(self) -> None:
-        """Room for the course of the coordinates that expressions hang on."""
+        """Room for the course of the coordinates that expressions and contacts hang on, where something is watched."""
         scene: cython.pointer[Scene] = cython.address(self.workspace.scene)
         course: cython.pointer[Course] = cython.address(self.run.course)
         rows: cython.Py_ssize_t = 4 + self.method.dense_rows
@@ -129,7 +133,8 @@ class Integration:
         course.rate = self.memory.matrix(scene.variable_count, rows)
         course.second = self.memory.matrix(scene.variable_count, rows)
         course.work = self.memory.zeros(rows)
-        self.make_orbits(rows if scene.point_count else 0)
+        if scene.point_count:
+            self.make_orbits(rows)
         course.begins = self.memory.zeros(PARTS)
         course.ends = self.memory.zeros(PARTS)  # more than halvings
         course.promise = self.memory.zeros(PARTS)
@@ -138,15 +143,15 @@ class Integration:
         course.resting = self.memory.zeros(scene.held_count)
 
     def make_orbits(self, rows: cython.Py_ssize_t) -> None:
-        """Room for what points move on; rows: of a component of the state, 0 where no expression uses points."""
+        """Room for what points that expressions use move on; rows: of a component of the state."""
         scene: cython.pointer[Scene] = cython.address(self.workspace.scene)
         points: cython.pointer[Orbits] = cython.address(self.run.course.points)
-        variables: cython.Py_ssize_t = scene.variable_count if rows else 0
-        bodies: cython.Py_ssize_t = scene.body_count if rows else 0
+        variables: cython.Py_ssize_t = scene.variable_count
+        bodies: cython.Py_ssize_t = scene.body_count
         points.n = self.run.n
         points.chart = self.method.attitude
         points.origin = self.run.y
-        points.states = self.memory.matrix(points.n if rows else 0, rows)
+        points.states = self.memory.matrix(points.n, rows)
         points.slopes = self.memory.zeros(rows)
         points.at = self.memory.zeros(points.n)
         points.kept = self.memory.zeros(variables)

@@ -32,22 +32,25 @@ class Memory:
         memory = array("i", numbers) or array("i", [0])
         if not cython.compiled:
             return memory.tolist()
-        view: cython.int[::1] = memory
-        self.kept.append(memory)
-        return cython.address(view[0])
+        return cython.cast(cython.p_int, self.keep(bytearray(memory)))
 
     def doubles(self, numbers: Any) -> cython.p_double:
         """A copy of some numbers."""
         memory = array("d", numbers) or array("d", [0.0])
         if not cython.compiled:
             return memory.tolist()
-        view: cython.double[::1] = memory
-        self.kept.append(memory)
-        return cython.address(view[0])
+        return cython.cast(cython.p_double, self.keep(bytearray(memory)))
 
     def zeros(self, count: cython.Py_ssize_t) -> cython.p_double:
-        """Zeros."""
-        return self.doubles(bytes(8 * count))
+        """Zeros, at least one."""
+        if not cython.compiled:
+            return [0.0] * max(count, 1)
+        return cython.cast(cython.p_double, self.keep(bytearray(8 * (count if count > 0 else 1))))
+
+    def keep(self, memory: bytearray) -> cython.p_char:
+        """Where some bytes lie, which are kept and never grow; compiled only."""
+        self.kept.append(memory)
+        return cython.cast(cython.p_char, memory)
 
     def over(self, numbers: Any, rows: cython.Py_ssize_t, n: cython.Py_ssize_t) -> cython.pp_double:
         """Rows of a caller's flat array: compiled its own memory, in plain Python lists that `fetch` writes back."""

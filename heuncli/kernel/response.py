@@ -28,6 +28,7 @@ if not cython.compiled:
         balance,
         derivative,
         downward,
+        factor_loaded,
         factor_tree,
         kinematics,
         push_lent,
@@ -193,10 +194,22 @@ def find_taken(scene: cython.pointer[Scene]) -> cython.void:
 
 def evaluate(scene: cython.pointer[Scene], t: cython.double, y: cython.p_double, dy: cython.p_double) -> cython.int:
     """Time derivative dy of the state y at t; as `configure` gives, for what has no inertia or cannot be closed."""
+    idle: cython.int
     power: cython.double = put_in_motion(scene, t, y, dy)
-    idle: cython.int = configure(scene, t)
-    accelerate(scene, y, dy, power)
+    if is_open(scene):
+        idle = factor_loaded(scene)
+        scene.load_size = 0.0
+        downward(scene, True)
+        tell(scene, y, dy, power)
+    else:
+        idle = configure(scene, t)
+        accelerate(scene, y, dy, power)
     return idle
+
+
+def is_open(scene: cython.pointer[Scene]) -> cython.bint:
+    """Whether a tree in space stands alone: loads need no factors before they are added up."""
+    return not (scene.flat or scene.closure_count or scene.lent_count or scene.rub_count)
 
 
 def evaluate_settled(
@@ -227,13 +240,18 @@ def put_in_motion(
 def accelerate(
     scene: cython.pointer[Scene], y: cython.p_double, dy: cython.p_double, power: cython.double
 ) -> cython.void:
-    """The time derivative by the factors that stand.
-
-    Where something is driven the joint loads are found too, for the work of the drives.
-    """
+    """The time derivative by the factors that stand."""
     if scene.rub_count:
         power += press(scene)
     respond(scene, True)
+    tell(scene, y, dy, power)
+
+
+def tell(scene: cython.pointer[Scene], y: cython.p_double, dy: cython.p_double, power: cython.double) -> cython.void:
+    """The time derivative of the accelerations found.
+
+    Where something is driven the joint loads are found too, for the work of the drives.
+    """
     if scene.driven:
         push_closures(scene)
         balance(scene, True)

@@ -245,7 +245,6 @@ def factor_tree(scene: cython.pointer[Scene]) -> cython.int:
     Gives the number of freedoms with no inertia behind them.
     """
     i: cython.Py_ssize_t
-    k: cython.Py_ssize_t
     idle: cython.int = 0
     if scene.flat:
         return factor_in_plane(scene)
@@ -255,20 +254,47 @@ def factor_tree(scene: cython.pointer[Scene]) -> cython.int:
     for i in range(scene.lent_count):
         lend(scene, cython.address(scene.lents[i]))
     for i in range(scene.body_count - 1, -1, -1):
+        idle += factor_body(scene, cython.address(scene.bodies[i]))
+    return idle
+
+
+def factor_body(scene: cython.pointer[Scene], body: cython.pointer[Body]) -> cython.int:
+    """Reduce the inertia of a branch by its joint's freedoms and hand it to the parent; how many have none behind."""
+    k: cython.Py_ssize_t
+    idle: cython.int = 0
+    # a freedom's inertia is nothing beside that before any freedom was taken out: what is left of it is rounding
+    mass: cython.double = scene.limits.no_inertia * trace(body.K)
+    turning: cython.double = scene.limits.no_inertia * trace(body.A)
+    if body.ball:
+        idle += eliminate_ball(body, turning)
+    for k in range(body.first_freedom, body.end_freedom):
+        freedom: cython.pointer[Freedom] = cython.address(scene.freedoms[k])
+        if freedom.driven:
+            freedom.D = 0.0
+        else:
+            idle += eliminate(body, freedom, mass if freedom.kind == SHIFT else turning)
+    if body.parent >= 0:
+        add_branch(cython.address(scene.bodies[body.parent]), body)
+    return idle
+
+
+def factor_loaded(scene: cython.pointer[Scene]) -> cython.int:
+    """`factor_tree`, `put_loads` and `upward` in one climb, where nothing needs the factors before the loads.
+
+    What a body asks of its joint is added up while the processor divides for the next body's factors.
+    """
+    i: cython.Py_ssize_t
+    idle: cython.int = 0
+    for i in range(scene.body_count):
         body: cython.pointer[Body] = cython.address(scene.bodies[i])
-        # a freedom's inertia is nothing beside that before any freedom was taken out: what is left of it is rounding
-        mass: cython.double = scene.limits.no_inertia * trace(body.K)
-        turning: cython.double = scene.limits.no_inertia * trace(body.A)
-        if body.ball:
-            idle += eliminate_ball(body, turning)
-        for k in range(body.first_freedom, body.end_freedom):
-            freedom: cython.pointer[Freedom] = cython.address(scene.freedoms[k])
-            if freedom.driven:
-                freedom.D = 0.0
-            else:
-                idle += eliminate(body, freedom, mass if freedom.kind == SHIFT else turning)
-        if body.parent >= 0:
-            add_branch(cython.address(scene.bodies[body.parent]), body)
+        body.C = skew(body.mc)
+        body.K = multiple_of_unit(body.mass)
+        body.M_branch = sub(body.gyroscopic, body.M_applied)
+        body.f_branch = sub(body.centrifugal, body.f_applied)
+    for i in range(scene.body_count - 1, -1, -1):
+        own: cython.pointer[Body] = cython.address(scene.bodies[i])
+        idle += factor_body(scene, own)
+        answer_body(scene, own, True)
     return idle
 
 
@@ -394,23 +420,27 @@ def push_lent(scene: cython.pointer[Scene], lent: cython.pointer[Lent]) -> cytho
 def upward(scene: cython.pointer[Scene], inertial: cython.bint) -> cython.void:
     """From what stands in M_branch and f_branch, and velocity terms, to e, which the freedoms answer; tips to roots."""
     i: cython.Py_ssize_t
-    k: cython.Py_ssize_t
     if scene.flat:
         upward_in_plane(scene, inertial)
         return
     for i in range(scene.body_count - 1, -1, -1):
-        body: cython.pointer[Body] = cython.address(scene.bodies[i])
-        if body.ball:
-            at: cython.Py_ssize_t = body.answer_at
-            scene.e[at] = -body.M_branch.x
-            scene.e[at + 1] = -body.M_branch.y
-            scene.e[at + 2] = -body.M_branch.z
-            body.f_branch = sub(body.f_branch, rotate_back(body.G, body.M_branch))
-        for k in range(body.first_freedom, body.end_freedom):
-            freedom: cython.pointer[Freedom] = cython.address(scene.freedoms[k])
-            scene.e[freedom.answer_at] = answered(body, freedom)
-        if body.parent >= 0:
-            pass_up(cython.address(scene.bodies[body.parent]), body, inertial)
+        answer_body(scene, cython.address(scene.bodies[i]), inertial)
+
+
+def answer_body(scene: cython.pointer[Scene], body: cython.pointer[Body], inertial: cython.bint) -> cython.void:
+    """What the freedoms of a body's joint answer of its branch's loads; the rest goes to the parent."""
+    k: cython.Py_ssize_t
+    if body.ball:
+        at: cython.Py_ssize_t = body.answer_at
+        scene.e[at] = -body.M_branch.x
+        scene.e[at + 1] = -body.M_branch.y
+        scene.e[at + 2] = -body.M_branch.z
+        body.f_branch = sub(body.f_branch, rotate_back(body.G, body.M_branch))
+    for k in range(body.first_freedom, body.end_freedom):
+        freedom: cython.pointer[Freedom] = cython.address(scene.freedoms[k])
+        scene.e[freedom.answer_at] = answered(body, freedom)
+    if body.parent >= 0:
+        pass_up(cython.address(scene.bodies[body.parent]), body, inertial)
 
 
 def answered(body: cython.pointer[Body], freedom: cython.pointer[Freedom]) -> cython.double:

@@ -100,8 +100,8 @@ def one_motion(name: str, scene: PreparedScene, runner: Runner, times: Any, goal
         off = error(name, scene, runner, times, run.states)
         if off <= goal:
             break
-    alone = median_ms(partial(runner.trajectory, times, tolerance), repeats)
-    check = median_ms(partial(runner.trajectory, times, tolerance / 30.0), repeats)
+    alone = median_ms(partial(runner.trajectory, MotionTask(times, tolerance)), repeats)
+    check = median_ms(partial(runner.trajectory, MotionTask(times, tolerance / 30.0)), repeats)
     print(
         f"{name:8s} to {goal:.0e} m: error {off:.1e} m, {alone:7.3f} ms alone, {1 + check / alone:.2f} times that with "
         f"the check run; {run.steps} steps, {run.evaluations} evaluations, {1e3 * alone / run.evaluations:.2f} us each"
@@ -120,7 +120,7 @@ def charted() -> None:
         for tolerance in (10.0 ** (-0.5 * k) for k in range(8, 27)):
             run = runner.trajectory(MotionTask(times, tolerance))
             off = max(error(name, scene, runner, times, run.states), 1e-14)
-            points.append((median_ms(partial(runner.trajectory, times, tolerance), 7), off))
+            points.append((median_ms(partial(runner.trajectory, MotionTask(times, tolerance)), 7), off))
     print("d double, t top, c chain10, k crank: error at the end against time of integration")
     print(chart(runs))
 
@@ -132,7 +132,7 @@ def chains() -> None:
         spec = load("chain.yaml", chain(n, duration=0.05))
         runner = set_up(spec).runner
         run = runner.trajectory(MotionTask([0.05], 1e-6))
-        cost[n] = median_ms(partial(runner.trajectory, [0.05], 1e-6), 15) / run.evaluations / n
+        cost[n] = median_ms(partial(runner.trajectory, MotionTask([0.05], 1e-6)), 15) / run.evaluations / n
         print(f"chain of {n:5d}: {1e6 * cost[n]:.0f} ns a body and evaluation, {cost[n] / cost[10]:.2f} times 10's")
     begun = time.perf_counter()
     spec = load("chain.yaml", chain(10_000, duration=0.05))

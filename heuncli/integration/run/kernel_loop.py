@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+from array import array
 from typing import Any
 
 import numpy as np
@@ -59,15 +60,19 @@ class KernelLoop:
         n = self.n = layout.n_state
         self.method, self.start = method, start
         self.width = integration.record_width(workspace, n)
-        self.output = {name: np.zeros(most) for name in PER_STEP}
+        self.most, self.per_step = most, np.zeros((len(PER_STEP), most))
         self.held = layout.pack.held
         self.branches = np.zeros(most * self.held)
         self.passed = np.zeros(0 if start.following else most * self.width)
         self.count = len(times)
         self.samples = np.zeros(self.count * n)
-        output = self.output | {"times": times, "samples": self.samples, "passed": self.passed}
-        output["branches"] = self.branches
+        output = {"times": flat(times), "samples": self.samples, "passed": self.passed, "branches": self.branches}
+        output.update(zip(PER_STEP, self.per_step, strict=True))
         self.loop = integration.Integration(workspace, method.arrays, begin_with(start, method, layout), output)
+
+    def put_down(self) -> Array:
+        """What PER_STEP names of the steps just done, (count, 4); a view."""
+        return self.per_step[:, : self.loop.done].T
 
     def records(self, every: int, offset: int) -> Array:
         """What the steps after those just done start from: of every so many, (count, width); a view."""
@@ -84,13 +89,18 @@ class KernelLoop:
         return self.samples.reshape(self.count, self.n)
 
 
+def flat(numbers: Array) -> array[float]:
+    """Numbers one after the other, as the kernel's loop copies them fastest."""
+    return array("d", np.asarray(numbers, dtype=float).tobytes())
+
+
 def begin_with(start: Start, method: Method, layout: Layout) -> dict[str, Any]:
     """A start as the kernel's loop takes it (kernel/integration.py): its tolerance, or the step in its place."""
     return {
         "groups": layout.tables["groups"],
         "energy_group": layout.energy_group,
-        "weights": layout.weights,
-        "state": start.state,
+        "weights": flat(layout.weights),
+        "state": flat(start.state),
         "tolerance": 1.0 if method.fixed else start.local,
         "step": start.local if method.fixed else 0.0,
         "rate": start.rate,

@@ -85,7 +85,7 @@ class Steps:
     def add(self, kernel: KernelLoop) -> None:
         """Add the steps of the last call; while there are too many records, every second of them is dropped."""
         done = kernel.loop.done
-        self.rows.add(np.column_stack([kernel.output[name][:done] for name in PER_STEP]))
+        self.rows.add(kernel.put_down())
         if kernel.held:
             self.branches = self.branches or GrowingRows(kernel.held)
             self.branches.add(kernel.held_branches())

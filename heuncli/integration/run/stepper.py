@@ -134,7 +134,7 @@ class Stepper:
 
     def advance(self) -> int:
         """Some steps of the kernel, put down; the code with which it stopped."""
-        kernel, few = self.progress.kernel, len(self.progress.kernel.output["ends"])
+        kernel, few = self.progress.kernel, self.progress.kernel.most
         if self.events is not None:
             few = min(few, self.events.due_in())
         code = kernel.loop.advance(few, True, self.until is not None or self.triggers is not None)
