@@ -121,6 +121,8 @@ def make_room(scene: cython.pointer[Scene], memory: Memory, indices: array[int],
     scene.J = memory.zeros(numbers["island_room"])
     scene.left = memory.zeros(rows)
     scene.filled = memory.ints(bytes(4 * answers))
+    scene.reach = memory.ints(bytes(4 * rows))
+    scene.standing = memory.ints(bytes(4 * rows))
     scene.y = memory.zeros(rows)
     scene.is_angle = memory.ints(bytes(4 * scene.held_count))
     find_angles(scene)

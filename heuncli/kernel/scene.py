@@ -507,6 +507,8 @@ class Scene(Struct):
     J: list[float]  # one island's rows of J on its freedoms, scaled
     left: list[float]  # of each of these rows the square of what the rows chosen before have left of it
     filled: list[int]  # the freedoms that the pivot row has something of
+    standing: list[int]  # its rows that may yet be chosen, ascending
+    reach: list[int]  # of each row of J in which parts of the island's freedoms it has something, a bit a part
     y: list[float]  # a number an independent row
     own: list[float]  # 1 - T of the lent inertias, and its Cholesky factor
     at_state: list[BodyAtState]  # what stands at the state whose directions are looked at

@@ -65,14 +65,11 @@ def order_all(scene: cython.pointer[Scene], least: cython.double) -> cython.doub
 
 def order_rows(scene: cython.pointer[Scene], island: cython.pointer[Island], least: cython.double) -> cython.double:
     """Put the rows of one island in the order of their pivots; the least pivot."""
-    k: cython.Py_ssize_t
     n: cython.int = 0
     found: cython.double = 1.0
-    for k in range(island.row_count):
-        scaled_row(scene, island, k)
-        scene.left[k] = square_left(scene, island, k, 0)
+    standing: cython.Py_ssize_t = stand(scene, island)
     while n < island.row_count and n < island.freedom_count:
-        best: cython.int = next_pivot(scene, island, least)
+        best: cython.int = next_pivot(scene, standing, least)
         if best < 0:
             break
         row: cython.pointer[Closure] = cython.address(scene.closures[scene.indices[island.rows + best]])
@@ -80,8 +77,36 @@ def order_rows(scene: cython.pointer[Scene], island: cython.pointer[Island], lea
         if left < found:
             found = left
         row.chosen = n
-        take_out(scene, island, best, n)
+        standing = without(scene, standing, best)
+        take_out(scene, island, standing, best, n)
         n += 1
+    return found
+
+
+def stand(scene: cython.pointer[Scene], island: cython.pointer[Island]) -> cython.Py_ssize_t:
+    """The rows of an island's J, and those of them that may be chosen, with a rank and more than nothing; how many."""
+    k: cython.Py_ssize_t
+    width: cython.Py_ssize_t = island.freedom_count
+    found: cython.Py_ssize_t = 0
+    for k in range(island.row_count):
+        row: cython.pointer[Closure] = cython.address(scene.closures[scene.indices[island.rows + k]])
+        scaled_row(scene, island, k)
+        scene.left[k] = square_left(scene, island, k, 0)
+        scene.reach[k] = reach_of(scene, list_filled(scene, width * k, 0, width), width)
+        if row.rank >= 0 and scene.left[k] != 0.0:
+            scene.standing[found] = k
+            found += 1
+    return found
+
+
+def without(scene: cython.pointer[Scene], standing: cython.Py_ssize_t, best: cython.int) -> cython.Py_ssize_t:
+    """One row no longer stands; how many are left."""
+    j: cython.Py_ssize_t
+    found: cython.Py_ssize_t = 0
+    for j in range(standing):
+        if scene.standing[j] != best:
+            scene.standing[found] = scene.standing[j]
+            found += 1
     return found
 
 
@@ -150,29 +175,34 @@ def square_left(
     return found
 
 
-def next_pivot(scene: cython.pointer[Scene], island: cython.pointer[Island], least: cython.double) -> cython.int:
+def next_pivot(scene: cython.pointer[Scene], standing: cython.Py_ssize_t, least: cython.double) -> cython.int:
     """The row with most left of it; an earlier one is preferred a little, which keeps the choice steady. -1: none."""
-    k: cython.Py_ssize_t
+    j: cython.Py_ssize_t
+    k: cython.int
     best: cython.int = -1
     most: cython.double = least * least / scene.limits.preference
-    for k in range(island.row_count):
-        row: cython.pointer[Closure] = cython.address(scene.closures[scene.indices[island.rows + k]])
-        if row.chosen < 0 and row.rank >= 0:
-            if scene.left[k] > most * scene.limits.preference:
-                most = scene.left[k]
-                best = k
+    for j in range(standing):
+        k = scene.standing[j]
+        if scene.left[k] > most * scene.limits.preference:
+            most = scene.left[k]
+            best = k
     return best
 
 
 def take_out(
-    scene: cython.pointer[Scene], island: cython.pointer[Island], best: cython.Py_ssize_t, n: cython.Py_ssize_t
+    scene: cython.pointer[Scene],
+    island: cython.pointer[Island],
+    standing: cython.Py_ssize_t,
+    best: cython.Py_ssize_t,
+    n: cython.Py_ssize_t,
 ) -> cython.void:
-    """Reflect what is left of the pivot row onto the n-th direction, and all rows not yet chosen with it.
+    """Reflect what is left of the pivot row onto the n-th direction, and all rows that stand with it.
 
     A loop meets few of the freedoms: only where the pivot row has something is there anything to reflect, and a row
     that has nothing there stays as it is, and as much is left of it.
     """
     i: cython.Py_ssize_t
+    j: cython.Py_ssize_t
     k: cython.Py_ssize_t
     at: cython.Py_ssize_t
     width: cython.Py_ssize_t = island.freedom_count
@@ -183,17 +213,19 @@ def take_out(
     reflector: cython.double = 1.0 / (scene.left[best] + left * fabs(J[v + n]))
     J[v + n] += left if J[v + n] > 0.0 else -left
     filled: cython.Py_ssize_t = list_filled(scene, v, n, width)
-    for k in range(island.row_count):
-        if scene.left[k] == 0.0 or scene.closures[scene.indices[island.rows + k]].chosen >= 0:
-            continue
+    reach: cython.int = reach_of(scene, filled, width)
+    for j in range(standing):
+        k = scene.standing[j]
         at = width * k
         x = 0.0
-        for i in range(filled):
-            x += J[v + scene.filled[i]] * J[at + scene.filled[i]]
+        if scene.reach[k] & reach:
+            for i in range(filled):
+                x += J[v + scene.filled[i]] * J[at + scene.filled[i]]
         if x != 0.0:
             x *= reflector
             for i in range(filled):
                 J[at + scene.filled[i]] -= x * J[v + scene.filled[i]]
+            scene.reach[k] |= reach
         if x != 0.0 or J[at + n] != 0.0:
             scene.left[k] = square_left(scene, island, k, n + 1)
 
@@ -208,6 +240,15 @@ def list_filled(
         if scene.J[v + i] != 0.0:
             scene.filled[found] = i
             found += 1
+    return found
+
+
+def reach_of(scene: cython.pointer[Scene], filled: cython.Py_ssize_t, width: cython.Py_ssize_t) -> cython.int:
+    """In which parts of an island's freedoms the freedoms listed lie, a bit a part: rows apart in that share none."""
+    i: cython.Py_ssize_t
+    found: cython.int = 0
+    for i in range(filled):
+        found |= 1 << (31 * scene.filled[i] // width)  # as many parts as an int has bits beside its sign
     return found
 
 
