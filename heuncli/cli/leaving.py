@@ -15,6 +15,7 @@ TYPE_CHECKING = False
 if TYPE_CHECKING:
     from collections.abc import Callable
     from types import FrameType
+    from typing import Any
 
 LINES = {"SIGINT": b"heun: interrupted\n", "SIGTERM": b"heun: terminated\n", "SIGHUP": b""}  # whose terminal is gone
 _undone: list[Callable[[], None]] = []  # what a signal has to do away with
@@ -61,8 +62,15 @@ def end(code: int) -> None:
                 stream.flush()
     except (OSError, ValueError):
         return
-    if not atexit._ncallbacks():
+    if not atexit._ncallbacks() and not _watched():
         os._exit(code)
+
+
+def _watched() -> bool:
+    """Whether somebody profiles or traces the process, who is yet to tell what was seen."""
+    monitoring: Any = getattr(sys, "monitoring", None)  # from Python 3.12 on
+    tools = [monitoring.get_tool(number) for number in range(6)] if monitoring is not None else []
+    return any(who is not None for who in (sys.getprofile(), sys.gettrace(), *tools))
 
 
 def _leave(number: int, frame: FrameType | None) -> None:

@@ -88,6 +88,12 @@ def test_an_interrupt_is_130(folder: Path) -> None:
     assert (process.returncode, out, err) == (130, "", "heun: interrupted\n")
 
 
+def test_who_profiles_the_process_is_waited_for() -> None:
+    line = [sys.executable, "-m", "cProfile", "-m", "heuncli", "--version"]
+    done = subprocess.run(line, capture_output=True, text=True, env=ENVIRONMENT, check=True)
+    assert "function calls" in done.stdout
+
+
 @pytest.mark.parametrize(
     ("before", "more"),
     [
