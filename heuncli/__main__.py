@@ -40,6 +40,15 @@ def main() -> None:
     sys.exit(code)
 
 
+def command() -> None:
+    """Run the command line as all that this process is for."""
+    try:
+        main()
+    except SystemExit as leave:
+        leaving.end(int(leave.code or 0))
+        raise
+
+
 def fill_gaps() -> None:
     """Stand in for standard streams that are closed: else the next file opened is taken for one of them.
 
@@ -53,4 +62,4 @@ def fill_gaps() -> None:
 
 
 if __name__ == "__main__":
-    main()
+    command()

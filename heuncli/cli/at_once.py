@@ -9,6 +9,7 @@ from __future__ import annotations
 import os
 import sys
 
+from heuncli.cli.line_width import line_width
 from heuncli.errors import HeunError
 from heuncli.version import VERSION
 
@@ -38,7 +39,7 @@ def text_for(argv: Sequence[str]) -> str | None:
     """The answer to a command line, if it is one of these. Raises KernelError where no kernel can be had."""
     if argv[:1] == ["--version"]:
         return version() + "\n"
-    if [*argv] == ["--help"] and width() >= USUAL:
+    if [*argv] == ["--help"] and line_width() >= USUAL:
         with open(HELP, encoding="utf-8") as file:  # noqa: PTH123
             return file.read()
     return None
@@ -49,14 +50,3 @@ def version() -> str:
     from heuncli.kernel.form import KERNEL
 
     return f"heun {VERSION} ({KERNEL} kernel, Python {sys.version.split()[0]})"
-
-
-def width() -> int:
-    """Characters of a line, as shutil.get_terminal_size finds them, with 80 where there is no terminal."""
-    given = os.environ.get("COLUMNS", "")
-    if given.isdecimal() and int(given) > 0:
-        return int(given)
-    try:
-        return os.get_terminal_size(sys.__stdout__.fileno()).columns or USUAL  # type: ignore[union-attr]
-    except (AttributeError, ValueError, OSError):
-        return USUAL

@@ -10,11 +10,14 @@ import errno
 import os
 import stat
 from functools import partial
-from pathlib import Path
+from typing import TYPE_CHECKING
 
 from heuncli.cli.leaving import Undoing
 from heuncli.errors import HeunError, OutputError, Problem
 from heuncli.named_tuples import NamedTuple
+
+if TYPE_CHECKING:
+    from pathlib import Path
 
 STDOUT = "-"  # what stands for standard output where a file is named
 MOST_LINKS = 40  # that lead to one file; the system follows no more
@@ -105,12 +108,12 @@ def write_all(number: int, content: bytes) -> None:
 
 def replace(content: bytes, place: FilePlace) -> None:
     """Write beside the place, then rename into it."""
-    temporary = str(Path(place.path).with_name(f".heun-{os.urandom(8).hex()}"))
-    remove = partial(Path(temporary).unlink, missing_ok=True)
+    temporary = str(_path(place.path).with_name(f".heun-{os.urandom(8).hex()}"))
+    remove = partial(_path(temporary).unlink, missing_ok=True)
     with Undoing(remove):
         try:
             _fill(temporary, content, place.state)
-            Path(temporary).replace(place.path)
+            _path(temporary).replace(place.path)
         except BaseException:
             remove()
             raise
@@ -126,7 +129,13 @@ def _fill(temporary: str, content: bytes, old: os.stat_result | None) -> None:
     finally:
         os.close(number)
     if old is not None:
-        Path(temporary).chmod(stat.S_IMODE(old.st_mode))
+        _path(temporary).chmod(stat.S_IMODE(old.st_mode))
+
+
+def _path(name: str) -> Path:
+    from pathlib import Path  # 3 ms that only files need
+
+    return Path(name)
 
 
 def _into(content: bytes, path: str) -> None:
@@ -143,13 +152,13 @@ def _place(name: str) -> FilePlace:
     if number is not None:
         return FilePlace(name, os.fstat(number), number)
     try:
-        state = Path(name).stat()
+        state = _path(name).stat()
     except FileNotFoundError:
         state = None
     if state is not None and not stat.S_ISREG(state.st_mode):
         return FilePlace(name, state)
     path = os.path.realpath(name)  # which takes gone/../scene.yaml for scene.yaml; the system does not, nor the guard
-    if state is None and Path(path).exists():
+    if state is None and _path(path).exists():
         raise FileNotFoundError(errno.ENOENT, os.strerror(errno.ENOENT))
     return FilePlace(path, state)
 
@@ -157,7 +166,7 @@ def _place(name: str) -> FilePlace:
 def _descriptor(name: str) -> int | None:
     """The number of the open descriptor that a name stands for (/dev/stdout, /dev/fd/3), also through links."""
     own = {os.path.realpath(folder) for folder in ("/dev/fd", "/proc/self/fd")}
-    path = Path(name)
+    path = _path(name)
     for _ in range(MOST_LINKS):
         if path.name.isascii() and path.name.isdecimal() and os.path.realpath(path.parent) in own:
             return int(path.name)
@@ -169,8 +178,8 @@ def _descriptor(name: str) -> int | None:
 
 def _require_room(name: str, place: FilePlace) -> None:
     """Refuse what could not be replaced as a whole."""
-    path = Path(place.path)
-    shown = (path if Path(name).is_symlink() else Path(name)).parent
+    path = _path(place.path)
+    shown = (path if _path(name).is_symlink() else _path(name)).parent
     if not path.parent.is_dir():
         hint = "make it first, or name another place"
         raise OutputError(Problem("output-failed", f"{name}: there is no folder {shown}", hint=hint))

@@ -5,7 +5,6 @@ from __future__ import annotations
 import os
 import sys
 from collections.abc import Sequence
-from pathlib import Path
 
 from heuncli.cli.entry import UsageError
 from heuncli.cli.files import STDOUT
@@ -50,6 +49,8 @@ def _state(name: str | None) -> os.stat_result | None:
     """What stands under a name; None where nothing does, or for standard output."""
     if name is None or name == STDOUT:
         return None
+    from pathlib import Path  # 3 ms that only files need
+
     try:
         return Path(name).stat()
     except (OSError, ValueError):

@@ -3,7 +3,6 @@
 from __future__ import annotations
 
 from collections.abc import Mapping, Sequence
-from pathlib import Path
 
 from heuncli.cli.entry import UsageError
 from heuncli.cli.files import STDOUT, place_of
@@ -22,6 +21,8 @@ def format_of(asked: str | None, output: str | None, endings: Mapping[str, str],
         return choice("--format", asked, formats)
     if output is None or output == STDOUT:
         return formats[0]
+    from pathlib import Path  # 3 ms that only files need
+
     name = Path(output).name
     ending = name[name.rfind(".") :].lower() if "." in name else ""
     if ending not in endings:

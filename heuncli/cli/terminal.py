@@ -3,10 +3,10 @@
 from __future__ import annotations
 
 import os
-import shutil
 import sys
 from collections.abc import Sequence
 
+from heuncli.cli.line_width import line_width
 from heuncli.report.page_width import fit
 from heuncli.report.text_table import TextTable, plain, wrapped
 
@@ -27,7 +27,7 @@ def styled() -> bool:
 
 def width() -> int:
     """The columns of the terminal, LEAST_WIDTH at least; 80 where it tells none."""
-    return max(shutil.get_terminal_size().columns, LEAST_WIDTH)
+    return max(line_width(), LEAST_WIDTH)
 
 
 def write(tables: Sequence[TextTable]) -> list[str]:

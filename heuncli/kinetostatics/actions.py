@@ -10,7 +10,6 @@ from collections.abc import Iterator, Sequence
 from typing import Literal
 
 import numpy as np
-from numpy.typing import NDArray
 
 from heuncli.integration.evaluator import Recovered
 from heuncli.joint_kinds import JOINTS
@@ -116,7 +115,7 @@ def applied_loads(mechanism: Mechanism, states: BodyStates, recovered: Recovered
     return loads
 
 
-LoadRows = NDArray[np.void]  # of the kernel's answers
+LoadRows = np.ndarray[tuple[int, ...], np.dtype[np.void]]  # of the kernel's answers
 
 
 def distributed(parts: Sequence[tuple[PointLoad, LoadRows]]) -> AppliedLoad:

@@ -10,9 +10,10 @@ The markers beside a type are of pydantic's protocol (`__get_pydantic_core_schem
 
 from __future__ import annotations
 
+import sys
 from collections.abc import Callable, Iterator
 from functools import cache
-from typing import Any, TypeVar, get_args, get_type_hints
+from typing import Any, TypeVar, get_args
 
 from pydantic_core import core_schema
 
@@ -97,11 +98,18 @@ def once(find: Callable[[type[Entry]], V]) -> Callable[[type[Entry]], V]:
 def fields_of(model: type[Entry]) -> dict[str, Field]:
     """The fields of an entry by their names in Python, those of its bases first."""
     found = {}
-    for name, annotation in get_type_hints(model, include_extras=True).items():
-        if not name.startswith("__"):
+    for base in reversed(model.__mro__[: model.__mro__.index(Entry)]):
+        for name, written in base.__annotations__.items():
             told = getattr(model, name, NEEDED)
+            annotation = _meaning(base.__module__, written)
             found[name] = told._replace(annotation=annotation) if type(told) is Field else Field(annotation, None, told)
     return found
+
+
+@cache
+def _meaning(module: str, annotation: Any) -> Any:
+    """What is written as an annotation in a module: many keys are of the same few types."""
+    return eval(annotation, vars(sys.modules[module])) if type(annotation) is str else annotation
 
 
 def keys_of(model: type[Entry]) -> tuple[str, ...]:

@@ -1,8 +1,8 @@
-"""The file format, version 1: the whole of it as pydantic models, keys as users write them, values read to SI.
+"""The file format, version 1: the whole of it as classes of entries, keys as users write them, values read to SI.
 
-A model's validator is built when the first entry of its kind is read: a scene pays for what it has. Reading here looks
+What judges a kind is made when the first entry of it is read: a scene pays for what it has. Reading here looks
 at one value at a time; what concerns several of them together stands in `rules`, the meaning in `resolve`. Nothing
-outside `spec` sees these models.
+outside `spec` sees these classes.
 """
 
 from __future__ import annotations

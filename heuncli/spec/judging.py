@@ -10,11 +10,7 @@ from pydantic_core import SchemaValidator, core_schema
 from heuncli.spec.entries import Entry, Field, fields_of, once
 
 E = TypeVar("E", bound=Entry)
-PLAIN: dict[Any, core_schema.CoreSchema] = {
-    Any: core_schema.any_schema(),
-    str: core_schema.str_schema(),
-    int: core_schema.int_schema(),
-}  # of all other types the markers tell how they are read
+Schemas = dict[Any, core_schema.CoreSchema]
 
 
 def judged(model: type[E], data: Any, context: Any) -> E:
@@ -30,11 +26,22 @@ def validator_of(model: type[Entry]) -> SchemaValidator:
 
 
 class SchemaOf:
-    """The schema of an annotation: to markers what pydantic's handler is to them."""
+    """The schema of an annotation, made once: to markers what pydantic's handler is to them."""
+
+    def __init__(self) -> None:
+        self.known: Schemas = {  # of all other types the markers tell how they are read
+            Any: core_schema.any_schema(), str: core_schema.str_schema(), int: core_schema.int_schema()
+        }  # fmt: skip
 
     def __call__(self, annotation: Any) -> core_schema.CoreSchema:
-        if annotation in PLAIN:
-            return PLAIN[annotation]
+        if annotation not in self.known:
+            self.known[annotation] = self.made(annotation)
+        return self.known[annotation]
+
+    generate_schema = __call__
+
+    def made(self, annotation: Any) -> core_schema.CoreSchema:
+        """The schema of what no schema is known of. Raises TypeError for a type that values in a spec do not have."""
         origin, parts = get_origin(annotation), get_args(annotation)
         if origin is Annotated:
             return marked(parts[0], parts[1:])
@@ -51,8 +58,6 @@ class SchemaOf:
         if isinstance(annotation, type) and issubclass(annotation, Entry):
             return schema_of_entry(annotation)
         raise TypeError(f"{annotation}: a type that the format has no reading for")
-
-    generate_schema = __call__
 
     def union(self, parts: tuple[Any, ...]) -> core_schema.CoreSchema:
         """One of several types, or null."""

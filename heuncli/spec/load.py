@@ -3,7 +3,6 @@
 from __future__ import annotations
 
 from collections.abc import Callable, Iterator, Mapping, Sequence
-from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
 from heuncli.errors import Problem, SourceLocation, SpecError
@@ -28,6 +27,8 @@ from heuncli.spec.source import Path_, SourceFile, dotted, read
 from heuncli.spec.verdicts import is_primary
 
 if TYPE_CHECKING:
+    from pathlib import Path
+
     from heuncli.spec.tables import Wrong
 
 PLACED = ("analysis", "drives", "expect", "forces")  # blocks of which later stages can locate every value
@@ -194,6 +195,8 @@ class Loading:
     @property
     def folder(self) -> Path:
         """Where the files that a spec names are looked for."""
+        from pathlib import Path  # 3 ms that few scenes need
+
         return Path() if self.path == STANDARD_INPUT else Path(self.path).parent
 
     def report_read(self, path: Path_, wrong: Sequence[Wrong]) -> None:

@@ -7,7 +7,6 @@ PyYAML's parser gives the events; data and locations are built here without recu
 
 from __future__ import annotations
 
-import hashlib
 import re
 from collections.abc import Iterator
 from typing import Any
@@ -17,6 +16,7 @@ from yaml import events
 
 from heuncli.errors import Finding, Problem, SourceLocation, SpecError
 from heuncli.records import record
+from heuncli.spec.digest import digest
 from heuncli.spec.reading import STANDARD_INPUT, read_bytes
 
 LARGEST = 64_000_000  # bytes, and characters; a scene of 100,000 bodies has about 40 million
@@ -101,7 +101,7 @@ def read(path: str, text: str | None) -> SourceFile:
                 Problem("not-utf8", "a character is not Unicode", SourceLocation(file, line, column), "delete it")
             ) from None
         text = text.removeprefix("\ufeff")
-    return parse(file, text, hashlib.sha256(raw).hexdigest())
+    return parse(file, text, digest(raw))
 
 
 def position(text: str, index: int) -> tuple[int, int]:

@@ -3,14 +3,15 @@
 from __future__ import annotations
 
 import os
+import shutil
 import subprocess
 import sys
 from pathlib import Path
 
 import pytest
 
-from heuncli.cli import at_once
 from heuncli.cli.entry import enter
+from heuncli.cli.line_width import line_width
 from tests.shared.help_text import HELP, help_of_typer
 from tests.shared.shell import shell
 
@@ -43,11 +44,22 @@ def test_narrow_terminals_are_left_to_typer(columns: str) -> None:
     assert help_of_typer(int(columns)) != HELP.read_text("ascii")
 
 
-@pytest.mark.parametrize("given", ["", "0", "-5", "wide"])
-def test_widths_that_are_none(given: str, monkeypatch: pytest.MonkeyPatch) -> None:
-    monkeypatch.setenv("COLUMNS", given)
-    monkeypatch.setattr("os.get_terminal_size", lambda number: os.terminal_size((66, 20)))
-    assert at_once.width() == 66
+@pytest.mark.parametrize("size", [(66, 20), (0, 0), OSError()], ids=str)
+@pytest.mark.parametrize("given", [None, "", "0", "-5", "wide", "100", " 90 "])
+def test_the_width_of_a_line_is_the_one_that_python_finds(
+    given: str | None, size: tuple[int, int] | OSError, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    def found(number: int) -> os.terminal_size:
+        if isinstance(size, OSError):
+            raise size
+        return os.terminal_size(size)
+
+    monkeypatch.delenv("COLUMNS", raising=False)
+    if given is not None:
+        monkeypatch.setenv("COLUMNS", given)
+    monkeypatch.setattr("os.get_terminal_size", found)
+    monkeypatch.setattr("sys.__stdout__", sys.stdin)
+    assert line_width() == shutil.get_terminal_size().columns
 
 
 def test_what_goes_wrong_is_told_by_the_rest(tmp_path: Path) -> None:

@@ -86,3 +86,26 @@ def test_an_interrupt_is_130(folder: Path) -> None:
         process.send_signal(signal.SIGINT)
         out, err = process.communicate(timeout=60)
     assert (process.returncode, out, err) == (130, "", "heun: interrupted\n")
+
+
+def test_who_profiles_the_process_is_waited_for() -> None:
+    line = [sys.executable, "-m", "cProfile", "-m", "heuncli", "--version"]
+    done = subprocess.run(line, capture_output=True, text=True, env=ENVIRONMENT, check=True)
+    assert "function calls" in done.stdout
+
+
+@pytest.mark.parametrize(
+    ("before", "more"),
+    [
+        ("atexit.register(print, 'the end')", "the end\n"),
+        ("class Kept: __del__ = lambda self: print('gone')\nkept = Kept()", ""),
+    ],
+)
+def test_the_process_ends_at_once_unless_something_waits_for_that(before: str, more: str) -> None:
+    code = f"import atexit, sys\n{before}\nfrom heuncli.__main__ import command\ncommand()"
+    for words, expected in (("--version", 0), ("run", 2)):
+        done = subprocess.run(
+            [sys.executable, "-c", code, words], capture_output=True, text=True, env=ENVIRONMENT, check=False
+        )
+        assert done.returncode == expected
+        assert done.stdout.partition("\n")[2] == more if words == "--version" else done.stdout == more

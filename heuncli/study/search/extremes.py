@@ -13,7 +13,6 @@ from collections.abc import Callable, Sequence
 from typing import Any
 
 import numpy as np
-from numpy.typing import NDArray
 
 from heuncli import tolerances
 from heuncli.named_tuples import NamedTuple
@@ -270,10 +269,10 @@ def _first(worth: Array, target: Indices, most: int) -> Mask:
     return chosen
 
 
-def _varies(values: Array) -> NDArray[np.bool_]:
+def _varies(values: Array) -> Mask:
     """Which columns have a peak worth a search."""
     known = np.nan_to_num(values)
-    varies: NDArray[np.bool_] = np.ptp(known, axis=0) > tolerances.CONSTANT * np.abs(known).max(axis=0)
+    varies: Mask = np.ptp(known, axis=0) > tolerances.CONSTANT * np.abs(known).max(axis=0)
     return varies
 
 
@@ -290,7 +289,7 @@ def filled(times: Array) -> Array:
     return np.asarray(distinct(np.concatenate([times, more.ravel()])))
 
 
-def distinct(values: NDArray[Any]) -> Any:
+def distinct(values: np.ndarray[Any, Any]) -> Any:
     """The different numbers among these, ascending; np.unique would import numpy.ma for it, 10 ms."""
     ascending = np.sort(values, axis=None)
     return ascending[np.append(True, ascending[1:] != ascending[:-1])[: len(ascending)]]
