@@ -277,7 +277,7 @@ def _lower(new: tuple[float, float], old: tuple[float, float]) -> bool:
 
 def _counted(members: int, shift: float) -> Array:
     """Weights of turns, 1, and shifts of some members, (6m,)."""
-    return np.tile([1.0, 1.0, 1.0, shift, shift, shift], members)
+    return np.array([1.0, 1.0, 1.0, shift, shift, shift] * members)
 
 
 def _damped(r: ReducedIsland, mu: float) -> Array:
@@ -299,4 +299,5 @@ def _limited(z: Array) -> Array:
 
 
 def _norm(a: Array) -> float:
-    return float(np.linalg.norm(a))
+    flat = a.ravel(order="K")
+    return math.sqrt(float(flat @ flat))

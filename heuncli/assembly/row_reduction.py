@@ -9,7 +9,7 @@ Tree joints are solved outward body by body, so that dense algebra meets only th
 from __future__ import annotations
 
 from collections.abc import Mapping, Sequence
-from functools import cached_property
+from functools import cache, cached_property
 
 import numpy as np
 
@@ -105,7 +105,7 @@ class ReducedIsland:
 
     def measured(self, shift: float = 1.0) -> tuple[Array, Array]:
         """Q (6m, n) and A (h, n); a shift counts `shift` times a turn."""
-        weight = np.tile([1.0, 1.0, 1.0, shift, shift, shift], len(self.steps))[:, None]
+        weight = np.array([1.0, 1.0, 1.0, shift, shift, shift] * len(self.steps))[:, None]
         Q, R = np.linalg.qr(weight * self.B)
         return Q / weight, np.linalg.solve(R.T, self.C.T).T
 
@@ -136,6 +136,7 @@ def _step(
     )  # fmt: skip
 
 
+@cache
 def _root(may: tuple[bool, bool]) -> MemberStep:
     N = np.eye(6)[:, np.repeat(np.array(may), 3)]
     return MemberStep(np.zeros(6), np.zeros((6, 6)), N, -1, np.zeros((0, 6)), np.zeros(0))
@@ -162,7 +163,7 @@ def least(r: ReducedIsland, moved: Array, together: float = 0.0) -> tuple[Array,
 
 def rank_of(S: Array) -> int:
     """How many rows stand for themselves, by their singular values, the largest first; rows are of length 1 or so."""
-    return int(np.sum(S > tolerances.RANK * max(1.0, S[0]))) if len(S) else 0
+    return int(np.count_nonzero(S > tolerances.RANK * max(1.0, S[0]))) if len(S) else 0
 
 
 def solve(A: Array, b: Array) -> tuple[Array, Array, Array]:

@@ -19,6 +19,7 @@ OP = expressions.OPERATIONS
 MOST_NODES = 500
 BEYOND = "no division by 0, no root or logarithm of what is negative, nothing beyond 1e308"
 COMPARISONS = {"<": "lt", "<=": "le", ">": "gt", ">=": "ge", "==": "eq", "!=": "ne"}
+NOTHING: frozenset[int] = frozenset()
 TRUTHS = frozenset({*COMPARISONS.values(), "step"})
 BRANCHING = frozenset({*TRUTHS, "sign", "abs", "min", "max", "atan2"})
 
@@ -126,7 +127,7 @@ class Codegen:
 
     def number(self, value: float, measure: Measure = FACTOR) -> Part:
         self.constants.append(value)
-        return self.counted(Part((OP["const"], len(self.constants) - 1), frozenset(), value, measure=measure))
+        return self.counted(Part((OP["const"], len(self.constants) - 1), NOTHING, value, False, measure))
 
     def counted(self, part: Part) -> Part:
         self.nodes += 1
@@ -144,7 +145,7 @@ class Codegen:
     def apply(self, name: str, *parts: Part, argument: int = 0, text: str = "") -> Part:
         """An operation on its operands; carried out at once on numbers. text: of one that has branches of its own."""
         code: Code = ()
-        uses: frozenset[int] = frozenset()
+        uses = NOTHING
         for part in parts:
             code += part.code
             uses |= part.uses

@@ -8,6 +8,7 @@ from __future__ import annotations
 
 import re
 from collections.abc import Iterator
+from functools import lru_cache
 from math import pi
 
 from heuncli.errors import Finding
@@ -178,6 +179,7 @@ def spelled(unit: str) -> str | None:
     return powers if powers != unit else None
 
 
+@lru_cache(maxsize=1000)
 def parse_unit(text: str) -> tuple[float, Dimension]:
     """Size in SI and dimension of a unit such as 'kg/m^3', 'N m', 'N/(m/s)'. Raises Finding."""
     reader = _Reader(text)

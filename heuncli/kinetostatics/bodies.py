@@ -48,10 +48,8 @@ class BodyStates:
         own = [i for i, body in enumerate(bodies) if body != GROUND]
         of, q = [bodies[i] for i in own], np.array([points[i] for i in own]).reshape(-1, 3, 1)
         moving = self.x[:, of].swapaxes(0, 1) + (self.R[:, of].swapaxes(0, 1) @ q[:, None])[..., 0]
-        found = [np.broadcast_to(point, (len(self.x), 3)) for point in points]
-        for i, position in zip(own, moving, strict=True):
-            found[i] = position
-        return found
+        found = dict(zip(own, moving, strict=True))
+        return [found[i] if i in found else self.point_position(GROUND, point) for i, point in enumerate(points)]
 
     def velocity(self, body: int, position: Array) -> Array:
         """Velocity of the body's point that is at a world position, (n_t, 3)."""

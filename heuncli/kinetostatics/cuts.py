@@ -23,6 +23,7 @@ from heuncli.records import record, replace
 from heuncli.results import Array
 from heuncli.shapes.forms import Form
 from heuncli.shapes.inertia import pseudo_inertia
+from heuncli.shapes.rotations import cross
 from heuncli.spec.models import Properties, Section, Spec
 
 if TYPE_CHECKING:
@@ -188,7 +189,7 @@ def _lay(
         end = section.reduce_to
         about = (GROUND if end.body == "ground" else index[end.body], np.array(end.point))
     cuts = Cuts(
-        name=name, body=body, n=n, e1=e1, e2=np.cross(n, e1), points=points, s=s, side=side, near=near, pieces=pieces,
+        name=name, body=body, n=n, e1=e1, e2=cross(n, e1), points=points, s=s, side=side, near=near, pieces=pieces,
         centroids=centroids, about=about, line=section.reduce_to == "line", properties=section.properties,
         strength=section.strength, warnings=warnings, form=form,
     )  # fmt: skip

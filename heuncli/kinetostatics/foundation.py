@@ -57,8 +57,8 @@ def foundation(mechanism: Mechanism, states: BodyStates, actions: Sequence[Actio
     if mechanism.planar:
         force, moment = in_plane(force, moment)
         _, orbital = in_plane(force, orbital)
-    all_forces = (ma, weight, *(action.force for action in actions if action.kind != "drive"))
-    scale = max(float(np.abs(x).max(initial=0.0)) for x in all_forces)
+    acting = np.array([action.force for action in actions if action.kind != "drive"])
+    scale = max(float(np.abs(x).max(initial=0.0)) for x in (ma, weight, acting))
     block: Block = {
         "about": about, "force": force, "moment": moment, "axis": central_axis(force, moment, about, scale),
         "mass_effect": {

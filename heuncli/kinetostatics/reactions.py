@@ -123,7 +123,7 @@ def joint_loads(layout: Layout, recovered: Answers, states: BodyStates) -> list[
     """Reactions of all joints, in the order of the spec."""
     hang_of = {h.joint: (i, h) for i, h in enumerate(layout.spanning.hangs) if h.joint >= 0}
     driven = {freedom.joint: n for n, freedom in enumerate(layout.freedoms) if freedom.q < 0}
-    on_to = [recovered.bodies[name] for name in ("joint_force", "joint_moment")]
+    forces, moments = recovered.bodies["joint_force"], recovered.bodies["joint_moment"]
     joints = layout.mechanism.joints
     points = states.point_positions([joint.b for joint in joints], [joint.q for joint in joints])
     loads = []
@@ -133,7 +133,7 @@ def joint_loads(layout: Layout, recovered: Answers, states: BodyStates) -> list[
         drive = tension = None
         if k in hang_of:
             i, h = hang_of[k]
-            force, moment = (of[..., i, :] for of in on_to)
+            force, moment = forces[..., i, :], moments[..., i, :]
             if h.reverse:
                 arm = states.point_position(joint.a, joint.p) - point
                 force, moment = -force, -moment - cross_rows(arm, force)

@@ -149,7 +149,8 @@ def accelerations_as_matrix(w: Array, u: Array, a: Array) -> Array:
         A[i, ..., i] -= square
         A[i, ..., (i + 1) % 3] -= u[..., (i + 2) % 3]
         A[i, ..., (i + 2) % 3] += u[..., (i + 1) % 3]
-    A[..., 3] = np.moveaxis(a, -1, 0)
+    for i in range(3):
+        A[i, ..., 3] = a[..., i]
     return A
 
 
@@ -240,10 +241,11 @@ class CutPlaces:
         if v.ndim == 3 and v.strides[1] == 0:  # the same at all instants: one product
             np.matmul(self.R.transpose(1, 0, 2), v[:, 0], out=world)
         else:
-            np.matmul(self.R, np.moveaxis(v, 0, -2), out=np.moveaxis(world, 0, -2))
+            before_cuts = (*range(1, v.ndim - 1), 0, v.ndim - 1)
+            np.matmul(self.R, v.transpose(before_cuts), out=world.transpose(before_cuts))
         if is_position:
             world += self.origin.T[:, :, None]
-        return np.moveaxis(world, 0, -1)
+        return world.transpose(*range(1, v.ndim), 0)
 
     def wrench(self, force: Array, moment: Array) -> tuple[Array, Array]:
         """Loads given about the cuts' points, with moments where they are asked for, body axes."""

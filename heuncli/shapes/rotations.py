@@ -12,7 +12,8 @@ from heuncli.results import Array
 
 def hat(a: Array) -> Array:
     """Matrix of the cross product, (3, 3): hat(a) @ b = a x b."""
-    return np.array([[0.0, -a[2], a[1]], [a[2], 0.0, -a[0]], [-a[1], a[0], 0.0]])
+    x, y, z = a.tolist()
+    return np.array([[0.0, -z, y], [z, 0.0, -x], [-y, x, 0.0]])
 
 
 def about(axis: Array, angle: float) -> Array:

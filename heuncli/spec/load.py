@@ -132,7 +132,7 @@ class Loading:
         reader = Reader(self.data, context, self.report)
         document = reader.document()
         expected = dict(self.expected(document))
-        draft = DraftDocument(document._replace(expect=expected), names, frozenset(self.unread))
+        draft = DraftDocument(document._replace(expect=expected), names, frozenset(self.unread), {})
         self.judge(draft, reader.follows)
         curves = self.curves(draft)
         if self.problems:

@@ -54,6 +54,7 @@ JOINT_LOADS = {  # of the turning, of the sliding
     "damper": (kernel.TURN_DAMPER, kernel.SHIFT_DAMPER),
     "friction": (kernel.TURN_FRICTION, kernel.SHIFT_FRICTION),
 }
+UNTURNED = np.eye(3)
 PRESSES = {"whole": kernel.WHOLE, "across": kernel.ACROSS, "ends": kernel.ENDS}
 Scalar = tuple[int, Array, str, float, float]  # of a freedom: kind, direction, quantity, coordinate, rate
 
@@ -172,7 +173,7 @@ class _Builder:
             body = self.mechanism.bodies[h.body]
             joint_point, R_ref, ball, freedoms = self._hang(h)
             c = body.center - self.reference[i]
-            J = self.inertias[h.body] + body.mass * ((c @ c) * np.eye(3) - np.outer(c, c))
+            J = self.inertias[h.body] + body.mass * ((c @ c) * UNTURNED - c[:, None] * c)
             first, group = len(self.freedoms), self._state_of(i, h, ball, freedoms)
             self.groups.append(group)
             self.body_rows.append(
@@ -184,7 +185,7 @@ class _Builder:
                     first_freedom=first,
                     end_freedom=len(self.freedoms),
                     answer_at=self.answer_count,
-                    framed=int(not np.array_equal(R_ref, np.eye(3))),
+                    framed=int(bool((R_ref != UNTURNED).any())),
                     mass=body.mass,
                     first_moment=body.mass * c,
                     inertia=symmetric(J),

@@ -13,6 +13,7 @@ from heuncli.mechanism.model import Assembly, Mechanism
 from heuncli.mechanism.size import size_of_scene
 from heuncli.records import record, replace
 from heuncli.results import Array
+from heuncli.shapes.rotations import cross_rows
 from heuncli.tree.idle_spins import IdleSpin, idle_spins, without_inertia
 from heuncli.tree.layout import Layout
 from heuncli.tree.pack import lay_out
@@ -97,7 +98,7 @@ def lacking_inertia(scene: PreparedScene) -> dict[int, Array]:
         inertia[spin.body] += spin.lent
     inertia = inertia[order]
     # most have all of it, which their determinants tell sooner than their moments
-    volume = np.einsum("ni,ni->n", inertia[:, 0], np.cross(inertia[:, 1], inertia[:, 2]))
+    volume = np.einsum("ni,ni->n", inertia[:, 0], cross_rows(inertia[:, 1], inertia[:, 2]))
     found = {}
     for i in np.flatnonzero(volume <= tolerances.SLENDER * np.trace(inertia, axis1=1, axis2=2) ** 3).tolist():
         axes, _ = without_inertia(replace(mechanism.bodies[order[i]], inertia=inertia[i]), scene.layout.size)

@@ -201,5 +201,7 @@ Row = (
 
 def table_of(struct: type[structs.Record], *columns: Sequence[Row]) -> Table:
     """The kernel's table of rows; several sequences are parts of the same rows."""
+    if len(columns) == 1:
+        return table(struct, [vars(row) for row in columns[0]])
     rows = zip(*columns, strict=True)
     return table(struct, [{name: value for part in row for name, value in vars(part).items()} for row in rows])

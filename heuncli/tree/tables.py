@@ -32,14 +32,20 @@ def table(record: type[structs.Record], rows: list[dict[str, Any]]) -> Table:
     """Rows given by field; what a row does not give is zero, or the kernel's own."""
     found: Table = np.zeros(len(rows), type_of(record))
     for name in dict.fromkeys(name for row in rows for name in row):
-        kind = found.dtype[name]
         which = [i for i, row in enumerate(rows) if name in row]
-        values = [rows[i][name] for i in which]
-        if kind.names:
-            found[name][which] = np.array([tuple(map(float, value)) for value in values], dtype=kind)
-        else:
-            found[name][which] = values
+        column = found[name].view(flat(found.dtype[name]))
+        column[which if len(which) < len(rows) else slice(None)] = [rows[i][name] for i in which]
     return found
+
+
+@cache
+def flat(kind: np.dtype[Any]) -> np.dtype[Any]:
+    """The type of a struct as a row of the numbers that it is made of, all of one type; of a number its own."""
+    if not kind.names:
+        return kind
+    parts = [flat(kind[name]) for name in kind.names]
+    (number,) = {part.base for part in parts}
+    return np.dtype((number, (sum(part.itemsize for part in parts) // number.itemsize,)))
 
 
 def symmetric(J: Array) -> tuple[float, ...]:
@@ -84,4 +90,9 @@ def parts(flat: Array, sizes: Iterable[tuple[np.dtype[np.void], int]]) -> list[T
 
 def limits(values: Mapping[str, float]) -> Table:
     """The kernel's thresholds as its table of one row."""
+    return _limits(tuple(values.items())).copy()
+
+
+@cache
+def _limits(values: tuple[tuple[str, float], ...]) -> Table:
     return table(scene.Limits, [dict(values)])

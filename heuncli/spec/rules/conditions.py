@@ -6,7 +6,6 @@ from collections.abc import Iterator
 from typing import TYPE_CHECKING
 
 from heuncli.results_schema import AFTER_THE_RUN, beside_magnitudes, spelled_first
-from heuncli.run_places import words_of
 from heuncli.spec import format as f
 from heuncli.spec.names import UNTIL, is_name
 from heuncli.spec.rules.registry import DraftDocument, Path_, Violation, rule
@@ -29,10 +28,9 @@ def on_results(draft: DraftDocument) -> Iterator[tuple[Path_, f.ResultConditionE
     """Those on numbers of the results, with what their paths lead to; None where only the run can tell."""
     on_paths = [(path, given) for path, given in conditions(draft) if isinstance(given, f.ResultConditionEntry)]
     if on_paths:
-        from heuncli.spec.rules.outcome import result, runs_of  # a run without any starts faster
+        from heuncli.spec.rules.outcome import reached_in  # a run without any starts faster
 
-        runs = runs_of(draft)
-        yield from ((path, given, result(words_of(given.of), draft.names, runs)) for path, given in on_paths)
+        yield from ((path, given, reached_in(draft, given.of)) for path, given in on_paths)
 
 
 @rule("event-name")

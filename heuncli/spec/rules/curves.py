@@ -8,7 +8,6 @@ from typing import TYPE_CHECKING
 from heuncli.errors import Finding
 from heuncli.expressions import units as u
 from heuncli.results_schema import spelled_first
-from heuncli.run_places import words_of
 from heuncli.spec import format as f
 from heuncli.spec.rules.expect import outcomes
 from heuncli.spec.rules.registry import DraftDocument, Path_, Violation, rule
@@ -60,9 +59,9 @@ def abscissa(item: f.ExpectEntry, draft: DraftDocument) -> NumberKind | None:
     """The result that x is a path to; None where it names a column of time."""
     if not isinstance(item.x, str) or "." not in item.x:
         return None
-    from heuncli.spec.rules.outcome import NumberKind, result, runs_of  # as in outcomes
+    from heuncli.spec.rules.outcome import NumberKind, reached_in  # as in outcomes
 
-    found = result(words_of(item.x), draft.names, runs_of(draft))
+    found = reached_in(draft, item.x)
     return found if isinstance(found, NumberKind) else None
 
 

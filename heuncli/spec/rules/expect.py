@@ -10,7 +10,6 @@ from heuncli import tolerances
 from heuncli.expressions import units as u
 from heuncli.expressions.programs import Expression
 from heuncli.results_schema import INDEX, INSTANT, beside_magnitudes, spelled_first
-from heuncli.run_places import words_of
 from heuncli.spec import format as f
 from heuncli.spec.rules.registry import DraftDocument, Path_, Violation, rule
 from heuncli.spec.semantics import instants_of, type_of
@@ -26,11 +25,10 @@ Lengths = tuple[int | None, ...]  # of nested lists, the outer first; None: not 
 def outcomes(draft: DraftDocument) -> Iterator[tuple[Path_, f.ExpectEntry, NumberKind | None]]:
     """Every expectation with the quantity at its path; None where there is none."""
     if draft.document.expect:
-        from heuncli.spec.rules.outcome import NumberKind, result, runs_of  # a run without expectations starts faster
+        from heuncli.spec.rules.outcome import NumberKind, reached_in  # a run without expectations starts faster
 
-        runs = runs_of(draft)
         for i, item in draft.document.expect.items():
-            found = result(words_of(item.of), draft.names, runs)
+            found = reached_in(draft, item.of)
             yield ("expect", i), item, found if isinstance(found, NumberKind) else None
 
 

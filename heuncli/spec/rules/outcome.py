@@ -73,6 +73,14 @@ def runs_of(draft: DraftDocument) -> dict[str, bool]:
     return {name: is_run(section) for name, section in draft.document.sections.items()}
 
 
+def reached_in(draft: DraftDocument, path: str) -> Result:
+    """What a path leads to in a document."""
+    if path not in draft.reached:
+        draft.reached[path] = result(words_of(path), draft.names, runs_of(draft))
+    found: Result = draft.reached[path]
+    return found
+
+
 def result(path: list[str], names: Names, runs: Mapping[str, bool]) -> Result:
     """What the words of a path lead to; runs: of the sections, whether they are runs of cuts."""
     reached = follow(path, names)

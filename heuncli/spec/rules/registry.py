@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Callable, Iterable, Iterator
+from typing import Any
 
 from heuncli.named_tuples import NamedTuple
 from heuncli.spec.format import Document
@@ -24,12 +25,14 @@ class DraftDocument(NamedTuple):
     """A document as far as it could be read, which the rules check.
 
     Entries that could not be read are missing in `document`, but are among `names`; `unread`: the top-level keys in
-    which an entry could not be read.
+    which an entry could not be read. reached: what paths into the results lead to, as far as a rule has asked
+    (rules/outcome.py): several ask about the same ones.
     """
 
     document: Document
     names: Names
-    unread: frozenset[str] = frozenset()
+    unread: frozenset[str]
+    reached: dict[str, Any]
 
 
 Check = Callable[[DraftDocument], Iterable[Violation]]
