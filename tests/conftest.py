@@ -16,7 +16,10 @@ from tests.shared.command import SPEC_TEXTS, Done, Heun
 
 # Folders that judge numbers: the plain kernel gives the same bits (tests/package/test_kernels_agree.py), but slowly.
 SPARED = {"closed_forms", "convergence", "honesty", "limits"}
-SHARE = 4  # of every other family of cases so many, spread over it: enough to see what only plain Python does otherwise
+# Of every other family of cases so many, spread over it: enough to see what only plain Python does otherwise. These
+# folders judge numbers, too, but random scenes pass every line of the kernel: one of each family.
+SHARE = 4
+SHARES = {"laws": 1, "oracle": 1, "references": 1}
 
 
 @pytest.fixture(autouse=True)
@@ -63,6 +66,12 @@ def pytest_collection_modifyitems(config: pytest.Config, items: list[pytest.Item
     for item in items:
         if not item.get_closest_marker("heavy") and item.path.parent.name not in SPARED:
             families.setdefault(item.nodeid.split("[")[0], []).append(item)
-    kept = {item for family in families.values() for item in family[:: max(1, -(-len(family) // SHARE))]}
+    kept = {item for family in families.values() for item in share_of(family)}
     config.hook.pytest_deselected(items=[item for item in items if item not in kept])
     items[:] = [item for item in items if item in kept]
+
+
+def share_of(family: list[pytest.Item]) -> list[pytest.Item]:
+    """The cases that the plain kernel runs of a family."""
+    share = SHARES.get(family[0].path.parent.name, SHARE)
+    return family[:: max(1, -(-len(family) // share))]

@@ -132,6 +132,7 @@ def test_what_a_part_follows_is_needed(link: str) -> None:
     follows_the_whole(pendulums(4, f"{more}\n"), bodies)
 
 
+@pytest.mark.heavy
 def test_bodies_that_a_joint_couples_are_one_part() -> None:
     follows_the_whole(pendulums(4, joint="{type: rod, from: b1.end, to: b0.end}"), {"b0", "b1"})
 
@@ -204,6 +205,7 @@ analysis: {duration: 1, samples: 3}
     assert found.status["code"] == "completed" and len(found.time) == 3
 
 
+@pytest.mark.heavy
 def test_one_section_alone_is_recovered(monkeypatch: pytest.MonkeyPatch) -> None:
     """No other cuts, no foundation, no energy, no sums; the balance, which tells whether numbers are wrong, stays."""
     spec = load(str(SPECS / "jib.yaml"))

@@ -37,7 +37,7 @@ def asked(shell: str, line: str, folder: Path) -> list[str]:
     return [line.split("\t")[0] for line in done.stdout.splitlines() if line]
 
 
-@pytest.mark.parametrize("shell", ["bash", "zsh", "fish"])
+@pytest.mark.parametrize("shell", ["bash", *(pytest.param(name, marks=pytest.mark.heavy) for name in ("zsh", "fish"))])
 @pytest.mark.parametrize(
     ("line", "expected"),
     [

@@ -103,6 +103,7 @@ def test_each_spec_has_its_own_limit(heun: Heun, folder: Path, monkeypatch: pyte
     assert done.returncode == 0
 
 
+@pytest.mark.heavy  # waits for two seconds
 def test_what_goes_out_goes_out_whole(heun: Heun, folder: Path, monkeypatch: pytest.MonkeyPatch) -> None:
     """The limit passes while the file is being written."""
     replace = files.replace

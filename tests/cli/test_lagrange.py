@@ -155,6 +155,7 @@ def test_a_script_for_matlab(heun: Heun, pendulum: str, folder: Path) -> None:
     assert [[float(x) for x in row.split()] for row in rows] == linear["A"]
 
 
+@pytest.mark.heavy
 def test_over_in_all_forms(heun: Heun) -> None:
     spec, words = str(ROOT / "specs" / "slider_crank.yaml"), "main.angle=0:90deg/4"
     found = json.loads(heun("lagrange", spec, "--over", words, "--format", "json").stdout)

@@ -26,6 +26,7 @@ def test_json_keeps_to_the_contract(heun: Heun, folder: Path) -> None:
     assert found["attitudes"]["b"]["half_turns"] == sum(e["kind"] == "half turn" for e in found["events"])
 
 
+@pytest.mark.heavy
 def test_a_page_with_the_verdict_at_the_top(heun: Heun, folder: Path) -> None:
     (folder / "free.yaml").write_text(SCENE.replace("DUR", "8"))
     done = heun("probe", "free.yaml", "-o", "free.txt")

@@ -43,6 +43,7 @@ def test_what_would_not_fit_is_refused_with_what_would(
     assert heun(*words.split(), "many.yaml").returncode == 0
 
 
+@pytest.mark.heavy  # 10,000 steps
 def test_steps_that_are_known_before_are_counted(heun: Heun, folder: Path, monkeypatch: pytest.MonkeyPatch) -> None:
     """A table whose 10,000 points in the run each end a step; with little memory it is refused before it moves."""
     scene = (

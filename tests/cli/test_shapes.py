@@ -106,6 +106,7 @@ def extreme(study: Study, how: str, path: str) -> float | str:
 OF_ONE = "bodies.b0.c", "sections.s.", "foundation.f", "joints.j0.f", "energy.k", "impulses.0.sections", "events"
 
 
+@pytest.mark.heavy
 @pytest.mark.parametrize(("how", "of", "least"), [("abs", OF_ONE, 40), ("min", ("sections.s.M",), 2)])
 def test_an_extreme_does_not_depend_on_how_many_cuts_and_instants_are_asked_for(
     how: str, of: tuple[str, ...], least: int

@@ -27,7 +27,7 @@ from heuncli.study.model.options import Options
 from heuncli.study.workflow import solve
 
 FOLDER = Path(__file__).parents[2] / "specs"
-HEAVY = ("cardan", "crane", "engine", "friction", "jib")  # too long for the plain kernel
+HEAVY = ("cardan", "crane", "engine", "friction", "jib", "ladder", "spatial_crank")  # too long for the plain kernel
 NAMES = [
     pytest.param(path.stem, marks=[pytest.mark.heavy] if path.stem in HEAVY else [])
     for path in sorted(FOLDER.glob("*.yaml"))

@@ -84,23 +84,27 @@ def scene(of: Chain) -> str:
 
 
 def slope(of: Chain, y: Array) -> Array:
-    """y' of y = (q, u), from the equations of the absolute angles; complex numbers go through."""
+    """y' of each y = (q, u) (..., 2n), from the equations of the absolute angles; complex numbers go through."""
     n = len(of.m)
-    q, u = y[:n], y[n:]
-    theta, omega = np.cumsum(q), np.cumsum(u)
+    q, u = y[..., :n], y[..., n:]
+    theta, omega = np.cumsum(q, axis=-1), np.cumsum(u, axis=-1)
     arm = np.where(np.tri(n, n, -1) > 0, of.l[None, :], 0.0) + np.diag(of.c)  # of mass k along bar i
     weight = arm.T @ (of.m[:, None] * arm)
-    apart = theta[:, None] - theta[None, :]
+    apart = theta[..., :, None] - theta[..., None, :]
     M = weight * np.cos(apart) + np.diag(of.J)
-    own = -of.k * q - of.d * u
-    load = own - np.append(own[1:], 0.0) - G * (of.m @ arm) * np.sin(theta)
-    turn = np.linalg.solve(M, load - (weight * np.sin(apart)) @ omega**2)
-    return np.concatenate([u, turn - np.concatenate([[0.0], turn[:-1]])])
+    load = -of.k * q - of.d * u
+    load[..., :-1] -= load[..., 1:].copy()
+    load -= G * (of.m @ arm) * np.sin(theta)
+    load -= ((weight * np.sin(apart)) @ (omega**2)[..., None])[..., 0]
+    turn = np.linalg.solve(M, load[..., None])[..., 0]
+    turn[..., 1:] -= turn[..., :-1].copy()
+    return np.concatenate([u, turn], axis=-1)
 
 
-def tangent(of: Chain, y: Array) -> Array:
-    """The derivatives of the slope."""
-    return np.array([slope(of, y + 1j * TINY * e).imag / TINY for e in np.eye(len(y))]).T
+def slope_and_tangent(of: Chain, y: Array) -> tuple[Array, Array]:
+    """The slope at y (2n,) and its derivatives (2n, 2n), a column for each of y."""
+    moved = slope(of, y + 1j * TINY * np.eye(len(y)))
+    return moved[0].real, moved.imag.T / TINY
 
 
 class Right(NamedTuple):
@@ -116,8 +120,8 @@ def right(of: Chain) -> Right | None:
     N = 2 * n
 
     def both(_: float, z: Array) -> Array:
-        y, Phi = z[:N], z[N:].reshape(N, N)
-        return np.concatenate([slope(of, y).real, (tangent(of, y) @ Phi).ravel()])
+        by_time, by_state = slope_and_tangent(of, z[:N])
+        return np.concatenate([by_time, (by_state @ z[N:].reshape(N, N)).ravel()])
 
     at = np.linspace(0.0, of.duration, SAMPLES)
     fine = np.unique(np.concatenate([at, np.linspace(0.0, of.duration, 10 * EVENLY + 1)]))

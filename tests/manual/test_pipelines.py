@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import contextlib
 import os
 import shlex
 import shutil
@@ -16,20 +17,31 @@ import yaml
 from heuncli.cli.entry import enter
 from tests.shared.manual import README, ROOT, blocks
 
+pytestmark = pytest.mark.heavy  # whole runs of whole specs, by the command
+
 WORKFLOW, JOB, HOOKS = (yaml.safe_load(text) for text in blocks(README, "yml"))
 (RULE,) = blocks(README, "make")
 FEW = ("double.yaml", "engine.yaml", "axle_loads.yaml")
 
 
-@pytest.fixture
-def project(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> Path:
-    """A project with specs and their golden files, in a pipeline."""
-    (tmp_path / "specs").mkdir()
+@pytest.fixture(scope="module")
+def approved(tmp_path_factory: pytest.TempPathFactory) -> Path:
+    """A folder with specs and their golden files, not to be changed."""
+    folder = tmp_path_factory.mktemp("approved")
+    (folder / "specs").mkdir()
     for name in (*FEW, *(path.name for path in (ROOT / "specs").glob("*.csv"))):
-        shutil.copy(ROOT / "specs" / name, tmp_path / "specs" / name)
+        shutil.copy(ROOT / "specs" / name, folder / "specs" / name)
+    with contextlib.chdir(folder):
+        assert enter(["check", "specs", "--golden", "golden", "--update", "--force", "-q"]) == 0
+    return folder
+
+
+@pytest.fixture
+def project(approved: Path, tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> Path:
+    """A project with specs and their golden files, in a pipeline."""
+    shutil.copytree(approved, tmp_path, dirs_exist_ok=True)
     monkeypatch.chdir(tmp_path)
     monkeypatch.setenv("GITHUB_STEP_SUMMARY", str(tmp_path / "summary.md"))
-    assert enter(["check", "specs", "--golden", "golden", "--update", "--force", "-q"]) == 0
     monkeypatch.setenv("CI", "true")
     return tmp_path
 

@@ -16,6 +16,8 @@ import pytest
 from tests.shared.cited_texts import MANUAL, PACKAGE, SOURCES, TESTS, Text, cells, page_section, scopes, texts, tree
 from tests.shared.folders import ROOT
 
+pytestmark = pytest.mark.heavy  # texts alone, which are those of both kernels
+
 PAGES = sorted(MANUAL.glob("*.md"))
 READMES = [ROOT / "README.md", *sorted(TESTS.rglob("README.md"))]
 

@@ -4,10 +4,15 @@ from __future__ import annotations
 
 import ast
 from collections import defaultdict
+from functools import cache
 from pathlib import Path
+
+import pytest
 
 import heuncli
 from heuncli.reduction.compose import STEPS
+
+pytestmark = pytest.mark.heavy  # texts alone, which are those of both kernels
 
 ROOT = Path(heuncli.__file__).parent
 # Names of structs of the kernel that are those of what they are rows of: the field's word for it, on both sides.
@@ -20,6 +25,7 @@ OF_THE_KERNEL = {
 }
 
 
+@cache
 def classes() -> dict[str, list[str]]:
     """The files that define a class, by its name."""
     found = defaultdict(list)

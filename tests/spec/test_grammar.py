@@ -128,6 +128,7 @@ TOKENS = ["t", "L", "1", "2.5", "+", "-", "*", "/", "**", "(", ")", "<", ">=", "
           "sin", "min", ",", "shaft", ".", "angle", "table", "^", "%", "$", "step", "hypot"]  # fmt: skip
 
 
+@pytest.mark.heavy
 @given(st.one_of(st.text(max_size=40), st.lists(st.sampled_from(TOKENS), max_size=14).map(" ".join)))
 @example("\x00")
 @example("²")

@@ -126,12 +126,32 @@ def test_an_editor_underlines(change: dict[str, Any]) -> None:
     assert not of_specs().is_valid({**scene, **change})
 
 
+def kinds(value: Any) -> tuple[Any, Any]:
+    """A value whose long lists hold one entry of each kind, and its kind: its keys, lengths, types."""
+    if isinstance(value, dict):
+        parts = {key: kinds(part) for key, part in value.items()}
+        return {key: short for key, (short, _) in parts.items()}, tuple((key, kind) for key, (_, kind) in parts.items())
+    if isinstance(value, list):
+        firsts: dict[Any, Any] = {}
+        for short, kind in map(kinds, value):
+            firsts.setdefault(kind, short)
+        return (list(firsts.values()) if len(value) > 9 else value), (len(value), *firsts)
+    return value, type(value) if not isinstance(value, str) else value
+
+
+def test_lists_keep_one_entry_of_each_kind() -> None:
+    rows = [[1.0, 2.0, 3.0]] * 9
+    assert kinds({"a": [*rows, [1.0, None, 3.0], [1.0], "x", "y", *rows]})[0] == {
+        "a": [rows[0], [1.0, None, 3.0], [1.0], "x", "y"]
+    }
+
+
 @pytest.mark.heavy
 @pytest.mark.parametrize("path", SPECS, ids=lambda path: path.stem)
 def test_every_result_is_what_the_schema_of_results_says(path: Path) -> None:
     wanted = frozenset({*REPORTS, SHARES})
     results = json.loads(to_json(solve(load(str(path)), Options(wanted=wanted)).results))
-    assert [error.json_path for error in of_results().iter_errors(results)] == []
+    assert [error.json_path for error in of_results().iter_errors(kinds(results)[0])] == []
 
 
 def test_the_schema_of_results_refuses_what_is_none() -> None:

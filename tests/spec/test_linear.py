@@ -15,6 +15,8 @@ from heuncli.spec.brackets import QUOTED
 from heuncli.spec.load import load
 from heuncli.spec.quantity import OVER_UNIT, WITH_UNIT, Scope, product_hint
 
+pytestmark = pytest.mark.heavy  # reading alone: no kernel is at work
+
 MANY = 3000
 SECONDS = 10.0  # tens of times what it takes; by the square it was from 8 s to minutes
 BALL = "mass: 1, center: [0, 0, 0], inertia: [1, 1, 1]"
