@@ -76,8 +76,8 @@ def main(request: RunRequest) -> int:
         from heuncli.commands.run.cases import run_all  # of few runs
 
         return run_all(task, spec, cases)
-    study, text = solved(task, spec)
-    emit(text, request.output)
+    study, pieces = solved(task, spec)
+    emit(pieces, request.output)
     say_what_stays(request.units, "--measure" if asked else form, request.quiet)
     return leave(task, spec, study)
 

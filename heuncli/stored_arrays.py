@@ -1,0 +1,107 @@
+"""Arrays over the instants that stand in a temporary file: of a long run whose results are told piece by piece.
+
+The file has no name from its first moment on (where systems know that): nothing is left behind, however the process
+ends. An array is its rows one behind the other; what is asked of it is read from there. Impure: writes and reads a file.
+"""
+
+from __future__ import annotations
+
+import math
+from io import FileIO
+from typing import TypeAlias, cast
+
+import numpy as np
+
+from heuncli.errors import OutputError, Problem
+from heuncli.results import Array
+
+WIDTH = 8  # bytes of a number
+
+
+class StoredArray:
+    """float64 (n_t, ...) in a file, filled by instants. Of an array it has what telling it needs: shape, size, slices.
+
+    By `reshape` it becomes one of rows, (n_t, m), of which columns can be read as well.
+    """
+
+    def __init__(self, file: FileIO, begin: int, shape: tuple[int, ...]) -> None:
+        """begin: where it stands in the file [bytes]."""
+        self._file, self._begin, self.shape = file, begin, shape
+        self.row = math.prod(shape[1:])
+
+    def __len__(self) -> int:
+        return self.shape[0]
+
+    @property
+    def ndim(self) -> int:
+        """How many axes it has."""
+        return len(self.shape)
+
+    @property
+    def size(self) -> int:
+        """How many numbers it has."""
+        return self.shape[0] * self.row
+
+    def reshape(self, *shape: int) -> StoredArray:
+        """The same numbers as rows: (n_t, -1)."""
+        if shape != (len(self), -1):
+            raise ValueError(f"stored arrays become rows, not {shape}")
+        return StoredArray(self._file, self._begin, (len(self), self.row))
+
+    def __getitem__(self, which: slice | tuple[slice, slice]) -> Array:
+        """Some of the instants, (n, ...); of rows also some of the columns, (n, k). A copy."""
+        instants, columns = which if isinstance(which, tuple) else (which, slice(None))
+        first, end, _ = instants.indices(len(self))
+        low, high, _ = columns.indices(self.row)
+        if not isinstance(which, tuple) or high - low == self.row:
+            return self._read(first * self.row, (end - first) * self.row).reshape(-1, *self.shape[1:])
+        found = np.empty((end - first, high - low))
+        for i in range(first, end):
+            found[i - first] = self._read(i * self.row + low, high - low)
+        return found
+
+    def put(self, first: int, rows: Array) -> None:
+        """Rows (n, ...) from an instant on, in place of what stands there. Raises OutputError where it finds no room."""
+        left = memoryview(np.ascontiguousarray(rows, dtype=np.float64).tobytes())
+        try:
+            self._file.seek(self._begin + WIDTH * first * self.row)
+            while left:  # a disk that is nearly full takes a part
+                left = left[self._file.write(left) :]
+        except OSError as reason:
+            raise _no_room(reason) from None
+
+    def _read(self, first: int, count: int) -> Array:
+        found = np.empty(count)
+        self._file.seek(self._begin + WIDTH * first)
+        if self._file.readinto(found.data) != found.nbytes:
+            raise OutputError(Problem("output-failed", "the temporary file of the results ends too soon"))
+        return found
+
+
+AnyArray: TypeAlias = Array | StoredArray
+
+
+class ArrayStore:
+    """The file that arrays are stored in, one behind the other."""
+
+    def __init__(self) -> None:
+        """Raises OutputError where there is no folder for temporary files."""
+        import tempfile  # 5 ms that long runs alone need
+
+        try:
+            self._file: FileIO = tempfile.TemporaryFile(prefix="heun-", buffering=0)
+        except OSError as reason:
+            raise _no_room(reason) from None
+        self._end = 0
+
+    def array(self, shape: tuple[int, ...]) -> StoredArray:
+        """A new array, to be filled."""
+        begin, self._end = self._end, self._end + WIDTH * math.prod(shape)
+        return StoredArray(self._file, begin, shape)
+
+
+def _no_room(reason: OSError) -> OutputError:
+    message = f"the temporary file of the results: {reason.strerror or reason}"
+    return OutputError(
+        Problem("output-failed", message, hint="TMPDIR names the folder for it; or ask for less: --only")
+    )
