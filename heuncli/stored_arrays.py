@@ -1,14 +1,15 @@
 """Arrays over the instants that stand in a temporary file: of a long run whose results are told piece by piece.
 
 The file has no name from its first moment on (where systems know that): nothing is left behind, however the process
-ends. An array is its rows one behind the other; what is asked of it is read from there. Impure: writes and reads a file.
+ends. An array is its rows one behind the other; what is asked of it is read from there. Impure: a file.
 """
 
 from __future__ import annotations
 
 import math
+from collections.abc import Iterator
 from io import FileIO
-from typing import TypeAlias, cast
+from typing import TypeAlias
 
 import numpy as np
 
@@ -16,6 +17,8 @@ from heuncli.errors import OutputError, Problem
 from heuncli.results import Array
 
 WIDTH = 8  # bytes of a number
+TOGETHER = 4096  # numbers that are read sooner than two of them apart
+AT_ONCE = 50_000  # numbers that are read together where each is looked at
 
 
 class StoredArray:
@@ -52,16 +55,20 @@ class StoredArray:
         """Some of the instants, (n, ...); of rows also some of the columns, (n, k). A copy."""
         instants, columns = which if isinstance(which, tuple) else (which, slice(None))
         first, end, _ = instants.indices(len(self))
-        low, high, _ = columns.indices(self.row)
-        if not isinstance(which, tuple) or high - low == self.row:
+        if not isinstance(which, tuple):
             return self._read(first * self.row, (end - first) * self.row).reshape(-1, *self.shape[1:])
+        low, high, _ = columns.indices(self.row)
         found = np.empty((end - first, high - low))
-        for i in range(first, end):
-            found[i - first] = self._read(i * self.row + low, high - low)
+        many = max(1, TOGETHER // max(self.row, 1))  # rows; one of a wide array, of which the columns alone are read
+        for i in range(first, end, many):
+            if many == 1:
+                found[i - first] = self._read(i * self.row + low, high - low)
+            else:
+                found[i - first : i - first + many] = self[i : min(i + many, end)][:, low:high]
         return found
 
     def put(self, first: int, rows: Array) -> None:
-        """Rows (n, ...) from an instant on, in place of what stands there. Raises OutputError where it finds no room."""
+        """Rows (n, ...) from an instant on, in place of what stands there. Raises OutputError for want of room."""
         left = memoryview(np.ascontiguousarray(rows, dtype=np.float64).tobytes())
         try:
             self._file.seek(self._begin + WIDTH * first * self.row)
@@ -81,6 +88,12 @@ class StoredArray:
 AnyArray: TypeAlias = Array | StoredArray
 
 
+def in_parts(values: AnyArray, at_once: int = AT_ONCE) -> Iterator[Array]:
+    """An array by instants, some of them at a time: so many numbers, or one instant's."""
+    many = max(1, at_once * len(values) // max(values.size, 1))
+    return (values[i : i + many] for i in range(0, len(values), many))
+
+
 class ArrayStore:
     """The file that arrays are stored in, one behind the other."""
 
@@ -89,7 +102,7 @@ class ArrayStore:
         import tempfile  # 5 ms that long runs alone need
 
         try:
-            self._file: FileIO = tempfile.TemporaryFile(prefix="heun-", buffering=0)
+            self._file: FileIO = tempfile.TemporaryFile(prefix="heun-", buffering=0)  # noqa: SIM115 - closed with its arrays
         except OSError as reason:
             raise _no_room(reason) from None
         self._end = 0

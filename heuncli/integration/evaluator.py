@@ -40,8 +40,8 @@ class Recovered:
     holding: Array  # (n_t, contacts): 0 open, 1 closed, also where others close it
     causes: Columns | None = None  # (n_t, n_c): each row of the table of loads alone, then CAUSES; their sum is all
 
-    def at(self, which: Mask | Indices) -> Recovered:
-        """At some of the instants."""
+    def at(self, which: Mask | Indices | slice) -> Recovered:
+        """At some of the instants; of a slice views."""
         own = fields(self)
         causes = own.pop("causes")
         return Recovered(**{name: values[which] for name, values in own.items()}, causes=causes and causes.at(which))

@@ -9,6 +9,7 @@ from __future__ import annotations
 import json
 from collections.abc import Iterable, Iterator, Sequence
 from dataclasses import fields
+from itertools import islice
 from typing import Any, NamedTuple
 
 import numpy as np
@@ -20,11 +21,12 @@ from heuncli.report.labels import Labels
 from heuncli.report.series import Series, walk, walk_impulse
 from heuncli.results import Array, Block, Results
 from heuncli.results_schema import AT_A_BLOW, BLOWS, row_of
-from heuncli.stored_arrays import AnyArray, StoredArray
+from heuncli.stored_arrays import AnyArray, StoredArray, in_parts
 
 FORMAT = 1
 MOST_NUMBERS = 200_000_000  # about 4 GB of text
 AT_ONCE = 50_000  # numbers that become text together: some megabytes as Python's own
+READ = 500_000  # numbers of a series that are read together: columns stand apart where they are stored
 ALWAYS = frozenset({"title", "spec", "version", "model", "status", "time"})
 CERTAIN_SUM = row_of("certain_sums.NUMBER.value")
 CSV_COLUMNS = ("time", "kind", "name", "quantity", "component", "unit", "value")  # and cause, where shares are told
@@ -162,10 +164,9 @@ def _members(members: Iterable[tuple[str, Any]], brackets: str, indent: str) -> 
 
 def _in_parts(values: AnyArray) -> Iterator[str]:
     """A long array, some of its rows at a time."""
-    many = max(1, AT_ONCE * len(values) // max(values.size, 1))
     yield "["
-    for i in range(0, len(values), many):
-        yield ", " * (i > 0) + _text(values[i : i + many])[1:-1]
+    for number, part in enumerate(in_parts(values, AT_ONCE)):
+        yield ", " * (number > 0) + _text(part)[1:-1]
     yield "]"
 
 
@@ -191,22 +192,22 @@ def _plain(values: Any) -> Any:
 
 def _lines(row: CsvSeries, ends: Sequence[str]) -> Iterator[str]:
     """A line an instant and component, in texts of many; ends: what stands behind its number."""
+    texts = _columns(row, ends)
+    many = max(1, AT_ONCE // max(len(row.series.values), 1))
+    while text := "".join(islice(texts, many)):  # of a short column a line, Python's own share would be half of it
+        yield text
+
+
+def _columns(row: CsvSeries, ends: Sequence[str]) -> Iterator[str]:
+    """The lines of each component, in texts of at most AT_ONCE."""
     series, values = row.series, row.series.values
-    begins = [f",{row.kind},{row.name},{series.quantity},{component},{series.unit}," for component in series.components]
-    many = max(1, AT_ONCE // max(len(values), 1))  # columns that are read at a time
-    for c in range(0, len(begins), many):
-        own = list(zip(begins[c : c + many], ends[c : c + many], strict=True))
-        if len(values) <= AT_ONCE:
-            ((_, times),) = row.instants
-            columns = values[:, c : c + many].T
-            # one text for many lines: of a short column a line, Python's own share is half of it
-            yield "".join(
-                "".join(_column(times, middle, column, end)) for (middle, end), column in zip(own, columns, strict=True)
-            )
-            continue
-        for (middle, end), k in zip(own, range(c, c + many), strict=False):
+    many = max(1, READ // max(len(values), 1))
+    for c in range(0, len(ends), many):
+        columns = values[:, c : c + many].T
+        for component, column, end in zip(series.components[c : c + many], columns, ends[c : c + many], strict=True):
+            middle = f",{row.kind},{row.name},{series.quantity},{component},{series.unit},"
             for first, times in row.instants:
-                yield "".join(_column(times, middle, values[first : first + len(times), k : k + 1][:, 0], end))
+                yield "".join(_column(times, middle, column[first : first + len(times)], end))
 
 
 def _column(times: Sequence[str], middle: str, column: Array, end: str) -> list[str]:

@@ -23,6 +23,7 @@ from heuncli.report.text_table import WIDTH, TextTable, markdown, plain
 from heuncli.results import Results
 from heuncli.results_schema import SHARES
 from heuncli.spec.models import Spec
+from heuncli.stored_arrays import StoredArray, in_parts
 from heuncli.study.ask.study import Study
 from heuncli.study.model.error_places import placed
 from heuncli.study.model.options import Options
@@ -139,4 +140,5 @@ def _strict(results: Results, warnings: list[str]) -> int:
 
 
 def _has_open(part: dict[str, Any]) -> bool:
-    return any(isinstance(part.get(key), np.ndarray) and np.isnan(part[key]).any() for key in ("force", "moment", "N"))
+    told = (part[key] for key in ("force", "moment", "N") if isinstance(part.get(key), np.ndarray | StoredArray))
+    return any(np.isnan(rows).any() for values in told for rows in in_parts(values))

@@ -79,6 +79,16 @@ def two_digits(value: float) -> float:
     return math.floor(round(value / 10.0**whole, 6)) * 10.0**whole
 
 
+def divisible(setup: Setup) -> bool:
+    """Whether results can be composed of some instants at a time: of a tree that moves, where nothing can be open."""
+    return setup.method is not None and not setup.scene.layout.rows
+
+
+def numbers_at_an_instant(setup: Setup) -> float:
+    """How many numbers there are of an instant: those that are told, and the answers that they follow from."""
+    return sum(count for _, count in numbers_by_block(setup)) + answer_count(setup)
+
+
 def answer_count(setup: Setup) -> float:
     """How many numbers the kernel answers at an instant."""
     layout = setup.scene.layout
