@@ -7,6 +7,7 @@ ends. An array is its rows one behind the other; what is asked of it is read fro
 from __future__ import annotations
 
 import math
+import weakref
 from collections.abc import Iterator
 from io import FileIO
 from typing import TypeAlias
@@ -27,9 +28,9 @@ class StoredArray:
     By `reshape` it becomes one of rows, (n_t, m), of which columns can be read as well.
     """
 
-    def __init__(self, file: FileIO, begin: int, shape: tuple[int, ...]) -> None:
-        """begin: where it stands in the file [bytes]."""
-        self._file, self._begin, self.shape = file, begin, shape
+    def __init__(self, store: ArrayStore, begin: int, shape: tuple[int, ...]) -> None:
+        """begin: where it stands in the store's file [bytes]."""
+        self._store, self._begin, self.shape = store, begin, shape
         self.row = math.prod(shape[1:])
 
     def __len__(self) -> int:
@@ -49,7 +50,7 @@ class StoredArray:
         """The same numbers as rows: (n_t, -1)."""
         if shape != (len(self), -1):
             raise ValueError(f"stored arrays become rows, not {shape}")
-        return StoredArray(self._file, self._begin, (len(self), self.row))
+        return StoredArray(self._store, self._begin, (len(self), self.row))
 
     def __getitem__(self, which: slice | tuple[slice, slice]) -> Array:
         """Some of the instants, (n, ...); of rows also some of the columns, (n, k). A copy."""
@@ -71,16 +72,16 @@ class StoredArray:
         """Rows (n, ...) from an instant on, in place of what stands there. Raises OutputError for want of room."""
         left = memoryview(np.ascontiguousarray(rows, dtype=np.float64).tobytes())
         try:
-            self._file.seek(self._begin + WIDTH * first * self.row)
+            self._store.file.seek(self._begin + WIDTH * first * self.row)
             while left:  # a disk that is nearly full takes a part
-                left = left[self._file.write(left) :]
+                left = left[self._store.file.write(left) :]
         except OSError as reason:
             raise _no_room(reason) from None
 
     def _read(self, first: int, count: int) -> Array:
         found = np.empty(count)
-        self._file.seek(self._begin + WIDTH * first)
-        if self._file.readinto(found.data) != found.nbytes:
+        self._store.file.seek(self._begin + WIDTH * first)
+        if self._store.file.readinto(found.data) != found.nbytes:
             raise OutputError(Problem("output-failed", "the temporary file of the results ends too soon"))
         return found
 
@@ -95,22 +96,23 @@ def in_parts(values: AnyArray, at_once: int = AT_ONCE) -> Iterator[Array]:
 
 
 class ArrayStore:
-    """The file that arrays are stored in, one behind the other."""
+    """The file that arrays are stored in, one behind the other; it is there as long as one of them is."""
 
     def __init__(self) -> None:
         """Raises OutputError where there is no folder for temporary files."""
         import tempfile  # 5 ms that long runs alone need
 
         try:
-            self._file: FileIO = tempfile.TemporaryFile(prefix="heun-", buffering=0)  # noqa: SIM115 - closed with its arrays
+            self.file: FileIO = tempfile.TemporaryFile(prefix="heun-", buffering=0)  # noqa: SIM115 - closed with its arrays
         except OSError as reason:
             raise _no_room(reason) from None
         self._end = 0
+        weakref.finalize(self, self.file.close)
 
     def array(self, shape: tuple[int, ...]) -> StoredArray:
         """A new array, to be filled."""
         begin, self._end = self._end, self._end + WIDTH * math.prod(shape)
-        return StoredArray(self._file, begin, shape)
+        return StoredArray(self, begin, shape)
 
 
 def _no_room(reason: OSError) -> OutputError:

@@ -72,7 +72,7 @@ def solved(spec: Spec, options: Options, deadline: float | None) -> Study:
     spec = as_asked(spec, options)
     setup = set_up(spec, reduce=options.reduce, asked=asked)
     if options.room is not None:
-        require_room(setup, options.room)
+        require_room(setup, options.room, in_parts=options.in_parts)
     built = time.perf_counter()
     by_cause = SHARES in options.reports
     history = integrate(setup, spec.analysis.tolerance, deadline, by_cause=by_cause, room=options.room)

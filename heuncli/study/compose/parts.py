@@ -1,7 +1,8 @@
 """The results of a long run composed part by part: some instants at a time, whose arrays go to a file.
 
 So memory holds the states of all instants, and of what follows from them a part. The numbers are the same to the last
-bit as where all is composed at once, for each follows from the state at its own instant. What looks over all instants:
+bit as where all is composed at once: each follows from the state at its own instant, and products of matrices find that
+at the same place of a block. What looks over all instants:
 
     central axis          none where the total is none beside the largest force of the run: left out afterwards
     accuracy              largest values, which grow from part to part (accuracy.py)
@@ -11,6 +12,7 @@ Composed at once, as they are where they fit into memory (results.py):
 
     closed chains         what is open, certain sums, singular poses: judged from the self-stresses of all instants
     loads by cause        which causes there are is seen over all instants
+    events on results     searched for in the answers at all instants
     one instant           there are no parts
 """
 
@@ -26,7 +28,7 @@ from heuncli.errors import SolveError
 from heuncli.kinetostatics.actions import joint_actions
 from heuncli.kinetostatics.foundation import inertia_loads, largest_force, no_force
 from heuncli.results import Array
-from heuncli.results_schema import SHARES, quantity
+from heuncli.results_schema import quantity
 from heuncli.stored_arrays import ArrayStore, StoredArray
 from heuncli.study.compose.accuracy import Balance
 from heuncli.study.compose.blocks import blocks_asked_for
@@ -38,6 +40,7 @@ from heuncli.study.model.setup import Setup
 from heuncli.study.solve.history import History
 
 AT_ONCE = 400_000  # numbers of a part, with the answers that they follow from
+BLOCK = 8  # rows that BLAS multiplies together, at most; those left over are rounded otherwise
 FEW = 2_000_000  # numbers that memory holds anyway: no parts
 
 
@@ -47,9 +50,9 @@ def composed_in_parts(setup: Setup, history: History, wanted: frozenset[str], le
     So they are, too, where a part fails: it is judged by its own sizes, and may fail where the whole does not.
     """
     numbers = numbers_at_an_instant(setup)
-    if not divisible(setup) or SHARES in wanted or numbers * len(history.times) <= FEW:
+    if not divisible(setup) or numbers * len(history.times) <= FEW:
         return None
-    parts = divided(len(history.times), max(2, int(AT_ONCE // numbers)))
+    parts = divided(len(history.times), int(AT_ONCE // numbers))
     try:
         return composed(setup, history, wanted, least_norm, parts)
     except SolveError:
@@ -57,9 +60,11 @@ def composed_in_parts(setup: Setup, history: History, wanted: frozenset[str], le
 
 
 def divided(count: int, at_once: int) -> list[slice]:
-    """Parts of so many instants or some more; none has one alone: a row is multiplied another way than rows are."""
-    bounds = np.linspace(0, count, max(1, count // at_once) + 1).astype(int).tolist()
-    return [slice(first, end) for first, end in pairwise(bounds)]
+    """Parts of about so many instants, each but the last of whole blocks: as all at once are multiplied."""
+    blocks, in_part = count // BLOCK, max(1, at_once // BLOCK)
+    bounds = BLOCK * np.linspace(0, blocks, max(1, blocks // in_part) + 1).astype(int)
+    bounds[-1] = count
+    return [slice(first, end) for first, end in pairwise(bounds.tolist())]
 
 
 def composed(setup: Setup, history: History, wanted: frozenset[str], least_norm: bool, parts: list[slice]) -> Composed:

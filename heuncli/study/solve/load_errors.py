@@ -33,7 +33,7 @@ from heuncli.study.solve.balance_terms import BalanceTerms
 from heuncli.study.solve.error_extents import ESTIMATED, Extent, Weights, lengths, norms, relative
 
 CHOSEN_ANEW = 1e-6  # of the largest multiplier: what redundant joints leave open changes by more when rows are chosen
-CUTS_AT_ONCE = 200_000  # instants times cuts whose loads are compared together
+CUTS_AT_ONCE, BLOCK = 200_000, 8  # instants times cuts whose loads are compared together; in whole blocks, as of BLAS
 
 
 # Kinds, and the reports that tell something of them: what nobody asks for is not compared.
@@ -79,7 +79,8 @@ class LoadErrors:
 
     def at_once(self, count: int) -> int:
         """How many instants of so many runs are looked at together: cuts may be more than all else at an instant."""
-        return max(1, CUTS_AT_ONCE // (count * sum(len(cuts.side) for cuts in self.setup.cuts) + 1))
+        cuts = sum(len(cuts.side) for cuts in self.setup.cuts)
+        return BLOCK * max(1, CUTS_AT_ONCE // (BLOCK * count * cuts + 1))
 
     def add_part(self, several: Recovered, asked: Mask, before: Mask) -> None:
         """Instants that are answered with the same closure rows in all runs."""
