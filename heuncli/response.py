@@ -100,7 +100,7 @@ class Columns:
     freedoms: Table
     multipliers: Array
 
-    def at(self, which: Mask | Indices | None) -> Columns:
+    def at(self, which: Mask | Indices | slice | None) -> Columns:
         """Some of the first axis; None: a new first axis."""
         return Columns(self.bodies[which], self.freedoms[which], self.multipliers[which])
 

@@ -39,6 +39,7 @@ PHASES = (
     ("heuncli.study.compose.blocks", "while loads were computed"),
     ("heuncli.kinetostatics", "while loads were computed"),
     ("heuncli.report", "while the results were written down"),
+    ("heuncli.cli.files", "while the results were written down"),
 )  # fmt: skip
 UNTOLD = "before the work was done"  # of commands that have no words of their own
 Answer = TypeVar("Answer")

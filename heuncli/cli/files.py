@@ -9,6 +9,7 @@ from __future__ import annotations
 import errno
 import os
 import stat
+from collections.abc import Iterable
 from functools import partial
 from typing import TYPE_CHECKING
 
@@ -57,16 +58,17 @@ class FilePlace(NamedTuple):
         return self.descriptor is None and (self.state is None or stat.S_ISREG(self.state.st_mode))
 
 
-def write(content: bytes, name: str) -> None:
-    """Write to a file, or to what stands for one. Raises OutputError, ReaderGone."""
+def write(content: bytes | Iterable[bytes], name: str) -> None:
+    """Write to a file, or to what stands for one; pieces as they come. Raises OutputError, ReaderGone."""
     place = place_of(name)
+    pieces = [content] if isinstance(content, bytes) else content
     try:
         if place.descriptor is not None:
-            write_all(place.descriptor, content)
+            write_pieces(place.descriptor, pieces)
         elif place.ordinary:
-            replace(content, place)
+            replace(pieces, place)
         else:
-            _into(content, place.path)
+            _into(pieces, place.path)
     except BrokenPipeError:
         raise ReaderGone from None
     except OSError as reason:
@@ -94,6 +96,12 @@ def failed(name: str, reason: OSError) -> Problem:
     return Problem("output-failed", f"{name}: {reason.strerror or reason}", hint=hint)
 
 
+def write_pieces(number: int, pieces: Iterable[bytes]) -> None:
+    """Write to an open descriptor, piece by piece."""
+    for piece in pieces:
+        write_all(number, piece)
+
+
 def write_all(number: int, content: bytes) -> None:
     """Write to an open descriptor, which may take a part at a time, or none while its reader rests."""
     left = memoryview(content)
@@ -106,25 +114,25 @@ def write_all(number: int, content: bytes) -> None:
             select.select([], [number], [])
 
 
-def replace(content: bytes, place: FilePlace) -> None:
+def replace(pieces: Iterable[bytes], place: FilePlace) -> None:
     """Write beside the place, then rename into it."""
     temporary = str(_path(place.path).with_name(f".heun-{os.urandom(8).hex()}"))
     remove = partial(_path(temporary).unlink, missing_ok=True)
     with Undoing(remove):
         try:
-            _fill(temporary, content, place.state)
+            _fill(temporary, pieces, place.state)
             _path(temporary).replace(place.path)
         except BaseException:
             remove()
             raise
 
 
-def _fill(temporary: str, content: bytes, old: os.stat_result | None) -> None:
-    """A new file with the content and, from the start, no more rights than the old one; of a new one, the usual."""
+def _fill(temporary: str, pieces: Iterable[bytes], old: os.stat_result | None) -> None:
+    """A new file with the pieces and, from the start, no more rights than the old one; of a new one, the usual."""
     new = os.O_WRONLY | os.O_CREAT | os.O_EXCL | getattr(os, "O_BINARY", 0)
     number = os.open(temporary, new, 0o600 if old is not None else 0o666)
     try:
-        write_all(number, content)
+        write_pieces(number, pieces)
         os.fsync(number)
     finally:
         os.close(number)
@@ -138,11 +146,11 @@ def _path(name: str) -> Path:
     return Path(name)
 
 
-def _into(content: bytes, path: str) -> None:
+def _into(pieces: Iterable[bytes], path: str) -> None:
     """Write into what cannot be replaced as a whole: a pipe, a device."""
     number = os.open(path, os.O_WRONLY | getattr(os, "O_NOCTTY", 0))
     try:
-        write_all(number, content)
+        write_pieces(number, pieces)
     finally:
         os.close(number)
 

@@ -9,15 +9,15 @@ from heuncli.errors import LimitError, Problem
 
 SHARE = 0.5  # of what is available: sizes are estimated, steps are not, and others are at work beside
 UNKNOWN = 4e9  # bytes that are taken to be there where the system does not tell
-A_NUMBER = {"json": 40.0, "csv": 135.0}  # bytes of a number until it is written: an object, its digits, its line
-IN_TABLES = 28.0  # bytes of one of which tables show little: itself, and what it is made of
+EXPORTED = ("json", "csv")
+EXPORT, IN_TABLES = 20.0, 28.0  # bytes of a number, and of what it is made of; its text is made piece by piece
 LEAST = 160e6  # bytes of addresses that Python's modules, NumPy's and the kernel's take
 UNMAPPED = ("failed to map segment", "cannot allocate memory", "Cannot allocate memory")  # as loaders say it
 
 
 def room(form: str) -> tuple[float, float]:
     """How many bytes the results may take, and how many each of their numbers takes in a format."""
-    return SHARE * min(_left(), default=UNKNOWN), A_NUMBER.get(form, IN_TABLES)
+    return SHARE * min(_left(), default=UNKNOWN), EXPORT if form in EXPORTED else IN_TABLES
 
 
 def require_some() -> None:

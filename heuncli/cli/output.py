@@ -8,6 +8,7 @@ from __future__ import annotations
 import codecs
 import contextlib
 import sys
+from collections.abc import Iterable, Iterator
 from typing import TextIO
 
 from heuncli.cli import alarm, files
@@ -17,18 +18,44 @@ from heuncli.foreign_text import escaped, shown_lines
 
 DESCRIPTOR = 1  # of standard output
 ESCAPED = "heun.escaped"
+BLOCK = 1 << 18  # characters that are written together
 
 
-def emit(text: str, target: str | None = None, *, late: bool = False) -> None:
-    """Write the text to a file, or to standard output for None and `-`; no time limit interrupts that.
+def emit(text: str | Iterable[str], target: str | None = None, *, late: bool = False) -> None:
+    """Write the text, or its pieces as they are made, to a file, or to standard output for None and `-`.
 
-    late: also where the time limit is past; else LimitError is raised, and nothing is written.
+    No time limit interrupts what is written: it holds until the first byte goes out, and of a file that is written
+    whole or not at all until the last piece is made. late: also where the time limit is past; else LimitError is
+    raised, and nothing is written.
     """
-    alarm.disarm(late=late)
-    if target is None or target == files.STDOUT or files.place_of(target).descriptor == DESCRIPTOR:  # /dev/stdout
-        _to_standard_output(text)
+    pieces = [text] if isinstance(text, str) else text
+    to_stdout = target is None or target == files.STDOUT
+    if target is None or to_stdout or (place := files.place_of(target)).descriptor == DESCRIPTOR:  # /dev/stdout
+        alarm.disarm(late=late)
+        _to_standard_output(pieces)
+    elif place.ordinary:
+        files.write(_within_limit(as_blocks(pieces), late), target)
     else:
-        files.write(as_bytes(text), target)
+        alarm.disarm(late=late)
+        files.write(as_blocks(pieces), target)
+
+
+def _within_limit(content: Iterable[bytes], late: bool) -> Iterator[bytes]:
+    yield from content
+    alarm.disarm(late=late)
+
+
+def as_blocks(pieces: Iterable[str], encoding: str = "utf-8") -> Iterator[bytes]:
+    """The pieces as bytes, short ones together: each call of the system has its price."""
+    gathered: list[str] = []
+    length = 0
+    for piece in pieces:
+        gathered.append(piece)
+        length += len(piece)
+        if length >= BLOCK:
+            yield as_bytes("".join(gathered), encoding)
+            gathered, length = [], 0
+    yield as_bytes("".join(gathered), encoding)
 
 
 def as_bytes(text: str, encoding: str = "utf-8") -> bytes:
@@ -60,17 +87,17 @@ def say(text: str) -> None:
             print(shown_lines(text), file=sys.stderr, flush=True)
 
 
-def _to_standard_output(text: str) -> None:
+def _to_standard_output(pieces: Iterable[str]) -> None:
     if sys.stdout is None:
         raise OutputError(Problem("output-closed", "standard output is closed", hint="write to a file: -o FILE"))
     try:
-        content = as_bytes(text, sys.stdout.encoding if sys.stdout.isatty() else "utf-8")
+        content = as_blocks(pieces, sys.stdout.encoding if sys.stdout.isatty() else "utf-8")
         number = _number(sys.stdout)
         if number is None:
-            sys.stdout.buffer.write(content)
+            sys.stdout.buffer.writelines(content)
         else:  # past Python's buffer, which would complain at its end once more
             sys.stdout.flush()
-            files.write_all(number, content)
+            files.write_pieces(number, content)
     except BrokenPipeError:
         raise ReaderGone from None
     except OSError as reason:

@@ -45,8 +45,8 @@ class Recovered:
         """How many of the closure rows that carry depend on others and are left out, (n_t,)."""
         return np.asarray((self.rows["closed"] - self.rows["chosen"]).sum(axis=1))
 
-    def at(self, which: Mask | Indices) -> Recovered:
-        """At some of the instants."""
+    def at(self, which: Mask | Indices | slice) -> Recovered:
+        """At some of the instants; of a slice views."""
         own = fields(self)
         causes = own.pop("causes")
         return Recovered(**{name: values[which] for name, values in own.items()}, causes=causes and causes.at(which))

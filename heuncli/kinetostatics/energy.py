@@ -77,12 +77,14 @@ def power_imbalance(
     return float(np.abs(power - gain).max(initial=0.0)) * span
 
 
-def magnitude_of_work(mechanism: Mechanism, loads: Sequence[AppliedLoad], size: float, span: float) -> float:
-    """Work of the loads over the scene's size, and kinetic energy of crossing it in the run's time [J]."""
+def magnitude_of_work(mechanism: Mechanism, largest: Sequence[tuple[float, float]], size: float, span: float) -> float:
+    """Work of the loads over the scene's size, and kinetic energy of crossing it in the run's time [J].
+
+    largest: of each load its largest force [N] and moment [N m].
+    """
     found = sum(body.mass for body in mechanism.bodies) * (size / span) ** 2 if span > 0.0 else 0.0
-    for load in loads:
-        largest = np.abs(load.action.force).max(initial=0.0) * size + np.abs(load.action.moment).max(initial=0.0)
-        found += float(largest)
+    for force, moment in largest:
+        found += force * size + moment
     return found
 
 
@@ -104,14 +106,9 @@ def drive_rate(states: BodyStates, load: JointLoads) -> Array:
     return np.asarray(np.sum((states.velocity(joint.b, Q) - states.velocity(joint.a, at)) * along, axis=1))
 
 
-def energy_drift(energy: Block, largest: float, lift: float, imbalance: float | None = None) -> float:
+def energy_drift(change: float, largest: float, lift: float) -> float:
     """Change of kinetic + potential - work from the start, relative to the largest kinetic energy; 0 at rest.
 
-    largest: kinetic energy over the run [J], which instants asked for may not show; lift: the work of the weight over
-    the scene's size, and of blows on what is free [J], by which rest is judged. imbalance [J]: stands for the change
-    where the work is that sum.
+    lift: the work of the weight over the scene's size, and of blows on what is free, by which rest is judged; all [J].
     """
-    total = energy["kinetic"] + energy["potential"] - energy["work"]
-    change = float(np.abs(total - total[0]).max(initial=0.0)) if imbalance is None else imbalance
-    largest = max(largest, float(energy["kinetic"].max(initial=0.0)))
     return change / largest if largest > tolerances.NO_ENERGY * lift else 0.0

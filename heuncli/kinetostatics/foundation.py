@@ -16,7 +16,7 @@ from heuncli.kinetostatics.bodies import BodyStates
 from heuncli.kinetostatics.reactions import in_plane
 from heuncli.mechanism.model import Mechanism
 from heuncli.named_tuples import NamedTuple
-from heuncli.results import Array, Block
+from heuncli.results import Array, Block, Mask
 from heuncli.shapes.rotations import cross_rows
 
 
@@ -57,10 +57,9 @@ def foundation(mechanism: Mechanism, states: BodyStates, actions: Sequence[Actio
     if mechanism.planar:
         force, moment = in_plane(force, moment)
         _, orbital = in_plane(force, orbital)
-    acting = np.array([action.force for action in actions if action.kind != "drive"])
-    scale = max(float(np.abs(x).max(initial=0.0)) for x in (ma, weight, acting))
     block: Block = {
-        "about": about, "force": force, "moment": moment, "axis": central_axis(force, moment, about, scale),
+        "about": about, "force": force, "moment": moment,
+        "axis": central_axis(force, moment, about, largest_force(mechanism, force, ma, actions)),
         "mass_effect": {
             "force": ma.sum(axis=1), "moment_orbital": orbital, "moment_spin": spin.sum(axis=1),
         },
@@ -90,12 +89,29 @@ def on_ground(actions: Sequence[Action]) -> dict[tuple[str, str], OnGround]:
     return found
 
 
-def central_axis(s: Array, M: Array, about: Array, scale: float) -> Block:
-    """Central axis of the wrench (s, M about `about`): point nearest `about`, direction, pitch [m]; nan where s = 0."""
+def largest_force(mechanism: Mechanism, s: Array, ma: Array, actions: Sequence[Action]) -> float:
+    """The largest force at any of the instants [N], of those that s is the sum of, and s itself: s beside it is none.
+
+    s (n_t, 3); ma: m x_s.. of every body, (n_t, n, 3).
+    """
+    weight = np.array([b.mass for b in mechanism.bodies])[:, None] * mechanism.gravity
+    acting = np.array([action.force for action in actions if action.kind != "drive"])
+    scale = max(float(np.abs(x).max(initial=0.0)) for x in (ma, weight, acting))
+    return max(float(np.sqrt(np.sum(s * s, axis=1).max(initial=0.0))), scale)
+
+
+def no_force(s: Array, largest: float) -> Mask:
+    """At which instants s (n_t, 3) is none beside the largest force of the run, (n_t,)."""
+    return np.asarray(np.sum(s * s, axis=1) <= (tolerances.NO_FORCE * largest) ** 2)
+
+
+def central_axis(s: Array, M: Array, about: Array, largest: float) -> Block:
+    """Central axis of the wrench (s, M about `about`): point nearest `about`, direction, pitch [m]; nan where s = 0.
+
+    largest: the largest force of the run [N].
+    """
     s2 = np.sum(s * s, axis=1)
-    largest = max(float(np.sqrt(s2.max(initial=0.0))), scale)
-    none = s2 <= (tolerances.NO_FORCE * largest) ** 2
-    safe = np.where(none, np.nan, s2)
+    safe = np.where(no_force(s, largest), np.nan, s2)
     return {
         "point": about + cross_rows(s, M) / safe[:, None],
         "direction": s / np.sqrt(safe)[:, None],

@@ -9,6 +9,7 @@ from __future__ import annotations
 
 from collections.abc import Iterable, Iterator
 from functools import cache
+from typing import Any
 
 import numpy as np
 
@@ -17,6 +18,7 @@ from heuncli.report.labels import Labels
 from heuncli.report.table_units import Units
 from heuncli.results import Array, Block, Results
 from heuncli.results_schema import CUT, REPORT_OF, SHARES, TREE, Node, Quantity, Shape, below, is_share
+from heuncli.stored_arrays import StoredArray
 
 SIDES = {None: np.nan, "before": -1.0, "beyond": 1.0}  # as numbers, in CSV
 
@@ -25,7 +27,7 @@ class Series(NamedTuple):
     """One quantity over the instants: `values` is (n_t, n_components), or (1, n_components) where `static`.
 
     cause: of whose share it is, in the quantity of the same name; empty for the whole. of_cuts: whether components
-    begin with the number of a cut.
+    begin with the number of a cut. Of results that are written piece by piece the values may stand in a file, as there.
     """
 
     kind: str
@@ -101,9 +103,9 @@ class _Walk(NamedTuple):
             elif key == "side" and any(value):
                 yield self.along_cuts(keys, key, "1", np.array([SIDES[side] for side in value]))
 
-    def over_instants(self, keys: tuple[str, ...], key: str, row: Quantity, value: Array | float, run: bool) -> Series:
+    def over_instants(self, keys: tuple[str, ...], key: str, row: Quantity, value: Any, run: bool) -> Series:
         """The series of a quantity that runs over the instants."""
-        values = np.asarray(value, dtype=np.float64)
+        values: Any = value if isinstance(value, StoredArray) else np.asarray(value, dtype=np.float64)
         if self.at_a_blow:
             values = values[None]
         cause = keys[-1] if is_share(row) else ""

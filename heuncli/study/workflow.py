@@ -72,20 +72,25 @@ def solved(spec: Spec, options: Options, deadline: float | None) -> Study:
     spec = as_asked(spec, options)
     setup = set_up(spec, reduce=options.reduce, asked=asked)
     if options.room is not None:
-        require_room(setup, options.room)
+        require_room(setup, options.room, in_parts=options.in_parts)
     built = time.perf_counter()
     by_cause = SHARES in options.reports
     history = integrate(setup, spec.analysis.tolerance, deadline, by_cause=by_cause, room=options.room)
     # conditions on results may need more of them than is told: `whole` has it all, `setup` what was asked for
     whole, setup = setup, replace(setup, asked=options.asked) if conditions else setup
     moved = time.perf_counter()
-    recovery = recover(setup, history.recovered, options.least_norm)
+    parts = None
+    if options.in_parts:
+        from heuncli.study.compose.parts import composed_in_parts  # what is only exported
+
+        parts = composed_in_parts(setup, history, options.reports, options.least_norm)
+    recovery = recover(setup, history.recovered, options.least_norm) if parts is None else parts.recovery
     impulses = impulses_of(setup, history, options.least_norm, by_cause)
-    results = compose(setup, history, recovery, options.reports, impulses)
+    results = compose(setup, history, recovery, options.reports, impulses, parts)
     looked_for = setup.rest.seconds if setup.rest is not None else 0.0  # counted as integration by the history
     seconds = {"load": options.load_seconds, "build": built - begun - looked_for, **history.seconds}
     results.work["seconds"] = seconds | {"recover": time.perf_counter() - moved}
-    study = Study(spec, options, setup, history, recovery, results, impulses)
+    study = Study(spec, options, setup, history, recovery if parts is None else None, results, impulses)
     if not conditions:
         return study
     from heuncli.study.ask.events import with_events  # few scenes have them

@@ -14,7 +14,7 @@ from typing import Any
 import numpy as np
 import pytest
 
-from heuncli.cli import alarm, files
+from heuncli.cli import alarm
 from heuncli.integration import evaluator
 from heuncli.kernel.choose import KERNEL
 from heuncli.spec.load import load
@@ -105,17 +105,28 @@ def test_each_spec_has_its_own_limit(heun: Heun, folder: Path, monkeypatch: pyte
 
 @pytest.mark.heavy  # waits for two seconds
 def test_what_goes_out_goes_out_whole(heun: Heun, folder: Path, monkeypatch: pytest.MonkeyPatch) -> None:
-    """The limit passes while the file is being written."""
-    replace = files.replace
+    """The limit passes while the last of a file is being written."""
+    fsync = os.fsync
 
-    def slowly(content: bytes, place: files.FilePlace) -> None:
+    def slowly(number: int) -> None:
         time.sleep(2.0)
-        replace(content, place)
+        fsync(number)
 
-    monkeypatch.setattr("heuncli.cli.files.replace", slowly)
+    monkeypatch.setattr(os, "fsync", slowly)
     done = heun("run", "hanging.yaml", "-o", "out.json", "--time-limit", "1.5")
     assert (done.returncode, done.stderr) == (0, "")
     assert (folder / "out.json").read_text().endswith("}\n")
+
+
+def test_what_is_still_made_is_given_up(heun: Heun, folder: Path, monkeypatch: pytest.MonkeyPatch) -> None:
+    """Of a file that is written whole or not at all the limit holds until its last piece is made."""
+    (folder / "out.json").write_text("old")
+    monkeypatch.setattr("heuncli.report.export._text", forever)
+    done = heun("run", "hanging.yaml", "-o", "out.json", "--time-limit", str(LIMIT))
+    assert (done.returncode, done.stdout) == (4, "")
+    assert "while the results were written down" in done.stderr
+    assert (folder / "out.json").read_text() == "old"
+    assert not [path for path in folder.iterdir() if path.name.startswith(".heun-")]
 
 
 def test_a_fifo_without_a_writer_is_given_up(heun: Heun, folder: Path) -> None:

@@ -59,7 +59,8 @@ def run_all(task: RunTask, spec: Spec, cases: Mapping[str, Spec]) -> int:
     runs: dict[str, KeptRun] = {}
     codes = [0]
     for name, one in cases.items():
-        study, told[name] = solved(task, one)
+        study, pieces = solved(task, one)
+        told[name] = "".join(pieces)
         if not task.asked:
             runs[name] = keep(study, task.what.reports)
         codes.append(leave(task, one, study, f"heun: case {name}"))

@@ -70,14 +70,15 @@ def main(request: RunRequest) -> int:
     if asked:
         measure.check(asked, spec)
     what = asked_by([each.path for each in asked], spec) if asked else _asked(request, only, spec, form)
-    options = replace(options, wanted=what.reports, entries=what.entries)
+    exported = form not in TABLES and not asked and request.at is None and request.case != ALL_CASES
+    options = replace(options, wanted=what.reports, entries=what.entries, in_parts=exported)
     task = RunTask(request, form, options, what, asked, shown)
     if request.case == ALL_CASES:
         from heuncli.commands.run.cases import run_all  # of few runs
 
         return run_all(task, spec, cases)
-    study, text = solved(task, spec)
-    emit(text, request.output)
+    study, pieces = solved(task, spec)
+    emit(pieces, request.output)
     say_what_stays(request.units, "--measure" if asked else form, request.quiet)
     return leave(task, spec, study)
 

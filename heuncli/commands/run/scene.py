@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Callable, Sequence
+from collections.abc import Callable, Iterable, Iterator, Sequence
 from typing import TYPE_CHECKING, Any
 
 import numpy as np
@@ -24,6 +24,7 @@ from heuncli.report.text_table import WIDTH, TextTable, markdown, plain
 from heuncli.results import Results
 from heuncli.results_schema import SHARES
 from heuncli.spec.models import Spec
+from heuncli.stored_arrays import StoredArray, in_parts
 from heuncli.study.ask.study import Study
 from heuncli.study.model.error_places import placed
 from heuncli.study.model.options import Options
@@ -49,18 +50,20 @@ class RunTask(NamedTuple):
     units: Units
 
 
-def solved(task: RunTask, spec: Spec) -> tuple[Study, str]:
-    """A scene solved, and what is told of it as text."""
+def solved(task: RunTask, spec: Spec) -> tuple[Study, Iterable[str]]:
+    """A scene solved, and what is told of it as text, in pieces that are made as they are asked for."""
     request, what = task.request, task.what
     with placed(spec):
         study = solve(spec, task.options)
         if task.asked:
             from heuncli.cli import measure
 
-            return study, measure.write(task.asked, study, task.form)
+            return study, [measure.write(task.asked, study, task.form)]
         named = (request.only is not None or spec.report is not None) and "foundation" in what.reports
         labels = replace(labels_of(spec), units=task.units)
-        return study, _report(request, task.form, study, labels, what, details=named)
+        if task.form not in TABLES:
+            return study, _export(request, task.form, study, labels)
+        return study, [_report(request, task.form, study, labels, what, details=named)]
 
 
 def leave(task: RunTask, spec: Spec, study: Study, place: str = "heun") -> int:
@@ -76,14 +79,18 @@ def leave(task: RunTask, spec: Spec, study: Study, place: str = "heun") -> int:
     return _strict(study.results, warnings) if task.request.strict else 0
 
 
+def _export(request: RunRequest, form: str, study: Study, labels: Labels) -> Iterator[str]:
+    from heuncli.report.export import csv_pieces, json_pieces  # tables do without
+
+    at = instants(request.at, study.results.time) if request.at is not None else None
+    shown = study.results if at is None else study.resample(at)
+    return json_pieces(shown) if form == "json" else csv_pieces(shown, labels)
+
+
 def _report(request: RunRequest, form: str, study: Study, labels: Labels, what: Selection, *, details: bool) -> str:
     wanted = what.reports
     at = instants(request.at, study.results.time) if request.at is not None else None
     shown = study.results if at is None else study.resample(at)
-    if form not in TABLES:
-        from heuncli.report.export import to_csv, to_json  # tables do without
-
-        return to_json(shown) if form == "json" else to_csv(shown, labels)
     page = page_of(study.results, labels, study.magnitudes, details=details)
     if study.results.impulses:
         page = page._replace(struck=study.struck_along([load.name for load in LOADS]))
@@ -134,4 +141,5 @@ def _strict(results: Results, warnings: list[str]) -> int:
 
 
 def _has_open(part: dict[str, Any]) -> bool:
-    return any(isinstance(part.get(key), np.ndarray) and np.isnan(part[key]).any() for key in ("force", "moment", "N"))
+    told = (part[key] for key in ("force", "moment", "N") if isinstance(part.get(key), np.ndarray | StoredArray))
+    return any(np.isnan(rows).any() for values in told for rows in in_parts(values))

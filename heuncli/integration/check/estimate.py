@@ -26,14 +26,14 @@ integrated_scene.py is what is integrated in a scene's place, segments.py the st
 from __future__ import annotations
 
 import time
-from collections.abc import Iterator, Mapping, Sequence
-from typing import TYPE_CHECKING, Protocol
+from collections.abc import Callable, Iterator, Mapping, Sequence
+from typing import TYPE_CHECKING, Protocol, TypeAlias
 
 import numpy as np
 
 from heuncli import tolerances
 from heuncli.integration.check.distance import angle_error, motion_error
-from heuncli.integration.check.instants import instants_of, interleaved, passed_between
+from heuncli.integration.check.instants import OwnStates, instants_of, interleaved, passed_between
 from heuncli.integration.check.runs import Runs
 from heuncli.integration.check.shared_blows import between_strikes
 from heuncli.integration.contacts.blows import Jump
@@ -48,7 +48,9 @@ if TYPE_CHECKING:  # loaded where there are conditions
     from heuncli.integration.check.changes import Changes
 
 RERUNS = 2
-CHUNK = 2_000_000  # numbers compared at a time
+CHUNK = 2_000_000  # numbers compared at a time ...
+LESS, MANY = 4, 1000  # ... or so much less where more than a part is compared, but of so many instants each
+StatesThere: TypeAlias = Array | OwnStates  # of a run at the instants compared
 
 
 class LoadDifferences(Protocol):
@@ -75,14 +77,14 @@ class LoadDifferences(Protocol):
 class CheckedRun:
     """A run that was checked.
 
-    recovered: accelerations and loads at the run's instants; motion: largest estimated error of any point over the
+    answers: accelerations and loads, at some of its instants; motion: largest estimated error of any point over the
     whole run, relative to the size; loads: those of the other kinds; errors: all by kind and unit, before the horizon;
     horizon: where the motion's passes CLAIMED; kinetic: the largest kinetic energy [J]; beside: the blows of the check
     runs.
     """
 
     run: Trajectory
-    recovered: Recovered
+    answers: Callable[[slice], Recovered]
     motion: float
     loads: Estimate
     errors: Mapping[tuple[str, str], float]
@@ -106,7 +108,7 @@ class Compared:
 
     runs: tuple[Trajectory, ...]
     times: Array
-    states: tuple[Array, ...]
+    states: tuple[StatesThere, ...]
     asked: Mask
     error: Array
     horizon: float | None
@@ -145,14 +147,14 @@ def checked_run(runs: Runs, tolerance: float, loads: LoadDifferences) -> Checked
     a = best.runs[0]
     kept = ~between_strikes(best.runs, best.times)
     at, asked = best.times[kept], best.asked[kept]
-    for part, several in answers_of(runs, best, kept, loads.by_cause):
+    for part, several in answers_of(runs, best, slice(None) if kept.all() else kept, loads.by_cause):
         with np.errstate(over="ignore", invalid="ignore"):  # given steps that run away: errors without bound
             loads.add(several, asked[part], at[part] < (np.inf if best.horizon is None else best.horizon))
-    recovered = told_of(runs, best, loads.by_cause)
+    answers = told_of(runs, best, loads.by_cause)
     seconds = best.seconds + time.perf_counter() - begun
     told = best.motion, loads.estimate(), loads.errors(), best.horizon, loads.kinetic()
     beside = tuple(run.blows for run in best.runs[1:])
-    return CheckedRun(a, recovered, *told, beside, seconds, lost, changes_of_conditions(runs, best))
+    return CheckedRun(a, answers, *told, beside, seconds, lost, changes_of_conditions(runs, best))
 
 
 def changes_of_conditions(runs: Runs, best: Compared) -> tuple[Changes, ...]:
@@ -164,23 +166,27 @@ def changes_of_conditions(runs: Runs, best: Compared) -> tuple[Changes, ...]:
     return changes_of(runs.runner, best.runs, np.inf if best.horizon is None else best.horizon)
 
 
-def answers_of(runs: Runs, best: Compared, kept: Mask, causes: bool) -> Iterator[tuple[slice, Recovered]]:
+def answers_of(runs: Runs, best: Compared, kept: Mask | slice, causes: bool) -> Iterator[tuple[slice, Recovered]]:
     """The answers at those of the instants that are kept, as `recovered_together` gives them; none is found twice."""
     if best.several is None or causes:
         yield from recovered_together(
             runs, best.runs[0], best.times[kept], [x[kept] for x in best.states], causes=causes
         )
     else:
-        several = best.several if kept.all() else best.several.at(np.repeat(kept, len(best.runs)))
-        yield slice(None), several
+        several = best.several
+        yield slice(None), several if isinstance(kept, slice) else several.at(np.repeat(kept, len(best.runs)))
 
 
-def told_of(runs: Runs, best: Compared, causes: bool) -> Recovered:
-    """The answers at A's asked instants; where all of them were compared they are among those already."""
-    a = best.runs[0]
+def told_of(runs: Runs, best: Compared, causes: bool) -> Callable[[slice], Recovered]:
+    """The answers at some of A's asked instants.
+
+    Where all of them were compared at once they are among those; else they are found when they are asked for, for they
+    may be more than memory holds.
+    """
+    a, runner, jumps = best.runs[0], runs.runner, runs.jumps
     if best.several is None or causes or np.count_nonzero(best.asked) != len(a.times):
-        return recovered_at(runs.runner, a, a.times, a.states, runs.jumps, causes=causes)
-    return best.several.at(len(best.runs) * np.flatnonzero(best.asked))
+        return lambda part: recovered_at(runner, a, a.times[part], a.states[part], jumps, causes=causes)
+    return best.several.at(len(best.runs) * np.flatnonzero(best.asked)).at
 
 
 def compared(runs: Runs, a: Trajectory) -> Compared:
@@ -194,7 +200,8 @@ def compared(runs: Runs, a: Trajectory) -> Compared:
     if any(run.stopped for run in (a, *others)):
         # the runs end at instants of their own; the last of A is judged by the one before it
         n = min(int(np.sum(at.times[: len(x.times)] == x.times[: len(at.times)])) for x in others)
-    times, states = at.times[:n], (at.states[:n], *(x.states[:n] for x in others))
+    times = at.times[:n]
+    states: tuple[StatesThere, ...] = (at.states.first(n), *(x.states[:n] for x in others))
     error, several = errors(runs, a, times, states)
     late = np.flatnonzero(error > tolerances.CLAIMED)
     horizon = None
@@ -214,7 +221,7 @@ def with_last_blow(runs: Runs, a: Trajectory, times: Array) -> Array:
     return np.append(times, a.reached + tolerances.CLAIMED * (float(runs.times[-1]) - a.reached))
 
 
-def errors(runs: Runs, a: Trajectory, times: Array, states: Sequence[Array]) -> tuple[Array, Recovered | None]:
+def errors(runs: Runs, a: Trajectory, times: Array, states: Sequence[StatesThere]) -> tuple[Array, Recovered | None]:
     """Estimated errors of the motion at the instants, (n,), and the answers there, where one part holds them all.
 
     states: of A and of the other runs.
@@ -232,7 +239,7 @@ def errors(runs: Runs, a: Trajectory, times: Array, states: Sequence[Array]) -> 
 
 
 def recovered_together(
-    runs: Runs, a: Trajectory, times: Array, states: Sequence[Array], *, causes: bool = False
+    runs: Runs, a: Trajectory, times: Array, states: Sequence[StatesThere], *, causes: bool = False
 ) -> Iterator[tuple[slice, Recovered]]:
     """The answers at the instants, at each those of all runs, in parts that fit the memory.
 
@@ -242,6 +249,8 @@ def recovered_together(
     layout = runs.runner.layout
     numbers = (30 + 12 * (len(layout.mechanism.loads) + 3) * causes) * len(layout.place)
     many = max(1, CHUNK // (numbers * len(states) + 1))
+    if many < len(times):
+        many = max(many // LESS, min(many, MANY))
     for i in range(0, len(times), many):
         part = slice(i, i + many)
         both = interleaved(times[part], [x[part] for x in states])

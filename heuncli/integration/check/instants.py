@@ -13,7 +13,7 @@ import numpy as np
 
 from heuncli.integration.run.runner import Runner
 from heuncli.integration.trajectory import Trajectory
-from heuncli.records import record
+from heuncli.records import record, replace
 from heuncli.results import Array, Indices, Mask
 
 ENDS = 2_000  # ends of steps that are compared, in even numbers over a longer run; the horizon is then looked for again
@@ -23,11 +23,33 @@ BLOCKS, BLOCK = 8, 16  # else so many stretches of so many steps, spread over th
 
 
 @record
+class OwnStates:
+    """A run's states at instants (n,), most of them those that it keeps itself: copied where they are looked at.
+
+    kept, others (., n_state): the two sources; place (n,): of each instant, counted through both.
+    """
+
+    kept: Array
+    others: Array
+    place: Indices
+
+    def __getitem__(self, which: slice | Mask) -> Array:
+        place = self.place[which]
+        found, own = np.empty((len(place), self.kept.shape[1])), place < len(self.kept)
+        found[own], found[~own] = self.kept[place[own]], self.others[place[~own] - len(self.kept)]
+        return found
+
+    def first(self, n: int) -> OwnStates:
+        """Those at the first so many instants."""
+        return replace(self, place=self.place[:n])
+
+
+@record
 class ComparisonInstants:
-    """Instants (n,) of a run, ascending, and its states there (n, n_state); asked (n,): which of them are told."""
+    """Instants (n,) of a run, ascending, and its states there; asked (n,): which of them are told."""
 
     times: Array
-    states: Array
+    states: OwnStates
     asked: Mask
 
 
@@ -44,11 +66,11 @@ def instants_of(runner: Runner, run: Trajectory) -> ComparisonInstants:
     ends, states = ends_of(runner, run, seen)
     inner = np.zeros(0) if run.method.determined else within(bounds, len(runner.layout.place), run.method.within)
     times = np.concatenate([asked, ends, inner])
-    states = np.concatenate([own, states, runner.resample(run, inner)])
+    others = np.concatenate([states, runner.resample(run, inner)])
     order = np.argsort(times, kind="stable")  # of equal instants the asked one comes first
     times = times[order]
     new = np.concatenate([[True], times[1:] != times[:-1]]) & (times <= run.times[-1])
-    return ComparisonInstants(times[new], states[order][new], (order < len(asked))[new])
+    return ComparisonInstants(times[new], OwnStates(own, others, order[new]), (order < len(asked))[new])
 
 
 def ends_of(runner: Runner, run: Trajectory, seen: Indices) -> tuple[Array, Array]:

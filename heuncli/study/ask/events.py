@@ -97,14 +97,14 @@ def up_to(study: Study, t: float) -> Study:
     kept = tuple(blow for blow in run.blows if blow.time <= t)
     run = replace(run, times=times, states=setup.runner.resample(run, times), blows=kept)
     history = replace(
-        history, recovered=own, checked=replace(history.checked, run=run, recovered=own), blows=kept,
+        history, times=times, answers=own.at, checked=replace(history.checked, run=run, answers=own.at), blows=kept,
         jumps=tuple(x for x in history.jumps if x <= t), singular=tuple(x for x in history.singular if x <= t),
     )  # fmt: skip
     recovery = recover(setup, own, options.least_norm)
     struck = impulses_of(setup, history, options.least_norm, by_cause)
     results = compose(setup, history, recovery, options.reports, struck)
     results.work["seconds"] = dict(study.results.work["seconds"])
-    return replace(study, history=history, recovery=recovery, results=results, struck=struck)
+    return replace(study, history=history, composed=recovery, results=results, struck=struck)
 
 
 def before_failure(spec: Spec, solve: Solve, error: SolveError) -> Study:

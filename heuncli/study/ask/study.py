@@ -48,10 +48,15 @@ class Study:
     options: Options
     setup: Setup
     history: History
-    recovery: Recovery
+    composed: Recovery | None  # what the results were composed of; None where that went part by part
     results: Results
     struck: Impulses | None = None
     changes: Mapping[str, Changes] = MappingProxyType({})
+
+    @cached_property
+    def recovery(self) -> Recovery:
+        """What follows from the answers at the asked instants."""
+        return self.composed or recover(self.setup, self.history.recovered, self.options.least_norm)
 
     @property
     def magnitudes(self) -> Magnitudes:

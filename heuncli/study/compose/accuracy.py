@@ -10,19 +10,20 @@ import numpy as np
 from heuncli.integration.contacts.blows import met_freely
 from heuncli.kinetostatics.balance import balance_residual
 from heuncli.kinetostatics.energy import energy_drift, magnitude_of_work, power_imbalance
-from heuncli.results import Accuracy
+from heuncli.results import Accuracy, Array
 from heuncli.study.compose.recovery import OF_ENERGY, Recovery
+from heuncli.study.model.setup import Setup
 from heuncli.study.solve.history import History
 
 
-def accuracy_of(history: History, recovery: Recovery, residual_of_blows: float = 0.0) -> Accuracy:
-    """The block `accuracy` of a run at the instants of `recovery`.
+def accuracy_of(history: History, looked: Balance, residual_of_blows: float = 0.0) -> Accuracy:
+    """The block `accuracy` of a run at the instants that were looked at.
 
     residual_of_blows: what its blows leave unmet of d'Alembert's principle, of the largest impulse.
     """
-    checked, scene = history.checked, recovery.setup.scene
+    checked, scene = history.checked, looked.setup.scene
     struck_freely = sum(met_freely(scene.layout, jump.impulses) for jump in history.blows)
-    known = of_instants(recovery, checked.kinetic if checked is not None else 0.0, struck_freely, history.followed_for)
+    known = looked.told(checked.kinetic if checked is not None else 0.0, struck_freely)
     known["balance_residual"] = max(known["balance_residual"], residual_of_blows)
     gap = checked.run.gap if checked is not None else scene.start.gap
     return known | {
@@ -32,21 +33,66 @@ def accuracy_of(history: History, recovery: Recovery, residual_of_blows: float =
     }
 
 
-def of_instants(recovery: Recovery, kinetic: float = 0.0, struck: float = 0.0, span: float | None = None) -> Accuracy:
-    """How well the instants balance: energy where it is asked for, closures, d'Alembert's principle.
+class Balance:
+    """How well the instants of a run balance, those looked at so far, ascending: energy, closures, d'Alembert."""
 
-    kinetic: the run's largest [J]; struck: the energy that given blows would bring to what nothing holds [J].
-    span: how long a run is that was not integrated [s]: there the work is the gain of energy, and powers tell.
-    """
-    scene, recovered, found = recovery.setup.scene, recovery.recovered, Accuracy()
-    mechanism, size = scene.mechanism, scene.layout.size
-    if OF_ENERGY & recovery.setup.asked.reports:
-        lift = sum(body.mass for body in mechanism.bodies) * float(np.abs(mechanism.gravity).max()) * size + struck
-        imbalance = None
-        if span is not None:
-            imbalance = power_imbalance(scene.layout, recovery.states, recovery.loads, recovery.joints, span)
-            lift += magnitude_of_work(mechanism, recovery.loads, size, span)
-        found["energy_drift"] = energy_drift(recovery.energy, kinetic, lift, imbalance)
-    found["constraint_gap"] = float(recovered.gap.max(initial=0.0))
-    found["balance_residual"] = balance_residual(mechanism, recovery.states, recovery.actions, size)
-    return found
+    def __init__(self, setup: Setup, span: float | None = None) -> None:
+        """span: how long a run is that was not integrated [s]: there the work is the gain of energy, and powers tell.
+
+        Energy is looked at where it is asked for.
+        """
+        self.setup, self.span = setup, span
+        self.of_energy = bool(OF_ENERGY & setup.asked.reports)
+        self.gap = self.residual = 0.0
+        self.start: float | None = None  # energy less work at the first instant [J]
+        self.change = self.kinetic = self.imbalance = 0.0  # the largest [J]
+        self.loads: list[tuple[float, float]] = []  # the largest force and moment of each
+
+    def add(self, recovery: Recovery) -> Balance:
+        """More instants; returns itself."""
+        mechanism, size = self.setup.scene.mechanism, self.setup.scene.layout.size
+        if self.of_energy:
+            self.add_energy(recovery)
+        self.gap = larger(self.gap, float(recovery.recovered.gap.max(initial=0.0)))
+        self.residual = larger(self.residual, balance_residual(mechanism, recovery.states, recovery.actions, size))
+        return self
+
+    def add_energy(self, recovery: Recovery) -> None:
+        """The energy of more instants, or the powers in its place."""
+        if self.span is not None:
+            joints, layout = recovery.joints, self.setup.scene.layout
+            off = power_imbalance(layout, recovery.states, recovery.loads, joints, self.span)
+            self.imbalance = larger(self.imbalance, off)
+            acting = [(largest(x.action.force), largest(x.action.moment)) for x in recovery.loads]
+            before = self.loads or [(0.0, 0.0)] * len(acting)
+            self.loads = [(larger(F, f), larger(M, m)) for (F, M), (f, m) in zip(before, acting, strict=True)]
+        energy = recovery.energy
+        total = energy["kinetic"] + energy["potential"] - energy["work"]
+        self.start = float(total[0]) if self.start is None else self.start
+        self.change = larger(self.change, largest(total - self.start))
+        self.kinetic = larger(self.kinetic, float(energy["kinetic"].max(initial=0.0)))
+
+    def told(self, kinetic: float = 0.0, struck: float = 0.0) -> Accuracy:
+        """The part of the block `accuracy` that instants tell.
+
+        kinetic: the run's largest [J], which instants asked for may not show; struck: the energy that given blows would
+        bring to what nothing holds [J].
+        """
+        found, mechanism, size = Accuracy(), self.setup.scene.mechanism, self.setup.scene.layout.size
+        if self.of_energy:
+            lift = sum(body.mass for body in mechanism.bodies) * float(np.abs(mechanism.gravity).max()) * size + struck
+            if self.span is not None:
+                lift += magnitude_of_work(mechanism, self.loads, size, self.span)
+            change = self.change if self.span is None else self.imbalance
+            found["energy_drift"] = energy_drift(change, max(kinetic, self.kinetic), lift)
+        return found | {"constraint_gap": self.gap, "balance_residual": self.residual}
+
+
+def larger(so_far: float, value: float) -> float:
+    """The larger of the two; what is no number stays none."""
+    return float(np.maximum(so_far, value))
+
+
+def largest(values: Array) -> float:
+    """The largest magnitude."""
+    return float(np.abs(values).max(initial=0.0))

@@ -27,14 +27,21 @@ NumericLeaves = Iterator[tuple[tuple[str, ...], Any, Mapping[str, Any]]]
 def require_finite(results: Results) -> Results:
     """The results, if all that is not open in them is finite. Raises SolveError with the first path that is not."""
     at = np.asarray(results.accuracy.get("unknown", ()), dtype=float)
-    known = ~np.isin(results.time, at)
-    for keys, value, block in leaves({name: getattr(results, name) for name in BLOCKS}, (), {}):
+    require_finite_blocks({name: getattr(results, name) for name in BLOCKS}, results.time, ~np.isin(results.time, at))
+    return results
+
+
+def require_finite_blocks(blocks: Mapping[str, Any], times: Array, known: Mask) -> None:
+    """Raise SolveError with the first path in some blocks of results that is neither finite nor open.
+
+    times, known (n_t,): the instants, and at which all is told.
+    """
+    for keys, value, block in leaves(blocks, (), {}):
         if is_wrong(keys, value, block, known):
-            instant = at_instant(keys, value, results.time, known)
+            instant = at_instant(keys, value, times, known)
             message = f"{'.'.join(keys)} is not finite{instant}: there is no such number"
             hint = "look at very large and very small values nearby, and at points that coincide"
             raise SolveError(Problem("not-finite-result", message, hint=hint))
-    return results
 
 
 def leaves(node: Any, keys: tuple[str, ...], block: Mapping[str, Any]) -> NumericLeaves:

@@ -8,9 +8,10 @@ import numpy as np
 
 from heuncli.integration.determined_motion import integrated_after_all
 from heuncli.kernel.choose import KERNEL
+from heuncli.named_tuples import NamedTuple
 from heuncli.results import Array, Block, Results
 from heuncli.results_schema import BLOWS
-from heuncli.study.compose.accuracy import accuracy_of
+from heuncli.study.compose.accuracy import Balance, accuracy_of
 from heuncli.study.compose.blocks import blocks_asked_for
 from heuncli.study.compose.finiteness import require_finite
 from heuncli.study.compose.recovery import Recovery, certain_sums
@@ -26,28 +27,42 @@ if TYPE_CHECKING:  # loaded where something strikes
     from heuncli.study.compose.near_singular import TellsOpen
 
 
+class Composed(NamedTuple):
+    """What was composed of instants, (n_t,) ascending: their blocks, and how well they balance.
+
+    recovery: what they were composed of, or the last part of it; unknown: the instants at which not all is known.
+    """
+
+    times: Array
+    recovery: Recovery
+    shown: Block
+    unknown: Array
+    balance: Balance
+
+
 def compose(
-    setup: Setup, history: History, recovery: Recovery, wanted: frozenset[str], struck: Impulses | None
-) -> Results:
+    setup: Setup, history: History, recovery: Recovery, wanted: frozenset[str], struck: Impulses | None,
+    own: Composed | None = None,
+) -> Results:  # fmt: skip
     """The results at the instants of `recovery`, which are the history's own or others within it; and the blows.
 
-    Raises SolveError where something is neither finite nor open.
+    own: what was composed of them already, part by part. Raises SolveError where something is neither finite nor open.
     """
-    shown, unknown = known_blocks(history, recovery, wanted)
+    own = own or composed_at_once(setup, history, recovery, wanted)
     rest = setup.rest
     done = history.checked.run if history.checked is not None else rest
-    known = accuracy_of(history, recovery, struck.residual if struck is not None else 0.0)
+    known = accuracy_of(history, own.balance, struck.residual if struck is not None else 0.0)
     results = Results(
         title=setup.spec.title,
         spec={"path": setup.spec.path, "sha256": setup.spec.sha256},
         version=VERSION,
         model=model_of(setup, history, recovery),
         status=status(history) if rest is None else rest.status,
-        time=recovery.recovered.times,
-        **shown,
+        time=own.times,
+        **own.shown,
         impulses=struck.blocks() if struck is not None and BLOWS in wanted else [],
         certain_sums=sums_among(certain_sums(recovery), setup.asked) if "joints" in wanted else [],
-        accuracy=known | ({"unknown": unknown.tolist()} if len(unknown) else {}),
+        accuracy=known | ({"unknown": own.unknown.tolist()} if len(own.unknown) else {}),
         work={
             "kernel": KERNEL,
             "steps": done.steps if done is not None else 0,
@@ -55,12 +70,19 @@ def compose(
             "seconds": {},
         },
         warnings=(
-            *warnings(setup, history, recovery, shown.get("joints", {}), known["balance_residual"]),
-            *beside_singular_poses(unknown),
+            *warnings(setup, history, recovery, own.shown.get("joints", {}), known["balance_residual"]),
+            *beside_singular_poses(own.unknown),
             *(rest.warnings if rest is not None else ()),
         ),
     )
     return require_finite(results)
+
+
+def composed_at_once(setup: Setup, history: History, recovery: Recovery, wanted: frozenset[str]) -> Composed:
+    """What is composed of all the instants of `recovery`."""
+    shown, unknown = known_blocks(history, recovery, wanted)
+    balance = Balance(setup, history.followed_for).add(recovery)
+    return Composed(recovery.recovered.times, recovery, shown, unknown, balance)
 
 
 def known_blocks(

@@ -1,8 +1,9 @@
 """How much memory the results of a run will take, before anything moves, and whether there is as much.
 
 What is told of an instant is counted by the schema of results; what a number takes on its way out, and what the
-kernel answers do, was measured (`Room`, ANSWERS). Of the steps nobody knows how many they will be, but that each jump
-or kink in time ends one.
+kernel answers do, was measured (`Room`, ANSWERS). Where results are composed part by part (study/compose/parts.py),
+their numbers stand in a file, and memory holds the states of all instants. Of the steps nobody knows how many they will
+be, but that each jump or kink in time ends one.
 """
 
 from __future__ import annotations
@@ -15,9 +16,11 @@ from heuncli.integration.run.step_records import KEPT
 from heuncli.records import record
 from heuncli.response import answer_sizes
 from heuncli.results_schema import CUT, REPORT_OF, ROWS, SHARES, Quantity, is_share
+from heuncli.spec.models import ResultCondition
 from heuncli.study.model.setup import Setup
 
 ANSWERS = 3.0  # times the kernel's answers at an instant: those of both runs, and what is made of them beside
+STATES = 3.0  # times the state at an instant: those of both runs, of all instants that are compared, and the instants
 RUNS = 3  # whose steps are held at once: the run that is told, its check run, the one from a moved start
 A_STEP = 150.0  # bytes of a step beside what it starts from: its end, its segment, its place among the jumps
 BESIDE_LOADS = 3  # causes beside the loads: gravity, drives, motion
@@ -32,12 +35,17 @@ class Room:
     a_number: float
 
 
-def require_room(setup: Setup, room: Room) -> None:
-    """Raise LimitError [too-much-memory] where the results take more than there is, with what would fit."""
-    instants = len(setup.spec.analysis.times)
-    blocks = {block: count * room.a_number for block, count in numbers_by_block(setup)}
-    answers = ANSWERS * 8.0 * answer_count(setup)
-    an_instant = sum(blocks.values()) + answers
+def require_room(setup: Setup, room: Room, *, in_parts: bool = False) -> None:
+    """Raise LimitError [too-much-memory] where the results take more than there is, with what would fit.
+
+    in_parts: where they may be composed part by part.
+    """
+    instants, blocks = len(setup.spec.analysis.times), dict[str, float]()
+    if in_parts and divisible(setup):
+        an_instant = STATES * 8.0 * setup.scene.layout.n_state
+    else:
+        blocks = {block: count * room.a_number for block, count in numbers_by_block(setup)}
+        an_instant = sum(blocks.values()) + ANSWERS * 8.0 * answer_count(setup)
     if instants * an_instant <= room.memory:
         return
     fit = int(two_digits(room.memory / an_instant))
@@ -77,6 +85,18 @@ def two_digits(value: float) -> float:
     """A value with its first two digits, the rest cut off."""
     whole = max(-1, math.floor(math.log10(value)) - 1) if value >= 1.0 else -1
     return math.floor(round(value / 10.0**whole, 6)) * 10.0**whole
+
+
+def divisible(setup: Setup) -> bool:
+    """Whether results can be composed of some instants at a time (study/compose/parts.py tells where not, and why)."""
+    if setup.method is None or setup.scene.layout.rows or SHARES in setup.asked.reports:
+        return False
+    return not any(isinstance(condition, ResultCondition) for condition in setup.spec.analysis.conditions)
+
+
+def numbers_at_an_instant(setup: Setup) -> float:
+    """How many numbers there are of an instant: those that are told, and the answers that they follow from."""
+    return sum(count for _, count in numbers_by_block(setup)) + answer_count(setup)
 
 
 def answer_count(setup: Setup) -> float:

@@ -29,6 +29,7 @@ class Options:
     least_norm: bool = False
     reduce: bool = True  # whether less than the whole scene may be solved, where that changes nothing
     room: Room | None = None  # that results may take; None: as much as they want
+    in_parts: bool = False  # whether results of many instants may stand in a file, as those can that are only exported
     load_seconds: float = 0.0  # what reading the spec took, for the block `work`
 
     @property

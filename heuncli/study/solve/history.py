@@ -5,7 +5,8 @@ Impure: integrating looks at the clock.
 
 from __future__ import annotations
 
-from collections.abc import Mapping
+from collections.abc import Callable, Mapping
+from functools import cached_property
 from types import MappingProxyType
 from typing import TYPE_CHECKING
 
@@ -45,13 +46,15 @@ if TYPE_CHECKING:  # loaded where there are conditions
 class History:
     """The kernel's answers at the instants asked for; of a motion the checked run behind them.
 
+    times (n_t,) ascending [s]: fewer than asked for where the run stopped; answers: those at some of them.
     tolerance: what the motion was to keep; estimate: of the errors, by kind; blows: those that happened; beside: those
     of the check runs; jumps: instants at which a load or drive jumps or bends, events and blows among them; singular:
     those of singular poses that the run came through; seconds: what took how long;
     errors: by kind and unit, of one instant those of shares by cause.
     """
 
-    recovered: Recovered
+    times: Array
+    answers: Callable[[slice], Recovered]
     tolerance: float
     estimate: Estimate
     checked: CheckedRun | None = None
@@ -73,10 +76,10 @@ class History:
         run = self.checked.run if self.checked is not None else None
         return float(run.times[-1]) if run is not None and run.method.determined else None
 
-    @property
-    def times(self) -> Array:
-        """The instants, (n_t,) ascending; fewer than asked for where the run stopped."""
-        return self.recovered.times
+    @cached_property
+    def recovered(self) -> Recovered:
+        """The answers at all the instants."""
+        return self.answers(slice(None))
 
 
 def integrate(
@@ -103,8 +106,8 @@ def integrate(
     singular = tuple(singular_poses(runner, checked.run))
     estimate, beside = Estimate(motion=checked.motion, **checked.loads), checked.beside
     return History(
-        checked.recovered, tolerance, estimate, checked, checked.run.blows, beside, jumps, singular, seconds,
-        checked.errors,
+        checked.run.times, checked.answers, tolerance, estimate, checked, checked.run.blows, beside, jumps, singular,
+        seconds, checked.errors,
     )  # fmt: skip
 
 
@@ -224,7 +227,7 @@ def state(setup: Setup, at: float, tolerance: float, by_cause: bool = False) -> 
     estimate = Estimate(motion=off, **errors.estimate())
     seconds = {"integrate": 0.0 if setup.rest is None else setup.rest.seconds, "check": 0.0}
     return History(
-        answers, tolerance, estimate, blows=blows[0], beside=tuple(blows[1:]), seconds=seconds,
+        times, answers.at, tolerance, estimate, blows=blows[0], beside=tuple(blows[1:]), seconds=seconds,
         errors=errors.errors_by_cause(),
     )  # fmt: skip
 

@@ -33,6 +33,7 @@ from heuncli.study.solve.balance_terms import BalanceTerms
 from heuncli.study.solve.error_extents import ESTIMATED, Extent, Weights, lengths, norms, relative
 
 CHOSEN_ANEW = 1e-6  # of the largest multiplier: what redundant joints leave open changes by more when rows are chosen
+CUTS_AT_ONCE, BLOCK = 200_000, 8  # instants times cuts whose loads are compared together; in whole blocks, as of BLAS
 
 
 # Kinds, and the reports that tell something of them: what nobody asks for is not compared.
@@ -72,6 +73,17 @@ class LoadErrors:
         same = same_rows(several, count) if self.setup.model["redundant"] else np.ones(len(asked), dtype=bool)
         if same.any() and not same.all():
             several, asked, before = several.at(np.repeat(same, count)), asked[same], before[same]
+        for i in range(0, len(asked), self.at_once(count)):
+            part = slice(i, i + self.at_once(count))
+            self.add_part(several.at(slice(count * i, count * part.stop)), asked[part], before[part])
+
+    def at_once(self, count: int) -> int:
+        """How many instants of so many runs are looked at together: cuts may be more than all else at an instant."""
+        cuts = sum(len(cuts.side) for cuts in self.setup.cuts)
+        return BLOCK * max(1, CUTS_AT_ONCE // (BLOCK * count * cuts + 1))
+
+    def add_part(self, several: Recovered, asked: Mask, before: Mask) -> None:
+        """Instants that are answered with the same closure rows in all runs."""
         self.asked, self.before = asked, before
         states = body_states(self.setup.scene.layout, several)
         loads = applied_loads(self.setup.scene.mechanism, states, several)

@@ -42,8 +42,7 @@ def axis_of(x: float) -> str:
 
 
 def drift(x: float) -> str:
-    found = energy_drift({"kinetic": np.array([0.0, x]), "potential": np.zeros(2), "work": np.zeros(2)}, 0.0, 1.0)
-    return "at rest" if found == 0.0 else "a drift"
+    return "at rest" if energy_drift(x, x, 1.0) == 0.0 else "a drift"
 
 
 PART = Part(
