@@ -45,11 +45,13 @@ DIRECTIVES = {
 # vector: a struct's numbers are written one by one and read soon after, and such a read waits until all are in memory.
 # No error numbers from sqrt: nobody reads them, and the call that would set one stands in the way of its loop.
 GNU_FLAGS = ("-O3", "-ffp-contract=off", "-fno-tree-slp-vectorize", "-fno-math-errno")
-# The operations of expressions, a line or two each, go into the loop that runs them, as if C's `inline` stood there.
+# The operations of expressions, a line or two each, go into the loop that runs them, as if C's `inline` stood there; so
+# do those of one body, freedom or row into the loops over the few that a scene has.
 INLINED = ("--param=max-inline-insns-auto=200",)
 # Rows of numbers that stages are combined of are no structs: two of them go as one vector.
 PAIRED = ("-ftree-slp-vectorize",)
-GNU_FLAGS_OF = {"evaluator": INLINED, "jets": INLINED, "dense": PAIRED}
+SMALL = ("evaluator", "jets", "tree", "plane", "plane_rows", "closures", "orthogonal", "response")
+GNU_FLAGS_OF = {"dense": PAIRED} | dict.fromkeys(SMALL, INLINED)
 # What would be memory of another, or has no meaning in C (as NaN made a whole number), ends the process with its place.
 SANITIZED_FLAGS = (
     "-O1", "-g", "-fno-omit-frame-pointer", "-ffp-contract=off", "-fno-wrapv",

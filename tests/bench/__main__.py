@@ -73,14 +73,20 @@ def error(name: str, scene: PreparedScene, runner: Runner, times: Any, states: A
 
 
 def motion() -> None:
-    """The benchmark scenes: integration of one run alone, to 1e-9 and 1e-12 m; and with the check run."""
+    """The benchmark scenes: integration of one run alone, to 1e-9 and 1e-12 m; and with the check run.
+
+    Each whole, as programs that reduce nothing integrate it; and reduced, where the command integrates less.
+    """
     for name in ("double", "top", "chain10", "crank"):
         spec = load(str(SCENES / f"{name}.yaml"))
-        scene = set_up(spec).scene
-        runner = Runner(scene.layout)
+        setup = set_up(spec)
+        scene, runners = setup.scene, {"": Runner(setup.scene.layout)}
+        if setup.runner.moving.layout is not scene.layout:
+            runners[" reduced"] = setup.runner
         times = np.array(spec.analysis.times)
-        for goal in (1e-9, 1e-12) if KERNEL == "compiled" else (1e-9,):
-            one_motion(name, scene, runner, times, goal)
+        for how, runner in runners.items():
+            for goal in (1e-9, 1e-12) if KERNEL == "compiled" else (1e-9,):
+                one_motion(name, how, scene, runner, times, goal)
         study = solve(spec)
         seconds, size = study.results.work["seconds"], study.setup.scene.layout.size
         off = error(name, study.setup.scene, study.setup.runner, times, study.history.recovered.states)
@@ -92,7 +98,7 @@ def motion() -> None:
         )
 
 
-def one_motion(name: str, scene: PreparedScene, runner: Runner, times: Any, goal: float) -> None:
+def one_motion(name: str, how: str, scene: PreparedScene, runner: Runner, times: Any, goal: float) -> None:
     """The loosest tolerance that reaches the goal [m], and what it costs."""
     repeats = 15 if KERNEL == "compiled" else 1
     for tolerance in (10.0 ** (-0.5 * k) for k in range(8, 29)):
@@ -103,8 +109,9 @@ def one_motion(name: str, scene: PreparedScene, runner: Runner, times: Any, goal
     alone = median_ms(partial(runner.trajectory, MotionTask(times, tolerance)), repeats)
     check = median_ms(partial(runner.trajectory, MotionTask(times, tolerance / 30.0)), repeats)
     print(
-        f"{name:8s} to {goal:.0e} m: error {off:.1e} m, {alone:7.3f} ms alone, {1 + check / alone:.2f} times that with "
-        f"the check run; {run.steps} steps, {run.evaluations} evaluations, {1e3 * alone / run.evaluations:.2f} us each"
+        f"{name + how:8s} to {goal:.0e} m: error {off:.1e} m, {alone:7.3f} ms alone, "
+        f"{1 + check / alone:.2f} times that with the check run; "
+        f"{run.steps} steps, {run.evaluations} evaluations, {1e3 * alone / run.evaluations:.2f} us each"
     )
 
 
