@@ -6,6 +6,7 @@ Rigid-body kinematics: v_P = v + σ × (P − O), a_P = a + σ̇ × (P − O) + 
 from __future__ import annotations
 
 from collections.abc import Mapping, Sequence
+from functools import cached_property
 from types import MappingProxyType
 
 import numpy as np
@@ -36,6 +37,12 @@ class BodyStates:
     centre: Array
     v_centre: Array
     a_centre: Array
+
+    @cached_property
+    def turning(self) -> tuple[Array, Array]:
+        """omega and alpha in the bodies' own axes, (n_t, n, 3)."""
+        w, u = (np.einsum("tnji,tnj->tni", self.R, x) for x in (self.omega, self.alpha))
+        return w, u
 
     def point_position(self, body: int, point: Array) -> Array:
         """World position of a point given in body axes, (n_t, 3); a ground point as it is."""

@@ -24,8 +24,7 @@ def inertia_loads(mechanism: Mechanism, states: BodyStates) -> tuple[Array, Arra
     """m x_s.. and I sigma. + sigma x I sigma of every body, (n_t, n, 3), world axes."""
     m = np.array([b.mass for b in mechanism.bodies])
     inertia = np.array([b.inertia for b in mechanism.bodies])
-    w = np.einsum("tnji,tnj->tni", states.R, states.omega)
-    u = np.einsum("tnji,tnj->tni", states.R, states.alpha)
+    w, u = states.turning
     spin = np.einsum("nij,tnj->tni", inertia, u) + cross_rows(w, np.einsum("nij,tnj->tni", inertia, w))
     loads = m[:, None] * states.a_centre, np.einsum("tnij,tnj->tni", states.R, spin)
     return in_plane(*loads) if mechanism.planar else loads
@@ -35,8 +34,8 @@ def total(
     states: BodyStates, forces: Array, spin: Array, actions: Sequence[Action], about: Array
 ) -> tuple[Array, Array]:
     """s and M_s, (n_t, 3); forces: weight less m x_s.. of every body, spin: I sigma. + sigma x I sigma, (n_t, n, 3)."""
-    force = np.sum(forces, axis=1)
-    moment = np.sum(cross_rows(states.centre - about, forces) - spin, axis=1)
+    force = forces.sum(axis=1)
+    moment = (cross_rows(states.centre - about, forces) - spin).sum(axis=1)
     for action in actions:
         if action.from_ is None:
             force = force + action.force

@@ -24,7 +24,7 @@ from heuncli.results import Array, Block, Magnitudes
 def inertia_scale(mechanism: Mechanism, states: BodyStates) -> Array:
     """Largest inertia load or weight of each body, its pieces' included, (n_t, n) [N]."""
     m = np.array([body.mass for body in mechanism.bodies])
-    w, u = (np.einsum("tnji,tnj->tni", states.R, x) for x in (states.omega, states.alpha))
+    w, u = states.turning
     spinning, turning = (_energy_like(mechanism, x) for x in (w, u))
     speed = np.sqrt(np.sum(w * w, axis=2))
     pieces = np.sqrt(m) * (speed * spinning + turning)

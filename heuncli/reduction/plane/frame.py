@@ -15,7 +15,7 @@ from heuncli import tolerances
 from heuncli.joint_kinds import JOINTS
 from heuncli.mechanism.model import GROUND
 from heuncli.results import Array
-from heuncli.shapes.rotations import perpendicular
+from heuncli.shapes.rotations import cross, perpendicular
 from heuncli.tree.prepare import PreparedScene
 from heuncli.tree.starts import pose
 
@@ -42,7 +42,7 @@ def candidates(scene: PreparedScene) -> Iterator[Array]:
         size = float(np.sqrt(n @ n))
         if size > 0.0:
             n = n / size
-            if not any(np.abs(np.cross(n, other)).max() <= tolerances.FLAT for other in tried):
+            if not any(np.abs(cross(n, other)).max() <= tolerances.FLAT for other in tried):
                 tried.append(n)
                 yield n
         if len(tried) == MOST:

@@ -2,6 +2,8 @@
 
 from __future__ import annotations
 
+from functools import reduce
+
 import numpy as np
 
 from heuncli import tolerances
@@ -45,7 +47,7 @@ class Extent:
         count = len(values) // len(asked)
         own = values[0::count]
         size = lengths(own)
-        difference = np.max([lengths(own - values[k::count]) for k in range(1, count)], axis=0)
+        difference = reduce(np.maximum, [lengths(own - values[k::count]) for k in range(1, count)])
         self.differ(difference if more is None else difference + more, before)
         self.rounding = _larger(self.rounding, rounding)
         self.terms = _larger(self.terms, terms)
@@ -81,7 +83,7 @@ def lengths(values: Array) -> Array:
     """The largest length of the vectors (n, ..., 3), or magnitude of the numbers (n,), at each instant."""
     if values.ndim == 1:
         return np.abs(values)
-    squares = np.sum(values * values, axis=-1).reshape(len(values), -1)
+    squares = (values * values).sum(axis=-1).reshape(len(values), -1)
     return np.asarray(np.sqrt(squares.max(axis=1)))
 
 

@@ -12,7 +12,7 @@ Where a kind is nothing but what larger terms leave when they cancel it is none:
 from __future__ import annotations
 
 from collections.abc import Sequence
-from functools import cached_property
+from functools import cached_property, reduce
 
 import numpy as np
 
@@ -130,7 +130,7 @@ class LoadErrors:
 
         def apart(values: Array) -> Array:
             own = values[0::count]
-            return np.asarray(np.max([norms(own - values[k::count]) for k in range(1, count)], axis=0))
+            return reduce(np.maximum, [norms(own - values[k::count]) for k in range(1, count)])
 
         turn, turning = apart(states.omega), apart(states.alpha)
         centripetal = 2.0 * norms(states.omega[0::count]) * turn
@@ -192,7 +192,9 @@ class LoadErrors:
             R = states.R[:, cuts.body]
             count = len(R) // len(self.asked)
             own = R[0::count]
-            turned = np.max([np.sqrt(np.sum((own - R[k::count]) ** 2, axis=(1, 2))) for k in range(1, count)], axis=0)
+            turned = reduce(
+                np.maximum, [np.sqrt(np.sum((own - R[k::count]) ** 2, axis=(1, 2))) for k in range(1, count)]
+            )
             F, M = terms.rounding
             for quantity, values, rounding, of in (
                 ("force", force, F, terms.force), ("moment", moment, M, terms.moment),
