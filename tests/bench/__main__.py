@@ -1,7 +1,7 @@
 """Speed, printed: `python -m tests.bench [PART ...] [--against PATH]`. Nothing here asserts a time.
 
-Parts: motion, chart, chain, process, export, sections, causes, reduced, balance, lagrange, pipeline; each line:
-what, error, time.
+Parts: motion, chart, chain, process, export, memory, sections, causes, reduced, balance, lagrange, pipeline; each
+line: what, error, time.
 figures: the few that matter in one table, with --against beside those of another checkout (tests/bench/figures.py).
 honesty: no times, but true error over estimate of each kind of number, over random scenes (tests/bench/honesty.py).
 """
@@ -43,6 +43,7 @@ from tests.bench.generated import chain
 from tests.bench.honesty import honesty
 from tests.bench.lagrange import equations
 from tests.bench.long import long
+from tests.bench.memory import memory
 from tests.bench.pipeline import pipeline
 from tests.bench.reduced import reduced
 
@@ -193,7 +194,8 @@ def sections() -> None:
 
 
 PARTS = {
-    "motion": motion, "chart": charted, "chain": chains, "process": process, "export": export, "sections": sections,
+    "motion": motion, "chart": charted, "chain": chains, "process": process, "export": export, "memory": memory,
+    "sections": sections,
     "causes": by_cause, "reduced": reduced, "balance": lambda: balanced(median_ms),
     "lagrange": lambda: equations(median_ms),
     "pipeline": pipeline,
