@@ -53,7 +53,7 @@ def json_pieces(results: Results) -> Iterator[str]:
     return dumped({"heun": FORMAT, **present(results)})
 
 
-class Instants:
+class InstantTexts:
     """The instants that lines of CSV tell, as text; of many, in texts of so many each, for a text is smaller."""
 
     def __init__(self, times: Array | None) -> None:
@@ -72,7 +72,7 @@ class CsvSeries(NamedTuple):
     series: Series
     kind: str
     name: str
-    instants: Instants
+    instants: InstantTexts
     sections: Block
 
 
@@ -86,7 +86,7 @@ def csv_pieces(results: Results, labels: Labels) -> Iterator[str]:
 
 
 def _csv(results: Results, labels: Labels) -> Iterator[str]:
-    instants, always = Instants(results.time), Instants(None)
+    instants, always = InstantTexts(results.time), InstantTexts(None)
     rows = [
         CsvSeries(series, series.kind, series.name, always if series.static else instants, results.sections)
         for series in walk(results, labels)
@@ -108,7 +108,7 @@ def _csv(results: Results, labels: Labels) -> Iterator[str]:
 
 def _of_blow(number: int, block: Block, labels: Labels) -> Iterator[CsvSeries]:
     """The rows of one blow."""
-    at, sections = Instants(np.array([float(block["time"])])), block.get("sections", {})
+    at, sections = InstantTexts(np.array([float(block["time"])])), block.get("sections", {})
     for series in walk_impulse(block, labels):
         name = ".".join(part for part in (str(number), series.kind, series.name) if part)
         yield CsvSeries(series, BLOWS, name, at, sections)

@@ -1,7 +1,7 @@
 """Speed, printed: `python -m tests.bench [PART ...] [--against PATH]`. Nothing here asserts a time.
 
-Parts: motion, chart, chain, process, export, sections, causes, reduced, balance, lagrange, pipeline, growth; each
-line: what, error, time; growth: counts, no times.
+Parts: motion, chart, chain, process, export, memory, sections, causes, reduced, balance, lagrange, pipeline, growth;
+each line: what, error, time; memory: megabytes; growth: counts.
 figures: the few that matter in one table, with --against beside those of another checkout (tests/bench/figures.py).
 honesty: no times, but true error over estimate of each kind of number, over random scenes (tests/bench/honesty.py).
 """
@@ -44,6 +44,7 @@ from tests.bench.growth import growth
 from tests.bench.honesty import honesty
 from tests.bench.lagrange import equations
 from tests.bench.long import long
+from tests.bench.memory import memory
 from tests.bench.pipeline import pipeline
 from tests.bench.reduced import reduced
 
@@ -201,7 +202,8 @@ def sections() -> None:
 
 
 PARTS = {
-    "motion": motion, "chart": charted, "chain": chains, "process": process, "export": export, "sections": sections,
+    "motion": motion, "chart": charted, "chain": chains, "process": process, "export": export, "memory": memory,
+    "sections": sections,
     "causes": by_cause, "reduced": reduced, "balance": lambda: balanced(median_ms),
     "lagrange": lambda: equations(median_ms),
     "pipeline": pipeline, "growth": growth,
