@@ -153,6 +153,14 @@ class FakeStudy:
             else replace(found, sections=dict(at_nodes(*item) for item in found.sections.items()))
         )
 
+    def recovery_at(self, times: Array, wanted: Set[str], setup: Any = None, *, keep: bool = False) -> Any:
+        """What stands for the answers at any instants: of a tree, in which nothing can be open."""
+        return SimpleNamespace(recovered=SimpleNamespace(times=np.asarray(times)), decided=None, setup=setup)
+
+    def reports_of(self, recovery: Any, wanted: Set[str], tells: Any = None) -> Results:
+        """Some reports of such answers."""
+        return self.reports_at(recovery.recovered.times, wanted, recovery.setup)
+
     def impulses(self, setup: Any) -> list[Block]:
         """Its blows with nodes between the cuts of their runs."""
         return [
