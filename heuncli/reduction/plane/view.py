@@ -9,6 +9,7 @@ from __future__ import annotations
 
 from collections import defaultdict
 from collections.abc import Sequence
+from functools import cached_property
 
 import numpy as np
 
@@ -56,7 +57,7 @@ class View:
     stances: tuple[Stance, ...]
     reach: float  # of places [m]: the scene's size and how far it is from the origin
 
-    @property
+    @cached_property
     def n(self) -> Array:
         """The normal."""
         return np.asarray(self.E[2])

@@ -147,7 +147,7 @@ def _failure(expected: Array, found: Array, tolerance: float) -> str | None:
 
 def _tolerance(expected: Array, rel: float | None, absolute: float | None) -> float:
     """rel is of the largest number expected."""
-    scale = float(np.max(np.abs(np.nan_to_num(expected)))) if expected.size else 0.0
+    scale = float(np.fmax.reduce(np.abs(expected), axis=None, initial=0.0))  # nan: expected to be open
     if rel is None and absolute is None:
         rel, absolute = tolerances.EXPECTED_RELATIVE, tolerances.EXPECTED_ABSOLUTE
     return max((rel or 0.0) * scale, absolute or 0.0)

@@ -6,6 +6,7 @@ that a wrench does not have, and what rounding reaches beside a singular pose. E
 
 from __future__ import annotations
 
+import math
 from collections.abc import Iterator, Mapping
 from typing import Any
 
@@ -58,6 +59,8 @@ def leaves(node: Any, keys: tuple[str, ...], block: Mapping[str, Any]) -> Numeri
 
 def is_wrong(keys: tuple[str, ...], value: Array | float, block: Mapping[str, Any], known: Mask) -> bool:
     """Whether a number is neither finite nor open."""
+    if isinstance(value, float) and math.isfinite(value):
+        return False
     array = np.asarray(value)
     if array.dtype.kind != "f" or np.isfinite(array).all():
         return False
