@@ -51,6 +51,7 @@ WAYS = {
 DIGITS = 1e-12  # of N m and kg m^2 of some ten
 
 
+@pytest.mark.heavy
 @pytest.mark.parametrize("way", WAYS)
 def test_a_range_is_its_instants(way: str) -> None:
     """Below and above the start, over more than a turn; turns are counted, which the turn spring feels."""
@@ -76,6 +77,7 @@ def test_the_mean_is_of_the_range_not_of_its_values(words: str) -> None:
     assert over(SLIDER_CRANK, range_of(f"main.angle={words}", SLIDER_CRANK)).mean == pytest.approx(TURN, rel=1e-7)
 
 
+@pytest.mark.heavy
 def test_a_mean_that_does_not_settle_is_not_told() -> None:
     """Beside dead centres, at 0.2 and 0.4 m, the inertia of the slider is without bound."""
     found = over(SLIDER_CRANK, range_of("guide.travel=0.2001:0.39999/4", SLIDER_CRANK))

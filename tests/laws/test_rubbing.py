@@ -111,6 +111,7 @@ analysis: {duration: 3, samples: 101}
 """
 
 
+@pytest.mark.heavy
 @pytest.mark.parametrize(("space", "method"), [("planar", "DOP853"), ("spatial", "DOP853"), ("planar", "Radau5")])
 def test_a_rope_that_catches_presses_the_joints(space: str, method: str) -> None:
     """The law is met at every instant, the rope slack or taut; the energy that is missing is what rubs and strikes."""
