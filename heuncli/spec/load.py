@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Callable, Iterator, Mapping, Sequence
+from collections.abc import Callable, Iterable, Iterator, Mapping, Sequence
 from typing import TYPE_CHECKING, Any
 
 from heuncli.errors import Problem, SourceLocation, SpecError
@@ -16,12 +16,12 @@ from heuncli.spec.fields import Context
 from heuncli.spec.models import Curve, Spec
 from heuncli.spec.names import NAMED, Names, mapping
 from heuncli.spec.overrides import of_words, override, taken_in_si
-from heuncli.spec.parameters import evaluate_parameters
+from heuncli.spec.parameters import Parameters, evaluate_parameters
 from heuncli.spec.planar import in_the_plane
 from heuncli.spec.quantity import Scope, kind_of
 from heuncli.spec.reading import STANDARD_INPUT
 from heuncli.spec.resolve import Meaning, resolve
-from heuncli.spec.rules.every import RULES, DraftDocument, Violation, violations
+from heuncli.spec.rules.every import RULES, DraftDocument, Rule, Violation, violations
 from heuncli.spec.semantics import instants_of
 from heuncli.spec.source import Path_, SourceFile, dotted, read
 from heuncli.spec.verdicts import is_primary
@@ -129,7 +129,7 @@ class Loading:
         tables = self.tables(scope)
         in_time = Scope(parameters, names.joints, tables, in_time=True, given=given, points=names.points)
         context = Context(scope, in_time, names.points)
-        reader = Reader(self.data, context, self.report)
+        reader = self.reader(context)
         document = reader.document()
         expected = dict(self.expected(document))
         draft = DraftDocument(document._replace(expect=expected), names, frozenset(self.unread), {})
@@ -144,9 +144,29 @@ class Loading:
         meaning = Meaning(source.file, source.sha256, values, built, warnings, self.locations(), curves, self.case)
         return resolve(draft.document, meaning)
 
+    def reader(self, context: Context) -> Reader:
+        """What reads the entries, whose values may refer to the context."""
+        return Reader(self.data, context, self.report)
+
+    def violations(self, draft: DraftDocument) -> Iterator[tuple[Rule, Violation]]:
+        """What of the document breaks a rule."""
+        return violations(self.rules, draft)
+
+    def evaluated(self) -> Parameters:
+        """The parameters of the spec."""
+        return evaluate_parameters(self.block("parameters"))
+
+    def table(
+        self, name: str, entry: f.TableEntry, scope: Scope
+    ) -> tuple[TableFunction | None, list[Wrong]]:
+        """The table of an entry, or what is wrong with it."""
+        from heuncli.spec.tables import build_table  # with csv 2 ms that few scenes need
+
+        return build_table(name, entry, scope, self.folder)
+
     def parameters(self) -> tuple[dict[str, float | None], dict[str, GivenParameter]]:
         """Values of the parameters, None for those in error; and those that have a dimension."""
-        parameters = evaluate_parameters(self.block("parameters"))
+        parameters = self.evaluated()
         for name, finding in parameters.findings:
             self.report(finding.code, Violation(("parameters", name), finding.message, finding.hint))
         return parameters.values, parameters.given
@@ -156,14 +176,14 @@ class Loading:
         entries = self.block("tables")
         if not entries:
             return {}
-        from heuncli.spec.tables import build_table, outside_folder  # with csv 2 ms that few scenes need
+        from heuncli.spec.tables import outside_folder  # as above
 
-        reader = Reader(self.data, Context(scope, scope), self.report)
+        reader = self.reader(Context(scope, scope))
         tables: dict[str, TableFunction | None] = {}
         for name, data in entries.items():
             path = ("tables", name)
             entry = reader.model(path, data, f.TableEntry)
-            tables[name], wrong = build_table(name, entry, scope, self.folder) if entry is not None else (None, [])
+            tables[name], wrong = self.table(name, entry, scope) if entry is not None else (None, [])
             if entry is not None and entry.file is not None and (told := outside_folder(self.folder, entry.file)):
                 self.warnings.append(Problem(told.code, told.message, self.location((*path, "file")), told.hint))
             self.report_read(path, wrong)
@@ -230,7 +250,7 @@ class Loading:
 
     def judge(self, draft: DraftDocument, follows: Callable[[Path_], bool]) -> None:
         """Apply the rules; what may be the consequence of another error is not reported."""
-        for rule, violation in violations(self.rules, draft):
+        for rule, violation in self.violations(draft):
             if rule.follows and follows(violation.path):
                 continue
             problem = Problem(
@@ -240,9 +260,16 @@ class Loading:
 
     def locations(self) -> dict[str, SourceLocation]:
         """Locations for later stages: of every entry, and of every value that may fail during the run."""
+        return self.locations_of((*self.places(), *self.set))
+
+    def places(self) -> list[Path_]:
+        """The paths of the file of which later stages may ask for the location."""
         values = self.source.values
-        wanted = [path for path in values if 0 < len(path) <= 2 or (path and path[0] in PLACED)]
-        return {dotted(path): self.location(path, key=len(path) <= 2) for path in (*wanted, *self.set)}
+        return [path for path in values if 0 < len(path) <= 2 or (path and path[0] in PLACED)]
+
+    def locations_of(self, paths: Iterable[Path_]) -> dict[str, SourceLocation]:
+        """The locations of some paths, by the words that users write for them."""
+        return {dotted(path): self.location(path, key=len(path) <= 2) for path in paths}
 
 
 def in_order(problems: list[Problem]) -> list[Problem]:

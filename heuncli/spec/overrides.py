@@ -47,7 +47,7 @@ def override(
     """The data with values replaced, the locations of these, and the problems with them."""
     if not settings:
         return data, {}, []
-    data = copy.deepcopy(data)
+    data = {**data}
     locations: dict[Path_, SourceLocation] = {}
     problems: list[Problem] = []
     for key, value, location, key_location in settings:
@@ -116,7 +116,8 @@ def in_list(node: list[Any], part: str | int) -> bool:
 def put(data: dict[str, Any], path: Path_, value: Any) -> tuple[str, str] | None:
     """Store a value; or return why it cannot be stored, with a hint.
 
-    What users name (a parameter, a body, a point) must be there; other keys may be new: the format judges them.
+    What users name (a parameter, a body, a point) must be there; other keys may be new: the format judges them. What
+    the path leads through is copied, all beside it is shared with the data of which these are a copy.
     """
     node: Any = data
     for depth, part in enumerate(path):
@@ -139,6 +140,7 @@ def put(data: dict[str, Any], path: Path_, value: Any) -> tuple[str, str] | None
         elif node[part] is None and depth < len(path) - 1:
             node[part] = {}
         if depth < len(path) - 1:
+            node[part] = copy.copy(node[part])
             node = node[part]
     node[path[-1]] = value
     return None

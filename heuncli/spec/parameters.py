@@ -8,6 +8,7 @@ from heuncli.errors import Finding
 from heuncli.expressions.grammar import GivenParameter
 from heuncli.records import record
 from heuncli.spec.quantity import Follows, Scope, in_time
+from heuncli.spec.sharing import same
 
 MOST_TOLD = 12  # names of a circle
 CUT = "give one of them as a number"
@@ -27,8 +28,10 @@ class _Values(dict[str, float | None]):
     def __init__(self, given: dict[str, Any]) -> None:
         super().__init__()
         self.given = given
+        self.asked: set[object] = set()
 
     def __contains__(self, name: object) -> bool:
+        self.asked.add(name)
         return name in self.given
 
     def __missing__(self, name: str) -> float | None:
@@ -37,17 +40,26 @@ class _Values(dict[str, float | None]):
 
 @record
 class Parameters:
-    """Values in SI, None for those in error; those with a dimension, as they are written; and what is wrong."""
+    """Values in SI, None for those in error; those with a dimension, as they are written; and what is wrong.
+
+    uses: the names that each of them asks for.
+    """
 
     values: dict[str, float | None]
     given: dict[str, GivenParameter]
     findings: list[tuple[str, Finding]]
+    uses: dict[str, set[object]]
 
 
-def evaluate_parameters(given: dict[str, Any]) -> Parameters:
-    """The parameters that a spec gives."""
+def evaluate_parameters(given: dict[str, Any], known: Parameters | None = None) -> Parameters:
+    """The parameters that a spec gives; known: those that hang on nothing that has changed since."""
     values = _Values(given)
     written: dict[str, GivenParameter] = {}
+    uses: dict[str, set[object]] = {name: set() for name in given}
+    if known is not None:
+        values.update(known.values)
+        written.update(known.given)
+        uses.update(known.uses)
     scope = Scope(parameters=values, given=written)
     findings: list[tuple[str, Finding]] = []
     for first in given:
@@ -57,6 +69,7 @@ def evaluate_parameters(given: dict[str, Any]) -> Parameters:
             if name in values.keys():  # noqa: SIM118  # `in values` asks whether it is given
                 waiting.popitem()
                 continue
+            values.asked = uses[name]
             try:
                 expression = in_time(given[name], None, scope)
                 values[name] = expression.constant
@@ -76,7 +89,21 @@ def evaluate_parameters(given: dict[str, Any]) -> Parameters:
             except Finding as finding:
                 values[name] = None
                 findings.append((name, finding))
-    return Parameters({name: values[name] for name in given}, written, findings)
+    return Parameters({name: values[name] for name in given}, written, findings, uses)
+
+
+def unchanged(given: dict[str, Any], before: dict[str, Any], evaluated: Parameters) -> Parameters:
+    """Of parameters that were evaluated before those whose values stand: they and what they use are as they were."""
+    standing = {name for name in given if name in before and same(given[name], before[name])}
+    standing = standing if given.keys() == before.keys() else set()
+    while fallen := {name for name in standing if not evaluated.uses[name] & before.keys() <= standing}:
+        standing -= fallen
+    return Parameters(
+        {name: value for name, value in evaluated.values.items() if name in standing},
+        {name: value for name, value in evaluated.given.items() if name in standing},
+        [],
+        {name: value for name, value in evaluated.uses.items() if name in standing},
+    )
 
 
 def shortened(names: list[str]) -> list[str]:

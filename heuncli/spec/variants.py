@@ -1,0 +1,291 @@
+"""A spec read once, and again with other values: what hangs on none of them is kept.
+
+While the spec is read for the first time, it is written down what every entry, table and rule looks up (lookups.py):
+names of parameters and of tables, types of joints, blocks of the document. With other values it is read by the same
+code; an entry whose data are as they were, and for which every lookup would give what it gave, is the entry that it
+was. So is a rule's verdict. What is kept is that of the first reading alone, so that no variant hangs on another one.
+Where anything is wrong with a variant, it is read once more with nothing kept, and its errors are those.
+
+Impure: reads the spec's file and those of its tables, when it is made; a table that a variant changes is read again.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Iterator, Mapping
+from pathlib import Path
+from typing import Any, NamedTuple, cast
+
+from heuncli.errors import SourceLocation, SpecError
+from heuncli.expressions.programs import TableFunction
+from heuncli.nearest import begin_file
+from heuncli.records import replace
+from heuncli.spec import format as f
+from heuncli.spec.document import Reader
+from heuncli.spec.fields import Context, Entry
+from heuncli.spec.load import Loading
+from heuncli.spec.lookups import Log, Lookup, Watched, WatchedFields, changed
+from heuncli.spec.models import Spec
+from heuncli.spec.names import Names, mapping
+from heuncli.spec.parameters import Parameters, evaluate_parameters, unchanged
+from heuncli.spec.quantity import Scope
+from heuncli.spec.rules.every import DraftDocument, Rule, Violation
+from heuncli.spec.sharing import same, shared, shared_entries
+from heuncli.spec.source import Path_, SourceFile, dotted, read
+from heuncli.spec.tables import Wrong
+
+
+class SpecVariants:
+    """A spec that was read, of which variants are read."""
+
+    def __init__(
+        self,
+        path: str | Path,
+        text: str | None = None,
+        overrides: Mapping[str, str] | None = None,
+        checking: bool = True,
+        case: str | None = None,
+    ) -> None:
+        """Read the spec as `load` does; overrides: those of all variants. Raises SpecError."""
+        begin_file()
+        self.overrides = dict(overrides or {})
+        source = read(str(path), text)
+        self._first = FirstReading(str(path), source, self.overrides, checking, case)
+        self.spec = self._first.spec()
+
+    def load(self, overrides: Mapping[str, str]) -> Spec:
+        """The scene with other values: what `load` makes of the spec with them, and of its values the same bits.
+
+        overrides: parameters or dotted keys with their values as text. Values that are those of the first reading are
+        the same objects. Raises SpecError with all problems.
+        """
+        first, given = self._first, {**self.overrides, **overrides}
+        try:
+            return LaterReading(first, given).spec()
+        except SpecError:
+            begin_file()
+            return Loading(first.path, first.source, given, first.checking, first.case).spec()
+
+
+class KeptEntry(NamedTuple):
+    """An entry, what it was read from, and what was looked up for it."""
+
+    entry: Any
+    data: Any
+    lookups: frozenset[Lookup]
+
+
+class KeptTable(NamedTuple):
+    """A table, the entry it was built of, and what was looked up for it."""
+
+    table: TableFunction | None
+    entry: f.TableEntry
+    lookups: frozenset[Lookup]
+
+
+class KeptVerdict(NamedTuple):
+    """What a rule found, and what it looked at."""
+
+    violations: tuple[Violation, ...]
+    lookups: frozenset[Lookup]
+
+
+class FirstReading(Loading):
+    """The reading that writes down what everything hangs on."""
+
+    def __init__(
+        self, path: str, source: SourceFile, overrides: Mapping[str, str], checking: bool, case: str | None
+    ) -> None:
+        super().__init__(path, source, overrides, checking, case)
+        self.log = Log()
+        self.entries: dict[Path_, KeptEntry] = {}
+        self.with_shapes: dict[Path_, tuple[f.BodyEntry, f.BodyEntry]] = {}  # as read, and with its shapes
+        self.built: dict[str, KeptTable] = {}
+        self.contexts: dict[bool, Context] = {}  # by whether values in time may be read by it
+        self.verdicts: list[KeptVerdict] = []
+
+    def spec(self) -> Spec:
+        """The scene. Raises SpecError."""
+        self.resolved = super().spec()
+        return self.resolved
+
+    def evaluated(self) -> Parameters:
+        """The parameters, which are kept with what each of them uses."""
+        self.given_parameters = self.block("parameters")
+        self.known = evaluate_parameters(self.given_parameters)
+        return self.known
+
+    def reader(self, context: Context) -> Reader:
+        """A reader that keeps what it reads."""
+        self.contexts[context.time.in_time] = context
+        points = Watched("points", context.points, self.log)
+        return FirstReader(self, Context(self._watched(context.load), self._watched(context.time), points))
+
+    def _watched(self, scope: Scope) -> Scope:
+        """A scope that logs what is looked up in it."""
+        names = ("parameters", "joints", "tables", "given", "points")
+        return replace(scope, **{name: Watched(name, getattr(scope, name), self.log) for name in names})
+
+    def table(self, name: str, entry: f.TableEntry, scope: Scope) -> tuple[TableFunction | None, list[Wrong]]:
+        """The table of an entry, or what is wrong with it."""
+        self.log.taken()
+        table, wrong = super().table(name, entry, self._watched(scope))
+        self.built[name] = KeptTable(table, entry, self.log.taken())
+        return table, wrong
+
+    def violations(self, draft: DraftDocument) -> Iterator[tuple[Rule, Violation]]:
+        """What of the document breaks a rule."""
+        self.draft = draft
+        document = cast(f.Document, WatchedFields("document", draft.document, self.log))
+        unread = cast("frozenset[str]", Watched("unread", dict.fromkeys(draft.unread), self.log))
+        entries, points, joints = (
+            cast("dict[str, Any]", Watched(f"names.{of}", getattr(draft.names, of), self.log))
+            for of in ("entries", "points", "joints")
+        )
+        for rule in self.rules:
+            self.log.taken()
+            # what the names gather as they are asked is gathered for each rule: each looks up all that it hangs on
+            found = tuple(rule.check(DraftDocument(document, Names(entries, points, joints, {}), unread)))
+            self.verdicts.append(KeptVerdict(found, self.log.taken()))
+            yield from ((rule, violation) for violation in found)
+
+    def locations(self) -> dict[str, SourceLocation]:
+        """Locations for later stages."""
+        self.placed = self.places()
+        self.located = super().locations()
+        return self.located
+
+
+class FirstReader(Reader):
+    """Keeps every entry that it reads."""
+
+    def __init__(self, first: FirstReading, context: Context) -> None:
+        super().__init__(first.data, context, first.report)
+        self.first = first
+
+    def model(self, path: Path_, data: Any, model: type[Entry]) -> Any:
+        """One model."""
+        self.first.log.taken()
+        entry = super().model(path, data, model)
+        if entry is not None:
+            self.first.entries[path] = KeptEntry(entry, data, self.first.log.taken())
+        return entry
+
+    def with_shapes(self, path: Path_, body: f.BodyEntry) -> f.BodyEntry | None:
+        """A body with its shapes read."""
+        whole = super().with_shapes(path, body)
+        if whole is not None:
+            self.first.with_shapes[path] = body, whole
+        return whole
+
+
+class LaterReading(Loading):
+    """A reading with other values, which takes from the first one what stands."""
+
+    def __init__(self, first: FirstReading, overrides: Mapping[str, str]) -> None:
+        super().__init__(first.path, first.source, overrides, first.checking, first.case)
+        self.first = first
+        self.data = _shared_data(self.data, first.data)
+
+    def spec(self) -> Spec:
+        """The scene, with the values of the first one where they are the same. Raises SpecError."""
+        made, before = super().spec(), self.first.resolved
+        pairs = ((name, getattr(made, name), getattr(before, name)) for name in Spec._fields)
+        return Spec(**{
+            name: shared_entries(new, old) if isinstance(new, dict) else shared(new, old) for name, new, old in pairs
+        })  # fmt: skip
+
+    def evaluated(self) -> Parameters:
+        """The parameters."""
+        given = self.block("parameters")
+        return evaluate_parameters(given, unchanged(given, self.first.given_parameters, self.first.known))
+
+    def reader(self, context: Context) -> Reader:
+        """A reader that takes entries from the first reading."""
+        return LaterReader(self, context, frozenset(self._changed(context)))
+
+    def _changed(self, context: Context) -> Iterator[Lookup]:
+        """What lookups while entries or tables are read do not give now what they gave."""
+        before = self.first.contexts[context.time.in_time]
+        for name in ("parameters", "given", "joints", "tables"):
+            new, old = (getattr(one.time, name) for one in (context, before))
+            yield from changed(name, shared_entries(new, old), old)
+        yield from changed("points", shared_entries(context.points, before.points), before.points)
+
+    def table(self, name: str, entry: f.TableEntry, scope: Scope) -> tuple[TableFunction | None, list[Wrong]]:
+        """The table of an entry, or what is wrong with it."""
+        kept = self.first.built.get(name)
+        if kept is not None and kept.entry is entry:
+            differing = frozenset(self._changed(Context(scope, scope)))
+            if kept.lookups.isdisjoint(differing):
+                return kept.table, []
+        return super().table(name, entry, scope)
+
+    def violations(self, draft: DraftDocument) -> Iterator[tuple[Rule, Violation]]:
+        """What of the document breaks a rule."""
+        differing = frozenset(self._differing(draft))
+        for rule, kept in zip(self.rules, self.first.verdicts, strict=True):
+            found = kept.violations if kept.lookups.isdisjoint(differing) else rule.check(draft)
+            yield from ((rule, violation) for violation in found)
+
+    def _differing(self, draft: DraftDocument) -> Iterator[Lookup]:
+        """What rules would not see as they saw it."""
+        before = self.first.draft
+        yield from changed("unread", dict.fromkeys(draft.unread), dict.fromkeys(before.unread))
+        for name in ("entries", "points", "joints"):
+            new, old = getattr(draft.names, name), getattr(before.names, name)
+            yield from changed(f"names.{name}", shared_entries(new, old), old)
+        for name in f.Document._fields:
+            new, old = getattr(draft.document, name), getattr(before.document, name)
+            left_out = name in f.SINGLE and not mapping(self.data.get(name)) and not mapping(self.first.data.get(name))
+            if not left_out and not _is_as_before(new, old):
+                yield Lookup("document", name)
+
+    def locations(self) -> dict[str, SourceLocation]:
+        """Locations for later stages: of the first reading, but for those on the command line of either."""
+        set_ = {*self.set, *self.first.set}
+        moved = [path for path in self.first.placed if any(path[: len(each)] == each for each in set_)]
+        gone = {dotted(path) for path in self.first.set}
+        kept = {words: location for words, location in self.first.located.items() if words not in gone}
+        return kept | self.locations_of((*moved, *self.set))
+
+
+class LaterReader(Reader):
+    """Takes entries from the first reading where nothing that they hang on has changed."""
+
+    def __init__(self, later: LaterReading, context: Context, changed: frozenset[Lookup]) -> None:
+        super().__init__(later.data, context, later.report)
+        self.first, self.changed = later.first, changed
+
+    def model(self, path: Path_, data: Any, model: type[Entry]) -> Any:
+        """One model."""
+        kept = self.first.entries.get(path)
+        stands = kept is not None and type(kept.entry) is model and same(data, kept.data)
+        if kept is not None and stands and kept.lookups.isdisjoint(self.changed):
+            return kept.entry
+        return super().model(path, data, model)
+
+    def with_shapes(self, path: Path_, body: f.BodyEntry) -> f.BodyEntry | None:
+        """A body with its shapes read."""
+        read, whole = self.first.with_shapes.get(path, (None, None))
+        new = super().with_shapes(path, body)
+        if new is None or whole is None or body is not read or not _is_as_before(new.shapes, whole.shapes):
+            return new
+        return whole
+
+
+def _is_as_before(new: Any, old: Any) -> bool:
+    """Whether an entry is the same object, or all entries of a block or list are."""
+    if isinstance(new, dict) and isinstance(old, dict):
+        return [*new] == [*old] and all(new[key] is old[key] for key in new)
+    if isinstance(new, list) and isinstance(old, list):
+        return len(new) == len(old) and all(a is b for a, b in zip(new, old, strict=True))
+    return new is old
+
+
+def _shared_data(new: dict[str, Any], old: dict[str, Any]) -> dict[str, Any]:
+    """Data with the blocks and entries of older data where they are the same."""
+    return {
+        block: shared_entries(value, old[block]) if type(value) is dict and type(old.get(block)) is dict
+        else shared(value, old.get(block))
+        for block, value in new.items()
+    }  # fmt: skip
