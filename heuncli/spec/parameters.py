@@ -8,7 +8,6 @@ from heuncli.errors import Finding
 from heuncli.expressions.grammar import GivenParameter
 from heuncli.records import record
 from heuncli.spec.quantity import Follows, Scope, in_time
-from heuncli.spec.sharing import same
 
 MOST_TOLD = 12  # names of a circle
 CUT = "give one of them as a number"
@@ -90,20 +89,6 @@ def evaluate_parameters(given: dict[str, Any], known: Parameters | None = None) 
                 values[name] = None
                 findings.append((name, finding))
     return Parameters({name: values[name] for name in given}, written, findings, uses)
-
-
-def unchanged(given: dict[str, Any], before: dict[str, Any], evaluated: Parameters) -> Parameters:
-    """Of parameters that were evaluated before those whose values stand: they and what they use are as they were."""
-    standing = {name for name in given if name in before and same(given[name], before[name])}
-    standing = standing if given.keys() == before.keys() else set()
-    while fallen := {name for name in standing if not evaluated.uses[name] & before.keys() <= standing}:
-        standing -= fallen
-    return Parameters(
-        {name: value for name, value in evaluated.values.items() if name in standing},
-        {name: value for name, value in evaluated.given.items() if name in standing},
-        [],
-        {name: value for name, value in evaluated.uses.items() if name in standing},
-    )
 
 
 def shortened(names: list[str]) -> list[str]:

@@ -26,7 +26,7 @@ from heuncli.spec.load import Loading
 from heuncli.spec.lookups import Log, Lookup, Watched, WatchedFields, changed
 from heuncli.spec.models import Spec
 from heuncli.spec.names import Names, mapping
-from heuncli.spec.parameters import Parameters, evaluate_parameters, unchanged
+from heuncli.spec.parameters import Parameters, evaluate_parameters
 from heuncli.spec.quantity import Scope
 from heuncli.spec.rules.every import DraftDocument, Rule, Violation
 from heuncli.spec.sharing import same, shared, shared_entries
@@ -197,7 +197,7 @@ class LaterReading(Loading):
     def evaluated(self) -> Parameters:
         """The parameters."""
         given = self.block("parameters")
-        return evaluate_parameters(given, unchanged(given, self.first.given_parameters, self.first.known))
+        return evaluate_parameters(given, _unchanged(given, self.first.given_parameters, self.first.known))
 
     def reader(self, context: Context) -> Reader:
         """A reader that takes entries from the first reading."""
@@ -271,6 +271,20 @@ class LaterReader(Reader):
         if new is None or whole is None or body is not read or not _is_as_before(new.shapes, whole.shapes):
             return new
         return whole
+
+
+def _unchanged(given: dict[str, Any], before: dict[str, Any], evaluated: Parameters) -> Parameters:
+    """Of parameters that were evaluated before those whose values stand: they and what they use are as they were."""
+    standing = {name for name in given if name in before and same(given[name], before[name])}
+    standing = standing if given.keys() == before.keys() else set()
+    while fallen := {name for name in standing if not evaluated.uses[name] & before.keys() <= standing}:
+        standing -= fallen
+    return Parameters(
+        {name: value for name, value in evaluated.values.items() if name in standing},
+        {name: value for name, value in evaluated.given.items() if name in standing},
+        [],
+        {name: value for name, value in evaluated.uses.items() if name in standing},
+    )
 
 
 def _is_as_before(new: Any, old: Any) -> bool:
