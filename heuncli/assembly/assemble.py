@@ -8,12 +8,26 @@ from heuncli.assembly.gaps import size_of
 from heuncli.assembly.poses import Placing
 from heuncli.assembly.rates import Moving
 from heuncli.assembly.start_choices import chosen, pose_choices, rate_choices
+from heuncli.assembly.walk import AssemblyPoses, Tree
 from heuncli.mechanism.model import Assembly, Mechanism
-from heuncli.records import replace
+from heuncli.records import record, replace
 from heuncli.shapes.rotations import cross_rows
+from heuncli.stages import ANEW, Stages
 
 
-def assemble(mechanism: Mechanism, t0: float = 0.0) -> Assembly:
+@record
+class Placed:
+    """Poses at the start, and how they were come by: see Placing."""
+
+    drawn: AssemblyPoses
+    poses: AssemblyPoses
+    tree: Tree
+    fitted: set[int]
+    folded: tuple[str, ...]
+    gap: float
+
+
+def assemble(mechanism: Mechanism, t0: float = 0.0, stages: Stages = ANEW) -> Assembly:
     """Poses and rates at t0: what is held, and for the rest the nearest to the drawing that fits.
 
     Raises SolveError: does-not-fit, held-conflict, rates-do-not-fit, singular-pose.
@@ -22,32 +36,43 @@ def assemble(mechanism: Mechanism, t0: float = 0.0) -> Assembly:
     if mechanism.stops or any(joint.restitution is not None for joint in mechanism.joints):
         from heuncli.assembly.slack_ropes import assembled  # few scenes have them
 
-        return assembled(mechanism, found, size, lambda asking: _assembled(mechanism, asking, size))
-    return _assembled(mechanism, found, size)
+        return assembled(mechanism, found, size, lambda asking: _assembled(mechanism, asking, size, stages))
+    return _assembled(mechanism, found, size, stages)
 
 
-def _assembled(mechanism: Mechanism, found: list[JointCondition], size: float) -> Assembly:
+def _assembled(mechanism: Mechanism, found: list[JointCondition], size: float, stages: Stages) -> Assembly:
+    placed = stages.run(_placed, mechanism, found, size)
+    return stages.run(_started, mechanism, found, placed, size)
+
+
+def _placed(mechanism: Mechanism, found: list[JointCondition], size: float) -> Placed:
+    """The poses."""
     placing = Placing(mechanism, found, size)
     placing.fit()
-    moving = Moving(mechanism, found, placing.poses, size)
+    return Placed(placing.drawn, placing.poses, placing.tree, placing.fitted, tuple(placing.folded), placing.gap)
+
+
+def _started(mechanism: Mechanism, found: list[JointCondition], placed: Placed, size: float) -> Assembly:
+    """The rates in these poses, and what is told of both."""
+    moving = Moving(mechanism, found, placed.poses, size)
     moving.fit()
     moving.check()
 
     n = len(mechanism.bodies)
-    x, r = placing.poses.x, moving.rates
+    x, r = placed.poses.x, moving.rates
     start = Assembly(
         position=x[:n],
-        rotation=placing.poses.R[:n],
+        rotation=placed.poses.R[:n],
         velocity=r.v[:n] + cross_rows(r.w[:n], x[:n] - r.s[:n]),
         angular_velocity=r.w[:n],
         chosen=(),
-        gap=placing.gap,
+        gap=placed.gap,
     )
-    folds = [f"the loop at joint {name} started in line: folded in a fixed way" for name in placing.folded]
-    choices = pose_choices(mechanism, placing.drawn, placing.poses, placing.tree, placing.fitted, size)
+    folds = [f"the loop at joint {name} started in line: folded in a fixed way" for name in placed.folded]
+    choices = pose_choices(mechanism, placed.drawn, placed.poses, placed.tree, placed.fitted, size)
     choices += rate_choices(mechanism, r, moving.tree, moving.fitted, size)
     return replace(
         start,
         chosen=(*folds, *chosen(choices)),
-        moved=moved(mechanism, found, placing.drawn, start, size),
+        moved=moved(mechanism, found, placed.drawn, start, size),
     )

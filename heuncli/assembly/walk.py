@@ -87,7 +87,8 @@ def spanning(
     for i in sorted((i for i in range(n) if held[i]), key=lambda i: bodies[i].name):
         reach(i, -1, -1)
     spread()
-    for i in sorted(range(n), key=lambda i: (not first[i], is_to[i], -bodies[i].mass, bodies[i].name)):
+    left = (i for i in range(n) if not reached[i])
+    for i in sorted(left, key=lambda i: (not first[i], is_to[i], -bodies[i].mass, bodies[i].name)):
         if not reached[i]:
             reach(i, -1, -1)
             spread()

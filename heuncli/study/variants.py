@@ -10,13 +10,16 @@ looked up (spec/variants.py), so a variant is what `heun run --set` makes of it,
 from __future__ import annotations
 
 from collections.abc import Mapping
+from contextlib import suppress
 from pathlib import Path
 
+from heuncli.errors import SolveError, SpecError
 from heuncli.spec.models import Spec
 from heuncli.spec.variants import SpecVariants
+from heuncli.stages import FirstStages, LaterStages
 from heuncli.study.ask.study import Study
-from heuncli.study.model.options import Options
-from heuncli.study.workflow import solve
+from heuncli.study.model.options import Options, as_asked
+from heuncli.study.workflow import asked_set_up, solve
 
 
 class Variants:
@@ -38,6 +41,10 @@ class Variants:
         """
         self.options = options or Options()
         self._specs = SpecVariants(path, text, overrides, checking=False, case=case)
+        first = FirstStages()
+        with suppress(SpecError, SolveError):  # of a scene that cannot be set up less is kept, or nothing
+            asked_set_up(as_asked(self._specs.spec, self.options), self.options, first)
+        self._stages = LaterStages(first)
 
     @property
     def spec(self) -> Spec:
@@ -53,4 +60,4 @@ class Variants:
 
         Raises what `load` and `solve` raise: SpecError, SolveError, LimitError; the next variant does not feel it.
         """
-        return solve(self.load(values), self.options)
+        return solve(self.load(values), self.options, self._stages)

@@ -22,6 +22,7 @@ from heuncli.records import replace
 from heuncli.results import Block
 from heuncli.results_schema import SHARES
 from heuncli.spec.models import ResultCondition, Spec
+from heuncli.stages import ANEW, Stages
 from heuncli.study.ask.study import Study
 from heuncli.study.compose.recovery import recover
 from heuncli.study.compose.results import compose, impulses_of
@@ -37,8 +38,8 @@ if TYPE_CHECKING:
     from heuncli.integration.methods.method import Method
 
 
-def solve(spec: Spec, options: Options | None = None) -> Study:
-    """The scene solved as its analysis asks.
+def solve(spec: Spec, options: Options | None = None, stages: Stages = ANEW) -> Study:
+    """The scene solved as its analysis asks; stages: what of its set-up is not made anew.
 
     Raises SpecError, LimitError, and SolveError whose problems have their places in the spec.
     """
@@ -46,7 +47,7 @@ def solve(spec: Spec, options: Options | None = None) -> Study:
     deadline = time.monotonic() + options.time_limit if options.time_limit is not None else None
     with placed(spec):
         try:
-            return solved(spec, options, deadline)
+            return solved(spec, options, deadline, stages)
         except SolveError as error:
             on_result = any(c.ends and isinstance(c, ResultCondition) for c in spec.analysis.conditions)
             if error.reached is None or not on_result:
@@ -61,16 +62,15 @@ def by(options: Options, deadline: float | None) -> Callable[[Spec], Study]:
     return lambda spec: solved(spec, options, deadline)
 
 
-def solved(spec: Spec, options: Options, deadline: float | None) -> Study:
+def solved(spec: Spec, options: Options, deadline: float | None, stages: Stages = ANEW) -> Study:
     """The scene solved up to its last instant; deadline: of time.monotonic() [s].
 
     Raises what `solve` does; SolveError also where a motion fails behind the event that was to end it.
     """
     begun = time.perf_counter()
     conditions = spec.analysis.conditions
-    asked = options.asked.with_all(needed_by(conditions, spec)) if conditions else options.asked
     spec = as_asked(spec, options)
-    setup = set_up(spec, reduce=options.reduce, asked=asked)
+    setup = asked_set_up(spec, options, stages)
     if options.room is not None:
         require_room(setup, options.room, in_parts=options.in_parts)
     built = time.perf_counter()
@@ -96,6 +96,13 @@ def solved(spec: Spec, options: Options, deadline: float | None) -> Study:
     from heuncli.study.ask.events import with_events  # few scenes have them
 
     return with_events(study, whole, by(options, deadline))
+
+
+def asked_set_up(spec: Spec, options: Options, stages: Stages = ANEW) -> Setup:
+    """What is solved of a spec `as_asked`: as much as the options ask for, and its conditions. Raises as `set_up`."""
+    conditions = spec.analysis.conditions
+    asked = options.asked.with_all(needed_by(conditions, spec)) if conditions else options.asked
+    return set_up(spec, reduce=options.reduce, asked=asked, stages=stages)
 
 
 def describe(spec: Spec, *, reduce: bool = True) -> Block:

@@ -14,6 +14,7 @@ from heuncli.mechanism.size import size_of_scene
 from heuncli.records import record, replace
 from heuncli.results import Array
 from heuncli.shapes.rotations import cross_rows
+from heuncli.stages import ANEW, Stages
 from heuncli.tree.idle_spins import IdleSpin, idle_spins, without_inertia
 from heuncli.tree.layout import Layout
 from heuncli.tree.pack import lay_out
@@ -38,9 +39,9 @@ class PreparedScene:
         return sum(float(np.sum(spin.axes[:, 2] ** 2)) >= tolerances.ALONG_SQUARED for spin in self.idle)
 
 
-def prepare(mechanism: Mechanism, t0: float = 0.0) -> PreparedScene:
+def prepare(mechanism: Mechanism, t0: float = 0.0, stages: Stages = ANEW) -> PreparedScene:
     """Assemble at t0 and lay out. Raises SolveError where the scene does not close, or starts beyond a stop."""
-    start = assemble(mechanism, t0)
+    start = assemble(mechanism, t0, stages)
     if any(j.drive is not None and j.drive.adds_to_start for j in mechanism.joints):
         from heuncli.tree.driven_starts import begun  # few scenes have drives by a rate
 

@@ -23,6 +23,7 @@ from heuncli.reduction import compose as reduction
 from heuncli.reduction.model import Reduced
 from heuncli.results import Array, Block
 from heuncli.spec.models import Spec
+from heuncli.stages import ANEW, Stages
 from heuncli.study.model.method_choice import first_choice, why
 from heuncli.study.model.model_note import attitudes, model_note, reductions, rested
 from heuncli.study.model.selection import EVERYTHING, Selection
@@ -79,11 +80,13 @@ def set_up(
     reduce: bool = True,
     asked: Selection = EVERYTHING,
     looked_for: bool = True,
+    stages: Stages = ANEW,
 ) -> Setup:
     """Build, cut, assemble, lay out; `method` stands for the one in the spec; reduce: a smaller scene may move for it.
 
     looked_for: a rest pose that is asked for is found.
-    asked: what is not asked for, and what nothing asked for depends on, is left out. Raises SpecError for a section
+    asked: what is not asked for, and what nothing asked for depends on, is left out; stages: what of it is not made
+    anew. Raises SpecError for a section
     that cannot be cut, SolveError where the scene does not close.
     """
     spec, left_out = asked_part(spec, asked, reduce)
@@ -91,7 +94,7 @@ def set_up(
     if spec.analysis.type == "rest":
         mechanism = with_slack_ropes(mechanism)
     require_drives(mechanism, spec.analysis.times[0] if spec.analysis.times else 0.0)
-    prepared = prepare(mechanism, spec.analysis.times[0] if spec.analysis.type == "state" else 0.0)
+    prepared = prepare(mechanism, spec.analysis.times[0] if spec.analysis.type == "state" else 0.0, stages)
     if any(drive.by_rate for drive in spec.drives.values()):
         from heuncli.tree.driven_starts import require_lengths  # few scenes have them
 

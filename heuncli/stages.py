@@ -1,0 +1,153 @@
+"""Stages of a computation whose results are kept, each with what of its input it has looked at.
+
+A stage is a function of records that changes nothing. Run for the first time its input is handed to it wrapped, and
+every field that it reads is written down. Given other input in which all that it read is the same to the bit, its
+result can be no other, and is taken over: that a force does not move the pose in which a scene is assembled is
+found out by that, and asserted nowhere.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Callable
+from functools import cache
+from typing import Any, NamedTuple, TypeVar
+
+import numpy as np
+
+from heuncli.records import fields
+from heuncli.spec.sharing import same
+
+T = TypeVar("T")
+
+
+class Stages:
+    """Runs stages, and keeps nothing."""
+
+    def run(self, stage: Callable[..., T], *given: Any) -> T:
+        """The result of a stage."""
+        return stage(*given)
+
+
+ANEW = Stages()
+
+
+class KeptStage(NamedTuple):
+    """The result of a stage and what it looked at."""
+
+    result: Any
+    seen: tuple[Seen, ...]
+
+    def stands(self, given: tuple[Any, ...]) -> bool:
+        """Whether the stage would see in this input what it saw."""
+        return all(one.stands(new) for one, new in zip(self.seen, given, strict=True))
+
+
+class FirstStages(Stages):
+    """Runs stages for the first time, and keeps what they look at; of one that is run again the first run."""
+
+    def __init__(self) -> None:
+        self.kept: dict[Callable[..., Any], KeptStage] = {}
+
+    def run(self, stage: Callable[..., T], *given: Any) -> T:
+        """The result of a stage; its arrays are not to be written to."""
+        if stage in self.kept:
+            return stage(*given)
+        seen = tuple(map(Seen, given))
+        result = stage(*map(watched, seen))
+        lock(result)
+        self.kept[stage] = KeptStage(result, seen)
+        return result
+
+
+class LaterStages(Stages):
+    """Takes the results of first stages where they stand."""
+
+    def __init__(self, first: FirstStages) -> None:
+        self.first = first
+
+    def run(self, stage: Callable[..., T], *given: Any) -> T:
+        """The result of a stage."""
+        kept = self.first.kept.get(stage)
+        if kept is not None and kept.stands(given):
+            result: T = kept.result
+            return result
+        return stage(*given)
+
+
+class Seen:
+    """A value that was handed to a stage, and the parts of it that were looked at; a value without parts counts whole.
+
+    parts: fields of a record by their names, members of a list or tuple with records by their places.
+    """
+
+    __slots__ = ("parts", "value")
+
+    def __init__(self, value: Any) -> None:
+        self.value = value
+        self.parts: dict[Any, Seen] | None = None
+        if is_record(value):
+            self.parts = {}
+        elif type(value) in (tuple, list) and any(map(is_record, value)):
+            self.parts = {place: Seen(member) for place, member in enumerate(value)}
+
+    def stands(self, new: Any) -> bool:
+        """Whether another value is the same in all that was looked at."""
+        old = self.value
+        if new is old:
+            return True
+        if self.parts is None:
+            return same(new, old)
+        if type(new) is not type(old):
+            return False
+        if is_record(old):
+            return all(part.stands(getattr(new, name)) for name, part in self.parts.items())
+        return len(new) == len(old) and all(part.stands(new[place]) for place, part in self.parts.items())
+
+
+def is_record(value: Any) -> bool:
+    return hasattr(type(value), "__record_fields__")
+
+
+def watched(seen: Seen) -> Any:
+    """What stands for a value and writes down which parts of it are looked at."""
+    value = seen.value
+    if seen.parts is None:
+        return value
+    if not is_record(value):
+        return type(value)(watched(part) for part in seen.parts.values())
+    made = object.__new__(_watched_class(type(value)))
+    made.__dict__.update(_seen=seen, _parts={})
+    return made
+
+
+@cache
+def _watched_class(kind: type) -> type:
+    """A kind of record whose fields are read from the record that it stands for."""
+    names = frozenset(kind.__record_fields__)  # type: ignore[attr-defined]
+
+    def read(self: Any, name: str) -> Any:
+        own = object.__getattribute__(self, "__dict__")
+        if name not in names or "_seen" not in own:  # without: one that was made of another by `replace`
+            return object.__getattribute__(self, name)
+        if name not in own["_parts"]:
+            seen = own["_seen"]
+            part = seen.parts[name] = Seen(getattr(seen.value, name))
+            own["_parts"][name] = watched(part)
+        return own["_parts"][name]
+
+    return type(kind.__name__, (kind,), {"__getattribute__": read})
+
+
+def lock(value: Any) -> None:
+    """Keep the arrays of a result from being written to."""
+    if isinstance(value, np.ndarray):
+        value.flags.writeable = False
+    elif isinstance(value, list | tuple):
+        for member in value:
+            lock(member)
+    elif is_record(value):
+        for member in fields(value).values():
+            lock(member)
+    elif isinstance(value, dict):
+        for member in value.values():
+            lock(member)
