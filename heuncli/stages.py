@@ -115,15 +115,16 @@ def watched(seen: Seen) -> Any:
         return value
     if not is_record(value):
         return type(value)(watched(part) for part in seen.parts.values())
-    made = object.__new__(_watched_class(type(value)))
+    kind: Any = type(value)
+    made: Any = object.__new__(_watched_class(kind))
     made.__dict__.update(_seen=seen, _parts={})
     return made
 
 
 @cache
-def _watched_class(kind: type) -> type:
+def _watched_class(kind: Any) -> Any:
     """A kind of record whose fields are read from the record that it stands for."""
-    names = frozenset(kind.__record_fields__)  # type: ignore[attr-defined]
+    names = frozenset(kind.__record_fields__)
 
     def read(self: Any, name: str) -> Any:
         own = object.__getattribute__(self, "__dict__")

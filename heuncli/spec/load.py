@@ -156,9 +156,7 @@ class Loading:
         """The parameters of the spec."""
         return evaluate_parameters(self.block("parameters"))
 
-    def table(
-        self, name: str, entry: f.TableEntry, scope: Scope
-    ) -> tuple[TableFunction | None, list[Wrong]]:
+    def table(self, name: str, entry: f.TableEntry, scope: Scope) -> tuple[TableFunction | None, list[Wrong]]:
         """The table of an entry, or what is wrong with it."""
         from heuncli.spec.tables import build_table  # with csv 2 ms that few scenes need
 

@@ -28,8 +28,8 @@ def same(a: Any, b: Any) -> bool:
     if kind is not type(b):
         return False
     if kind is float:
-        return (a == b and math.copysign(1.0, a) == math.copysign(1.0, b)) or (a != a and b != b)
-    if kind in (int, str, bool):
+        return bool((a == b and math.copysign(1.0, a) == math.copysign(1.0, b)) or (a != a and b != b))
+    if kind in (int, str, bool, set, frozenset):  # sets hold names and numbers of bodies
         return bool(a == b)
     if issubclass(kind, tuple) or kind is list:
         return len(a) == len(b) and all(map(same, a, b))
@@ -38,9 +38,9 @@ def same(a: Any, b: Any) -> bool:
     if kind is array:
         return bool(a.typecode == b.typecode) and a.tobytes() == b.tobytes()
     if kind is np.ndarray:
-        return a.dtype == b.dtype and a.shape == b.shape and a.tobytes() == b.tobytes()
-    names = getattr(kind, "__record_fields__", None)
-    return names is not None and all(same(getattr(a, name), getattr(b, name)) for name in names)
+        return bool(a.dtype == b.dtype) and a.shape == b.shape and a.tobytes() == b.tobytes()
+    names: tuple[str, ...] = getattr(kind, "__record_fields__", ())
+    return bool(names) and all(same(getattr(a, name), getattr(b, name)) for name in names)
 
 
 def shared(new: T, old: T) -> T:

@@ -189,10 +189,11 @@ class LaterReading(Loading):
     def spec(self) -> Spec:
         """The scene, with the values of the first one where they are the same. Raises SpecError."""
         made, before = super().spec(), self.first.resolved
-        pairs = ((name, getattr(made, name), getattr(before, name)) for name in Spec._fields)
-        return Spec(**{
-            name: shared_entries(new, old) if isinstance(new, dict) else shared(new, old) for name, new, old in pairs
-        })  # fmt: skip
+        shared_fields: dict[str, Any] = {
+            name: shared_entries(new, old) if isinstance(new, dict) and isinstance(old, dict) else shared(new, old)
+            for name, new, old in zip(Spec._fields, made, before, strict=True)
+        }
+        return Spec(**shared_fields)
 
     def evaluated(self) -> Parameters:
         """The parameters."""

@@ -1,0 +1,75 @@
+"""Stages that are kept: what a stage looked at decides, and nothing else does."""
+
+from __future__ import annotations
+
+import numpy as np
+import pytest
+
+from heuncli.records import record, replace
+from heuncli.results import Array
+from heuncli.stages import FirstStages, LaterStages
+
+
+@record
+class Bar:
+    name: str
+    length: float
+    center: Array
+    mass: float = 1.0
+
+    @property
+    def moment(self) -> float:
+        return self.mass * self.length**2
+
+
+@record
+class Scene:
+    bars: tuple[Bar, ...]
+    gravity: float
+
+
+def reach(scene: Scene) -> Array:
+    """Looks at lengths and centres; at the mass of what is longer than 1 alone."""
+    return np.array([bar.length + bar.center[0] + (bar.moment if bar.length > 1.0 else 0.0) for bar in scene.bars])
+
+
+def scene(length: float = 0.5, mass: float = 1.0, gravity: float = 9.81, x: float = 0.0) -> Scene:
+    return Scene((Bar("a", length, np.array([x, 0.0]), mass), Bar("b", 2.0, np.zeros(2))), gravity)
+
+
+def test_a_stage_is_run_again_where_what_it_saw_is_another() -> None:
+    first = FirstStages()
+    result = first.run(reach, scene())
+    later = LaterStages(first)
+    assert result.tolist() == reach(scene()).tolist()
+    for other in (scene(), scene(mass=3.0), scene(gravity=1.62)):
+        assert later.run(reach, other) is result
+    for other in (scene(length=0.6), scene(x=-0.0), replace(scene(), bars=scene().bars[:1])):
+        assert later.run(reach, other) is not result
+        assert later.run(reach, other).tolist() == reach(other).tolist()
+    heavier = scene()
+    heavier = replace(heavier, bars=(heavier.bars[0], replace(heavier.bars[1], mass=5.0)))
+    assert later.run(reach, heavier).tolist() == reach(heavier).tolist() != result.tolist()
+
+
+def test_a_record_made_of_a_watched_one_has_looked_at_all_of_it() -> None:
+    def shifted(given: Scene) -> float:
+        return replace(given.bars[0], length=9.0).length
+
+    first = FirstStages()
+    assert first.run(shifted, scene()) == 9.0
+    seen = first.kept[shifted].seen
+    assert seen[0].stands(scene(gravity=1.0))
+    assert not seen[0].stands(scene(mass=2.0))
+
+
+def test_what_fails_is_not_kept_and_what_is_kept_cannot_be_written_to() -> None:
+    def failing(given: Scene) -> None:
+        raise ValueError(given.gravity)
+
+    first = FirstStages()
+    with pytest.raises(ValueError, match=r"9\.81"):
+        first.run(failing, scene())
+    assert failing not in first.kept
+    with pytest.raises(ValueError, match="read-only"):
+        first.run(reach, scene())[0] = 1.0

@@ -1,0 +1,129 @@
+"""A spec read again with other values: what hangs on none of them is the object that it was, and nothing else is."""
+
+from __future__ import annotations
+
+import random
+from collections.abc import Callable
+from pathlib import Path
+from typing import Any
+
+import numpy as np
+import pytest
+
+from heuncli.errors import SpecError
+from heuncli.spec.load import load
+from heuncli.spec.models import Spec
+from heuncli.spec.sharing import same
+from heuncli.spec.variants import SpecVariants
+from tests.shared.bits import bits
+from tests.shared.folders import ROOT, SPECS
+
+FILES = sorted([*SPECS.glob("*.yaml"), *(ROOT / "heuncli" / "starters").glob("*.yaml")])
+SCENE = """\
+heun: 1
+parameters: {L: 1.0, H: 2*L, F: 10 N, T: 0.5 s, g: 9.81}
+gravity: [0, 0, -g]
+tables: {pulse: {file: push.csv, period: T}, pull: {x: [0, L], y: [0, 1]}}
+ground: {points: {O: [0, 0, 0]}}
+bodies:
+  long: {shapes: [{type: rod, from: [0, 0, 0], to: [H, 0, 0], mass: 1}], points: {a: [0, 0, 0], b: [H, 0, 0]}}
+  short: {shapes: [{type: rod, from: [0, 0, 0], to: [0.1, 0, 0], mass: 1}], points: {a: [0, 0, 0]}}
+joints:
+  foot: {type: pin, axis: [0, 1, 0], from: ground.O, to: long.a}
+  knee: {type: pin, axis: [0, 1, 0], from: long.b, to: short.a}
+forces:
+  push: {type: force, on: long.b, vector: ["table(pulse, t)", 0, F]}
+  brake: {type: torque, joint: knee, value: -0.1*knee.rate}
+analysis: {duration: 1, samples: 3}
+expect: [{of: joints.foot.force.x, at: 0.5, is: F*L}, {of: joints.knee.force.x, at: 0.5, is: 0}]
+"""
+
+
+@pytest.fixture
+def scene(tmp_path: Path) -> Path:
+    (tmp_path / "push.csv").write_text("0,0\n0.25,1\n0.5,0\n", encoding="utf-8")
+    path = tmp_path / "scene.yaml"
+    path.write_text(SCENE, encoding="utf-8")
+    return path
+
+
+def kept(variants: SpecVariants, **values: str) -> set[str]:
+    """The entries of the scene that are the objects that they were."""
+    new, old = variants.load(values), variants.spec
+    blocks = ("bodies", "joints", "forces", "tables")
+    return {
+        name for block in blocks for name in getattr(new, block) if entry(new, block, name) is entry(old, block, name)
+    }
+
+
+def entry(spec: Spec, block: str, name: str) -> Any:
+    return getattr(spec, block)[name]
+
+
+def test_what_hangs_on_no_changed_value_is_kept(scene: Path) -> None:
+    variants = SpecVariants(scene)
+    everything = {"long", "short", "foot", "knee", "brake", "push", "pulse", "pull"}
+    assert kept(variants, g="9.8") == everything
+    assert kept(variants, F="11 N") == everything - {"push"}
+    assert kept(variants, H="3") == everything - {"long", "knee", "push"}
+    assert kept(variants, L="1.5") == everything - {"long", "knee", "push", "pull"}
+    assert kept(variants, L="1.0") == everything
+    assert variants.load({"F": "11 N"}).tables is variants.spec.tables
+
+
+def test_the_files_are_read_once(scene: Path) -> None:
+    variants = SpecVariants(scene)
+    scene.write_text("no spec", encoding="utf-8")
+    (scene.parent / "push.csv").unlink()
+    assert variants.load({"g": "1.62"}).gravity == (0.0, 0.0, -1.62)
+    assert variants.load({"F": "1 N"}).tables["pulse"] is variants.spec.tables["pulse"]
+
+
+def test_a_variant_in_error_leaves_no_trace(scene: Path) -> None:
+    variants = SpecVariants(scene)
+    before = [*bits(variants.load({"L": "1.5"})._replace(path=""))]
+    for values in ({"L": "0"}, {"F": "3 m"}, {"H": "H"}, {"bodies.long": "3"}, {"joints.knee.to": "nobody.a"}):
+        with pytest.raises(SpecError) as fresh:
+            load(scene, overrides=values)
+        with pytest.raises(SpecError) as again:
+            variants.load(values)
+        assert again.value.problems == fresh.value.problems
+    assert [*bits(variants.load({"L": "1.5"})._replace(path=""))] == before
+
+
+def outcome(read: Callable[[], Spec]) -> Any:
+    try:
+        return [*bits(read())]
+    except SpecError as error:
+        return error.problems
+
+
+@pytest.mark.heavy
+@pytest.mark.parametrize("path", FILES, ids=lambda path: f"{path.parent.name}-{path.stem}")
+def test_every_variant_is_read_as_if_it_were_the_first(path: Path) -> None:
+    variants = SpecVariants(path)
+    names = [*variants.spec.parameters]
+    draw = random.Random(path.stem)
+    given = [{}, {"title": "other"}, {"gravity": "[0, 0, 1]"}, {"analysis.type": "state"}]
+    given += [{f"bodies.{body}.mass": "3 kg"} for body in variants.spec.bodies]
+    given += [{f"joints.{joint}.type": "ball"} for joint in variants.spec.joints]
+    for name in names:
+        other = draw.choice(names)
+        wanted = (repr(1.1 * variants.spec.parameters[name]), "0", "-2 mm", f"{other}**2", "1e200", "''", "[1, 2]")
+        given += [{name: value} for value in draw.sample(wanted, 2)]
+        given.append({name: "0.5", other: "2"})
+    draw.shuffle(given)
+    for values in given:
+        assert outcome(lambda: variants.load(values)) == outcome(lambda: load(path, overrides=values)), values  # noqa: B023
+
+
+def test_values_are_the_same_to_the_bit_and_by_type() -> None:
+    assert same({"a": (1.0, "x")}, {"a": (1.0, "x")})
+    assert same(np.array([1.0, np.nan]), np.array([1.0, np.nan]))
+    assert not same(0.0, -0.0)
+    assert not same(1, 1.0)
+    assert not same(True, 1)
+    assert not same(np.array([0.0]), np.array([-0.0]))
+    assert not same({"a": 1, "b": 2}, {"b": 2, "a": 1})
+    assert not same((1.0, 2.0), (1.0,))
+    assert not same(object(), object())
