@@ -1,0 +1,70 @@
+"""What a variant takes: a scene solved again with one value changed, read and set up anew, and by the door."""
+
+from __future__ import annotations
+
+import statistics
+import time
+from collections.abc import Callable
+from typing import Any, NamedTuple
+
+from heuncli.results_schema import REPORTS
+from heuncli.spec.load import load
+from heuncli.study.model.options import Options
+from heuncli.study.workflow import solve
+from heuncli.variants import Variants
+from tests.shared.folders import ROOT, SPECS
+
+STARTERS = ROOT / "heuncli" / "starters"
+REPEATS = 31
+
+
+class Case(NamedTuple):
+    """A spec, what is set in it, its value in the file, and what hangs on that."""
+
+    path: Any
+    key: str
+    value: float
+    what: str
+
+
+CASES = (
+    Case(SPECS / "double.yaml", "bodies.upper.mass", 1.0, "a mass"),
+    Case(SPECS / "double.yaml", "bodies.lower.angular_velocity.vector.0", -0.5, "a start"),
+    Case(SPECS / "slider_crank.yaml", "r", 0.05, "lengths of a loop"),
+    Case(SPECS / "slider_crank.yaml", "w", 100.0, "a rate"),
+    Case(SPECS / "percussion.yaml", "H", 1.0, "a blow"),
+    Case(SPECS / "rotor.yaml", "n", 300.0, "a drive"),
+    Case(STARTERS / "truss.yaml", "F", 1e4, "a load"),
+    Case(STARTERS / "truss.yaml", "a", 2.0, "lengths of a loop"),
+)
+
+
+def variants() -> None:
+    """Print it, of all results and of one joint's loads alone."""
+    print(f"{'':28s}{'all results [ms]':>26s}{'one joint [ms]':>26s}")
+    print(f"{'':28s}{'fresh':>10s}{'door':>8s}{'read':>8s}{'fresh':>10s}{'door':>8s}{'read':>8s}")
+    for case in CASES:
+        joint = next(iter(load(case.path).joints), None)
+        one = Options(wanted=frozenset({"joints"}), entries=frozenset({("joints", joint)} if joint else ()))
+        figures = [ms for options in (Options(wanted=frozenset(REPORTS)), one) for ms in costs(case, options)]
+        columns = "".join(f"{ms:{10 if k % 3 == 0 else 8}.2f}" for k, ms in enumerate(figures))
+        print(f"{case.path.stem + ' ' + case.what:28s}{columns}")
+
+
+def costs(case: Case, options: Options) -> tuple[float, float, float]:
+    """Median processor time of a variant [ms]: fresh, by the door, and of that the reading; in turn."""
+    prepared = Variants(case.path, options=options)
+    found: dict[str, list[float]] = {"fresh": [], "door": [], "read": []}
+    for k in range(REPEATS):
+        values = {case.key: repr(case.value * (1.0 + 1e-3 * (k + 1)))}
+        doing: dict[str, Callable[[], Any]] = {
+            "fresh": lambda: solve(load(case.path, overrides=values, checking=False), options),  # noqa: B023 - at once
+            "door": lambda: prepared.solve(values),  # noqa: B023
+            "read": lambda: prepared.load(values),  # noqa: B023
+        }
+        for name, do in doing.items():
+            begun = time.process_time()
+            do()
+            found[name].append(1e3 * (time.process_time() - begun))
+    fresh, door, read = (statistics.median(times) for times in found.values())
+    return fresh, door, read
