@@ -99,8 +99,12 @@ class Loading:
         self.warnings += taken_in_si(without_empty, given, self.set) if self.set else ()
         problems += unset
         problems += faults(without_empty, source) if CASES in source.data else ()
-        self.data = in_the_plane(given) if given.get("space") == "planar" else given
+        self.data = self.completed(given)
         self.problems += problems
+
+    def completed(self, given: dict[str, Any]) -> dict[str, Any]:
+        """The data as they are read: those of a planar scene as of one in space."""
+        return in_the_plane(given) if given.get("space") == "planar" else given
 
     def location(self, path: Path_, key: bool = False) -> SourceLocation:
         """Where the value of a path stands: in the file, or on the command line."""

@@ -1,7 +1,7 @@
 """Which values were looked up while something was made: what it hangs on, computed and not guessed.
 
-A mapping that is handed on is wrapped, and writes down what is asked of it: single keys, there or not, or, where it is
-gone through as a whole, EVERYTHING.
+A mapping that is handed on is wrapped, and writes down what is asked of it: the values under single keys, or, where it
+is asked which keys there are, KEYS.
 """
 
 from __future__ import annotations
@@ -9,11 +9,11 @@ from __future__ import annotations
 from collections.abc import Iterator, Mapping
 from typing import Any, NamedTuple
 
-EVERYTHING = "*"  # no name of a user's
+KEYS = "*"  # no name of a user's
 
 
 class Lookup(NamedTuple):
-    """A key that was asked for, and of which mapping; EVERYTHING: the mapping was gone through."""
+    """A key whose value was asked for, and of which mapping; KEYS: which keys there are, in which order."""
 
     of: str
     key: str
@@ -33,22 +33,32 @@ class Log:
 
 
 class Watched(Mapping[str, Any]):
-    """A mapping that writes into a log what is looked up in it."""
+    """A mapping that writes into a log what is looked up in it; inner: its values are mappings that do so themselves.
 
-    def __init__(self, of: str, values: Mapping[str, Any], log: Log) -> None:
-        self.of, self.values_, self.log = of, values, log
+    What goes through it meets its keys and, where it wants them, one value after another.
+    """
+
+    def __init__(self, of: str, values: Mapping[str, Any], log: Log, inner: bool = False) -> None:
+        self.of, self.log = of, log
+        self.inside = {k: Watched(f"{of}.{k}", v, log) for k, v in values.items()} if inner else values
+        self.inner = inner
 
     def __getitem__(self, key: str) -> Any:
-        self.log.lookups.add(Lookup(self.of, key))
-        return self.values_[key]
+        if not self.inner:
+            self.log.lookups.add(Lookup(self.of, key))
+        return self.inside[key]
+
+    def __contains__(self, key: object) -> bool:
+        self.log.lookups.add(Lookup(self.of, KEYS))
+        return key in self.inside
 
     def __iter__(self) -> Iterator[str]:
-        self.log.lookups.add(Lookup(self.of, EVERYTHING))
-        return iter(self.values_)
+        self.log.lookups.add(Lookup(self.of, KEYS))
+        return iter(self.inside)
 
     def __len__(self) -> int:
-        self.log.lookups.add(Lookup(self.of, EVERYTHING))
-        return len(self.values_)
+        self.log.lookups.add(Lookup(self.of, KEYS))
+        return len(self.inside)
 
 
 class WatchedFields:
@@ -64,7 +74,8 @@ class WatchedFields:
 
 def changed(of: str, new: Mapping[str, Any], old: Mapping[str, Any]) -> Iterator[Lookup]:
     """The lookups of a mapping that do not give now what they gave; a value is the same if it is the same object."""
-    differing = [key for key in new.keys() | old.keys() if key not in new or new[key] is not old.get(key)]
-    yield from (Lookup(of, key) for key in differing)
-    if differing or [*new] != [*old]:
-        yield Lookup(of, EVERYTHING)
+    for key in new.keys() | old.keys():
+        if key not in new or key not in old or new[key] is not old[key]:
+            yield Lookup(of, key)
+    if [*new] != [*old]:
+        yield Lookup(of, KEYS)

@@ -21,7 +21,8 @@ from heuncli.nearest import begin_file
 from heuncli.records import replace
 from heuncli.spec import format as f
 from heuncli.spec.document import Reader
-from heuncli.spec.fields import Context, Entry
+from heuncli.spec.entries import Entry
+from heuncli.spec.fields import Context
 from heuncli.spec.load import Loading
 from heuncli.spec.lookups import Log, Lookup, Watched, WatchedFields, changed
 from heuncli.spec.models import Spec
@@ -138,13 +139,13 @@ class FirstReading(Loading):
         document = cast(f.Document, WatchedFields("document", draft.document, self.log))
         unread = cast("frozenset[str]", Watched("unread", dict.fromkeys(draft.unread), self.log))
         entries, points, joints = (
-            cast("dict[str, Any]", Watched(f"names.{of}", getattr(draft.names, of), self.log))
+            cast("dict[str, Any]", Watched(f"names.{of}", getattr(draft.names, of), self.log, inner=of == "entries"))
             for of in ("entries", "points", "joints")
         )
         for rule in self.rules:
             self.log.taken()
             # what the names gather as they are asked is gathered for each rule: each looks up all that it hangs on
-            found = tuple(rule.check(DraftDocument(document, Names(entries, points, joints, {}), unread)))
+            found = tuple(rule.check(DraftDocument(document, Names(entries, points, joints, {}, {}), unread)))
             self.verdicts.append(KeptVerdict(found, self.log.taken()))
             yield from ((rule, violation) for violation in found)
 
@@ -182,9 +183,15 @@ class LaterReading(Loading):
     """A reading with other values, which takes from the first one what stands."""
 
     def __init__(self, first: FirstReading, overrides: Mapping[str, str]) -> None:
-        super().__init__(first.path, first.source, overrides, first.checking, first.case)
         self.first = first
-        self.data = _shared_data(self.data, first.data)
+        super().__init__(first.path, first.source, overrides, first.checking, first.case)
+
+    def completed(self, given: dict[str, Any]) -> dict[str, Any]:
+        """The data as they are read, with the blocks and entries of the first reading where they are the same."""
+        before, set_ = self.first.data, {path[0] for path in (*self.set, *self.first.set)}
+        if set_ <= {"parameters"}:  # which stand in the data as they are written
+            return {**before, **{block: given[block] for block in set_}}
+        return _shared_data(super().completed(given), before)
 
     def spec(self) -> Spec:
         """The scene, with the values of the first one where they are the same. Raises SpecError."""
@@ -232,9 +239,11 @@ class LaterReading(Loading):
         """What rules would not see as they saw it."""
         before = self.first.draft
         yield from changed("unread", dict.fromkeys(draft.unread), dict.fromkeys(before.unread))
-        for name in ("entries", "points", "joints"):
+        for name in ("points", "joints"):
             new, old = getattr(draft.names, name), getattr(before.names, name)
             yield from changed(f"names.{name}", shared_entries(new, old), old)
+        for block, entries in draft.names.entries.items():
+            yield from changed(f"names.entries.{block}", entries, before.names.entries[block])
         for name in f.Document._fields:
             new, old = getattr(draft.document, name), getattr(before.document, name)
             left_out = name in f.SINGLE and not mapping(self.data.get(name)) and not mapping(self.first.data.get(name))
