@@ -8,7 +8,7 @@ found out by that, and asserted nowhere.
 
 from __future__ import annotations
 
-from collections.abc import Callable
+from collections.abc import Callable, Mapping
 from functools import cache
 from typing import Any, NamedTuple, TypeVar
 
@@ -23,12 +23,13 @@ T = TypeVar("T")
 class Stages:
     """Runs stages, and keeps nothing."""
 
-    def run(self, stage: Callable[..., T], *given: Any) -> T:
-        """The result of a stage."""
+    def run(self, stage: Callable[..., T], *given: Any, of: str = "") -> T:
+        """The result of a stage; of: which one, of a stage that is run for several things by their names."""
         return stage(*given)
 
 
 ANEW = Stages()
+Key = tuple[Callable[..., Any], str]
 
 
 class KeptStage(NamedTuple):
@@ -46,16 +47,17 @@ class FirstStages(Stages):
     """Runs stages for the first time, and keeps what they look at; of one that is run again the first run."""
 
     def __init__(self) -> None:
-        self.kept: dict[Callable[..., Any], KeptStage] = {}
+        self.kept: dict[Key, KeptStage] = {}
 
-    def run(self, stage: Callable[..., T], *given: Any) -> T:
-        """The result of a stage; its arrays are not to be written to."""
-        if stage in self.kept:
+    def run(self, stage: Callable[..., T], *given: Any, of: str = "") -> T:
+        """The result of a stage; its arrays are not to be written to. A result that holds input is not kept."""
+        if (stage, of) in self.kept:
             return stage(*given)
         seen = tuple(map(Seen, given))
         result = stage(*map(watched, seen))
-        lock(result)
-        self.kept[stage] = KeptStage(result, seen)
+        if not lock(result):
+            return stage(*given)
+        self.kept[stage, of] = KeptStage(result, seen)
         return result
 
 
@@ -65,9 +67,9 @@ class LaterStages(Stages):
     def __init__(self, first: FirstStages) -> None:
         self.first = first
 
-    def run(self, stage: Callable[..., T], *given: Any) -> T:
+    def run(self, stage: Callable[..., T], *given: Any, of: str = "") -> T:
         """The result of a stage."""
-        kept = self.first.kept.get(stage)
+        kept = self.first.kept.get((stage, of))
         if kept is not None and kept.stands(given):
             result: T = kept.result
             return result
@@ -139,16 +141,18 @@ def _watched_class(kind: Any) -> Any:
     return type(kind.__name__, (kind,), {"__getattribute__": read})
 
 
-def lock(value: Any) -> None:
-    """Keep the arrays of a result from being written to."""
+def lock(value: Any) -> bool:
+    """Whether a result holds nothing but numbers, words and records of its own; its arrays cannot be written to then.
+
+    Of a record that stands for input something would be told to others, and through a function it could be reached.
+    """
     if isinstance(value, np.ndarray):
         value.flags.writeable = False
-    elif isinstance(value, list | tuple):
-        for member in value:
-            lock(member)
-    elif is_record(value):
-        for member in fields(value).values():
-            lock(member)
-    elif isinstance(value, dict):
-        for member in value.values():
-            lock(member)
+        return True
+    if isinstance(value, Mapping):
+        return all(map(lock, value.values()))
+    if isinstance(value, list | tuple | set | frozenset):
+        return all(map(lock, value))
+    if is_record(value):
+        return "_seen" not in vars(value) and all(map(lock, fields(value).values()))
+    return value is None or isinstance(value, bool | int | float | str)

@@ -28,28 +28,29 @@ from heuncli.records import replace
 from heuncli.results import Array
 from heuncli.shapes.inertia import properties
 from heuncli.spec import models as m
+from heuncli.stages import ANEW, Stages
 
 if TYPE_CHECKING:
     from heuncli.shapes.forms import Form
 
 
-def forms_of(spec: m.Spec) -> dict[str, Form]:
-    """The forms of the bodies that are built from shapes."""
+def forms_of(spec: m.Spec, stages: Stages = ANEW) -> dict[str, Form]:
+    """The forms of the bodies that are built from shapes; stages: each is one."""
     shapes = {name: b.shapes for name, b in spec.bodies.items() if b.shapes is not None}
     if not shapes:
         return {}
     from heuncli.shapes.forms import form  # 8 ms that only they are worth
 
-    return {name: form(of) for name, of in shapes.items()}
+    return {name: stages.run(form, of, of=name) for name, of in shapes.items()}
 
 
-def build(spec: m.Spec, forms: dict[str, Form]) -> Mechanism:
-    """The mechanism of a validated spec; forms: of the bodies that are built from shapes."""
+def build(spec: m.Spec, forms: dict[str, Form], stages: Stages = ANEW) -> Mechanism:
+    """The mechanism of a validated spec; forms: of the bodies that are built from shapes; stages: each body is one."""
     index = {name: i for i, name in enumerate(spec.bodies)} | {"ground": GROUND}
     joints = {name: (k, TYPES[j.kind]) for k, (name, j) in enumerate(spec.joints.items())}
     drives = {drive.joint: drive for drive in spec.drives.values()}
     planar = spec.space == "planar"
-    bodies = tuple(body(b, forms.get(name)) for name, b in spec.bodies.items())
+    bodies = tuple(stages.run(body, b, forms.get(name), of=name) for name, b in spec.bodies.items())
     last = max(spec.analysis.times, default=0.0)
     made = tuple(joint(j, index, drives.get(name), planar, last) for name, j in spec.joints.items())
     loads = tuple(part for name, f in spec.forces.items() for part in parts_of(name, f, index, joints))

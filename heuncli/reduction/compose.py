@@ -7,6 +7,7 @@ from importlib import import_module
 
 from heuncli.joint_kinds import JOINTS
 from heuncli.reduction.model import Reduced, Reduction
+from heuncli.stages import ANEW, Stages
 from heuncli.tree.prepare import PreparedScene
 
 # in their order: the module under this one whose `step` it is, and whether it may concern a scene at all
@@ -18,8 +19,8 @@ STEPS: tuple[tuple[str, Callable[[PreparedScene], bool]], ...] = (
 )
 
 
-def reduce(scene: PreparedScene) -> Reduced:
-    """The smallest scene that moves as this one does.
+def reduce(scene: PreparedScene, stages: Stages = ANEW) -> Reduced:
+    """The smallest scene that moves as this one does; stages: each step is one.
 
     Where friction hangs on what joints carry nothing is left out, for in a smaller scene they carry less.
     """
@@ -30,7 +31,8 @@ def reduce(scene: PreparedScene) -> Reduced:
     for name, concerns in STEPS:
         if not concerns(scene):
             continue
-        found = import_module(f"heuncli.reduction.{name}").step(scene)  # few scenes need it
+        step = import_module(f"heuncli.reduction.{name}").step  # few scenes need it
+        found = stages.run(step, scene)
         if isinstance(found, Reduction):
             steps.append(found)
             kept += found.kept

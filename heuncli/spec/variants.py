@@ -190,17 +190,13 @@ class LaterReading(Loading):
         """The data as they are read, with the blocks and entries of the first reading where they are the same."""
         before, set_ = self.first.data, {path[0] for path in (*self.set, *self.first.set)}
         if set_ <= {"parameters"}:  # which stand in the data as they are written
-            return {**before, **{block: given[block] for block in set_}}
+            return {**before, **{block: value for block, value in given.items() if block in set_}}
         return _shared_data(super().completed(given), before)
 
     def spec(self) -> Spec:
         """The scene, with the values of the first one where they are the same. Raises SpecError."""
         made, before = super().spec(), self.first.resolved
-        shared_fields: dict[str, Any] = {
-            name: shared_entries(new, old) if isinstance(new, dict) and isinstance(old, dict) else shared(new, old)
-            for name, new, old in zip(Spec._fields, made, before, strict=True)
-        }
-        return Spec(**shared_fields)
+        return Spec(**{name: _shared_field(getattr(made, name), getattr(before, name)) for name in Spec._fields})
 
     def evaluated(self) -> Parameters:
         """The parameters."""
@@ -304,6 +300,11 @@ def _is_as_before(new: Any, old: Any) -> bool:
     if isinstance(new, list) and isinstance(old, list):
         return len(new) == len(old) and all(a is b for a, b in zip(new, old, strict=True))
     return new is old
+
+
+def _shared_field(new: Any, old: Any) -> Any:
+    """A field of a scene with the values of an older one where they are the same."""
+    return shared_entries(new, old) if isinstance(new, dict) and isinstance(old, dict) else shared(new, old)
 
 
 def _shared_data(new: dict[str, Any], old: dict[str, Any]) -> dict[str, Any]:

@@ -58,7 +58,7 @@ def test_a_record_made_of_a_watched_one_has_looked_at_all_of_it() -> None:
 
     first = FirstStages()
     assert first.run(shifted, scene()) == 9.0
-    seen = first.kept[shifted].seen
+    seen = first.kept[shifted, ""].seen
     assert seen[0].stands(scene(gravity=1.0))
     assert not seen[0].stands(scene(mass=2.0))
 
@@ -70,6 +70,6 @@ def test_what_fails_is_not_kept_and_what_is_kept_cannot_be_written_to() -> None:
     first = FirstStages()
     with pytest.raises(ValueError, match=r"9\.81"):
         first.run(failing, scene())
-    assert failing not in first.kept
+    assert (failing, "") not in first.kept
     with pytest.raises(ValueError, match="read-only"):
         first.run(reach, scene())[0] = 1.0

@@ -16,7 +16,7 @@ from heuncli.reduction.plane.departures import Departure, departures
 from heuncli.reduction.plane.frame import candidates
 from heuncli.reduction.plane.mechanism import NotTold, flat_scene
 from heuncli.reduction.plane.states import States
-from heuncli.reduction.plane.view import View, view
+from heuncli.reduction.plane.view import View, neighbours, view
 from heuncli.tree.prepare import PreparedScene
 
 MOST_TOLD = 3  # what leaves a plane: of a scene that more leaves by much nobody expects that it is flat
@@ -25,8 +25,9 @@ MOST_TOLD = 3  # what leaves a plane: of a scene that more leaves by much nobody
 def step(scene: PreparedScene) -> Reduction | tuple[str, ...]:
     """The flat scene; what keeps it from being flat, where that is little; nothing of a scene in space."""
     nearest: tuple[View, list[Departure]] | None = None
+    near = neighbours(scene)
     for n in candidates(scene):
-        seen = view(scene, n)
+        seen = view(scene, n, near)
         found = list(islice(departures(seen), MOST_TOLD + 1))
         if not found:
             return _reduction(seen)

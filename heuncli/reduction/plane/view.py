@@ -7,7 +7,6 @@ its joints.
 
 from __future__ import annotations
 
-from collections import defaultdict
 from collections.abc import Sequence
 from functools import cached_property
 
@@ -82,29 +81,39 @@ class View:
         return quantity in kind.coordinates and quantity not in self.stances[joint].flat(kind).coordinates
 
 
-def view(scene: PreparedScene, n: Array) -> View:
-    """A scene seen from the plane across n."""
+Neighbours = dict[int, dict[int, list[int]]]  # of a body or the ground: by neighbour, the joints between the two
+
+
+def neighbours(scene: PreparedScene) -> Neighbours:
+    """What the joints of a scene lead to."""
+    near: Neighbours = {}
+    for k, joint in enumerate(scene.mechanism.joints):
+        for a, b in ((joint.a, joint.b), (joint.b, joint.a)):
+            near.setdefault(a, {}).setdefault(b, []).append(k)
+    return near
+
+
+def view(scene: PreparedScene, n: Array, near: Neighbours | None = None) -> View:
+    """A scene seen from the plane across n; near: its neighbours where they are known, the same from everywhere."""
     E = axes_of(n)
     mechanism, start = scene.mechanism, scene.start
     stances = tuple(_stance(j, pose(start, j.a)[1], pose(start, j.b)[1], E[2]) for j in mechanism.joints)
-    upright = _upright(scene, stances, E[2])
+    upright = _upright(scene, stances, E[2], neighbours(scene) if near is None else near)
     places = [start.position] + [p[None] for j in mechanism.joints for b, p in ((j.a, j.p), (j.b, j.q)) if b == GROUND]
     reach = scene.layout.size + float(np.abs(np.concatenate(places)).max(initial=0.0))
     return View(scene, E, upright, stances, reach)
 
 
-def _upright(scene: PreparedScene, stances: Sequence[Stance], n: Array) -> tuple[bool, ...]:
+def _upright(scene: PreparedScene, stances: Sequence[Stance], n: Array, near: Neighbours) -> tuple[bool, ...]:
     """Which bodies joints that keep them upright lead to from the ground, whether the tree has them or not."""
     mechanism = scene.mechanism
-    near: dict[int, dict[int, list[int]]] = defaultdict(lambda: defaultdict(list))
-    for k, joint in enumerate(mechanism.joints):
-        near[joint.a][joint.b].append(k)
-        near[joint.b][joint.a].append(k)
     found, waiting = {GROUND}, [GROUND]
     while waiting:
-        for body, joints in near[waiting.pop()].items():
+        for body, joints in near.get(waiting.pop(), {}).items():
+            if body in found:
+                continue
             one = any(_keeps_upright(JOINTS[mechanism.joints[k].kind], stances[k]) for k in joints)
-            if body not in found and (one or _hinged(scene, [(mechanism.joints[k], stances[k]) for k in joints], n)):
+            if one or _hinged(scene, [(mechanism.joints[k], stances[k]) for k in joints], n):
                 found.add(body)
                 waiting.append(body)
     return tuple(mechanism.planar or i in found for i in range(len(mechanism.bodies)))

@@ -90,7 +90,7 @@ def set_up(
     that cannot be cut, SolveError where the scene does not close.
     """
     spec, left_out = asked_part(spec, asked, reduce)
-    mechanism, cuts = draw(spec)
+    mechanism, cuts = draw(spec, stages)
     if spec.analysis.type == "rest":
         mechanism = with_slack_ropes(mechanism)
     require_drives(mechanism, spec.analysis.times[0] if spec.analysis.times else 0.0)
@@ -113,7 +113,7 @@ def set_up(
     chosen = method_of(asked_method) if spec.analysis.type == "motion" else None
     reduced = None
     if chosen is not None and reduce:
-        reduced, runner = reduced_runner(scene, runner)
+        reduced, runner = reduced_runner(scene, runner, stages)
     told = reductions(left_out, scene, reduced)
     if chosen is not None and auto:
         follows = determined(runner.moving) if reduce else NOT_DETERMINED
@@ -164,19 +164,19 @@ def asked_part(spec: Spec, asked: Selection, reduce: bool) -> tuple[Spec, tuple[
     return part, left_out(spec, part)
 
 
-def reduced_runner(scene: PreparedScene, runner: Runner) -> tuple[Reduced, Runner]:
+def reduced_runner(scene: PreparedScene, runner: Runner, stages: Stages = ANEW) -> tuple[Reduced, Runner]:
     """The smallest scene that moves as this one does, and a runner that integrates it in its place."""
-    reduced = reduction.reduce(scene)
+    reduced = reduction.reduce(scene, stages)
     if not reduced.steps:
         return reduced, runner
     _, own = ready(reduced.steps[-1].scene)
     return reduced, Runner(scene.layout, smaller(own, reduced))
 
 
-def draw(spec: Spec) -> tuple[Mechanism, tuple[Cuts, ...]]:
+def draw(spec: Spec, stages: Stages = ANEW) -> tuple[Mechanism, tuple[Cuts, ...]]:
     """The bodies as they are drawn, and their sections. Raises SpecError with every section that cannot be cut."""
-    forms = forms_of(spec)
-    mechanism = build(spec, forms)
+    forms = forms_of(spec, stages)
+    mechanism = build(spec, forms, stages)
     if not spec.sections:
         return mechanism, ()
     from heuncli.kinetostatics.cuts import lay_cuts  # with the shapes 9 ms that other scenes do not need
