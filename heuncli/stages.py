@@ -10,10 +10,11 @@ from __future__ import annotations
 
 from collections.abc import Callable, Mapping
 from functools import cache
-from typing import Any, NamedTuple, TypeVar
+from typing import Any, TypeVar
 
 import numpy as np
 
+from heuncli.named_tuples import NamedTuple
 from heuncli.records import fields
 from heuncli.spec.sharing import same
 
@@ -36,7 +37,7 @@ class KeptStage(NamedTuple):
     """The result of a stage and what it looked at."""
 
     result: Any
-    seen: tuple[Seen, ...]
+    seen: tuple[LookedAt, ...]
 
     def stands(self, given: tuple[Any, ...]) -> bool:
         """Whether the stage would see in this input what it saw."""
@@ -53,7 +54,7 @@ class FirstStages(Stages):
         """The result of a stage; its arrays are not to be written to. A result that holds input is not kept."""
         if (stage, of) in self.kept:
             return stage(*given)
-        seen = tuple(map(Seen, given))
+        seen = tuple(map(LookedAt, given))
         result = stage(*map(watched, seen))
         if not lock(result):
             return stage(*given)
@@ -76,7 +77,7 @@ class LaterStages(Stages):
         return stage(*given)
 
 
-class Seen:
+class LookedAt:
     """A value that was handed to a stage, and the parts of it that were looked at; a value without parts counts whole.
 
     parts: fields of a record by their names, members of a list or tuple with records by their places.
@@ -86,11 +87,11 @@ class Seen:
 
     def __init__(self, value: Any) -> None:
         self.value = value
-        self.parts: dict[Any, Seen] | None = None
+        self.parts: dict[Any, LookedAt] | None = None
         if is_record(value):
             self.parts = {}
         elif type(value) in (tuple, list) and any(map(is_record, value)):
-            self.parts = {place: Seen(member) for place, member in enumerate(value)}
+            self.parts = {place: LookedAt(member) for place, member in enumerate(value)}
 
     def stands(self, new: Any) -> bool:
         """Whether another value is the same in all that was looked at."""
@@ -110,7 +111,7 @@ def is_record(value: Any) -> bool:
     return hasattr(type(value), "__record_fields__")
 
 
-def watched(seen: Seen) -> Any:
+def watched(seen: LookedAt) -> Any:
     """What stands for a value and writes down which parts of it are looked at."""
     value = seen.value
     if seen.parts is None:
@@ -119,7 +120,7 @@ def watched(seen: Seen) -> Any:
         return type(value)(watched(part) for part in seen.parts.values())
     kind: Any = type(value)
     made: Any = object.__new__(_watched_class(kind))
-    made.__dict__.update(_seen=seen, _parts={})
+    made.__dict__.update(_looked_at=seen, _parts={})
     return made
 
 
@@ -130,11 +131,11 @@ def _watched_class(kind: Any) -> Any:
 
     def read(self: Any, name: str) -> Any:
         own = object.__getattribute__(self, "__dict__")
-        if name not in names or "_seen" not in own:  # without: one that was made of another by `replace`
+        if name not in names or "_looked_at" not in own:  # without: one that was made of another by `replace`
             return object.__getattribute__(self, name)
         if name not in own["_parts"]:
-            seen = own["_seen"]
-            part = seen.parts[name] = Seen(getattr(seen.value, name))
+            seen = own["_looked_at"]
+            part = seen.parts[name] = LookedAt(getattr(seen.value, name))
             own["_parts"][name] = watched(part)
         return own["_parts"][name]
 
@@ -154,5 +155,5 @@ def lock(value: Any) -> bool:
     if isinstance(value, list | tuple | set | frozenset):
         return all(map(lock, value))
     if is_record(value):
-        return "_seen" not in vars(value) and all(map(lock, fields(value).values()))
+        return "_looked_at" not in vars(value) and all(map(lock, fields(value).values()))
     return value is None or isinstance(value, bool | int | float | str)

@@ -7,7 +7,9 @@ is asked which keys there are, KEYS.
 from __future__ import annotations
 
 from collections.abc import Iterator, Mapping
-from typing import Any, NamedTuple
+from typing import Any
+
+from heuncli.named_tuples import NamedTuple
 
 KEYS = "*"  # no name of a user's
 

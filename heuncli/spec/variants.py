@@ -13,10 +13,11 @@ from __future__ import annotations
 
 from collections.abc import Iterator, Mapping
 from pathlib import Path
-from typing import Any, NamedTuple, cast
+from typing import Any, cast
 
 from heuncli.errors import SourceLocation, SpecError
 from heuncli.expressions.programs import TableFunction
+from heuncli.named_tuples import NamedTuple
 from heuncli.nearest import begin_file
 from heuncli.records import replace
 from heuncli.spec import format as f
