@@ -31,15 +31,13 @@ RESERVED_FOR: dict[str, frozenset[str]] = {
 class Names(NamedTuple):
     """Entries of each block and points of each body and of the ground, as plain data by name; types of the joints.
 
-    keys: of the results, by the words before them, as far as they were asked for (rules/outcome.py); followed: where
-    paths into the results lead.
+    keys: of the results, by the words before them, as far as they were asked for (rules/outcome.py).
     """
 
     entries: dict[str, dict[str, Any]]
     points: dict[str, dict[str, Any]]
     joints: dict[str, str]
     keys: dict[tuple[str, ...], dict[str, None]]
-    followed: dict[tuple[str, ...], Any]
 
     @classmethod
     def of(cls, data: dict[str, Any]) -> Names:
@@ -52,7 +50,7 @@ class Names(NamedTuple):
         points = {name: points_of(body, BodyEntry) for name, body in bodies.items()}
         points[GROUND] = points_of(data.get(GROUND), GroundEntry)
         joints = {name: str(mapping(joint).get("type")) for name, joint in mapping(data.get("joints")).items()}
-        return cls(entries, points, joints, {}, {})
+        return cls(entries, points, joints, {})
 
 
 def names_in(spec: Spec) -> Names:
@@ -60,7 +58,7 @@ def names_in(spec: Spec) -> Names:
     entries: dict[str, dict[str, Any]] = {block: dict(getattr(spec, block)) for block in NAMED}
     entries["events"] = {condition.name: condition for condition in spec.analysis.conditions}
     points = {name: dict(body.points) for name, body in spec.bodies.items()} | {GROUND: dict(spec.ground.points)}
-    return Names(entries, points, {name: joint.kind for name, joint in spec.joints.items()}, {}, {})
+    return Names(entries, points, {name: joint.kind for name, joint in spec.joints.items()}, {})
 
 
 def points_of(owner: Any, model: type[Entry]) -> dict[str, Any]:

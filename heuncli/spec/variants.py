@@ -146,7 +146,7 @@ class FirstReading(Loading):
         for rule in self.rules:
             self.log.taken()
             # what the names gather as they are asked is gathered for each rule: each looks up all that it hangs on
-            found = tuple(rule.check(DraftDocument(document, Names(entries, points, joints, {}, {}), unread)))
+            found = tuple(rule.check(DraftDocument(document, Names(entries, points, joints, {}), unread, {})))
             self.verdicts.append(KeptVerdict(found, self.log.taken()))
             yield from ((rule, violation) for violation in found)
 

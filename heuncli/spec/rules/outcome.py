@@ -104,15 +104,7 @@ def result(path: list[str], names: Names, runs: Mapping[str, bool]) -> Result:
 
 
 def follow(path: list[str], names: Names) -> Reached | UnknownWord | None:
-    """The quantity that the first words of a path lead to: found once, several rules ask for it."""
-    words = tuple(path)
-    if words not in names.followed:
-        names.followed[words] = _follow(path, names)
-    found: Reached | UnknownWord | None = names.followed[words]
-    return found
-
-
-def _follow(path: list[str], names: Names) -> Reached | UnknownWord | None:
+    """The quantity that the first words of a path lead to."""
     node: Node | Quantity | None = TREE
     keys: list[str] = []
     rest = path
