@@ -38,7 +38,7 @@ def record(cls: type[T]) -> type[T]:
     made: Any = cls
     made.__init__, made.__repr__ = __init__, _text
     made.__setattr__ = made.__delattr__ = _frozen
-    made.__record_fields__, made.__record_known__ = names, known
+    made.__record_fields__, made.__record_known__, made.__record_copy__ = names, known, staticmethod(_copy)
     return cls
 
 
@@ -47,11 +47,18 @@ def replace(one: T, **changes: Any) -> T:
     cls: Any = type(one)
     if not changes.keys() <= cls.__record_known__:
         raise TypeError(f"{cls.__name__}: fields unknown: {', '.join(sorted(changes.keys() - cls.__record_known__))}")
+    made: T = cls.__record_copy__(one)
+    made.__dict__.update(changes)
+    return made
+
+
+def _copy(one: T) -> T:
+    """A record with the same fields."""
+    cls: Any = type(one)
     made: T = object.__new__(cls)
     given = made.__dict__  # complete, as that of `one` is
     for name in cls.__record_fields__:
         given[name] = getattr(one, name)
-    given.update(changes)
     return made
 
 

@@ -119,27 +119,42 @@ def watched(seen: LookedAt) -> Any:
     if not is_record(value):
         return type(value)(watched(part) for part in seen.parts.values())
     kind: Any = type(value)
-    made: Any = object.__new__(_watched_class(kind))
-    made.__dict__.update(_looked_at=seen, _parts={})
+    return _standing_for(_watched_class(kind), seen, {})
+
+
+def _standing_for(kind: Any, seen: LookedAt, parts: dict[str, Any]) -> Any:
+    """A record of a watched kind in the place of another; parts: what stands for those of its fields that were read."""
+    made = object.__new__(kind)
+    made.__dict__.update(_looked_at=seen, _parts=parts)
     return made
 
 
 @cache
 def _watched_class(kind: Any) -> Any:
-    """A kind of record whose fields are read from the record that it stands for."""
+    """A kind of record whose fields are read from the record that it stands for, but for those that were replaced."""
     names = frozenset(kind.__record_fields__)
 
     def read(self: Any, name: str) -> Any:
         own = object.__getattribute__(self, "__dict__")
-        if name not in names or "_looked_at" not in own:  # without: one that was made of another by `replace`
+        if name not in names or name in own:
             return object.__getattribute__(self, name)
-        if name not in own["_parts"]:
+        parts = own["_parts"]
+        if name not in parts:
             seen = own["_looked_at"]
-            part = seen.parts[name] = LookedAt(getattr(seen.value, name))
-            own["_parts"][name] = watched(part)
-        return own["_parts"][name]
+            part = seen.parts.get(name)
+            if part is None:
+                part = seen.parts[name] = LookedAt(getattr(seen.value, name))
+            parts[name] = watched(part)
+        return parts[name]
 
-    return type(kind.__name__, (kind,), {"__getattribute__": read})
+    def copy(self: Any) -> Any:
+        """What `replace` puts its changes into: what it leaves has not been looked at."""
+        own = object.__getattribute__(self, "__dict__")
+        made = _standing_for(type(self), own["_looked_at"], own["_parts"])
+        made.__dict__.update({name: value for name, value in own.items() if name in names})
+        return made
+
+    return type(kind.__name__, (kind,), {"__getattribute__": read, "__record_copy__": staticmethod(copy)})
 
 
 def lock(value: Any) -> bool:

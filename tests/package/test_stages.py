@@ -52,15 +52,32 @@ def test_a_stage_is_run_again_where_what_it_saw_is_another() -> None:
     assert later.run(reach, heavier).tolist() == reach(heavier).tolist() != result.tolist()
 
 
-def test_a_record_made_of_a_watched_one_has_looked_at_all_of_it() -> None:
-    def shifted(given: Scene) -> float:
-        return replace(given.bars[0], length=9.0).length
+def test_what_a_replaced_record_takes_over_counts_where_it_is_looked_at() -> None:
+    def lighter(given: Scene) -> float:
+        again = replace(replace(given.bars[0], length=2.0), name="c")
+        return again.moment
 
     first = FirstStages()
-    assert first.run(shifted, scene()) == 9.0
-    seen = first.kept[shifted, ""].seen
-    assert seen[0].stands(scene(gravity=1.0))
-    assert not seen[0].stands(scene(mass=2.0))
+    assert first.run(lighter, scene(mass=3.0)) == 12.0
+    seen = first.kept[lighter, ""].seen[0]
+    assert seen.stands(scene(mass=3.0, length=7.0, x=1.0))
+    assert not seen.stands(scene(mass=2.0))
+    later = LaterStages(first)
+    assert later.run(lighter, scene(mass=2.0)) == 8.0
+
+
+def test_a_result_that_holds_input_is_not_kept() -> None:
+    def shortened(given: Scene) -> Bar:
+        return replace(given.bars[0], length=0.1)
+
+    def told(given: Scene) -> tuple[Bar, ...]:
+        return given.bars
+
+    first = FirstStages()
+    for stage in (shortened, told):
+        result = first.run(stage, scene())
+        assert not first.kept
+        assert all(type(bar) is Bar for bar in ([result] if isinstance(result, Bar) else result))
 
 
 def test_what_fails_is_not_kept_and_what_is_kept_cannot_be_written_to() -> None:
