@@ -9,6 +9,7 @@ found out by that, and asserted nowhere.
 from __future__ import annotations
 
 from collections.abc import Callable, Mapping
+from contextlib import suppress
 from functools import cache
 from typing import Any, TypeVar
 
@@ -37,11 +38,11 @@ class KeptStage(NamedTuple):
     """The result of a stage and what it looked at."""
 
     result: Any
-    seen: tuple[LookedAt, ...]
+    looked_at: tuple[LookedAt, ...]
 
     def stands(self, given: tuple[Any, ...]) -> bool:
         """Whether the stage would see in this input what it saw."""
-        return all(one.stands(new) for one, new in zip(self.seen, given, strict=True))
+        return all(one.stands(new) for one, new in zip(self.looked_at, given, strict=True))
 
 
 class FirstStages(Stages):
@@ -51,14 +52,19 @@ class FirstStages(Stages):
         self.kept: dict[Key, KeptStage] = {}
 
     def run(self, stage: Callable[..., T], *given: Any, of: str = "") -> T:
-        """The result of a stage; its arrays are not to be written to. A result that holds input is not kept."""
-        if (stage, of) in self.kept:
-            return stage(*given)
-        seen = tuple(map(LookedAt, given))
-        result = stage(*map(watched, seen))
-        if not lock(result):
-            return stage(*given)
-        self.kept[stage, of] = KeptStage(result, seen)
+        """The result of a stage; where it is kept its arrays cannot be written to.
+
+        It is not kept where it holds some of the input, nor where wrapped input gives another one or none: a stage may
+        ask whether two records are the same object.
+        """
+        result = stage(*given)
+        if (stage, of) not in self.kept:
+            looked_at = tuple(map(LookedAt, given))
+            with suppress(Exception):
+                again = stage(*map(watched, looked_at))
+                if holds_no_input(again) and same(again, result):
+                    lock(result)
+                    self.kept[stage, of] = KeptStage(result, looked_at)
         return result
 
 
@@ -157,18 +163,23 @@ def _watched_class(kind: Any) -> Any:
     return type(kind.__name__, (kind,), {"__getattribute__": read, "__record_copy__": staticmethod(copy)})
 
 
-def lock(value: Any) -> bool:
-    """Whether a result holds nothing but numbers, words and records of its own; its arrays cannot be written to then.
+def holds_no_input(value: Any) -> bool:
+    """Whether a result consists of numbers, words and records of its own, and of nothing behind which others hide."""
+    if isinstance(value, Mapping):
+        return all(map(holds_no_input, value.values()))
+    if isinstance(value, list | tuple | set | frozenset):
+        return all(map(holds_no_input, value))
+    if is_record(value):
+        return "_looked_at" not in vars(value) and all(map(holds_no_input, fields(value).values()))
+    return value is None or isinstance(value, bool | int | float | str | np.ndarray)
 
-    Of a record that stands for input something would be told to others, and through a function it could be reached.
-    """
+
+def lock(value: Any) -> None:
+    """Keep the arrays of a result from being written to."""
     if isinstance(value, np.ndarray):
         value.flags.writeable = False
-        return True
-    if isinstance(value, Mapping):
-        return all(map(lock, value.values()))
-    if isinstance(value, list | tuple | set | frozenset):
-        return all(map(lock, value))
-    if is_record(value):
-        return "_looked_at" not in vars(value) and all(map(lock, fields(value).values()))
-    return value is None or isinstance(value, bool | int | float | str)
+    elif isinstance(value, Mapping | list | tuple):
+        for member in value.values() if isinstance(value, Mapping) else value:
+            lock(member)
+    elif is_record(value):
+        lock(fields(value))

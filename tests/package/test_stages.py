@@ -59,7 +59,7 @@ def test_what_a_replaced_record_takes_over_counts_where_it_is_looked_at() -> Non
 
     first = FirstStages()
     assert first.run(lighter, scene(mass=3.0)) == 12.0
-    seen = first.kept[lighter, ""].seen[0]
+    seen = first.kept[lighter, ""].looked_at[0]
     assert seen.stands(scene(mass=3.0, length=7.0, x=1.0))
     assert not seen.stands(scene(mass=2.0))
     later = LaterStages(first)
@@ -78,6 +78,21 @@ def test_a_result_that_holds_input_is_not_kept() -> None:
         result = first.run(stage, scene())
         assert not first.kept
         assert all(type(bar) is Bar for bar in ([result] if isinstance(result, Bar) else result))
+
+
+def test_a_stage_that_asks_for_objects_and_not_for_values_is_not_kept() -> None:
+    known = scene()
+
+    def whose(given: Scene) -> str:
+        return "its own" if given.bars is known.bars else "another's"
+
+    def by_object(given: Scene) -> str:
+        return {id(bar): bar.name for bar in known.bars}[id(given.bars[0])]
+
+    first = FirstStages()
+    assert first.run(whose, known) == "its own"
+    assert first.run(by_object, known) == "a"
+    assert not first.kept
 
 
 def test_what_fails_is_not_kept_and_what_is_kept_cannot_be_written_to() -> None:
