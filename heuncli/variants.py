@@ -14,9 +14,9 @@ from contextlib import suppress
 from pathlib import Path
 
 from heuncli.errors import SolveError, SpecError
+from heuncli.kept_stages import FirstStages, LaterStages
 from heuncli.spec.models import Spec
 from heuncli.spec.variants import SpecVariants
-from heuncli.stages import FirstStages, LaterStages
 from heuncli.study.ask.study import Study
 from heuncli.study.model.options import Options, as_asked
 from heuncli.study.workflow import asked_set_up, solve

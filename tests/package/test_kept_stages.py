@@ -5,9 +5,9 @@ from __future__ import annotations
 import numpy as np
 import pytest
 
+from heuncli.kept_stages import FirstStages, LaterStages
 from heuncli.records import record, replace
 from heuncli.results import Array
-from heuncli.stages import FirstStages, LaterStages
 
 
 @record
