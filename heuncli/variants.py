@@ -13,7 +13,7 @@ from collections.abc import Mapping
 from contextlib import suppress
 from pathlib import Path
 
-from heuncli.errors import SolveError, SpecError
+from heuncli.errors import HeunError
 from heuncli.kept_stages import FirstStages, LaterStages
 from heuncli.spec.models import Spec
 from heuncli.spec.variants import SpecVariants
@@ -42,7 +42,7 @@ class Variants:
         self.options = options or Options()
         self._specs = SpecVariants(path, text, overrides, checking=False, case=case)
         first = FirstStages()
-        with suppress(SpecError, SolveError):  # of a scene that cannot be set up less is kept, or nothing
+        with suppress(HeunError):  # of a scene that cannot be set up less is kept, or nothing
             asked_set_up(as_asked(self._specs.spec, self.options), self.options, first)
         self._stages = LaterStages(first)
 

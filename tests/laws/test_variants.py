@@ -126,6 +126,7 @@ def test_a_variant_has_the_bits_of_a_fresh_run(path: Path) -> None:
         assert told(lambda: variants.solve(values)) == fresh, values  # noqa: B023
 
 
+@pytest.mark.heavy
 @pytest.mark.parametrize("text", STRUCTURE, ids=["pins", "planar"])
 @pytest.mark.parametrize("seed", [0, 1])
 def test_the_order_of_variants_does_not_matter(text: str, seed: int) -> None:
