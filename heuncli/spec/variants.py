@@ -12,6 +12,7 @@ Impure: reads the spec's file and those of its tables, when it is made; a table 
 from __future__ import annotations
 
 from collections.abc import Iterator, Mapping
+from contextlib import suppress
 from pathlib import Path
 from typing import Any, cast
 
@@ -85,10 +86,10 @@ class KeptTable(NamedTuple):
 
 
 class KeptVerdict(NamedTuple):
-    """What a rule found, and what it looked at."""
+    """What a rule found, and what it looked at; None: that is not known."""
 
     violations: tuple[Violation, ...]
-    lookups: frozenset[Lookup]
+    lookups: frozenset[Lookup] | None
 
 
 class FirstReading(Loading):
@@ -144,10 +145,13 @@ class FirstReading(Loading):
             for of in ("entries", "points", "joints")
         )
         for rule in self.rules:
-            self.log.taken()
+            found, lookups = tuple(rule.check(draft)), None
             # what the names gather as they are asked is gathered for each rule: each looks up all that it hangs on
-            found = tuple(rule.check(DraftDocument(document, Names(entries, points, joints, {}), unread, {})))
-            self.verdicts.append(KeptVerdict(found, self.log.taken()))
+            looking = DraftDocument(document, Names(entries, points, joints, {}), unread, {})
+            self.log.taken()
+            with suppress(Exception):  # a rule that asks for more than is watched is not kept
+                lookups = self.log.taken() if tuple(rule.check(looking)) == found else None
+            self.verdicts.append(KeptVerdict(found, lookups))
             yield from ((rule, violation) for violation in found)
 
     def locations(self) -> dict[str, SourceLocation]:
@@ -229,7 +233,8 @@ class LaterReading(Loading):
         """What of the document breaks a rule."""
         differing = frozenset(self._differing(draft))
         for rule, kept in zip(self.rules, self.first.verdicts, strict=True):
-            found = kept.violations if kept.lookups.isdisjoint(differing) else rule.check(draft)
+            stands = kept.lookups is not None and kept.lookups.isdisjoint(differing)
+            found = kept.violations if stands else rule.check(draft)
             yield from ((rule, violation) for violation in found)
 
     def _differing(self, draft: DraftDocument) -> Iterator[Lookup]:
