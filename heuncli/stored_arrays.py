@@ -82,7 +82,8 @@ class StoredArray:
         found = np.empty(count)
         self._store.file.seek(self._begin + WIDTH * first)
         if self._store.file.readinto(found.data) != found.nbytes:
-            raise OutputError(Problem("output-failed", "the temporary file of the results ends too soon"))
+            message, hint = "the temporary file of the results ends too soon", "TMPDIR names the folder for it"
+            raise OutputError(Problem("output-failed", message, hint=hint))
         return found
 
 

@@ -9,7 +9,7 @@ from typing import TYPE_CHECKING, Protocol
 import numpy as np
 
 from heuncli.results import Array, Extremes, Place, Results
-from heuncli.study.compose.recovery import Recovery
+from heuncli.study.compose.recovery import HUNG_ON_RANK, Recovery
 from heuncli.study.model.setup import Setup
 from heuncli.study.search import extremes
 from heuncli.study.search.extremes import ColumnSearch
@@ -75,8 +75,8 @@ class StudyColumns:
 
     @cached_property
     def verdicts(self) -> OpenBetween | None:
-        """What is open between the instants of the grid; None where it has to be looked for at each."""
-        if any(recovery.decided is None for recovery in self.grid):  # a tree
+        """What is open between the instants of the grid; None where it is looked for at each, or nobody asks for it."""
+        if not self.wanted & HUNG_ON_RANK or any(recovery.decided is None for recovery in self.grid):  # of a tree
             return None
         from heuncli.study.search.open_between import OpenBetween, verdicts  # where there are closed chains
 
