@@ -1,8 +1,8 @@
 """How to make a redundant model determinate: joints replaced by looser ones, found by trying.
 
 A looser joint holds part of what the one before held, so where the freedoms stay the same the motion does. Joints that
-are driven, loaded, named in an expression or hold a start value keep their kind: they need it. They may give way to the
-moments that others hold (zero_stiffness.py).
+are driven, loaded, limited by a stop, named in an expression or hold a start value keep their kind: they need it. They
+may give way to the moments that others hold (zero_stiffness.py).
 """
 
 from __future__ import annotations
@@ -69,14 +69,15 @@ def choices_of(scene: PreparedScene) -> Choices:
     """Of each joint that may change what may take its place; inner joints first."""
     mechanism = scene.mechanism
     joints = mechanism.joints
-    loaded = {joints[load.joint].name for load in mechanism.loads if isinstance(load, JointLoad)}
-    loaded |= {name for load in mechanism.loads for value in load.values for name, _ in value.uses}
+    used = {joints[load.joint].name for load in mechanism.loads if isinstance(load, JointLoad)}
+    used |= {joints[stop.joint].name for stop in mechanism.stops}
+    used |= {name for value in mechanism.expressions() for name, _ in value.uses}
     along = open_directions(scene)
     found: dict[int, tuple[Joint, ...]] = {}
     for k in sorted(range(len(joints)), key=lambda k: GROUND in (joints[k].a, joints[k].b)):
         j = joints[k]
         given = any(value is not None for value in (j.angle, j.rate, j.travel, j.speed))
-        if j.drive is None and not given and j.name not in loaded:
+        if j.drive is None and not given and j.name not in used:
             looser = JOINTS[j.kind].looser_in_plane if mechanism.planar else JOINTS[j.kind].looser
             others = (loosened(j, kind, along[k]) for kind in looser)
             found[k] = tuple(other for other in others if other is not None)

@@ -174,9 +174,12 @@ def with_(joint: Mapping[str, Any], **more: Any) -> dict[str, Any]:
         ({"B": {"initial": {"rate": 0.5}}}, {}),
         ({}, {"forces": {"worn": {"type": "damper", "joint": "B", "coefficient": 0.1}}}),
         ({}, {"forces": {"push": {"type": "force", "on": "crank.end", "vector": ["B.angle", 0, 0]}}}),
+        ({}, {"stops": {"buffer": {"joint": "B", "angle": [None, 7], "restitution": 0.5}}}),
+        ({}, {"analysis": {"duration": 1, "events": {"far": "B.angle > 1"}}}),
+        ({}, {"analysis": {"duration": 1, "until": "B.rate > 9"}}),
     ],
 )
 def test_a_joint_in_use_keeps_its_kind(joint: dict[str, Any], more: dict[str, Any]) -> None:
-    """B would be advised, but for the start value, damper or expression that needs it as a pin."""
+    """B would be advised, but for the start value, damper, stop, force or condition that needs it as a pin."""
     assert tried(to_yaml(with_({}))).startswith("determinate with B")
     assert tried(to_yaml(with_(joint, **more))).startswith("determinate with C")

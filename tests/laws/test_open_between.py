@@ -95,6 +95,32 @@ def test_a_contact_that_closes_opens_more() -> None:
     assert closed.any() and not closed.all() and followed > 0
 
 
+@pytest.mark.parametrize("count", [1, 2, 3])
+def test_cuts_of_a_body_held_twice(count: int) -> None:
+    """A force along the line of the hinges is open, and with it all loads of the cuts between them, how many ever."""
+    at = (
+        "from: [0.1, 0, 0], to: [0.9, 0, 0], count: " + str(count)
+        if count > 1
+        else "at: [0.1, 0, 0], normal: [1, 0, 0]"
+    )
+    bar = "{type: cylinder, from: [0, 0, 0], to: [1, 0, 0], radius: 0.05, mass: 1}"
+    flap = "{type: box, center: [0.95, 0.3, 0], size: [0.1, 0.6, 0.02], mass: 1}"
+    of_shapes = STRUCK.replace("mass: 2, center: [0.5, 0.3, 0], inertia: [0.2, 0.2, 0.3]", f"shapes: [{bar}, {flap}]")
+    found = study(of_shapes + f"sections: {{run: {{body: door, {at}}}}}\n")
+    told, looked, followed = told_and_found(found)
+    np.testing.assert_array_equal(told, looked)
+    assert followed > 0 and np.isnan(looked).any()
+    columns, at = between(found)
+    recovery, tells = found.recovery_at(at, WANTED), columns.verdicts
+    assert tells is not None
+    recovery = recovery.at(tells.tells(recovery.recovered))
+    named = [
+        x.sections["run"]["open"]
+        for x in (found.reports_of(recovery.as_told(), WANTED, tells), found.reports_of(recovery, WANTED))
+    ]
+    assert named[0] == named[1] and "N" in named[0] and "force.x" in named[0]
+
+
 @pytest.mark.parametrize("what", ["dependent", "ordinary", "open"])
 def test_disagreement_is_looked_at(what: str) -> None:
     """Where the two sides differ in rank, in being singular or in what is open, instants between are looked at."""

@@ -20,7 +20,7 @@ from heuncli.integration.evaluator import Recovered
 from heuncli.integration.trajectory import Trajectory
 from heuncli.named_tuples import NamedTuple
 from heuncli.results import Array, Indices, Mask
-from heuncli.results_schema import quantity
+from heuncli.results_schema import SPACE, quantity
 from heuncli.study.compose.blocks import blocks_asked_for
 from heuncli.study.compose.recovery import HUNG_ON_RANK, Recovery
 from heuncli.tree.layout import Layout
@@ -39,11 +39,12 @@ class TellsOpen(Protocol):
 
 
 class Leaf(NamedTuple):
-    """An array over the instants: the block it stands in, its name there, and of which kind it is."""
+    """An array over the instants: the block it stands in, its name there, of which kind it is, whether of vectors."""
 
     block: dict[str, Any]
     name: str
     kind: PathAndUnit
+    vectors: bool
 
 
 def without_unknown(
@@ -131,7 +132,7 @@ def leaves(shown: dict[str, Any], keys: tuple[str, ...] = ()) -> Iterator[Leaf]:
         elif isinstance(part, np.ndarray):
             row = quantity((*keys, name))
             if row is not None and row.timed:
-                yield Leaf(shown, name, (row.path, row.units[-1]))
+                yield Leaf(shown, name, (row.path, row.units[-1]), row.shape[-1:] == (SPACE,))
 
 
 def largest_of_kind(known: Sequence[tuple[Leaf, Array, Array]], least: Mapping[str, Array]) -> dict[PathAndUnit, Array]:

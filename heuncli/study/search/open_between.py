@@ -69,8 +69,8 @@ class OpenBetween:
         for leaf, mask in zip(leaves(shown), self.open, strict=True):
             if mask is not None:
                 leaf.block[leaf.name] = opened(leaf.block[leaf.name], mask[k])
-                if "open" in leaf.block:
-                    leaf.block["open"] += names_of({leaf.name: mask[k]})
+                if "open" in leaf.block:  # at some instant, in some cut
+                    leaf.block["open"] += names_of({leaf.name: mask[k].reshape(-1, *[3] * leaf.vectors)})
 
     def _before(self, times: Array) -> Indices:
         """The last of the instants before each, but for the very last."""
