@@ -9,6 +9,7 @@ three cuts is no vector. A word in capitals stands for a name of the scene; a na
 from __future__ import annotations
 
 from collections.abc import Collection, Iterable, Sequence
+from functools import lru_cache
 from typing import TypeAlias
 
 from heuncli.named_tuples import NamedTuple
@@ -334,6 +335,11 @@ def under(keys: Iterable[str]) -> Node | Quantity | None:
 
 def quantity(keys: Iterable[str]) -> Quantity | None:
     """The row of what stands in the results under these keys; None where there is none."""
+    return _quantity(tuple(keys))
+
+
+@lru_cache(maxsize=10_000)  # the paths of a scene, which every look at some of its instants goes through
+def _quantity(keys: tuple[str, ...]) -> Quantity | None:
     node = under(keys)
     return node if isinstance(node, Quantity) else None
 

@@ -17,7 +17,7 @@ import numpy as np
 from heuncli import tolerances
 from heuncli.named_tuples import NamedTuple
 from heuncli.results import Array, Extremes, Indices, Mask, Results
-from heuncli.study.search.intervals import FOURTH, Intervals, completed, joined, promised
+from heuncli.study.search.intervals import FOURTH, Intervals, ceiling, completed, joined, promised
 
 ColumnsAt = Callable[[Array], Array]  # of sorted instants (n,) the quantities there, (n, n_columns)
 
@@ -166,15 +166,18 @@ def intervals_of(times: Array, values: Array, asked: Targets, found: Best) -> In
     heights, owner, column = heights[:, varies], asked.owner[varies], asked.column[varies]
     left, right = completed(*_bends(times, heights, step, smooth))
     up, down = _rises(heights, step, smooth)
-    doubt = FOURTH * np.maximum(np.abs(left), np.abs(right))
-    enough, inner = asked.enough(found.height), np.concatenate([[False], smooth, [False]])
+    most = np.maximum(np.abs(left), np.abs(right))
+    doubt = FOURTH * most
+    inner = np.concatenate([[False], smooth, [False]])
+    to_beat = found.height + asked.enough(found.height)
     parts = []
     for side, target in ((-1.0, owner), (1.0, owner + asked.n)):
         b, c, before, after, rising, falling = (side * x for x in (heights[:-1], heights[1:], left, right, up, down))
-        promise = asked.possible(promised(b, c, before, after, doubt, rising, falling), target)
         with np.errstate(invalid="ignore"):
-            more = (promise > (found.height + enough)[target]) & smooth[:, None]
-        k, j = np.nonzero(more)
+            k, j = np.nonzero((ceiling(b, c, most, rising, falling) > to_beat[target]) & smooth[:, None])
+        some = (x[k, j] for x in (b, c, before, after, doubt, rising, falling))
+        more = asked.possible(promised(*some), target[j]) > to_beat[target[j]]
+        k, j = k[more], j[more]
         # neighbours beyond a jump or the end are none: such are made up from the bends
         w, f, g = step[k], heights[k, j], heights[k + 1, j]
         p, q = np.maximum(k - 1, 0), np.minimum(k + 2, len(times) - 1)

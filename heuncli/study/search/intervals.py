@@ -23,6 +23,7 @@ from heuncli.results import Array, Indices, Mask
 DIFFERENCE = 0.5  # of what the two bends differ by, on top of the larger: for third derivatives that change sign
 FOURTH = 0.5  # of the bend: what the fourth derivative may add to it where four instants span a summit
 NEAREST = 0.02  # of an interval: how near to its ends it is divided: a summit's neighbourhood shrinks so fast
+ROUNDED_UP = 0.26  # of a bend: a quarter, and more than rounding adds to it
 ROUGH = 0.2  # of the bend: a parabola that misses a value by more has met a kink, or a grid too coarse for it
 
 
@@ -132,3 +133,12 @@ def promised(b: Array, c: Array, left: Array, right: Array, doubt: Array, up: Ar
         more = np.maximum(b, c) + np.where(spare > 0.0, 0.25 * spare * spare / bend, 0.0)
         wild = apart > 0.5 * np.maximum(rise, np.abs(left + right))
         return np.asarray(np.where(wild, np.fmax(more, np.fmax(b + up, c + down)), more))
+
+
+def ceiling(b: Array, c: Array, most: Array, up: Array, down: Array) -> Array:
+    """What `promised` does not exceed, found at less cost; most: the larger of the two bends' magnitudes.
+
+    The bend it goes by is at most 1 + 2 DIFFERENCE + FOURTH of that, and a parabola rises by a quarter of its bend.
+    """
+    bend = (1.0 + 2.0 * DIFFERENCE + FOURTH) * most
+    return np.asarray(np.fmax(np.maximum(b, c) + ROUNDED_UP * bend, np.fmax(b + up, c + down)))

@@ -1,0 +1,24 @@
+"""The ceiling by which most intervals of a search are passed over never lies below what one of them promises."""
+
+from __future__ import annotations
+
+import numpy as np
+import pytest
+
+from heuncli.study.search.intervals import FOURTH, ceiling, promised
+
+
+@pytest.mark.parametrize("seed", range(4))
+def test_no_promise_is_passed_over(seed: int) -> None:
+    """Over heights and bends of all sizes, numbers that are none among them, bends that agree and that do not."""
+    rng = np.random.default_rng(seed)
+    b, c, left, right, up, down = rng.normal(size=(6, 100_000)) * 10.0 ** rng.uniform(-6.0, 6.0, (6, 100_000))
+    same = rng.random(100_000) < 0.3
+    right, c = np.where(same, left, right), np.where(rng.random(100_000) < 0.2, b, c)
+    up, down = (np.where(rng.random(100_000) < 0.1, np.nan, x) for x in (up, down))
+    most = np.maximum(np.abs(left), np.abs(right))
+    promise = promised(b, c, left, right, FOURTH * most, up, down)
+    known = np.isfinite(promise)
+    assert known.mean() > 0.9
+    assert (ceiling(b, c, most, up, down)[known] >= promise[known]).all()
+    assert (ceiling(b, c, 0.5 * most, up, down)[known] < promise[known]).any()
