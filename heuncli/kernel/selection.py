@@ -84,16 +84,19 @@ def order_rows(scene: cython.pointer[Scene], island: cython.pointer[Island], lea
 
 
 def stand(scene: cython.pointer[Scene], island: cython.pointer[Island]) -> cython.Py_ssize_t:
-    """The rows of an island's J, and those of them that may be chosen, with a rank and more than nothing; how many."""
+    """The rows of an island's J that have a rank, and those of them that have more than nothing; how many these are."""
     k: cython.Py_ssize_t
     width: cython.Py_ssize_t = island.freedom_count
     found: cython.Py_ssize_t = 0
     for k in range(island.row_count):
         row: cython.pointer[Closure] = cython.address(scene.closures[scene.indices[island.rows + k]])
+        row.chosen = -1
+        if row.rank < 0:
+            continue
         scaled_row(scene, island, k)
         scene.left[k] = square_left(scene, island, k, 0)
         scene.reach[k] = reach_of(scene, list_filled(scene, width * k, 0, width), width)
-        if row.rank >= 0 and scene.left[k] != 0.0:
+        if scene.left[k] != 0.0:
             scene.standing[found] = k
             found += 1
     return found
@@ -118,7 +121,6 @@ def scaled_row(scene: cython.pointer[Scene], island: cython.pointer[Island], k: 
     square: cython.double = 0.0
     J: cython.p_double = scene.J
     row: cython.pointer[Closure] = cython.address(scene.closures[scene.indices[island.rows + k]])
-    row.chosen = -1
     for i in range(n):
         scene.spread[scene.indices[island.freedoms + i]] = 0.0
     jacobian_row(scene, row)
