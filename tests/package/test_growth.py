@@ -14,9 +14,9 @@ import pytest
 from tests.shared.counting import Counts, counts_of
 from tests.shared.growing import GROWING
 
-# states that are answered for a sample: the run, its check, and what either is beside a start moved by rounding (or, of
-# long runs, a piece at a time) in judging the loads, then the run's own for what is told; one more where the search of
-# extremes begins with it
+# An attempt at the tolerance answers a sample for each run that is compared: the run, its check, and where rounding may
+# matter a third from a start moved by it. This motion takes an attempt with two runs and one with three. The search of
+# extremes begins with the samples once more.
 OF_A_SAMPLE, SEARCHED = 5, 1
 OF_A_STEP, REJECTED = 13, 1  # evaluations: the stages of the method, and the first of a run; steps that were too long
 AT_ONCE = 1.6  # times as many extremes to be searched may a larger chain have: its motion is another one
