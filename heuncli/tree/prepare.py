@@ -46,7 +46,7 @@ def prepare(mechanism: Mechanism, t0: float = 0.0, stages: Stages = ANEW) -> Pre
         from heuncli.tree.driven_starts import begun  # few scenes have drives by a rate
 
         mechanism = begun(mechanism, start)
-    scene = arranged(mechanism, start)
+    scene = arranged(mechanism, start, stages=stages)
     if mechanism.stops:
         from heuncli.tree.limits import at_rest_on_stops, start_within_limits  # where something strikes
 
@@ -65,6 +65,7 @@ def arranged(
     spanning: Spanning | None = None,
     size: float | None = None,
     starts: tuple[JointStart, ...] | None = None,
+    stages: Stages = ANEW,
 ) -> PreparedScene:
     """Lay out an assembled mechanism; bodies with an undetermined spin get some inertia and no spin about its axis.
 
@@ -84,7 +85,7 @@ def arranged(
     works = works or driven or bool(mechanism.blows or mechanism.stops)
     works = works or any(j.restitution is not None for j in mechanism.joints)
     tree = None if spanning is None else GivenTree(spanning, starts)
-    return PreparedScene(mechanism, start, idle, lay_out(mechanism, start, inertias, size, works, tree))
+    return PreparedScene(mechanism, start, idle, lay_out(mechanism, start, inertias, size, works, tree, stages))
 
 
 def lacking_inertia(scene: PreparedScene) -> dict[int, Array]:
