@@ -10,7 +10,7 @@ from collections.abc import Iterator, Mapping, Sequence
 
 from heuncli.named_tuples import NamedTuple
 from heuncli.results import Array
-from heuncli.variants.axes import HINT, ParameterAxis, AxisError, Drawn, figure_of, text_of
+from heuncli.variants.axes import HINT, AxisError, Drawn, ParameterAxis, figure_of, text_of
 
 MOST_VARIANTS = 10_000_000
 
