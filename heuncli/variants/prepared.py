@@ -9,16 +9,18 @@ looked up (spec/variants.py), so a variant is what `heun run --set` makes of it,
 
 from __future__ import annotations
 
-from collections.abc import Mapping
+from collections.abc import Mapping, Sequence
 from contextlib import suppress
 from pathlib import Path
 
 from heuncli.errors import HeunError
 from heuncli.kept_stages import FirstStages, LaterStages
+from heuncli.records import replace
 from heuncli.spec.models import Spec
 from heuncli.spec.variants import SpecVariants
 from heuncli.study.ask.study import Study
 from heuncli.study.model.options import Options, as_asked
+from heuncli.study.model.selection import asked_by
 from heuncli.study.workflow import asked_set_up, solve
 
 
@@ -33,14 +35,19 @@ class Variants:
         options: Options | None = None,
         overrides: Mapping[str, str] | None = None,
         case: str | None = None,
+        measures: Sequence[str] = (),
     ) -> None:
         """Read the file of a spec, or a text that stands for it, as `load` does; nothing of it is read again.
 
         options: by which all variants are solved; overrides: what is set in all of them; case: the load case whose
-        values these go on top of. Raises SpecError.
+        values these go on top of; measures: paths into the results, where no more is solved than these need. Raises
+        SpecError.
         """
         self.options = options or Options()
         self._specs = SpecVariants(path, text, overrides, checking=False, case=case)
+        if measures:
+            what = asked_by(measures, self.spec)
+            self.options = replace(self.options, wanted=what.reports, entries=what.entries)
         first = FirstStages()
         with suppress(HeunError):  # of a scene that cannot be set up less is kept, or nothing
             asked_set_up(as_asked(self._specs.spec, self.options), self.options, first)
