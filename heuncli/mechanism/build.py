@@ -45,7 +45,10 @@ def forms_of(spec: m.Spec, stages: Stages = ANEW) -> dict[str, Form]:
 
 
 def build(spec: m.Spec, forms: dict[str, Form], stages: Stages = ANEW) -> Mechanism:
-    """The mechanism of a validated spec; forms: of the bodies that are built from shapes; stages: each body and joint is one."""
+    """The mechanism of a validated spec; forms: of the bodies that are built from shapes.
+
+    stages: each body and each joint is one.
+    """
     index = {name: i for i, name in enumerate(spec.bodies)} | {"ground": GROUND}
     joints = {name: (k, TYPES[j.kind]) for k, (name, j) in enumerate(spec.joints.items())}
     drives = {drive.joint: drive for drive in spec.drives.values()}

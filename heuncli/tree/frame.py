@@ -20,7 +20,7 @@ from heuncli.tree.tables import Table
 
 
 @record
-class Frame:
+class LayoutFrame:
     """A layout without its mechanism, its programs and its tables of loads, of what is watched, and of variables.
 
     The fields are those of Layout; indices as an array, which can be locked.
@@ -56,13 +56,13 @@ class Frame:
         return body if body == GROUND else self.place[body]
 
 
-def frame_of(layout: Layout) -> Frame:
+def frame_of(layout: Layout) -> LayoutFrame:
     """What stands of a layout without loads."""
-    own = {name: getattr(layout, name) for name in Frame.__annotations__}
-    return Frame(**own | {"indices": np.array(layout.indices)})
+    own = {name: getattr(layout, name) for name in LayoutFrame.__annotations__}
+    return LayoutFrame(**own | {"indices": np.array(layout.indices)})
 
 
-def layout_of(frame: Frame, mechanism: Mechanism, pack: Pack, loads: dict[str, Table]) -> Layout:
+def layout_of(frame: LayoutFrame, mechanism: Mechanism, pack: Pack, loads: dict[str, Table]) -> Layout:
     """A layout of a frame; pack: the programs; loads: the tables that a frame is without."""
     own = fields(frame) | {"indices": array("i", frame.indices.tobytes()), "tables": frame.tables | loads}
     return Layout(mechanism=mechanism, pack=pack, **own)

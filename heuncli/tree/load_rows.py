@@ -6,16 +6,18 @@ from collections.abc import Sequence
 
 import numpy as np
 
-from heuncli.expressions.programs import Expression, Pack
+from heuncli.expressions.programs import Expression, Pack, Variable
 from heuncli.joint_kinds import JOINTS
 from heuncli.kernel.choose import scene as kernel
 from heuncli.mechanism.model import GROUND, JointLoad, Mechanism, NamedPoint, PairLoad, PointLoad
 from heuncli.named_tuples import NamedTuple
 from heuncli.records import replace
 from heuncli.shapes.rotations import perpendicular
-from heuncli.tree.frame import Frame, layout_of
+from heuncli.stages import ANEW, Stages
+from heuncli.tree.frame import LayoutFrame, layout_of, no_loads
 from heuncli.tree.layout import Layout
-from heuncli.tree.rows import NO_PROGRAM, LoadRow, Program, VariableRow, WatchRow, table_of
+from heuncli.tree.rows import NO_PROGRAM, ZERO, LoadRow, Program, VariableRow, WatchRow, table_of
+from heuncli.tree.tables import Table, flat
 
 JOINT_LOADS = {  # of the turning, of the sliding
     "torque": (kernel.TORQUE, kernel.THRUST),
@@ -24,9 +26,10 @@ JOINT_LOADS = {  # of the turning, of the sliding
     "friction": (kernel.TURN_FRICTION, kernel.SHIFT_FRICTION),
 }
 PRESSES = {"whole": kernel.WHOLE, "across": kernel.ACROSS, "ends": kernel.ENDS}
+Components = tuple[Program, Program, Program]
 
 
-class Programs(NamedTuple):
+class ValuePrograms(NamedTuple):
     """The values in time of a mechanism: their pack, and where the program of each stands, by its identity.
 
     drives: that of each joint's drive. Theirs come first in the pack: where they stand hangs on no load.
@@ -36,7 +39,11 @@ class Programs(NamedTuple):
     at: dict[int, Program]
     drives: tuple[Program, ...]
 
-    def more(self, mechanism: Mechanism) -> Programs:
+    def of(self, e: Expression) -> Program:
+        """That of a load's value; none where it does not vary."""
+        return self.at[id(e)] if e.constant is None else NO_PROGRAM
+
+    def more(self, mechanism: Mechanism) -> ValuePrograms:
         """With those of another mechanism, whose own come after these."""
         for e in mechanism.expressions():
             if e.constant is None and id(e) not in self.at:
@@ -44,13 +51,13 @@ class Programs(NamedTuple):
         return self._replace(drives=drives_of(mechanism, self.at))
 
 
-def programs_of(mechanism: Mechanism) -> Programs:
+def programs_of(mechanism: Mechanism) -> ValuePrograms:
     """Every expression in time."""
     pack = Pack()
     at = {id(e): pack.add(e) for e in (j.drive.value for j in mechanism.joints if j.drive is not None)}
     drives = drives_of(mechanism, at)
     at |= {id(e): pack.add(e) for e in applied(mechanism) if e.constant is None}
-    return Programs(pack, at, drives)
+    return ValuePrograms(pack, at, drives)
 
 
 def drives_of(mechanism: Mechanism, at: dict[int, Program]) -> tuple[Program, ...]:
@@ -68,59 +75,57 @@ def named_in(mechanism: Mechanism) -> frozenset[str]:
     return frozenset(name for e in applied(mechanism) for name, _ in e.uses)
 
 
-def with_loads(frame: Frame, mechanism: Mechanism, programs: Programs) -> Layout:
-    """The layout of a frame with the loads and conditions of its mechanism."""
-    return _LoadTables(frame, mechanism, programs).layout()
+def with_loads(frame: LayoutFrame, mechanism: Mechanism, programs: ValuePrograms, stages: Stages = ANEW) -> Layout:
+    """The layout of a frame with the loads and conditions of its mechanism; stages: but for their values it is one."""
+    placed = tuple(tuple(programs.of(e) for e in load.values) for load in mechanism.loads)
+    found = stages.run(load_table, mechanism, frame, placed).copy()
+    vector = found["vector"].view(flat(found.dtype["vector"]))
+    for load, rows in mechanism.load_rows():
+        for i, e in enumerate(load.values):
+            vector[rows, i] = 0.0 if e.constant is None else e.constant
+    tables = no_loads() | {"loads": found}
+    if programs.pack.code:
+        tables["watches"] = table_of(kernel.Watch, watch_rows(mechanism, programs))
+    if len(programs.pack.variables) > 1:
+        tables["variables"] = table_of(kernel.Variable, variable_rows(frame, mechanism, programs.pack.variables))
+    return layout_of(frame, mechanism, programs.pack, tables)
 
 
-class _LoadTables:
-    """Fills the tables that a frame is without; lives for one call of with_loads."""
+def load_table(mechanism: Mechanism, frame: LayoutFrame, programs: tuple[tuple[Program, ...], ...]) -> Table:
+    """The table of loads without those values that do not vary; programs: of each load's values."""
+    return table_of(kernel.Load, _LoadRows(mechanism, frame, programs).made)
 
-    def __init__(self, frame: Frame, mechanism: Mechanism, programs: Programs) -> None:
-        self.frame, self.mechanism = frame, mechanism
-        self.pack, self.programs = programs.pack, programs.at
 
-    def layout(self) -> Layout:
-        """All of it."""
-        self.loads()
-        tables = {
-            "loads": table_of(kernel.Load, self.load_rows),
-            "variables": table_of(kernel.Variable, self._variable_rows()),
-            "watches": table_of(kernel.Watch, self._watch_rows()),
-        }
-        return layout_of(self.frame, self.mechanism, self.pack, tables)
+class _LoadRows:
+    """Makes the rows of the loads; lives for one call of load_table."""
 
-    def loads(self) -> None:
-        """Applied loads."""
-        self.load_rows: list[LoadRow] = []
-        for load in self.mechanism.loads:
+    def __init__(self, mechanism: Mechanism, frame: LayoutFrame, programs: tuple[tuple[Program, ...], ...]) -> None:
+        self.mechanism, self.frame = mechanism, frame
+        self.made: list[LoadRow] = []
+        for load, own in zip(mechanism.loads, programs, strict=True):
+            x, y, z = own + (NO_PROGRAM,) * (3 - len(own))
+            values = x, y, z
             if isinstance(load, PointLoad):
-                self._point_load(load)
+                self._point_load(load, values)
             elif isinstance(load, PairLoad):
-                self._pair_load(load)
+                self._pair_load(load, values)
             else:
-                self._joint_load(load)
+                self._joint_load(load, values)
 
-    def _values(self, values: Sequence[Expression]) -> tuple[Program, Program, Program, list[float]]:
-        """The programs of up to three components that vary, and the numbers of those that do not."""
-        constants = [value.constant for value in values] + [0.0] * (3 - len(values))
-        programs = [self.programs[id(value)] if value.constant is None else NO_PROGRAM for value in values]
-        x, y, z = programs + [NO_PROGRAM] * (3 - len(values))
-        return x, y, z, [constant if constant is not None else 0.0 for constant in constants]
-
-    def _point_load(self, load: PointLoad) -> None:
+    def _point_load(self, load: PointLoad, values: Components) -> None:
         q = np.zeros(3) if load.point is None else self.frame.relative(load.body, load.point)
         kind = kernel.FORCE if load.kind == "force" else kernel.COUPLE
-        body, in_body, values = self.frame.in_tree(load.body), int(load.in_body), self._values(load.vector)
-        self.load_rows.append(LoadRow(kind, GROUND, body, *values, in_body=in_body, q=q, factor=load.factor))
+        body, in_body = self.frame.in_tree(load.body), int(load.in_body)
+        self.made.append(LoadRow(kind, GROUND, body, *values, ZERO, in_body=in_body, q=q, factor=load.factor))
 
-    def _pair_load(self, load: PairLoad) -> None:
-        self.load_rows.append(
+    def _pair_load(self, load: PairLoad, values: Components) -> None:
+        self.made.append(
             LoadRow(
                 kernel.SPRING if load.value is None else kernel.ACTUATOR,
                 self.frame.in_tree(load.a),
                 self.frame.in_tree(load.b),
-                *self._values(load.values),
+                *values,
+                ZERO,
                 p=self.frame.relative(load.a, load.p),
                 q=self.frame.relative(load.b, load.q),
                 stiffness=load.stiffness,
@@ -129,7 +134,7 @@ class _LoadTables:
             )
         )
 
-    def _joint_load(self, load: JointLoad) -> None:
+    def _joint_load(self, load: JointLoad, values: Components) -> None:
         joint = self.mechanism.joints[load.joint]
         kind = JOINTS[joint.kind]
         turns, slides = JOINT_LOADS[load.kind]
@@ -140,7 +145,8 @@ class _LoadTables:
                 number,
                 self.frame.in_tree(joint.a),
                 self.frame.in_tree(joint.b),
-                *self._values(load.values),
+                *values,
+                ZERO,
                 in_body=int(kind.has_one_axis),
                 p=self.frame.relative(joint.a, joint.p),
                 q=self.frame.relative(joint.b, joint.q),
@@ -152,7 +158,7 @@ class _LoadTables:
                 row = self._turn_spring(load, row)
             elif load.presses is not None:
                 row = self._pressed(load, row)
-            self.load_rows.append(row)
+            self.made.append(row)
 
     def _pressed(self, load: JointLoad, row: LoadRow) -> LoadRow:
         """Where what presses is found: in the balance of the branch on the joint, or in the rows of a cut one."""
@@ -180,42 +186,45 @@ class _LoadTables:
             mark=start.R_ref.T @ across,
         )
 
-    def _point_row(self, point: NamedPoint, quantity: str) -> VariableRow:
-        """The variable that is a point's place or velocity along one of its axes."""
-        axis = "xyz".index(quantity[-1])
-        return VariableRow(
-            is_rate=int(quantity.startswith("v")),
-            is_point=1,
-            body=self.frame.in_tree(point.body),
-            q=self.frame.relative(point.body, point.place),
-            direction=point.axes[axis],
-            offset=float(point.offset[axis]),
-        )
 
-    def _watch_rows(self) -> list[WatchRow]:
-        """The programs of loads and drives: what they do between the stages of a step must not be passed over.
+def watch_rows(mechanism: Mechanism, programs: ValuePrograms) -> list[WatchRow]:
+    """The programs of loads and drives: what they do between the stages of a step must not be passed over.
 
-        Of conditions only where they change.
-        """
-        driven = {id(j.drive.value): j.drive.value for j in self.mechanism.joints if j.drive is not None}
-        loads = {id(e): e for load in self.mechanism.loads for e in load.values}
-        watched = [
-            WatchRow(self.programs[key], curved=int(key in driven), condition=0)
-            for key, e in (loads | driven).items()
-            if e.constant is None
-        ]
-        conditions = (self.programs[id(condition.value)] for condition in self.mechanism.conditions)
-        return watched + [WatchRow(program, curved=0, condition=1) for program in conditions]
+    Of conditions only where they change.
+    """
+    driven = {id(j.drive.value): j.drive.value for j in mechanism.joints if j.drive is not None}
+    loads = {id(e): e for load in mechanism.loads for e in load.values}
+    watched = [
+        WatchRow(programs.at[key], curved=int(key in driven), condition=0)
+        for key, e in (loads | driven).items()
+        if e.constant is None
+    ]
+    conditions = (programs.at[id(condition.value)] for condition in mechanism.conditions)
+    return watched + [WatchRow(program, curved=0, condition=1) for program in conditions]
 
-    def _variable_rows(self) -> list[VariableRow]:
-        """The first is the time, which is no coordinate."""
-        joints = self.mechanism.joints
-        by_name = {(joints[f.joint].name, f.quantity): i for i, f in enumerate(self.frame.freedoms) if f.joint >= 0}
-        rows = [VariableRow()]
-        for name, quantity in (use for use in self.pack.variables if not isinstance(use, str)):
-            if name in self.mechanism.points:
-                rows.append(self._point_row(self.mechanism.points[name], quantity))
-                continue
-            base = {"rate": "angle", "speed": "travel"}.get(quantity, quantity)
-            rows.append(VariableRow(by_name[name, base], int(base != quantity)))
-        return rows
+
+def variable_rows(frame: LayoutFrame, mechanism: Mechanism, variables: Sequence[Variable]) -> list[VariableRow]:
+    """The variables of the programs; the first is the time, which is no coordinate."""
+    joints = mechanism.joints
+    by_name = {(joints[f.joint].name, f.quantity): i for i, f in enumerate(frame.freedoms) if f.joint >= 0}
+    rows = [VariableRow()]
+    for name, quantity in (use for use in variables if not isinstance(use, str)):
+        if name in mechanism.points:
+            rows.append(point_row(frame, mechanism.points[name], quantity))
+            continue
+        base = {"rate": "angle", "speed": "travel"}.get(quantity, quantity)
+        rows.append(VariableRow(by_name[name, base], int(base != quantity)))
+    return rows
+
+
+def point_row(frame: LayoutFrame, point: NamedPoint, quantity: str) -> VariableRow:
+    """The variable that is a point's place or velocity along one of its axes."""
+    axis = "xyz".index(quantity[-1])
+    return VariableRow(
+        is_rate=int(quantity.startswith("v")),
+        is_point=1,
+        body=frame.in_tree(point.body),
+        q=frame.relative(point.body, point.place),
+        direction=point.axes[axis],
+        offset=float(point.offset[axis]),
+    )

@@ -20,10 +20,9 @@ from heuncli.mechanism.model import (
 )
 from heuncli.results import Array
 from heuncli.shapes.rotations import cross_rows, to_quaternion
-from heuncli.stages import ANEW, Stages
 from heuncli.tree.closure_paths import places_of
 from heuncli.tree.flat import about_z, in_plane, moves_in_plane
-from heuncli.tree.frame import Frame, frame_of
+from heuncli.tree.frame import LayoutFrame, frame_of
 from heuncli.tree.islands import with_islands
 from heuncli.tree.layout import Contact, Freedom, Layout
 from heuncli.tree.load_rows import named_in, programs_of, with_loads
@@ -55,15 +54,14 @@ def lay_out(
     size: float,
     work: bool = True,
     tree: GivenTree | None = None,
-    stages: Stages = ANEW,
 ) -> Layout:
-    """Lay the scene out from its assembled start; stages: what no value of a load is needed for is one.
+    """Lay the scene out from its assembled start.
 
     inertias (n, 3, 3): about the centres of mass, body axes, with what was lent for the motion; size: of the scene [m];
     work: whether that of drives and of loads without potential joins the state; tree: of a larger scene, to be kept.
     """
     programs, named = programs_of(mechanism), named_in(mechanism)
-    frame = stages.run(framed, mechanism, start, inertias, size, work, named, programs.drives, tree)
+    frame = framed(mechanism, start, inertias, size, work, named, programs.drives, tree)
     return with_loads(frame, mechanism, programs)
 
 
@@ -90,7 +88,7 @@ def framed(
     named: frozenset[str],
     drives: tuple[Program, ...],
     tree: GivenTree | None,
-) -> Frame:
+) -> LayoutFrame:
     """A layout without its loads; named: joints and points that expressions name; drives: a program a joint."""
     spanning = span(mechanism, to_be_kept(mechanism, named)) if tree is None else tree.spanning
     if tree is not None and tree.starts is not None:
@@ -140,7 +138,7 @@ class _Builder:
         self.groups: list[GroupRow] = []
         self.answer_count = 0
 
-    def frame(self, work: bool) -> Frame:
+    def frame(self, work: bool) -> LayoutFrame:
         """All of it."""
         self.bodies()
         self.rows()
@@ -364,7 +362,7 @@ class _Builder:
             i = self.body_rows[i].parent
         return path
 
-    def finish(self, work: bool) -> Frame:
+    def finish(self, work: bool) -> LayoutFrame:
         """Counted angles and the work join the state; the tables are made."""
         driven = any(j.drive is not None for j in self.mechanism.joints)
         energy_group = -1

@@ -104,7 +104,7 @@ def set_up(
         require_lengths(prepared.mechanism, max(spec.analysis.times))
     if not reduce:  # what is declared planar is moved as in space, too
         prepared = replace(prepared, layout=replace(prepared.layout, flat=False))
-    scene, runner = ready(prepared)
+    scene, runner = ready(prepared, stages)
     if scene.mechanism.rubbing and scene.layout.rows:
         from heuncli.redundancy.rubbing import require_certain_start  # few scenes have such friction
 
