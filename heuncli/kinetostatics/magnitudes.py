@@ -19,6 +19,7 @@ from heuncli.kinetostatics.actions import Action
 from heuncli.kinetostatics.bodies import BodyStates
 from heuncli.mechanism.model import GROUND, Mechanism
 from heuncli.results import Array, Block, Magnitudes
+from heuncli.shapes.by_component import form, instants_first, squares
 
 
 def inertia_scale(mechanism: Mechanism, states: BodyStates) -> Array:
@@ -26,17 +27,16 @@ def inertia_scale(mechanism: Mechanism, states: BodyStates) -> Array:
     m = np.array([body.mass for body in mechanism.bodies])
     w, u = states.turning
     spinning, turning = (_energy_like(mechanism, x) for x in (w, u))
-    speed = np.sqrt(np.sum(w * w, axis=2))
-    pieces = np.sqrt(m) * (speed * spinning + turning)
-    whole = m * np.sqrt(np.sum(states.a_centre**2, axis=2))
+    pieces = np.sqrt(m)[:, None] * (np.sqrt(squares(w)) * spinning + turning)
+    whole = m[:, None] * np.sqrt(squares(states.rows_of("a_centre")))
     weight = m * float(np.sqrt(np.sum(np.square(mechanism.gravity))))
-    return np.asarray(np.maximum(np.maximum(pieces, whole), weight))
+    return instants_first(np.maximum(np.maximum(pieces, whole), weight[:, None]))
 
 
 def _energy_like(mechanism: Mechanism, x: Array) -> Array:
-    """√(x·I x) of every body, x in body axes."""
+    """√(x·I x) of every body, (n, n_t), x in body axes by component."""
     inertia = np.array([body.inertia for body in mechanism.bodies])
-    return np.asarray(np.sqrt(np.maximum(np.einsum("tni,nij,tnj->tn", x, inertia, x), 0.0)))
+    return np.asarray(np.sqrt(np.maximum(form(x, inertia), 0.0)))
 
 
 def magnitudes(
