@@ -32,7 +32,7 @@ from typing import TYPE_CHECKING, Protocol, TypeAlias
 import numpy as np
 
 from heuncli import tolerances
-from heuncli.integration.check.distance import angle_error, motion_error
+from heuncli.integration.check.distance import angle_error, bounded_motion_error
 from heuncli.integration.check.instants import OwnStates, instants_of, interleaved, passed_between
 from heuncli.integration.check.runs import Runs
 from heuncli.integration.check.shared_blows import between_strikes
@@ -231,7 +231,7 @@ def errors(runs: Runs, a: Trajectory, times: Array, states: Sequence[StatesThere
     several = None
     for part, several in recovered_together(runs, a, times, states):
         with np.errstate(over="ignore", invalid="ignore"):  # given steps that run away: errors without bound
-            places[part] = motion_error(runs.marks, several, len(states), layout.size)
+            places[part] = bounded_motion_error(runs.marks, several, len(states), layout.size)
             angles[part], turned = angle_error(layout, several, len(states))
         largest = max(largest, turned)
     whole = several if several is not None and len(several.times) == len(states) * len(times) else None
