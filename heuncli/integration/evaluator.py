@@ -105,7 +105,7 @@ class Evaluator:
         width = own + n_c * self.workspace.column_width
         at = np.ascontiguousarray(times, dtype=float)
         settled = np.array(states, dtype=float, order="C").reshape(n_t, layout.n_state)
-        out = np.zeros((n_t, width))
+        out = np.empty((n_t, width))
         held = np.zeros((n_t, 0)) if branches is None else np.ascontiguousarray(branches, dtype=float)
         closed = np.zeros((n_t, len(layout.contacts)))
         # what others close is closed as much: which of all carry is a matter of rank here, and of verdicts

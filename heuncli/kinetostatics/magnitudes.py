@@ -40,15 +40,16 @@ def _energy_like(mechanism: Mechanism, x: Array) -> Array:
 
 
 def magnitudes(
-    mechanism: Mechanism, states: BodyStates, actions: Sequence[Action], energy: Block, size: float
+    mechanism: Mechanism, states: BodyStates, inertia: Array, actions: Sequence[Action], energy: Block, size: float
 ) -> Magnitudes:
     """The magnitudes at these instants; actions: of applied loads and of joints with their drives.
 
+    inertia: the largest inertia load of each body (`inertia_scale`).
     energy: kinetic, potential, work; empty where nobody asks for it.
     """
     g = float(np.sqrt(np.sum(np.square(mechanism.gravity))))
     mass = [body.mass for body in mechanism.bodies]
-    force = _largest(inertia_scale(mechanism, states))
+    force = _largest(inertia)
     pushed = 0.0  # acceleration that an applied load alone would give
     for action in actions:
         acting = max(_largest(action.force), _largest(action.moment) / size)

@@ -66,12 +66,12 @@ class KernelLoop:
         self.most, self.per_step = most, np.zeros((len(PER_STEP), most))
         self.held = layout.pack.held
         self.branches = np.zeros(most * self.held)
-        self.passed = np.zeros(0 if start.following else most * self.width)
+        self.passed = np.empty(0 if start.following else most * self.width)
         self.count = len(times)
         self.samples = np.zeros(self.count * n)
         self.keeping = keeping
-        self.spans = np.zeros(SPAN * most if keeping else 0)
-        self.courses = np.zeros((4 + method.arrays["dense_rows"]) * n * most if keeping else 0)
+        self.spans = np.empty(SPAN * most if keeping else 0)
+        self.courses = np.empty((4 + method.arrays["dense_rows"]) * n * most if keeping else 0)
         output = {
             "times": flat(times), "samples": self.samples, "passed": self.passed, "branches": self.branches,
             "spans": self.spans, "courses": self.courses,
